@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use link::messages::Role;
 
 use crate::roles;
-use crate::{board_model, costs, same_bits, tick, worst_case};
+use crate::{board_model, bound, costs, same_bits, tick, worst_case};
 use board::target::board::{Board, Chip};
 use board::target::image;
 use board::target::lint;
@@ -79,11 +79,16 @@ fn proofs(toolchain: &Toolchain, progress: &Progress) -> Outcome<()> {
     progress.clear();
     output::print(&format!("ok       {runs} runs of the step, the same in every bit on the board and here\n"))?;
     progress.stage("searching for the worst case on the emulated board");
-    let found = worst_case::search(toolchain, &say)?;
+    let elf = worst_case::build(toolchain, &say)?;
+    let found = worst_case::search(&elf)?;
     progress.clear();
     for search in &found {
         output::print(&format!("{search}\n"))?;
     }
+    progress.stage("bounding the step from its machine code");
+    let lines = bound::judge(&bound::of_steps(&elf, &found)?, &found)?;
+    progress.clear();
+    output::print(&format!("{}\nok       no state can take more\n", lines.join("\n")))?;
     progress.stage("counting instructions on the emulated board");
     let lines = costs::judge(&costs::count(toolchain, &say)?, &found)?;
     progress.clear();

@@ -1,7 +1,8 @@
 //! What is proved about the step that ships, on the emulated board and from the linked image: that its results are the
-//! host's in every bit, what it takes at worst, that it cannot panic and how much stack it needs.
+//! host's in every bit, what it takes at worst and at most, that it cannot panic and how much stack it needs.
 
 pub mod board_model;
+pub mod bound;
 pub mod costs;
 pub mod everything;
 pub mod joints;

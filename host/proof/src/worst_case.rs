@@ -3,6 +3,7 @@
 //! crate `trials`.
 
 use std::fmt;
+use std::path::{Path, PathBuf};
 
 use super::joints::write_files;
 use model_core::gears::certificate::Substeps;
@@ -76,16 +77,21 @@ pub fn budget(chip: Chip, tick_rate: u32) -> u32 {
     (WORST_SHARE * period / CYCLES_AN_INSTRUCTION) as u32
 }
 
-/// Searches on the emulated board.
-pub fn search(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<Search>> {
+/// Builds the image that searches, with the test joints; returns the ELF file.
+pub fn build(toolchain: &Toolchain, say: Say<'_>) -> Outcome<PathBuf> {
     let files = write_files(toolchain.target_directory())?;
-    let elf = measuring::build_measuring(toolchain, "worst_case", &files, DEFAULT_TICK_RATE, say)?;
+    measuring::build_measuring(toolchain, "worst_case", &files, DEFAULT_TICK_RATE, say)
+}
+
+/// Searches on the emulated board.
+pub fn search(elf: &Path) -> Outcome<Vec<Search>> {
     let mut found = Vec::new();
-    measuring::read(&elf, |line| parse(line, &mut found))?;
+    measuring::read(elf, |line| parse(line, &mut found))?;
     Ok(found)
 }
 
-fn parse(line: &str, found: &mut Vec<Search>) -> Option<()> {
+/// Takes in a line of the board.
+pub(crate) fn parse(line: &str, found: &mut Vec<Search>) -> Option<()> {
     let (sort, rest) = line.split_once(';')?;
     let mut fields = rest.split(';');
     if sort == "joint" {

@@ -142,7 +142,7 @@ fn conditional(function: &Function) -> BTreeSet<u32> {
 /// Where the table of a `tbb` or `tbh` leads, by distances from the instruction after it. The table follows, or its
 /// address was put into the register somewhere in the function: every such address is taken for one. A table ends
 /// with the last entry that leads to an instruction, or where instructions begin again.
-fn targets(functions: &Functions, function: &Function, next: u32, width: u32, base: u16) -> Vec<u32> {
+pub fn targets(functions: &Functions, function: &Function, next: u32, width: u32, base: u16) -> Vec<u32> {
     let loaded = function.code.values().filter_map(|instruction| instruction.address_of);
     let tables = match base {
         15 => vec![next],

@@ -2,10 +2,11 @@
 //! mapping symbols separate code from literal pools.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
-use object::elf::STT_FUNC;
+use object::elf::{SHF_WRITE, STT_FUNC, STT_OBJECT};
 use object::read::elf::ElfFile32;
-use object::{Endianness, Object, ObjectSection, ObjectSymbol};
+use object::{Endianness, Object, ObjectSection, ObjectSymbol, SectionFlags};
 
 use super::thumb::{Instruction, decode};
 
@@ -18,6 +19,8 @@ const SYSTICK: u64 = 15;
 pub struct Function {
     /// Its name as its author wrote it.
     pub name: String,
+    /// Its symbol.
+    pub symbol: String,
     /// Where it begins.
     pub address: u32,
     /// Where the next one begins, at most.
@@ -31,6 +34,10 @@ pub struct Function {
 pub struct Functions {
     functions: BTreeMap<u32, Function>,
     memory: Vec<(u32, Vec<u8>)>,
+    /// Addresses of what of it is never written.
+    constants: Vec<Range<u32>>,
+    /// Names and addresses of data.
+    objects: Vec<(String, u32)>,
 }
 
 impl Functions {
@@ -42,7 +49,13 @@ impl Functions {
             .filter_map(|section| Some((section.address() as u32, section.data().ok()?.to_vec())))
             .filter(|(address, bytes)| u64::from(*address) >= VECTORS && !bytes.is_empty())
             .collect();
-        let mut found = Self { functions: BTreeMap::new(), memory };
+        let constants = file.sections().filter_map(|section| {
+            let SectionFlags::Elf { sh_flags } = section.flags() else { return None };
+            let address = section.address() as u32;
+            (sh_flags & u64::from(SHF_WRITE) == 0).then(|| address..address.saturating_add(section.size() as u32))
+        });
+        let mut found =
+            Self { functions: BTreeMap::new(), memory, constants: constants.collect(), objects: Vec::new() };
         let mut marks = BTreeMap::new();
         let mut starts: BTreeMap<u32, (String, u32)> = BTreeMap::new();
         for symbol in file.symbols() {
@@ -51,17 +64,40 @@ impl Functions {
                 marks.insert(address, name.starts_with("$t"));
             } else if symbol.elf_symbol().st_type() == STT_FUNC {
                 starts.insert(address & !1, (name.to_owned(), symbol.size() as u32));
+            } else if symbol.elf_symbol().st_type() == STT_OBJECT {
+                found.objects.push((format!("{:#}", rustc_demangle::demangle(name)), address));
             }
         }
         let ends: Vec<u32> = starts.keys().skip(1).copied().chain([u32::MAX]).collect();
         for ((address, (name, size)), next) in starts.into_iter().zip(ends) {
             let section = found.section(address).map_or(address, |(start, bytes)| start + bytes.len() as u32);
             let end = if size > 0 { address + size } else { next.min(section) };
-            let name = format!("{:#}", rustc_demangle::demangle(&name));
+            let (symbol, name) = (name.clone(), format!("{:#}", rustc_demangle::demangle(&name)));
             let code = found.decode(address, end, &marks);
-            found.functions.insert(address, Function { name, address, end, code });
+            found.functions.insert(address, Function { name, symbol, address, end, code });
         }
         Ok(found)
+    }
+
+    /// Functions of so many half words each, with names; `data` is where a table lies among them.
+    #[cfg(test)]
+    pub fn assembled(functions: &[(&str, u32, &[u16])], data: Range<u32>) -> Self {
+        let bytes = |code: &[u16]| code.iter().flat_map(|half| half.to_le_bytes()).collect::<Vec<u8>>();
+        let memory: Vec<(u32, Vec<u8>)> = functions.iter().map(|(_, address, code)| (*address, bytes(code))).collect();
+        let constants = memory.iter().map(|(address, bytes)| *address..*address + bytes.len() as u32).collect();
+        let mut found = Self { functions: BTreeMap::new(), memory, constants, objects: Vec::new() };
+        let marks = functions
+            .iter()
+            .map(|(_, address, _)| (*address, true))
+            .chain([(data.start, false), (data.end, true)])
+            .collect();
+        for (name, address, code) in functions {
+            let (address, end) = (*address, address + 2 * code.len() as u32);
+            let code = found.decode(address, end, &marks);
+            let function = Function { name: (*name).to_owned(), symbol: (*name).to_owned(), address, end, code };
+            found.functions.insert(address, function);
+        }
+        found
     }
 
     /// The handler of the tick, as the vector table names it.
@@ -79,6 +115,21 @@ impl Functions {
     pub fn byte(&self, address: u32) -> Option<u8> {
         let (start, bytes) = self.section(address)?;
         bytes.get((address - start) as usize).copied()
+    }
+
+    /// One byte of what nothing writes.
+    pub fn constant_byte(&self, address: u32) -> Option<u8> {
+        self.constants.iter().any(|range| range.contains(&address)).then(|| self.byte(address))?
+    }
+
+    /// All functions.
+    pub fn all(&self) -> impl Iterator<Item = &Function> {
+        self.functions.values()
+    }
+
+    /// Names and addresses of data.
+    pub fn objects(&self) -> impl Iterator<Item = (&str, u32)> {
+        self.objects.iter().map(|(name, address)| (name.as_str(), *address))
     }
 
     /// Two bytes.

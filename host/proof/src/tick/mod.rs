@@ -4,10 +4,10 @@
 //! `functions` disassembles the image, `thumb` decodes instructions, `frame` analyses one function, `walk` the call
 //! graph; this file compares the result with the promised bounds. What cannot be followed is an error.
 
-mod frame;
-mod functions;
-mod thumb;
-mod walk;
+pub(crate) mod frame;
+pub(crate) mod functions;
+pub(crate) mod thumb;
+pub(crate) mod walk;
 
 use std::fs;
 use std::path::Path;

@@ -51,7 +51,7 @@ pub struct Reach {
 }
 
 /// Whether a name stands for a panic.
-fn is_panic(name: &str) -> bool {
+pub fn is_panic(name: &str) -> bool {
     PANICS.iter().any(|panic| name.contains(panic))
 }
 

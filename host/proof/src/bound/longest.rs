@@ -1,0 +1,454 @@
+//! The longest way through the image from an entry on: every way that the known values leave open is gone, loops round by
+//! round and calls in their callers' places, and where ways meet the greater count is carried on. That is the longest path
+//! over the unrolled control flow, exact for what is known of the values there.
+//!
+//! A place is a row of calls, of loops with their rounds, and of an instruction's position in its function. Positions grow
+//! along every way (`graph`), rounds grow too, so that the rows are in an order in which all that leads to a place comes
+//! before it.
+
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
+
+use super::cycles;
+use super::graph::{Graph, halves};
+use super::live::{Effect, Live, effect};
+use super::machine::{Constants, Machine, holds};
+use super::operation::{Operation, Register, operation};
+use crate::tick::frame::targets;
+use crate::tick::functions::{Function, Functions};
+use crate::tick::thumb::Flow;
+use crate::tick::walk::is_panic;
+
+/// States that are kept apart where ways meet; the most alike beyond them become one.
+const KEPT_APART: usize = 4;
+/// No loop of a tick goes round more often: what does has no bound.
+const MOST_ROUNDS: u32 = 1024;
+
+/// Why there is no bound.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Refused {
+    /// A loop may go round for ever.
+    Unbounded(u32),
+    /// A loop has more than one way in.
+    Irreducible(u32),
+    /// Where control goes is not known.
+    Lost(u32),
+    /// An instruction is not known.
+    Instruction(u32),
+    /// A function calls itself.
+    Recursion(u32),
+    /// A panic or a trap can be reached.
+    Stops(u32),
+}
+
+impl Refused {
+    /// The instruction.
+    pub fn at(&self) -> u32 {
+        match *self {
+            Self::Unbounded(at)
+            | Self::Irreducible(at)
+            | Self::Lost(at)
+            | Self::Instruction(at)
+            | Self::Recursion(at)
+            | Self::Stops(at) => at,
+        }
+    }
+}
+
+/// What is counted along a way.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Cost {
+    /// Instructions, those that a condition skips included.
+    pub instructions: u32,
+    /// Cycles of a Cortex-M4 without wait states.
+    pub cycles: u32,
+}
+
+impl Cost {
+    fn most(self, other: Self) -> Self {
+        Self { instructions: self.instructions.max(other.instructions), cycles: self.cycles.max(other.cycles) }
+    }
+}
+
+/// The answer.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Longest {
+    /// The greatest counts; each may be of a way of its own.
+    pub cost: Cost,
+    /// Loops by their heads, with the most rounds that the values leave open.
+    pub loops: BTreeMap<u32, u32>,
+    /// Entries of all functions that were gone through.
+    pub functions: BTreeSet<u32>,
+}
+
+/// A call that is under way.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Frame {
+    function: u32,
+    rounds: Vec<(u32, u32)>,
+    /// The call.
+    at: u32,
+    /// Where it goes on; nowhere after a jump into another function.
+    back: Option<u32>,
+}
+
+/// Where control is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Place {
+    callers: Rc<Vec<Frame>>,
+    function: u32,
+    rounds: Vec<(u32, u32)>,
+    at: u32,
+}
+
+/// A row that orders places.
+type Key = Vec<u32>;
+
+#[derive(Debug, Clone)]
+struct State {
+    machine: Machine,
+    cost: Cost,
+    /// Registers whose values the next instruction has to wait for.
+    late: Live,
+}
+
+/// The search.
+pub struct Search<'a> {
+    functions: &'a Functions,
+    graphs: BTreeMap<u32, Graph>,
+    open: BTreeMap<Key, (Place, Vec<State>)>,
+    /// What was known at the head of a loop a round before.
+    heads: BTreeMap<Key, Vec<Machine>>,
+    lowest_stack: u32,
+    found: Longest,
+    end: Option<State>,
+}
+
+impl Constants for Functions {
+    fn byte(&self, address: u32) -> Option<u8> {
+        self.constant_byte(address)
+    }
+}
+
+impl<'a> Search<'a> {
+    /// Over an image. The stack reaches down to `lowest_stack` at most.
+    pub fn new(functions: &'a Functions, lowest_stack: u32) -> Self {
+        Self {
+            functions,
+            graphs: BTreeMap::new(),
+            open: BTreeMap::new(),
+            heads: BTreeMap::new(),
+            lowest_stack,
+            found: Longest::default(),
+            end: None,
+        }
+    }
+
+    /// The longest way from a function's entry to its return.
+    pub fn run(mut self, entry: u32, machine: Machine) -> Result<Longest, Refused> {
+        let callers = Rc::new(Vec::new());
+        let state = State { machine, cost: Cost::default(), late: Live::default() };
+        self.enter(callers, entry & !1, entry, state)?;
+        while let Some((key, (place, states))) = self.open.pop_first() {
+            let states = self.met(&place, states);
+            self.watch_loop(&key, &place, &states)?;
+            for state in states {
+                self.follow(place.clone(), state)?;
+            }
+        }
+        if let Some(end) = self.end {
+            self.found.cost = end.cost;
+        }
+        Ok(self.found)
+    }
+
+    fn graph(&mut self, function: &Function) -> Result<&Graph, Refused> {
+        let functions = self.functions;
+        Ok(match self.graphs.entry(function.address) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(place) => {
+                let returns = |to: u32| functions.at(to).is_none_or(|callee| !is_panic(&callee.name));
+                let graph = Graph::of(functions, function, &returns);
+                place.insert(graph.map_err(|found| Refused::Irreducible(found.at))?)
+            }
+        })
+    }
+
+    fn key(&self, place: &Place) -> Key {
+        let mut key = Vec::new();
+        let mut add = |function: u32, rounds: &[(u32, u32)], at: u32| {
+            let graph = &self.graphs[&function];
+            key.push(function);
+            for (head, round) in rounds {
+                key.extend([graph.place(*head), *round]);
+            }
+            key.push(graph.place(at));
+        };
+        for frame in place.callers.iter() {
+            add(frame.function, &frame.rounds, frame.at);
+        }
+        add(place.function, &place.rounds, place.at);
+        key
+    }
+
+    /// States where ways meet: what is not looked at any more is forgotten, equal ones are one.
+    fn met(&self, place: &Place, states: Vec<State>) -> Vec<State> {
+        let live = self.graphs[&place.function].live(place.at);
+        let mut kept: Vec<State> = Vec::new();
+        for mut state in states {
+            state.machine.keep(live);
+            state.machine.drop_dead_stack(self.lowest_stack);
+            match kept.iter_mut().find(|other| other.machine == state.machine) {
+                Some(other) => other.absorb(state),
+                None => kept.push(state),
+            }
+        }
+        while kept.len() > KEPT_APART {
+            let pairs = (0..kept.len()).flat_map(|one| (one + 1..kept.len()).map(move |other| (one, other)));
+            let nearest = pairs.min_by_key(|(one, other)| kept[*one].machine.distance(&kept[*other].machine));
+            let Some((one, other)) = nearest else { break };
+            let removed = kept.swap_remove(other);
+            kept[one].machine.join(&removed.machine);
+            kept[one].absorb(removed);
+        }
+        kept
+    }
+
+    /// Counts rounds, and refuses a loop whose next round is like the last.
+    fn watch_loop(&mut self, key: &Key, place: &Place, states: &[State]) -> Result<(), Refused> {
+        let Some((_, round)) = place.rounds.last().filter(|(head, _)| *head == place.at) else { return Ok(()) };
+        let most = self.found.loops.entry(place.at).or_default();
+        *most = (*most).max(round + 1);
+        let mut without_round = key.clone();
+        let last = without_round.len() - 2;
+        without_round[last] = 0;
+        let now: Vec<Machine> = states.iter().map(|state| state.machine.clone()).collect();
+        let before = self.heads.insert(without_round, now);
+        if *round == 0 {
+            return Ok(());
+        }
+        let nothing_new = before.is_some_and(|before| states.iter().all(|state| before.contains(&state.machine)));
+        if nothing_new || *round >= MOST_ROUNDS { Err(Refused::Unbounded(place.at)) } else { Ok(()) }
+    }
+
+    /// Where a state goes on; where ways meet it is put by until all are there.
+    fn go(&mut self, place: &Place, to: u32, state: State) -> Option<(Place, State)> {
+        let graph = &self.graphs[&place.function];
+        let mut rounds = Vec::new();
+        let mut is_same = true;
+        for (depth, head) in graph.loops(to).iter().enumerate() {
+            let before = place.rounds.get(depth).filter(|(old, _)| is_same && old == head);
+            match before {
+                Some((_, round)) if *head == to => {
+                    rounds.push((*head, round + 1));
+                    is_same = false;
+                }
+                Some(same) => rounds.push(*same),
+                None => {
+                    rounds.push((*head, 0));
+                    is_same = false;
+                }
+            }
+        }
+        let place = Place { callers: Rc::clone(&place.callers), function: place.function, rounds, at: to };
+        if graph.is_join(to) {
+            self.put(place, state);
+            return None;
+        }
+        Some((place, state))
+    }
+
+    fn put(&mut self, place: Place, state: State) {
+        let key = self.key(&place);
+        self.open.entry(key).or_insert_with(|| (place, Vec::new())).1.push(state);
+    }
+
+    /// Goes into a function.
+    fn enter(&mut self, callers: Rc<Vec<Frame>>, to: u32, from: u32, state: State) -> Result<(), Refused> {
+        let functions = self.functions;
+        let function = functions.at(to).ok_or(Refused::Lost(from))?;
+        if is_panic(&function.name) {
+            return Err(Refused::Stops(from));
+        }
+        if callers.iter().any(|frame| frame.function == function.address) {
+            return Err(Refused::Recursion(from));
+        }
+        self.found.functions.insert(function.address);
+        let rounds = self.graph(function)?.loops(function.address).iter().map(|head| (*head, 0)).collect();
+        self.put(Place { callers, function: function.address, rounds, at: function.address }, state);
+        Ok(())
+    }
+
+    fn call(&mut self, place: &Place, to: u32, back: Option<u32>, state: State) -> Result<(), Refused> {
+        let mut callers = place.callers.as_ref().clone();
+        callers.push(Frame { function: place.function, rounds: place.rounds.clone(), at: place.at, back });
+        self.enter(Rc::new(callers), to & !1, place.at, state)
+    }
+
+    /// Back to where the last call came from.
+    fn leave(&mut self, place: &Place, state: State) {
+        let mut callers = place.callers.as_ref().clone();
+        while let Some(frame) = callers.pop() {
+            let Some(back) = frame.back else { continue };
+            let caller =
+                Place { callers: Rc::new(callers), function: frame.function, rounds: frame.rounds, at: frame.at };
+            // All of a callee's returns meet behind the call.
+            if let Some((place, state)) = self.go(&caller, back, state) {
+                self.put(place, state);
+            }
+            return;
+        }
+        match &mut self.end {
+            Some(end) => end.absorb(state),
+            None => self.end = Some(state),
+        }
+    }
+
+    /// Goes on until ways part, meet or end.
+    fn follow(&mut self, mut place: Place, mut state: State) -> Result<(), Refused> {
+        let functions = self.functions;
+        loop {
+            let function = functions.at(place.function).ok_or(Refused::Lost(place.at))?;
+            let instruction = function.code.get(&place.at).ok_or(Refused::Lost(place.at))?;
+            let (first, second) = halves(functions, place.at);
+            let operation = operation(first, second);
+            if operation == Operation::Unknown {
+                return Err(Refused::Instruction(place.at));
+            }
+            let next = place.at + instruction.size;
+            let condition = self.graphs[&place.function].condition(place.at);
+            let meets = condition.map_or(Some(true), |condition| holds(condition, state.machine.flags()));
+            let is_plain = instruction.flow == Flow::Next;
+            if meets == Some(false) || meets.is_none() && !is_plain {
+                let mut skipped = state.clone();
+                skipped.count(1);
+                skipped.late = Live::default();
+                let went = self.go(&place, next, skipped);
+                if meets == Some(false) {
+                    let Some(went) = went else { return Ok(()) };
+                    (place, state) = went;
+                    continue;
+                }
+                if let Some((place, skipped)) = went {
+                    self.put(place, skipped);
+                }
+            }
+            let Effect { uses, .. } = effect(&operation);
+            state.cost.cycles += u32::from(state.late.meets(uses));
+            if is_plain {
+                let before = (meets.is_none()).then(|| state.machine.clone());
+                state.machine.execute(&operation, place.at, condition.is_some(), functions);
+                if let Some(before) = before {
+                    state.machine.join(&before);
+                }
+                state.count(cycles::of(&operation));
+                state.late = cycles::late(&operation);
+                let Some(went) = self.go(&place, next, state) else { return Ok(()) };
+                (place, state) = went;
+                continue;
+            }
+            state.late = Live::default();
+            let jump = cycles::of_jump(instruction.flow, &operation);
+            match instruction.flow {
+                Flow::Next => {}
+                Flow::Branch(to) => {
+                    let zero = (first & 0xf500 == 0xb100).then_some((first & 7) as Register);
+                    let taken = match zero {
+                        Some(register) => {
+                            state.machine.register(register).map(|value| (value == 0) == (first & 0x800 == 0))
+                        }
+                        None => {
+                            let condition = if first >> 11 >= 0b11101 { first >> 6 & 15 } else { first >> 8 & 15 };
+                            holds(condition as u8, state.machine.flags())
+                        }
+                    };
+                    let mut goes_on = Vec::new();
+                    for (is_taken, to, cycles) in [(true, to, jump), (false, next, 1)] {
+                        if taken.is_some_and(|taken| taken != is_taken) {
+                            continue;
+                        }
+                        let mut state = state.clone();
+                        if let Some(register) = zero.filter(|_| is_taken == (first & 0x800 == 0)) {
+                            state.machine.set(register, Some(0));
+                        }
+                        state.count(cycles);
+                        if function.code.contains_key(&to) {
+                            goes_on.extend(self.go(&place, to, state));
+                        } else {
+                            self.call(&place, to, None, state)?;
+                        }
+                    }
+                    let last = goes_on.pop();
+                    for (place, state) in goes_on {
+                        self.put(place, state);
+                    }
+                    let Some(last) = last else { return Ok(()) };
+                    (place, state) = last;
+                    continue;
+                }
+                Flow::Jump(to) => {
+                    state.count(jump);
+                    if !function.code.contains_key(&to) {
+                        return self.call(&place, to, None, state);
+                    }
+                    let Some(went) = self.go(&place, to, state) else { return Ok(()) };
+                    (place, state) = went;
+                    continue;
+                }
+                Flow::Call(to) => {
+                    state.count(jump);
+                    state.machine.set(14, None);
+                    return self.call(&place, to, Some(next), state);
+                }
+                Flow::CallRegister | Flow::JumpRegister => {
+                    let register = (first >> 3 & 15) as Register;
+                    let is_branch = first & 0xff00 == 0x4700;
+                    let to = state.machine.register(register).filter(|_| is_branch).ok_or(Refused::Lost(place.at))?;
+                    state.count(jump);
+                    let back = (instruction.flow == Flow::CallRegister).then_some(next);
+                    return self.call(&place, to, back, state);
+                }
+                Flow::Table { width, base } => {
+                    state.count(jump);
+                    let index = state.machine.register((second & 15) as Register);
+                    let all = targets(functions, function, next, width, base);
+                    let to = match index {
+                        Some(index) if base == 15 => all.get(index as usize..=index as usize).unwrap_or_default(),
+                        _ => &all[..],
+                    };
+                    if to.is_empty() {
+                        return Err(Refused::Lost(place.at));
+                    }
+                    for to in to {
+                        if let Some((place, state)) = self.go(&place, *to, state.clone()) {
+                            self.put(place, state);
+                        }
+                    }
+                    return Ok(());
+                }
+                Flow::Return => {
+                    state.machine.execute(&operation, place.at, condition.is_some(), functions);
+                    state.count(jump);
+                    self.leave(&place, state);
+                    return Ok(());
+                }
+                Flow::Trap => return Err(Refused::Stops(place.at)),
+            }
+        }
+    }
+}
+
+impl State {
+    /// Counts an instruction and its cycles.
+    fn count(&mut self, cycles: u32) {
+        self.cost.instructions += 1;
+        self.cost.cycles += cycles;
+    }
+
+    /// Takes over whatever is more in another state that knows no more.
+    fn absorb(&mut self, other: Self) {
+        self.cost = self.cost.most(other.cost);
+        self.late = self.late.and(other.late);
+    }
+}

@@ -1,0 +1,746 @@
+//! What an instruction does to registers and memory, as far as a value can be followed through it. Where control goes is
+//! `tick::thumb`'s. Encodings are those of the ARMv7-M Architecture Reference Manual, chapters A5 to A7; what is not in this
+//! file is refused by the bound, never guessed.
+
+/// A core register, 0 to 15.
+pub type Register = u8;
+/// A single-precision register, 0 to 31; a double is two of them.
+pub type Single = u8;
+
+/// How a register is shifted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shift {
+    /// Left.
+    Left,
+    /// Right, zeros come in.
+    Right,
+    /// Right, the sign comes in.
+    Arithmetic,
+    /// Around.
+    Around,
+    /// Around through the carry, by one.
+    Carry,
+}
+
+/// Last operand of an instruction that computes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Operand {
+    /// A constant, and the carry that its expansion gives.
+    Constant(u32, Option<bool>),
+    /// A register shifted by a constant; by zero bits the carry stays.
+    Shifted(Register, Shift, u8),
+    /// A register shifted by another.
+    ShiftedBy(Register, Shift, Register),
+}
+
+/// What is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Arithmetic {
+    And,
+    Clear,
+    Or,
+    OrNot,
+    Exclusive,
+    Add,
+    AddCarry,
+    SubtractCarry,
+    Subtract,
+    Reverse,
+    Move,
+    Not,
+}
+
+/// Where memory is read or written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Address {
+    /// The base; 15 is the next instruction but one, rounded down to a word.
+    pub base: Register,
+    /// What is added.
+    pub offset: Offset,
+    /// Whether it is added before the access.
+    pub before: bool,
+    /// Whether the base becomes the sum.
+    pub write_back: bool,
+}
+
+/// What is added to a base.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Offset {
+    /// A constant.
+    Constant(i32),
+    /// A register times a power of two.
+    Register(Register, u8),
+}
+
+/// What a 32-bit word becomes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Rearrangement {
+    LeadingZeros,
+    ReverseBits,
+    ReverseBytes,
+    /// Something whose value is not followed.
+    Unfollowed,
+}
+
+/// Arithmetic of single-precision registers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Floating {
+    Add,
+    Subtract,
+    Multiply,
+    /// Multiply, negated.
+    NegatedMultiply,
+    /// The destination is an operand too.
+    MultiplyAccumulate,
+    Divide,
+    SquareRoot,
+    Absolute,
+    Negate,
+    Copy,
+    Convert,
+}
+
+/// An instruction's effect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Operation {
+    /// None that is followed: hints, barriers, branches.
+    Nothing,
+    /// Makes the following instructions conditional: first condition and mask.
+    If(u8, u8),
+    /// Computes; without destination for its flags alone.
+    Compute {
+        /// What.
+        what: Arithmetic,
+        /// Where to.
+        to: Option<Register>,
+        /// First operand.
+        first: Register,
+        /// Second operand.
+        second: Operand,
+        /// Whether flags are set. Short forms set none inside of an `it`.
+        flags: Flags,
+    },
+    /// Upper half of a register.
+    MoveTop(Register, u16),
+    /// to = first * second, plus or minus a third.
+    Multiply {
+        /// Where to.
+        to: Register,
+        /// A factor.
+        first: Register,
+        /// The other.
+        second: Register,
+        /// Added, or taken from (`true`).
+        third: Option<(Register, bool)>,
+        /// Whether flags are set.
+        flags: Flags,
+    },
+    /// Two registers by a long multiplication or other operation whose value is not followed.
+    MultiplyLong {
+        /// Low and high.
+        to: [Register; 2],
+        /// Factors.
+        factors: [Register; 2],
+        /// As signed numbers.
+        signed: bool,
+        /// Added to what they hold.
+        accumulates: bool,
+    },
+    /// to = first / second.
+    Divide {
+        /// Where to.
+        to: Register,
+        /// Dividend, divisor.
+        of: [Register; 2],
+        /// As signed numbers.
+        signed: bool,
+    },
+    /// Byte or half word, rotated, extended, and added to a register.
+    Extend {
+        /// Where to.
+        to: Register,
+        /// From where.
+        from: Register,
+        /// Added.
+        plus: Option<Register>,
+        /// Rotation right.
+        rotation: u8,
+        /// 8 or 16.
+        bits: u8,
+        /// With its sign.
+        signed: bool,
+    },
+    /// Bits of a register (`ubfx`, `sbfx`).
+    Extract {
+        /// Where to.
+        to: Register,
+        /// From where.
+        from: Register,
+        /// Lowest bit.
+        low: u8,
+        /// How many.
+        width: u8,
+        /// With their sign.
+        signed: bool,
+    },
+    /// Bits put into a register (`bfi`), zeros without source (`bfc`).
+    Insert {
+        /// Where to.
+        to: Register,
+        /// From where.
+        from: Option<Register>,
+        /// Lowest bit.
+        low: u8,
+        /// How many.
+        width: u8,
+    },
+    /// A word rearranged.
+    Rearrange(Rearrangement, Register, Register),
+    /// Reads so many bytes into a register.
+    Load {
+        /// Where to.
+        to: Register,
+        /// 1, 2 or 4.
+        bytes: u8,
+        /// With its sign.
+        signed: bool,
+        /// From where.
+        at: Address,
+    },
+    /// Writes so many bytes of a register.
+    Store {
+        /// What.
+        from: Register,
+        /// 1, 2 or 4.
+        bytes: u8,
+        /// Where to.
+        at: Address,
+        /// The register that says whether an exclusive store was made.
+        success: Option<Register>,
+    },
+    /// Reads two words.
+    LoadPair([Register; 2], Address),
+    /// Writes two words.
+    StorePair([Register; 2], Address),
+    /// Reads or writes a list of registers.
+    Multiple {
+        /// Reads.
+        loads: bool,
+        /// Where.
+        base: Register,
+        /// Which.
+        list: u16,
+        /// Below the base, from it downwards.
+        down: bool,
+        /// Whether the base moves.
+        write_back: bool,
+    },
+    /// Reads or writes single-precision registers in a row.
+    MultipleSingle {
+        /// Reads.
+        loads: bool,
+        /// Where.
+        base: Register,
+        /// The first.
+        first: Single,
+        /// How many.
+        count: u8,
+        /// What is added to the base, before.
+        offset: i32,
+        /// What the base becomes: itself and this.
+        write_back: Option<i32>,
+    },
+    /// A core register into a single one.
+    ToSingle(Single, Register),
+    /// A single register into a core register.
+    FromSingle(Register, Single),
+    /// Two core registers into two single ones.
+    ToSingles(Single, [Register; 2]),
+    /// And back.
+    FromSingles([Register; 2], Single),
+    /// A constant into single registers, by its bits.
+    SingleConstant(Single, u32),
+    /// Single-precision arithmetic: destination, operands.
+    Float(Floating, Single, [Single; 2]),
+    /// Compares with another or with zero.
+    CompareSingle(Single, Option<Single>),
+    /// The flags of the last comparison of single registers become those of the core.
+    FlagsFromSingle,
+    /// Registers, by a mask, get values that are not followed.
+    Forget(u16),
+    /// Nothing known.
+    Unknown,
+}
+
+/// Whether an instruction sets flags.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Flags {
+    /// Never.
+    Kept,
+    /// Always.
+    Set,
+    /// Outside of an `it`.
+    SetOutside,
+}
+
+/// Reads an instruction; `second` is the half word after the first.
+pub fn operation(first: u16, second: u16) -> Operation {
+    if first >> 11 < 0b11101 { short(first) } else { long(first, second) }
+}
+
+fn bits(value: u16, low: u32, count: u32) -> u8 {
+    (value >> low & ((1 << count) - 1)) as u8
+}
+
+fn compute(what: Arithmetic, to: Register, first: Register, second: Operand, flags: Flags) -> Operation {
+    Operation::Compute { what, to: Some(to), first, second, flags }
+}
+
+fn compare(what: Arithmetic, first: Register, second: Operand) -> Operation {
+    Operation::Compute { what, to: None, first, second, flags: Flags::Set }
+}
+
+fn plain(register: Register) -> Operand {
+    Operand::Shifted(register, Shift::Left, 0)
+}
+
+/// A shift by a constant as it is coded.
+fn shifted(register: Register, kind: u8, amount: u8) -> Operand {
+    match (kind, amount) {
+        (0, _) => Operand::Shifted(register, Shift::Left, amount),
+        (1, 0) => Operand::Shifted(register, Shift::Right, 32),
+        (1, _) => Operand::Shifted(register, Shift::Right, amount),
+        (2, 0) => Operand::Shifted(register, Shift::Arithmetic, 32),
+        (2, _) => Operand::Shifted(register, Shift::Arithmetic, amount),
+        (_, 0) => Operand::Shifted(register, Shift::Carry, 1),
+        _ => Operand::Shifted(register, Shift::Around, amount),
+    }
+}
+
+fn kind(code: u8) -> Shift {
+    [Shift::Left, Shift::Right, Shift::Arithmetic, Shift::Around][usize::from(code & 3)]
+}
+
+fn at(base: Register, offset: i32) -> Address {
+    Address { base, offset: Offset::Constant(offset), before: true, write_back: false }
+}
+
+fn short(first: u16) -> Operation {
+    use Arithmetic::{Add, AddCarry, And, Clear, Exclusive, Move, Not, Or, Reverse, Subtract, SubtractCarry};
+    let (low, middle, high) = (bits(first, 0, 3), bits(first, 3, 3), bits(first, 6, 3));
+    let (eight, upper) = (u32::from(first & 0xff), bits(first, 8, 3));
+    let five = i32::from(bits(first, 6, 5));
+    let constant = |value: u32| Operand::Constant(value, None);
+    let outside = Flags::SetOutside;
+    match first >> 11 {
+        code @ 0..=2 => compute(Move, low, 0, shifted(middle, code as u8, bits(first, 6, 5)), outside),
+        3 => {
+            let second = if first & 0x400 == 0 { plain(high) } else { constant(high.into()) };
+            compute(if first & 0x200 == 0 { Add } else { Subtract }, low, middle, second, outside)
+        }
+        4 => compute(Move, upper, 0, constant(eight), outside),
+        5 => compare(Subtract, upper, constant(eight)),
+        6 => compute(Add, upper, upper, constant(eight), outside),
+        7 => compute(Subtract, upper, upper, constant(eight), outside),
+        8 if first & 0x400 == 0 => {
+            let by = |kind| compute(Move, low, 0, Operand::ShiftedBy(low, kind, middle), outside);
+            let own = |what| compute(what, low, low, plain(middle), outside);
+            match bits(first, 6, 4) {
+                0 => own(And),
+                1 => own(Exclusive),
+                2 => by(Shift::Left),
+                3 => by(Shift::Right),
+                4 => by(Shift::Arithmetic),
+                5 => own(AddCarry),
+                6 => own(SubtractCarry),
+                7 => by(Shift::Around),
+                8 => compare(And, low, plain(middle)),
+                9 => compute(Reverse, low, middle, constant(0), outside),
+                10 => compare(Subtract, low, plain(middle)),
+                11 => compare(Add, low, plain(middle)),
+                12 => own(Or),
+                13 => Operation::Multiply { to: low, first: low, second: middle, third: None, flags: outside },
+                14 => own(Clear),
+                _ => compute(Not, low, 0, plain(middle), outside),
+            }
+        }
+        8 => {
+            let (to, from) = (low | bits(first, 7, 1) << 3, bits(first, 3, 4));
+            match bits(first, 8, 2) {
+                0 => compute(Add, to, to, plain(from), Flags::Kept),
+                1 => compare(Subtract, to, plain(from)),
+                2 => compute(Move, to, 0, plain(from), Flags::Kept),
+                // bx, blx
+                _ => Operation::Nothing,
+            }
+        }
+        9 => Operation::Load { to: upper, bytes: 4, signed: false, at: at(15, 4 * eight as i32) },
+        10 | 11 => {
+            let at = Address { base: middle, offset: Offset::Register(high, 0), before: true, write_back: false };
+            let load = |bytes, signed| Operation::Load { to: low, bytes, signed, at };
+            let store = |bytes| Operation::Store { from: low, bytes, at, success: None };
+            match bits(first, 9, 3) {
+                0 => store(4),
+                1 => store(2),
+                2 => store(1),
+                3 => load(1, true),
+                4 => load(4, false),
+                5 => load(2, false),
+                6 => load(1, false),
+                _ => load(2, true),
+            }
+        }
+        code @ 12..=19 => {
+            let (to, at, bytes) = match code {
+                12 | 13 => (low, at(middle, 4 * five), 4),
+                14 | 15 => (low, at(middle, five), 1),
+                16 | 17 => (low, at(middle, 2 * five), 2),
+                _ => (upper, at(13, 4 * eight as i32), 4),
+            };
+            match code % 2 {
+                0 => Operation::Store { from: to, bytes, at, success: None },
+                _ => Operation::Load { to, bytes, signed: false, at },
+            }
+        }
+        // adr: the machine knows what register 15 is here.
+        20 => compute(Add, upper, 15, constant(4 * eight), Flags::Kept),
+        21 => compute(Add, upper, 13, constant(4 * eight), Flags::Kept),
+        22 | 23 => miscellaneous(first),
+        24 | 25 => {
+            let (base, list) = (upper, first & 0xff);
+            let loads = first & 0x800 != 0;
+            let write_back = !loads || list & 1 << base == 0;
+            Operation::Multiple { loads, base, list, down: false, write_back }
+        }
+        _ => Operation::Nothing,
+    }
+}
+
+fn miscellaneous(first: u16) -> Operation {
+    let (low, middle) = (bits(first, 0, 3), bits(first, 3, 3));
+    let words = 4 * u32::from(first & 0x7f);
+    let stack = |what| compute(what, 13, 13, Operand::Constant(words, None), Flags::Kept);
+    let extend = |bits, signed| Operation::Extend { to: low, from: middle, plus: None, rotation: 0, bits, signed };
+    let multiple = |loads, more| Operation::Multiple {
+        loads,
+        base: 13,
+        list: first & 0xff | (first & 0x100) << more,
+        down: !loads,
+        write_back: true,
+    };
+    match bits(first, 4, 8) {
+        code if code & 0xf8 == 0 => stack(Arithmetic::Add),
+        code if code & 0xf8 == 8 => stack(Arithmetic::Subtract),
+        0x20..=0x23 => extend(16, true),
+        0x24..=0x27 => extend(8, true),
+        0x28..=0x2b => extend(16, false),
+        0x2c..=0x2f => extend(8, false),
+        0x40..=0x5f => multiple(false, 6),
+        0xc0..=0xdf => multiple(true, 7),
+        0xa0..=0xa3 => Operation::Rearrange(Rearrangement::ReverseBytes, low, middle),
+        0xa4..=0xaf => Operation::Rearrange(Rearrangement::Unfollowed, low, middle),
+        0xf0..=0xff if first & 0xf != 0 => Operation::If(bits(first, 4, 4), bits(first, 0, 4)),
+        // cbz and cbnz, whose register the machine looks at; cps, hints; a breakpoint is a trap of the walker.
+        _ => Operation::Nothing,
+    }
+}
+
+fn long(first: u16, second: u16) -> Operation {
+    match first {
+        _ if first & 0xfe40 == 0xe800 => {
+            let list = second & 0xdfff;
+            let (down, loads) = (first & 0x180 == 0x100, first & 0x10 != 0);
+            Operation::Multiple { loads, base: bits(first, 0, 4), list, down, write_back: first & 0x20 != 0 }
+        }
+        _ if first & 0xfe40 == 0xe840 => pair(first, second),
+        _ if first & 0xfe00 == 0xea00 => {
+            let amount = bits(second, 12, 3) << 2 | bits(second, 6, 2);
+            computes(first, second, shifted(bits(second, 0, 4), bits(second, 4, 2), amount))
+        }
+        _ if first & 0xec00 == 0xec00 => floating(first, second),
+        _ if first & 0xf800 == 0xf000 && second & 0x8000 != 0 => control(first, second),
+        _ if first & 0xfa00 == 0xf000 => {
+            let (value, carry) = expand(first, second);
+            computes(first, second, Operand::Constant(value, carry))
+        }
+        _ if first & 0xfa00 == 0xf200 => plain_constant(first, second),
+        _ if first & 0xfe00 == 0xf800 => single(first, second),
+        _ if first & 0xff00 == 0xfa00 => registers(first, second),
+        _ if first & 0xff00 == 0xfb00 => multiply(first, second),
+        _ => Operation::Unknown,
+    }
+}
+
+/// Double, exclusive; table branches are the walker's.
+fn pair(first: u16, second: u16) -> Operation {
+    let (base, rt, rd) = (bits(first, 0, 4), bits(second, 12, 4), bits(second, 8, 4));
+    let offset = 4 * i32::from(second & 0xff);
+    let load = |bytes, offset| Operation::Load { to: rt, bytes, signed: false, at: at(base, offset) };
+    let store =
+        |bytes, offset, success| Operation::Store { from: rt, bytes, at: at(base, offset), success: Some(success) };
+    match first & 0xfff0 {
+        0xe840 => store(4, offset, rd),
+        0xe850 => load(4, offset),
+        0xe8c0 if second & 0xe0 == 0x40 => store(1 + bits(second, 4, 1), 0, bits(second, 0, 4)),
+        0xe8d0 if second & 0xe0 == 0x40 => load(1 + bits(second, 4, 1), 0),
+        0xe8d0 if second & 0xe0 == 0 => Operation::Nothing,
+        _ if first & 0x120 == 0 => Operation::Unknown,
+        _ => {
+            let offset = if first & 0x80 == 0 { -offset } else { offset };
+            let (before, write_back) = (first & 0x100 != 0, first & 0x20 != 0);
+            let at = Address { base, offset: Offset::Constant(offset), before, write_back };
+            if first & 0x10 == 0 { Operation::StorePair([rt, rd], at) } else { Operation::LoadPair([rt, rd], at) }
+        }
+    }
+}
+
+/// Data processing, with a shifted register or an expanded constant.
+fn computes(first: u16, second: u16, operand: Operand) -> Operation {
+    use Arithmetic::{Add, AddCarry, And, Clear, Exclusive, Move, Not, Or, OrNot, Reverse, Subtract, SubtractCarry};
+    let (base, to, sets) = (bits(first, 0, 4), bits(second, 8, 4), first & 0x10 != 0);
+    let flags = if sets { Flags::Set } else { Flags::Kept };
+    let only_compares = to == 15 && sets;
+    let what = match bits(first, 5, 4) {
+        0 => And,
+        1 => Clear,
+        2 if base == 15 => Move,
+        2 => Or,
+        3 if base == 15 => Not,
+        3 => OrNot,
+        4 => Exclusive,
+        // Packing of half words, whose value is not followed.
+        6 => return Operation::Forget(1 << to),
+        8 => Add,
+        10 => AddCarry,
+        11 => SubtractCarry,
+        13 => Subtract,
+        14 => Reverse,
+        _ => return Operation::Unknown,
+    };
+    match what {
+        And | Exclusive | Add | Subtract if only_compares => compare(what, base, operand),
+        _ => compute(what, to, base, operand, flags),
+    }
+}
+
+/// The constant of twelve bits as the expanding forms mean it, and its carry.
+fn expand(first: u16, second: u16) -> (u32, Option<bool>) {
+    let code = u32::from(bits(first, 10, 1)) << 11 | u32::from(bits(second, 12, 3)) << 8 | u32::from(second & 0xff);
+    let byte = code & 0xff;
+    match code >> 8 {
+        0 => (byte, None),
+        1 => (byte << 16 | byte, None),
+        2 => (byte << 24 | byte << 8, None),
+        3 => (byte << 24 | byte << 16 | byte << 8 | byte, None),
+        _ => {
+            let value = (byte | 0x80).rotate_right(code >> 7);
+            (value, Some(value >> 31 != 0))
+        }
+    }
+}
+
+fn plain_constant(first: u16, second: u16) -> Operation {
+    let (base, to) = (bits(first, 0, 4), bits(second, 8, 4));
+    let twelve = u32::from(bits(first, 10, 1)) << 11 | u32::from(bits(second, 12, 3)) << 8 | u32::from(second & 0xff);
+    let low = bits(second, 12, 3) << 2 | bits(second, 6, 2);
+    let last = bits(second, 0, 5);
+    let constant = Operand::Constant(twelve, None);
+    match bits(first, 4, 5) {
+        0 => compute(Arithmetic::Add, to, base, constant, Flags::Kept),
+        10 => compute(Arithmetic::Subtract, to, base, constant, Flags::Kept),
+        4 => {
+            let value = u32::from(base) << 12 | twelve;
+            compute(Arithmetic::Move, to, 0, Operand::Constant(value, None), Flags::Kept)
+        }
+        12 => Operation::MoveTop(to, u16::from(base) << 12 | twelve as u16),
+        16 | 18 | 24 | 26 => Operation::Forget(1 << to),
+        code @ (20 | 28) => Operation::Extract { to, from: base, low, width: last + 1, signed: code == 20 },
+        22 if last >= low => {
+            let from = (base != 15).then_some(base);
+            Operation::Insert { to, from, low, width: last - low + 1 }
+        }
+        _ => Operation::Unknown,
+    }
+}
+
+/// Branches, hints, barriers, special registers.
+fn control(first: u16, second: u16) -> Operation {
+    match first {
+        // mrs
+        _ if first & 0xffe0 == 0xf3e0 && second & 0xd000 == 0x8000 => Operation::Forget(1 << bits(second, 8, 4)),
+        _ => Operation::Nothing,
+    }
+}
+
+fn single(first: u16, second: u16) -> Operation {
+    let (base, rt) = (bits(first, 0, 4), bits(second, 12, 4));
+    let (loads, bytes, signed) = (first & 0x10 != 0, 1 << bits(first, 5, 2), first & 0x100 != 0);
+    let twelve = i32::from(second & 0xfff);
+    if bytes > 4 {
+        return Operation::Unknown;
+    }
+    // pld, pli
+    if loads && rt == 15 && bytes < 4 {
+        return Operation::Nothing;
+    }
+    let at = if loads && base == 15 {
+        at(15, if first & 0x80 == 0 { -twelve } else { twelve })
+    } else if first & 0x80 != 0 {
+        at(base, twelve)
+    } else if second & 0x800 != 0 {
+        let eight = i32::from(second & 0xff);
+        let offset = Offset::Constant(if second & 0x200 == 0 { -eight } else { eight });
+        Address { base, offset, before: second & 0x400 != 0, write_back: second & 0x100 != 0 }
+    } else if second & 0xfc0 == 0 {
+        let offset = Offset::Register(bits(second, 0, 4), bits(second, 4, 2));
+        Address { base, offset, before: true, write_back: false }
+    } else {
+        return Operation::Unknown;
+    };
+    match loads {
+        true => Operation::Load { to: rt, bytes, signed, at },
+        false => Operation::Store { from: rt, bytes, at, success: None },
+    }
+}
+
+/// Data processing of registers alone.
+fn registers(first: u16, second: u16) -> Operation {
+    let (base, to, other) = (bits(first, 0, 4), bits(second, 8, 4), bits(second, 0, 4));
+    let code = bits(first, 4, 4);
+    match bits(second, 4, 4) {
+        0 if code < 8 => {
+            let flags = if code & 1 == 0 { Flags::Kept } else { Flags::Set };
+            compute(Arithmetic::Move, to, 0, Operand::ShiftedBy(base, kind(code >> 1), other), flags)
+        }
+        8..=15 if matches!(code, 0 | 1 | 4 | 5) => Operation::Extend {
+            to,
+            from: other,
+            plus: (base != 15).then_some(base),
+            rotation: 8 * bits(second, 4, 2),
+            bits: if code < 2 { 16 } else { 8 },
+            signed: code & 1 == 0,
+        },
+        8 if code == 11 => Operation::Rearrange(Rearrangement::LeadingZeros, to, other),
+        10 if code == 9 => Operation::Rearrange(Rearrangement::ReverseBits, to, other),
+        8 if code == 9 => Operation::Rearrange(Rearrangement::ReverseBytes, to, other),
+        _ => Operation::Forget(1 << to),
+    }
+}
+
+fn multiply(first: u16, second: u16) -> Operation {
+    let (one, other) = (bits(first, 0, 4), bits(second, 0, 4));
+    let (third, to) = (bits(second, 12, 4), bits(second, 8, 4));
+    let long =
+        |signed, accumulates| Operation::MultiplyLong { to: [third, to], factors: [one, other], signed, accumulates };
+    match (bits(first, 4, 4), bits(second, 4, 4)) {
+        (0, 0) => {
+            let third = (third != 15).then_some((third, false));
+            Operation::Multiply { to, first: one, second: other, third, flags: Flags::Kept }
+        }
+        (0, 1) => Operation::Multiply { to, first: one, second: other, third: Some((third, true)), flags: Flags::Kept },
+        (1..=7, _) => Operation::Forget(1 << to),
+        (8, 0) => long(true, false),
+        (10, 0) => long(false, false),
+        (9, 15) => Operation::Divide { to, of: [one, other], signed: true },
+        (11, 15) => Operation::Divide { to, of: [one, other], signed: false },
+        (12, 0) => long(true, true),
+        (14, 0) => long(false, true),
+        (12..=14, _) => Operation::Forget(1 << to | 1 << third),
+        _ => Operation::Unknown,
+    }
+}
+
+/// A single-precision register, or the first of a double.
+fn single_register(upper: u8, lower: u8, is_double: bool) -> Single {
+    if is_double { (lower << 4 | upper) << 1 } else { upper << 1 | lower }
+}
+
+fn floating(first: u16, second: u16) -> Operation {
+    let is_double = second & 0x100 != 0;
+    let base = bits(first, 0, 4);
+    let rt = bits(second, 12, 4);
+    let d = single_register(rt, bits(first, 6, 1), is_double);
+    let n = single_register(base, bits(second, 7, 1), false);
+    let m = single_register(bits(second, 0, 4), bits(second, 5, 1), false);
+    let loads = first & 0x10 != 0;
+    if second & 0xe00 != 0xa00 {
+        return Operation::Unknown;
+    }
+    match first {
+        _ if first & 0xffe0 == 0xec40 => {
+            let to = single_register(bits(second, 0, 4), bits(second, 5, 1), is_double);
+            match loads {
+                true => Operation::FromSingles([rt, base], to),
+                false => Operation::ToSingles(to, [rt, base]),
+            }
+        }
+        _ if first & 0xfe00 == 0xec00 => {
+            let offset = 4 * i32::from(second & 0xff);
+            // vldr, vstr
+            if first & 0x120 == 0x100 {
+                let offset = if first & 0x80 == 0 { -offset } else { offset };
+                let count = if is_double { 2 } else { 1 };
+                return Operation::MultipleSingle { loads, base, first: d, count, offset, write_back: None };
+            }
+            let down = first & 0x80 == 0;
+            if down && first & 0x120 != 0x120 || !down && first & 0x100 != 0 || second & 0xff > 32 {
+                return Operation::Unknown;
+            }
+            let signed = if down { -offset } else { offset };
+            let write_back = (first & 0x20 != 0).then_some(signed);
+            let count = if is_double { second as u8 & 0xfe } else { second as u8 };
+            Operation::MultipleSingle { loads, base, first: d, count, offset: signed.min(0), write_back }
+        }
+        _ if first & 0xff00 == 0xee00 && second & 0x10 == 0x10 => match (first & 0xffe0, is_double) {
+            (0xee00, false) if loads => Operation::FromSingle(rt, n),
+            (0xee00, false) => Operation::ToSingle(n, rt),
+            // Half of a double
+            (0xee00 | 0xee20, true) => {
+                let half = single_register(base, bits(second, 7, 1), true) + bits(first, 5, 1);
+                if loads { Operation::FromSingle(rt, half) } else { Operation::ToSingle(half, rt) }
+            }
+            (0xeee0, false) if first & 0xf == 1 && loads && rt == 15 => Operation::FlagsFromSingle,
+            (0xeee0, false) if first & 0xf == 1 && loads => Operation::Forget(1 << rt),
+            // vmsr: modes of rounding and of small numbers; nothing is computed here that depends on them.
+            (0xeee0, false) if first & 0xf == 1 => Operation::Nothing,
+            _ => Operation::Unknown,
+        },
+        // Doubles are only moved on this core.
+        _ if first & 0xff00 == 0xee00 && !is_double => {
+            let other = second & 0x40 != 0;
+            let float = |what| Operation::Float(what, d, [n, m]);
+            let one = |what| Operation::Float(what, d, [m, m]);
+            match first & 0xffb0 {
+                0xee00 | 0xee10 | 0xee90 | 0xeea0 => float(Floating::MultiplyAccumulate),
+                0xee20 if other => float(Floating::NegatedMultiply),
+                0xee20 => float(Floating::Multiply),
+                0xee30 if other => float(Floating::Subtract),
+                0xee30 => float(Floating::Add),
+                0xee80 if !other => float(Floating::Divide),
+                0xeeb0 if !other => {
+                    let code = u32::from(base << 4 | bits(second, 0, 4));
+                    let exponent = if code & 0x40 == 0 { 0x4000_0000 } else { 0x3e00_0000 };
+                    Operation::SingleConstant(d, (code & 0x80) << 24 | exponent | (code & 0x3f) << 19)
+                }
+                0xeeb0 => match (base, second & 0x80 != 0) {
+                    (0, false) => one(Floating::Copy),
+                    (0, true) => one(Floating::Absolute),
+                    (1, false) => one(Floating::Negate),
+                    (1, true) => one(Floating::SquareRoot),
+                    (4, _) => Operation::CompareSingle(d, Some(m)),
+                    (5, _) => Operation::CompareSingle(d, None),
+                    // Half precision changes a part of the register; all of it is forgotten.
+                    (2 | 3 | 8 | 12 | 13, _) => one(Floating::Convert),
+                    // Fixed point, in place
+                    (10 | 11 | 14 | 15, _) => Operation::Float(Floating::Convert, d, [d, d]),
+                    _ => Operation::Unknown,
+                },
+                _ => Operation::Unknown,
+            }
+        }
+        _ => Operation::Unknown,
+    }
+}

@@ -4,7 +4,7 @@
 //! (default: 20000); what can be wrong with either is said as a build error. Roles that control are made for one control
 //! period a tick, for the bandwidth `JOINT_BANDWIDTH` in rad/s (default: 60), without an output encoder where
 //! `JOINT_MOTOR_ONLY` is 1, and from the joint file `JOINT_TOLD` if a controller is to be told another joint than the true
-//! one. Measuring binaries carry the joints that
+//! one. `JOINT_FORCED` is 1 where the joint command builds what the board has no time for; the hello says so. Measuring binaries carry the joints that
 //! `MEASURED_JOINTS` lists, in the manner of a search path, one module of tables for each.
 
 use std::path::{Path, PathBuf};
@@ -90,7 +90,13 @@ fn write_tables(chip: Chip) -> Result<(), String> {
         None => workspace().join("joints/q1.toml"),
     };
     println!("cargo::rerun-if-changed={}", file.display());
-    write("tables.rs", &source(&file, tick_rate()?, chip)?)?;
+    println!("cargo::rerun-if-env-changed=JOINT_FORCED");
+    let forced = variable("JOINT_FORCED") == Some("1".into());
+    let forced = format!(
+        "/// The worst tick outlasts what the role may take of a period, and the image was built all the same.\n\
+         pub const FORCED: bool = {forced};\n"
+    );
+    write("tables.rs", &(source(&file, tick_rate()?, chip)? + &forced))?;
     println!("cargo::rerun-if-env-changed=JOINT_TOLD");
     let told = variable("JOINT_TOLD").map_or(file.clone(), |told| workspace().join(told));
     println!("cargo::rerun-if-changed={}", told.display());

@@ -57,7 +57,7 @@ impl Images {
             return Ok(image.clone());
         }
         let (joint, quiet) = (image::preset_file(JOINT), |_: &str| {});
-        let role = |role, rate| image::build_image(&self.toolchain, &joint, board, role, rate, &quiet);
+        let role = |role, rate| image::build_image(&self.toolchain, &joint, board, role, rate, false, &quiet);
         let built = match work {
             Work::Plant => role(Role::Plant, DEFAULT_TICK_RATE),
             Work::Observer => role(Role::Observer, CONTROL_RATE),
@@ -68,7 +68,7 @@ impl Images {
                     .parameters;
                 role(Role::Loop, tick_time::usual_rate(&parameters, board, Role::Loop))
             }
-            Work::SpiSlave => image::build_spi_slave(&self.toolchain, &joint, board, SPI_RATE, &quiet),
+            Work::SpiSlave => image::build_spi_slave(&self.toolchain, &joint, board, SPI_RATE, false, &quiet),
         };
         let image = Image::read(&built.map_err(|failure| failure.to_string())?.elf)?;
         self.built.insert((board.named.clone(), work), image.clone());

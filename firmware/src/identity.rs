@@ -7,7 +7,7 @@ use link::messages::{Clock, Hello, MemoryState};
 
 use crate::protocol::Protocol;
 use crate::queues::COMMAND_CAPACITY;
-use crate::tables::{JOINT_NAME, PLANETS, TABLES};
+use crate::tables::{FORCED, JOINT_NAME, PLANETS, TABLES};
 
 /// Findings of the start-up.
 #[derive(Debug, Clone)]
@@ -45,6 +45,7 @@ pub fn hello<W: Protocol>(start_up: StartUp, control_digest: Option<u64>) -> Hel
         watchdog_reset: start_up.watchdog_reset,
         control_digest,
         memory: start_up.memory,
+        forced: FORCED,
     }
 }
 

@@ -144,7 +144,8 @@ fn the_board_s_state_is_the_core_s_in_every_bit() {
     let toolchain = Toolchain::prepare(&say).expect("a toolchain for the board");
     emulator::ensure(&say).expect("an emulator");
     let file = preset_file("q1");
-    let image = build_image(&toolchain, &file, &Board::emulated(), Role::Plant, TICK_RATE, &say).expect("an image");
+    let image =
+        build_image(&toolchain, &file, &Board::emulated(), Role::Plant, TICK_RATE, false, &say).expect("an image");
     let (mut emulator, stream) = Emulator::start(&image.elf).expect("a board");
     let mut line = Line::new(stream);
 

@@ -14,7 +14,7 @@ fn the_tick_cannot_panic_and_its_stack_is_bounded() {
     let say = |line: &str| println!("{line}");
     let toolchain = Toolchain::prepare(&say).expect("a toolchain for the board");
     for (role, rate) in [(Role::Plant, 20_000), (Role::Observer, 10_000), (Role::Loop, 10_000)] {
-        let image = build_image(&toolchain, &preset_file("q1"), &Board::emulated(), role, rate, &say);
+        let image = build_image(&toolchain, &preset_file("q1"), &Board::emulated(), role, rate, false, &say);
         let reach = tick::reach(&image.expect("an image").elf).expect("an image that can be read");
         println!("{role:?}: {} B of stack: {:?}", tick::stack(&reach), reach.deepest);
         tick::judge(&reach).unwrap_or_else(|failure| panic!("{failure}"));

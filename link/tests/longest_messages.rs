@@ -40,6 +40,7 @@ fn the_longest_hello_arrives() {
         watchdog_reset: true,
         control_digest: Some(u64::MAX),
         memory: link::messages::MemoryState::OutOfRange,
+        forced: true,
     }));
 }
 

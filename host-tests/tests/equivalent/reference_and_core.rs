@@ -1,7 +1,7 @@
 //! The core beside the independent reference, tick by tick.
 
 use host_tests::tolerance::equivalent;
-use model_core::gears::design::{Effort, Processor, certificate, design};
+use model_core::gears::design::design;
 use model_core::gears::{Model, Tables, Torques};
 use model_core::numbers::Real;
 use reference::joint::{Reference, RelativeState, Start};
@@ -75,18 +75,9 @@ fn random_equivalent_gears_follow_the_reference_at_every_rate() {
 }
 
 #[test]
-fn nine_errors_in_ten_are_below_what_the_certificate_says() {
-    let mut within = [0, 0];
-    let mut all = 0;
-    for seed in 1000..1120 {
-        let motion = motion(seed, 20_000);
-        let Some([error, _]) = errors(&motion) else { continue };
-        let promise = certificate(&motion.joint, 20_000, Effort::Board, &Processor::STM32F405).expect("a sound joint");
-        assert_eq!(promise.substeps.count(), 1);
-        all += 1;
-        within[0] += usize::from(error <= promise.contact_changes.typical);
-        within[1] += usize::from(error <= promise.contact_changes.nine_in_ten);
-    }
-    println!("{within:?} of {all} motions");
-    assert!(10 * within[0] >= 4 * all && 10 * within[1] >= 9 * all, "{within:?} of {all}");
+fn half_of_random_equivalent_gears_are_right_to_rounding() {
+    let mut all: Vec<f64> = (1000..1120).filter_map(|seed| Some(errors(&motion(seed, 20_000))?[0])).collect();
+    all.sort_by(f64::total_cmp);
+    equivalent::RANDOM_USUAL.check(all[all.len() / 2]);
+    equivalent::RANDOM_NINE_IN_TEN.check(all[9 * all.len() / 10]);
 }

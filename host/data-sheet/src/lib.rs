@@ -16,12 +16,13 @@ use std::path::{Path, PathBuf};
 
 pub use arguments::Arguments;
 use board::target::board::Board;
+use board::target::tick_time::OnBoard;
 use joint_file::named::Loaded;
 use joint_file::{diagnostic, warned};
 use report::failure::{Failure, Outcome};
 use report::progress::Progress;
 use report::write::write_text;
-use simulation::{budget, check};
+use simulation::check;
 
 use arguments::DataSheet;
 use lines::{Figures, Line, Origin};
@@ -72,7 +73,7 @@ fn make(sheet: &DataSheet, path: &Path, measured: bool, progress: &Progress) -> 
         }
     }
     // A board's time is no part of a data sheet: the joint is as it is.
-    if let Err(failure) = budget::refuse(&loaded.file.parameters, &Board::load(board_file::DEFAULT)?, RATE) {
+    if let Err(failure) = OnBoard::plant(&loaded.file.parameters, &Board::load(board_file::DEFAULT)?).refuse(RATE) {
         let help = failure.full_help().map_or(String::new(), |help| format!(" ({help})"));
         told += &format!("note: {}{help}\n", failure.message());
     }
@@ -94,7 +95,7 @@ fn tried(path: &Path, text: &str) -> Outcome<Loaded> {
     let file =
         joint_file::read(text).map_err(|problems| Failure::from_report(diagnostic::report(&name, text, &problems)))?;
     let loaded = Loaded { name, text: text.to_owned(), file };
-    check::summary(&loaded, RATE)?;
+    check::summary(&loaded, &Board::load(board_file::DEFAULT)?, RATE, None)?;
     Ok(loaded)
 }
 

@@ -114,5 +114,7 @@ fn build(request: &RunRequest<'_>, plan: &RunPlan, board: &Board, progress: &Pro
     progress.stage("preparing the toolchain");
     let toolchain = Toolchain::prepare(&|line| progress.say(line))?;
     progress.stage("building the firmware");
-    image::build_image(&toolchain, &plan.path, board, Role::Plant, request.rate, &|line| progress.say(line))
+    image::build_image(&toolchain, &plan.path, board, Role::Plant, request.rate, request.force, &|line| {
+        progress.say(line)
+    })
 }

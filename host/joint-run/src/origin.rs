@@ -37,6 +37,7 @@ pub fn note_board(identity: &mut Identity, hello: &Hello) {
     identity.emulated |= hello.clock.source == ClockSource::NotModelled;
     identity.last_panic = hello.last_panic.as_ref().map(ToString::to_string);
     identity.watchdog_reset = hello.watchdog_reset;
+    identity.forced = hello.forced;
 }
 
 /// What the board says of its core clock.
@@ -95,6 +96,8 @@ fn settings(request: &RunRequest<'_>, plan: &RunPlan) -> Settings {
     Settings {
         mode: if realtime { "realtime" } else { "lockstep" }.to_owned(),
         tick_rate_hz: request.rate,
+        method: plan.substeps.method().to_owned(),
+        substeps: plan.substeps.count(),
         decimation: plan.settings.decimation.into(),
         ticks: plan.profile.ticks,
         command_timeout_ticks: request.line.port.is_some().then_some(plan.settings.command_timeout),

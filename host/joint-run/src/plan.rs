@@ -8,12 +8,14 @@ use board::profile::TorqueProfile;
 use board::session::{BoardHelp, Expected, command_timeout};
 use board::target::board::Board;
 use board::target::image;
+use board::target::tick_time::OnBoard;
 use board::twin;
 use clap::ValueEnum;
 use joint_file::JointFile;
 use joint_file::named::{self, Loaded};
 use joint_file::warned;
 use link::messages::{Role, RunMode, RunSettings};
+use model_core::gears::certificate::Substeps;
 use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
 
@@ -36,6 +38,8 @@ pub struct RunRequest<'a> {
     pub decimation: u16,
     /// The board has its image already.
     pub no_build: bool,
+    /// What the board has no time for is built and run all the same.
+    pub force: bool,
     /// The f64 reference is not computed.
     pub no_reference: bool,
     /// Folder for everything that stays.
@@ -59,6 +63,8 @@ pub struct RunPlan {
     pub board: Board,
     /// What the board must be.
     pub expected: Expected,
+    /// The sub-steps of a tick in which contacts change.
+    pub substeps: Substeps,
     /// The torques.
     pub profile: TorqueProfile,
     /// How the run goes.
@@ -73,6 +79,9 @@ impl RunPlan {
         let path = image::joint_file(request.file, &loaded.name);
         let Loaded { name, file: joint, .. } = loaded;
         let parameters = &joint.parameters;
+        let on_board = OnBoard::new(parameters, request.line.board(), Role::Plant);
+        on_board.refuse_unless_forced(request.rate, request.force)?;
+        let substeps = on_board.substeps(request.rate).map_err(|error| Failure::new(error.to_string()))?;
         let digest = twin::tables_digest(parameters, request.line.board().chip(), request.rate)?;
         let profile = TorqueProfile::load(request.profile, parameters, request.rate, request.duration)?;
         let mode = match (request.mode, &request.line.port) {
@@ -94,7 +103,7 @@ impl RunPlan {
         };
         let command_timeout = command_timeout(request.rate, request.line.port.is_none());
         let settings = RunSettings { mode, decimation: request.decimation, command_timeout, from_memory: false };
-        Ok(Self { name, path, board: request.line.board().clone(), expected, profile, settings, joint })
+        Ok(Self { name, path, board: request.line.board().clone(), expected, substeps, profile, settings, joint })
     }
 }
 
@@ -105,7 +114,8 @@ impl RunRequest<'_> {
             return BoardHelp::Rebuild;
         }
         let (file, board) = (quoted(&self.file.display().to_string()), self.line.board_word());
-        let command = format!("cargo joint flash {file} --board {board}{}", self.rate_option());
+        let force = if self.force { " --force" } else { "" };
+        let command = format!("cargo joint flash {file} --board {board}{}{force}", self.rate_option());
         if self.no_build { BoardHelp::Flash(command) } else { BoardHelp::FlashBuilt(command) }
     }
 
@@ -121,7 +131,7 @@ impl RunRequest<'_> {
         option("profile", Some(self.profile.to_owned()));
         option("duration", self.duration.map(|duration| duration.to_string()));
         option("decimation", Some(self.decimation.to_string()));
-        for (name, given) in [("no-reference", self.no_reference), ("no-build", self.no_build)] {
+        for (name, given) in [("no-reference", self.no_reference), ("no-build", self.no_build), ("force", self.force)] {
             if given {
                 command += &format!(" --{name}");
             }

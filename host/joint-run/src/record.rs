@@ -76,6 +76,9 @@ pub struct Identity {
     pub last_panic: Option<String>,
     /// The last reset came from the watchdog.
     pub watchdog_reset: bool,
+    /// The board has no time for its worst tick: the image was built by force.
+    #[serde(default)]
+    pub forced: bool,
     /// The image, where this host built or was given it.
     pub image: Option<Image>,
     /// Commit of the sources, if they were under git; with ` (changed)` if they differ from it.
@@ -131,6 +134,12 @@ pub struct Settings {
     /// Fixed steps a second [Hz].
     #[serde(rename = "tick_rate_Hz")]
     pub tick_rate_hz: u32,
+    /// Method of the sub-steps of a tick in which contacts change: `corrected` or `leapfrog`.
+    #[serde(default)]
+    pub method: String,
+    /// How many of them.
+    #[serde(default)]
+    pub substeps: u32,
     /// A sample every so many ticks.
     pub decimation: u32,
     /// Ticks that the run was meant to last.

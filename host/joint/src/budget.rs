@@ -1,22 +1,29 @@
-//! `joint budget`: what is promised of a joint's fixed step on a board at a rate, with a verdict.
+//! `joint budget`: what is known of a joint's fixed step on a board at a rate, with verdicts on time and accuracy.
 
 use std::path::PathBuf;
 
 use board::target::board::Board;
 use board::target::image;
+use board::target::tick_time::OnBoard;
 use joint_file::{named, warned};
 use report::failure::{Failure, Outcome};
 use report::output;
-use simulation::budget::{layout, refuse, summary};
+use report::progress::Progress;
+use simulation::budget::{layout, summary};
+use simulation::verdicts::ACCURACY;
+
+use crate::image::ImageRole;
 
 /// Arguments of `joint budget`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   joint budget                                          joint q1 on the olimex-h405 at 20 kHz
   joint budget joints/l1.toml --board nucleo-h743zi --rate 40000
-  joint budget paper --rate 10000 --json -
+  joint budget q1 --role loop --rate 10000              the same verdict that image, flash and hil refuse by
+  joint budget paper --rate 10000 --accuracy 1e-3 --json -
 
-Exit code 2 if the board has no time for that rate; the nearest rate that it has time for is named.")]
+Exit code 2 if the board has no time for that rate, 1 if the error is greater than was asked for by --accuracy; each time
+with a rate that would do.")]
 pub struct Arguments {
     /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, c1, paper, paper_printed
     #[arg(default_value = "q1", value_name = "FILE")]
@@ -24,9 +31,15 @@ pub struct Arguments {
     /// Board that steps the joint: a name of boards/, or the path of a board file
     #[arg(long, value_name = "NAME|FILE", value_parser = Board::parse, default_value = board_file::DEFAULT)]
     board: Board,
+    /// What the board does
+    #[arg(long, value_enum, default_value = "plant")]
+    role: ImageRole,
     /// Steps a second, in Hz
     #[arg(long, value_name = "HZ", default_value_t = image::DEFAULT_TICK_RATE, value_parser = clap::value_parser!(u32).range(1..))]
     rate: u32,
+    /// Error that is small enough: deflections, gap and link on the reversals, over the motion's standard deviation [default: 1e-2]
+    #[arg(long, value_name = "E", value_parser = accuracy)]
+    accuracy: Option<f64>,
     /// Writes the same figures as JSON ("-" is standard output, in place of the text)
     #[arg(long, value_name = "OUT")]
     json: Option<PathBuf>,
@@ -37,8 +50,31 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     let loaded = named::load(&arguments.file)?;
     warned::tell(&loaded);
     let parameters = &loaded.file.parameters;
-    refuse(parameters, &arguments.board, arguments.rate)?;
-    let summary = summary(parameters, &arguments.board, arguments.rate)
-        .map_err(|error| Failure::new(format!("no fixed step for {}: {error}", parameters.name)))?;
-    output::deliver(&summary, &layout(&summary), arguments.json.as_deref(), &[&arguments.file])
+    let (board, role, rate) = (&arguments.board, arguments.role.role(), arguments.rate);
+    let wanted = arguments.accuracy.unwrap_or(ACCURACY);
+    let progress = Progress::new();
+    progress.stage("measuring the error");
+    let summary = summary(parameters, board, role, rate, wanted);
+    progress.clear();
+    let summary = summary?;
+    output::deliver(&summary, &layout(&summary), arguments.json.as_deref(), &[&arguments.file])?;
+    OnBoard::new(parameters, board, role).refuse(rate)?;
+    let accuracy = &summary.verdicts.accuracy;
+    if arguments.accuracy.is_some() && !accuracy.reached {
+        let help = match accuracy.rate_that_reaches_it_Hz {
+            Some(rate) => format!("it would be at `--rate {rate}`"),
+            None => "no rate was found at which it would be: heavier planets or more damping would help".to_owned(),
+        };
+        let message = format!("the error of {} at {rate} Hz is greater than {wanted:.1e}", parameters.name);
+        return Err(Failure::check_failed(message).with_help(help));
+    }
+    Ok(())
+}
+
+/// An error that is small enough.
+pub fn accuracy(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value < 1.0 => Ok(value),
+        _ => Err("an error over the motion's standard deviation is a number between 0 and 1, such as 1e-2".to_owned()),
+    }
 }

@@ -2,10 +2,15 @@
 
 use std::path::PathBuf;
 
+use board::target::board::Board;
 use joint_file::named;
 use report::failure::Outcome;
 use report::output;
+use report::progress::Progress;
 use simulation::check::{layout, summary};
+use simulation::verdicts::ACCURACY;
+
+use crate::budget::accuracy;
 
 /// Arguments of `joint check`.
 #[derive(Debug, clap::Args)]
@@ -16,14 +21,24 @@ pub struct Arguments {
     /// Writes the same figures as JSON ("-" is standard output, in place of the text)
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
+    /// Board that the tables are designed for: a name of boards/, or the path of a board file
+    #[arg(long, value_name = "NAME|FILE", value_parser = Board::parse, default_value = board_file::DEFAULT)]
+    pub board: Board,
     /// Steps a second for which the tables are designed
     #[arg(long, value_name = "HZ", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..))]
     pub rate: u32,
+    /// Error that is small enough: deflections, gap and link on the reversals, over the motion's standard deviation
+    #[arg(long, value_name = "E", value_parser = accuracy, default_value_t = ACCURACY)]
+    pub accuracy: f64,
 }
 
 /// Prints what follows from the file.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     let loaded = named::load(&arguments.file)?;
-    let summary = summary(&loaded, arguments.rate)?;
+    let progress = Progress::new();
+    progress.stage("measuring the error");
+    let summary = summary(&loaded, &arguments.board, arguments.rate, Some(arguments.accuracy));
+    progress.clear();
+    let summary = summary?;
     output::deliver(&summary, &layout(&summary), arguments.json.as_deref(), &[&arguments.file])
 }

@@ -44,11 +44,14 @@ pub struct Image {
     /// spi-observer, else 10000, or the next lower rate that the chip has time for]
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..))]
     rate: Option<u32>,
+    /// Builds an image that the board has no time for; its hello says so
+    #[arg(long)]
+    force: bool,
 }
 
 /// What a board can be made to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum ImageRole {
+pub enum ImageRole {
     /// Simulates the joint
     Plant,
     /// Observer and compensation beside a motor controller
@@ -57,6 +60,17 @@ enum ImageRole {
     Loop,
     /// Observer and compensation as a slave on SPI beside a motor controller on another chip; for boards whose file has [spi_slave]
     SpiObserver,
+}
+
+impl ImageRole {
+    /// What its tick does: a slave on SPI is an observer.
+    pub fn role(self) -> Role {
+        match self {
+            Self::Plant => Role::Plant,
+            Self::Observer | Self::SpiObserver => Role::Observer,
+            Self::Loop => Role::Loop,
+        }
+    }
 }
 
 /// Builds an image.
@@ -85,8 +99,8 @@ pub fn build(arguments: &Image, board: &Board) -> Outcome<image::Image> {
     let built = Toolchain::prepare(&say).and_then(|toolchain| {
         progress.stage("building the firmware");
         match role {
-            Some(role) => image::build_image(&toolchain, &file, board, role, rate, &say),
-            None => image::build_spi_slave(&toolchain, &file, board, rate, &say),
+            Some(role) => image::build_image(&toolchain, &file, board, role, rate, arguments.force, &say),
+            None => image::build_spi_slave(&toolchain, &file, board, rate, arguments.force, &say),
         }
     });
     progress.clear();

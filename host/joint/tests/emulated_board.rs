@@ -252,7 +252,7 @@ fn a_bad_line_costs_what_is_told_and_the_link_is_back_with_the_first_frame() {
     let toolchain = Toolchain::prepare(&say).expect("a toolchain for the board");
     emulator::ensure(&say).expect("an emulator");
     let file = preset_file("q1");
-    let image = build_image(&toolchain, &file, &Board::emulated(), Role::Plant, 20_000, &say).expect("an image");
+    let image = build_image(&toolchain, &file, &Board::emulated(), Role::Plant, 20_000, false, &say).expect("an image");
     let (mut emulator, line) = Emulator::start(&image.elf).expect("a board");
     // Its clock runs as fast as it can while the host is thinking: no timeout.
     let trial = Trial::of(line, u32::MAX);

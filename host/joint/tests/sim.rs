@@ -21,7 +21,7 @@ fn figures(arguments: &[&str]) -> Value {
     let all = [&["sim"], arguments, &["--out", text(folder.path()), "--json", text(&elsewhere)]].concat();
     joint(&all).well();
     let value = json(&elsewhere);
-    assert_eq!(value["schema"], "joint-sim/1");
+    assert_eq!(value["schema"], "joint-sim/2");
     value
 }
 

@@ -40,7 +40,7 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
         for &(role, rate) in built {
             let what = format!("role {} for {}", image::word(role), board.name());
             progress.stage(&format!("building the image of {what}"));
-            let image = image::build_image(&toolchain, &image::preset_file("q1"), board, role, rate, &say)?;
+            let image = image::build_image(&toolchain, &image::preset_file("q1"), board, role, rate, false, &say)?;
             let (flash, ram) = (image.flash_bytes, image.ram_bytes);
             let reach = tick::reach(&image.elf)?;
             tick::judge(&reach).map_err(|failure| failure.while_doing(format_args!("image of {what}")))?;
@@ -54,7 +54,7 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
         if is_first && board.has_spi_slave() {
             progress.stage("building the image of a slave on SPI");
             let joint = image::preset_file("q1");
-            let bytes = image::build_spi_slave(&toolchain, &joint, board, image::SPI_RATE, &say)?.flash_bytes;
+            let bytes = image::build_spi_slave(&toolchain, &joint, board, image::SPI_RATE, false, &say)?.flash_bytes;
             progress.clear();
             output::print(&format!("ok       image of a slave on SPI for {}: {bytes} B of flash\n", board.name()))?;
         }

@@ -11,7 +11,7 @@ use link::messages::Role;
 use super::worst_case::CYCLES_AN_INSTRUCTION;
 use board::target::board::{Board, Chip};
 use board::target::image::CONTROL_RATE;
-use board::target::tick_time;
+use board::target::tick_time::OnBoard;
 use board::target::toolchain::Toolchain;
 use board::target::{Say, measuring};
 use report::failure::{Failure, Outcome};
@@ -72,7 +72,9 @@ pub fn part(instructions: f64) -> f64 {
 pub fn judge(costs: &[RoleCost]) -> Outcome<()> {
     // What images are refused by is no less than what is counted.
     let (board, joint) = (Board::emulated(), named::load(Path::new("q1"))?.file.parameters);
-    let promised = |role| tick_time::worst(&joint, &board, role, CONTROL_RATE).unwrap_or(f64::INFINITY);
+    let promised = |role| {
+        OnBoard::new(&joint, &board, role).tick_time(CONTROL_RATE).map_or(f64::INFINITY, |time| time.instructions)
+    };
     let [observer, whole_loop] = [Role::Observer, Role::Loop].map(promised);
     let over = |load: &&RoleCost| match load.role.as_str() {
         "loop" => f64::from(load.most) > whole_loop || part(load.most.into()) > 1.0,
@@ -91,6 +93,8 @@ pub fn judge(costs: &[RoleCost]) -> Outcome<()> {
 
 #[cfg(test)]
 mod tests {
+    use board::target::tick_time::OBSERVER;
+
     use super::*;
 
     #[test]
@@ -100,9 +104,9 @@ mod tests {
         let failure = judge(std::slice::from_ref(&load)).unwrap_err();
         assert!(failure.message().contains("role loop, Q1"), "{failure}");
         assert!(judge(&[RoleCost { most: 10_000, ..load.clone() }]).is_ok());
-        let observer = RoleCost { role: "observer".to_owned(), most: tick_time::OBSERVER + 1, ..load };
+        let observer = RoleCost { role: "observer".to_owned(), most: OBSERVER + 1, ..load };
         assert!(judge(std::slice::from_ref(&observer)).is_err());
-        assert!(judge(&[RoleCost { most: tick_time::OBSERVER, ..observer }]).is_ok());
+        assert!(judge(&[RoleCost { most: OBSERVER, ..observer }]).is_ok());
         assert_eq!(parse("panicked at x.rs"), None);
     }
 }

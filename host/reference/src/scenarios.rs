@@ -5,11 +5,13 @@ pub mod case_r;
 mod cases;
 mod joints;
 mod motions;
+mod random_joints;
 
 pub use cases::{CASE_A_OMEGA, CASE_Q_OMEGA, case, poincare_point, regime};
 pub use joints::{PAPER_LENGTH, l1, paper_joint, paper_natural_frequency, q1, same, with_teeth};
 pub use motions::motions;
 use parameters::JointParameters;
+pub use random_joints::random_joint;
 
 use crate::integrator::Counters;
 use crate::joint::{Observation, Reference, ReferenceError, RelativeState, Start};

@@ -40,6 +40,8 @@ pub struct Hello {
     pub control_digest: Option<u64>,
     /// Validity of the memory that it keeps of earlier runs.
     pub memory: MemoryState,
+    /// Its worst tick outlasts what the role may take of a period: it was built by force.
+    pub forced: bool,
 }
 
 /// What an image is for.

@@ -1,5 +1,5 @@
-//! The certificate of a fixed step, known before it runs: error, instructions, memory, stability limits. Plain numbers that
-//! accompany the tables; `gears::design` computes them.
+//! The certificate of a fixed step, known before it runs: instructions, memory, stability limits. Plain numbers that accompany
+//! the tables; `gears::design` computes them. The error is measured, by `joint check` and `joint budget`.
 
 use core::fmt;
 
@@ -27,6 +27,14 @@ impl Substeps {
         let (Self::Corrected(count) | Self::Verlet(count)) = self;
         count
     }
+
+    /// The method in one word.
+    pub fn method(self) -> &'static str {
+        match self {
+            Self::Corrected(_) => "corrected",
+            Self::Verlet(_) => "leapfrog",
+        }
+    }
 }
 
 /// The certificate of one joint at one tick rate.
@@ -36,10 +44,6 @@ pub struct Certificate {
     pub tick_rate: u32,
     /// Sub-steps of a tick while contacts change.
     pub substeps: Substeps,
-    /// Error while every mesh stays on its flank.
-    pub contact_holds: ErrorQuantiles,
-    /// Error while meshes part and hit.
-    pub contact_changes: ErrorQuantiles,
     /// Of a tick.
     pub instructions: Instructions,
     /// Flash that the tables take [byte].
@@ -54,18 +58,6 @@ pub struct Certificate {
     pub unseen: Unseen,
     /// Lowest tick rate that is stable [Hz].
     pub lowest_rate: u32,
-    /// Highest tick rate that the processor has time for with one sub-step; zero if none [Hz].
-    pub highest_rate: u32,
-}
-
-/// RMS error of the mesh deflections over their standard deviations, for motions of 200 / omega_n that can be predicted
-/// at all: a vanishing change of the start grows less than a hundredfold in them.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ErrorQuantiles {
-    /// Half of all motions stay below it.
-    pub typical: f64,
-    /// Nine in ten do.
-    pub nine_in_ten: f64,
 }
 
 /// Instructions of a tick, of a Cortex-M4F.

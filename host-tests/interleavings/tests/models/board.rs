@@ -307,5 +307,6 @@ fn hello() -> Hello {
         watchdog_reset: false,
         control_digest: None,
         memory: MemoryState::Nothing,
+        forced: false,
     }
 }

@@ -144,6 +144,7 @@ mod tests {
             watchdog_reset: false,
             control_digest: None,
             memory: link::messages::MemoryState::Nothing,
+            forced: false,
         }
     }
 

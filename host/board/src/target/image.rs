@@ -4,6 +4,7 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
+use joint_file::named;
 use link::messages::Role;
 use object::{Object, ObjectSegment};
 use sha2::{Digest, Sha256};
@@ -11,8 +12,9 @@ use sha2::{Digest, Sha256};
 use super::Say;
 use super::board::Board;
 use super::compile::{FIRMWARE, PROFILE, compile, store};
+pub use super::role::word;
 use super::sources::{self, hexadecimal};
-use super::tick_time;
+use super::tick_time::OnBoard;
 use super::toolchain::{TARGET_FLAGS, Toolchain};
 use report::failure::{Failure, Outcome};
 use report::workspace::workspace;
@@ -50,21 +52,35 @@ pub struct Image {
     pub flags: String,
 }
 
-/// Builds the image of a joint, or finds that it is up to date. A relative `joint_file` is relative to the folder that
-/// the command runs in.
+/// Builds the image of a joint, or finds that it is up to date; refuses what the board has no time for, unless it is to be
+/// `forced`. A relative `joint_file` is relative to the folder that the command runs in.
 pub fn build_image(
     toolchain: &Toolchain,
     joint_file: &Path,
     board: &Board,
     role: Role,
     tick_rate: u32,
+    forced: bool,
     say: Say<'_>,
 ) -> Outcome<Image> {
     let joint_file = readable(joint_file)?;
-    check_rate(board, tick_rate)?;
-    tick_time::refuse(&joint_file, board, role, tick_rate)?;
+    let forced = fitted(&joint_file, board, role, tick_rate, forced, say)?;
     let place = file_name(&joint_file, board, word(role), tick_rate);
-    finish(toolchain, [&joint_file; 2], board, binary(role), &Control::usual(tick_rate), &place, say)
+    let control = Control { forced, ..Control::usual(tick_rate) };
+    finish(toolchain, [&joint_file; 2], board, binary(role), &control, &place, say)
+}
+
+/// Refuses a joint file that the board cannot be built for; says whether it is by force that it can.
+fn fitted(joint_file: &Path, board: &Board, role: Role, rate: u32, forced: bool, say: Say<'_>) -> Outcome<bool> {
+    let parameters = named::load(joint_file)?.file.parameters;
+    let forced = OnBoard::new(&parameters, board, role).refuse_unless_forced(rate, forced)?;
+    if forced {
+        say(&format!(
+            "built by force: {} has no time for the worst tick at {rate} Hz, and its hello says so",
+            board.name()
+        ));
+    }
+    Ok(forced)
 }
 
 /// What the image of a role that controls is made for, besides its joint.
@@ -76,12 +92,14 @@ pub struct Control {
     pub bandwidth: f64,
     /// Whether the observer is shown the output encoder.
     pub output_encoder: bool,
+    /// Built although the board has no time for it.
+    pub forced: bool,
 }
 
 impl Control {
     /// At a rate, with the defaults of the firmware's build.
     pub fn usual(rate: u32) -> Self {
-        Self { rate, bandwidth: 60.0, output_encoder: true }
+        Self { rate, bandwidth: 60.0, output_encoder: true, forced: false }
     }
 }
 
@@ -95,13 +113,14 @@ pub fn build_control_image(
     control: &Control,
     say: Say<'_>,
 ) -> Outcome<Image> {
-    check_rate(board, control.rate)?;
     let digest = Sha256::digest(format!("{truth}{told}{control:?}"));
     let name = hexadecimal(&digest[..6]);
     let folder = toolchain.target_directory().join("images/control");
     let [truth_file, told_file] = ["truth", "told"].map(|which| folder.join(format!("{name}-{which}.toml")));
     store(&folder, &truth_file, truth.as_bytes())?;
     store(&folder, &told_file, told.as_bytes())?;
+    let forced = fitted(&truth_file, board, role, control.rate, control.forced, say)?;
+    let control = &Control { forced, ..*control };
     let place = format!("control-{name}-{}-{}.elf", board.name(), word(role));
     finish(toolchain, [&truth_file, &told_file], board, binary(role), control, &place, say)
 }
@@ -112,6 +131,7 @@ pub fn build_spi_slave(
     joint_file: &Path,
     board: &Board,
     rate: u32,
+    forced: bool,
     say: Say<'_>,
 ) -> Outcome<Image> {
     if !board.has_spi_slave() {
@@ -124,8 +144,10 @@ pub fn build_spi_slave(
         )));
     }
     let joint_file = readable(joint_file)?;
+    let control =
+        Control { forced: fitted(&joint_file, board, Role::Observer, rate, forced, say)?, ..Control::usual(rate) };
     let place = file_name(&joint_file, board, SPI_BINARY, rate);
-    finish(toolchain, [&joint_file; 2], board, SPI_BINARY, &Control::usual(rate), &place, say)
+    finish(toolchain, [&joint_file; 2], board, SPI_BINARY, &control, &place, say)
 }
 
 /// The whole path of a joint file.
@@ -145,11 +167,11 @@ fn finish(
     say: Say<'_>,
 ) -> Outcome<Image> {
     let (rate, bandwidth) = (control.rate.to_string(), control.bandwidth.to_string());
-    let motor_only = if control.output_encoder { "0" } else { "1" };
+    let [motor_only, forced] = [!control.output_encoder, control.forced].map(|yes| if yes { "1" } else { "0" });
     let own_flags = if has_room_for_all(board) { "" } else { LESS_INLINED };
     let mut target_flags = toolchain.target_flags();
     target_flags.push(own_flags);
-    let environment: [(&str, &OsStr); 7] = [
+    let environment: [(&str, &OsStr); 8] = [
         (TARGET_FLAGS, &target_flags),
         ("BOARD_FILE", board.file.as_os_str()),
         ("JOINT_FILE", truth.as_os_str()),
@@ -157,6 +179,7 @@ fn finish(
         ("JOINT_TICK_RATE", rate.as_ref()),
         ("JOINT_BANDWIDTH", bandwidth.as_ref()),
         ("JOINT_MOTOR_ONLY", motor_only.as_ref()),
+        ("JOINT_FORCED", forced.as_ref()),
     ];
     let images = toolchain.target_directory().join("images");
     let place = images.join(name);
@@ -199,15 +222,6 @@ fn too_large(failure: &Failure, board: &Board) -> Option<Failure> {
     )))
 }
 
-fn check_rate(board: &Board, tick_rate: u32) -> Outcome<()> {
-    if tick_rate == 0 || !board.core_rate().is_multiple_of(tick_rate) {
-        let (rate, name) = (board.core_rate(), board.name());
-        return Err(Failure::new(format!("a tick rate of {tick_rate} Hz cannot be made of {name}'s {rate} Hz"))
-            .with_help(format!("take one that divides it, such as {DEFAULT_TICK_RATE}")));
-    }
-    Ok(())
-}
-
 /// A preset of the workspace's `joints` folder, for a caller that has a name and no file.
 pub fn preset_file(name: &str) -> PathBuf {
     workspace().join("joints").join(format!("{name}.toml"))
@@ -217,15 +231,6 @@ pub fn preset_file(name: &str) -> PathBuf {
 /// by their `name`.
 pub fn joint_file(file: &Path, name: &str) -> PathBuf {
     if file.is_file() { file.to_owned() } else { preset_file(name) }
-}
-
-/// The word for a role.
-pub fn word(role: Role) -> &'static str {
-    match role {
-        Role::Plant => "plant",
-        Role::Observer => "observer",
-        Role::Loop => "loop",
-    }
 }
 
 /// The firmware's binary for a role: `loop` could not be a crate.

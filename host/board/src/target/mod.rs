@@ -13,6 +13,7 @@ pub mod image;
 pub mod lint;
 pub mod measuring;
 pub mod packages;
+mod role;
 mod sources;
 pub mod sysroot;
 pub mod tick_time;

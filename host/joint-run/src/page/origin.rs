@@ -20,6 +20,8 @@ pub fn identity(record: &RunRecord) -> Block {
         ("Board", format!("{}, {}", identity.board, identity.transport)),
         ("Role, firmware", format!("{} {}", identity.role, identity.firmware_version)),
         ("Core clock", identity.clock.clone()),
+        ("Sub-steps at contact changes", format!("{} {}", settings.substeps, settings.method)),
+        ("Time for the worst tick", if identity.forced { "none: built by --force" } else { "yes" }.to_owned()),
         ("Image", image.map_or_else(unknown, |image| image.file.clone())),
         ("ELF SHA-256", image.map_or_else(unknown, |image| image.elf_sha256.clone())),
         (

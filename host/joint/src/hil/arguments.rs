@@ -85,6 +85,9 @@ pub struct Arguments {
     /// Does not build the image: logs stay encoded, and its size is not checked
     #[arg(long, requires = "port")]
     pub no_build: bool,
+    /// Builds and runs what the board has no time for; its hello says so
+    #[arg(long, conflicts_with = "host")]
+    pub force: bool,
     /// Also builds the images of all boards, lints the firmware and runs the tests that need the emulated board
     #[arg(long, conflicts_with = "port")]
     pub check: bool,
@@ -116,6 +119,7 @@ impl Arguments {
             duration: self.duration,
             decimation: self.decimation.unwrap_or(DECIMATION),
             no_build: self.no_build,
+            force: self.force,
             no_reference: self.no_reference,
             out: self.out.as_deref(),
             json: self.json.as_deref(),

@@ -105,6 +105,7 @@ fn boards(arguments: &Arguments, role: Role) -> BoardRequest<'_> {
         baud: arguments.line.baud,
         board: arguments.line.board(),
         no_build: arguments.no_build,
+        force: arguments.force,
         mode: arguments.mode.map(Into::into),
     }
 }

@@ -94,6 +94,6 @@ fn emulated(place: &BoardArguments, loaded: &Loaded, progress: &Progress) -> Out
         progress.stage("preparing the toolchain");
         let toolchain = Toolchain::prepare(&say)?;
         progress.stage("building the firmware");
-        image::build_image(&toolchain, &joint, board, role, CONTROL_RATE, &say)
+        image::build_image(&toolchain, &joint, board, role, CONTROL_RATE, false, &say)
     })
 }

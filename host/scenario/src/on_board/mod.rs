@@ -32,6 +32,7 @@ use board::session::{BoardHelp, Expected, Session, command_timeout};
 use board::target::emulator;
 use board::target::image;
 use board::target::image::{Control, Image, word};
+use board::target::tick_time::OnBoard;
 use board::target::toolchain::Toolchain;
 use board::transport::Port;
 use board::twin::tables_digest;
@@ -100,7 +101,7 @@ impl<'w> Boards<'w> {
 
     /// The arguments that ask for them again.
     pub fn arguments(&self) -> String {
-        let BoardRequest { role, port, baud, board, no_build, mode } = self.request;
+        let BoardRequest { role, port, baud, board, no_build, force, mode } = self.request;
         let mut arguments = format!("--role {}", word(role));
         if let Some(port) = port {
             arguments += &format!(" --port {} --board {}", quoted(port), quoted(&board.named));
@@ -110,6 +111,9 @@ impl<'w> Boards<'w> {
         }
         if no_build {
             arguments += " --no-build";
+        }
+        if force {
+            arguments += " --force";
         }
         match mode {
             Some(RunMode::Lockstep) => arguments + " --mode lockstep",
@@ -135,13 +139,21 @@ impl<'w> Boards<'w> {
         let rate = case.nominal_surroundings.control_rate;
         let (mut nominal, mut truth) = (read_told(&nominal_text)?, read_told(&truth_text)?);
         [&mut nominal, &mut truth].into_iter().for_each(|joint| joint.surroundings.control_rate = rate);
-        let control = Control { rate, bandwidth: test.file.bandwidth, output_encoder: test.file.output_encoder };
+        let control = Control {
+            rate,
+            bandwidth: test.file.bandwidth,
+            output_encoder: test.file.output_encoder,
+            forced: self.request.force,
+        };
         Ok(Pair { texts: [truth_text, nominal_text], nominal, truth, control })
     }
 
     /// Builds the image, finds the board and starts the run.
     fn session(&self, pair: &Pair) -> Outcome<(Session<'static>, String)> {
         let request = &self.request;
+        // Before an image is built, and where none is: the board has its own.
+        OnBoard::new(&pair.truth.parameters, request.board, request.role)
+            .refuse_unless_forced(pair.control.rate, request.force)?;
         let image = || {
             let build = |toolchain: &Toolchain| {
                 let texts = pair.texts.each_ref().map(String::as_str);

@@ -22,6 +22,8 @@ pub struct BoardRequest<'w> {
     pub board: &'w Board,
     /// Its image is there already.
     pub no_build: bool,
+    /// Its image is built and run although the board has no time for it.
+    pub force: bool,
     /// Lockstep or real time, of a whole loop.
     pub mode: Option<RunMode>,
 }

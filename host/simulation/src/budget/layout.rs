@@ -1,49 +1,38 @@
 //! The certificate as text for a person: one line each, in the units that data sheets use.
 
-use super::summary::{BudgetSummary, PredictedError, TickWork};
+use super::summary::{BudgetSummary, TickWork};
 use report::document::{Sheet, terminal};
 
 /// All of it, as a terminal shows it.
 pub fn layout(summary: &BudgetSummary) -> String {
-    let mut page = Sheet::new(format!("{} on {} at {} Hz", summary.joint, summary.board, summary.rate_Hz));
+    let verdicts = &summary.verdicts;
+    let mut page = Sheet::new(format!("{} on {} at {} Hz", summary.joint, verdicts.board, verdicts.rate_Hz));
     step(&mut page, summary);
-    error(&mut page, summary);
     work(&mut page, summary);
     memory(&mut page, summary);
     limits(&mut page, summary);
-    page.heading("Verdict");
-    page.row("", verdict(summary));
+    verdicts.rows(&mut page);
     terminal(&page.document())
 }
 
 fn step(page: &mut Sheet, summary: &BudgetSummary) {
     page.heading("Step");
-    page.row("period", format!("{:.2} us", 1e6 / f64::from(summary.rate_Hz)));
-    let method = if summary.method == "leaps" { "leapfrog sub-steps" } else { "corrected sub-steps" };
-    page.row("at contact changes", format!("{} {method}", summary.parts));
+    page.row("period", format!("{:.2} us", 1e6 / f64::from(summary.verdicts.rate_Hz)));
+    page.row("at contact changes", summary.verdicts.substeps_in_words());
     let phase = summary.fastest_mode_phase_rad;
     page.row("fastest mode in one", format!("{phase:.2} rad, unstable from {:.2} on", summary.largest_phase_rad));
 }
 
-fn error(page: &mut Sheet, summary: &BudgetSummary) {
-    page.heading("Error of mesh deflections, RMS over the motion's standard deviation");
-    let promise = |error: PredictedError| {
-        format!("{:.1e} typical, {:.1e} in nine motions of ten", error.typical, error.nine_in_ten)
-    };
-    page.row("while contact holds", promise(summary.error_holding));
-    page.row("while meshes part and hit", promise(summary.error_losing));
-}
-
 fn work(page: &mut Sheet, summary: &BudgetSummary) {
-    page.heading("Work of a tick (instructions of a Cortex-M4F; cycles reckoned, not measured)");
+    page.heading("Work of a step (instructions of a Cortex-M4F; cycles reckoned, not measured)");
     let of = |work: TickWork| {
         let TickWork { instructions, time_s, part } = work;
         format!("{instructions} instructions, {:.1} us, {:.0} % of the period", 1e6 * time_s, 100.0 * part)
     };
-    page.row("contact holds", of(summary.holding));
-    page.row("parts, no crossing", of(summary.losing));
+    page.row("contact holds", of(summary.contact_holds));
+    page.row("sub-steps, no crossing", of(summary.contact_changes));
     page.row("every mesh crosses twice", of(summary.all_crossing));
-    page.row("every mesh in every part", of(summary.bound));
+    page.row("every mesh in every sub-step", of(summary.bound));
     let megahertz = f64::from(summary.clock_Hz) / 1e6;
     page.row("processor", format!("{megahertz:.0} MHz, {:.1} cycles an instruction", summary.cycles_per_instruction));
 }
@@ -56,7 +45,7 @@ fn memory(page: &mut Sheet, summary: &BudgetSummary) {
 
 fn limits(page: &mut Sheet, summary: &BudgetSummary) {
     page.heading("Limits");
-    page.row("rates", format!("{} to {} Hz", summary.lowest_rate_Hz, summary.highest_rate_Hz));
+    page.row("stable", format!("from {} Hz on", summary.lowest_rate_Hz));
     let duration = 1e6 * summary.unseen_for_s;
     let unseen = match summary.unseen_departure {
         Some(0.0) => "no mesh".to_owned(),
@@ -66,13 +55,4 @@ fn limits(page: &mut Sheet, summary: &BudgetSummary) {
         None => format!("for {duration:.1} us, which is half a period of the fastest mode or more"),
     };
     page.row("may leave and return unseen", unseen);
-}
-
-fn verdict(summary: &BudgetSummary) -> String {
-    let fits = "fits: a tick in which every mesh crosses twice leaves time";
-    if summary.bound.part <= summary.share {
-        return format!("{fits}, and so does one in which every mesh crosses in every part");
-    }
-    let part = 100.0 * summary.bound.part;
-    format!("{fits}; if every mesh crossed in every part, {part:.0} % of the period would be needed")
 }

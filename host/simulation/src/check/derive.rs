@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use joint_file::{Severity, sheet};
+use model_core::gears::design::StepSize;
 use model_core::gears::design::modes::natural_frequencies;
-use model_core::gears::design::{Effort, StepSize};
 use model_core::gears::{Kinematics, Mechanics, MeshPhasing, Scales};
 use parameters::{DampingLaw, EquivalentGear, JointParameters, MESH_KINDS, MeshKind};
 
@@ -13,7 +13,11 @@ use super::summary::{
     CheckSummary, EquivalentFigures, FixedStep, Frequencies, GeometryFigures, Masses, MeshFigures, Numbers, Output,
     SCHEMA, Warning,
 };
+use crate::verdicts::verdicts;
+use board::target::board::Board;
+use board::target::tick_time::OnBoard;
 use joint_file::named::Loaded;
+use link::messages::Role;
 use report::failure::{Failure, Outcome};
 
 /// Radians to minutes of arc.
@@ -21,8 +25,8 @@ pub(super) fn arcmin(angle: f64) -> f64 {
     angle.to_degrees() * 60.0
 }
 
-/// The figures of a joint at a step rate [Hz].
-pub fn summary(loaded: &Loaded, rate: u32) -> Outcome<CheckSummary> {
+/// The figures of a joint on a board at a step rate [Hz]; with errors and verdicts if an error is given that is small enough.
+pub fn summary(loaded: &Loaded, board: &Board, rate: u32, wanted: Option<f64>) -> Outcome<CheckSummary> {
     let parameters = &loaded.file.parameters;
     let with_teeth = parameters.equivalent_gear().is_none();
     let summary = CheckSummary {
@@ -40,7 +44,7 @@ pub fn summary(loaded: &Loaded, rate: u32) -> Outcome<CheckSummary> {
             DampingLaw::Paper => "paper",
         },
         output: output(parameters),
-        fixed_step: fixed_step(parameters, rate)?,
+        fixed_step: fixed_step(parameters, board, rate, wanted)?,
         numbers: numbers(loaded),
         warnings: warnings(loaded),
     };
@@ -173,24 +177,30 @@ fn output(parameters: &JointParameters) -> Output {
     }
 }
 
-fn fixed_step(parameters: &JointParameters, rate: u32) -> Outcome<FixedStep> {
+fn fixed_step(parameters: &JointParameters, board: &Board, rate: u32, wanted: Option<f64>) -> Outcome<FixedStep> {
     let failed = |error: model_core::gears::design::DesignError| {
         Failure::new(format!("no fixed step for {}: {error}", parameters.name))
             .with_help("`--rate` sets the steps a second")
     };
-    let step = step(parameters, rate).map_err(failed)?;
+    let step = step(parameters, board.processor(), rate).map_err(failed)?;
     let step_size = StepSize::new(parameters);
-    let (lowest, recommended) = (step_size.lowest_rate(Effort::Board), step_size.recommended_rate());
+    let on_board = OnBoard::new(parameters, board, Role::Plant);
+    let substeps = on_board.substeps(rate).map_err(failed)?;
+    let (lowest, recommended) = (on_board.lowest_rate(), step_size.recommended_rate());
+    let verdicts = wanted.map(|wanted| verdicts(parameters, board, Role::Plant, rate, wanted)).transpose()?;
     Ok(FixedStep {
+        board: board.name().to_owned(),
         rate_Hz: rate,
         lowest_rate_Hz: lowest,
         longest_step_s: 1.0 / f64::from(lowest),
         recommended_rate_Hz: recommended,
         recommended_step_s: 1.0 / f64::from(recommended),
-        substeps: step.substeps,
-        fastest_mode_phase_rad: step_size.phase(rate, step.substeps),
+        method: substeps.method(),
+        substeps: substeps.count(),
+        fastest_mode_phase_rad: step_size.phase(rate, substeps.count()),
         table_bytes: step.table_bytes,
         digest: format!("{:016x}", step.digest),
+        verdicts,
     })
 }
 

@@ -131,15 +131,19 @@ fn output(page: &mut Sheet, summary: &CheckSummary) {
 
 fn step(page: &mut Sheet, summary: &CheckSummary) {
     let step = &summary.fixed_step;
-    page.heading("Fixed step");
+    page.heading(&format!("Fixed step on {}", step.board));
     let longest = 1e6 * step.longest_step_s;
     page.row("longest stable step", format!("{longest:.1} us ({} Hz)", step.lowest_rate_Hz));
     let recommended = 1e6 * step.recommended_step_s;
     page.row("recommended step, at most", format!("{recommended:.1} us ({} Hz)", step.recommended_rate_Hz));
     page.row("step asked for", format!("{:.1} us ({} Hz)", 1e6 / f64::from(step.rate_Hz), step.rate_Hz));
     let phase = step.fastest_mode_phase_rad;
-    page.row("sub-steps at contact changes", format!("{}, {phase:.2} rad of the fastest mode each", step.substeps));
+    let (substeps, method) = (step.substeps, step.method);
+    page.row("at contact changes", format!("{substeps} {method} sub-steps, {phase:.2} rad of the fastest mode each"));
     page.row("tables", format!("{} bytes of flash, digest {}", step.table_bytes, step.digest));
+    if let Some(verdicts) = &step.verdicts {
+        verdicts.rows(page);
+    }
 }
 
 fn file(page: &mut Sheet, summary: &CheckSummary) {

@@ -1,16 +1,18 @@
 //! The result of `joint check` as data: figures in SI with their units in their names, as JSON in the schema
-//! `joint-check/1`. They are computed in `derive`.
+//! `joint-check/2`. They are computed in `derive`.
 
 use serde::Serialize;
 
+use crate::verdicts::Verdicts;
+
 /// Says which fields there are; rises when one changes its meaning or goes.
-pub(super) const SCHEMA: &str = "joint-check/1";
+pub(super) const SCHEMA: &str = "joint-check/2";
 
 /// Everything that `joint check` says of a joint.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct CheckSummary {
-    /// `joint-check/1`.
+    /// `joint-check/2`.
     pub schema: String,
     /// Path or preset.
     pub file: String,
@@ -174,6 +176,8 @@ pub struct Output {
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "Hz is written Hz")]
 pub struct FixedStep {
+    /// Board that it is made for.
+    pub board: String,
     /// Asked for.
     pub rate_Hz: u32,
     /// Below it no step is stable.
@@ -184,14 +188,19 @@ pub struct FixedStep {
     pub recommended_rate_Hz: u32,
     /// 1 / recommended rate.
     pub recommended_step_s: f64,
-    /// Parts of a tick while contacts change.
+    /// Method of the sub-steps of a tick in which contacts change: `corrected` or `leapfrog`.
+    pub method: &'static str,
+    /// How many of them.
     pub substeps: u32,
-    /// Phase of the fastest mode in one part.
+    /// Phase of the fastest mode in one of them.
     pub fastest_mode_phase_rad: f64,
     /// Flash that the f32 tables take.
     pub table_bytes: usize,
     /// The board's digest of them, in hexadecimal.
     pub digest: String,
+    /// Errors and verdicts on that board in the role `plant`, where they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verdicts: Option<Verdicts>,
 }
 
 /// The sources of the file's numbers.

@@ -5,10 +5,12 @@ use std::path::Path;
 
 use joint_file::PRESETS;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
-use model_core::gears::design::{Effort, StepSize};
+use model_core::gears::design::{Effort, Processor, StepSize};
 use parameters::JointParameters;
 
 use super::derive::arcmin;
+use board::target::board::Board;
+
 use super::{CheckSummary, layout, step, summary};
 use joint_file::diagnostic;
 use joint_file::named::{Loaded, load};
@@ -17,7 +19,7 @@ use report::output;
 const RATE: u32 = 20_000;
 
 fn preset(name: &str) -> CheckSummary {
-    summary(&load(Path::new(name)).expect("a preset"), RATE).expect("figures")
+    summary(&load(Path::new(name)).expect("a preset"), &Board::emulated(), RATE, None).expect("figures")
 }
 
 /// Q1's text with pieces exchanged, read.
@@ -72,7 +74,7 @@ fn gears_alone_have_the_frequencies_of_the_closed_form() {
         if loaded.file.parameters.equivalent_gear().is_some() {
             continue;
         }
-        let frequencies = summary(&loaded, RATE).expect("figures").frequencies.gears_alone_Hz;
+        let frequencies = summary(&loaded, &Board::emulated(), RATE, None).expect("figures").frequencies.gears_alone_Hz;
         let expected = closed_form(&loaded.file.parameters);
         let mut expected = vec![expected[0], expected[1], expected[1], expected[2]];
         expected.sort_by(f64::total_cmp);
@@ -132,7 +134,7 @@ fn static_deflections_carry_the_rated_torque() {
 #[test]
 fn the_tightest_planet_sets_the_gap() {
     let ring = "[mesh.ring_planet]\nhalf_backlash_um = [40.0, 10.0, 50.0]\n\n[contact]";
-    let summary = summary(&changed(&[("[contact]", ring)]), RATE).expect("figures");
+    let summary = summary(&changed(&[("[contact]", ring)]), &Board::emulated(), RATE, None).expect("figures");
     assert_printed(1e6 * summary.output.gap_m, 2.0 * (40.0 + 10.0), 9);
     assert!(layout(&summary).contains("40.000, 10.000, 50.000 um"));
 }
@@ -146,7 +148,7 @@ fn mesh_phases_of_unequal_planets_are_shown_for_each() {
         ("ring_teeth = 75", "ring_teeth = 84"),
         ("drive_torque_N_m = 2.0", "drive_torque_N_m = 2.4"),
     ];
-    let summary = summary(&changed(&five), RATE).expect("figures");
+    let summary = summary(&changed(&five), &Board::emulated(), RATE, None).expect("figures");
     for (mesh, teeth) in summary.meshes.iter().zip([26.0, -84.0]) {
         for (i, phase) in mesh.stiffness_phase_periods.iter().enumerate() {
             assert_printed(*phase, (teeth * i as f64 / 5.0).rem_euclid(1.0), 9);
@@ -161,14 +163,15 @@ fn the_lowest_rate_can_be_stepped_and_the_one_below_cannot() {
     for name in PRESETS {
         let parameters = load(Path::new(name)).expect("a preset").file.parameters;
         let lowest = StepSize::new(&parameters).lowest_rate(Effort::Board);
-        assert!(step::step(&parameters, lowest).is_ok(), "{name}: {lowest}");
-        assert!(step::step(&parameters, lowest - 1).is_err(), "{name}: {lowest}");
+        assert!(step::step(&parameters, Processor::STM32F405, lowest).is_ok(), "{name}: {lowest}");
+        assert!(step::step(&parameters, Processor::STM32F405, lowest - 1).is_err(), "{name}: {lowest}");
     }
 }
 
 #[test]
 fn a_rate_that_is_too_low_is_refused_with_the_one_that_works() {
-    let failure = summary(&load(Path::new("q1")).expect("a preset"), 100).expect_err("unstable");
+    let failure =
+        summary(&load(Path::new("q1")).expect("a preset"), &Board::emulated(), 100, None).expect_err("unstable");
     assert!(failure.message().contains("a tick rate of 100 Hz is too low"), "{failure}");
     assert_eq!(failure.exit_code(), 2);
 }
@@ -185,7 +188,9 @@ fn nothing_that_is_no_number_is_printed_even_at_the_ends_of_the_bounds() {
         let lenient = [("name = \"Q1\"", "name = \"Q1\"\ncoherence = \"warn\"")];
         changed(&[changes, &lenient].concat())
     };
-    let pages = ends.iter().map(|changes| layout(&summary(&unlikely(changes), RATE).expect("figures")));
+    let pages = ends
+        .iter()
+        .map(|changes| layout(&summary(&unlikely(changes), &Board::emulated(), RATE, None).expect("figures")));
     for page in pages.chain(PRESETS.map(|name| layout(&preset(name)))) {
         assert!(!page.contains("NaN") && !page.contains("inf"), "{page}");
         assert!(page.lines().all(|line| line.trim_end() == line), "{page}");
@@ -196,7 +201,7 @@ fn nothing_that_is_no_number_is_printed_even_at_the_ends_of_the_bounds() {
 fn figures_that_are_no_numbers_are_refused_by_name() {
     let mut loaded = load(Path::new("q1")).expect("a preset");
     loaded.file.parameters.rated_output_torque = f64::NAN;
-    let failure = summary(&loaded, RATE).expect_err("not a number");
+    let failure = summary(&loaded, &Board::emulated(), RATE, None).expect_err("not a number");
     assert!(failure.message().contains("_at_rated_torque_m is not a finite number"), "{failure}");
 }
 
@@ -218,7 +223,7 @@ fn json_holds_the_same_figures() {
     output::deliver(&summary, "", Some(&out), &[]).expect("a folder that can be written to");
     let text = std::fs::read_to_string(out).expect("the file");
     let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    assert_eq!(json["schema"], "joint-check/1");
+    assert_eq!(json["schema"], "joint-check/2");
     assert_eq!(json["output"]["lost_motion_rad"], summary.output.lost_motion_rad);
     assert_eq!(json["frequencies"]["whole_joint_Hz"].as_array().map(Vec::len), Some(5));
     assert_eq!(json, serde_json::to_value(&summary).expect("JSON"));

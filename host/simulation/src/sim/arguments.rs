@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::scheme::{Choice, SchemeName};
 use super::start::StartName;
+use board::target::board::Board;
 use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
 
@@ -76,19 +77,22 @@ pub struct MotionArguments {
     /// Computes the core's schemes in f64 in place of the board's f32
     #[arg(long)]
     pub f64: bool,
+    /// Board that the step is made for: a name of boards/, or the path of a board file [default: olimex-h405]
+    #[arg(long, value_name = "NAME|FILE", value_parser = Board::parse)]
+    pub board: Option<Board>,
     /// Takes as many sub-steps as accuracy asks for, in place of what a board has time for
-    #[arg(long)]
+    #[arg(long, conflicts_with = "board")]
     pub accurate: bool,
 }
 
 impl MotionArguments {
     /// Refuses what does nothing to a scheme.
     pub fn check_for(&self, scheme: SchemeName) -> Outcome<()> {
-        let of_core = [("f64", self.f64), ("accurate", self.accurate)];
+        let of_core = [("f64", self.f64), ("accurate", self.accurate), ("board", self.board.is_some())];
         let idle = of_core.iter().find(|(_, given)| *given && scheme == SchemeName::Reference);
         idle.map_or(Ok(()), |(name, _)| {
             Err(Failure::new(format!(
-                "--{name} does nothing to the scheme reference, which is f64 and as fine as it must be"
+                "--{name} does nothing to the scheme reference, which is f64, as fine as it must be, and on no board"
             ))
             .with_help("leave it out, or name a scheme of the core: realtime, paper, rk4, euler"))
         })
@@ -113,6 +117,7 @@ impl MotionArguments {
         option("load", self.load.map(|value| value.to_string()));
         option("start", self.start.map(|start| start.name().to_owned()));
         option("speed", self.speed.map(|value| value.to_string()));
+        option("board", self.board.as_ref().map(|board| board.named.clone()));
         if self.f64 {
             options += " --f64";
         }

@@ -3,19 +3,16 @@
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use model_core::gears::design::Substeps;
 use serde::Serialize;
 
+use super::errors::{DISTURBANCE, Errors, errors, predictable, spread};
 use super::scheme::SchemeName;
 use super::snapshot::Snapshot;
-use super::stepping::{self, Cost, RunEnd, SimulationSpec};
+use super::stepping::{self, RunEnd, SimulationSpec};
 use report::failure::{Failure, Outcome};
 use report::interruption;
 
-/// A second reference gets torques that are wrong by this much, up and down in turn.
-const DISTURBANCE: f64 = 1e-6;
-/// Once that moves any compared quantity by more than this part of its standard deviation, the motion is chaotic: what
-/// comes later says nothing about a scheme any more.
-const PREDICTABLE: f64 = 1e-3;
 /// Costs are measured over so many ticks ...
 const COST_TICKS: u32 = 4000;
 /// ... so many times, schemes taking turns, and the least of them counts: whatever else the machine does only adds.
@@ -60,7 +57,9 @@ pub struct Row {
     pub cost_ratio: f64,
     /// The same in seconds of this machine.
     pub cost_s_per_s: f64,
-    /// Sub-steps a tick; none for the reference, which chooses its own.
+    /// Method of the sub-steps of a tick in which contacts change: `corrected` or `leapfrog`; none for schemes that have no other.
+    pub method: Option<&'static str>,
+    /// How many of them; none for the reference, which chooses its own steps.
     pub substeps: Option<u32>,
     /// Time at which the state was not finite any more [s].
     pub diverged_at_s: Option<f64>,
@@ -88,20 +87,33 @@ pub fn compare(run: &SimulationSpec, every: u32, progress: &(dyn Fn(u32) + Sync)
     let costs = costs(run)?;
     let predictable = predictable(&tracks[0].columns, &disturbed);
     let board = SchemeName::ALL.iter().position(|scheme| *scheme == SchemeName::Realtime);
-    let board = board.map_or(1.0, |board| costs[board].per_second);
+    let board = board.map_or(1.0, |board| costs[board]);
     let rows = tracks
         .iter()
         .zip(costs)
-        .map(|(track, cost)| Row {
-            scheme: track.scheme.name(),
-            errors: errors(&tracks[0].columns, &track.columns, predictable),
-            cost_ratio: cost.per_second / board,
-            cost_s_per_s: cost.per_second,
-            substeps: cost.substeps,
-            diverged_at_s: track.end.diverged_at(run.tick_rate),
+        .map(|(track, cost)| {
+            let substeps = run.substeps(track.scheme);
+            Row {
+                scheme: track.scheme.name(),
+                errors: errors(&tracks[0].columns, &track.columns, predictable),
+                cost_ratio: cost / board,
+                cost_s_per_s: cost,
+                method: substeps.filter(|_| track.scheme == SchemeName::Realtime).map(Substeps::method),
+                substeps: substeps.map(Substeps::count),
+                diverged_at_s: track.end.diverged_at(run.tick_rate),
+            }
         })
         .collect();
     Ok(Comparison { tracks, predictable, rows })
+}
+
+/// Errors of one scheme alone, against the reference; none where nothing can be predicted or the scheme breaks off.
+pub fn errors_of(run: &SimulationSpec, scheme: SchemeName) -> Outcome<Option<Errors>> {
+    let track = |scheme, disturbance| record(run, 1, scheme, disturbance, &|| {});
+    let exact = track(SchemeName::Reference, 0.0)?.columns;
+    let samples = predictable(&exact, &track(SchemeName::Reference, DISTURBANCE)?.columns);
+    let found = errors(&exact, &track(scheme, 0.0)?.columns, samples);
+    Ok(if samples > 1 { Errors::of(found) } else { None })
 }
 
 impl Comparison {
@@ -161,13 +173,13 @@ fn record(
 }
 
 /// Least of several measurements of each scheme, in the order of [`SchemeName::ALL`].
-fn costs(run: &SimulationSpec) -> Outcome<Vec<Cost>> {
-    let mut least: Vec<Cost> = Vec::new();
+fn costs(run: &SimulationSpec) -> Outcome<Vec<f64>> {
+    let mut least: Vec<f64> = Vec::new();
     for round in 0..COST_ROUNDS {
         for (place, scheme) in SchemeName::ALL.into_iter().enumerate() {
             let cost = stepping::cost(run, scheme, COST_TICKS)?;
             match least.get_mut(place) {
-                Some(best) if round > 0 => best.per_second = best.per_second.min(cost.per_second),
+                Some(best) if round > 0 => *best = best.min(cost),
                 _ => least.push(cost),
             }
         }
@@ -176,35 +188,4 @@ fn costs(run: &SimulationSpec) -> Outcome<Vec<Cost>> {
         }
     }
     Ok(least)
-}
-
-/// How many samples come before the disturbed reference has left the exact one.
-fn predictable(exact: &[Vec<f64>], disturbed: &[Vec<f64>]) -> usize {
-    let count = exact[0].len().min(disturbed[0].len());
-    let left = |exact: &[f64], disturbed: &[f64]| {
-        let bound = PREDICTABLE * spread(&exact[..count]);
-        exact.iter().zip(disturbed).take(count).position(|(a, b)| (a - b).abs() > bound).unwrap_or(count)
-    };
-    exact.iter().zip(disturbed).map(|(exact, disturbed)| left(exact, disturbed)).min().unwrap_or(0)
-}
-
-/// Errors of a scheme over the predictable samples that it has; none where nothing moves or nothing was reached.
-fn errors(exact: &[Vec<f64>], columns: &[Vec<f64>], predictable: usize) -> [Option<f64>; 3] {
-    let meshes = exact.len() - 2;
-    let relative = |place: usize| {
-        let count = predictable.min(columns[place].len());
-        let exact = &exact[place][..count];
-        let square: f64 = exact.iter().zip(&columns[place]).map(|(a, b)| (a - b).powi(2)).sum();
-        let error = (square / count as f64).sqrt() / spread(exact);
-        (count == predictable && error.is_finite()).then_some(error)
-    };
-    let deflections: Option<Vec<f64>> = (0..meshes).map(relative).collect();
-    let together = deflections.map(|all| (all.iter().map(|e| e * e).sum::<f64>() / meshes as f64).sqrt());
-    [together, relative(meshes), relative(meshes + 1)]
-}
-
-/// Standard deviation.
-fn spread(values: &[f64]) -> f64 {
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
 }

@@ -8,6 +8,7 @@ pub mod arguments;
 pub mod comparison;
 pub mod csv;
 pub mod energy;
+pub mod errors;
 pub mod files;
 pub mod log_file;
 mod page;

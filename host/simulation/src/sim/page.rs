@@ -40,13 +40,14 @@ pub fn document(result: &SimulationResult<'_>, figures: &SimulationSummary, repl
                 PAGE.write(rate / 1e3)
             ),
         line: format!(
-            "{} by scheme {} ({}): {} of {} ticks at {rate} Hz, {:.4} s; {}, from {}",
+            "{} by scheme {} ({}): {} of {} ticks at {rate} Hz, {:.4} s; {}; {}, from {}",
             figures.joint,
             figures.scheme,
             figures.scalar,
             figures.ticks,
             figures.of_ticks,
             f64::from(figures.ticks) / rate,
+            figures.substeps_in_words(),
             figures.torques,
             figures.start
         )
@@ -263,7 +264,8 @@ fn schemes(result: &SimulationResult<'_>, figures: &SimulationSummary) -> Option
     let columns = [words("Scheme"), notes("").only(PAGES)].into_iter().chain(heads).collect();
     let rows = comparison.rows.iter().zip(&comparison.tracks).map(|(one, track)| {
         let errors = one.errors.map(|error| percent(one, error));
-        let substeps = one.substeps.map_or_else(|| "its own".into(), |count| count.to_string());
+        let method = one.method.map_or_else(String::new, |method| format!(" {method}"));
+        let substeps = one.substeps.map_or_else(|| "its own".into(), |count| format!("{count}{method}"));
         let about = [strong(one.scheme), text(track.scheme.description())];
         let cost = [number_as(one.cost_ratio, fixed(2)), text(substeps)];
         row(about.into_iter().chain(errors).chain(cost))
@@ -282,6 +284,7 @@ fn origin(result: &SimulationResult<'_>, figures: &SimulationSummary, replay: &s
         ("Scheme", format!("{}: {}", figures.scheme, result.scheme.description())),
         ("Scalar", figures.scalar.to_owned()),
         ("Rate", format!("{} Hz", figures.tick_rate_Hz)),
+        ("At contact changes", figures.substeps_in_words()),
         ("Torques", figures.torques.clone()),
         ("Start", format!("{}, carrier at {} rad/s", figures.start, PAGE.write(plan.speed))),
         ("Mesh frequency", format!("{} Hz", PAGE.write(plan.mesh_frequency()))),

@@ -12,6 +12,7 @@ use super::arguments::MotionArguments;
 use super::start::StartName;
 use super::stepping::SimulationSpec;
 use board::profile::{MAX_SPEED, MAX_TORQUE, TorqueProfile};
+use board::target::board::Board;
 use joint_file::named::Loaded;
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
@@ -24,7 +25,7 @@ const TICKS_A_PERIOD: f64 = 48.0;
 const DURATION: f64 = 1.0;
 const MESH_PERIODS: f64 = 600.0;
 /// Speed of the carrier under constant torques: a turn a second [rad/s].
-const SPEED: f64 = TAU;
+pub(crate) const SPEED: f64 = TAU;
 /// More ticks than this are a slip of the keyboard: at a microsecond each they take days.
 const MOST_TICKS: f64 = 2e10;
 
@@ -47,6 +48,8 @@ pub struct SimulationPlan {
     pub start_name: StartName,
     /// Carrier speed at the start [rad/s].
     pub speed: f64,
+    /// Board that the step is made for; none if it takes what accuracy asks for.
+    pub board: Option<String>,
 }
 
 impl SimulationPlan {
@@ -76,8 +79,7 @@ impl SimulationPlan {
                 (profile.commands, profile.ticks, format!("profile {}", profile.name))
             }
             None => {
-                let usual = frequency.map_or(DURATION, |frequency| MESH_PERIODS / frequency);
-                let ticks = count(duration.unwrap_or(usual), tick_rate)?;
+                let ticks = count(duration.unwrap_or_else(|| steady_duration(parameters)), tick_rate)?;
                 let drive = within("drive", motion.drive, MAX_TORQUE, "N m")?;
                 let load = within("load", motion.load, MAX_TORQUE, "N m")?;
                 let command = constant(&joint, drive, load);
@@ -107,10 +109,12 @@ impl SimulationPlan {
         let speed = within("speed", motion.speed, MAX_SPEED, "rad/s")?.unwrap_or(turning);
         let first = torques.first().map_or((0.0, 0.0), |first| (first.drive_torque.into(), first.load_torque.into()));
         let start = start_name.of(parameters, speed, first);
-        let effort = if motion.accurate { Effort::Accurate } else { Effort::Board };
+        let board = motion.board.clone().unwrap_or_else(Board::emulated);
+        let effort = if motion.accurate { Effort::Accurate } else { Effort::Within(board.processor()) };
+        let board = (!motion.accurate).then(|| board.name().to_owned());
         let JointFile { parameters: joint, warnings, .. } = joint;
         let run = SimulationSpec { joint, tick_rate, ticks, torques, start, double: motion.f64, effort };
-        Ok(Self { name, warnings, run, settle, torques_name, constant, start_name, speed })
+        Ok(Self { name, warnings, run, settle, torques_name, constant, start_name, speed, board })
     }
 
     /// The joint.
@@ -129,6 +133,14 @@ impl SimulationPlan {
             Excitation::Time { mesh_frequency } => mesh_frequency / TAU,
             Excitation::Angle => (self.speed / TAU * f64::from(self.parameters().geometry.ring_teeth)).abs(),
         }
+    }
+}
+
+/// Length of a run under constant torques, unless another is asked for [s].
+pub(crate) fn steady_duration(joint: &JointParameters) -> f64 {
+    match joint.excitation {
+        Excitation::Time { mesh_frequency } => MESH_PERIODS * TAU / mesh_frequency,
+        Excitation::Angle => DURATION,
     }
 }
 

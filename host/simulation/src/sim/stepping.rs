@@ -2,7 +2,7 @@
 
 use cpu_time::ThreadTime;
 use link::messages::Command;
-use model_core::gears::design::{DesignError, Effort, design_scheme};
+use model_core::gears::design::{DesignError, Effort, StepSize, Substeps, design_scheme};
 use model_core::gears::{Model, Scheme, Tables, Torques};
 use model_core::numbers::Real;
 use parameters::{DeadZone, JointParameters};
@@ -31,6 +31,21 @@ pub struct SimulationSpec {
     pub double: bool,
     /// How many sub-steps a tick may have.
     pub effort: Effort,
+}
+
+impl SimulationSpec {
+    /// Sub-steps of a tick in which contacts change, by a scheme of the core that has any: none of the reference, which chooses its
+    /// own steps, and none where the joint cannot be stepped.
+    pub fn substeps(&self, scheme: SchemeName) -> Option<Substeps> {
+        let step_size = StepSize::new(&self.joint);
+        match scheme {
+            SchemeName::Reference => None,
+            SchemeName::Realtime => step_size.substeps(self.tick_rate, self.effort).ok(),
+            SchemeName::Paper | SchemeName::RungeKutta4 | SchemeName::Euler => {
+                step_size.corrected_substeps(self.tick_rate, self.effort).ok().map(Substeps::Corrected)
+            }
+        }
+    }
 }
 
 /// A mesh that is deflected by more than this has left all teeth behind: the scheme has failed, finite or not [m].
@@ -88,17 +103,8 @@ pub fn simulate(
     })
 }
 
-/// What a scheme costs: processor time of its ticks alone, and sub-steps a tick (none stand for the reference's own).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Cost {
-    /// Processor seconds for a simulated second.
-    pub per_second: f64,
-    /// Sub-steps a tick.
-    pub substeps: Option<u32>,
-}
-
-/// Measures a scheme over some ticks of a run.
-pub fn cost(run: &SimulationSpec, scheme: SchemeName, ticks: u32) -> Outcome<Cost> {
+/// Measures a scheme over some ticks of a run: processor seconds for a simulated second, of its ticks alone.
+pub fn cost(run: &SimulationSpec, scheme: SchemeName, ticks: u32) -> Outcome<f64> {
     let ticks = ticks.clamp(1, run.ticks.max(1));
     with_scheme(run, scheme, |joint| {
         let mut torques = TorqueSchedule::new(&run.torques);
@@ -113,7 +119,7 @@ pub fn cost(run: &SimulationSpec, scheme: SchemeName, ticks: u32) -> Outcome<Cos
         let per_second = clock.elapsed().as_secs_f64() * f64::from(run.tick_rate) / f64::from(ticks);
         // The result must be wanted, or nothing is computed.
         std::hint::black_box(&joint);
-        Ok(Cost { per_second, substeps: joint.substeps() })
+        Ok(per_second)
     })
 }
 
@@ -154,8 +160,6 @@ trait SteppedJoint {
     fn read(&self, tick: u32) -> Option<Snapshot>;
     /// The tick after so many, under these torques [N m]; false if the scheme breaks off.
     fn step(&mut self, tick: u32, drive: f64, load: f64) -> Outcome<bool>;
-    /// Sub-steps a tick, if they are of one number.
-    fn substeps(&self) -> Option<u32>;
 }
 
 /// Does some work on a joint that a scheme moves, from the start of a run.
@@ -190,7 +194,7 @@ fn with_core<T: Real, const N: usize, R>(
     let tables = tables::<T, N>(run, scheme)?;
     let mut model = Model::new(&tables);
     model.set_state(core_state(&run.joint, &tables, &run.start));
-    work(&mut ByCore { reader: Reader::new(&run.joint, &tables), model, substeps: tables.substeps })
+    work(&mut ByCore { reader: Reader::new(&run.joint, &tables), model })
 }
 
 fn tables<T: Real, const N: usize>(run: &SimulationSpec, scheme: Scheme) -> Outcome<Tables<T, N>> {
@@ -209,7 +213,6 @@ fn tables<T: Real, const N: usize>(run: &SimulationSpec, scheme: Scheme) -> Outc
 struct ByCore<'a, T: Real, const N: usize> {
     reader: Reader<'a, T, N>,
     model: Model<'a, T, N>,
-    substeps: u32,
 }
 
 impl<T: Real, const N: usize> SteppedJoint for ByCore<'_, T, N> {
@@ -222,10 +225,6 @@ impl<T: Real, const N: usize> SteppedJoint for ByCore<'_, T, N> {
     fn step(&mut self, _: u32, drive: f64, load: f64) -> Outcome<bool> {
         self.model.step(Torques { drive: T::from_f64(drive), load: T::from_f64(load) });
         Ok(true)
-    }
-
-    fn substeps(&self) -> Option<u32> {
-        Some(self.substeps)
     }
 }
 
@@ -247,9 +246,5 @@ impl SteppedJoint for ByReference<'_> {
             Err(ReferenceError::Integration(_)) => Ok(false),
             Err(error) => Err(not_referable(&self.run.joint, &error)),
         }
-    }
-
-    fn substeps(&self) -> Option<u32> {
-        None
     }
 }

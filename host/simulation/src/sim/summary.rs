@@ -1,5 +1,6 @@
-//! The result of `joint sim` as data, as JSON in the schema `joint-sim/1`.
+//! The result of `joint sim` as data, as JSON in the schema `joint-sim/2`.
 
+use model_core::gears::design::Substeps;
 use serde::Serialize;
 
 use super::comparison::{Comparison, Row};
@@ -10,14 +11,14 @@ use super::statistics::MeshStatistics;
 use report::contacts::mesh_name;
 
 /// Says which fields there are; rises when one changes its meaning or goes.
-const SCHEMA: &str = "joint-sim/1";
+const SCHEMA: &str = "joint-sim/2";
 
 /// All figures of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "units are written as they are")]
 pub struct SimulationSummary {
-    /// `joint-sim/1`.
+    /// `joint-sim/2`.
     pub schema: &'static str,
     /// Path or preset.
     pub file: String,
@@ -29,6 +30,13 @@ pub struct SimulationSummary {
     pub scheme: &'static str,
     /// `f32` or `f64`.
     pub scalar: &'static str,
+    /// Board that the step is made for; absent where it takes what accuracy asks for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub board: Option<String>,
+    /// Method of the sub-steps of a tick in which contacts change: `corrected` or `leapfrog`; null for schemes that have no other.
+    pub method: Option<&'static str>,
+    /// How many of them; null for the reference, which chooses its own steps.
+    pub substeps: Option<u32>,
     /// [Hz].
     pub tick_rate_Hz: u32,
     /// Ticks done.
@@ -77,6 +85,7 @@ impl SimulationSummary {
     pub fn of(result: &SimulationResult<'_>, set: &[String]) -> Self {
         let (plan, spectrum) = (result.plan, result.spectrum.as_ref());
         let meshes = result.statistics.meshes();
+        let substeps = plan.run.substeps(result.scheme);
         let count = meshes.len();
         Self {
             schema: SCHEMA,
@@ -85,6 +94,9 @@ impl SimulationSummary {
             set: set.to_vec(),
             scheme: result.scheme.name(),
             scalar: if plan.run.double || result.scheme == SchemeName::Reference { "f64" } else { "f32" },
+            board: plan.board.clone(),
+            method: substeps.filter(|_| result.scheme == SchemeName::Realtime).map(Substeps::method),
+            substeps: substeps.map(Substeps::count),
             tick_rate_Hz: plan.run.tick_rate,
             ticks: result.ticks,
             of_ticks: plan.run.ticks,
@@ -111,6 +123,16 @@ impl SimulationSummary {
     pub fn separated_share(&self) -> f64 {
         let count = self.meshes.len().max(1) as f64;
         self.meshes.iter().map(|mesh| mesh.figures.separated_share).sum::<f64>() / count
+    }
+
+    /// The sub-steps in words, the same on every page.
+    pub fn substeps_in_words(&self) -> String {
+        let place = self.board.as_ref().map_or("as accuracy asks for".to_owned(), |board| format!("on {board}"));
+        match (self.substeps, self.method) {
+            (None, _) => "steps of its own".to_owned(),
+            (Some(count), None) => format!("{count} sub-steps, {place}"),
+            (Some(count), Some(method)) => format!("{count} {method} sub-steps, {place}"),
+        }
     }
 
     /// Greatest mesh force [N].

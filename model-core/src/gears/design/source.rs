@@ -50,9 +50,8 @@ fn source<const N: usize>(
 ) -> Result<String, DesignError> {
     let effort = Effort::Within(*processor);
     let tables: Tables<f32, N> = design_scheme(parameters, tick_rate, Scheme::Realtime, effort)?;
-    let certificate = certificate(parameters, tick_rate, effort, processor)?;
+    let certificate = certificate(parameters, tick_rate, effort)?;
     let name = &parameters.name;
-    let (holding, losing) = (certificate.contact_holds.nine_in_ten, certificate.contact_changes.nine_in_ten);
     let (most, bytes) = (certificate.instructions.all_crossing, certificate.table_bytes);
     Ok(format!(
         "use model_core::gears::certificate::{{Substeps::*, *}};\n\
@@ -61,8 +60,7 @@ fn source<const N: usize>(
          pub const PLANETS: usize = {N};\n\
          /// Name of the joint.\n\
          pub const JOINT_NAME: &str = {name:?};\n\
-         /// Certificate: error in nine motions of ten {holding:.1e} while contact holds and {losing:.1e} while it\n\
-         /// is lost; {most} instructions when every mesh crosses twice; {bytes} bytes of tables.\n\
+         /// Certificate: {most} instructions when every mesh crosses twice; {bytes} bytes of tables.\n\
          pub const CERTIFICATE: Certificate = {certificate:#?};\n\
          /// Tables of the joint.\n\
          pub static TABLES: Tables<f32, {N}> = {tables:#?};\n"

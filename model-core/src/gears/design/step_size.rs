@@ -180,11 +180,6 @@ impl StepSize {
         &self.cost
     }
 
-    /// Prescribed mesh frequency; zero in `angle` mode [rad/s].
-    pub(super) fn mesh_frequency(&self) -> f64 {
-        self.mesh_frequency
-    }
-
     /// Phase of the fastest mode in a sub-step [rad].
     pub fn phase(&self, tick_rate: u32, substeps: u32) -> f64 {
         self.fastest / (f64::from(tick_rate) * f64::from(substeps))

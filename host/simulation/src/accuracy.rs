@@ -1,0 +1,277 @@
+//! The error of a joint's step on a board at a rate: measured, by the step itself with the tables of that board and rate, on
+//! motions that are the same for every joint. What is right comes from the core in f64 in steps so fine that theirs is none;
+//! `joint sim --scheme all` measures the same against the independent reference.
+//!
+//! Error, here as in all of `sim` (`sim::errors`): root mean square over the motion's own standard deviation, of all mesh deflections
+//! together, of the gap coordinate and of the link's offset from the rigid body, for as long as torques that are wrong by a
+//! millionth move none of them by a thousandth of the motion.
+
+use std::f64::consts::TAU;
+
+use board::profile::{BUILTIN, TorqueProfile};
+use link::messages::Command;
+use model_core::gears::design::{DesignError, Effort, Processor, StepSize, design_scheme};
+use model_core::gears::{Kinematics, Mechanics, Model, Scheme, Torques};
+use model_core::numbers::Real;
+use parameters::{Excitation, JointParameters, MeshPhases};
+use rayon::prelude::*;
+use reference::joint::Start;
+use serde::Serialize;
+
+use crate::sim::errors::{DISTURBANCE, Errors, PREDICTABLE, errors, spread};
+use crate::sim::plan::{SPEED, steady_duration};
+use crate::sim::start::{StartName, core_state};
+use crate::sim::stepping::SimulationSpec;
+use report::failure::{Failure, Outcome};
+
+/// Phase of the fastest mode in a tick of the finer run [rad], and its least number of ticks to one of the board's. Its ticks
+/// have as many sub-steps as there can be.
+const FINE_PHASE: f64 = 2.0;
+const LEAST_FINER: u32 = 2;
+const FINE_SUBSTEPS: u32 = 16;
+/// Ticks of a motion at most, so that no joint takes minutes.
+const MOST_TICKS: f64 = 2e6;
+/// Other motions of the same kind: mesh phases shifted by part of a period, torques over those of the standard motion.
+const OTHERS: [(f64, f64); 2] = [(1.0 / 3.0, 0.8), (2.0 / 3.0, -0.6)];
+/// They are so long: reversals up to a quarter of a second behind the first crossing of the gap, and half a second under
+/// constant torques [s].
+const OTHERS_DURATIONS: [f64; 2] = [1.5, 0.5];
+/// The bound over the greatest error of all these motions: the spread of motions that are not among them.
+const MARGIN: f64 = 3.0;
+
+/// Errors on the standard motions.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct StandardErrors {
+    /// Reversals through the gap, as `joint hil` and `joint sim --profile reversals` run them.
+    pub reversals: MotionErrors,
+    /// A turn a second under the rated torque, as `joint sim` runs it where the file names no other torque.
+    pub steady: MotionErrors,
+}
+
+/// Errors on one motion.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct MotionErrors {
+    /// Measured on the motion itself; absent if the step breaks off or nothing can be predicted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub typical: Option<Errors>,
+    /// Above the errors of this motion and of others of its kind: other mesh phases, other torques.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bound: Option<Errors>,
+    /// Until when the motion can be predicted by anyone.
+    pub predictable_until_s: f64,
+    /// Its length.
+    pub duration_s: f64,
+}
+
+/// Which kind of motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Reversals through the gap.
+    Reversals,
+    /// Constant torques.
+    Steady,
+}
+
+/// A joint, and what it does at a board's rate.
+pub struct Motion {
+    joint: JointParameters,
+    rate: u32,
+    ticks: u32,
+    torques: Vec<Command>,
+    start: Start,
+}
+
+/// Errors of one run, until when it can be predicted, its length [s].
+struct Found {
+    errors: Option<Errors>,
+    predictable: f64,
+    duration: f64,
+}
+
+/// Measures a joint's step on a processor at a rate [Hz].
+pub fn measure(joint: &JointParameters, processor: &Processor, rate: u32) -> Outcome<StandardErrors> {
+    measure_up_to(joint, processor, rate, f64::INFINITY)
+}
+
+/// The same on motions that are cut off after a time [s].
+pub fn measure_up_to(
+    joint: &JointParameters,
+    processor: &Processor,
+    rate: u32,
+    longest: f64,
+) -> Outcome<StandardErrors> {
+    let of = |kind: Kind| of_kind(kind, joint, processor, rate, longest);
+    let (reversals, steady) = rayon::join(|| of(Kind::Reversals), || of(Kind::Steady));
+    Ok(StandardErrors { reversals: reversals?, steady: steady? })
+}
+
+/// The typical error of the reversals alone, which are cut off after a time [s].
+pub fn typical(joint: &JointParameters, processor: &Processor, rate: u32, longest: f64) -> Outcome<Option<Errors>> {
+    let motion = Motion::new(Kind::Reversals, joint, rate, (0.0, 1.0), longest)?;
+    Ok(motion.measured(processor)?.errors)
+}
+
+/// The standard motion of a kind and others of it.
+fn of_kind(
+    kind: Kind,
+    joint: &JointParameters,
+    processor: &Processor,
+    rate: u32,
+    longest: f64,
+) -> Outcome<MotionErrors> {
+    let mut motions = vec![Motion::new(kind, joint, rate, (0.0, 1.0), longest)?];
+    for other in OTHERS {
+        motions.push(Motion::new(kind, joint, rate, other, OTHERS_DURATIONS[kind as usize].min(longest))?);
+    }
+    let found: Vec<Outcome<Found>> = motions.par_iter().map(|motion| motion.measured(processor)).collect();
+    let found = found.into_iter().collect::<Outcome<Vec<Found>>>()?;
+    let standard = &found[0];
+    let greatest = found.iter().filter_map(|found| found.errors).reduce(Errors::greater);
+    Ok(MotionErrors {
+        typical: standard.errors,
+        bound: standard.errors.and(greatest).map(|greatest| greatest.times(MARGIN)),
+        predictable_until_s: standard.predictable,
+        duration_s: standard.duration,
+    })
+}
+
+/// A joint whose meshes are all part of a period further on.
+fn shifted(joint: &JointParameters, periods: f64) -> JointParameters {
+    let mut shifted = joint.clone();
+    for mesh in [&mut shifted.sun_planet, &mut shifted.ring_planet] {
+        match &mut mesh.phases {
+            MeshPhases::FromTeeth { stiffness, error } => {
+                [stiffness, error].into_iter().for_each(|phase| *phase += TAU * periods);
+            }
+            MeshPhases::Given { stiffness, error } => {
+                stiffness.iter_mut().chain(error).for_each(|phase| *phase += TAU * periods);
+            }
+        }
+    }
+    shifted
+}
+
+/// Deflections of every mesh, gap, link offset; a list each, by ticks of the board.
+type Columns = Vec<Vec<f64>>;
+
+impl Motion {
+    /// A motion of a kind on a joint at a rate [Hz], with mesh phases shifted by part of a period, torques over those of the standard
+    /// motion, and so long at most [s].
+    pub fn new(
+        kind: Kind,
+        joint: &JointParameters,
+        rate: u32,
+        (shift, scale): (f64, f64),
+        longest: f64,
+    ) -> Outcome<Self> {
+        let joint = shifted(joint, shift);
+        let ticks = |seconds: f64| (seconds.min(longest) * f64::from(rate)).round().clamp(1.0, MOST_TICKS) as u32;
+        if kind == Kind::Reversals {
+            let mut profile = TorqueProfile::load(BUILTIN[0], &joint, rate, None)?;
+            for command in &mut profile.commands {
+                command.drive_torque *= scale as f32;
+                command.load_torque *= scale as f32;
+            }
+            let ticks = ticks(f64::from(profile.ticks) / f64::from(rate));
+            return Ok(Self { joint, rate, ticks, torques: profile.commands, start: Start::Still });
+        }
+        let drive = scale * joint.rated_output_torque / joint.geometry.ratio_by_radii();
+        let load = joint.balanced_load_torque(drive);
+        let command = Command { tick: 0, drive_torque: drive as f32, load_torque: load as f32 };
+        let (start, speed) = match joint.excitation {
+            Excitation::Time { .. } => (StartName::Centred, 0.0),
+            Excitation::Angle => (StartName::Seated, SPEED),
+        };
+        let start = start.of(&joint, speed, (command.drive_torque.into(), command.load_torque.into()));
+        Ok(Self { rate, ticks: ticks(steady_duration(&joint)), torques: vec![command], start, joint })
+    }
+
+    /// What `sim` runs on this motion, with the step as it is on a processor.
+    pub fn for_sim(&self, processor: Processor) -> SimulationSpec {
+        SimulationSpec {
+            joint: self.joint.clone(),
+            tick_rate: self.rate,
+            ticks: self.ticks,
+            torques: self.torques.clone(),
+            start: self.start.clone(),
+            double: false,
+            effort: Effort::Within(processor),
+        }
+    }
+
+    fn measured(&self, processor: &Processor) -> Outcome<Found> {
+        match self.joint.geometry.planets {
+            1 => self.measured_with::<1>(processor),
+            3 => self.measured_with::<3>(processor),
+            4 => self.measured_with::<4>(processor),
+            5 => self.measured_with::<5>(processor),
+            other => Err(Failure::new(format!("joint `{}` has {other} planets", self.joint.name))
+                .with_help("a joint may have 3, 4 or 5 planets")),
+        }
+    }
+
+    fn measured_with<const N: usize>(&self, processor: &Processor) -> Outcome<Found> {
+        let phase = StepSize::new(&self.joint).phase(self.rate, 1);
+        let finer = ((phase / FINE_PHASE).ceil() as u32).max(LEAST_FINER);
+        let fine = Effort::Substeps(FINE_SUBSTEPS);
+        let exact = self.follow::<f64, N>(finer, fine, 0.0, |_, _| true)?;
+        let bounds: Vec<f64> = exact.iter().map(|column| PREDICTABLE * spread(column)).collect();
+        // Nothing beyond the moment when the disturbed run has left says anything.
+        let disturbed = self.follow::<f64, N>(finer, fine, DISTURBANCE, |tick, values| {
+            let near = |((exact, bound), value): ((&Vec<f64>, &f64), &f64)| {
+                exact.get(tick).is_some_and(|exact| (exact - value).abs() <= *bound)
+            };
+            exact.iter().zip(&bounds).zip(values).all(near)
+        })?;
+        let samples = disturbed[0].len();
+        let board = self.follow::<f32, N>(1, Effort::Within(*processor), 0.0, |tick, _| tick < samples)?;
+        let time = |samples: usize| samples.saturating_sub(1) as f64 / f64::from(self.rate);
+        Ok(Found {
+            errors: if samples > 1 { Errors::of(errors(&exact, &board, samples)) } else { None },
+            predictable: time(samples),
+            duration: time(self.ticks as usize + 1),
+        })
+    }
+
+    /// Steps the joint, so many ticks to one of the board's, for as long as its state is finite and `go_on` says so of the tick and
+    /// its values; those of the first tick of which it does not are left out.
+    fn follow<T: Real, const N: usize>(
+        &self,
+        finer: u32,
+        effort: Effort,
+        disturbance: f64,
+        go_on: impl Fn(usize, &[f64]) -> bool,
+    ) -> Outcome<Columns> {
+        let failed = |error: DesignError| {
+            Failure::new(format!("joint `{}` cannot be designed for {} Hz: {error}", self.joint.name, self.rate))
+        };
+        let tables = design_scheme::<T, N>(&self.joint, finer * self.rate, Scheme::Realtime, effort).map_err(failed)?;
+        let mut model = Model::new(&tables);
+        model.set_state(core_state(&self.joint, &tables, &self.start));
+        let mut columns = vec![Vec::new(); 2 * N + 2];
+        let mut values = Vec::with_capacity(columns.len());
+        let (mut commands, mut torques) = (self.torques.iter().peekable(), [0.0; 2]);
+        let mut factor = 1.0 + disturbance;
+        for tick in 0..=self.ticks {
+            let outputs = model.outputs();
+            values.clear();
+            values.extend(outputs.deflections.as_flattened().iter().map(|value| value.to_f64()));
+            values.extend([outputs.gap.to_f64(), outputs.link_offset.to_f64()]);
+            if !model.is_finite() || !go_on(tick as usize, &values) {
+                break;
+            }
+            columns.iter_mut().zip(&values).for_each(|(column, value)| column.push(*value));
+            while let Some(command) = commands.next_if(|command| command.tick <= tick) {
+                torques = [command.drive_torque.into(), command.load_torque.into()];
+            }
+            let [drive, load] = torques.map(|torque: f64| T::from_f64(factor * torque));
+            for _ in 0..finer {
+                model.step(Torques { drive, load });
+            }
+            factor = 2.0 - factor;
+        }
+        Ok(columns)
+    }
+}

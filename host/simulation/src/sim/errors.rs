@@ -1,0 +1,81 @@
+//! The error of a motion that was computed twice: root mean square over the motion's own standard deviation, of all mesh
+//! deflections together, of the gap coordinate and of the link's offset from the rigid body, for as long as the motion can be
+//! predicted. `joint sim --scheme all`, `joint check` and `joint budget` mean this by error.
+
+use serde::Serialize;
+
+/// A second reference gets torques that are wrong by this much, up and down in turn.
+pub const DISTURBANCE: f64 = 1e-6;
+/// Once that moves any compared quantity by more than this part of its standard deviation, the motion is chaotic: what
+/// comes later says nothing about a scheme any more.
+pub const PREDICTABLE: f64 = 1e-3;
+
+/// Root mean square errors over the motion's own standard deviation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Errors {
+    /// All mesh deflections together.
+    pub deflections: f64,
+    /// Gap coordinate.
+    pub gap: f64,
+    /// Link angle less that of the rigid body.
+    pub link: f64,
+}
+
+impl Errors {
+    /// Of deflections, gap and link; none if one is none.
+    pub fn of(values: [Option<f64>; 3]) -> Option<Self> {
+        let [deflections, gap, link] = values;
+        Some(Self { deflections: deflections?, gap: gap?, link: link? })
+    }
+
+    /// The greater of two, one by one.
+    pub fn greater(self, other: Self) -> Self {
+        Self {
+            deflections: self.deflections.max(other.deflections),
+            gap: self.gap.max(other.gap),
+            link: self.link.max(other.link),
+        }
+    }
+
+    /// All of them so many times.
+    pub fn times(self, factor: f64) -> Self {
+        Self { deflections: factor * self.deflections, gap: factor * self.gap, link: factor * self.link }
+    }
+
+    /// The greatest of the three.
+    pub fn greatest(&self) -> f64 {
+        self.deflections.max(self.gap).max(self.link)
+    }
+}
+
+/// How many samples come before the disturbed reference has left the exact one.
+pub fn predictable(exact: &[Vec<f64>], disturbed: &[Vec<f64>]) -> usize {
+    let count = exact[0].len().min(disturbed[0].len());
+    let left = |exact: &[f64], disturbed: &[f64]| {
+        let bound = PREDICTABLE * spread(&exact[..count]);
+        exact.iter().zip(disturbed).take(count).position(|(a, b)| (a - b).abs() > bound).unwrap_or(count)
+    };
+    exact.iter().zip(disturbed).map(|(exact, disturbed)| left(exact, disturbed)).min().unwrap_or(0)
+}
+
+/// Errors of a scheme over the predictable samples that it has; none where nothing moves or nothing was reached.
+pub fn errors(exact: &[Vec<f64>], columns: &[Vec<f64>], predictable: usize) -> [Option<f64>; 3] {
+    let meshes = exact.len() - 2;
+    let relative = |place: usize| {
+        let count = predictable.min(columns[place].len());
+        let exact = &exact[place][..count];
+        let square: f64 = exact.iter().zip(&columns[place]).map(|(a, b)| (a - b).powi(2)).sum();
+        let error = (square / count as f64).sqrt() / spread(exact);
+        (count == predictable && error.is_finite()).then_some(error)
+    };
+    let deflections: Option<Vec<f64>> = (0..meshes).map(relative).collect();
+    let together = deflections.map(|all| (all.iter().map(|e| e * e).sum::<f64>() / meshes as f64).sqrt());
+    [together, relative(meshes), relative(meshes + 1)]
+}
+
+/// Standard deviation.
+pub fn spread(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
+}

@@ -6,12 +6,11 @@ use core::array;
 
 use crate::gears::contact::{AppliedAcceleration, Laws, NetForces};
 use crate::gears::crossing::StepEnd;
-use crate::gears::excitation::{MeshExcitation, MeshPhase, PhaseHarmonics};
+use crate::gears::excitation::{MeshExcitation, MeshPhase, PhaseHarmonics, Phasor};
 use crate::gears::fixed_contact_set::{FixedContactSet, MeshState, Start};
 use crate::gears::planets::each_planet;
-use crate::gears::runge_kutta::Motion;
 use crate::gears::stages::{Point, SubstepState};
-use crate::gears::state::Relative;
+use crate::gears::state::{Motion, Relative};
 use crate::gears::tables::{Block, Inputs, Transition};
 use crate::numbers::Real;
 
@@ -45,8 +44,7 @@ pub fn tick<T: Real, const N: usize, const K: usize, const OVERTONES: usize>(
     let (value, rate) = fixed.pseudo_force_at_start(phase, start, state);
     let modes = Modes::<T, N, K>::of(tables.planet_share, motion);
     let torques = [applied.sun, applied.carrier, applied.link];
-    let node =
-        |part: T| PhaseHarmonics::new(phase.start.turned(&phase.over(part)), phase.rate, tables.excitation.harmonics);
+    let node = |part: T| PhaseHarmonics::new(phase.at(part), phase.rate, tables.excitation.harmonics);
 
     let [first, second] = &flow.early_inputs;
     let positions = modes.positions(&flow.early, &torques).with([(first, &value), (second, &rate)]);
@@ -75,7 +73,7 @@ pub fn corrected<T: Real, const N: usize, const OVERTONES: usize>(
 ) -> Motion<T, N> {
     let tables = fixed.tables;
     let rate = tables.substep * phase.rate;
-    let harmonics_now = PhaseHarmonics::new(phase.start.turned(&phase.over(T::ONE)), rate, tables.excitation.harmonics);
+    let harmonics_now = PhaseHarmonics::new(phase.at(T::ONE), rate, tables.excitation.harmonics);
     let mut state = SubstepState::of(motion, tables.substep);
     let wind_up = fixed.wind_up_force(state.wind_up.point());
     let mut violations = [[T::ZERO; N]; 2];
@@ -105,7 +103,8 @@ impl<T: Real, const N: usize, const OVERTONES: usize> FixedContactSet<'_, T, N, 
         let tables = self.tables;
         let rate = tables.substep * phase.rate;
         let square = rate * rate;
-        let harmonics_now = PhaseHarmonics::<T, OVERTONES>::new(phase.start, rate, tables.excitation.harmonics);
+        let harmonics_now =
+            PhaseHarmonics::<T, OVERTONES>::new(Phasor::at(phase.start), rate, tables.excitation.harmonics);
         let mesh = |(kind, i): (usize, usize), at: Point<T>| {
             let (spring, damping) = (tables.springs[kind].stiffness, tables.stage.damping[kind]);
             let MeshState { overlap, speed, stiffness, error, force } = start.meshes[kind][i];

@@ -12,8 +12,7 @@
 use core::array;
 
 use crate::gears::contact::AppliedAcceleration;
-use crate::gears::runge_kutta::Motion;
-use crate::gears::state::Relative;
+use crate::gears::state::{Motion, Relative};
 use crate::gears::tables::Mobility;
 use crate::numbers::Real;
 

@@ -54,6 +54,15 @@ impl<T: Real, const N: usize> Relative<T, N> {
     }
 }
 
+/// Position and rate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motion<T, const N: usize> {
+    /// Relative coordinates.
+    pub position: Relative<T, N>,
+    /// Their rates.
+    pub rate: Relative<T, N>,
+}
+
 /// The decoupled rigid motion, as carrier angle. Whole numbers: it neither drifts nor loses digits over any number of
 /// turns, and wraps exactly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -146,10 +155,10 @@ impl<T: Real, const N: usize> State<T, N> {
         (self.position.planets, self.rate.planets) = ([T::HALF * position; N], [T::HALF * rate; N]);
     }
 
-    /// Brings every number into its canonical form, so that the next tick does not depend on the floating-point mode.
-    #[inline]
-    pub(super) fn canonicalise(&mut self) {
-        (self.position, self.rate) = (self.position.canonical(), self.rate.canonical());
+    /// Takes a motion in its canonical form, so that the next tick does not depend on the floating-point mode.
+    #[inline(always)]
+    pub(super) fn set_motion(&mut self, motion: &Motion<T, N>) {
+        (self.position, self.rate) = (motion.position.canonical(), motion.rate.canonical());
     }
 
     /// Neither infinite nor NaN anywhere.

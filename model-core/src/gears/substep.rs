@@ -4,7 +4,7 @@
 
 use crate::gears::contact::{Laws, NetForces};
 use crate::gears::crossing::StepEnd;
-use crate::gears::excitation::{MeshPhase, PerMesh, PhaseHarmonics};
+use crate::gears::excitation::{MeshPhase, PerMesh, PhaseHarmonics, Phasor};
 use crate::gears::fixed_contact_set::{FixedContactSet, Start};
 use crate::gears::stages::SubstepState;
 use crate::numbers::Real;
@@ -21,7 +21,7 @@ pub fn advance<T: Real, const N: usize, const OVERTONES: usize>(
     let compliant = tables.mobility.wind_up > T::ZERO;
     let half = phase.over(tables.half_substep_share);
     let rate = tables.substep * phase.rate;
-    let mut phasor = phase.start;
+    let mut phasor = Phasor::at(phase.start);
     let mut violations: PerMesh<T, N> = [[T::ZERO; N]; 2];
     for _ in 0..tables.substeps {
         phasor = phasor.turned(&half);
@@ -70,7 +70,7 @@ pub fn begin<T: Real, const N: usize, const OVERTONES: usize>(
     state: &mut SubstepState<T, N>,
 ) {
     let tables = fixed.tables;
-    let phasor = phase.start.turned(&phase.over(tables.half_substep_share));
+    let phasor = phase.at(tables.half_substep_share);
     let middle = PhaseHarmonics::new(phasor, tables.substep * phase.rate, tables.excitation.harmonics);
     let wind_up = fixed.wind_up_force(state.wind_up.point());
     let now =

@@ -3,11 +3,11 @@
 //! several has to evaluate its start. Joints with light planets are stepped by `light`.
 
 use crate::gears::contact::AppliedAcceleration;
-use crate::gears::excitation::{MeshPhase, PhaseHarmonics};
+use crate::gears::excitation::{MeshPhase, PhaseHarmonics, Phasor};
 use crate::gears::fixed_contact_set::{FixedContactSet, Start};
 use crate::gears::flow::{self, ExponentialTick};
-use crate::gears::runge_kutta::Motion;
 use crate::gears::stages::SubstepState;
+use crate::gears::state::Motion;
 use crate::gears::substep;
 use crate::gears::tables::Tables;
 use crate::numbers::Real;
@@ -58,7 +58,7 @@ impl<T: Real, const N: usize> WarmStart<T, N> {
         } else {
             self.valid = false;
             let rate = tables.substep * phase.rate;
-            fixed.start(&PhaseHarmonics::new(phase.start, rate, tables.excitation.harmonics), state, start);
+            fixed.start(&PhaseHarmonics::new(Phasor::at(phase.start), rate, tables.excitation.harmonics), state, start);
             let held = if tables.mobility.wind_up > T::ZERO {
                 flow::tick::<T, N, 3, OVERTONES>(&fixed, applied, phase, start, state, motion)
             } else {

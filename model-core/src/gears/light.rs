@@ -70,7 +70,7 @@ fn verlet<T: Real, const N: usize, const CONTACT_LAW: bool>(
     }
     let substep = Substep {
         tables,
-        stiffness: *stiffness,
+        stiffness,
         sun: verlet.square * applied.sun,
         carrier: verlet.square * applied.carrier,
         link: verlet.square * applied.link,
@@ -166,7 +166,7 @@ fn verlet<T: Real, const N: usize, const CONTACT_LAW: bool>(
 /// What does not change over the sub-steps of a tick.
 struct Substep<'a, T: Real, const N: usize> {
     tables: &'a Tables<T, N>,
-    stiffness: PerMesh<T, N>,
+    stiffness: &'a PerMesh<T, N>,
     /// What the torques alone change of a travel in a sub-step.
     sun: T,
     carrier: T,

@@ -37,6 +37,14 @@ impl<T: Real, const N: usize> Relative<T, N> {
         }
     }
 
+    /// Whether its canonical form is known to be itself. The wind-up is zero in joints without compliance.
+    #[inline(always)]
+    fn is_ordinary(&self) -> bool {
+        self.gap.is_ordinary()
+            && (self.wind_up.is_ordinary() || self.wind_up == T::ZERO)
+            && self.planets.iter().all(|planet| planet.is_ordinary())
+    }
+
     /// The canonical form of every number, which no floating-point mode changes: none so small that it may be flushed to
     /// zero, and one NaN for all that is not finite.
     #[inline]
@@ -158,7 +166,15 @@ impl<T: Real, const N: usize> State<T, N> {
     /// Takes a motion in its canonical form, so that the next tick does not depend on the floating-point mode.
     #[inline(always)]
     pub(super) fn set_motion(&mut self, motion: &Motion<T, N>) {
-        (self.position, self.rate) = (motion.position.canonical(), motion.rate.canonical());
+        (self.position, self.rate) = (motion.position, motion.rate);
+        if !(motion.position.is_ordinary() && motion.rate.is_ordinary()) {
+            self.canonicalise();
+        }
+    }
+
+    #[inline(never)]
+    fn canonicalise(&mut self) {
+        (self.position, self.rate) = (self.position.canonical(), self.rate.canonical());
     }
 
     /// Neither infinite nor NaN anywhere.

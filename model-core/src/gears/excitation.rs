@@ -103,7 +103,8 @@ pub struct PhaseHarmonics<T, const OVERTONES: usize> {
     pub phasor: Phasor<T>,
     /// Their rates.
     pub rates: Phasor<T>,
-    rate: T,
+    /// Rate of the phase.
+    pub rate: T,
     /// Phasors of the higher harmonics, as many as the joint has.
     multiples: [Phasor<T>; OVERTONES],
 }

@@ -6,8 +6,8 @@ use core::array;
 
 use crate::gears::contact::{AppliedAcceleration, Laws, NetForces};
 use crate::gears::crossing::StepEnd;
-use crate::gears::excitation::{MeshExcitation, MeshPhase, PhaseHarmonics, Phasor};
-use crate::gears::fixed_contact_set::{FixedContactSet, MeshState, Start};
+use crate::gears::excitation::{MeshExcitation, MeshPhase, PhaseHarmonics};
+use crate::gears::fixed_contact_set::{FixedContactSet, MeshState};
 use crate::gears::planets::each_planet;
 use crate::gears::stages::{Point, SubstepState};
 use crate::gears::state::{Motion, Relative};
@@ -15,66 +15,122 @@ use crate::gears::tables::{Block, Inputs, Transition};
 use crate::numbers::Real;
 
 /// The outcome of a tick with the contact set of its start.
-pub enum ExponentialTick<T, const N: usize> {
-    /// The set held.
-    Held(Motion<T, N>),
-    /// A mesh opened after the first node: a crossing to correct at the end of the tick, so that its work is not lost.
-    OpenedLate(Motion<T, N>),
-    /// The set does not hold up to the first node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ExponentialTick {
+    /// The set held, and the motion is moved.
+    Held,
+    /// The motion is moved, but a mesh opened after the first node: a crossing to correct at the end of the tick, so that its
+    /// work is not lost.
+    OpenedLate,
+    /// The set does not hold up to the first node; nothing is moved.
     Refused,
 }
 
-/// One tick with the contact set of its start. `K` is the number of in-phase coordinates: 3 with compliance, 2 without.
+/// The start of a tick under given laws.
+pub struct Start<T, const N: usize> {
+    /// Mesh forces.
+    pub forces: NetForces<T, N>,
+    /// Pseudo-force, the part of the mesh forces that the linear flow of the closed joint leaves out, k_mean x + c x' - F.
+    value: PseudoForce<T, N>,
+    /// Its rate for each sub-step.
+    rate: PseudoForce<T, N>,
+    /// Every mesh is closed, with too much overlap for its speed to open it before the middle of the tick.
+    pub firmly_closed: bool,
+    /// Positive if a mesh is no longer under its law.
+    pub violation: T,
+}
+
+/// Everything that a tick asks of its start, in one pass over the meshes.
+#[inline(never)]
+pub fn start<T: Real, const N: usize, const OVERTONES: usize>(
+    fixed: &FixedContactSet<T, N, OVERTONES>,
+    harmonics_now: &PhaseHarmonics<T, OVERTONES>,
+    laws: &Laws<T, N>,
+    state: &SubstepState<T, N>,
+) -> Start<T, N> {
+    let tables = fixed.tables;
+    let reach = tables.flow.reach * tables.stage.rate;
+    let square = harmonics_now.rate * harmonics_now.rate;
+    let (mut violation, mut least_room) = (T::ZERO, T::ONE);
+    let mut mesh = |(kind, i): (usize, usize), at: Point<T>| {
+        let (spring, damping) = (tables.springs[kind].stiffness, tables.stage.damping[kind]);
+        let law = &laws[kind][i];
+        let state = fixed.mesh(law, (kind, i), harmonics_now, at);
+        violation += fixed.violation(law, (kind, i), &state);
+        let MeshState { overlap, speed, stiffness, error, force } = state;
+        let room = law.side * overlap - reach * speed.abs();
+        least_room = if room < least_room { room } else { least_room };
+        let stiffness_rate = tables.meshes[kind][i].stiffness_rate(harmonics_now, tables.excitation.harmonics);
+        // e'' = -rate^2 e.
+        let rate = spring * at.rate - stiffness * speed - stiffness_rate * overlap - damping * (square * error);
+        (force, spring * at.position + damping * at.rate - force, rate)
+    };
+    let (mut forces, mut value, mut rate) = (NetForces::NONE, NetForces::NONE, NetForces::NONE);
+    each_planet!(N, i => {
+        let sun = state.planets[i].point();
+        let ring = mesh((1, i), state.gap.point().minus(sun));
+        let sun = mesh((0, i), sun);
+        forces.add(i, sun.0, ring.0);
+        value.add(i, sun.1, ring.1);
+        rate.add(i, sun.2, ring.2);
+    });
+    Start {
+        forces,
+        value: PseudoForce::of(tables.planet_share, &value),
+        rate: PseudoForce::of(tables.planet_share, &rate),
+        firmly_closed: least_room > T::ZERO,
+        violation,
+    }
+}
+
+/// One tick with the contact set of its start, in place. `K` is the number of in-phase coordinates: 3 with compliance, 2
+/// without.
 #[inline(never)]
 pub fn tick<T: Real, const N: usize, const K: usize, const OVERTONES: usize>(
     fixed: &FixedContactSet<T, N, OVERTONES>,
     applied: &AppliedAcceleration<T>,
     phase: &MeshPhase<T>,
+    laws: &Laws<T, N>,
     start: &Start<T, N>,
-    state: &SubstepState<T, N>,
-    motion: &Motion<T, N>,
-) -> ExponentialTick<T, N> {
+    motion: &mut Motion<T, N>,
+) -> ExponentialTick {
     let tables = fixed.tables;
     let flow = &tables.flow;
-    let slow = phase.advance < flow.longest_advance && -phase.advance < flow.longest_advance;
-    if !slow || !start.firmly_closed {
-        return ExponentialTick::Refused;
-    }
-    let laws = &start.laws;
-    let (value, rate) = fixed.pseudo_force_at_start(phase, start, state);
+    let Start { value, rate, .. } = start;
     let modes = Modes::<T, N, K>::of(tables.planet_share, motion);
     let torques = [applied.sun, applied.carrier, applied.link];
     let node = |part: T| PhaseHarmonics::new(phase.at(part), phase.rate, tables.excitation.harmonics);
 
     let [first, second] = &flow.early_inputs;
-    let positions = modes.positions(&flow.early, &torques).with([(first, &value), (second, &rate)]);
+    let positions = modes.positions(&flow.early, &torques).with([(first, value), (second, rate)]);
     let (early, violation) = fixed.pseudo_force(laws, &node(flow.nodes[0]), &positions);
     if violation > T::ZERO {
         return ExponentialTick::Refused;
     }
 
     let [first, second, third] = &flow.late_inputs;
-    let positions = modes.positions(&flow.late, &torques).with([(first, &value), (second, &rate), (third, &early)]);
+    let positions = modes.positions(&flow.late, &torques).with([(first, value), (second, rate), (third, &early)]);
     let (late, violation) = fixed.pseudo_force(laws, &node(flow.nodes[1]), &positions);
 
     let [first, second, third, fourth] = &flow.whole_inputs;
-    let forces = [(first, &value), (second, &rate), (third, &early), (fourth, &late)];
-    let last = modes.flow(&flow.whole, &torques).with(forces).motion();
-    if violation > T::ZERO { ExponentialTick::OpenedLate(last) } else { ExponentialTick::Held(last) }
+    let forces = [(first, value), (second, rate), (third, &early), (fourth, &late)];
+    *motion = modes.flow(&flow.whole, &torques).with(forces).motion();
+    if violation > T::ZERO { ExponentialTick::OpenedLate } else { ExponentialTick::Held }
 }
 
-/// The end of a tick in whose second half meshes have opened.
+/// Corrects the end of a tick in whose second half meshes have opened, and leaves its accelerations.
 #[inline(never)]
-pub fn corrected<T: Real, const N: usize, const OVERTONES: usize>(
+pub fn correct<T: Real, const N: usize, const OVERTONES: usize>(
     fixed: &FixedContactSet<T, N, OVERTONES>,
     laws: &mut Laws<T, N>,
     phase: &MeshPhase<T>,
-    motion: &Motion<T, N>,
-) -> Motion<T, N> {
+    state: &mut SubstepState<T, N>,
+    motion: &mut Motion<T, N>,
+) {
     let tables = fixed.tables;
     let rate = tables.substep * phase.rate;
     let harmonics_now = PhaseHarmonics::new(phase.at(T::ONE), rate, tables.excitation.harmonics);
-    let mut state = SubstepState::of(motion, tables.substep);
+    state.set_motion(motion, tables.substep);
     let wind_up = fixed.wind_up_force(state.wind_up.point());
     let mut violations = [[T::ZERO; N]; 2];
     let last = fixed.accelerations(
@@ -85,48 +141,12 @@ pub fn corrected<T: Real, const N: usize, const OVERTONES: usize>(
         |i| state.planets[i].point(),
         |(kind, i), mesh| violations[kind][i] = fixed.violation(&laws[kind][i], (kind, i), mesh),
     );
-    state.for_each(&last, |coordinate, last| coordinate.now = last);
-    StepEnd { fixed, rate, harmonics_now: &harmonics_now, violations: &violations }.correct(laws, &mut state);
-    state.motion(tables.substep, tables.stage.rate, motion)
+    state.for_each(&last, |coordinate, last| (coordinate.now, coordinate.before) = (last, last));
+    StepEnd { fixed, rate, harmonics_now: &harmonics_now, violations: &violations }.correct(laws, state);
+    state.move_to(tables.substep, tables.stage.rate, motion);
 }
 
 impl<T: Real, const N: usize, const OVERTONES: usize> FixedContactSet<'_, T, N, OVERTONES> {
-    /// Pseudo-force at the start of a tick, the part of the mesh forces that the linear flow of the closed joint leaves out,
-    /// k_mean x + c x' - F, and its rate for each sub-step.
-    #[inline]
-    fn pseudo_force_at_start(
-        &self,
-        phase: &MeshPhase<T>,
-        start: &Start<T, N>,
-        state: &SubstepState<T, N>,
-    ) -> (PseudoForce<T, N>, PseudoForce<T, N>) {
-        let tables = self.tables;
-        let rate = tables.substep * phase.rate;
-        let square = rate * rate;
-        let harmonics_now =
-            PhaseHarmonics::<T, OVERTONES>::new(Phasor::at(phase.start), rate, tables.excitation.harmonics);
-        let mesh = |(kind, i): (usize, usize), at: Point<T>| {
-            let (spring, damping) = (tables.springs[kind].stiffness, tables.stage.damping[kind]);
-            let MeshState { overlap, speed, stiffness, error, force } = start.meshes[kind][i];
-            let harmonics = tables.excitation.harmonics;
-            let stiffness_rate = tables.meshes[kind][i].stiffness_rate(&harmonics_now, harmonics);
-            // e'' = -rate^2 e.
-            (
-                spring * at.position + damping * at.rate - force,
-                spring * at.rate - stiffness * speed - stiffness_rate * overlap - damping * (square * error),
-            )
-        };
-        let (mut value, mut change) = (NetForces::NONE, NetForces::NONE);
-        each_planet!(N, i => {
-            let sun = state.planets[i].point();
-            let ring = mesh((1, i), state.gap.point().minus(sun));
-            let sun = mesh((0, i), sun);
-            value.add(i, sun.0, ring.0);
-            change.add(i, sun.1, ring.1);
-        });
-        (PseudoForce::of(tables.planet_share, &value), PseudoForce::of(tables.planet_share, &change))
-    }
-
     /// Pseudo-force of closed meshes within the tick: offset, imposed error, ripple; and a positive violation if a mesh has
     /// left its flank.
     #[inline(never)]

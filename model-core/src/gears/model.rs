@@ -143,9 +143,9 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
             }
             Scheme::Realtime if tables.verlet.substeps > 0 => light::tick(tables, &applied, &phase, &mut motion),
             Scheme::Realtime if tables.excitation.harmonics > 1 => {
-                motion = self.warm_start.tick::<MAX_OVERTONES>(tables, &applied, &phase, &motion)
+                self.warm_start.tick::<MAX_OVERTONES>(tables, &applied, &phase, &mut motion)
             }
-            Scheme::Realtime => motion = self.warm_start.tick::<0>(tables, &applied, &phase, &motion),
+            Scheme::Realtime => self.warm_start.tick::<0>(tables, &applied, &phase, &mut motion),
         };
         self.state.set_motion(&motion);
     }

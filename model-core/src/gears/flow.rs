@@ -7,7 +7,7 @@ use core::array;
 use crate::gears::contact::{AppliedAcceleration, Laws, NetForces};
 use crate::gears::crossing::StepEnd;
 use crate::gears::excitation::{MeshExcitation, MeshPhase, PhaseHarmonics};
-use crate::gears::fixed_contact_set::{FixedContactSet, MeshState};
+use crate::gears::fixed_contact_set::FixedContactSet;
 use crate::gears::planets::each_planet;
 use crate::gears::stages::{Point, SubstepState};
 use crate::gears::state::{Motion, Relative};
@@ -26,61 +26,56 @@ pub enum ExponentialTick {
     Refused,
 }
 
-/// The start of a tick under given laws.
+/// Pseudo-force at the start of a tick: the part of the mesh forces that the linear flow of the closed joint leaves out,
+/// k_mean x + c x' - F.
 pub struct Start<T, const N: usize> {
-    /// Mesh forces.
-    pub forces: NetForces<T, N>,
-    /// Pseudo-force, the part of the mesh forces that the linear flow of the closed joint leaves out, k_mean x + c x' - F.
     value: PseudoForce<T, N>,
     /// Its rate for each sub-step.
     rate: PseudoForce<T, N>,
-    /// Every mesh is closed, with too much overlap for its speed to open it before the middle of the tick.
-    pub firmly_closed: bool,
-    /// Positive if a mesh is no longer under its law.
-    pub violation: T,
 }
 
-/// Everything that a tick asks of its start, in one pass over the meshes.
+/// The start of a tick in which every mesh is closed; none unless each has so much overlap that its speed cannot open it
+/// before the middle of the tick.
 #[inline(never)]
 pub fn start<T: Real, const N: usize, const OVERTONES: usize>(
     fixed: &FixedContactSet<T, N, OVERTONES>,
     harmonics_now: &PhaseHarmonics<T, OVERTONES>,
     laws: &Laws<T, N>,
     state: &SubstepState<T, N>,
-) -> Start<T, N> {
+) -> Option<Start<T, N>> {
     let tables = fixed.tables;
     let reach = tables.flow.reach * tables.stage.rate;
     let square = harmonics_now.rate * harmonics_now.rate;
-    let (mut violation, mut least_room) = (T::ZERO, T::ONE);
+    let rates = &harmonics_now.rates;
+    let mut least_room = T::ONE;
     let mut mesh = |(kind, i): (usize, usize), at: Point<T>| {
         let (spring, damping) = (tables.springs[kind].stiffness, tables.stage.damping[kind]);
         let law = &laws[kind][i];
-        let state = fixed.mesh(law, (kind, i), harmonics_now, at);
-        violation += fixed.violation(law, (kind, i), &state);
-        let MeshState { overlap, speed, stiffness, error, force } = state;
+        let MeshExcitation { stiffness, error, .. } = fixed.wave((kind, i), harmonics_now);
+        let stiffness_rate = tables.meshes[kind][i].stiffness_rate(harmonics_now, tables.excitation.harmonics);
+        let error_rate = tables.meshes[kind][i].error_at(rates);
+        let overlap = at.position - law.offset - error;
+        let speed = at.rate - error_rate;
         let room = law.side * overlap - reach * speed.abs();
         least_room = if room < least_room { room } else { least_room };
-        let stiffness_rate = tables.meshes[kind][i].stiffness_rate(harmonics_now, tables.excitation.harmonics);
         // e'' = -rate^2 e.
-        let rate = spring * at.rate - stiffness * speed - stiffness_rate * overlap - damping * (square * error);
-        (force, spring * at.position + damping * at.rate - force, rate)
+        (
+            spring * at.position - stiffness * overlap + damping * error_rate,
+            spring * at.rate - stiffness * speed - stiffness_rate * overlap - damping * (square * error),
+        )
     };
-    let (mut forces, mut value, mut rate) = (NetForces::NONE, NetForces::NONE, NetForces::NONE);
+    let (mut value, mut rate) = (NetForces::NONE, NetForces::NONE);
     each_planet!(N, i => {
         let sun = state.planets[i].point();
         let ring = mesh((1, i), state.gap.point().minus(sun));
         let sun = mesh((0, i), sun);
-        forces.add(i, sun.0, ring.0);
-        value.add(i, sun.1, ring.1);
-        rate.add(i, sun.2, ring.2);
+        value.add(i, sun.0, ring.0);
+        rate.add(i, sun.1, ring.1);
     });
-    Start {
-        forces,
+    (least_room > T::ZERO).then(|| Start {
         value: PseudoForce::of(tables.planet_share, &value),
         rate: PseudoForce::of(tables.planet_share, &rate),
-        firmly_closed: least_room > T::ZERO,
-        violation,
-    }
+    })
 }
 
 /// One tick with the contact set of its start, in place. `K` is the number of in-phase coordinates: 3 with compliance, 2
@@ -96,7 +91,7 @@ pub fn tick<T: Real, const N: usize, const K: usize, const OVERTONES: usize>(
 ) -> ExponentialTick {
     let tables = fixed.tables;
     let flow = &tables.flow;
-    let Start { value, rate, .. } = start;
+    let Start { value, rate } = start;
     let modes = Modes::<T, N, K>::of(tables.planet_share, motion);
     let torques = [applied.sun, applied.carrier, applied.link];
     let node = |part: T| PhaseHarmonics::new(phase.at(part), phase.rate, tables.excitation.harmonics);

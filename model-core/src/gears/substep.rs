@@ -2,7 +2,7 @@
 //! side is smooth, and the sub-step is corrected for every crossing that its end reveals. The tanh dead zone has no contact
 //! set: see `full_forces`.
 
-use crate::gears::contact::{Laws, NetForces};
+use crate::gears::contact::Laws;
 use crate::gears::crossing::StepEnd;
 use crate::gears::excitation::{MeshPhase, PerMesh, PhaseHarmonics, Phasor};
 use crate::gears::fixed_contact_set::FixedContactSet;
@@ -63,13 +63,15 @@ pub fn advance<T: Real, const N: usize, const OVERTONES: usize>(
 
 /// The accelerations at the start of a tick. Those of half a sub-step before are taken for the same: the jerk, which they are
 /// for, is left out of the first sub-step, whose error stays of fourth order.
-#[inline(always)]
+#[inline(never)]
 pub fn begin<T: Real, const N: usize, const OVERTONES: usize>(
     fixed: &FixedContactSet<T, N, OVERTONES>,
-    forces: &NetForces<T, N>,
+    harmonics_now: &PhaseHarmonics<T, OVERTONES>,
+    laws: &Laws<T, N>,
     state: &mut SubstepState<T, N>,
 ) {
     let wind_up = fixed.wind_up_force(state.wind_up.point());
-    let now = forces.accelerations(&fixed.tables.stage.mobility, &fixed.applied, wind_up);
+    let gap = state.gap.point();
+    let now = fixed.accelerations(laws, harmonics_now, gap, wind_up, |i| state.planets[i].point(), |_, _| {});
     state.for_each(&now, |coordinate, now| (coordinate.now, coordinate.before) = (now, now));
 }

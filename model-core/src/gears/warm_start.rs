@@ -77,8 +77,9 @@ impl<T: Real, const N: usize> WarmStart<T, N> {
             if *known == Known::Nothing {
                 fixed.find_laws(&harmonics_now, state, laws);
             }
-            let start = flow::start(&fixed, &harmonics_now, laws, state);
-            if slow && start.firmly_closed {
+            let start =
+                if slow && !fixed.is_open(laws) { flow::start(&fixed, &harmonics_now, laws, state) } else { None };
+            if let Some(start) = start {
                 let held = if tables.mobility.wind_up > T::ZERO {
                     flow::tick::<T, N, 3, OVERTONES>(&fixed, applied, phase, laws, &start, motion)
                 } else {
@@ -100,10 +101,10 @@ impl<T: Real, const N: usize> WarmStart<T, N> {
             if *known == Known::Accelerations {
                 state.shift_accelerations(&fixed.applied.minus(&self.applied), &stage.mobility);
             } else {
-                if start.violation > T::ZERO {
+                if *known == Known::Laws {
                     fixed.find_laws(&harmonics_now, state, laws);
                 }
-                substep::begin(&fixed, &start.forces, state);
+                substep::begin(&fixed, &harmonics_now, laws, state);
             }
         }
         substep::advance(&fixed, phase, laws, state);

@@ -5,7 +5,6 @@
 use core::array;
 
 use crate::gears::contact::{AppliedAcceleration, Laws, NetForces};
-use crate::gears::crossing::StepEnd;
 use crate::gears::excitation::{MeshExcitation, MeshPhase, PhaseHarmonics};
 use crate::gears::fixed_contact_set::FixedContactSet;
 use crate::gears::planets::each_planet;
@@ -13,18 +12,6 @@ use crate::gears::stages::{Point, SubstepState};
 use crate::gears::state::{Motion, Relative};
 use crate::gears::tables::{Block, Inputs, Transition};
 use crate::numbers::Real;
-
-/// The outcome of a tick with the contact set of its start.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum ExponentialTick {
-    /// The set held, and the motion is moved.
-    Held,
-    /// The motion is moved, but a mesh opened after the first node: a crossing to correct at the end of the tick, so that its
-    /// work is not lost.
-    OpenedLate,
-    /// The set does not hold up to the first node; nothing is moved.
-    Refused,
-}
 
 /// Pseudo-force at the start of a tick: the part of the mesh forces that the linear flow of the closed joint leaves out,
 /// k_mean x + c x' - F.
@@ -78,7 +65,7 @@ pub fn start<T: Real, const N: usize, const OVERTONES: usize>(
     })
 }
 
-/// One tick with the contact set of its start, in place. `K` is the number of in-phase coordinates: 3 with compliance, 2
+/// One tick with the contact set of its start, in place; nothing is moved, and false is said, if a mesh leaves its flank. `K` is the number of in-phase coordinates: 3 with compliance, 2
 /// without.
 #[inline(never)]
 pub fn tick<T: Real, const N: usize, const K: usize, const OVERTONES: usize>(
@@ -88,7 +75,7 @@ pub fn tick<T: Real, const N: usize, const K: usize, const OVERTONES: usize>(
     laws: &Laws<T, N>,
     start: &Start<T, N>,
     motion: &mut Motion<T, N>,
-) -> ExponentialTick {
+) -> bool {
     let tables = fixed.tables;
     let flow = &tables.flow;
     let Start { value, rate } = start;
@@ -100,45 +87,21 @@ pub fn tick<T: Real, const N: usize, const K: usize, const OVERTONES: usize>(
     let positions = modes.positions(&flow.early, &torques).with([(first, value), (second, rate)]);
     let (early, violation) = fixed.pseudo_force(laws, &node(flow.nodes[0]), &positions);
     if violation > T::ZERO {
-        return ExponentialTick::Refused;
+        return false;
     }
 
     let [first, second, third] = &flow.late_inputs;
     let positions = modes.positions(&flow.late, &torques).with([(first, value), (second, rate), (third, &early)]);
     let (late, violation) = fixed.pseudo_force(laws, &node(flow.nodes[1]), &positions);
 
+    if violation > T::ZERO {
+        return false;
+    }
+
     let [first, second, third, fourth] = &flow.whole_inputs;
     let forces = [(first, value), (second, rate), (third, &early), (fourth, &late)];
     *motion = modes.flow(&flow.whole, &torques).with(forces).motion();
-    if violation > T::ZERO { ExponentialTick::OpenedLate } else { ExponentialTick::Held }
-}
-
-/// Corrects the end of a tick in whose second half meshes have opened, and leaves its accelerations.
-#[inline(never)]
-pub fn correct<T: Real, const N: usize, const OVERTONES: usize>(
-    fixed: &FixedContactSet<T, N, OVERTONES>,
-    laws: &mut Laws<T, N>,
-    phase: &MeshPhase<T>,
-    state: &mut SubstepState<T, N>,
-    motion: &mut Motion<T, N>,
-) {
-    let tables = fixed.tables;
-    let rate = tables.substep * phase.rate;
-    let harmonics_now = PhaseHarmonics::new(phase.at(T::ONE), rate, tables.excitation.harmonics);
-    state.set_motion(motion, tables.substep);
-    let wind_up = fixed.wind_up_force(state.wind_up.point());
-    let mut violations = [[T::ZERO; N]; 2];
-    let last = fixed.accelerations(
-        laws,
-        &harmonics_now,
-        state.gap.point(),
-        wind_up,
-        |i| state.planets[i].point(),
-        |(kind, i), mesh| violations[kind][i] = fixed.violation(&laws[kind][i], (kind, i), mesh),
-    );
-    state.for_each(&last, |coordinate, last| (coordinate.now, coordinate.before) = (last, last));
-    StepEnd { fixed, rate, harmonics_now: &harmonics_now, violations: &violations }.correct(laws, state);
-    state.move_to(tables.substep, tables.stage.rate, motion);
+    true
 }
 
 impl<T: Real, const N: usize, const OVERTONES: usize> FixedContactSet<'_, T, N, OVERTONES> {

@@ -5,7 +5,7 @@
 use crate::gears::contact::{AppliedAcceleration, Law, Laws};
 use crate::gears::excitation::{MeshPhase, PhaseHarmonics, Phasor};
 use crate::gears::fixed_contact_set::FixedContactSet;
-use crate::gears::flow::{self, ExponentialTick};
+use crate::gears::flow;
 use crate::gears::stages::SubstepState;
 use crate::gears::state::Motion;
 use crate::gears::substep;
@@ -85,17 +85,9 @@ impl<T: Real, const N: usize> WarmStart<T, N> {
                 } else {
                     flow::tick::<T, N, 2, OVERTONES>(&fixed, applied, phase, laws, &start, motion)
                 };
-                match held {
-                    ExponentialTick::Held => {
-                        *known = Known::Laws;
-                        return;
-                    }
-                    ExponentialTick::OpenedLate => {
-                        flow::correct(&fixed, laws, phase, state, motion);
-                        (self.applied, *known) = (fixed.applied, Known::Accelerations);
-                        return;
-                    }
-                    ExponentialTick::Refused => {}
+                if held {
+                    *known = Known::Laws;
+                    return;
                 }
             }
             if *known == Known::Accelerations {

@@ -9,7 +9,7 @@ use crate::gears::excitation::{MeshExcitation, MeshPhase, PhaseHarmonics};
 use crate::gears::fixed_contact_set::FixedContactSet;
 use crate::gears::planets::each_planet;
 use crate::gears::stages::{Point, SubstepState};
-use crate::gears::state::{Motion, Relative};
+use crate::gears::state::{MotionInPlace, Relative};
 use crate::gears::tables::{Block, Inputs, Transition};
 use crate::numbers::Real;
 
@@ -74,7 +74,7 @@ pub fn tick<T: Real, const N: usize, const K: usize, const OVERTONES: usize>(
     phase: &MeshPhase<T>,
     laws: &Laws<T, N>,
     start: &Start<T, N>,
-    motion: &mut Motion<T, N>,
+    motion: &mut MotionInPlace<T, N>,
 ) -> bool {
     let tables = fixed.tables;
     let flow = &tables.flow;
@@ -100,7 +100,7 @@ pub fn tick<T: Real, const N: usize, const K: usize, const OVERTONES: usize>(
 
     let [first, second, third, fourth] = &flow.whole_inputs;
     let forces = [(first, value), (second, rate), (third, &early), (fourth, &late)];
-    *motion = modes.flow(&flow.whole, &torques).with(forces).motion();
+    modes.flow(&flow.whole, &torques).with(forces).move_to(motion);
     true
 }
 
@@ -174,13 +174,13 @@ struct Modes<T, const N: usize, const K: usize> {
 
 impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
     #[inline]
-    fn of(share: T, motion: &Motion<T, N>) -> Self {
-        let means = [&motion.position, &motion.rate].map(|part| share * total(&part.planets));
+    fn of(share: T, motion: &MotionInPlace<T, N>) -> Self {
+        let means = [&*motion.position, &*motion.rate].map(|part| share * total(&part.planets));
         let part = |half: usize, part: &Relative<T, N>| {
             let all = [means[half], part.gap, part.wind_up];
             array::from_fn(|k| all[k])
         };
-        let (position, rate) = (&motion.position, &motion.rate);
+        let (position, rate) = (&*motion.position, &*motion.rate);
         Self {
             in_phase: [part(0, position), part(1, rate)],
             deviations: array::from_fn(|i| [position.planets[i] - means[0], rate.planets[i] - means[1]]),
@@ -257,16 +257,15 @@ impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
     }
 
     #[inline]
-    fn motion(&self) -> Motion<T, N> {
-        let part = |half: usize| {
+    fn move_to(&self, motion: &mut MotionInPlace<T, N>) {
+        for (half, part) in [(0, &mut *motion.position), (1, &mut *motion.rate)] {
             let in_phase = &self.in_phase[half];
-            Relative {
-                planets: array::from_fn(|i| in_phase[0] + self.deviations[i][half]),
-                gap: in_phase[1],
-                wind_up: if K > 2 { in_phase[K - 1] } else { T::ZERO },
-            }
-        };
-        Motion { position: part(0), rate: part(1) }
+            each_planet!(N, i => {
+                part.planets[i] = in_phase[0] + self.deviations[i][half];
+            });
+            part.gap = in_phase[1];
+            part.wind_up = if K > 2 { in_phase[K - 1] } else { T::ZERO };
+        }
     }
 }
 

@@ -13,7 +13,7 @@ use core::hint::black_box;
 use crate::gears::contact::AppliedAcceleration;
 use crate::gears::excitation::{MeshPhase, PerMesh, Phasor, stiffnesses};
 use crate::gears::linear_contact;
-use crate::gears::state::Motion;
+use crate::gears::state::MotionInPlace;
 use crate::gears::tables::Tables;
 use crate::numbers::Real;
 use parameters::DampingLaw;
@@ -24,16 +24,16 @@ pub fn tick<T: Real, const N: usize>(
     tables: &Tables<T, N>,
     applied: &AppliedAcceleration<T>,
     phase: &MeshPhase<T>,
-    motion: &mut Motion<T, N>,
+    mut motion: MotionInPlace<T, N>,
 ) {
     let middle = phase.at(T::HALF);
     let stiffness = stiffnesses(tables, &middle);
-    if linear_contact::tick(tables, applied, phase, &middle, &stiffness, motion) {
+    if linear_contact::tick(tables, applied, phase, &middle, &stiffness, &mut motion) {
         return;
     }
     match tables.damping_law {
-        DampingLaw::Contact => verlet::<T, N, true>(tables, applied, &middle, phase.rate, &stiffness, motion),
-        DampingLaw::Paper => verlet::<T, N, false>(tables, applied, &middle, phase.rate, &stiffness, motion),
+        DampingLaw::Contact => verlet::<T, N, true>(tables, applied, &middle, phase.rate, &stiffness, &mut motion),
+        DampingLaw::Paper => verlet::<T, N, false>(tables, applied, &middle, phase.rate, &stiffness, &mut motion),
     }
 }
 
@@ -47,7 +47,7 @@ fn verlet<T: Real, const N: usize, const CONTACT_LAW: bool>(
     middle: &Phasor<T>,
     phase_rate: T,
     stiffness: &PerMesh<T, N>,
-    motion: &mut Motion<T, N>,
+    motion: &mut MotionInPlace<T, N>,
 ) {
     let verlet = &tables.verlet;
     let h = verlet.substep;

@@ -7,7 +7,7 @@ use nalgebra::SVector;
 
 use crate::gears::contact::AppliedAcceleration;
 use crate::gears::excitation::{MeshPhase, PerMesh, Phasor};
-use crate::gears::state::Motion;
+use crate::gears::state::MotionInPlace;
 use crate::gears::tables::Tables;
 use crate::numbers::Real;
 
@@ -19,10 +19,10 @@ pub fn tick<T: Real, const N: usize>(
     phase: &MeshPhase<T>,
     middle: &Phasor<T>,
     stiffness: &PerMesh<T, N>,
-    motion: &mut Motion<T, N>,
+    motion: &mut MotionInPlace<T, N>,
 ) -> bool {
     let flow = &tables.flow;
-    let Motion { position, rate } = &*motion;
+    let (position, rate) = (&*motion.position, &*motion.rate);
     if phase.advance > flow.longest_advance || -phase.advance > flow.longest_advance {
         return false;
     }

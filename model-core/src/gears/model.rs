@@ -133,21 +133,32 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
         let phase = MeshPhase { start, advance, rate: tables.excitation.rate * advance };
         self.state.phase = self.state.phase.wrapping_add(tables.excitation.phase_step);
 
-        let mut motion = Motion { position: self.state.position, rate: self.state.rate };
+        let Self { state, warm_start, .. } = self;
         match tables.scheme {
-            Scheme::PaperEtd1 => motion = paper::step(tables, &applied, &phase, &motion),
-            Scheme::RungeKutta4 => motion = full_forces::runge_kutta(tables, &applied, &phase, &motion),
-            Scheme::SemiImplicitEuler => motion = full_forces::semi_implicit_euler(tables, &applied, &phase, &motion),
-            Scheme::Realtime if tables.sharpness > T::ZERO => {
-                motion = full_forces::runge_kutta(tables, &applied, &phase, &motion)
+            Scheme::Realtime if tables.sharpness == T::ZERO => {
+                if tables.verlet.substeps > 0 {
+                    light::tick(tables, &applied, &phase, state.motion());
+                } else if tables.excitation.harmonics > 1 {
+                    warm_start.tick::<MAX_OVERTONES>(tables, &applied, &phase, state.motion());
+                } else {
+                    warm_start.tick::<0>(tables, &applied, &phase, state.motion());
+                }
             }
-            Scheme::Realtime if tables.verlet.substeps > 0 => light::tick(tables, &applied, &phase, &mut motion),
-            Scheme::Realtime if tables.excitation.harmonics > 1 => {
-                self.warm_start.tick::<MAX_OVERTONES>(tables, &applied, &phase, &mut motion)
+            scheme => {
+                let before = Motion { position: state.position, rate: state.rate };
+                let after = match scheme {
+                    Scheme::PaperEtd1 => paper::step(tables, &applied, &phase, &before),
+                    Scheme::SemiImplicitEuler => full_forces::semi_implicit_euler(tables, &applied, &phase, &before),
+                    Scheme::Realtime | Scheme::RungeKutta4 => {
+                        full_forces::runge_kutta(tables, &applied, &phase, &before)
+                    }
+                };
+                (state.position, state.rate) = (after.position, after.rate);
             }
-            Scheme::Realtime => self.warm_start.tick::<0>(tables, &applied, &phase, &mut motion),
-        };
-        self.state.set_motion(&motion);
+        }
+        if state.canonicalise() {
+            warm_start.invalidate();
+        }
     }
 
     /// The motion now, in SI.

@@ -10,7 +10,7 @@
 //! A_1 is taken at x_1 and the rate V + 6 A_m of the midpoint rule, and serves the next sub-step as A_0.
 
 use crate::gears::contact::AppliedAcceleration;
-use crate::gears::state::{Motion, Relative};
+use crate::gears::state::{MotionInPlace, Relative};
 use crate::gears::tables::Mobility;
 use crate::numbers::Real;
 
@@ -100,10 +100,9 @@ impl<T: Real, const N: usize> SubstepState<T, N> {
 
     /// Takes position and rate from a motion; accelerations are left as they are.
     #[inline(always)]
-    pub fn set_motion(&mut self, motion: &Motion<T, N>, length: T) {
-        let Motion { position, rate } = motion;
-        self.for_each(position, |coordinate, position| coordinate.position = position);
-        self.for_each(rate, |coordinate, rate| coordinate.rate = length * rate);
+    pub fn set_motion(&mut self, motion: &MotionInPlace<T, N>, length: T) {
+        self.for_each(motion.position, |coordinate, position| coordinate.position = position);
+        self.for_each(motion.rate, |coordinate, rate| coordinate.rate = length * rate);
     }
 
     /// Shifts both accelerations as if the torques had always been larger by so much.
@@ -115,20 +114,15 @@ impl<T: Real, const N: usize> SubstepState<T, N> {
         });
     }
 
-    /// Moves a motion to where this is, from sub-steps at a rate. Rates are taken over as their change, so that what no force
-    /// has changed keeps its bits.
+    /// Moves a motion to where this is, from sub-steps at a rate.
     #[inline(always)]
-    pub fn move_to(&self, length: T, per_length: T, motion: &mut Motion<T, N>) {
-        let Motion { position, rate } = motion;
-        let take = |coordinate: &Coordinate<T>, position: &mut T, rate: &mut T| {
-            *position = coordinate.position;
-            *rate += per_length * (coordinate.rate - length * *rate);
-        };
+    pub fn move_to(&self, per_length: T, motion: MotionInPlace<T, N>) {
+        let MotionInPlace { position, rate } = motion;
         for i in 0..N {
-            take(&self.planets[i], &mut position.planets[i], &mut rate.planets[i]);
+            (position.planets[i], rate.planets[i]) = (self.planets[i].position, per_length * self.planets[i].rate);
         }
-        take(&self.gap, &mut position.gap, &mut rate.gap);
-        take(&self.wind_up, &mut position.wind_up, &mut rate.wind_up);
+        (position.gap, rate.gap) = (self.gap.position, per_length * self.gap.rate);
+        (position.wind_up, rate.wind_up) = (self.wind_up.position, per_length * self.wind_up.rate);
     }
 
     /// Calls `act` for every coordinate with the value that belongs to it.

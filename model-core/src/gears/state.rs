@@ -71,6 +71,15 @@ pub struct Motion<T, const N: usize> {
     pub rate: Relative<T, N>,
 }
 
+/// Position and rate where a state keeps them: what moves a motion in place.
+#[derive(Debug)]
+pub struct MotionInPlace<'a, T, const N: usize> {
+    /// Relative coordinates.
+    pub position: &'a mut Relative<T, N>,
+    /// Their rates.
+    pub rate: &'a mut Relative<T, N>,
+}
+
 /// The decoupled rigid motion, as carrier angle. Whole numbers: it neither drifts nor loses digits over any number of
 /// turns, and wraps exactly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -163,18 +172,24 @@ impl<T: Real, const N: usize> State<T, N> {
         (self.position.planets, self.rate.planets) = ([T::HALF * position; N], [T::HALF * rate; N]);
     }
 
-    /// Takes a motion in its canonical form, so that the next tick does not depend on the floating-point mode.
+    /// Position and rate apart from the rest.
     #[inline(always)]
-    pub(super) fn set_motion(&mut self, motion: &Motion<T, N>) {
-        (self.position, self.rate) = (motion.position, motion.rate);
-        if !(motion.position.is_ordinary() && motion.rate.is_ordinary()) {
-            self.canonicalise();
-        }
+    pub(super) fn motion(&mut self) -> MotionInPlace<'_, T, N> {
+        MotionInPlace { position: &mut self.position, rate: &mut self.rate }
+    }
+
+    /// Brings every number into its canonical form, so that the next tick does not depend on the floating-point mode; says
+    /// whether any has changed.
+    #[inline(always)]
+    pub(super) fn canonicalise(&mut self) -> bool {
+        !(self.position.is_ordinary() && self.rate.is_ordinary()) && self.canonicalise_each()
     }
 
     #[inline(never)]
-    fn canonicalise(&mut self) {
+    fn canonicalise_each(&mut self) -> bool {
+        let before = (self.position, self.rate);
         (self.position, self.rate) = (self.position.canonical(), self.rate.canonical());
+        before != (self.position, self.rate)
     }
 
     /// Neither infinite nor NaN anywhere.

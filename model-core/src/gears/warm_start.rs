@@ -7,7 +7,7 @@ use crate::gears::excitation::{MeshPhase, PhaseHarmonics, Phasor};
 use crate::gears::fixed_contact_set::FixedContactSet;
 use crate::gears::flow;
 use crate::gears::stages::SubstepState;
-use crate::gears::state::Motion;
+use crate::gears::state::MotionInPlace;
 use crate::gears::substep;
 use crate::gears::tables::Tables;
 use crate::numbers::Real;
@@ -56,7 +56,7 @@ impl<T: Real, const N: usize> WarmStart<T, N> {
         tables: &Tables<T, N>,
         applied: &AppliedAcceleration<T>,
         phase: &MeshPhase<T>,
-        motion: &mut Motion<T, N>,
+        mut motion: MotionInPlace<T, N>,
     ) {
         let stage = &tables.stage;
         let contact_law = if tables.damping_law == DampingLaw::Contact { T::ONE } else { T::ZERO };
@@ -67,11 +67,13 @@ impl<T: Real, const N: usize> WarmStart<T, N> {
             paper_law: T::ONE - contact_law,
         };
         let Self { laws, state, known, .. } = self;
-        state.set_motion(motion, tables.substep);
         let slow = phase.advance.abs() < tables.flow.longest_advance;
         if *known == Known::Accelerations && (!slow || fixed.is_open(laws)) {
             state.shift_accelerations(&fixed.applied.minus(&self.applied), &stage.mobility);
         } else {
+            if *known != Known::Accelerations {
+                state.set_motion(&motion, tables.substep);
+            }
             let rate = tables.substep * phase.rate;
             let harmonics_now = PhaseHarmonics::new(Phasor::at(phase.start), rate, tables.excitation.harmonics);
             if *known == Known::Nothing {
@@ -81,9 +83,9 @@ impl<T: Real, const N: usize> WarmStart<T, N> {
                 if slow && !fixed.is_open(laws) { flow::start(&fixed, &harmonics_now, laws, state) } else { None };
             if let Some(start) = start {
                 let held = if tables.mobility.wind_up > T::ZERO {
-                    flow::tick::<T, N, 3, OVERTONES>(&fixed, applied, phase, laws, &start, motion)
+                    flow::tick::<T, N, 3, OVERTONES>(&fixed, applied, phase, laws, &start, &mut motion)
                 } else {
-                    flow::tick::<T, N, 2, OVERTONES>(&fixed, applied, phase, laws, &start, motion)
+                    flow::tick::<T, N, 2, OVERTONES>(&fixed, applied, phase, laws, &start, &mut motion)
                 };
                 if held {
                     *known = Known::Laws;
@@ -101,6 +103,6 @@ impl<T: Real, const N: usize> WarmStart<T, N> {
         }
         substep::advance(&fixed, phase, laws, state);
         (self.applied, *known) = (fixed.applied, Known::Accelerations);
-        state.move_to(tables.substep, stage.rate, motion);
+        state.move_to(stage.rate, motion);
     }
 }

@@ -26,8 +26,9 @@ const REACH: f64 = 4.0;
 /// least (searched over the unit square on a joint that rings: about half the error that nodes at 1/2 and 1 leave).
 const NODES: [f64; 2] = [0.4, 0.9];
 
-/// Tables of the flow over `step` (dimensionless), which the sub-stepped path would take in `substeps`.
-pub fn flow<T: Real>(dynamics: &Dynamics, step: f64, substeps: u32) -> Flow<T> {
+/// Tables of the flow over `step` (dimensionless), which the sub-stepped path would take in `substeps`; `whole_ticks` says whether ticks
+/// are taken as a whole at all.
+pub fn flow<T: Real>(dynamics: &Dynamics, step: f64, substeps: u32, whole_ticks: bool) -> Flow<T> {
     let sorting = Sorting::new(dynamics);
     let [first, second] = NODES;
     let whole = sorting.integrate(step, 4);
@@ -66,7 +67,7 @@ pub fn flow<T: Real>(dynamics: &Dynamics, step: f64, substeps: u32) -> Flow<T> {
         step: T::from_f64(step),
         // Beyond the longest relaxation a mesh also pushes under the law `contact`.
         reach: T::from_f64((REACH * step).max(dynamics.longest_relaxation)),
-        longest_advance: T::from_f64(LARGEST_ADVANCE * 4_294_967_296.0),
+        longest_advance: T::from_f64(if whole_ticks { LARGEST_ADVANCE * 4_294_967_296.0 } else { 0.0 }),
     }
 }
 

@@ -65,7 +65,8 @@ pub fn design_scheme<T: Real, const N: usize>(
     let real = T::from_f64;
     let step_size = StepSize::new(parameters);
     let substeps = step_size.corrected_substeps(tick_rate, effort)?;
-    let verlet_substeps = match step_size.substeps(tick_rate, effort)? {
+    let chosen = step_size.substeps(tick_rate, effort)?;
+    let verlet_substeps = match chosen {
         Substeps::Verlet(substeps) => substeps,
         Substeps::Corrected(_) => 0,
     };
@@ -103,7 +104,7 @@ pub fn design_scheme<T: Real, const N: usize>(
             mobility: mobility(&dynamics, substep * substep / 6.0, 1.0 / substep),
             damping: MESH_KINDS.map(|kind| real(scales.damping(parameters.damping_coefficient(kind)) / substep)),
         },
-        flow: flow_tables::flow(&dynamics, flow_step, substeps),
+        flow: flow_tables::flow(&dynamics, flow_step, substeps, step_size.cost().takes_whole_ticks(chosen)),
         verlet: verlet_tables::verlet(parameters, &mobility(&dynamics, 1.0, 1.0), tick, verlet_substeps),
     };
     tables.digest = tables.numbers_digest();

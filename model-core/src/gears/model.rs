@@ -156,9 +156,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
                 (state.position, state.rate) = (after.position, after.rate);
             }
         }
-        if state.canonicalise() {
-            warm_start.invalidate();
-        }
+        state.canonicalise();
     }
 
     /// The motion now, in SI.

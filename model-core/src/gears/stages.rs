@@ -102,7 +102,13 @@ impl<T: Real, const N: usize> SubstepState<T, N> {
     #[inline(always)]
     pub fn set_motion(&mut self, motion: &MotionInPlace<T, N>, length: T) {
         self.for_each(motion.position, |coordinate, position| coordinate.position = position);
-        self.for_each(motion.rate, |coordinate, rate| coordinate.rate = length * rate);
+        self.set_rates(motion.rate, length);
+    }
+
+    /// Takes the rates alone: positions are those of the last sub-step.
+    #[inline(always)]
+    pub fn set_rates(&mut self, rates: &Relative<T, N>, length: T) {
+        self.for_each(rates, |coordinate, rate| coordinate.rate = length * rate);
     }
 
     /// Shifts both accelerations as if the torques had always been larger by so much.
@@ -114,15 +120,20 @@ impl<T: Real, const N: usize> SubstepState<T, N> {
         });
     }
 
-    /// Moves a motion to where this is, from sub-steps at a rate.
+    /// Moves a motion to where this is, from sub-steps of a length, which are `per_length` in a unit of time. Rates are taken over as
+    /// their change, so that what no force has changed keeps its bits.
     #[inline(always)]
-    pub fn move_to(&self, per_length: T, motion: MotionInPlace<T, N>) {
+    pub fn move_to(&self, length: T, per_length: T, motion: MotionInPlace<T, N>) {
         let MotionInPlace { position, rate } = motion;
+        let take = |coordinate: &Coordinate<T>, position: &mut T, rate: &mut T| {
+            *position = coordinate.position;
+            *rate += per_length * (coordinate.rate - length * *rate);
+        };
         for i in 0..N {
-            (position.planets[i], rate.planets[i]) = (self.planets[i].position, per_length * self.planets[i].rate);
+            take(&self.planets[i], &mut position.planets[i], &mut rate.planets[i]);
         }
-        (position.gap, rate.gap) = (self.gap.position, per_length * self.gap.rate);
-        (position.wind_up, rate.wind_up) = (self.wind_up.position, per_length * self.wind_up.rate);
+        take(&self.gap, &mut position.gap, &mut rate.gap);
+        take(&self.wind_up, &mut position.wind_up, &mut rate.wind_up);
     }
 
     /// Calls `act` for every coordinate with the value that belongs to it.

@@ -41,7 +41,7 @@ impl<T: Real, const N: usize> Relative<T, N> {
     #[inline(always)]
     fn is_ordinary(&self) -> bool {
         self.gap.is_ordinary()
-            && (self.wind_up.is_ordinary() || self.wind_up == T::ZERO)
+            && (self.wind_up.is_ordinary() || self.wind_up.bits() == 0)
             && self.planets.iter().all(|planet| planet.is_ordinary())
     }
 
@@ -178,18 +178,17 @@ impl<T: Real, const N: usize> State<T, N> {
         MotionInPlace { position: &mut self.position, rate: &mut self.rate }
     }
 
-    /// Brings every number into its canonical form, so that the next tick does not depend on the floating-point mode; says
-    /// whether any has changed.
+    /// Brings every number into its canonical form, so that the next tick does not depend on the floating-point mode.
     #[inline(always)]
-    pub(super) fn canonicalise(&mut self) -> bool {
-        !(self.position.is_ordinary() && self.rate.is_ordinary()) && self.canonicalise_each()
+    pub(super) fn canonicalise(&mut self) {
+        if !(self.position.is_ordinary() && self.rate.is_ordinary()) {
+            self.canonicalise_each();
+        }
     }
 
     #[inline(never)]
-    fn canonicalise_each(&mut self) -> bool {
-        let before = (self.position, self.rate);
+    fn canonicalise_each(&mut self) {
         (self.position, self.rate) = (self.position.canonical(), self.rate.canonical());
-        before != (self.position, self.rate)
     }
 
     /// Neither infinite nor NaN anywhere.

@@ -9,7 +9,7 @@ use crate::gears::flow;
 use crate::gears::stages::SubstepState;
 use crate::gears::state::MotionInPlace;
 use crate::gears::substep;
-use crate::gears::tables::Tables;
+use crate::gears::tables::{Mobility, Tables};
 use crate::numbers::Real;
 use parameters::DampingLaw;
 
@@ -67,13 +67,15 @@ impl<T: Real, const N: usize> WarmStart<T, N> {
             paper_law: T::ONE - contact_law,
         };
         let Self { laws, state, known, .. } = self;
+        if *known == Known::Accelerations {
+            state.set_rates(motion.rate, tables.substep);
+        } else {
+            state.set_motion(&motion, tables.substep);
+        }
         let slow = phase.advance.abs() < tables.flow.longest_advance;
         if *known == Known::Accelerations && (!slow || fixed.is_open(laws)) {
-            state.shift_accelerations(&fixed.applied.minus(&self.applied), &stage.mobility);
+            shift(state, &fixed.applied.minus(&self.applied), &stage.mobility);
         } else {
-            if *known != Known::Accelerations {
-                state.set_motion(&motion, tables.substep);
-            }
             let rate = tables.substep * phase.rate;
             let harmonics_now = PhaseHarmonics::new(Phasor::at(phase.start), rate, tables.excitation.harmonics);
             if *known == Known::Nothing {
@@ -93,7 +95,7 @@ impl<T: Real, const N: usize> WarmStart<T, N> {
                 }
             }
             if *known == Known::Accelerations {
-                state.shift_accelerations(&fixed.applied.minus(&self.applied), &stage.mobility);
+                shift(state, &fixed.applied.minus(&self.applied), &stage.mobility);
             } else {
                 if *known == Known::Laws {
                     fixed.find_laws(&harmonics_now, state, laws);
@@ -103,6 +105,18 @@ impl<T: Real, const N: usize> WarmStart<T, N> {
         }
         substep::advance(&fixed, phase, laws, state);
         (self.applied, *known) = (fixed.applied, Known::Accelerations);
-        state.move_to(stage.rate, motion);
+        state.move_to(tables.substep, stage.rate, motion);
+    }
+}
+
+/// Puts accelerations under other torques. Controllers are often slower than ticks: then most changes are none.
+#[inline(always)]
+fn shift<T: Real, const N: usize>(
+    state: &mut SubstepState<T, N>,
+    change: &AppliedAcceleration<T>,
+    mobility: &Mobility<T>,
+) {
+    if *change != AppliedAcceleration::NONE {
+        state.shift_accelerations(change, mobility);
     }
 }

@@ -61,17 +61,24 @@ pub fn advance<T: Real, const N: usize, const OVERTONES: usize>(
     }
 }
 
-/// The accelerations at the start of a tick. Those of half a sub-step before are taken for the same: the jerk, which they are
-/// for, is left out of the first sub-step, whose error stays of fourth order.
+/// The accelerations at the start of a tick, and those of half a sub-step before from a first evaluation in the middle.
 #[inline(never)]
 pub fn begin<T: Real, const N: usize, const OVERTONES: usize>(
     fixed: &FixedContactSet<T, N, OVERTONES>,
+    phase: &MeshPhase<T>,
     harmonics_now: &PhaseHarmonics<T, OVERTONES>,
     laws: &Laws<T, N>,
     state: &mut SubstepState<T, N>,
 ) {
+    let tables = fixed.tables;
     let wind_up = fixed.wind_up_force(state.wind_up.point());
     let gap = state.gap.point();
     let now = fixed.accelerations(laws, harmonics_now, gap, wind_up, |i| state.planets[i].point(), |_, _| {});
     state.for_each(&now, |coordinate, now| (coordinate.now, coordinate.before) = (now, now));
+    let phasor = phase.at(tables.half_substep_share);
+    let middle = PhaseHarmonics::new(phasor, harmonics_now.rate, tables.excitation.harmonics);
+    let wind_up = fixed.wind_up_force(state.wind_up.middle());
+    let gap = state.gap.middle();
+    let seen = fixed.accelerations(laws, &middle, gap, wind_up, |i| state.planets[i].middle(), |_, _| {});
+    state.for_each(&seen, |coordinate, seen| coordinate.before = coordinate.now + coordinate.now - seen);
 }

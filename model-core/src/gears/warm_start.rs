@@ -100,7 +100,7 @@ impl<T: Real, const N: usize> WarmStart<T, N> {
                 if *known == Known::Laws {
                     fixed.find_laws(&harmonics_now, state, laws);
                 }
-                substep::begin(&fixed, &harmonics_now, laws, state);
+                substep::begin(&fixed, phase, &harmonics_now, laws, state);
             }
         }
         substep::advance(&fixed, phase, laws, state);

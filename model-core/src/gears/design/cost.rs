@@ -54,7 +54,7 @@ const COUNTED: [Counted; 3] = [
         hold: 1799.0,
         hold_compliant: 16.0,
         given_up: 1160.0,
-        anew: 465.0,
+        anew: 735.0,
         fixed: 445.0,
         substep: 539.0,
         correction: 359.0,
@@ -63,7 +63,7 @@ const COUNTED: [Counted; 3] = [
         hold: 2006.0,
         hold_compliant: 133.0,
         given_up: 1320.0,
-        anew: 634.0,
+        anew: 954.0,
         fixed: 468.0,
         substep: 685.0,
         correction: 455.0,
@@ -72,7 +72,7 @@ const COUNTED: [Counted; 3] = [
         hold: 2384.0,
         hold_compliant: 386.0,
         given_up: 1620.0,
-        anew: 759.0,
+        anew: 1162.0,
         fixed: 538.0,
         substep: 853.0,
         correction: 550.0,
@@ -98,7 +98,7 @@ const OVERTONE: f64 = 17.0;
 const CROSSING_OVERTONES: f64 = 36.0;
 const CROSSING_OVERTONE: f64 = 19.0;
 /// Evaluations in an exponential tick (some with rates), given up or not, in one that begins anew, in a sub-step.
-const EVALUATIONS: [f64; 3] = [3.8, 2.0, 2.0];
+const EVALUATIONS: [f64; 3] = [3.8, 3.0, 2.0];
 
 /// Instructions of a joint's tick.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -43,13 +43,25 @@ impl<T: Real> Phasor<T> {
             cosine: self.cosine * by.cosine - self.sine * by.sine,
         }
     }
+
+    /// Its rates, for this rate of the phase.
+    #[inline(always)]
+    pub fn rates(&self, phase_rate: T) -> Self {
+        Self { sine: phase_rate * self.cosine, cosine: -(phase_rate * self.sine) }
+    }
+
+    /// Moved straight along rates for so long.
+    #[inline(always)]
+    pub fn moved(&self, time: T, rates: &Self) -> Self {
+        Self { sine: self.sine + time * rates.sine, cosine: self.cosine + time * rates.cosine }
+    }
 }
 
 /// The mesh phase over a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshPhase<T> {
-    /// Where it starts.
-    pub start: Phasor<T>,
+    /// Where it starts, in 2^-32 periods.
+    pub start: u32,
     /// Its advance over the tick, in 2^-32 periods.
     pub advance: T,
     /// d(phase)/d(tau) [rad].
@@ -57,6 +69,12 @@ pub struct MeshPhase<T> {
 }
 
 impl<T: Real> MeshPhase<T> {
+    /// The phasor after a part of the tick.
+    #[inline]
+    pub fn at(&self, part: T) -> Phasor<T> {
+        Phasor::at(self.start.wrapping_add((self.advance * part).to_phase()))
+    }
+
     /// The advance over a part of the tick.
     #[inline]
     pub fn over(&self, part: T) -> Phasor<T> {
@@ -70,8 +88,8 @@ pub fn mesh_phase_advance<T: Real>(excitation: &Excitation<T>, travel: i64) -> T
     if excitation.periods_per_turn == 0 {
         excitation.phase_advance
     } else {
-        // 2^31 turns times the teeth of any ring stays inside 64 bits.
-        T::from_i64((travel >> 32) * i64::from(excitation.periods_per_turn))
+        // By two conversions of the hardware: one from 64 bits is a library call.
+        T::from_i32((travel >> 32) as i32) * T::from_i32(excitation.periods_per_turn as i32)
     }
 }
 
@@ -85,7 +103,8 @@ pub struct PhaseHarmonics<T, const OVERTONES: usize> {
     pub phasor: Phasor<T>,
     /// Their rates.
     pub rates: Phasor<T>,
-    rate: T,
+    /// Rate of the phase.
+    pub rate: T,
     /// Phasors of the higher harmonics, as many as the joint has.
     multiples: [Phasor<T>; OVERTONES],
 }
@@ -118,6 +137,13 @@ pub struct MeshExcitation<T> {
 }
 
 impl<T: Real> MeshTable<T> {
+    /// Imposed error at a phasor; its rate at the phasor's rates.
+    #[inline(always)]
+    pub fn error_at(&self, phasor: &Phasor<T>) -> T {
+        let [sine, cosine] = self.error;
+        sine * phasor.sine + cosine * phasor.cosine
+    }
+
     /// At a moment; `mean` is that of its kind, `harmonics` that of the joint.
     #[inline(always)]
     pub fn at<const OVERTONES: usize>(
@@ -174,6 +200,35 @@ impl<T: Real> MeshTable<T> {
         harmonics: u32,
     ) -> impl Iterator<Item = (&'a [T; 2], &'a Phasor<T>)> {
         self.ripple.iter().skip(1).zip(&harmonics_now.multiples).take(harmonics.saturating_sub(1) as usize)
+    }
+}
+
+/// Stiffness of every mesh at one moment.
+#[inline(always)]
+pub fn stiffnesses<T: Real, const N: usize>(tables: &Tables<T, N>, phasor: &Phasor<T>) -> PerMesh<T, N> {
+    let mut stiffness = [[T::ZERO; N]; 2];
+    for kind in 0..2 {
+        let mean = tables.springs[kind].stiffness;
+        for i in 0..N {
+            let [sine, cosine] = tables.meshes[kind][i].ripple[0];
+            stiffness[kind][i] = mean + sine * phasor.sine + cosine * phasor.cosine;
+        }
+    }
+    if tables.excitation.harmonics > 1 {
+        add_overtones(tables, phasor, &mut stiffness);
+    }
+    stiffness
+}
+
+/// Adds the harmonics above the first.
+#[inline(never)]
+fn add_overtones<T: Real, const N: usize>(tables: &Tables<T, N>, phasor: &Phasor<T>, stiffness: &mut PerMesh<T, N>) {
+    let harmonics = tables.excitation.harmonics;
+    let harmonics_now = PhaseHarmonics::<T, MAX_OVERTONES>::new(*phasor, T::ZERO, harmonics);
+    for (family, meshes) in stiffness.iter_mut().zip(&tables.meshes) {
+        for (stiffness, mesh) in family.iter_mut().zip(meshes) {
+            *stiffness += mesh.overtones(&harmonics_now, harmonics);
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 //! sub-step as the unit of time and accelerations in sixths (see `stages`).
 
 use crate::gears::contact::{AppliedAcceleration, Law, Laws, NetForces};
-use crate::gears::excitation::{MeshExcitation, PerMesh, PhaseHarmonics};
+use crate::gears::excitation::{MeshExcitation, PhaseHarmonics};
 use crate::gears::planets::each_planet;
 use crate::gears::stages::{Point, SubstepState};
 use crate::gears::state::Relative;
@@ -24,39 +24,6 @@ pub struct MeshState<T> {
     pub force: T,
 }
 
-impl<T: Real> MeshState<T> {
-    const ZERO: Self = Self { overlap: T::ZERO, speed: T::ZERO, stiffness: T::ZERO, error: T::ZERO, force: T::ZERO };
-}
-
-/// The start of a tick.
-#[derive(Debug, Clone)]
-pub struct Start<T, const N: usize> {
-    /// The laws that hold.
-    pub laws: Laws<T, N>,
-    /// State of every mesh.
-    pub meshes: PerMesh<MeshState<T>, N>,
-    /// Every mesh is closed, with too much overlap for its speed to open it before the middle of the tick.
-    pub firmly_closed: bool,
-}
-
-impl<T: Real, const N: usize> Start<T, N> {
-    /// To be filled.
-    pub const EMPTY: Self = Self { laws: [[Law::ZERO; N]; 2], meshes: [[MeshState::ZERO; N]; 2], firmly_closed: false };
-}
-
-impl<T: Real, const N: usize> Start<T, N> {
-    /// Whether any mesh is under the law of the gap.
-    #[inline(always)]
-    pub fn is_open(&self) -> bool {
-        let [sun, ring] = &self.laws;
-        let mut open = T::ZERO;
-        each_planet!(N, i => {
-            open += sun[i].open + ring[i].open;
-        });
-        open > T::ZERO
-    }
-}
-
 /// The joint with everything that does not change over a tick.
 #[derive(Clone, Copy)]
 pub struct FixedContactSet<'a, T: Real, const N: usize, const OVERTONES: usize> {
@@ -71,28 +38,32 @@ pub struct FixedContactSet<'a, T: Real, const N: usize, const OVERTONES: usize> 
 }
 
 impl<T: Real, const N: usize, const OVERTONES: usize> FixedContactSet<'_, T, N, OVERTONES> {
-    /// The joint at the start of a tick.
+    /// Finds the law that every mesh is under.
     #[inline(never)]
-    pub fn start(
+    pub fn find_laws(
         &self,
         harmonics_now: &PhaseHarmonics<T, OVERTONES>,
         state: &SubstepState<T, N>,
-        start: &mut Start<T, N>,
+        laws: &mut Laws<T, N>,
     ) {
-        start.firmly_closed = true;
-        let reach = self.tables.flow.reach * self.tables.stage.rate;
         for i in 0..N {
             let sun = state.planets[i].point();
             for (kind, at) in [(0, sun), (1, state.gap.point().minus(sun))] {
-                let mut mesh = self.mesh(&Law::OPEN, (kind, i), harmonics_now, at);
-                let law = Law::of(self.tables, (kind, i), mesh.overlap, mesh.speed, mesh.stiffness);
-                mesh.overlap -= law.offset;
-                mesh.force = law.closed * (mesh.stiffness * mesh.overlap) + law.damping * mesh.speed;
-                start.firmly_closed &= law.side * mesh.overlap > reach * mesh.speed.abs();
-                start.meshes[kind][i] = mesh;
-                start.laws[kind][i] = law;
+                let mesh = self.mesh(&Law::OPEN, (kind, i), harmonics_now, at);
+                laws[kind][i] = Law::of(self.tables, (kind, i), mesh.overlap, mesh.speed, mesh.stiffness);
             }
         }
+    }
+
+    /// Whether any mesh is under the law of the gap.
+    #[inline(always)]
+    pub fn is_open(&self, laws: &Laws<T, N>) -> bool {
+        let [sun, ring] = laws;
+        let mut open = T::ZERO;
+        each_planet!(N, i => {
+            open += sun[i].open + ring[i].open;
+        });
+        open > T::ZERO
     }
 
     /// Stiffness and imposed error of one mesh.

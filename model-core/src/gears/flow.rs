@@ -5,129 +5,106 @@
 use core::array;
 
 use crate::gears::contact::{AppliedAcceleration, Laws, NetForces};
-use crate::gears::crossing::StepEnd;
 use crate::gears::excitation::{MeshExcitation, MeshPhase, PhaseHarmonics};
-use crate::gears::fixed_contact_set::{FixedContactSet, MeshState, Start};
+use crate::gears::fixed_contact_set::FixedContactSet;
 use crate::gears::planets::each_planet;
-use crate::gears::runge_kutta::Motion;
 use crate::gears::stages::{Point, SubstepState};
-use crate::gears::state::Relative;
+use crate::gears::state::{MotionInPlace, Relative};
 use crate::gears::tables::{Block, Inputs, Transition};
 use crate::numbers::Real;
 
-/// The outcome of a tick with the contact set of its start.
-pub enum ExponentialTick<T, const N: usize> {
-    /// The set held.
-    Held(Motion<T, N>),
-    /// A mesh opened after the first node: a crossing to correct at the end of the tick, so that its work is not lost.
-    OpenedLate(Motion<T, N>),
-    /// The set does not hold up to the first node.
-    Refused,
+/// Pseudo-force at the start of a tick: the part of the mesh forces that the linear flow of the closed joint leaves out,
+/// k_mean x + c x' - F.
+pub struct Start<T, const N: usize> {
+    value: PseudoForce<T, N>,
+    /// Its rate for each sub-step.
+    rate: PseudoForce<T, N>,
 }
 
-/// One tick with the contact set of its start. `K` is the number of in-phase coordinates: 3 with compliance, 2 without.
+/// The start of a tick in which every mesh is closed; none unless each has so much overlap that its speed cannot open it
+/// before the middle of the tick.
+#[inline(never)]
+pub fn start<T: Real, const N: usize, const OVERTONES: usize>(
+    fixed: &FixedContactSet<T, N, OVERTONES>,
+    harmonics_now: &PhaseHarmonics<T, OVERTONES>,
+    laws: &Laws<T, N>,
+    state: &SubstepState<T, N>,
+) -> Option<Start<T, N>> {
+    let tables = fixed.tables;
+    let reach = tables.flow.reach * tables.stage.rate;
+    let square = harmonics_now.rate * harmonics_now.rate;
+    let rates = &harmonics_now.rates;
+    let mut least_room = T::ONE;
+    let mut mesh = |(kind, i): (usize, usize), at: Point<T>| {
+        let (spring, damping) = (tables.springs[kind].stiffness, tables.stage.damping[kind]);
+        let law = &laws[kind][i];
+        let MeshExcitation { stiffness, error, .. } = fixed.wave((kind, i), harmonics_now);
+        let stiffness_rate = tables.meshes[kind][i].stiffness_rate(harmonics_now, tables.excitation.harmonics);
+        let error_rate = tables.meshes[kind][i].error_at(rates);
+        let overlap = at.position - law.offset - error;
+        let speed = at.rate - error_rate;
+        let room = law.side * overlap - reach * speed.abs();
+        least_room = if room < least_room { room } else { least_room };
+        // e'' = -rate^2 e.
+        (
+            spring * at.position - stiffness * overlap + damping * error_rate,
+            spring * at.rate - stiffness * speed - stiffness_rate * overlap - damping * (square * error),
+        )
+    };
+    let (mut value, mut rate) = (NetForces::NONE, NetForces::NONE);
+    each_planet!(N, i => {
+        let sun = state.planets[i].point();
+        let ring = mesh((1, i), state.gap.point().minus(sun));
+        let sun = mesh((0, i), sun);
+        value.add(i, sun.0, ring.0);
+        rate.add(i, sun.1, ring.1);
+    });
+    (least_room > T::ZERO).then(|| Start {
+        value: PseudoForce::of(tables.planet_share, &value),
+        rate: PseudoForce::of(tables.planet_share, &rate),
+    })
+}
+
+/// One tick with the contact set of its start, in place; nothing is moved, and false is said, if a mesh leaves its flank. `K` is the number of in-phase coordinates: 3 with compliance, 2
+/// without.
 #[inline(never)]
 pub fn tick<T: Real, const N: usize, const K: usize, const OVERTONES: usize>(
     fixed: &FixedContactSet<T, N, OVERTONES>,
     applied: &AppliedAcceleration<T>,
     phase: &MeshPhase<T>,
+    laws: &Laws<T, N>,
     start: &Start<T, N>,
-    state: &SubstepState<T, N>,
-    motion: &Motion<T, N>,
-) -> ExponentialTick<T, N> {
+    motion: &mut MotionInPlace<T, N>,
+) -> bool {
     let tables = fixed.tables;
     let flow = &tables.flow;
-    let slow = phase.advance < flow.longest_advance && -phase.advance < flow.longest_advance;
-    if !slow || !start.firmly_closed {
-        return ExponentialTick::Refused;
-    }
-    let laws = &start.laws;
-    let (value, rate) = fixed.pseudo_force_at_start(phase, start, state);
+    let Start { value, rate } = start;
     let modes = Modes::<T, N, K>::of(tables.planet_share, motion);
     let torques = [applied.sun, applied.carrier, applied.link];
-    let node =
-        |part: T| PhaseHarmonics::new(phase.start.turned(&phase.over(part)), phase.rate, tables.excitation.harmonics);
+    let node = |part: T| PhaseHarmonics::new(phase.at(part), phase.rate, tables.excitation.harmonics);
 
     let [first, second] = &flow.early_inputs;
-    let positions = modes.positions(&flow.early, &torques).with([(first, &value), (second, &rate)]);
+    let positions = modes.positions(&flow.early, &torques).with([(first, value), (second, rate)]);
     let (early, violation) = fixed.pseudo_force(laws, &node(flow.nodes[0]), &positions);
     if violation > T::ZERO {
-        return ExponentialTick::Refused;
+        return false;
     }
 
     let [first, second, third] = &flow.late_inputs;
-    let positions = modes.positions(&flow.late, &torques).with([(first, &value), (second, &rate), (third, &early)]);
+    let positions = modes.positions(&flow.late, &torques).with([(first, value), (second, rate), (third, &early)]);
     let (late, violation) = fixed.pseudo_force(laws, &node(flow.nodes[1]), &positions);
 
-    let [first, second, third, fourth] = &flow.whole_inputs;
-    let forces = [(first, &value), (second, &rate), (third, &early), (fourth, &late)];
-    let last = modes.flow(&flow.whole, &torques).with(forces).motion();
-    if violation > T::ZERO { ExponentialTick::OpenedLate(last) } else { ExponentialTick::Held(last) }
-}
+    if violation > T::ZERO {
+        return false;
+    }
 
-/// The end of a tick in whose second half meshes have opened.
-#[inline(never)]
-pub fn corrected<T: Real, const N: usize, const OVERTONES: usize>(
-    fixed: &FixedContactSet<T, N, OVERTONES>,
-    laws: &mut Laws<T, N>,
-    phase: &MeshPhase<T>,
-    motion: &Motion<T, N>,
-) -> Motion<T, N> {
-    let tables = fixed.tables;
-    let rate = tables.substep * phase.rate;
-    let harmonics_now = PhaseHarmonics::new(phase.start.turned(&phase.over(T::ONE)), rate, tables.excitation.harmonics);
-    let mut state = SubstepState::of(motion, tables.substep);
-    let wind_up = fixed.wind_up_force(state.wind_up.point());
-    let mut violations = [[T::ZERO; N]; 2];
-    let last = fixed.accelerations(
-        laws,
-        &harmonics_now,
-        state.gap.point(),
-        wind_up,
-        |i| state.planets[i].point(),
-        |(kind, i), mesh| violations[kind][i] = fixed.violation(&laws[kind][i], (kind, i), mesh),
-    );
-    state.for_each(&last, |coordinate, last| coordinate.now = last);
-    StepEnd { fixed, rate, harmonics_now: &harmonics_now, violations: &violations }.correct(laws, &mut state);
-    state.motion(tables.substep, tables.stage.rate, motion)
+    let [first, second, third, fourth] = &flow.whole_inputs;
+    let forces = [(first, value), (second, rate), (third, &early), (fourth, &late)];
+    modes.flow(&flow.whole, &torques).with(forces).move_to(motion);
+    true
 }
 
 impl<T: Real, const N: usize, const OVERTONES: usize> FixedContactSet<'_, T, N, OVERTONES> {
-    /// Pseudo-force at the start of a tick, the part of the mesh forces that the linear flow of the closed joint leaves out,
-    /// k_mean x + c x' - F, and its rate for each sub-step.
-    #[inline]
-    fn pseudo_force_at_start(
-        &self,
-        phase: &MeshPhase<T>,
-        start: &Start<T, N>,
-        state: &SubstepState<T, N>,
-    ) -> (PseudoForce<T, N>, PseudoForce<T, N>) {
-        let tables = self.tables;
-        let rate = tables.substep * phase.rate;
-        let square = rate * rate;
-        let harmonics_now = PhaseHarmonics::<T, OVERTONES>::new(phase.start, rate, tables.excitation.harmonics);
-        let mesh = |(kind, i): (usize, usize), at: Point<T>| {
-            let (spring, damping) = (tables.springs[kind].stiffness, tables.stage.damping[kind]);
-            let MeshState { overlap, speed, stiffness, error, force } = start.meshes[kind][i];
-            let harmonics = tables.excitation.harmonics;
-            let stiffness_rate = tables.meshes[kind][i].stiffness_rate(&harmonics_now, harmonics);
-            // e'' = -rate^2 e.
-            (
-                spring * at.position + damping * at.rate - force,
-                spring * at.rate - stiffness * speed - stiffness_rate * overlap - damping * (square * error),
-            )
-        };
-        let (mut value, mut change) = (NetForces::NONE, NetForces::NONE);
-        each_planet!(N, i => {
-            let sun = state.planets[i].point();
-            let ring = mesh((1, i), state.gap.point().minus(sun));
-            let sun = mesh((0, i), sun);
-            value.add(i, sun.0, ring.0);
-            change.add(i, sun.1, ring.1);
-        });
-        (PseudoForce::of(tables.planet_share, &value), PseudoForce::of(tables.planet_share, &change))
-    }
-
     /// Pseudo-force of closed meshes within the tick: offset, imposed error, ripple; and a positive violation if a mesh has
     /// left its flank.
     #[inline(never)]
@@ -197,13 +174,13 @@ struct Modes<T, const N: usize, const K: usize> {
 
 impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
     #[inline]
-    fn of(share: T, motion: &Motion<T, N>) -> Self {
-        let means = [&motion.position, &motion.rate].map(|part| share * total(&part.planets));
+    fn of(share: T, motion: &MotionInPlace<T, N>) -> Self {
+        let means = [&*motion.position, &*motion.rate].map(|part| share * total(&part.planets));
         let part = |half: usize, part: &Relative<T, N>| {
             let all = [means[half], part.gap, part.wind_up];
             array::from_fn(|k| all[k])
         };
-        let (position, rate) = (&motion.position, &motion.rate);
+        let (position, rate) = (&*motion.position, &*motion.rate);
         Self {
             in_phase: [part(0, position), part(1, rate)],
             deviations: array::from_fn(|i| [position.planets[i] - means[0], rate.planets[i] - means[1]]),
@@ -280,16 +257,15 @@ impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
     }
 
     #[inline]
-    fn motion(&self) -> Motion<T, N> {
-        let part = |half: usize| {
+    fn move_to(&self, motion: &mut MotionInPlace<T, N>) {
+        for (half, part) in [(0, &mut *motion.position), (1, &mut *motion.rate)] {
             let in_phase = &self.in_phase[half];
-            Relative {
-                planets: array::from_fn(|i| in_phase[0] + self.deviations[i][half]),
-                gap: in_phase[1],
-                wind_up: if K > 2 { in_phase[K - 1] } else { T::ZERO },
-            }
-        };
-        Motion { position: part(0), rate: part(1) }
+            each_planet!(N, i => {
+                part.planets[i] = in_phase[0] + self.deviations[i][half];
+            });
+            part.gap = in_phase[1];
+            part.wind_up = if K > 2 { in_phase[K - 1] } else { T::ZERO };
+        }
     }
 }
 

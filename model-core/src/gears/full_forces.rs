@@ -4,9 +4,9 @@
 
 use crate::gears::contact::{AppliedAcceleration, Law, acceleration, mesh_coordinates, wind_up_force};
 use crate::gears::dead_zone;
-use crate::gears::excitation::{MAX_OVERTONES, MeshExcitations, MeshPhase, PerMesh, mesh_excitations};
-use crate::gears::runge_kutta::{self, Motion};
-use crate::gears::state::Relative;
+use crate::gears::excitation::{MAX_OVERTONES, MeshExcitations, MeshPhase, PerMesh, Phasor, mesh_excitations};
+use crate::gears::runge_kutta;
+use crate::gears::state::{Motion, Relative};
 use crate::gears::tables::Tables;
 use crate::numbers::Real;
 
@@ -19,7 +19,7 @@ pub fn runge_kutta<T: Real, const N: usize>(
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
     let half = phase.over(tables.half_substep_share);
-    let (mut motion, mut phasor) = (*motion, phase.start);
+    let (mut motion, mut phasor) = (*motion, Phasor::at(phase.start));
     let mut start = mesh_excitations::<T, N, MAX_OVERTONES>(tables, phasor, phase.rate);
     for _ in 0..tables.substeps {
         phasor = phasor.turned(&half);
@@ -44,7 +44,7 @@ pub fn semi_implicit_euler<T: Real, const N: usize>(
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
     let half = phase.over(tables.half_substep_share);
-    let (mut motion, mut phasor) = (*motion, phase.start);
+    let (mut motion, mut phasor) = (*motion, Phasor::at(phase.start));
     let mut now = mesh_excitations::<T, N, MAX_OVERTONES>(tables, phasor, phase.rate);
     for _ in 0..tables.substeps {
         let acceleration = forced(tables, applied, &motion.position, &motion.rate, &now);

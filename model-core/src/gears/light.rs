@@ -8,71 +8,81 @@
 //! as the planet's own acceleration goes. What sun and carrier add to it is left, as is damping in the gap under the law
 //! `paper`: mesh damping is therefore of first order, with a small factor.
 
+use core::hint::black_box;
+
 use crate::gears::contact::AppliedAcceleration;
-use crate::gears::excitation::{MAX_OVERTONES, MeshExcitations, MeshPhase, mesh_excitations};
+use crate::gears::excitation::{MeshPhase, PerMesh, Phasor, stiffnesses};
 use crate::gears::linear_contact;
-use crate::gears::runge_kutta::Motion;
+use crate::gears::state::MotionInPlace;
 use crate::gears::tables::Tables;
 use crate::numbers::Real;
 use parameters::DampingLaw;
 
-/// One tick.
-#[inline(never)]
+/// One tick, in place.
+#[inline(always)]
 pub fn tick<T: Real, const N: usize>(
     tables: &Tables<T, N>,
     applied: &AppliedAcceleration<T>,
     phase: &MeshPhase<T>,
-    motion: &Motion<T, N>,
-) -> Motion<T, N> {
-    let middle = mesh_excitations::<T, N, MAX_OVERTONES>(tables, phase.start.turned(&phase.over(T::HALF)), phase.rate);
-    if let Some(end) = linear_contact::tick(tables, applied, phase, &middle, motion) {
-        return end;
+    mut motion: MotionInPlace<T, N>,
+) {
+    let middle = phase.at(T::HALF);
+    let stiffness = stiffnesses(tables, &middle);
+    if linear_contact::tick(tables, applied, phase, &middle, &stiffness, &mut motion) {
+        return;
     }
     match tables.damping_law {
-        DampingLaw::Contact => verlet::<T, N, true>(tables, applied, &middle, motion),
-        DampingLaw::Paper => verlet::<T, N, false>(tables, applied, &middle, motion),
+        DampingLaw::Contact => verlet::<T, N, true>(tables, applied, &middle, phase.rate, &stiffness, &mut motion),
+        DampingLaw::Paper => verlet::<T, N, false>(tables, applied, &middle, phase.rate, &stiffness, &mut motion),
     }
 }
 
 /// Position-Verlet sub-steps: drift by half a sub-step, forces there, drift by the new rate. Deflections are carried from
-/// middle to middle, in a unit of time in which a sub-step lasts one.
+/// middle to middle, in a unit of time in which a sub-step lasts one. Imposed errors go straight through their value and rate
+/// in the middle of the tick: so they are multiples of one phasor that does the same.
 #[inline(never)]
 fn verlet<T: Real, const N: usize, const CONTACT_LAW: bool>(
     tables: &Tables<T, N>,
     applied: &AppliedAcceleration<T>,
-    middle: &MeshExcitations<T, N>,
-    motion: &Motion<T, N>,
-) -> Motion<T, N> {
+    middle: &Phasor<T>,
+    phase_rate: T,
+    stiffness: &PerMesh<T, N>,
+    motion: &mut MotionInPlace<T, N>,
+) {
     let verlet = &tables.verlet;
     let h = verlet.substep;
-    let mobility = &verlet.mobility;
+    let turning = middle.rates(h * phase_rate);
+    let first = middle.moved(T::HALF - verlet.half_count, &turning);
     let (mut wind_up, mut gap) = (motion.position.wind_up, motion.position.gap);
     let (mut wind_up_travel, mut gap_travel) = (h * motion.rate.wind_up, h * motion.rate.gap);
-    let mut deflection = [[T::ZERO; N]; 2];
-    let mut travel = deflection;
-    let mut soft = deflection;
-    let mut release = deflection;
-    for i in 0..N {
-        let (x, u) = (motion.position.planets[i], h * motion.rate.planets[i]);
-        let (y, v) = (gap - x, gap_travel - u);
-        for (kind, position, rate) in [(0, x, u), (1, y, v)] {
-            // Imposed errors go straight through their value and rate in the middle of the tick.
-            let error_travel = h * middle.error_rate[kind][i];
-            travel[kind][i] = rate - error_travel;
-            let error = middle.error[kind][i] - verlet.half_count * error_travel;
-            deflection[kind][i] = position - error + T::HALF * travel[kind][i];
-            let stiffness = middle.stiffness[kind][i];
-            soft[kind][i] = verlet.curvature * stiffness + verlet.half_damped[kind];
-            release[kind][i] = verlet.release[kind][0] - verlet.release[kind][1] * stiffness;
-        }
-    }
     wind_up += T::HALF * wind_up_travel;
     gap += T::HALF * gap_travel;
-    let sun_drive = verlet.square * applied.sun;
-    let carrier_drive = verlet.square * applied.carrier;
-    let link_drive = verlet.square * applied.link;
+    let mut deflection = [[T::ZERO; N]; 2];
+    let mut travel = deflection;
+    for i in 0..N {
+        let u = h * motion.rate.planets[i];
+        let x = motion.position.planets[i] + T::HALF * u;
+        for (kind, position, rate) in [(0, x, u), (1, gap - x, gap_travel - u)] {
+            let mesh = &tables.meshes[kind][i];
+            deflection[kind][i] = position - mesh.error_at(&first);
+            travel[kind][i] = rate - mesh.error_at(&turning);
+        }
+    }
+    let substep = Substep {
+        tables,
+        stiffness,
+        sun: verlet.square * applied.sun,
+        carrier: verlet.square * applied.carrier,
+        link: verlet.square * applied.link,
+    };
 
     for _ in 0..verlet.substeps {
+        // What is constant in the loop stays where it is: brought before the loop it would go through the stack, at three
+        // instructions in place of one.
+        let Substep { tables, stiffness, sun: sun_drive, carrier: carrier_drive, link: link_drive } =
+            black_box(&substep);
+        let (verlet, sun_drive, carrier_drive, link_drive) = (&tables.verlet, *sun_drive, *carrier_drive, *link_drive);
+        let mobility = &verlet.mobility;
         let (mut sun_sum, mut ring_sum) = (T::ZERO, T::ZERO);
         let mut planets = [T::ZERO; N];
         for i in 0..N {
@@ -86,23 +96,28 @@ fn verlet<T: Real, const N: usize, const CONTACT_LAW: bool>(
                     if !CONTACT_LAW {
                         force[kind] = verlet.damping[kind] * w;
                     }
-                } else if over >= release[kind][i] * speed {
+                    continue;
+                }
+                let stiffness = stiffness[kind][i];
+                let soft = verlet.curvature * stiffness + verlet.half_damped[kind];
+                let release = verlet.release[kind][0] - verlet.release[kind][1] * stiffness;
+                if over >= release * speed {
                     let offset = if d < T::ZERO { -half_backlash } else { half_backlash };
-                    force[kind] = middle.stiffness[kind][i] * (d - offset) + verlet.damping[kind] * w;
-                    yielding[kind] = soft[kind][i];
+                    force[kind] = stiffness * (d - offset) + verlet.damping[kind] * w;
+                    yielding[kind] = soft;
                 } else {
                     let mesh = Grazing {
                         over,
                         closing: if d < T::ZERO { -w } else { w },
                         half_travel: T::HALF * speed,
                         width: half_backlash + half_backlash,
-                        early: release[kind][i] - T::HALF,
-                        stiffness: middle.stiffness[kind][i],
+                        early: release - T::HALF,
+                        stiffness,
                         damping: verlet.damping[kind],
                     };
                     let (value, part) = mesh.mean_force::<CONTACT_LAW>();
                     force[kind] = if d < T::ZERO { -value } else { value };
-                    yielding[kind] = if part < T::ONE { verlet.half_damped[kind] * part } else { soft[kind][i] };
+                    yielding[kind] = if part < T::ONE { verlet.half_damped[kind] * part } else { soft };
                 }
             }
             // The planet's own acceleration reduces its two forces.
@@ -134,19 +149,28 @@ fn verlet<T: Real, const N: usize, const CONTACT_LAW: bool>(
         }
     }
 
-    let mut end = *motion;
+    let last = middle.moved(verlet.half_count, &turning);
     let rate = verlet.per_substep;
     for i in 0..N {
-        let error_travel = h * middle.error_rate[0][i];
-        let error = middle.error[0][i] + verlet.half_count * error_travel;
-        end.position.planets[i] = deflection[0][i] - T::HALF * travel[0][i] + error;
-        end.rate.planets[i] = rate * (travel[0][i] + error_travel);
+        let mesh = &tables.meshes[0][i];
+        let (d, w) = (deflection[0][i], travel[0][i]);
+        motion.position.planets[i] = d - T::HALF * w + mesh.error_at(&last);
+        motion.rate.planets[i] = rate * (w + mesh.error_at(&turning));
     }
-    end.position.gap = gap - T::HALF * gap_travel;
-    end.rate.gap = rate * gap_travel;
-    end.position.wind_up = wind_up - T::HALF * wind_up_travel;
-    end.rate.wind_up = rate * wind_up_travel;
-    end
+    motion.position.gap = gap - T::HALF * gap_travel;
+    motion.rate.gap = rate * gap_travel;
+    motion.position.wind_up = wind_up - T::HALF * wind_up_travel;
+    motion.rate.wind_up = rate * wind_up_travel;
+}
+
+/// What does not change over the sub-steps of a tick.
+struct Substep<'a, T: Real, const N: usize> {
+    tables: &'a Tables<T, N>,
+    stiffness: &'a PerMesh<T, N>,
+    /// What the torques alone change of a travel in a sub-step.
+    sun: T,
+    carrier: T,
+    link: T,
 }
 
 /// A mesh whose contact begins or ends within a sub-step, its side of contact taken as positive.

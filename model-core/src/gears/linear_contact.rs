@@ -6,27 +6,29 @@
 use nalgebra::SVector;
 
 use crate::gears::contact::AppliedAcceleration;
-use crate::gears::excitation::{MeshExcitations, MeshPhase};
-use crate::gears::runge_kutta::Motion;
-use crate::gears::state::Relative;
+use crate::gears::excitation::{MeshPhase, PerMesh, Phasor};
+use crate::gears::state::MotionInPlace;
 use crate::gears::tables::Tables;
 use crate::numbers::Real;
 
-/// One tick; `None` unless every mesh has so much overlap that its speed cannot open it.
+/// One tick in place; nothing is done, and false is said, unless every mesh has so much overlap that its speed cannot open it.
 #[inline(never)]
 pub fn tick<T: Real, const N: usize>(
     tables: &Tables<T, N>,
     applied: &AppliedAcceleration<T>,
     phase: &MeshPhase<T>,
-    middle: &MeshExcitations<T, N>,
-    motion: &Motion<T, N>,
-) -> Option<Motion<T, N>> {
+    middle: &Phasor<T>,
+    stiffness: &PerMesh<T, N>,
+    motion: &mut MotionInPlace<T, N>,
+) -> bool {
     let flow = &tables.flow;
-    let Motion { position, rate } = motion;
+    let (position, rate) = (&*motion.position, &*motion.rate);
     if phase.advance > flow.longest_advance || -phase.advance > flow.longest_advance {
-        return None;
+        return false;
     }
     let half_step = T::HALF * flow.step;
+    let rates = middle.rates(phase.rate);
+    let first = middle.moved(-half_step, &rates);
     let back = position.gap < T::ZERO;
     // Per mesh: what the flow takes from the deflection, what from everything else at the start, and in the middle.
     let mut from = [[[T::ZERO; N]; 2]; 3];
@@ -35,17 +37,17 @@ pub fn tick<T: Real, const N: usize>(
     for i in 0..N {
         let (x, u) = (position.planets[i], rate.planets[i]);
         for (kind, at, speed) in [(0, x, u), (1, position.gap - x, rate.gap - u)] {
-            let error = middle.error[kind][i];
-            let error_rate = middle.error_rate[kind][i];
-            let stiffness = middle.stiffness[kind][i];
-            let half_backlash = tables.meshes[kind][i].half_backlash;
-            let offset = if back { -half_backlash } else { half_backlash };
-            let error_start = error - half_step * error_rate;
+            let mesh = &tables.meshes[kind][i];
+            let error_rate = mesh.error_at(&rates);
+            let offset = if back { -mesh.half_backlash } else { mesh.half_backlash };
+            let error_start = mesh.error_at(&first);
             let overlap = at - error_start - offset;
             let overlap = if back { -overlap } else { overlap };
             if overlap <= flow.reach * (speed - error_rate).abs() {
-                return None;
+                return false;
             }
+            let error = mesh.error_at(middle);
+            let stiffness = stiffness[kind][i];
             bound[kind][i] = offset + error + T::HALF * (at - error_start - offset);
             let spring = &tables.springs[kind];
             let viscous = spring.damping * error_rate;
@@ -60,7 +62,7 @@ pub fn tick<T: Real, const N: usize>(
     let mut forces = from[1];
     for kind in 0..2 {
         for i in 0..N {
-            forces[kind][i] += T::HALF * half_step * middle.stiffness[kind][i] * middle.error_rate[kind][i];
+            forces[kind][i] += T::HALF * half_step * stiffness[kind][i] * tables.meshes[kind][i].error_at(&rates);
         }
     }
     let early = PseudoForce::new(share, &forces);
@@ -89,7 +91,7 @@ pub fn tick<T: Real, const N: usize>(
         let y = middle_gap - x;
         let (short, late) = (x - bound[0][i], y - bound[1][i]);
         if if back { short > T::ZERO || late > T::ZERO } else { short < T::ZERO || late < T::ZERO } {
-            return None;
+            return false;
         }
         forces[0][i] += from[0][0][i] * x;
         forces[1][i] += from[0][1][i] * y;
@@ -104,25 +106,22 @@ pub fn tick<T: Real, const N: usize>(
             + &first.in_phase.0 * &sums
             + &second.in_phase.0 * SVector::from(middle.sums));
     let [mean_end, gap, wind_up, mean_rate_end, gap_rate, wind_up_rate] = end.data.0[0];
-    let mut planets = position.planets;
-    let mut planet_rates = rate.planets;
     let [[a, b], [c, d]] = whole.deviation.0.data.0;
     for i in 0..N {
-        let (deviation, speed) = (position.planets[i] - mean, rate.planets[i] - mean_rate);
+        let (deviation, speed) = (motion.position.planets[i] - mean, motion.rate.planets[i] - mean_rate);
         let (from_start, from_middle) = (start.apart[i], middle.apart[i]);
-        planets[i] = mean_end
+        motion.position.planets[i] = mean_end
             + deviation
             + (a * deviation + c * speed)
             + (first.deviation[0] * from_start + second.deviation[0] * from_middle);
-        planet_rates[i] = mean_rate_end
+        motion.rate.planets[i] = mean_rate_end
             + speed
             + (b * deviation + d * speed)
             + (first.deviation[1] * from_start + second.deviation[1] * from_middle);
     }
-    Some(Motion {
-        position: Relative { planets, gap, wind_up },
-        rate: Relative { planets: planet_rates, gap: gap_rate, wind_up: wind_up_rate },
-    })
+    (motion.position.gap, motion.position.wind_up) = (gap, wind_up);
+    (motion.rate.gap, motion.rate.wind_up) = (gap_rate, wind_up_rate);
+    true
 }
 
 /// Mesh forces in the form that the flow's inputs take.

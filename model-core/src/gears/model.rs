@@ -6,8 +6,7 @@ use core::array;
 use crate::gears::contact::{AppliedAcceleration, contact, mesh_coordinates};
 use crate::gears::equivalent::{self, Point};
 use crate::gears::excitation::{MAX_OVERTONES, MeshPhase, PerMesh, Phasor, mesh_excitations, mesh_phase_advance};
-use crate::gears::runge_kutta::Motion;
-use crate::gears::state::State;
+use crate::gears::state::{Motion, State};
 use crate::gears::tables::{Scheme, Tables};
 use crate::gears::warm_start::WarmStart;
 use crate::gears::{full_forces, light, paper};
@@ -128,28 +127,36 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
             self.state.set_gap(equivalent::tick(tables, acceleration, start));
             return;
         }
-        let start = Phasor::at(self.phase());
+        let start = self.phase();
         let travel = self.state.rigid.advance(&tables.rigid, torques.drive, torques.load);
         let advance = mesh_phase_advance(&tables.excitation, travel);
         let phase = MeshPhase { start, advance, rate: tables.excitation.rate * advance };
         self.state.phase = self.state.phase.wrapping_add(tables.excitation.phase_step);
 
-        let motion = Motion { position: self.state.position, rate: self.state.rate };
-        let Motion { position, rate } = match tables.scheme {
-            Scheme::PaperEtd1 => paper::step(tables, &applied, &phase, &motion),
-            Scheme::RungeKutta4 => full_forces::runge_kutta(tables, &applied, &phase, &motion),
-            Scheme::SemiImplicitEuler => full_forces::semi_implicit_euler(tables, &applied, &phase, &motion),
-            Scheme::Realtime if tables.sharpness > T::ZERO => {
-                full_forces::runge_kutta(tables, &applied, &phase, &motion)
+        let Self { state, warm_start, .. } = self;
+        match tables.scheme {
+            Scheme::Realtime if tables.sharpness == T::ZERO => {
+                if tables.verlet.substeps > 0 {
+                    light::tick(tables, &applied, &phase, state.motion());
+                } else if tables.excitation.harmonics > 1 {
+                    warm_start.tick::<MAX_OVERTONES>(tables, &applied, &phase, state.motion());
+                } else {
+                    warm_start.tick::<0>(tables, &applied, &phase, state.motion());
+                }
             }
-            Scheme::Realtime if tables.verlet.substeps > 0 => light::tick(tables, &applied, &phase, &motion),
-            Scheme::Realtime if tables.excitation.harmonics > 1 => {
-                self.warm_start.tick::<MAX_OVERTONES>(tables, &applied, &phase, &motion)
+            scheme => {
+                let before = Motion { position: state.position, rate: state.rate };
+                let after = match scheme {
+                    Scheme::PaperEtd1 => paper::step(tables, &applied, &phase, &before),
+                    Scheme::SemiImplicitEuler => full_forces::semi_implicit_euler(tables, &applied, &phase, &before),
+                    Scheme::Realtime | Scheme::RungeKutta4 => {
+                        full_forces::runge_kutta(tables, &applied, &phase, &before)
+                    }
+                };
+                (state.position, state.rate) = (after.position, after.rate);
             }
-            Scheme::Realtime => self.warm_start.tick::<0>(tables, &applied, &phase, &motion),
-        };
-        (self.state.position, self.state.rate) = (position, rate);
-        self.state.canonicalise();
+        }
+        state.canonicalise();
     }
 
     /// The motion now, in SI.

@@ -8,10 +8,9 @@ use core::array;
 use nalgebra::SVector;
 
 use crate::gears::contact::{AppliedAcceleration, mesh_coordinates};
-use crate::gears::excitation::{MAX_OVERTONES, MeshPhase, PerMesh, mesh_excitations};
+use crate::gears::excitation::{MAX_OVERTONES, MeshPhase, PerMesh, Phasor, mesh_excitations};
 use crate::gears::full_forces::forces;
-use crate::gears::runge_kutta::Motion;
-use crate::gears::state::Relative;
+use crate::gears::state::{Motion, Relative};
 use crate::gears::tables::{Inputs, Tables, Transition};
 use crate::numbers::Real;
 
@@ -25,7 +24,7 @@ pub fn step<T: Real, const N: usize>(
     motion: &Motion<T, N>,
 ) -> Motion<T, N> {
     let half = phase.over(tables.half_substep_share);
-    let (mut motion, mut phasor) = (*motion, phase.start);
+    let (mut motion, mut phasor) = (*motion, Phasor::at(phase.start));
     let mut now = mesh_excitations::<T, N, MAX_OVERTONES>(tables, phasor, phase.rate);
     for _ in 0..tables.substeps {
         let (positions, rates) = (mesh_coordinates(&motion.position), mesh_coordinates(&motion.rate));

@@ -1,17 +1,8 @@
 //! The classical fourth-order Runge-Kutta method for x'' = a(x, x', t), written for positions and rates so that the
 //! stages of the position need no evaluation of their own.
 
-use crate::gears::state::Relative;
+use crate::gears::state::{Motion, Relative};
 use crate::numbers::Real;
-
-/// Position and rate.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Motion<T, const N: usize> {
-    /// Relative coordinates.
-    pub position: Relative<T, N>,
-    /// Their rates.
-    pub rate: Relative<T, N>,
-}
 
 /// One step; `acceleration` is asked at the start (node 0), twice in the middle (node 1) and at the end (node 2).
 #[inline(always)]

@@ -9,11 +9,8 @@
 //!
 //! A_1 is taken at x_1 and the rate V + 6 A_m of the midpoint rule, and serves the next sub-step as A_0.
 
-use core::array;
-
 use crate::gears::contact::AppliedAcceleration;
-use crate::gears::runge_kutta::Motion;
-use crate::gears::state::Relative;
+use crate::gears::state::{MotionInPlace, Relative};
 use crate::gears::tables::Mobility;
 use crate::numbers::Real;
 
@@ -103,10 +100,15 @@ impl<T: Real, const N: usize> SubstepState<T, N> {
 
     /// Takes position and rate from a motion; accelerations are left as they are.
     #[inline(always)]
-    pub fn set_motion(&mut self, motion: &Motion<T, N>, length: T) {
-        let Motion { position, rate } = motion;
-        self.for_each(position, |coordinate, position| coordinate.position = position);
-        self.for_each(rate, |coordinate, rate| coordinate.rate = length * rate);
+    pub fn set_motion(&mut self, motion: &MotionInPlace<T, N>, length: T) {
+        self.for_each(motion.position, |coordinate, position| coordinate.position = position);
+        self.set_rates(motion.rate, length);
+    }
+
+    /// Takes the rates alone: positions are those of the last sub-step.
+    #[inline(always)]
+    pub fn set_rates(&mut self, rates: &Relative<T, N>, length: T) {
+        self.for_each(rates, |coordinate, rate| coordinate.rate = length * rate);
     }
 
     /// Shifts both accelerations as if the torques had always been larger by so much.
@@ -118,30 +120,20 @@ impl<T: Real, const N: usize> SubstepState<T, N> {
         });
     }
 
-    /// A motion whose accelerations are not yet known, in sub-steps of a length.
-    pub fn of(motion: &Motion<T, N>, length: T) -> Self {
-        let mut state = Self::EMPTY;
-        state.set_motion(motion, length);
-        state
-    }
-
-    /// The motion without its accelerations, from sub-steps at a rate, after it was `before`. Rates are taken over as
+    /// Moves a motion to where this is, from sub-steps of a length, which are `per_length` in a unit of time. Rates are taken over as
     /// their change, so that what no force has changed keeps its bits.
-    pub fn motion(&self, length: T, per_length: T, before: &Motion<T, N>) -> Motion<T, N> {
-        let rate = |coordinate: &Coordinate<T>, before: T| before + per_length * (coordinate.rate - length * before);
-        let rates = &before.rate;
-        Motion {
-            position: Relative {
-                planets: array::from_fn(|i| self.planets[i].position),
-                gap: self.gap.position,
-                wind_up: self.wind_up.position,
-            },
-            rate: Relative {
-                planets: array::from_fn(|i| rate(&self.planets[i], rates.planets[i])),
-                gap: rate(&self.gap, rates.gap),
-                wind_up: rate(&self.wind_up, rates.wind_up),
-            },
+    #[inline(always)]
+    pub fn move_to(&self, length: T, per_length: T, motion: MotionInPlace<T, N>) {
+        let MotionInPlace { position, rate } = motion;
+        let take = |coordinate: &Coordinate<T>, position: &mut T, rate: &mut T| {
+            *position = coordinate.position;
+            *rate += per_length * (coordinate.rate - length * *rate);
+        };
+        for i in 0..N {
+            take(&self.planets[i], &mut position.planets[i], &mut rate.planets[i]);
         }
+        take(&self.gap, &mut position.gap, &mut rate.gap);
+        take(&self.wind_up, &mut position.wind_up, &mut rate.wind_up);
     }
 
     /// Calls `act` for every coordinate with the value that belongs to it.

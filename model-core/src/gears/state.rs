@@ -37,6 +37,14 @@ impl<T: Real, const N: usize> Relative<T, N> {
         }
     }
 
+    /// Whether its canonical form is known to be itself. The wind-up is zero in joints without compliance.
+    #[inline(always)]
+    fn is_ordinary(&self) -> bool {
+        self.gap.is_ordinary()
+            && (self.wind_up.is_ordinary() || self.wind_up.bits() == 0)
+            && self.planets.iter().all(|planet| planet.is_ordinary())
+    }
+
     /// The canonical form of every number, which no floating-point mode changes: none so small that it may be flushed to
     /// zero, and one NaN for all that is not finite.
     #[inline]
@@ -52,6 +60,24 @@ impl<T: Real, const N: usize> Relative<T, N> {
         let planets = self.planets.iter().fold(running, |digest, value| chain(digest, value.bits()));
         chain(chain(planets, self.gap.bits()), self.wind_up.bits())
     }
+}
+
+/// Position and rate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motion<T, const N: usize> {
+    /// Relative coordinates.
+    pub position: Relative<T, N>,
+    /// Their rates.
+    pub rate: Relative<T, N>,
+}
+
+/// Position and rate where a state keeps them: what moves a motion in place.
+#[derive(Debug)]
+pub struct MotionInPlace<'a, T, const N: usize> {
+    /// Relative coordinates.
+    pub position: &'a mut Relative<T, N>,
+    /// Their rates.
+    pub rate: &'a mut Relative<T, N>,
 }
 
 /// The decoupled rigid motion, as carrier angle. Whole numbers: it neither drifts nor loses digits over any number of
@@ -146,9 +172,22 @@ impl<T: Real, const N: usize> State<T, N> {
         (self.position.planets, self.rate.planets) = ([T::HALF * position; N], [T::HALF * rate; N]);
     }
 
+    /// Position and rate apart from the rest.
+    #[inline(always)]
+    pub(super) fn motion(&mut self) -> MotionInPlace<'_, T, N> {
+        MotionInPlace { position: &mut self.position, rate: &mut self.rate }
+    }
+
     /// Brings every number into its canonical form, so that the next tick does not depend on the floating-point mode.
-    #[inline]
+    #[inline(always)]
     pub(super) fn canonicalise(&mut self) {
+        if !(self.position.is_ordinary() && self.rate.is_ordinary()) {
+            self.canonicalise_each();
+        }
+    }
+
+    #[inline(never)]
+    fn canonicalise_each(&mut self) {
         (self.position, self.rate) = (self.position.canonical(), self.rate.canonical());
     }
 

@@ -2,10 +2,10 @@
 //! side is smooth, and the sub-step is corrected for every crossing that its end reveals. The tanh dead zone has no contact
 //! set: see `full_forces`.
 
-use crate::gears::contact::{Laws, NetForces};
+use crate::gears::contact::Laws;
 use crate::gears::crossing::StepEnd;
-use crate::gears::excitation::{MeshPhase, PerMesh, PhaseHarmonics};
-use crate::gears::fixed_contact_set::{FixedContactSet, Start};
+use crate::gears::excitation::{MeshPhase, PerMesh, PhaseHarmonics, Phasor};
+use crate::gears::fixed_contact_set::FixedContactSet;
 use crate::gears::stages::SubstepState;
 use crate::numbers::Real;
 
@@ -21,7 +21,7 @@ pub fn advance<T: Real, const N: usize, const OVERTONES: usize>(
     let compliant = tables.mobility.wind_up > T::ZERO;
     let half = phase.over(tables.half_substep_share);
     let rate = tables.substep * phase.rate;
-    let mut phasor = phase.start;
+    let mut phasor = Phasor::at(phase.start);
     let mut violations: PerMesh<T, N> = [[T::ZERO; N]; 2];
     for _ in 0..tables.substeps {
         phasor = phasor.turned(&half);
@@ -65,19 +65,20 @@ pub fn advance<T: Real, const N: usize, const OVERTONES: usize>(
 #[inline(never)]
 pub fn begin<T: Real, const N: usize, const OVERTONES: usize>(
     fixed: &FixedContactSet<T, N, OVERTONES>,
-    start: &Start<T, N>,
     phase: &MeshPhase<T>,
+    harmonics_now: &PhaseHarmonics<T, OVERTONES>,
+    laws: &Laws<T, N>,
     state: &mut SubstepState<T, N>,
 ) {
     let tables = fixed.tables;
-    let phasor = phase.start.turned(&phase.over(tables.half_substep_share));
-    let middle = PhaseHarmonics::new(phasor, tables.substep * phase.rate, tables.excitation.harmonics);
     let wind_up = fixed.wind_up_force(state.wind_up.point());
-    let now =
-        NetForces::of(&start.meshes, |mesh| mesh.force).accelerations(&tables.stage.mobility, &fixed.applied, wind_up);
+    let gap = state.gap.point();
+    let now = fixed.accelerations(laws, harmonics_now, gap, wind_up, |i| state.planets[i].point(), |_, _| {});
     state.for_each(&now, |coordinate, now| (coordinate.now, coordinate.before) = (now, now));
+    let phasor = phase.at(tables.half_substep_share);
+    let middle = PhaseHarmonics::new(phasor, harmonics_now.rate, tables.excitation.harmonics);
     let wind_up = fixed.wind_up_force(state.wind_up.middle());
     let gap = state.gap.middle();
-    let seen = fixed.accelerations(&start.laws, &middle, gap, wind_up, |i| state.planets[i].middle(), |_, _| {});
+    let seen = fixed.accelerations(laws, &middle, gap, wind_up, |i| state.planets[i].middle(), |_, _| {});
     state.for_each(&seen, |coordinate, seen| coordinate.before = coordinate.now + coordinate.now - seen);
 }

@@ -2,47 +2,62 @@
 //! tick in sub-steps leaves contact laws and accelerations from which the next one continues, so that only the first of
 //! several has to evaluate its start. Joints with light planets are stepped by `light`.
 
-use crate::gears::contact::AppliedAcceleration;
-use crate::gears::excitation::{MeshPhase, PhaseHarmonics};
-use crate::gears::fixed_contact_set::{FixedContactSet, Start};
-use crate::gears::flow::{self, ExponentialTick};
-use crate::gears::runge_kutta::Motion;
+use crate::gears::contact::{AppliedAcceleration, Law, Laws};
+use crate::gears::excitation::{MeshPhase, PhaseHarmonics, Phasor};
+use crate::gears::fixed_contact_set::FixedContactSet;
+use crate::gears::flow;
 use crate::gears::stages::SubstepState;
+use crate::gears::state::MotionInPlace;
 use crate::gears::substep;
-use crate::gears::tables::Tables;
+use crate::gears::tables::{Mobility, Tables};
 use crate::numbers::Real;
 use parameters::DampingLaw;
+
+/// What is known of the start of a tick from the one before.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Known {
+    /// Nothing.
+    Nothing,
+    /// The laws of the meshes.
+    Laws,
+    /// Laws and accelerations, under the torques of the last tick.
+    Accelerations,
+}
 
 /// What a tick leaves for the next one besides position and rate. It may be dropped at any time: the next tick then
 /// evaluates its start again.
 #[derive(Debug, Clone)]
 pub struct WarmStart<T, const N: usize> {
-    start: Start<T, N>,
+    laws: Laws<T, N>,
     state: SubstepState<T, N>,
     /// Accelerations by the torques of the last tick, in units of a stage.
     applied: AppliedAcceleration<T>,
-    /// Laws, accelerations and torques are those of the end of the last tick.
-    valid: bool,
+    known: Known,
 }
 
 impl<T: Real, const N: usize> WarmStart<T, N> {
     /// Nothing to continue from.
-    pub const EMPTY: Self =
-        Self { start: Start::EMPTY, state: SubstepState::EMPTY, applied: AppliedAcceleration::NONE, valid: false };
+    pub const EMPTY: Self = Self {
+        laws: [[Law::ZERO; N]; 2],
+        state: SubstepState::EMPTY,
+        applied: AppliedAcceleration::NONE,
+        known: Known::Nothing,
+    };
 
     /// To be called when the motion is changed from outside.
     pub fn invalidate(&mut self) {
-        self.valid = false;
+        self.known = Known::Nothing;
     }
 
-    /// One tick. Ripple of one harmonic has a copy of its own, which skips the test for more at every mesh.
+    /// One tick, in place. Ripple of one harmonic has a copy of its own, which skips the test for more at every mesh.
+    #[inline(always)]
     pub fn tick<const OVERTONES: usize>(
         &mut self,
         tables: &Tables<T, N>,
         applied: &AppliedAcceleration<T>,
         phase: &MeshPhase<T>,
-        motion: &Motion<T, N>,
-    ) -> Motion<T, N> {
+        mut motion: MotionInPlace<T, N>,
+    ) {
         let stage = &tables.stage;
         let contact_law = if tables.damping_law == DampingLaw::Contact { T::ONE } else { T::ZERO };
         let fixed = FixedContactSet::<T, N, OVERTONES> {
@@ -51,28 +66,57 @@ impl<T: Real, const N: usize> WarmStart<T, N> {
             contact_law,
             paper_law: T::ONE - contact_law,
         };
-        let Self { start, state, .. } = self;
-        state.set_motion(motion, tables.substep);
-        if self.valid && start.is_open() {
-            state.shift_accelerations(&fixed.applied.minus(&self.applied), &stage.mobility);
+        let Self { laws, state, known, .. } = self;
+        if *known == Known::Accelerations {
+            state.set_rates(motion.rate, tables.substep);
         } else {
-            self.valid = false;
-            let rate = tables.substep * phase.rate;
-            fixed.start(&PhaseHarmonics::new(phase.start, rate, tables.excitation.harmonics), state, start);
-            let held = if tables.mobility.wind_up > T::ZERO {
-                flow::tick::<T, N, 3, OVERTONES>(&fixed, applied, phase, start, state, motion)
-            } else {
-                flow::tick::<T, N, 2, OVERTONES>(&fixed, applied, phase, start, state, motion)
-            };
-            match held {
-                ExponentialTick::Held(end) => return end,
-                ExponentialTick::OpenedLate(end) => return flow::corrected(&fixed, &mut start.laws, phase, &end),
-                ExponentialTick::Refused => {}
-            }
-            substep::begin(&fixed, start, phase, state);
+            state.set_motion(&motion, tables.substep);
         }
-        substep::advance(&fixed, phase, &mut start.laws, state);
-        (self.applied, self.valid) = (fixed.applied, true);
-        state.motion(tables.substep, stage.rate, motion)
+        let slow = phase.advance.abs() < tables.flow.longest_advance;
+        if *known == Known::Accelerations && (!slow || fixed.is_open(laws)) {
+            shift(state, &fixed.applied.minus(&self.applied), &stage.mobility);
+        } else {
+            let rate = tables.substep * phase.rate;
+            let harmonics_now = PhaseHarmonics::new(Phasor::at(phase.start), rate, tables.excitation.harmonics);
+            if *known == Known::Nothing {
+                fixed.find_laws(&harmonics_now, state, laws);
+            }
+            let start =
+                if slow && !fixed.is_open(laws) { flow::start(&fixed, &harmonics_now, laws, state) } else { None };
+            if let Some(start) = start {
+                let held = if tables.mobility.wind_up > T::ZERO {
+                    flow::tick::<T, N, 3, OVERTONES>(&fixed, applied, phase, laws, &start, &mut motion)
+                } else {
+                    flow::tick::<T, N, 2, OVERTONES>(&fixed, applied, phase, laws, &start, &mut motion)
+                };
+                if held {
+                    *known = Known::Laws;
+                    return;
+                }
+            }
+            if *known == Known::Accelerations {
+                shift(state, &fixed.applied.minus(&self.applied), &stage.mobility);
+            } else {
+                if *known == Known::Laws {
+                    fixed.find_laws(&harmonics_now, state, laws);
+                }
+                substep::begin(&fixed, phase, &harmonics_now, laws, state);
+            }
+        }
+        substep::advance(&fixed, phase, laws, state);
+        (self.applied, *known) = (fixed.applied, Known::Accelerations);
+        state.move_to(tables.substep, stage.rate, motion);
+    }
+}
+
+/// Puts accelerations under other torques. Controllers are often slower than ticks: then most changes are none.
+#[inline(always)]
+fn shift<T: Real, const N: usize>(
+    state: &mut SubstepState<T, N>,
+    change: &AppliedAcceleration<T>,
+    mobility: &Mobility<T>,
+) {
+    if *change != AppliedAcceleration::NONE {
+        state.shift_accelerations(change, mobility);
     }
 }

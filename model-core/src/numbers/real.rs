@@ -85,6 +85,9 @@ pub trait Real:
     /// Canonical form, which no floating-point mode changes: zero if it is smaller than `LEAST`, `NAN` if it is not finite.
     /// By whole numbers: flags of floating-point comparisons are slow to read on a Cortex-M4F.
     fn canonical(self) -> Self;
+    /// Finite and not smaller than `LEAST`: its own canonical form, which is found here by one comparison. So is zero, which is
+    /// not told here.
+    fn is_ordinary(self) -> bool;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
     /// Bits for a digest.
@@ -92,7 +95,7 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($scalar:ty, $phase:expr, $whole:expr, $tanh:path, $least:expr, $nan:expr, $first:expr, $steps:expr) => {
+    ($scalar:ty, $bits:ty, $phase:expr, $whole:expr, $tanh:path, $least:expr, $nan:expr, $first:expr, $steps:expr) => {
         impl Real for $scalar {
             const ZERO: Self = 0.0;
             const HALF: Self = 0.5;
@@ -166,6 +169,12 @@ macro_rules! real {
                     <Self as Real>::NAN
                 }
             }
+            #[inline(always)]
+            fn is_ordinary(self) -> bool {
+                const LEAST: $bits = (<$scalar as Real>::LEAST).to_bits() << 1;
+                const BEYOND: $bits = (<$scalar>::INFINITY.to_bits() << 1) - LEAST;
+                (self.to_bits() << 1).wrapping_sub(LEAST) < BEYOND
+            }
             fn is_finite(self) -> bool {
                 <$scalar>::is_finite(self)
             }
@@ -212,6 +221,7 @@ fn double_whole(value: f64) -> i64 {
 // exponent's bias less half of the number's bits, to 3.5 %) and the steps from there.
 real!(
     f32,
+    u32,
     single_phase,
     single_whole,
     libm::tanhf,
@@ -222,6 +232,7 @@ real!(
 );
 real!(
     f64,
+    u64,
     double_phase,
     double_whole,
     libm::tanh,

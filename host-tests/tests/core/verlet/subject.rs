@@ -1,10 +1,8 @@
 //! Joint Q1 with light planets, ripple and errors, its tables in stated Verlet sub-steps, and one run of core and reference side by
 //! side. No bound is stated here.
 
-use model_core::gears::design::dynamics::Dynamics;
-use model_core::gears::design::{Effort, design_scheme, verlet_tables};
-use model_core::gears::tables::Mobility;
-use model_core::gears::{Kinematics, Scales, Scheme, State, Tables};
+use model_core::gears::design::{Effort, design_scheme};
+use model_core::gears::{Kinematics, Scheme, State, Tables};
 use parameters::{DampingLaw, JointParameters, Mesh};
 use reference::joint::{Observation, Reference, RelativeState, Start};
 use reference::scenarios::{case_r, same, with_teeth};
@@ -22,22 +20,7 @@ pub fn joint(planets: usize, law: DampingLaw) -> JointParameters {
 
 /// Tables in so many Verlet sub-steps a tick.
 pub fn tables<const N: usize>(joint: &JointParameters, rate: u32, substeps: u32) -> Tables<f64, N> {
-    let mut tables: Tables<f64, N> =
-        design_scheme(joint, rate, Scheme::Realtime, Effort::Substeps(16)).expect("a sound joint");
-    let scales = Scales::new(joint);
-    let dynamics = Dynamics::new(joint, &scales);
-    let (wind_up_stiffness, wind_up_damping) = dynamics.wind_up.expect("Q1 is compliant");
-    let unit = Mobility {
-        sun: dynamics.mobilities[0],
-        planet: dynamics.mobilities[1],
-        carrier: dynamics.mobilities[N + 1],
-        link: dynamics.mobilities[N + 2],
-        wind_up: 1.0,
-        wind_up_stiffness,
-        wind_up_damping,
-    };
-    tables.verlet = verlet_tables::verlet(joint, &unit, scales.frequency / f64::from(rate), substeps);
-    tables
+    design_scheme(joint, rate, Scheme::Realtime, Effort::Verlet(substeps)).expect("a sound joint")
 }
 
 /// The same without exponential ticks.

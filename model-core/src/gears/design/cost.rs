@@ -2,10 +2,10 @@
 //! rustc 1.96, opt-level 3, fat LTO) over 108 sets of tables (3, 4 and 5 planets, both laws, with compliance and
 //! without, 1, 2 and 5 harmonics, 1, 2 and 4 sub-steps; Verlet sub-steps apart).
 //!
-//! A tick by the exponential flow costs the same each time. One in sub-steps costs a fixed part (start, first
-//! evaluation of the accelerations, state taken over; half of that in ticks that start warm), each sub-step, each
-//! correction and each mesh that crosses; before it an exponential tick may have been given up half-way. More than one harmonic of the stiffness wave makes every evaluation of
-//! a mesh dearer.
+//! A tick by the exponential flow costs the same each time. One in sub-steps goes on from the one before at a fixed part, each
+//! sub-step, each correction and each mesh that crosses. It costs more when it begins anew: after an exponential tick, which
+//! may have been tried and given up, or when the motion was set from outside. More than one harmonic of the stiffness wave
+//! makes every evaluation of a mesh dearer.
 
 use crate::gears::certificate::Substeps;
 use parameters::{DampingLaw, JointParameters, MESH_KINDS, MIN_PLANETS};
@@ -16,6 +16,7 @@ struct Counted {
     /// More with compliance.
     hold_compliant: f64,
     given_up: f64,
+    anew: f64,
     fixed: f64,
     substep: f64,
     correction: f64,
@@ -34,24 +35,51 @@ struct VerletCost {
     substep: [f64; 2],
 }
 
-/// 3, 4 and 5 planets, each counted to the instruction at 3, 5 and 9 Verlet sub-steps.
+/// 3, 4 and 5 planets, each counted to the instruction at 3 and 9 Verlet sub-steps.
 const VERLET: [VerletCost; 3] = [
-    VerletCost { hold: 1489.0, given_up: 343.0, fixed: [1032.0, 1048.0], substep: [140.0, 132.0] },
-    VerletCost { hold: 1844.0, given_up: 444.0, fixed: [1135.0, 1200.0], substep: [275.0, 173.0] },
-    VerletCost { hold: 2156.0, given_up: 545.0, fixed: [1514.0, 1399.0], substep: [350.0, 231.0] },
+    VerletCost { hold: 1315.0, given_up: 343.0, fixed: [530.0, 539.0], substep: [159.0, 151.0] },
+    VerletCost { hold: 1556.0, given_up: 444.0, fixed: [711.0, 699.0], substep: [280.0, 196.0] },
+    VerletCost { hold: 1828.0, given_up: 545.0, fixed: [844.0, 851.0], substep: [344.0, 333.0] },
 ];
 /// More for a mesh that touches its flank in a Verlet sub-step, and still more for one that is not a number; found by the
 /// search for the worst tick.
-const TOUCH: f64 = 40.0;
+const TOUCH: f64 = 50.0;
 const NOT_A_NUMBER: f64 = 20.0;
 
-/// 3, 4 and 5 planets. Counted to the instruction, but for `given_up`: what a tick that is forced open in its first
-/// half takes beyond the rest (three planets), in proportion to `hold`.
+/// 3, 4 and 5 planets. Counted to the instruction at 2 and 8 sub-steps, but for `given_up`: what is done of a whole tick up to
+/// its second node, for three planets by function, in proportion to `hold` for others. `fixed` is with torques that change; without
+/// it is 34 to 42 less.
 const COUNTED: [Counted; 3] = [
-    Counted { hold: 2165.0, hold_compliant: 3.0, given_up: 580.0, fixed: 1351.0, substep: 536.0, correction: 359.0 },
-    Counted { hold: 2422.0, hold_compliant: 117.0, given_up: 655.0, fixed: 1562.0, substep: 685.0, correction: 455.0 },
-    Counted { hold: 2849.0, hold_compliant: 413.0, given_up: 765.0, fixed: 1864.0, substep: 851.0, correction: 550.0 },
+    Counted {
+        hold: 1799.0,
+        hold_compliant: 16.0,
+        given_up: 1160.0,
+        anew: 735.0,
+        fixed: 445.0,
+        substep: 539.0,
+        correction: 359.0,
+    },
+    Counted {
+        hold: 2006.0,
+        hold_compliant: 133.0,
+        given_up: 1320.0,
+        anew: 954.0,
+        fixed: 468.0,
+        substep: 685.0,
+        correction: 455.0,
+    },
+    Counted {
+        hold: 2384.0,
+        hold_compliant: 386.0,
+        given_up: 1620.0,
+        anew: 1162.0,
+        fixed: 538.0,
+        substep: 853.0,
+        correction: 550.0,
+    },
 ];
+/// More in a tick whose state has numbers that are not canonical, by planet.
+const CANONICAL: f64 = 42.0;
 /// An equivalent gear: in contact, in free flight, and more for the changes of contact that a tick follows. Each counted to the
 /// instruction, the last as the most that was found for states and torques of joints.
 const EQUIVALENT: [f64; 3] = [151.0, 147.0, 96.0];
@@ -59,24 +87,25 @@ const EQUIVALENT: [f64; 3] = [151.0, 147.0, 96.0];
 const CROSSING: f64 = 211.0;
 /// One that crosses from flank to flank, or is not a number: more than that, found by the search for the worst tick.
 const FLANK_TO_FLANK: f64 = 120.0;
-/// More under the law `contact`: a mesh that crosses, a planet of an exponential tick, a tick in sub-steps.
-const CONTACT: [f64; 3] = [10.0, 12.0, 8.0];
+/// More under the law `contact`: a mesh that crosses, a tick that begins anew.
+const CONTACT: [f64; 2] = [10.0, 8.0];
 /// More with compliance: a sub-step.
-const COMPLIANCE: f64 = 45.0;
+const COMPLIANCE: f64 = 44.0;
 /// More with overtones: a planet in each evaluation, and again for each harmonic after the first.
 const OVERTONES: f64 = 60.0;
 const OVERTONE: f64 = 17.0;
 /// The same for a mesh that crosses.
 const CROSSING_OVERTONES: f64 = 36.0;
 const CROSSING_OVERTONE: f64 = 19.0;
-/// Evaluations in an exponential tick (some with rates), in one given up half-way, in the fixed part, in a sub-step.
-const EVALUATIONS: [f64; 4] = [3.8, 2.0, 1.8, 2.0];
+/// Evaluations in an exponential tick (some with rates), given up or not, in one that begins anew, in a sub-step.
+const EVALUATIONS: [f64; 3] = [3.8, 3.0, 2.0];
 
 /// Instructions of a joint's tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cost {
     hold: f64,
     given_up: f64,
+    anew: f64,
     fixed: f64,
     substep: f64,
     correction: f64,
@@ -105,10 +134,11 @@ impl Cost {
         let overtones = planets * with(beyond_first > 0.0, OVERTONES + OVERTONE * beyond_first);
         let evaluations = EVALUATIONS.map(|count| count * overtones);
         Self {
-            hold: counted.hold + planets * contact[1] + compliant(counted.hold_compliant) + evaluations[0],
-            given_up: counted.given_up + evaluations[1],
-            fixed: counted.fixed + contact[2] + evaluations[2],
-            substep: counted.substep + compliant(COMPLIANCE) + evaluations[3],
+            hold: counted.hold + compliant(counted.hold_compliant) + evaluations[0],
+            given_up: counted.given_up + evaluations[0],
+            anew: counted.anew + contact[1] + evaluations[1],
+            fixed: counted.fixed,
+            substep: counted.substep + compliant(COMPLIANCE) + evaluations[2],
             correction: counted.correction,
             crossing: CROSSING
                 + contact[0]
@@ -125,6 +155,7 @@ impl Cost {
         Self {
             hold,
             given_up: 0.0,
+            anew: 0.0,
             fixed,
             substep: 0.0,
             correction,
@@ -136,10 +167,20 @@ impl Cost {
         }
     }
 
+    /// Whether a tick in which contact holds is taken as a whole, by the exponential flow: where that costs less than the
+    /// sub-steps, which are as accurate and need no test of whether contact will hold.
+    pub fn takes_whole_ticks(&self, substeps: Substeps) -> bool {
+        match substeps {
+            Substeps::Corrected(_) => self.substep == 0.0 || self.hold < self.contact_changes(substeps),
+            Substeps::Verlet(_) => true,
+        }
+    }
+
     /// While contact holds.
     pub fn contact_holds(&self, substeps: Substeps) -> f64 {
         match substeps {
-            Substeps::Corrected(_) => self.hold,
+            Substeps::Corrected(_) if self.takes_whole_ticks(substeps) => self.hold,
+            Substeps::Corrected(_) => self.contact_changes(substeps),
             Substeps::Verlet(_) => self.verlet.hold,
         }
     }
@@ -152,15 +193,13 @@ impl Cost {
         }
     }
 
-    /// Every mesh crosses in two of the sub-steps (joints that rattle come to that by themselves), or in one after an
-    /// exponential tick was given up, or late in an exponential tick; or touches its flank in every
-    /// Verlet sub-step.
+    /// Every mesh crosses in two of the sub-steps (joints that rattle come to that by themselves), or in one of a tick that
+    /// begins anew, after an exponential tick was given up where there are such; or touches its flank in every Verlet sub-step.
     pub fn all_crossing(&self, substeps: Substeps) -> f64 {
         match substeps {
             Substeps::Corrected(count) => {
                 let twice = self.contact_changes(substeps) + f64::from(count.min(2)) * self.all();
-                let late = self.hold + 0.5 * self.substep + self.all();
-                twice.max(self.given_up + self.contact_changes(substeps) + self.all()).max(late)
+                twice.max(self.contact_changes_anew(substeps) + self.all())
             }
             Substeps::Verlet(count) => {
                 self.verlet.given_up + self.contact_changes(substeps) + f64::from(count) * self.meshes * TOUCH
@@ -172,12 +211,19 @@ impl Cost {
     /// upper bound on every state of the search.
     pub fn bound(&self, substeps: Substeps) -> f64 {
         let count = f64::from(substeps.count().max(1));
-        match substeps {
+        let most = match substeps {
             Substeps::Corrected(_) => {
-                self.given_up + self.contact_changes(substeps) + count * (self.all() + self.meshes * FLANK_TO_FLANK)
+                self.contact_changes_anew(substeps) + count * (self.all() + self.meshes * FLANK_TO_FLANK)
             }
             Substeps::Verlet(_) => self.all_crossing(substeps) + count * self.meshes * NOT_A_NUMBER,
-        }
+        };
+        most + 0.5 * self.meshes * CANONICAL
+    }
+
+    /// In sub-steps that begin anew.
+    fn contact_changes_anew(&self, substeps: Substeps) -> f64 {
+        let given_up = if self.takes_whole_ticks(substeps) { self.given_up } else { 0.0 };
+        given_up + self.anew + self.contact_changes(substeps)
     }
 
     /// The most sub-steps, of so many, with which `all_crossing` stays within so many instructions; zero if not even one

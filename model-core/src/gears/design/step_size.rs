@@ -141,6 +141,11 @@ impl StepSize {
         Ok(if self.sharp && !resolved && affordable { verlet } else { substeps })
     }
 
+    /// Whether ticks in which contact holds are taken as a whole: where that is cheaper than the sub-steps, or time does not count.
+    pub(super) fn takes_whole_ticks(&self, substeps: Substeps, effort: Effort) -> bool {
+        effort == Effort::Accurate || self.cost.takes_whole_ticks(substeps)
+    }
+
     /// Lowest tick rate that is accepted [Hz].
     pub fn lowest_rate(&self, effort: Effort) -> u32 {
         if self.whole {

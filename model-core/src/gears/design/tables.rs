@@ -5,6 +5,7 @@ use core::f64::consts::TAU;
 
 use crate::gears::design::dynamics::{Dynamics, MovingMasses};
 use crate::gears::design::error::DesignError;
+use crate::gears::design::flow_tables::WholeTicks;
 use crate::gears::design::step_size::{Effort, StepSize, Substeps};
 use crate::gears::design::validate::validate;
 use crate::gears::design::{equivalent, flow_tables, verlet_tables};
@@ -65,9 +66,10 @@ pub fn design_scheme<T: Real, const N: usize>(
     let real = T::from_f64;
     let step_size = StepSize::new(parameters);
     let substeps = step_size.corrected_substeps(tick_rate, effort)?;
-    let verlet_substeps = match step_size.substeps(tick_rate, effort)? {
-        Substeps::Verlet(substeps) => substeps,
-        Substeps::Corrected(_) => 0,
+    let (verlet_substeps, whole_ticks) = match step_size.substeps(tick_rate, effort)? {
+        Substeps::Verlet(substeps) => (substeps, WholeTicks::Light),
+        chosen if step_size.takes_whole_ticks(chosen, effort) => (0, WholeTicks::Held),
+        Substeps::Corrected(_) => (0, WholeTicks::Never),
     };
     let tick = scales.frequency / f64::from(tick_rate);
     let substep = tick / f64::from(substeps);
@@ -103,7 +105,7 @@ pub fn design_scheme<T: Real, const N: usize>(
             mobility: mobility(&dynamics, substep * substep / 6.0, 1.0 / substep),
             damping: MESH_KINDS.map(|kind| real(scales.damping(parameters.damping_coefficient(kind)) / substep)),
         },
-        flow: flow_tables::flow(&dynamics, flow_step, substeps),
+        flow: flow_tables::flow(&dynamics, flow_step, substeps, whole_ticks),
         verlet: verlet_tables::verlet(parameters, &mobility(&dynamics, 1.0, 1.0), tick, verlet_substeps),
     };
     tables.digest = tables.numbers_digest();

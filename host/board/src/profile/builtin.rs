@@ -61,6 +61,8 @@ fn level(time: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use model_core::gears::Mechanics;
+
     use super::*;
 
     fn joints() -> impl Iterator<Item = JointParameters> {

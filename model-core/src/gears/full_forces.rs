@@ -36,6 +36,7 @@ pub fn runge_kutta<T: Real, const N: usize>(
 }
 
 /// One tick of semi-implicit Euler: the rate first, then the position with the new rate.
+#[cfg(feature = "design")]
 #[inline(never)]
 pub fn semi_implicit_euler<T: Real, const N: usize>(
     tables: &Tables<T, N>,

@@ -28,6 +28,7 @@ mod losses;
 mod mechanics;
 mod mesh_phases;
 mod model;
+#[cfg(feature = "design")]
 mod paper;
 mod planets;
 mod runge_kutta;

@@ -6,10 +6,12 @@ use core::array;
 use crate::gears::contact::{AppliedAcceleration, contact, mesh_coordinates};
 use crate::gears::equivalent::{self, Point};
 use crate::gears::excitation::{MAX_OVERTONES, MeshPhase, PerMesh, Phasor, mesh_excitations, mesh_phase_advance};
+#[cfg(feature = "design")]
+use crate::gears::paper;
 use crate::gears::state::{Motion, State};
 use crate::gears::tables::{Scheme, Tables};
 use crate::gears::warm_start::WarmStart;
-use crate::gears::{full_forces, light, paper};
+use crate::gears::{full_forces, light};
 use crate::numbers::Real;
 use parameters::{ContactState, EQUIVALENT};
 
@@ -147,11 +149,12 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
             scheme => {
                 let before = Motion { position: state.position, rate: state.rate };
                 let after = match scheme {
+                    #[cfg(feature = "design")]
                     Scheme::PaperEtd1 => paper::step(tables, &applied, &phase, &before),
+                    #[cfg(feature = "design")]
                     Scheme::SemiImplicitEuler => full_forces::semi_implicit_euler(tables, &applied, &phase, &before),
-                    Scheme::Realtime | Scheme::RungeKutta4 => {
-                        full_forces::runge_kutta(tables, &applied, &phase, &before)
-                    }
+                    // The tanh dead zone's, and the classical method by name.
+                    _ => full_forces::runge_kutta(tables, &applied, &phase, &before),
                 };
                 (state.position, state.rate) = (after.position, after.rate);
             }

@@ -94,17 +94,20 @@ pub struct Stage<T: Real> {
     pub damping: [T; 2],
 }
 
-/// How a tick is stepped.
+/// How a tick is stepped. Those for comparisons are no part of a board's image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scheme {
     /// Exponential flow while the contact set holds over the tick; otherwise sub-steps with a fixed contact set,
     /// corrected for every crossing.
     Realtime,
     /// The paper's: one constant exponential, everything nonlinear held as a pseudo-force over the sub-step.
+    #[cfg(feature = "design")]
     PaperEtd1,
     /// Classical Runge-Kutta on the full forces, for comparison.
+    #[cfg(feature = "design")]
     RungeKutta4,
     /// Semi-implicit Euler on the full forces, likewise.
+    #[cfg(feature = "design")]
     SemiImplicitEuler,
 }
 

@@ -126,15 +126,10 @@ fn body(graph: &DiGraph<u32, ()>, from: NodeIndex, head: NodeIndex) -> BTreeSet<
     found
 }
 
-/// Both half words of an instruction.
-pub fn halves(functions: &Functions, address: u32) -> (u16, u16) {
-    (functions.half(address).unwrap_or(0), functions.half(address + 2).unwrap_or(0))
-}
-
 fn conditions(functions: &Functions, function: &Function) -> BTreeMap<u32, u8> {
     let (mut found, mut state) = (BTreeMap::new(), 0u8);
     for address in function.code.keys() {
-        let (first, second) = halves(functions, *address);
+        let (first, second) = functions.halves(*address);
         if state != 0 {
             found.insert(*address, state >> 4);
             // The manual's ITAdvance.

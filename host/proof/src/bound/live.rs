@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 
 use petgraph::graph::{DiGraph, NodeIndex};
 
-use super::graph::halves;
 use super::operation::{
     Address, Arithmetic, Flags, Floating, Offset, Operand, Operation, Register, Shift, Single, operation,
 };
@@ -158,7 +157,7 @@ pub fn effect(operation: &Operation) -> Effect {
 
 /// Uses and sets of an instruction in its function.
 fn effect_at(functions: &Functions, function: &Function, address: u32) -> Effect {
-    let (first, second) = halves(functions, address);
+    let (first, second) = functions.halves(address);
     let own = effect(&operation(first, second));
     let flow = function.code.get(&address).map(|instruction| instruction.flow);
     match flow {

@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
 use super::cycles;
-use super::graph::{Graph, halves};
+use super::graph::Graph;
 use super::live::{Effect, Live, effect};
 use super::machine::{Constants, Machine, holds};
 use super::operation::{Operation, Register, operation};
@@ -311,7 +311,7 @@ impl<'a> Search<'a> {
         loop {
             let function = functions.at(place.function).ok_or(Refused::Lost(place.at))?;
             let instruction = function.code.get(&place.at).ok_or(Refused::Lost(place.at))?;
-            let (first, second) = halves(functions, place.at);
+            let (first, second) = functions.halves(place.at);
             let operation = operation(first, second);
             if operation == Operation::Unknown {
                 return Err(Refused::Instruction(place.at));

@@ -137,6 +137,11 @@ impl Functions {
         Some(u16::from_le_bytes([self.byte(address)?, self.byte(address + 1)?]))
     }
 
+    /// Both half words of an instruction; zero where there is none.
+    pub fn halves(&self, address: u32) -> (u16, u16) {
+        (self.half(address).unwrap_or(0), self.half(address + 2).unwrap_or(0))
+    }
+
     fn section(&self, address: u32) -> Option<(u32, &[u8])> {
         let holds = |(start, bytes): &&(u32, Vec<u8>)| (*start..*start + bytes.len() as u32).contains(&address);
         self.memory.iter().find(holds).map(|(start, bytes)| (*start, bytes.as_slice()))

@@ -160,6 +160,21 @@ pub const ALL: &[Mistake] = &[
         "a pin that a bootloader drove is driven still",
     ),
     Mistake::new(
+        Stm32f405,
+        Plant,
+        bootloader::starts,
+        &[at(0x4002_3810, OmitValue(0x2060_0000))],
+        "a bootloader's DMA still writes to RAM",
+    )
+    .short(),
+    Mistake::new(
+        Stm32g474,
+        Plant,
+        bootloader::starts,
+        &[at(0x4002_1028, OmitValue(7))],
+        "a bootloader's DMA still writes to RAM",
+    ),
+    Mistake::new(
         Stm32g431,
         Plant,
         boot::answers,

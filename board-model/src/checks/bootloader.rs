@@ -91,7 +91,7 @@ fn full_speed(chip: Chip, is_signal: bool, Pll { divider, factor, range }: Pll) 
 const DRIVEN: Pin = Pin('C', 6);
 
 /// The writes for that, on top of the clocks that are on.
-fn used(chip: Chip) -> [(u32, u32); 3] {
+fn driven(chip: Chip) -> [(u32, u32); 3] {
     let (gates, port, was) = match chip {
         Chip::Stm32f405 => ((0x4002_3830, 0x0010_0004), 0x4002_0800, 0),
         Chip::Stm32g474 | Chip::Stm32g431 => ((0x4002_104c, 4), 0x4800_0800, u32::MAX),
@@ -100,8 +100,47 @@ fn used(chip: Chip) -> [(u32, u32); 3] {
     [gates, (port + 0x18, 1 << DRIVEN.1), (port, was & !(3 << (2 * DRIVEN.1)) | 1 << (2 * DRIVEN.1))]
 }
 
+/// DMA that receives into the first bytes of RAM for ever, as far as the chip's DMA is modelled: the register that switches its
+/// clock on, with the bits for that; the channel's control register; and the writes that start it.
+struct Received {
+    gate: (u32, u32),
+    control: u32,
+    begun: &'static [(u32, u32)],
+}
+
+fn received(chip: Chip) -> Option<Received> {
+    const RAM: u32 = 0x2000_0000;
+    match chip {
+        // Stream 0 of DMA1, channel 4: UART5.
+        Chip::Stm32f405 => Some(Received {
+            gate: (0x4002_3830, 0x0030_0004),
+            control: 0x4002_6010,
+            begun: &[
+                (0x4002_6014, 16),
+                (0x4002_6018, 0x4000_5004),
+                (0x4002_601c, RAM),
+                (0x4002_6010, 4 << 25 | 1 << 10 | 1 << 8 | 1),
+            ],
+        }),
+        // Channel 6 of DMA1, by the multiplexer's request of USART3.
+        Chip::Stm32g474 | Chip::Stm32g431 => Some(Received {
+            gate: (0x4002_1048, 0x105),
+            control: 0x4002_006c,
+            begun: &[
+                (0x4002_0814, 28),
+                (0x4002_0070, 16),
+                (0x4002_0074, 0x4000_4824),
+                (0x4002_0078, RAM),
+                (0x4002_006c, 1 << 7 | 1 << 5 | 1),
+            ],
+        }),
+        Chip::Stm32h743 => None,
+    }
+}
+
 /// A bootloader that ran at full speed from what is outside jumps to the image: with its clock, with its own vectors in force and its
-/// tick, with interrupts pending and on that the image serves, and one that it does not, and with a pin that it drives.
+/// tick, with interrupts pending and on that the image serves, and one that it does not, with a pin that it drives, and with DMA
+/// under way.
 fn jumped_to<'a>(subject: &Subject) -> Result<Board<'a>, String> {
     let (mut board, chip) = (subject.start()?, subject.board.chip());
     let described = &subject.board.described;
@@ -114,7 +153,8 @@ fn jumped_to<'a>(subject: &Subject) -> Result<Board<'a>, String> {
         machine.pass(A_WHILE);
         machine.settle();
     }
-    for (address, value) in used(chip) {
+    let received = received(chip).map(|received| [&[received.gate][..], received.begun].concat());
+    for (address, value) in driven(chip).into_iter().chain(received.unwrap_or_default()) {
         board.machine_mut().set_up(address, value);
     }
     let core = board.machine().wires.clocks.core;
@@ -129,6 +169,7 @@ fn jumped_to<'a>(subject: &Subject) -> Result<Board<'a>, String> {
 /// The image takes its own vectors before any interrupt comes, and its own clock, and is bothered by no interrupt that it does not
 /// serve.
 pub fn starts(subject: &Subject) -> Result<String, String> {
+    let chip = subject.board.chip();
     let mut talk = Talk::new(jumped_to(subject)?);
     let hello = talk.call(2 * SECOND);
     clean(&talk.board.borrow())?;
@@ -144,6 +185,15 @@ pub fn starts(subject: &Subject) -> Result<String, String> {
     }
     ticks(&mut talk, hello.tick_rate)?;
     clean(&talk.board.borrow())?;
+    if let Some(Received { gate, control, .. }) = received(chip) {
+        let mut board = talk.board.borrow_mut();
+        let machine = board.machine_mut();
+        machine.set_up(gate.0, gate.1);
+        if machine.read(control, 4) & 1 == 1 {
+            return Err("the bootloader's DMA still receives into RAM".into());
+        }
+        clean(&board)?;
+    }
     Ok(format!("{core} Hz, vectors at {:#010x}", talk.board.borrow().machine().scs.vectors))
 }
 

@@ -1,6 +1,28 @@
 //! What a bootloader may leave behind that jumped to the image, where a reset would leave nothing: interrupts that are on or
-//! pending, and SysTick. All of it goes before anything else runs, since some would lead to a vector that the image does not serve,
-//! and a role without a tick has none for SysTick. Vectors and clock are set right by the start of the board and of its chip.
+//! pending, SysTick, and DMA that is under way. All of it goes before anything else runs: some interrupts would lead to a vector that the
+//! image does not serve, a role without a tick has none for SysTick, and a transfer writes where the image is about to have its
+//! statics. Vectors and clock are set right by the start of the board and of its chip.
+
+/// Registers by which the clock controller resets those that write to memory by themselves, and their bits in them: a one holds it
+/// in reset.
+type Master = [u32; 2];
+
+/// DMA1, DMA2, USB OTG HS: RM0090 7.3, RCC_AHB1RSTR.
+#[cfg(feature = "stm32f405")]
+static MASTERS: [Master; 1] = [[0x4002_3810, 1 << 21 | 1 << 22 | 1 << 29]];
+
+/// DMA1, DMA2, and what routes requests to them: RM0440 7.4, RCC_AHB1RSTR.
+#[cfg(any(feature = "stm32g474", feature = "stm32g431"))]
+static MASTERS: [Master; 1] = [[0x4002_1028, 1 | 1 << 1 | 1 << 2]];
+
+/// DMA1, DMA2, Ethernet, USB OTG 1 and 2; MDMA, DMA2D, SDMMC1; SDMMC2; BDMA: RM0433 8.7, RCC_AHB1RSTR, 3, 2 and 4.
+#[cfg(feature = "stm32h743")]
+static MASTERS: [Master; 4] = [
+    [0x5802_4480, 1 | 1 << 1 | 1 << 15 | 1 << 25 | 1 << 27],
+    [0x5802_447c, 1 | 1 << 4 | 1 << 16],
+    [0x5802_4484, 1 << 9],
+    [0x5802_4488, 1 << 21],
+];
 
 // Before memory is set up there is no sound Rust: the start-up code of `cortex-m-rt` calls this by its name.
 core::arch::global_asm!(
@@ -30,6 +52,19 @@ core::arch::global_asm!(
     "movt r0, #0xe000",
     "mov r1, #0x0a000000",
     "str r1, [r0]",
+    // Masters of the bus: held in reset, then as after one.
+    "movw r0, #:lower16:{masters}",
+    "movt r0, #:upper16:{masters}",
+    "movs r3, #{count}",
+    "2:",
+    "ldmia r0!, {{r1, r2}}",
+    "str r2, [r1]",
+    "movs r2, #0",
+    "str r2, [r1]",
+    "subs r3, #1",
+    "bne 2b",
     "bx lr",
     ".size __pre_init, . - __pre_init",
+    masters = sym MASTERS,
+    count = const MASTERS.len(),
 );

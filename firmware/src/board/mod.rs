@@ -22,6 +22,7 @@ pub mod flash_slots;
 pub mod flash_unit;
 mod gpio;
 mod handover;
+mod internal_clock;
 mod serial_unit;
 mod start;
 mod watchdog;

@@ -14,6 +14,7 @@ use super::description::{EXTERNAL, EXTERNAL_PLL, INTERNAL_PLL, SLOTS};
 use super::external_clock::{CaptureTimer, External, Internal, judged, measure};
 use super::flash_slots::FlashSlots;
 use super::flash_unit::{FlashUnit, Kind};
+use super::internal_clock::back_to_internal;
 use super::old_usart::OldUsart;
 use super::serial_unit;
 use crate::kept_memory::Slot;
@@ -100,21 +101,9 @@ fn start_clock(clocks: &pac::RCC, flash: &pac::FLASH, timer: &CaptureTimer) -> C
     clock
 }
 
-/// As after a reset, whatever a bootloader has made of it: the core and all buses run from the internal oscillator, all else is off.
-/// Wait states may stay.
-fn back_to_internal(clocks: &pac::RCC) -> bool {
-    clocks.cr().modify(|_, w| w.hsion().set_bit());
-    if !wait_until(|| clocks.cr().read().hsirdy().bit_is_set()) {
-        return false;
-    }
-    clocks.cfgr().modify(|_, w| w.sw().hsi());
-    if !wait_until(|| clocks.cfgr().read().sws().is_hsi()) {
-        return false;
-    }
+back_to_internal!(pllon, pllrdy, csson, |clocks| {
     clocks.cfgr().modify(|_, w| w.hpre().div1().ppre1().div1().ppre2().div1());
-    clocks.cr().modify(|_, w| w.pllon().clear_bit().hseon().clear_bit().csson().clear_bit());
-    wait_until(|| clocks.cr().read().pllrdy().bit_is_clear() && clocks.cr().read().hserdy().bit_is_clear())
-}
+});
 
 /// The external clock [Hz]: timer 11 sees a 25th of it.
 fn measured(clocks: &pac::RCC, timer: &CaptureTimer) -> u32 {

@@ -18,6 +18,7 @@ use super::description::{EXTERNAL, EXTERNAL_PLL, INTERNAL_PLL, SLOTS};
 use super::external_clock::{CaptureTimer, External, Internal, judged, measure};
 use super::fifo_uart::FifoUart;
 use super::flash_slots::{Flash, FlashSlots};
+use super::internal_clock::back_to_internal;
 use super::serial_unit;
 use crate::kept_memory::Slot;
 
@@ -208,22 +209,11 @@ fn start_clock(clocks: &pac::RCC, power: &pac::PWR, flash: &pac::FLASH, timer: &
     clock
 }
 
-/// As after a reset, whatever a bootloader has made of it: the core and all buses run from the internal oscillator, all else is off.
-/// Wait states and voltage scale may stay.
-fn back_to_internal(clocks: &pac::RCC) -> bool {
-    clocks.cr().modify(|_, w| w.hsion().set_bit());
-    if !wait_until(|| clocks.cr().read().hsirdy().bit_is_set()) {
-        return false;
-    }
-    clocks.cfgr().modify(|_, w| w.sw().hsi());
-    if !wait_until(|| clocks.cfgr().read().sws().is_hsi()) {
-        return false;
-    }
-    clocks.cr().modify(|_, w| w.hsidiv().div1().pll1on().clear_bit().hseon().clear_bit().hsecsson().clear_bit());
+back_to_internal!(pll1on, pll1rdy, hsecsson, |clocks| {
+    clocks.cr().modify(|_, w| w.hsidiv().div1());
     clocks.d1cfgr().modify(|_, w| w.d1cpre().div1().hpre().div1().d1ppre().div1());
     clocks.d2cfgr().modify(|_, w| w.d2ppre1().div1().d2ppre2().div1());
-    wait_until(|| clocks.cr().read().pll1rdy().bit_is_clear() && clocks.cr().read().hserdy().bit_is_clear())
-}
+});
 
 /// The external clock [Hz]: timer 17 sees it divided to 1 MHz, if it is what the board's file says.
 fn measured(clocks: &pac::RCC, timer: &CaptureTimer, frequency: u32) -> u32 {

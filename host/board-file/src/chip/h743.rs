@@ -114,18 +114,22 @@ const CAN: &[CanUnit] = &[
     CanUnit {
         name: "FDCAN1",
         send: &[pin("PA12"), pin("PB9"), pin("PD1"), pin("PH13")],
-        receive: &[pin("PA11"), pin("PB8"), pin("PD0"), pin("PH14")],
+        receive: &[pin("PA11"), pin("PB8"), pin("PD0"), pin("PH14"), pin("PI9")],
     },
     CanUnit { name: "FDCAN2", send: &[pin("PB6"), pin("PB13")], receive: &[pin("PB5"), pin("PB12")] },
 ];
 
 const TIMERS: &[TimerUnit] = &[
-    TimerUnit { name: "TIM1", a: &[pin("PA8"), pin("PE9")], b: &[pin("PA9"), pin("PE11")] },
+    TimerUnit { name: "TIM1", a: &[pin("PA8"), pin("PE9"), pin("PK1")], b: &[pin("PA9"), pin("PE11"), pin("PJ11")] },
     TimerUnit { name: "TIM2", a: &[pin("PA0"), pin("PA5"), pin("PA15")], b: &[pin("PA1"), pin("PB3")] },
     TimerUnit { name: "TIM3", a: &[pin("PA6"), pin("PB4"), pin("PC6")], b: &[pin("PA7"), pin("PB5"), pin("PC7")] },
     TimerUnit { name: "TIM4", a: &[pin("PB6"), pin("PD12")], b: &[pin("PB7"), pin("PD13")] },
     TimerUnit { name: "TIM5", a: &[pin("PA0"), pin("PH10")], b: &[pin("PA1"), pin("PH11")] },
-    TimerUnit { name: "TIM8", a: &[pin("PC6"), pin("PI5")], b: &[pin("PC7"), pin("PI6")] },
+    TimerUnit {
+        name: "TIM8",
+        a: &[pin("PC6"), pin("PI5"), pin("PJ8")],
+        b: &[pin("PC7"), pin("PI6"), pin("PJ6"), pin("PJ10")],
+    },
 ];
 
 const PINS_100: &[(char, u16)] = &[('A', ALL), ('B', ALL), ('C', ALL), ('D', ALL), ('E', ALL), ('H', 0b11)];

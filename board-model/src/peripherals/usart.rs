@@ -376,9 +376,11 @@ impl Peripheral for Usart {
             self.start_sending(wires.now, wires);
         }
         let has_line = self.has_line(wires);
+        let asks_for_dma = self.is_enabled() && self.registers.get(self.kind.requests()) & bit(6) != 0;
+        let is_served = asks_for_dma && wires.is_served(Request::UsartReceived(self.place.number));
         while let Some(arrives) = wires.line.arrives.filter(|arrives| has_line && *arrives <= wires.now) {
             // While the core stands still, DMA has its turn after every byte.
-            if !self.received.is_empty() && wires.is_served(Request::UsartReceived(self.place.number)) {
+            if is_served && !self.received.is_empty() {
                 break;
             }
             let start = arrives.saturating_sub(cycles(BITS, wires.line.cable.baud));
@@ -404,7 +406,7 @@ impl Peripheral for Usart {
         let errs = requests & bit(0) != 0 && (self.kind != Kind::Old || requests & bit(6) != 0) && self.overrun;
         wires.interrupt(self.place.interrupt, self.is_enabled() && (receive || send || done || idle || errs));
         let number = self.place.number;
-        wires.request(Request::UsartReceived(number), self.is_enabled() && requests & status << 1 & bit(6) != 0);
+        wires.request(Request::UsartReceived(number), asks_for_dma && status & bit(5) != 0);
         wires.request(Request::UsartToSend(number), self.sends() && requests & status & bit(7) != 0);
     }
 

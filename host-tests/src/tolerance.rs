@@ -1,13 +1,41 @@
 //! Every bound that a test of this workspace holds a number against, with the value measured when it was set and the
 //! reason why it is not tighter. Tests keep no tolerances of their own.
+//!
+//! A bound is of one of three kinds, by the word before its reason:
+//!
+//! - `since`: the number comes out the same on every run. The bound is at most 1.5 times what was measured.
+//! - `scatters`: it is that of a few seeds, or of a loop in which one encoder count more or less leads elsewhere, and a digit that
+//!   rounds otherwise makes such a count. At most twice what was measured.
+//! - `argued`: nothing but rounding is left, which one machine's sine makes otherwise than another's and motions amplify; or the
+//!   number is zero; or a figure is asked for, and the test that takes it is a long one.
+//!
+//! What the first two promise is held when this file is compiled.
+
+/// How many times what was measured a bound may be, by its kind.
+macro_rules! most {
+    (since) => {
+        1.5
+    };
+    (scatters) => {
+        2.0
+    };
+    (argued) => {
+        f64::INFINITY
+    };
+}
 
 /// Rows of the table: a name, what the error is of, below what it must be, what was found, and the reason for the margin.
 macro_rules! bounds {
-    ($($(#[$about:meta])* $name:ident: $of:literal, below $limit:expr, was $measured:expr, since $reason:literal;)*) => {
+    ($($(#[$about:meta])* $name:ident: $of:literal, below $limit:expr, was $measured:expr, $kind:ident $reason:literal;)*) => {
         $(
             $(#[$about])*
             pub const $name: $crate::tolerance::Bound =
                 $crate::tolerance::Bound { of: $of, limit: $limit, measured: $measured, reason: $reason };
+            // Decimal fractions are not exact in binary.
+            const _: () = assert!(
+                !($limit > most!($kind) * (1.0 + 1e-9) * $measured),
+                concat!("the bound ", stringify!($name), " is too far from what was measured")
+            );
         )*
     };
 }
@@ -55,175 +83,175 @@ bounds! {
     /// Reference against the data files of cases A and Q.
     CASE_DATA: "trajectory error of the reference on cases A and Q, over the standard deviation",
         below 1e-9, was 9.5e-12,
-        since "The files carry twelve digits; a missed event would show as 1e-3.";
+        argued "The files carry twelve digits; a missed event would show as 1e-3.";
 
     /// Growth of a vanishing change in a predictable motion.
     PREDICTABILITY: "change of mesh deflections over the change of 1e-12 m that caused it",
-        below 100.0, was 62.6,
+        below 94.0, was 63.0,
         since "Where errors grow more, a bound on a trajectory would judge the motion instead of the integrator.";
 
     /// Energy balance of the reference.
     BOOKS_OF_THE_REFERENCE: "residual of the reference's energy balance over what is dissipated",
         below 1e-10, was 2.6e-12,
-        since "The integration's own error.";
+        argued "The integration's own error.";
 
     /// Swing of the paper's joint, simulated as the board does.
     SIM_PEAK_TO_PEAK: "peak to peak of the sun-planet deflection in set P's regular regimes against five known digits, relative",
         below 1e-3, was 4.7e-5,
-        since "Ticks may miss a crest by a 96th of a mesh period, which is 5e-4 of the swing.";
+        argued "Ticks may miss a crest by a 96th of a mesh period, which is 5e-4 of the swing.";
 
     /// Power beside the mesh frequency.
     SIM_NON_FUNDAMENTAL: "non-fundamental over fundamental in set P's regular regimes against what is printed",
         below 6e-3, was 1.1e-3,
-        since "Half a unit of the last digit printed.";
+        argued "Half a unit of the last digit printed.";
 
     /// Static deflection and force of a joint that stands.
     SIM_STATIC: "mesh force and deflection of a standing joint against oracle 4, relative",
         below 1e-7, was 7.9e-14,
-        since "Torques are rounded to f32 on their way to the joint; the ones tried lose nothing by it.";
+        argued "Torques are rounded to f32 on their way to the joint; the ones tried lose nothing by it.";
 
     /// Undamped natural frequencies.
     NATURAL_FREQUENCY: "natural frequency, relative",
         below 1e-9, was 3.0e-11,
-        since "Fitted exactly from samples; only the integration's own error is left.";
+        argued "Fitted exactly from samples; only the integration's own error is left.";
 
     /// Damped eigenvalues against printed ones.
     EIGENVALUE: "damped eigenvalue over omega_n",
-        below 1e-6, was 4.1e-7,
+        below 6.1e-7, was 4.1e-7,
         since "The expected values are known to six digits after the point.";
 
     /// Amplitudes of the steady ellipse against printed ones.
     ELLIPSE: "amplitude of the steady ellipse, over b_c",
-        below 1e-6, was 7.5e-8,
+        below 1.1e-7, was 7.6e-8,
         since "The expected values are known to six digits after the point.";
 
     /// Whatever is no pure harmonic in the steady ellipse.
     ELLIPSE_PURITY: "distance from a pure ellipse, over b_c",
         below 1e-9, was 3.0e-11,
-        since "The transient has fallen by exp(-0.0323 x 800); what is left is integration error.";
+        argued "The transient has fallen by exp(-0.0323 x 800); what is left is integration error.";
 
     /// Static deflection, gap coordinate and lost motion.
     STATIC: "static deflection, over b_c",
         below 1e-11, was 1.6e-14,
-        since "The transient has fallen by exp(-33) or more.";
+        argued "The transient has fallen by exp(-33) or more.";
 
     /// Energy against the work that was done.
     ENERGY: "energy less work, over the largest energy",
-        below 1e-8, was 1.2e-9,
+        below 1.8e-9, was 1.2e-9,
         since "Adds up over a thousand dimensionless seconds of chaos with a thousand events; 1e-11 in shorter motions.";
 
     /// The same motion at another backlash, or with everything scaled.
     INVARIANCE: "difference of two motions that must be the same, over b_c",
         below 1e-9, was 1.5e-11,
-        since "Step sizes and event times differ between the two.";
+        argued "Step sizes and event times differ between the two.";
 
     /// Free periods of one mass in a dead zone.
     FREE_PERIOD: "free period of one mass in a dead zone, relative",
         below 1e-11, was 4.6e-13,
-        since "The closed form is exact; twenty periods with up to eight events each add up.";
+        argued "The closed form is exact; twenty periods with up to eight events each add up.";
 
     /// Poincare points of set P against printed ones.
     POINCARE: "Poincare point of set P, dimensionless",
-        below 1e-4, was 5.2e-5,
+        below 7.9e-5, was 5.3e-5,
         since "The expected values are known to four digits after the point, so 5e-5 is theirs.";
 
     /// Planets in phase, or out of it by a fraction of a tooth.
     TOOTH_PHASE: "deflection of a planet against the one that its tooth phase predicts, over b_c",
         below 1e-10, was 2.3e-12,
-        since "Steady state of a linear joint; only integration error and the rest of the transient are left.";
+        argued "Steady state of a linear joint; only integration error and the rest of the transient are left.";
 
     /// The same motion many turns later.
     MANY_TURNS: "difference of mesh deflections after many turns, over b_c",
         below 1e-9, was 3.7e-11,
-        since "Coordinates stay within a tooth, so that no digits are lost however far the joint has turned.";
+        argued "Coordinates stay within a tooth, so that no digits are lost however far the joint has turned.";
 
     /// Stiffness of the rectangular wave against a projection of its picture.
     RECTANGULAR_WAVE: "stiffness of the rectangular wave, over the mean",
-        below 1e-7, was 1.1e-8,
+        below 1.8e-8, was 1.2e-8,
         since "The projection is a sum over 20,000 cells.";
 
     /// Motions of the drive train that can be computed by hand.
     DRIVE_TRAIN: "drive train against a figure by hand, relative",
         below 1e-9, was 1.5e-13,
-        since "Nothing in these motions changes within a part of 10 us.";
+        argued "Nothing in these motions changes within a part of 10 us.";
 
     /// Parts of a control period in the drive train.
     DRIVE_TRAIN_PARTS: "link angle with 10 against 40 parts in a control period, over its travel",
-        below 1e-2, was 4.4e-3,
+        below 5.2e-4, was 3.5e-4,
         since "Friction and cogging follow angles and speeds with a delay of half a part, and rattling planets amplify it.";
 
     /// Efficiency of the drive train, from the acceleration that is left under balanced torques.
     EFFICIENCY: "efficiency by the acceleration left over",
         below 1e-8, was 1.3e-14,
-        since "The wind-up is damped until nothing rings; the two directions of power differ by 9e-4.";
+        argued "The wind-up is damped until nothing rings; the two directions of power differ by 9e-4.";
 
     /// Mesh forces of the two damping laws.
     MESH_FORCE: "mesh force against the law by hand, relative",
         below 1e-12, was 0.0,
-        since "Deflections of micrometres between coordinates of millimetres.";
+        argued "Deflections of micrometres between coordinates of millimetres.";
 
     /// Eq. 19's matrices, derived against written out.
     DERIVATION: "entries of K and C of eq. 19, dimensionless",
         below 1e-14, was 2.2e-16,
-        since "Two ways to the same few products of numbers near one.";
+        argued "Two ways to the same few products of numbers near one.";
 
     /// The linear flow by two methods.
     FLOW: "entries of exp(A h) - I against nalgebra's exponential",
         below 1e-13, was 4.4e-16,
-        since "nalgebra's own error, measured on rotations.";
+        argued "nalgebra's own error, measured on rotations.";
 
     /// Eigenvalues known to six digits.
     PRINTED_EIGENVALUE: "damped eigenvalue against its six digits",
-        below 1e-6, was 4.1e-7,
+        below 6.1e-7, was 4.1e-7,
         since "Half a unit of the sixth digit in each part.";
 
     /// Tanh dead zone of sharpness 100 against the sharp one.
     SHARP_TANH: "gap with a tanh dead zone of sharpness 100 against the sharp one, over b",
-        below 1e-2, was 2.2e-3,
+        below 3.7e-3, was 2.5e-3,
         since "Corners rounded over a hundredth of b_c.";
 
     /// Precise integration against 50 digits.
     PRECISE_INTEGRATION: "|E found - E| over max(1, |E|), in units of 2^-53 max(1, |A h|)",
-        below 2.0, was 0.6,
+        below 0.9, was 0.6,
         since "Twenty are allowed; the result and its fixture are each rounded once, by a unit at most.";
 
     /// Input integrals against 50 digits.
     PRECISE_INTEGRALS: "input integral against 50 digits, relative, in units of 2^-53 max(1, |A h|)",
         below 2.0, was 0.0,
-        since "As for the increment.";
+        argued "As for the increment.";
 
     /// nalgebra's exponential against precise integration.
     NALGEBRA_EXPONENTIAL: "distance to nalgebra's exponential beyond its own error, in units of 2^-53 max(1, |A h|)",
-        below 2.0, was 0.6,
+        below 0.9, was 0.6,
         since "Its own error, measured against 50 digits, reaches a million units where motion grows before it decays.";
 
     /// Small increments.
     DIGITS_KEPT: "diagonal of exp(A h) - I, each entry relative to itself",
         below 2.5e-16, was 0.0,
-        since "Rounded once, and its fixture too.";
+        argued "Rounded once, and its fixture too.";
 
     /// Eqs 1-6, eq. 19 and eq. 20 as one motion.
     FORMULATIONS: "mesh deflections by another formulation, over b_c",
         below 1e-9, was 3.4e-11,
-        since "Each integrates with an error of its own, and every hit amplifies it.";
+        argued "Each integrates with an error of its own, and every hit amplifies it.";
 
     /// The reduced model against the full one.
     REDUCED: "entries of the flow of the reduced model against the full one's",
         below 3e-14, was 7.1e-15,
-        since "Speeds of the coasting rigid body add up over 20.5: one unit of that.";
+        argued "Speeds of the coasting rigid body add up over 20.5: one unit of that.";
 
     /// Eigenvalues of H against closed forms.
     CLOSED_FORM: "eigenvalue of H against its closed form",
         below 1e-12, was 6.1e-14,
-        since "Planet modes are a multiple eigenvalue, which an iteration finds to fewer digits.";
+        argued "Planet modes are a multiple eigenvalue, which an iteration finds to fewer digits.";
 
     /// Published frequencies of the gear that Table 1 is taken from.
     PUBLISHED_FREQUENCY: "natural frequency against the published one, relative",
-        below 1e-4, was 4.9e-5,
+        below 7.3e-5, was 4.9e-5,
         since "Published to a tenth of a hertz, of which half is 7e-5 at 743 Hz.";
 
     /// Torsional part of a planar gear.
     TORSIONAL_PART: "frequency of the torsional part against the model's [kHz]",
-        below 1e-6, was 1.3e-7,
+        below 2.1e-7, was 1.4e-7,
         since "The rigid body's zero is the root of a rounding error; all others agree to 3e-15.";
 }

@@ -9,6 +9,7 @@ use crate::material::Material;
 #[command(after_help = "Example:
   joint new elbow --ratio 9 --lost-motion-arcmin 15 --stiffness-Nm-per-arcmin 1.8 --rated-torque-Nm 8 \\
       --rotor-inertia-kg-cm2 0.32 --no-load-torque-Nm 0.05 --efficiency 0.94
+  joint new wrist --equivalent --ratio 59 --lost-motion-arcmin 3 ...     a cycloid, spur train or belt, whose teeth nobody knows
 
 On a terminal it asks for what is left out of these. The file is elbow.toml; one that is there already is never written over.
 Exit code 2 if no gears of that ratio assemble, or if there can be no such joint.")]
@@ -16,6 +17,9 @@ pub struct Arguments {
     /// Name of the joint, or path of its file: NAME.toml
     #[arg(value_name = "NAME")]
     pub name: PathBuf,
+    /// Makes an equivalent gear, without teeth: of a spur train, a cycloid, a belt, of any ratio above 1
+    #[arg(long)]
+    pub equivalent: bool,
     /// Gear ratio, motor turns for one turn of the link
     #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
     pub ratio: Option<f64>,
@@ -37,7 +41,8 @@ pub struct Arguments {
     /// Efficiency of the gears: 94 % is 0.94
     #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
     pub efficiency: Option<f64>,
-    /// Inertia of gears and carrier at the input in kg cm^2 [default: derived from size and material]
+    /// Inertia of the gears at the input in kg cm^2 [default: derived from size and material; of an equivalent gear half of the
+    /// rotor's]
     #[arg(long = "gear-inertia-kg-cm2", value_name = "KG CM2", allow_negative_numbers = true)]
     pub gear_inertia: Option<f64>,
     /// Inertia of the link in kg m^2 [default: ten times the rotor's, at the link]
@@ -50,16 +55,22 @@ pub struct Arguments {
     #[arg(long = "motor-peak-torque-Nm", value_name = "NM", allow_negative_numbers = true)]
     pub motor_peak_torque: Option<f64>,
     /// Outer diameter of the ring in mm: the largest module that fits is taken [default: a module by the rated torque]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, conflicts_with = "equivalent")]
     pub outer_diameter_mm: Option<f64>,
     /// What the gears are made of [default: steel, assumed]
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, conflicts_with = "equivalent")]
     pub material: Option<Material>,
     /// Planets, 3 to 5
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(3..=5))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(3..=5), conflicts_with = "equivalent")]
     pub planets: Option<u32>,
     /// How far the ratio of the teeth may be off, in percent
-    #[arg(long, value_name = "PERCENT", default_value_t = 1.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "PERCENT",
+        default_value_t = 1.0,
+        allow_negative_numbers = true,
+        conflicts_with = "equivalent"
+    )]
     pub ratio_tolerance: f64,
     /// Resolution of the motor encoder: 14 bits are 16384 counts a turn [default: 14, assumed]
     #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(8..=32))]
@@ -77,6 +88,7 @@ pub struct Arguments {
 #[allow(missing_docs, reason = "as the options")]
 pub struct DataSheet {
     pub name: String,
+    pub equivalent: bool,
     pub ratio: f64,
     pub lost_motion_arcmin: f64,
     pub stiffness: f64,

@@ -26,6 +26,7 @@ use simulation::check;
 
 use arguments::DataSheet;
 use lines::{Figures, Line, Origin};
+use sizes::{Gears, Sizes};
 
 /// Steps a second at which the new joint is tried: what `joint check` and `joint sim` take.
 const RATE: u32 = 20_000;
@@ -40,27 +41,31 @@ pub fn run(arguments: &Arguments) -> Outcome<String> {
 
 /// The file, tried and measured; gives what is told of it.
 fn make(sheet: &DataSheet, path: &Path, measured: bool, progress: &Progress) -> Outcome<String> {
-    let sizes = sizes::sizes(sheet)?;
-    let mut lines = lines::lines(sheet, &sizes);
-    let unmeasured = lines::text(sheet, &sizes, &lines, None);
+    let gears = Gears::of(sheet)?;
+    let mut lines = lines::lines(sheet, &gears);
+    let unmeasured = lines::text(sheet, &gears, &lines, None);
     tried(path, &unmeasured)?;
     let figures = measured.then(|| standard_test::measure(&unmeasured, &mut lines, progress)).transpose()?;
-    let text = lines::text(sheet, &sizes, &lines, figures.as_ref());
+    let text = lines::text(sheet, &gears, &lines, figures.as_ref());
     let loaded = tried(path, &text)?;
     free(path)?;
     write_text(path, &text)?;
     progress.clear();
     warned::tell(&loaded);
-    let [sun, planet, ring] = [sizes.teeth.sun, sizes.teeth.planet, sizes.teeth.ring];
-    let mut told = format!(
-        "{}: {} planets, teeth {sun}, {planet}, {ring}, module {} mm, ratio {:.4} ({:+.2} %)\n",
-        path.display(),
-        sizes.teeth.planets,
-        sizes.module_mm,
-        sizes.teeth.ratio(),
-        100.0 * (sizes.teeth.ratio() / sheet.ratio - 1.0)
-    );
-    if let Some(undercut) = sizes.teeth.undercut() {
+    let mut told = match &gears {
+        Gears::Planetary(Sizes { teeth, module_mm, .. }) => format!(
+            "{}: {} planets, teeth {}, {}, {}, module {module_mm} mm, ratio {:.4} ({:+.2} %)\n",
+            path.display(),
+            teeth.planets,
+            teeth.sun,
+            teeth.planet,
+            teeth.ring,
+            teeth.ratio(),
+            100.0 * (teeth.ratio() / sheet.ratio - 1.0)
+        ),
+        Gears::Equivalent => format!("{}: an equivalent gear, ratio {}\n", path.display(), sheet.ratio),
+    };
+    if let Some(undercut) = gears.undercut() {
         told += &format!("{undercut}\n");
     }
     if let Some(Figures { of_file, chance }) = figures {

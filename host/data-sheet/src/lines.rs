@@ -3,7 +3,7 @@
 use report::provenance;
 
 use crate::arguments::DataSheet;
-use crate::sizes::{PRESSURE_ANGLE_DEG, Sizes, rounded};
+use crate::sizes::{Gears, PRESSURE_ANGLE_DEG, Sizes, rounded};
 
 /// Where a value comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,46 +84,96 @@ pub fn percent(share: f64) -> String {
     }
 }
 
-/// Every line, in the order of the file.
-pub fn lines(sheet: &DataSheet, sizes: &Sizes) -> Vec<Line> {
-    let mut lines = Vec::new();
-    let mut section = "";
-    let mut add = |place: Option<&'static str>, key: &'static str, value: String, origin: Origin| {
-        section = place.unwrap_or(section);
+/// Lines as they come, each in the section of the one before unless it names another.
+#[derive(Default)]
+struct Lines(Vec<Line>);
+
+impl Lines {
+    fn add(&mut self, place: Option<&'static str>, key: &'static str, value: String, origin: Origin) {
+        let section = place.or(self.0.last().map(|line| line.section)).unwrap_or_default();
         let moved =
             (key == "planets").then(|| Err("it is not varied, since teeth and masses follow from it".to_owned()));
-        lines.push(Line { section, key, value, origin, moved });
+        self.0.push(Line { section, key, value, origin, moved });
+    }
+}
+
+fn data(what: &str) -> Origin {
+    Origin::Sheet(what.to_owned())
+}
+
+fn derived(from: String) -> Origin {
+    Origin::Derived(from)
+}
+
+fn assumed(why: &str) -> Origin {
+    Origin::Assumed(why.to_owned())
+}
+
+fn round(value: f64) -> String {
+    number(rounded(value))
+}
+
+/// Every line, in the order of the file.
+pub fn lines(sheet: &DataSheet, gears: &Gears) -> Vec<Line> {
+    let mut lines = Lines::default();
+    let ratio = gears.ratio(sheet);
+    lines.add(Some(""), "name", format!("\"{}\"", sheet.name), data("as it was called"));
+    let kind = match gears {
+        Gears::Planetary(sizes) => {
+            format!("{} planets of {}, ratio {ratio:.4}", sizes.teeth.planets, sheet.material().word())
+        }
+        Gears::Equivalent => format!("equivalent gear, ratio {ratio}"),
     };
-    let data = |what: &str| Origin::Sheet(what.to_owned());
-    let derived = |from: String| Origin::Derived(from);
-    let assumed = |why: &str| Origin::Assumed(why.to_owned());
-    let round = |value: f64| number(rounded(value));
+    let description = format!("\"{kind}, lost motion {} arcmin\"", sheet.lost_motion_arcmin);
+    lines.add(None, "description", description, derived("the lines below".into()));
+    lines.add(None, "rated_output_torque_N_m", number(sheet.rated_torque), data("rated torque at the output"));
+    match gears {
+        Gears::Planetary(sizes) => {
+            teeth(&mut lines, sheet, sizes);
+            motor_and_link(&mut lines, sheet, ratio);
+            compliance_and_meshes(&mut lines, sheet, sizes);
+        }
+        Gears::Equivalent => {
+            equivalent_gear(&mut lines, sheet);
+            motor_and_link(&mut lines, sheet, ratio);
+        }
+    }
+    surroundings(&mut lines, sheet, ratio);
+    lines.0
+}
+
+/// What an equivalent gear is, and its inertia.
+fn equivalent_gear(lines: &mut Lines, sheet: &DataSheet) {
+    lines.add(Some("equivalent_gear"), "ratio", number(sheet.ratio), data("gear ratio"));
+    lines.add(None, "lost_motion_arcmin", number(sheet.lost_motion_arcmin), data("lost motion at the output"));
+    let stiffness = data("torsional stiffness at the output");
+    lines.add(None, "total_stiffness_N_m_per_arcmin", number(sheet.stiffness), stiffness);
+    lines.add(None, "damping_ratio", number(0.05), assumed("0.03 to 0.1 is usual of gears under oil or grease"));
+    let (inertia, origin) = match sheet.gear_inertia {
+        Some(inertia) => (number(inertia), data("moment of inertia of the gearbox at its input")),
+        None => (round(0.5 * sheet.rotor_inertia), assumed("half of the rotor's")),
+    };
+    lines.add(Some("bodies"), "gear_inertia_at_input_kg_cm2", inertia, origin);
+}
+
+/// Teeth, and what they weigh.
+fn teeth(lines: &mut Lines, sheet: &DataSheet, sizes: &Sizes) {
     let teeth = &sizes.teeth;
     let ratio = teeth.ratio();
-    let (rated, drive) = (sheet.rated_torque, sheet.rated_torque / ratio);
     let material = sheet.material().word();
-
-    add(Some(""), "name", format!("\"{}\"", sheet.name), data("as it was called"));
-    let description = format!(
-        "\"{} planets of {material}, ratio {ratio:.4}, lost motion {} arcmin\"",
-        teeth.planets, sheet.lost_motion_arcmin
-    );
-    add(None, "description", description, derived("the lines below".into()));
-    add(None, "rated_output_torque_N_m", number(rated), data("rated torque at the output"));
-
     let planets = match sheet.planets {
         Some(_) => data("number of planets"),
         None => assumed("common practice"),
     };
-    add(Some("geometry"), "planets", teeth.planets.to_string(), planets);
+    lines.add(Some("geometry"), "planets", teeth.planets.to_string(), planets);
     let off = 100.0 * (ratio / sheet.ratio - 1.0);
     let undercut = teeth.undercut().map_or(String::new(), |said| format!("; {said}"));
     let of_ratio = format!(
         "the sheet's ratio {}: 1 + {}/{} = {ratio:.4}, {off:+.2} %{undercut}",
         sheet.ratio, teeth.ring, teeth.sun
     );
-    add(None, "sun_teeth", teeth.sun.to_string(), derived(of_ratio));
-    add(
+    lines.add(None, "sun_teeth", teeth.sun.to_string(), derived(of_ratio));
+    lines.add(
         None,
         "planet_teeth",
         teeth.planet.to_string(),
@@ -136,14 +186,19 @@ pub fn lines(sheet: &DataSheet, sizes: &Sizes) -> Vec<Line> {
         teeth.planets,
         (teeth.sun + teeth.ring) / teeth.planets
     );
-    add(None, "ring_teeth", teeth.ring.to_string(), derived(assembles));
-    add(None, "module_mm", number(sizes.module_mm), derived(sizes.module_from.clone()));
-    add(None, "working_pressure_angle_deg", number(PRESSURE_ANGLE_DEG), assumed("ISO 53 basic rack, no profile shift"));
+    lines.add(None, "ring_teeth", teeth.ring.to_string(), derived(assembles));
+    lines.add(None, "module_mm", number(sizes.module_mm), derived(sizes.module_from.clone()));
+    lines.add(
+        None,
+        "working_pressure_angle_deg",
+        number(PRESSURE_ANGLE_DEG),
+        assumed("ISO 53 basic rack, no profile shift"),
+    );
 
     let disc = |what: &str, wide: f64| derived(format!("size and material: {what} of {material}, {wide:.2} mm thick"));
     let bodies = &sizes.bodies;
     match sheet.gear_inertia {
-        Some(inertia) => add(
+        Some(inertia) => lines.add(
             Some("bodies"),
             "gear_inertia_at_input_kg_cm2",
             number(inertia),
@@ -151,99 +206,115 @@ pub fn lines(sheet: &DataSheet, sizes: &Sizes) -> Vec<Line> {
         ),
         None => {
             let solid = "a solid disc of the pitch diameter";
-            add(
+            lines.add(
                 Some("bodies"),
                 "sun_equivalent_mass_kg",
                 round(bodies.sun_equivalent_mass),
                 disc(solid, sizes.width_mm),
             );
-            add(None, "planet_equivalent_mass_kg", round(bodies.planet_equivalent_mass), disc(solid, sizes.width_mm));
-            add(None, "planet_mass_kg", round(bodies.planet_mass), disc(solid, sizes.width_mm));
+            lines.add(
+                None,
+                "planet_equivalent_mass_kg",
+                round(bodies.planet_equivalent_mass),
+                disc(solid, sizes.width_mm),
+            );
+            lines.add(None, "planet_mass_kg", round(bodies.planet_mass), disc(solid, sizes.width_mm));
             let carrier = "a disc of the radius of the planets' axes";
             let over = bodies.carrier_inertia_over_radius_squared;
-            add(None, "carrier_inertia_over_radius_squared_kg", round(over), disc(carrier, sizes.carrier_mm));
+            lines.add(None, "carrier_inertia_over_radius_squared_kg", round(over), disc(carrier, sizes.carrier_mm));
         }
     }
+}
+
+/// Inertias of rotor and link.
+fn motor_and_link(lines: &mut Lines, sheet: &DataSheet, ratio: f64) {
     let rotor = format!("inertia of the rotor, {} kg cm^2", sheet.rotor_inertia);
-    add(None, "rotor_inertia_kg_m2", number(sheet.rotor_inertia / 1e4), Origin::Sheet(rotor));
+    lines.add(None, "rotor_inertia_kg_m2", number(sheet.rotor_inertia / 1e4), Origin::Sheet(rotor));
     match sheet.link_inertia {
-        Some(inertia) => add(None, "link_inertia_kg_m2", number(inertia), data("inertia of the link")),
+        Some(inertia) => lines.add(None, "link_inertia_kg_m2", number(inertia), data("inertia of the link")),
         None => {
             let link = 10.0 * sheet.rotor_inertia / 1e4 * ratio * ratio;
-            add(None, "link_inertia_kg_m2", round(link), assumed("ten times the rotor's, at the link"));
+            lines.add(None, "link_inertia_kg_m2", round(link), assumed("ten times the rotor's, at the link"));
         }
     }
+}
 
+/// What bends behind the teeth, and the teeth themselves.
+fn compliance_and_meshes(lines: &mut Lines, sheet: &DataSheet, sizes: &Sizes) {
+    let material = sheet.material().word();
     let total = format!(
         "torsional stiffness at the output; the teeth take {:.1} % of its compliance",
         100.0 * sizes.teeth_share
     );
-    add(Some("compliance"), "total_stiffness_N_m_per_arcmin", number(sheet.stiffness), Origin::Sheet(total));
-    add(None, "damping_ratio", number(0.02), assumed("bolted steel joints"));
+    lines.add(Some("compliance"), "total_stiffness_N_m_per_arcmin", number(sheet.stiffness), Origin::Sheet(total));
+    lines.add(None, "damping_ratio", number(0.02), assumed("bolted steel joints"));
 
     let stiffness = format!(
         "face width and material: {:.2} mm of {material}, {:.3e} N/m for a metre",
         sizes.width_mm,
         sheet.material().stiffness_per_width()
     );
-    add(Some("mesh"), "mean_stiffness_N_per_m", number(sizes.mean_stiffness), derived(stiffness));
-    add(None, "stiffness_ratio", number(0.15), assumed("spur gears of contact ratio 1.6"));
-    add(None, "damping_ratio", number(0.05), assumed("0.03 to 0.1 is usual of gear meshes"));
-    add(None, "lost_motion_arcmin", number(sheet.lost_motion_arcmin), data("lost motion at the output"));
+    lines.add(Some("mesh"), "mean_stiffness_N_per_m", number(sizes.mean_stiffness), derived(stiffness));
+    lines.add(None, "stiffness_ratio", number(0.15), assumed("spur gears of contact ratio 1.6"));
+    lines.add(None, "damping_ratio", number(0.05), assumed("0.03 to 0.1 is usual of gear meshes"));
+    lines.add(None, "lost_motion_arcmin", number(sheet.lost_motion_arcmin), data("lost motion at the output"));
     let error = rounded(3.0 * sizes.module_mm.sqrt());
-    add(None, "transmission_error_um", number(error), assumed("amplitude, quality 6 of ISO 1328 for this size"));
+    lines.add(None, "transmission_error_um", number(error), assumed("amplitude, quality 6 of ISO 1328 for this size"));
+}
 
+/// The drive around the gears.
+fn surroundings(lines: &mut Lines, sheet: &DataSheet, ratio: f64) {
+    let (rated, drive) = (sheet.rated_torque, sheet.rated_torque / ratio);
     if let Some(peak) = sheet.motor_peak_torque {
-        add(Some("profile"), "motor_torque_limit_N_m", number(peak), data("peak torque of the motor"));
+        lines.add(Some("profile"), "motor_torque_limit_N_m", number(peak), data("peak torque of the motor"));
     }
 
-    add(
+    lines.add(
         Some("drive_train"),
         "no_load_torque_N_m",
         number(sheet.no_load_torque),
         data("torque at the input without a load"),
     );
     let load = 0.5 * sheet.no_load_torque * ratio * sheet.efficiency;
-    add(None, "load_coulomb_friction_N_m", round(load), assumed("half of the no-load torque, through the gears"));
-    add(None, "load_stribeck_rise_ratio", number(0.2), assumed("seals and grease"));
-    add(None, "load_stribeck_speed_rad_per_s", number(0.05), assumed("seals and grease"));
-    add(
+    lines.add(None, "load_coulomb_friction_N_m", round(load), assumed("half of the no-load torque, through the gears"));
+    lines.add(None, "load_stribeck_rise_ratio", number(0.2), assumed("seals and grease"));
+    lines.add(None, "load_stribeck_speed_rad_per_s", number(0.05), assumed("seals and grease"));
+    lines.add(
         None,
         "load_viscous_friction_N_m_s_per_rad",
         round(8e-3 * rated),
         assumed("0.8 % of the rated torque at 1 rad/s"),
     );
-    add(
+    lines.add(
         None,
         "motor_viscous_friction_N_m_s_per_rad",
         round(1e-4 * drive),
         assumed("1 % of the drive torque at 100 rad/s"),
     );
-    add(None, "cogging_torque_N_m", round(0.01 * drive), assumed("1 % of the drive torque"));
-    add(None, "cogging_periods_per_turn", "84".into(), assumed("twice for each of 42 magnets"));
-    add(None, "efficiency", number(sheet.efficiency), data("efficiency of the gears"));
+    lines.add(None, "cogging_torque_N_m", round(0.01 * drive), assumed("1 % of the drive torque"));
+    lines.add(None, "cogging_periods_per_turn", "84".into(), assumed("twice for each of 42 magnets"));
+    lines.add(None, "efficiency", number(sheet.efficiency), data("efficiency of the gears"));
     if let Some(gravity) = sheet.gravity_torque {
-        add(None, "gravity_torque_N_m", number(gravity), data("torque of the link's weight"));
+        lines.add(None, "gravity_torque_N_m", number(gravity), data("torque of the link's weight"));
     }
-    add(None, "current_lag_ms", number(0.2), assumed("current loop of 800 Hz bandwidth"));
-    add(None, "torque_noise_ratio", number(0.015), assumed("usual current sensing"));
-    add(None, "torque_constant_error_ratio", number(0.03), assumed("spread of magnets and winding temperature"));
-    add(None, "control_rate_Hz", number(10e3), assumed("one control step every 100 us"));
-    add(None, "control_delay_periods", number(1.0), assumed("one period from measuring to acting"));
+    lines.add(None, "current_lag_ms", number(0.2), assumed("current loop of 800 Hz bandwidth"));
+    lines.add(None, "torque_noise_ratio", number(0.015), assumed("usual current sensing"));
+    lines.add(None, "torque_constant_error_ratio", number(0.03), assumed("spread of magnets and winding temperature"));
+    lines.add(None, "control_rate_Hz", number(10e3), assumed("one control step every 100 us"));
+    lines.add(None, "control_delay_periods", number(1.0), assumed("one period from measuring to acting"));
 
     let bits = |stated: Option<u32>, usual: u32, kind: &str| match stated {
         Some(bits) => (bits.to_string(), data("resolution")),
         None => (usual.to_string(), assumed(kind)),
     };
     let (motor, origin) = bits(sheet.motor_bits, 14, "magnetic encoder on the shaft's end");
-    add(Some("drive_train.motor_encoder"), "bits", motor, origin);
-    add(None, "once_per_turn_error_deg", number(0.1), assumed("eccentric magnet"));
-    add(None, "twice_per_turn_error_deg", number(0.1), assumed("tilted magnet"));
+    lines.add(Some("drive_train.motor_encoder"), "bits", motor, origin);
+    lines.add(None, "once_per_turn_error_deg", number(0.1), assumed("eccentric magnet"));
+    lines.add(None, "twice_per_turn_error_deg", number(0.1), assumed("tilted magnet"));
     let (output, origin) = bits(sheet.output_bits, 17, "ring encoder");
-    add(Some("drive_train.output_encoder"), "bits", output, origin);
-    add(None, "once_per_turn_error_deg", number(0.02), assumed("eccentric ring"));
-    add(None, "skew_us", number(50.0), assumed("serial read-out"));
-    lines
+    lines.add(Some("drive_train.output_encoder"), "bits", output, origin);
+    lines.add(None, "once_per_turn_error_deg", number(0.02), assumed("eccentric ring"));
+    lines.add(None, "skew_us", number(50.0), assumed("serial read-out"));
 }
 
 /// What the standard test gives.
@@ -256,19 +327,25 @@ pub struct Figures {
 }
 
 /// The file, with the figures of the standard test once they are known.
-pub fn text(sheet: &DataSheet, sizes: &Sizes, lines: &[Line], figures: Option<&Figures>) -> String {
+pub fn text(sheet: &DataSheet, gears: &Gears, lines: &[Line], figures: Option<&Figures>) -> String {
+    let kind = match gears {
+        Gears::Planetary(_) => format!(
+            "ratio {} (met within {} %), gears of {}{}",
+            sheet.ratio,
+            sheet.ratio_tolerance,
+            match sheet.material {
+                Some(material) => material.word().to_owned(),
+                None => format!("{}, which is assumed", sheet.material().word()),
+            },
+            sheet.outer_diameter_mm.map_or(String::new(), |mm| format!(", outer diameter {mm} mm")),
+        ),
+        Gears::Equivalent => format!("an equivalent gear of ratio {}, without preload or hysteresis", sheet.ratio),
+    };
     let mut text = format!(
-        "# {}, made by joint new {} from its data sheet: ratio {} (met within {} %), gears of {}{}.\n\
+        "# {}, made by joint new {} from its data sheet: {kind}.\n\
          # Behind every value stands \"data sheet\", \"derived from\" what, or \"assumed\".\n",
         sheet.name,
         provenance::VERSION,
-        sheet.ratio,
-        sheet.ratio_tolerance,
-        match sheet.material {
-            Some(material) => material.word().to_owned(),
-            None => format!("{}, which is assumed", sheet.material().word()),
-        },
-        sheet.outer_diameter_mm.map_or(String::new(), |mm| format!(", outer diameter {mm} mm")),
     );
     if let Some(Figures { of_file, chance }) = figures {
         text += &format!(
@@ -283,7 +360,7 @@ pub fn text(sheet: &DataSheet, sizes: &Sizes, lines: &[Line], figures: Option<&F
             percent(*chance)
         );
     }
-    if let Some(undercut) = sizes.teeth.undercut() {
+    if let Some(undercut) = gears.undercut() {
         text += &format!("# {undercut}.\n");
     }
     text.push('\n');

@@ -36,6 +36,13 @@ const NEEDED: [Figure; 7] = [
     figure("--efficiency", "efficiency of the gears, such as 0.94", 0.1, 1.0),
 ];
 
+/// The ratio of an equivalent gear, which no teeth bound.
+const ANY_RATIO: Figure =
+    figure("--ratio", "gear ratio, motor turns for one turn of the link, such as 59", 1.000_001, 999.999);
+
+/// What kinds of gears there are, by the words that a user types.
+const KINDS: [&str; 2] = ["planetary", "equivalent"];
+
 /// What it may leave out.
 const OPTIONAL: [Figure; 6] = [
     figure("--gear-inertia-kg-cm2", "", 1e-9, 1e10),
@@ -71,20 +78,27 @@ pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
         arguments.outer_diameter_mm,
         Some(arguments.ratio_tolerance),
     ];
-    for (figure, value) in NEEDED.iter().zip(given).chain(OPTIONAL.iter().zip(optional)) {
+    let stdin = io::stdin();
+    // Where the ratio is asked for as well, teeth may not be known either.
+    let asked = arguments.ratio.is_none() && !arguments.says_teeth() && stdin.is_terminal();
+    let equivalent = arguments.equivalent || (asked && kind(&mut stdin.lock())? == KINDS[1]);
+    let mut needed = NEEDED;
+    if equivalent {
+        needed[0] = ANY_RATIO;
+    }
+    for (figure, value) in needed.iter().zip(given).chain(OPTIONAL.iter().zip(optional)) {
         if let Some(value) = value {
             figure.check(value).map_err(|why| Failure::new(format!("{}: {why}", figure.option)).with_help(HELP))?;
         }
     }
     let missing: Vec<&str> =
-        NEEDED.iter().zip(given).filter(|(_, value)| value.is_none()).map(|(figure, _)| figure.option).collect();
-    let stdin = io::stdin();
+        needed.iter().zip(given).filter(|(_, value)| value.is_none()).map(|(figure, _)| figure.option).collect();
     if !missing.is_empty() && !stdin.is_terminal() {
         return Err(Failure::new(format!("{name}: the data sheet lacks {}", missing.join(", ")))
             .with_help("give each with its figure; on a terminal they are asked for"));
     }
     let mut figures = [0.0; NEEDED.len()];
-    for ((figure, value), place) in NEEDED.iter().zip(given).zip(&mut figures) {
+    for ((figure, value), place) in needed.iter().zip(given).zip(&mut figures) {
         *place = match value {
             Some(value) => value,
             None => figure.ask(&mut stdin.lock())?,
@@ -93,6 +107,7 @@ pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
     let [ratio, lost_motion_arcmin, stiffness, rated_torque, rotor_inertia, no_load_torque, efficiency] = figures;
     Ok(DataSheet {
         name,
+        equivalent,
         ratio,
         lost_motion_arcmin,
         stiffness,
@@ -114,6 +129,32 @@ pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
 }
 
 const HELP: &str = "`joint new --help` says what each is, and its unit";
+
+/// Asks what kind of gears it is until there is an answer.
+fn kind(answers: &mut impl BufRead) -> Outcome<&'static str> {
+    loop {
+        output::remark(
+            "planetary, a stage whose teeth are found, or equivalent, gears without teeth such as a spur train, a cycloid or a belt:",
+        );
+        let mut line = String::new();
+        let read = answers.read_line(&mut line).unwrap_or_default();
+        if read == 0 {
+            return Err(Failure::new("no answer for the kind of gears").with_help("give --equivalent, or --ratio"));
+        }
+        let answer = line.trim();
+        match KINDS.into_iter().find(|kind| !answer.is_empty() && kind.starts_with(answer)) {
+            Some(kind) => return Ok(kind),
+            None => output::remark(&format!("`{answer}` is neither planetary nor equivalent; once more")),
+        }
+    }
+}
+
+impl Arguments {
+    /// Whether something was said that only gears with teeth have.
+    fn says_teeth(&self) -> bool {
+        self.equivalent || self.planets.is_some() || self.material.is_some() || self.outer_diameter_mm.is_some()
+    }
+}
 
 /// The reader of joint files takes the same names.
 fn check_name(name: &str) -> Outcome<()> {

@@ -42,11 +42,43 @@ pub struct Sizes {
     pub teeth_share: f64,
 }
 
+/// The gears of a data sheet.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Gears {
+    /// A planetary stage.
+    Planetary(Sizes),
+    /// Gears without teeth, all of which is in the sheet.
+    Equivalent,
+}
+
+impl Gears {
+    /// Finds teeth, sizes and stiffnesses where there are any.
+    pub fn of(sheet: &DataSheet) -> Outcome<Self> {
+        if sheet.equivalent { Ok(Self::Equivalent) } else { sizes(sheet).map(Self::Planetary) }
+    }
+
+    /// Motor turns for one turn of the link.
+    pub fn ratio(&self, sheet: &DataSheet) -> f64 {
+        match self {
+            Self::Planetary(sizes) => sizes.teeth.ratio(),
+            Self::Equivalent => sheet.ratio,
+        }
+    }
+
+    /// What is to be said of teeth that are undercut.
+    pub fn undercut(&self) -> Option<String> {
+        match self {
+            Self::Planetary(sizes) => sizes.teeth.undercut(),
+            Self::Equivalent => None,
+        }
+    }
+}
+
 /// Pressure angle of all of it [deg].
 pub const PRESSURE_ANGLE_DEG: f64 = 20.0;
 
 /// Finds teeth, sizes and stiffnesses.
-pub fn sizes(sheet: &DataSheet) -> Outcome<Sizes> {
+fn sizes(sheet: &DataSheet) -> Outcome<Sizes> {
     let teeth = teeth::find(sheet.ratio, sheet.ratio_tolerance, sheet.planets.unwrap_or(3))?;
     let (module_mm, module_from) = module(sheet, &teeth)?;
     let geometry = geometry(&teeth, module_mm);

@@ -5,12 +5,13 @@
 use std::f64::consts::TAU;
 
 use super::balances::{self, Factor, SURE};
+use super::findings::Finding;
 use super::log::Log;
 use super::prior::PriorModel;
 use super::readings::Kind;
 use super::regression::{Equations, Solution};
 use super::rows::Rows;
-use super::twist::{self, BLOCK_LENGTH};
+use super::twist::{self, BLOCK_LENGTH, Twist};
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 
@@ -18,6 +19,8 @@ use report::number::ESTIMATE;
 const MOMENTS: usize = 4000;
 /// Over a whole turn and more an encoder's own error cancels, and teeth do not slip: the ratio holds within this.
 const RATIO_OVER_TURNS: f64 = 2e-3;
+/// Errors of both encoders, at both ends of what the output turns [rad].
+const ENCODER_ERRORS: f64 = 0.01;
 /// Over less than a turn an encoder's error of 0.2 degrees feigns this much.
 const RATIO_WITHIN_A_TURN: f64 = 1e-2;
 /// What gap and wind-up feign of a ratio where the joint hardly moves: so many times what the joint file says of them.
@@ -39,6 +42,25 @@ const LIKELY: f64 = 0.2;
 const NAMED: usize = 4;
 /// Bits by which both encoders may be told wrong.
 const BITS: i32 = 5;
+/// Inertias of motor and link that a torque at the output makes other than the joint file's by more than this, both the same way,
+/// are no error of both but of the time step.
+const BOTH_INERTIAS: f64 = 1.12;
+/// An offset between the encoders that steps by more than this share of the lost motion, and surely, is no scatter.
+const STEP: f64 = 0.03;
+/// The swing on the compliance may turn by so much in the output's age [rad]: beyond, its reading says little of the twist.
+const AGE: f64 = 0.35;
+/// Motor readings that are older than the output's by this part of the swing do not go with the torque.
+const LEAD: f64 = 0.2;
+/// A friction below zero by so many halves of its interval contradicts the log.
+const BELOW_ZERO: f64 = 3.0;
+/// A constant torque of this share of the largest one is not weight or friction.
+const OFFSET: f64 = 0.08;
+/// The torque that goes one way may be other than that the other way by this factor.
+const ONE_WAY: f64 = 1.2;
+/// What torques beyond six tenths of the largest need may grow by this share faster or slower than below.
+const BENT: f64 = 0.3;
+/// Torques before and behind the gears that are alike within this share, whatever the motor's acceleration and friction, are one.
+const THE_SAME: f64 = 0.01;
 
 const DEGREES: f64 = 360.0 / TAU;
 /// Units that an angle may be in instead, and how many of them are a radian.
@@ -91,7 +113,7 @@ pub fn angles(log: &Log, prior: &PriorModel) -> Outcome<()> {
         .with_help("check the output encoder and its column"));
     }
     let Some(factor) = angle_by_angle(log, prior) else { return Ok(()) };
-    let least = if output > TAU { RATIO_OVER_TURNS } else { RATIO_WITHIN_A_TURN };
+    let least = if output > TAU { RATIO_OVER_TURNS.min(ENCODER_ERRORS / output) } else { RATIO_WITHIN_A_TURN };
     if (factor.value - 1.0).abs() < least.max(SURE * factor.deviation).max(slack / output.max(f64::MIN_POSITIVE)) {
         return Ok(());
     }
@@ -188,16 +210,163 @@ pub fn ringing(log: &Log, prior: &PriorModel, free: &Solution) -> Outcome<()> {
     Err(contradiction(log, prior, factor, "the motor", prior.motor_inertia))
 }
 
+/// Refuses a log whose encoders do not keep their offset: a slip, lost counts, or two logs in one.
+pub fn offsets(log: &Log, rows: &Rows, prior: &PriorModel) -> Outcome<()> {
+    let Some(steps) = twist::steps_of_the_offset(log, rows, prior) else { return Ok(()) };
+    let least = (STEP * prior.lost_motion).max(2.0 * counts(prior));
+    let is_sure = |(value, deviation): &(f64, f64)| value.abs() > least + SURE * deviation;
+    let Some(place) = steps.iter().position(is_sure) else { return Ok(()) };
+    let length = log.time.last().copied().unwrap_or_default() / twist::STRETCHES as f64;
+    let [from, to] = [place, place + 2].map(|place| ESTIMATE.write(place as f64 * length));
+    Err(Failure::new(format!(
+        "motor and output do not stay together: their difference at the output changes by {} mrad from {from} s to {to} s, beside a lost \
+         motion of {} mrad in the joint file",
+        ESTIMATE.write(1e3 * steps[place].0),
+        ESTIMATE.write(1e3 * prior.lost_motion)
+    ))
+    .with_help(
+        "perhaps an encoder or a clamp has slipped, counts were lost, or two logs were joined; take a stretch in which nothing \
+         slips",
+    ))
+}
+
+/// One count of either encoder, at the output [rad].
+fn counts(prior: &PriorModel) -> f64 {
+    let count = |bits: u32| TAU / f64::from(bits).exp2();
+    count(prior.motor_bits) / prior.ratio() + count(prior.output_bits)
+}
+
+/// Refuses a log whose output is read so much later or earlier than the motor that the swing turns meanwhile.
+pub fn age(twist: &Twist, prior: &PriorModel) -> Outcome<()> {
+    let age = twist.solution.values[twist::SKEW];
+    let scatter = twist.solution.half(&[(twist::SKEW, 1.0)]);
+    let radian = prior.swing() / TAU;
+    let (most, older, newer) =
+        if age > 0.0 { (AGE * radian, "output's", "motor's") } else { (LEAD * radian, "motor's", "output's") };
+    if age.abs() - scatter < most {
+        return Ok(());
+    }
+    Err(Failure::new(format!(
+        "the {older} readings are {} ms older than the {newer}, and a joint that swings at {:.0} Hz wants them within {} ms",
+        ESTIMATE.write(1e3 * age.abs()),
+        1.0 / prior.swing(),
+        ESTIMATE.write(1e3 * most)
+    ))
+    .with_help(format!(
+        "perhaps a filter delays the {older} readings, which must be recorded without, or one column is that much behind: shift it by so \
+         many rows"
+    )))
+}
+
+/// Refuses a log whose torque at the output makes inertias other than they can be.
+pub fn sensor(prior: &PriorModel, [_, motor, link]: [Option<Factor>; 3]) -> Outcome<()> {
+    let sure =
+        |factor: &Option<Factor>, most: f64| factor.filter(|factor| factor.is_narrow() && factor.is_beyond(most));
+    if let (Some(motor), Some(link)) = (sure(&motor, BOTH_INERTIAS), sure(&link, BOTH_INERTIAS))
+        && (motor.value > 1.0) == (link.value > 1.0)
+    {
+        let step = (motor.value * link.value).powf(0.25);
+        return Err(Failure::new(format!(
+            "by the torque at the output the inertias of motor and link are {} and {} times the joint file's",
+            ESTIMATE.write(motor.value),
+            ESTIMATE.write(link.value)
+        ))
+        .with_help(format!(
+            "perhaps samples are {} times as far apart in the log as in truth, or the torque at the output is in another unit; check \
+             the time, units and bits",
+            ESTIMATE.write(step)
+        )));
+    }
+    let Some(motor) = sure(&motor, MOTOR_FACTOR) else { return Ok(()) };
+    let inertia = motor.value * prior.motor_inertia;
+    Err(Failure::new(format!(
+        "by the torque at the output what turns with the motor has an inertia of {} kg m^2, that of the joint file {}",
+        ESTIMATE.write(inertia),
+        ESTIMATE.write(prior.motor_inertia)
+    ))
+    .with_help("check rotor_inertia_kg_m2 and the gears' inertia, units and signs of both torques"))
+}
+
+/// Refuses a log by which a friction drives.
+pub fn frictions(findings: &[Finding]) -> Outcome<()> {
+    let drives = |finding: &&Finding| {
+        let (Some(value), Some([low, high])) = (finding.value, finding.interval) else { return false };
+        value + BELOW_ZERO * 0.5 * (high - low) < 0.0 && finding.is_friction()
+    };
+    let Some(finding) = findings.iter().find(drives) else { return Ok(()) };
+    Err(Failure::new(format!(
+        "by this log the {} drives: it is {} {}",
+        finding.name,
+        ESTIMATE.write(finding.value.unwrap_or_default()),
+        finding.unit
+    ))
+    .with_help("perhaps time runs backwards, signs of torque and angles are exchanged, or the efficiency of the joint file is too low"))
+}
+
+/// Refuses a log whose torque is larger one way than the other, or holds against a constant one.
+pub fn one_as_the_other(log: &Log, prior: &PriorModel) -> Outcome<()> {
+    let rows = &Rows::new(log, prior, BALANCE_BOX);
+    let constant = balances::constant(rows, prior);
+    if constant.is_some_and(|Factor { value, deviation }| value.abs() - SURE * deviation > OFFSET * rows.greatest) {
+        let value = constant.map_or(f64::NAN, |constant| constant.value);
+        return Err(Failure::new(format!(
+            "a constant torque of {} N m at the output is in this log, beside weight and friction, or {} N m at the motor",
+            ESTIMATE.write(value),
+            ESTIMATE.write(value / prior.ratio())
+        ))
+        .with_help("set the zero of the torque's measurement, see that it is as large one way as the other, or take the load off that pulls one \
+             way"));
+    }
+    if let Some([small, more]) = balances::small_and_large(rows, prior)
+        && small.is_narrow()
+        && more.value.abs() - SURE * more.deviation > BENT * small.value.abs()
+    {
+        let ratio = (small.value + more.value) / small.value;
+        return Err(Failure::new(format!(
+            "the torque of this log is not in proportion to what turns: from six tenths of the largest on it grows {} times as fast as \
+             below",
+            ESTIMATE.write(ratio)
+        ))
+        .with_help("perhaps it is clipped, or the drive gives less than it is asked for: log the torque from measured currents"));
+    }
+    let Some([forwards, backwards]) = balances::one_way_and_the_other(rows, prior) else { return Ok(()) };
+    let (value, deviation) = (
+        forwards.value / backwards.value,
+        (forwards.deviation / forwards.value).hypot(backwards.deviation / backwards.value),
+    );
+    let both = Factor { value, deviation: deviation * value.abs() };
+    if !forwards.is_narrow() || !backwards.is_narrow() || value <= 0.0 || !both.is_beyond(ONE_WAY) {
+        return Ok(());
+    }
+    Err(Failure::new(format!(
+        "for the same acceleration the torque of this log is {} times as large forwards as backwards",
+        ESTIMATE.write(value)
+    ))
+    .with_help("perhaps it is clipped or scaled one way: check how the torque is measured, and its zero"))
+}
+
 /// What stands behind the gears is what the motor gives, less what it takes for itself.
 fn behind_the_gears(prior: &PriorModel, rows: &Rows) -> Outcome<()> {
     let mut equations = Equations::of_moments(rows.alike);
+    let mut alone = Equations::of_moments(rows.alike);
     for row in rows.all.iter().filter(|row| row.direction != 0.0) {
         let Some(measured) = row.measured else { continue };
-        equations.push(vec![row.drive, row.direction, 1.0], measured, (row.time / BLOCK_LENGTH) as usize);
+        let block = (row.time / BLOCK_LENGTH) as usize;
+        equations.push(vec![row.drive, row.direction, 1.0], measured, block);
+        alone.push(vec![row.motor_torque / row.leverage, 1.0], measured, block);
     }
+    let same = alone.solve(&[f64::INFINITY; 2]);
     let Some(factor) = equations.solve(&[f64::INFINITY; 3]).map(|solution| Factor::of(&solution, 0)) else {
         return Ok(());
     };
+    let measured: Vec<f64> = rows.all.iter().filter_map(|row| row.measured).collect();
+    if same.is_some_and(|same| same.noise < THE_SAME * root_mean_square(&measured)) {
+        return Err(Failure::new(format!(
+            "the torque at the output is {} times the motor's in every moment: it was not measured there",
+            ESTIMATE.write(factor.value)
+        ))
+        .with_help("leave the column out that was reckoned from the other"));
+    }
     if !factor.is_narrow() || !factor.is_beyond(GEARS_FACTOR) {
         return Ok(());
     }
@@ -261,6 +430,11 @@ fn contradiction(log: &Log, prior: &PriorModel, factor: Factor, what: &str, iner
 
 fn total_inertia(prior: &PriorModel) -> f64 {
     prior.motor_inertia * prior.ratio() * prior.ratio() + prior.link_inertia
+}
+
+/// Of values about zero.
+fn root_mean_square(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
 /// Largest torque of the log, at the output [N m].

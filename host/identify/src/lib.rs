@@ -4,7 +4,7 @@
 //! `log_file` reads a file into `columns`, text by `text_table`, an MCAP log by `mcap_file`, `mcap_log` and `ros_message`,
 //! message by message as `numbers`; `units` and `column_map` say what the columns are. `log` turns them into samples: angles by
 //! `readings`, at `even_times`, checked by `sampling`, whose scatter is `noise`. `prior` says what the joint file knows; `rows`
-//! are the moments at which a flank carries, smoothed by `kernel`; `twist` and `friction` are fitted to them by `regression`;
+//! are the moments at which a flank carries, smoothed by `kernel`; `load_sharing` is what planets out of phase take of the gap; `twist` and `friction` are fitted to them by `regression`;
 //! `balances` hold torque against inertias, for `contradictions` and for `scales`. `findings` is what comes of it, with its
 //! `estimate`s; `page`, `pictures` and `patch` show it. `virtual_test` makes a log without hardware.
 //! `quasi_static` reads slow logs by itself.
@@ -18,8 +18,10 @@ mod estimate;
 mod even_times;
 pub mod findings;
 mod friction;
+mod higher;
 mod kernel;
 pub mod learnt;
+mod load_sharing;
 mod log;
 pub mod log_file;
 mod mcap_file;
@@ -60,6 +62,7 @@ use joint_file::warned;
 use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};
 use report::folder::{self, Folder};
+use report::number::ESTIMATE;
 use report::output;
 use report::progress::Progress;
 use report::write::write_text;
@@ -117,7 +120,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     folder.make()?;
     let name = arguments.log.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let patched = patch::patch(&loaded, &prior, &identified.findings, &name)?;
-    let assumptions = assumptions(&prior, &identified.log);
+    let assumptions = assumptions(&identified);
     let Identified { log, prior, rows, twist, findings } = &identified;
     let record = Record {
         schema: "joint-identify/1",
@@ -167,21 +170,57 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
         .map_err(in_the_file)?;
     let (length, mut rows, mut twist) = first_fit(&read, prior, shortest).map_err(in_the_file)?;
     let mut log = read.clone();
-    for _ in 0..ROUNDS {
-        let errors: [&dyn Fn(f64) -> f64; 3] =
-            [&|angle| twist.error(twist::MOTOR_MAP, angle), &|angle| twist.error(twist::OUTPUT_MAP, angle), &|angle| {
-                twist.error(twist::TEETH, angle)
-            }];
+    // Losses are what the joint file states, unless the log tells better.
+    let open = PriorModel { loss_width: twist::LOSS_WIDTH, ..prior.clone() };
+    // A joint without any friction and losses is an ideal one, and stays it.
+    let told = if prior.is_ideal() { None } else { twist::fit(&read, &rows, &open) };
+    let told = told.filter(|told| told.tells_losses(&open));
+    let mut known = if told.is_some() { open } else { prior.clone() };
+    twist = told.unwrap_or(twist);
+    for round in 0..ROUNDS {
+        // An error that comes often a turn is looked for once the others are taken off.
+        while let Some(higher) = (round > 0).then(|| twist.more_often_a_turn(&log, &known)).flatten() {
+            known.higher.push(higher);
+            let Some(better) = twist::fit(&log, &rows, &known) else { break };
+            twist = better;
+        }
+        let prior = &known;
+        let errors: [&dyn Fn(f64) -> f64; 3] = [
+            &|angle| twist.error(twist::MOTOR_MAP, angle, prior),
+            &|angle| twist.error(twist::OUTPUT_MAP, angle, prior),
+            &|angle| twist.error(twist::TEETH, angle, prior),
+        ];
         let corrected = read.without(errors, twist.solution.values[twist::SKEW], prior);
         let mut seen = Rows::new(&corrected, prior, length);
         twist.leave_out_flights(&corrected, &mut seen, prior);
         let Some(better) = twist::fit(&corrected, &seen, prior) else { break };
         (log, rows, twist) = (corrected, seen, better);
     }
-    let mut prior = prior.clone();
+    let mut prior = known.with_loss(twist.loss(&known));
+    if known.loss_width >= twist::LOSS_WIDTH {
+        rows = Rows::new(&log, &prior, length);
+        twist.leave_out_flights(&log, &mut rows, &prior);
+    }
+    contradictions::offsets(&log, &rows, &prior)
+        .and_then(|()| contradictions::age(&twist, &prior))
+        .map_err(in_the_file)?;
     let mut doubt = None;
+    if log.output_torque.is_some() {
+        let factors = balances::by_the_sensor([&rows, &Rows::new(&log, &prior, SLOW_BOX)], &prior);
+        contradictions::sensor(&prior, factors)
+            .and_then(|()| contradictions::one_as_the_other(&log, &prior))
+            .map_err(in_the_file)?;
+        let found = Scales::of_measured(&prior, factors);
+        (log, prior) = found.apply(&log, &prior);
+        rows = Rows::new(&log, &prior, length);
+        twist.leave_out_flights(&log, &mut rows, &prior);
+        twist = twist::fit_with_this_torque(&log, &rows, &prior).unwrap_or(twist);
+        doubt = Some(Doubt { scales: found, by_inertia: 0.0 });
+    }
     if let Some(free) = twist::fit_with_any_torque(&log, &rows, &prior) {
-        contradictions::ringing(&log, &prior, &free.solution).map_err(in_the_file)?;
+        contradictions::ringing(&log, &prior, &free.solution)
+            .and_then(|()| contradictions::one_as_the_other(&log, &prior))
+            .map_err(in_the_file)?;
         let found = Scales::new(&log, &prior, &free.solution);
         (log, prior) = found.apply(&log, &prior);
         rows = Rows::new(&log, &prior, length);
@@ -196,6 +235,8 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
     }
     let slow = Rows::new(&log, &prior, SLOW_BOX);
     let findings = findings::gather(&log, [&rows, &slow], &twist, &prior, doubt.as_ref());
+    contradictions::frictions(&findings).map_err(in_the_file)?;
+    let findings: Vec<Finding> = findings.into_iter().map(Finding::settled).collect();
     if findings.iter().all(|finding| finding.value.is_none()) {
         return Err(in_the_file(Failure::new("nothing is identifiable from this log"))
             .with_help("record more reversals, with torques well above the friction and of different strength"));
@@ -236,7 +277,8 @@ fn first_fit(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<(f64, Rows
 }
 
 /// What the numbers take for granted.
-fn assumptions(prior: &PriorModel, log: &Log) -> Vec<String> {
+fn assumptions(identified: &Identified) -> Vec<String> {
+    let Identified { log, prior, twist, .. } = identified;
     let mut list = vec![
         format!(
             "Ratio {} / {} by whole {}; levers, inertias and efficiency as in the joint file.",
@@ -253,8 +295,32 @@ fn assumptions(prior: &PriorModel, log: &Log) -> Vec<String> {
         },
     ];
     list.extend(log.times.told.clone());
+    list.extend(prior.higher.iter().enumerate().map(|(place, higher)| {
+        let encoder = if higher.encoder == twist::MOTOR_MAP { "motor" } else { "output" };
+        let size = ESTIMATE.write(twist.higher(place).to_degrees());
+        format!("The {encoder} encoder has an error of {size} deg that comes {} times a turn: taken out.", higher.order)
+    }));
+    if log.is_filtered(prior) {
+        list.push(
+            "Angles are smoother than these encoders give them: if a filter made them so, all values are off by what it takes, the \
+             more the longer it is. Log raw readings."
+                .to_owned(),
+        );
+    }
+    if prior.sharing.is_some() {
+        list.push(
+            "Planets mesh out of phase, so that errors of the teeth take a part of the gap: by transmission_error_um of the joint \
+             file, known within a half and 1 um; that is in the intervals."
+                .to_owned(),
+        );
+    }
     list.push(if log.output_torque.is_some() {
-        "Torque measured at the output; its own error is not in the intervals.".to_owned()
+        format!(
+            "Torque measured at the output, its scale expected to be right within 0.5 %, that of the motor's torque within {:.1} %, \
+             inertias of motor and link within {:.1} % each (one standard deviation); the log shows three ratios of the four.",
+            100.0 * prior.torque_error,
+            100.0 * prior.inertia_error
+        )
     } else {
         format!(
             "Torque's scale expected to be right within {:.1} %, inertias of motor and link within {:.1} % each (one standard \

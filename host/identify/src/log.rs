@@ -20,6 +20,9 @@ use report::number::TYPED;
 const LEAST_TRAVEL: f64 = 8.0;
 /// The link's speed is taken over this time to either side [s].
 const SPEED_OVER: f64 = 1e-3;
+/// Readings scatter by the twelfth of a count squared; what scatters by less than this share of it was filtered.
+const SMOOTH: f64 = 0.1;
+
 /// A recorded test.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Log {
@@ -41,6 +44,8 @@ pub struct Log {
     pub output_torque: Option<Vec<f64>>,
     /// How much motor and output readings scatter [rad^2].
     pub noise: [Noise; 2],
+    /// By how much the output's readings are older than the motor's, as far as that is known [s].
+    pub age: f64,
     /// What motor and output were read as.
     pub kinds: [Kind; 2],
     /// What is lost between samples.
@@ -79,6 +84,7 @@ impl Log {
         let [motor, output, twist, torque] = [motor, output, twist, torque].map(|values| times.bring(&values));
         let log = Self {
             kinds,
+            age: 0.0,
             time: times.times(),
             period: times.period,
             noise: [&motor, &output].map(|angles| Noise::of(angles, |from, to| times.is_whole(from, to))),
@@ -116,10 +122,19 @@ impl Log {
             (read[after] - read[before]) / ((after - before) as f64 * self.period)
         };
         let output: Vec<f64> = (0..read.len()).map(|sample| read[sample] + skew * speed(sample)).collect();
-        let mut log = Self { motor, output, carried: Vec::new(), ..self.clone() };
+        let mut log = Self { motor, output, age: skew, carried: Vec::new(), ..self.clone() };
         let carried = |sample: usize| log.motor[sample] - prior.ratio() * teeth(log.teeth(sample, prior));
         log.carried = (0..log.motor.len()).map(carried).collect();
         log
+    }
+
+    /// Whether an angle is smoother than its encoder can read it, as a filter makes it.
+    pub fn is_filtered(&self, prior: &PriorModel) -> bool {
+        let count = |bits: u32| TAU / f64::from(bits).exp2();
+        let filtered = |place: usize, bits: u32| {
+            self.kinds[place] == Kind::Angle && self.noise[place].mean() < SMOOTH * count(bits) * count(bits) / 12.0
+        };
+        filtered(0, prior.motor_bits) || filtered(1, prior.output_bits)
     }
 
     fn check(&self, prior: &PriorModel) -> Outcome<()> {

@@ -6,7 +6,12 @@ use model_core::gears::{Kinematics, Mechanics};
 use parameters::{Mesh, MeshKind, StiffnessWave, Surroundings};
 
 use super::arguments::{Arguments, INERTIA_ERROR};
+use super::higher::Higher;
+use super::load_sharing::LoadSharing;
 use joint_file::named::Loaded;
+
+/// How well losses are known by what the joint file states of them, as a share: one standard deviation.
+const OWN_LOSS: f64 = 0.5;
 
 /// The joint as known from its file.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,8 +47,14 @@ pub struct PriorModel {
     pub compliance: f64,
     /// What the output moves freely while the motor stands [rad].
     pub lost_motion: f64,
+    /// How well the gears' losses are known, as a share of the load: one standard deviation.
+    pub loss_width: f64,
+    /// Errors of encoders that come more than twice a turn, as far as the log has shown them.
+    pub higher: Vec<Higher>,
     /// The link hangs on a compliance of its own behind the carrier.
     pub compliant: bool,
+    /// What errors of the teeth take of the gap; nothing where all planets touch at once.
+    pub sharing: Option<LoadSharing>,
     /// The gear is an equivalent one: it has no teeth whose errors could show.
     pub equivalent: bool,
     /// What surrounds the gears.
@@ -115,12 +126,27 @@ impl PriorModel {
             mesh_relaxation_per_ratio,
             compliance: mesh_compliance + own,
             lost_motion: 2.0 * half_backlash / lever,
+            loss_width: OWN_LOSS * (1.0 - around.efficiency).abs(),
+            higher: Vec::new(),
             compliant,
+            sharing: LoadSharing::of(joint, softened),
             equivalent: joint.equivalent_gear().is_some(),
             torque_error: around.torque_constant_error_ratio.abs(),
             inertia_error: INERTIA_ERROR,
             surroundings: *around,
         }
+    }
+
+    /// Whether nothing brakes its motor's side.
+    pub fn is_ideal(&self) -> bool {
+        self.surroundings.efficiency >= 1.0 && self.surroundings.motor_friction.coulomb == 0.0
+    }
+
+    /// With so much more of the load lost, as a share.
+    pub fn with_loss(&self, more: f64) -> Self {
+        let mut prior = self.clone();
+        prior.surroundings.efficiency *= 1.0 - more;
+        prior
     }
 
     /// Motor over output angle.

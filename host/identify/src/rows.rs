@@ -196,6 +196,11 @@ impl Row {
     pub fn torque(&self) -> f64 {
         self.measured.unwrap_or(self.drive)
     }
+
+    /// What losses that grow with the load take more, for each part of the load [N m].
+    pub fn loss(&self) -> f64 {
+        self.direction * self.torque().abs()
+    }
 }
 
 fn row(log: &Log, prior: &PriorModel, kernel: &Kernel, sample: usize) -> Row {

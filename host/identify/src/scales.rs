@@ -7,7 +7,7 @@
 //! turns, the ratios say t - m = r and t - a m - (1 - a) l = w; expected are t, m and l of zero, each within its deviation. If
 //! what is expected does not fit together, all of it is taken to be less well known, by as much (Birge's ratio).
 
-use nalgebra::{Matrix3, Matrix5x3, Vector3, Vector5};
+use nalgebra::{SMatrix, SVector, Vector3, Vector4};
 
 use super::balances::{self, Factor};
 use super::log::Log;
@@ -26,8 +26,10 @@ const QUANTILE: f64 = 1.96;
 const UNKNOWN: f64 = 10.0;
 /// A torque that is not doubted: keeps the sums finite.
 const EXACT: f64 = 1e-6;
-/// What is expected and seen, less what is sought.
-const FREEDOM: f64 = 2.0;
+/// How wrong a sensor of the torque at the output may be, as a ratio: a standard deviation, of what data sheets say.
+const SENSOR_ERROR: f64 = 0.005;
+/// From this ratio of Birge on what is expected contradicts itself.
+const CONTRADICTION: f64 = 2.0;
 
 /// True over stated values, each as a logarithm with its standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,6 +44,8 @@ pub struct Scales {
     pub motor_inertia_alone: f64,
     /// What is expected is less well known than stated, by this factor; 1 if it fits together.
     pub birge: f64,
+    /// By which share all rates may be off: where both inertias contradict the torque alike, the time step may be what is wrong.
+    pub rates: f64,
 }
 
 /// One of them.
@@ -51,6 +55,8 @@ pub struct Scale {
     pub logarithm: f64,
     /// Its standard deviation.
     pub deviation: f64,
+    /// Half of its interval at the least: where what is expected contradicts itself, what was stated may yet be right.
+    pub least: f64,
 }
 
 /// What stays open of a torque that was not measured behind the gears.
@@ -68,14 +74,20 @@ impl Scale {
         self.logarithm.exp()
     }
 
+    /// From a solution.
+    fn of(logarithm: f64, variance: f64, birge: f64) -> Self {
+        let least = if birge > CONTRADICTION { logarithm.abs() } else { 0.0 };
+        Self { logarithm, deviation: variance.sqrt(), least }
+    }
+
     /// Half of its 95 % interval.
     pub fn half(self) -> f64 {
-        QUANTILE * self.deviation
+        self.least.max(QUANTILE * self.deviation)
     }
 
     /// Whether it is surely not what was stated.
     pub fn is_another(self) -> bool {
-        self.logarithm.abs() > self.half()
+        self.logarithm.abs() > QUANTILE * self.deviation
     }
 }
 
@@ -90,47 +102,53 @@ impl Scales {
     /// The likeliest, given what is expected of torque and inertias, the motor's share of all that turns, and the logged torque
     /// over what the motor's inertia and all inertias need.
     fn together([torque, inertia]: [f64; 2], share: f64, factors: [Option<Factor>; 2]) -> Self {
-        let seen = factors.map(|factor| factor.filter(|factor| factor.value > 0.0 && factor.is_narrow()));
         // Where the log has less torque than the inertias need, the true torque is that much more.
-        let ratio = seen.map(|factor| factor.map_or(0.0, |factor| -factor.value.ln()));
-        let scatter = seen.map(|factor| {
-            factor.map_or(UNKNOWN, |Factor { value, deviation }| (deviation / value).hypot(BALANCE_SHARE))
-        });
-        let equations = Matrix5x3::from_row_slice(&[
-            1.0,
-            0.0,
-            0.0, //
-            0.0,
-            1.0,
-            0.0, //
-            0.0,
-            0.0,
-            1.0, //
-            1.0,
-            -1.0,
-            0.0, //
-            1.0,
-            -share,
-            share - 1.0,
-        ]);
-        let values = Vector5::from([0.0, 0.0, 0.0, ratio[0], ratio[1]]);
-        let expected = [torque.max(EXACT), inertia.max(EXACT), inertia.max(EXACT)];
-        let solve = |birge: f64| {
-            let [torque, motor, link] = expected.map(|deviation| birge * deviation);
-            let weights =
-                Vector5::from([torque, motor, link, scatter[0], scatter[1]]).map(|deviation| deviation.powi(-2));
-            let weighted = equations.transpose() * nalgebra::Matrix5::from_diagonal(&weights);
-            let covariance = (weighted * equations).try_inverse().unwrap_or_else(Matrix3::zeros);
-            let solved: Vector3<f64> = covariance * (weighted * values);
-            let squares = (equations * solved - values).component_mul(&(equations * solved - values)).dot(&weights);
-            (solved, covariance, squares)
-        };
-        let birge = (solve(1.0).2 / FREEDOM).sqrt().max(1.0);
-        let (solved, covariance, _) = solve(birge);
-        let scale = |place: usize| Scale { logarithm: solved[place], deviation: covariance[(place, place)].sqrt() };
+        let [of_motor, of_all] = factors.map(Seen::of_factor);
+        let (solved, covariance, birge) = likeliest(
+            Vector3::from([torque, inertia, inertia]),
+            &[(Vector3::from([1.0, -1.0, 0.0]), of_motor), (Vector3::from([1.0, -share, share - 1.0]), of_all)],
+        );
+        let scale = |place: usize| Scale::of(solved[place], covariance[(place, place)], birge);
         let [of_torque, common, of_motor] = [covariance[(0, 0)], covariance[(0, 1)], covariance[(1, 1)]];
         let motor_inertia_alone = (of_motor - common * common / of_torque).max(0.0).sqrt();
-        Self { torque: scale(0), motor_inertia: scale(1), link_inertia: scale(2), motor_inertia_alone, birge }
+        Self {
+            torque: scale(0),
+            motor_inertia: scale(1),
+            link_inertia: scale(2),
+            motor_inertia_alone,
+            birge,
+            rates: rates(factors, birge),
+        }
+    }
+
+    /// Likewise where the torque was measured at the output: what `sensor` is its scale, and balances tell the motor's torque, the
+    /// motor's and the link's inertia by it, true over stated. The torque here is the measured one.
+    pub fn of_measured(prior: &PriorModel, [motor_torque, motor, link]: [Option<Factor>; 3]) -> Self {
+        let seen = [motor_torque, motor, link].map(Seen::of_factor);
+        let told = |place: usize| {
+            Vector4::from_fn(|row, _| {
+                if row == 0 {
+                    1.0
+                } else if row == place {
+                    -1.0
+                } else {
+                    0.0
+                }
+            })
+        };
+        let (solved, covariance, birge) = likeliest(
+            Vector4::from([SENSOR_ERROR, prior.torque_error, prior.inertia_error, prior.inertia_error]),
+            &[(told(1), seen[0]), (told(2), seen[1]), (told(3), seen[2])],
+        );
+        let scale = |place: usize| Scale::of(solved[place], covariance[(place, place)], birge);
+        Self {
+            torque: scale(0),
+            motor_inertia: scale(2),
+            link_inertia: scale(3),
+            motor_inertia_alone: 0.0,
+            birge,
+            rates: rates([motor, link], birge),
+        }
     }
 
     /// What is known of the joint with the motor's inertia as large as it may be beside the torque's scale.
@@ -141,7 +159,8 @@ impl Scales {
     /// The log and what is known of the joint, as these scales make them.
     pub fn apply(&self, log: &Log, prior: &PriorModel) -> (Log, PriorModel) {
         let mut log = log.clone();
-        log.torque.iter_mut().for_each(|torque| *torque *= self.torque.factor());
+        let torques = log.output_torque.as_mut().unwrap_or(&mut log.torque);
+        torques.iter_mut().for_each(|torque| *torque *= self.torque.factor());
         let mut prior = with_motor(prior, self.motor_inertia.factor());
         prior.link_inertia *= self.link_inertia.factor();
         (log, prior)
@@ -156,6 +175,58 @@ fn with_motor(prior: &PriorModel, factor: f64) -> PriorModel {
         motor_inertia: factor * prior.motor_inertia,
         ..prior.clone()
     }
+}
+
+/// A logarithm with its deviation.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    logarithm: f64,
+    deviation: f64,
+}
+
+impl Seen {
+    /// Of a factor, logged over true; nothing where it is not known well.
+    fn of_factor(factor: Option<Factor>) -> Self {
+        factor.filter(|factor| factor.value > 0.0 && factor.is_narrow()).map_or(
+            Self { logarithm: 0.0, deviation: UNKNOWN },
+            |Factor { value, deviation }| Self {
+                logarithm: -value.ln(),
+                deviation: (deviation / value).hypot(BALANCE_SHARE),
+            },
+        )
+    }
+}
+
+/// The likeliest logarithms, each expected to be zero within its deviation, by what is seen of sums of them; their covariance,
+/// and Birge's ratio, which is in it.
+fn likeliest<const N: usize>(
+    expected: SVector<f64, N>,
+    seen: &[(SVector<f64, N>, Seen)],
+) -> (SVector<f64, N>, SMatrix<f64, N, N>, f64) {
+    let solve = |birge: f64| {
+        let expected = expected.map(|deviation| (birge * deviation.max(EXACT)).powi(-2));
+        let mut information = SMatrix::<f64, N, N>::from_diagonal(&expected);
+        let mut right = SVector::<f64, N>::zeros();
+        for (of, Seen { logarithm, deviation }) in seen {
+            information += of * of.transpose() * deviation.powi(-2);
+            right += of * (logarithm * deviation.powi(-2));
+        }
+        let covariance = information.cholesky().map_or_else(SMatrix::zeros, |cholesky| cholesky.inverse());
+        let solved = covariance * right;
+        let left: f64 =
+            seen.iter().map(|(of, seen)| ((of.dot(&solved) - seen.logarithm) / seen.deviation).powi(2)).sum();
+        (solved, covariance, left + solved.component_mul(&solved).dot(&expected))
+    };
+    let birge = (solve(1.0).2 / seen.len() as f64).sqrt().max(1.0);
+    let (solved, covariance, _) = solve(birge);
+    (solved, covariance, birge)
+}
+
+/// By which share rates may be off, from the torque over what both inertias need.
+fn rates(factors: [Option<Factor>; 2], birge: f64) -> f64 {
+    let [Some(one), Some(other)] = factors else { return 0.0 };
+    let [one, other] = [one, other].map(|factor| factor.value.max(f64::MIN_POSITIVE).ln());
+    if birge < CONTRADICTION || one * other <= 0.0 { 0.0 } else { 0.5 * one.abs().min(other.abs()) }
 }
 
 #[cfg(test)]

@@ -3,6 +3,8 @@
 
 use nalgebra::DVector;
 
+use super::estimate::Estimate;
+use super::higher::Higher;
 use super::log::Log;
 use super::prior::PriorModel;
 use super::regression::{Equations, SCATTERING, Scatter, Solution};
@@ -30,8 +32,24 @@ pub const OUTPUT_MAP: usize = 11;
 pub const TEETH: usize = 15;
 /// Compliance times the ratio by which the motor's true torque exceeds the logged one [rad/(N m)].
 pub const TORQUE_ERROR: usize = 19;
-/// All of them; behind the torque's error, sine and cosine of what the teeth's error grows by with the square of speed.
-pub const UNKNOWNS: usize = 22;
+/// How much larger the teeth's errors are than stated, in standard deviations, where planets do not touch at once; behind the
+/// torque's error stand sine and cosine of what the teeth's error grows by with the square of speed.
+pub const SHARING: usize = 22;
+/// Compliance times the share by which the gears' losses differ from what is stated, negative [rad/(N m)].
+pub const LOSS: usize = 23;
+/// Compliance times a friction of the motor that is with one flank and against the other, as an offset of the torque feigns one,
+/// [rad/(N m) N m].
+pub const FLANK_FRICTION: usize = 24;
+/// All of them; behind them stand sine and cosine of errors that come more often a turn, as far as the log has shown any.
+pub const UNKNOWNS: usize = 25;
+/// Such errors are looked for from this many times a turn up to that many, so many of them...
+const HIGHER: std::ops::RangeInclusive<u32> = 3..=24;
+const MOST_HIGHER: usize = 4;
+/// ... and one is there if it stands out of its scatter by so many deviations and is larger than this share of half of the gap.
+const STANDS_OUT: f64 = 6.0;
+const BENDS: f64 = 0.002;
+/// Stretches of a log whose offsets are held against one another.
+pub const STRETCHES: usize = 6;
 
 /// Errors beyond these are not expected: what a log does not show stays within them.
 const MOTOR_MAP_WIDTH: f64 = 0.5 * DEGREE;
@@ -41,6 +59,13 @@ const SKEW_WIDTH: f64 = 1e-3;
 const DELAY_WIDTH: f64 = 2e-3;
 const RELAXATION_WIDTH: f64 = 1e-2;
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+/// How well an efficiency is known where a log tells it: a standard deviation, of what data sheets say.
+pub const LOSS_WIDTH: f64 = 0.03;
+/// Share of the largest torque within which frictions by flank are expected.
+pub const FLANKS: f64 = 0.02;
+/// A log tells it that narrows it to this share.
+const LOSS_TOLD: f64 = 0.3;
 
 /// Length of the blocks whose residuals are assumed to be independent of one another [s].
 pub const BLOCK_LENGTH: f64 = 0.1;
@@ -67,6 +92,8 @@ pub fn width(unknown: usize) -> f64 {
         RELAXATION => RELAXATION_WIDTH,
         SKEW => SKEW_WIDTH,
         DELAY => DELAY_WIDTH,
+        SHARING => 1.0,
+        LOSS | FLANK_FRICTION => f64::INFINITY,
         _ if unknown >= TEETH => TEETH_WIDTH,
         _ if unknown >= OUTPUT_MAP => OUTPUT_MAP_WIDTH,
         _ if unknown >= MOTOR_MAP => MOTOR_MAP_WIDTH,
@@ -86,26 +113,72 @@ pub fn fit_with_this_torque(log: &Log, rows: &Rows, prior: &PriorModel) -> Optio
 
 /// The same for a torque whose scale is not known at all; nothing where no torque of the motor enters.
 pub fn fit_with_any_torque(log: &Log, rows: &Rows, prior: &PriorModel) -> Option<Twist> {
-    if log.output_torque.is_some() { None } else { fit_with(log, rows, prior, f64::INFINITY) }
+    if log.output_torque.is_some() {
+        None
+    } else {
+        fit_with(log, rows, &PriorModel { loss_width: 0.0, ..prior.clone() }, f64::INFINITY)
+    }
+}
+
+/// By how much the offset of each stretch of a log but the first is another than that of the stretch before, with the standard
+/// deviation [rad]; nothing where the moments do not tell.
+pub fn steps_of_the_offset(log: &Log, rows: &Rows, prior: &PriorModel) -> Option<[(f64, f64); STRETCHES - 1]> {
+    let of_measured = log.output_torque.is_some();
+    let twist = fit_in_stretches(log, rows, prior, if of_measured { 0.0 } else { prior.torque_error }, STRETCHES)?;
+    let first = unknowns(prior);
+    let step = |after: usize| {
+        let slopes: Vec<(usize, f64)> =
+            (after > 0).then(|| (first + after - 1, -1.0)).into_iter().chain([(first + after, 1.0)]).collect();
+        let value: f64 = slopes.iter().map(|(unknown, by)| by * twist.solution.values[*unknown]).sum();
+        (value, twist.solution.half(&slopes) / twist.solution.reach)
+    };
+    Some(std::array::from_fn(step))
 }
 
 fn fit_with(log: &Log, rows: &Rows, prior: &PriorModel, torque_error: f64) -> Option<Twist> {
+    fit_in_stretches(log, rows, prior, torque_error, 1)
+}
+
+/// How many unknowns there are.
+fn unknowns(prior: &PriorModel) -> usize {
+    UNKNOWNS + 2 * prior.higher.len()
+}
+
+/// With an offset of its own for each stretch.
+fn fit_in_stretches(log: &Log, rows: &Rows, prior: &PriorModel, torque_error: f64, stretches: usize) -> Option<Twist> {
     let used: Vec<Row> = rows.carrying().filter(|row| row.direction != 0.0).copied().collect();
     let mut equations = Equations::of_moments(rows.alike);
     let products = rows.kernel.products();
     for row in &used {
         let block = (row.time / BLOCK_LENGTH) as usize;
-        let coefficients = equation(log, rows, prior, row);
-        equations.push_scattering(coefficients, row.twist, block, MEASURED, scatter(log, &products, prior, row));
+        let mut coefficients = equation(log, rows, prior, row);
+        let stretch = row.sample * stretches / log.time.len();
+        coefficients.extend((1..stretches).map(|later| if later == stretch { 1.0 } else { 0.0 }));
+        equations.push_scattering(
+            coefficients,
+            shared(log, prior, row),
+            block,
+            MEASURED,
+            scatter(log, &products, prior, row),
+        );
     }
     let mut widths: Vec<f64> = (0..UNKNOWNS).map(width).collect();
+    widths.extend(prior.higher.iter().flat_map(|higher| [width(higher.encoder); 2]));
+    widths.extend((1..stretches).map(|_| f64::INFINITY));
     // With the torque measured behind them, the motor's friction and its delay do not show in the twist.
     let measured = log.output_torque.is_some();
     widths[MOTOR_FRICTION] = if measured { NONE } else { prior.compliance * rows.greatest };
+    let told = !measured && prior.loss_width >= LOSS_WIDTH;
+    widths[FLANK_FRICTION] =
+        if told { (FLANKS * prior.compliance * rows.greatest / prior.ratio()).max(NONE) } else { NONE };
+    widths[LOSS] = if measured { NONE } else { (prior.compliance * prior.loss_width).max(NONE) };
     widths[TORQUE_ERROR] = if measured { NONE } else { (prior.compliance * torque_error).max(NONE) };
     if prior.equivalent {
         // No teeth, no errors of theirs.
-        (TEETH..TORQUE_ERROR).chain(TORQUE_ERROR + 1..UNKNOWNS).for_each(|unknown| widths[unknown] = NONE);
+        (TEETH..TORQUE_ERROR).chain(TORQUE_ERROR + 1..SHARING).for_each(|unknown| widths[unknown] = NONE);
+    }
+    if prior.sharing.is_none() {
+        widths[SHARING] = NONE;
     }
     let solution = equations.solve(&widths)?;
     Some(Twist { solution, rows: used })
@@ -135,6 +208,13 @@ fn scatter(log: &Log, products: &[[f64; 3]; 3], prior: &PriorModel, row: &Row) -
     covariance
 }
 
+/// The twist at a moment, were all planets to carry alike from the first touch on, and but for what the output's age has in it in
+/// second order [rad].
+fn shared(log: &Log, prior: &PriorModel, row: &Row) -> f64 {
+    let taken = prior.sharing.as_ref().map_or(0.0, |sharing| row.side * sharing.taken(row.torque()));
+    row.twist + taken + 0.5 * log.age * log.age * row.output_acceleration
+}
+
 /// Coefficients of the unknowns at a moment.
 fn equation(log: &Log, rows: &Rows, prior: &PriorModel, row: &Row) -> Vec<f64> {
     // Errors by angle are smoothed as the twist is: at speed the kernel takes a part of them.
@@ -161,20 +241,86 @@ fn equation(log: &Log, rows: &Rows, prior: &PriorModel, row: &Row) -> Vec<f64> {
     let passing = f64::from(prior.ring_teeth) * row.output_speed * prior.swing() / std::f64::consts::TAU;
     equation.push(passing * passing * smooth(&|place| log.teeth(place, prior).sin()));
     equation.push(passing * passing * smooth(&|place| log.teeth(place, prior).cos()));
+    equation.push(prior.sharing.as_ref().map_or(0.0, |sharing| -row.side * sharing.more(row.torque())));
+    equation.push(if row.measured.is_some() { 0.0 } else { row.loss() });
+    equation.push(if row.measured.is_some() { 0.0 } else { row.leverage * row.direction * row.side });
+    for &Higher { encoder, order } in &prior.higher {
+        let (angles, by) = if encoder == MOTOR_MAP { (&log.motor, 1.0 / ratio) } else { (&log.output, -1.0) };
+        equation.push(by * smooth(&|place| (order * angles[place]).sin()));
+        equation.push(by * smooth(&|place| (order * angles[place]).cos()));
+    }
     equation
 }
 
 impl Twist {
+    /// Half of the lost motion as a hand feels it: what is left where the foremost planets touch [rad].
+    pub(super) fn half_lost_motion(&self, prior: &PriorModel) -> Estimate {
+        let [taken, more] = prior.sharing.as_ref().map_or([0.0; 2], |sharing| [sharing.taken(0.0), sharing.more(0.0)]);
+        let value = self.solution.values[HALF_GAP] - taken - more * self.solution.values[SHARING];
+        Estimate::from(&self.solution, value, &[(HALF_GAP, 1.0), (SHARING, -more)])
+    }
+
     /// Of the joint [rad/(N m)].
     pub fn compliance(&self) -> f64 {
         self.solution.values[COMPLIANCE]
     }
 
-    /// Error at an angle that comes once and twice in its turn [rad]; `first` is the first of its four unknowns.
-    pub fn error(&self, first: usize, angle: f64) -> f64 {
+    /// Error at an angle that comes once and twice in its turn, and more often as far as it is known to [rad]; `first` is the first
+    /// of its four unknowns.
+    pub fn error(&self, first: usize, angle: f64, prior: &PriorModel) -> f64 {
         let part = |place: usize| self.solution.values[first + place];
         let (once, twice) = (angle.sin_cos(), (2.0 * angle).sin_cos());
-        part(0) * once.0 + part(1) * once.1 + part(2) * twice.0 + part(3) * twice.1
+        let more =
+            prior.higher.iter().enumerate().filter(|(_, higher)| higher.encoder == first).map(|(place, higher)| {
+                let (sine, cosine) = (higher.order * angle).sin_cos();
+                let at = UNKNOWNS + 2 * place;
+                self.solution.values[at] * sine + self.solution.values[at + 1] * cosine
+            });
+        part(0) * once.0 + part(1) * once.1 + part(2) * twice.0 + part(3) * twice.1 + more.sum::<f64>()
+    }
+
+    /// How large an error is that comes more often a turn, by its place in what is known [rad].
+    pub fn higher(&self, place: usize) -> f64 {
+        let at = UNKNOWNS + 2 * place;
+        self.solution.values[at].hypot(self.solution.values[at + 1])
+    }
+
+    /// The error that comes more than twice a turn and stands out most of what this fit leaves over, if there is one.
+    pub fn more_often_a_turn(&self, log: &Log, prior: &PriorModel) -> Option<Higher> {
+        if prior.higher.len() >= MOST_HIGHER {
+            return None;
+        }
+        let least = BENDS * self.solution.values[HALF_GAP].abs();
+        let mut most: Option<(f64, Higher)> = None;
+        for (encoder, angles, by) in [(MOTOR_MAP, &log.motor, 1.0 / prior.ratio()), (OUTPUT_MAP, &log.output, 1.0)] {
+            for order in HIGHER.map(f64::from) {
+                let mut equations = Equations::default();
+                for (row, left) in self.rows.iter().zip(&self.solution.residuals) {
+                    let (sine, cosine) = (order * angles[row.sample]).sin_cos();
+                    equations.push(vec![by * sine, by * cosine], *left, (row.time / BLOCK_LENGTH) as usize);
+                }
+                let Some(solution) = equations.solve(&[f64::INFINITY; 2]) else { continue };
+                let size = solution.values[0].hypot(solution.values[1]);
+                let deviation = solution.deviation(0).hypot(solution.deviation(1));
+                let stands_out = size / deviation.max(f64::MIN_POSITIVE);
+                let is_there =
+                    stands_out > STANDS_OUT && by * size > least && !prior.higher.contains(&Higher { encoder, order });
+                if is_there && most.is_none_or(|(best, _)| stands_out > best) {
+                    most = Some((stands_out, Higher { encoder, order }));
+                }
+            }
+        }
+        most.map(|(_, higher)| higher)
+    }
+
+    /// Share of the load that is lost beyond what is known.
+    pub fn loss(&self, prior: &PriorModel) -> f64 {
+        -self.solution.values[LOSS] / prior.compliance
+    }
+
+    /// Whether a fit that knew losses within `LOSS_WIDTH` only tells them.
+    pub fn tells_losses(&self, prior: &PriorModel) -> bool {
+        self.solution.deviation(LOSS) < LOSS_TOLD * prior.compliance * LOSS_WIDTH
     }
 
     /// Leaves out moments at which the teeth fly, whatever the mean torque: those whose twist is inside the gap by more than it
@@ -193,11 +339,13 @@ impl Twist {
     pub fn cleaned(&self, log: &Log, rows: &Rows, prior: &PriorModel) -> Vec<(Row, f64)> {
         let cleaned = |row: &Row| {
             let coefficients = DVector::from_vec(equation(log, rows, prior, row));
-            let errors: f64 = (0..UNKNOWNS)
-                .filter(|unknown| *unknown == OFFSET || (*unknown >= SKEW && *unknown != TORQUE_ERROR))
+            let errors: f64 = (0..unknowns(prior))
+                .filter(|unknown| {
+                    *unknown == OFFSET || (*unknown >= SKEW && ![TORQUE_ERROR, LOSS, FLANK_FRICTION].contains(unknown))
+                })
                 .map(|unknown| coefficients[unknown] * self.solution.values[unknown])
                 .sum();
-            (*row, row.twist - errors)
+            (*row, shared(log, prior, row) - errors)
         };
         rows.all.iter().map(cleaned).collect()
     }

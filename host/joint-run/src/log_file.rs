@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-use report::contacts::Contact;
+use report::contacts::{Contact, families};
 use report::log::{Channel, Message, field};
 
 use crate::record::RunRecord;
@@ -22,21 +22,24 @@ const NUMBERS: [(&str, &str); 9] = [
     ("carrier_speed_rad_per_s", "of the rigid body [rad/s]"),
     ("gap_m", "gap coordinate along the line of action [m]"),
     ("wind_up_m", "carrier less link along the line of action [m]"),
-    ("drive_torque_Nm", "on the sun shaft, as the profile has it in this tick [N m]"),
+    ("drive_torque_Nm", "that drives the gears at the motor, as the profile has it in this tick [N m]"),
     ("load_torque_Nm", "that brakes the link, likewise [N m]"),
 ];
-/// Fields that have an entry for each planet.
-const LISTS: [(&str, &str, &str); 4] = [
-    ("float64[]", "sun_planet_deflection_m", "[m], one for each planet"),
-    ("string[]", "sun_planet_contact", "separated, drive_side or back_side, one for each planet"),
-    ("float64[]", "ring_planet_deflection_m", "[m], one for each planet"),
-    ("string[]", "ring_planet_contact", "likewise"),
-];
+/// Fields of both families of meshes, each with an entry for each planet.
+const LISTS: [(&str, &str, &str); 2] =
+    [("float64[]", "deflection_m", "[m]"), ("string[]", "contact", "separated, drive_side or back_side")];
 
 /// Writes all samples of the board.
 pub fn fill(out: &mut impl Write, record: &RunRecord) -> io::Result<()> {
     let numbers = NUMBERS.iter().map(|(name, meaning)| field("float64", name, meaning));
-    let lists = LISTS.iter().map(|(kind, name, meaning)| field(kind, name, meaning));
+    let planets = record.samples.deflection_m.len() / 2;
+    let of_each = if planets == 1 { "of the one contact" } else { "one for each planet" };
+    let lists = families(planets).into_iter().flat_map(|family| {
+        let list = move |(kind, name, meaning): &(&str, &str, &str)| {
+            field(kind, &format!("{family}_{name}"), &format!("{meaning}, {of_each}"))
+        };
+        LISTS.iter().map(list)
+    });
     let identity = &record.identity;
     let remarks = [
         ("joint", identity.joint.clone()),

@@ -235,7 +235,8 @@ fn an_equivalent_gear_is_identified_with_the_torque_at_its_output_and_refused_wi
     let stiffness = 20.0 * 60.0_f64.to_degrees();
     for (key, truth, share) in [
         ("equivalent_gear.lost_motion_mrad", lost_motion, 0.01),
-        ("equivalent_gear.stiffness_N_m_per_rad", stiffness, 0.01),
+        // A scale of the sensor that is off by half a percent is in the interval.
+        ("equivalent_gear.stiffness_N_m_per_rad", stiffness, 0.015),
         ("equivalent_gear.damping_ratio", 0.05, 0.05),
         (MOTOR_ONCE, 0.1, 0.02),
     ] {
@@ -721,6 +722,107 @@ fn a_log_that_contradicts_itself_is_refused_with_the_likely_cause_and_nothing_is
         rows.iter().enumerate().map(|(index, row)| [row[0], row[1], rows[index / 10 * 10][2], row[3]]).collect();
     write_rows(&path, &stale, false);
     joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).refused(&["output_counts", "one of 10"]);
+}
+
+/// Rows of a log, changed as a whole.
+type Rows = Vec<[f64; 4]>;
+
+/// What is wrong with a log as a whole: a name, what is done to its rows, and what the refusal must name.
+type WrongRows = (&'static str, fn(&Rows) -> Rows, &'static [&'static str]);
+
+const WRONG_AS_A_WHOLE: [WrongRows; 6] = [
+    (
+        "a torque that is clipped",
+        |rows| each(rows, |row| row[3] = row[3].clamp(-1.2, 1.2)),
+        &["the torque of this log is", "a current"],
+    ),
+    (
+        "a torque that is scaled one way",
+        |rows| each(rows, |row| row[3] *= if row[3] > 0.0 { 1.4 } else { 1.0 }),
+        &["the torque of this log is", "a current"],
+    ),
+    ("a torque with an offset", |rows| each(rows, |row| row[3] += 0.6), &["a constant torque of", "zero"]),
+    ("a torque backwards in time", |rows| backwards(rows), &["drives", "time runs backwards"]),
+    ("an output that has slipped", |rows| slipped(rows, 100.0), &["do not stay together", "slipped"]),
+    ("an output that is late", |rows| late(rows, 20), &["the output's readings are 2.0", "older", "shift"]),
+];
+
+fn each(rows: &Rows, change: impl Fn(&mut [f64; 4])) -> Rows {
+    let mut rows = rows.clone();
+    rows.iter_mut().for_each(change);
+    rows
+}
+
+fn backwards(rows: &Rows) -> Rows {
+    let turned = rows.iter().zip(rows.iter().rev());
+    turned.map(|(row, from)| [row[0], from[1], from[2], from[3]]).collect()
+}
+
+fn slipped(rows: &Rows, counts: f64) -> Rows {
+    let slip = |(index, row): (usize, &[f64; 4])| {
+        let after = if index > rows.len() / 3 { counts } else { 0.0 };
+        [row[0], row[1], row[2] + after, row[3]]
+    };
+    rows.iter().enumerate().map(slip).collect()
+}
+
+fn late(rows: &Rows, samples: usize) -> Rows {
+    let late = |index: usize| [rows[index][0], rows[index][1], rows[index.saturating_sub(samples)][2], rows[index][3]];
+    (0..rows.len()).map(late).collect()
+}
+
+#[test]
+fn a_log_that_is_wrong_as_a_whole_is_refused_by_name() {
+    let folder = folder();
+    let rows = right(folder.path());
+    let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
+    for (what, change, named) in WRONG_AS_A_WHOLE {
+        println!("{what}");
+        write_rows(&path, &change(&rows), false);
+        joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).refused(named);
+        assert!(!out.exists(), "{what}: nothing is written");
+    }
+    // A torque at the output that was reckoned from the motor's.
+    let lines: String =
+        rows.iter().map(|[t, m, o, torque]| format!("{t},{m},{o},{torque},{}\n", 6.0 * torque)).collect();
+    fs::write(&path, format!("time_s,motor_counts,output_counts,motor_torque_N_m,output_torque_N_m\n{lines}"))
+        .expect("written");
+    joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).refused(&["was not measured there"]);
+}
+
+/// A joint whose planets mesh out of phase, so that errors of the teeth take a part of the gap.
+const OUT_OF_PHASE: [&str; 5] =
+    ["planets=4", "sun_teeth=22", "planet_teeth=34", "ring_teeth=90", "transmission_error_um=4"];
+
+#[test]
+fn planets_out_of_phase_and_errors_that_come_often_a_turn_bend_no_gap() {
+    let folder = folder();
+    let [log, other, out] = ["log.csv", "other.csv", "out"].map(|name| folder.path().join(name));
+    let sets: Vec<&str> = OUT_OF_PHASE.iter().flat_map(|set| ["--set", set]).collect();
+    let holds = |record: &Value, truths: &[(&str, f64)]| {
+        for (key, truth) in truths {
+            let (value, [low, high]) = found(record, key).unwrap_or_else(|| panic!("no {key}"));
+            assert!((low..=high).contains(truth), "{key} is {truth}, found {value} in {low} to {high}");
+        }
+    };
+    joint(&[&["identify", text(&log), "--joint", "q1", "--simulate", "--seed", "5"], &sets[..]].concat()).well();
+    joint(&[&["identify", text(&log), "--joint", "q1", "--out", text(&out)], &sets[..]].concat()).well();
+    let record = json(&out.join("findings.json"));
+    holds(&record, &[(BACKLASH, 40.0), (STIFFNESS, 10.3e3)]);
+    assert!(found(&record, MOTOR_DRY).is_none(), "{record}");
+    assert!(record["assumptions"].to_string().contains("out of phase"), "{record}");
+    // An error of 0.2 degrees three times a turn of the motor, and an efficiency that is 0.97 in truth.
+    let rows = right(folder.path());
+    let wavy = each(&rows, |row| {
+        let [motor, output] = [row[1] * TAU / 16384.0, row[2] * TAU / 131_072.0];
+        (row[1], row[2]) = (motor + 0.2_f64.to_radians() * (3.0 * motor).sin(), output);
+    });
+    write_rows(&other, &wavy, true);
+    let wrong = ["--set", "efficiency=0.93"];
+    joint(&[&["identify", text(&other), "--joint", "q1", "--out", text(&out)], &wrong[..]].concat()).well();
+    let record = json(&out.join("findings.json"));
+    holds(&record, &[(BACKLASH, 40.0), (STIFFNESS, 10.3e3), (MOTOR_DRY, 0.03)]);
+    assert!(record["assumptions"].to_string().contains("comes 3 times a turn"), "{record}");
 }
 
 #[test]

@@ -90,6 +90,35 @@ fn data_sheets_become_joints_that_check_sim_and_budget_take_without_a_warning() 
     }
 }
 
+/// A cycloid of which nobody knows the teeth.
+const CYCLOID: Sheet = ([59.0, 3.0, 20.0, 100.0, 1.0, 0.1, 0.85], &["--equivalent", "--gravity-torque-Nm", "15"]);
+
+#[test]
+fn a_sheet_without_teeth_becomes_an_equivalent_gear_that_commands_take() {
+    let place = folder();
+    let (written, file) = made(place.path(), CYCLOID);
+    let gear = file.parameters.equivalent_gear().expect("an equivalent gear");
+    let close = |value: f64, wanted: f64| assert!((value / wanted - 1.0).abs() < 1e-9, "{value}, {wanted}\n{written}");
+    close(file.parameters.geometry.ratio_by_teeth(), 59.0);
+    close(gear.lost_motion, 3.0 * ARCMIN);
+    close(gear.stiffness, 20.0 / ARCMIN);
+    close(file.parameters.rated_output_torque, 100.0);
+    assert!(written.contains("gear_inertia_at_input_kg_cm2 = 0.5 # assumed: half of the rotor's"), "{written}");
+    assert!(written.contains("without preload or hysteresis") && !written.contains("teeth"), "{written}");
+    assert_eq!(file.warnings, [], "{written}");
+    for line in written.lines().filter(|line| line.contains(" = ")) {
+        assert!(["# data sheet: ", "# derived from ", "# assumed: "].iter().any(|word| line.contains(word)), "{line}");
+    }
+    let path = place.path().join("made.toml");
+    joint(&["check", text(&path)]).well();
+    joint(&["budget", text(&path)]).well();
+    let name = place.path().join("other");
+    let with = |also: &[&str]| joint(&words(&line(&name, CYCLOID, also)));
+    with(&["--planets", "4"]).refused(&["--equivalent", "--planets"]);
+    with(&["--ratio-tolerance", "2"]).refused(&["--equivalent", "--ratio-tolerance"]);
+    joint(&["new", text(&name), "--equivalent", "--ratio", "0.5"]).refused(&["--ratio: 0.5 is not between 1"]);
+}
+
 #[test]
 fn options_of_the_sheet_stand_in_the_file_as_the_sheets() {
     let place = folder();
@@ -192,17 +221,14 @@ fn a_file_that_is_there_is_never_written_over() {
     assert_eq!(fs::read_to_string(&path).expect("still there"), "mine");
 }
 
-#[test]
-fn on_a_terminal_it_asks_for_what_is_missing() {
-    let place = folder();
+/// What is said where these answers are typed.
+fn said(arguments: &[&str], answers: &[u8]) -> String {
     let (mut master, terminal, _) = pseudo_terminal::pair();
-    let name = place.path().join("elbow");
     let mut command = Command::new(env!("CARGO_BIN_EXE_joint"));
-    command.args(["new", text(&name), "--no-measure", "--ratio", "9", "--lost-motion-arcmin", "15"]);
-    command.args(["--rated-torque-Nm", "8", "--rotor-inertia-kg-cm2", "0.32", "--no-load-torque-Nm", "0.05"]);
+    command.args(["new", "--no-measure"]).args(arguments);
     let asked = command.stdin(terminal).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
     let mut asked = asked.expect("the command can be started");
-    master.write_all(b"soft\n1.8\n0.94\n").expect("a terminal takes it");
+    master.write_all(answers).expect("a terminal takes it");
     let ended = within(Duration::from_secs(60), "an end", || {
         // What the terminal repeats must be taken off it.
         let _ = master.read(&mut [0; 256]);
@@ -211,6 +237,16 @@ fn on_a_terminal_it_asks_for_what_is_missing() {
     let mut said = String::new();
     asked.stderr.take().expect("piped").read_to_string(&mut said).expect("text");
     assert!(ended.success(), "{said}");
+    said
+}
+
+#[test]
+fn on_a_terminal_it_asks_for_what_is_missing() {
+    let place = folder();
+    let name = place.path().join("elbow");
+    let given = ["--ratio", "9", "--lost-motion-arcmin", "15", "--rated-torque-Nm", "8"];
+    let more = ["--rotor-inertia-kg-cm2", "0.32", "--no-load-torque-Nm", "0.05"];
+    let said = said(&[&[text(&name)], &given[..], &more].concat(), b"soft\n1.8\n0.94\n");
     for words in ["torsional stiffness at the output in N m/arcmin", "`soft` is not a number; once more", "efficiency"]
     {
         assert!(said.contains(words), "{said}");
@@ -218,4 +254,19 @@ fn on_a_terminal_it_asks_for_what_is_missing() {
     assert!(!said.contains("gear ratio"), "{said}");
     let file = fs::read_to_string(place.path().join("elbow.toml")).expect("it was written");
     assert!(file.contains("total_stiffness_N_m_per_arcmin = 1.8 # data sheet"), "{file}");
+}
+
+#[test]
+fn on_a_terminal_it_asks_what_kind_of_gears_where_the_ratio_is_not_said_either() {
+    let place = folder();
+    let name = place.path().join("wrist");
+    let given = ["--lost-motion-arcmin", "3", "--stiffness-Nm-per-arcmin", "20", "--rated-torque-Nm", "100"];
+    let more = ["--rotor-inertia-kg-cm2", "1", "--no-load-torque-Nm", "0.1", "--efficiency", "0.85"];
+    let said = said(&[&[text(&name)], &given[..], &more].concat(), b"worm\nequivalent\n59\n");
+    assert!(
+        said.contains("`worm` is neither planetary nor equivalent; once more") && said.contains("gear ratio"),
+        "{said}"
+    );
+    let file = fs::read_to_string(place.path().join("wrist.toml")).expect("it was written");
+    assert!(file.contains("[equivalent_gear]\nratio = 59.0 # data sheet"), "{file}");
 }

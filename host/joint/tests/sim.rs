@@ -29,6 +29,24 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
+#[test]
+fn the_history_of_an_equivalent_gear_has_no_words_of_teeth() {
+    let folder = folder();
+    joint(&["sim", "c1", "--duration", "0.01", "--out", text(folder.path())]).well();
+    let history = fs::read_to_string(folder.path().join("history.csv")).expect("written");
+    let head = history.lines().next().expect("a head").to_owned();
+    assert!(head.contains(",motor_half_deflection_m,") && head.ends_with(",link_half_contact"), "{head}");
+    let log = fs::read(folder.path().join("history.mcap")).expect("written");
+    let summary = mcap::Summary::read(&log).expect("finished").expect("with a summary");
+    let schemas = summary.schemas.values().map(|schema| String::from_utf8_lossy(&schema.data).into_owned());
+    let schemas: String = schemas.collect();
+    assert!(schemas.contains("motor_half_deflection_m") && schemas.contains("link_half_contact"), "{schemas}");
+    for word in ["sun", "ring", "planet", "tooth", "teeth"] {
+        let is_there = |text: &str| text.split(|letter: char| !letter.is_alphanumeric()).any(|part| part == word);
+        assert!(!is_there(&head.replace('_', " ")) && !is_there(&schemas.replace('_', " ")), "{word}: {schemas}");
+    }
+}
+
 /// MODEL: set P, from X = X' = 0. Peak to peak over b_c, period, non-fundamental over fundamental.
 #[test]
 fn the_paper_s_regimes_come_out_of_the_board_s_scheme() {

@@ -98,6 +98,12 @@ pub fn panel(times: &[f64], contact: &[Vec<Contact>], range: (f64, f64)) -> Pane
     }
 }
 
+/// What fields and columns of both families of meshes begin with: sun's and ring's with so many planets, or the halves of an
+/// equivalent gear, which has no teeth.
+pub const fn families(planets: usize) -> [&'static str; 2] {
+    if planets == 1 { ["motor_half", "link_half"] } else { ["sun_planet", "ring_planet"] }
+}
+
 /// Name of a mesh by its place among all.
 pub fn mesh_name(mesh: usize, meshes: usize) -> String {
     let planets = meshes / 2;

@@ -39,7 +39,7 @@ pub fn torques(drive: Points, load: Points) -> Vec<Panel> {
     let panel =
         |title: &str, points, ink| Panel { height: 160, ..Panel::lines(title, TORQUE, vec![line(points, ink, "")]) };
     vec![
-        panel("Drive torque on the sun shaft", drive, Ink::First),
+        panel("Drive torque at the motor", drive, Ink::First),
         panel("Load torque that brakes the link", load, Ink::Second),
     ]
 }
@@ -49,14 +49,14 @@ pub fn gap(band: (f64, f64), lines: Vec<Mark>) -> Panel {
     over_band(
         "Gap coordinate",
         Unit::of_length,
-        Mark::Band { range: band, label: "free: no tooth need touch (4b)".into() },
+        Mark::Band { range: band, label: "free: no flank need touch (4b)".into() },
         lines,
     )
 }
 
 /// The twist over the lost motion, half of which lies on either side [rad].
 pub fn twist(half: f64, lines: Vec<Mark>) -> Panel {
-    let band = Mark::Band { range: (-half, half), label: "lost motion of the teeth".into() };
+    let band = Mark::Band { range: (-half, half), label: "lost motion of the gears".into() };
     over_band("Twist: motor angle over ratio, less link angle", Unit::of_angle, band, lines)
 }
 
@@ -81,7 +81,11 @@ pub fn deflections(kinds: [(Vec<Points>, &[f64]); 2]) -> Vec<Panel> {
         greatest(lines.iter().flatten().map(|point| point.1).chain(half_backlash.iter().copied()))
     };
     let most = kinds.iter().map(values).fold(0.0, f64::max);
-    let titles = ["Deflection, sun–planet meshes", "Deflection, ring–planet meshes"];
+    // An equivalent gear has one contact, whose deflection is shared by two halves.
+    let titles = match kinds[0].0.len() {
+        1 => ["Deflection, half at the motor", "Deflection, half at the link"],
+        _ => ["Deflection, sun–planet meshes", "Deflection, ring–planet meshes"],
+    };
     let panel = |(title, (lines, half_backlash)): (&str, (Vec<Points>, &[f64]))| {
         let least = half_backlash.iter().copied().fold(f64::INFINITY, f64::min);
         let band = least.is_finite().then(|| Mark::Band { range: (-least, least), label: "parted (2b)".into() });
@@ -96,7 +100,13 @@ pub fn planets(lines: Vec<Points>, most: f64) -> Vec<Mark> {
     let planets = lines.len();
     let together = alike(&lines, ALIKE * most);
     let mark = |(planet, points): (usize, Points)| {
-        let label = if together { format!("all {planets} planets, alike") } else { format!("planet {}", planet + 1) };
+        let label = if planets == 1 {
+            String::new()
+        } else if together {
+            format!("all {planets} planets, alike")
+        } else {
+            format!("planet {}", planet + 1)
+        };
         // Lines may lie on each other: wider ones below show that they are there.
         let width = LINE + if together { 0.0 } else { (planets - 1 - planet) as f64 };
         Mark::line(points, LINES[planet % LINES.len()], label, width)

@@ -32,7 +32,7 @@ const NUMBERS: [(&str, &str); 20] = [
     ("motor_rad", "[rad]"),
     ("gap_m", "gap coordinate [m]"),
     ("half_backlash_m", "of every mesh, now [m]"),
-    ("mesh_force_N", "net force of the sun's meshes [N]"),
+    ("mesh_force_N", "net force between the flanks at the motor's side [N]"),
     ("peak_mesh_force_N", "largest of them since the last message [N]"),
     ("load_torque_Nm", "what brakes the link [N m]"),
     ("motor_torque_Nm", "asked of the motor [N m]"),

@@ -53,7 +53,7 @@ pub static METRICS: &[Metric] = &[
     metric("crossings", "", Motion, "changes from one flank to the other"),
     metric("last_crossing", "s", Motion, "time of the last of them; 0 without any"),
     metric("quiet", "s", Motion, "time from the last crossing to the end"),
-    metric("peak_mesh_force", "N", Motion, "largest net force of the sun's meshes"),
+    metric("peak_mesh_force", "N", Motion, "largest net force between the flanks at the motor's side"),
     metric("peak_mesh_force_ratio", "", Motion, "the same over what the rated torque takes"),
     metric("effort", "N_m", Motion, "motor torque asked for, root mean square"),
     metric("peak_torque", "N_m", Motion, "motor torque asked for, largest"),

@@ -17,6 +17,7 @@ pub const ASKED: [f64; 3] = [1e-3, 1e-2, 0.1];
 
 /// One method at its best within the cost.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct InASample {
     /// Case.
     pub case: String,
@@ -30,6 +31,7 @@ pub struct InASample {
 
 /// The best step of a method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Best {
     /// Steps a sample; sub-steps of this step; none where the design chose.
     pub steps: Option<u32>,

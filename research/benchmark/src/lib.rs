@@ -11,6 +11,8 @@ mod method_results;
 mod page;
 mod pictures;
 mod record;
+#[cfg(test)]
+mod schema;
 mod verdicts;
 
 pub use record::{BenchmarkRecord, Origin};
@@ -102,6 +104,7 @@ fn gather(arguments: &Arguments, progress: &Progress) -> Outcome<BenchmarkRecord
         false => Some(libraries::run(&keys, &say)?),
     };
     Ok(BenchmarkRecord {
+        schema: record::SCHEMA,
         origin: document::origin(&toolchain, emulator),
         at_equal_error: verdicts::at_equal_error(&methods),
         in_a_sample: in_a_sample::in_a_sample(&cases, &methods),

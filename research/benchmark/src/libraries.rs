@@ -14,6 +14,7 @@ const SUNDIALS: &str = "libsundials-dev";
 
 /// What one contestant did at one setting.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Time {
     /// Case.
     pub case: String,
@@ -29,6 +30,7 @@ pub struct Time {
 
 /// The result.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Times {
     /// Every contestant at every setting.
     pub times: Vec<Time>,

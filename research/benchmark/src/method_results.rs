@@ -25,6 +25,7 @@ const TICKS: [u32; 3] = [1, 2, 4];
 
 /// One method on one case.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct MethodResult {
     /// Case.
     pub case: String,
@@ -38,6 +39,7 @@ pub struct MethodResult {
 
 /// One step size.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "units are spelled as in every file that this command writes")]
 pub struct StepResult {
     /// Steps a second; of the core's step ticks a second.
@@ -92,6 +94,7 @@ impl StepResult {
 
 /// A case as it was run.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "units are spelled as in every file that this command writes")]
 pub struct CaseRecord {
     /// Short name.

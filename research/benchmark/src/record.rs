@@ -1,12 +1,19 @@
-//! The record of a comparison, with its provenance, as it is written as JSON.
+//! The record of a comparison, with its provenance, as it is written as JSON in the schema
+//! `joint-bench/1`.
 
 use serde::Serialize;
 
 use crate::{in_a_sample, libraries, method_results, verdicts};
 
+/// Says which fields there are; rises when one changes its meaning or goes.
+pub const SCHEMA: &str = "joint-bench/1";
+
 /// Everything found.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct BenchmarkRecord {
+    /// `joint-bench/1`.
+    pub schema: &'static str,
     /// Where the figures come from.
     pub origin: Origin,
     /// Cases.
@@ -29,6 +36,7 @@ pub struct BenchmarkRecord {
 
 /// Where figures come from.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Origin {
     /// Commit of the sources.
     pub commit: String,

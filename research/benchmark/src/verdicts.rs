@@ -19,6 +19,7 @@ pub const LEVELS: [f64; 2] = [1e-3, 1e-4];
 
 /// What it takes to reach an error.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct AtError {
     /// Case.
     pub case: String,
@@ -34,6 +35,7 @@ pub struct AtError {
 
 /// The least error within half a board.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "units are spelled as in every file that this command writes")]
 pub struct InBudget {
     /// Case.
@@ -154,6 +156,7 @@ pub fn in_budget(entries: &[MethodResult]) -> Vec<InBudget> {
 
 /// f32 beside f64 by step: what rounding adds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Rounding {
     /// Case.
     pub case: String,

@@ -4,6 +4,7 @@
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
+use report::schema::assert_valid;
 use serde_json::Value;
 
 /// Runs the program to its end, with an output that is as wide as its messages.
@@ -80,6 +81,7 @@ fn the_peers_are_as_lean_as_their_advocates_would_have_them() {
     let ended = bench(&["--case", "A", "--no-libraries", "--json", "-", "--document", text(&document)]);
     assert_eq!(ended.status.code(), Some(0), "{}", err(&ended));
     let figures: Value = serde_json::from_slice(&ended.stdout).expect("JSON");
+    assert_valid("bench.schema.json", &figures);
     // At the finest step, where contacts seldom change within one; mean instructions a step.
     let finest = |method: &str| {
         let entries = figures["methods"].as_array().expect("a list").iter();

@@ -14,6 +14,8 @@ const NARROWED: f64 = 0.1;
 const SPAN: f64 = 0.01;
 /// Radius within which two parts lie in 95 of 100 cases, over the reach within which one does.
 const OF_BOTH: f64 = 1.25;
+/// Part of the motor's viscous friction that is not known.
+const VISCOUS: f64 = 0.3;
 /// Degrees in a radian.
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 
@@ -60,9 +62,12 @@ pub(super) fn maps(twist: &Twist, prior: &PriorModel) -> Vec<Finding> {
 
 /// How old the output's reading is. What counts and teeth feign of an angle looks like an age the more, the slower the output
 /// turns.
-pub(super) fn skew(log: &Log, twist: &Twist, prior: &PriorModel) -> Finding {
+pub(super) fn skew(log: &Log, twist: &Twist, prior: &PriorModel, rates: f64) -> Finding {
     let speed = usual_speed(log).max(f64::MIN_POSITIVE);
     let skew = Estimate::of(&twist.solution, twist::SKEW).wider_by(feigned::twist(prior) / speed);
+    // By the motor's viscous friction the joint is bent as by an age.
+    let feigned = prior.compliance * prior.ratio().powi(2) * prior.surroundings.motor_friction.viscous;
+    let skew = skew.wider_by(VISCOUS * feigned + rates * skew.value);
     let why = "the joint must turn at different speeds";
     let narrow = skew.half < 2.0 * NARROWED * twist::width(twist::SKEW);
     finding("output encoder: age of a reading", "us", "drive_train.output_encoder.skew_us", skew.times(1e6))

@@ -1,9 +1,10 @@
 //! What a log shows of motor and link friction, and of the error in the torque scale, on which both depend. The torque
 //! balances are fitted in `friction`.
 
-use super::finding::{Finding, SHARE, finding};
+use super::finding::{FILTERED, Finding, SHARE, finding};
 use crate::estimate::Estimate;
 use crate::friction::{self, MotorSide};
+use crate::log::Log;
 use crate::prior::PriorModel;
 use crate::regression::Solution;
 use crate::rows::{Row, Rows};
@@ -16,8 +17,16 @@ const SMALL: f64 = 0.02;
 /// Share of the largest torque that a balance of torques may feign as dry friction.
 const BALANCE_SHARE: f64 = 0.0015;
 
+/// Share of the largest torque that teeth and compliance may feign as dry friction of the motor.
+const MOTOR_SHARE: f64 = 2e-4;
+
+/// Why friction of the motor is not found by the twist of planets that do not touch at once.
+const OUT_OF_PHASE: &str = "planets mesh out of phase, and errors of the teeth bend the joint as friction does; log the torque at the \
+                            output";
+
 /// Frictions of motor and link.
 pub(super) fn frictions(
+    log: &Log,
     [quick, slow]: [&Rows; 2],
     twist: &Twist,
     prior: &PriorModel,
@@ -30,24 +39,36 @@ pub(super) fn frictions(
     let motor = if measured { friction::of_the_motor(quick, prior) } else { None };
     let compliance = solution.values[twist::COMPLIANCE];
     let of_torque = doubt.map_or(0.0, |doubt| doubt.scales.torque.half());
+    let of_rates = doubt.map_or(0.0, |doubt| doubt.scales.rates);
     let motor_dry = match &motor {
-        Some(balance) => Estimate::of(balance, friction::MOTOR_DRY),
+        Some(balance) => {
+            let dry = Estimate::of(balance, friction::MOTOR_DRY);
+            dry.beside(of_torque * dry.value)
+        }
         None => {
             let value = -solution.values[twist::MOTOR_FRICTION] / compliance;
             let slopes = [(twist::MOTOR_FRICTION, -1.0 / compliance), (twist::COMPLIANCE, -value / compliance)];
-            Estimate::from(solution, value, &slopes).beside(of_torque * value)
+            Estimate::from(solution, value, &slopes)
+                .beside(of_torque * value)
+                .wider_by(MOTOR_SHARE * quick.greatest / prior.ratio())
         }
     };
     let excess = match (&motor, doubt) {
-        (Some(balance), _) => Estimate::of(balance, friction::TORQUE_ERROR),
+        (Some(balance), _) => {
+            let excess = Estimate::of(balance, friction::TORQUE_ERROR);
+            excess.beside(of_torque * (1.0 + excess.value))
+        }
         (None, Some(doubt)) => Estimate { value: doubt.scales.torque.factor() - 1.0, half: of_torque },
         (None, None) => Estimate { value: f64::NAN, half: f64::NAN },
     };
     let motor_known = found(motor_dry, small / prior.ratio());
     let why_motor = "the motor must turn both ways on each flank, and bend the joint by several counts as it does";
     let key = "drive_train.motor_coulomb_friction_N_m";
-    let mut findings =
-        vec![finding("dry friction of the motor", "N m", key, motor_dry).if_so(motor_known, why_motor).not_negative()];
+    let motor_dry_found = finding("dry friction of the motor", "N m", key, motor_dry)
+        .if_so(motor_known, why_motor)
+        .if_so(!log.is_filtered(prior), FILTERED)
+        .if_so(measured || prior.sharing.is_none(), OUT_OF_PHASE);
+    let mut findings = vec![motor_dry_found.not_negative()];
     let narrower = excess.half < prior.torque_error;
     let key = "drive_train.torque_constant_error_ratio";
     let why = "flanks must land so hard that the motor's inertia shows";
@@ -55,6 +76,7 @@ pub(super) fn frictions(
     findings.push(share.noted("by the inertias of the joint file"));
     if let Some(balance) = &motor {
         let viscous = Estimate::of(balance, friction::MOTOR_VISCOUS);
+        let viscous = viscous.beside(of_torque * viscous.value).wider_by(of_rates * viscous.value);
         let fastest = fastest(quick, |row| row.motor_speed);
         let key = "drive_train.motor_viscous_friction_N_m_s_per_rad";
         let known = found(viscous, small / prior.ratio() / fastest);
@@ -68,13 +90,18 @@ pub(super) fn frictions(
     let keys = ["drive_train.load_coulomb_friction_N_m", "drive_train.load_viscous_friction_N_m_s_per_rad"];
     let units = ["N m", "N m s/rad"];
     // Without its own finding the motor's friction is taken from the joint file.
+    let motor_known = motor_known && (measured || prior.sharing.is_none()) && !log.is_filtered(prior);
     let (dry, note) = if measured || motor_known {
         (motor_dry, "")
     } else {
         (Estimate { value: prior.surroundings.motor_friction.coulomb, half: 0.0 }, "if the motor's is as stated")
     };
     let delay = if measured { Estimate { value: 0.0, half: 0.0 } } else { Estimate::of(solution, twist::DELAY) };
-    let as_found = MotorSide { torque_error: 0.0, dry: dry.value, delay: delay.value };
+    let loss = match measured {
+        true => Estimate { value: 0.0, half: 0.0 },
+        false => Estimate::of(solution, twist::LOSS).times(-1.0 / compliance),
+    };
+    let as_found = MotorSide { torque_error: 0.0, dry: dry.value, delay: delay.value, loss: loss.value };
     let balance = |motor: MotorSide| friction::of_the_link(slow, prior, motor);
     let Some(link) = balance(as_found) else {
         let nothing = Estimate { value: f64::NAN, half: f64::NAN };
@@ -88,6 +115,7 @@ pub(super) fn frictions(
         balance(MotorSide { torque_error: of_torque, ..as_found }),
         balance(MotorSide { dry: dry.value + dry.half, ..as_found }),
         balance(MotorSide { delay: delay.value + delay.half, ..as_found }),
+        balance(MotorSide { loss: loss.value + loss.half, ..as_found }),
     ];
     let of_link = |unknown: usize| {
         let shift = |moved: &Option<Solution>| {
@@ -98,6 +126,7 @@ pub(super) fn frictions(
     };
     let dry = of_link(friction::DRY).wider_by(BALANCE_SHARE * quick.greatest);
     let viscous = of_link(friction::VISCOUS);
+    let viscous = viscous.wider_by(of_rates * viscous.value);
     let viscous_known = found(viscous, small / fastest(slow, |row| row.output_speed));
     findings
         .push(finding(names[0], units[0], keys[0], dry).if_so(found(dry, small), why_link).not_negative().noted(note));

@@ -10,6 +10,9 @@ pub(super) const SHARE: f64 = 0.5;
 /// Why an unknown is not found that goes with others.
 pub(super) const TOGETHER: &str = "in this motion it goes with something else, as in a sine of one strength; reverse torques of \
                                    three or four different strengths, and swing slowly too";
+/// Why what rings and brakes is not found of smooth angles.
+pub(super) const FILTERED: &str = "the angles are smoother than encoders of these bits give them, as filtered ones are; log raw \
+                                   readings, or say --motor-bits and --output-bits as they are";
 /// What two inertias on a spring leave out of a joint, as a share of a value: widens every interval. Found on simulated
 /// logs of the presets, where the scatter alone promised more than the reference keeps.
 const MODEL_SHARE: f64 = 0.003;
@@ -61,10 +64,28 @@ impl Finding {
         if self.value.is_none() { self } else { Self { note: note.into(), ..self } }
     }
 
-    /// What cannot be negative, and with it its interval.
+    /// What cannot be negative, and with it its interval; one that is surely below zero keeps what it is, for who judges the log.
     pub(super) fn not_negative(mut self) -> Self {
+        if self.interval.is_some_and(|[_, high]| high < 0.0) {
+            return self;
+        }
         self.value = self.value.map(|value| value.max(0.0));
         self.interval = self.interval.map(|ends| ends.map(|end| end.max(0.0)));
         self
+    }
+
+    /// Whether it brakes.
+    pub(crate) fn is_friction(&self) -> bool {
+        self.key.as_deref().is_some_and(|key| key.contains("friction"))
+    }
+
+    /// A friction that came out below zero by no more than chance gives: none, up to half of its interval.
+    pub(crate) fn settled(self) -> Self {
+        match self.interval {
+            Some([low, high]) if high < 0.0 && self.is_friction() => {
+                Self { value: Some(0.0), interval: Some([0.0, 0.5 * (high - low)]), ..self }
+            }
+            _ => self,
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! What a log shows of gap, compliance and damping.
 
 use super::feigned;
-use super::finding::{Finding, SHARE, TOGETHER, finding};
+use super::finding::{FILTERED, Finding, SHARE, TOGETHER, finding};
 use crate::estimate::Estimate;
 use crate::log::Log;
 use crate::prior::PriorModel;
@@ -14,6 +14,9 @@ use crate::twist::Twist;
 
 /// How well readings of motor and torque are taken at the same time [s]: a delay looks like damping.
 const SAME_TIME: f64 = 2e-6;
+
+/// Planets that land one after the other damp what rings by this share more or less than those that land at once.
+const SHARED: f64 = 0.35;
 
 /// The gap, what bends, and how it rings.
 pub(super) fn gap_and_compliance(
@@ -43,7 +46,8 @@ pub(super) fn gap_and_compliance(
     }
     let lost_motion_key = if prior.equivalent { "equivalent_gear.lost_motion_mrad" } else { "" };
     findings.extend([
-        finding("lost motion at the output", "mrad", lost_motion_key, half_gap.times(2e3)).if_so(has_gap, why_gap),
+        finding("lost motion at the output", "mrad", lost_motion_key, twist.half_lost_motion(prior).times(2e3))
+            .if_so(has_gap, why_gap),
         finding("compliance at the output", "urad/(N m)", "", compliance.times(1e6)).if_so(bends, why_bends),
     ]);
     // What the teeth give is known better from the joint file than from the small part that they have in it.
@@ -64,13 +68,16 @@ pub(super) fn gap_and_compliance(
         finding("mean stiffness of a mesh", "N/m", "mesh.mean_stiffness_N_per_m", estimate).if_so(bends, why_bends)
     };
     findings.push(stiffness);
-    findings.push(damping(solution, prior, compliance, bends && prior.swing() > SWING_SAMPLES * log.period));
+    let damping = damping(solution, prior, compliance, bends && prior.swing() > SWING_SAMPLES * log.period);
+    findings.push(damping.if_so(!log.is_filtered(prior), FILTERED));
     findings
 }
 
 /// From the time by which the torque runs ahead of the twist to the ratio that the joint file states.
 fn damping(solution: &Solution, prior: &PriorModel, compliance: Estimate, bends: bool) -> Finding {
-    let relaxation = Estimate::of(solution, twist::RELAXATION).times(-1.0).wider_by(SAME_TIME);
+    // A motor that is read before the output may be read before the torque as well.
+    let lead = -solution.values[twist::SKEW];
+    let relaxation = Estimate::of(solution, twist::RELAXATION).times(-1.0).wider_by(SAME_TIME.max(lead));
     let own = compliance.value - prior.mesh_compliance;
     let (name, key, per_ratio) = if prior.compliant {
         // D = 2 zeta sqrt(J / c), on the part of the twist that is not the teeth's.
@@ -84,8 +91,11 @@ fn damping(solution: &Solution, prior: &PriorModel, compliance: Estimate, bends:
     } else {
         ("damping ratio of the meshes", "mesh.damping_ratio", prior.mesh_relaxation_per_ratio)
     };
-    let ratio = relaxation.times(1.0 / per_ratio);
-    let known = bends && per_ratio > 0.0 && ratio.value > 0.0 && ratio.half < SHARE * ratio.value;
+    let mut ratio = relaxation.times(1.0 / per_ratio);
+    if prior.sharing.is_some() {
+        ratio = ratio.beside(SHARED * ratio.value);
+    }
+    let known = ratio.value < 1.0 && bends && per_ratio > 0.0 && ratio.value > 0.0 && ratio.half < SHARE * ratio.value;
     finding(name, "-", key, ratio)
         .if_so(known, "flanks must land so hard that the joint rings, and samples must follow the ringing")
 }

@@ -14,6 +14,10 @@ const LEAST_LEFT_OUT: f64 = 0.02;
 const MOST_LEFT_OUT: f64 = 0.25;
 /// What is left of a pass is this share of the travel at least.
 const LEAST_LEFT: f64 = 0.1;
+/// Around a turning point so many samples to either side are looked at.
+const AROUND: usize = 12;
+/// Readings that are apart by more than so many samples are told by the output about turning points.
+const APART: f64 = 1.3;
 /// Fewer samples do not show how the difference goes over a pass.
 const LEAST_SAMPLES: usize = 24;
 
@@ -39,6 +43,7 @@ pub fn passes(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<(Vec<Pass>, f
         ))
         .with_help("sweep slowly to and fro over the same places, at least twice each way"));
     }
+    read_together(samples, &turns)?;
     let left_out = (LEAST_LEFT_OUT * travel).max(spread(&samples.difference));
     if left_out > MOST_LEFT_OUT * travel {
         return Err(Failure::new(format!(
@@ -73,6 +78,47 @@ pub fn passes(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<(Vec<Pass>, f
         None => Err(Failure::new("no pass is left between turning points, gaps and the ends of the halves")
             .with_help("let --half FROM..TO hold whole sweeps; times are counted from the first sample")),
     }
+}
+
+/// Refuses a log whose output goes on the old way after the motor has turned, or turns before it: friction holds an output, and a
+/// gap does too, but neither moves it. Readings of different moments do, and feign a width of the way in between.
+fn read_together(samples: &Samples, turns: &[usize]) -> Outcome<()> {
+    let output = &samples.output;
+    let mut steps: Vec<f64> =
+        output.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0).collect();
+    steps.sort_by(f64::total_cmp);
+    let step = steps.get(steps.len() / 2).copied().unwrap_or(f64::INFINITY);
+    let inner = turns.get(1..turns.len().saturating_sub(1)).unwrap_or_default();
+    // So far does the output go on after a turning point and, negative, so far has it come back before it, in usual steps.
+    let mut went_on: Vec<f64> = Vec::new();
+    for &turn in inner {
+        let forwards = samples.motor[turn] > samples.motor[turn.saturating_sub(AROUND)];
+        let sign = if forwards { 1.0 } else { -1.0 };
+        let around = &output[turn.saturating_sub(AROUND)..(turn + AROUND + 1).min(output.len())];
+        let (farthest, most) = around
+            .iter()
+            .enumerate()
+            .map(|(place, value)| (place, sign * (value - output[turn])))
+            .fold((0, f64::NEG_INFINITY), |best, next| if next.1 > best.1 { next } else { best });
+        let after = farthest >= turn - turn.saturating_sub(AROUND);
+        went_on.push(if after { most } else { -most } / step);
+    }
+    went_on.sort_by(f64::total_cmp);
+    let usual = went_on.get(went_on.len() / 2).copied().unwrap_or_default();
+    if usual.abs() < APART {
+        return Ok(());
+    }
+    let (late, early) = if usual > 0.0 { ("output", "motor") } else { ("motor", "output") };
+    Err(Failure::new(format!(
+        "the {late}'s readings are late: at turning points the output goes on or back by {} of its usual steps against the motor, which \
+         no friction and no gap does",
+        ESTIMATE.write(usual.abs())
+    ))
+    .with_help(format!(
+        "that feigns a width of twice the way in between; shift the column by about {} rows against that of the {early}, or read both \
+         at once",
+        usual.abs().round()
+    )))
 }
 
 /// Samples at which the motor turns, the first and the last of the log's motion among them.

@@ -4,6 +4,7 @@
 use std::io::{self, Write};
 
 use parameters::JointParameters;
+use report::contacts::families;
 
 use super::quantities::{QUANTITIES, contact_word};
 use super::snapshot::Snapshot;
@@ -12,10 +13,11 @@ use super::snapshot::Snapshot;
 pub fn write_head(out: &mut impl Write, planets: usize) -> io::Result<()> {
     let mut names = vec!["time_s".to_owned()];
     names.extend(QUANTITIES.iter().map(|quantity| quantity.column.to_owned()));
-    for kind in ["sun_planet", "ring_planet"] {
+    for kind in families(planets) {
         for planet in 1..=planets {
+            let number = if planets == 1 { String::new() } else { format!("_{planet}") };
             let quantities = ["deflection_m", "deflection_rate_m_per_s", "force_N", "contact"];
-            names.extend(quantities.map(|quantity| format!("{kind}_{planet}_{quantity}")));
+            names.extend(quantities.map(|quantity| format!("{kind}{number}_{quantity}")));
         }
     }
     writeln!(out, "{}", names.join(","))

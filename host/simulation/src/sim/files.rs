@@ -42,7 +42,7 @@ impl<'a> HistoryFiles<'a> {
             csv::write_head(&mut csv, joint.geometry.planets)
                 .map_err(|error| unwritten(&folder.file(CSV[0]), &error))?;
             let log = BufWriter::new(folder.grow(LOG[0])?);
-            let log = Channel::begin(log, TOPIC, SCHEMA_NAME, &log_file::schema(), remarks)
+            let log = Channel::begin(log, TOPIC, SCHEMA_NAME, &log_file::schema(joint.geometry.planets), remarks)
                 .map_err(|error| unwritten(&folder.file(LOG[0]), &error))?;
             Ok(Self { folder, joint, csv, log })
         };

@@ -1,6 +1,7 @@
 //! The history of a run as a log: the same names, units and words as in its CSV.
 
 use parameters::JointParameters;
+use report::contacts::families;
 use report::log::{Message, field};
 
 use super::quantities::{QUANTITIES, contact_word};
@@ -13,15 +14,14 @@ pub const SCHEMA_NAME: &str = "joint_msgs/msg/Motion";
 
 /// Fields that hold one number for each planet.
 const LISTS: [(&str, &str); 3] = [("deflection_m", "[m]"), ("deflection_rate_m_per_s", "[m/s]"), ("force_N", "[N]")];
-/// Families of meshes, as in the columns of CSV.
-const FAMILIES: [&str; 2] = ["sun_planet", "ring_planet"];
 
-/// The message as ROS 2 writes it down.
-pub fn schema() -> String {
+/// The message of a joint with so many planets, as ROS 2 writes it down.
+pub fn schema(planets: usize) -> String {
+    let of_each = if planets == 1 { "of the one contact" } else { "one for each planet" };
     let numbers = QUANTITIES.iter().map(|quantity| field("float64", quantity.column, quantity.meaning));
-    let lists = FAMILIES.iter().flat_map(|family| {
+    let lists = families(planets).into_iter().flat_map(|family| {
         let list = move |kind, name: &str, meaning: &str| {
-            field(kind, &format!("{family}_{name}"), &format!("{meaning}, one for each planet"))
+            field(kind, &format!("{family}_{name}"), &format!("{meaning}, {of_each}"))
         };
         let numbers = LISTS.iter().map(move |(name, meaning)| list("float64[]", name, meaning));
         numbers.chain([list("string[]", "contact", "separated, drive_side or back_side")])

@@ -20,7 +20,7 @@ type Value = fn(&Snapshot, &JointParameters) -> f64;
 
 /// All but the time.
 pub const QUANTITIES: [Quantity; 11] = [
-    quantity("drive_torque_Nm", "torque on the sun shaft [N m]", |snapshot, _| snapshot.drive),
+    quantity("drive_torque_Nm", "torque that drives the gears at the motor [N m]", |snapshot, _| snapshot.drive),
     quantity("load_torque_Nm", "torque that brakes the link [N m]", |snapshot, _| snapshot.load),
     quantity("motor_angle_rad", "[rad]", Snapshot::motor_angle),
     quantity("link_angle_rad", "[rad]", |snapshot, _| snapshot.link_angle()),

@@ -1,0 +1,130 @@
+//! What errors of the teeth take of a gap. Planets whose meshes are out of phase do not touch at once: with errors e_i of
+//! sun's and ring's mesh together, the planet that stands foremost carries first, and the others only as it gives. Half of the
+//! gap is therefore smaller under little torque than what the teeth are cut to, by the mean over a mesh period of what the
+//! foremost planet stands out, and comes back as the torque grows:
+//!
+//!     sum over planets of max(0, w - t_i) = F,   t_i = o_i + e_i,   F = T (1/K_sp + 1/K_rp) / (2 r_c cos(alpha))
+//!
+//! where w is what sun's and ring's mesh of a planet give together beyond the mean gap, o_i by how much this planet's gap is wider than the mean
+//! one, and T the torque on the joint. Evenly shared w were F / n; a half of F / n - w, over the lever r_c cos(alpha), is what
+//! they take.
+
+use std::f64::consts::TAU;
+
+use model_core::gears::{Kinematics, MeshPhasing};
+use parameters::{JointParameters, MESH_KINDS};
+
+/// Places in a mesh period at which it is reckoned.
+const PLACES: usize = 24;
+/// Errors of teeth are known within this share of what the joint file states, and within so much [m]: a standard deviation.
+const UNCERTAIN: f64 = 0.5;
+const AT_LEAST: f64 = 1e-6;
+/// What is less is nothing [m].
+const NOTHING: f64 = 1e-9;
+
+/// Of a joint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadSharing {
+    /// r_c cos(alpha) [m].
+    lever: f64,
+    /// What both meshes of a planet give for each N on them [m/N].
+    give: f64,
+    /// Thresholds t_i at the places, each from the foremost on [m].
+    as_stated: Vec<Vec<f64>>,
+    /// Likewise with errors that are larger by a standard deviation.
+    with_more: Vec<Vec<f64>>,
+}
+
+impl LoadSharing {
+    /// Of a joint whose meshes have these stiffnesses; nothing where all planets touch at once.
+    pub fn of(joint: &JointParameters, stiffnesses: [f64; 2]) -> Option<Self> {
+        let planets = joint.geometry.planets;
+        let gap = |planet: usize| MESH_KINDS.iter().map(|kind| joint.mesh(*kind).half_backlash[planet]).sum::<f64>();
+        let mean = (0..planets).map(gap).sum::<f64>() / planets as f64;
+        let thresholds = |more: &dyn Fn(f64) -> f64| -> Vec<Vec<f64>> {
+            let at = |place: usize| {
+                let phase = TAU * place as f64 / PLACES as f64;
+                let error = |planet: usize| -> f64 {
+                    let of = |kind| {
+                        more(joint.mesh(kind).transmission_error[planet])
+                            * (phase + joint.error_phase(kind, planet)).sin()
+                    };
+                    MESH_KINDS.into_iter().map(of).sum()
+                };
+                let mut all: Vec<f64> = (0..planets).map(|planet| gap(planet) - mean + error(planet)).collect();
+                all.sort_by(f64::total_cmp);
+                all
+            };
+            (0..PLACES).map(at).collect()
+        };
+        let more = |error: f64| error + (UNCERTAIN * error.abs()).max(AT_LEAST);
+        let sharing = Self {
+            lever: joint.geometry.carrier_base_radius(),
+            give: stiffnesses.iter().map(|stiffness| stiffness.recip()).sum(),
+            as_stated: thresholds(&|error| error),
+            with_more: thresholds(&more),
+        };
+        (sharing.lever * sharing.taken(0.0).max(sharing.more(0.0)) > NOTHING).then_some(sharing)
+    }
+
+    /// What is taken of half of the lost motion under a torque on the joint, either way [rad].
+    pub fn taken(&self, torque: f64) -> f64 {
+        self.mean(&self.as_stated, torque)
+    }
+
+    /// What errors that are larger by a standard deviation take more [rad].
+    pub fn more(&self, torque: f64) -> f64 {
+        self.mean(&self.with_more, torque) - self.taken(torque)
+    }
+
+    fn mean(&self, thresholds: &[Vec<f64>], torque: f64) -> f64 {
+        let force = torque.abs() * self.give / (2.0 * self.lever);
+        let taken = |thresholds: &Vec<f64>| force / thresholds.len() as f64 - deflection(thresholds, force);
+        0.5 * thresholds.iter().map(taken).sum::<f64>() / (thresholds.len() as f64 * self.lever)
+    }
+}
+
+/// w of sum of max(0, w - t) = force, with thresholds that rise.
+fn deflection(thresholds: &[f64], force: f64) -> f64 {
+    let mut sum = force;
+    for (before, threshold) in thresholds.iter().enumerate() {
+        if before > 0 && sum / before as f64 <= *threshold {
+            return sum / before as f64;
+        }
+        sum += threshold;
+    }
+    sum / thresholds.len().max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn joint(changes: &[(&str, &str)]) -> JointParameters {
+        let q1 = joint_file::preset("q1").expect("a preset").to_owned();
+        let changed =
+            changes.iter().fold(q1, |text, (key, value)| joint_file::change(&text, key, value).expect("a key"));
+        joint_file::read(&changed).expect("a joint").parameters
+    }
+
+    #[test]
+    fn planets_that_carry_one_after_the_other_bend_as_springs_with_steps() {
+        let thresholds = [-2.0, 1.0, 4.0];
+        for (force, expected) in [(0.0, -2.0), (1.0, -1.0), (3.0, 1.0), (5.0, 2.0), (9.0, 4.0), (12.0, 5.0)] {
+            assert!((deflection(&thresholds, force) - expected).abs() < 1e-12, "{force}");
+        }
+    }
+
+    #[test]
+    fn planets_in_phase_take_nothing_and_others_less_the_more_they_bear() {
+        assert_eq!(LoadSharing::of(&joint(&[]), [1e8; 2]), None, "75 teeth on three planets");
+        let four = [("planets", "4"), ("sun_teeth", "22"), ("planet_teeth", "34"), ("ring_teeth", "90")];
+        let sharing = LoadSharing::of(&joint(&four), [1e8; 2]).expect("out of phase by a half");
+        // Two and two against each other: the mean of |sin|, of sun's and ring's mesh together.
+        let expected = 3e-6 * 2.0 / std::f64::consts::PI;
+        let found = sharing.taken(0.0) * sharing.lever;
+        assert!((found / expected - 1.0).abs() < 0.01, "{found}");
+        assert!(sharing.taken(5.0) < 0.9 * sharing.taken(0.0) && sharing.taken(1e4) < 1e-9);
+        assert!((sharing.more(0.0) / sharing.taken(0.0) - 0.5).abs() < 1e-9);
+    }
+}

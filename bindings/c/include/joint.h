@@ -9,7 +9,7 @@
  * - It returns a JointStatus; joint_status_name and joint_status_text say what one means. Unless it is
  *   JOINT_STATUS_OK nothing was changed.
  * - A pointer is NULL only where its function says that it may be. It is aligned for its type; one that is not is
- *   refused, and so is a result that would lie within an object.
+ *   refused. What a function writes to is the caller's own, and no part of an object.
  * - Objects lie in storage that the caller owns: a variable of the type that is named here, in RAM. Start one where it
  *   stays: one that was moved or copied is refused. There is nothing to free. Do not look into it.
  * - Tables are constants that `joint tables` writes: an array of uint64_t, which stays where it is and as it is for as long
@@ -89,30 +89,28 @@ enum JointStatus
   JOINT_STATUS_WRONG_SIZE = 3,
   // The object was not started, was moved, or is of another kind.
   JOINT_STATUS_NOT_STARTED = 4,
-  // What a function writes to lies within an object of this library.
-  JOINT_STATUS_OVERLAP = 5,
   // A number is infinite or not a number.
-  JOINT_STATUS_NOT_FINITE = 6,
+  JOINT_STATUS_NOT_FINITE = 5,
   // These are no tables.
-  JOINT_STATUS_NOT_TABLES = 7,
+  JOINT_STATUS_NOT_TABLES = 6,
   // The tables are of another version than this library.
-  JOINT_STATUS_WRONG_TABLES_VERSION = 8,
+  JOINT_STATUS_WRONG_TABLES_VERSION = 7,
   // The digest of the tables does not fit: some of them was lost.
-  JOINT_STATUS_DAMAGED_TABLES = 9,
+  JOINT_STATUS_DAMAGED_TABLES = 8,
   // These tables were made without this part.
-  JOINT_STATUS_MISSING_TABLES = 10,
+  JOINT_STATUS_MISSING_TABLES = 9,
   // Two objects were started from different tables.
-  JOINT_STATUS_OTHER_TABLES = 11,
+  JOINT_STATUS_OTHER_TABLES = 10,
   // These bytes are no memory of an observer.
-  JOINT_STATUS_NOT_A_MEMORY = 12,
+  JOINT_STATUS_NOT_A_MEMORY = 11,
   // The memory is of another version of the observer.
-  JOINT_STATUS_WRONG_MEMORY_VERSION = 13,
+  JOINT_STATUS_WRONG_MEMORY_VERSION = 12,
   // The digest of the memory does not fit: some of it was lost.
-  JOINT_STATUS_DAMAGED_MEMORY = 14,
+  JOINT_STATUS_DAMAGED_MEMORY = 13,
   // The memory belongs to another joint or to other encoders.
-  JOINT_STATUS_OTHER_JOINT = 15,
+  JOINT_STATUS_OTHER_JOINT = 14,
   // The memory holds a number that no joint of this design can have.
-  JOINT_STATUS_MEMORY_OUT_OF_RANGE = 16,
+  JOINT_STATUS_MEMORY_OUT_OF_RANGE = 15,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

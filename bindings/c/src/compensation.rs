@@ -4,7 +4,7 @@ use model_core::compensation::{Command, Compensation, ImpedancePoint, Motion, Po
 
 use crate::estimates::JointContact;
 use crate::fp_mode;
-use crate::object::{Kind, look, open, place, read, start};
+use crate::object::{Kind, look, open, read, start, usable};
 use crate::observer::{AnyObserver, JointObserver};
 use crate::status::JointStatus;
 
@@ -37,7 +37,8 @@ pub struct JointMotion {
 }
 
 impl JointMotion {
-    fn motion(&self) -> Result<Motion<f32>, JointStatus> {
+    #[inline(always)]
+    pub(crate) fn motion(&self) -> Result<Motion<f32>, JointStatus> {
         finite([self.fraction_turns, self.speed_rad_per_s, self.acceleration_rad_per_s2])?;
         Ok(Motion {
             position: Position { turns: self.turns, fraction: self.fraction_turns },
@@ -66,9 +67,10 @@ pub struct JointImpedance {
 }
 
 impl JointImpedance {
+    #[inline(always)]
     fn point(&self) -> Result<ImpedancePoint<f32>, JointStatus> {
         finite([self.fraction_turns, self.speed_rad_per_s, self.torque_Nm])?;
-        finite([self.stiffness_Nm_per_rad, self.damping_Nm_s_per_rad])?;
+        finite([self.stiffness_Nm_per_rad, self.damping_Nm_s_per_rad, 0.0])?;
         Ok(ImpedancePoint {
             position: Position { turns: self.turns, fraction: self.fraction_turns },
             speed: self.speed_rad_per_s,
@@ -79,8 +81,11 @@ impl JointImpedance {
     }
 }
 
-pub(crate) fn finite<const N: usize>(values: [f32; N]) -> Result<(), JointStatus> {
-    if values.iter().all(|value| value.is_finite()) { Ok(()) } else { Err(JointStatus::NotFinite) }
+/// Fails if one of three is not finite.
+#[inline(always)]
+pub(crate) fn finite([one, two, three]: [f32; 3]) -> Result<(), JointStatus> {
+    // Nothing times what is infinite or not a number is not a number, and nor is what it is added to.
+    if 0.0 * one + 0.0 * two + 0.0 * three == 0.0 { Ok(()) } else { Err(JointStatus::NotFinite) }
 }
 
 /// What the compensation is about.
@@ -122,6 +127,7 @@ pub struct JointTorque {
 }
 
 impl JointTorque {
+    #[inline(always)]
     fn new(of: &Shaped<f32>) -> Self {
         let [load_Nm, friction_Nm] = of.load;
         Self {
@@ -217,8 +223,7 @@ unsafe fn step(
     if object.tables_digest != seen.tables_digest {
         return Err(JointStatus::OtherTables);
     }
-    place(torque, compensation)?;
-    place(torque, observer)?;
+    usable(torque)?;
     let shaped = object.value.step(seen.value.estimates(), command);
     // SAFETY: aligned, not NULL, and the caller's to give.
     unsafe { torque.write(JointTorque::new(&shaped)) };

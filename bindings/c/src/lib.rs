@@ -11,6 +11,9 @@
 #![allow(non_snake_case, reason = "units keep their letters: Nm")]
 #![allow(clippy::missing_safety_doc, reason = "what a caller owes is said once, at the head of the header")]
 
+#[cfg(feature = "measuring")]
+#[path = "../measuring/bare.rs"]
+mod bare;
 mod compensation;
 mod estimates;
 mod fp_mode;

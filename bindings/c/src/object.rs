@@ -18,27 +18,27 @@ pub trait Kind: Sized {
 /// for an object.
 #[repr(C)]
 pub struct Object<K> {
-    mark: [u32; 2],
+    mark: usize,
     /// Of the tables that it was started from.
     pub tables_digest: u64,
     /// The object itself.
     pub value: K,
 }
 
-/// Where marks begin.
-const MARK: u32 = u32::from_le_bytes(*b"Jnt!");
-
-fn mark<K: Kind>(at: *const K::Storage) -> [u32; 2] {
-    [MARK ^ K::MARK, K::MARK.rotate_left(16) ^ at.addr() as u32]
+fn mark<K: Kind>(at: *const K::Storage) -> usize {
+    K::MARK as usize ^ at.addr()
 }
 
 /// A pointer that something can be read from or written to.
 #[inline(always)]
 pub fn usable<T>(pointer: *const T) -> Result<(), JointStatus> {
-    if pointer.is_null() {
-        return Err(JointStatus::NullPointer);
-    }
-    if pointer.is_aligned() { Ok(()) } else { Err(JointStatus::Misaligned) }
+    if !pointer.is_null() && pointer.is_aligned() { Ok(()) } else { Err(unusable(pointer.is_null())) }
+}
+
+/// Why a pointer is of no use; out of the way of those that are.
+#[cold]
+fn unusable(is_null: bool) -> JointStatus {
+    if is_null { JointStatus::NullPointer } else { JointStatus::Misaligned }
 }
 
 /// A copy of what the caller points to.
@@ -50,23 +50,6 @@ pub unsafe fn read<T: Copy>(from: *const T) -> Result<T, JointStatus> {
     usable(from)?;
     // SAFETY: aligned and not NULL; the rest is the caller's word.
     Ok(unsafe { from.read() })
-}
-
-/// A place for a result, which does not lie within an object.
-#[inline(always)]
-pub fn place<T, S>(to: *mut T, object: *const S) -> Result<(), JointStatus> {
-    usable(to)?;
-    apart(to.addr(), size_of::<T>(), object)
-}
-
-/// Fails if bytes lie within an object.
-#[inline(always)]
-pub fn apart<S>(begin: usize, bytes: usize, object: *const S) -> Result<(), JointStatus> {
-    let from = object.addr();
-    if begin < from.wrapping_add(size_of::<S>()) && from < begin.wrapping_add(bytes) {
-        return Err(JointStatus::Overlap);
-    }
-    Ok(())
 }
 
 /// The object in a storage, if it was started there.
@@ -115,7 +98,6 @@ pub unsafe fn start<K: Kind>(
     }
     // SAFETY: the caller's word on the tables.
     let blob = unsafe { blob(tables, tables_bytes) }?;
-    apart(tables.addr(), tables_bytes, storage)?;
     let object = Object { mark: mark::<K>(storage), tables_digest: blob.header().digest, value: make(&blob)? };
     // SAFETY: aligned, large enough, and the caller's to give.
     unsafe { ptr::write(storage.cast(), object) };

@@ -8,7 +8,7 @@ use table_blob::Blob;
 
 use crate::estimates::{JointEstimates, JointSamples};
 use crate::fp_mode;
-use crate::object::{Kind, apart, look, open, place, read, start, usable};
+use crate::object::{Kind, look, open, read, start, usable};
 use crate::status::JointStatus;
 
 /// 64-bit words of an observer.
@@ -26,7 +26,7 @@ pub struct JointObserver {
 /// What lies in the storage: an observer of either kind, and what can be done with that kind.
 pub(crate) struct AnyObserver {
     functions: &'static Functions,
-    observer: MaybeUninit<Observer<'static, f32, MAPPED>>,
+    pub(crate) observer: MaybeUninit<Observer<'static, f32, MAPPED>>,
 }
 
 impl Kind for AnyObserver {
@@ -138,7 +138,7 @@ pub unsafe extern "C" fn joint_observer_estimates(
     let give = || {
         // SAFETY: the caller's word, as the header asks for it.
         let object = unsafe { look::<AnyObserver>(observer) }?;
-        place(estimates, observer)?;
+        usable(estimates)?;
         // SAFETY: aligned, not NULL, and the caller's to give.
         unsafe { estimates.write(JointEstimates::new(object.value.estimates())) };
         Ok(())
@@ -160,7 +160,6 @@ pub unsafe extern "C" fn joint_observer_save(
         if bytes != JOINT_MEMORY_BYTES {
             return Err(JointStatus::WrongSize);
         }
-        apart(memory.addr(), bytes, observer)?;
         // SAFETY: the observer beside these functions is of their kind.
         let saved = unsafe { (object.value.functions.save)(object.value.observer.as_ptr().cast()) };
         // SAFETY: not NULL, of this size, and the caller's to give.
@@ -184,7 +183,6 @@ pub unsafe extern "C" fn joint_observer_load(
         if bytes != JOINT_MEMORY_BYTES {
             return Err(JointStatus::WrongSize);
         }
-        apart(memory.addr(), bytes, observer)?;
         // SAFETY: not NULL, of this size, and not the object's own.
         let memory = unsafe { core::slice::from_raw_parts(memory, bytes) };
         let any = &mut object.value;

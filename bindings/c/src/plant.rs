@@ -1,20 +1,19 @@
 //! The plant: the gears with motor, current loop, frictions, weight and encoders around them, for a controller to be tried
 //! on.
 
-use model_core::gears::Tables;
-use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
-use table_blob::Gears;
+use c_plant::{MOST_PLANETS, Motion, Plant};
 
 use crate::compensation::finite;
 use crate::estimates::{JointContact, JointSamples};
 use crate::fp_mode;
-use crate::object::{Kind, look, open, place, start};
+use crate::object::{Kind, look, open, start, usable};
 use crate::status::JointStatus;
 
 /// 64-bit words of a plant.
 pub const JOINT_PLANT_WORDS: usize = 80;
 /// Most planets of a plant.
 pub const JOINT_MOST_PLANETS: usize = 5;
+const _: () = assert!(JOINT_MOST_PLANETS == MOST_PLANETS);
 
 /// Storage of a plant. Its content is the library's own.
 #[repr(C)]
@@ -22,29 +21,9 @@ pub struct JointPlant {
     storage: [u64; JOINT_PLANT_WORDS],
 }
 
-/// A joint by its number of planets.
-enum Plant {
-    One(VirtualJoint<'static, f32, 1>),
-    Three(VirtualJoint<'static, f32, 3>),
-    Four(VirtualJoint<'static, f32, 4>),
-    Five(VirtualJoint<'static, f32, 5>),
-}
-
-impl Kind for Plant {
+impl Kind for Plant<'static> {
     type Storage = JointPlant;
     const MARK: u32 = 0x91a2_7000;
-}
-
-/// Does the same with a joint of any number of planets.
-macro_rules! each {
-    ($plant:expr, $joint:ident => $work:expr) => {
-        match $plant {
-            Plant::One($joint) => $work,
-            Plant::Three($joint) => $work,
-            Plant::Four($joint) => $work,
-            Plant::Five($joint) => $work,
-        }
-    };
 }
 
 /// The motion of a plant, which no sensor sees: for judging what a controller makes of it.
@@ -83,34 +62,24 @@ pub struct JointPlantOutputs {
     pub ring_contacts: [JointContact; JOINT_MOST_PLANETS],
 }
 
-fn outputs<const N: usize>(joint: &VirtualJoint<'static, f32, N>) -> JointPlantOutputs {
-    let (of, acting) = (joint.outputs(), joint.acting());
-    let [sun, ring] = of.deflections.map(|values| {
-        let mut all = [0.0; JOINT_MOST_PLANETS];
-        all.iter_mut().zip(values).for_each(|(place, value)| *place = value);
-        all
-    });
-    let [sun_contacts, ring_contacts] = of.contacts.map(|values| {
-        let mut all = [JointContact::Separated; JOINT_MOST_PLANETS];
-        all.iter_mut().zip(values).for_each(|(place, value)| *place = value.into());
-        all
-    });
+fn outputs(of: &Motion) -> JointPlantOutputs {
+    let ([sun_deflections_m, ring_deflections_m], [sun, ring]) = (of.deflections, of.contacts);
     JointPlantOutputs {
-        carrier_turns: of.carrier_turns,
-        carrier_fraction: of.carrier_fraction,
+        carrier_turns: of.carrier.0,
+        carrier_fraction: of.carrier.1,
         carrier_speed_rad_per_s: of.carrier_speed,
-        motor_offset_rad: of.motor_offset,
-        link_offset_rad: of.link_offset,
-        gap_m: of.gap,
-        wind_up_m: of.wind_up,
-        air_gap_torque_Nm: acting.air_gap,
-        drive_torque_Nm: acting.drive,
-        load_torque_Nm: acting.load,
-        planets: N as u32,
-        sun_deflections_m: sun,
-        ring_deflections_m: ring,
-        sun_contacts,
-        ring_contacts,
+        motor_offset_rad: of.offsets[0],
+        link_offset_rad: of.offsets[1],
+        gap_m: of.gap_and_wind_up[0],
+        wind_up_m: of.gap_and_wind_up[1],
+        air_gap_torque_Nm: of.torques[0],
+        drive_torque_Nm: of.torques[1],
+        load_torque_Nm: of.torques[2],
+        planets: of.planets,
+        sun_deflections_m,
+        ring_deflections_m,
+        sun_contacts: sun.map(JointContact::from),
+        ring_contacts: ring.map(JointContact::from),
     }
 }
 
@@ -122,24 +91,9 @@ pub unsafe extern "C" fn joint_plant_start(
     tables: *const u64,
     tables_bytes: usize,
 ) -> JointStatus {
-    fn new<const N: usize>(
-        (gears, around): (&'static Tables<f32, N>, &'static SurroundingsTable<f32>),
-    ) -> VirtualJoint<'static, f32, N> {
-        VirtualJoint::new(gears, around)
-    }
     fp_mode::standard(|| {
         // SAFETY: the caller's word, as the header asks for it.
-        unsafe {
-            start(plant, bytes, tables, tables_bytes, |blob| {
-                let (gears, around) = blob.plant()?;
-                Ok(match gears {
-                    Gears::One(gears) => Plant::One(new((gears, around))),
-                    Gears::Three(gears) => Plant::Three(new((gears, around))),
-                    Gears::Four(gears) => Plant::Four(new((gears, around))),
-                    Gears::Five(gears) => Plant::Five(new((gears, around))),
-                })
-            })
-        }
+        unsafe { start(plant, bytes, tables, tables_bytes, |blob| Ok(Plant::new(blob)?)) }
     })
     .into()
 }
@@ -153,9 +107,9 @@ pub unsafe extern "C" fn joint_plant_step(
 ) -> JointStatus {
     fp_mode::standard(|| {
         // SAFETY: the caller's word, as the header asks for it.
-        let object = unsafe { open::<Plant>(plant) }?;
-        finite([motor_torque_Nm, load_torque_Nm])?;
-        each!(&mut object.value, joint => joint.advance(motor_torque_Nm, load_torque_Nm));
+        let object = unsafe { open::<Plant<'static>>(plant) }?;
+        finite([motor_torque_Nm, load_torque_Nm, 0.0])?;
+        object.value.advance(motor_torque_Nm, load_torque_Nm);
         Ok(())
     })
     .into()
@@ -166,9 +120,9 @@ pub unsafe extern "C" fn joint_plant_step(
 pub unsafe extern "C" fn joint_plant_samples(plant: *const JointPlant, samples: *mut JointSamples) -> JointStatus {
     fp_mode::standard(|| {
         // SAFETY: the caller's word, as the header asks for it.
-        let object = unsafe { look::<Plant>(plant) }?;
-        place(samples, plant)?;
-        let found = each!(&object.value, joint => joint.samples());
+        let object = unsafe { look::<Plant<'static>>(plant) }?;
+        usable(samples)?;
+        let found = object.value.samples();
         // SAFETY: aligned, not NULL, and the caller's to give.
         unsafe { samples.write(JointSamples::new(&found)) };
         Ok(())
@@ -181,9 +135,9 @@ pub unsafe extern "C" fn joint_plant_samples(plant: *const JointPlant, samples: 
 pub unsafe extern "C" fn joint_plant_outputs(plant: *const JointPlant, motion: *mut JointPlantOutputs) -> JointStatus {
     fp_mode::standard(|| {
         // SAFETY: the caller's word, as the header asks for it.
-        let object = unsafe { look::<Plant>(plant) }?;
-        place(motion, plant)?;
-        let found = each!(&object.value, joint => outputs(joint));
+        let object = unsafe { look::<Plant<'static>>(plant) }?;
+        usable(motion)?;
+        let found = outputs(&object.value.motion());
         // SAFETY: aligned, not NULL, and the caller's to give.
         unsafe { motion.write(found) };
         Ok(())
@@ -196,9 +150,9 @@ pub unsafe extern "C" fn joint_plant_outputs(plant: *const JointPlant, motion: *
 pub unsafe extern "C" fn joint_plant_digest(plant: *const JointPlant, digest: *mut u64) -> JointStatus {
     fp_mode::standard(|| {
         // SAFETY: the caller's word, as the header asks for it.
-        let object = unsafe { look::<Plant>(plant) }?;
-        place(digest, plant)?;
-        let found = each!(&object.value, joint => joint.model().state_digest());
+        let object = unsafe { look::<Plant<'static>>(plant) }?;
+        usable(digest)?;
+        let found = object.value.digest();
         // SAFETY: aligned, not NULL, and the caller's to give.
         unsafe { digest.write(found) };
         Ok(())

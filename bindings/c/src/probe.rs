@@ -4,7 +4,7 @@ use model_core::observer::{Probe, Progress, Refusal};
 
 use crate::estimates::JointEstimate;
 use crate::fp_mode;
-use crate::object::{Kind, look, open, place, start};
+use crate::object::{Kind, look, open, start, usable};
 use crate::observer::{AnyObserver, JointObserver};
 use crate::status::JointStatus;
 
@@ -97,8 +97,7 @@ pub unsafe extern "C" fn joint_probe_step(
         if object.tables_digest != seen.tables_digest {
             return Err(JointStatus::OtherTables);
         }
-        place(probed, probe)?;
-        place(probed, observer)?;
+        usable(probed)?;
         let Waiting { probe, wait } = &mut object.value;
         let (motor_torque_Nm, progress) = if *wait > 0 {
             *wait -= 1;

@@ -19,30 +19,28 @@ pub enum JointStatus {
     WrongSize = 3,
     /// The object was not started, was moved, or is of another kind.
     NotStarted = 4,
-    /// What a function writes to lies within an object of this library.
-    Overlap = 5,
     /// A number is infinite or not a number.
-    NotFinite = 6,
+    NotFinite = 5,
     /// These are no tables.
-    NotTables = 7,
+    NotTables = 6,
     /// The tables are of another version than this library.
-    WrongTablesVersion = 8,
+    WrongTablesVersion = 7,
     /// The digest of the tables does not fit: some of them was lost.
-    DamagedTables = 9,
+    DamagedTables = 8,
     /// These tables were made without this part.
-    MissingTables = 10,
+    MissingTables = 9,
     /// Two objects were started from different tables.
-    OtherTables = 11,
+    OtherTables = 10,
     /// These bytes are no memory of an observer.
-    NotAMemory = 12,
+    NotAMemory = 11,
     /// The memory is of another version of the observer.
-    WrongMemoryVersion = 13,
+    WrongMemoryVersion = 12,
     /// The digest of the memory does not fit: some of it was lost.
-    DamagedMemory = 14,
+    DamagedMemory = 13,
     /// The memory belongs to another joint or to other encoders.
-    OtherJoint = 15,
+    OtherJoint = 14,
     /// The memory holds a number that no joint of this design can have.
-    MemoryOutOfRange = 16,
+    MemoryOutOfRange = 15,
 }
 
 impl From<BlobError> for JointStatus {
@@ -76,13 +74,12 @@ impl From<Result<(), JointStatus>> for JointStatus {
 }
 
 /// Names and texts by number.
-const SAID: [[&core::ffi::CStr; 2]; 17] = [
+const SAID: [[&core::ffi::CStr; 2]; 16] = [
     [c"JOINT_STATUS_OK", c"done"],
     [c"JOINT_STATUS_NULL_POINTER", c"a pointer is NULL: give the object that the header asks for"],
     [c"JOINT_STATUS_MISALIGNED", c"a pointer is not aligned for its type: use the header's types, not bytes"],
     [c"JOINT_STATUS_WRONG_SIZE", c"a size is not the one that is stated: pass sizeof the header's type, and build header and library from one archive"],
     [c"JOINT_STATUS_NOT_STARTED", c"the object was not started, was moved, or is of another kind: start it where it stays"],
-    [c"JOINT_STATUS_OVERLAP", c"what is to be written lies within an object of the library: give it a place of its own"],
     [c"JOINT_STATUS_NOT_FINITE", c"a number is infinite or not a number: look at where it comes from"],
     [c"JOINT_STATUS_NOT_TABLES", c"these are no tables: link the file that `joint tables` wrote"],
     [c"JOINT_STATUS_WRONG_TABLES_VERSION", c"the tables are of another version than the library: write them anew with its own `joint tables`"],

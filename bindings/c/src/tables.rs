@@ -3,7 +3,7 @@
 use core::ffi::c_char;
 
 use crate::fp_mode;
-use crate::object::{apart, blob, place};
+use crate::object::{blob, usable};
 use crate::status::JointStatus;
 
 /// Bytes of a joint's name, with the zero at its end.
@@ -58,8 +58,7 @@ pub unsafe extern "C" fn joint_tables_facts(
         if facts.is_null() {
             return Ok(());
         }
-        place(facts, tables)?;
-        apart(facts.addr(), size_of::<JointTablesFacts>(), tables)?;
+        usable(facts)?;
         let found = JointTablesFacts {
             digest: header.digest,
             version: header.version,

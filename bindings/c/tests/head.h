@@ -9,7 +9,7 @@
  * - It returns a JointStatus; joint_status_name and joint_status_text say what one means. Unless it is
  *   JOINT_STATUS_OK nothing was changed.
  * - A pointer is NULL only where its function says that it may be. It is aligned for its type; one that is not is
- *   refused, and so is a result that would lie within an object.
+ *   refused. What a function writes to is the caller's own, and no part of an object.
  * - Objects lie in storage that the caller owns: a variable of the type that is named here, in RAM. Start one where it
  *   stays: one that was moved or copied is refused. There is nothing to free. Do not look into it.
  * - Tables are constants that `joint tables` writes: an array of uint64_t, which stays where it is and as it is for as long

@@ -16,6 +16,7 @@ mod replay;
 mod research;
 mod sim;
 mod sweep;
+mod tables;
 
 use std::process::ExitCode;
 

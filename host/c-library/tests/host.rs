@@ -1,0 +1,71 @@
+//! The library on this machine, called from C and C++: the same bits as the core, whatever the caller was compiled with.
+
+use std::path::Path;
+use std::sync::LazyLock;
+
+use board::target::board::Board;
+use c_library::library::{self, Library, Target};
+use c_library::programs::{self, Workbench, said};
+use c_library::run;
+use c_library::tables::{self, CTables, joint_at};
+
+const PERIODS: u32 = 100_000;
+
+static LIBRARY: LazyLock<Library> =
+    LazyLock::new(|| library::build(Target::Host, "library", &|line| println!("{line}")).expect("a library"));
+
+fn designed(joint: &str, rate: u32) -> CTables {
+    let joint = joint_at(Path::new(joint), rate).expect("a joint");
+    tables::for_tests(&joint, true, &Board::emulated()).expect("tables")
+}
+
+/// The digest that a program says after so many periods.
+fn digest(bench: &Workbench, compiler: &str, flags: &[&str], periods: u32) -> u64 {
+    let periods = format!("-DPERIODS={periods}u");
+    let source = programs::folder().join("test_joint.c");
+    let program = bench.compile(compiler, &[&source], &[&[periods.as_str()], flags].concat()).expect("a program");
+    let lines = programs::run(&program, &[]).expect("a run");
+    u64::from_str_radix(&said(&lines, "digest ").expect("a digest"), 16).expect("a number")
+}
+
+#[test]
+fn a_c_program_computes_what_the_core_computes_in_every_bit() {
+    for rate in [10_000, 20_000] {
+        let tables = designed("q1", rate);
+        let bench = Workbench::new(&LIBRARY, &tables).expect("room");
+        let expected = run::digest(&tables.words, PERIODS).expect("a run");
+        assert_eq!(digest(&bench, "gcc", &["-std=c99", "-O2"], PERIODS), expected, "{rate} Hz");
+        // It flushes to zero, rounds otherwise and thinks that nothing is infinite: in its own code.
+        let wild = ["-std=c17", "-O3", "-ffast-math", "-march=native"];
+        assert_eq!(digest(&bench, "gcc", &wild, PERIODS), expected, "{rate} Hz, -ffast-math");
+    }
+}
+
+#[test]
+fn the_same_program_is_c_plus_plus_and_any_joint_will_do() {
+    for joint in ["s1", "c1", "d2"] {
+        let tables = designed(joint, 10_000);
+        let bench = Workbench::new(&LIBRARY, &tables).expect("room");
+        let expected = run::digest(&tables.words, 20_000).expect("a run");
+        assert_eq!(digest(&bench, "g++", &["-std=c++20"], 20_000), expected, "{joint}");
+    }
+}
+
+#[test]
+fn a_library_has_no_name_but_the_header_s_and_needs_no_library_of_c() {
+    let bench = Workbench::new(&LIBRARY, &designed("q1", 10_000)).expect("room");
+    let names = |options: &[&str]| {
+        let out = std::process::Command::new("nm").args(options).arg(bench.path("libjoint.a")).output().expect("nm");
+        let text = String::from_utf8(out.stdout).expect("a text");
+        let mut names: Vec<String> =
+            text.lines().filter_map(|line| line.split_whitespace().last()).map(str::to_owned).collect();
+        names.retain(|name| !name.ends_with(':'));
+        names.sort();
+        names
+    };
+    assert_eq!(names(&["--defined-only", "--extern-only"]), library::functions().expect("a header"));
+    assert_eq!(names(&["--undefined-only"]), ["memcpy", "memset"], "what every C toolchain has");
+    // Neither a panic nor what would say it: they are not linked, so nothing leads there.
+    let all = names(&[]);
+    assert!(all.len() > 50 && !all.iter().any(|name| name.contains("panic")), "{all:?}");
+}

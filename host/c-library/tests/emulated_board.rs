@@ -6,6 +6,7 @@ use board::target::board::Board;
 use board::target::emulator;
 use c_library::costs;
 use c_library::library::{self, Target};
+use c_library::package;
 use c_library::programs::{self, MACHINES, Workbench, said};
 use c_library::run;
 use c_library::tables::{self, joint_at};
@@ -82,4 +83,17 @@ fn calls_and_memory_cost_what_is_promised() {
             assert!(over <= most, "{call:?} beside {core:?}: more than {most} above");
         }
     }
+}
+
+#[test]
+#[ignore = "builds the library twice from nothing: run by `cargo joint hil --check`"]
+fn two_builds_give_the_same_bytes() {
+    let first = library::build(Target::Host, "library", &say).expect("a library");
+    let archive = package::archive(&first, &say).expect("an archive");
+    // What was built of this workspace goes; what it depends on stays.
+    let built = board::target::toolchain::target_directory().join("c-library/firmware");
+    std::fs::remove_dir_all(&built).expect("a folder of the build");
+    let second = library::build(Target::Host, "library", &say).expect("a library");
+    assert!(first.archive == second.archive && first.shared == second.shared);
+    assert!(archive == package::archive(&second, &say).expect("an archive"));
 }

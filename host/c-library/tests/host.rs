@@ -69,3 +69,23 @@ fn a_library_has_no_name_but_the_header_s_and_needs_no_library_of_c() {
     let all = names(&[]);
     assert!(all.len() > 50 && !all.iter().any(|name| name.contains("panic")), "{all:?}");
 }
+
+/// Set to try more sequences of wrong calls than the short form does.
+const SEQUENCES: &str = "C_SEQUENCES";
+
+#[test]
+fn callers_that_get_it_wrong_are_told_and_change_nothing() {
+    let sequences = std::env::var(SEQUENCES).unwrap_or_else(|_| "5000".to_owned());
+    let bench = Workbench::new(&LIBRARY, &designed("q1", 10_000)).expect("room");
+    let source = programs::folder().join("fuzz.c");
+    for (kind, flags) in [
+        ("as it is", &["-std=c99", "-O2"][..]),
+        ("sanitized", &["-std=c11", "-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]),
+    ] {
+        let program = bench.compile("gcc", &[&source], flags).expect("a program");
+        let lines = programs::run(&program, &[&sequences, "7"]).expect("no wrong call is taken, none changes anything");
+        println!("{kind}: {sequences} sequences; {}", lines.join("; "));
+        let count = |word: &str| said(&lines, word).expect("a count").parse::<u64>().expect("a number");
+        assert!(count("calls that were right ") > 5000 && count("calls that were refused ") > 5000, "{lines:?}");
+    }
+}

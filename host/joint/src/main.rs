@@ -9,6 +9,7 @@ mod flash;
 mod hil;
 mod identify;
 mod image;
+mod library;
 mod memory;
 mod merge;
 mod new;

@@ -91,7 +91,11 @@ impl Workbench {
         command.current_dir(self.folder.path()).args(self.target.c_flags()).args(WARNINGS).args(flags);
         command.args(["-std=c99", "-ffunction-sections", "-fdata-sections", "-nostartfiles", "-Wl,--gc-sections"]);
         command.arg("-I.").arg("-I").arg(folder()).arg("-L").arg(&board).arg("-T").arg(board.join(machine.memory));
-        command.args(sources).arg(board.join("start.c")).args(["test_tables.c", "libjoint.a", "-o"]).arg(&program);
+        command
+            .args(sources)
+            .arg(board.join("start.c"))
+            .args(["test_tables.c", "libjoint.a", "-lm", "-o"])
+            .arg(&program);
         tool::output_of(&mut command)?;
         Ok(program)
     }

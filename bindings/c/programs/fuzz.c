@@ -29,6 +29,7 @@ static unsigned used;
 static uint64_t state;
 static uint64_t made, refused;
 static int is_wrong;
+static uint64_t damaged_tables[sizeof tables_of_test / sizeof(uint64_t)];
 
 static uint32_t chance(uint32_t below) {
     state ^= state << 13;
@@ -150,7 +151,7 @@ int main(int count, char **arguments) {
     memory = (unsigned char *)guarded(JOINT_MEMORY_BYTES);
     tables = (uint64_t *)guarded(sizeof tables_of_test);
     memcpy(tables, tables_of_test, sizeof tables_of_test);
-    damaged = (uint64_t *)malloc(sizeof tables_of_test);
+    damaged = damaged_tables;
     for (sequence = 0; sequence < sequences; sequence++) {
         /* What is started, in this sequence: observers, compensation, probe, plant. */
         int started[5] = {0, 0, 0, 0, 0};

@@ -75,7 +75,8 @@ pub unsafe extern "C" fn joint_probe_start(
         unsafe {
             start(probe, bytes, tables, tables_bytes, |blob| {
                 let table = blob.probe()?;
-                Ok(Waiting { probe: Probe::new(table), wait: table.settle })
+                // The core's controller begins in a period of its own.
+                Ok(Waiting { probe: Probe::new(table), wait: table.settle.saturating_add(1) })
             })
         }
     })

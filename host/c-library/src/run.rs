@@ -1,9 +1,10 @@
 //! The closed loop of `bindings/c/programs/run.h` on the core itself: the same motion, push, silence and digest.
 
 use model_core::compensation::{Command, Compensation, ImpedancePoint, Motion, Position};
+use model_core::controller::Controller;
 use model_core::gears::Tables;
 use model_core::numbers::digest::{START, chain};
-use model_core::observer::{MAPPED, Observer, Source};
+use model_core::observer::{MAPPED, Observer, Progress, Source};
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 use report::failure::{Failure, Outcome};
 use table_blob::{Blob, Gears};
@@ -92,4 +93,27 @@ fn motion(scale: u32, period: u32) -> Motion<f32> {
         speed: speed as f32 * (0.002_010_619_3 * share),
         acceleration: if begun == backwards { -20.106_193 } else { 20.106_193 },
     }
+}
+
+/// The width probe of `bindings/c/programs/probe.c` on the core itself: digest of torques and widths over so many periods.
+pub fn probe_digest(words: &[u64], periods: u32) -> Outcome<u64> {
+    let broken = |error| Failure::new(format!("the tables: {error:?}"));
+    let blob = Blob::open(words).map_err(broken)?;
+    let (Gears::Three(gears), around) = blob.plant().map_err(broken)? else {
+        return Err(Failure::new("the probe is tried on a joint of three planets"));
+    };
+    let mut joint = VirtualJoint::new(gears, around);
+    let (observer, compensation) = (blob.observer().map_err(broken)?, blob.compensation().map_err(broken)?);
+    let mut controller = Controller::new(observer, compensation).with_probe(Some(blob.probe().map_err(broken)?));
+    let mut running = START;
+    for _ in 0..periods {
+        let answer = controller.probe(&joint.samples());
+        let width = match answer.probed {
+            Some(Progress::Done(width)) => width.value,
+            _ => 0.0,
+        };
+        running = [answer.shaped.torque, width].iter().fold(running, |all, value| chain(all, value.to_bits().into()));
+        joint.advance(answer.shaped.torque, 0.0);
+    }
+    Ok(running)
 }

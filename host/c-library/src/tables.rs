@@ -10,6 +10,9 @@ use report::failure::{Failure, Outcome};
 use report::folder::{Folder, file_part};
 use table_blob::{VERSION, Wanted, design};
 
+/// What a controller is asked for unless something else is said.
+pub const USUAL: ControlRequest = ControlRequest { bandwidth: 60.0, output_encoder: true };
+
 /// What is written.
 const FILES: [&str; 3] = ["*_tables.h", "*_tables.c", "*_tables.bin"];
 
@@ -32,7 +35,7 @@ pub struct Arguments {
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..))]
     pub rate: Option<u32>,
     /// Bandwidth of the loop, in rad/s
-    #[arg(long, value_name = "RAD/S", value_parser = bandwidth, default_value_t = 60.0)]
+    #[arg(long, value_name = "RAD/S", value_parser = bandwidth, default_value_t = USUAL.bandwidth)]
     pub bandwidth: f64,
     /// Joint file that observer and compensation are designed for [default: FILE]
     #[arg(long, value_name = "FILE")]
@@ -196,8 +199,7 @@ pub fn joint_at(name: &Path, rate: u32) -> Outcome<JointFile> {
 
 /// Tables called `test_tables`, for programs that try the library.
 pub fn for_tests(joint: &JointFile, plant: bool, board: &Board) -> Outcome<CTables> {
-    let request = ControlRequest { bandwidth: 60.0, output_encoder: true };
-    Ok(CTables { name: "test".to_owned(), ..make(joint, joint, request, plant, board)? })
+    Ok(CTables { name: "test".to_owned(), ..make(joint, joint, USUAL, plant, board)? })
 }
 
 #[cfg(test)]

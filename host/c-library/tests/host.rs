@@ -70,6 +70,30 @@ fn a_library_has_no_name_but_the_header_s_and_needs_no_library_of_c() {
     assert!(all.len() > 50 && !all.iter().any(|name| name.contains("panic")), "{all:?}");
 }
 
+#[test]
+fn a_width_probe_finds_the_width_bit_for_bit_and_what_was_learnt_goes_on_in_another_observer() {
+    let mut joint = joint_at(Path::new("q1"), 10_000).expect("a joint");
+    // The hand that holds the link.
+    joint.surroundings.load_friction.coulomb = 50.0;
+    let mut told = joint.clone();
+    told.surroundings.load_friction.coulomb = 0.3;
+    let tables = CTables {
+        name: "test".to_owned(),
+        ..tables::make(&joint, &told, tables::USUAL, true, &Board::emulated()).expect("tables")
+    };
+    let bench = Workbench::new(&LIBRARY, &tables).expect("room");
+    let program =
+        bench.compile("gcc", &[&programs::folder().join("probe.c")], &["-std=c99", "-O2"]).expect("a program");
+    let lines = programs::run(&program, &[]).expect("a run");
+    let number = |word: &str| said(&lines, word).expect("a number");
+    assert_eq!(number("progress "), "1", "done: {lines:?}");
+    let width_nm: f64 = number("width_nm ").parse().expect("a number");
+    assert!((width_nm / 40_000.0 - 1.0).abs() < 0.1, "it is 40 um: {lines:?}");
+    let expected = run::probe_digest(&tables.words, 10_000).expect("a run");
+    assert_eq!(number("digest "), format!("{expected:016x}"));
+    assert!(lines.contains(&"memory the same".to_owned()), "{lines:?}");
+}
+
 /// Set to try more sequences of wrong calls than the short form does.
 const SEQUENCES: &str = "C_SEQUENCES";
 

@@ -76,7 +76,11 @@ impl Workbench {
         let program = self.path("program");
         let mut command = Command::new(compiler);
         command.current_dir(self.folder.path()).args(WARNINGS).args(flags).arg("-I.").arg("-I").arg(folder());
-        command.args(sources).arg(folder().join("host.c")).args(["test_tables.c", "libjoint.a", "-o"]).arg(&program);
+        command
+            .args(sources)
+            .arg(folder().join("host.c"))
+            .args(["test_tables.c", "libjoint.a", "-lm", "-o"])
+            .arg(&program);
         tool::output_of(&mut command)?;
         Ok(program)
     }

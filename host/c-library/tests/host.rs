@@ -42,6 +42,15 @@ fn a_c_program_computes_what_the_core_computes_in_every_bit() {
 }
 
 #[test]
+fn a_caller_that_rounds_upwards_changes_no_bit_and_keeps_its_mode() {
+    let tables = designed("q1", 10_000);
+    let bench = Workbench::new(&LIBRARY, &tables).expect("room");
+    let expected = run::digest(&tables.words, 20_000).expect("a run");
+    let upward = ["-std=c99", "-O1", "-frounding-math", "-DROUND_UPWARD", "-Wno-error"];
+    assert_eq!(digest(&bench, "gcc", &upward, 20_000), expected);
+}
+
+#[test]
 fn the_same_program_is_c_plus_plus_and_any_joint_will_do() {
     for joint in ["s1", "c1", "d2"] {
         let tables = designed(joint, 10_000);

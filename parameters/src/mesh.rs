@@ -73,6 +73,7 @@ pub enum MeshPhases {
 
 /// What the mesh damping does once the teeth part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
 pub enum DampingLaw {
     /// F = K f(d, b) + C d' always, as in the paper: it also acts in the gap.
     Paper,

@@ -8,7 +8,8 @@ use report::failure::Outcome;
 use report::{command_line, output};
 
 use crate::{
-    board, budget, check, completions, flash, hil, identify, image, memory, merge, new, replay, research, sim, sweep,
+    board, budget, check, completions, flash, hil, identify, image, library, memory, merge, new, replay, research, sim,
+    sweep, tables,
 };
 
 /// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
@@ -51,6 +52,10 @@ enum Command {
     Image(image::Arguments),
     /// Build the firmware image of a joint and write it to a real board by probe-rs or over USB
     Flash(flash::Arguments),
+    /// Write a joint's tables as C source and bytes, for programs that use the C library
+    Tables(tables::Arguments),
+    /// Build the library for programs in C and C++: header, library, build files, costs and a test program in one archive
+    Library(library::Arguments),
     /// Print a script by which a shell completes this command's options: bash, zsh, fish and others
     Completions(completions::Arguments),
 }
@@ -78,6 +83,8 @@ fn run(cli: &Cli) -> Outcome<()> {
         Some(Command::Board(arguments)) => board::run(arguments),
         Some(Command::Image(arguments)) => image::run(arguments),
         Some(Command::Flash(arguments)) => flash::run(arguments),
+        Some(Command::Tables(arguments)) => tables::run(arguments),
+        Some(Command::Library(arguments)) => library::run(arguments),
         Some(Command::Completions(arguments)) => completions::run(arguments, Cli::command()),
     }
 }

@@ -9,6 +9,7 @@ mod flash;
 mod hil;
 mod identify;
 mod image;
+mod library;
 mod memory;
 mod merge;
 mod new;
@@ -16,6 +17,7 @@ mod replay;
 mod research;
 mod sim;
 mod sweep;
+mod tables;
 
 use std::process::ExitCode;
 

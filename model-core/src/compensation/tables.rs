@@ -5,6 +5,7 @@ use crate::numbers::Real;
 
 /// Tables of the compensation of one joint at one control rate and bandwidth.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct CompensationTables<T: Real> {
     /// The control clock.
     pub clock: ClockTable<T>,
@@ -30,6 +31,7 @@ pub struct CompensationTables<T: Real> {
 
 /// The control clock.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct ClockTable<T: Real> {
     /// Control periods a second [Hz].
     pub rate: T,
@@ -39,6 +41,7 @@ pub struct ClockTable<T: Real> {
 
 /// From motor to link, and from lengths along the line of action to angles.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct GearTable<T: Real> {
     /// Motor turns over link turns as a fraction of whole numbers.
     pub ratio: [i32; 2],
@@ -62,6 +65,7 @@ pub struct GearTable<T: Real> {
 
 /// Inertias and compliance of the joint.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct BodyTable<T: Real> {
     /// What turns with the motor while the gap is open [kg m^2].
     pub motor_inertia: T,
@@ -83,6 +87,7 @@ pub struct BodyTable<T: Real> {
 
 /// Limits of motor and teeth.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct LimitTable<T: Real> {
     /// Largest torque [N m].
     pub motor: T,
@@ -98,6 +103,7 @@ pub struct LimitTable<T: Real> {
 
 /// Gains of the control laws.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct LawTable<T: Real> {
     /// Spring of the loop [N m/rad].
     pub position: T,
@@ -121,6 +127,7 @@ pub struct LawTable<T: Real> {
 
 /// The way through the gap.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct CrossingTable<T: Real> {
     /// How far ahead set-points are wanted [s].
     pub lead: T,
@@ -146,6 +153,7 @@ pub struct CrossingTable<T: Real> {
 
 /// Meeting a flank, and losing it.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct LandingTable<T: Real> {
     /// Speed against the load at which a flank is met [rad/s].
     pub speed: T,
@@ -167,6 +175,7 @@ pub struct LandingTable<T: Real> {
 
 /// When the flank is changed.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct SwitchingTable<T: Real> {
     /// Demand beyond which a change of its sign counts [N m].
     pub planned: T,
@@ -189,6 +198,7 @@ pub struct SwitchingTable<T: Real> {
 
 /// A joint at rest whose flank hunts.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct RestTable<T: Real> {
     /// A joint at rest that asks for the other flank within this time hunts [s].
     pub hunting: T,
@@ -202,6 +212,7 @@ pub struct RestTable<T: Real> {
 
 /// Learner of the load.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct LoadTable<T: Real> {
     /// Learner of the load: growth of variances in one period (even part, friction), variance of a reading.
     pub variances: [T; 3],

@@ -9,7 +9,8 @@ use crate::compensation::design::{compensation_settings, design_compensation};
 use crate::gears::design::{DesignError, Effort, Processor, design_scheme};
 use crate::gears::{Scheme, Tables};
 use crate::numbers::digest;
-use crate::observer::design::{observer_settings, observer_source};
+use crate::observer::design::{design_observer, design_usual_probe, observer_settings, observer_text};
+use crate::observer::{ObserverTables, ProbeTable};
 use crate::virtual_joint::SurroundingsTable;
 use crate::virtual_joint::design::design_surroundings;
 use parameters::{JointParameters, ParameterError, Surroundings};
@@ -43,6 +44,33 @@ pub struct ControlSource {
     pub digest: u64,
 }
 
+/// Tables of a controller.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ControlTables {
+    /// Of its observer.
+    pub observer: ObserverTables<f32>,
+    /// Of the width probe, where one can be.
+    pub probe: Option<ProbeTable<f32>>,
+    /// Of the compensation.
+    pub compensation: CompensationTables<f32>,
+}
+
+/// Tables of a controller for the nominal plant.
+pub fn control_tables(nominal: &NominalPlant<'_>) -> Result<ControlTables, DesignError> {
+    let mut settings = observer_settings(nominal.surroundings);
+    if !nominal.request.output_encoder {
+        settings.output_encoder = None;
+    }
+    Ok(ControlTables {
+        observer: design_observer(nominal.joint, &settings)?,
+        probe: design_usual_probe(nominal.joint, &settings)?,
+        compensation: design_compensation(
+            nominal.joint,
+            &compensation_settings(nominal.surroundings, nominal.request.bandwidth),
+        )?,
+    })
+}
+
 /// Tables of a controller for the nominal plant, and of the true surroundings of the joint, as source.
 pub fn control_source(
     joint: &JointParameters,
@@ -50,13 +78,8 @@ pub fn control_source(
     nominal: &NominalPlant<'_>,
     processor: &Processor,
 ) -> Result<ControlSource, DesignError> {
-    let mut settings = observer_settings(nominal.surroundings);
-    if !nominal.request.output_encoder {
-        settings.output_encoder = None;
-    }
-    let observer = observer_source(nominal.joint, &settings)?;
-    let compensation: CompensationTables<f32> =
-        design_compensation(nominal.joint, &compensation_settings(nominal.surroundings, nominal.request.bandwidth))?;
+    let ControlTables { observer, probe, compensation } = control_tables(nominal)?;
+    let observer = observer_text(&observer, probe.as_ref());
     let surroundings: SurroundingsTable<f32> = match joint.geometry.planets {
         1 => surroundings::<1>(joint, around, processor)?,
         3 => surroundings::<3>(joint, around, processor)?,

@@ -11,6 +11,7 @@ use parameters::MAX_HARMONICS;
 
 /// Tables of a joint with `N` planets at one tick rate.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct Tables<T: Real, const N: usize> {
     /// Digest over all numbers below; the board checks it before it runs.
     pub digest: u64,
@@ -52,6 +53,7 @@ pub struct Tables<T: Real, const N: usize> {
 
 /// Position-Verlet (leapfrog) sub-steps, in a unit of time in which a sub-step lasts one.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct VerletTable<T: Real> {
     /// Sub-steps of a tick; zero where planets are not light.
     pub substeps: u32,
@@ -83,6 +85,7 @@ pub struct VerletTable<T: Real> {
 /// The joint in units in which a sub-step lasts 1 and an acceleration is counted in sixths: so the weights of a step
 /// are whole numbers, and those that are 1 cost nothing.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct Stage<T: Real> {
     /// Sub-steps in a unit of dimensionless time, 1/h.
     pub rate: T,
@@ -96,6 +99,7 @@ pub struct Stage<T: Real> {
 
 /// How a tick is stepped. Those for comparisons are no part of a board's image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
 pub enum Scheme {
     /// Exponential flow while the contact set holds over the tick; otherwise sub-steps with a fixed contact set,
     /// corrected for every crossing.
@@ -113,6 +117,7 @@ pub enum Scheme {
 
 /// From SI to dimensionless and back.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct Units<T: Real> {
     /// Dimensionless acceleration of the sun for each N m of drive torque.
     pub drive: T,
@@ -132,6 +137,7 @@ pub struct Units<T: Real> {
 
 /// The rigid body: gains from torque to speed change a tick, in 2^-64 turns a tick.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct Rigid<T: Real> {
     /// For each N m of drive torque.
     pub drive: T,
@@ -141,6 +147,7 @@ pub struct Rigid<T: Real> {
 
 /// Acceleration of each body under a unit force (all dimensionless).
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct Mobility<T: Real> {
     /// Sun with rotor.
     pub sun: T,
@@ -160,6 +167,7 @@ pub struct Mobility<T: Real> {
 
 /// Mesh phase: its source and rate.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct Excitation<T: Real> {
     /// `time` mode: fraction of a mesh period that a tick adds, in 2^-64; zero in `angle` mode.
     pub phase_step: u64,
@@ -175,6 +183,7 @@ pub struct Excitation<T: Real> {
 
 /// Stiffness and damping of the meshes of one kind.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct Spring<T: Real> {
     /// Mean stiffness.
     pub stiffness: T,
@@ -184,6 +193,7 @@ pub struct Spring<T: Real> {
 
 /// One mesh.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct MeshTable<T: Real> {
     /// Half-backlash b.
     pub half_backlash: T,
@@ -198,6 +208,7 @@ pub struct MeshTable<T: Real> {
 /// In-phase state: mean planet, gap, wind-up, then their rates. Deviation state: deviation, rate. Transitions are
 /// stored less the identity, which saves a digit in f32.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct Flow<T: Real> {
     /// Over the whole step.
     pub whole: Transition<T>,
@@ -232,6 +243,7 @@ pub struct Flow<T: Real> {
 
 /// exp(H h) - I in both subspaces, and the response to torques constant over the step.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct Transition<T: Real> {
     /// In-phase motion.
     pub in_phase: Block<T, 6, 6>,
@@ -243,6 +255,7 @@ pub struct Transition<T: Real> {
 
 /// Response to pseudo-forces under one time weight.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct Inputs<T: Real> {
     /// In-phase response to the sums over planets: sun-planet, ring-planet.
     pub in_phase: Block<T, 6, 2>,
@@ -252,6 +265,7 @@ pub struct Inputs<T: Real> {
 
 /// A matrix of a table, `R` rows by `C` columns; prints as the Rust expression that makes it.
 #[derive(Clone, PartialEq)]
+#[repr(transparent)]
 pub struct Block<T: Real, const R: usize, const C: usize>(pub SMatrix<T, R, C>);
 
 /// A block from its columns.

@@ -98,7 +98,7 @@ pub(super) fn load<T: Real, const P: usize>(
         return Err(MemoryError::OtherJoint);
     }
     let (mut learner, mut bias, mut inertia) = (learnt.learner, learnt.bias, learnt.inertia);
-    let mut next = || T::from_f64(f32::from_le_bytes(reader.take().unwrap_or_default()).into());
+    let mut next = || reader.number();
     learner.set_numbers(&mut next);
     bias.set_numbers(&mut next);
     inertia.set_numbers(&mut next);
@@ -147,6 +147,8 @@ impl Writer<'_> {
         bytes.iter().zip(self.bytes.by_ref()).for_each(|(byte, place)| *place = *byte);
     }
 
+    /// Not inlined, as the reader's is not: there are more than a hundred calls, and time enough.
+    #[inline(never)]
     fn number<T: Real>(&mut self, number: T) {
         self.put(&(number.to_f64() as f32).to_le_bytes());
     }
@@ -161,5 +163,10 @@ impl Reader<'_> {
         let (taken, rest) = self.bytes.split_first_chunk()?;
         self.bytes = rest;
         Some(*taken)
+    }
+
+    #[inline(never)]
+    fn number<T: Real>(&mut self) -> T {
+        T::from_f64(f32::from_le_bytes(self.take().unwrap_or_default()).into())
     }
 }

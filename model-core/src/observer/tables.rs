@@ -17,6 +17,7 @@ const _: () = assert!(MOST_DELAY.is_power_of_two());
 
 /// Tables of the observer of one joint with its encoders at one control rate.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct ObserverTables<T: Real> {
     /// Digest of what a learnt memory must agree with: gears, encoders and joint.
     pub identity: u64,
@@ -48,6 +49,7 @@ pub struct ObserverTables<T: Real> {
 
 /// The clock that says when samples were taken, and what its ticks mean.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct ClockTable<T: Real> {
     /// Length of a tick [s].
     pub tick: T,
@@ -63,6 +65,7 @@ pub struct ClockTable<T: Real> {
 
 /// One encoder.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct EncoderTable<T: Real> {
     /// Counts in a turn.
     pub turn: u32,
@@ -84,6 +87,7 @@ pub struct EncoderTable<T: Real> {
 
 /// Motor less ratio times output as a whole number.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct CountTable<T: Real> {
     /// On the motor.
     pub motor: EncoderTable<T>,
@@ -109,6 +113,7 @@ pub struct CountTable<T: Real> {
 
 /// Levers of the joint.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct LeverTable<T: Real> {
     /// Base radius of the sun [m].
     pub sun: T,
@@ -127,6 +132,7 @@ pub struct LeverTable<T: Real> {
 
 /// From commanded torque to torque in the air gap.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct CurrentTable<T: Real> {
     /// Whole control periods of delay.
     pub whole_delay: u32,
@@ -142,6 +148,7 @@ pub struct CurrentTable<T: Real> {
 
 /// The motor side: state angle, speed, torque taken by the meshes (and friction); air-gap torque known.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct DriveTable<T: Real> {
     /// Change of angle over a period for each unit of: speed, taken torque, air-gap torque at the start, wanted torque.
     pub angle: [T; 4],
@@ -157,6 +164,7 @@ pub struct DriveTable<T: Real> {
 
 /// The load side: state angle, speed, load torque; torque from the meshes known.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct LoadTable<T: Real> {
     /// Change of angle over a period for each unit of: speed, torque from the meshes less load torque.
     pub angle: [T; 2],
@@ -176,6 +184,7 @@ pub struct LoadTable<T: Real> {
 
 /// Contact and torque bias.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct ContactTable<T: Real> {
     /// Variance of the mesh force from the motor side while it holds still: what noise leaves [N^2].
     pub force_variance: T,
@@ -213,6 +222,7 @@ pub struct ContactTable<T: Real> {
 
 /// What is learnt: deflection = side * half-gap + offset + compliance * force + skew * speed + error maps.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct LearnerTable<T: Real> {
     /// Control periods between updates.
     pub periods: u16,
@@ -246,6 +256,7 @@ pub struct LearnerTable<T: Real> {
 
 /// How soon a shaft can stop.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct StopTable<T: Real> {
     /// Periods in which whatever the shaft runs into may stop it.
     pub stop: u8,
@@ -257,6 +268,7 @@ pub struct StopTable<T: Real> {
 
 /// When encoders are given up and taken back.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct SupervisorTable<T: Real> {
     /// How soon the link stops.
     pub output: StopTable<T>,

@@ -8,6 +8,7 @@ pub const COMMANDS_IN_FLIGHT: usize = MOST_DELAY + 1;
 
 /// Surroundings of one joint at one tick rate; a tick is a control period.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct SurroundingsTable<T: Real> {
     /// Control period [s].
     pub period: T,
@@ -51,6 +52,7 @@ pub struct SurroundingsTable<T: Real> {
 
 /// From commanded torque to torque in the air gap.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct CurrentLoopTable<T: Real> {
     /// Whole periods of delay, less than [`COMMANDS_IN_FLIGHT`].
     pub delay: u32,
@@ -66,6 +68,7 @@ pub struct CurrentLoopTable<T: Real> {
 
 /// Friction of one shaft.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct FrictionTable<T: Real> {
     /// Dry friction at speed [N m].
     pub coulomb: T,
@@ -81,6 +84,7 @@ pub struct FrictionTable<T: Real> {
 
 /// Errors of an encoder.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct EncoderErrorTable<T: Real> {
     /// 32 less its bits.
     pub shift: u32,

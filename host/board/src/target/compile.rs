@@ -4,11 +4,13 @@ use std::ffi::OsStr;
 use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::Path;
+use std::process::Command;
 
-use super::cross_build::{TARGET, cannot_write};
-use super::toolchain::Toolchain;
+use super::cross_build::{TARGET, cannot_write, clean};
+use super::toolchain::{TARGET_FLAGS, Toolchain};
 use super::{Say, tool};
 use report::failure::{Failure, Outcome};
+use report::workspace::workspace;
 
 /// The cargo profile of images.
 pub const PROFILE: &str = "firmware";
@@ -35,6 +37,63 @@ pub(super) fn compile(
     tool::follow(&mut command, "building the firmware", say)?;
     let built = toolchain.folder().join(TARGET).join(PROFILE).join(binary);
     fs::read(&built).map_err(|error| Failure::new(format!("{}: {error}", built.display())))
+}
+
+/// Compiles a package as a static library for the board, with flags beside the toolchain's; gives the archive.
+pub fn compile_library(
+    toolchain: &Toolchain,
+    package: &str,
+    features: &str,
+    flags: &str,
+    say: Say<'_>,
+) -> Outcome<Vec<u8>> {
+    let _lock = lock(toolchain.folder(), say)?;
+    let mut all_flags = toolchain.target_flags();
+    all_flags.push(" ");
+    all_flags.push(flags);
+    let mut command = toolchain.cargo("rustc");
+    as_library(&mut command, package, "staticlib", features).args(small(package)).env(TARGET_FLAGS, all_flags);
+    tool::follow(&mut command, "building the library", say)?;
+    read_library(&toolchain.folder().join(TARGET), package, "a")
+}
+
+/// The same for this machine, static and shared.
+pub fn compile_library_for_host(
+    target_directory: &Path,
+    package: &str,
+    features: &str,
+    say: Say<'_>,
+) -> Outcome<[Vec<u8>; 2]> {
+    let folder = target_directory.join("c-library");
+    let _lock = lock(&folder, say)?;
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    clean(&mut command).current_dir(workspace()).arg("rustc").arg("--target-dir").arg(&folder);
+    as_library(&mut command, package, "staticlib,cdylib", features);
+    tool::follow(&mut command, "building the library", say)?;
+    Ok([read_library(&folder, package, "a")?, read_library(&folder, package, "so")?])
+}
+
+/// What makes a package a library for another language's linker. What debuggers want names folders of this machine.
+fn as_library<'c>(command: &'c mut Command, package: &str, kinds: &str, features: &str) -> &'c mut Command {
+    command
+        .args(["--package", package, "--lib", "--profile", PROFILE, "--crate-type", kinds, "--features", features])
+        .env("CARGO_PROFILE_FIRMWARE_DEBUG", "0")
+}
+
+/// For boards: the package itself small, what it depends on as fast as the images have it.
+fn small(package: &str) -> [String; 2] {
+    ["--config".to_owned(), format!("profile.{PROFILE}.package.{package}.opt-level=\"z\"")]
+}
+
+fn read_library(folder: &Path, package: &str, extension: &str) -> Outcome<Vec<u8>> {
+    let name = library_name(package);
+    let built = folder.join(PROFILE).join(format!("lib{name}.{extension}"));
+    fs::read(&built).map_err(|error| Failure::new(format!("{}: {error}", built.display())))
+}
+
+/// What cargo calls the library of a package.
+fn library_name(package: &str) -> String {
+    package.replace('-', "_")
 }
 
 fn lock(folder: &Path, say: Say<'_>) -> Outcome<File> {

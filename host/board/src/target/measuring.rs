@@ -72,9 +72,14 @@ pub fn read<R>(elf: &Path, mut parse: impl FnMut(&str) -> Option<R>) -> Outcome<
 
 /// Runs a measuring binary and returns its lines.
 pub fn run(elf: &Path) -> Outcome<Vec<String>> {
+    run_on(MACHINE, elf)
+}
+
+/// The same on another machine of the emulator.
+pub fn run_on(machine: &str, elf: &Path) -> Outcome<Vec<String>> {
     let mut command = emulator::mortal(&emulator::program()?);
     command
-        .args(["-M", MACHINE, "-icount", CLOCK, "-no-reboot"])
+        .args(["-M", machine, "-icount", CLOCK, "-no-reboot"])
         .args(["-nodefaults", "-no-user-config", "-display", "none", "-monitor", "none", "-serial", "none"])
         .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
         .arg(elf)

@@ -100,7 +100,8 @@ impl Toolchain {
     }
 }
 
-fn target_directory() -> PathBuf {
+/// Where cargo builds unless it is told another place.
+pub fn target_directory() -> PathBuf {
     let given = env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
     workspace().join(given.unwrap_or_else(|| "target".into()))
 }

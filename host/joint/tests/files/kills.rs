@@ -135,6 +135,7 @@ fn a_killed_recording_leaves_nothing_half_written() {
 #[test]
 fn a_killed_new_joint_leaves_nothing_half_written() {
     is_killed_at_any_moment(Writer::New);
+    is_killed_at_any_moment(Writer::Tables);
 }
 
 #[test]

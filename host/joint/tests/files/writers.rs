@@ -82,6 +82,7 @@ pub enum Writer {
     Check,
     Budget,
     New,
+    Tables,
 }
 
 /// A command line, and the port of a board that stays open as long as it runs.
@@ -92,8 +93,17 @@ pub struct Line {
 
 impl Writer {
     /// Those that write to the folder of `--out`.
-    pub const TO_FOLDERS: [Self; 8] =
-        [Self::Sim, Self::Sweep, Self::Merge, Self::Tests, Self::Board, Self::Identify, Self::SlowLog, Self::Replay];
+    pub const TO_FOLDERS: [Self; 9] = [
+        Self::Sim,
+        Self::Sweep,
+        Self::Merge,
+        Self::Tests,
+        Self::Board,
+        Self::Identify,
+        Self::SlowLog,
+        Self::Replay,
+        Self::Tables,
+    ];
 
     /// Those that take a second and more, of which a short run makes fewer.
     pub fn is_slow(self) -> bool {
@@ -129,6 +139,7 @@ impl Writer {
             Self::Simulate => words(&["identify", &file("log.csv"), "--simulate"]),
             Self::Check => words(&["check", "q1", "--json", &file("check.json")]),
             Self::Budget => words(&["budget", "q1", "--json", &file("budget.json")]),
+            Self::Tables => words(&["tables", "l1"]),
             Self::New => [&["new", &file("elbow"), "--no-measure"][..], &SHEET]
                 .concat()
                 .iter()

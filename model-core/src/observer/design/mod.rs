@@ -15,4 +15,5 @@ pub use probe::{design_probe, design_usual_probe};
 pub(crate) use settings::NO_LIMIT;
 pub use settings::{CLOCK_TICKS, EncoderSettings, ObserverSettings, observer_settings};
 pub use source::observer_source;
+pub(crate) use source::observer_text;
 pub use tables::design_observer;

@@ -15,12 +15,17 @@ use parameters::JointParameters;
 pub fn observer_source(joint: &JointParameters, settings: &ObserverSettings) -> Result<String, DesignError> {
     let tables: ObserverTables<f32> = design_observer(joint, settings)?;
     let probe: Option<ProbeTable<f32>> = design_usual_probe(joint, settings)?;
-    Ok(format!(
+    Ok(observer_text(&tables, probe.as_ref()))
+}
+
+/// The same of tables that are there already.
+pub(crate) fn observer_text(tables: &ObserverTables<f32>, probe: Option<&ProbeTable<f32>>) -> String {
+    format!(
         "/// Tables of the observer.\n\
          pub static OBSERVER: model_core::observer::tables::ObserverTables<f32> = {{\n\
          use model_core::observer::tables::*;\n{tables:#?}\n}};\n\
          /// Table of the width probe, where one can be.\n\
          pub static PROBE: Option<model_core::observer::tables::ProbeTable<f32>> = {{\n\
          use model_core::observer::tables::*;\n{probe:#?}\n}};\n"
-    ))
+    )
 }

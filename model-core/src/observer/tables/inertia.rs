@@ -4,6 +4,7 @@ use crate::numbers::Real;
 
 /// The link's inertia. A learning interval is a few control periods.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct InertiaTable<T: Real> {
     /// 1 over the control periods of an interval.
     pub per_periods: T,

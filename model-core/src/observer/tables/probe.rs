@@ -4,6 +4,7 @@ use crate::numbers::Real;
 
 /// The width probe.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
 pub struct ProbeTable<T: Real> {
     /// Single torque; the probe goes up to twice that [N m].
     pub torque: T,

@@ -1,0 +1,13 @@
+/* Where there is an operating system. */
+#include "say.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+void say(const char *text) {
+    fputs(text, stdout);
+}
+
+void end(int status) {
+    exit(status);
+}

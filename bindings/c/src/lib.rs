@@ -1,0 +1,42 @@
+#![cfg_attr(feature = "library", no_std)]
+//! Plant, observer, compensation and width probe of `model-core` for programs in C and C++. The header is
+//! `bindings/c/include/joint.h`; everything that its reader must know stands there, and is written here.
+//!
+//! Thin: a function takes pointers, checks them, sets the floating-point unit to the mode that the numbers are made for,
+//! and calls the core. The caller owns all storage. There is no heap, no global that changes, no call into libc and no
+//! panic; two contexts may be in here at once as long as each has objects of its own. A function that fails has changed
+//! nothing.
+
+#![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets")]
+#![allow(non_snake_case, reason = "units keep their letters: Nm")]
+#![allow(clippy::missing_safety_doc, reason = "what a caller owes is said once, at the head of the header")]
+
+#[cfg(feature = "measuring")]
+#[path = "../measuring/bare.rs"]
+mod bare;
+mod compensation;
+mod estimates;
+mod fp_mode;
+mod object;
+mod observer;
+mod plant;
+mod probe;
+mod status;
+mod tables;
+
+pub use compensation::*;
+pub use estimates::*;
+pub use observer::*;
+pub use plant::*;
+pub use probe::*;
+pub use status::*;
+pub use tables::*;
+
+/// Nothing in here panics: a test looks for what would lead here in linked programs, and finds nothing.
+#[cfg(feature = "library")]
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    loop {
+        core::hint::spin_loop();
+    }
+}

@@ -1,0 +1,119 @@
+//! Objects in the caller's storage: how they are told from storage that holds none, and how pointers are checked.
+
+use core::ptr;
+
+use table_blob::Blob;
+
+use crate::status::JointStatus;
+
+/// A kind of object: the type of its storage in the header, and what lies in it.
+pub trait Kind: Sized {
+    /// What the header declares.
+    type Storage;
+    /// Tells kinds apart.
+    const MARK: u32;
+}
+
+/// What lies at the beginning of the storage. The mark has the address in it, so that storage which was copied is not taken
+/// for an object.
+#[repr(C)]
+pub struct Object<K> {
+    mark: usize,
+    /// Of the tables that it was started from.
+    pub tables_digest: u64,
+    /// The object itself.
+    pub value: K,
+}
+
+fn mark<K: Kind>(at: *const K::Storage) -> usize {
+    K::MARK as usize ^ at.addr()
+}
+
+/// A pointer that something can be read from or written to.
+#[inline(always)]
+pub fn usable<T>(pointer: *const T) -> Result<(), JointStatus> {
+    if !pointer.is_null() && pointer.is_aligned() { Ok(()) } else { Err(unusable(pointer.is_null())) }
+}
+
+/// Why a pointer is of no use; out of the way of those that are.
+#[cold]
+fn unusable(is_null: bool) -> JointStatus {
+    if is_null { JointStatus::NullPointer } else { JointStatus::Misaligned }
+}
+
+/// A copy of what the caller points to.
+///
+/// # Safety
+/// What is not NULL points to a value that nobody writes to meanwhile.
+#[inline(always)]
+pub unsafe fn read<T: Copy>(from: *const T) -> Result<T, JointStatus> {
+    usable(from)?;
+    // SAFETY: aligned and not NULL; the rest is the caller's word.
+    Ok(unsafe { from.read() })
+}
+
+/// The object in a storage, if it was started there.
+///
+/// # Safety
+/// What is not NULL points to a storage of this type that nobody else uses meanwhile.
+#[inline(always)]
+pub unsafe fn open<'a, K: Kind>(storage: *mut K::Storage) -> Result<&'a mut Object<K>, JointStatus> {
+    usable(storage)?;
+    let object = storage.cast::<Object<K>>();
+    // SAFETY: aligned, not NULL, and large enough by its type; any bits are a mark.
+    if unsafe { (*object).mark } != mark::<K>(storage) {
+        return Err(JointStatus::NotStarted);
+    }
+    // SAFETY: the mark is put there by `start` alone, after everything else.
+    Ok(unsafe { &mut *object })
+}
+
+/// The same for reading.
+///
+/// # Safety
+/// As for [`open`], but others may read.
+#[inline(always)]
+pub unsafe fn look<'a, K: Kind>(storage: *const K::Storage) -> Result<&'a Object<K>, JointStatus> {
+    // SAFETY: the same promise; it is only read from.
+    unsafe { open::<K>(storage.cast_mut()) }.map(|object| &*object)
+}
+
+/// Puts an object, made from tables, into a storage.
+///
+/// # Safety
+/// Storage that is not NULL is of `bytes` and in nobody else's use; tables that are not NULL are of `tables_bytes`, and stay
+/// as they are for as long as the object is used.
+pub unsafe fn start<K: Kind>(
+    storage: *mut K::Storage,
+    bytes: usize,
+    tables: *const u64,
+    tables_bytes: usize,
+    make: impl FnOnce(&Blob<'static>) -> Result<K, JointStatus>,
+) -> Result<(), JointStatus> {
+    const { assert!(size_of::<Object<K>>() <= size_of::<K::Storage>()) };
+    const { assert!(align_of::<Object<K>>() <= align_of::<K::Storage>()) };
+    usable(storage)?;
+    if bytes != size_of::<K::Storage>() {
+        return Err(JointStatus::WrongSize);
+    }
+    // SAFETY: the caller's word on the tables.
+    let blob = unsafe { blob(tables, tables_bytes) }?;
+    let object = Object { mark: mark::<K>(storage), tables_digest: blob.header().digest, value: make(&blob)? };
+    // SAFETY: aligned, large enough, and the caller's to give.
+    unsafe { ptr::write(storage.cast(), object) };
+    Ok(())
+}
+
+/// The tables that the caller points to.
+///
+/// # Safety
+/// What is not NULL is of so many bytes and stays as it is.
+pub unsafe fn blob(tables: *const u64, bytes: usize) -> Result<Blob<'static>, JointStatus> {
+    usable(tables)?;
+    if bytes == 0 || !bytes.is_multiple_of(size_of::<u64>()) || bytes > isize::MAX as usize {
+        return Err(JointStatus::WrongSize);
+    }
+    // SAFETY: aligned, not NULL, initialised as all constants are, and of this size by the caller's word.
+    let words = unsafe { core::slice::from_raw_parts(tables, bytes / size_of::<u64>()) };
+    Ok(Blob::open(words)?)
+}

@@ -1,0 +1,161 @@
+//! The plant: the gears with motor, current loop, frictions, weight and encoders around them, for a controller to be tried
+//! on.
+
+use c_plant::{MOST_PLANETS, Motion, Plant};
+
+use crate::compensation::finite;
+use crate::estimates::{JointContact, JointSamples};
+use crate::fp_mode;
+use crate::object::{Kind, look, open, start, usable};
+use crate::status::JointStatus;
+
+/// 64-bit words of a plant.
+pub const JOINT_PLANT_WORDS: usize = 80;
+/// Most planets of a plant.
+pub const JOINT_MOST_PLANETS: usize = 5;
+const _: () = assert!(JOINT_MOST_PLANETS == MOST_PLANETS);
+
+/// Storage of a plant. Its content is the library's own.
+#[repr(C)]
+pub struct JointPlant {
+    storage: [u64; JOINT_PLANT_WORDS],
+}
+
+impl Kind for Plant<'static> {
+    type Storage = JointPlant;
+    const MARK: u32 = 0x91a2_7000;
+}
+
+/// The motion of a plant, which no sensor sees: for judging what a controller makes of it.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct JointPlantOutputs {
+    /// Whole turns of the rigid-body carrier angle.
+    pub carrier_turns: i32,
+    /// The rest of it, in 2^-32 turns.
+    pub carrier_fraction: u32,
+    /// Rate of that angle.
+    pub carrier_speed_rad_per_s: f32,
+    /// Motor angle less ratio times that angle.
+    pub motor_offset_rad: f32,
+    /// Link angle less that angle.
+    pub link_offset_rad: f32,
+    /// Gap coordinate along the line of action.
+    pub gap_m: f32,
+    /// Wind-up between carrier and link along the line of action.
+    pub wind_up_m: f32,
+    /// Torque in the motor's air gap.
+    pub air_gap_torque_Nm: f32,
+    /// Torque on the sun, friction and cogging included.
+    pub drive_torque_Nm: f32,
+    /// What brakes the link: friction, weight, disturbance.
+    pub load_torque_Nm: f32,
+    /// Planets; what follows has so many entries in use.
+    pub planets: u32,
+    /// Deflections of the sun's meshes, planet by planet.
+    pub sun_deflections_m: [f32; JOINT_MOST_PLANETS],
+    /// Deflections of the ring's.
+    pub ring_deflections_m: [f32; JOINT_MOST_PLANETS],
+    /// Contacts of the sun's meshes.
+    pub sun_contacts: [JointContact; JOINT_MOST_PLANETS],
+    /// Contacts of the ring's.
+    pub ring_contacts: [JointContact; JOINT_MOST_PLANETS],
+}
+
+fn outputs(of: &Motion) -> JointPlantOutputs {
+    let ([sun_deflections_m, ring_deflections_m], [sun, ring]) = (of.deflections, of.contacts);
+    JointPlantOutputs {
+        carrier_turns: of.carrier.0,
+        carrier_fraction: of.carrier.1,
+        carrier_speed_rad_per_s: of.carrier_speed,
+        motor_offset_rad: of.offsets[0],
+        link_offset_rad: of.offsets[1],
+        gap_m: of.gap_and_wind_up[0],
+        wind_up_m: of.gap_and_wind_up[1],
+        air_gap_torque_Nm: of.torques[0],
+        drive_torque_Nm: of.torques[1],
+        load_torque_Nm: of.torques[2],
+        planets: of.planets,
+        sun_deflections_m,
+        ring_deflections_m,
+        sun_contacts: sun.map(JointContact::from),
+        ring_contacts: ring.map(JointContact::from),
+    }
+}
+
+/// Starts a plant, at rest. `bytes` is sizeof(JointPlant). The tables must stay as they are for as long as it is used.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn joint_plant_start(
+    plant: *mut JointPlant,
+    bytes: usize,
+    tables: *const u64,
+    tables_bytes: usize,
+) -> JointStatus {
+    fp_mode::standard(|| {
+        // SAFETY: the caller's word, as the header asks for it.
+        unsafe { start(plant, bytes, tables, tables_bytes, |blob| Ok(Plant::new(blob)?)) }
+    })
+    .into()
+}
+
+/// Moves on by one control period under a torque command for the motor and a torque that brakes the link.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn joint_plant_step(
+    plant: *mut JointPlant,
+    motor_torque_Nm: f32,
+    load_torque_Nm: f32,
+) -> JointStatus {
+    fp_mode::standard(|| {
+        // SAFETY: the caller's word, as the header asks for it.
+        let object = unsafe { open::<Plant<'static>>(plant) }?;
+        finite([motor_torque_Nm, load_torque_Nm, 0.0])?;
+        object.value.advance(motor_torque_Nm, load_torque_Nm);
+        Ok(())
+    })
+    .into()
+}
+
+/// What the encoders read now, and the torque that was commanded last.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn joint_plant_samples(plant: *const JointPlant, samples: *mut JointSamples) -> JointStatus {
+    fp_mode::standard(|| {
+        // SAFETY: the caller's word, as the header asks for it.
+        let object = unsafe { look::<Plant<'static>>(plant) }?;
+        usable(samples)?;
+        let found = object.value.samples();
+        // SAFETY: aligned, not NULL, and the caller's to give.
+        unsafe { samples.write(JointSamples::new(&found)) };
+        Ok(())
+    })
+    .into()
+}
+
+/// The motion now.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn joint_plant_outputs(plant: *const JointPlant, motion: *mut JointPlantOutputs) -> JointStatus {
+    fp_mode::standard(|| {
+        // SAFETY: the caller's word, as the header asks for it.
+        let object = unsafe { look::<Plant<'static>>(plant) }?;
+        usable(motion)?;
+        let found = outputs(&object.value.motion());
+        // SAFETY: aligned, not NULL, and the caller's to give.
+        unsafe { motion.write(found) };
+        Ok(())
+    })
+    .into()
+}
+
+/// Digest of every bit of the gears' state: two runs of which it is the same have gone the same way so far.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn joint_plant_digest(plant: *const JointPlant, digest: *mut u64) -> JointStatus {
+    fp_mode::standard(|| {
+        // SAFETY: the caller's word, as the header asks for it.
+        let object = unsafe { look::<Plant<'static>>(plant) }?;
+        usable(digest)?;
+        let found = object.value.digest();
+        // SAFETY: aligned, not NULL, and the caller's to give.
+        unsafe { digest.write(found) };
+        Ok(())
+    })
+    .into()
+}

@@ -1,0 +1,130 @@
+//! The width probe: a motor that wiggles against a held load and reads the half-backlash off where it comes to rest.
+
+use model_core::observer::{Probe, Progress, Refusal};
+
+use crate::estimates::JointEstimate;
+use crate::fp_mode;
+use crate::object::{Kind, look, open, start, usable};
+use crate::observer::{AnyObserver, JointObserver};
+use crate::status::JointStatus;
+
+/// 64-bit words of a width probe.
+pub const JOINT_PROBE_WORDS: usize = 16;
+
+/// Storage of a width probe. Its content is the library's own.
+#[repr(C)]
+pub struct JointProbe {
+    storage: [u64; JOINT_PROBE_WORDS],
+}
+
+/// A probe, and for how many periods it waits until the observer has settled.
+struct Waiting {
+    probe: Probe<'static, f32>,
+    wait: u32,
+}
+
+impl Kind for Waiting {
+    type Storage = JointProbe;
+    const MARK: u32 = 0x9e0b_e000;
+}
+
+/// Where a probe stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum JointProgress {
+    /// Go on: command the torque, and call again in the next period.
+    Running = 0,
+    /// The half-backlash is there.
+    Done = 1,
+    /// The motor was turning when the probe began: let it come to rest.
+    NotAtRest = 2,
+    /// The load pushes the teeth with more than the probe may use: take the load off.
+    Loaded = 3,
+    /// The motor did not come to rest, or went further than the teeth allow: hold the load.
+    NotHeld = 4,
+    /// The motor hardly moved: friction is more than the probe may use, or the joint is blocked.
+    Stuck = 5,
+    /// The first and the last pass do not agree: something moved.
+    Unsteady = 6,
+    /// Samples were missing or wrong.
+    BadSamples = 7,
+}
+
+/// What a probe answers.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct JointProbed {
+    /// Torque to command next at the motor's shaft; zero once the probe has ended.
+    pub motor_torque_Nm: f32,
+    /// Where it stands.
+    pub progress: JointProgress,
+    /// Half-backlash of each mesh; valid when done.
+    pub half_backlash_m: JointEstimate,
+}
+
+/// Starts a width probe. `bytes` is sizeof(JointProbe). The load is to be held, and the motor at rest.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn joint_probe_start(
+    probe: *mut JointProbe,
+    bytes: usize,
+    tables: *const u64,
+    tables_bytes: usize,
+) -> JointStatus {
+    fp_mode::standard(|| {
+        // SAFETY: the caller's word, as the header asks for it.
+        unsafe {
+            start(probe, bytes, tables, tables_bytes, |blob| {
+                let table = blob.probe()?;
+                // The core's controller begins in a period of its own.
+                Ok(Waiting { probe: Probe::new(table), wait: table.settle.saturating_add(1) })
+            })
+        }
+    })
+    .into()
+}
+
+/// One control period of a probe, after the observer's step and in place of the compensation's.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn joint_probe_step(
+    probe: *mut JointProbe,
+    observer: *const JointObserver,
+    probed: *mut JointProbed,
+) -> JointStatus {
+    fp_mode::standard(|| {
+        // SAFETY: the caller's word, as the header asks for it.
+        let object = unsafe { open::<Waiting>(probe) }?;
+        // SAFETY: likewise; the marks of both say that they are two.
+        let seen = unsafe { look::<AnyObserver>(observer) }?;
+        if object.tables_digest != seen.tables_digest {
+            return Err(JointStatus::OtherTables);
+        }
+        usable(probed)?;
+        let Waiting { probe, wait } = &mut object.value;
+        let (motor_torque_Nm, progress) = if *wait > 0 {
+            *wait -= 1;
+            (0.0, Progress::Running)
+        } else {
+            probe.step(seen.value.estimates())
+        };
+        let none = JointEstimate { value: 0.0, variance: 0.0, valid: 0 };
+        let (progress, half_backlash_m) = match progress {
+            Progress::Running => (JointProgress::Running, none),
+            Progress::Done(width) => (JointProgress::Done, width.into()),
+            Progress::Refused(refusal) => {
+                let why = match refusal {
+                    Refusal::NotAtRest => JointProgress::NotAtRest,
+                    Refusal::Loaded => JointProgress::Loaded,
+                    Refusal::NotHeld => JointProgress::NotHeld,
+                    Refusal::Stuck => JointProgress::Stuck,
+                    Refusal::Unsteady => JointProgress::Unsteady,
+                    Refusal::BadSamples => JointProgress::BadSamples,
+                };
+                (why, none)
+            }
+        };
+        // SAFETY: aligned, not NULL, and the caller's to give.
+        unsafe { probed.write(JointProbed { motor_torque_Nm, progress, half_backlash_m }) };
+        Ok(())
+    })
+    .into()
+}

@@ -1,0 +1,112 @@
+//! What a function says of its call: a number with a name and a text.
+
+use core::ffi::c_char;
+
+use model_core::observer::MemoryError;
+use table_blob::BlobError;
+
+/// What every function returns. Whatever it is, unless it is `JOINT_STATUS_OK` nothing was changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum JointStatus {
+    /// Done.
+    Ok = 0,
+    /// A pointer is NULL.
+    NullPointer = 1,
+    /// A pointer is not aligned for what it points to.
+    Misaligned = 2,
+    /// A size is not the one that the header states.
+    WrongSize = 3,
+    /// The object was not started, was moved, or is of another kind.
+    NotStarted = 4,
+    /// A number is infinite or not a number.
+    NotFinite = 5,
+    /// These are no tables.
+    NotTables = 6,
+    /// The tables are of another version than this library.
+    WrongTablesVersion = 7,
+    /// The digest of the tables does not fit: some of them was lost.
+    DamagedTables = 8,
+    /// These tables were made without this part.
+    MissingTables = 9,
+    /// Two objects were started from different tables.
+    OtherTables = 10,
+    /// These bytes are no memory of an observer.
+    NotAMemory = 11,
+    /// The memory is of another version of the observer.
+    WrongMemoryVersion = 12,
+    /// The digest of the memory does not fit: some of it was lost.
+    DamagedMemory = 13,
+    /// The memory belongs to another joint or to other encoders.
+    OtherJoint = 14,
+    /// The memory holds a number that no joint of this design can have.
+    MemoryOutOfRange = 15,
+}
+
+impl From<BlobError> for JointStatus {
+    fn from(error: BlobError) -> Self {
+        match error {
+            BlobError::NotTables => Self::NotTables,
+            BlobError::WrongVersion => Self::WrongTablesVersion,
+            BlobError::WrongSize => Self::WrongSize,
+            BlobError::Damaged => Self::DamagedTables,
+            BlobError::Missing => Self::MissingTables,
+        }
+    }
+}
+
+impl From<MemoryError> for JointStatus {
+    fn from(error: MemoryError) -> Self {
+        match error {
+            MemoryError::NotAMemory => Self::NotAMemory,
+            MemoryError::WrongVersion => Self::WrongMemoryVersion,
+            MemoryError::Damaged => Self::DamagedMemory,
+            MemoryError::OtherJoint => Self::OtherJoint,
+            MemoryError::OutOfRange => Self::MemoryOutOfRange,
+        }
+    }
+}
+
+impl From<Result<(), JointStatus>> for JointStatus {
+    fn from(result: Result<(), Self>) -> Self {
+        result.err().unwrap_or(Self::Ok)
+    }
+}
+
+/// Names and texts by number.
+const SAID: [[&core::ffi::CStr; 2]; 16] = [
+    [c"JOINT_STATUS_OK", c"done"],
+    [c"JOINT_STATUS_NULL_POINTER", c"a pointer is NULL: give the object that the header asks for"],
+    [c"JOINT_STATUS_MISALIGNED", c"a pointer is not aligned for its type: use the header's types, not bytes"],
+    [c"JOINT_STATUS_WRONG_SIZE", c"a size is not the one that is stated: pass sizeof the header's type, and build header and library from one archive"],
+    [c"JOINT_STATUS_NOT_STARTED", c"the object was not started, was moved, or is of another kind: start it where it stays"],
+    [c"JOINT_STATUS_NOT_FINITE", c"a number is infinite or not a number: look at where it comes from"],
+    [c"JOINT_STATUS_NOT_TABLES", c"these are no tables: link the file that `joint tables` wrote"],
+    [c"JOINT_STATUS_WRONG_TABLES_VERSION", c"the tables are of another version than the library: write them anew with its own `joint tables`"],
+    [c"JOINT_STATUS_DAMAGED_TABLES", c"the tables are damaged: flash them again"],
+    [c"JOINT_STATUS_MISSING_TABLES", c"these tables were made without this part: write them anew with it"],
+    [c"JOINT_STATUS_OTHER_TABLES", c"two objects were started from different tables: start both from the same"],
+    [c"JOINT_STATUS_NOT_A_MEMORY", c"this is no memory of an observer: save one first"],
+    [c"JOINT_STATUS_WRONG_MEMORY_VERSION", c"the memory is of another version of the observer: let it learn again and save anew"],
+    [c"JOINT_STATUS_DAMAGED_MEMORY", c"the memory is damaged: load a copy, or let the observer learn again"],
+    [c"JOINT_STATUS_OTHER_JOINT", c"the memory belongs to another joint, to other encoders, or to an observer with or without maps"],
+    [c"JOINT_STATUS_MEMORY_OUT_OF_RANGE", c"the memory holds a number that no joint of this design can have: let the observer learn again"],
+];
+
+fn said(status: u32, which: usize) -> *const c_char {
+    let unknown = [c"JOINT_STATUS_UNKNOWN", c"this is no status of this library"];
+    let [name, text] = SAID.get(status as usize).copied().unwrap_or(unknown);
+    if which == 0 { name.as_ptr() } else { text.as_ptr() }
+}
+
+/// The name of a status, such as "JOINT_STATUS_OK"; never NULL.
+#[unsafe(no_mangle)]
+pub extern "C" fn joint_status_name(status: u32) -> *const c_char {
+    said(status, 0)
+}
+
+/// What a status means and what to do about it, in one sentence; never NULL.
+#[unsafe(no_mangle)]
+pub extern "C" fn joint_status_text(status: u32) -> *const c_char {
+    said(status, 1)
+}

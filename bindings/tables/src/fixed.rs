@@ -1,0 +1,126 @@
+//! Values whose bytes in memory are laid out as C does it, and can be written and checked field by field.
+
+use model_core::gears::tables::{Block, DampingLaw, Scheme};
+
+/// A value of a fixed layout. Implemented here and by [`structs!`](crate::layout) alone: [`cast`] trusts it.
+pub trait Fixed {
+    /// Its bytes, at their place; what lies between fields is left as it is.
+    #[cfg(feature = "design")]
+    fn put(&self, place: &mut [u8]);
+
+    /// Whether bytes are a value. All of them are for numbers; truth values and variants are the reason to ask.
+    fn is_one(bytes: &[u8]) -> bool;
+
+    /// A description of the layout: names, offsets, sizes.
+    #[cfg(test)]
+    fn describe(name: &str, offset: usize, out: &mut Vec<String>);
+}
+
+/// A value where it lies, if these words are one.
+pub fn cast<T: Fixed>(words: &[u64]) -> Option<&T> {
+    const { assert!(align_of::<T>() <= align_of::<u64>()) };
+    // SAFETY: the same memory for the same time, seen as bytes, of which all are initialised.
+    let bytes = unsafe { core::slice::from_raw_parts(words.as_ptr().cast::<u8>(), size_of_val(words)) };
+    if bytes.len() != size_of::<T>().next_multiple_of(size_of::<u64>()) || !T::is_one(bytes) {
+        return None;
+    }
+    // SAFETY: as many bytes as the value has, aligned for it, and every field was found to be a value of its type.
+    Some(unsafe { &*words.as_ptr().cast::<T>() })
+}
+
+macro_rules! numbers {
+    ($($number:ty),*) => {$(
+        impl Fixed for $number {
+            #[cfg(feature = "design")]
+            fn put(&self, place: &mut [u8]) {
+                place[..size_of::<Self>()].copy_from_slice(&self.to_le_bytes());
+            }
+
+            fn is_one(_: &[u8]) -> bool {
+                true
+            }
+
+            #[cfg(test)]
+            fn describe(name: &str, offset: usize, out: &mut Vec<String>) {
+                out.push(format!("{offset} {name}: {}", stringify!($number)));
+            }
+        }
+    )*};
+}
+
+numbers!(u8, u16, u32, u64, i32, i64, f32);
+
+impl Fixed for bool {
+    #[cfg(feature = "design")]
+    fn put(&self, place: &mut [u8]) {
+        place[0] = u8::from(*self);
+    }
+
+    fn is_one(bytes: &[u8]) -> bool {
+        matches!(bytes, [0 | 1, ..])
+    }
+
+    #[cfg(test)]
+    fn describe(name: &str, offset: usize, out: &mut Vec<String>) {
+        out.push(format!("{offset} {name}: bool"));
+    }
+}
+
+macro_rules! variants {
+    ($kind:ty, $all:pat) => {
+        impl Fixed for $kind {
+            #[cfg(feature = "design")]
+            fn put(&self, place: &mut [u8]) {
+                (*self as u32).put(place);
+            }
+
+            fn is_one(bytes: &[u8]) -> bool {
+                matches!(bytes, [$all, 0, 0, 0, ..])
+            }
+
+            #[cfg(test)]
+            fn describe(name: &str, offset: usize, out: &mut Vec<String>) {
+                out.push(format!("{offset} {name}: {}", stringify!($kind)));
+            }
+        }
+    };
+}
+
+// A board has no other scheme.
+variants!(Scheme, 0);
+variants!(DampingLaw, 0 | 1);
+
+impl<T: Fixed, const N: usize> Fixed for [T; N] {
+    #[cfg(feature = "design")]
+    fn put(&self, place: &mut [u8]) {
+        for (index, value) in self.iter().enumerate() {
+            value.put(&mut place[index * size_of::<T>()..]);
+        }
+    }
+
+    fn is_one(bytes: &[u8]) -> bool {
+        (0..N).all(|index| bytes.get(index * size_of::<T>()..).is_some_and(T::is_one))
+    }
+
+    #[cfg(test)]
+    fn describe(name: &str, offset: usize, out: &mut Vec<String>) {
+        T::describe(&format!("{name}[{N}]"), offset, out);
+    }
+}
+
+// Columns one after the other, as nalgebra stores them.
+impl<const R: usize, const C: usize> Fixed for Block<f32, R, C> {
+    #[cfg(feature = "design")]
+    fn put(&self, place: &mut [u8]) {
+        self.0.data.0.put(place);
+    }
+
+    fn is_one(_: &[u8]) -> bool {
+        true
+    }
+
+    #[cfg(test)]
+    fn describe(name: &str, offset: usize, out: &mut Vec<String>) {
+        out.push(format!("{offset} {name}: {R} x {C}"));
+    }
+}

@@ -1,0 +1,100 @@
+//! What is read in place is what was designed, in every bit; what was changed on the way is refused by name.
+
+use model_core::controller::design::{ControlRequest, NominalPlant, control_tables};
+use model_core::gears::Tables;
+use model_core::gears::design::{Effort, Processor, design_scheme};
+use model_core::gears::tables::Scheme;
+use model_core::numbers::digest;
+use model_core::virtual_joint::design::design_surroundings;
+use table_blob::{Blob, BlobError, Gears, VERSION, Wanted, design};
+
+const REQUEST: ControlRequest = ControlRequest { bandwidth: 60.0, output_encoder: true };
+/// Words of version with length, and of the digest.
+const VERSION_AT: usize = 1;
+const DIGEST_AT: usize = 2;
+
+fn joint(name: &str) -> joint_file::JointFile {
+    joint_file::read(joint_file::preset(name).unwrap()).unwrap()
+}
+
+fn blob(name: &str) -> Vec<u64> {
+    let joint = joint(name);
+    let nominal = NominalPlant { joint: &joint.parameters, surroundings: &joint.surroundings, request: REQUEST };
+    let plant = Some((&joint.parameters, &joint.surroundings));
+    design(&Wanted { plant, nominal, processor: Processor::STM32F405 }).unwrap()
+}
+
+/// The digest over everything else, put in place: what somebody would do who changes tables on purpose.
+fn sealed(mut words: Vec<u64>) -> Vec<u64> {
+    let others = words.iter().enumerate().filter(|(index, _)| *index != DIGEST_AT);
+    words[DIGEST_AT] = others.fold(digest::START, |running, (_, word)| digest::chain(running, *word));
+    words
+}
+
+#[test]
+fn every_joint_s_tables_are_read_in_place_as_they_were_designed() {
+    for name in ["q1", "s1", "d2", "l1"] {
+        let (words, joint) = (blob(name), joint(name));
+        let blob = Blob::open(&words).unwrap();
+        let nominal = NominalPlant { joint: &joint.parameters, surroundings: &joint.surroundings, request: REQUEST };
+        let tables = control_tables(&nominal).unwrap();
+        assert_eq!(blob.observer().unwrap(), &tables.observer);
+        assert_eq!(blob.probe().ok(), tables.probe.as_ref());
+        assert_eq!(blob.compensation().unwrap(), &tables.compensation);
+        let (gears, around) = blob.plant().unwrap();
+        let rate = joint.surroundings.control_rate;
+        if let Gears::Three(gears) = gears {
+            let effort = Effort::Within(Processor::STM32F405);
+            let designed: Tables<f32, 3> = design_scheme(&joint.parameters, rate, Scheme::Realtime, effort).unwrap();
+            assert_eq!(gears, &designed);
+            assert!(gears.digest_is_good());
+            assert_eq!(around, &design_surroundings(&joint.parameters, &joint.surroundings, &designed).unwrap());
+        }
+        assert_eq!(blob.header().control_rate, rate);
+    }
+}
+
+#[test]
+fn an_equivalent_gear_has_tables_too() {
+    assert!(matches!(Blob::open(&blob("c1")).unwrap().plant().unwrap().0, Gears::One(_)));
+}
+
+#[test]
+fn a_change_of_any_word_is_refused() {
+    let words = blob("q1");
+    for index in 0..words.len() {
+        let mut changed = words.clone();
+        changed[index] ^= 1 << (index % 64);
+        assert!(Blob::open(&changed).is_err(), "word {index}");
+    }
+}
+
+#[test]
+fn tables_of_another_kind_version_or_size_are_refused_by_name() {
+    let words = blob("q1");
+    let refused = |words: &[u64]| Blob::open(words).err();
+    assert_eq!(refused(&[]), Some(BlobError::NotTables));
+    assert_eq!(refused(&[0; 100]), Some(BlobError::NotTables));
+    assert_eq!(refused(&words[..words.len() - 1]), Some(BlobError::WrongSize));
+    let mut newer = words.clone();
+    newer[VERSION_AT] += 1;
+    assert_eq!(newer[VERSION_AT] as u32, VERSION + 1);
+    assert_eq!(refused(&sealed(newer)), Some(BlobError::WrongVersion));
+    let mut damaged = words.clone();
+    *damaged.last_mut().unwrap() ^= 1;
+    assert_eq!(refused(&damaged), Some(BlobError::Damaged));
+}
+
+#[test]
+fn bytes_that_are_no_value_of_their_type_are_refused_whatever_the_digest_says() {
+    let words = blob("q1");
+    let observer = std::ptr::from_ref(Blob::open(&words).unwrap().observer().unwrap()) as usize;
+    let begin = words.as_ptr() as usize;
+    // The truth values of the counts are neither zero nor one.
+    let at = observer - begin + std::mem::offset_of!(model_core::observer::ObserverTables<f32>, counts.has_output);
+    let mut wrong = words.clone();
+    wrong[at / 8] = wrong[at / 8] & !(0xff << (8 * (at % 8))) | 7 << (8 * (at % 8));
+    let wrong = sealed(wrong);
+    assert_eq!(Blob::open(&wrong).unwrap().observer().err(), Some(BlobError::Damaged));
+    assert!(Blob::open(&wrong).unwrap().compensation().is_ok());
+}

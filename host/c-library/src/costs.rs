@@ -1,0 +1,103 @@
+//! What the library costs on a board: flash and RAM of linked programs that use a part of it, and instructions of each call,
+//! counted on the emulator.
+
+use std::process::Command;
+
+use board::target::board::Board;
+use board::target::tool;
+use joint_file::JointFile;
+use report::failure::{Failure, Outcome};
+
+use crate::library::{Library, Target};
+use crate::programs::{self, MACHINES, Machine, Workbench};
+use crate::tables;
+
+/// What firmware may take of the library, as `bindings/c/programs/size.c` calls it; none comes first.
+const USES: [(&str, &str); 6] = [
+    ("NOTHING", "nothing"),
+    ("OBSERVER_WITHOUT_MAPS", "observer without maps"),
+    ("OBSERVER", "observer with maps"),
+    ("CONTROL_WITHOUT_MAPS", "observer without maps, compensation"),
+    ("CONTROL", "observer with maps, compensation"),
+    ("PLANT", "plant"),
+];
+
+/// Memory that a use takes, tables included.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Memory {
+    /// What is used.
+    pub what: &'static str,
+    /// Code and constants [B].
+    pub flash: u64,
+    /// Objects, samples and results [B].
+    pub ram: u64,
+}
+
+/// Instructions of a call.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Calls {
+    /// The function.
+    pub name: String,
+    /// On average.
+    pub mean: u64,
+    /// Most.
+    pub most: u64,
+}
+
+/// The machine of the emulator that stands for a target.
+pub fn machine(target: Target) -> Option<Machine> {
+    MACHINES.into_iter().find(|machine| machine.target == target)
+}
+
+/// SysTick's counts in a thousand instructions, of 64 ns each: its clock is 168 MHz, or 25 MHz.
+fn counts(machine: Machine) -> u32 {
+    if machine.name == "netduinoplus2" { 10_752 } else { 1600 }
+}
+
+/// Memory by use, less what a program without the library takes, with tables for that use.
+pub fn memory(library: &Library, joint: &JointFile, machine: Machine) -> Outcome<Vec<Memory>> {
+    let [control, whole] = [false, true].map(|plant| {
+        let tables = tables::for_tests(joint, plant, &Board::emulated())?;
+        Workbench::new(library, &tables)
+    });
+    let (control, whole) = (control?, whole?);
+    let source = programs::folder().join("size.c");
+    let mut sizes = Vec::new();
+    for (name, what) in USES {
+        let bench = if name == "PLANT" { &whole } else { &control };
+        let elf = bench.compile_for(machine, &[&source], &[&format!("-D{name}"), "-Os"])?;
+        let said = tool::output_of(Command::new(machine.target.tool("size")).arg(&elf))?;
+        let row: Vec<u64> = said
+            .lines()
+            .nth(1)
+            .unwrap_or_default()
+            .split_whitespace()
+            .take(3)
+            .map_while(|it| it.parse().ok())
+            .collect();
+        let [text, data, bss] = row.try_into().map_err(|_| Failure::new(format!("no sizes: {said}")))?;
+        sizes.push((what, text + data, data + bss));
+    }
+    let none = sizes.first().copied().unwrap_or_default();
+    let less =
+        |(what, flash, ram): &(&'static str, u64, u64)| Memory { what, flash: flash - none.1, ram: ram - none.2 };
+    Ok(sizes.iter().skip(1).map(less).collect())
+}
+
+/// Instructions of each call; `measuring` is for a library that has the core's own steps beside.
+pub fn calls(bench: &Workbench, machine: Machine, measuring: bool) -> Outcome<Vec<Calls>> {
+    let source = programs::folder().join("costs.c");
+    let counts = format!("-DCOUNTS_PER_THOUSAND={}u", counts(machine));
+    let mut flags = vec![counts.as_str(), "-O2"];
+    flags.extend(measuring.then_some("-DMEASURING"));
+    let elf = bench.compile_for(machine, &[&source], &flags)?;
+    let parse = |line: &String| {
+        let mut fields = line.strip_prefix("cost;")?.split(';');
+        let name = fields.next()?.to_owned();
+        Some(Calls { name, mean: fields.next()?.parse().ok()?, most: fields.next()?.parse().ok()? })
+    };
+    programs::run_on(machine, &elf)?
+        .iter()
+        .map(|line| parse(line).ok_or_else(|| Failure::new(format!("{} said: {line}", machine.name))))
+        .collect()
+}

@@ -1,0 +1,236 @@
+//! `joint library`: header, library, what build systems want to know of it, its costs and a test program, as one archive.
+
+use std::fs;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+use board::target::Say;
+use board::target::board::Board;
+use board::target::emulator;
+use report::failure::{Failure, Outcome};
+use report::folder::Folder;
+use report::progress::Progress;
+use report::workspace::workspace;
+
+use crate::library::{self, Library, Target};
+use crate::programs::{self, Workbench};
+use crate::{costs, run, tables};
+
+/// What is written.
+const FILES: [&str; 1] = ["joint-*.tar"];
+/// The library's version: the workspace's.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// Control periods of the test program.
+const PERIODS: u32 = 20_000;
+/// Its control rate [Hz].
+const RATE: u32 = 10_000;
+
+/// Arguments of `joint library`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  joint library --target m4f --out vendor        vendor/joint-VERSION-m4f.tar, for STM32F4 and STM32G4
+  joint library --target host                    for unit tests on this machine: static and shared
+
+The archive holds header, library, CMake and pkg-config files, library.properties for Arduino, module.yml for Zephyr, the
+licence, a table of costs and a test program. Two builds of one checkout give the same bytes. Tables of a joint come from
+`joint tables`.")]
+pub struct Arguments {
+    /// What the library is for
+    #[arg(long, value_enum)]
+    pub target: Target,
+    /// Folder for the archive [default: joint-out/library/TARGET]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// Builds and writes it; gives what is told of it.
+pub fn run(arguments: &Arguments) -> Outcome<String> {
+    let target = arguments.target;
+    let folder = Folder::prepare(arguments.out.as_deref(), "library", target.name(), &FILES)?;
+    let (library, archive) = Progress::during(|progress| {
+        progress.stage("building the library");
+        let say = |line: &str| progress.say(line);
+        let library = library::build(target, "library", &say)?;
+        progress.stage("counting what it costs");
+        let archive = archive(&library, &say)?;
+        Ok((library, archive))
+    })?;
+    let name = format!("{}.tar", prefix(target));
+    folder.write_with(&name, |file| std::io::Write::write_all(file, &archive))?;
+    Ok(format!(
+        "{}: {} B, libjoint.a {} B, built by {}\n",
+        folder.file(&name).display(),
+        archive.len(),
+        library.archive.len(),
+        library.compiler
+    ))
+}
+
+/// The folder in the archive.
+fn prefix(target: Target) -> String {
+    format!("joint-{VERSION}-{}", target.name())
+}
+
+/// The archive: the same bytes for the same library.
+pub fn archive(library: &Library, say: Say<'_>) -> Outcome<Vec<u8>> {
+    let mut builder = tar::Builder::new(Vec::new());
+    for (name, bytes) in contents(library, say)? {
+        let mut header = tar::Header::new_ustar();
+        header.set_size(bytes.len() as u64);
+        header.set_mode(0o644);
+        header.set_mtime(0);
+        header.set_entry_type(tar::EntryType::Regular);
+        let path = format!("{}/{name}", prefix(library.target));
+        builder
+            .append_data(&mut header, path, Cursor::new(bytes))
+            .map_err(|error| Failure::new(format!("cannot pack {name}: {error}")))?;
+    }
+    builder.into_inner().map_err(|error| Failure::new(format!("cannot pack the library: {error}")))
+}
+
+/// Names and bytes of all files, in their order.
+fn contents(library: &Library, say: Say<'_>) -> Outcome<Vec<(String, Vec<u8>)>> {
+    let target = library.target;
+    let joint = tables::joint_at(Path::new("q1"), RATE)?;
+    let test_tables = tables::for_tests(&joint, true, &Board::emulated())?;
+    let expected = run::digest(&test_tables.words, PERIODS)?;
+    let header = read(&library::header())?;
+    let text = |text: &str| text.as_bytes().to_vec();
+    let mut files = vec![
+        ("README.md".to_owned(), text(&readme(target))),
+        ("COSTS.md".to_owned(), text(&costs_page(library, &joint, say)?)),
+        ("LICENSE".to_owned(), read(&workspace().join("LICENSE"))?),
+        ("include/joint.h".to_owned(), header.clone()),
+        ("lib/libjoint.a".to_owned(), library.archive.clone()),
+        ("lib/cmake/joint/jointConfig.cmake".to_owned(), text(&CMAKE.replace("VERSION", VERSION))),
+        ("lib/pkgconfig/joint.pc".to_owned(), text(&PKG_CONFIG.replace("VERSION", VERSION))),
+        ("library.properties".to_owned(), text(&ARDUINO.replace("VERSION", VERSION))),
+        ("zephyr/module.yml".to_owned(), text(ZEPHYR_MODULE)),
+        ("zephyr/CMakeLists.txt".to_owned(), text(ZEPHYR_CMAKE)),
+        ("test/test_tables.h".to_owned(), text(&test_tables.header())),
+        ("test/test_tables.c".to_owned(), text(&test_tables.source())),
+        (
+            "test/tables_of_test.h".to_owned(),
+            text(&format!(
+                "#include \"test_tables.h\"\n#define tables_of_test test_tables\n#define PERIODS {PERIODS}u\n\
+                 #define EXPECTED_DIGEST {expected:#018x}ull\n"
+            )),
+        ),
+    ];
+    if let Some(shared) = &library.shared {
+        files.push(("lib/libjoint.so".to_owned(), shared.clone()));
+    }
+    let board = ["board/start.c", "board/sections.ld", "board/netduinoplus2.ld", "board/mps2.ld"];
+    let own: &[&str] = match target {
+        Target::Host => &["host.c"],
+        Target::M4f | Target::M7 => &board,
+    };
+    for name in ["test_joint.c", "run.h", "say.h"].iter().chain(own) {
+        files.push((format!("test/{name}"), read(&programs::folder().join(name))?));
+    }
+    let arduino = match target {
+        Target::M4f => Some("src/cortex-m4/fpv4-sp-d16-hard"),
+        Target::M7 => Some("src/cortex-m7/fpv5-d16-hard"),
+        Target::Host => None,
+    };
+    if let Some(folder) = arduino {
+        files.push((format!("{folder}/libjoint.a"), library.archive.clone()));
+        files.push(("src/joint.h".to_owned(), header));
+    }
+    Ok(files)
+}
+
+fn read(path: &Path) -> Outcome<Vec<u8>> {
+    fs::read(path).map_err(|error| Failure::new(format!("{}: {error}", path.display())))
+}
+
+/// How the test program is built and run.
+fn readme(target: Target) -> String {
+    let flags = target.c_flags().join(" ");
+    let test = match target {
+        Target::Host => "cd test && cc -I../include test_joint.c test_tables.c host.c ../lib/libjoint.a -o test_joint && ./test_joint".to_owned(),
+        Target::M4f | Target::M7 => format!(
+            "cd test && arm-none-eabi-gcc {flags} -O2 -nostartfiles -I../include -L board -T board/{0} \\\n    test_joint.c test_tables.c board/start.c ../lib/libjoint.a -o test_joint.elf\nqemu-system-arm -M {1} -nographic -semihosting -kernel test_joint.elf",
+            if target == Target::M4f { "netduinoplus2.ld" } else { "mps2.ld" },
+            if target == Target::M4f { "netduinoplus2" } else { "mps2-an500" }
+        ),
+    };
+    format!(
+        "# The joint library for C and C++, {VERSION}, target {}\n\n\
+         Observer, compensation, width probe and plant of a geared joint with backlash. `include/joint.h` says all that its\n\
+         caller must know; tables of a joint are written by `joint tables`. COSTS.md says what it takes.\n\n\
+         Compiler flags: `{}`. The test program, which compares this library with the core bit for bit:\n\n```\n{test}\n```\n",
+        target.name(),
+        if flags.is_empty() { "none" } else { &flags }
+    )
+}
+
+/// Flash, RAM and instructions.
+fn costs_page(library: &Library, joint: &joint_file::JointFile, say: Say<'_>) -> Outcome<String> {
+    let mut page = format!("# What it costs, target {}\n\nBuilt by {}.\n", library.target.name(), library.compiler);
+    let Some(machine) = costs::machine(library.target) else {
+        page += "\nNothing is counted on a host: its compiler and processor decide.\n";
+        return Ok(page);
+    };
+    emulator::ensure(say)?;
+    page += &format!(
+        "\nMemory that a program takes beyond one without the library, in bytes: tables of joint {} are in flash, objects,\n\
+         samples and results in RAM. Linked with `-Wl,--gc-sections`, less than all of it is.\n\n| use | flash | RAM |\n|---|---|---|\n",
+        joint.parameters.name
+    );
+    for use_of in costs::memory(library, joint, machine)? {
+        page += &format!("| {} | {} | {} |\n", use_of.what, use_of.flash, use_of.ram);
+    }
+    page += &format!(
+        "\nInstructions of a call, over three seconds of a closed loop at {RATE} Hz. EMULATED: counted on `{}` of the\n\
+         emulator, never on silicon.\n\n| function | mean | most |\n|---|---|---|\n",
+        machine.name
+    );
+    let tables = tables::for_tests(joint, true, &Board::emulated())?;
+    for call in costs::calls(&Workbench::new(library, &tables)?, machine, false)? {
+        page += &format!("| `{}` | {} | {} |\n", call.name, call.mean, call.most);
+    }
+    Ok(page)
+}
+
+const CMAKE: &str = "# find_package(joint VERSION CONFIG PATHS path/of/this/archive): target joint::joint
+get_filename_component(joint_root \"${CMAKE_CURRENT_LIST_DIR}/../../..\" ABSOLUTE)
+set(joint_VERSION VERSION)
+if(NOT TARGET joint::joint)
+  add_library(joint::joint STATIC IMPORTED)
+  set_target_properties(joint::joint PROPERTIES
+    IMPORTED_LOCATION \"${joint_root}/lib/libjoint.a\"
+    INTERFACE_INCLUDE_DIRECTORIES \"${joint_root}/include\")
+endif()
+";
+
+const PKG_CONFIG: &str = "prefix=${pcfiledir}/../..
+Name: joint
+Description: Observer, compensation and plant of a geared joint with backlash
+Version: VERSION
+Cflags: -I${prefix}/include
+Libs: -L${prefix}/lib -ljoint
+";
+
+const ARDUINO: &str = "name=joint
+version=VERSION
+author=The authors of joint
+maintainer=The authors of joint
+sentence=Observer and compensation of a geared joint with backlash.
+paragraph=Where the teeth are, from encoder counts and motor torque, and a torque that takes the lost motion out.
+category=Device Control
+url=
+architectures=*
+precompiled=full
+ldflags=-ljoint
+includes=joint.h
+";
+
+const ZEPHYR_MODULE: &str = "name: joint
+build:
+  cmake: zephyr
+";
+
+const ZEPHYR_CMAKE: &str = "zephyr_include_directories(../include)
+zephyr_library_import(joint ${CMAKE_CURRENT_LIST_DIR}/../lib/libjoint.a)
+";

@@ -1,0 +1,219 @@
+//! `joint tables`: a joint's tables as constant bytes, in a header, a source and a file of bytes.
+
+use std::path::{Path, PathBuf};
+
+use board::target::board::Board;
+use joint_file::JointFile;
+use joint_file::{named, warned};
+use model_core::controller::design::{ControlRequest, NominalPlant};
+use report::failure::{Failure, Outcome};
+use report::folder::{Folder, file_part};
+use table_blob::{VERSION, Wanted, design};
+
+/// What a controller is asked for unless something else is said.
+pub const USUAL: ControlRequest = ControlRequest { bandwidth: 60.0, output_encoder: true };
+
+/// What is written.
+const FILES: [&str; 3] = ["*_tables.h", "*_tables.c", "*_tables.bin"];
+
+/// Arguments of `joint tables`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  joint tables joints/q1.toml --out firmware/q1          q1_tables.h, q1_tables.c and q1_tables.bin for the C library
+  joint tables q1 --rate 20000 --bandwidth 80 --without-plant --out q1    20 kHz, and nothing to try a controller on
+  joint tables my_joint.toml --told guess.toml --out test    a plant of one joint, a controller that was told another
+
+Header and source are C99 and C++14; the file of bytes is the same, for a loader or a partition of its own.")]
+pub struct Arguments {
+    /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, c1, paper, paper_printed
+    #[arg(value_name = "FILE", default_value = "q1")]
+    pub file: PathBuf,
+    /// Folder for the tables [default: joint-out/tables/JOINT]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Control periods a second, in Hz [default: what the joint file says]
+    #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..))]
+    pub rate: Option<u32>,
+    /// Bandwidth of the loop, in rad/s
+    #[arg(long, value_name = "RAD/S", value_parser = bandwidth, default_value_t = USUAL.bandwidth)]
+    pub bandwidth: f64,
+    /// Joint file that observer and compensation are designed for [default: FILE]
+    #[arg(long, value_name = "FILE")]
+    pub told: Option<PathBuf>,
+    /// The observer is not shown the output encoder
+    #[arg(long)]
+    pub motor_only: bool,
+    /// Leaves out the tables of the plant, which firmware that drives a real joint has no use for
+    #[arg(long)]
+    pub without_plant: bool,
+    /// Board whose time a plant's sub-steps are chosen for: a name of boards/, or the path of a board file
+    #[arg(long, value_name = "NAME|FILE", value_parser = Board::parse, default_value = board_file::DEFAULT)]
+    pub board: Board,
+}
+
+/// A bandwidth that a loop can have.
+fn bandwidth(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("a bandwidth is a positive number of rad/s, such as 60".to_owned()),
+    }
+}
+
+/// Tables with what a C program calls them.
+#[derive(Debug)]
+pub struct CTables {
+    /// A name of C.
+    pub name: String,
+    /// The blob.
+    pub words: Vec<u64>,
+    /// What it was made from, as remarks.
+    pub made_from: Vec<String>,
+}
+
+/// Writes them; gives what is told of it.
+pub fn run(arguments: &Arguments) -> Outcome<String> {
+    let loaded = named::load(&arguments.file)?;
+    warned::tell(&loaded);
+    let told = arguments.told.as_deref().map(named::load).transpose()?;
+    let [mut joint, mut nominal] =
+        [&loaded.file, told.as_ref().map_or(&loaded.file, |told| &told.file)].map(Clone::clone);
+    let rate = arguments.rate.unwrap_or(joint.surroundings.control_rate);
+    [&mut joint, &mut nominal].into_iter().for_each(|it| it.surroundings.control_rate = rate);
+    let request = ControlRequest { bandwidth: arguments.bandwidth, output_encoder: !arguments.motor_only };
+    let tables = make(&joint, &nominal, request, !arguments.without_plant, &arguments.board)
+        .map_err(|failure| failure.while_doing(format_args!("tables of {}", loaded.name)))?;
+    let folder = Folder::prepare(arguments.out.as_deref(), "tables", &joint.parameters.name, &FILES)?;
+    let name = |extension: &str| format!("{}_tables.{extension}", tables.name);
+    folder.write_text(&name("h"), &tables.header())?;
+    folder.write_text(&name("c"), &tables.source())?;
+    folder.write_with(&name("bin"), |file| std::io::Write::write_all(file, &tables.bytes()))?;
+    Ok(format!(
+        "{}: {} B of tables, version {VERSION}, digest {:#018x}\n{}\n",
+        folder.file(&name("c")).display(),
+        tables.bytes().len(),
+        tables.digest(),
+        tables.made_from.join("\n")
+    ))
+}
+
+/// Designs them.
+pub fn make(
+    joint: &JointFile,
+    nominal: &JointFile,
+    request: ControlRequest,
+    plant: bool,
+    board: &Board,
+) -> Outcome<CTables> {
+    let plant = plant.then_some((&joint.parameters, &joint.surroundings));
+    let told = NominalPlant { joint: &nominal.parameters, surroundings: &nominal.surroundings, request };
+    let wanted = Wanted { plant, nominal: told, processor: board.chip().processor() };
+    let words = design(&wanted).map_err(|error| {
+        Failure::new(error.to_string()).with_help(
+            "`joint check` says what follows from the file; `--rate` and `--bandwidth` change what is asked for",
+        )
+    })?;
+    let parts = match plant {
+        Some(_) => {
+            format!("plant (sub-steps for {}), observer, width probe where one can be, compensation", board.name())
+        }
+        None => "observer, width probe where one can be, compensation; no plant".to_owned(),
+    };
+    let made_from = vec![
+        format!("joint {}, told {}", joint.parameters.name, nominal.parameters.name),
+        format!(
+            "{} control periods a second, bandwidth {} rad/s, {}",
+            nominal.surroundings.control_rate,
+            request.bandwidth,
+            if request.output_encoder { "both encoders" } else { "motor encoder alone" }
+        ),
+        parts,
+    ];
+    Ok(CTables { name: c_name(&joint.parameters.name), words, made_from })
+}
+
+/// A name that C takes: letters, digits and underscores, no digit first.
+fn c_name(joint: &str) -> String {
+    let part = file_part(joint).to_lowercase();
+    let name: String = part.chars().map(|it| if it.is_ascii_alphanumeric() { it } else { '_' }).collect();
+    if name.starts_with(|first: char| first.is_ascii_alphabetic()) { name } else { format!("joint_{name}") }
+}
+
+impl CTables {
+    /// The bytes.
+    pub fn bytes(&self) -> Vec<u8> {
+        self.words.iter().flat_map(|word| word.to_le_bytes()).collect()
+    }
+
+    /// Their digest.
+    pub fn digest(&self) -> u64 {
+        table_blob::Blob::open(&self.words).map_or(0, |blob| blob.header().digest)
+    }
+
+    /// The declaration.
+    pub fn header(&self) -> String {
+        let (name, upper) = (&self.name, self.name.to_uppercase());
+        // A joint may be called anything: the remark ends where it is meant to.
+        let plain = |line: &String| line.replace(char::is_control, " ").replace("*/", "* /");
+        let remarks: String = self.made_from.iter().map(|line| format!(" * {}\n", plain(line))).collect();
+        format!(
+            "/*\n * Tables for the C library, written by `joint tables`; do not edit.\n{remarks} */\n\
+             #ifndef {upper}_TABLES_H\n#define {upper}_TABLES_H\n\n#include <stdint.h>\n\n\
+             /* Version of the layout, and digest. */\n\
+             #define {upper}_TABLES_VERSION {VERSION}\n#define {upper}_TABLES_DIGEST {:#018x}ull\n\n\
+             #if defined(JOINT_TABLES_VERSION) && JOINT_TABLES_VERSION != {VERSION}\n\
+             #error \"{name}_tables.h is of another version than joint.h: write it anew with that library's `joint tables`\"\n\
+             #endif\n\n\
+             #ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n\
+             /* Pass it with sizeof {name}_tables. */\nextern const uint64_t {name}_tables[{}];\n\n\
+             #ifdef __cplusplus\n}}\n#endif\n\n#endif\n",
+            self.digest(),
+            self.words.len()
+        )
+    }
+
+    /// The definition.
+    pub fn source(&self) -> String {
+        let name = &self.name;
+        let rows: String = self
+            .words
+            .chunks(4)
+            .map(|row| {
+                let row: Vec<String> = row.iter().map(|word| format!("{word:#018x}ull")).collect();
+                format!("    {},\n", row.join(", "))
+            })
+            .collect();
+        format!(
+            "/* Tables for the C library, written by `joint tables`; do not edit. */\n\
+             #include \"{name}_tables.h\"\n\nconst uint64_t {name}_tables[{}] = {{\n{rows}}};\n",
+            self.words.len()
+        )
+    }
+}
+
+/// Reads a joint with a control rate, for programs that try the library.
+pub fn joint_at(name: &Path, rate: u32) -> Outcome<JointFile> {
+    let mut joint = named::load(name)?.file;
+    joint.surroundings.control_rate = rate;
+    Ok(joint)
+}
+
+/// Tables called `test_tables`, for programs that try the library.
+pub fn for_tests(joint: &JointFile, plant: bool, board: &Board) -> Outcome<CTables> {
+    Ok(CTables { name: "test".to_owned(), ..make(joint, joint, USUAL, plant, board)? })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::c_name;
+
+    #[test]
+    fn any_joint_s_name_becomes_a_name_of_c() {
+        assert_eq!(c_name("Q1"), "q1");
+        assert_eq!(c_name("left knee (v2)"), c_name("left knee (v2)"));
+        for name in ["7 up", "", "Ellenbogen-3", "ä"] {
+            let name = c_name(name);
+            assert!(name.starts_with(|first: char| first.is_ascii_alphabetic()), "{name}");
+            assert!(name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_'), "{name}");
+        }
+    }
+}

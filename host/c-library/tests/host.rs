@@ -1,0 +1,124 @@
+//! The library on this machine, called from C and C++: the same bits as the core, whatever the caller was compiled with.
+
+use std::path::Path;
+use std::sync::LazyLock;
+
+use board::target::board::Board;
+use c_library::library::{self, Library, Target};
+use c_library::programs::{self, Workbench, said};
+use c_library::run;
+use c_library::tables::{self, CTables, joint_at};
+
+const PERIODS: u32 = 100_000;
+
+static LIBRARY: LazyLock<Library> =
+    LazyLock::new(|| library::build(Target::Host, "library", &|line| println!("{line}")).expect("a library"));
+
+fn designed(joint: &str, rate: u32) -> CTables {
+    let joint = joint_at(Path::new(joint), rate).expect("a joint");
+    tables::for_tests(&joint, true, &Board::emulated()).expect("tables")
+}
+
+/// The digest that a program says after so many periods.
+fn digest(bench: &Workbench, compiler: &str, flags: &[&str], periods: u32) -> u64 {
+    let periods = format!("-DPERIODS={periods}u");
+    let source = programs::folder().join("test_joint.c");
+    let program = bench.compile(compiler, &[&source], &[&[periods.as_str()], flags].concat()).expect("a program");
+    let lines = programs::run(&program, &[]).expect("a run");
+    u64::from_str_radix(&said(&lines, "digest ").expect("a digest"), 16).expect("a number")
+}
+
+#[test]
+fn a_c_program_computes_what_the_core_computes_in_every_bit() {
+    for rate in [10_000, 20_000] {
+        let tables = designed("q1", rate);
+        let bench = Workbench::new(&LIBRARY, &tables).expect("room");
+        let expected = run::digest(&tables.words, PERIODS).expect("a run");
+        assert_eq!(digest(&bench, "gcc", &["-std=c99", "-O2"], PERIODS), expected, "{rate} Hz");
+        // It flushes to zero, rounds otherwise and thinks that nothing is infinite: in its own code.
+        let wild = ["-std=c17", "-O3", "-ffast-math", "-march=native"];
+        assert_eq!(digest(&bench, "gcc", &wild, PERIODS), expected, "{rate} Hz, -ffast-math");
+    }
+}
+
+#[test]
+fn a_caller_that_rounds_upwards_changes_no_bit_and_keeps_its_mode() {
+    let tables = designed("q1", 10_000);
+    let bench = Workbench::new(&LIBRARY, &tables).expect("room");
+    let expected = run::digest(&tables.words, 20_000).expect("a run");
+    let upward = ["-std=c99", "-O1", "-frounding-math", "-DROUND_UPWARD", "-Wno-error"];
+    assert_eq!(digest(&bench, "gcc", &upward, 20_000), expected);
+}
+
+#[test]
+fn the_same_program_is_c_plus_plus_and_any_joint_will_do() {
+    for joint in ["s1", "c1", "d2"] {
+        let tables = designed(joint, 10_000);
+        let bench = Workbench::new(&LIBRARY, &tables).expect("room");
+        let expected = run::digest(&tables.words, 20_000).expect("a run");
+        assert_eq!(digest(&bench, "g++", &["-std=c++20"], 20_000), expected, "{joint}");
+    }
+}
+
+#[test]
+fn a_library_has_no_name_but_the_header_s_and_needs_no_library_of_c() {
+    let bench = Workbench::new(&LIBRARY, &designed("q1", 10_000)).expect("room");
+    let names = |options: &[&str]| {
+        let out = std::process::Command::new("nm").args(options).arg(bench.path("libjoint.a")).output().expect("nm");
+        let text = String::from_utf8(out.stdout).expect("a text");
+        let mut names: Vec<String> =
+            text.lines().filter_map(|line| line.split_whitespace().last()).map(str::to_owned).collect();
+        names.retain(|name| !name.ends_with(':'));
+        names.sort();
+        names
+    };
+    assert_eq!(names(&["--defined-only", "--extern-only"]), library::functions().expect("a header"));
+    assert_eq!(names(&["--undefined-only"]), ["memcpy", "memset"], "what every C toolchain has");
+    // Neither a panic nor what would say it: they are not linked, so nothing leads there.
+    let all = names(&[]);
+    assert!(all.len() > 50 && !all.iter().any(|name| name.contains("panic")), "{all:?}");
+}
+
+#[test]
+fn a_width_probe_finds_the_width_bit_for_bit_and_what_was_learnt_goes_on_in_another_observer() {
+    let mut joint = joint_at(Path::new("q1"), 10_000).expect("a joint");
+    // The hand that holds the link.
+    joint.surroundings.load_friction.coulomb = 50.0;
+    let mut told = joint.clone();
+    told.surroundings.load_friction.coulomb = 0.3;
+    let tables = CTables {
+        name: "test".to_owned(),
+        ..tables::make(&joint, &told, tables::USUAL, true, &Board::emulated()).expect("tables")
+    };
+    let bench = Workbench::new(&LIBRARY, &tables).expect("room");
+    let program =
+        bench.compile("gcc", &[&programs::folder().join("probe.c")], &["-std=c99", "-O2"]).expect("a program");
+    let lines = programs::run(&program, &[]).expect("a run");
+    let number = |word: &str| said(&lines, word).expect("a number");
+    assert_eq!(number("progress "), "1", "done: {lines:?}");
+    let width_nm: f64 = number("width_nm ").parse().expect("a number");
+    assert!((width_nm / 40_000.0 - 1.0).abs() < 0.1, "it is 40 um: {lines:?}");
+    let expected = run::probe_digest(&tables.words, 10_000).expect("a run");
+    assert_eq!(number("digest "), format!("{expected:016x}"));
+    assert!(lines.contains(&"memory the same".to_owned()), "{lines:?}");
+}
+
+/// Set to try more sequences of wrong calls than the short form does.
+const SEQUENCES: &str = "C_SEQUENCES";
+
+#[test]
+fn callers_that_get_it_wrong_are_told_and_change_nothing() {
+    let sequences = std::env::var(SEQUENCES).unwrap_or_else(|_| "5000".to_owned());
+    let bench = Workbench::new(&LIBRARY, &designed("q1", 10_000)).expect("room");
+    let source = programs::folder().join("fuzz.c");
+    for (kind, flags) in [
+        ("as it is", &["-std=c99", "-O2"][..]),
+        ("sanitized", &["-std=c11", "-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]),
+    ] {
+        let program = bench.compile("gcc", &[&source], flags).expect("a program");
+        let lines = programs::run(&program, &[&sequences, "7"]).expect("no wrong call is taken, none changes anything");
+        println!("{kind}: {sequences} sequences; {}", lines.join("; "));
+        let count = |word: &str| said(&lines, word).expect("a count").parse::<u64>().expect("a number");
+        assert!(count("calls that were right ") > 5000 && count("calls that were refused ") > 5000, "{lines:?}");
+    }
+}

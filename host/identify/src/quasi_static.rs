@@ -68,6 +68,7 @@ pub fn run(common: Common<'_>, options: &Options, progress: &Progress) -> Outcom
     let in_the_file = |failure: Failure| failure.while_doing(path.display());
     let samples = Samples::of(&columns, options).map_err(in_the_file)?;
     let results = Results::of(&samples, &options.halves).map_err(in_the_file)?;
+    check_ratio(options.gear_ratio, &results).map_err(in_the_file)?;
     folder.make()?;
     let pictures = pictures::all(&results);
     for (file, figure) in &pictures {
@@ -81,6 +82,26 @@ pub fn run(common: Common<'_>, options: &Options, progress: &Progress) -> Outcom
     common.json.map_or(Ok(()), |path| write_text(path, &json))?;
     progress.clear();
     Ok(format!("{}\nreport: {}\n", terminal(&document), folder.file(REPORT).display()))
+}
+
+/// By how much of itself a ratio that was said may differ from that of the log: widths are off by as much.
+const RATIO: f64 = 0.003;
+/// How many times as far as it is bent an error map may be sloped: more is no encoder's error.
+const STRAIGHT: f64 = 3.0;
+
+/// Holds a ratio that was said against how far motor and output turned.
+fn check_ratio(said: Option<f64>, results: &Results) -> Outcome<()> {
+    let (map, places) = (&results.map, &results.profiles.places);
+    let output_per_motor = map.output_per_motor();
+    let is_other = (output_per_motor - 1.0).abs() > RATIO && map.straightness(places) > STRAIGHT;
+    let Some(said) = said.filter(|_| is_other) else { return Ok(()) };
+    Err(Failure::new(format!(
+        "the output turns {output_per_motor:.4} times as far as the motor and the ratio of {said} say: widths would be off by as much"
+    ))
+    .with_help(format!(
+        "it is {:.2} in this log: `--gear-ratio`; or an encoder has another number of counts a turn, or its angle another unit: `--unit`",
+        said / output_per_motor
+    )))
 }
 
 fn check_halves(halves: &[(f64, f64)]) -> Outcome<()> {

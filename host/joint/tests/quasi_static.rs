@@ -277,6 +277,22 @@ fn a_log_of_ten_hertz_tells_width_and_friction_by_direction() {
 }
 
 #[test]
+fn a_ratio_that_is_two_percent_off_is_refused_and_the_right_one_named() {
+    let folder = folder();
+    let straight = |one: Sample| Sample { motor: one.motor + map(one.output), ..one };
+    let slow = Sweeps { rate: 10.0, sweep: 40.0, count: 4, loads: [0.0; 2], ..SWEEPS };
+    let log = |factor: f64| {
+        let mut log = "time_s,output_counts,motor_counts\n".to_owned();
+        for one in slow.record().into_iter().map(straight) {
+            writeln!(log, "{},{},{}", one.time, one.output, 3.0 * factor * one.motor).expect("a string");
+        }
+        log
+    };
+    identify(folder.path(), &log(1.0), &GEARED).well();
+    identify(folder.path(), &log(1.02), &GEARED).refused(&["the output turns 0.98", "6.12", "--gear-ratio"]);
+}
+
+#[test]
 fn a_width_without_a_known_load_is_said_to_be_either() {
     let slow = Sweeps { loads: [0.0; 2], rate: 100.0, ..SWEEPS };
     let record = findings(&slow.as_measured(), &MEASURED);

@@ -45,9 +45,19 @@ impl Map {
 
     /// From the least to the greatest value of the long wave.
     pub fn long_wave_range(&self) -> f64 {
-        let (low, high) =
-            self.long_wave.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
-        high - low
+        range(self.long_wave.iter().copied())
+    }
+
+    /// How far the output turns for each 1 of the motor.
+    pub fn output_per_motor(&self) -> f64 {
+        1.0 / (1.0 - self.slope)
+    }
+
+    /// How far the straight line goes over the range, over how far the long wave goes off it.
+    pub fn straightness(&self, places: &[f64]) -> f64 {
+        let line = self.slope * (places[places.len() - 1] - places[0]);
+        let bent = range(self.long_wave.iter().zip(places).map(|(wave, place)| wave - self.slope * place));
+        line.abs() / bent
     }
 
     /// Root mean square of the ripple.
@@ -72,6 +82,12 @@ impl Map {
     }
 }
 
+/// From the least to the greatest value.
+fn range(values: impl Iterator<Item = f64>) -> f64 {
+    let (low, high) = values.fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(value), high.max(value)));
+    high - low
+}
+
 /// Least squares: the fitted curve and its coefficients.
 fn fitted(basis: &DMatrix<f64>, values: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let solved = basis.clone().svd(true, true).solve(&DVector::from_column_slice(values), 1e-9);
@@ -90,6 +106,7 @@ mod tests {
         let curve: Vec<f64> = places.iter().map(|x| wave(*x) + 0.5 * (TAU * x / 60.0).sin()).collect();
         let map = Map::of(&places, &[curve.clone(), curve]);
         assert!((map.slope - 0.01).abs() < 1e-3, "{}", map.slope);
+        assert!(map.straightness(&places) < 2.0, "a line of 10 beside a wave of 6");
         assert!((map.ripple_rms() - 0.5 / 2f64.sqrt()).abs() < 0.02, "{}", map.ripple_rms());
         let (period, amplitude) = map.strongest(&places).expect("a ripple");
         assert!((period - 60.0).abs() < 1.0 && (amplitude - 0.5).abs() < 0.05, "{period} {amplitude}");

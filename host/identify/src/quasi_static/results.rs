@@ -307,7 +307,7 @@ impl Found {
     fn map(&mut self, curves: &Curves, profiles: &Profiles) {
         let places = &profiles.places;
         let of = |means: &[Vec<f64>]| Map::of(places, means);
-        let scale = curves.estimate(|means| 1.0 / (1.0 - of(means).slope));
+        let scale = curves.estimate(|means| of(means).output_per_motor());
         self.other(
             "output_per_motor".into(),
             "output for each 1 of the motor".into(),

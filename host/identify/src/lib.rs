@@ -51,7 +51,7 @@ pub use arguments::Arguments;
 use column_map::ColumnMap;
 use findings::{Finding, Record};
 use log::Log;
-use prior::PriorModel;
+use prior::{Losses, PriorModel};
 pub use quasi_static::Options;
 use rows::Rows;
 use scales::{Doubt, Scales};
@@ -170,19 +170,16 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
         .map_err(in_the_file)?;
     let (length, mut rows, mut twist) = first_fit(&read, prior, shortest).map_err(in_the_file)?;
     let mut log = read.clone();
-    // Losses are what the joint file states, unless the log tells better.
-    let open = PriorModel { loss_width: twist::LOSS_WIDTH, ..prior.clone() };
-    // A joint without any friction and losses is an ideal one, and stays it.
-    let told = if prior.is_ideal() { None } else { twist::fit(&read, &rows, &open) };
-    let told = told.filter(|told| told.tells_losses(&open));
-    let mut known = if told.is_some() { open } else { prior.clone() };
-    twist = told.unwrap_or(twist);
+    let mut known = prior.clone();
     for round in 0..ROUNDS {
         // An error that comes often a turn is looked for once the others are taken off.
         while let Some(higher) = (round > 0).then(|| twist.more_often_a_turn(&log, &known)).flatten() {
             known.higher.push(higher);
             let Some(better) = twist::fit(&log, &rows, &known) else { break };
             twist = better;
+        }
+        if let Some((open, told)) = told_losses(&log, &rows, &known) {
+            (known, twist) = (open, told);
         }
         let prior = &known;
         let errors: [&dyn Fn(f64) -> f64; 3] = [
@@ -196,10 +193,17 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
         let Some(better) = twist::fit(&corrected, &seen, prior) else { break };
         (log, rows, twist) = (corrected, seen, better);
     }
-    let mut prior = known.with_loss(twist.loss(&known));
-    if known.loss_width >= twist::LOSS_WIDTH {
+    // What is told goes into the joint's model until the log agrees with it.
+    let mut prior = known;
+    for _ in 0..ROUNDS {
+        if prior.losses != Losses::Open {
+            break;
+        }
+        let (more, deviation) = twist.loss(&prior);
+        prior = prior.with_losses_told(more, deviation);
         rows = Rows::new(&log, &prior, length);
         twist.leave_out_flights(&log, &mut rows, &prior);
+        twist = twist::fit(&log, &rows, &prior).unwrap_or(twist);
     }
     contradictions::offsets(&log, &rows, &prior)
         .and_then(|()| contradictions::age(&twist, &prior))
@@ -242,6 +246,17 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
             .with_help("record more reversals, with torques well above the friction and of different strength"));
     }
     Ok(Identified { log, prior, rows, twist, findings })
+}
+
+/// The fit in which losses are unknown, if they are known by the joint file only and the log tells them. A joint without any friction and losses
+/// is an ideal one, and stays it.
+fn told_losses(log: &Log, rows: &Rows, known: &PriorModel) -> Option<(PriorModel, Twist)> {
+    if known.losses == Losses::Open || known.is_ideal() {
+        return None;
+    }
+    let open = known.with_losses(Losses::Open);
+    let told = twist::fit(log, rows, &open).filter(|told| told.tells_losses(&open))?;
+    Some((open, told))
 }
 
 /// The fit with the shortest box of the kernel at which encoder counts are not most of what an acceleration shows; the best

@@ -3,7 +3,9 @@
 //! gap is therefore smaller under little torque than what the teeth are cut to, by the mean over a mesh period of what the
 //! foremost planet stands out, and comes back as the torque grows:
 //!
-//!     sum over planets of max(0, w - t_i) = F,   t_i = o_i + e_i,   F = T (1/K_sp + 1/K_rp) / (2 r_c cos(alpha))
+//! ```text
+//! sum over planets of max(0, w - t_i) = F,   t_i = o_i + e_i,   F = T (1/K_sp + 1/K_rp) / (2 r_c cos(alpha))
+//! ```
 //!
 //! where w is what sun's and ring's mesh of a planet give together beyond the mean gap, o_i by how much this planet's gap is wider than the mean
 //! one, and T the torque on the joint. Evenly shared w were F / n; a half of F / n - w, over the lever r_c cos(alpha), is what

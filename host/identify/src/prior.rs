@@ -12,6 +12,21 @@ use joint_file::named::Loaded;
 
 /// How well losses are known by what the joint file states of them, as a share: one standard deviation.
 const OWN_LOSS: f64 = 0.5;
+/// Share of the load that a log may feign as lost.
+const FEIGNED: f64 = 2e-3;
+/// What a log tells of losses agrees with what is stated within so many deviations, beside that.
+const AGREES: f64 = 4.0;
+
+/// What is known of the gears' losses, by standard deviations that are shares of the load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Losses {
+    /// They are what the joint file states, within so much.
+    Stated(f64),
+    /// They are unknown: the log is to tell them.
+    Open,
+    /// The log has told them, within so much.
+    Told(f64),
+}
 
 /// The joint as known from its file.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,8 +62,8 @@ pub struct PriorModel {
     pub compliance: f64,
     /// What the output moves freely while the motor stands [rad].
     pub lost_motion: f64,
-    /// How well the gears' losses are known, as a share of the load: one standard deviation.
-    pub loss_width: f64,
+    /// What is known of the gears' losses.
+    pub losses: Losses,
     /// Errors of encoders that come more than twice a turn, as far as the log has shown them.
     pub higher: Vec<Higher>,
     /// The link hangs on a compliance of its own behind the carrier.
@@ -126,7 +141,7 @@ impl PriorModel {
             mesh_relaxation_per_ratio,
             compliance: mesh_compliance + own,
             lost_motion: 2.0 * half_backlash / lever,
-            loss_width: OWN_LOSS * (1.0 - around.efficiency).abs(),
+            losses: Losses::Stated(OWN_LOSS * (1.0 - around.efficiency).abs()),
             higher: Vec::new(),
             compliant,
             sharing: LoadSharing::of(joint, softened),
@@ -142,8 +157,17 @@ impl PriorModel {
         self.surroundings.efficiency >= 1.0 && self.surroundings.motor_friction.coulomb == 0.0
     }
 
-    /// With so much more of the load lost, as a share.
-    pub fn with_loss(&self, more: f64) -> Self {
+    /// The same with other knowledge of the losses.
+    pub fn with_losses(&self, losses: Losses) -> Self {
+        Self { losses, ..self.clone() }
+    }
+
+    /// Where a log says, with this deviation, that so much more of the load is lost than is stated, as a share: what it has told if the two agree, else
+    /// with losses that are as much larger, to be told again.
+    pub fn with_losses_told(&self, more: f64, deviation: f64) -> Self {
+        if more.abs() < AGREES * deviation + FEIGNED {
+            return self.with_losses(Losses::Told(more.hypot(deviation)));
+        }
         let mut prior = self.clone();
         prior.surroundings.efficiency *= 1.0 - more;
         prior

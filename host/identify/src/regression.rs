@@ -100,6 +100,12 @@ impl Equations {
     ///
     /// `None` if there are too few, or if they do not determine the unknowns.
     pub fn solve(&self, widths: &[f64]) -> Option<Solution> {
+        self.solve_considering(widths, &[])
+    }
+
+    /// The same where some unknowns are held near zero by their widths, but are uncertain by a standard deviation that these equations are not
+    /// trusted to better: what that moves is in the covariance (Schmidt's considered parameters).
+    pub fn solve_considering(&self, widths: &[f64], considered: &[(usize, f64)]) -> Option<Solution> {
         let unknowns = widths.len();
         if self.count() < 2 * unknowns {
             return None;
@@ -159,7 +165,14 @@ impl Equations {
             };
             HUBER * noise * beyond / scales[unknown]
         });
-        let covariance = &inverse * (meat + DMatrix::from_diagonal(&prior)) * &inverse;
+        let mut covariance = &inverse * (meat + DMatrix::from_diagonal(&prior)) * &inverse;
+        for &(unknown, deviation) in considered {
+            let weighted = matrix.column(unknown).component_mul(&weights) / (noise * noise);
+            let mut moved = -(&inverse * (matrix.transpose() * weighted));
+            moved[unknown] = 1.0;
+            moved *= deviation * scales[unknown];
+            covariance += &moved * moved.transpose();
+        }
         let freedom = blocks.saturating_sub(unknowns.min(blocks / 2)).max(3) as f64;
         Some(Solution {
             values: DVector::from_fn(unknowns, |column, _| solved[column] / scales[column]),
@@ -282,6 +295,19 @@ mod tests {
         let widths = [f64::INFINITY, f64::INFINITY, 0.5];
         let solution = line(5.0).solve(&widths).expect("determined");
         assert!((solution.values[0] - 2.0).abs() < 0.01 && (solution.values[1] - 3.0).abs() < 0.01, "{solution:?}");
+    }
+
+    #[test]
+    fn what_is_held_but_uncertain_widens_what_goes_with_it() {
+        // The line's slope, held at three but known within a half, moves the mean by half as much.
+        let mut equations = line(0.0);
+        equations.values.iter_mut().zip(&equations.rows).for_each(|(value, row)| *value -= 3.0 * row[1]);
+        let widths = [f64::INFINITY, 1e-9, 1e-9];
+        let [alone, beside] = [vec![], vec![(1, 0.5)]]
+            .map(|considered| equations.solve_considering(&widths, &considered).expect("determined"));
+        assert!(alone.deviation(0) < 0.001 && alone.deviation(1) < 1e-6, "{alone:?}");
+        assert!((beside.deviation(0) - 0.25).abs() < 0.005, "{}", beside.deviation(0));
+        assert!((beside.deviation(1) - 0.5).abs() < 1e-6, "{}", beside.deviation(1));
     }
 
     #[test]

@@ -6,7 +6,7 @@ use nalgebra::DVector;
 use super::estimate::Estimate;
 use super::higher::Higher;
 use super::log::Log;
-use super::prior::PriorModel;
+use super::prior::{Losses, PriorModel};
 use super::regression::{Equations, SCATTERING, Scatter, Solution};
 use super::rows::{Row, Rows};
 
@@ -116,7 +116,7 @@ pub fn fit_with_any_torque(log: &Log, rows: &Rows, prior: &PriorModel) -> Option
     if log.output_torque.is_some() {
         None
     } else {
-        fit_with(log, rows, &PriorModel { loss_width: 0.0, ..prior.clone() }, f64::INFINITY)
+        fit_with(log, rows, &prior.with_losses(Losses::Stated(0.0)), f64::INFINITY)
     }
 }
 
@@ -168,10 +168,17 @@ fn fit_in_stretches(log: &Log, rows: &Rows, prior: &PriorModel, torque_error: f6
     // With the torque measured behind them, the motor's friction and its delay do not show in the twist.
     let measured = log.output_torque.is_some();
     widths[MOTOR_FRICTION] = if measured { NONE } else { prior.compliance * rows.greatest };
-    let told = !measured && prior.loss_width >= LOSS_WIDTH;
+    let flanks = !measured && !matches!(prior.losses, Losses::Stated(_));
     widths[FLANK_FRICTION] =
-        if told { (FLANKS * prior.compliance * rows.greatest / prior.ratio()).max(NONE) } else { NONE };
-    widths[LOSS] = if measured { NONE } else { (prior.compliance * prior.loss_width).max(NONE) };
+        if flanks { (FLANKS * prior.compliance * rows.greatest / prior.ratio()).max(NONE) } else { NONE };
+    // Losses are held where they are not looked for; what they may be beside that is in the intervals.
+    let (width, beside) = match prior.losses {
+        Losses::Stated(deviation) | Losses::Told(deviation) if !measured => (NONE, deviation),
+        Losses::Open if !measured => (LOSS_WIDTH, 0.0),
+        _ => (NONE, 0.0),
+    };
+    widths[LOSS] = (prior.compliance * width).max(NONE);
+    let considered = [(LOSS, prior.compliance * beside)];
     widths[TORQUE_ERROR] = if measured { NONE } else { (prior.compliance * torque_error).max(NONE) };
     if prior.equivalent {
         // No teeth, no errors of theirs.
@@ -180,7 +187,7 @@ fn fit_in_stretches(log: &Log, rows: &Rows, prior: &PriorModel, torque_error: f6
     if prior.sharing.is_none() {
         widths[SHARING] = NONE;
     }
-    let solution = equations.solve(&widths)?;
+    let solution = equations.solve_considering(&widths, &considered)?;
     Some(Twist { solution, rows: used })
 }
 
@@ -313,14 +320,14 @@ impl Twist {
         most.map(|(_, higher)| higher)
     }
 
-    /// Share of the load that is lost beyond what is known.
-    pub fn loss(&self, prior: &PriorModel) -> f64 {
-        -self.solution.values[LOSS] / prior.compliance
+    /// Share of the load that is lost beyond what is known, with its standard deviation.
+    pub fn loss(&self, prior: &PriorModel) -> (f64, f64) {
+        (-self.solution.values[LOSS] / prior.compliance, self.solution.deviation(LOSS) / prior.compliance)
     }
 
-    /// Whether a fit that knew losses within `LOSS_WIDTH` only tells them.
+    /// Whether a fit that was to find losses tells them.
     pub fn tells_losses(&self, prior: &PriorModel) -> bool {
-        self.solution.deviation(LOSS) < LOSS_TOLD * prior.compliance * LOSS_WIDTH
+        self.loss(prior).1 < LOSS_TOLD * LOSS_WIDTH
     }
 
     /// Leaves out moments at which the teeth fly, whatever the mean torque: those whose twist is inside the gap by more than it

@@ -40,6 +40,7 @@ pub(super) fn frictions(
     let compliance = solution.values[twist::COMPLIANCE];
     let of_torque = doubt.map_or(0.0, |doubt| doubt.scales.torque.half());
     let of_rates = doubt.map_or(0.0, |doubt| doubt.scales.rates);
+    let feigned = MOTOR_SHARE * quick.greatest / prior.ratio();
     let motor_dry = match &motor {
         Some(balance) => {
             let dry = Estimate::of(balance, friction::MOTOR_DRY);
@@ -48,9 +49,7 @@ pub(super) fn frictions(
         None => {
             let value = -solution.values[twist::MOTOR_FRICTION] / compliance;
             let slopes = [(twist::MOTOR_FRICTION, -1.0 / compliance), (twist::COMPLIANCE, -value / compliance)];
-            Estimate::from(solution, value, &slopes)
-                .beside(of_torque * value)
-                .wider_by(MOTOR_SHARE * quick.greatest / prior.ratio())
+            Estimate::from(solution, value, &slopes).beside(of_torque * value).wider_by(feigned)
         }
     };
     let excess = match (&motor, doubt) {
@@ -111,18 +110,30 @@ pub(super) fn frictions(
         return findings;
     };
     // How far what is still uncertain moves the balance is found by moving it.
-    let moved = [
-        balance(MotorSide { torque_error: of_torque, ..as_found }),
-        balance(MotorSide { dry: dry.value + dry.half, ..as_found }),
-        balance(MotorSide { delay: delay.value + delay.half, ..as_found }),
-        balance(MotorSide { loss: loss.value + loss.half, ..as_found }),
-    ];
+    let by_torque = balance(MotorSide { torque_error: of_torque, ..as_found });
+    let by_delay = balance(MotorSide { delay: delay.value + delay.half, ..as_found });
+    let by_dry = balance(MotorSide { dry: dry.value + dry.half, ..as_found });
+    let by_loss = balance(MotorSide { loss: loss.value + loss.half, ..as_found });
     let of_link = |unknown: usize| {
         let shift = |moved: &Option<Solution>| {
             moved.as_ref().map_or(f64::NAN, |moved| moved.values[unknown] - link.values[unknown])
         };
-        let estimate = Estimate::of(&link, unknown);
-        Estimate { half: moved.iter().map(shift).fold(estimate.half, f64::hypot), ..estimate }
+        let per = |moved: &Option<Solution>, half: f64| if half > 0.0 { shift(moved) / half } else { 0.0 };
+        // The motor's friction and losses come out of one fit, in which what one is too large the other is too small.
+        let (per_dry, per_loss) = (per(&by_dry, dry.half), per(&by_loss, loss.half));
+        let value = per_dry * dry.value + per_loss * loss.value;
+        let slopes = [
+            (twist::MOTOR_FRICTION, -per_dry / compliance),
+            (twist::LOSS, -per_loss / compliance),
+            (twist::COMPLIANCE, -value / compliance),
+        ];
+        let together = if measured { 0.0 } else { Estimate::from(solution, value, &slopes).half };
+        Estimate::of(&link, unknown)
+            .beside(shift(&by_torque))
+            .beside(shift(&by_delay))
+            .beside(together)
+            .beside(per_dry * of_torque * dry.value)
+            .wider_by(per_dry * feigned)
     };
     let dry = of_link(friction::DRY).wider_by(BALANCE_SHARE * quick.greatest);
     let viscous = of_link(friction::VISCOUS);

@@ -54,7 +54,8 @@ impl Finding {
     pub(super) fn if_so(self, so: bool, why: &str) -> Self {
         let finite = self.value.is_some_and(f64::is_finite)
             && self.interval.is_some_and(|ends| ends.iter().all(|end| end.is_finite()));
-        if so && finite {
+        // What is not found for another reason keeps it.
+        if so && (finite || self.value.is_none()) {
             return self;
         }
         Self { value: None, interval: None, note: format!("not identifiable from this log: {why}"), ..self }

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 use super::balances::{self, Factor, SURE};
 use super::findings::Finding;
-use super::log::Log;
+use super::log::{Log, SMOOTH};
 use super::prior::PriorModel;
 use super::readings::Kind;
 use super::regression::{Equations, Solution};
@@ -44,11 +44,13 @@ const NAMED: usize = 4;
 const BITS: i32 = 5;
 /// Inertias of motor and link that a torque at the output makes other than the joint file's by more than this, both the same way,
 /// are no error of both but of the time step.
-const BOTH_INERTIAS: f64 = 1.12;
+const BOTH_INERTIAS: f64 = 1.08;
 /// An offset between the encoders that steps by more than this share of the lost motion, and surely, is no scatter.
 const STEP: f64 = 0.03;
 /// The swing on the compliance may turn by so much in the output's age [rad]: beyond, its reading says little of the twist.
 const AGE: f64 = 0.35;
+/// Angles that scatter by less than this share of what an encoder does, squared, were never read by one.
+const READ: f64 = 1e-6;
 /// Motor readings that are older than the output's by this part of the swing do not go with the torque.
 const LEAD: f64 = 0.2;
 /// A friction below zero by so many halves of its interval contradicts the log.
@@ -256,6 +258,27 @@ pub fn age(twist: &Twist, prior: &PriorModel) -> Outcome<()> {
         "perhaps a filter delays the {older} readings, which must be recorded without, or one column is that much behind: shift it by so \
          many rows"
     )))
+}
+
+/// Refuses a log of filtered angles: they scatter less than their encoders, and more than angles that no encoder has read, as a
+/// simulation writes them; or else they follow the torque so late that the swing turns meanwhile.
+pub fn filter(log: &Log, twist: &Twist, prior: &PriorModel) -> Outcome<()> {
+    let Some(shares) = log.smoothness(prior) else { return Ok(()) };
+    let most = AGE * prior.swing() / TAU;
+    // Behind a torque that was measured at the output it is the swing's damping that grows, behind the motor's its delay.
+    let is_late = [(twist::RELAXATION, -1.0), (twist::DELAY, 1.0)]
+        .into_iter()
+        .any(|(unknown, sign)| sign * twist.solution.values[unknown] - twist.solution.half(&[(unknown, 1.0)]) > most);
+    if !is_late && !shares.iter().any(|share| (READ..SMOOTH).contains(share)) {
+        return Ok(());
+    }
+    let [motor, output] = shares.map(|share| ESTIMATE.write(share.sqrt()));
+    Err(Failure::new(format!(
+        "the angles are smoother than encoders of {} bits (motor) and {} bits (output) give them: they scatter {motor} and {output} times \
+         as much",
+        prior.motor_bits, prior.output_bits,
+    ))
+    .with_help("perhaps a filter or an observer smoothed them: log raw readings, or say --motor-bits and --output-bits as they are"))
 }
 
 /// Refuses a log whose torque at the output makes inertias other than they can be.

@@ -47,7 +47,7 @@ pub fn gather(
     doubt: Option<&Doubt>,
 ) -> Vec<Finding> {
     let mut findings = gap::gap_and_compliance(log, quick, twist, prior, doubt);
-    findings.extend(brakes::frictions(log, [quick, slow], twist, prior, doubt));
+    findings.extend(brakes::frictions([quick, slow], twist, prior, doubt));
     findings.extend(doubt.iter().flat_map(|doubt| inertias::inertias(&doubt.scales, prior)));
     findings.extend(angles::maps(twist, prior));
     findings.push(angles::skew(log, twist, prior, doubt.map_or(0.0, |doubt| doubt.scales.rates)));

@@ -62,6 +62,7 @@ pub fn of_the_link(rows: &Rows, prior: &PriorModel, motor: MotorSide) -> Option<
             - motor.loss * row.loss();
         let torque = row.measured.map_or(from_motor, |measured| measured * (1.0 + motor.torque_error));
         equations.push(coefficients, torque, block(row));
+        equations.in_group(row.level(rows.greatest));
     }
     let weight = rows.greatest;
     equations.solve(&[f64::INFINITY, f64::INFINITY, f64::INFINITY, weight, weight, BIAS * weight])
@@ -85,6 +86,7 @@ pub fn of_the_motor(rows: &Rows, prior: &PriorModel) -> Option<Solution> {
             row.direction * row.side,
         ];
         equations.push(coefficients, left, block(row));
+        equations.in_group(row.level(rows.greatest));
     }
     equations.solve(&[
         f64::INFINITY,

@@ -207,6 +207,7 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
     }
     contradictions::offsets(&log, &rows, &prior)
         .and_then(|()| contradictions::age(&twist, &prior))
+        .and_then(|()| contradictions::filter(&log, &twist, &prior))
         .map_err(in_the_file)?;
     let mut doubt = None;
     if log.output_torque.is_some() {
@@ -315,12 +316,8 @@ fn assumptions(identified: &Identified) -> Vec<String> {
         let size = ESTIMATE.write(twist.higher(place).to_degrees());
         format!("The {encoder} encoder has an error of {size} deg that comes {} times a turn: taken out.", higher.order)
     }));
-    if log.is_filtered(prior) {
-        list.push(
-            "Angles are smoother than these encoders give them: if a filter made them so, all values are off by what it takes, the \
-             more the longer it is. Log raw readings."
-                .to_owned(),
-        );
+    if log.smoothness(prior).is_some() {
+        list.push("Angles that no encoder has read, as a simulation writes them: taken as exact.".to_owned());
     }
     if prior.sharing.is_some() {
         list.push(

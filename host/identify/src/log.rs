@@ -21,7 +21,7 @@ const LEAST_TRAVEL: f64 = 8.0;
 /// The link's speed is taken over this time to either side [s].
 const SPEED_OVER: f64 = 1e-3;
 /// Readings scatter by the twelfth of a count squared; what scatters by less than this share of it was filtered.
-const SMOOTH: f64 = 0.1;
+pub const SMOOTH: f64 = 0.1;
 
 /// A recorded test.
 #[derive(Debug, Clone, PartialEq)]
@@ -128,13 +128,15 @@ impl Log {
         log
     }
 
-    /// Whether an angle is smoother than its encoder can read it, as a filter makes it.
-    pub fn is_filtered(&self, prior: &PriorModel) -> bool {
-        let count = |bits: u32| TAU / f64::from(bits).exp2();
-        let filtered = |place: usize, bits: u32| {
-            self.kinds[place] == Kind::Angle && self.noise[place].mean() < SMOOTH * count(bits) * count(bits) / 12.0
+    /// By which share of what their encoders do angles scatter: motor and output; nothing where none is smoother than its encoder can
+    /// read it.
+    pub fn smoothness(&self, prior: &PriorModel) -> Option<[f64; 2]> {
+        let share = |place: usize, bits: u32| {
+            let count = TAU / f64::from(bits).exp2();
+            if self.kinds[place] == Kind::Angle { 12.0 * self.noise[place].mean() / (count * count) } else { 1.0 }
         };
-        filtered(0, prior.motor_bits) || filtered(1, prior.output_bits)
+        let shares = [share(0, prior.motor_bits), share(1, prior.output_bits)];
+        shares.iter().any(|share| *share < SMOOTH).then_some(shares)
     }
 
     fn check(&self, prior: &PriorModel) -> Outcome<()> {

@@ -1,6 +1,8 @@
 //! Linear least squares with robust weights, prior widths for parameters that a log may not determine, and intervals
 //! from blocks of time, since residuals within a block are correlated.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{DMatrix, DVector};
 
 /// Rounds of turning down outliers.
@@ -35,6 +37,8 @@ pub struct Equations {
     values: Vec<f64>,
     /// Block of time that an equation belongs to.
     blocks: Vec<usize>,
+    /// Group of equations, whenever they were, whose residuals may be alike; nothing if there are none.
+    groups: Vec<usize>,
     /// How coefficients scatter; nothing if none do.
     scatters: Vec<Scatter>,
     /// Which coefficients these are.
@@ -52,6 +56,8 @@ pub struct Solution {
     pub covariance: DMatrix<f64>,
     /// Half of a 95 % interval is this times a standard deviation.
     pub reach: f64,
+    /// Likewise where it is groups whose residuals are alike, with its reach; nothing without groups.
+    by_groups: Option<(DMatrix<f64>, f64)>,
     /// What the equations leave over.
     pub residuals: Vec<f64>,
     /// Its standard deviation, outliers apart.
@@ -75,6 +81,11 @@ impl Equations {
         self.rows.push(row);
         self.values.push(value);
         self.blocks.push(block);
+    }
+
+    /// The last equation is one of a group whose residuals may be alike; all must be in one then.
+    pub fn in_group(&mut self, group: usize) {
+        self.groups.push(group);
     }
 
     /// One more equation whose coefficients of these unknowns scatter; all equations must be of this kind then.
@@ -153,7 +164,7 @@ impl Equations {
         let inverse = information.cholesky()?.inverse();
         let pulls =
             Pulls { matrix: &matrix, weights: &weights, residuals: &residuals, solved: &solved, scales: &scales };
-        let (meat, blocks) = self.scatter(&pulls, noise);
+        let [by_blocks, by_groups] = [&self.blocks, &self.groups].map(|labels| self.scatter(labels, &pulls, noise));
         let pull = &inverse * matrix.transpose();
         let confounded = DVector::from_fn(unknowns, |unknown, _| {
             let pulled = weights.iter().enumerate().map(|(row, weight)| weight * pull[(unknown, row)].abs());
@@ -165,20 +176,28 @@ impl Equations {
             };
             HUBER * noise * beyond / scales[unknown]
         });
-        let mut covariance = &inverse * (meat + DMatrix::from_diagonal(&prior)) * &inverse;
+        let mut beside = DMatrix::zeros(unknowns, unknowns);
         for &(unknown, deviation) in considered {
             let weighted = matrix.column(unknown).component_mul(&weights) / (noise * noise);
             let mut moved = -(&inverse * (matrix.transpose() * weighted));
             moved[unknown] = 1.0;
             moved *= deviation * scales[unknown];
-            covariance += &moved * moved.transpose();
+            beside += &moved * moved.transpose();
         }
-        let freedom = blocks.saturating_sub(unknowns.min(blocks / 2)).max(3) as f64;
+        let covariance = |meat: &DMatrix<f64>| {
+            let sum = &inverse * (meat + DMatrix::from_diagonal(&prior)) * &inverse + &beside;
+            DMatrix::from_fn(unknowns, unknowns, |a, b| sum[(a, b)] / (scales[a] * scales[b]))
+        };
+        // Student's 97.5 % quantile, by the first terms of its expansion.
+        let reach = |count: usize, fitted: usize| {
+            let freedom = count.saturating_sub(fitted.min(count / 2)).max(3) as f64;
+            1.96 + 2.37 / freedom + 2.82 / (freedom * freedom)
+        };
         Some(Solution {
             values: DVector::from_fn(unknowns, |column, _| solved[column] / scales[column]),
-            covariance: DMatrix::from_fn(unknowns, unknowns, |a, b| covariance[(a, b)] / (scales[a] * scales[b])),
-            // Student's 97.5 % quantile, by the first terms of its expansion.
-            reach: 1.96 + 2.37 / freedom + 2.82 / (freedom * freedom),
+            covariance: covariance(&by_blocks.0),
+            reach: reach(by_blocks.1, unknowns),
+            by_groups: (by_groups.1 > 1).then(|| (covariance(&by_groups.0), reach(by_groups.1, 1))),
             confounded,
             residuals: residuals.as_slice().to_vec(),
             noise,
@@ -203,35 +222,29 @@ impl Equations {
         }
     }
 
-    /// Sum over blocks of time of the square of what each pulls, and how many there are.
-    fn scatter(&self, pulls: &Pulls<'_>, noise: f64) -> (DMatrix<f64>, usize) {
+    /// Sum over what has the same label of the square of what it pulls, and how many labels there are.
+    fn scatter(&self, labels: &[usize], pulls: &Pulls<'_>, noise: f64) -> (DMatrix<f64>, usize) {
         let Pulls { matrix, weights, residuals, solved, scales } = *pulls;
         let unknowns = matrix.ncols();
-        let mut pulls: Vec<DVector<f64>> = Vec::new();
-        let mut last = None;
-        for row in 0..self.count() {
-            if last != Some(self.blocks[row]) {
-                pulls.push(DVector::zeros(unknowns));
-                last = Some(self.blocks[row]);
-            }
-            if let Some(pull) = pulls.last_mut() {
-                let weight = weights[row] / (noise * noise);
-                *pull += matrix.row(row).transpose() * (weight * residuals[row]);
-                // As in the sums, what scatter alone puts in is taken out.
-                let Some(Scatter(scatter)) = self.scatters.get(row) else { continue };
-                for (place, &unknown) in self.scattering.iter().enumerate() {
-                    let others = self.scattering.iter().enumerate();
-                    let of_others: f64 =
-                        others.map(|(other, &column)| scatter[place][other] * solved[column] / scales[column]).sum();
-                    pull[unknown] += weight * (of_others - scatter[place][SCATTERING]) / scales[unknown];
-                }
+        let mut pulls: BTreeMap<usize, DVector<f64>> = BTreeMap::new();
+        for (row, label) in labels.iter().enumerate() {
+            let pull = pulls.entry(*label).or_insert_with(|| DVector::zeros(unknowns));
+            let weight = weights[row] / (noise * noise);
+            *pull += matrix.row(row).transpose() * (weight * residuals[row]);
+            // As in the sums, what scatter alone puts in is taken out.
+            let Some(Scatter(scatter)) = self.scatters.get(row) else { continue };
+            for (place, &unknown) in self.scattering.iter().enumerate() {
+                let others = self.scattering.iter().enumerate();
+                let of_others: f64 =
+                    others.map(|(other, &column)| scatter[place][other] * solved[column] / scales[column]).sum();
+                pull[unknown] += weight * (of_others - scatter[place][SCATTERING]) / scales[unknown];
             }
         }
-        // Each block has pulled the solution towards itself.
+        // Each has pulled the solution towards itself.
         let correction = pulls.len() as f64 / (pulls.len() as f64 - 1.0).max(1.0)
             * (self.count() as f64 / (self.count() - unknowns) as f64);
         let mut sum = DMatrix::zeros(unknowns, unknowns);
-        pulls.iter().for_each(|pull| sum += pull * pull.transpose() * correction);
+        pulls.values().for_each(|pull| sum += pull * pull.transpose() * correction);
         (sum, pulls.len())
     }
 }
@@ -250,10 +263,15 @@ impl Solution {
     pub fn half(&self, slopes: &[(usize, f64)]) -> f64 {
         let mut slope = DVector::zeros(self.values.len());
         slopes.iter().for_each(|(unknown, by)| slope[*unknown] = *by);
-        let variance = (slope.transpose() * &self.covariance * &slope)[(0, 0)];
+        let half = |covariance: &DMatrix<f64>, reach: f64| {
+            reach * (slope.transpose() * covariance * &slope)[(0, 0)].max(0.0).sqrt()
+        };
+        let scatter = half(&self.covariance, self.reach);
+        let scatter =
+            self.by_groups.as_ref().map_or(scatter, |(covariance, reach)| scatter.max(half(covariance, *reach)));
         let confounded =
             slopes.iter().filter(|(_, by)| *by != 0.0).map(|(unknown, by)| by.abs() * self.confounded[*unknown]);
-        self.reach * variance.max(0.0).sqrt() + confounded.sum::<f64>()
+        scatter + confounded.sum::<f64>()
     }
 
     /// Whether the equations tell an unknown apart from the others.
@@ -295,6 +313,25 @@ mod tests {
         let widths = [f64::INFINITY, f64::INFINITY, 0.5];
         let solution = line(5.0).solve(&widths).expect("determined");
         assert!((solution.values[0] - 2.0).abs() < 0.01 && (solution.values[1] - 3.0).abs() < 0.01, "{solution:?}");
+    }
+
+    #[test]
+    fn what_is_wrong_alike_in_a_group_widens_the_interval() {
+        // Values of one kind are too large wherever in time they come.
+        let mean = |grouped: bool| {
+            let mut equations = Equations::default();
+            for index in 0..400_usize {
+                let kind = index * 7919 % 101 % 8;
+                let scatter = 0.01 * ((index * 104_729 % 211) as f64 / 105.0 - 1.0);
+                equations.push(vec![1.0], 1.0 + scatter + if kind == 3 { 0.02 } else { 0.0 }, index / 10);
+                if grouped {
+                    equations.in_group(kind);
+                }
+            }
+            equations.solve(&[f64::INFINITY]).expect("determined").half(&[(0, 1.0)])
+        };
+        let [alone, grouped] = [false, true].map(mean);
+        assert!(grouped > 2.0 * alone && grouped < 0.02, "{alone} {grouped}");
     }
 
     #[test]

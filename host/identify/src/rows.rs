@@ -72,6 +72,9 @@ pub struct Row {
     pub side: f64,
 }
 
+/// Strengths of torque that are told apart, for what may be wrong with each both ways.
+const LEVELS: f64 = 20.0;
+
 /// The samples of a log that the fits use, evenly spaced.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rows {
@@ -192,6 +195,11 @@ fn leave_out_landings(rows: &mut [Row]) {
 }
 
 impl Row {
+    /// Which of the torques of a log this is, either way, of so many up to the largest.
+    pub fn level(&self, greatest: f64) -> usize {
+        (LEVELS * (self.motor_torque.abs() / greatest.max(f64::MIN_POSITIVE)).min(1.0)) as usize
+    }
+
     /// Torque from joint to link as far as it is known before any fit [N m].
     pub fn torque(&self) -> f64 {
         self.measured.unwrap_or(self.drive)

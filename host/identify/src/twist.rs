@@ -161,6 +161,7 @@ fn fit_in_stretches(log: &Log, rows: &Rows, prior: &PriorModel, torque_error: f6
             MEASURED,
             scatter(log, &products, prior, row),
         );
+        equations.in_group(row.level(rows.greatest));
     }
     let mut widths: Vec<f64> = (0..UNKNOWNS).map(width).collect();
     widths.extend(prior.higher.iter().flat_map(|higher| [width(higher.encoder); 2]));

@@ -765,7 +765,7 @@ const WRONG_AS_A_WHOLE: [WrongRows; 6] = [
     ("an output that is late", |rows| late(rows, 20), &["the output's readings are 2.0", "older", "shift"]),
 ];
 
-fn each(rows: &Rows, change: impl Fn(&mut [f64; 4])) -> Rows {
+fn each(rows: &Rows, change: impl FnMut(&mut [f64; 4])) -> Rows {
     let mut rows = rows.clone();
     rows.iter_mut().for_each(change);
     rows
@@ -806,6 +806,79 @@ fn a_log_that_is_wrong_as_a_whole_is_refused_by_name() {
     fs::write(&path, format!("time_s,motor_counts,output_counts,motor_torque_N_m,output_torque_N_m\n{lines}"))
         .expect("written");
     joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).refused(&["was not measured there"]);
+}
+
+#[test]
+fn filtered_angles_are_refused_and_torques_that_are_bent_a_little_widen_the_intervals() {
+    let folder = folder();
+    let rows = right(folder.path());
+    let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
+    let smoothed = |milliseconds: f64| {
+        let by = 1.0 - (-0.1 / milliseconds).exp();
+        let mut at = [rows[0][1], rows[0][2]];
+        each(&rows, |row| {
+            at = [at[0] + by * (row[1] - at[0]), at[1] + by * (row[2] - at[1])];
+            (row[1], row[2]) = (at[0] * TAU / 16384.0, at[1] * TAU / 131_072.0);
+        })
+    };
+    for milliseconds in [1.0, 5.0] {
+        write_rows(&path, &smoothed(milliseconds), true);
+        joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)])
+            .refused(&["smoother than encoders of 14 bits", "log raw readings"]);
+        assert!(!out.exists(), "nothing is written");
+    }
+    let most = rows.iter().map(|row| row[3].abs()).fold(0.0, f64::max);
+    let step = most / 20.0;
+    let bent = [
+        ("ten percent more forwards", each(&rows, |row| row[3] *= if row[3] > 0.0 { 1.1 } else { 1.0 })),
+        ("rounded to a twentieth", each(&rows, |row| row[3] = step * (row[3] / step).round())),
+    ];
+    for (what, rows) in bent {
+        write_rows(&path, &rows, false);
+        joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).well();
+        let record = json(&out.join("findings.json"));
+        let truths = [(BACKLASH, 40.0), (STIFFNESS, 10.3e3), (MOTOR_DRY, 0.03), (LINK_DRY, 0.3), (LINK_VISCOUS, 0.1)];
+        for (key, truth) in truths {
+            let Some((value, [low, high])) = found(&record, key) else { continue };
+            assert!((low..=high).contains(&truth), "{what}: {key} is {truth}, found {value} in {low} to {high}");
+        }
+        assert!(found(&record, BACKLASH).is_some() && found(&record, STIFFNESS).is_some(), "{what}: {record}");
+    }
+}
+
+#[test]
+fn what_a_torque_at_the_output_contradicts_is_refused_by_name() {
+    let folder = folder();
+    let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
+    joint(&["identify", text(&path), "--joint", "q1", "--simulate", "--seed", "9", "--with-output-torque"]).well();
+    let log = fs::read_to_string(&path).expect("written");
+    let (head, lines) = log.split_once('\n').expect("a head");
+    let rows: Vec<[f64; 5]> = lines
+        .lines()
+        .map(|line| {
+            let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+            cells.try_into().expect("five columns")
+        })
+        .collect();
+    let most = rows.iter().map(|row| row[3].abs()).fold(0.0, f64::max);
+    let refused = |what: &str, words: &[&str], change: &dyn Fn(&mut [f64; 5])| {
+        println!("{what}");
+        let mut changed = rows.clone();
+        changed.iter_mut().for_each(change);
+        let lines: String = changed.iter().map(|[t, m, o, by, at]| format!("{t},{m},{o},{by},{at}\n")).collect();
+        fs::write(&path, format!("{head}\n{lines}")).expect("written");
+        joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).refused(words);
+        assert!(!out.exists(), "{what}: nothing is written");
+    };
+    refused("another time step", &["inertias of motor and link are 1.2", "samples are 1.1"], &|row| row[0] *= 1.1);
+    refused("another scale", &["inertias of motor and link are 1.299", "in another unit"], &|row| row[4] *= 1.3);
+    refused("the other sign", &["the torque at the output is -1.0", "other sign"], &|row| row[4] = -row[4]);
+    refused("a clipped drive", &["is not in proportion", "clipped"], &|row| {
+        row[3] = row[3].clamp(-0.8 * most, 0.8 * most)
+    });
+    refused("another scale one way", &["a constant torque of", "one way"], &|row| {
+        row[3] *= if row[3] > 0.0 { 1.4 } else { 1.0 }
+    });
 }
 
 /// A joint whose planets mesh out of phase, so that errors of the teeth take a part of the gap.

@@ -1,10 +1,9 @@
 //! What a log shows of motor and link friction, and of the error in the torque scale, on which both depend. The torque
 //! balances are fitted in `friction`.
 
-use super::finding::{FILTERED, Finding, SHARE, finding};
+use super::finding::{Finding, SHARE, finding};
 use crate::estimate::Estimate;
 use crate::friction::{self, MotorSide};
-use crate::log::Log;
 use crate::prior::PriorModel;
 use crate::regression::Solution;
 use crate::rows::{Row, Rows};
@@ -26,7 +25,6 @@ const OUT_OF_PHASE: &str = "planets mesh out of phase, and errors of the teeth b
 
 /// Frictions of motor and link.
 pub(super) fn frictions(
-    log: &Log,
     [quick, slow]: [&Rows; 2],
     twist: &Twist,
     prior: &PriorModel,
@@ -65,7 +63,6 @@ pub(super) fn frictions(
     let key = "drive_train.motor_coulomb_friction_N_m";
     let motor_dry_found = finding("dry friction of the motor", "N m", key, motor_dry)
         .if_so(motor_known, why_motor)
-        .if_so(!log.is_filtered(prior), FILTERED)
         .if_so(measured || prior.sharing.is_none(), OUT_OF_PHASE);
     let mut findings = vec![motor_dry_found.not_negative()];
     let narrower = excess.half < prior.torque_error;
@@ -89,7 +86,7 @@ pub(super) fn frictions(
     let keys = ["drive_train.load_coulomb_friction_N_m", "drive_train.load_viscous_friction_N_m_s_per_rad"];
     let units = ["N m", "N m s/rad"];
     // Without its own finding the motor's friction is taken from the joint file.
-    let motor_known = motor_known && (measured || prior.sharing.is_none()) && !log.is_filtered(prior);
+    let motor_known = motor_known && (measured || prior.sharing.is_none());
     let (dry, note) = if measured || motor_known {
         (motor_dry, "")
     } else {

@@ -10,9 +10,6 @@ pub(super) const SHARE: f64 = 0.5;
 /// Why an unknown is not found that goes with others.
 pub(super) const TOGETHER: &str = "in this motion it goes with something else, as in a sine of one strength; reverse torques of \
                                    three or four different strengths, and swing slowly too";
-/// Why what rings and brakes is not found of smooth angles.
-pub(super) const FILTERED: &str = "the angles are smoother than encoders of these bits give them, as filtered ones are; log raw \
-                                   readings, or say --motor-bits and --output-bits as they are";
 /// What two inertias on a spring leave out of a joint, as a share of a value: widens every interval. Found on simulated
 /// logs of the presets, where the scatter alone promised more than the reference keeps.
 const MODEL_SHARE: f64 = 0.003;

@@ -1,7 +1,7 @@
 //! What a log shows of gap, compliance and damping.
 
 use super::feigned;
-use super::finding::{FILTERED, Finding, SHARE, TOGETHER, finding};
+use super::finding::{Finding, SHARE, TOGETHER, finding};
 use crate::estimate::Estimate;
 use crate::log::Log;
 use crate::prior::PriorModel;
@@ -68,8 +68,7 @@ pub(super) fn gap_and_compliance(
         finding("mean stiffness of a mesh", "N/m", "mesh.mean_stiffness_N_per_m", estimate).if_so(bends, why_bends)
     };
     findings.push(stiffness);
-    let damping = damping(solution, prior, compliance, bends && prior.swing() > SWING_SAMPLES * log.period);
-    findings.push(damping.if_so(!log.is_filtered(prior), FILTERED));
+    findings.push(damping(solution, prior, compliance, bends && prior.swing() > SWING_SAMPLES * log.period));
     findings
 }
 

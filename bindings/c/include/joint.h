@@ -391,10 +391,6 @@ typedef struct JointMotion {
 typedef struct JointTorque {
   // Torque for the motor's shaft: over the torque constant, the current to ask for. Finite and within the limit.
   float motor_torque_Nm;
-  // What it is about.
-  JointStage stage;
-  // The flank that carries or is being gone to.
-  JointContact flank;
   // Torque that the teeth will have to pass on after a crossing that began now.
   float demand_Nm;
   // What brakes the link besides dry friction, as learnt.
@@ -403,6 +399,10 @@ typedef struct JointTorque {
   float friction_Nm;
   // Share of the compensation in the torque, the rest being control without: 0 to 1.
   float trust;
+  // What it is about.
+  JointStage stage;
+  // The flank that carries or is being gone to.
+  JointContact flank;
   // 1 if the law asks for more torque than the motor has, or brakes early because of that; else 0.
   uint32_t short_of_torque;
 } JointTorque;

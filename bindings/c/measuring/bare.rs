@@ -28,9 +28,9 @@ pub unsafe extern "C" fn joint_bare_samples(samples: *const JointSamples, to: *m
 pub unsafe extern "C" fn joint_bare_command(now: *const JointMotion, ahead: *const JointMotion, to: *mut Room) {
     const { assert!(size_of::<Command<f32>>() <= size_of::<Room>()) };
     // SAFETY: good pointers, and room enough.
-    if let (Ok(now), Ok(ahead)) = unsafe { ((*now).motion(), (*ahead).motion()) } {
-        // SAFETY: likewise.
-        unsafe { to.cast::<Command<f32>>().write(Command::Position { now, ahead: Some(ahead) }) };
+    unsafe {
+        let (now, ahead) = (*(*now).motion(), Some(*(*ahead).motion()));
+        to.cast::<Command<f32>>().write(Command::Position { now, ahead });
     }
 }
 

@@ -1,10 +1,15 @@
 //! The compensation: from the observer's estimates and a set-point to a motor torque.
 
-use model_core::compensation::{Command, Compensation, ImpedancePoint, Motion, Position, Shaped, Stage};
+use core::mem::offset_of;
+use core::ptr;
+
+use model_core::compensation::{CommandRef, Compensation, ImpedancePoint, Motion, Shaped, Stage};
+
+use model_core::gears::Flank;
 
 use crate::estimates::JointContact;
 use crate::fp_mode;
-use crate::object::{Kind, look, open, read, start, usable};
+use crate::object::{Kind, marked, start};
 use crate::observer::{AnyObserver, JointObserver};
 use crate::status::JointStatus;
 
@@ -19,7 +24,7 @@ pub struct JointCompensation {
 
 impl Kind for Compensation<'static, f32> {
     type Storage = JointCompensation;
-    const MARK: u32 = 0xc0e4_1a70;
+    const MARK: u32 = 0xc5c5_c5c5;
 }
 
 /// Where the link shall be at one moment, on the scale of the observer's link shaft.
@@ -37,14 +42,24 @@ pub struct JointMotion {
 }
 
 impl JointMotion {
+    /// As the core has it: the same in memory.
     #[inline(always)]
-    pub(crate) fn motion(&self) -> Result<Motion<f32>, JointStatus> {
-        finite([self.fraction_turns, self.speed_rad_per_s, self.acceleration_rad_per_s2])?;
-        Ok(Motion {
-            position: Position { turns: self.turns, fraction: self.fraction_turns },
-            speed: self.speed_rad_per_s,
-            acceleration: self.acceleration_rad_per_s2,
-        })
+    pub(crate) fn motion(&self) -> &Motion<f32> {
+        const {
+            assert!(size_of::<Self>() == size_of::<Motion<f32>>() && align_of::<Self>() == align_of::<Motion<f32>>());
+            assert!(offset_of!(Self, turns) == offset_of!(Motion<f32>, position.turns));
+            assert!(offset_of!(Self, fraction_turns) == offset_of!(Motion<f32>, position.fraction));
+            assert!(offset_of!(Self, speed_rad_per_s) == offset_of!(Motion<f32>, speed));
+            assert!(offset_of!(Self, acceleration_rad_per_s2) == offset_of!(Motion<f32>, acceleration));
+        }
+        // SAFETY: numbers of the same kinds in the same places, as was asserted; any bits are good.
+        unsafe { &*ptr::from_ref(self).cast() }
+    }
+
+    /// Nothing times its numbers, added to such a sum: zero if they are finite.
+    #[inline(always)]
+    fn nothing(&self, before: f32) -> f32 {
+        before + 0.0 * self.fraction_turns + 0.0 * self.speed_rad_per_s + 0.0 * self.acceleration_rad_per_s2
     }
 }
 
@@ -67,25 +82,38 @@ pub struct JointImpedance {
 }
 
 impl JointImpedance {
+    /// As the core has it: the same in memory.
     #[inline(always)]
-    fn point(&self) -> Result<ImpedancePoint<f32>, JointStatus> {
-        finite([self.fraction_turns, self.speed_rad_per_s, self.torque_Nm])?;
-        finite([self.stiffness_Nm_per_rad, self.damping_Nm_s_per_rad, 0.0])?;
-        Ok(ImpedancePoint {
-            position: Position { turns: self.turns, fraction: self.fraction_turns },
-            speed: self.speed_rad_per_s,
-            torque: self.torque_Nm,
-            stiffness: self.stiffness_Nm_per_rad,
-            damping: self.damping_Nm_s_per_rad,
-        })
+    fn point(&self) -> &ImpedancePoint<f32> {
+        type Point = ImpedancePoint<f32>;
+        const {
+            assert!(size_of::<Self>() == size_of::<Point>() && align_of::<Self>() == align_of::<Point>());
+            assert!(offset_of!(Self, turns) == offset_of!(Point, position.turns));
+            assert!(offset_of!(Self, fraction_turns) == offset_of!(Point, position.fraction));
+            assert!(offset_of!(Self, speed_rad_per_s) == offset_of!(Point, speed));
+            assert!(offset_of!(Self, torque_Nm) == offset_of!(Point, torque));
+            assert!(offset_of!(Self, stiffness_Nm_per_rad) == offset_of!(Point, stiffness));
+            assert!(offset_of!(Self, damping_Nm_s_per_rad) == offset_of!(Point, damping));
+        }
+        // SAFETY: numbers of the same kinds in the same places, as was asserted; any bits are good.
+        unsafe { &*ptr::from_ref(self).cast() }
+    }
+
+    /// Nothing times its numbers: zero if they are finite.
+    #[inline(always)]
+    fn nothing(&self) -> f32 {
+        let spring = 0.0 * self.stiffness_Nm_per_rad + 0.0 * self.damping_Nm_s_per_rad + 0.0 * self.torque_Nm;
+        0.0 * self.fraction_turns + 0.0 * self.speed_rad_per_s + spring
     }
 }
 
-/// Fails if one of three is not finite.
+/// Whether a sum of products with zero is zero: nothing times what is infinite or not a number is not a number, and nor is
+/// what it is added to. Arithmetic makes quiet ones, of which this bit is set; zero has it not. It takes fewer instructions
+/// than the flags of a comparison.
 #[inline(always)]
-pub(crate) fn finite([one, two, three]: [f32; 3]) -> Result<(), JointStatus> {
-    // Nothing times what is infinite or not a number is not a number, and nor is what it is added to.
-    if 0.0 * one + 0.0 * two + 0.0 * three == 0.0 { Ok(()) } else { Err(JointStatus::NotFinite) }
+fn is_zero(nothing: f32) -> bool {
+    const QUIET: u32 = 1 << 22;
+    nothing.to_bits() & QUIET == 0
 }
 
 /// What the compensation is about.
@@ -110,10 +138,6 @@ pub enum JointStage {
 pub struct JointTorque {
     /// Torque for the motor's shaft: over the torque constant, the current to ask for. Finite and within the limit.
     pub motor_torque_Nm: f32,
-    /// What it is about.
-    pub stage: JointStage,
-    /// The flank that carries or is being gone to.
-    pub flank: JointContact,
     /// Torque that the teeth will have to pass on after a crossing that began now.
     pub demand_Nm: f32,
     /// What brakes the link besides dry friction, as learnt.
@@ -122,33 +146,49 @@ pub struct JointTorque {
     pub friction_Nm: f32,
     /// Share of the compensation in the torque, the rest being control without: 0 to 1.
     pub trust: f32,
+    /// What it is about.
+    pub stage: JointStage,
+    /// The flank that carries or is being gone to.
+    pub flank: JointContact,
     /// 1 if the law asks for more torque than the motor has, or brakes early because of that; else 0.
     pub short_of_torque: u32,
 }
 
 impl JointTorque {
+    /// Gives an answer to the caller.
+    ///
+    /// # Safety
+    /// The place is aligned, not NULL, and the caller's to give.
     #[inline(always)]
-    fn new(of: &Shaped<f32>) -> Self {
-        let [load_Nm, friction_Nm] = of.load;
-        Self {
-            motor_torque_Nm: of.torque,
-            stage: match of.stage {
-                Stage::Touching => JointStage::Touching,
-                Stage::Crossing => JointStage::Crossing,
-                Stage::Landing => JointStage::Landing,
-                Stage::Plain => JointStage::Plain,
-                Stage::Off => JointStage::Off,
-            },
-            flank: match of.flank {
-                Some(model_core::gears::Flank::Drive) => JointContact::DriveSide,
-                Some(model_core::gears::Flank::Back) => JointContact::BackSide,
-                None => JointContact::Separated,
-            },
-            demand_Nm: of.demand,
-            load_Nm,
-            friction_Nm,
-            trust: of.trust,
-            short_of_torque: of.short_of_torque.into(),
+    unsafe fn give(of: &Shaped<f32>, to: *mut Self) {
+        type Core = Shaped<f32>;
+        const NUMBERS: usize = 5;
+        const {
+            assert!(offset_of!(Self, motor_torque_Nm) == 0 && offset_of!(Core, torque) == 0);
+            assert!(offset_of!(Self, demand_Nm) == offset_of!(Core, demand));
+            assert!(offset_of!(Self, load_Nm) == offset_of!(Core, load));
+            assert!(offset_of!(Self, friction_Nm) == offset_of!(Core, load) + size_of::<f32>());
+            assert!(offset_of!(Self, trust) == offset_of!(Core, trust));
+            assert!(offset_of!(Self, stage) == NUMBERS * size_of::<f32>());
+        }
+        let stage = match of.stage {
+            Stage::Touching => JointStage::Touching,
+            Stage::Crossing => JointStage::Crossing,
+            Stage::Landing => JointStage::Landing,
+            Stage::Plain => JointStage::Plain,
+            Stage::Off => JointStage::Off,
+        };
+        let flank = match of.flank {
+            Some(Flank::Drive) => JointContact::DriveSide,
+            Some(Flank::Back) => JointContact::BackSide,
+            None => JointContact::Separated,
+        };
+        // SAFETY: the numbers lie first and alike in both, as was asserted; the rest is the caller's word.
+        unsafe {
+            to.cast::<[f32; NUMBERS]>().write(*ptr::from_ref(of).cast());
+            (*to).stage = stage;
+            (*to).flank = flank;
+            (*to).short_of_torque = of.short_of_torque.into();
         }
     }
 }
@@ -178,18 +218,21 @@ pub unsafe extern "C" fn joint_compensation_follow(
     ahead: *const JointMotion,
     torque: *mut JointTorque,
 ) -> JointStatus {
+    let objects = [compensation.addr(), observer.addr()];
+    if !all_usable(objects, [now.addr(), torque.addr()], ahead.addr()) {
+        return why(objects, [now.addr(), torque.addr()]);
+    }
     fp_mode::standard(|| {
-        // SAFETY: the caller's word, as the header asks for it.
-        let now = unsafe { read(now) }?.motion()?;
-        let ahead = match ahead.is_null() {
-            true => None,
-            // SAFETY: likewise.
-            false => Some(unsafe { read(ahead) }?.motion()?),
-        };
+        // SAFETY: aligned, and not NULL but where that is none; the rest is the caller's word, as the header asks for it.
+        let (now, ahead) = unsafe { (&*now, ahead.as_ref()) };
+        let nothing = now.nothing(0.0);
+        if !is_zero(ahead.map_or(nothing, |ahead| ahead.nothing(nothing))) {
+            return JointStatus::NotFinite;
+        }
+        let command = CommandRef::Position { now: now.motion(), ahead: ahead.map(JointMotion::motion) };
         // SAFETY: likewise.
-        unsafe { step(compensation, observer, &Command::Position { now, ahead }, torque) }
+        unsafe { step(compensation, observer, command, torque) }
     })
-    .into()
 }
 
 /// One control period of impedance control, after the observer's step: be a spring and damper at the link.
@@ -200,32 +243,59 @@ pub unsafe extern "C" fn joint_compensation_yield(
     impedance: *const JointImpedance,
     torque: *mut JointTorque,
 ) -> JointStatus {
+    let objects = [compensation.addr(), observer.addr()];
+    if !all_usable(objects, [impedance.addr(), torque.addr()], 0) {
+        return why(objects, [impedance.addr(), torque.addr()]);
+    }
     fp_mode::standard(|| {
-        // SAFETY: the caller's word, as the header asks for it.
-        let point = unsafe { read(impedance) }?.point()?;
+        // SAFETY: aligned and not NULL; the rest is the caller's word, as the header asks for it.
+        let impedance = unsafe { &*impedance };
+        if !is_zero(impedance.nothing()) {
+            return JointStatus::NotFinite;
+        }
         // SAFETY: likewise.
-        unsafe { step(compensation, observer, &Command::Impedance(point), torque) }
+        unsafe { step(compensation, observer, CommandRef::Impedance(impedance.point()), torque) }
     })
-    .into()
 }
 
+/// Whether pointers can be used, in one look: none is NULL but for the last, those to objects are at multiples of eight, the
+/// others of four.
+#[inline(always)]
+fn all_usable([one, two]: [usize; 2], [three, four]: [usize; 2], or_null: usize) -> bool {
+    let low = (one | two) | (three | four | or_null) << 1;
+    low.trailing_zeros() >= 3 && one != 0 && two != 0 && three != 0 && four != 0
+}
+
+/// Why one of them is of no use.
+#[cold]
+fn why([one, two]: [usize; 2], [three, four]: [usize; 2]) -> JointStatus {
+    let is_null = one == 0 || two == 0 || three == 0 || four == 0;
+    if is_null { JointStatus::NullPointer } else { JointStatus::Misaligned }
+}
+
+const _: () = assert!(align_of::<JointCompensation>() == 8 && align_of::<JointObserver>() == 8);
+const _: () = assert!(align_of::<JointMotion>() == 4 && align_of::<JointImpedance>() == 4);
+const _: () = assert!(align_of::<JointTorque>() == 4);
+
+/// The step itself; all pointers are aligned and not NULL.
 #[inline(always)]
 unsafe fn step(
     compensation: *mut JointCompensation,
     observer: *const JointObserver,
-    command: &Command<f32>,
+    command: CommandRef<f32>,
     torque: *mut JointTorque,
-) -> Result<(), JointStatus> {
-    // SAFETY: the caller's word, as the header asks for it.
-    let object = unsafe { open::<Compensation<'static, f32>>(compensation) }?;
-    // SAFETY: likewise; the marks of both say that they are two.
-    let seen = unsafe { look::<AnyObserver>(observer) }?;
-    if object.tables_digest != seen.tables_digest {
-        return Err(JointStatus::OtherTables);
+) -> JointStatus {
+    // SAFETY: as the caller of this says; the marks of both say that they are two.
+    let (Some(object), Some(seen)) =
+        (unsafe { (marked::<Compensation<'static, f32>>(compensation), marked::<AnyObserver>(observer.cast_mut())) })
+    else {
+        return JointStatus::NotStarted;
+    };
+    if !object.has_tables_of(seen) {
+        return JointStatus::OtherTables;
     }
-    usable(torque)?;
-    let shaped = object.value.step(seen.value.estimates(), command);
+    let shaped = object.value.step_by_reference(seen.value.estimates(), command);
     // SAFETY: aligned, not NULL, and the caller's to give.
-    unsafe { torque.write(JointTorque::new(&shaped)) };
-    Ok(())
+    unsafe { JointTorque::give(&shaped, torque) };
+    JointStatus::Ok
 }

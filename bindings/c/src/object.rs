@@ -2,7 +2,7 @@
 
 use core::ptr;
 
-use table_blob::Blob;
+use table_blob::{Blob, Header};
 
 use crate::status::JointStatus;
 
@@ -10,7 +10,7 @@ use crate::status::JointStatus;
 pub trait Kind: Sized {
     /// What the header declares.
     type Storage;
-    /// Tells kinds apart.
+    /// Tells kinds apart: four bytes alike, which a processor of these boards compares with in one instruction.
     const MARK: u32;
 }
 
@@ -19,10 +19,26 @@ pub trait Kind: Sized {
 #[repr(C)]
 pub struct Object<K> {
     mark: usize,
+    /// Where those tables are.
+    tables: *const Header,
     /// Of the tables that it was started from.
-    pub tables_digest: u64,
+    tables_digest: u64,
     /// The object itself.
     pub value: K,
+}
+
+impl<K> Object<K> {
+    /// Whether another object was started from the same tables, or from others of the same digest.
+    #[inline(always)]
+    pub fn has_tables_of<L>(&self, other: &Object<L>) -> bool {
+        // One look says it where there are no two copies of the tables.
+        self.tables == other.tables || same(self.tables_digest, other.tables_digest)
+    }
+}
+
+#[cold]
+fn same(one: u64, other: u64) -> bool {
+    one == other
 }
 
 fn mark<K: Kind>(at: *const K::Storage) -> usize {
@@ -59,13 +75,23 @@ pub unsafe fn read<T: Copy>(from: *const T) -> Result<T, JointStatus> {
 #[inline(always)]
 pub unsafe fn open<'a, K: Kind>(storage: *mut K::Storage) -> Result<&'a mut Object<K>, JointStatus> {
     usable(storage)?;
+    // SAFETY: aligned and not NULL; the rest is the caller's word.
+    unsafe { marked::<K>(storage) }.ok_or(JointStatus::NotStarted)
+}
+
+/// The same behind a pointer that is known to be aligned and not NULL.
+///
+/// # Safety
+/// It is, and it points to a storage of this type that nobody else uses meanwhile.
+#[inline(always)]
+pub unsafe fn marked<'a, K: Kind>(storage: *mut K::Storage) -> Option<&'a mut Object<K>> {
     let object = storage.cast::<Object<K>>();
     // SAFETY: aligned, not NULL, and large enough by its type; any bits are a mark.
-    if unsafe { (*object).mark } != mark::<K>(storage) {
-        return Err(JointStatus::NotStarted);
+    if unsafe { (*object).mark } ^ storage.addr() != K::MARK as usize {
+        return None;
     }
     // SAFETY: the mark is put there by `start` alone, after everything else.
-    Ok(unsafe { &mut *object })
+    Some(unsafe { &mut *object })
 }
 
 /// The same for reading.
@@ -98,7 +124,8 @@ pub unsafe fn start<K: Kind>(
     }
     // SAFETY: the caller's word on the tables.
     let blob = unsafe { blob(tables, tables_bytes) }?;
-    let object = Object { mark: mark::<K>(storage), tables_digest: blob.header().digest, value: make(&blob)? };
+    let (value, tables) = (make(&blob)?, blob.header());
+    let object = Object { mark: mark::<K>(storage), tables, tables_digest: tables.digest, value };
     // SAFETY: aligned, large enough, and the caller's to give.
     unsafe { ptr::write(storage.cast(), object) };
     Ok(())

@@ -1,7 +1,8 @@
 //! The observer, with error maps or without: which of them, the function that starts it says, and a program that starts only
-//! one kind links only that.
+//! one kind links only the step of that.
 
 use core::mem::MaybeUninit;
+use core::ptr;
 
 use model_core::observer::{Estimates, MAPPED, MEMORY_BYTES, Memory, Observer, PLAIN, Samples};
 use table_blob::Blob;
@@ -23,65 +24,62 @@ pub struct JointObserver {
     storage: [u64; JOINT_OBSERVER_WORDS],
 }
 
-/// What lies in the storage: an observer of either kind, and what can be done with that kind.
+/// What lies in the storage: an observer of either kind, how it is stepped and where in it the estimates are. What is not
+/// of a control period asks for the kind: a program that never saves does not link what saves.
 pub(crate) struct AnyObserver {
-    functions: &'static Functions,
+    step: unsafe fn(*mut (), &Samples<f32>),
+    /// From the observer's beginning [B].
+    estimates: usize,
+    has_maps: bool,
     pub(crate) observer: MaybeUninit<Observer<'static, f32, MAPPED>>,
 }
 
 impl Kind for AnyObserver {
     type Storage = JointObserver;
-    const MARK: u32 = 0x0b5e_17e5;
-}
-
-struct Functions {
-    step: unsafe fn(*mut (), &Samples<f32>),
-    estimates: unsafe fn(*const ()) -> *const Estimates<f32>,
-    save: unsafe fn(*const ()) -> Memory,
-    load: unsafe fn(*mut (), &[u8]) -> Result<(), JointStatus>,
-}
-
-/// The functions of a kind.
-struct Of<const P: usize>;
-
-impl<const P: usize> Of<P> {
-    const FUNCTIONS: Functions = Functions {
-        step: |observer, samples| {
-            // SAFETY: `AnyObserver::new` has put an observer of this kind beside these functions.
-            unsafe { &mut *observer.cast::<Observer<'static, f32, P>>() }.step(samples);
-        },
-        estimates: |observer| {
-            // SAFETY: as above.
-            unsafe { &*observer.cast::<Observer<'static, f32, P>>() }.estimates()
-        },
-        save: |observer| {
-            // SAFETY: as above.
-            unsafe { &*observer.cast::<Observer<'static, f32, P>>() }.save()
-        },
-        load: |observer, memory| {
-            // SAFETY: as above.
-            Ok(unsafe { &mut *observer.cast::<Observer<'static, f32, P>>() }.load(memory)?)
-        },
-    };
+    const MARK: u32 = 0x5e5e_5e5e;
 }
 
 impl AnyObserver {
-    fn new<const P: usize>(blob: &Blob<'static>, functions: &'static Functions) -> Result<Self, JointStatus> {
+    fn new<const P: usize>(blob: &Blob<'static>) -> Result<Self, JointStatus> {
         const { assert!(size_of::<Observer<'static, f32, P>>() <= size_of::<Observer<'static, f32, MAPPED>>()) };
         const { assert!(align_of::<Observer<'static, f32, P>>() <= align_of::<Observer<'static, f32, MAPPED>>()) };
-        let mut any = Self { functions, observer: MaybeUninit::uninit() };
+        let step = |observer: *mut (), samples: &Samples<f32>| {
+            // SAFETY: an observer of this kind is put beside this function.
+            unsafe { &mut *observer.cast::<Observer<'static, f32, P>>() }.step(samples);
+        };
+        let mut any = Self { step, estimates: 0, has_maps: P == MAPPED, observer: MaybeUninit::uninit() };
         let place = any.observer.as_mut_ptr().cast::<Observer<'static, f32, P>>();
         // SAFETY: large enough and aligned, as was asserted.
         unsafe { place.write(Observer::new(blob.observer()?)) };
+        // SAFETY: it was written.
+        any.estimates = ptr::from_ref(unsafe { &*place }.estimates()).addr() - place.addr();
         Ok(any)
     }
 
     /// The estimates of the last step.
+    #[inline(always)]
     pub(crate) fn estimates(&self) -> &Estimates<f32> {
-        // SAFETY: the observer beside these functions is of their kind; what they point to is in it.
-        unsafe { &*(self.functions.estimates)(self.observer.as_ptr().cast()) }
+        // SAFETY: so far from its beginning they are in this observer.
+        unsafe { &*self.observer.as_ptr().byte_add(self.estimates).cast() }
+    }
+
+    fn save(&self) -> Memory {
+        let observer = self.observer.as_ptr();
+        // SAFETY: an observer of the kind that it says.
+        unsafe { if self.has_maps { (*observer).save() } else { (*observer.cast::<Plain>()).save() } }
+    }
+
+    fn load(&mut self, memory: &[u8]) -> Result<(), JointStatus> {
+        let observer = self.observer.as_mut_ptr();
+        // SAFETY: as above.
+        let loaded =
+            unsafe { if self.has_maps { (*observer).load(memory) } else { (*observer.cast::<Plain>()).load(memory) } };
+        Ok(loaded?)
     }
 }
+
+/// An observer without maps.
+type Plain = Observer<'static, f32, PLAIN>;
 
 /// Starts an observer with maps of the encoders' errors. `bytes` is sizeof(JointObserver). The tables must stay as they are
 /// for as long as it is used.
@@ -92,7 +90,7 @@ pub unsafe extern "C" fn joint_observer_start(
     tables: *const u64,
     tables_bytes: usize,
 ) -> JointStatus {
-    let make = |blob: &Blob<'static>| AnyObserver::new::<MAPPED>(blob, &const { Of::<MAPPED>::FUNCTIONS });
+    let make = |blob: &Blob<'static>| AnyObserver::new::<MAPPED>(blob);
     // SAFETY: the caller's word, as the header asks for it.
     fp_mode::standard(|| unsafe { start(observer, bytes, tables, tables_bytes, make) }).into()
 }
@@ -105,7 +103,7 @@ pub unsafe extern "C" fn joint_observer_start_without_maps(
     tables: *const u64,
     tables_bytes: usize,
 ) -> JointStatus {
-    let make = |blob: &Blob<'static>| AnyObserver::new::<PLAIN>(blob, &const { Of::<PLAIN>::FUNCTIONS });
+    let make = |blob: &Blob<'static>| AnyObserver::new::<PLAIN>(blob);
     // SAFETY: the caller's word, as the header asks for it.
     fp_mode::standard(|| unsafe { start(observer, bytes, tables, tables_bytes, make) }).into()
 }
@@ -122,8 +120,8 @@ pub unsafe extern "C" fn joint_observer_step(
         // SAFETY: likewise.
         let samples = unsafe { read(samples) }?.samples()?;
         let any = &mut object.value;
-        // SAFETY: the observer beside these functions is of their kind.
-        unsafe { (any.functions.step)(any.observer.as_mut_ptr().cast(), &samples) };
+        // SAFETY: the observer beside this function is of its kind.
+        unsafe { (any.step)(any.observer.as_mut_ptr().cast(), &samples) };
         Ok(())
     })
     .into()
@@ -160,10 +158,8 @@ pub unsafe extern "C" fn joint_observer_save(
         if bytes != JOINT_MEMORY_BYTES {
             return Err(JointStatus::WrongSize);
         }
-        // SAFETY: the observer beside these functions is of their kind.
-        let saved = unsafe { (object.value.functions.save)(object.value.observer.as_ptr().cast()) };
         // SAFETY: not NULL, of this size, and the caller's to give.
-        unsafe { memory.cast::<Memory>().write(saved) };
+        unsafe { memory.cast::<Memory>().write(object.value.save()) };
         Ok(())
     })
     .into()
@@ -185,9 +181,7 @@ pub unsafe extern "C" fn joint_observer_load(
         }
         // SAFETY: not NULL, of this size, and not the object's own.
         let memory = unsafe { core::slice::from_raw_parts(memory, bytes) };
-        let any = &mut object.value;
-        // SAFETY: the observer beside these functions is of their kind.
-        unsafe { (any.functions.load)(any.observer.as_mut_ptr().cast(), memory) }
+        object.value.load(memory)
     })
     .into()
 }

@@ -3,7 +3,6 @@
 
 use c_plant::{MOST_PLANETS, Motion, Plant};
 
-use crate::compensation::finite;
 use crate::estimates::{JointContact, JointSamples};
 use crate::fp_mode;
 use crate::object::{Kind, look, open, start, usable};
@@ -23,7 +22,7 @@ pub struct JointPlant {
 
 impl Kind for Plant<'static> {
     type Storage = JointPlant;
-    const MARK: u32 = 0x91a2_7000;
+    const MARK: u32 = 0x9191_9191;
 }
 
 /// The motion of a plant, which no sensor sees: for judging what a controller makes of it.
@@ -108,7 +107,9 @@ pub unsafe extern "C" fn joint_plant_step(
     fp_mode::standard(|| {
         // SAFETY: the caller's word, as the header asks for it.
         let object = unsafe { open::<Plant<'static>>(plant) }?;
-        finite([motor_torque_Nm, load_torque_Nm, 0.0])?;
+        if !(motor_torque_Nm.is_finite() && load_torque_Nm.is_finite()) {
+            return Err(JointStatus::NotFinite);
+        }
         object.value.advance(motor_torque_Nm, load_torque_Nm);
         Ok(())
     })

@@ -25,7 +25,7 @@ struct Waiting {
 
 impl Kind for Waiting {
     type Storage = JointProbe;
-    const MARK: u32 = 0x9e0b_e000;
+    const MARK: u32 = 0x9e9e_9e9e;
 }
 
 /// Where a probe stands.
@@ -95,7 +95,7 @@ pub unsafe extern "C" fn joint_probe_step(
         let object = unsafe { open::<Waiting>(probe) }?;
         // SAFETY: likewise; the marks of both say that they are two.
         let seen = unsafe { look::<AnyObserver>(observer) }?;
-        if object.tables_digest != seen.tables_digest {
+        if !object.has_tables_of(seen) {
             return Err(JointStatus::OtherTables);
         }
         usable(probed)?;

@@ -117,15 +117,22 @@ pub fn functions() -> Outcome<Vec<String>> {
 
 /// Builds it.
 pub fn build(target: Target, features: &str, say: Say<'_>) -> Outcome<Library> {
+    build_in(None, target, features, say)
+}
+
+/// Builds it in a folder: cargo's usual one unless another is given.
+pub fn build_in(folder: Option<&Path>, target: Target, features: &str, say: Say<'_>) -> Outcome<Library> {
     target.prepare(say)?;
     let (all, shared, compiler) = match target {
         Target::Host => {
-            let [all, shared] = compile_library_for_host(&target_directory(), PACKAGE, features, say)?;
+            let folder = folder.map_or_else(target_directory, Path::to_path_buf);
+            let [all, shared] = compile_library_for_host(&folder, PACKAGE, features, say)?;
             let version = tool::output_of(Command::new("rustc").arg("--version").current_dir(workspace()))?;
             (all, Some(shared), version.trim().to_owned())
         }
         Target::M4f | Target::M7 => {
             let toolchain = Toolchain::prepare(say)?;
+            let toolchain = folder.map_or_else(|| toolchain.clone(), |folder| toolchain.in_folder(folder));
             let processor = if target == Target::M4f { "cortex-m4" } else { "cortex-m7" };
             let flags = format!("-Ctarget-cpu={processor} {INLINED}");
             (compile_library(&toolchain, PACKAGE, features, &flags, say)?, None, toolchain.compiler().to_owned())

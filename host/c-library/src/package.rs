@@ -14,7 +14,7 @@ use report::workspace::workspace;
 
 use crate::library::{self, Library, Target};
 use crate::programs::{self, Workbench};
-use crate::{costs, run, tables};
+use crate::{build_files, costs, run, tables};
 
 /// What is written.
 const FILES: [&str; 1] = ["joint-*.tar"];
@@ -66,8 +66,8 @@ pub fn run(arguments: &Arguments) -> Outcome<String> {
     ))
 }
 
-/// The folder in the archive.
-fn prefix(target: Target) -> String {
+/// The folder in the archive, which is also how the archive is called.
+pub fn prefix(target: Target) -> String {
     format!("joint-{VERSION}-{}", target.name())
 }
 
@@ -102,11 +102,6 @@ fn contents(library: &Library, say: Say<'_>) -> Outcome<Vec<(String, Vec<u8>)>> 
         ("LICENSE".to_owned(), read(&workspace().join("LICENSE"))?),
         ("include/joint.h".to_owned(), header.clone()),
         ("lib/libjoint.a".to_owned(), library.archive.clone()),
-        ("lib/cmake/joint/jointConfig.cmake".to_owned(), text(&CMAKE.replace("VERSION", VERSION))),
-        ("lib/pkgconfig/joint.pc".to_owned(), text(&PKG_CONFIG.replace("VERSION", VERSION))),
-        ("library.properties".to_owned(), text(&ARDUINO.replace("VERSION", VERSION))),
-        ("zephyr/module.yml".to_owned(), text(ZEPHYR_MODULE)),
-        ("zephyr/CMakeLists.txt".to_owned(), text(ZEPHYR_CMAKE)),
         ("test/test_tables.h".to_owned(), text(&test_tables.header())),
         ("test/test_tables.c".to_owned(), text(&test_tables.source())),
         (
@@ -128,12 +123,9 @@ fn contents(library: &Library, say: Say<'_>) -> Outcome<Vec<(String, Vec<u8>)>> 
     for name in ["test_joint.c", "run.h", "say.h"].iter().chain(own) {
         files.push((format!("test/{name}"), read(&programs::folder().join(name))?));
     }
-    let arduino = match target {
-        Target::M4f => Some("src/cortex-m4/fpv4-sp-d16-hard"),
-        Target::M7 => Some("src/cortex-m7/fpv5-d16-hard"),
-        Target::Host => None,
-    };
-    if let Some(folder) = arduino {
+    let build_files = build_files::all(target, VERSION).into_iter();
+    files.extend(build_files.map(|(name, text)| (name.to_owned(), text.into_bytes())));
+    if let Some(folder) = build_files::arduino_folder(target) {
         files.push((format!("{folder}/libjoint.a"), library.archive.clone()));
         files.push(("src/joint.h".to_owned(), header));
     }
@@ -144,24 +136,50 @@ fn read(path: &Path) -> Outcome<Vec<u8>> {
     fs::read(path).map_err(|error| Failure::new(format!("{}: {error}", path.display())))
 }
 
-/// How the test program is built and run.
+/// How a program is built with it, and the test program is built and run.
 fn readme(target: Target) -> String {
     let flags = target.c_flags().join(" ");
-    let test = match target {
-        Target::Host => "cd test && cc -I../include test_joint.c test_tables.c host.c ../lib/libjoint.a -o test_joint && ./test_joint".to_owned(),
-        Target::M4f | Target::M7 => format!(
-            "cd test && arm-none-eabi-gcc {flags} -O2 -nostartfiles -I../include -L board -T board/{0} \\\n    test_joint.c test_tables.c board/start.c ../lib/libjoint.a -o test_joint.elf\nqemu-system-arm -M {1} -nographic -semihosting -kernel test_joint.elf",
-            if target == Target::M4f { "netduinoplus2.ld" } else { "mps2.ld" },
-            if target == Target::M4f { "netduinoplus2" } else { "mps2-an500" }
+    let (title, test, with_cmake) = match build_files::linker_script(target) {
+        None => (
+            "A program for this kind of machine",
+            "cd test && cc -I../include test_joint.c test_tables.c host.c ../lib/libjoint.a -o test_joint && ./test_joint"
+                .to_owned(),
+            "cmake -S test -B build && cmake --build build && build/test_joint".to_owned(),
         ),
+        Some(script) => {
+            let machine = if target == Target::M4f { "netduinoplus2" } else { "mps2-an500" };
+            let run = format!("qemu-system-arm -M {machine} -nographic -semihosting -kernel");
+            (
+                "Firmware",
+                format!(
+                    "cd test && arm-none-eabi-gcc {flags} -O2 -nostartfiles -I../include -L board -T board/{script} \\\n    \
+                     test_joint.c test_tables.c board/start.c ../lib/libjoint.a -o test_joint.elf\n{run} test_joint.elf"
+                ),
+                format!(
+                    "cmake -S test -B build -DCMAKE_TOOLCHAIN_FILE=board/toolchain.cmake && cmake --build build\n\
+                     {run} build/test_joint"
+                ),
+            )
+        }
     };
+    let flags = if flags.is_empty() { "none in particular" } else { &flags };
     format!(
         "# The joint library for C and C++, {VERSION}, target {}\n\n\
          Observer, compensation, width probe and plant of a geared joint with backlash. `include/joint.h` says all that its\n\
-         caller must know; tables of a joint are written by `joint tables`. COSTS.md says what it takes.\n\n\
-         Compiler flags: `{}`. The test program, which compares this library with the core bit for bit:\n\n```\n{test}\n```\n",
+         caller must know. COSTS.md says what it takes.\n\n\
+         ## {title}\n\n\
+         1. Write the tables of your joint: `joint tables my_joint.toml --out tables`, where this archive was written.\n\
+         2. Compile `tables/*_tables.c` with your sources; flags: `{flags}`.\n\
+         3. Give the compiler `-Iinclude` and the linker `lib/libjoint.a`, or let a build system do so:\n   \
+         - CMake: `find_package(joint CONFIG REQUIRED)` with this folder in `CMAKE_PREFIX_PATH`, or `add_subdirectory` of it;\n     \
+         then `target_link_libraries(... joint::joint)`.\n   \
+         - pkg-config: `PKG_CONFIG_PATH=lib/pkgconfig pkg-config --cflags --libs joint`.\n   \
+         - Zephyr: this folder in `ZEPHYR_EXTRA_MODULES`.\n   \
+         - Arduino, for boards of STM32duino: this folder in the sketchbook's `libraries`.\n\n\
+         ## The test program\n\n\
+         It compares this library with the core bit for bit; it prints `as expected`.\n\n\
+         ```\n{test}\n```\n\nOr:\n\n```\n{with_cmake}\n```\n",
         target.name(),
-        if flags.is_empty() { "none" } else { &flags }
     )
 }
 
@@ -192,45 +210,3 @@ fn costs_page(library: &Library, joint: &joint_file::JointFile, say: Say<'_>) ->
     }
     Ok(page)
 }
-
-const CMAKE: &str = "# find_package(joint VERSION CONFIG PATHS path/of/this/archive): target joint::joint
-get_filename_component(joint_root \"${CMAKE_CURRENT_LIST_DIR}/../../..\" ABSOLUTE)
-set(joint_VERSION VERSION)
-if(NOT TARGET joint::joint)
-  add_library(joint::joint STATIC IMPORTED)
-  set_target_properties(joint::joint PROPERTIES
-    IMPORTED_LOCATION \"${joint_root}/lib/libjoint.a\"
-    INTERFACE_INCLUDE_DIRECTORIES \"${joint_root}/include\")
-endif()
-";
-
-const PKG_CONFIG: &str = "prefix=${pcfiledir}/../..
-Name: joint
-Description: Observer, compensation and plant of a geared joint with backlash
-Version: VERSION
-Cflags: -I${prefix}/include
-Libs: -L${prefix}/lib -ljoint
-";
-
-const ARDUINO: &str = "name=joint
-version=VERSION
-author=The authors of joint
-maintainer=The authors of joint
-sentence=Observer and compensation of a geared joint with backlash.
-paragraph=Where the teeth are, from encoder counts and motor torque, and a torque that takes the lost motion out.
-category=Device Control
-url=
-architectures=*
-precompiled=full
-ldflags=-ljoint
-includes=joint.h
-";
-
-const ZEPHYR_MODULE: &str = "name: joint
-build:
-  cmake: zephyr
-";
-
-const ZEPHYR_CMAKE: &str = "zephyr_include_directories(../include)
-zephyr_library_import(joint ${CMAKE_CURRENT_LIST_DIR}/../lib/libjoint.a)
-";

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use board::target::board::Board;
 use board::target::{emulator, packages};
+use c_library::controller::{self, Mode};
 use c_library::costs;
 use c_library::library::{self, Target};
 use c_library::package;
@@ -15,7 +16,10 @@ use model_core::gears::Tables;
 use model_core::gears::design::design as gears_design;
 use model_core::virtual_joint::VirtualJoint;
 use model_core::virtual_joint::design::design_surroundings;
+
+use reference::closed_loop::{Figures, Run, Sample};
 use report::workspace::workspace;
+use simulation::sim::snapshot::Reader;
 
 const PERIODS: u32 = 100_000;
 
@@ -48,10 +52,10 @@ fn three_machines_compute_what_the_core_computes_here_in_every_bit() {
 }
 
 /// Most flash and RAM of observer and compensation, with maps and without [B]. Without maps 30 KiB of flash were wished for: that
-/// is not met, since the maps are a few per cent of the code.
+/// is not met, since the maps are a few per cent of the code (docs/decisions/c-library.md); what is reached is held.
 const MEMORY: [(&str, u64, u64); 2] = [
-    ("observer with maps, compensation", 40 << 10, 4 << 10),
-    ("observer without maps, compensation", 40 << 10, 3 << 10),
+    ("observer with maps, compensation", 38 << 10, 3 << 10),
+    ("observer without maps, compensation", 37 << 10, 3 << 10),
 ];
 
 #[test]
@@ -77,14 +81,12 @@ fn calls_and_memory_cost_what_is_promised() {
             println!("{}: {call:?}", target.name());
         }
         let of = |name: &str| calls.iter().find(|it| it.name == name).expect("a count");
-        // 3 % of the core's or 40, whichever is more; the compensation takes two motions and gives eight numbers, each
-        // checked and copied, and is above that: docs/decisions/c-library.md.
-        for (call, core, most) in [
-            ("joint_observer_step all along", "core's observer", 40),
-            ("joint_compensation_follow", "core's compensation", 110),
-        ] {
+        for (call, core) in
+            [("joint_observer_step all along", "core's observer"), ("joint_compensation_follow", "core's compensation")]
+        {
             let (call, core) = (of(call), of(core));
-            let (most, over) = (most.max(3 * core.mean / 100), call.mean.saturating_sub(core.mean));
+            // 3 % of the core's or 40, whichever is more.
+            let (most, over) = (40.max(3 * core.mean / 100), call.mean.saturating_sub(core.mean));
             println!("{}: {} adds {over} instructions to {} of {}", target.name(), call.name, core.mean, core.name);
             assert!(over <= most, "{call:?} beside {core:?}: more than {most} above");
         }
@@ -92,16 +94,150 @@ fn calls_and_memory_cost_what_is_promised() {
 }
 
 #[test]
-#[ignore = "builds the library twice from nothing: run by `cargo joint hil --check`"]
+#[ignore = "builds the library once more from nothing: run by `cargo joint hil --check`"]
 fn two_builds_give_the_same_bytes() {
-    let first = library::build(Target::Host, "library", &say).expect("a library");
-    let archive = package::archive(&first, &say).expect("an archive");
-    // What was built of this workspace goes; what it depends on stays.
-    let built = board::target::toolchain::target_directory().join("c-library/firmware");
-    std::fs::remove_dir_all(&built).expect("a folder of the build");
-    let second = library::build(Target::Host, "library", &say).expect("a library");
-    assert!(first.archive == second.archive && first.shared == second.shared);
-    assert!(archive == package::archive(&second, &say).expect("an archive"));
+    for target in [Target::M4f, Target::M7, Target::Host] {
+        let first = library::build(target, "library", &say).expect("a library");
+        // Again from nothing, and elsewhere.
+        let folder = tempfile::tempdir().expect("a folder");
+        let second = library::build_in(Some(folder.path()), target, "library", &say).expect("a library");
+        let name = target.name();
+        assert!(first.archive == second.archive && first.shared == second.shared, "{name}");
+        let archives = [&first, &second].map(|library| package::archive(library, &say).expect("an archive"));
+        assert!(archives[0] == archives[1], "{name}");
+        println!("{name}: {} B twice", archives[0].len());
+    }
+}
+
+/// A command that must succeed; what it says.
+fn must(command: &mut std::process::Command) -> String {
+    let output = command.output().expect("a command");
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{command:?}:\n{said}{}", String::from_utf8_lossy(&output.stderr));
+    said
+}
+
+/// A project of somebody else's: C99 and C++20, by `find_package`, by `add_subdirectory`, and as a module of Zephyr, whose
+/// two functions stand here for it.
+const STRANGER: &str = r#"
+cmake_minimum_required(VERSION 3.13)
+project(stranger C CXX)
+set(CMAKE_C_STANDARD 99)
+set(CMAKE_CXX_STANDARD 20)
+if(HOW STREQUAL "find_package")
+  find_package(joint 0.1 CONFIG REQUIRED)
+  find_package(joint 7 CONFIG QUIET)
+  if(NOT joint_FOUND EQUAL 0)
+    message(FATAL_ERROR "a version that is not there was found")
+  endif()
+  set(LIBRARIES joint::joint joint::shared)
+elseif(HOW STREQUAL "add_subdirectory")
+  add_subdirectory(${ARCHIVE} joint)
+  set(LIBRARIES joint::joint)
+else()
+  function(zephyr_include_directories folder)
+    include_directories(${CMAKE_CURRENT_SOURCE_DIR}/${folder})
+    set_property(GLOBAL PROPERTY INCLUDED ${CMAKE_CURRENT_SOURCE_DIR}/${folder})
+  endfunction()
+  function(zephyr_library_import name path)
+    add_library(${name} STATIC IMPORTED GLOBAL)
+    set_target_properties(${name} PROPERTIES IMPORTED_LOCATION ${path})
+  endfunction()
+  set(CONFIG_64BIT y)
+  add_subdirectory(${ARCHIVE}/zephyr joint)
+  get_property(INCLUDED GLOBAL PROPERTY INCLUDED)
+  include_directories(${INCLUDED})
+  set(LIBRARIES joint)
+endif()
+foreach(library ${LIBRARIES})
+  string(MAKE_C_IDENTIFIER ${library} name)
+  add_executable(in_c_${name} program.c)
+  add_executable(in_cpp_${name} program.cpp)
+  target_link_libraries(in_c_${name} PRIVATE ${library})
+  target_link_libraries(in_cpp_${name} PRIVATE ${library})
+  enable_testing()
+  add_test(NAME in_c_${name} COMMAND in_c_${name})
+  add_test(NAME in_cpp_${name} COMMAND in_cpp_${name})
+endforeach()
+"#;
+
+const STRANGER_S_PROGRAM: &str = "#include \"joint.h\"\nint main(void) {\n    static JointObserver observer;\n    \
+     return joint_observer_step(&observer, 0) == JOINT_STATUS_NOT_STARTED ? 0 : 1;\n}\n";
+
+#[test]
+#[ignore = "installs CMake and pkg-config: run by `cargo joint hil --check`"]
+fn cmake_and_pkg_config_take_the_archive() {
+    packages::ensure(&["cmake", "make", "pkg-config", "g++"], "to try the library in build systems", &say)
+        .expect("packages");
+    for target in [Target::Host, Target::M4f, Target::M7] {
+        let library = library::build(target, "library", &say).expect("a library");
+        let folder = tempfile::tempdir().expect("a folder");
+        let bytes = package::archive(&library, &say).expect("an archive");
+        tar::Archive::new(&bytes[..]).unpack(folder.path()).expect("files");
+        let root = folder.path().join(package::prefix(target));
+        let build = folder.path().join("build");
+        let mut configure = std::process::Command::new("cmake");
+        configure.arg("-S").arg(root.join("test")).arg("-B").arg(&build);
+        let machine = costs::machine(target);
+        if machine.is_some() {
+            configure.arg(format!("-DCMAKE_TOOLCHAIN_FILE={}", root.join("test/board/toolchain.cmake").display()));
+        }
+        must(&mut configure);
+        must(std::process::Command::new("cmake").arg("--build").arg(&build));
+        let program = build.join("test_joint");
+        let lines = match machine {
+            Some(machine) => programs::run_on(machine, &program),
+            None => programs::run(&program, &[]),
+        };
+        let lines = lines.expect("a run");
+        assert!(lines.contains(&"as expected".to_owned()), "{}: {lines:?}", target.name());
+        println!("{}: built by CMake, {}", target.name(), lines.join(", "));
+        if target == Target::Host {
+            as_a_stranger(folder.path(), &root);
+        }
+    }
+}
+
+fn as_a_stranger(folder: &Path, root: &Path) {
+    let project = folder.join("stranger");
+    std::fs::create_dir(&project).expect("a folder");
+    for (name, text) in
+        [("CMakeLists.txt", STRANGER), ("program.c", STRANGER_S_PROGRAM), ("program.cpp", STRANGER_S_PROGRAM)]
+    {
+        std::fs::write(project.join(name), text).expect("a file");
+    }
+    for how in ["find_package", "add_subdirectory", "zephyr"] {
+        let build = project.join(how);
+        must(
+            std::process::Command::new("cmake")
+                .arg("-S")
+                .arg(&project)
+                .arg("-B")
+                .arg(&build)
+                .arg(format!("-DHOW={how}"))
+                .arg(format!("-DARCHIVE={}", root.display()))
+                .arg(format!("-DCMAKE_PREFIX_PATH={}", root.display())),
+        );
+        must(std::process::Command::new("cmake").arg("--build").arg(&build));
+        let said = must(std::process::Command::new("ctest").current_dir(&build));
+        assert!(said.contains("100% tests passed"), "{how}: {said}");
+        println!("{how}: programs in C99 and C++20 run");
+    }
+    let flags = must(
+        std::process::Command::new("pkg-config")
+            .args(["--cflags", "--libs", "joint >= 0.1"])
+            .env("PKG_CONFIG_PATH", root.join("lib/pkgconfig")),
+    );
+    let program = project.join("by_pkg_config");
+    must(
+        std::process::Command::new("gcc")
+            .arg("-o")
+            .arg(&program)
+            .arg(project.join("program.c"))
+            .args(flags.split_whitespace())
+            .arg(format!("-Wl,-rpath,{}", root.join("lib").display())),
+    );
+    must(&mut std::process::Command::new(&program));
 }
 
 fn example(name: &str) -> PathBuf {
@@ -115,31 +251,65 @@ fn without_weight(rate: u32) -> JointFile {
     joint
 }
 
+/// Figures of the same controller in Rust, and its digest. Of the first two seconds it learns.
+fn in_rust(joint: &JointFile, words: &[u64], mode: Mode) -> (Figures, u64) {
+    let parameters = &joint.parameters;
+    let half_backlash = parameters.sun_planet.half_backlash.first().copied().expect("meshes");
+    let period = 1.0 / f64::from(joint.surroundings.control_rate);
+    let mut run = Run { samples: Vec::new(), period };
+    let digest = controller::run(words, mode, |moment| {
+        let seen = Reader::new(parameters, moment.gears).read(moment.period, moment.joint.model());
+        run.samples.push(Sample {
+            time: f64::from(moment.period) * period,
+            wanted: moment.wanted,
+            link: seen.link_angle(),
+            gap: seen.gap / (2.0 * half_backlash),
+            mesh_force: seen.teeth.iter().take(3).map(|mesh| mesh.force).sum(),
+            command: moment.command,
+            ..Sample::default()
+        });
+    });
+    (Figures::of(&run, 2.0), digest.expect("a run"))
+}
+
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
 fn a_motor_controller_in_c_takes_the_lost_motion_out_on_three_machines() {
+    const MODES: [Mode; 3] = [Mode::Position, Mode::WithoutCompensation, Mode::Impedance];
     emulator::ensure(&say).expect("an emulator");
-    for target in [Target::M4f, Target::M7] {
-        let library = library::build(target, "library", &say).expect("a library");
-        for rate in [10_000, 20_000] {
-            let tables = tables::for_tests(&without_weight(rate), true, &Board::emulated()).expect("tables");
-            let bench = Workbench::new(&library, &tables).expect("room");
-            let include = format!("-I{}", example("").display());
-            let sources = [example("on_board.c"), example("controller.c")];
-            let sources: Vec<&Path> = sources.iter().map(PathBuf::as_path).collect();
-            for machine in MACHINES.into_iter().filter(|machine| machine.target == target) {
-                let clock =
-                    if machine.name == "netduinoplus2" { "-DCORE_HZ=168000000u" } else { "-DCORE_HZ=25000000u" };
-                let program = bench.compile_for(machine, &sources, &["-O2", &include, clock]).expect("a program");
-                let lines = programs::run_on(machine, &program).expect("a run");
-                let all = |word: &str| -> Vec<f64> {
-                    lines.iter().filter_map(|line| line.strip_prefix(word)?.trim().parse().ok()).collect()
-                };
-                let (rms, peak) = (all("rms_urad "), all("peak_urad "));
-                let [gain, peak_gain] = [rms[1] / rms[0], peak[1] / peak[0]];
-                println!("{} at {rate} Hz: rms {rms:?} urad, peak {peak:?} urad", machine.name);
-                println!("  with, without compensation, impedance; gains {gain:.1} and {peak_gain:.1}");
-                assert!(gain >= 10.0 && peak_gain >= 3.0, "{} at {rate} Hz: {lines:?}", machine.name);
+    let [m4f, m7] = [Target::M4f, Target::M7].map(|target| library::build(target, "library", &say).expect("a library"));
+    for rate in [10_000, 20_000] {
+        let joint = without_weight(rate);
+        let tables = tables::for_tests(&joint, true, &Board::emulated()).expect("tables");
+        let expected = MODES.map(|mode| in_rust(&joint, &tables.words, mode));
+        let [with, without, _] = &expected.map(|(figures, _)| figures);
+        let [gain, peak_gain] = [without.rms / with.rms, without.peak / with.peak];
+        println!("{rate} Hz: gains {gain:.1} and {peak_gain:.1}\n  with {with:?}\n  without {without:?}");
+        // The bars of hil/t2.toml; its rivals are not written in C.
+        assert!(gain >= 10.0 && peak_gain >= 3.0, "{gain} and {peak_gain}");
+        assert!(with.lost_motion_time <= 10e-3 && with.peak_mesh_force <= 231.0, "{with:?}");
+        let include = format!("-I{}", example("").display());
+        let sources = [example("on_board.c"), example("controller.c")];
+        let sources: Vec<&Path> = sources.iter().map(PathBuf::as_path).collect();
+        for machine in MACHINES {
+            let library = if machine.target == Target::M4f { &m4f } else { &m7 };
+            let bench = Workbench::new(library, &tables).expect("room");
+            let clock = if machine.name == "netduinoplus2" { "-DCORE_HZ=168000000u" } else { "-DCORE_HZ=25000000u" };
+            let program = bench.compile_for(machine, &sources, &["-O2", &include, clock]).expect("a program");
+            let lines = programs::run_on(machine, &program).expect("a run");
+            println!("{} at {rate} Hz: {}", machine.name, lines.join(", "));
+            let all = |word: &str| -> Vec<&str> { lines.iter().filter_map(|line| line.strip_prefix(word)).collect() };
+            let digests = expected.map(|(_, digest)| format!("{digest:016x}"));
+            assert_eq!(all("digest "), digests, "{} at {rate} Hz: every bit of the core's", machine.name);
+            // What it says of itself is what the truth of the same bits says.
+            for (word, unit, expected) in [
+                ("rms_urad ", 1e6, with.rms),
+                ("peak_urad ", 1e6, with.peak),
+                ("lost_motion_us ", 1e6, with.lost_motion_time),
+                ("longest_lost_motion_us ", 1e6, with.longest_lost_motion),
+            ] {
+                let said: f64 = all(word).first().and_then(|it| it.parse().ok()).expect("a number");
+                assert!((said / (unit * expected) - 1.0).abs() < 0.02, "{word}{said}, expected {}", unit * expected);
             }
         }
     }

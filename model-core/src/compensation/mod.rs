@@ -34,6 +34,6 @@ mod stream;
 pub mod tables;
 pub mod transitions;
 
-pub use set_point::{Command, ImpedancePoint, Motion, Position, Shaped, Stage};
+pub use set_point::{Command, CommandRef, ImpedancePoint, Motion, Position, Shaped, Stage};
 pub use step::Compensation;
 pub use tables::CompensationTables;

@@ -5,6 +5,7 @@ use crate::numbers::Real;
 
 /// An angle over any number of turns.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[repr(C)]
 pub struct Position<T: Real> {
     /// Whole turns.
     pub turns: i32,
@@ -19,8 +20,9 @@ impl<T: Real> Position<T> {
     }
 }
 
-/// Where the link shall be at one moment.
+/// Where the link shall be at one moment. It lies in memory as a C program has it, which is read from where it is.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[repr(C)]
 pub struct Motion<T: Real> {
     /// On the scale of the observer's link shaft.
     pub position: Position<T>,
@@ -62,6 +64,7 @@ pub struct Motion<T: Real> {
 /// # Ok::<(), model_core::gears::design::DesignError>(())
 /// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[repr(C)]
 pub struct ImpedancePoint<T: Real> {
     /// On the scale of the observer's link shaft.
     pub position: Position<T>,
@@ -89,6 +92,31 @@ pub enum Command<T: Real> {
     Impedance(ImpedancePoint<T>),
 }
 
+/// The same where it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CommandRef<'given, T: Real> {
+    /// Follow a motion.
+    Position {
+        /// The motion now.
+        now: &'given Motion<T>,
+        /// The motion at the tables' lead from now, if it is known.
+        ahead: Option<&'given Motion<T>>,
+    },
+    /// Be a spring and damper.
+    Impedance(&'given ImpedancePoint<T>),
+}
+
+impl<T: Real> Command<T> {
+    /// What it is, without a copy.
+    #[inline]
+    pub fn by_reference(&self) -> CommandRef<'_, T> {
+        match self {
+            Self::Position { now, ahead } => CommandRef::Position { now, ahead: ahead.as_ref() },
+            Self::Impedance(point) => CommandRef::Impedance(point),
+        }
+    }
+}
+
 /// What the compensation is about.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Stage {
@@ -105,21 +133,22 @@ pub enum Stage {
     Off,
 }
 
-/// What the compensation answers.
+/// What the compensation answers. The numbers lie first, so that they are copied in one go.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[repr(C)]
 pub struct Shaped<T: Real> {
     /// Torque for the motor [N m].
     pub torque: T,
-    /// What it is about.
-    pub stage: Stage,
-    /// The flank that carries or is being gone to; `None` without a compensation.
-    pub flank: Option<Flank>,
     /// Torque that the teeth will have to pass on after a crossing that began now [N m].
     pub demand: T,
     /// What brakes the link besides dry friction, and the dry friction, as learnt [N m].
     pub load: [T; 2],
     /// Share of the compensation in the torque, the rest being plain control: 0 to 1.
     pub trust: T,
+    /// What it is about.
+    pub stage: Stage,
+    /// The flank that carries or is being gone to; `None` without a compensation.
+    pub flank: Option<Flank>,
     /// The law asked for more torque than the motor has, or brakes early because of that: the link does not keep to what it
     /// is asked for.
     pub short_of_torque: bool,

@@ -1,7 +1,7 @@
 //! Where everything is, referred to the link, as the estimates have it: what the rest of the compensation works on. It
 //! is made anew every control period and carries no state.
 
-use super::set_point::{Command, Position};
+use super::set_point::{CommandRef, Position};
 use crate::compensation::tables::CompensationTables;
 use crate::gears::Flank;
 use crate::numbers::Real;
@@ -56,10 +56,10 @@ pub(super) struct Situation<T: Real> {
 }
 
 impl<T: Real> Situation<T> {
-    pub fn new(tables: &CompensationTables<T>, estimates: &Estimates<T>, offset: T, command: &Command<T>) -> Self {
+    pub fn new(tables: &CompensationTables<T>, estimates: &Estimates<T>, offset: T, command: CommandRef<T>) -> Self {
         let (origin, speed) = match command {
-            Command::Position { now, .. } => (now.position, now.speed),
-            Command::Impedance(point) => (point.position, point.speed),
+            CommandRef::Position { now, .. } => (now.position, now.speed),
+            CommandRef::Impedance(point) => (point.position, point.speed),
         };
         let contact = Flank::touched(estimates.reported_contact);
         let [numerator, denominator] = tables.gear.ratio.map(i64::from);

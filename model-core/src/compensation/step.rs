@@ -5,7 +5,7 @@ use super::impedance::ImpedanceLaw;
 use super::load::LoadModel;
 use super::plain::Plain;
 use super::position::PositionLaw;
-use super::set_point::{Command, Shaped, Stage};
+use super::set_point::{Command, CommandRef, Shaped, Stage};
 use super::situation::Situation;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
@@ -102,7 +102,13 @@ impl<'tables, T: Real> Compensation<'tables, T> {
     }
 
     /// Takes the estimates and the command of one control period. The torque is always finite and within its limit.
+    #[inline]
     pub fn step(&mut self, estimates: &Estimates<T>, command: &Command<T>) -> Shaped<T> {
+        self.step_by_reference(estimates, command.by_reference())
+    }
+
+    /// The same with a command that lies elsewhere.
+    pub fn step_by_reference(&mut self, estimates: &Estimates<T>, command: CommandRef<T>) -> Shaped<T> {
         let tables = self.tables;
         if !estimates.source.has_motor() {
             return self.stay_off();
@@ -115,16 +121,16 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         // Teeth that lie by a flank too early are felt now and then, but carry nothing of the load.
         let situation = Situation { open: situation.open || self.flank.waits(), ..situation };
         let leans = self.flank.stage() == Stage::Touching && situation.open && situation.sees;
-        if leans && matches!(command, Command::Position { .. }) {
+        if leans && matches!(command, CommandRef::Position { .. }) {
             self.load.lean(tables, self.position.heeded(&situation));
         }
         self.load.observe(tables, estimates, &situation);
         let (intent, plain) = match command {
-            Command::Position { now, ahead } => (
-                self.position.intend(tables, &self.load, &situation, now, ahead.as_ref()),
+            CommandRef::Position { now, ahead } => (
+                self.position.intend(tables, &self.load, &situation, now, ahead),
                 self.plain.follow(tables, &self.load, &situation, now),
             ),
-            Command::Impedance(point) => {
+            CommandRef::Impedance(point) => {
                 (self.impedance.intend(tables, &self.load, &situation, point), self.plain.yield_to(&situation, point))
             }
         };

@@ -95,7 +95,7 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($scalar:ty, $bits:ty, $phase:expr, $whole:expr, $tanh:path, $least:expr, $nan:expr, $first:expr, $steps:expr) => {
+    ($scalar:ty, $bits:ty, $phase:expr, $of_whole:expr, $whole:expr, $tanh:path, $least:expr, $nan:expr, $first:expr, $steps:expr) => {
         impl Real for $scalar {
             const ZERO: Self = 0.0;
             const HALF: Self = 0.5;
@@ -130,7 +130,7 @@ macro_rules! real {
                 value as Self
             }
             fn from_i64(value: i64) -> Self {
-                value as Self
+                $of_whole(value)
             }
             fn to_i64(self) -> i64 {
                 $whole(self)
@@ -194,6 +194,30 @@ fn double_phase(advance: f64) -> u32 {
     advance as i64 as u32
 }
 
+/// By a conversion of the hardware: one from 64 bits is a library call.
+#[inline(never)]
+fn single_of_whole(value: i64) -> f32 {
+    let lower = value as i32;
+    if i64::from(lower) == value { lower as f32 } else { single_of_large(value) }
+}
+
+/// Of a number beyond 32 bits its upper 32, the lowest of them set if one below was: so it rounds as the whole number does.
+#[cold]
+#[inline(never)]
+fn single_of_large(value: i64) -> f32 {
+    let size = value.unsigned_abs();
+    let below = 32_u32.saturating_sub(size.leading_zeros());
+    let upper = size >> below;
+    let is_more = upper << below != size;
+    let power = f32::from_bits((127 + below) << 23);
+    let single = (upper as u32 | u32::from(is_more)) as f32 * power;
+    if value < 0 { -single } else { single }
+}
+
+fn double_of_whole(value: i64) -> f64 {
+    value as f64
+}
+
 /// By two conversions of the hardware, for the upper and the lower half: one to 64 bits is a library call. Every difference is
 /// exact, and what is beyond the range saturates.
 #[inline(always)]
@@ -223,6 +247,7 @@ real!(
     f32,
     u32,
     single_phase,
+    single_of_whole,
     single_whole,
     libm::tanhf,
     1.0 / (1_u64 << 40) as f32,
@@ -234,6 +259,7 @@ real!(
     f64,
     u64,
     double_phase,
+    double_of_whole,
     double_whole,
     libm::tanh,
     Self::from_bits((1023 - 300) << 52),
@@ -256,6 +282,22 @@ mod tests {
         for bits in ends.into_iter().flat_map(|bits| [bits, bits | 1 << 31]).chain(random) {
             let value = f32::from_bits(bits);
             assert_eq!(value.to_i64(), value as i64, "{value:e}");
+        }
+    }
+
+    #[test]
+    fn a_number_of_a_whole_one_of_64_bits_is_the_one_that_the_language_says() {
+        let mut state = 7;
+        // Halves between two numbers, and what is next to them, at every size.
+        let halves = (24..63).flat_map(|bit| {
+            let half = (1_i64 << bit) + (1 << (bit - 24));
+            [half - 1, half, half + 1, half + (1 << (bit - 23)), (1 << bit) - 1]
+        });
+        let random = (0..1_000_000).map(|_| (splitmix64(&mut state) as i64) >> (splitmix64(&mut state) % 64));
+        for value in [0, i64::MAX, i64::MIN, i64::MIN + 1].into_iter().chain(halves).chain(random) {
+            for value in [value, value.wrapping_neg()] {
+                assert_eq!(f32::from_i64(value).to_bits(), (value as f32).to_bits(), "{value}");
+            }
         }
     }
 }

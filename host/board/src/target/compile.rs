@@ -15,6 +15,9 @@ use report::workspace::workspace;
 /// The cargo profile of images.
 pub const PROFILE: &str = "firmware";
 
+/// Package of what a library is about: what in it is generic is compiled with the library's own package, the rest here.
+const CORE: &str = "model-core";
+
 /// Package of the images.
 pub(super) const FIRMWARE: &str = "firmware";
 
@@ -52,7 +55,8 @@ pub fn compile_library(
     all_flags.push(" ");
     all_flags.push(flags);
     let mut command = toolchain.cargo("rustc");
-    as_library(&mut command, package, "staticlib", features).args(small(package)).env(TARGET_FLAGS, all_flags);
+    as_library(&mut command, package, "staticlib", features).args(small(package)).args(small(CORE));
+    command.env(TARGET_FLAGS, all_flags);
     tool::follow(&mut command, "building the library", say)?;
     read_library(&toolchain.folder().join(TARGET), package, "a")
 }
@@ -80,7 +84,7 @@ fn as_library<'c>(command: &'c mut Command, package: &str, kinds: &str, features
         .env("CARGO_PROFILE_FIRMWARE_DEBUG", "0")
 }
 
-/// For boards: the package itself small, what it depends on as fast as the images have it.
+/// For boards: a package small; what it depends on is as fast as the images have it.
 fn small(package: &str) -> [String; 2] {
     ["--config".to_owned(), format!("profile.{PROFILE}.package.{package}.opt-level=\"z\"")]
 }

@@ -66,6 +66,11 @@ impl Toolchain {
         &self.folder
     }
 
+    /// The same that builds elsewhere.
+    pub fn in_folder(&self, folder: &Path) -> Self {
+        Self { folder: folder.to_path_buf(), ..self.clone() }
+    }
+
     /// Whether clippy must be the distribution's: it has to match the compiler that built the core library.
     pub fn is_distribution(&self) -> bool {
         self.sysroot.is_some()

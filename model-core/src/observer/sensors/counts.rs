@@ -105,9 +105,46 @@ impl Counter {
     }
 }
 
+/// The quotient of two whole numbers, towards zero; none where there is no part. A division of 64 bits is a library call of
+/// 700 bytes: what fits into 32 the hardware divides, and other quotients here have few digits.
+#[inline(never)]
+fn quotient(units: i64, part: i64) -> Option<i64> {
+    let (left, size) = (units.unsigned_abs(), part.unsigned_abs());
+    let quotient = match (u32::try_from(left), u32::try_from(size)) {
+        (Ok(left), Ok(size)) => left.checked_div(size)?.into(),
+        _ => quotient_of_large(left, size)?,
+    };
+    let quotient = quotient as i64;
+    Some(if (units < 0) == (part < 0) { quotient } else { quotient.wrapping_neg() })
+}
+
+/// Digit by digit.
+#[cold]
+fn quotient_of_large(mut left: u64, size: u64) -> Option<u64> {
+    if size == 0 {
+        return None;
+    }
+    let digits = size.leading_zeros().saturating_sub(left.leading_zeros());
+    let (mut shifted, mut quotient) = (size << digits, 0);
+    for _ in 0..=digits {
+        quotient <<= 1;
+        if left >= shifted {
+            left -= shifted;
+            quotient |= 1;
+        }
+        shifted >>= 1;
+    }
+    Some(quotient)
+}
+
+/// Half of a whole number, towards zero.
+fn half(units: i64) -> i64 {
+    units.wrapping_add(i64::from(units < 0)) >> 1
+}
+
 /// How often a part goes into units, downwards, so that what is left of them is not below zero. No part at all goes into none.
 fn whole(units: i64, part: i64) -> i64 {
-    let Some(towards_zero) = units.checked_div(part) else { return 0 };
+    let Some(towards_zero) = quotient(units, part) else { return 0 };
     if towards_zero.wrapping_mul(part) > units { towards_zero.wrapping_sub(1) } else { towards_zero }
 }
 
@@ -120,7 +157,7 @@ fn rest(units: i64, part: i64) -> i64 {
 fn whole_ranges<T: Real>(units: i64, table: &EncoderTable<T>, weight: i64) -> i64 {
     let range = i64::from(table.last).wrapping_add(1);
     let of_range = range.wrapping_mul(weight);
-    whole(units.wrapping_add(of_range / 2), of_range).wrapping_mul(range)
+    whole(units.wrapping_add(half(of_range)), of_range).wrapping_mul(range)
 }
 
 /// From `before` to `now` the shorter way round; both within their range.
@@ -246,7 +283,7 @@ impl Counts {
     /// where the motor is.
     pub fn trust_motor<T: Real>(&mut self, table: &CountTable<T>, slipped: i64) {
         let Some(Doubt { went, .. }) = self.doubt.take() else { return };
-        let counts = slipped.checked_div(table.motor_weight).unwrap_or(0);
+        let counts = quotient(slipped, table.motor_weight).unwrap_or(0);
         if counts != 0 {
             let by = counts.wrapping_mul(table.motor_weight);
             self.motor.turn(&table.motor, counts.wrapping_neg());
@@ -289,7 +326,7 @@ impl Counts {
     fn follow<T: Real>(&mut self, table: &CountTable<T>, by: i64) -> i32 {
         let Some((implied, rest)) = &mut self.implied else { return 0 };
         let sum = rest.wrapping_add(by);
-        let counts = sum.checked_div(table.output_weight).unwrap_or(0);
+        let counts = quotient(sum, table.output_weight).unwrap_or(0);
         *rest = sum.wrapping_sub(counts.wrapping_mul(table.output_weight));
         implied.advance(&table.output, counts as i32);
         counts as i32
@@ -300,7 +337,7 @@ impl Counts {
         self.referred = true;
         if self.output.began {
             let beyond = rest(self.start.wrapping_sub(reference), table.modulus);
-            let beyond = if beyond > table.modulus / 2 { beyond - table.modulus } else { beyond };
+            let beyond = if beyond > half(table.modulus) { beyond - table.modulus } else { beyond };
             self.difference = self.difference.wrapping_add(beyond);
         }
         self.start = reference;
@@ -323,6 +360,24 @@ impl Counts {
         match &self.implied {
             Some((implied, rest)) => (implied, *rest),
             None => (&self.output, self.difference),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{half, quotient};
+    use crate::numbers::random::splitmix64;
+
+    #[test]
+    fn quotients_are_the_language_s() {
+        let mut state = 3;
+        let mut any = || (splitmix64(&mut state) as i64) >> (splitmix64(&mut state) % 64);
+        let ends = [0, 1, -1, i64::from(u32::MAX), 1 << 32, i64::MAX, i64::MIN + 1];
+        let random = (0..200_000).map(|_| (any(), any()));
+        for (units, part) in ends.into_iter().flat_map(|one| ends.map(|other| (one, other))).chain(random) {
+            assert_eq!(quotient(units, part), units.checked_div(part), "{units} by {part}");
+            assert_eq!(half(units), units / 2, "half of {units}");
         }
     }
 }

@@ -1,0 +1,136 @@
+//! The motor controller of `examples/c-motor-controller` on the core itself, operation by operation: the same digest tells that a
+//! program in C does the same in every bit, and the truth of the run gives the figures of test T2.
+
+use model_core::compensation::{CommandRef, Compensation, ImpedancePoint, Motion, Position};
+use model_core::gears::Tables;
+use model_core::numbers::digest::chain;
+use model_core::observer::{MAPPED, Observer};
+use model_core::virtual_joint::VirtualJoint;
+use report::failure::{Failure, Outcome};
+use table_blob::{Blob, Gears};
+
+/// What the controller does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// Follows with compensation.
+    Position,
+    /// A PID on the motor's place.
+    WithoutCompensation,
+    /// A spring and damper.
+    Impedance,
+}
+
+/// A moment of the run: before the period's torque.
+#[derive(Debug)]
+pub struct Moment<'now> {
+    /// Since the start.
+    pub period: u32,
+    /// Where the link is to be [rad].
+    pub wanted: f64,
+    /// The truth.
+    pub joint: &'now VirtualJoint<'now, f32, 3>,
+    /// Its tables.
+    pub gears: &'now Tables<f32, 3>,
+    /// Torque that was asked for last [N m].
+    pub command: f64,
+}
+
+const TURN: f32 = std::f32::consts::TAU;
+const AMPLITUDE: f32 = 0.5;
+const SECONDS: u32 = 5;
+const TORQUE_CONSTANT: f32 = 0.125;
+const INERTIA: f32 = 0.160;
+
+#[derive(Clone, Copy)]
+struct Angle {
+    cosine: f32,
+    sine: f32,
+}
+
+impl Angle {
+    fn of(rad: f32) -> Self {
+        let square = rad * rad;
+        Self {
+            sine: rad * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0))),
+            cosine: 1.0 - square / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0))),
+        }
+    }
+
+    fn turned(self, by: Self) -> Self {
+        Self {
+            cosine: self.cosine * by.cosine - self.sine * by.sine,
+            sine: self.sine * by.cosine + self.cosine * by.sine,
+        }
+    }
+
+    fn motion(self) -> Motion<f32> {
+        Motion {
+            position: Position { turns: 0, fraction: AMPLITUDE / TURN * (1.0 - self.cosine) },
+            speed: AMPLITUDE * TURN * self.sine,
+            acceleration: AMPLITUDE * TURN * TURN * self.cosine,
+        }
+    }
+}
+
+/// Runs it, shows every moment, and gives the digest; the joint has three planets.
+pub fn run(words: &[u64], mode: Mode, mut show: impl FnMut(&Moment<'_>)) -> Outcome<u64> {
+    let broken = |error| Failure::new(format!("the tables: {error:?}"));
+    let blob = Blob::open(words).map_err(broken)?;
+    let (Gears::Three(gears), around) = blob.plant().map_err(broken)? else {
+        return Err(Failure::new("the controller is tried on a joint of three planets"));
+    };
+    let (observer_tables, tables) = (blob.observer().map_err(broken)?, blob.compensation().map_err(broken)?);
+    let mut joint = VirtualJoint::new(gears, around);
+    let mut observer = Observer::<f32, MAPPED>::new(observer_tables);
+    let mut compensation = Compensation::new(tables);
+    let (rate, period_s, lead) = (blob.header().control_rate, observer_tables.period, tables.crossing.lead);
+    let (ratio, pole) = (tables.gear.motor_per_link, blob.header().bandwidth);
+    let limit = tables.limits.motor * tables.gear.link_per_motor;
+    let (one_period, one_lead) = (Angle::of(TURN * period_s), Angle::of(TURN * lead));
+    let (mut at, mut integral, mut reference, mut running) = (Angle::of(0.0), 0.0_f32, 0.0_f32, 0);
+    for period in 0..SECONDS * rate {
+        let (now, ahead) = (at.motion(), at.turned(one_lead).motion());
+        let command = TORQUE_CONSTANT * reference;
+        let wanted = f64::from(now.position.fraction) * std::f64::consts::TAU;
+        show(&Moment { period, wanted, joint: &joint, gears, command: command.into() });
+        let mut samples = joint.samples();
+        samples.torque = command;
+        let estimates = observer.step(&samples);
+        let torque = match mode {
+            Mode::Position => {
+                let command = CommandRef::Position { now: &now, ahead: Some(&ahead) };
+                compensation.step_by_reference(estimates, command).torque
+            }
+            Mode::Impedance => {
+                let Motion { position, speed, .. } = now;
+                let spring = ImpedancePoint { position, speed, torque: 0.0, stiffness: 100.0, damping: 3.0 };
+                compensation.step_by_reference(estimates, CommandRef::Impedance(&spring)).torque
+            }
+            Mode::WithoutCompensation => {
+                let motor = &estimates.motor;
+                let place = (motor.turns as f32 + motor.fraction) / ratio;
+                let error = TURN * (now.position.turns as f32 + now.position.fraction - place);
+                let error_rate = now.speed - motor.speed / ratio;
+                let at_link = INERTIA
+                    * (now.acceleration
+                        + 3.0 * pole * error_rate
+                        + 3.0 * pole * pole * error
+                        + pole * pole * pole * integral);
+                let torque = at_link / ratio;
+                if torque > limit {
+                    limit
+                } else if torque < -limit {
+                    -limit
+                } else {
+                    integral += error * period_s;
+                    torque
+                }
+            }
+        };
+        reference = torque / TORQUE_CONSTANT;
+        joint.advance(TORQUE_CONSTANT * reference, 0.0);
+        running = chain(chain(running, reference.to_bits().into()), joint.model().state_digest());
+        at = if (period + 1).is_multiple_of(rate) { Angle::of(0.0) } else { at.turned(one_period) };
+    }
+    Ok(running)
+}

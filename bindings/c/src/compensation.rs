@@ -27,6 +27,16 @@ impl Kind for Compensation<'static, f32> {
     const MARK: u32 = 0xc5c5_c5c5;
 }
 
+/// Asserts that a struct of the header begins in memory with what one of the core has.
+macro_rules! alike {
+    ($own:ty, $core:ty, $($field:ident: $($path:ident).+),+) => {
+        const {
+            assert!(size_of::<$own>() >= size_of::<$core>() && align_of::<$own>() == 4 && align_of::<$core>() == 4);
+            $(assert!(offset_of!($own, $field) == offset_of!($core, $($path).+));)+
+        }
+    };
+}
+
 /// Where the link shall be at one moment, on the scale of the observer's link shaft.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
@@ -45,13 +55,8 @@ impl JointMotion {
     /// As the core has it: the same in memory.
     #[inline(always)]
     pub(crate) fn motion(&self) -> &Motion<f32> {
-        const {
-            assert!(size_of::<Self>() == size_of::<Motion<f32>>() && align_of::<Self>() == align_of::<Motion<f32>>());
-            assert!(offset_of!(Self, turns) == offset_of!(Motion<f32>, position.turns));
-            assert!(offset_of!(Self, fraction_turns) == offset_of!(Motion<f32>, position.fraction));
-            assert!(offset_of!(Self, speed_rad_per_s) == offset_of!(Motion<f32>, speed));
-            assert!(offset_of!(Self, acceleration_rad_per_s2) == offset_of!(Motion<f32>, acceleration));
-        }
+        alike!(JointMotion, Motion<f32>, turns: position.turns, fraction_turns: position.fraction,
+            speed_rad_per_s: speed, acceleration_rad_per_s2: acceleration);
         // SAFETY: numbers of the same kinds in the same places, as was asserted; any bits are good.
         unsafe { &*ptr::from_ref(self).cast() }
     }
@@ -85,16 +90,8 @@ impl JointImpedance {
     /// As the core has it: the same in memory.
     #[inline(always)]
     fn point(&self) -> &ImpedancePoint<f32> {
-        type Point = ImpedancePoint<f32>;
-        const {
-            assert!(size_of::<Self>() == size_of::<Point>() && align_of::<Self>() == align_of::<Point>());
-            assert!(offset_of!(Self, turns) == offset_of!(Point, position.turns));
-            assert!(offset_of!(Self, fraction_turns) == offset_of!(Point, position.fraction));
-            assert!(offset_of!(Self, speed_rad_per_s) == offset_of!(Point, speed));
-            assert!(offset_of!(Self, torque_Nm) == offset_of!(Point, torque));
-            assert!(offset_of!(Self, stiffness_Nm_per_rad) == offset_of!(Point, stiffness));
-            assert!(offset_of!(Self, damping_Nm_s_per_rad) == offset_of!(Point, damping));
-        }
+        alike!(JointImpedance, ImpedancePoint<f32>, turns: position.turns, fraction_turns: position.fraction,
+            speed_rad_per_s: speed, torque_Nm: torque, stiffness_Nm_per_rad: stiffness, damping_Nm_s_per_rad: damping);
         // SAFETY: numbers of the same kinds in the same places, as was asserted; any bits are good.
         unsafe { &*ptr::from_ref(self).cast() }
     }
@@ -161,16 +158,8 @@ impl JointTorque {
     /// The place is aligned, not NULL, and the caller's to give.
     #[inline(always)]
     unsafe fn give(of: &Shaped<f32>, to: *mut Self) {
-        type Core = Shaped<f32>;
         const NUMBERS: usize = 5;
-        const {
-            assert!(offset_of!(Self, motor_torque_Nm) == 0 && offset_of!(Core, torque) == 0);
-            assert!(offset_of!(Self, demand_Nm) == offset_of!(Core, demand));
-            assert!(offset_of!(Self, load_Nm) == offset_of!(Core, load));
-            assert!(offset_of!(Self, friction_Nm) == offset_of!(Core, load) + size_of::<f32>());
-            assert!(offset_of!(Self, trust) == offset_of!(Core, trust));
-            assert!(offset_of!(Self, stage) == NUMBERS * size_of::<f32>());
-        }
+        alike!(JointTorque, Shaped<f32>, motor_torque_Nm: torque, demand_Nm: demand, load_Nm: load, trust: trust);
         let stage = match of.stage {
             Stage::Touching => JointStage::Touching,
             Stage::Crossing => JointStage::Crossing,
@@ -262,6 +251,8 @@ pub unsafe extern "C" fn joint_compensation_yield(
 /// others of four.
 #[inline(always)]
 fn all_usable([one, two]: [usize; 2], [three, four]: [usize; 2], or_null: usize) -> bool {
+    const { assert!(align_of::<JointCompensation>() == 8 && align_of::<JointObserver>() == 8) };
+    const { assert!(align_of::<JointTorque>() == 4) };
     let low = (one | two) | (three | four | or_null) << 1;
     low.trailing_zeros() >= 3 && one != 0 && two != 0 && three != 0 && four != 0
 }
@@ -272,10 +263,6 @@ fn why([one, two]: [usize; 2], [three, four]: [usize; 2]) -> JointStatus {
     let is_null = one == 0 || two == 0 || three == 0 || four == 0;
     if is_null { JointStatus::NullPointer } else { JointStatus::Misaligned }
 }
-
-const _: () = assert!(align_of::<JointCompensation>() == 8 && align_of::<JointObserver>() == 8);
-const _: () = assert!(align_of::<JointMotion>() == 4 && align_of::<JointImpedance>() == 4);
-const _: () = assert!(align_of::<JointTorque>() == 4);
 
 /// The step itself; all pointers are aligned and not NULL.
 #[inline(always)]

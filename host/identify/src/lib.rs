@@ -249,8 +249,8 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
     Ok(Identified { log, prior, rows, twist, findings })
 }
 
-/// The fit in which losses are unknown, if they are known by the joint file only and the log tells them. A joint without any friction and losses
-/// is an ideal one, and stays it.
+/// The fit in which losses are unknown, if they are known by the joint file only and the log tells them. A joint without
+/// any friction and losses is an ideal one, and stays it.
 fn told_losses(log: &Log, rows: &Rows, known: &PriorModel) -> Option<(PriorModel, Twist)> {
     if known.losses == Losses::Open || known.is_ideal() {
         return None;

@@ -162,8 +162,8 @@ impl PriorModel {
         Self { losses, ..self.clone() }
     }
 
-    /// Where a log says, with this deviation, that so much more of the load is lost than is stated, as a share: what it has told if the two agree, else
-    /// with losses that are as much larger, to be told again.
+    /// Where a log says, with this deviation, that so much more of the load is lost than is stated, as a share: what it has
+    /// told if the two agree, else with losses that are as much larger, to be told again.
     pub fn with_losses_told(&self, more: f64, deviation: f64) -> Self {
         if more.abs() < AGREES * deviation + FEIGNED {
             return self.with_losses(Losses::Told(more.hypot(deviation)));

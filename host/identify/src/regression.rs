@@ -114,8 +114,8 @@ impl Equations {
         self.solve_considering(widths, &[])
     }
 
-    /// The same where some unknowns are held near zero by their widths, but are uncertain by a standard deviation that these equations are not
-    /// trusted to better: what that moves is in the covariance (Schmidt's considered parameters).
+    /// The same where some unknowns are held near zero by their widths, but are uncertain by a standard deviation that these
+    /// equations are not trusted to better: what that moves is in the covariance (Schmidt's considered parameters).
     pub fn solve_considering(&self, widths: &[f64], considered: &[(usize, f64)]) -> Option<Solution> {
         let unknowns = widths.len();
         if self.count() < 2 * unknowns {

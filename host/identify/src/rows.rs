@@ -5,6 +5,8 @@ use super::kernel::Kernel;
 use super::log::Log;
 use super::prior::PriorModel;
 
+/// Strengths of torque that are told apart, for what may be wrong with each both ways.
+const LEVELS: f64 = 20.0;
 /// What a torque may still be on its way, from command to air gap [s].
 const LAG: f64 = 1.5e-3;
 /// A flank carries when the torque on it is more than this share of the largest...
@@ -71,9 +73,6 @@ pub struct Row {
     /// Flank that carries: 1 when the motor drives forwards, -1, or 0 near a change and in the gap.
     pub side: f64,
 }
-
-/// Strengths of torque that are told apart, for what may be wrong with each both ways.
-const LEVELS: f64 = 20.0;
 
 /// The samples of a log that the fits use, evenly spaced.
 #[derive(Debug, Clone, PartialEq)]

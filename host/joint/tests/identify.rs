@@ -698,10 +698,14 @@ const WRONG: [Wrong; 30] = [
 fn right(folder: &Path) -> Vec<[f64; 4]> {
     let path = folder.join("right.csv");
     joint(&["identify", text(&path), "--joint", "q1", "--simulate", "--seed", "31"]).well();
-    let log = fs::read_to_string(&path).expect("written");
+    columns(&fs::read_to_string(&path).expect("written"))
+}
+
+/// The rows of a log that has so many columns, below its head.
+fn columns<const N: usize>(log: &str) -> Vec<[f64; N]> {
     let row = |line: &str| {
         let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
-        [cells[0], cells[1], cells[2], cells[3]]
+        cells.try_into().expect("as many columns")
     };
     log.lines().skip(1).map(row).collect()
 }
@@ -852,14 +856,8 @@ fn what_a_torque_at_the_output_contradicts_is_refused_by_name() {
     let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
     joint(&["identify", text(&path), "--joint", "q1", "--simulate", "--seed", "9", "--with-output-torque"]).well();
     let log = fs::read_to_string(&path).expect("written");
-    let (head, lines) = log.split_once('\n').expect("a head");
-    let rows: Vec<[f64; 5]> = lines
-        .lines()
-        .map(|line| {
-            let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
-            cells.try_into().expect("five columns")
-        })
-        .collect();
+    let head = log.lines().next().expect("a head");
+    let rows: Vec<[f64; 5]> = columns(&log);
     let most = rows.iter().map(|row| row[3].abs()).fold(0.0, f64::max);
     let refused = |what: &str, words: &[&str], change: &dyn Fn(&mut [f64; 5])| {
         println!("{what}");

@@ -44,8 +44,8 @@ struct Count {
     halves: [[Vec<f64>; 2]; 2],
 }
 
-/// Keys of gap and stiffness, one for each kind of joint, and what half of an interval over its value is at most in the median: where no
-/// inertia is wrong, and where one is by 5 %, which bends the stiffness by half of that.
+/// Keys of gap and stiffness, one for each kind of joint, and what half of an interval over its value is at most in the
+/// median: where no inertia is wrong, and where one is by 5 %, which bends the stiffness by half of that.
 const TIGHT: [(&[&str], [f64; 2]); 2] = [
     (&["mesh.half_backlash_um"], [0.01, 0.01]),
     (&["compliance.stiffness_N_m_per_rad", "mesh.mean_stiffness_N_per_m"], [0.03, 0.045]),

@@ -20,7 +20,7 @@ use simulation::sim::plan::SimulationPlan;
 use simulation::sim::scheme::SchemeName;
 use simulation::{budget, check};
 
-const JOINTS: u64 = 40;
+const JOINTS: u64 = 64;
 const BOARDS: [&str; 4] = ["olimex-h405", "nucleo-g474re", "nucleo-h743zi", "b-g431b-esc1"];
 const RATES: [u32; 4] = [5000, 10_000, 20_000, 40_000];
 

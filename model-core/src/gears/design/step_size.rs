@@ -23,7 +23,7 @@ const USUAL_SUBSTEPS: f64 = 4.0;
 /// Phase of a prescribed mesh frequency that a sub-step may have: some twenty evaluations a mesh period [rad].
 const EXCITATION_PHASE: f64 = 0.3;
 /// Beyond this phase of the fastest mode in a sub-step, Runge-Kutta steps damp it away and bounces of light planets with
-/// it; Verlet sub-steps of at most the second take over [rad].
+/// it; Verlet sub-steps take over, of at most the second, or of more where the processor has no time for so many [rad].
 const DAMPED_PHASE: f64 = 1.0;
 const VERLET_PHASE: f64 = 1.0;
 /// Most sub-steps a tick.
@@ -120,8 +120,8 @@ impl StepSize {
         Ok((wanted..=MOST_SUBSTEPS as u32).find(stable).or((1..wanted).rev().find(stable)).unwrap_or(wanted))
     }
 
-    /// Sub-steps of a tick in which contacts change. Verlet sub-steps take over where sub-steps would damp the fastest mode away, if the
-    /// processor has time for them or they are the cheaper of two that it has no time for.
+    /// Sub-steps of a tick in which contacts change. Verlet sub-steps take over where sub-steps would damp the fastest mode away, as
+    /// many as the processor has time for, if that is stable; or if they are the cheaper of two that it has no time for.
     pub fn substeps(&self, tick_rate: u32, effort: Effort) -> Result<Substeps, DesignError> {
         let substeps = self.corrected_substeps(tick_rate, effort)?;
         if self.whole {
@@ -134,11 +134,16 @@ impl StepSize {
             Effort::Verlet(substeps) => return Ok(Substeps::Verlet(substeps.max(1))),
         };
         let substeps = Substeps::Corrected(substeps);
-        let verlet = Substeps::Verlet(libm::ceil(self.phase(tick_rate, 1) / VERLET_PHASE) as u32);
-        let resolved = self.phase(tick_rate, substeps.count()) <= DAMPED_PHASE;
-        let budget = processor.affordable(tick_rate).max(self.cost.all_crossing(substeps));
-        let affordable = self.cost.all_crossing(verlet) <= budget;
-        Ok(if self.sharp && !resolved && affordable { verlet } else { substeps })
+        if !self.sharp || self.phase(tick_rate, substeps.count()) <= DAMPED_PHASE {
+            return Ok(substeps);
+        }
+        let wanted = libm::ceil(self.phase(tick_rate, 1) / VERLET_PHASE) as u32;
+        let stable = |count: &u32| self.phase(tick_rate, *count) <= MARGIN * self.largest_verlet_phase;
+        let within = |most: f64| move |verlet: &Substeps| self.cost.all_crossing(*verlet) <= most;
+        let in_time = within(processor.affordable(tick_rate));
+        let fewer = (1..=wanted).rev().take_while(stable).map(Substeps::Verlet).find(in_time);
+        let cheaper = || Some(Substeps::Verlet(wanted)).filter(within(self.cost.all_crossing(substeps)));
+        Ok(fewer.or_else(cheaper).unwrap_or(substeps))
     }
 
     /// Whether ticks in which contact holds are taken as a whole: where that is cheaper than the sub-steps, or time does not count.

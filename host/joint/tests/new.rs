@@ -141,7 +141,7 @@ fn options_of_the_sheet_stand_in_the_file_as_the_sheets() {
 fn a_joint_that_a_board_has_no_time_for_is_written_with_a_note_of_the_rate_that_fits() {
     let place = folder();
     let light: Sheet =
-        ([5.0, 20.0, 0.3, 2.0, 0.05, 0.02, 0.9], &["--planets", "4", "--outer-diameter-mm", "40", "--no-measure"]);
+        ([4.0, 20.0, 0.3, 2.0, 0.05, 0.02, 0.9], &["--planets", "5", "--outer-diameter-mm", "30", "--no-measure"]);
     let made = joint(&words(&line(&place.path().join("light"), light, &[]))).well();
     assert!(made.out.contains("note: ") && made.out.contains("--rate "), "{}", made.out);
     joint(&["check", text(&place.path().join("light.toml"))]).well();

@@ -15,6 +15,9 @@ pub(super) struct Plain<T: Real> {
     integral: T,
     /// Motor beyond the link on the flank that carries, smoothed [rad].
     beyond: T,
+    /// 1 or -1: the flank that the motion asked for and the load will have carry; less of it where that is as small as what
+    /// the torques are known to. Nothing is foreseen of an impedance, nor without a link to be seen.
+    foreseen: Option<T>,
 }
 
 impl<T: Real> Plain<T> {
@@ -26,7 +29,7 @@ impl<T: Real> Plain<T> {
     const SMOOTHING: T = T::QUARTER;
 
     pub fn new() -> Self {
-        Self { integral: T::ZERO, beyond: T::ZERO }
+        Self { integral: T::ZERO, beyond: T::ZERO, foreseen: None }
     }
 
     /// Where the motor is, less what lies between it and the link [rad].
@@ -36,23 +39,31 @@ impl<T: Real> Plain<T> {
 
     /// Torque of the PID [N m].
     pub fn follow(
-        &self,
+        &mut self,
         tables: &CompensationTables<T>,
         load: &LoadModel<T>,
         situation: &Situation<T>,
         now: &Motion<T>,
     ) -> T {
+        let demand = tables.body.load_inertia * now.acceleration + load.even() + load.planned_drag(tables, now.speed);
+        let share = clamp(tables.switching.inverse_step * demand, -T::ONE, T::ONE);
+        self.foreseen = situation.feels.then_some(share);
+        // In the open gap the motor is alone, and takes no more damping than the loop's delays allow; the rest of what both
+        // need together acts on the link, where that is seen.
+        let on_motor = if situation.feels { tables.law.motor_damping } else { tables.law.damping };
         // A blow is over before it could be answered.
         let known = if load.throws(tables) { T::ZERO } else { load.even() + load.planned_drag(tables, now.speed) };
         (tables.body.load_inertia + tables.body.motor_inertia) * now.acceleration
             - tables.law.position * self.place(situation)
-            + tables.law.damping * (now.speed - situation.motor_speed)
+            + on_motor * (now.speed - situation.motor_speed)
+            + (tables.law.damping - on_motor) * situation.error_rate
             + known
             + self.integral
     }
 
     /// Torque of the impedance law [N m].
-    pub fn yield_to(&self, situation: &Situation<T>, point: &ImpedancePoint<T>) -> T {
+    pub fn yield_to(&mut self, situation: &Situation<T>, point: &ImpedancePoint<T>) -> T {
+        self.foreseen = None;
         point.torque - point.stiffness * self.place(situation) + point.damping * (point.speed - situation.motor_speed)
     }
 
@@ -64,14 +75,26 @@ impl<T: Real> Plain<T> {
         // link is thrown to and fro.
         let thrown = tables.clock.period * situation.error_rate.abs()
             > Self::THROWN * tables.law.back_calculation * situation.half;
-        let beyond = if !situation.feels {
-            T::ZERO
-        } else if situation.contact.is_none() || thrown {
-            self.beyond
-        } else {
-            situation.confirmed_motor + situation.error
+        // Put right on one flank, the link would be left by the whole lost motion once the other one carries. So before that
+        // the motor goes to where the other flank is thought to be, by way of the middle.
+        let leaves = |share: &T| match situation.contact {
+            Some(flank) => flank.sign::<T>() * *share < T::ONE,
+            None => share.abs() < T::ONE,
         };
-        self.beyond += Self::SMOOTHING * tables.law.back_calculation * (beyond - self.beyond);
+        let slowly = Self::SMOOTHING * tables.law.back_calculation;
+        let (towards, part) = if let Some(share) = self.foreseen.filter(leaves) {
+            (share * situation.half, tables.law.back_calculation)
+        } else if !situation.feels {
+            (T::ZERO, slowly)
+        } else if situation.contact.is_none() || thrown {
+            (self.beyond, slowly)
+        } else {
+            (situation.confirmed_motor + situation.error, slowly)
+        };
+        let beyond = self.beyond + part * (towards - self.beyond);
+        if beyond.is_finite() {
+            self.beyond = beyond;
+        }
         let next = self.integral + (T::ONE - trust) * growth - trust * tables.law.back_calculation * self.integral;
         if next.is_finite() {
             self.integral = clamp(next, -tables.limits.motor, tables.limits.motor);

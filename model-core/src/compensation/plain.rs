@@ -7,7 +7,7 @@ use super::set_point::{ImpedancePoint, Motion};
 use super::situation::Situation;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
-use crate::numbers::arithmetic::{beyond, clamp};
+use crate::numbers::arithmetic::clamp;
 
 /// The integral of the PID, and what lies between motor and link.
 #[derive(Debug, Clone)]
@@ -16,13 +16,8 @@ pub(super) struct Plain<T: Real> {
     /// Motor beyond the link on the flank that carries, smoothed [rad].
     beyond: T,
     /// 1 or -1: the flank that the motion asked for and the load will have carry; less of it where that is as small as what
-    /// the torques are known to. Nothing is foreseen of an impedance, nor without a link to be seen, nor of a motion that no
-    /// load is felt in: what inertia asks for is over before the motor is there.
+    /// the torques are known to. Nothing is foreseen of an impedance, nor without a link to be seen.
     foreseen: Option<T>,
-    /// 1 or -1: to which side the motor's limit last cut torque off, fading to 0.
-    cut: T,
-    /// Whether torque has gone from limit to limit within that: the loop has more delay than it was designed for.
-    swings: bool,
 }
 
 impl<T: Real> Plain<T> {
@@ -33,12 +28,8 @@ impl<T: Real> Plain<T> {
     /// By how much slower than the loop itself what lies between motor and link is smoothed [-].
     const SMOOTHING: T = T::QUARTER;
 
-    /// Time constants of the loop over that within which torque goes from limit to limit where it swings [-]. No motion
-    /// that the loop can follow does.
-    const SWINGS: T = T::FOUR;
-
     pub fn new() -> Self {
-        Self { integral: T::ZERO, beyond: T::ZERO, foreseen: None, cut: T::ZERO, swings: false }
+        Self { integral: T::ZERO, beyond: T::ZERO, foreseen: None }
     }
 
     /// Where the motor is, less what lies between it and the link [rad].
@@ -56,13 +47,12 @@ impl<T: Real> Plain<T> {
     ) -> T {
         let demand = tables.body.load_inertia * now.acceleration + load.even() + load.planned_drag(tables, now.speed);
         let share = clamp(tables.switching.inverse_step * demand, -T::ONE, T::ONE);
-        let rests = now.speed == T::ZERO && now.acceleration == T::ZERO;
-        let is_loaded = beyond(load.even(), tables.switching.measured) != T::ZERO;
-        self.foreseen = (situation.feels && (rests || is_loaded)).then_some(share);
-        // In the open gap the motor is alone. Where that swings, it keeps the damping that delays allow; the rest of what both
-        // need together acts on the link while the teeth may carry: a motor that went after the link in the open gap would
-        // strike.
-        let on_motor = if situation.feels && self.swings { tables.law.motor_damping } else { tables.law.damping };
+        self.foreseen = situation.feels.then_some(share);
+        // In the open gap the motor is alone, and takes little more damping than the loop's delays allow; the rest of what both
+        // need together acts on the link, where that is seen and the teeth may carry: a motor that went after the link in the
+        // open gap would strike.
+        let on_motor =
+            if situation.feels { (T::ONE + T::HALF) * tables.law.motor_damping } else { tables.law.damping };
         let on_link = if situation.open { T::ZERO } else { tables.law.damping - on_motor };
         // A blow is over before it could be answered.
         let known = if load.throws(tables) { T::ZERO } else { load.even() + load.planned_drag(tables, now.speed) };
@@ -83,7 +73,6 @@ impl<T: Real> Plain<T> {
     /// Integrates; `cut` is what the limit took off. Under compensation the integral fades, so that it is ready and
     /// empty when it is needed.
     pub fn take(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, cut: T, trust: T) {
-        self.watch(tables, cut);
         let growth = tables.law.back_calculation * cut - tables.law.integral * self.place(situation);
         // What a flank carries is as far from the link as it is; nothing is said by teeth that may be open, nor while the
         // link is thrown to and fro.
@@ -112,17 +101,6 @@ impl<T: Real> Plain<T> {
         let next = self.integral + (T::ONE - trust) * growth - trust * tables.law.back_calculation * self.integral;
         if next.is_finite() {
             self.integral = clamp(next, -tables.limits.motor, tables.limits.motor);
-        }
-    }
-
-    /// Notices a swing from limit to limit by what the limit took off.
-    fn watch(&mut self, tables: &CompensationTables<T>, cut: T) {
-        if cut == T::ZERO {
-            self.cut = beyond(self.cut, Self::SWINGS * tables.law.back_calculation);
-        } else {
-            let side = if cut > T::ZERO { T::ONE } else { -T::ONE };
-            self.swings |= side * self.cut < T::ZERO;
-            self.cut = side;
         }
     }
 }

@@ -100,27 +100,27 @@ pub fn tick<T: Real, const N: usize>(
 
     let whole = &flow.whole;
     let [first, second] = &flow.whole_linear;
-    let end = in_phase
-        + (&whole.in_phase.0 * &in_phase
-            + &whole.torques.0 * &torques
-            + &first.in_phase.0 * &sums
-            + &second.in_phase.0 * SVector::from(middle.sums));
-    let [mean_end, gap, wind_up, mean_rate_end, gap_rate, wind_up_rate] = end.data.0[0];
+    // All as changes, which are summed up before they are added to what they change: that rounds once.
+    let change = &whole.in_phase.0 * &in_phase
+        + &whole.torques.0 * &torques
+        + &first.in_phase.0 * &sums
+        + &second.in_phase.0 * SVector::from(middle.sums);
+    let [mean_change, gap, wind_up, mean_rate_change, gap_rate, wind_up_rate] = change.data.0[0];
     let [[a, b], [c, d]] = whole.deviation.0.data.0;
     for i in 0..N {
         let (deviation, speed) = (motion.position.planets[i] - mean, motion.rate.planets[i] - mean_rate);
         let (from_start, from_middle) = (start.apart[i], middle.apart[i]);
-        motion.position.planets[i] = mean_end
-            + deviation
+        motion.position.planets[i] += mean_change
             + (a * deviation + c * speed)
             + (first.deviation[0] * from_start + second.deviation[0] * from_middle);
-        motion.rate.planets[i] = mean_rate_end
-            + speed
+        motion.rate.planets[i] += mean_rate_change
             + (b * deviation + d * speed)
             + (first.deviation[1] * from_start + second.deviation[1] * from_middle);
     }
-    (motion.position.gap, motion.position.wind_up) = (gap, wind_up);
-    (motion.rate.gap, motion.rate.wind_up) = (gap_rate, wind_up_rate);
+    motion.position.gap += gap;
+    motion.position.wind_up += wind_up;
+    motion.rate.gap += gap_rate;
+    motion.rate.wind_up += wind_up_rate;
     true
 }
 

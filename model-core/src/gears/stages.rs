@@ -69,7 +69,8 @@ impl<T: Real> Coordinate<T> {
     pub fn predict(&mut self, middle: T) -> Point<T> {
         let Self { position, rate, now, .. } = *self;
         let predicted = rate + T::SIX * middle;
-        self.position = position + rate + now + T::TWO * middle;
+        // The change is summed up before it is added to the position, in whose size that rounds once.
+        self.position = position + (rate + now + T::TWO * middle);
         self.rate = rate + now + T::FOUR * middle;
         self.before = middle;
         Point { position: self.position, rate: predicted }

@@ -82,6 +82,11 @@ bounds! {
         below 0.12, was 0.061,
         scatters "What commissioning may take.";
 
+    /// The same in steps between two places under the compensation, whose plain control spares the teeth.
+    WIDTH_AFTER_STEPS: "time of steps in contact until the width is right to 5 % for good [s]",
+        below 0.25, was 0.17,
+        scatters "The width is learnt from what blows there are.";
+
     /// Gain from the error maps.
     WITHOUT_MAP: "error of the gap coordinate with the error maps over the one without",
         below 0.026, was 0.013,

@@ -1,7 +1,7 @@
 //! The width in steps between two places, in the loop with the compensation, whose soft landings leave little to learn from.
 //! Motions under a plain motor controller are the observer's tests.
 
-use host_tests::tolerance::observer::{WIDTH_AFTER, WIDTH_IN_STEPS, WIDTH_IN_STEPS_WORST};
+use host_tests::tolerance::observer::{WIDTH_AFTER_STEPS, WIDTH_IN_STEPS, WIDTH_IN_STEPS_WORST};
 use scenario::controller::ControllerName::NoPreview;
 use scenario::random::NumberOrRange;
 
@@ -31,7 +31,7 @@ fn steps_between_two_places_show_the_width() {
             "{half_backlash} um, guess {guess}, seed {seed}: {width:+.4}, right after {right_after} s of motion in contact"
         );
         WIDTH_IN_STEPS_WORST.check(width);
-        WIDTH_AFTER.check(right_after);
+        WIDTH_AFTER_STEPS.check(right_after);
         squares += width * width;
     }
     WIDTH_IN_STEPS.check((squares / CASES.len() as f64).sqrt());

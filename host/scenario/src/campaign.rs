@@ -15,6 +15,7 @@ use super::log_file::{self, LoggedRun};
 use super::memory_file;
 use super::on_board::Boards;
 use super::plant::PlantName;
+use super::random::Seeds;
 use super::record::{AssertionRecord, TestRecord, TestRun};
 use super::rig::RunError;
 use super::suite::Test;
@@ -30,8 +31,8 @@ use report::folder::Folder;
 pub struct RunOptions<'c> {
     /// What is controlled.
     pub plant: PlantName,
-    /// One seed in place of the file's.
-    pub seed: Option<u64>,
+    /// Seeds in place of the file's.
+    pub seed: Option<Seeds>,
     /// The full lists of seeds.
     pub full: bool,
     /// The boards that the tested controller runs on, if it does not run here.
@@ -54,22 +55,29 @@ pub struct FinishedTest {
     pub faults: Vec<(&'static str, [f64; 2])>,
 }
 
+#[derive(Clone, Copy)]
 struct Job {
     seed: u64,
     controller: ControllerName,
+    /// Whether its log, and what pictures are drawn from, are kept.
+    keep_logs: bool,
 }
+
+/// Of more seeds than this only the shown one leaves a log: a log has some megabytes, and `--seed` repeats any run.
+const MOST_LOGGED: usize = 100;
 
 struct Done {
     values: Option<MetricValues>,
     run: TestRun,
-    trace: Trace,
+    /// For the pictures, if it is kept.
+    trace: Option<Trace>,
 }
 
 impl Test {
     /// Seeds of a run.
-    pub fn seeds(&self, seed: Option<u64>, full: bool) -> Vec<u64> {
+    pub fn seeds(&self, seed: Option<Seeds>, full: bool) -> Vec<u64> {
         match (seed, full) {
-            (Some(seed), _) => vec![seed],
+            (Some(Seeds { first, last }), _) => (first..=last).collect(),
             (None, true) => self.file.full_seeds.clone(),
             (None, false) => self.file.seeds.clone(),
         }
@@ -87,10 +95,9 @@ pub fn run(test: &Test, options: &RunOptions<'_>, before: &AtomicU32) -> Outcome
     let deadline = start + Duration::from_secs_f64(test.file.timeout);
     let seeds = test.seeds(options.seed, options.full);
     let controllers = test.controllers();
-    let jobs: Vec<Job> = seeds
-        .iter()
-        .flat_map(|seed| controllers.iter().map(|controller| Job { seed: *seed, controller: *controller }))
-        .collect();
+    let keep_logs = seeds.len() <= MOST_LOGGED;
+    let job = |seed: u64| controllers.iter().map(move |controller| Job { seed, controller: *controller, keep_logs });
+    let jobs: Vec<Job> = seeds.iter().flat_map(|seed| job(*seed)).collect();
     let done: Vec<Outcome<Done>> = jobs
         .par_iter()
         .map(|job| {
@@ -100,8 +107,9 @@ pub fn run(test: &Test, options: &RunOptions<'_>, before: &AtomicU32) -> Outcome
         })
         .collect();
     let done: Vec<Done> = done.into_iter().collect::<Outcome<_>>()?;
+    let places: BTreeMap<u64, usize> = seeds.iter().enumerate().map(|(place, seed)| (*seed, place)).collect();
     let of = |seed: u64, controller: ControllerName| {
-        let place = jobs.iter().position(|job| job.seed == seed && job.controller == controller)?;
+        let place = places.get(&seed)? * controllers.len() + controllers.iter().position(|name| *name == controller)?;
         done[place].values.clone()
     };
     let assertions = judge(&test.file, &Results { seeds: &seeds, of: &of });
@@ -120,9 +128,13 @@ pub fn run(test: &Test, options: &RunOptions<'_>, before: &AtomicU32) -> Outcome
     let replay = replay(test, options, alone(&failed, &broken));
     let mut runs = Vec::new();
     let mut shown = Vec::new();
-    for (job, done) in jobs.iter().zip(done) {
+    for (job, mut done) in jobs.iter().zip(done) {
         if job.seed == shown_seed {
-            shown.push((job.controller, done.trace));
+            // The same run again, with all that was not kept of so many.
+            if !keep_logs {
+                done = one(test, options, &Job { keep_logs: true, ..*job }, deadline)?;
+            }
+            shown.push((job.controller, done.trace.unwrap_or_default()));
         }
         runs.push(done.run);
     }
@@ -165,7 +177,8 @@ fn alone(failed: &[&AssertionRecord], broken: &[(u64, String)]) -> Option<u64> {
 /// The command that runs what failed again; with a seed only that of all.
 fn replay(test: &Test, options: &RunOptions<'_>, alone: Option<u64>) -> String {
     let place = options.boards.map_or("--host".to_owned(), Boards::arguments);
-    let seeds = match (options.seed.or(alone), options.full) {
+    let alone = alone.map(|seed| Seeds { first: seed, last: seed });
+    let seeds = match (alone.or(options.seed), options.full) {
         (Some(seed), _) => format!(" --seed {seed}"),
         (None, true) => " --full".to_owned(),
         (None, false) => String::new(),
@@ -183,7 +196,12 @@ fn one(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) -> O
         return Err(refused);
     }
     let spec = RunSpec { controller: job.controller, plant: options.plant, without_gap: false };
-    let mut run = TestRun { seed: job.seed, controller: job.controller.word().to_owned(), ..TestRun::default() };
+    let mut run = TestRun {
+        seed: job.seed,
+        controller: job.controller.word().to_owned(),
+        drawn: case.drawn.clone(),
+        ..TestRun::default()
+    };
     let history = match options.boards.filter(|_| job.controller == test.file.controller) {
         None => execute(&test.file, &case, job.seed, spec, deadline),
         Some(boards) => boards.run(test, &case, job.seed, spec).map(|(history, board)| {
@@ -218,18 +236,20 @@ fn one(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) -> O
                 .extend(origin.filter(|_| job.controller.is_compensation()).iter().flat_map(ObserverOrigin::remarks));
             let every_period = job.controller == test.file.controller;
             let logged = LoggedRun { history: &history, faults: &test.file.faults, every_period, remarks };
-            run.log = Some(log_file::write(options.folder, &name, logged)?);
+            if job.keep_logs {
+                run.log = Some(log_file::write(options.folder, &name, logged)?);
+            }
             if let Some(memory) = history.memory.filter(|_| options.memories) {
                 let name = name.trim_end_matches(".mcap");
                 run.memory = Some(memory_file::write(options.folder, name, &memory, &case.nominal_text()?)?);
             }
-            Ok(Done { values: Some(values), run, trace: Trace::of(&history) })
+            Ok(Done { values: Some(values), run, trace: job.keep_logs.then(|| Trace::of(&history)) })
         }
         Err(RunError::Refused(failure)) => Err(failure.while_doing(&test.name)),
         Err(RunError::Interrupted) => Err(Failure::interrupted("stopped by the user")),
         Err(error) => {
             run.broken = Some(error.to_string());
-            Ok(Done { values: None, run, trace: Trace::default() })
+            Ok(Done { values: None, run, trace: None })
         }
     }
 }

@@ -1,6 +1,7 @@
 //! One case of a test file, for one seed: the true joint and its surroundings, the nominal joint that controllers are
 //! told, the motion, the disturbance torques.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -14,9 +15,10 @@ use reference::closed_loop::rivals::Knowledge;
 use reference::closed_loop::{Profile as Standard, SharedProfile};
 use reference::drive_train::{Disturbance, DriveTrainParameters};
 
+use super::any_motion::any_motion;
 use super::controller_log::ObserverOrigin;
 use super::disturbances::disturbances;
-use super::file::{Change, NewValue, TestFile, Trajectory};
+use super::file::{Change, MotionProfile, NewValue, TestFile, Trajectory};
 use super::plant::half_backlash;
 use super::random::{NumberOrRange, RandomStream};
 use super::recorded::RecordedMotion;
@@ -39,6 +41,8 @@ pub struct Case {
     pub motion: SharedProfile,
     /// Disturbance torques on the link.
     pub disturbances: Vec<Disturbance>,
+    /// What the seed drew, by the names of the keys.
+    pub drawn: BTreeMap<String, f64>,
     /// Texts of the joint files: as controllers know the joint but for its backlash, and the truth.
     texts: [String; 2],
     /// The nominal joint is just what its file says.
@@ -63,7 +67,17 @@ type Draw<'p> = dyn FnMut(&str, NumberOrRange) -> f64 + 'p;
 impl Case {
     /// The case of a seed. `text` is the joint file's.
     pub fn new(file: &TestFile, text: &str, seed: u64, motion: Option<&RecordedMotion>) -> Outcome<Self> {
-        let mut draw = |name: &str, quantity: NumberOrRange| quantity.draw(&mut RandomStream::new(seed, name));
+        let mut drawn = BTreeMap::new();
+        let mut draw = |name: &str, quantity: NumberOrRange| {
+            let mut stream = RandomStream::new(seed, name);
+            // An encoder has no half bits.
+            let whole = name.ends_with(".bits");
+            let value = if whole { quantity.draw_whole(&mut stream) } else { quantity.draw(&mut stream) };
+            if matches!(quantity, NumberOrRange::Between(..)) {
+                drawn.insert(name.to_owned(), value);
+            }
+            value
+        };
         let texts = texts(file, text, &mut draw).map_err(|problem| Failure::new(problem.to_string()))?;
         let read = |text: &str| {
             joint_file::read(text).map_err(|problems| {
@@ -83,14 +97,23 @@ impl Case {
             mesh.half_backlash.iter_mut().for_each(|value| *value = half_backlash);
         }
         let rated = known.parameters.rated_output_torque;
+        let train = train(&truth.surroundings, seed);
+        let profile = match file.profile.trajectory {
+            Trajectory::Any => any_motion(&Knowledge::of(&truth.parameters, &train, width_guess), &truth, seed),
+            _ => file.profile.clone(),
+        };
+        if matches!(file.profile.trajectory, Trajectory::Any) {
+            drawn.extend(profile.numbers().into_iter().map(|(name, value)| (name.to_owned(), value)));
+        }
         Ok(Self {
             nominal,
             nominal_surroundings: known.surroundings,
-            train: train(&truth.surroundings, seed),
+            train,
             truth,
             width_guess,
-            motion: trajectory(file, motion, seed),
-            disturbances: disturbances(file, motion, rated),
+            motion: trajectory(&profile, motion, seed),
+            disturbances: disturbances(file, &profile, motion, rated),
+            drawn,
             texts,
             is_told: false,
         })
@@ -253,8 +276,8 @@ pub fn recorded(file: &TestFile, folder: &Path) -> Outcome<Option<RecordedMotion
     }
 }
 
-fn trajectory(file: &TestFile, recorded: Option<&RecordedMotion>, seed: u64) -> SharedProfile {
-    match (&file.profile.trajectory, recorded) {
+fn trajectory(profile: &MotionProfile, recorded: Option<&RecordedMotion>, seed: u64) -> SharedProfile {
+    match (&profile.trajectory, recorded) {
         (_, Some(recorded)) => Arc::new(recorded.clone()),
         (Trajectory::Sine(amplitude, frequency), _) => {
             Arc::new(Standard::Sine { amplitude: *amplitude, frequency: *frequency })
@@ -266,6 +289,7 @@ fn trajectory(file: &TestFile, recorded: Option<&RecordedMotion>, seed: u64) -> 
             Arc::new(Standard::Steps { height: *height, duration: *duration, rest: *rest, seed })
         }
         (Trajectory::Hold(angle), _) => Arc::new(Standard::Hold(*angle)),
-        (Trajectory::File(_), None) => Arc::new(Standard::Hold(0.0)),
+        // A recording has been read, and any motion is drawn before it comes here.
+        (Trajectory::File(_) | Trajectory::Any, None) => Arc::new(Standard::Hold(0.0)),
     }
 }

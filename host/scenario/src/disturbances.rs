@@ -3,7 +3,7 @@
 
 use reference::drive_train::Disturbance;
 
-use super::file::{ProfileLoad, TestFile, Wave};
+use super::file::{MotionProfile, ProfileLoad, TestFile, Wave};
 use super::recorded::RecordedMotion;
 
 /// A hold is disturbed by this part of the rated torque: 1.5 N m for Q1.
@@ -14,22 +14,34 @@ const IMPACT: f64 = 3.0;
 /// In a free hold the disturbing pulse comes so long before the figures begin [s].
 const BEFORE: f64 = 0.1;
 
-/// All torques on the link in a run.
-pub fn disturbances(file: &TestFile, recorded: Option<&RecordedMotion>, rated: f64) -> Vec<Disturbance> {
+/// A foot is set down, or lifted, within this time [s].
+const STEP_OF_A_FOOT: f64 = 0.02;
+
+/// All torques on the link in a run of a file, under the load of its profile.
+pub fn disturbances(
+    file: &TestFile,
+    profile: &MotionProfile,
+    recorded: Option<&RecordedMotion>,
+    rated: f64,
+) -> Vec<Disturbance> {
     let mut list = Vec::new();
-    match file.profile.load {
+    match profile.load {
         ProfileLoad::None => {}
         ProfileLoad::Wave(Wave::Sine, torque, frequency) => {
             list.push(Disturbance::Sine { amplitude: torque.unwrap_or(DISTURBED * rated), frequency });
         }
-        ProfileLoad::Wave(Wave::Square, torque, frequency) => {
+        ProfileLoad::Wave(wave @ (Wave::Square | Wave::Walk), torque, frequency) => {
             let torque = torque.unwrap_or(DISTURBED * rated);
-            list.push(Disturbance::Step { start: 0.0, torque });
             let half = 0.5 / frequency;
             let turns = (file.duration / half) as usize;
-            list.extend((1..=turns).map(|turn| {
+            list.extend((0..=turns).map(|turn| {
+                let start = turn as f64 * half;
                 let sign = if turn % 2 == 1 { -2.0 } else { 2.0 };
-                Disturbance::Step { start: turn as f64 * half, torque: sign * torque }
+                let torque = if turn == 0 { torque } else { sign * torque };
+                match wave {
+                    Wave::Walk => Disturbance::Ramp { start, duration: STEP_OF_A_FOOT, torque },
+                    _ => Disturbance::Step { start, torque },
+                }
             }));
         }
         ProfileLoad::Kick(torque, length) => {

@@ -8,6 +8,7 @@
 //! `log_file` and `record` are the results on disk; `controller_log` and `estimate_fields` are what a log says of the
 //! controller.
 
+mod any_motion;
 mod campaign;
 pub mod case;
 pub mod controller;
@@ -48,6 +49,7 @@ use std::time::Instant;
 use campaign::{FinishedTest, RunOptions};
 use on_board::{BoardRequest, Boards};
 use plant::PlantName;
+use random::Seeds;
 use rayon::prelude::*;
 use record::{NotRun, SCHEMA, TestsRecord};
 use suite::{Choice, Suite, Test};
@@ -73,8 +75,8 @@ const FILES: [&str; 6] = [REPORT, RECORD, JUNIT, LOGS, memory_file::MEMORIES, me
 pub struct TestRequest<'w> {
     /// Which tests, and where they run.
     pub parts: Vec<TestGroup<'w>>,
-    /// One seed in place of the files'.
-    pub seed: Option<u64>,
+    /// Seeds in place of the files'.
+    pub seed: Option<Seeds>,
     /// The full lists of seeds.
     pub full: bool,
     /// Whether what observers on the host have learnt is kept.

@@ -1,6 +1,9 @@
 //! What varies from seed to seed: values drawn from ranges, each from a random stream of its own, so that another
 //! variation in a file leaves the others as they were. Noise of motor and encoders is drawn in the drive train.
 
+use std::fmt::{self, Display, Formatter};
+use std::str::FromStr;
+
 use model_core::numbers::random::splitmix64;
 
 /// A number, or a range to draw from.
@@ -21,11 +24,60 @@ impl NumberOrRange {
         }
     }
 
+    /// The value for a stream, of whole numbers only: each between the ends is as likely as any other, ends among them.
+    pub fn draw_whole(self, stream: &mut RandomStream) -> f64 {
+        match self {
+            Self::Exactly(value) => value,
+            Self::Between(low, high) => {
+                let (low, high) = (low.ceil(), high.floor());
+                (low + ((high - low + 1.0) * stream.uniform()).floor()).min(high)
+            }
+        }
+    }
+
     /// Its ends.
     pub fn ends(self) -> [f64; 2] {
         match self {
             Self::Exactly(value) => [value, value],
             Self::Between(low, high) => [low, high],
+        }
+    }
+}
+
+/// Seeds from one to another, in place of those of a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Seeds {
+    /// The first.
+    pub first: u64,
+    /// The last.
+    pub last: u64,
+}
+
+/// Most seeds of a run: more are a slip of the keyboard.
+pub const MOST_SEEDS: u64 = 10_000;
+
+impl FromStr for Seeds {
+    type Err = String;
+
+    /// `7`, or `1-10000`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (first, last) = text.split_once('-').filter(|(first, _)| !first.is_empty()).unwrap_or((text, text));
+        let [Ok(first), Ok(last)] = [first, last].map(str::parse) else {
+            return Err(format!("a seed is a whole number from 0 to {}, several are written as 1-200", u64::MAX));
+        };
+        match last {
+            last if last < first => Err(format!("no seed is from {first} to {last}")),
+            last if last - first >= MOST_SEEDS => Err(format!("{MOST_SEEDS} seeds are the most")),
+            last => Ok(Self { first, last }),
+        }
+    }
+}
+
+impl Display for Seeds {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self { first, last } if first == last => write!(formatter, "{first}"),
+            Self { first, last } => write!(formatter, "{first}-{last}"),
         }
     }
 }
@@ -76,5 +128,29 @@ mod tests {
         assert!(all.iter().all(|value| (-2.0..3.0).contains(value)));
         let mean = all.iter().sum::<f64>() / 1000.0;
         assert!((mean - 0.5).abs() < 0.2, "{mean}");
+    }
+
+    #[test]
+    fn seeds_are_one_or_from_one_to_another() {
+        let read = |text: &str| text.parse::<Seeds>().map(|seeds| (seeds.first, seeds.last));
+        assert_eq!(read("7"), Ok((7, 7)));
+        assert_eq!(read("201-400"), Ok((201, 400)));
+        for wrong in ["", "-1", "7-", "9-8", "1-2-3", "0-10000", "all"] {
+            assert!(read(wrong).is_err(), "{wrong}");
+        }
+        for text in ["7", "201-400"] {
+            assert_eq!(text.parse::<Seeds>().map(|seeds| seeds.to_string()), Ok(text.to_owned()));
+        }
+    }
+
+    #[test]
+    fn whole_numbers_are_drawn_as_often_as_one_another() {
+        let bits = NumberOrRange::Between(12.0, 18.0);
+        let mut count = [0; 7];
+        for seed in 0..7000 {
+            count[(bits.draw_whole(&mut RandomStream::new(seed, "bits")) - 12.0) as usize] += 1;
+        }
+        // Five standard deviations of a count of 1000.
+        assert!(count.iter().all(|count: &i32| (count - 1000).abs() < 160), "{count:?}");
     }
 }

@@ -110,7 +110,7 @@ pub struct TestRecord {
 pub struct AssertionRecord {
     /// Name of the figure.
     pub name: String,
-    /// What was made of the seeds' figures: `worst`, `median` or `mean`.
+    /// What was made of the seeds' figures: `worst`, `median`, `mean`, or the worst of `all but` a part of them.
     pub aggregate: String,
     /// The figure; absent if it could not be had.
     pub figure: Option<f64>,
@@ -136,6 +136,9 @@ pub struct TestRun {
     pub controller: String,
     /// Digest over every bit of the run, 16 hexadecimal digits.
     pub digest: String,
+    /// What the seed drew, by the names of the keys; empty if nothing was.
+    #[serde(default)]
+    pub drawn: BTreeMap<String, f64>,
     /// The MCAP log, beside the report.
     pub log: Option<String>,
     /// What the observer had learnt at the end, beside the log, if it was to be kept.

@@ -7,6 +7,9 @@ use super::values::MetricValues;
 use report::checks::{Bound, Verdict};
 use report::number::PAGE;
 
+/// So many seeds beyond a bound are named.
+const NAMED: usize = 12;
+
 /// Metrics of all runs of a test.
 pub struct Results<'r> {
     /// Seeds that were to run.
@@ -33,6 +36,9 @@ fn one(file: &TestFile, assertion: &Assertion, results: &Results<'_>) -> Asserti
     let figure = match assertion.aggregate {
         Aggregate::Worst => worst.map(|(_, figure)| figure),
         Aggregate::Median => median(had.iter().map(|(_, figure)| *figure).collect()),
+        Aggregate::AllBut(percent) => {
+            all_but(percent, assertion.bound, had.iter().map(|(_, figure)| *figure).collect())
+        }
         Aggregate::Mean => (!had.is_empty()).then(|| had.iter().map(|(_, f)| f).sum::<f64>() / had.len() as f64),
     };
     let holds = missing.is_empty() && figure.is_some_and(|figure| assertion.bound.holds(figure));
@@ -45,13 +51,14 @@ fn one(file: &TestFile, assertion: &Assertion, results: &Results<'_>) -> Asserti
         let (least, greatest) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
         note += &format!("; {} seeds from {} to {}", had.len(), PAGE.write(least), PAGE.write(greatest));
     }
+    note += &beyond(assertion.bound, &had);
     if let Some(first) = missing.first() {
         let why = absence(assertion.metric.base().stem);
         note = format!("could not be had with seed {first}: {why}; {note}");
     }
     AssertionRecord {
         name: assertion.name.clone(),
-        aggregate: assertion.aggregate.word().to_owned(),
+        aggregate: assertion.aggregate.word(),
         figure,
         unit: match assertion.rival() {
             None => assertion.metric.base().printed_unit().to_owned(),
@@ -62,6 +69,27 @@ fn one(file: &TestFile, assertion: &Assertion, results: &Results<'_>) -> Asserti
         seed: missing.first().copied().or(worst.map(|(seed, _)| seed)),
         note,
     }
+}
+
+/// Which seeds do not keep to a bound, the worst first, so that each can be run again.
+fn beyond(bound: Bound, figures: &[(u64, f64)]) -> String {
+    let mut beyond: Vec<(u64, f64)> = figures.iter().copied().filter(|(_, figure)| !bound.holds(*figure)).collect();
+    if beyond.is_empty() || figures.len() < 2 {
+        return String::new();
+    }
+    beyond.sort_by(|a, b| off(bound, b.1).total_cmp(&off(bound, a.1)));
+    let share = 100.0 * beyond.len() as f64 / figures.len() as f64;
+    let named: Vec<String> =
+        beyond.iter().take(NAMED).map(|(seed, figure)| format!("{seed} ({})", PAGE.write(*figure))).collect();
+    let more = if beyond.len() > NAMED { " ..." } else { "" };
+    format!("; beyond the bound {} of them ({} %): seeds {}{more}", beyond.len(), PAGE.write(share), named.join(", "))
+}
+
+/// What is farthest on the wrong side of a bound once the worst part has been left out.
+fn all_but(percent: f64, bound: Bound, mut figures: Vec<f64>) -> Option<f64> {
+    figures.sort_by(|a, b| off(bound, *b).total_cmp(&off(bound, *a)));
+    let left_out = (0.01 * percent * figures.len() as f64 + 1e-9) as usize;
+    figures.get(left_out).copied()
 }
 
 /// Why a run has no such figure.
@@ -93,5 +121,21 @@ fn median(mut figures: Vec<f64>) -> Option<f64> {
         0 => None,
         count if count % 2 == 1 => Some(figures[middle]),
         _ => Some(0.5 * (figures[middle - 1] + figures[middle])),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_of_the_seeds_is_left_out_at_the_wrong_end_and_the_seeds_there_are_named() {
+        let gains: Vec<f64> = (0..200).map(|seed| f64::from(seed) / 100.0).collect();
+        assert_eq!(all_but(0.0, Bound::AtLeast(1.0), gains.clone()), Some(0.0));
+        assert_eq!(all_but(0.5, Bound::AtLeast(1.0), gains.clone()), Some(0.01));
+        assert_eq!(all_but(0.5, Bound::AtMost(1.0), gains.clone()), Some(1.98));
+        assert_eq!(all_but(0.4, Bound::AtMost(1.0), gains), Some(1.99));
+        let named = beyond(Bound::AtLeast(1.0), &[(7, 0.8), (8, 2.0), (9, 0.5), (10, 1.0)]);
+        assert_eq!(named, "; beyond the bound 2 of them (50 %): seeds 9 (0.5), 7 (0.8)");
     }
 }

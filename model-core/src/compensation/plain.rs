@@ -7,7 +7,7 @@ use super::set_point::{ImpedancePoint, Motion};
 use super::situation::Situation;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
-use crate::numbers::arithmetic::clamp;
+use crate::numbers::arithmetic::{beyond, clamp};
 
 /// The integral of the PID, and what lies between motor and link.
 #[derive(Debug, Clone)]
@@ -15,6 +15,14 @@ pub(super) struct Plain<T: Real> {
     integral: T,
     /// Motor beyond the link on the flank that carries, smoothed [rad].
     beyond: T,
+    /// 1 or -1: the flank that the motion asked for and the load will have carry; less of it where that is as small as what
+    /// the torques are known to. Nothing is foreseen of an impedance, nor without a link to be seen.
+    foreseen: Option<T>,
+    /// 1 or -1: to which side the torque last was large, fading to 0.
+    large: T,
+    /// Whether the torque has gone from large to large of the other side within that: the loop has more delay than it was
+    /// designed for.
+    swings: bool,
 }
 
 impl<T: Real> Plain<T> {
@@ -25,8 +33,15 @@ impl<T: Real> Plain<T> {
     /// By how much slower than the loop itself what lies between motor and link is smoothed [-].
     const SMOOTHING: T = T::QUARTER;
 
+    /// A torque is large beyond this part of the motor's limit [-].
+    const LARGE: T = T::HALF;
+
+    /// Time constants of the loop over that within which the torque goes from side to side where it swings [-]. No motion
+    /// that the loop can follow does.
+    const SWINGS: T = T::FOUR;
+
     pub fn new() -> Self {
-        Self { integral: T::ZERO, beyond: T::ZERO }
+        Self { integral: T::ZERO, beyond: T::ZERO, foreseen: None, large: T::ZERO, swings: false }
     }
 
     /// Where the motor is, less what lies between it and the link [rad].
@@ -36,23 +51,41 @@ impl<T: Real> Plain<T> {
 
     /// Torque of the PID [N m].
     pub fn follow(
-        &self,
+        &mut self,
         tables: &CompensationTables<T>,
         load: &LoadModel<T>,
         situation: &Situation<T>,
         now: &Motion<T>,
     ) -> T {
+        let demand = tables.body.load_inertia * now.acceleration + load.even() + load.planned_drag(tables, now.speed);
+        let share = clamp(tables.switching.inverse_step * demand, -T::ONE, T::ONE);
+        self.foreseen = situation.feels.then_some(share);
+        // In the open gap the motor is alone, and takes little more damping than the loop's delays allow; the rest of what both
+        // need together acts on the link, where that is seen and the teeth may carry: a motor that went after the link in the
+        // open gap would strike. At rest all of it acts on the motor, as long as that does not swing: it takes the link's
+        // energy out in fewer blows, which show the gap sooner.
+        let rests = now.speed == T::ZERO && now.acceleration == T::ZERO;
+        let on_motor = if !situation.feels || (rests && !self.swings) {
+            tables.law.damping
+        } else {
+            (T::ONE + T::HALF) * tables.law.motor_damping
+        };
+        let on_link = if situation.open { T::ZERO } else { tables.law.damping - on_motor };
         // A blow is over before it could be answered.
         let known = if load.throws(tables) { T::ZERO } else { load.even() + load.planned_drag(tables, now.speed) };
-        (tables.body.load_inertia + tables.body.motor_inertia) * now.acceleration
+        let torque = (tables.body.load_inertia + tables.body.motor_inertia) * now.acceleration
             - tables.law.position * self.place(situation)
-            + tables.law.damping * (now.speed - situation.motor_speed)
+            + on_motor * (now.speed - situation.motor_speed)
+            + on_link * situation.error_rate
             + known
-            + self.integral
+            + self.integral;
+        self.watch(tables, torque);
+        torque
     }
 
     /// Torque of the impedance law [N m].
-    pub fn yield_to(&self, situation: &Situation<T>, point: &ImpedancePoint<T>) -> T {
+    pub fn yield_to(&mut self, situation: &Situation<T>, point: &ImpedancePoint<T>) -> T {
+        self.foreseen = None;
         point.torque - point.stiffness * self.place(situation) + point.damping * (point.speed - situation.motor_speed)
     }
 
@@ -64,17 +97,41 @@ impl<T: Real> Plain<T> {
         // link is thrown to and fro.
         let thrown = tables.clock.period * situation.error_rate.abs()
             > Self::THROWN * tables.law.back_calculation * situation.half;
-        let beyond = if !situation.feels {
-            T::ZERO
-        } else if situation.contact.is_none() || thrown {
-            self.beyond
-        } else {
-            situation.confirmed_motor + situation.error
+        // Put right on one flank, the link would be left by the whole lost motion once the other one carries. So before that
+        // the motor goes to where the other flank is thought to be, by way of the middle.
+        let leaves = |share: &T| match situation.contact {
+            Some(flank) => flank.sign::<T>() * *share < T::ONE,
+            None => share.abs() < T::ONE,
         };
-        self.beyond += Self::SMOOTHING * tables.law.back_calculation * (beyond - self.beyond);
+        let slowly = Self::SMOOTHING * tables.law.back_calculation;
+        let (towards, part) = if let Some(share) = self.foreseen.filter(leaves) {
+            (share * situation.half, tables.law.back_calculation)
+        } else if !situation.feels {
+            (T::ZERO, slowly)
+        } else if situation.contact.is_none() || thrown {
+            (self.beyond, slowly)
+        } else {
+            (situation.confirmed_motor + situation.error, slowly)
+        };
+        let beyond = self.beyond + part * (towards - self.beyond);
+        if beyond.is_finite() {
+            self.beyond = beyond;
+        }
         let next = self.integral + (T::ONE - trust) * growth - trust * tables.law.back_calculation * self.integral;
         if next.is_finite() {
             self.integral = clamp(next, -tables.limits.motor, tables.limits.motor);
+        }
+    }
+
+    /// Notices a swing of the torque from side to side.
+    fn watch(&mut self, tables: &CompensationTables<T>, torque: T) {
+        let excess = beyond(torque, Self::LARGE * tables.limits.motor);
+        if excess == T::ZERO {
+            self.large = beyond(self.large, Self::SWINGS * tables.law.back_calculation);
+        } else {
+            let side = if excess > T::ZERO { T::ONE } else { -T::ONE };
+            self.swings |= side * self.large < T::ZERO;
+            self.large = side;
         }
     }
 }

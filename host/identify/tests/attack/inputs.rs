@@ -14,6 +14,7 @@ use replay::ReplayArguments;
 use report::failure::{EXIT_BAD_INPUT, EXIT_CHECK_FAILED, Failure};
 use report::progress::Progress;
 use scenario::plant::PlantName;
+use scenario::random::Seeds;
 use scenario::{TestGroup, TestRequest, suite};
 
 /// Ways in which a log may be packed.
@@ -236,7 +237,7 @@ fn new_run_log() -> Option<Vec<u8>> {
     let group = TestGroup { path, choice: suite::Choice::Full, plant: PlantName::Core, boards: None };
     let request = TestRequest {
         parts: vec![group],
-        seed: Some(1),
+        seed: Some(Seeds { first: 1, last: 1 }),
         full: false,
         memories: false,
         name: "test".to_owned(),

@@ -7,6 +7,7 @@ use board::profile::BUILTIN;
 use board::target::image;
 use joint_run::plan::RunRequest;
 use scenario::plant::PlantName;
+use scenario::random::Seeds;
 
 /// Steps between two samples, unless it is asked for another number of them.
 const DECIMATION: u16 = 20;
@@ -39,9 +40,9 @@ pub struct Arguments {
     /// that it is good for, for `joint memory`
     #[arg(long, requires = "host")]
     pub memory: bool,
-    /// Test files: runs this seed in place of the file's
-    #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
-    pub seed: Option<u64>,
+    /// Test files: runs this seed in place of the file's, or those from one to another, as in 1-10000
+    #[arg(long, value_name = "N|FROM-TO", allow_negative_numbers = true)]
+    pub seed: Option<Seeds>,
     /// Test files: what is controlled [default: core]
     #[arg(long, value_enum)]
     pub plant: Option<PlantName>,
@@ -91,10 +92,6 @@ pub struct Arguments {
     /// Also builds the images of all boards, lints the firmware and runs the tests that need the emulated board
     #[arg(long, conflicts_with = "port")]
     pub check: bool,
-}
-
-fn seed(text: &str) -> Result<u64, String> {
-    text.parse().map_err(|_| format!("a seed is a whole number from 0 to {}", u64::MAX))
 }
 
 impl Arguments {

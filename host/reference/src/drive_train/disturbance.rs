@@ -21,6 +21,15 @@ pub enum Disturbance {
         /// [N m].
         torque: f64,
     },
+    /// Grows evenly to its torque, and stays.
+    Ramp {
+        /// [s].
+        start: f64,
+        /// [s].
+        duration: f64,
+        /// [N m].
+        torque: f64,
+    },
     /// Amplitude times sin(2 pi frequency t).
     Sine {
         /// [N m].
@@ -48,6 +57,7 @@ impl Disturbance {
                     0.0
                 }
             }
+            Self::Ramp { start, duration, torque } => torque * ((time - start) / duration).clamp(0.0, 1.0),
             Self::Sine { amplitude, frequency } => amplitude * (TAU * frequency * time).sin(),
         }
     }

@@ -7,7 +7,7 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use super::motion::MotionProfile;
-use super::section::Section;
+use super::section::{Section, number};
 use crate::controller::ControllerName;
 use crate::metrics::{NamedMetric, Relation, Requirement as Scope, names, others};
 use report::checks::Bound;
@@ -26,7 +26,7 @@ pub struct Assertion {
 }
 
 /// How the seeds' figures are aggregated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Aggregate {
     /// The one farthest on the wrong side of the bound.
     Worst,
@@ -34,7 +34,12 @@ pub enum Aggregate {
     Median,
     /// Their mean.
     Mean,
+    /// The worst once this part of the seeds [%], the worst of them, has been left out.
+    AllBut(f64),
 }
+
+/// The key of a part of the seeds that need not keep to a bound.
+const ALL_BUT: &str = "all_but_percent";
 
 /// The properties of a test that decide which figures it has.
 pub(super) struct TestTraits<'a> {
@@ -44,12 +49,13 @@ pub(super) struct TestTraits<'a> {
 }
 
 impl Aggregate {
-    /// Its word in the file.
-    pub fn word(self) -> &'static str {
+    /// Its words.
+    pub fn word(self) -> String {
         match self {
-            Self::Worst => "worst",
-            Self::Median => "median",
-            Self::Mean => "mean",
+            Self::Worst => "worst".to_owned(),
+            Self::Median => "median".to_owned(),
+            Self::Mean => "mean".to_owned(),
+            Self::AllBut(percent) => format!("all but {percent} %"),
         }
     }
 }
@@ -85,6 +91,17 @@ pub(super) fn read(top: &Section<'_>, test: &TestTraits<'_>) -> Vec<Assertion> {
             }
         };
         match value.get_ref() {
+            DeValue::Table(inner) if inner.contains_key(ALL_BUT) => {
+                let percent = inner.get(ALL_BUT).and_then(number).filter(|percent| (0.0..100.0).contains(percent));
+                match (percent, inner.get("bound").filter(|_| inner.len() == 2)) {
+                    (Some(percent), Some(bound)) => add(Aggregate::AllBut(percent), bound),
+                    _ => top.notes.error(
+                        value.span(),
+                        format!("`{ALL_BUT}` takes a bound and a part of the seeds in percent, from 0 to below 100"),
+                        "write { bound = \">= 1\", all_but_percent = 0.5 }",
+                    ),
+                }
+            }
             DeValue::Table(inner) => {
                 if inner.is_empty() {
                     let message = format!("nothing is asked of `{word}`");
@@ -98,7 +115,8 @@ pub(super) fn read(top: &Section<'_>, test: &TestTraits<'_>) -> Vec<Assertion> {
                         other => top.notes.error(
                             aggregate.span(),
                             format!("`{other}` cannot be made of the seeds' figures"),
-                            "write worst, median or mean, as in { median = \">= 3\", worst = \">= 1\" }",
+                            "write worst, median or mean, as in { median = \">= 3\", worst = \">= 1\" }, or bound with \
+                             all_but_percent",
                         ),
                     }
                 }

@@ -85,6 +85,7 @@ pub(super) const PROFILES: &[&str] = &[
     "impedance",
     "hysteresis",
     "held",
+    "any",
     "csv",
 ];
 
@@ -145,7 +146,7 @@ pub(super) const KEYS: &[Key] = &[
     key("profile", "rest_s", Number(0.001, 1e3), "shortest rest between steps"),
     key("profile", "angle_rad", Number(-1e4, 1e4), "where to stay"),
     key("profile", "torque_N_m", TORQUE, "torque on the link that disturbs the hold"),
-    key("profile", "wave", Word(&["sine", "square"]), "how the load that disturbs a hold goes to and fro"),
+    key("profile", "wave", Word(&["sine", "square", "walk"]), "how the load that disturbs a hold goes to and fro"),
     key("profile", "pulse_s", Number(1e-4, 100.0), "length of a push"),
     key("profile", "file", Text, "a CSV with the columns time_s and position_rad, and load_torque_N_m if there is one"),
     // Controller

@@ -37,6 +37,8 @@ pub enum Trajectory {
     Hold(f64),
     /// As a CSV file has it.
     File(String),
+    /// Any that the motor can follow: each seed draws one, and a load with it.
+    Any,
 }
 
 /// The load on the link as part of the profile; a torque that is not given scales with the rated one.
@@ -61,6 +63,8 @@ pub enum Wave {
     Sine,
     /// At once.
     Square,
+    /// As under a foot that is set down: within 20 ms.
+    Walk,
 }
 
 /// A disturbance torque on the link, as given in the file.
@@ -109,9 +113,38 @@ impl MotionProfile {
             "impact" => Self { load: ProfileLoad::Impacts(None, 0.01), ..usual },
             "hysteresis" => Self { load: ProfileLoad::Slow(None, 0.25), duration: 9.0, settle: 1.0, ..usual },
             "held" => Self { friction: Some(BRAKE), duration: 1.0, settle: 0.0, ..usual },
+            // What the file says of the link stays.
+            "any" => Self { trajectory: Trajectory::Any, gravity: None, ..usual },
             // A recording brings its own load, or none.
             _ => Self { gravity: None, ..usual },
         }
+    }
+
+    /// The numbers of a motion that was drawn and of its load.
+    pub fn numbers(&self) -> Vec<(&'static str, f64)> {
+        let mut numbers = match self.trajectory {
+            Trajectory::Sine(amplitude, frequency) => {
+                vec![("profile.sine.amplitude_rad", amplitude), ("profile.sine.frequency_Hz", frequency)]
+            }
+            Trajectory::Random(amplitude, highest) => {
+                vec![("profile.random.amplitude_rad", amplitude), ("profile.random.highest_Hz", highest)]
+            }
+            Trajectory::Steps(height, duration, rest) => vec![
+                ("profile.steps.height_rad", height),
+                ("profile.steps.move_s", duration),
+                ("profile.steps.rest_s", rest),
+            ],
+            Trajectory::Hold(_) | Trajectory::File(_) | Trajectory::Any => Vec::new(),
+        };
+        if let ProfileLoad::Wave(wave, Some(torque), frequency) = self.load {
+            let of_wave = match wave {
+                Wave::Sine => "profile.load.sine_N_m",
+                Wave::Square => "profile.load.square_N_m",
+                Wave::Walk => "profile.load.walk_N_m",
+            };
+            numbers.extend([(of_wave, torque), ("profile.load.frequency_Hz", frequency)]);
+        }
+        numbers
     }
 
     /// Four periods to be judged by, after as much as learning takes.
@@ -146,7 +179,7 @@ pub(super) fn read(section: &Section<'_>) -> Option<MotionProfile> {
                 set("rest_s", rest);
             }
             Trajectory::Hold(angle) => set("angle_rad", angle),
-            Trajectory::File(_) => {}
+            Trajectory::File(_) | Trajectory::Any => {}
         }
         match &mut profile.load {
             ProfileLoad::None => {}
@@ -164,9 +197,11 @@ pub(super) fn read(section: &Section<'_>) -> Option<MotionProfile> {
     }
     if let ProfileLoad::Wave(wave, ..) = &mut profile.load {
         taken.push("wave");
-        if section.word("wave") == Some("square") {
-            *wave = Wave::Square;
-        }
+        *wave = match section.word("wave") {
+            Some("square") => Wave::Square,
+            Some("walk") => Wave::Walk,
+            _ => *wave,
+        };
     }
     if let Trajectory::Sine(_, frequency) = profile.trajectory
         && section.has("frequency_Hz")

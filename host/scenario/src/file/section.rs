@@ -7,11 +7,8 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::keys::{Key, Kind};
-use crate::random::NumberOrRange;
+use crate::random::{MOST_SEEDS, NumberOrRange};
 use report::number::TYPED;
-
-/// Seeds that a number may ask for: more are a slip of the keyboard.
-const MOST_SEEDS: u64 = 10_000;
 
 /// One table of the file.
 pub(super) struct Section<'a>(Table<'a, Kind>);

@@ -1,0 +1,136 @@
+//! The profile `any`: a motion that each seed draws, and in many of them a load on the link, both together within the
+//! motor's torque. What is drawn depends on the seed and the true joint only, so that any one of ten thousand is run
+//! again by its number.
+
+use std::f64::consts::TAU;
+
+use joint_file::JointFile;
+use reference::closed_loop::rivals::Knowledge;
+
+use super::file::{MotionProfile, ProfileLoad, Trajectory, Wave};
+use super::random::RandomStream;
+
+/// Part of what the motor can give that motion and load may take together. The rest is the controllers', for their
+/// feedback and for torque constants that are less than they say.
+const TAKEN: f64 = 0.8;
+/// Least and most that a motion takes of that, and a load of what a motion leaves.
+const SHARE: [f64; 2] = [0.1, 0.9];
+/// From the slowest to the fastest motion [Hz].
+const FREQUENCY: [f64; 2] = [0.1, 3.0];
+/// From the slowest to the fastest load [Hz].
+const LOAD_FREQUENCY: [f64; 2] = [0.3, 2.0];
+/// Durations of a move [s], from steps to moves that are no shorter than those of an arm.
+const MOVE: [f64; 2] = [0.04, 1.0];
+/// Shortest rests between moves [s].
+const REST: [f64; 2] = [0.2, 1.0];
+/// A slow motion goes no farther than this [rad].
+const FARTHEST: f64 = 0.6;
+/// Most of a load to and fro, beyond what friction takes of it, over the rated torque [-]: it changes by 5 N m in 20 ms on Q1.
+const HARDEST_LOAD: f64 = 2.5 / 12.0;
+/// Part of the motions that go under a load; holds always do.
+const LOADED: f64 = 0.4;
+/// Largest acceleration of a least-jerk path, times its duration squared over its height: 10 / sqrt(3).
+const LEAST_JERK: f64 = 5.773_502_691_896_258;
+/// Largest acceleration of five sines over their standard deviation and the square of the highest's rate, all of them at
+/// the upper ends of their fifths: sqrt(2/5) (1 + 4 + 9 + 16 + 25) / 25.
+const FIVE_SINES: f64 = 1.391_402_175_4;
+
+/// The motion and the load of a seed, for a joint as it truly is.
+pub fn any_motion(joint: &Knowledge, truth: &JointFile, seed: u64) -> MotionProfile {
+    let mut stream = RandomStream::new(seed, "any motion");
+    let usual = MotionProfile::of_kind("any");
+    let inertia = joint.total_inertia * joint.ratio * joint.ratio;
+    let room = TAKEN * torque_left(joint, truth);
+    let kind = stream.uniform();
+    let share = between(SHARE, &mut stream);
+    // A weight that the motor can hardly hold leaves no motion but a slow one.
+    let acceleration = (share * room).max(0.0) / inertia;
+    let frequency = evenly_in_logarithm(FREQUENCY, &mut stream);
+    let duration = evenly_in_logarithm(MOVE, &mut stream);
+    let rest = between(REST, &mut stream);
+    let rate = TAU * frequency;
+    let trajectory = match kind {
+        ..0.3 => Trajectory::Sine((acceleration / (rate * rate)).min(FARTHEST), frequency),
+        ..0.5 => Trajectory::Random((acceleration / (FIVE_SINES * rate * rate)).min(0.5 * FARTHEST), frequency),
+        ..0.8 => Trajectory::Steps((acceleration * duration * duration / LEAST_JERK).min(FARTHEST), duration, rest),
+        _ => Trajectory::Hold(0.0),
+    };
+    let holds = matches!(trajectory, Trajectory::Hold(_));
+    let loaded = stream.uniform() < LOADED || holds;
+    let left = if holds { room } else { (1.0 - share) * room };
+    let most = (HARDEST_LOAD * truth.parameters.rated_output_torque).min(left.max(0.0));
+    // A load that the link's friction holds moves nothing, and there is nothing to compare.
+    let held = if holds { break_away(joint, truth) } else { 0.0 };
+    let torque = held + between(SHARE, &mut stream) * most;
+    let wave = if stream.uniform() < 0.7 { Wave::Walk } else { Wave::Sine };
+    let load = ProfileLoad::Wave(wave, Some(torque), evenly_in_logarithm(LOAD_FREQUENCY, &mut stream));
+    MotionProfile { trajectory, load: if loaded { load } else { ProfileLoad::None }, ..usual }
+}
+
+/// What is left of the motor's torque, at the link, for acceleration and load [N m].
+fn torque_left(joint: &Knowledge, truth: &JointFile) -> f64 {
+    let around = &truth.surroundings;
+    let motor = around.torque_limit * (1.0 + around.torque_constant_error_ratio.min(0.0));
+    let at_motor = motor - joint.motor_friction - around.cogging_torque;
+    around.efficiency * joint.ratio * at_motor - joint.gravity.abs() - break_away(joint, truth)
+}
+
+/// Dry friction of the link at rest [N m].
+fn break_away(joint: &Knowledge, truth: &JointFile) -> f64 {
+    (1.0 + truth.surroundings.load_friction.stribeck_rise_ratio) * joint.load_friction
+}
+
+fn between([low, high]: [f64; 2], stream: &mut RandomStream) -> f64 {
+    low + (high - low) * stream.uniform()
+}
+
+fn evenly_in_logarithm([low, high]: [f64; 2], stream: &mut RandomStream) -> f64 {
+    low * (high / low).powf(stream.uniform())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::Case;
+    use crate::file;
+
+    /// A hundred motions with their loads of the preset Q1: each seed its own, all of them within the motor's torque.
+    #[test]
+    fn motions_and_loads_are_within_the_motors_torque_and_no_two_are_the_same() {
+        let text = joint_file::preset("q1").expect("a preset");
+        let test = file::read("profile = \"any\"").expect("a test file");
+        let mut kinds = [0; 4];
+        let mut before = Vec::new();
+        for seed in 1..=100 {
+            let case = Case::new(&test, text, seed, None).expect("a case");
+            let joint = Knowledge::of(&case.truth.parameters, &case.train, case.width_guess);
+            let inertia = joint.total_inertia * joint.ratio * joint.ratio;
+            let profile = any_motion(&joint, &case.truth, seed);
+            kinds[match profile.trajectory {
+                Trajectory::Sine(..) => 0,
+                Trajectory::Random(..) => 1,
+                Trajectory::Steps(..) => 2,
+                _ => 3,
+            }] += 1;
+            // Once a sine has swelled up; a load may come at its worst.
+            let times = (1000..6000).map(|moment| f64::from(moment) * 1e-3);
+            let accelerated = times.map(|time| inertia * case.motion.at(time).acceleration.abs()).fold(0.0, f64::max);
+            let load = match profile.load {
+                ProfileLoad::Wave(_, Some(torque), _) => torque,
+                _ => 0.0,
+            };
+            let carried =
+                if matches!(profile.trajectory, Trajectory::Hold(_)) { break_away(&joint, &case.truth) } else { 0.0 };
+            let most = TAKEN * torque_left(&joint, &case.truth);
+            assert!(
+                accelerated + load - carried <= most * (1.0 + 1e-9),
+                "seed {seed}: {accelerated} + {load} of {most}"
+            );
+            assert!(accelerated + load > 0.0, "seed {seed} asks for nothing");
+            let numbers = profile.numbers();
+            assert!(numbers != before, "seed {seed} is the one before it");
+            before = numbers;
+        }
+        assert!(kinds.iter().all(|count| *count >= 10), "{kinds:?}");
+    }
+}

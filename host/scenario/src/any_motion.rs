@@ -12,7 +12,7 @@ use super::random::RandomStream;
 
 /// Part of what the motor can give that motion and load may take together. The rest is the controllers', for their
 /// feedback and for torque constants that are less than they say.
-const TAKEN: f64 = 0.8;
+pub(super) const TAKEN: f64 = 0.8;
 /// Least and most that a motion takes of that, and a load of what a motion leaves.
 const SHARE: [f64; 2] = [0.1, 0.9];
 /// From the slowest to the fastest motion [Hz].
@@ -68,7 +68,7 @@ pub fn any_motion(joint: &Knowledge, truth: &JointFile, seed: u64) -> MotionProf
 }
 
 /// What is left of the motor's torque, at the link, for acceleration and load [N m].
-fn torque_left(joint: &Knowledge, truth: &JointFile) -> f64 {
+pub(super) fn torque_left(joint: &Knowledge, truth: &JointFile) -> f64 {
     let around = &truth.surroundings;
     let motor = around.torque_limit * (1.0 + around.torque_constant_error_ratio.min(0.0));
     let at_motor = motor - joint.motor_friction - around.cogging_torque;
@@ -76,7 +76,7 @@ fn torque_left(joint: &Knowledge, truth: &JointFile) -> f64 {
 }
 
 /// Dry friction of the link at rest [N m].
-fn break_away(joint: &Knowledge, truth: &JointFile) -> f64 {
+pub(super) fn break_away(joint: &Knowledge, truth: &JointFile) -> f64 {
     (1.0 + truth.surroundings.load_friction.stribeck_rise_ratio) * joint.load_friction
 }
 
@@ -86,51 +86,4 @@ fn between([low, high]: [f64; 2], stream: &mut RandomStream) -> f64 {
 
 fn evenly_in_logarithm([low, high]: [f64; 2], stream: &mut RandomStream) -> f64 {
     low * (high / low).powf(stream.uniform())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::case::Case;
-    use crate::file;
-
-    /// A hundred motions with their loads of the preset Q1: each seed its own, all of them within the motor's torque.
-    #[test]
-    fn motions_and_loads_are_within_the_motors_torque_and_no_two_are_the_same() {
-        let text = joint_file::preset("q1").expect("a preset");
-        let test = file::read("profile = \"any\"").expect("a test file");
-        let mut kinds = [0; 4];
-        let mut before = Vec::new();
-        for seed in 1..=100 {
-            let case = Case::new(&test, text, seed, None).expect("a case");
-            let joint = Knowledge::of(&case.truth.parameters, &case.train, case.width_guess);
-            let inertia = joint.total_inertia * joint.ratio * joint.ratio;
-            let profile = any_motion(&joint, &case.truth, seed);
-            kinds[match profile.trajectory {
-                Trajectory::Sine(..) => 0,
-                Trajectory::Random(..) => 1,
-                Trajectory::Steps(..) => 2,
-                _ => 3,
-            }] += 1;
-            // Once a sine has swelled up; a load may come at its worst.
-            let times = (1000..6000).map(|moment| f64::from(moment) * 1e-3);
-            let accelerated = times.map(|time| inertia * case.motion.at(time).acceleration.abs()).fold(0.0, f64::max);
-            let load = match profile.load {
-                ProfileLoad::Wave(_, Some(torque), _) => torque,
-                _ => 0.0,
-            };
-            let carried =
-                if matches!(profile.trajectory, Trajectory::Hold(_)) { break_away(&joint, &case.truth) } else { 0.0 };
-            let most = TAKEN * torque_left(&joint, &case.truth);
-            assert!(
-                accelerated + load - carried <= most * (1.0 + 1e-9),
-                "seed {seed}: {accelerated} + {load} of {most}"
-            );
-            assert!(accelerated + load > 0.0, "seed {seed} asks for nothing");
-            let numbers = profile.numbers();
-            assert!(numbers != before, "seed {seed} is the one before it");
-            before = numbers;
-        }
-        assert!(kinds.iter().all(|count| *count >= 10), "{kinds:?}");
-    }
 }

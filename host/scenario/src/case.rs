@@ -293,3 +293,51 @@ fn trajectory(profile: &MotionProfile, recorded: Option<&RecordedMotion>, seed: 
         (Trajectory::File(_) | Trajectory::Any, None) => Arc::new(Standard::Hold(0.0)),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Case;
+    use crate::any_motion::{TAKEN, any_motion, break_away, torque_left};
+    use crate::file::{self, ProfileLoad, Trajectory};
+    use reference::closed_loop::rivals::Knowledge;
+
+    /// A hundred motions with their loads of the preset Q1: each seed its own, all of them within the motor's torque.
+    #[test]
+    fn motions_and_loads_are_within_the_motors_torque_and_no_two_are_the_same() {
+        let text = joint_file::preset("q1").expect("a preset");
+        let test = file::read("profile = \"any\"").expect("a test file");
+        let mut kinds = [0; 4];
+        let mut before = Vec::new();
+        for seed in 1..=100 {
+            let case = Case::new(&test, text, seed, None).expect("a case");
+            let joint = Knowledge::of(&case.truth.parameters, &case.train, case.width_guess);
+            let inertia = joint.total_inertia * joint.ratio * joint.ratio;
+            let profile = any_motion(&joint, &case.truth, seed);
+            kinds[match profile.trajectory {
+                Trajectory::Sine(..) => 0,
+                Trajectory::Random(..) => 1,
+                Trajectory::Steps(..) => 2,
+                _ => 3,
+            }] += 1;
+            // Once a sine has swelled up; a load may come at its worst.
+            let times = (1000..6000).map(|moment| f64::from(moment) * 1e-3);
+            let accelerated = times.map(|time| inertia * case.motion.at(time).acceleration.abs()).fold(0.0, f64::max);
+            let load = match profile.load {
+                ProfileLoad::Wave(_, Some(torque), _) => torque,
+                _ => 0.0,
+            };
+            let carried =
+                if matches!(profile.trajectory, Trajectory::Hold(_)) { break_away(&joint, &case.truth) } else { 0.0 };
+            let most = TAKEN * torque_left(&joint, &case.truth);
+            assert!(
+                accelerated + load - carried <= most * (1.0 + 1e-9),
+                "seed {seed}: {accelerated} + {load} of {most}"
+            );
+            assert!(accelerated + load > 0.0, "seed {seed} asks for nothing");
+            let numbers = profile.numbers();
+            assert!(numbers != before, "seed {seed} is the one before it");
+            before = numbers;
+        }
+        assert!(kinds.iter().all(|count| *count >= 10), "{kinds:?}");
+    }
+}

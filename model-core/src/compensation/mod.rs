@@ -16,6 +16,7 @@
 
 mod braking;
 mod crossing;
+mod delay;
 #[cfg(feature = "design")]
 pub mod design;
 mod flank;

@@ -122,7 +122,7 @@ impl<T: Real> FlankControl<T> {
         let [_, _, acceleration] = self.path.at(self.elapsed + tables.crossing.reaction);
         tables.body.motor_inertia * acceleration
             + tables.crossing.stiffness * (target - self.drift(tables, situation) - situation.motor)
-            + situation.motor_damping * (rate - situation.motor_speed)
+            + tables.law.motor_damping * (rate - situation.motor_speed)
             + situation.lost(tables, rate, T::ZERO)
     }
 
@@ -279,7 +279,7 @@ impl<T: Real> FlankControl<T> {
 /// Torque of a motor that goes along with the free link, and by so much faster [N m].
 fn along<T: Real>(tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>, faster: T) -> T {
     tables.body.motor_inertia * intent.free_acceleration
-        + situation.motor_damping * (situation.link_speed + faster - situation.motor_speed)
+        + tables.law.motor_damping * (situation.link_speed + faster - situation.motor_speed)
         + situation.lost(tables, situation.link_speed, T::ZERO)
 }
 

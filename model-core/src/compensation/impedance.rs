@@ -42,7 +42,7 @@ impl<T: Real> ImpedanceLaw<T> {
         // swing of motor against link, but for what the loop's delays would add to it.
         let law = clamp(spring, -tables.limits.motor, tables.limits.motor)
             + point.damping * (point.speed - situation.motor_speed)
-            + tables.law.impedance_damping * situation.damping_torque();
+            + tables.law.impedance_damping * situation.damping_torque(tables);
         let free = load.even() + load.drag();
         self.stream.step(tables, point);
         let overdue = self.stream.overdue(tables);

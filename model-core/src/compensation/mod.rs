@@ -16,7 +16,6 @@
 
 mod braking;
 mod crossing;
-mod delay;
 #[cfg(feature = "design")]
 pub mod design;
 mod flank;

@@ -7,7 +7,7 @@ use super::set_point::{ImpedancePoint, Motion};
 use super::situation::Situation;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
-use crate::numbers::arithmetic::clamp;
+use crate::numbers::arithmetic::{beyond, clamp};
 
 /// The integral of the PID, and what lies between motor and link.
 #[derive(Debug, Clone)]
@@ -18,6 +18,11 @@ pub(super) struct Plain<T: Real> {
     /// 1 or -1: the flank that the motion asked for and the load will have carry; less of it where that is as small as what
     /// the torques are known to. Nothing is foreseen of an impedance, nor without a link to be seen.
     foreseen: Option<T>,
+    /// 1 or -1: to which side the torque last was large, fading to 0.
+    large: T,
+    /// Whether the torque has gone from large to large of the other side within that: the loop has more delay than it was
+    /// designed for.
+    swings: bool,
 }
 
 impl<T: Real> Plain<T> {
@@ -28,8 +33,15 @@ impl<T: Real> Plain<T> {
     /// By how much slower than the loop itself what lies between motor and link is smoothed [-].
     const SMOOTHING: T = T::QUARTER;
 
+    /// A torque is large beyond this part of the motor's limit [-].
+    const LARGE: T = T::HALF;
+
+    /// Time constants of the loop over that within which the torque goes from side to side where it swings [-]. No motion
+    /// that the loop can follow does.
+    const SWINGS: T = T::FOUR;
+
     pub fn new() -> Self {
-        Self { integral: T::ZERO, beyond: T::ZERO, foreseen: None }
+        Self { integral: T::ZERO, beyond: T::ZERO, foreseen: None, large: T::ZERO, swings: false }
     }
 
     /// Where the motor is, less what lies between it and the link [rad].
@@ -53,20 +65,22 @@ impl<T: Real> Plain<T> {
         // open gap would strike. At rest all of it acts on the motor, as long as that does not swing: it takes the link's
         // energy out in fewer blows, which show the gap sooner.
         let rests = now.speed == T::ZERO && now.acceleration == T::ZERO;
-        let on_motor = if !situation.feels || (rests && !situation.delayed) {
+        let on_motor = if !situation.feels || (rests && !self.swings) {
             tables.law.damping
         } else {
-            (T::ONE + T::HALF) * situation.motor_damping
+            (T::ONE + T::HALF) * tables.law.motor_damping
         };
         let on_link = if situation.open { T::ZERO } else { tables.law.damping - on_motor };
         // A blow is over before it could be answered.
         let known = if load.throws(tables) { T::ZERO } else { load.even() + load.planned_drag(tables, now.speed) };
-        (tables.body.load_inertia + tables.body.motor_inertia) * now.acceleration
+        let torque = (tables.body.load_inertia + tables.body.motor_inertia) * now.acceleration
             - tables.law.position * self.place(situation)
             + on_motor * (now.speed - situation.motor_speed)
             + on_link * situation.error_rate
             + known
-            + self.integral
+            + self.integral;
+        self.watch(tables, torque);
+        torque
     }
 
     /// Torque of the impedance law [N m].
@@ -106,6 +120,18 @@ impl<T: Real> Plain<T> {
         let next = self.integral + (T::ONE - trust) * growth - trust * tables.law.back_calculation * self.integral;
         if next.is_finite() {
             self.integral = clamp(next, -tables.limits.motor, tables.limits.motor);
+        }
+    }
+
+    /// Notices a swing of the torque from side to side.
+    fn watch(&mut self, tables: &CompensationTables<T>, torque: T) {
+        let excess = beyond(torque, Self::LARGE * tables.limits.motor);
+        if excess == T::ZERO {
+            self.large = beyond(self.large, Self::SWINGS * tables.law.back_calculation);
+        } else {
+            let side = if excess > T::ZERO { T::ONE } else { -T::ONE };
+            self.swings |= side * self.large < T::ZERO;
+            self.large = side;
         }
     }
 }

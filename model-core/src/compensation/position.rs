@@ -96,7 +96,7 @@ impl<T: Real> PositionLaw<T> {
         let passed = clamp(all, -most, most);
         let useful = useful - tables.body.inverse_load_share * (all - passed);
         let asked_for = useful + situation.lost(tables, now.speed, passed);
-        let law = clamp(asked_for, -tables.limits.motor, tables.limits.motor) + situation.damping_torque();
+        let law = clamp(asked_for, -tables.limits.motor, tables.limits.motor) + situation.damping_torque(tables);
         let lost = situation.lost(tables, situation.link_speed, passed);
         let law = limited(tables, load, situation, law - lost, allowed) + lost;
         let level = load.even()

@@ -1,7 +1,6 @@
 //! Where everything is, referred to the link, as the estimates have it: what the rest of the compensation works on. It
 //! is made anew every control period and carries no state.
 
-use super::delay::Delay;
 use super::set_point::{CommandRef, Position};
 use crate::compensation::tables::CompensationTables;
 use crate::gears::Flank;
@@ -50,10 +49,6 @@ pub(super) struct Situation<T: Real> {
     pub contact: Option<Flank>,
     /// Whether the teeth are known to pass on nothing.
     pub open: bool,
-    /// Whether the loop has more delay than it was designed for.
-    pub delayed: bool,
-    /// What the loop's delays allow the damper on the motor [N m s/rad].
-    pub motor_damping: T,
     /// Whether both shafts are seen.
     pub feels: bool,
     /// Whether it is known where in the gap the motor is as well.
@@ -61,13 +56,7 @@ pub(super) struct Situation<T: Real> {
 }
 
 impl<T: Real> Situation<T> {
-    pub fn new(
-        tables: &CompensationTables<T>,
-        estimates: &Estimates<T>,
-        offset: T,
-        command: CommandRef<T>,
-        delay: &Delay<T>,
-    ) -> Self {
+    pub fn new(tables: &CompensationTables<T>, estimates: &Estimates<T>, offset: T, command: CommandRef<T>) -> Self {
         let (origin, speed) = match command {
             CommandRef::Position { now, .. } => (now.position, now.speed),
             CommandRef::Impedance(point) => (point.position, point.speed),
@@ -110,8 +99,6 @@ impl<T: Real> Situation<T> {
             gap: at_link * estimates.gap.value,
             contact,
             open: estimates.contact_valid && contact.is_none(),
-            delayed: delay.is_longer(),
-            motor_damping: delay.motor_damping(tables),
             feels: false,
             sees: false,
         };
@@ -140,8 +127,8 @@ impl<T: Real> Situation<T> {
 
     /// Torque of the damper on the motor against the link; it leaves alone what the transmission error makes the motor do
     /// [N m].
-    pub fn damping_torque(&self) -> T {
-        self.motor_damping * (self.link_speed + self.transmission_error_speed - self.motor_speed)
+    pub fn damping_torque(&self, tables: &CompensationTables<T>) -> T {
+        tables.law.motor_damping * (self.link_speed + self.transmission_error_speed - self.motor_speed)
     }
 }
 

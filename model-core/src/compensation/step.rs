@@ -1,6 +1,5 @@
 //! One control period of the compensation: the law that the command asks for, which flank carries it, and the torque.
 
-use super::delay::Delay;
 use super::flank::FlankControl;
 use super::impedance::ImpedanceLaw;
 use super::load::LoadModel;
@@ -57,7 +56,6 @@ pub struct Compensation<'tables, T: Real> {
     position: PositionLaw<T>,
     impedance: ImpedanceLaw<T>,
     plain: Plain<T>,
-    delay: Delay<T>,
     /// By how much the motor's encoder leads the output's, as last valid alone or as part of the gap coordinate; at
     /// the output [rad].
     offset: T,
@@ -75,7 +73,6 @@ impl<'tables, T: Real> Compensation<'tables, T> {
             position: PositionLaw::new(),
             impedance: ImpedanceLaw::new(),
             plain: Plain::new(),
-            delay: Delay::new(),
             offset: T::ZERO,
             trust: T::ZERO,
         }
@@ -84,7 +81,6 @@ impl<'tables, T: Real> Compensation<'tables, T> {
     /// Back to what was designed, part by part: a whole new compensation would need as much stack again.
     pub fn restart(&mut self) {
         self.load = LoadModel::new();
-        self.delay = Delay::new();
         self.offset = T::ZERO;
         self.let_go();
     }
@@ -121,7 +117,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         if known && estimates.encoder_offset.value.is_finite() {
             self.offset = estimates.encoder_offset.value;
         }
-        let situation = Situation::new(tables, estimates, self.offset, command, &self.delay);
+        let situation = Situation::new(tables, estimates, self.offset, command);
         // Teeth that lie by a flank too early are felt now and then, but carry nothing of the load.
         let situation = Situation { open: situation.open || self.flank.waits(), ..situation };
         let leans = self.flank.stage() == Stage::Touching && situation.open && situation.sees;
@@ -130,11 +126,10 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         }
         self.load.observe(tables, estimates, &situation);
         let (intent, plain) = match command {
-            CommandRef::Position { now, ahead } => {
-                let plain = self.plain.follow(tables, &self.load, &situation, now);
-                self.delay.watch(tables, plain);
-                (self.position.intend(tables, &self.load, &situation, now, ahead), plain)
-            }
+            CommandRef::Position { now, ahead } => (
+                self.position.intend(tables, &self.load, &situation, now, ahead),
+                self.plain.follow(tables, &self.load, &situation, now),
+            ),
             CommandRef::Impedance(point) => {
                 (self.impedance.intend(tables, &self.load, &situation, point), self.plain.yield_to(&situation, point))
             }

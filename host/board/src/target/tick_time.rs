@@ -215,9 +215,9 @@ mod tests {
         for role in [Role::Plant, Role::Observer, Role::Loop] {
             let board = Board::emulated();
             let on_board = OnBoard::new(&q1, &board, role);
-            let help = on_board.refuse_unless_forced(84_000, false).unwrap_err().help().unwrap_or_default().to_owned();
+            let help = on_board.refuse_unless_forced(168_000, false).unwrap_err().help().unwrap_or_default().to_owned();
             assert!(help.contains("--force"), "{help}");
-            assert_eq!(on_board.refuse_unless_forced(84_000, true).ok(), Some(true), "{role:?}");
+            assert_eq!(on_board.refuse_unless_forced(168_000, true).ok(), Some(true), "{role:?}");
             assert_eq!(on_board.refuse_unless_forced(5000, true).ok(), Some(false), "{role:?}");
             for rate in [100, 20_001] {
                 let help = on_board.refuse_unless_forced(rate, true).unwrap_err().help().unwrap_or_default().to_owned();

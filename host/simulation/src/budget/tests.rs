@@ -34,14 +34,14 @@ fn every_preset_can_be_stepped_at_the_usual_rate_on_the_emulated_board() {
 #[test]
 fn a_rate_that_takes_too_long_is_told_with_the_nearest_that_fits() {
     let board = Board::emulated();
-    let told = budget("q1", &board, 84_000);
+    let told = budget("q1", &board, 168_000);
     let rate = told.verdicts.time.rate_that_fits_Hz.expect("there is one");
     assert!(!told.verdicts.time.fits && layout(&told).contains("DOES NOT FIT"), "{}", layout(&told));
     assert!(layout(&told).contains(&format!("{rate} Hz would fit")), "{}", layout(&told));
     let joint = preset("q1");
     let on_board = OnBoard::new(&joint, &board, Role::Plant);
     assert!(on_board.refuse(rate).is_ok());
-    let nearer = (1..rate.abs_diff(84_000)).flat_map(|off| [84_000 - off, 84_000 + off]);
+    let nearer = (1..rate.abs_diff(168_000)).flat_map(|off| [168_000 - off, 168_000 + off]);
     assert_eq!(nearer.into_iter().find(|rate| on_board.obstacle(*rate).is_none()), None);
 }
 

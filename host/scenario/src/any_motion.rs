@@ -8,13 +8,13 @@ use joint_file::JointFile;
 use reference::closed_loop::rivals::Knowledge;
 
 use super::file::{MotionProfile, ProfileLoad, Trajectory, Wave};
-use super::random::RandomStream;
+use super::random::{NumberOrRange, RandomStream};
 
 /// Part of what the motor can give that motion and load may take together. The rest is the controllers', for their
 /// feedback and for torque constants that are less than they say.
 pub(super) const TAKEN: f64 = 0.8;
 /// Least and most that a motion takes of that, and a load of what a motion leaves.
-const SHARE: [f64; 2] = [0.1, 0.9];
+const SHARE: NumberOrRange = NumberOrRange::Between(0.1, 0.9);
 /// From the slowest to the fastest motion [Hz].
 const FREQUENCY: [f64; 2] = [0.1, 3.0];
 /// From the slowest to the fastest load [Hz].
@@ -22,7 +22,7 @@ const LOAD_FREQUENCY: [f64; 2] = [0.3, 2.0];
 /// Durations of a move [s], from steps to moves that are no shorter than those of an arm.
 const MOVE: [f64; 2] = [0.04, 1.0];
 /// Shortest rests between moves [s].
-const REST: [f64; 2] = [0.2, 1.0];
+const REST: NumberOrRange = NumberOrRange::Between(0.2, 1.0);
 /// A slow motion goes no farther than this [rad].
 const FARTHEST: f64 = 0.6;
 /// Most of a load to and fro, beyond what friction takes of it, over the rated torque [-]: it changes by 5 N m in 20 ms on Q1.
@@ -42,12 +42,12 @@ pub fn any_motion(joint: &Knowledge, truth: &JointFile, seed: u64) -> MotionProf
     let inertia = joint.total_inertia * joint.ratio * joint.ratio;
     let room = TAKEN * torque_left(joint, truth);
     let kind = stream.uniform();
-    let share = between(SHARE, &mut stream);
+    let share = SHARE.draw(&mut stream);
     // A weight that the motor can hardly hold leaves no motion but a slow one.
     let acceleration = (share * room).max(0.0) / inertia;
     let frequency = evenly_in_logarithm(FREQUENCY, &mut stream);
     let duration = evenly_in_logarithm(MOVE, &mut stream);
-    let rest = between(REST, &mut stream);
+    let rest = REST.draw(&mut stream);
     let rate = TAU * frequency;
     let trajectory = match kind {
         ..0.3 => Trajectory::Sine((acceleration / (rate * rate)).min(FARTHEST), frequency),
@@ -61,7 +61,7 @@ pub fn any_motion(joint: &Knowledge, truth: &JointFile, seed: u64) -> MotionProf
     let most = (HARDEST_LOAD * truth.parameters.rated_output_torque).min(left.max(0.0));
     // A load that the link's friction holds moves nothing, and there is nothing to compare.
     let held = if holds { break_away(joint, truth) } else { 0.0 };
-    let torque = held + between(SHARE, &mut stream) * most;
+    let torque = held + SHARE.draw(&mut stream) * most;
     let wave = if stream.uniform() < 0.7 { Wave::Walk } else { Wave::Sine };
     let load = ProfileLoad::Wave(wave, Some(torque), evenly_in_logarithm(LOAD_FREQUENCY, &mut stream));
     MotionProfile { trajectory, load: if loaded { load } else { ProfileLoad::None }, ..usual }
@@ -78,10 +78,6 @@ pub(super) fn torque_left(joint: &Knowledge, truth: &JointFile) -> f64 {
 /// Dry friction of the link at rest [N m].
 pub(super) fn break_away(joint: &Knowledge, truth: &JointFile) -> f64 {
     (1.0 + truth.surroundings.load_friction.stribeck_rise_ratio) * joint.load_friction
-}
-
-fn between([low, high]: [f64; 2], stream: &mut RandomStream) -> f64 {
-    low + (high - low) * stream.uniform()
 }
 
 fn evenly_in_logarithm([low, high]: [f64; 2], stream: &mut RandomStream) -> f64 {

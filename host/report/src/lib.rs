@@ -1,5 +1,5 @@
 //! What every command shares with its user: failures and exit codes, files that are written whole or not at all,
-//! progress, interruption, checks, provenance, HTML pages and vector plots.
+//! progress, interruption, checks, seeds, provenance, HTML pages and vector plots.
 
 pub mod checks;
 pub mod command_line;
@@ -19,6 +19,7 @@ pub mod progress;
 pub mod provenance;
 #[cfg(feature = "schema")]
 pub mod schema;
+pub mod seeds;
 pub mod spectrum;
 pub mod workspace;
 pub mod write;

@@ -15,7 +15,6 @@ use super::log_file::{self, LoggedRun};
 use super::memory_file;
 use super::on_board::Boards;
 use super::plant::PlantName;
-use super::random::Seeds;
 use super::record::{AssertionRecord, TestRecord, TestRun};
 use super::rig::RunError;
 use super::suite::Test;
@@ -26,6 +25,7 @@ use report::checks::Verdict;
 use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
 use report::folder::Folder;
+use report::seeds::Seeds;
 
 /// How tests are run.
 pub struct RunOptions<'c> {
@@ -77,7 +77,7 @@ impl Test {
     /// Seeds of a run.
     pub fn seeds(&self, seed: Option<Seeds>, full: bool) -> Vec<u64> {
         match (seed, full) {
-            (Some(Seeds { first, last }), _) => (first..=last).collect(),
+            (Some(seeds), _) => seeds.each().collect(),
             (None, true) => self.file.full_seeds.clone(),
             (None, false) => self.file.seeds.clone(),
         }

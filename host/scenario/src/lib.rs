@@ -49,7 +49,6 @@ use std::time::Instant;
 use campaign::{FinishedTest, RunOptions};
 use on_board::{BoardRequest, Boards};
 use plant::PlantName;
-use random::Seeds;
 use rayon::prelude::*;
 use record::{NotRun, SCHEMA, TestsRecord};
 use suite::{Choice, Suite, Test};
@@ -60,6 +59,7 @@ use report::folder::{self, Folder};
 use report::output;
 use report::progress::Progress;
 use report::provenance;
+use report::seeds::Seeds;
 use report::write::write_text;
 
 /// The page, the results as JSON and as JUnit XML, and a log of every run.

@@ -1,9 +1,6 @@
 //! What varies from seed to seed: values drawn from ranges, each from a random stream of its own, so that another
 //! variation in a file leaves the others as they were. Noise of motor and encoders is drawn in the drive train.
 
-use std::fmt::{self, Display, Formatter};
-use std::str::FromStr;
-
 use model_core::numbers::random::splitmix64;
 
 /// A number, or a range to draw from.
@@ -40,44 +37,6 @@ impl NumberOrRange {
         match self {
             Self::Exactly(value) => [value, value],
             Self::Between(low, high) => [low, high],
-        }
-    }
-}
-
-/// Seeds from one to another, in place of those of a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Seeds {
-    /// The first.
-    pub first: u64,
-    /// The last.
-    pub last: u64,
-}
-
-/// Most seeds of a run: more are a slip of the keyboard.
-pub const MOST_SEEDS: u64 = 10_000;
-
-impl FromStr for Seeds {
-    type Err = String;
-
-    /// `7`, or `1-10000`.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let (first, last) = text.split_once('-').filter(|(first, _)| !first.is_empty()).unwrap_or((text, text));
-        let [Ok(first), Ok(last)] = [first, last].map(str::parse) else {
-            return Err(format!("a seed is a whole number from 0 to {}, several are written as 1-200", u64::MAX));
-        };
-        match last {
-            last if last < first => Err(format!("no seed is from {first} to {last}")),
-            last if last - first >= MOST_SEEDS => Err(format!("{MOST_SEEDS} seeds are the most")),
-            last => Ok(Self { first, last }),
-        }
-    }
-}
-
-impl Display for Seeds {
-    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self { first, last } if first == last => write!(formatter, "{first}"),
-            Self { first, last } => write!(formatter, "{first}-{last}"),
         }
     }
 }
@@ -128,19 +87,6 @@ mod tests {
         assert!(all.iter().all(|value| (-2.0..3.0).contains(value)));
         let mean = all.iter().sum::<f64>() / 1000.0;
         assert!((mean - 0.5).abs() < 0.2, "{mean}");
-    }
-
-    #[test]
-    fn seeds_are_one_or_from_one_to_another() {
-        let read = |text: &str| text.parse::<Seeds>().map(|seeds| (seeds.first, seeds.last));
-        assert_eq!(read("7"), Ok((7, 7)));
-        assert_eq!(read("201-400"), Ok((201, 400)));
-        for wrong in ["", "-1", "7-", "9-8", "1-2-3", "0-10000", "all"] {
-            assert!(read(wrong).is_err(), "{wrong}");
-        }
-        for text in ["7", "201-400"] {
-            assert_eq!(text.parse::<Seeds>().map(|seeds| seeds.to_string()), Ok(text.to_owned()));
-        }
     }
 
     #[test]

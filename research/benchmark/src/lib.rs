@@ -27,6 +27,7 @@ use joint_file::{named, warned};
 use report::document::{Medium, html, markdown};
 use report::failure::{Failure, Outcome};
 use report::progress::Progress;
+use report::seeds::Seeds;
 use report::write::write_text;
 use report::{folder, interruption, output};
 
@@ -40,6 +41,7 @@ pub const ABOUT: &str =
   joint bench                                 all named cases, board and host
   joint bench --case A,Q --html bench.html    two of them, with pictures
   joint bench joints/l1.toml --json -         a joint from a file, figures as JSON
+  joint bench --random 1-30                   random joints by seed: 3 to 5 planets, light and heavy
   joint bench --document docs/reference/budget.md
                                               rewrites the comparison in that file
 
@@ -54,6 +56,9 @@ pub struct Arguments {
     /// Named cases, in place of all: A, Q, R, B, F, L
     #[arg(long, value_name = "KEYS", value_delimiter = ',', conflicts_with = "file")]
     case: Vec<String>,
+    /// Random joints of these seeds, in place of the named cases; equivalent gears among them are left out
+    #[arg(long, value_name = "N|FROM-TO", conflicts_with_all = ["file", "case"])]
+    random: Option<Seeds>,
     /// Leaves out the host libraries, which take no joint file anyway
     #[arg(long, conflicts_with = "file")]
     no_libraries: bool,
@@ -99,7 +104,7 @@ fn gather(arguments: &Arguments, progress: &Progress) -> Outcome<BenchmarkRecord
     let (cases, methods) = method_results::run(cases, &toolchain, progress, &say)?;
     progress.stage("host libraries");
     // They take the named cases only: a program of its own knows these.
-    let host = match arguments.no_libraries || arguments.file.is_some() {
+    let host = match arguments.no_libraries || arguments.file.is_some() || arguments.random.is_some() {
         true => None,
         false => Some(libraries::run(&keys, &say)?),
     };
@@ -130,6 +135,12 @@ fn cases(arguments: &Arguments) -> Outcome<Vec<Case>> {
             .with_help("name a joint with teeth; `joint budget` says what the step of an equivalent gear costs"));
         }
         return Ok(vec![catalogue::of_joint(&loaded.file.parameters)]);
+    }
+    if let Some(seeds) = arguments.random {
+        let cases: Vec<Case> = seeds.each().filter_map(catalogue::of_seed).collect();
+        let none =
+            || Failure::new(format!("--random {seeds}: all of these joints are equivalent gears, without meshes"));
+        return if cases.is_empty() { Err(none().with_help("name more seeds, as in 1-30")) } else { Ok(cases) };
     }
     let all = catalogue::cases();
     let known = |key: &String| all.iter().any(|case| case.key == *key);

@@ -6,7 +6,8 @@ use model_core::gears::{Kinematics, MeshPhasing, Scales};
 use parameters::{Excitation, JointParameters, MeshKind, MeshPhases, PerPlanet};
 use reference::joint::{RelativeState, Start};
 use reference::scenarios::{
-    CASE_A_OMEGA, CASE_Q_OMEGA, Scenario, TorqueSegment, case, case_r, motions, paper_natural_frequency, same,
+    CASE_A_OMEGA, CASE_Q_OMEGA, Scenario, TorqueSegment, case, case_r, motions, paper_natural_frequency, random_joint,
+    same,
 };
 
 use crate::case::Case;
@@ -77,6 +78,13 @@ pub fn of_joint(joint: &JointParameters) -> Case {
         restarts: Vec::new(),
         measure: crate::case::Measure::Deflections,
     }
+}
+
+/// The motion of a robot joint, a fifth as long, on the random joint of a seed; none of an equivalent gear, which has no meshes.
+pub fn of_seed(seed: u64) -> Option<Case> {
+    let joint = random_joint(seed);
+    let (key, has_teeth) = (joint.name.to_string(), joint.equivalent_gear().is_none());
+    has_teeth.then(|| Case::of_robot_joint(&key, "what a robot joint does, in brief", case_r::brief(joint)))
 }
 
 /// Case A with a narrow gap and a small torque, at a frequency at which the motion is not chaotic.

@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use model_core::gears::design::{DesignError, Effort, design_scheme};
+use model_core::gears::design::{DesignError, Effort, Processor, design_scheme};
 use model_core::gears::{Kinematics, Model, Relative, Scales, Scheme, State, Tables};
 use model_core::numbers::Real;
 use parameters::{Excitation, JointParameters};
@@ -48,8 +48,11 @@ pub fn torques_by_step(case: &Case, rate: u32) -> Vec<(u64, f64, f64)> {
     case.torques.iter().map(|segment| (step(segment.from_tick), segment.drive_torque, segment.load_torque)).collect()
 }
 
-/// Sub-steps of the core's step that the design chooses for a board, leapfrog sub-steps among them.
+/// Sub-steps of the core's step that the design chooses for half of a board's processor, Verlet sub-steps among them.
 pub const AS_DESIGNED: u32 = 0;
+
+/// Half of an STM32F405, and one and a half times that at worst.
+const HALF: Processor = Processor { share: 0.75, ..Processor::STM32F405 };
 
 /// Tables of the core's step: ticks a second, sub-steps a tick.
 pub fn tables<T: Real, const N: usize>(
@@ -57,7 +60,7 @@ pub fn tables<T: Real, const N: usize>(
     rate: u32,
     substeps: u32,
 ) -> Result<Tables<T, N>, DesignError> {
-    let effort = if substeps == AS_DESIGNED { Effort::Board } else { Effort::Substeps(substeps) };
+    let effort = if substeps == AS_DESIGNED { Effort::Within(HALF) } else { Effort::Substeps(substeps) };
     design_scheme(joint, rate, Scheme::Realtime, effort)
 }
 

@@ -13,8 +13,8 @@ use reference::closed_loop::MotionProfile;
 use replay::ReplayArguments;
 use report::failure::{EXIT_BAD_INPUT, EXIT_CHECK_FAILED, Failure};
 use report::progress::Progress;
+use report::seeds::Seeds;
 use scenario::plant::PlantName;
-use scenario::random::Seeds;
 use scenario::{TestGroup, TestRequest, suite};
 
 /// Ways in which a log may be packed.

@@ -6,8 +6,8 @@ use board::line_options::{LineOptions, Mode, RoleName};
 use board::profile::BUILTIN;
 use board::target::image;
 use joint_run::plan::RunRequest;
+use report::seeds::Seeds;
 use scenario::plant::PlantName;
-use scenario::random::Seeds;
 
 /// Steps between two samples, unless it is asked for another number of them.
 const DECIMATION: u16 = 20;

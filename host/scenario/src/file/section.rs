@@ -7,8 +7,9 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::keys::{Key, Kind};
-use crate::random::{MOST_SEEDS, NumberOrRange};
+use crate::random::NumberOrRange;
 use report::number::TYPED;
+use report::seeds::MOST_SEEDS;
 
 /// One table of the file.
 pub(super) struct Section<'a>(Table<'a, Kind>);

@@ -23,7 +23,8 @@ const USUAL_SUBSTEPS: f64 = 4.0;
 /// Phase of a prescribed mesh frequency that a sub-step may have: some twenty evaluations a mesh period [rad].
 const EXCITATION_PHASE: f64 = 0.3;
 /// Beyond this phase of the fastest mode in a sub-step, Runge-Kutta steps damp it away and bounces of light planets with
-/// it; Verlet sub-steps take over, of at most the second, or of more where the processor has no time for so many [rad].
+/// it; Verlet sub-steps take over, of at most the second, or of more where the processor has no time for so many. They
+/// cost less, and take over from crossings corrected one by one where there is no time for these [rad].
 const DAMPED_PHASE: f64 = 1.0;
 const VERLET_PHASE: f64 = 1.0;
 /// Most sub-steps a tick.
@@ -120,8 +121,9 @@ impl StepSize {
         Ok((wanted..=MOST_SUBSTEPS as u32).find(stable).or((1..wanted).rev().find(stable)).unwrap_or(wanted))
     }
 
-    /// Sub-steps of a tick in which contacts change. Verlet sub-steps take over where sub-steps would damp the fastest mode away, as
-    /// many as the processor has time for, if that is stable; or if they are the cheaper of two that it has no time for.
+    /// Sub-steps of a tick in which contacts change. Verlet sub-steps take over where sub-steps would damp the fastest mode away, or
+    /// where the processor has no time for a single one that is corrected: as many as it has time for, if that is stable. Of two
+    /// that it has no time for, the cheaper one where both would be damped, else those that are corrected.
     pub fn substeps(&self, tick_rate: u32, effort: Effort) -> Result<Substeps, DesignError> {
         let substeps = self.corrected_substeps(tick_rate, effort)?;
         if self.whole {
@@ -134,15 +136,17 @@ impl StepSize {
             Effort::Verlet(substeps) => return Ok(Substeps::Verlet(substeps.max(1))),
         };
         let substeps = Substeps::Corrected(substeps);
-        if !self.sharp || self.phase(tick_rate, substeps.count()) <= DAMPED_PHASE {
+        let within = |most: f64| move |tried: &Substeps| self.cost.all_crossing(*tried) <= most;
+        let in_time = within(processor.affordable(tick_rate));
+        let damped = self.phase(tick_rate, substeps.count()) > DAMPED_PHASE;
+        if !self.sharp || !damped && in_time(&substeps) {
             return Ok(substeps);
         }
         let wanted = libm::ceil(self.phase(tick_rate, 1) / VERLET_PHASE) as u32;
         let stable = |count: &u32| self.phase(tick_rate, *count) <= MARGIN * self.largest_verlet_phase;
-        let within = |most: f64| move |verlet: &Substeps| self.cost.all_crossing(*verlet) <= most;
-        let in_time = within(processor.affordable(tick_rate));
         let fewer = (1..=wanted).rev().take_while(stable).map(Substeps::Verlet).find(in_time);
-        let cheaper = || Some(Substeps::Verlet(wanted)).filter(within(self.cost.all_crossing(substeps)));
+        let cheaper =
+            || Some(Substeps::Verlet(wanted)).filter(|_| damped).filter(within(self.cost.all_crossing(substeps)));
         Ok(fewer.or_else(cheaper).unwrap_or(substeps))
     }
 

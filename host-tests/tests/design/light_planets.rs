@@ -1,11 +1,15 @@
-//! Sub-steps of joints with light planets on processors that have no time for all that are wanted.
+//! Verlet sub-steps: of joints with light planets on processors that have no time for all that are wanted, and of joints with
+//! heavy ones where there is no time for a single corrected sub-step.
 
 use model_core::gears::design::{Effort, Processor, StepSize, Substeps};
 
+fn of_preset(name: &str) -> StepSize {
+    StepSize::new(&joint_file::read(joint_file::preset(name).expect("a preset")).expect("a sound joint").parameters)
+}
+
 #[test]
 fn a_processor_short_of_time_takes_as_many_verlet_sub_steps_as_it_can_and_as_are_stable() {
-    let q1 = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a sound joint").parameters;
-    let size = StepSize::new(&q1);
+    let size = of_preset("q1");
     let mut fewer = 0;
     for processor in [Processor::STM32F405, Processor::STM32G474] {
         for rate in (10_000..=90_000).step_by(2_500) {
@@ -27,4 +31,29 @@ fn a_processor_short_of_time_takes_as_many_verlet_sub_steps_as_it_can_and_as_are
     assert!(fewer > 5, "{fewer}");
     let at_40_khz = size.substeps(40_000, Effort::Within(Processor::STM32G474));
     assert_eq!(at_40_khz.ok(), Some(Substeps::Verlet(2)), "three, as wanted, take more than the period");
+}
+
+#[test]
+fn heavy_planets_get_verlet_sub_steps_where_there_is_no_time_for_corrected_ones() {
+    let processor = Processor { share: 0.75, ..Processor::STM32F405 };
+    for name in ["paper", "l1"] {
+        let size = of_preset(name);
+        let (mut corrected, mut verlet, mut neither) = (0, 0, 0);
+        for rate in (10_000..=150_000).step_by(2_500) {
+            let fits = |substeps| size.cost().all_crossing(substeps) <= processor.affordable(rate);
+            let effort = Effort::Within(processor);
+            let smooth = size.corrected_substeps(rate, effort).expect("stable");
+            // Verlet sub-steps where corrected ones would damp the planets' own mode are another matter.
+            if size.phase(rate, smooth) > 1.0 {
+                continue;
+            }
+            match size.substeps(rate, effort).expect("stable") {
+                Substeps::Corrected(count) if count == smooth && fits(Substeps::Corrected(smooth)) => corrected += 1,
+                found @ Substeps::Verlet(_) if !fits(Substeps::Corrected(smooth)) && fits(found) => verlet += 1,
+                Substeps::Corrected(_) if !fits(Substeps::Verlet(1)) => neither += 1,
+                found => panic!("{name} at {rate} Hz: {found}"),
+            }
+        }
+        assert!(corrected > 2 && verlet > 2 && neither > 2, "{name}: {corrected}, {verlet}, {neither}");
+    }
 }

@@ -152,6 +152,7 @@ impl Learnt {
             value: learnt.then_some(self.value),
             interval: learnt.then_some([self.value - reach, self.value + reach]),
             note: if learnt { note.to_owned() } else { "not learnt".to_owned() },
+            repeats: false,
         }
     }
 }

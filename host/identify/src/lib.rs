@@ -242,7 +242,7 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
     let findings = findings::gather(&log, [&rows, &slow], &twist, &prior, doubt.as_ref());
     contradictions::frictions(&findings).map_err(in_the_file)?;
     let findings: Vec<Finding> = findings.into_iter().map(Finding::settled).collect();
-    if findings.iter().all(|finding| finding.value.is_none()) {
+    if !findings.iter().any(Finding::is_news) {
         return Err(in_the_file(Failure::new("nothing is identifiable from this log"))
             .with_help("record more reversals, with torques well above the friction and of different strength"));
     }

@@ -8,7 +8,7 @@ use core::fmt;
 pub enum Substeps {
     /// Runge-Kutta sub-steps with corrected crossings.
     Corrected(u32),
-    /// Position-Verlet (leapfrog) sub-steps, for light planets.
+    /// Position-Verlet (leapfrog) sub-steps, for light planets, and where there is no time for corrected ones.
     Verlet(u32),
 }
 

@@ -30,6 +30,9 @@ pub struct Finding {
     pub interval: Option<[f64; 2]>,
     /// Why the log does not show it, or what to know about the value.
     pub note: String,
+    /// The value is the joint file's, which the log only does not contradict.
+    #[serde(skip)]
+    pub(crate) repeats: bool,
 }
 
 /// What an estimate in the unit of its key comes to.
@@ -43,6 +46,7 @@ pub(super) fn finding(name: &str, unit: &str, key: &str, estimate: Estimate) -> 
         value: Some(value),
         interval: Some([value - half, value + half]),
         note: String::new(),
+        repeats: false,
     }
 }
 
@@ -60,6 +64,16 @@ impl Finding {
 
     pub(super) fn noted(self, note: impl Into<String>) -> Self {
         if self.value.is_none() { self } else { Self { note: note.into(), ..self } }
+    }
+
+    /// What the joint file says, since the log does not contradict it.
+    pub(super) fn repeated(self) -> Self {
+        Self { repeats: true, ..self }
+    }
+
+    /// Whether the log says something that the joint file alone does not.
+    pub(crate) fn is_news(&self) -> bool {
+        self.value.is_some() && !self.repeats
     }
 
     /// What cannot be negative, and with it its interval; one that is surely below zero keeps what it is, for who judges the log.

@@ -14,7 +14,7 @@ pub(super) fn inertias(scales: &Scales, prior: &PriorModel) -> [Finding; 2] {
             let share = 100.0 * (scale.factor() - 1.0);
             found.noted(format!("{share:+.1} % of the joint file's, which the torque contradicts"))
         } else {
-            found.noted("as expected of the joint file's")
+            found.noted("as expected of the joint file's").repeated()
         }
     };
     [

@@ -122,7 +122,7 @@ impl StepSize {
     }
 
     /// Sub-steps of a tick in which contacts change. Verlet sub-steps take over where sub-steps would damp the fastest mode away, or
-    /// where the processor has no time for a single one that is corrected: as many as it has time for, if that is stable. Of two
+    /// where the processor has no time for those that are corrected: as many as it has time for, if that is stable. Of two
     /// that it has no time for, the cheaper one where both would be damped, else those that are corrected.
     pub fn substeps(&self, tick_rate: u32, effort: Effort) -> Result<Substeps, DesignError> {
         let substeps = self.corrected_substeps(tick_rate, effort)?;

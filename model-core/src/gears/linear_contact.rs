@@ -23,7 +23,7 @@ pub fn tick<T: Real, const N: usize>(
 ) -> bool {
     let flow = &tables.flow;
     let (position, rate) = (&*motion.position, &*motion.rate);
-    if phase.advance > flow.longest_advance || -phase.advance > flow.longest_advance {
+    if phase.advance.abs() >= flow.longest_advance {
         return false;
     }
     let half_step = T::HALF * flow.step;

@@ -172,7 +172,7 @@ impl Cost {
     pub fn takes_whole_ticks(&self, substeps: Substeps) -> bool {
         match substeps {
             Substeps::Corrected(_) => self.substep == 0.0 || self.hold < self.contact_changes(substeps),
-            Substeps::Verlet(_) => true,
+            Substeps::Verlet(count) => self.verlet.hold < self.pressing(count),
         }
     }
 
@@ -181,7 +181,8 @@ impl Cost {
         match substeps {
             Substeps::Corrected(_) if self.takes_whole_ticks(substeps) => self.hold,
             Substeps::Corrected(_) => self.contact_changes(substeps),
-            Substeps::Verlet(_) => self.verlet.hold,
+            Substeps::Verlet(_) if self.takes_whole_ticks(substeps) => self.verlet.hold,
+            Substeps::Verlet(count) => self.pressing(count),
         }
     }
 
@@ -202,7 +203,8 @@ impl Cost {
                 twice.max(self.contact_changes_anew(substeps) + self.all())
             }
             Substeps::Verlet(count) => {
-                self.verlet.given_up + self.contact_changes(substeps) + f64::from(count) * self.meshes * TOUCH
+                let given_up = if self.takes_whole_ticks(substeps) { self.verlet.given_up } else { 0.0 };
+                given_up + self.pressing(count)
             }
         }
     }
@@ -231,6 +233,11 @@ impl Cost {
     pub fn affordable(&self, instructions: f64, most: u32) -> u32 {
         let fits = |substeps: &u32| self.all_crossing(Substeps::Corrected(*substeps)) <= instructions;
         (1..=most).take_while(fits).last().unwrap_or(0)
+    }
+
+    /// Every mesh touches its flank in every Verlet sub-step.
+    fn pressing(&self, count: u32) -> f64 {
+        self.contact_changes(Substeps::Verlet(count)) + f64::from(count) * self.meshes * TOUCH
     }
 
     fn all(&self) -> f64 {

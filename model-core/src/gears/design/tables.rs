@@ -67,8 +67,11 @@ pub fn design_scheme<T: Real, const N: usize>(
     let step_size = StepSize::new(parameters);
     let substeps = step_size.corrected_substeps(tick_rate, effort)?;
     let (verlet_substeps, whole_ticks) = match step_size.substeps(tick_rate, effort)? {
-        Substeps::Verlet(substeps) => (substeps, WholeTicks::Light),
-        chosen if step_size.takes_whole_ticks(chosen, effort) => (0, WholeTicks::Held),
+        chosen @ Substeps::Verlet(substeps) if step_size.takes_whole_ticks(chosen, effort) => {
+            (substeps, WholeTicks::Light)
+        }
+        chosen @ Substeps::Corrected(_) if step_size.takes_whole_ticks(chosen, effort) => (0, WholeTicks::Held),
+        Substeps::Verlet(substeps) => (substeps, WholeTicks::Never),
         Substeps::Corrected(_) => (0, WholeTicks::Never),
     };
     let tick = scales.frequency / f64::from(tick_rate);

@@ -2,6 +2,7 @@
 //! heavy ones where there is no time for a single corrected sub-step.
 
 use model_core::gears::design::{Effort, Processor, StepSize, Substeps};
+use reference::scenarios::{q1, with_teeth};
 
 fn of_preset(name: &str) -> StepSize {
     StepSize::new(&joint_file::read(joint_file::preset(name).expect("a preset")).expect("a sound joint").parameters)
@@ -56,4 +57,15 @@ fn heavy_planets_get_verlet_sub_steps_where_there_is_no_time_for_corrected_ones(
         }
         assert!(corrected > 2 && verlet > 2 && neither > 2, "{name}: {corrected}, {verlet}, {neither}");
     }
+}
+
+#[test]
+fn five_light_planets_take_three_fifths_of_an_stm32g4_at_40_khz() {
+    // From memory that never waits; at worst, every mesh touching its flank.
+    let processor = Processor { flash_wait: 0.0, share: 0.6, ..Processor::STM32G474 };
+    let size = StepSize::new(&with_teeth(q1(), 5, [30, 20, 70]));
+    let chosen = size.substeps(40_000, Effort::Within(processor)).expect("stable");
+    assert_eq!(chosen, Substeps::Verlet(1));
+    let worst = size.cost().all_crossing(chosen);
+    assert!(processor.part(worst, 40_000) <= 0.6 && worst >= size.cost().contact_holds(chosen), "{worst}");
 }

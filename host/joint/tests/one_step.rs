@@ -22,7 +22,7 @@ use simulation::{budget, check};
 
 const JOINTS: u64 = 64;
 const BOARDS: [&str; 4] = ["olimex-h405", "nucleo-g474re", "nucleo-h743zi", "b-g431b-esc1"];
-const RATES: [u32; 5] = [5000, 10_000, 20_000, 40_000, 80_000];
+const RATES: [u32; 5] = [5000, 10_000, 20_000, 40_000, 160_000];
 
 /// Chance that repeats itself: whole numbers by splitmix64.
 struct Chance(u64);

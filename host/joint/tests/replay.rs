@@ -223,4 +223,9 @@ fn identify_finds_the_joint_in_the_log_of_a_test() {
     let out = folder.path().join("nothing");
     joint(&["identify", text(&log), "--joint", "q1", "--out", text(&out)])
         .refused(&["too few crossings: the carrying flank changes 2 times", "reverse the torque more often"]);
+    // Turned more often it has a fit, but nothing that the joint file does not say: inertias that repeat it are no news.
+    let log = log_of(folder.path(), &still.replace("duration_s = 2", "duration_s = 10"), "core");
+    let out = folder.path().join("no-news");
+    joint(&["identify", text(&log), "--joint", "q1", "--out", text(&out)])
+        .refused(&["nothing is identifiable", "record more reversals"]);
 }

@@ -4,6 +4,7 @@
 use std::fs;
 use std::os::unix::fs::MetadataExt;
 use std::process::Command;
+use std::sync::{Mutex, PoisonError};
 
 use super::{Say, tool};
 use report::failure::{Failure, Outcome};
@@ -19,9 +20,13 @@ enum PackageSource {
     Unknown,
 }
 
+/// One at a time: apt-get refuses to run beside itself, and who waited may find that the packages have come meanwhile.
+static INSTALLING: Mutex<()> = Mutex::new(());
+
 /// Makes sure that packages are installed. `purpose` completes "... needed ...", such as "to build for the board".
 pub fn ensure(packages: &[&str], purpose: &str, say: Say<'_>) -> Outcome<()> {
     let package_source = package_source();
+    let _alone = INSTALLING.lock().unwrap_or_else(PoisonError::into_inner);
     let missing: Vec<&str> = match package_source {
         PackageSource::Unknown => packages.to_vec(),
         _ => packages.iter().copied().filter(|package| !is_installed(package)).collect(),

@@ -1,5 +1,5 @@
 //! Verlet sub-steps: of joints with light planets on processors that have no time for all that are wanted, and of joints with
-//! heavy ones where there is no time for a single corrected sub-step.
+//! heavy ones where there is no time for corrected sub-steps.
 
 use model_core::gears::design::{Effort, Processor, StepSize, Substeps};
 use reference::scenarios::{q1, with_teeth};

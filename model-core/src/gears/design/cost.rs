@@ -168,7 +168,7 @@ impl Cost {
     }
 
     /// Whether a tick in which contact holds is taken as a whole, by the exponential flow: where that costs less than the
-    /// sub-steps, which are as accurate and need no test of whether contact will hold.
+    /// sub-steps. Those that are corrected are as accurate and need no test of whether contact will hold.
     pub fn takes_whole_ticks(&self, substeps: Substeps) -> bool {
         match substeps {
             Substeps::Corrected(_) => self.substep == 0.0 || self.hold < self.contact_changes(substeps),
@@ -180,8 +180,8 @@ impl Cost {
     pub fn contact_holds(&self, substeps: Substeps) -> f64 {
         match substeps {
             Substeps::Corrected(_) if self.takes_whole_ticks(substeps) => self.hold,
-            Substeps::Corrected(_) => self.contact_changes(substeps),
             Substeps::Verlet(_) if self.takes_whole_ticks(substeps) => self.verlet.hold,
+            Substeps::Corrected(_) => self.contact_changes(substeps),
             Substeps::Verlet(count) => self.pressing(count),
         }
     }
@@ -202,10 +202,7 @@ impl Cost {
                 let twice = self.contact_changes(substeps) + f64::from(count.min(2)) * self.all();
                 twice.max(self.contact_changes_anew(substeps) + self.all())
             }
-            Substeps::Verlet(count) => {
-                let given_up = if self.takes_whole_ticks(substeps) { self.verlet.given_up } else { 0.0 };
-                given_up + self.pressing(count)
-            }
+            Substeps::Verlet(count) => self.given_up(substeps) + self.pressing(count),
         }
     }
 
@@ -224,8 +221,16 @@ impl Cost {
 
     /// In sub-steps that begin anew.
     fn contact_changes_anew(&self, substeps: Substeps) -> f64 {
-        let given_up = if self.takes_whole_ticks(substeps) { self.given_up } else { 0.0 };
-        given_up + self.anew + self.contact_changes(substeps)
+        self.given_up(substeps) + self.anew + self.contact_changes(substeps)
+    }
+
+    /// An exponential tick that was tried in vain, where there are such.
+    fn given_up(&self, substeps: Substeps) -> f64 {
+        match substeps {
+            _ if !self.takes_whole_ticks(substeps) => 0.0,
+            Substeps::Corrected(_) => self.given_up,
+            Substeps::Verlet(_) => self.verlet.given_up,
+        }
     }
 
     /// The most sub-steps, of so many, with which `all_crossing` stays within so many instructions; zero if not even one

@@ -66,14 +66,12 @@ pub fn design_scheme<T: Real, const N: usize>(
     let real = T::from_f64;
     let step_size = StepSize::new(parameters);
     let substeps = step_size.corrected_substeps(tick_rate, effort)?;
-    let (verlet_substeps, whole_ticks) = match step_size.substeps(tick_rate, effort)? {
-        chosen @ Substeps::Verlet(substeps) if step_size.takes_whole_ticks(chosen, effort) => {
-            (substeps, WholeTicks::Light)
-        }
-        chosen @ Substeps::Corrected(_) if step_size.takes_whole_ticks(chosen, effort) => (0, WholeTicks::Held),
-        Substeps::Verlet(substeps) => (substeps, WholeTicks::Never),
-        Substeps::Corrected(_) => (0, WholeTicks::Never),
+    let chosen = step_size.substeps(tick_rate, effort)?;
+    let (verlet_substeps, held) = match chosen {
+        Substeps::Verlet(substeps) => (substeps, WholeTicks::Light),
+        Substeps::Corrected(_) => (0, WholeTicks::Held),
     };
+    let whole_ticks = if step_size.takes_whole_ticks(chosen, effort) { held } else { WholeTicks::Never };
     let tick = scales.frequency / f64::from(tick_rate);
     let substep = tick / f64::from(substeps);
     let flow_step = match scheme {

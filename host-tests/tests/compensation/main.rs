@@ -4,6 +4,7 @@
 
 mod bad_input;
 mod braking;
+mod control_rate;
 mod holding;
 mod impedance;
 mod monte_carlo;

@@ -68,7 +68,7 @@ impl<T: Real> Plain<T> {
         let on_motor = if !situation.feels || (rests && !self.swings) {
             tables.law.damping
         } else {
-            (T::ONE + T::HALF) * tables.law.motor_damping
+            damping_on_motor(tables.law.motor_damping)
         };
         let on_link = if situation.open { T::ZERO } else { tables.law.damping - on_motor };
         // A blow is over before it could be answered.
@@ -134,4 +134,10 @@ impl<T: Real> Plain<T> {
             self.large = side;
         }
     }
+}
+
+/// Damper on the motor in motion [N m s/rad]: somewhat more than what it bears under compensation, where its damper acts against
+/// the link.
+pub(super) fn damping_on_motor<T: Real>(motor_damping: T) -> T {
+    (T::ONE + T::HALF) * motor_damping
 }

@@ -33,7 +33,7 @@ pub(super) fn check(settings: &CompensationSettings) -> Result<(), DesignError> 
     let CompensationSettings { bandwidth, torque_limit, torque_delay, torque_lag, .. } = *settings;
     let rate = f64::from(settings.control_rate);
     must("control rate", rate, rate > 0.0, "positive")?;
-    must("bandwidth", bandwidth, bandwidth > 0.0 && bandwidth < 0.1 * rate, "positive and below a tenth of the rate")?;
+    must("bandwidth", bandwidth, bandwidth > 0.0, "positive")?;
     must("motor torque limit", torque_limit, torque_limit > 0.0, "positive")?;
     if let Some(peak) = settings.peak_torque {
         must("peak torque", peak, peak > 0.0, "positive")?;

@@ -6,7 +6,9 @@
 use core::f64::consts::TAU;
 
 use super::body::Body;
+use super::damping::{of_both, on_motor_alone, reaction};
 use super::settings::{CompensationSettings, check};
+use super::stability;
 use crate::compensation::crossing::Crossing;
 use crate::compensation::tables::{
     BodyTable, ClockTable, CompensationTables, CrossingTable, GearTable, LandingTable, LawTable, LimitTable, LoadTable,
@@ -44,10 +46,6 @@ const COMPLIANCE: f64 = 4.0;
 
 /// Share of the largest torque that a crossing may take; the rest is for the feedback along it.
 const CROSSING_TORQUE: f64 = 0.8;
-
-/// Reaction times in which the damper on the motor slows the motor by 1/e: with fewer it would swing against the loop's
-/// delays.
-const MOTOR_DAMPING: f64 = 2.5;
 
 /// Share of that damper in impedance mode: what a commanded damper loses by the loop's delays.
 const IMPEDANCE_DAMPING: f64 = 0.1;
@@ -121,8 +119,8 @@ const FRICTION_SPEED: f64 = 0.01;
 /// The same for a planned speed [rad/s]: what a motion passes in a few control periods.
 const PLANNED_FRICTION_SPEED: f64 = 1e-3;
 
-/// Growth of the load's variance in one period over that of its reading: followed within a few milliseconds.
-const LOAD_GROWTH: f64 = 1e-3;
+/// Square of the time in which the load is followed [s^2]: a few milliseconds.
+const LOAD_FOLLOWED: f64 = 1e-5;
 
 /// Time in which the load's rate is learnt [s]: a weight swings in a second.
 const LOAD_RATE: f64 = 0.03;
@@ -130,8 +128,8 @@ const LOAD_RATE: f64 = 0.03;
 /// Time in which a rate that is not seen again is forgotten [s].
 const LOAD_RATE_KEPT: f64 = 0.1;
 
-/// The same for its dry friction: known within a few reversals, then kept for seconds.
-const FRICTION_GROWTH: f64 = 1e-6;
+/// The same as for the load for its dry friction [s^2]: known within a few reversals, then kept for seconds.
+const FRICTION_FOLLOWED: f64 = 1e-2;
 
 /// Time in which a missed impulse is made good, over a crossing's time.
 const REPAYMENT: f64 = 1.15;
@@ -157,10 +155,14 @@ pub fn design_compensation<T: Real>(
     let period = 1.0 / f64::from(settings.control_rate);
     let pole = settings.bandwidth;
     let body = Body::new(joint);
+    stability::check(&body, settings)?;
     let inertia = body.motor + body.load;
+    // Growth of a variance in one period over that of a reading.
+    let [load_growth, friction_growth] = [LOAD_FOLLOWED, FRICTION_FOLLOWED].map(|square| period * period / square);
     let limit = body.gear * settings.torque_limit;
     let half = body.half_backlash / body.lever;
-    let reaction = period * (1.0 + settings.torque_delay) + settings.torque_lag;
+    let reaction = reaction(settings, period);
+    let damping = of_both(&body, pole);
 
     // A ramp without a jump in its acceleration has one and a half times its mean.
     let ramp_per_speed = 1.5 * body.motor / (CROSSING_TORQUE * limit);
@@ -172,7 +174,7 @@ pub fn design_compensation<T: Real>(
     let most_passed = MOST_PASSED * peak;
     let crossing =
         Crossing::at(strike_torque / body.strike_impedance, 2.0 * half, ramp_per_speed, shortest_ramp).duration;
-    let motor_damping = (3.0 * inertia * pole).min(body.motor / (MOTOR_DAMPING * reaction));
+    let motor_damping = on_motor_alone(&body, damping, reaction);
     // The motor's mass against the joint's spring: torque of a blow for each rad/s.
     let blow = libm::sqrt(body.stiffness * body.motor);
     let landing_speed = LANDING * rated / blow;
@@ -208,7 +210,7 @@ pub fn design_compensation<T: Real>(
         },
         law: LawTable {
             position: real(3.0 * inertia * pole * pole),
-            damping: real(3.0 * inertia * pole),
+            damping: real(damping),
             rate: real(pole),
             motor_damping: real(motor_damping),
             impedance_damping: real(IMPEDANCE_DAMPING),
@@ -257,9 +259,9 @@ pub fn design_compensation<T: Real>(
             deadband_left: real(libm::exp(-period / DEADBAND_KEPT)),
         },
         load: LoadTable {
-            variances: [real(LOAD_GROWTH), real(FRICTION_GROWTH), T::ONE],
+            variances: [real(load_growth), real(friction_growth), T::ONE],
             // Of a random walk in noise, as far as it grows much more slowly than it is read.
-            gain: real(libm::sqrt(LOAD_GROWTH)),
+            gain: real(libm::sqrt(load_growth)),
             rate_gain: real(1.0 / LOAD_RATE),
             rate_left: real(libm::exp(-period / LOAD_RATE_KEPT)),
             fastest: real(limit / LOAD_RATE),

@@ -32,6 +32,17 @@ pub enum DesignError {
         /// The lowest rate that works [Hz].
         lowest: u32,
     },
+    /// Under a compensation of this rate and bandwidth the motor would swing in the open gap, or the gap not be learnt.
+    ControlTooSlow {
+        /// Control rate that was asked for [Hz].
+        given: u32,
+        /// Bandwidth that was asked for [rad/s].
+        bandwidth: f64,
+        /// The lowest control rate that works with it [Hz], if any does.
+        lowest: Option<u32>,
+        /// The widest bandwidth that works at the rate [rad/s].
+        widest: f64,
+    },
     /// A scheme of planets' meshes for a gear without them.
     OneSchemeOnly,
     /// A number does not fit into single precision.
@@ -51,6 +62,17 @@ impl fmt::Display for DesignError {
             Self::OutOfRange { what, given, must_be } => write!(formatter, "{what} is {given}: it must be {must_be}"),
             Self::RateTooLow { given, lowest } => {
                 write!(formatter, "a tick rate of {given} Hz is too low for this joint: use {lowest} Hz or more")
+            }
+            Self::ControlTooSlow { given, bandwidth, lowest, widest } => {
+                write!(
+                    formatter,
+                    "control at {given} Hz is too slow for a bandwidth of {bandwidth} rad/s with these delays of torque and \
+                     current loop: in the open gap the motor would swing, or the gap not be learnt. Take "
+                )?;
+                if let Some(lowest) = lowest {
+                    write!(formatter, "{lowest} Hz or more, or ")?;
+                }
+                write!(formatter, "a bandwidth of {widest} rad/s or less")
             }
             Self::OneSchemeOnly => formatter.write_str("an equivalent gear has one scheme, the board's"),
             Self::NotRepresentable { what } => write!(

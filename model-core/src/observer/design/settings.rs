@@ -1,6 +1,7 @@
 //! What the observer is designed from besides the joint, and whether it can be: data-sheet figures and how sure they
 //! are.
 
+use super::learning::LEARNING_INTERVAL;
 use crate::gears::design::DesignError;
 use crate::observer::tables::MOST_DELAY;
 use parameters::{AbsoluteEncoder, Surroundings};
@@ -68,7 +69,8 @@ impl ObserverSettings {
         let within = |what, given: f64, least: f64, most: f64, must_be| {
             if given >= least && given <= most { Ok(()) } else { Err(DesignError::OutOfRange { what, given, must_be }) }
         };
-        within("the control rate", self.control_rate.into(), 500.0, 1e5, "from 500 Hz to 100 kHz")?;
+        // An interval that is learnt from holds one period at least.
+        within("the control rate", self.control_rate.into(), 1.0 / LEARNING_INTERVAL, 1e5, "from 1000 to 100000 Hz")?;
         within("the clock rate of the observer's samples", self.clock_rate.into(), 1e4, 4e9, "10 kHz or more")?;
         for encoder in [Some(self.motor_encoder), self.output_encoder].into_iter().flatten() {
             let turn = f64::from(encoder.counts_per_turn);

@@ -1,0 +1,150 @@
+//! From which control rate on, and up to which bandwidth, a joint can be controlled: what the design refuses, what it names
+//! instead, and whether the motor bears that in the open gap, simulated alone with delay and lag.
+
+use model_core::compensation::design::{CompensationSettings, compensation_settings, design_compensation};
+use model_core::compensation::{Command, Compensation, CompensationTables, Motion};
+use model_core::gears::design::DesignError;
+use model_core::observer::design::{design_observer, observer_settings};
+use model_core::observer::{Estimate, Estimates, ObserverTables, Source};
+use parameters::{JointParameters, Surroundings};
+
+fn preset(name: &str) -> (JointParameters, Surroundings) {
+    let file = joint_file::read(joint_file::preset(name).expect("a preset")).expect("a good one");
+    (file.parameters, file.surroundings)
+}
+
+fn q1() -> (JointParameters, CompensationSettings) {
+    let (joint, surroundings) = preset("q1");
+    (joint, compensation_settings(&surroundings, 60.0))
+}
+
+fn tables(joint: &JointParameters, settings: &CompensationSettings) -> Result<CompensationTables<f64>, DesignError> {
+    design_compensation(joint, settings)
+}
+
+/// The least that is refused: the lowest rate and the widest bandwidth that would do.
+fn refused(joint: &JointParameters, settings: &CompensationSettings) -> (Option<u32>, f64) {
+    match tables(joint, settings) {
+        Err(DesignError::ControlTooSlow { lowest, widest, .. }) => (lowest, widest),
+        other => panic!("{settings:?} is to be refused: {:?}", other.err()),
+    }
+}
+
+/// Largest excursion of a motor alone in the open gap between two times [rad], after it began half a milliradian beside the
+/// set-point. Its torques act after the settings' delay and the current loop's `lag` [s].
+fn excursion(tables: &CompensationTables<f64>, settings: &CompensationSettings, lag: f64, from: f64, to: f64) -> f64 {
+    const FINE: usize = 50;
+    let step = tables.clock.period / FINE as f64;
+    let known = |value| Estimate { value, variance: 0.0, valid: true };
+    // A motion that is too slow to go anywhere, so that the law is that of motion.
+    let command = Command::Position { now: Motion { speed: 1e-9, ..Motion::default() }, ahead: None };
+    let mut compensation = Compensation::new(tables);
+    let (mut place, mut speed, mut torque) = (0.5e-3, 0.0, 0.0);
+    let (mut wanted, mut largest, mut time) = ([0.0; 2], 0.0_f64, 0.0);
+    let delayed = (settings.torque_delay * FINE as f64).round() as usize;
+    assert!(delayed <= FINE, "a period of delay at most");
+    while time < to {
+        let mut estimates = Estimates {
+            source: Source::Both,
+            contact_valid: true,
+            half_backlash: known(40e-6),
+            encoder_offset: known(0.0),
+            load_torque: known(0.0),
+            ..Estimates::default()
+        };
+        estimates.motor.fraction = place * tables.gear.motor_per_link / tables.gear.turn;
+        estimates.motor.speed = speed * tables.gear.motor_per_link;
+        wanted = [compensation.step(&estimates, &command).torque * tables.gear.motor_per_link, wanted[0]];
+        for fine in 0..FINE {
+            let now = wanted[usize::from(fine < delayed)];
+            torque += (now - torque) * (-(-step / lag).exp_m1());
+            speed += torque / tables.body.motor_inertia * step;
+            place += speed * step;
+        }
+        time += tables.clock.period;
+        if time >= from {
+            largest = largest.max(place.abs());
+        }
+    }
+    largest
+}
+
+#[test]
+fn the_named_rate_and_the_named_bandwidth_are_taken_and_a_little_less_is_not() {
+    let (joint, usual) = q1();
+    let heavy = JointParameters { link_inertia: 0.54, ..joint.clone() };
+    let light = JointParameters { link_inertia: 0.03, ..joint.clone() };
+    // Delays decide in the first three, periods in a time constant in the others.
+    for (joint, rate, lag, bandwidth, delays) in [
+        (&joint, 2000, 1e-3, 60.0, true),
+        (&heavy, 2500, 0.2e-3, 60.0, true),
+        (&light, 2000, 2.5e-3, 60.0, true),
+        (&joint, 1000, 0.2e-3, 60.0, false),
+        (&light, 3000, 0.2e-3, 120.0, false),
+        (&joint, 500, 0.2e-3, 60.0, false),
+    ] {
+        let slow = CompensationSettings { control_rate: rate, torque_lag: lag, bandwidth, ..usual.clone() };
+        let (lowest, widest) = refused(joint, &slow);
+        let lowest = lowest.expect("some rate does");
+        assert_eq!(f64::from(lowest) > 33.1 * bandwidth, delays, "{lowest} Hz");
+        let at = |control_rate| CompensationSettings { control_rate, ..slow.clone() };
+        let with = |bandwidth| CompensationSettings { bandwidth, ..slow.clone() };
+        tables(joint, &at(lowest)).expect("the rate that was named");
+        tables(joint, &with(widest)).expect("the bandwidth that was named");
+        refused(joint, &at(lowest - 2));
+        refused(joint, &with(widest + 1.01));
+    }
+}
+
+#[test]
+fn a_lag_that_no_rate_makes_good_leaves_a_bandwidth() {
+    let (joint, usual) = q1();
+    let slow = CompensationSettings { torque_lag: 4e-3, ..usual };
+    let (lowest, widest) = refused(&joint, &slow);
+    assert_eq!(lowest, None);
+    let text = tables(&joint, &slow).expect_err("too slow").to_string();
+    tables(&joint, &CompensationSettings { bandwidth: widest, ..slow }).expect("the bandwidth that was named");
+    assert!(text.contains(&format!("a bandwidth of {widest} rad/s or less")), "{text}");
+    assert!(!text.contains("Hz or more"), "{text}");
+}
+
+/// At the lowest rate the phase margin is three degrees: the motor comes to rest with the delays as they are, and swings with
+/// half a millisecond more.
+#[test]
+fn at_the_lowest_rate_the_motor_just_comes_to_rest_in_the_open_gap() {
+    let (joint, usual) = q1();
+    let heavy = JointParameters { link_inertia: 0.54, ..joint.clone() };
+    for (joint, lag) in [(&heavy, 0.2e-3), (&joint, 1e-3)] {
+        let slow = CompensationSettings { control_rate: 1000, torque_lag: lag, ..usual.clone() };
+        let lowest = refused(joint, &slow).0.expect("some rate does");
+        let settings = CompensationSettings { control_rate: lowest, ..slow };
+        let tables = tables(joint, &settings).expect("the rate that was named");
+        let at = |lag| excursion(&tables, &settings, lag, 1.0, 1.2);
+        let (settled, swinging) = (at(lag), at(lag + 0.5e-3));
+        assert!(settled < 0.05e-3, "{lag}: {settled} rad are left of 0.5 mrad at {lowest} Hz");
+        assert!(swinging > 0.5e-3, "{lag}: {swinging} rad with half a millisecond more at {lowest} Hz");
+    }
+}
+
+#[test]
+fn every_preset_can_be_observed_and_controlled_at_its_own_rate() {
+    for name in ["q1", "s1", "d2", "l1", "c1"] {
+        let (joint, surroundings) = preset(name);
+        tables(&joint, &compensation_settings(&surroundings, 60.0)).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let observer: Result<ObserverTables<f32>, _> = design_observer(&joint, &observer_settings(&surroundings));
+        observer.unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
+}
+
+#[test]
+fn an_observer_is_refused_whose_period_is_longer_than_what_is_learnt_from() {
+    let (joint, surroundings) = preset("q1");
+    let at = |control_rate| {
+        let designed: Result<ObserverTables<f32>, _> =
+            design_observer(&joint, &observer_settings(&Surroundings { control_rate, ..surroundings }));
+        designed.map(|_| ())
+    };
+    at(1000).expect("one period is enough");
+    let text = at(999).expect_err("less than one").to_string();
+    assert!(text.contains("control rate is 999") && text.contains("1000"), "{text}");
+}

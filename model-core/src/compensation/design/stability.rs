@@ -1,0 +1,80 @@
+//! From which control rate on, and up to which bandwidth, a joint can be controlled.
+//!
+//! While the gap is open, plain control holds the motor alone by gains that are made for motor and link together. With
+//! the motor's inertia J_m, that of both J, the bandwidth w, the damper D on the motor ([`damping_on_motor`]), the current
+//! loop's lag t, and a dead time of half a period more than the torque's delay, the loop is
+//!
+//! ```text
+//! L(s) = (D s + 3 J w^2 + J w^3 / s) / (J_m s^2 (1 + t s)) e^(-s dead time)
+//! ```
+//!
+//! D may be no larger the longer the delays are, so that with them its phase lead is lost, and the motor swings from flank to
+//! flank for good: of such a swing the observer learns no gap, and plain control stays. Where phase margins are small, delays
+//! that the data sheet says a fifth too short do the same. `docs/decisions/control-rate.md` has the measurements.
+
+use core::f64::consts::PI;
+
+use super::body::Body;
+use super::damping::{of_both, on_motor_alone, reaction};
+use super::settings::CompensationSettings;
+use crate::compensation::plain::damping_on_motor;
+use crate::gears::design::DesignError;
+
+/// Smallest phase margin of the motor alone in the open gap [rad]: three degrees. Down to 4.7 the gap was learnt by as many
+/// joints, whose lag was up to a fifth longer than the sheet says, as at any rate; at 1.9 not by all, below zero by none or few.
+const LEAST_MARGIN: f64 = 3.0 * PI / 180.0;
+
+/// Control periods in a time constant of the loop, 1/w: from 33 on the gap was learnt by as many joints as at any rate, with 28
+/// and less not by all.
+const PERIODS: f64 = 33.0;
+
+/// The fastest control that is thought of [Hz].
+const FASTEST: f64 = 1e5;
+
+/// Halvings that find a frequency, a rate or a bandwidth to a millionth.
+const HALVINGS: usize = 60;
+
+/// Refuses a control rate that is too slow for the bandwidth.
+pub(super) fn check(body: &Body, settings: &CompensationSettings) -> Result<(), DesignError> {
+    let rate = f64::from(settings.control_rate);
+    let bears = |rate: f64, bandwidth: f64| {
+        rate >= PERIODS * bandwidth && phase_margin(body, settings, rate, bandwidth) >= LEAST_MARGIN
+    };
+    if bears(rate, settings.bandwidth) {
+        return Ok(());
+    }
+    let lowest = bears(FASTEST, settings.bandwidth)
+        .then(|| libm::ceil(between(rate, FASTEST, |rate| bears(rate, settings.bandwidth))) as u32);
+    let widest = libm::floor(between(settings.bandwidth, 0.0, |bandwidth| bears(rate, bandwidth)));
+    Err(DesignError::ControlTooSlow { given: settings.control_rate, bandwidth: settings.bandwidth, lowest, widest })
+}
+
+/// The place nearest to `bad` that `holds`, as far as it holds from there to `good`.
+fn between(bad: f64, good: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    let (mut bad, mut good) = (bad, good);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (bad + good);
+        *(if holds(middle) { &mut good } else { &mut bad }) = middle;
+    }
+    good
+}
+
+/// Phase margin of the motor alone in the open gap [rad].
+fn phase_margin(body: &Body, settings: &CompensationSettings, rate: f64, bandwidth: f64) -> f64 {
+    let CompensationSettings { torque_delay, torque_lag, .. } = *settings;
+    let period = 1.0 / rate;
+    let both = of_both(body, bandwidth);
+    let damper = damping_on_motor(on_motor_alone(body, both, reaction(settings, period)));
+    let (spring, integral) = (both * bandwidth, both * bandwidth * bandwidth / 3.0);
+    // Of the numerator, in phase with the place and ahead of it.
+    let ahead = |frequency: f64| damper * frequency - integral / frequency;
+    let gain = |frequency: f64| {
+        libm::hypot(spring, ahead(frequency))
+            / (body.motor * frequency * frequency * libm::hypot(1.0, torque_lag * frequency))
+    };
+    // The gain falls with the frequency.
+    let below_one = |log: f64| gain(libm::exp(log)) < 1.0;
+    let crossover = libm::exp(between(libm::log(1e-3 * bandwidth), libm::log(1e3 * rate), below_one));
+    let lost = libm::atan(torque_lag * crossover) + crossover * period * (0.5 + torque_delay);
+    libm::atan2(ahead(crossover), spring) - lost
+}

@@ -47,6 +47,14 @@ pub struct ObserverTables<T: Real> {
     pub supervisor: SupervisorTable<T>,
 }
 
+impl<T: Real> ObserverTables<T> {
+    /// By what the deflection of shafts that stand still may be off at most [m]: half a count of the output, beside which the
+    /// motor's is small. No mean takes that away, nor has it a place among the variances, which are those of shafts that turn.
+    pub fn rounding(&self) -> T {
+        T::HALF * self.counts.output.angle * self.levers.output
+    }
+}
+
 /// The clock that says when samples were taken, and what its ticks mean.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]

@@ -32,7 +32,8 @@ pub struct OutputFaultDetector<T: Real> {
     silent_for: u16,
     unmoved_for: u16,
     outside_for: u16,
-    /// The deflection of the teeth at the last period, and whether it jumped to where it is [m].
+    /// The deflection of the teeth at the last period [m], and whether it jumped to where it is, close to the end of its range or
+    /// beyond.
     deflection: T,
     jumped: bool,
     /// The deflection less wind-up when the counts moved last [m].
@@ -222,20 +223,21 @@ impl<T: Real> OutputFaultDetector<T> {
         } else {
             far_range(learnt, deflection, fused.force)
         };
+        // What jumps to just within its range may go on beyond it.
+        let near = deflection.abs() + table.margin > learnt.uncertainty.reach;
+        self.jumped = near && (self.jumped || by.abs() > table.margin);
         let beyond = if range == Range::Possible {
-            self.jumped = false;
             self.outside_for = 0;
             None
         } else {
-            self.beyond(table, range, by)
+            self.beyond(table, range)
         };
         if self.silent_for > table.silent_after { Some(OutputFault::Silent) } else { beyond }
     }
 
-    /// One more period in which the deflection is beyond its range, by some more than in the last one [m].
+    /// One more period in which the deflection is beyond its range.
     #[cold]
-    fn beyond(&mut self, table: &SupervisorTable<T>, range: Range, by: T) -> Option<OutputFault> {
-        self.jumped |= by.abs() > table.margin;
+    fn beyond(&mut self, table: &SupervisorTable<T>, range: Range) -> Option<OutputFault> {
         self.outside_for = self.outside_for.saturating_add(1);
         if self.outside_for < table.failed_after || range == Range::Worn && !self.jumped {
             None

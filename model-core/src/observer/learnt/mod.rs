@@ -327,7 +327,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
             self.interval.flank = reading.flank;
         }
         self.uncertainty.settled = reading.flank.is_some();
-        let verdict = self.consistency.step(self.force_between_flanks(deflection, *travel));
+        let verdict = self.consistency.step(self.force_between_flanks(tables, deflection, *travel));
         self.obey(verdict);
         let encoder_fails = verdict == Verdict::EncoderFails;
 
@@ -369,11 +369,12 @@ impl<T: Real, const P: usize> Learnt<T, P> {
     }
 
     /// Whether there is force at rest between the flanks, bias and stiction aside.
-    fn force_between_flanks(&self, deflection: T, travel: Travel<T>) -> bool {
+    fn force_between_flanks(&self, tables: &ObserverTables<T>, deflection: T, travel: Travel<T>) -> bool {
         let known = &self.uncertainty;
         let [half_gap, _] = self.shape();
         let thrice = T::THREE * known.steady_force_deviation + T::TWO * self.bias.friction.abs();
-        let between = known.half_gap_is_known && deflection.abs() < half_gap - known.blur;
+        let inside = half_gap - known.blur - tables.rounding();
+        let between = known.half_gap_is_known && deflection.abs() < inside;
         between && rests(travel) && self.interval.steady.abs() > thrice
     }
 

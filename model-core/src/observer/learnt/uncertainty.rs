@@ -175,7 +175,10 @@ impl<T: Real> Uncertainty<T> {
         self.stiffness = if compliance > T::ZERO { T::ONE.over(compliance) } else { T::ZERO };
         self.mesh_share = tables.learner.mesh_compliance * self.stiffness;
         self.softness = T::TWO * compliance_variance.square_root();
-        self.reach = T::THREE * self.edge_deviation + tables.supervisor.margin + half_gap;
+        // What is rounded is off by anything up to that alike.
+        let rounding = tables.rounding();
+        let edge = self.edge_deviation * self.edge_deviation + T::THIRD * rounding * rounding;
+        self.reach = T::THREE * edge.square_root() + tables.supervisor.margin + half_gap;
         let widest = T::TWO * half_gap * tables.supervisor.widest_part;
         self.widest_variance = if half_gap > T::ZERO { widest * widest } else { T::ZERO };
         let [sine, cosine] = [learner.value(ERROR), learner.value(ERROR + 1)];

@@ -4,6 +4,7 @@
 
 mod bad_input;
 mod braking;
+mod coarse_encoder;
 mod control_rate;
 mod holding;
 mod impedance;

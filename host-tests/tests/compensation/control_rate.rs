@@ -108,6 +108,18 @@ fn a_lag_that_no_rate_makes_good_leaves_a_bandwidth() {
     assert!(!text.contains("Hz or more"), "{text}");
 }
 
+/// However slow the motor and however absurd what is asked for, the bandwidth that is named is more than none, and is taken.
+#[test]
+fn the_named_bandwidth_is_never_none() {
+    let (joint, usual) = q1();
+    for (torque_lag, bandwidth) in [(1.0, 60.0), (0.2e-3, 1e300)] {
+        let asked = CompensationSettings { torque_lag, bandwidth, ..usual.clone() };
+        let (_, widest) = refused(&joint, &asked);
+        assert!(widest > 0.0, "{widest} rad/s");
+        tables(&joint, &CompensationSettings { bandwidth: widest, ..asked }).expect("the bandwidth that was named");
+    }
+}
+
 /// At the lowest rate the phase margin is three degrees: the motor comes to rest with the delays as they are, and swings with
 /// half a millisecond more.
 #[test]

@@ -16,7 +16,8 @@ pub(super) struct Plain<T: Real> {
     /// Motor beyond the link on the flank that carries, smoothed [rad].
     beyond: T,
     /// 1 or -1: the flank that the motion asked for and the load will have carry; less of it where that is as small as what
-    /// the torques are known to. Nothing is foreseen of an impedance, nor without a link to be seen.
+    /// the torques are known to. Nothing is foreseen of an impedance, nor of a link that is not seen behind a gap that is
+    /// not known.
     foreseen: Option<T>,
     /// 1 or -1: to which side the torque last was large, fading to 0.
     large: T,
@@ -57,9 +58,11 @@ impl<T: Real> Plain<T> {
         situation: &Situation<T>,
         now: &Motion<T>,
     ) -> T {
-        let demand = tables.body.load_inertia * now.acceleration + load.even() + load.planned_drag(tables, now.speed);
+        // Of a link that is not seen the integral says what loads it.
+        let level = if situation.feels { load.even() } else { self.integral };
+        let demand = tables.body.load_inertia * now.acceleration + level + load.planned_drag(tables, now.speed);
         let share = clamp(tables.switching.inverse_step * demand, -T::ONE, T::ONE);
-        self.foreseen = situation.feels.then_some(share);
+        self.foreseen = (situation.feels || situation.half_is_known).then_some(share);
         // In the open gap the motor is alone, and takes little more damping than the loop's delays allow; the rest of what both
         // need together acts on the link, where that is seen and the teeth may carry: a motor that went after the link in the
         // open gap would strike. At rest all of it acts on the motor, as long as that does not swing: it takes the link's
@@ -98,8 +101,10 @@ impl<T: Real> Plain<T> {
         let thrown = tables.clock.period * situation.error_rate.abs()
             > Self::THROWN * tables.law.back_calculation * situation.half;
         // Put right on one flank, the link would be left by the whole lost motion once the other one carries. So before that
-        // the motor goes to where the other flank is thought to be, by way of the middle.
+        // the motor goes to where the other flank is thought to be, by way of the middle. A link that is not seen is always
+        // where the gap's width leaves it.
         let leaves = |share: &T| match situation.contact {
+            _ if !situation.feels => true,
             Some(flank) => flank.sign::<T>() * *share < T::ONE,
             None => share.abs() < T::ONE,
         };

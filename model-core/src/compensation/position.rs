@@ -107,9 +107,11 @@ impl<T: Real> PositionLaw<T> {
         self.level += tables.clock.period * load.rate();
         let change = level - self.level;
         let weight = tables.switching.inverse_step * change;
-        self.level +=
-            clamp(tables.switching.smoothing * clamp(weight * weight, T::ONE, tables.clock.rate), T::ZERO, T::HALF)
-                * change;
+        // What is planned comes ahead with a preview, so that what is measured has time: teeth that swing about little torque
+        // at the mesh frequency must not make the motor leave at a crest, for it would be called back.
+        let smoothing =
+            if ahead.is_some() { (T::ONE - T::THIRD) * tables.switching.smoothing } else { tables.switching.smoothing };
+        self.level += clamp(smoothing * clamp(weight * weight, T::ONE, tables.clock.rate), T::ZERO, T::HALF) * change;
         let planned = |time: T| {
             let part = time.over(known);
             let speed = now.speed + time * (now.acceleration + T::HALF * part * asked[1]);

@@ -33,6 +33,8 @@ pub(super) struct Situation<T: Real> {
     pub losses: [T; 2],
     /// Half of the lost motion [rad].
     pub half: T,
+    /// Whether that was learnt or came with the joint, rather than being guessed.
+    pub half_is_known: bool,
     /// Torque in the teeth [N m].
     pub mesh_torque: T,
     /// Between motor and link [N m/rad].
@@ -88,6 +90,7 @@ impl<T: Real> Situation<T> {
             link_speed: estimates.link.speed,
             origin,
             half,
+            half_is_known: estimates.half_backlash.valid,
             mesh_torque: estimates.mesh_torque.value,
             stiffness,
             inertia: tables.body.motor_inertia + ratio * tables.body.load_inertia,

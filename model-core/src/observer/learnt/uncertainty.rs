@@ -51,7 +51,7 @@ pub struct Uncertainty<T: Real> {
     pub reach: T,
     /// Variance of the gap coordinate while teeth touch, and while they do not [m^2].
     pub gap_variance: [T; 2],
-    /// The largest with which it is valid; zero without a half-gap [m^2].
+    /// The largest with which it is valid; zero without a half-gap, and in a gap narrower than a count [m^2].
     pub widest_variance: T,
     /// Whether the transmission error shifts a flank over the middle of the gap.
     pub flanks_swap: bool,
@@ -180,7 +180,8 @@ impl<T: Real> Uncertainty<T> {
         let edge = self.edge_deviation * self.edge_deviation + T::THIRD * rounding * rounding;
         self.reach = T::THREE * edge.square_root() + tables.supervisor.margin + half_gap;
         let widest = T::TWO * half_gap * tables.supervisor.widest_part;
-        self.widest_variance = if half_gap > T::ZERO { widest * widest } else { T::ZERO };
+        // Within a gap that is narrower than a count nobody is seen.
+        self.widest_variance = if half_gap > rounding { widest * widest } else { T::ZERO };
         let [sine, cosine] = [learner.value(ERROR), learner.value(ERROR + 1)];
         let error = (sine * sine + cosine * cosine).square_root();
         self.flanks_swap = error > half_gap;

@@ -19,3 +19,17 @@ fn a_sound_output_encoder_is_not_given_up_however_coarse() {
         assert_eq!(given_up, 0, "seed {seed}: {:?}", case.truth.surroundings.output_encoder);
     }
 }
+
+/// A lost motion of 1.49 mrad under counts of 1.53 mrad.
+#[test]
+fn a_gap_narrower_than_a_count_is_not_valid() {
+    let test = shipped("never-worse");
+    let seed = 5663;
+    let case = test.case(seed).expect("a case of the test");
+    let spec = RunSpec { controller: NoPreview, plant: PlantName::Core, without_gap: false };
+    let history = run_in(&test, &case, seed, spec);
+    let outputs = &history.observer_outputs;
+    let settled = &outputs[outputs.len() / 3..];
+    let valid = settled.iter().filter(|output| output.both && output.valid).count();
+    assert_eq!(valid, 0, "of {} periods", settled.len());
+}

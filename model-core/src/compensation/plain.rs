@@ -101,8 +101,8 @@ impl<T: Real> Plain<T> {
         let thrown = tables.clock.period * situation.error_rate.abs()
             > Self::THROWN * tables.law.back_calculation * situation.half;
         // Put right on one flank, the link would be left by the whole lost motion once the other one carries. So before that
-        // the motor goes to where the other flank is thought to be, by way of the middle. A link that is not seen is always
-        // where the gap's width leaves it.
+        // the motor goes to where the other flank is thought to be, by way of the middle. Where the link is not
+        // seen, that is all there is to put right.
         let leaves = |share: &T| match situation.contact {
             _ if !situation.feels => true,
             Some(flank) => flank.sign::<T>() * *share < T::ONE,

@@ -12,8 +12,8 @@ use report::failure::{Failure, Outcome};
 
 /// Instructions that a tick of the role `observer` takes at most. What counts them holds them against this and the next.
 pub const OBSERVER: u32 = 6500;
-/// Those of a tick of the role `loop` beside the joint's step where all of that crosses at once: the worst of both hardly meet.
-/// 5,768 was the most that a run has shown.
+/// Those of a tick of the role `loop` beyond a step of the joint in which every mesh crosses. The most that a run has shown is
+/// 5,768.
 const LOOP: u32 = 6100;
 /// Part of the period that an observer may take: the rest is the motor controller's whose guest it is.
 const GUEST: f64 = 0.75;

@@ -180,7 +180,7 @@ impl<T: Real> Uncertainty<T> {
         let edge = self.edge_deviation * self.edge_deviation + T::THIRD * rounding * rounding;
         self.reach = T::THREE * edge.square_root() + tables.supervisor.margin + half_gap;
         let widest = T::TWO * half_gap * tables.supervisor.widest_part;
-        // Within a gap that is narrower than a count nobody is seen.
+        // In a gap narrower than a count of the output encoder nobody can tell where the teeth are.
         self.widest_variance = if half_gap > rounding { widest * widest } else { T::ZERO };
         let [sine, cosine] = [learner.value(ERROR), learner.value(ERROR + 1)];
         let error = (sine * sine + cosine * cosine).square_root();

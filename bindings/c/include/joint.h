@@ -56,7 +56,7 @@
 #define JOINT_NOTICE_MOTOR_JUMPED 8
 
 // 64-bit words of an observer.
-#define JOINT_OBSERVER_WORDS 240
+#define JOINT_OBSERVER_WORDS 248
 
 // Bytes of what an observer has learnt.
 #define JOINT_MEMORY_BYTES 544

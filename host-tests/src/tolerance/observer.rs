@@ -132,6 +132,16 @@ bounds! {
         below 0.4, was 0.26,
         scatters "Half a swing at 1 Hz: then the gap seems narrower on one flank or the other, as no wear makes it.";
 
+    /// What a failing output encoder leaves of the width.
+    WIDTH_AFTER_LOST_COUNTS: "error of the half-backlash after an output encoder lost 3 % of its counts, over the half-backlash",
+        below 5e-3, was 2.9e-3,
+        scatters "What was learnt while the encoder was sound: it is gone back to when the encoder is given up.";
+
+    /// Where the link is after its encoder slipped.
+    PLACE_AFTER_SLIP: "place of the link after its encoder slipped and was taken back, beside where it is [rad]",
+        below 1.5e-4, was 1.03e-4,
+        since "Three counts of 17 bits: the slip is read from one learning interval and taken back in whole counts, and the encoder's own error is elsewhere after it.";
+
     /// Honesty without an output encoder, in the motions that it was stated for.
     MOTOR_ONLY_HONESTY: "squared error of the gap over its variance, motor only, mean over the time that counts as valid",
         below 0.28, was 0.14,

@@ -1,7 +1,8 @@
 //! Encoders that fail and implausible samples: detected, reported, errors bounded, recovery.
 
 use host_tests::tolerance::observer::{
-    FAILURE_FOUND, FAILURE_FOUND_AT_SPEED, GAP_COARSE, LOST_COUNTS_FOUND, ONE_WRONG_BIT,
+    FAILURE_FOUND, FAILURE_FOUND_AT_SPEED, GAP_COARSE, LOST_COUNTS_FOUND, ONE_WRONG_BIT, PLACE_AFTER_SLIP,
+    WIDTH_AFTER_LOST_COUNTS,
 };
 use model_core::observer::{Estimates, MAPPED, OutputFault, Samples, Source};
 use reference::drive_train::Disturbance;
@@ -206,6 +207,45 @@ fn an_output_encoder_that_makes_the_gap_narrower_is_given_up_for_teeth_do_not_gr
     let found = sources[20_000..].iter().position(|source| *source != Source::Both).expect("it is found");
     LOST_COUNTS_FOUND.check(found as f64 * 1e-4);
     assert!(sources[20_000 + found] == Source::MotorOnly(OutputFault::OutOfRange));
+}
+
+/// Counts of either direction are lost by chance, so that the deflection goes astray on both flanks.
+#[test]
+fn counts_that_are_lost_take_nothing_of_the_width_that_was_known() {
+    for seed in 27..30 {
+        let experiment = Experiment::new("q1", "gravity", Encoders::Preset, Some(40e-6), seed).lasting(3.0);
+        let mut log = experiment.record();
+        let (mut any, mut lost, mut before) = (uniform(seed), 0, log[20_000].output_counts);
+        for moment in &mut log[20_000..] {
+            let by = moment.output_counts - core::mem::replace(&mut before, moment.output_counts);
+            lost += by.signum() * (0..by.abs()).map(|_| i64::from(any() < 0.03)).sum::<i64>();
+            moment.output_counts -= lost;
+        }
+        let said = experiment.said::<f64>(&log, |_, _| {});
+        let found = said[20_000..].iter().position(|estimates| estimates.source != Source::Both);
+        println!("seed {seed}: {lost} counts lost, given up after {found:?} periods");
+        assert!(found.is_some(), "the encoder is given up");
+        WIDTH_AFTER_LOST_COUNTS.check((said[29_999].half_backlash.value - 40e-6) / 40e-6);
+    }
+}
+
+#[test]
+fn a_link_whose_encoder_has_slipped_is_where_it_was_once_the_encoder_turns_with_it_again() {
+    let experiment = Experiment::new("q1", "gravity", Encoders::Preset, Some(40e-6), 21).lasting(6.0);
+    let log = experiment.record();
+    let healthy = experiment.said::<f64>(&log, |_, _| {});
+    let at = fast(&log, 2.0);
+    for slip in [-3000, -400, 400, 3000] {
+        let said = experiment.said::<f64>(&log, |k, samples| shift(samples, if k < at { 0 } else { slip }, 1 << 17));
+        assert!(matches!(said[at + 100].source, Source::MotorOnly(_)), "it is given up");
+        let back = at + 100 + said[at + 100..].iter().position(|now| now.source == Source::Both).expect("taken back");
+        println!("a slip of {slip} counts is given up, and taken back after {} periods", back - at);
+        let astray = said.iter().zip(&healthy).skip(back + 2000).map(|(said, healthy)| {
+            let turns = f64::from(said.link.turns - healthy.link.turns) + said.link.fraction - healthy.link.fraction;
+            turns.abs() * core::f64::consts::TAU
+        });
+        PLACE_AFTER_SLIP.check(astray.fold(0.0, f64::max));
+    }
 }
 
 /// Runs the observer with samples that a test may spoil.

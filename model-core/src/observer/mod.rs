@@ -290,6 +290,10 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
     #[cold]
     fn rely_on_motor(&mut self, last: Option<LastMotion<T>>) {
         let tables = self.tables;
+        if self.learnt.return_to_trusted(tables) {
+            self.find_errors();
+            self.say_learnt();
+        }
         let load = &mut self.filters.load;
         self.sensors.counts.imply();
         load.speed = self.filters.drive.speed * tables.levers.per_ratio;
@@ -349,10 +353,11 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         self.heed(outcome);
     }
 
-    /// The output encoder turns with the motor again.
+    /// The output encoder turns with the motor again; by how much it has slipped, as a deflection [m].
     #[cold]
-    fn trust_output(&mut self, back: Return) {
-        self.sensors.counts.trust();
+    fn trust_output(&mut self, (back, slip): (Return, T)) {
+        let table = &self.tables.counts;
+        self.sensors.counts.trust(table, slip.over(table.length).to_i64());
         self.filters.load.ahead = T::ZERO;
         self.find_errors();
         if back == Return::Otherwise {

@@ -203,7 +203,8 @@ impl<T: Real> Health<T> {
         }
     }
 
-    /// Once a learning interval without the output encoder: says when and how it is taken back.
+    /// Once a learning interval without the output encoder: says when and how it is taken back, and by how much it has slipped,
+    /// as a deflection [m]: a place that no teeth allow is the encoder's, not the link's.
     pub fn reconsider<const P: usize>(
         &mut self,
         tables: &ObserverTables<T>,
@@ -211,7 +212,7 @@ impl<T: Real> Health<T> {
         filters: &Filters<T>,
         learnt: &Learnt<T, P>,
         reading: &Reading<T>,
-    ) -> Option<Return> {
+    ) -> Option<(Return, T)> {
         let phase = sensors.counts.motor.phase(&tables.counts.motor);
         let output = sensors.counts.output.phase(&tables.counts.output);
         let free = regressors::free(filters.load.speed, phase, Some(output));
@@ -232,6 +233,10 @@ impl<T: Real> Health<T> {
             return None;
         }
         self.source = Source::Both;
-        Some(back)
+        let slip = match settled {
+            Some((_, beyond)) if back == Return::Otherwise && !output_faults::is_near(learnt, deflection) => beyond,
+            _ => T::ZERO,
+        };
+        Some((back, slip))
     }
 }

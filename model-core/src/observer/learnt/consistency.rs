@@ -38,7 +38,8 @@ pub enum Verdict {
     RelearnHalfGap,
     /// Everything is learnt anew.
     RelearnAll,
-    /// The gap seems narrower than was seen on both flanks for long. Teeth do not grow: the output encoder fails.
+    /// The gap seems narrower than was seen on both flanks for long, or nothing is as it was: teeth do not grow, nor do shafts
+    /// turn against each other. The output encoder fails.
     EncoderFails,
 }
 
@@ -55,12 +56,13 @@ impl Consistency {
         if self.is_trusted() { Verdict::EncoderFails } else { self.other_half_gap() }
     }
 
-    /// A rest that does not belong to the model, by more than a known half-gap may be wrong or not.
-    pub fn outlier(&mut self, large: bool) -> Verdict {
+    /// A rest that does not belong to the model, by more than a known half-gap may be wrong or not; whether anything was ever
+    /// learnt for sure.
+    pub fn outlier(&mut self, large: bool, was_sure: bool) -> Verdict {
         self.outliers += 1;
         if self.outliers >= TOO_MANY {
             self.outliers = 0;
-            Verdict::RelearnAll
+            if was_sure { Verdict::EncoderFails } else { Verdict::RelearnAll }
         } else if self.outliers != FEW || !large {
             Verdict::Keep
         } else {
@@ -84,7 +86,7 @@ impl Consistency {
     }
 
     /// Whether the half-gap has been seen on both flanks for long.
-    fn is_trusted(&self) -> bool {
+    pub fn is_trusted(&self) -> bool {
         let [back, drive] = self.trusted;
         back.min(drive) >= TRUSTED
     }

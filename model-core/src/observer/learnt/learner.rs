@@ -81,6 +81,12 @@ impl<T: Real, const P: usize> Learner<T, P> {
 
     /// Variance of one parameter, in SI.
     pub fn variance_of(&self, table: &LearnerTable<T>, parameter: usize) -> T {
+        let deviation = table.deviation.get(parameter).copied().unwrap_or(T::ZERO);
+        self.relative_variance(parameter) * deviation * deviation
+    }
+
+    /// Variance of one parameter over that beforehand [-].
+    pub fn relative_variance(&self, parameter: usize) -> T {
         let mut sum = T::ZERO;
         for j in parameter..P {
             let Some(column) = self.factors.get(j) else { break };
@@ -88,8 +94,7 @@ impl<T: Real, const P: usize> Learner<T, P> {
             let u = if j == parameter { T::ONE } else { column.get(parameter).copied().unwrap_or(T::ZERO) };
             sum += d * u * u;
         }
-        let deviation = table.deviation.get(parameter).copied().unwrap_or(T::ZERO);
-        sum * deviation * deviation
+        sum
     }
 
     /// Standard deviation that the transmission error has, and by how much less that is than beforehand [m].
@@ -254,6 +259,13 @@ impl<T: Real, const P: usize> Learner<T, P> {
             if let Some(d) = column.get_mut(index) {
                 *d = T::ONE;
             }
+        }
+    }
+
+    /// Sets how sure a parameter is that depends on no other.
+    pub fn set_relative_variance(&mut self, parameter: usize, variance: T) {
+        if let Some(d) = self.factors.get_mut(parameter).and_then(|column| column.get_mut(parameter)) {
+            *d = variance;
         }
     }
 

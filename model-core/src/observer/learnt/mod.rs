@@ -4,7 +4,7 @@
 //!
 //! Learning goes in intervals of a few control periods (`interval`). `travel` says from each whether the teeth rest or cross
 //! the gap, and `flank` on which flank they rest. Intervals of rest are averaged (`block`), and `consistency` says whether
-//! their mean belongs to what was learnt. What can wait is done a task a period.
+//! their mean belongs to what was learnt; `trusted` keeps what did for long. What can wait is done a task a period.
 
 pub mod bias;
 mod block;
@@ -19,6 +19,7 @@ pub mod learner;
 pub mod position_errors;
 pub mod regressors;
 mod travel;
+mod trusted;
 pub mod uncertainty;
 
 use bias::Bias;
@@ -33,6 +34,7 @@ use learner::Learner;
 use position_errors::PositionErrors;
 use regressors::{COMPLIANCE, ERROR, HALF_GAP, MAPPED, OFFSET, Regressors, SKEW, Touch};
 use travel::{Travel, TravelDetector};
+use trusted::Trusted;
 use uncertainty::Uncertainty;
 
 use crate::gears::{Flank, sign};
@@ -63,6 +65,8 @@ pub struct Learnt<T: Real, const P: usize> {
     block: Block<T, P>,
     last_rest: LastRest<T, P>,
     consistency: Consistency,
+    /// Kept until something else is trusted.
+    trusted: Option<Trusted<T, P>>,
 }
 
 /// What an interval showed, before anything is learnt from it.
@@ -130,14 +134,26 @@ impl<T: Real, const P: usize> Learnt<T, P> {
             block: Block::new(),
             last_rest: LastRest::new(),
             consistency: Consistency::default(),
+            trusted: None,
         }
     }
 
     /// Back to what was designed, part by part: a whole new one would need as much stack again.
     #[inline(never)]
     pub fn restart(&mut self, tables: &ObserverTables<T>) {
-        let Self { learner, bias, inertia, errors, uncertainty, interval, travel, block, last_rest, consistency } =
-            self;
+        let Self {
+            learner,
+            bias,
+            inertia,
+            errors,
+            uncertainty,
+            interval,
+            travel,
+            block,
+            last_rest,
+            consistency,
+            trusted,
+        } = self;
         *learner = Learner::new(&tables.learner);
         *bias = Bias::new(&tables.contact);
         *inertia = Inertia::new(&tables.inertia);
@@ -148,6 +164,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         *block = Block::new();
         *last_rest = LastRest::new();
         *consistency = Consistency::default();
+        *trusted = None;
     }
 
     /// Half-gap [m] and compliance [m/N] as learnt so far.
@@ -216,8 +233,18 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         self.find_uncertainty(tables, true);
     }
 
+    /// The output encoder was given up: back to what was trusted last, if that has been doubted since. Whether it was.
+    pub fn return_to_trusted(&mut self, tables: &ObserverTables<T>) -> bool {
+        let Some(trusted) = self.trusted.filter(|_| !self.consistency.is_trusted()) else { return false };
+        trusted.restore(&mut self.learner);
+        self.find_uncertainty(tables, false);
+        self.uncertainty.of_learnt(tables, &self.learner);
+        true
+    }
+
     /// The motor encoder has come back elsewhere.
     pub fn doubt_motor(&mut self, tables: &ObserverTables<T>) {
+        self.trusted = None;
         self.learner.doubt_motor();
         self.find_uncertainty(tables, true);
     }
@@ -484,12 +511,15 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         let innovation = self.learner.innovation(table, &regressors, deflection, weight);
         if !innovation.is_within(GATE) {
             let large = innovation.value.abs() * table.noise > half_gap * tables.contact.known_part;
-            let verdict = self.consistency.outlier(large);
+            let verdict = self.consistency.outlier(large, self.trusted.is_some());
             self.obey(verdict);
             return verdict;
         }
         self.consistency.fits(self.block.flank());
         self.errors.relearn(&mut self.learner, |learner| learner.learn(table, &innovation));
+        if self.consistency.is_trusted() {
+            self.trusted = Some(Trusted::of(&self.learner));
+        }
         Verdict::Keep
     }
 

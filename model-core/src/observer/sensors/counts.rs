@@ -350,9 +350,17 @@ impl Counts {
         }
     }
 
-    /// From now on the output is what is measured.
-    pub fn trust(&mut self) {
+    /// From now on the output is what is measured; an encoder that has slipped, by so many units of the difference, goes on
+    /// from where the link is.
+    pub fn trust<T: Real>(&mut self, table: &CountTable<T>, slipped: i64) {
         self.implied = None;
+        let counts = quotient(slipped, table.output_weight).unwrap_or(0);
+        if counts != 0 {
+            let by = counts.wrapping_mul(table.output_weight);
+            self.output.turn(&table.output, counts);
+            self.start = rest(self.start.wrapping_add(by), table.modulus);
+            self.difference = self.difference.wrapping_sub(by);
+        }
     }
 
     /// The output that is in use, and its difference.

@@ -41,7 +41,7 @@
 #define JOINT_NAME_BYTES 32
 
 // Version of tables that this library reads.
-#define JOINT_TABLES_VERSION 1
+#define JOINT_TABLES_VERSION 2
 
 // In `notices`: the torque was more than twice what the motor can give; none was assumed.
 #define JOINT_NOTICE_TORQUE_UNKNOWN 1
@@ -56,7 +56,7 @@
 #define JOINT_NOTICE_MOTOR_JUMPED 8
 
 // 64-bit words of an observer.
-#define JOINT_OBSERVER_WORDS 248
+#define JOINT_OBSERVER_WORDS 256
 
 // Bytes of what an observer has learnt.
 #define JOINT_MEMORY_BYTES 544

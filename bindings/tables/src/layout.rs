@@ -62,7 +62,7 @@ structs! {
     gears::tables::Transition<f32> { in_phase, deviation, torques }
     gears::tables::Inputs<f32> { in_phase, deviation }
     observer::tables::ObserverTables<f32> {
-        identity, control_rate, period, clock, counts, levers, current, drive, load, inertia, contact,
+        identity, control_rate, period, clock, counts, levers, current, drive, load, inertia, cogging, contact,
         learner, supervisor
     }
     observer::tables::ClockTable<f32> { tick, period, shortest, longer, oldest }
@@ -96,6 +96,9 @@ structs! {
         per_periods, still, slow, moving, settled_after, least, noise, most_restless, memory, prior, limit,
         known, drift
     }
+    observer::tables::CoggingTable<f32> {
+        periods, settled_after, slow, slow_time, speeds, steady, unsteady, response, late, prior, repeats, memory
+    }
     observer::tables::ProbeTable<f32> {
         torque, rise, damping, moving, loaded, furthest, longest, settle, still, per_still, turn, deflection,
         least, variance
@@ -106,7 +109,7 @@ structs! {
     compensation::tables::ClockTable<f32> { rate, period }
     compensation::tables::GearTable<f32> {
         ratio, motor_per_link, link_per_motor, inverse_denominator, turn, inverse_lever,
-        mesh_phase_per_radian, radians_per_mesh, losses
+        mesh_phase_per_radian, radians_per_mesh, cogging_periods, cogging_phase_per_radian, losses
     }
     compensation::tables::BodyTable<f32> {
         motor_inertia, load_inertia, inverse_load_inertia, load_share, inverse_load_share, reduced_inertia,

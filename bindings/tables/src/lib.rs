@@ -24,7 +24,7 @@ use model_core::observer::{ObserverTables, ProbeTable};
 use model_core::virtual_joint::SurroundingsTable;
 
 /// Version of the layout: the next one as soon as a struct of a table changes (the test `layout` tells).
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 /// How a blob begins.
 const MARK: [u8; 8] = *b"JOINTTAB";
 /// Bytes of a joint's name, zeros after its end.

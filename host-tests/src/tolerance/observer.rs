@@ -132,6 +132,11 @@ bounds! {
         below 0.4, was 0.26,
         scatters "Half a swing at 1 Hz: then the gap seems narrower on one flank or the other, as no wear makes it.";
 
+    /// The motor's cogging.
+    COGGING: "cogging as learnt in a slow motion against friction less what it is, over that of Q1's file",
+        below 0.16, was 0.08,
+        scatters "The load torque that it is read from has friction and noise of the encoders in it.";
+
     /// What a failing output encoder leaves of the width.
     WIDTH_AFTER_LOST_COUNTS: "error of the half-backlash after an output encoder lost 3 % of its counts, over the half-backlash",
         below 5e-3, was 2.9e-3,

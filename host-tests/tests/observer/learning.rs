@@ -2,6 +2,7 @@
 //! transmission error is larger than their gap. Errors of ordinary joints are in `gap`.
 
 use host_tests::tolerance::observer::*;
+use model_core::gears::Kinematics;
 use model_core::observer::{MAPPED, Source};
 use model_core::virtual_joint::fault::{Fault, FaultKind};
 use reference::drive_train::Disturbance;
@@ -105,5 +106,29 @@ fn teeth_whose_error_is_larger_than_their_gap_are_not_vouched_for() {
     let experiment = Experiment::new("s1", "gravity", Encoders::Preset, None, 36).lasting(4.0);
     for (k, estimates) in experiment.said::<f64>(&experiment.record(), |_, _| {}).iter().enumerate() {
         assert!(k < 20_000 || !estimates.contact_valid, "contact at {k} would be over before anyone could act on it");
+    }
+}
+
+#[test]
+fn cogging_is_learnt_while_the_link_turns_slowly_and_nothing_is_made_up_where_it_does_not() {
+    for (name, amplitude, periods, seed) in [("q1", 0.02, 84, 71), ("q1", 0.03, 60, 72), ("q1", 0.0, 84, 73)] {
+        let mut experiment = Experiment::new(name, "slow", Encoders::Preset, Some(40e-6), seed).lasting(5.0);
+        let around = &mut experiment.setup.train.surroundings;
+        (around.cogging_torque, around.cogging_periods_per_turn) = (amplitude, periods);
+        experiment.settings.cogging_periods = periods;
+        let log = experiment.record();
+        let [sine, cosine] = experiment.said::<f32>(&log, |_, _| {}).last().expect("it lasts").cogging;
+        let at_link = |motor: f64| motor * experiment.setup.joint.geometry.ratio_by_teeth();
+        let astray = f64::from(sine - at_link(amplitude) as f32).hypot(cosine.into());
+        println!("{name}: cogging of {amplitude} N m is taken for {sine} and {cosine} at the link");
+        COGGING.check(astray / at_link(0.02));
+    }
+    for motion in ["hold", "inertia"] {
+        let experiment = Experiment::new("q1", motion, Encoders::Preset, Some(40e-6), 74).lasting(4.0);
+        let said = experiment.said::<f32>(&experiment.record(), |_, _| {});
+        let [sine, cosine] = said.last().expect("it lasts").cogging.map(f64::from);
+        println!("{motion}: {sine} and {cosine}");
+        let amplitude = 0.02 * experiment.setup.joint.geometry.ratio_by_teeth();
+        assert!((sine - amplitude).hypot(cosine) < 1.1 * amplitude, "{motion}: worse than nothing");
     }
 }

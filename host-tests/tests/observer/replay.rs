@@ -34,6 +34,7 @@ pub fn settings(train: &DriveTrainParameters) -> ObserverSettings {
         torque_noise_ratio: around.torque_noise_ratio,
         torque_uncertainty: (0.015 * around.torque_limit).hypot(around.motor_friction.coulomb),
         torque_ripple: around.cogging_torque,
+        cogging_periods: around.cogging_periods_per_turn,
         efficiency: around.efficiency,
         backlash_uncertainty: 0.5,
         compliance_uncertainty: 0.3,

@@ -247,7 +247,8 @@ pub fn finite(said: &Estimates<f32>) -> bool {
         &said.motor_friction,
     ];
     let shafts = [said.motor, said.link];
-    let others = [said.gap_rate, said.flank_shift, said.flank_shift_slope, said.link_inertia_ratio.value];
+    let [sine, cosine] = said.cogging;
+    let others = [said.gap_rate, said.flank_shift, said.flank_shift_slope, said.link_inertia_ratio.value, sine, cosine];
     estimates.iter().all(|estimate| estimate.value.is_finite() && estimate.variance.is_finite())
         && shafts.iter().all(|shaft| shaft.fraction.is_finite() && shaft.speed.is_finite())
         && others.iter().all(|other| other.is_finite())

@@ -102,6 +102,8 @@ pub struct WireEstimates {
     /// Mesh torque, load torque [N m], half-backlash [m], encoder offset [rad], compliance [rad/(N m)], skew [s], torque
     /// bias, motor friction [N m], inertia of the link over the designed one.
     pub others: [WireEstimate; 9],
+    /// Sine and cosine of the motor's cogging, referred to the link [N m].
+    pub cogging: [f32; 2],
     /// Motor and link: whole turns, the rest, speed [rad/s].
     pub shafts: [(i32, f32, f32); 2],
 }
@@ -191,6 +193,7 @@ impl From<&Estimates<f32>> for WireEstimates {
                 of.link_inertia_ratio,
             ]
             .map(estimate),
+            cogging: of.cogging,
             shafts: [of.motor, of.link].map(shaft),
         }
     }
@@ -239,6 +242,7 @@ impl From<WireEstimates> for Estimates<f32> {
             skew,
             torque_bias,
             motor_friction,
+            cogging: wire.cogging,
             link_inertia_ratio,
             motor,
             link,

@@ -38,11 +38,13 @@ impl<T: Real> ImpedanceLaw<T> {
         point: &ImpedancePoint<T>,
     ) -> Intent<T> {
         let spring = point.torque + point.stiffness * situation.error;
-        // Friction of the motor stays: the law is that of a joint without a gap, not of one without losses. So does the
-        // swing of motor against link, but for what the loop's delays would add to it.
+        // Friction and cogging of the motor stay: the law is that of a joint without a gap, not of one without losses. So does
+        // the swing of motor against link, but for what the loop's delays would add to it. But a motor that stands beside
+        // where it would without a gap has another cogging there.
         let law = clamp(spring, -tables.limits.motor, tables.limits.motor)
             + point.damping * (point.speed - situation.motor_speed)
-            + tables.law.impedance_damping * situation.damping_torque(tables);
+            + tables.law.impedance_damping * situation.damping_torque(tables)
+            - situation.cogging_by_gap(tables);
         let free = load.even() + load.drag();
         self.stream.step(tables, point);
         let overdue = self.stream.overdue(tables);

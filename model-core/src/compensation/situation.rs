@@ -24,6 +24,10 @@ pub(super) struct Situation<T: Real> {
     pub motor_speed: T,
     /// [rad/s].
     pub link_speed: T,
+    /// Motor within its turn [turns].
+    pub motor_place: T,
+    /// Sine and cosine of the motor's cogging, referred to the link, driving [N m].
+    pub cogging: [T; 2],
     /// Position of the set-point.
     pub origin: Position<T>,
     /// Speed that the motor has by the gears' transmission error alone, referred to the link [rad/s].
@@ -87,6 +91,8 @@ impl<T: Real> Situation<T> {
             motor,
             confirmed_motor,
             motor_speed: tables.gear.link_per_motor * estimates.motor.speed,
+            motor_place: estimates.motor.fraction,
+            cogging: estimates.cogging,
             link_speed: estimates.link.speed,
             origin,
             half,
@@ -118,6 +124,18 @@ impl<T: Real> Situation<T> {
     pub fn shift_after(&self, tables: &CompensationTables<T>, angle: T) -> T {
         let (sine, cosine) = sine_cosine((tables.gear.mesh_phase_per_radian * angle).to_phase());
         self.shift * cosine + self.shift_slope * tables.gear.radians_per_mesh * sine
+    }
+
+    /// By how much the motor's cogging drives more than that of a motor would which stood where it stands without a gap [N m].
+    pub fn cogging_by_gap(&self, tables: &CompensationTables<T>) -> T {
+        let beside = self.confirmed_motor + self.error;
+        let phase = self.motor_place.over(T::PHASE_UNIT).to_phase().wrapping_mul(tables.gear.cogging_periods);
+        let without_gap = phase.wrapping_sub((tables.gear.cogging_phase_per_radian * beside).to_phase());
+        let [here, there] = [phase, without_gap].map(|phase| {
+            let (sine, cosine) = sine_cosine::<T>(phase);
+            self.cogging[0] * sine + self.cogging[1] * cosine
+        });
+        here - there
     }
 
     /// Torque that is lost between motor and load at a speed, while the teeth pass on a torque [N m].

@@ -59,6 +59,10 @@ pub struct GearTable<T: Real> {
     pub mesh_phase_per_radian: T,
     /// Radians of the link for each radian of the mesh phase.
     pub radians_per_mesh: T,
+    /// Periods of the motor's cogging in a turn of the motor.
+    pub cogging_periods: u32,
+    /// Cogging phase for each radian of the link [2^-32 periods].
+    pub cogging_phase_per_radian: T,
     /// What the gears lose over what the teeth pass on, while the motor drives and while the load does.
     pub losses: [T; 2],
 }

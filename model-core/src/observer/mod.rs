@@ -370,12 +370,24 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
     fn heed(&mut self, outcome: Outcome) {
         match outcome {
             Outcome::Nothing => {}
-            Outcome::Concluded => self.say_learnt(),
+            Outcome::Concluded => {
+                self.say_learnt();
+                if self.health.both_encoders() {
+                    self.learn_cogging();
+                }
+            }
             Outcome::EncoderFails => {
                 self.health.give_up(OutputFault::OutOfRange);
                 self.rely_on_motor(None);
             }
         }
+    }
+
+    /// Learns the motor's cogging from what was said in this period.
+    fn learn_cogging(&mut self) {
+        let said = &self.estimates;
+        let seen = [said.motor.fraction, said.motor.speed, said.load_torque.value];
+        self.estimates.cogging = self.learnt.learn_cogging(self.tables, seen);
     }
 
     /// Finds exactly what the deflection depends on by where the shafts are.

@@ -1,10 +1,12 @@
 //! What the observer needs as plain numbers, made by `observer::design`: flows over one control period, gains, priors
 //! and thresholds. SI, lengths along the line of action.
 
+mod cogging;
 mod inertia;
 mod probe;
 
 use crate::numbers::Real;
+pub use cogging::CoggingTable;
 pub use inertia::InertiaTable;
 pub use probe::ProbeTable;
 
@@ -39,6 +41,8 @@ pub struct ObserverTables<T: Real> {
     pub load: LoadTable<T>,
     /// The link's inertia.
     pub inertia: InertiaTable<T>,
+    /// The motor's cogging.
+    pub cogging: CoggingTable<T>,
     /// Contact and torque bias.
     pub contact: ContactTable<T>,
     /// What is learnt.

@@ -19,6 +19,8 @@ pub struct CompensationSettings {
     /// Efficiency of the gears as far as losses grow with the torque passed on: output over input power while the motor
     /// drives.
     pub efficiency: f64,
+    /// Periods of the motor's cogging in a turn of the motor.
+    pub cogging_periods: u32,
     /// From commanding a torque to its first effect [control periods].
     pub torque_delay: f64,
     /// Time constant of the current loop after that [s].
@@ -56,6 +58,7 @@ pub fn compensation_settings(of: &Surroundings, bandwidth: f64) -> CompensationS
         torque_limit: of.torque_limit.min(NO_LIMIT),
         peak_torque: None,
         efficiency: of.efficiency,
+        cogging_periods: of.cogging_periods_per_turn,
         torque_delay: of.delay,
         torque_lag: of.current_lag,
     }

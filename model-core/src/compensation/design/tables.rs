@@ -189,6 +189,8 @@ pub fn design_compensation<T: Real>(
             inverse_lever: real(1.0 / body.lever),
             mesh_phase_per_radian: real(f64::from(joint.geometry.ring_teeth) / TAU * f64::powi(2.0, 32)),
             radians_per_mesh: real(1.0 / f64::from(joint.geometry.ring_teeth)),
+            cogging_periods: settings.cogging_periods,
+            cogging_phase_per_radian: real(f64::from(settings.cogging_periods) * body.gear / TAU * f64::powi(2.0, 32)),
             losses: gear_losses(settings.efficiency).map(real),
         },
         body: BodyTable {

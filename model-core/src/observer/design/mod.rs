@@ -1,6 +1,7 @@
 //! The offline half of the observer: settings, and from them and a joint the tables.
 
 mod body;
+mod cogging;
 mod filter;
 mod inertia;
 mod integers;

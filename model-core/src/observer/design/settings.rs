@@ -52,6 +52,8 @@ pub struct ObserverSettings {
     pub torque_uncertainty: f64,
     /// Standard deviation of what the motor's torque does beside bias and dry friction: cogging, ripple [N m].
     pub torque_ripple: f64,
+    /// Periods of the cogging in a turn of the motor.
+    pub cogging_periods: u32,
     /// Efficiency of the gears while the motor drives, losses in proportion to the torque [-].
     pub efficiency: f64,
     /// Standard deviation of the half-backlash guess, relative to it [-].
@@ -88,6 +90,7 @@ impl ObserverSettings {
         within("the torque noise", self.torque_noise_ratio, 0.0, 1.0, "from 0 to 1")?;
         within("the torque uncertainty", self.torque_uncertainty, 1e-9, 1e6, "positive and finite")?;
         within("the torque ripple", self.torque_ripple, 0.0, 1e6, "zero or more, and finite")?;
+        within("the cogging's periods in a turn", self.cogging_periods.into(), 1.0, 1e5, "from 1 to 100000")?;
         within("the efficiency", self.efficiency, 0.1, 1.0, "from 0.1 to 1")?;
         within("the uncertainty of the backlash", self.backlash_uncertainty, 1e-6, 10.0, "from 1e-6 to 10")?;
         within("the uncertainty of the compliance", self.compliance_uncertainty, 1e-6, 10.0, "from 1e-6 to 10")?;
@@ -118,6 +121,7 @@ pub fn observer_settings(of: &Surroundings) -> ObserverSettings {
         torque_noise_ratio: of.torque_noise_ratio,
         torque_uncertainty: 0.02 * limit,
         torque_ripple: of.cogging_torque,
+        cogging_periods: of.cogging_periods_per_turn,
         efficiency: of.efficiency,
         backlash_uncertainty: 0.5,
         compliance_uncertainty: 0.3,

@@ -168,6 +168,7 @@ mod tests {
             torque_noise_ratio: 0.015,
             torque_uncertainty: 0.05,
             torque_ripple: 0.02,
+            cogging_periods: 84,
             efficiency: 1.0,
             backlash_uncertainty: 0.5,
             compliance_uncertainty: 0.3,

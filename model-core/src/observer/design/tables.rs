@@ -10,7 +10,7 @@ use super::body::Body;
 use super::learning::{BLOCK, LEARNING_INTERVAL, MEMORY, WINDOW};
 use super::settings::{EncoderSettings, ObserverSettings};
 use super::sides::{current, drive_filter, drive_lag, drive_table, load_filter};
-use super::{inertia, integers};
+use super::{cogging, inertia, integers};
 use crate::gears::Kinematics;
 use crate::gears::design::{DesignError, validate};
 use crate::numbers::{Real, digest};
@@ -185,6 +185,7 @@ pub fn design_observer<T: Real>(
             deflection_per_torque: real(0.5 * body.output_lever / body.load_inertia),
         },
         inertia: inertia::table(&load, settings, &body, periods as u32, step),
+        cogging: cogging::table(&load, settings, &body, [periods * step, drive_lag(&body, &drive, step)], step),
         contact: ContactTable {
             force_variance: real(force_variance),
             ripple_variance: real(ripple * ripple),

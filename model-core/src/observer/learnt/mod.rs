@@ -1,6 +1,6 @@
 //! What is learnt of joint, encoders and motor while they move: half-gap, offset, compliance, skew, transmission error and
-//! error maps by one recursive least squares (`learner`), bias and friction of the motor (`bias`), inertia of the link
-//! (`inertia`), and how uncertain all of it is (`uncertainty`).
+//! error maps by one recursive least squares (`learner`), bias and friction of the motor (`bias`) and its cogging (`cogging`),
+//! inertia of the link (`inertia`), and how uncertain all of it is (`uncertainty`).
 //!
 //! Learning goes in intervals of a few control periods (`interval`). `travel` says from each whether the teeth rest or cross
 //! the gap, and `flank` on which flank they rest. Intervals of rest are averaged (`block`), and `consistency` says whether
@@ -9,6 +9,7 @@
 pub mod bias;
 mod block;
 mod co_motion;
+mod cogging;
 mod consistency;
 mod flank;
 pub mod fusion;
@@ -24,6 +25,7 @@ pub mod uncertainty;
 
 use bias::Bias;
 use block::{Block, Settled};
+use cogging::Cogging;
 use consistency::{Consistency, GATE, Verdict};
 use flank::Signs;
 use fusion::{Fused, small};
@@ -58,6 +60,7 @@ pub struct Learnt<T: Real, const P: usize> {
     pub learner: Learner<T, P>,
     pub bias: Bias<T>,
     pub inertia: Inertia<T>,
+    cogging: Cogging<T>,
     pub errors: PositionErrors<T, P>,
     pub uncertainty: Uncertainty<T>,
     interval: Interval<T>,
@@ -126,6 +129,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         Self {
             bias: Bias::new(&tables.contact),
             inertia: Inertia::new(&tables.inertia),
+            cogging: Cogging::new(&tables.cogging),
             errors: PositionErrors::new(),
             uncertainty: Uncertainty::new(tables, &learner),
             learner,
@@ -145,6 +149,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
             learner,
             bias,
             inertia,
+            cogging,
             errors,
             uncertainty,
             interval,
@@ -157,6 +162,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         *learner = Learner::new(&tables.learner);
         *bias = Bias::new(&tables.contact);
         *inertia = Inertia::new(&tables.inertia);
+        *cogging = Cogging::new(&tables.cogging);
         *errors = PositionErrors::new();
         *uncertainty = Uncertainty::new(tables, learner);
         *interval = Interval::new();
@@ -245,6 +251,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
     /// The motor encoder has come back elsewhere.
     pub fn doubt_motor(&mut self, tables: &ObserverTables<T>) {
         self.trusted = None;
+        self.cogging = Cogging::new(&tables.cogging);
         self.learner.doubt_motor();
         self.find_uncertainty(tables, true);
     }
@@ -422,6 +429,14 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         if let Some((lost, direction)) = read {
             self.bias.learn(&tables.contact, lost, direction);
         }
+    }
+
+    /// Learns the motor's cogging, once an interval, from where the motor is in its turn [turns], how fast it turns [rad/s] and what
+    /// brakes the link [N m]; sine and cosine of the torque that drives, referred to the link [N m].
+    pub fn learn_cogging(&mut self, tables: &ObserverTables<T>, seen: [T; 3]) -> [T; 2] {
+        let settled = self.interval.flank.filter(|_| self.uncertainty.settled);
+        self.cogging.learn(&tables.cogging, seen, settled);
+        self.cogging.torque()
     }
 
     /// Does the next task that the last interval has left.

@@ -135,7 +135,7 @@ mod tests {
     use model_core::numbers::digest;
 
     /// Digest of the names, places and types of all fields in this version.
-    const OF_VERSION_2: u64 = 0xc427_f200_b0f6_3279;
+    const OF_VERSION_2: u64 = 0x4319_d822_4dee_bb0f;
 
     #[test]
     fn another_layout_has_another_version() {

@@ -97,7 +97,8 @@ structs! {
         known, drift
     }
     observer::tables::CoggingTable<f32> {
-        periods, settled_after, slow, slow_time, speeds, steady, unsteady, response, late, prior, repeats, memory
+        periods, settled_after, slow, slow_time, speeds, steady, unsteady, response, late, prior, limit, repeats,
+        memory
     }
     observer::tables::ProbeTable<f32> {
         torque, rise, damping, moving, loaded, furthest, longest, settle, still, per_still, turn, deflection,

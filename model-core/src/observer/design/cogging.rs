@@ -15,7 +15,7 @@ const SLOW: f64 = 20e-3;
 /// Least angle by which the cogging phase goes on in that time [rad]: of slower cogging too little is left.
 const LEAST: f64 = 0.6;
 
-/// Most by which it goes on in a learning interval [rad].
+/// Most by which it goes on in a learning interval, and from one count of the motor to the next [rad].
 const MOST: f64 = 1.0;
 
 /// Time over which the motor shall be steady [s], and by how much of its speed it may change in it [-]: the response is that of a
@@ -27,6 +27,9 @@ const SETTLED: f64 = 20e-3;
 
 /// Learning intervals over which noise of the load torque, less its slow part, says the same [-]. Chosen.
 const REPEATS: f64 = 5.0;
+
+/// Largest sine or cosine that is believed, over what the joint file has [-]: beyond three standard deviations.
+const LARGEST: f64 = 3.0;
 
 /// Time over which that noise is watched [s]. Chosen.
 const WATCHED: f64 = 0.1;
@@ -46,6 +49,9 @@ pub(super) fn table<T: Real>(
     let angle = load.gain[0] / step;
     let speed = load.gain[1] / step;
     let torque = -load.gain[2] * load.response[(1, 0)] / (step * step);
+    // A count tells where in a period the motor is.
+    let told = periods * TAU / f64::from(settings.motor_encoder.counts_per_turn) <= MOST;
+    let ripple = settings.torque_ripple * body.ratio;
     CoggingTable {
         periods: settings.cogging_periods,
         settled_after: libm::ceil(SETTLED / span) as u32,
@@ -56,7 +62,8 @@ pub(super) fn table<T: Real>(
         unsteady: real(STEADY.1),
         response: [periods * speed / torque, periods.powi(2) * angle / torque, periods.powi(3) / torque].map(real),
         late: real(periods * late / TAU * f64::powi(2.0, 32)),
-        prior: real((settings.torque_ripple * body.ratio).powi(2)),
+        prior: real(if told { ripple * ripple } else { 0.0 }),
+        limit: real(LARGEST * ripple),
         repeats: real(REPEATS),
         memory: part(WATCHED),
     }

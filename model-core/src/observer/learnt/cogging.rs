@@ -13,6 +13,7 @@
 
 use crate::gears::Flank;
 use crate::numbers::Real;
+use crate::numbers::arithmetic::clamp;
 use crate::numbers::phase::sine_cosine;
 use crate::observer::tables::CoggingTable;
 
@@ -90,7 +91,8 @@ impl<T: Real> Cogging<T> {
         self.noise += table.memory * (square - self.noise);
         if expected > T::ZERO {
             let [gain_a, gain_b] = [from_a, from_b].map(|from| from.over(expected));
-            self.torque = [a + gain_a * innovation, b + gain_b * innovation];
+            self.torque =
+                [a + gain_a * innovation, b + gain_b * innovation].map(|it| clamp(it, -table.limit, table.limit));
             self.variance = [of_a - gain_a * from_a, of_b - gain_b * from_b, of_both - gain_a * from_b];
         }
     }

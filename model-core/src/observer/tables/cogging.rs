@@ -28,6 +28,8 @@ pub struct CoggingTable<T: Real> {
     pub late: T,
     /// Variance of sine and of cosine beforehand [N^2 m^2].
     pub prior: T,
+    /// Neither is larger than this [N m].
+    pub limit: T,
     /// Intervals over which noise says the same [-].
     pub repeats: T,
     /// Part of its change in an interval by which the mean square of that noise follows [-].

@@ -95,6 +95,8 @@ impl<T: Real> Plain<T> {
     /// Integrates; `cut` is what the limit took off. Under compensation the integral fades, so that it is ready and
     /// empty when it is needed.
     pub fn take(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, cut: T, trust: T) {
+        // What the limit cuts off a torque that swings from side to side says nothing of what the integral is too much.
+        let cut = if self.swings { T::ZERO } else { cut };
         let growth = tables.law.back_calculation * cut - tables.law.integral * self.place(situation);
         // What a flank carries is as far from the link as it is; nothing is said by teeth that may be open, nor while the
         // link is thrown to and fro.

@@ -51,7 +51,7 @@ fn estimates() -> Estimates<f32> {
         skew: estimate(8.0),
         torque_bias: estimate(9.0),
         motor_friction: estimate(10.0),
-        cogging: [10.25, 10.5],
+        cogging: [0.0; 2],
         link_inertia_ratio: estimate(11.0),
         motor: Shaft { turns: i32::MIN, fraction: 0.1, speed: 11.0 },
         link: Shaft { turns: i32::MAX, fraction: 0.2, speed: 12.0 },

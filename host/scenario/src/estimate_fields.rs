@@ -72,9 +72,7 @@ const ESTIMATES: [[EstimateField; 3]; 9] = [
     estimate!(motor_friction, "motor_friction", "_Nm", "_N2m2", "dry friction of the motor [N m]"),
 ];
 /// The others.
-const OTHERS: [EstimateField; 17] = [
-    number("estimated_cogging_sine_Nm", "of the motor, driving, at the link [N m]", |all| all.cogging[0]),
-    number("estimated_cogging_cosine_Nm", "of the motor, driving, at the link [N m]", |all| all.cogging[1]),
+const OTHERS: [EstimateField; 15] = [
     number("estimated_link_inertia_ratio", "inertia of the link over the joint file's", |all| {
         all.link_inertia_ratio.value
     }),

@@ -102,8 +102,6 @@ pub struct WireEstimates {
     /// Mesh torque, load torque [N m], half-backlash [m], encoder offset [rad], compliance [rad/(N m)], skew [s], torque
     /// bias, motor friction [N m], inertia of the link over the designed one.
     pub others: [WireEstimate; 9],
-    /// Sine and cosine of the motor's cogging, referred to the link [N m].
-    pub cogging: [f32; 2],
     /// Motor and link: whole turns, the rest, speed [rad/s].
     pub shafts: [(i32, f32, f32); 2],
 }
@@ -193,7 +191,6 @@ impl From<&Estimates<f32>> for WireEstimates {
                 of.link_inertia_ratio,
             ]
             .map(estimate),
-            cogging: of.cogging,
             shafts: [of.motor, of.link].map(shaft),
         }
     }
@@ -242,7 +239,8 @@ impl From<WireEstimates> for Estimates<f32> {
             skew,
             torque_bias,
             motor_friction,
-            cogging: wire.cogging,
+            // Only the compensation on the board needs it: it is not sent.
+            cogging: [0.0; 2],
             link_inertia_ratio,
             motor,
             link,

@@ -138,7 +138,7 @@ pub struct Estimates<T: Real> {
     /// Dry friction of the motor, as far as it does not grow with the load [N m].
     pub motor_friction: Estimate<T>,
     /// Cogging of the motor as far as it is learnt, referred to the link: a and b of the driving torque a sin(n theta) + b cos(n
-    /// theta), with theta the motor's angle and n the joint file's `cogging_periods_per_turn` [N m].
+    /// theta), with theta the motor's angle and n the joint file's `cogging_periods_per_turn` [N m]. Messages to a host leave it out.
     pub cogging: [T; 2],
     /// Inertia of link and carrier over what the joint file has; the motor's torque constant is in it, as it is in the
     /// torques [-].

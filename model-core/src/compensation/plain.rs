@@ -95,7 +95,7 @@ impl<T: Real> Plain<T> {
     /// Integrates; `cut` is what the limit took off. Under compensation the integral fades, so that it is ready and
     /// empty when it is needed.
     pub fn take(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, cut: T, trust: T) {
-        // What the limit cuts off a torque that swings from side to side says nothing of what the integral is too much.
+        // What the limit cuts off a torque that swings from side to side does not say that the integral is too large.
         let cut = if self.swings { T::ZERO } else { cut };
         let growth = tables.law.back_calculation * cut - tables.law.integral * self.place(situation);
         // What a flank carries is as far from the link as it is; nothing is said by teeth that may be open, nor while the
@@ -118,7 +118,7 @@ impl<T: Real> Plain<T> {
         } else if situation.contact.is_none() || thrown {
             (self.beyond, slowly)
         } else {
-            (situation.confirmed_motor + situation.error, slowly)
+            (situation.beyond_link(), slowly)
         };
         let beyond = self.beyond + part * (towards - self.beyond);
         if beyond.is_finite() {

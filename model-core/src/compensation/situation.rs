@@ -126,11 +126,15 @@ impl<T: Real> Situation<T> {
         self.shift * cosine + self.shift_slope * tables.gear.radians_per_mesh * sine
     }
 
+    /// Motor beyond the link, with every tooth centred, as far as the link's place bears it out [rad].
+    pub fn beyond_link(&self) -> T {
+        self.confirmed_motor + self.error
+    }
+
     /// By how much the motor's cogging drives more than that of a motor would which stood where it stands without a gap [N m].
     pub fn cogging_by_gap(&self, tables: &CompensationTables<T>) -> T {
-        let beside = self.confirmed_motor + self.error;
         let phase = self.motor_place.over(T::PHASE_UNIT).to_phase().wrapping_mul(tables.gear.cogging_periods);
-        let without_gap = phase.wrapping_sub((tables.gear.cogging_phase_per_radian * beside).to_phase());
+        let without_gap = phase.wrapping_sub((tables.gear.cogging_phase_per_radian * self.beyond_link()).to_phase());
         let [here, there] = [phase, without_gap].map(|phase| {
             let (sine, cosine) = sine_cosine::<T>(phase);
             self.cogging[0] * sine + self.cogging[1] * cosine

@@ -9,7 +9,7 @@
 //! | 4 | silence ([`OutputFault::Silent`]) | no fresh reading for 10 ms | a broken line | `observer faults::a_silent_output_encoder_is_said_and_waited_for` |
 //! | 5 | the motor outruns counts that stand still | more than gap and wind-up, for 4 ms | a frozen encoder that was slow, or at rest, when it froze | `observer faults::an_encoder_that_freezes_before_the_gap_is_known_is_found_by_how_far_the_motor_goes` |
 //! | 6 | a deflection that no teeth allow | outside for 4 ms, longer than impacts ring | everything else: slow slip, missing counts | `observer faults::an_output_encoder_that_loses_counts_never_makes_a_width_less_than_none` |
-//! | 7 | teeth that seem to have grown ([`learnt::Outcome::EncoderFails`]) | a half-gap trusted on both flanks | missing counts that stay within the gap | `observer faults::an_output_encoder_that_makes_the_gap_narrower_is_given_up_for_teeth_do_not_grow` |
+//! | 7 | teeth that seem to have grown, or shafts to have turned against each other ([`learnt::Outcome::EncoderFails`]) | a half-gap trusted on both flanks | missing counts that stay within the gap | `observer faults::an_output_encoder_that_makes_the_gap_narrower_is_given_up_for_teeth_do_not_grow` |
 //!
 //! [`learnt::Outcome::EncoderFails`]: crate::observer::learnt::Outcome::EncoderFails
 

@@ -103,7 +103,7 @@ pub enum Outcome {
     Nothing,
     /// What is known until the next interval has changed.
     Concluded,
-    /// The teeth seem to have grown: the output encoder fails.
+    /// The teeth seem to have grown, or shafts to have turned against each other: the output encoder fails.
     EncoderFails,
 }
 

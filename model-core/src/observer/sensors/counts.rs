@@ -287,12 +287,17 @@ impl Counts {
         if counts != 0 {
             let by = counts.wrapping_mul(table.motor_weight);
             self.motor.turn(&table.motor, counts.wrapping_neg());
-            self.start = rest(self.start.wrapping_add(by), table.modulus);
-            self.difference = self.difference.wrapping_sub(by);
+            self.count_from(table, by);
         }
         if self.implied.is_some() {
             self.follow(table, went);
         }
+    }
+
+    /// Counts the difference from so many units further on: an encoder has slipped by as much.
+    fn count_from<T: Real>(&mut self, table: &CountTable<T>, by: i64) {
+        self.start = rest(self.start.wrapping_add(by), table.modulus);
+        self.difference = self.difference.wrapping_sub(by);
     }
 
     /// The output has jumped by so many counts, which gives it up: what the motor implies goes on from where it was. Raw
@@ -358,8 +363,7 @@ impl Counts {
         if counts != 0 {
             let by = counts.wrapping_mul(table.output_weight);
             self.output.turn(&table.output, counts);
-            self.start = rest(self.start.wrapping_add(by), table.modulus);
-            self.difference = self.difference.wrapping_sub(by);
+            self.count_from(table, by);
         }
     }
 

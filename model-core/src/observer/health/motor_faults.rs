@@ -300,10 +300,12 @@ impl<T: Real> MotorFaultDetector<T> {
         }
         let [half_gap, compliance] = learnt.shape();
         let went_on = (unwound - self.stood_at).abs();
-        // A motor that moves by no torque is held by teeth: the link may go on by what they wind up.
+        // A motor that moves by no torque is held by teeth: the link may go on by what they wind up, and, while nobody knows how
+        // much that is, a little further.
         if self.unmoved_for > FEWEST && self.free_way.abs() > T::from_i32(HELD) {
             let wound_up = compliance * (force - self.stood_under).abs();
-            return went_on > wound_up + slack(tables, learnt, force);
+            let unknown = T::QUARTER * learnt.uncertainty.guessed_half_gap;
+            return went_on > unknown + wound_up + slack(tables, learnt, force);
         }
         went_on > half_gap && self.is_unmoved(&tables.supervisor) && outruns(tables, learnt, went_on, force)
     }

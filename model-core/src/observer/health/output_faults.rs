@@ -260,8 +260,10 @@ pub fn outruns<T: Real, const P: usize>(
 ) -> bool {
     let [half_gap, _] = learnt.shape();
     let [half_gap_variance, ..] = learnt.uncertainty.variances;
-    let gap = T::TWO * (half_gap + T::THREE * half_gap_variance.square_root());
-    went_on > gap + slack(tables, learnt, force)
+    let (learnt_half, guessed_half) =
+        (half_gap + T::THREE * half_gap_variance.square_root(), learnt.uncertainty.guessed_half_gap);
+    let widest = if guessed_half > learnt_half { guessed_half } else { learnt_half };
+    went_on > T::TWO * widest + slack(tables, learnt, force)
 }
 
 /// By what a deflection may differ from itself beside gap and wind-up [m].

@@ -244,7 +244,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         let Some(trusted) = self.trusted.filter(|_| !self.consistency.is_trusted()) else { return false };
         trusted.restore(&mut self.learner);
         self.find_uncertainty(tables, false);
-        self.uncertainty.of_learnt(tables, &self.learner);
+        self.uncertainty.of_learnt(tables, &self.learner, self.trusted.is_some());
         true
     }
 
@@ -468,7 +468,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
                 Task::Conclude
             }
             Task::Conclude | Task::Done => {
-                self.uncertainty.of_learnt(tables, &self.learner);
+                self.uncertainty.of_learnt(tables, &self.learner, self.trusted.is_some());
                 outcome = Outcome::Concluded;
                 Task::Done
             }

@@ -47,6 +47,9 @@ pub struct Uncertainty<T: Real> {
     pub mesh_share: T,
     /// By how much the compliance may be wrong: two standard deviations [m/N].
     pub softness: T,
+    /// As wide as the guess lets the half-gap be, until it has been seen on both flanks for long: what was learnt of a gap by one
+    /// flank, or by counts wider than the gap, may be sure and wrong. Zero from then on [m].
+    pub guessed_half_gap: T,
     /// Furthest from the middle of the gap that the deflection can be without wind-up [m].
     pub reach: T,
     /// Variance of the gap coordinate while teeth touch, and while they do not [m^2].
@@ -89,6 +92,7 @@ impl<T: Real> Uncertainty<T> {
             stiffness: T::ZERO,
             mesh_share: T::ZERO,
             softness: T::ZERO,
+            guessed_half_gap: T::ZERO,
             reach: T::ZERO,
             gap_variance: [T::ZERO; 2],
             widest_variance: T::ZERO,
@@ -102,7 +106,7 @@ impl<T: Real> Uncertainty<T> {
         for _ in 0..PARTS {
             uncertainty.next(tables, learner, &free, &touch);
         }
-        uncertainty.of_learnt(tables, learner);
+        uncertainty.of_learnt(tables, learner, false);
         uncertainty
     }
 
@@ -168,17 +172,21 @@ impl<T: Real> Uncertainty<T> {
             self.half_gap_is_known || self.half_gap_serves && half_gap > T::ZERO && variance < thrice * thrice;
     }
 
-    /// What follows for every period until the next interval.
-    pub fn of_learnt<const P: usize>(&mut self, tables: &ObserverTables<T>, learner: &Learner<T, P>) {
+    /// What follows for every period until the next interval; whether the half-gap has been seen on both flanks for long.
+    pub fn of_learnt<const P: usize>(&mut self, tables: &ObserverTables<T>, learner: &Learner<T, P>, trusted: bool) {
         let (half_gap, compliance) = (learner.value(HALF_GAP), learner.value(COMPLIANCE));
         let [_, _, compliance_variance, _] = self.variances;
         self.stiffness = if compliance > T::ZERO { T::ONE.over(compliance) } else { T::ZERO };
         self.mesh_share = tables.learner.mesh_compliance * self.stiffness;
         self.softness = T::TWO * compliance_variance.square_root();
+        let ([guess, ..], [deviation, ..]) = (&tables.learner.mean, &tables.learner.deviation);
+        self.guessed_half_gap = if trusted { T::ZERO } else { *guess + T::THREE * *deviation };
         // What is rounded is off by anything up to that alike.
         let rounding = tables.rounding();
         let edge = self.edge_deviation * self.edge_deviation + T::THIRD * rounding * rounding;
-        self.reach = T::THREE * edge.square_root() + tables.supervisor.margin + half_gap;
+        let [by_learnt, by_guess] =
+            [half_gap + T::THREE * edge.square_root(), self.guessed_half_gap + T::TWO * rounding];
+        self.reach = tables.supervisor.margin + if by_guess > by_learnt { by_guess } else { by_learnt };
         let widest = T::TWO * half_gap * tables.supervisor.widest_part;
         // In a gap narrower than a count of the output encoder nobody can tell where the teeth are.
         self.widest_variance = if half_gap > rounding { widest * widest } else { T::ZERO };

@@ -260,9 +260,9 @@ pub fn outruns<T: Real, const P: usize>(
 ) -> bool {
     let [half_gap, _] = learnt.shape();
     let [half_gap_variance, ..] = learnt.uncertainty.variances;
-    let (learnt_half, guessed_half) =
-        (half_gap + T::THREE * half_gap_variance.square_root(), learnt.uncertainty.guessed_half_gap);
-    let widest = if guessed_half > learnt_half { guessed_half } else { learnt_half };
+    let by_learnt = half_gap + T::THREE * half_gap_variance.square_root();
+    let by_guess = learnt.uncertainty.guessed_half_gap;
+    let widest = if by_guess > by_learnt { by_guess } else { by_learnt };
     went_on > T::TWO * widest + slack(tables, learnt, force)
 }
 

@@ -172,15 +172,15 @@ impl<T: Real> Uncertainty<T> {
             self.half_gap_is_known || self.half_gap_serves && half_gap > T::ZERO && variance < thrice * thrice;
     }
 
-    /// What follows for every period until the next interval; whether the half-gap has been seen on both flanks for long.
+    /// What follows for every period until the next interval; `trusted` is whether a half-gap was ever seen on both flanks for long.
     pub fn of_learnt<const P: usize>(&mut self, tables: &ObserverTables<T>, learner: &Learner<T, P>, trusted: bool) {
         let (half_gap, compliance) = (learner.value(HALF_GAP), learner.value(COMPLIANCE));
         let [_, _, compliance_variance, _] = self.variances;
         self.stiffness = if compliance > T::ZERO { T::ONE.over(compliance) } else { T::ZERO };
         self.mesh_share = tables.learner.mesh_compliance * self.stiffness;
         self.softness = T::TWO * compliance_variance.square_root();
-        let ([guess, ..], [deviation, ..]) = (&tables.learner.mean, &tables.learner.deviation);
-        self.guessed_half_gap = if trusted { T::ZERO } else { *guess + T::THREE * *deviation };
+        let [guess, deviation] = [tables.learner.mean[HALF_GAP], tables.learner.deviation[HALF_GAP]];
+        self.guessed_half_gap = if trusted { T::ZERO } else { guess + T::THREE * deviation };
         // What is rounded is off by anything up to that alike.
         let rounding = tables.rounding();
         let edge = self.edge_deviation * self.edge_deviation + T::THIRD * rounding * rounding;

@@ -201,17 +201,26 @@ impl<T: Real> MotorFaultDetector<T> {
         }
     }
 
-    /// The counts stand still in one more period: so far would torque have moved the motor if nothing held it.
+    /// The counts stand still in one more period: so far would torque have moved the motor if nothing but friction held it.
     fn stand(&mut self, table: &SupervisorTable<T>, drive: &DriveSide<T>) {
         if self.unmoved_for == 0 {
             (self.free_rate, self.free_way) = (T::ZERO, T::ZERO);
         }
         self.unmoved_for = self.unmoved_for.saturating_add(1);
         let torque = drive.air_gap();
-        let left = torque.abs() - table.motor_drag;
-        if left > T::ZERO {
-            let by = T::TWO * table.motor_brake * left;
+        let by = T::TWO * table.motor_brake * (torque.abs() - table.motor_drag);
+        if by > T::ZERO {
             self.free_rate += if torque > T::ZERO { by } else { -by };
+        } else {
+            // What friction has left over stops it, and does not turn it round.
+            let left = self.free_rate.abs() + by;
+            self.free_rate = if left < T::ZERO {
+                T::ZERO
+            } else if self.free_rate > T::ZERO {
+                left
+            } else {
+                -left
+            };
         }
         self.free_way += self.free_rate;
     }

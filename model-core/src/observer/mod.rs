@@ -227,7 +227,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         let mut force = fused.force;
         if !both {
             let before = self.contact.reported;
-            self.contact.reported = self.health.motor_only.contact(tables, fused, &self.learnt, before);
+            self.contact.reported = self.health.motor_only.contact(fused, &self.learnt, before);
         } else if known.half_gap_serves {
             let position = self.learnt.position(fused.of_teeth(), fused.travel);
             force = self.contact.step_by_position(&position, force, deviations, known.settled);

@@ -10,6 +10,7 @@ mod holding;
 mod impedance;
 mod monte_carlo;
 mod page;
+mod plain;
 mod position;
 mod stepping;
 mod width;

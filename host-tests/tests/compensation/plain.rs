@@ -1,0 +1,52 @@
+//! What plain control, which stays where the gap is not seen, does with its integral.
+
+use model_core::compensation::design::{compensation_settings, design_compensation};
+use model_core::compensation::{Command, Compensation, Motion, Stage};
+use model_core::observer::{Estimate, Estimates, Source};
+use reference::drive_train::DriveTrainParameters;
+use reference::scenarios::q1;
+
+const LIMIT: f32 = 2.5;
+
+/// A speed of the motor at rest that its damper answers with the largest torque [rad/s].
+const SLOWER: f32 = 10.0;
+
+/// Of a joint whose gap is not known, with a motor of some speed [rad/s] where it should be.
+fn estimates(motor_speed: f32) -> Estimates<f32> {
+    let mut estimates = Estimates {
+        source: Source::Both,
+        load_torque: Estimate { value: 0.0, variance: 0.0, valid: true },
+        ..Estimates::default()
+    };
+    estimates.motor.speed = motor_speed;
+    estimates
+}
+
+/// Torque at rest [N m] after the motor has been thrown to and fro so many times, three times as fast to one side as to the other.
+fn torque_after_throws(throws: usize) -> f32 {
+    let tables =
+        design_compensation::<f32>(&q1(), &compensation_settings(&DriveTrainParameters::q1().surroundings, 60.0))
+            .expect("sound");
+    let mut compensation = Compensation::new(&tables);
+    let rest = Command::Position { now: Motion::default(), ahead: None };
+    let mut step = |motor_speed| {
+        let output = compensation.step(&estimates(motor_speed), &rest);
+        assert_eq!(output.stage, Stage::Plain);
+        output.torque
+    };
+    for throw in 0..throws {
+        let (speed, side) = if throw % 2 == 0 { (SLOWER, -1.0) } else { (-3.0 * SLOWER, 1.0) };
+        let torques = [(); 20].map(|()| step(speed));
+        assert!(torques.iter().all(|torque| torque * side > 0.9 * LIMIT), "to the limit: {torques:?}");
+    }
+    [(); 5].map(|()| step(0.0))[4]
+}
+
+#[test]
+fn what_the_limits_cut_off_a_torque_that_swings_does_not_move_the_motor_aside() {
+    // What is cut off before it is known for a swing counts.
+    let [few, many] = [2, 40].map(torque_after_throws);
+    println!("{few} and {many} N m");
+    assert!(few.abs() < 0.5 * LIMIT, "{few} N m");
+    assert!((many - few).abs() < 0.01 * LIMIT, "{many} N m in place of {few}");
+}

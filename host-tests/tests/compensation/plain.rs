@@ -6,6 +6,7 @@ use model_core::observer::{Estimate, Estimates, Source};
 use reference::drive_train::DriveTrainParameters;
 use reference::scenarios::q1;
 
+/// Largest torque of Q1's motor [N m].
 const LIMIT: f32 = 2.5;
 
 /// A speed of the motor at rest that its damper answers with the largest torque [rad/s].

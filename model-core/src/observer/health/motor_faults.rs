@@ -15,6 +15,7 @@
 use super::output_faults::{outruns, slack};
 use super::plausibility::{COUNT, FEWEST, Plausibility, Surroundings, Verdict, counts};
 use crate::numbers::Real;
+use crate::numbers::arithmetic::beyond;
 use crate::observer::estimates::MotorFault;
 use crate::observer::filters::drive_side::DriveSide;
 use crate::observer::learnt::Learnt;
@@ -208,19 +209,13 @@ impl<T: Real> MotorFaultDetector<T> {
         }
         self.unmoved_for = self.unmoved_for.saturating_add(1);
         let torque = drive.air_gap();
-        let by = T::TWO * table.motor_brake * (torque.abs() - table.motor_drag);
-        if by > T::ZERO {
-            self.free_rate += if torque > T::ZERO { by } else { -by };
-        } else {
+        let per_torque = T::TWO * table.motor_brake;
+        let left = beyond(torque, table.motor_drag);
+        if left == T::ZERO {
             // What friction has left over stops it, and does not turn it round.
-            let left = self.free_rate.abs() + by;
-            self.free_rate = if left < T::ZERO {
-                T::ZERO
-            } else if self.free_rate > T::ZERO {
-                left
-            } else {
-                -left
-            };
+            self.free_rate = beyond(self.free_rate, per_torque * (table.motor_drag - torque.abs()));
+        } else {
+            self.free_rate += per_torque * left;
         }
         self.free_way += self.free_rate;
     }

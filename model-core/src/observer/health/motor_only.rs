@@ -9,6 +9,7 @@
 
 use crate::gears::{Flank, sign};
 use crate::numbers::Real;
+use crate::numbers::arithmetic::beyond;
 use crate::observer::contact::by_force::with_hysteresis;
 use crate::observer::filters::LoadCorrection;
 use crate::observer::learnt::Learnt;
@@ -74,14 +75,7 @@ impl<T: Real> MotorOnly<T> {
             return before;
         }
         let [half_gap, _] = learnt.shape();
-        let deflection = fused.of_teeth();
-        if deflection > half_gap {
-            Some(Flank::Drive)
-        } else if deflection < -half_gap {
-            Some(Flank::Back)
-        } else {
-            None
-        }
+        Flank::towards(beyond(fused.of_teeth(), half_gap))
     }
 
     /// Feels for contact in one period; how that corrects the load side.
@@ -104,12 +98,11 @@ impl<T: Real> MotorOnly<T> {
         if self.felt.is_none() {
             self.open_for = self.open_for.saturating_add(1);
             // Beyond an edge there is contact, however light: the link goes with the motor.
-            let deflection = fused.of_teeth();
-            if deflection.abs() <= half_gap {
+            let past = beyond(fused.of_teeth(), half_gap);
+            if past == T::ZERO {
                 return LoadCorrection::None;
             }
-            let edge = if deflection > T::ZERO { half_gap } else { -half_gap };
-            return LoadCorrection::TurnsWithMotor((deflection - edge) * levers.per_output);
+            return LoadCorrection::TurnsWithMotor(past * levers.per_output);
         }
         self.open_for = 0;
         if self.felt == before {

@@ -22,7 +22,7 @@ const SOONER: i32 = 8;
 pub(super) struct PositionLaw<T: Real> {
     /// Acceleration asked for one period ago.
     before: Option<T>,
-    /// Error that is let be while the motion rests, grown by crossings that feedback alone has caused [rad].
+    /// Error that is let be while the joint rests without a load, grown by crossings that feedback alone has caused [rad].
     deadband: T,
     /// The flank that the demand ahead asked for last, at this rest.
     asked: Option<Flank>,
@@ -39,6 +39,10 @@ pub(super) struct PositionLaw<T: Real> {
 }
 
 impl<T: Real> PositionLaw<T> {
+    /// How fast the first deadband opens, over itself [1/s]: slowly against a load that passes through zero, and fast against
+    /// an integral that winds up until the motor breaks loose from its friction.
+    const OPENS: T = T::ONE;
+
     pub fn new() -> Self {
         Self {
             before: None,
@@ -161,8 +165,9 @@ impl<T: Real> PositionLaw<T> {
         }
     }
 
-    /// Doubles the error that is let be whenever a joint at rest asks for the other flank soon after it asked for this
-    /// one, which no load does but a loop that hunts; forgives it slowly, and at once when the joint is to move.
+    /// Opens the first deadband while a joint rests without a load: what it lets be friction holds for seconds, and then it
+    /// costs a crossing to put it right. Doubles it whenever such a joint asks for the other flank soon after it asked for this
+    /// one, which no load does but a loop that hunts; forgives that slowly, and all at once when the joint is to move.
     fn find_deadband(&mut self, tables: &CompensationTables<T>, rests: bool, idles: bool, demand: T, half: T) {
         self.since = clamp(self.since + tables.clock.period, T::ZERO, tables.rest.hunting);
         if !rests {
@@ -170,11 +175,14 @@ impl<T: Real> PositionLaw<T> {
             self.asked = None;
             return;
         }
-        self.deadband = if idles { self.deadband * tables.rest.deadband_left } else { T::ZERO };
+        let first = tables.rest.first_deadband * half;
+        let opened = self.deadband + Self::OPENS * tables.clock.period * first;
+        let forgiven = tables.rest.deadband_left * self.deadband;
+        self.deadband = if idles { clamp(first, forgiven, opened) } else { T::ZERO };
         let asks = Flank::towards(demand);
         if asks.is_some_and(|flank| self.asked == Some(flank.opposite())) {
             if self.since < tables.rest.hunting {
-                let grown = self.deadband + self.deadband + tables.rest.first_deadband * half;
+                let grown = self.deadband + self.deadband + first;
                 self.deadband = clamp(grown, T::ZERO, tables.rest.largest_deadband * half);
             }
             self.since = T::ZERO;

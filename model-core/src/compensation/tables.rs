@@ -206,7 +206,7 @@ pub struct SwitchingTable<T: Real> {
 pub struct RestTable<T: Real> {
     /// A joint at rest that asks for the other flank within this time hunts [s].
     pub hunting: T,
-    /// Error let be after the first crossing that feedback alone has caused, over half the lost motion.
+    /// Error let be while nothing hunts, over half the lost motion.
     pub first_deadband: T,
     /// The most that is let be, over half the lost motion.
     pub largest_deadband: T,

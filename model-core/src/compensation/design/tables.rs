@@ -106,11 +106,11 @@ const HUNTING: f64 = 15.0;
 /// Change of a torque over the largest that is taken up faster.
 const LARGE_STEP: f64 = 0.05;
 
-/// Error let be at rest after the first hunt and at most, over half the lost motion: with the most, the joint rests
-/// within half of its lost motion.
+/// Error let be at rest without a load, while nothing hunts and at most, over half the lost motion: with the most, the joint
+/// rests within half of its lost motion.
 const DEADBAND: [f64; 2] = [0.05, 0.5];
 
-/// Time in which the deadband is lost again [s]: long against the hunt that it ends.
+/// Time in which a grown deadband is lost again [s]: long against the hunt that it ends.
 const DEADBAND_KEPT: f64 = 30.0;
 
 /// Speed at which dry friction has its full size [rad/s], for want of a better number: what encoders resolve.

@@ -45,9 +45,17 @@ pub(super) struct FlankControl<T: Real> {
     hysteresis: T,
     /// Whether the flank in use has been asked for since the motor set out for it, or the joint to rest.
     asked: bool,
+    /// For how long no flank has been needed, as far as that matters [s].
+    unneeded: T,
+    /// Whether the motor rested in the middle of the gap one period ago.
+    centred: bool,
 }
 
 impl<T: Real> FlankControl<T> {
+    /// How long no flank must have been needed before the motor leaves for the middle of the gap, as a part of the time of
+    /// hunting [-]: a load that passes through zero is gone for less.
+    const UNNEEDED: T = T::HALF;
+
     pub fn new() -> Self {
         Self {
             flank: Flank::Drive,
@@ -60,6 +68,8 @@ impl<T: Real> FlankControl<T> {
             owed: T::ZERO,
             hysteresis: T::ONE,
             asked: true,
+            unneeded: T::ZERO,
+            centred: false,
         }
     }
 
@@ -81,6 +91,7 @@ impl<T: Real> FlankControl<T> {
     pub fn forget(&mut self, situation: &Situation<T>) {
         self.stage = Stage::Touching;
         self.asked = true;
+        self.unneeded = T::ZERO;
         self.rise = T::ONE;
         self.owed = T::ZERO;
         self.flank = situation.contact.unwrap_or(self.flank);
@@ -88,12 +99,22 @@ impl<T: Real> FlankControl<T> {
 
     /// Torque of this period, limits aside [N m].
     pub fn step(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>) -> T {
-        let opened = self.opened_to(situation);
-        let signs = self.signs(tables, situation, intent, opened);
         // Of a joint that idles nothing but a flank puts the error right.
         let left = tables.switching.transient_left;
         let left = if intent.idles { left * left } else { left };
         self.hysteresis = T::ONE + left * (self.hysteresis - T::ONE);
+        let enough = Self::UNNEEDED * tables.rest.hunting;
+        self.centred = self.unneeded >= enough;
+        let needs_none = intent.needs_no_flank && self.stage == Stage::Touching;
+        self.unneeded = if needs_none { clamp(self.unneeded + tables.clock.period, T::ZERO, enough) } else { T::ZERO };
+        if self.unneeded >= enough {
+            return centring(tables, situation);
+        }
+        if self.centred {
+            self.flank = Flank::towards(intent.demand_ahead).unwrap_or(self.flank);
+        }
+        let opened = self.opened_to(situation);
+        let signs = self.signs(tables, situation, intent, opened);
         if let Some(action) = signs.events.action(self.stage) {
             self.act(tables, situation, intent, opened, action);
         }
@@ -155,8 +176,9 @@ impl<T: Real> FlankControl<T> {
         let opens = !touching && carries && opened > landing.opening * situation.half;
         let lost = opens && opened > T::HALF * situation.half;
         // Teeth that meet before the motor has been braked are about to be struck: braking comes first, unless the blow is
-        // no harder than what is to be carried.
-        let met = touching && (self.stage != Stage::Crossing || self.is_braked(tables, situation, intent));
+        // no harder than what is to be carried, or the link is thrown: then every moment counts.
+        let met =
+            touching && (self.stage != Stage::Crossing || intent.thrown || self.is_braked(tables, situation, intent));
         let ended = self.elapsed >= self.path.duration();
         let events = Events::UNDERWAY
             .with(Event::DemandTurned, turned)
@@ -194,7 +216,7 @@ impl<T: Real> FlankControl<T> {
                 self.elapsed = T::ZERO;
                 self.opened = opened;
             }
-            Action::Carry => self.rise = T::ZERO,
+            Action::Carry => self.rise = if intent.thrown { T::ONE } else { T::ZERO },
             Action::LetSpringFind => {
                 let other = self.flank.opposite();
                 if situation.contact == Some(other) && opened > situation.half {
@@ -229,7 +251,7 @@ impl<T: Real> FlankControl<T> {
 
     /// Leaves for the flank, from a stage.
     fn set_out(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>, from: Stage) {
-        let crossing = if from == Stage::Touching {
+        let crossing = if from == Stage::Touching && !self.centred {
             Crossing::new(tables, situation.half, intent.far_demand)
         } else {
             self.rest_of_way(tables, situation, intent)
@@ -274,6 +296,14 @@ impl<T: Real> FlankControl<T> {
         // What is measured in this period is the path's start.
         self.elapsed = -tables.crossing.reaction - tables.clock.period;
     }
+}
+
+/// Torque that takes the motor to the middle of the gap and keeps it there, beside a link that stands still [N m].
+fn centring<T: Real>(tables: &CompensationTables<T>, situation: &Situation<T>) -> T {
+    let rate = situation.link_speed - situation.motor_speed;
+    tables.crossing.stiffness * (situation.shift - situation.gap)
+        + tables.law.motor_damping * rate
+        + situation.lost(tables, rate, T::ZERO)
 }
 
 /// Torque of a motor that goes along with the free link, and by so much faster [N m].

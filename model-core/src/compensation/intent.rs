@@ -28,6 +28,11 @@ pub(super) struct Intent<T: Real> {
     pub idles: bool,
     /// Whether the joint is asked to rest.
     pub rests: bool,
+    /// Whether a joint that idles needs no flank: friction holds its link where it shall be, and nothing tells which flank it
+    /// will need.
+    pub needs_no_flank: bool,
+    /// Whether the link was pushed of late with more than the teeth shall pass on.
+    pub thrown: bool,
     /// Whether the link is braked early, for the motor has no more torque.
     pub brakes_early: bool,
     /// What a joint that friction holds is likely to be asked for first; it decides on the flank to wait on [N m].
@@ -59,6 +64,8 @@ impl<T: Real> Intent<T> {
             spring,
             idles: false,
             rests: false,
+            needs_no_flank: false,
+            thrown: false,
             brakes_early: false,
             expects: T::ZERO,
         }

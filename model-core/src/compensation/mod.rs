@@ -7,7 +7,7 @@
 //! 3. `crossing` and `path` take the motor through the gap to where the load will be, and softly onto the flank.
 //! 4. `limit` keeps what the teeth pass on within bounds, `braking` the link's speed within what the motor can brake.
 //! 5. `load` knows what brakes the link and how that changes when the motion turns round, `start_prediction` how
-//!    motions start.
+//!    motions start, `easing` what friction holds at rest.
 //! 6. `plain` is control without compensation: a PID on the motor's place with part of the feed-forward and no limit of
 //!    the teeth, or the impedance law on the motor. Where the estimates are not valid it takes over in one control
 //!    period; only the way back is blended.
@@ -18,6 +18,7 @@ mod braking;
 mod crossing;
 #[cfg(feature = "design")]
 pub mod design;
+mod easing;
 mod flank;
 mod impedance;
 mod intent;

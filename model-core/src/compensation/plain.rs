@@ -74,8 +74,17 @@ impl<T: Real> Plain<T> {
             damping_on_motor(tables.law.motor_damping)
         };
         let on_link = if situation.open { T::ZERO } else { tables.law.damping - on_motor };
+        // A thrown link closes its flank by itself. All of the damping on the motor would meet it too hard, none of the rest on
+        // the link too late.
+        let thrown = load.throws(tables);
+        let (on_motor, on_link) = if thrown {
+            let on_motor = damping_on_motor(tables.law.motor_damping);
+            (on_motor, T::HALF * (tables.law.damping - on_motor))
+        } else {
+            (on_motor, on_link)
+        };
         // A blow is over before it could be answered.
-        let known = if load.throws(tables) { T::ZERO } else { load.even() + load.planned_drag(tables, now.speed) };
+        let known = if thrown { T::ZERO } else { load.even() + load.planned_drag(tables, now.speed) };
         let torque = (tables.body.load_inertia + tables.body.motor_inertia) * now.acceleration
             - tables.law.position * self.place(situation)
             + on_motor * (now.speed - situation.motor_speed)

@@ -2,6 +2,7 @@
 //! load estimate takes the place of an integral.
 
 use super::braking::{Braking, Course, Lag};
+use super::easing::Easing;
 use super::intent::Intent;
 use super::limit::{limited, passed, spared};
 use super::load::LoadModel;
@@ -32,6 +33,8 @@ pub(super) struct PositionLaw<T: Real> {
     level: T,
     /// How the motion usually starts.
     start: StartPrediction<T>,
+    /// Whether the load is left to friction.
+    easing: Easing<T>,
     /// By how much the acceleration asked for grows in a period, smoothed: planners send it in coarser steps [rad/s^2].
     growth: T,
     /// The hardest acceleration asked for since the motion rested: few planners brake harder than they accelerate [rad/s^2].
@@ -43,6 +46,10 @@ impl<T: Real> PositionLaw<T> {
     /// an integral that winds up until the motor breaks loose from its friction.
     const OPENS: T = T::ONE;
 
+    /// By how much what is asked for may be beyond the motor's limit while the link is thrown, over that limit [-]: it drowns
+    /// some of the damper between motor and link, so that a thrown link is pushed back sooner and the teeth are not spared.
+    const HURRIES: T = T::QUARTER;
+
     pub fn new() -> Self {
         Self {
             before: None,
@@ -51,6 +58,7 @@ impl<T: Real> PositionLaw<T> {
             since: T::ZERO,
             level: T::ZERO,
             start: StartPrediction::new(),
+            easing: Easing::new(),
             growth: T::ZERO,
             hardest: T::ZERO,
         }
@@ -88,19 +96,22 @@ impl<T: Real> PositionLaw<T> {
         let approach = braking.approach(error, &course);
         let spring = approach.map_or(tables.law.position * error, |approach| tables.law.damping * approach.closing);
         let acceleration = approach.map_or(now.acceleration, |approach| approach.acceleration);
+        let stands = self.start.stands(tables);
         let useful = (tables.body.load_inertia + tables.body.motor_inertia) * acceleration
-            + load.even()
+            + self.easing.step(tables, load, situation, rests, stands) * load.even()
             + load.planned_drag(tables, now.speed)
             + spring
             + tables.law.damping * situation.error_rate;
         // What is beyond the limits must not drown the damper.
         let all = passed(tables, load.free(), useful);
         let allowed = spared(tables, useful);
-        let most = if load.throws(tables) { all.abs() } else { allowed };
+        let thrown = load.throws(tables);
+        let most = if thrown { all.abs() } else { allowed };
         let passed = clamp(all, -most, most);
         let useful = useful - tables.body.inverse_load_share * (all - passed);
         let asked_for = useful + situation.lost(tables, now.speed, passed);
-        let law = clamp(asked_for, -tables.limits.motor, tables.limits.motor) + situation.damping_torque(tables);
+        let most = if thrown { (T::ONE + Self::HURRIES) * tables.limits.motor } else { tables.limits.motor };
+        let law = clamp(asked_for, -most, most) + situation.damping_torque(tables);
         let lost = situation.lost(tables, situation.link_speed, passed);
         let law = limited(tables, load, situation, law - lost, allowed) + lost;
         let level = load.even()
@@ -139,8 +150,16 @@ impl<T: Real> PositionLaw<T> {
         let likely = self.start.step(tables, situation, direction, rests);
         let expects = if ahead.is_none() { sign::<T>(likely) * load.start(tables) } else { T::ZERO };
         let brakes_early = approach.is_some();
-        let intent =
-            Intent { idles, rests, brakes_early, expects, ..Intent::new(tables, load, situation, law, demand, false) };
+        let needs_no_flank = idles && self.start.stands(tables) && expects == T::ZERO && error == T::ZERO;
+        let intent = Intent {
+            idles,
+            rests,
+            needs_no_flank,
+            thrown,
+            brakes_early,
+            expects,
+            ..Intent::new(tables, load, situation, law, demand, false)
+        };
         let surely = beyond(intent.demand_ahead, tables.switching.measured * tables.switching.least);
         self.find_deadband(tables, rests, idles, surely, situation.half);
         intent

@@ -34,6 +34,16 @@ impl<T: Real> StartPrediction<T> {
         Self { came: None, goes_on: None, rests: false, stood: T::ZERO, place: T::ZERO }
     }
 
+    /// How long it has to stand still [s].
+    fn enough(tables: &CompensationTables<T>) -> T {
+        Self::STANDS * tables.rest.hunting
+    }
+
+    /// Whether friction holds the link of a joint that is asked to rest.
+    pub fn stands(&self, tables: &CompensationTables<T>) -> bool {
+        self.stood >= Self::enough(tables)
+    }
+
     /// Takes in a period and which way it is asked to go. The flank towards which a joint at rest is likely to start; `None`
     /// if nothing tells or if its link does not stand still: one that no friction holds needs its flank for itself.
     pub fn step(
@@ -45,12 +55,12 @@ impl<T: Real> StartPrediction<T> {
     ) -> Option<Flank> {
         if rests {
             self.rests = true;
-            let enough = Self::STANDS * tables.rest.hunting;
+            let enough = Self::enough(tables);
             if (situation.error - self.place).abs() > Self::STILL * situation.half {
                 (self.place, self.stood) = (situation.error, T::ZERO);
             }
             self.stood = clamp(self.stood + tables.clock.period, T::ZERO, enough);
-            if self.stood < enough {
+            if !self.stands(tables) {
                 return None;
             }
             let goes_on = self.goes_on?;

@@ -3,6 +3,7 @@
 //! by itself is tested in `observer`. `page` compares the documentation with the code.
 
 mod bad_input;
+mod blow;
 mod braking;
 mod coarse_encoder;
 mod control_rate;

@@ -197,7 +197,7 @@ enum JointStage
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-  // A flank carries.
+  // A flank carries, or the joint needs none and the motor rests in the middle of the gap.
   JOINT_STAGE_TOUCHING = 0,
   // On the way through the gap.
   JOINT_STAGE_CROSSING = 1,

@@ -117,7 +117,7 @@ fn is_zero(nothing: f32) -> bool {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum JointStage {
-    /// A flank carries.
+    /// A flank carries, or the joint needs none and the motor rests in the middle of the gap.
     Touching = 0,
     /// On the way through the gap.
     Crossing = 1,

@@ -40,15 +40,19 @@ impl<T: Real> Easing<T> {
         rests: bool,
         stands: bool,
     ) -> T {
+        if !rests {
+            *self = Self::new();
+            return T::ONE;
+        }
         let slight = Self::SLIGHT * tables.rest.first_deadband * situation.half;
         let gives_way = |place: T| !stands || (situation.error - place).abs() > slight;
-        self.gave_way = (self.gave_way || self.place.is_some_and(gives_way)) && rests && !load.throws(tables);
+        self.gave_way = (self.gave_way || self.place.is_some_and(gives_way)) && !load.throws(tables);
         let measured = tables.switching.measured;
         let least = measured * tables.switching.least;
         let is_felt = beyond(load.even(), least) != T::ZERO;
         let may_be_friction = beyond(load.even(), measured + measured + load.friction()) == T::ZERO;
         let is_steady = beyond(situation.error, slight) == T::ZERO && beyond(load.even() - self.load, least) == T::ZERO;
-        let goes_on = rests && stands && !self.gave_way && is_felt && may_be_friction;
+        let goes_on = stands && !self.gave_way && is_felt && may_be_friction;
         if !goes_on || self.place.is_none() && !is_steady {
             *self = Self { load: load.even(), steady: T::ZERO, place: None, ..*self };
             return T::ONE;

@@ -105,10 +105,13 @@ impl<T: Real> FlankControl<T> {
         self.hysteresis = T::ONE + left * (self.hysteresis - T::ONE);
         let enough = Self::UNNEEDED * tables.rest.hunting;
         self.centred = self.unneeded >= enough;
-        let needs_none = intent.needs_no_flank && self.stage == Stage::Touching;
-        self.unneeded = if needs_none { clamp(self.unneeded + tables.clock.period, T::ZERO, enough) } else { T::ZERO };
-        if self.unneeded >= enough {
-            return centring(tables, situation);
+        if intent.needs_no_flank && self.stage == Stage::Touching {
+            self.unneeded = clamp(self.unneeded + tables.clock.period, T::ZERO, enough);
+            if self.unneeded >= enough {
+                return centring(tables, situation);
+            }
+        } else {
+            self.unneeded = T::ZERO;
         }
         if self.centred {
             self.flank = Flank::towards(intent.demand_ahead).unwrap_or(self.flank);

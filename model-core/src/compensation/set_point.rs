@@ -120,7 +120,7 @@ impl<T: Real> Command<T> {
 /// What the compensation is about.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Stage {
-    /// A flank carries.
+    /// A flank carries, or the joint needs none and the motor rests in the middle of the gap.
     #[default]
     Touching,
     /// On the way through the gap.

@@ -68,20 +68,21 @@ impl<T: Real> Plain<T> {
         // open gap would strike. At rest all of it acts on the motor, as long as that does not swing: it takes the link's
         // energy out in fewer blows, which show the gap sooner.
         let rests = now.speed == T::ZERO && now.acceleration == T::ZERO;
-        let on_motor = if !situation.feels || (rests && !self.swings) {
+        // A thrown link closes its flank by itself: all of the damping on the motor would meet it too hard, none of the rest on
+        // the link too late.
+        let thrown = load.throws(tables);
+        let on_motor = if !thrown && (!situation.feels || (rests && !self.swings)) {
             tables.law.damping
         } else {
             damping_on_motor(tables.law.motor_damping)
         };
-        let on_link = if situation.open { T::ZERO } else { tables.law.damping - on_motor };
-        // A thrown link closes its flank by itself. All of the damping on the motor would meet it too hard, none of the rest on
-        // the link too late.
-        let thrown = load.throws(tables);
-        let (on_motor, on_link) = if thrown {
-            let on_motor = damping_on_motor(tables.law.motor_damping);
-            (on_motor, T::HALF * (tables.law.damping - on_motor))
+        let rest = tables.law.damping - on_motor;
+        let on_link = if thrown {
+            T::HALF * rest
+        } else if situation.open {
+            T::ZERO
         } else {
-            (on_motor, on_link)
+            rest
         };
         // A blow is over before it could be answered.
         let known = if thrown { T::ZERO } else { load.even() + load.planned_drag(tables, now.speed) };

@@ -61,7 +61,8 @@ pub fn advance<T: Real, const N: usize, const OVERTONES: usize>(
     }
 }
 
-/// The accelerations at the start of a tick, and those of half a sub-step before from a first evaluation in the middle.
+/// The accelerations at the start of a tick, and those of half a sub-step before from a first evaluation in the middle. Where no
+/// tick is taken whole, only one whose motion was set from outside begins so: it makes do with those at its start for both.
 #[inline(never)]
 pub fn begin<T: Real, const N: usize, const OVERTONES: usize>(
     fixed: &FixedContactSet<T, N, OVERTONES>,
@@ -75,6 +76,9 @@ pub fn begin<T: Real, const N: usize, const OVERTONES: usize>(
     let gap = state.gap.point();
     let now = fixed.accelerations(laws, harmonics_now, gap, wind_up, |i| state.planets[i].point(), |_, _| {});
     state.for_each(&now, |coordinate, now| (coordinate.now, coordinate.before) = (now, now));
+    if !tables.flow.takes_whole_ticks() {
+        return;
+    }
     let phasor = phase.at(tables.half_substep_share);
     let middle = PhaseHarmonics::new(phasor, harmonics_now.rate, tables.excitation.harmonics);
     let wind_up = fixed.wind_up_force(state.wind_up.middle());

@@ -237,8 +237,17 @@ pub struct Flow<T: Real> {
     pub step: T,
     /// A mesh counts as safely closed at a node when its overlap exceeds this times its speed.
     pub reach: T,
-    /// Mesh periods over the step, in 2^-32, up to which the excitation counts as quadratic in time.
+    /// Mesh periods over the step, in 2^-32, up to which the excitation counts as quadratic in time; zero where no tick is
+    /// taken whole.
     pub longest_advance: T,
+}
+
+impl<T: Real> Flow<T> {
+    /// Whether ticks in which contact holds are taken as a whole.
+    #[inline(always)]
+    pub fn takes_whole_ticks(&self) -> bool {
+        self.longest_advance > T::ZERO
+    }
 }
 
 /// exp(H h) - I in both subspaces, and the response to torques constant over the step.

@@ -219,9 +219,10 @@ impl Cost {
         most + 0.5 * self.meshes * CANONICAL
     }
 
-    /// In sub-steps that begin anew.
+    /// In sub-steps that begin anew: with an evaluation less, which is half a sub-step, where no tick is taken whole.
     fn contact_changes_anew(&self, substeps: Substeps) -> f64 {
-        self.given_up(substeps) + self.anew + self.contact_changes(substeps)
+        let anew = if self.takes_whole_ticks(substeps) { self.anew } else { self.anew - 0.5 * self.substep };
+        self.given_up(substeps) + anew + self.contact_changes(substeps)
     }
 
     /// An exponential tick that was tried in vain, where there are such.

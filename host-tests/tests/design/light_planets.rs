@@ -30,8 +30,9 @@ fn a_processor_short_of_time_takes_as_many_verlet_sub_steps_as_it_can_and_as_are
         }
     }
     assert!(fewer > 5, "{fewer}");
-    let at_40_khz = size.substeps(40_000, Effort::Within(Processor::STM32G474));
-    assert_eq!(at_40_khz.ok(), Some(Substeps::Verlet(2)), "three, as wanted, take more than the period");
+    let on_g474 = |rate| size.substeps(rate, Effort::Within(Processor::STM32G474)).ok();
+    assert_eq!(on_g474(40_000), Some(Substeps::Verlet(3)), "three are wanted and fit");
+    assert_eq!(on_g474(42_500), Some(Substeps::Verlet(2)), "three, as wanted, take more than the period");
 }
 
 #[test]

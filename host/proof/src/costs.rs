@@ -1,9 +1,11 @@
 //! Instructions that the certificate promises, against those counted on the emulated board: what a step takes while
-//! contact holds and with all teeth apart, and that no searched state takes more than the bound.
+//! contact holds and with all teeth apart, and that neither a searched state nor a way through the machine code takes more than
+//! the bound.
 
 use model_core::gears::design::{Cost, Substeps};
 use parameters::{Excitation, JointParameters};
 
+use super::bound::Bound;
 use super::joints::{TEST_JOINTS, write_files};
 use super::worst_case::Search;
 use board::target::image::DEFAULT_TICK_RATE;
@@ -44,20 +46,22 @@ fn parse(line: &str) -> Option<Counted> {
     Some(Counted { name, parts, holding: number()?, apart: number()? })
 }
 
-/// Holds predictions against counts, and bounds against the search for the worst case; returns a line for each joint.
-pub fn judge(counted: &[Counted], searched: &[Search]) -> Outcome<Vec<String>> {
+/// Holds predictions against counts, and bounds against the search for the worst case and those of the machine code; returns a
+/// line for each joint.
+pub fn judge(counted: &[Counted], searched: &[Search], bounds: &[Bound]) -> Outcome<Vec<String>> {
     TEST_JOINTS
         .iter()
         .map(|joint| {
             let missing = || Failure::check_failed(format!("{}: not counted on the board", joint.name));
             let counted = counted.iter().find(|counted| counted.name == joint.name).ok_or_else(missing)?;
             let searched = searched.iter().find(|search| search.name == joint.name).ok_or_else(missing)?;
-            compare(&joint.read()?.parameters, counted, searched.most())
+            let proven = bounds.iter().find(|bound| bound.name == joint.name).ok_or_else(missing)?;
+            compare(&joint.read()?.parameters, counted, searched.most(), proven.instructions)
         })
         .collect()
 }
 
-fn compare(parameters: &JointParameters, counted: &Counted, most: u32) -> Outcome<String> {
+fn compare(parameters: &JointParameters, counted: &Counted, most: u32, proven: u32) -> Outcome<String> {
     let cost = Cost::new(parameters);
     let Counted { name, parts: divided, .. } = counted;
     // A prescribed excitation may be too fast for the exponential flow; teeth without backlash are never apart.
@@ -84,6 +88,12 @@ fn compare(parameters: &JointParameters, counted: &Counted, most: u32) -> Outcom
         ))
         .with_help("change the constants of model-core/src/gears/design/cost.rs"));
     }
+    if bound < f64::from(proven) {
+        return Err(Failure::check_failed(format!(
+            "joint {name}: a step is said to take at most {bound:.0} instructions, but a way through its machine code takes {proven}"
+        ))
+        .with_help("change the constants of model-core/src/gears/design/cost.rs"));
+    }
     Ok(format!(
         "{name}: contact holds {} of {:.0} promised, apart {} of {:.0}, worst {most} of {bound:.0}",
         counted.holding,
@@ -105,10 +115,11 @@ mod tests {
         let (holding, apart) = (cost.contact_holds(parts) as u32, cost.contact_changes(parts) as u32);
         let good = Counted { name: "Q1".into(), parts, holding, apart };
         let most = (0.9 * cost.bound(parts)) as u32;
-        assert!(compare(&joint, &good, most).is_ok());
+        assert!(compare(&joint, &good, most, most).is_ok());
         let dear = Counted { holding: good.holding + good.holding / 10, ..good.clone() };
-        assert!(compare(&joint, &dear, most).unwrap_err().message().contains("while contact holds"));
-        assert!(compare(&joint, &good, 2 * most).unwrap_err().message().contains("at most"));
+        assert!(compare(&joint, &dear, most, most).unwrap_err().message().contains("while contact holds"));
+        assert!(compare(&joint, &good, 2 * most, most).unwrap_err().message().contains("the worst that was found"));
+        assert!(compare(&joint, &good, most, 2 * most).unwrap_err().message().contains("machine code"));
     }
 
     #[test]

@@ -86,11 +86,12 @@ fn proofs(toolchain: &Toolchain, progress: &Progress) -> Outcome<()> {
         output::print(&format!("{search}\n"))?;
     }
     progress.stage("bounding the step from its machine code");
-    let lines = bound::judge(&bound::of_steps(&elf, &found)?, &found)?;
+    let bounds = bound::of_steps(&elf, &found)?;
+    let lines = bound::judge(&bounds, &found)?;
     progress.clear();
     output::print(&format!("{}\nok       no state can take more\n", lines.join("\n")))?;
     progress.stage("counting instructions on the emulated board");
-    let lines = costs::judge(&costs::count(toolchain, &say)?, &found)?;
+    let lines = costs::judge(&costs::count(toolchain, &say)?, &found, &bounds)?;
     progress.clear();
     output::print(&format!("{}\nok       instructions as promised\n", lines.join("\n")))?;
     worst_case::judge(&found)?;

@@ -1,5 +1,9 @@
 //! A tick in which every mesh is in contact on one flank, so that the joint is linear, by one exponential of the closed
 //! joint: ripple and imposed error are a pseudo-force linear in time through its values at the start and in the middle.
+//!
+//! Whether contact will hold is seen at the start alone. A light planet rings about its balance between sun and ring: as far as it
+//! pushes on one of them more than on the other now, it does on the other half a period later. So a planet whose lesser overlap is
+//! more than its greater speed can open keeps both.
 
 #![allow(clippy::op_ref, reason = "a product by value would copy the table")]
 
@@ -11,7 +15,8 @@ use crate::gears::state::MotionInPlace;
 use crate::gears::tables::Tables;
 use crate::numbers::Real;
 
-/// One tick in place; nothing is done, and false is said, unless every mesh has so much overlap that its speed cannot open it.
+/// One tick in place; nothing is done, and false is said, unless every planet has so much overlap that no speed of its meshes can
+/// open either.
 #[inline(never)]
 pub fn tick<T: Real, const N: usize>(
     tables: &Tables<T, N>,
@@ -29,31 +34,31 @@ pub fn tick<T: Real, const N: usize>(
     let half_step = T::HALF * flow.step;
     let rates = middle.rates(phase.rate);
     let first = middle.moved(-half_step, &rates);
-    let back = position.gap < T::ZERO;
+    let side = if position.gap < T::ZERO { -T::ONE } else { T::ONE };
     // Per mesh: what the flow takes from the deflection, what from everything else at the start, and in the middle.
     let mut from = [[[T::ZERO; N]; 2]; 3];
-    // Half the overlap at the start, off the flank in the middle: less would open by the end.
-    let mut bound = from[0];
     for i in 0..N {
         let (x, u) = (position.planets[i], rate.planets[i]);
-        for (kind, at, speed) in [(0, x, u), (1, position.gap - x, rate.gap - u)] {
-            let mesh = &tables.meshes[kind][i];
-            let error_rate = mesh.error_at(&rates);
-            let offset = if back { -mesh.half_backlash } else { mesh.half_backlash };
-            let error_start = mesh.error_at(&first);
-            let overlap = at - error_start - offset;
-            let overlap = if back { -overlap } else { overlap };
-            if overlap <= flow.reach * (speed - error_rate).abs() {
-                return false;
-            }
-            let error = mesh.error_at(middle);
+        let meshes = [&tables.meshes[0][i], &tables.meshes[1][i]];
+        let (at, speed) = ([x, position.gap - x], [u, rate.gap - u]);
+        let error_rate = meshes.map(|mesh| mesh.error_at(&rates));
+        let offset = meshes.map(|mesh| side * mesh.half_backlash);
+        // Where the flank is at the start.
+        let flank = [0, 1].map(|kind| offset[kind] + meshes[kind].error_at(&first));
+        let [sun, ring] = [0, 1].map(|kind| side * (at[kind] - flank[kind]));
+        let twice_lesser = sun + ring - (sun - ring).abs();
+        let [sun, ring] = [0, 1].map(|kind| speed[kind] - error_rate[kind]);
+        let twice_greater = (sun + ring).abs() + (sun - ring).abs();
+        if twice_lesser <= flow.reach * twice_greater {
+            return false;
+        }
+        for kind in 0..2 {
             let stiffness = stiffness[kind][i];
-            bound[kind][i] = offset + error + T::HALF * (at - error_start - offset);
             let spring = &tables.springs[kind];
-            let viscous = spring.damping * error_rate;
+            let viscous = spring.damping * error_rate[kind];
             from[0][kind][i] = spring.stiffness - stiffness;
-            from[1][kind][i] = from[0][kind][i] * at + stiffness * (offset + error_start) + viscous;
-            from[2][kind][i] = stiffness * (offset + error) + viscous;
+            from[1][kind][i] = from[0][kind][i] * at[kind] + stiffness * flank[kind] + viscous;
+            from[2][kind][i] = stiffness * (offset[kind] + meshes[kind].error_at(middle)) + viscous;
         }
     }
     let share = tables.planet_share;
@@ -89,10 +94,6 @@ pub fn tick<T: Real, const N: usize>(
         let (deviation, speed) = (position.planets[i] - mean, rate.planets[i] - mean_rate);
         let x = middle_mean + deviation + own * deviation + by_rate * speed + by_force * early.apart[i];
         let y = middle_gap - x;
-        let (short, late) = (x - bound[0][i], y - bound[1][i]);
-        if if back { short > T::ZERO || late > T::ZERO } else { short < T::ZERO || late < T::ZERO } {
-            return false;
-        }
         forces[0][i] += from[0][0][i] * x;
         forces[1][i] += from[0][1][i] * y;
     }

@@ -61,7 +61,8 @@ impl Found {
     }
 }
 
-/// A joint that turns under balanced torques of either sign, one planet moving away from the sun at one speed after another.
+/// A joint that turns under balanced torques of either sign, one planet moving away from the sun at one speed after another, or
+/// off its balance between sun and ring and swinging.
 fn found<const N: usize>(law: DampingLaw) -> Found {
     let joint = joint(N, law);
     let both = [tables::<N>(&joint, RATE, SUBSTEPS), verlet_only::<N>(&joint, RATE, SUBSTEPS)];
@@ -71,6 +72,17 @@ fn found<const N: usize>(law: DampingLaw) -> Found {
         for step in 0..12 {
             let mut start = RelativeState { rigid_speed: 3.0, ..start.clone() };
             start.sun_planet_rate[0] = -drive.signum() * 0.003 * f64::from(step);
+            found.add(&joint, &both, &start, (drive, load));
+        }
+        let geometry = &joint.geometry;
+        let balance = drive / (geometry.planets as f64 * geometry.sun_base_radius) / joint.sun_planet.mean_stiffness;
+        let stiffness = joint.sun_planet.mean_stiffness + joint.ring_planet.mean_stiffness;
+        let ringing = (stiffness / joint.bodies.planet_equivalent_mass).sqrt();
+        let (places, speeds) = ([-0.8, -0.4, 0.4, 0.8], [-0.8, -0.1, 0.0, 0.1, 0.8]);
+        for (place, speed) in places.into_iter().flat_map(|place| speeds.map(|speed| (place, speed))) {
+            let mut start = RelativeState { rigid_speed: 3.0, ..start.clone() };
+            start.sun_planet[1] += place * balance;
+            start.sun_planet_rate[1] = speed * balance * ringing;
             found.add(&joint, &both, &start, (drive, load));
         }
     }

@@ -205,9 +205,6 @@ fn a_bound_holds_and_is_close_or_the_check_fails() {
     let exceeded = judged(4001).unwrap_err();
     assert!(exceeded.message().contains("4001") && exceeded.message().contains("X { y: 1 }"), "{exceeded}");
     assert!(judged(3000).unwrap_err().message().contains("1.33 times"));
-    let loose = Bound { name: WIDER[0].0.into(), ..bound.clone() };
-    assert!(judge(std::slice::from_ref(&loose), &[searched(3000)]).is_ok());
-    assert!(judge(std::slice::from_ref(&loose), &[searched(2000)]).is_err());
     assert_eq!(exceeded.exit_code(), 1);
 }
 

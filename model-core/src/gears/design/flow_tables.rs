@@ -29,7 +29,7 @@ pub enum WholeTicks {
     Never,
     /// Those in which contact holds.
     Held,
-    /// Those in which light planets keep pressing: a mesh that opens in one is seen in its middle.
+    /// Those in which light planets keep pressing.
     Light,
 }
 

@@ -210,12 +210,20 @@ pub(super) fn say_learnt<T: Real, const P: usize>(
 /// A shaft from its counts and the angle beyond them [rad].
 fn shaft<T: Real>(table: &EncoderTable<T>, counter: &Counter, beyond: T, speed: T) -> Shaft<T> {
     let fraction = T::from_i32(counter.place() as i32) * table.fraction + beyond * table.turns;
-    let (turns, fraction) = if fraction < T::ZERO {
-        (counter.turns().wrapping_sub(1), fraction + T::ONE)
-    } else if fraction >= T::ONE {
-        (counter.turns().wrapping_add(1), fraction - T::ONE)
-    } else {
-        (counter.turns(), fraction)
-    };
+    // Both ends of the turn at once: a comparison of numbers takes three instructions.
+    let within = (fraction - T::HALF).abs() < T::HALF;
+    let (turns, fraction) = if within { (counter.turns(), fraction) } else { into_turn(counter.turns(), fraction) };
     Shaft { turns, fraction, speed }
+}
+
+/// A place that may lie in the turn before or after.
+#[cold]
+fn into_turn<T: Real>(turns: i32, fraction: T) -> (i32, T) {
+    if fraction < T::ZERO {
+        (turns.wrapping_sub(1), fraction + T::ONE)
+    } else if fraction >= T::ONE {
+        (turns.wrapping_add(1), fraction - T::ONE)
+    } else {
+        (turns, fraction)
+    }
 }

@@ -33,13 +33,7 @@ impl ByForce {
 
 /// The flank that a force presses: a contact is made by more than `on` and kept by more than `off` [N].
 pub fn with_hysteresis<T: Real>(before: Option<Flank>, force: T, on: T, off: T) -> Option<Flank> {
-    let drive = if before == Some(Flank::Drive) { off } else { on };
-    let back = if before == Some(Flank::Back) { off } else { on };
-    if force > drive {
-        Some(Flank::Drive)
-    } else if -force > back {
-        Some(Flank::Back)
-    } else {
-        None
-    }
+    let flank = if force > T::ZERO { Flank::Drive } else { Flank::Back };
+    let least = if before == Some(flank) { off } else { on };
+    (force.abs() > least).then_some(flank)
 }

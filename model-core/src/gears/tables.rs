@@ -235,7 +235,7 @@ pub struct Flow<T: Real> {
     pub whole_constant: Inputs<T>,
     /// The step, in dimensionless time.
     pub step: T,
-    /// A mesh counts as safely closed at a node when its overlap exceeds this times its speed.
+    /// A mesh counts as safely closed at the start of a whole tick when its overlap exceeds this times its speed.
     pub reach: T,
     /// Mesh periods over the step, in 2^-32, up to which the excitation counts as quadratic in time; zero where no tick is
     /// taken whole.

@@ -24,8 +24,8 @@ const REACH: f64 = 4.0;
 
 /// A tick beside Verlet sub-steps is taken as a whole where every mesh overlaps by its speed times a step, and by no less than so
 /// many radians of a planet's own mode: the slower that is, the more the other bodies have to do with what opens a mesh. With a step
-/// alone case L at 20 kHz, a radian a step, is 1.9e-3 off, so 1.1e-3.
-const RADIANS: f64 = 4.0;
+/// alone case L at 20 kHz, a radian a step, is 1.9e-3 off, with this 1.1e-3.
+const RINGING_REACH: f64 = 4.0;
 
 /// Which ticks are taken as a whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,7 +83,7 @@ pub fn flow<T: Real>(dynamics: &Dynamics, step: f64, substeps: u32, whole_ticks:
         // Beyond the longest relaxation a mesh also pushes under the law `contact`.
         reach: T::from_f64(match whole_ticks {
             WholeTicks::Never | WholeTicks::Held => (REACH * step).max(dynamics.longest_relaxation),
-            WholeTicks::Light => step.max(RADIANS / ringing(dynamics)).max(dynamics.longest_relaxation),
+            WholeTicks::Light => step.max(RINGING_REACH / ringing(dynamics)).max(dynamics.longest_relaxation),
         }),
         longest_advance: T::from_f64(match whole_ticks {
             WholeTicks::Never => 0.0,

@@ -1,10 +1,11 @@
 //! Installs missing packages on Debian-like systems if the user is root; otherwise shows the command to run. On other
 //! systems the missing packages are named.
 
-use std::fs;
+use std::fs::{self, File};
+use std::io;
 use std::os::unix::fs::MetadataExt;
+use std::path::Path;
 use std::process::Command;
-use std::sync::{Mutex, PoisonError};
 
 use super::{Say, tool};
 use report::failure::{Failure, Outcome};
@@ -20,29 +21,46 @@ enum PackageSource {
     Unknown,
 }
 
-/// One at a time: apt-get refuses to run beside itself, and who waited may find that the packages have come meanwhile.
-static INSTALLING: Mutex<()> = Mutex::new(());
-
 /// Makes sure that packages are installed. `purpose` completes "... needed ...", such as "to build for the board".
 pub fn ensure(packages: &[&str], purpose: &str, say: Say<'_>) -> Outcome<()> {
-    let package_source = package_source();
-    let _alone = INSTALLING.lock().unwrap_or_else(PoisonError::into_inner);
-    let missing: Vec<&str> = match package_source {
-        PackageSource::Unknown => packages.to_vec(),
-        _ => packages.iter().copied().filter(|package| !is_installed(package)).collect(),
+    let source = package_source();
+    let missing = || -> Vec<&str> {
+        match source {
+            PackageSource::Unknown => packages.to_vec(),
+            _ => packages.iter().copied().filter(|package| !is_installed(package)).collect(),
+        }
     };
+    let before = missing();
+    if before.is_empty() {
+        return Ok(());
+    }
+    if source != PackageSource::Install {
+        return Err(absent(source, &before.join(" "), purpose));
+    }
+    let _alone = tool::find("apt-get").map(|program| alone(&program)).transpose().map_err(no_lock)?;
+    // Who waited may find that the packages have come meanwhile.
+    let missing = missing();
     if missing.is_empty() {
         return Ok(());
     }
     let list = missing.join(" ");
-    if package_source != PackageSource::Install {
-        return Err(absent(package_source, &list, purpose));
-    }
     say(&format!("installing {list} with apt-get, needed {purpose}"));
     tool::follow(apt_get().arg("update"), "apt-get update", say).map_err(|failure| with_line(failure, &list))?;
     let mut install = apt_get();
     install.args(["install", "--yes", "--no-install-recommends"]).args(&missing);
     tool::follow(&mut install, &format!("installing {list}"), say).map_err(|failure| with_line(failure, &list))
+}
+
+/// Waits for the other commands of this project that install something, here or in another process: of two `apt-get update`
+/// at once one fails. The lock is on the program's own file, so that nothing has to be written.
+fn alone(program: &Path) -> io::Result<File> {
+    let file = File::open(program)?;
+    file.lock()?;
+    Ok(file)
+}
+
+fn no_lock(error: io::Error) -> Failure {
+    Failure::new(format!("cannot wait for other installations: apt-get: {error}"))
 }
 
 fn with_line(failure: Failure, list: &str) -> Failure {
@@ -87,6 +105,8 @@ fn apt_get() -> Command {
 
 #[cfg(test)]
 mod tests {
+    use std::fs::TryLockError;
+
     use super::*;
 
     #[test]
@@ -95,6 +115,18 @@ mod tests {
         assert_eq!(failure.help(), Some("run: sudo apt-get update && sudo apt-get install lld qemu-system-arm"));
         assert!(failure.message().contains("to run the emulated board"));
         assert_eq!(failure.exit_code(), 2);
+    }
+
+    #[test]
+    fn who_installs_waits_for_who_does_already() {
+        let folder = tempfile::tempdir().unwrap();
+        let program = folder.path().join("apt-get");
+        fs::write(&program, "").unwrap();
+        let first = alone(&program).unwrap();
+        assert!(matches!(File::open(&program).unwrap().try_lock(), Err(TryLockError::WouldBlock)));
+        let other = std::thread::spawn(move || alone(&program).map(drop));
+        drop(first);
+        other.join().unwrap().unwrap();
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The step's f32 results are the same in every bit in this build, in every build before it, and on the emulated board,
-//! whatever the caller has set the floating-point unit to. The release build of `joint hil --check` holds itself to the
-//! board in the same way.
+//! whatever the caller has set the floating-point unit to. `joint hil --check` holds itself to the board in the same way,
+//! and host/c-library/tests/host.rs the optimised library of the host to this build.
 
 use std::fs;
 use std::path::Path;

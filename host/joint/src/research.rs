@@ -45,7 +45,7 @@ pub fn run(package: &str, rest: &[OsString]) -> Outcome<()> {
 /// Cargo with a program of the workspace.
 fn cargo(subcommand: &str, package: &str) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    command.args([subcommand, "--release", "--package", package, "--manifest-path"]);
+    command.args([subcommand, "--package", package, "--manifest-path"]);
     command.arg(workspace().join("Cargo.toml"));
     command
 }

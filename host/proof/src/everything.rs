@@ -71,7 +71,7 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
     board_model::check(progress)
 }
 
-/// Same bits, instructions and worst case, of a release build against the emulated board.
+/// Same bits, instructions and worst case, of this program against the emulated board.
 fn proofs(toolchain: &Toolchain, progress: &Progress) -> Outcome<()> {
     let say = |line: &str| progress.say(line);
     progress.stage("comparing bits between the emulated board and this program");

@@ -18,7 +18,7 @@ pub enum BoardHelp {
 
 /// Help for a host command built from other sources than those that it builds images from.
 const REBUILD: &str = "the image was built just now from the sources in this checkout, and this `joint` was built from others: \
-                       build it anew, as `cargo joint` does by itself (else: cargo build --release --package joint)";
+                       build it anew, as `cargo joint` does by itself (else: cargo build --package joint)";
 
 impl BoardHelp {
     /// For a board with an image that is not the right one.

@@ -1,7 +1,7 @@
 //! Compiles the firmware's binaries, one at a time in each build folder, and moves each result into place atomically.
 
 use std::ffi::OsStr;
-use std::fs::{self, File, TryLockError};
+use std::fs::{self, File};
 use std::io;
 use std::path::Path;
 use std::process::Command;
@@ -105,10 +105,7 @@ fn lock(folder: &Path, say: Say<'_>) -> Outcome<File> {
     let open = || {
         fs::create_dir_all(folder)?;
         let file = File::create(&path)?;
-        if let Err(TryLockError::WouldBlock) = file.try_lock() {
-            say(&format!("waiting for another build of firmware in {}", folder.display()));
-        }
-        file.lock()?;
+        tool::lock(&file, &format!("another build of firmware in {}", folder.display()), say)?;
         Ok(file)
     };
     open().map_err(|error: io::Error| cannot_write(&path, &error))

@@ -4,17 +4,17 @@
 use std::fs::{self, File};
 use std::io;
 use std::os::unix::fs::MetadataExt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::{Say, tool};
 use report::failure::{Failure, Outcome};
 
 /// How packages can be got here.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 enum PackageSource {
     /// apt-get, as root.
-    Install,
+    Install(PathBuf),
     /// apt-get, but somebody else must be root.
     Ask,
     /// There is no apt-get.
@@ -34,10 +34,10 @@ pub fn ensure(packages: &[&str], purpose: &str, say: Say<'_>) -> Outcome<()> {
     if before.is_empty() {
         return Ok(());
     }
-    if source != PackageSource::Install {
-        return Err(absent(source, &before.join(" "), purpose));
-    }
-    let _alone = tool::find("apt-get").map(|program| alone(&program)).transpose().map_err(no_lock)?;
+    let PackageSource::Install(apt_get_file) = &source else {
+        return Err(absent(&source, &before.join(" "), purpose));
+    };
+    let _alone = alone(apt_get_file, say).map_err(|error| cannot_wait(&error))?;
     // Who waited may find that the packages have come meanwhile.
     let missing = missing();
     if missing.is_empty() {
@@ -53,21 +53,21 @@ pub fn ensure(packages: &[&str], purpose: &str, say: Say<'_>) -> Outcome<()> {
 
 /// Waits for the other commands of this project that install something, here or in another process: of two `apt-get update`
 /// at once one fails. The lock is on the program's own file, so that nothing has to be written.
-fn alone(program: &Path) -> io::Result<File> {
-    let file = File::open(program)?;
-    file.lock()?;
+fn alone(apt_get_file: &Path, say: Say<'_>) -> io::Result<File> {
+    let file = File::open(apt_get_file)?;
+    tool::lock(&file, "another installation of packages", say)?;
     Ok(file)
 }
 
-fn no_lock(error: io::Error) -> Failure {
-    Failure::new(format!("cannot wait for other installations: apt-get: {error}"))
+fn cannot_wait(error: &io::Error) -> Failure {
+    Failure::new(format!("cannot wait for other installations to end: apt-get: {error}"))
 }
 
 fn with_line(failure: Failure, list: &str) -> Failure {
     failure.with_help(format!("mend what apt-get complains about, then run: apt-get install {list}"))
 }
 
-fn absent(package_source: PackageSource, list: &str, purpose: &str) -> Failure {
+fn absent(package_source: &PackageSource, list: &str, purpose: &str) -> Failure {
     let failure = Failure::new(format!("not installed, but needed {purpose}: {list}"));
     match package_source {
         PackageSource::Unknown => {
@@ -80,7 +80,7 @@ fn absent(package_source: PackageSource, list: &str, purpose: &str) -> Failure {
 fn package_source() -> PackageSource {
     match (tool::find("apt-get"), is_root()) {
         (None, _) => PackageSource::Unknown,
-        (Some(_), true) => PackageSource::Install,
+        (Some(file), true) => PackageSource::Install(file),
         (Some(_), false) => PackageSource::Ask,
     }
 }
@@ -106,12 +106,15 @@ fn apt_get() -> Command {
 #[cfg(test)]
 mod tests {
     use std::fs::TryLockError;
+    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::sync::{Arc, mpsc};
+    use std::time::Duration;
 
     use super::*;
 
     #[test]
     fn who_is_not_root_gets_the_exact_line_and_exit_code_2() {
-        let failure = absent(PackageSource::Ask, "lld qemu-system-arm", "to run the emulated board");
+        let failure = absent(&PackageSource::Ask, "lld qemu-system-arm", "to run the emulated board");
         assert_eq!(failure.help(), Some("run: sudo apt-get update && sudo apt-get install lld qemu-system-arm"));
         assert!(failure.message().contains("to run the emulated board"));
         assert_eq!(failure.exit_code(), 2);
@@ -122,16 +125,26 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let program = folder.path().join("apt-get");
         fs::write(&program, "").unwrap();
-        let first = alone(&program).unwrap();
+        let first = alone(&program, &|_| {}).unwrap();
         assert!(matches!(File::open(&program).unwrap().try_lock(), Err(TryLockError::WouldBlock)));
-        let other = std::thread::spawn(move || alone(&program).map(drop));
+        let (waits, told) = mpsc::channel();
+        let is_over = Arc::new(AtomicBool::new(false));
+        let seen = Arc::clone(&is_over);
+        let other = std::thread::spawn(move || {
+            let _alone = alone(&program, &|line| waits.send(line.to_owned()).unwrap()).unwrap();
+            seen.load(Ordering::SeqCst)
+        });
+        assert_eq!(told.recv().unwrap(), "waiting for another installation of packages");
+        // Long enough for one that does not wait to come too early.
+        std::thread::sleep(Duration::from_millis(100));
+        is_over.store(true, Ordering::SeqCst);
         drop(first);
-        other.join().unwrap().unwrap();
+        assert!(other.join().unwrap());
     }
 
     #[test]
     fn without_apt_get_the_packages_are_named() {
-        let failure = absent(PackageSource::Unknown, "lld", "to build for the board");
+        let failure = absent(&PackageSource::Unknown, "lld", "to build for the board");
         assert!(failure.message().contains("lld"), "{failure}");
         assert!(!failure.help().unwrap_or_default().contains("apt-get"));
     }

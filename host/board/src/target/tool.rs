@@ -1,7 +1,8 @@
 //! Running other programs: finding them, following their output, and keeping all of it for an error.
 
 use std::env;
-use std::io::{BufRead, BufReader};
+use std::fs::{File, TryLockError};
+use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -23,6 +24,14 @@ pub fn find(name: &str) -> Option<PathBuf> {
 pub fn is_program(path: &Path) -> bool {
     use std::os::unix::fs::PermissionsExt;
     path.metadata().is_ok_and(|data| data.is_file() && data.permissions().mode() & 0o111 != 0)
+}
+
+/// Locks a file; who has to wait for that is told for whom.
+pub fn lock(file: &File, holder: &str, say: Say<'_>) -> io::Result<()> {
+    if let Err(TryLockError::WouldBlock) = file.try_lock() {
+        say(&format!("waiting for {holder}"));
+    }
+    file.lock()
 }
 
 /// Runs a program whose output is short and wanted.

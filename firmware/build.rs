@@ -2,7 +2,7 @@
 //! the tables that the image carries. The board file is named by `BOARD_FILE` (default: the preset of the chip whose feature is
 //! chosen), the joint file by `JOINT_FILE` (default: `joints/q1.toml` of the workspace), the tick rate by `JOINT_TICK_RATE` in Hz
 //! (default: 20000); what can be wrong with either is said as a build error. Roles that control are made for one control
-//! period a tick, for the bandwidth `JOINT_BANDWIDTH` in rad/s (default: 60), without an output encoder where
+//! period a tick, for the bandwidth `JOINT_BANDWIDTH` in rad/s (default: 60, or as much as the joint allows), without an output encoder where
 //! `JOINT_MOTOR_ONLY` is 1, and from the joint file `JOINT_TOLD` if a controller is to be told another joint than the true
 //! one. `JOINT_FORCED` is 1 where the joint command builds what the board has no time for; the hello says so. Measuring binaries carry the joints that
 //! `MEASURED_JOINTS` lists, in the manner of a search path, one module of tables for each.
@@ -14,7 +14,6 @@ use board_file::{Board, Chip};
 use model_core::controller::design::{ControlRequest, NominalPlant, control_source};
 
 const DEFAULT_TICK_RATE: u32 = 20_000;
-const DEFAULT_BANDWIDTH: f64 = 60.0;
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
@@ -107,9 +106,9 @@ fn write_tables(chip: Chip) -> Result<(), String> {
 fn control(file: &Path, told: &Path, chip: Chip) -> Result<String, String> {
     println!("cargo::rerun-if-env-changed=JOINT_BANDWIDTH");
     println!("cargo::rerun-if-env-changed=JOINT_MOTOR_ONLY");
-    let bandwidth = match variable("JOINT_BANDWIDTH") {
-        Some(typed) => typed.parse().map_err(|_| format!("JOINT_BANDWIDTH={typed}: want a number of rad/s"))?,
-        None => DEFAULT_BANDWIDTH,
+    let bandwidth = match variable("JOINT_BANDWIDTH").filter(|typed| !typed.is_empty()) {
+        Some(typed) => Some(typed.parse().map_err(|_| format!("JOINT_BANDWIDTH={typed}: want a number of rad/s"))?),
+        None => None,
     };
     let tick_rate = tick_rate()?;
     let request = ControlRequest { bandwidth, output_encoder: variable("JOINT_MOTOR_ONLY") != Some("1".into()) };

@@ -43,6 +43,17 @@ fn expected(ticks: u32) -> Vec<Answer<f32>> {
     (0..ticks).map(tick).map(|(samples, command)| controller.exchange(&samples, &command).unwrap()).collect()
 }
 
+/// What of an answer is sent: the compensation on the board alone needs the rest.
+fn sent(mut answer: Answer<f32>) -> Answer<f32> {
+    (answer.estimates.cogging, answer.estimates.motor_lead) = ([0.0; 2], 0.0);
+    answer
+}
+
+/// What another board is told of the expected answers.
+fn sent_of(ticks: u32) -> Vec<Answer<f32>> {
+    expected(ticks).into_iter().map(sent).collect()
+}
+
 /// A joint at rest, as seen in a tick of a probe.
 fn still(number: u32) -> Samples<f32> {
     let time = 1000 * number;
@@ -147,7 +158,7 @@ fn a_guest_on_spi_answers_a_tick_later_with_the_same_bits() {
     let mut port = SpiPort::new(Bus::new());
     let said: Vec<_> = (0..50).map(tick).map(|(samples, command)| port.exchange(&samples, &command)).collect();
     assert_eq!(said[0], Err(PortError::Damaged), "an empty frame is no answer");
-    assert_eq!(said[1..].iter().map(|answer| answer.unwrap()).collect::<Vec<_>>(), expected(49));
+    assert_eq!(said[1..].iter().map(|answer| answer.unwrap()).collect::<Vec<_>>(), sent_of(49));
 }
 
 #[test]
@@ -210,7 +221,8 @@ fn a_slave_recovers_from_short_overrun_and_damaged_transfers_with_the_next_good_
     assert_eq!(said[0], None);
     for (number, said) in (0..19).zip(&said[1..]) {
         let (samples, command) = tick(number);
-        let expected = (!matches!(number, 5 | 6 | 9)).then(|| (number + 1, own.exchange(&samples, &command).unwrap()));
+        let expected =
+            (!matches!(number, 5 | 6 | 9)).then(|| (number + 1, sent(own.exchange(&samples, &command).unwrap())));
         assert_eq!(*said, expected, "tick {number}");
     }
 }
@@ -250,7 +262,7 @@ fn the_rate_of_the_serial_line_is_that_of_the_longest_frames() {
     let back = encode(&FromBoard::Accepted(accepted)).unwrap().len()
         + encode(&FromBoard::Answer(answered(u32::MAX))).unwrap().len();
     assert_eq!([there as u32, back as u32], serial::FRAME_BYTES);
-    assert_eq!([230_400, 921_600].map(serial::exchanges_per_second), [108, 432]);
+    assert_eq!([230_400, 921_600].map(serial::exchanges_per_second), [107, 430]);
 }
 
 /// Both ways of a line.

@@ -10,4 +10,4 @@ pub mod scanner;
 pub mod virtual_joint;
 
 /// Both ends must speak the same version; raised with every change of a message.
-pub const PROTOCOL_VERSION: u16 = 11;
+pub const PROTOCOL_VERSION: u16 = 12;

@@ -52,6 +52,7 @@ fn estimates() -> Estimates<f32> {
         torque_bias: estimate(9.0),
         motor_friction: estimate(10.0),
         cogging: [0.0; 2],
+        motor_lead: 0.0,
         link_inertia_ratio: estimate(11.0),
         motor: Shaft { turns: i32::MIN, fraction: 0.1, speed: 11.0 },
         link: Shaft { turns: i32::MAX, fraction: 0.2, speed: 12.0 },
@@ -95,6 +96,7 @@ fn answers_come_out_as_they_went_in() {
             load: [3.0, 4.0],
             trust: 0.5,
             short_of_torque: true,
+            stepped_back: true,
         };
         for probed in probes() {
             let answer = Answer { estimates: estimates(), shaped, probed };
@@ -110,7 +112,8 @@ fn answers_come_out_as_they_went_in() {
         }
     }
     use OutputFault::{Absent, OutOfRange};
-    let alone = [Absent, OutputFault::Silent, OutputFault::Frozen, OutOfRange].map(Source::MotorOnly);
+    let alone =
+        [Absent, OutputFault::Unheard, OutputFault::Silent, OutputFault::Frozen, OutOfRange].map(Source::MotorOnly);
     let none = [MotorFault::Silent, MotorFault::Late, MotorFault::Frozen, MotorFault::Jumped].map(Source::Nothing);
     for source in alone.into_iter().chain(none).chain([Source::Both]) {
         let one = Estimates { source, ..estimates() };

@@ -4,6 +4,7 @@
 //! - [`numbers`]: arithmetic that gives the same bits everywhere;
 //! - [`gears`]: the joint's fixed step ([`gears::Model`]; f32, no_std, no allocation, no panic);
 //! - [`observer`]: where the gap is, from encoder counts and motor torque;
+//! - [`wiring`]: whether signs, counts, ratio, torque, rate and clock are those of the tables, before anything is controlled;
 //! - [`compensation`]: takes the lost motion out, from estimates and a set-point to a torque;
 //! - [`virtual_joint`]: gears with motor, frictions and encoders around them, for a controller to be tried on;
 //! - [`controller`]: observer and compensation as one.
@@ -26,3 +27,4 @@ pub mod gears;
 pub mod numbers;
 pub mod observer;
 pub mod virtual_joint;
+pub mod wiring;

@@ -8,6 +8,8 @@
 
 #![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets")]
 
+mod effect;
+mod effects;
 mod equivalent;
 mod joint;
 mod mesh;
@@ -15,11 +17,15 @@ mod planets;
 mod surroundings;
 mod validity;
 
+pub use effect::Effect;
+pub use effects::{
+    Drift, Hysteresis, Payload, PayloadStep, Presliding, SubdivisionalError, TorqueErrors, WidthVariation,
+};
 pub use equivalent::{EQUIVALENT, EquivalentGear};
 pub use joint::{Bodies, Coherence, Compliance, Excitation, Geometry, JointParameters};
 pub use mesh::{
     ContactState, DampingLaw, DeadZone, MAX_HARMONICS, MESH_KINDS, Mesh, MeshKind, MeshPhases, StiffnessWave,
 };
 pub use planets::{MAX_PLANETS, MIN_PLANETS, PerPlanet};
-pub use surroundings::{AbsoluteEncoder, Friction, Surroundings};
+pub use surroundings::{AbsoluteEncoder, DEFAULT_SPEED_LIMIT, Friction, Surroundings};
 pub use validity::ParameterError;

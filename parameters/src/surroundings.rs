@@ -1,6 +1,13 @@
 //! What surrounds the gears of a joint, as plain data in SI: motor with its current loop, frictions, weight, encoders,
 //! and the controller's rate.
 
+use crate::effects::{
+    Drift, Hysteresis, Payload, PayloadStep, Presliding, SubdivisionalError, TorqueErrors, WidthVariation,
+};
+
+/// Largest speed of a motor whose data sheet is silent [rad/s]: 11,500 revolutions a minute, which few servo motors exceed.
+pub const DEFAULT_SPEED_LIMIT: f64 = 1200.0;
+
 /// Everything around the gears.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Surroundings {
@@ -12,6 +19,8 @@ pub struct Surroundings {
     pub current_lag: f64,
     /// Largest torque of the motor [N m].
     pub torque_limit: f64,
+    /// Largest speed of the motor [rad/s].
+    pub speed_limit: f64,
     /// Torque noise over the torque, standard deviation [-].
     pub torque_noise_ratio: f64,
     /// True over nominal torque constant, less 1 [-].
@@ -32,6 +41,22 @@ pub struct Surroundings {
     pub motor_encoder: AbsoluteEncoder,
     /// On the link.
     pub output_encoder: AbsoluteEncoder,
+    /// Part of the link that swings on a spring.
+    pub payload: Payload,
+    /// Change of the link's inertia and weight.
+    pub payload_step: PayloadStep,
+    /// Creep of the shafts below their dry friction.
+    pub presliding: Presliding,
+    /// Slip of the stiffness between carrier and link.
+    pub hysteresis: Hysteresis,
+    /// Backlash around the turn.
+    pub width: WidthVariation,
+    /// Friction and backlash over time.
+    pub drift: Drift,
+    /// Ripple, steps and saturation of the motor's torque.
+    pub torque_errors: TorqueErrors,
+    /// Longest delay of a control period's start over the period; every period draws its own [-].
+    pub control_jitter_ratio: f64,
 }
 
 impl Surroundings {
@@ -42,6 +67,7 @@ impl Surroundings {
             delay: 0.0,
             current_lag: 0.0,
             torque_limit: f64::INFINITY,
+            speed_limit: DEFAULT_SPEED_LIMIT,
             torque_noise_ratio: 0.0,
             torque_constant_error_ratio: 0.0,
             cogging_torque: 0.0,
@@ -52,6 +78,14 @@ impl Surroundings {
             gravity_torque: 0.0,
             motor_encoder: AbsoluteEncoder::ideal(18),
             output_encoder: AbsoluteEncoder::ideal(18),
+            payload: Payload::default(),
+            payload_step: PayloadStep::default(),
+            presliding: Presliding::default(),
+            hysteresis: Hysteresis::default(),
+            width: WidthVariation::default(),
+            drift: Drift::default(),
+            torque_errors: TorqueErrors::default(),
+            control_jitter_ratio: 0.0,
         }
     }
 }
@@ -80,11 +114,19 @@ pub struct AbsoluteEncoder {
     pub twice_per_turn_error: f64,
     /// How old a reading is beyond what its time says [s].
     pub skew: f64,
+    /// Further age of a reading, from 0 to this; every reading draws its own [s].
+    pub age_jitter: f64,
+    /// Standard deviation of a reading's noise, before it is rounded to a count [counts].
+    pub noise_counts: f64,
+    /// Error within a period of the scale.
+    pub subdivision: SubdivisionalError,
+    /// Share of the control periods without a reading [-].
+    pub missing_share: f64,
 }
 
 impl AbsoluteEncoder {
     /// Right up to its resolution of 2^bits counts a turn.
     pub fn ideal(bits: u32) -> Self {
-        Self { bits, once_per_turn_error: 0.0, twice_per_turn_error: 0.0, skew: 0.0 }
+        Self { bits, ..Self::default() }
     }
 }

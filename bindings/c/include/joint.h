@@ -1,5 +1,5 @@
 /*
- * A planetary joint with backlash: plant, observer, compensation and width probe for C and C++.
+ * A planetary joint with backlash: plant, observer, compensation, width probe and wiring check for C and C++.
  *
  * This header is written by cbindgen from bindings/c/src and compared with it by a test; change it there.
  * MIT OR Apache-2.0.
@@ -41,7 +41,7 @@
 #define JOINT_NAME_BYTES 32
 
 // Version of tables that this library reads.
-#define JOINT_TABLES_VERSION 2
+#define JOINT_TABLES_VERSION 3
 
 // In `notices`: the torque was more than twice what the motor can give; none was assumed.
 #define JOINT_NOTICE_TORQUE_UNKNOWN 1
@@ -55,6 +55,12 @@
 // In `notices`: the motor's counts are elsewhere time after time.
 #define JOINT_NOTICE_MOTOR_JUMPED 8
 
+// 64-bit words of a wiring check.
+#define JOINT_WIRING_WORDS 72
+
+// Number of items of the wiring.
+#define JOINT_WIRING_ITEMS 13
+
 // 64-bit words of an observer.
 #define JOINT_OBSERVER_WORDS 256
 
@@ -62,7 +68,7 @@
 #define JOINT_MEMORY_BYTES 544
 
 // 64-bit words of a compensation.
-#define JOINT_COMPENSATION_WORDS 42
+#define JOINT_COMPENSATION_WORDS 58
 
 // 64-bit words of a width probe.
 #define JOINT_PROBE_WORDS 16
@@ -111,12 +117,62 @@ enum JointStatus
   JOINT_STATUS_OTHER_JOINT = 14,
   // The memory holds a number that no joint of this design can have.
   JOINT_STATUS_MEMORY_OUT_OF_RANGE = 15,
+  // A fraction of a turn is more than a turn.
+  JOINT_STATUS_FRACTION_OUT_OF_RANGE = 16,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
 typedef enum JointStatus JointStatus;
 #else
 typedef uint32_t JointStatus;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// Progress of a wiring check.
+enum JointWiringProgress
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // Go on: command the torque, and call again in the next period.
+  JOINT_WIRING_PROGRESS_RUNNING = 0,
+  // The check is over: read the verdicts.
+  JOINT_WIRING_PROGRESS_DONE = 1,
+  // The joint moved before any torque was given: let it come to rest.
+  JOINT_WIRING_PROGRESS_NOT_AT_REST = 2,
+  // The joint moved further than the check may: look for what else drives it. The verdicts hold as far as they go.
+  JOINT_WIRING_PROGRESS_TOO_FAR = 3,
+  // The check took too long: look at the times of the samples. The verdicts hold as far as they go.
+  JOINT_WIRING_PROGRESS_TOO_LONG = 4,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum JointWiringProgress JointWiringProgress;
+#else
+typedef uint32_t JointWiringProgress;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// Verdict on an item of the wiring.
+enum JointVerdict
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // The samples do not show it.
+  JOINT_VERDICT_NOT_SEEN = 0,
+  // As in the tables.
+  JOINT_VERDICT_RIGHT = 1,
+  // Not as in the tables; `found` is what was found instead.
+  JOINT_VERDICT_WRONG = 2,
+  // This item or another suspect is wrong, and the samples do not tell which; `found` is what it would be.
+  JOINT_VERDICT_SUSPECT = 3,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum JointVerdict JointVerdict;
+#else
+typedef uint32_t JointVerdict;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
@@ -161,6 +217,8 @@ enum JointFault
   JOINT_FAULT_JUMPED = 5,
   // The output's counts put the gap coordinate where it cannot be.
   JOINT_FAULT_OUT_OF_RANGE = 6,
+  // The output encoder has given no reading yet: the compensation gives no torque until it does.
+  JOINT_FAULT_UNHEARD = 7,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -277,10 +335,10 @@ typedef struct JointTablesFacts {
   char name[JOINT_NAME_BYTES];
 } JointTablesFacts;
 
-// Storage of an observer. Its content is the library's own.
-typedef struct JointObserver {
-  uint64_t storage[JOINT_OBSERVER_WORDS];
-} JointObserver;
+// Storage of a wiring check. Its content is the library's own.
+typedef struct JointWiring {
+  uint64_t storage[JOINT_WIRING_WORDS];
+} JointWiring;
 
 // One reading of an encoder.
 typedef struct JointReading {
@@ -303,6 +361,31 @@ typedef struct JointSamples {
   // Torque at the motor's shaft that was commanded last, after every limit: current times torque constant.
   float motor_torque_Nm;
 } JointSamples;
+
+// Outputs of one control period of a wiring check.
+typedef struct JointWiringStep {
+  // Torque to command next at the motor's shaft, never larger than allowed; zero once the check has ended.
+  float motor_torque_Nm;
+  // Progress.
+  JointWiringProgress progress;
+} JointWiringStep;
+
+// Verdicts on all items, each at the place of its JointWiringItem.
+typedef struct JointWiringVerdicts {
+  // 1 if every item that these tables let be judged was seen and is right, else 0.
+  uint32_t all_right;
+  // Items that are wrong or suspect.
+  uint32_t bad;
+  // Verdicts.
+  JointVerdict verdicts[JOINT_WIRING_ITEMS];
+  // What was found, where a verdict is wrong or suspect; else 0.
+  float found[JOINT_WIRING_ITEMS];
+} JointWiringVerdicts;
+
+// Storage of an observer. Its content is the library's own.
+typedef struct JointObserver {
+  uint64_t storage[JOINT_OBSERVER_WORDS];
+} JointObserver;
 
 // A value, how uncertain it is, and whether the observer stands by it. Value and variance are always finite.
 typedef struct JointEstimate {
@@ -352,7 +435,8 @@ typedef struct JointEstimates {
   struct JointEstimate load_torque_Nm;
   // Half-backlash b of each mesh.
   struct JointEstimate half_backlash_m;
-  // By how much the motor encoder leads the output encoder with every tooth centred, at the output.
+  // By how much the motor encoder leads the output encoder with every tooth centred, beyond where they were at the
+  // start; at the output.
   struct JointEstimate encoder_offset_rad;
   // Torsional compliance from sun to link, at the output.
   struct JointEstimate compliance_rad_per_Nm;
@@ -379,7 +463,7 @@ typedef struct JointCompensation {
 typedef struct JointMotion {
   // Whole turns.
   int32_t turns;
-  // What is left.
+  // What is left, from -1 to 1.
   float fraction_turns;
   // Speed.
   float speed_rad_per_s;
@@ -405,13 +489,15 @@ typedef struct JointTorque {
   JointContact flank;
   // 1 if the law asks for more torque than the motor has, or brakes early because of that; else 0.
   uint32_t short_of_torque;
+  // 1 while control without compensation has taken over because the loop hunted; else 0.
+  uint32_t stepped_back;
 } JointTorque;
 
 // A spring and damper about a moving point, on the scale of the observer's link shaft.
 typedef struct JointImpedance {
   // Whole turns of the point.
   int32_t turns;
-  // What is left.
+  // What is left, from -1 to 1.
   float fraction_turns;
   // Its speed.
   float speed_rad_per_s;
@@ -489,6 +575,29 @@ const char *joint_status_text(uint32_t status);
 
 // Looks at tables: whether they are sound, and what they were made for. `facts` may be NULL.
 JointStatus joint_tables_facts(const uint64_t *tables, size_t tables_bytes, struct JointTablesFacts *facts);
+
+// Starts a wiring check. `bytes` is sizeof(JointWiring). The joint is to be at rest, and free to turn by a few degrees at the
+// output.
+JointStatus joint_wiring_start(struct JointWiring *wiring,
+                               size_t bytes,
+                               const uint64_t *tables,
+                               size_t tables_bytes);
+
+// One control period of a wiring check, in place of the observer's and the compensation's steps. With an allowed torque of
+// zero, or with another torque than the answer's in force, it judges whatever motion the samples show.
+JointStatus joint_wiring_step(struct JointWiring *wiring,
+                              const struct JointSamples *samples,
+                              float allowed_torque_Nm,
+                              struct JointWiringStep *step);
+
+// The verdicts on what a check has seen so far, outside of the control period.
+JointStatus joint_wiring_verdicts(const struct JointWiring *wiring, struct JointWiringVerdicts *verdicts);
+
+// The name of an item of the wiring, such as "output_direction"; never NULL.
+const char *joint_wiring_item_name(uint32_t item);
+
+// What is wrong with an item of the wiring, and what to do about it, in one sentence; never NULL.
+const char *joint_wiring_item_text(uint32_t item);
 
 // Starts an observer with maps of the encoders' errors. `bytes` is sizeof(JointObserver). The tables must stay as they are
 // for as long as it is used.
@@ -582,11 +691,13 @@ JOINT_ASSERT(sizeof(JointObserver) == 8 * JOINT_OBSERVER_WORDS, joint_observer_s
 JOINT_ASSERT(sizeof(JointCompensation) == 8 * JOINT_COMPENSATION_WORDS, joint_compensation_size);
 JOINT_ASSERT(sizeof(JointProbe) == 8 * JOINT_PROBE_WORDS, joint_probe_size);
 JOINT_ASSERT(sizeof(JointPlant) == 8 * JOINT_PLANT_WORDS, joint_plant_size);
+JOINT_ASSERT(sizeof(JointWiring) == 8 * JOINT_WIRING_WORDS, joint_wiring_size);
 #if defined(__cplusplus)
 JOINT_ASSERT(alignof(JointObserver) == 8, joint_observer_alignment);
 JOINT_ASSERT(alignof(JointCompensation) == 8, joint_compensation_alignment);
 JOINT_ASSERT(alignof(JointProbe) == 8, joint_probe_alignment);
 JOINT_ASSERT(alignof(JointPlant) == 8, joint_plant_alignment);
+JOINT_ASSERT(alignof(JointWiring) == 8, joint_wiring_alignment);
 #else
 struct joint_observer_aligned { char first; JointObserver object; };
 JOINT_ASSERT(offsetof(struct joint_observer_aligned, object) == 8, joint_observer_alignment);
@@ -596,6 +707,8 @@ struct joint_probe_aligned { char first; JointProbe object; };
 JOINT_ASSERT(offsetof(struct joint_probe_aligned, object) == 8, joint_probe_alignment);
 struct joint_plant_aligned { char first; JointPlant object; };
 JOINT_ASSERT(offsetof(struct joint_plant_aligned, object) == 8, joint_plant_alignment);
+struct joint_wiring_aligned { char first; JointWiring object; };
+JOINT_ASSERT(offsetof(struct joint_wiring_aligned, object) == 8, joint_wiring_alignment);
 #endif
 #undef JOINT_ASSERT
 

@@ -195,6 +195,7 @@ int main(int count, char **arguments) {
                 samples->motor_torque_Nm = number();
             } else if (kind == 10) {
                 now->fraction_turns = number();
+                is_wrong |= !(now->fraction_turns >= -1.0f && now->fraction_turns <= 1.0f);
                 ahead->speed_rad_per_s = number();
             } else if (kind == 11) {
                 spring->stiffness_Nm_per_rad = number();

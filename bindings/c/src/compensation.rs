@@ -14,7 +14,7 @@ use crate::observer::{AnyObserver, JointObserver};
 use crate::status::JointStatus;
 
 /// 64-bit words of a compensation.
-pub const JOINT_COMPENSATION_WORDS: usize = 42;
+pub const JOINT_COMPENSATION_WORDS: usize = 58;
 
 /// Storage of a compensation. Its content is the library's own.
 #[repr(C)]
@@ -37,13 +37,17 @@ macro_rules! alike {
     };
 }
 
+/// Largest size of a fraction of a turn [turns]: counts, degrees and most radians are beyond it, while a set-point may cross a
+/// turn before it carries the whole one over.
+const MOST_FRACTION: f32 = 1.0;
+
 /// Where the link shall be at one moment, on the scale of the observer's link shaft.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct JointMotion {
     /// Whole turns.
     pub turns: i32,
-    /// What is left.
+    /// What is left, from -1 to 1.
     pub fraction_turns: f32,
     /// Speed.
     pub speed_rad_per_s: f32,
@@ -74,7 +78,7 @@ impl JointMotion {
 pub struct JointImpedance {
     /// Whole turns of the point.
     pub turns: i32,
-    /// What is left.
+    /// What is left, from -1 to 1.
     pub fraction_turns: f32,
     /// Its speed.
     pub speed_rad_per_s: f32,
@@ -149,6 +153,8 @@ pub struct JointTorque {
     pub flank: JointContact,
     /// 1 if the law asks for more torque than the motor has, or brakes early because of that; else 0.
     pub short_of_torque: u32,
+    /// 1 while control without compensation has taken over because the loop hunted; else 0.
+    pub stepped_back: u32,
 }
 
 impl JointTorque {
@@ -178,6 +184,7 @@ impl JointTorque {
             (*to).stage = stage;
             (*to).flank = flank;
             (*to).short_of_torque = of.short_of_torque.into();
+            (*to).stepped_back = of.stepped_back.into();
         }
     }
 }
@@ -218,6 +225,10 @@ pub unsafe extern "C" fn joint_compensation_follow(
         if !is_zero(ahead.map_or(nothing, |ahead| ahead.nothing(nothing))) {
             return JointStatus::NotFinite;
         }
+        let fraction = ahead.map_or(0.0, |ahead| ahead.fraction_turns);
+        if now.fraction_turns.abs() > MOST_FRACTION || fraction.abs() > MOST_FRACTION {
+            return JointStatus::FractionOutOfRange;
+        }
         let command = CommandRef::Position { now: now.motion(), ahead: ahead.map(JointMotion::motion) };
         // SAFETY: likewise.
         unsafe { step(compensation, observer, command, torque) }
@@ -241,6 +252,9 @@ pub unsafe extern "C" fn joint_compensation_yield(
         let impedance = unsafe { &*impedance };
         if !is_zero(impedance.nothing()) {
             return JointStatus::NotFinite;
+        }
+        if impedance.fraction_turns.abs() > MOST_FRACTION {
+            return JointStatus::FractionOutOfRange;
         }
         // SAFETY: likewise.
         unsafe { step(compensation, observer, CommandRef::Impedance(impedance.point()), torque) }

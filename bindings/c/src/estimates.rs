@@ -148,6 +148,8 @@ pub enum JointFault {
     Jumped = 5,
     /// The output's counts put the gap coordinate where it cannot be.
     OutOfRange = 6,
+    /// The output encoder has given no reading yet: the compensation gives no torque until it does.
+    Unheard = 7,
 }
 
 /// In `notices`: the torque was more than twice what the motor can give; none was assumed.
@@ -189,7 +191,8 @@ pub struct JointEstimates {
     pub load_torque_Nm: JointEstimate,
     /// Half-backlash b of each mesh.
     pub half_backlash_m: JointEstimate,
-    /// By how much the motor encoder leads the output encoder with every tooth centred, at the output.
+    /// By how much the motor encoder leads the output encoder with every tooth centred, beyond where they were at the
+    /// start; at the output.
     pub encoder_offset_rad: JointEstimate,
     /// Torsional compliance from sun to link, at the output.
     pub compliance_rad_per_Nm: JointEstimate,
@@ -215,6 +218,7 @@ impl JointEstimates {
             Source::MotorOnly(fault) => {
                 let fault = match fault {
                     OutputFault::Absent => JointFault::Absent,
+                    OutputFault::Unheard => JointFault::Unheard,
                     OutputFault::Silent => JointFault::Silent,
                     OutputFault::Frozen => JointFault::Frozen,
                     OutputFault::OutOfRange => JointFault::OutOfRange,

@@ -1,5 +1,5 @@
 #![cfg_attr(feature = "library", no_std)]
-//! Plant, observer, compensation and width probe of `model-core` for programs in C and C++. The header is
+//! Plant, observer, compensation, width probe and wiring check of `model-core` for programs in C and C++. The header is
 //! `bindings/c/include/joint.h`; everything that its reader must know stands there, and is written here.
 //!
 //! Thin: a function takes pointers, checks them, sets the floating-point unit to the mode that the numbers are made for,
@@ -23,6 +23,7 @@ mod plant;
 mod probe;
 mod status;
 mod tables;
+mod wiring;
 
 pub use compensation::*;
 pub use estimates::*;
@@ -31,6 +32,7 @@ pub use plant::*;
 pub use probe::*;
 pub use status::*;
 pub use tables::*;
+pub use wiring::*;
 
 /// Nothing in here panics: a test looks for what would lead here in linked programs, and finds nothing.
 #[cfg(feature = "library")]

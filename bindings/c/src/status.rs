@@ -41,6 +41,8 @@ pub enum JointStatus {
     OtherJoint = 14,
     /// The memory holds a number that no joint of this design can have.
     MemoryOutOfRange = 15,
+    /// A fraction of a turn is more than a turn.
+    FractionOutOfRange = 16,
 }
 
 impl From<BlobError> for JointStatus {
@@ -74,7 +76,7 @@ impl From<Result<(), JointStatus>> for JointStatus {
 }
 
 /// Names and texts by number.
-const SAID: [[&core::ffi::CStr; 2]; 16] = [
+const SAID: [[&core::ffi::CStr; 2]; 17] = [
     [c"JOINT_STATUS_OK", c"done"],
     [c"JOINT_STATUS_NULL_POINTER", c"a pointer is NULL: give the object that the header asks for"],
     [c"JOINT_STATUS_MISALIGNED", c"a pointer is not aligned for its type: use the header's types, not bytes"],
@@ -91,6 +93,7 @@ const SAID: [[&core::ffi::CStr; 2]; 16] = [
     [c"JOINT_STATUS_DAMAGED_MEMORY", c"the memory is damaged: load a copy, or let the observer learn again"],
     [c"JOINT_STATUS_OTHER_JOINT", c"the memory belongs to another joint, to other encoders, or to an observer with or without maps"],
     [c"JOINT_STATUS_MEMORY_OUT_OF_RANGE", c"the memory holds a number that no joint of this design can have: let the observer learn again"],
+    [c"JOINT_STATUS_FRACTION_OUT_OF_RANGE", c"a fraction of a turn is more than a turn: give turns, neither counts nor degrees nor radians, and whole ones in `turns`"],
 ];
 
 fn said(status: u32, which: usize) -> *const c_char {

@@ -1,5 +1,5 @@
 /*
- * A planetary joint with backlash: plant, observer, compensation and width probe for C and C++.
+ * A planetary joint with backlash: plant, observer, compensation, width probe and wiring check for C and C++.
  *
  * This header is written by cbindgen from bindings/c/src and compared with it by a test; change it there.
  * MIT OR Apache-2.0.

@@ -9,13 +9,13 @@ use cbindgen::{Builder, Config, Language, Style};
 /// Set to write the header anew.
 const WRITE: &str = "UPDATE_HEADER";
 /// In the order in which a reader wants them.
-const SOURCES: [&str; 7] = ["status", "tables", "estimates", "observer", "compensation", "probe", "plant"];
+const SOURCES: [&str; 8] = ["status", "tables", "estimates", "wiring", "observer", "compensation", "probe", "plant"];
 /// What is asked of the header.
 const FLAGS: [&str; 6] = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-fsyntax-only"];
 const C: [&str; 3] = ["c99", "c11", "c17"];
 const CPP: [&str; 3] = ["c++14", "c++17", "c++20"];
 /// Whose storage the caller owns.
-const OBJECTS: [&str; 4] = ["Observer", "Compensation", "Probe", "Plant"];
+const OBJECTS: [&str; 5] = ["Observer", "Compensation", "Probe", "Plant", "Wiring"];
 
 fn package() -> PathBuf {
     env!("CARGO_MANIFEST_DIR").into()

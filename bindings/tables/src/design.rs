@@ -1,6 +1,6 @@
 //! Designs a joint's tables and writes them as a blob.
 
-use model_core::controller::design::{ControlTables, NominalPlant, control_tables};
+use model_core::controller::design::{ControlTables, NominalPlant, control_tables, wiring_table};
 use model_core::gears::design::{DesignError, Effort, Processor, design_scheme};
 use model_core::gears::{Scheme, Tables};
 use model_core::observer::design::CLOCK_TICKS;
@@ -30,7 +30,7 @@ pub struct Wanted<'a> {
 /// use table_blob::{Blob, Wanted, design};
 ///
 /// let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
-/// let request = ControlRequest { bandwidth: 60.0, output_encoder: true };
+/// let request = ControlRequest { bandwidth: None, output_encoder: true };
 /// let nominal = NominalPlant { joint: &q1.parameters, surroundings: &q1.surroundings, request };
 /// let words = design(&Wanted { plant: None, nominal, processor: Processor::STM32F405 })?;
 /// let blob = Blob::open(&words).unwrap();
@@ -40,6 +40,7 @@ pub struct Wanted<'a> {
 /// ```
 pub fn design(wanted: &Wanted<'_>) -> Result<Vec<u64>, DesignError> {
     let ControlTables { observer, probe, compensation } = control_tables(&wanted.nominal)?;
+    let wiring = wiring_table(&wanted.nominal)?;
     let mut blob = Writer { bytes: vec![0; HEADER_BYTES], parts: [Part::default(); PARTS] };
     let mut planets = 0;
     if let Some((joint, around)) = wanted.plant {
@@ -57,6 +58,7 @@ pub fn design(wanted: &Wanted<'_>) -> Result<Vec<u64>, DesignError> {
         blob.add(3, probe);
     }
     blob.add(4, &compensation);
+    blob.add(5, &wiring);
     let control_rate = wanted.nominal.surroundings.control_rate;
     let mut name = [0; NAME_BYTES];
     // The last byte stays zero: C reads a text up to it.
@@ -69,7 +71,7 @@ pub fn design(wanted: &Wanted<'_>) -> Result<Vec<u64>, DesignError> {
         name,
         control_rate,
         clock_rate: CLOCK_TICKS * control_rate,
-        bandwidth: wanted.nominal.request.bandwidth as f32,
+        bandwidth: compensation.law.rate,
         planets,
         parts: blob.parts,
     };
@@ -119,6 +121,7 @@ impl Writer {
 pub fn layout() -> Vec<String> {
     use model_core::compensation::CompensationTables;
     use model_core::observer::{ObserverTables, ProbeTable};
+    use model_core::wiring::WiringTable;
 
     let mut out = vec![];
     Header::describe("header", 0, &mut out);
@@ -127,6 +130,7 @@ pub fn layout() -> Vec<String> {
     ObserverTables::<f32>::describe("observer", 0, &mut out);
     ProbeTable::<f32>::describe("probe", 0, &mut out);
     CompensationTables::<f32>::describe("compensation", 0, &mut out);
+    WiringTable::<f32>::describe("wiring", 0, &mut out);
     out
 }
 
@@ -135,7 +139,7 @@ mod tests {
     use model_core::numbers::digest;
 
     /// Digest of the names, places and types of all fields in this version.
-    const OF_VERSION_2: u64 = 0x4319_d822_4dee_bb0f;
+    const OF_VERSION_3: u64 = 0x6d05_7783_ebb9_dd86;
 
     #[test]
     fn another_layout_has_another_version() {
@@ -144,10 +148,10 @@ mod tests {
             .iter()
             .flat_map(|line| line.bytes().chain([b'\n']))
             .fold(digest::START, |running, byte| digest::chain(running, byte.into()));
-        assert_eq!(crate::VERSION, 2);
+        assert_eq!(crate::VERSION, 3);
         assert_eq!(
             found,
-            OF_VERSION_2,
+            OF_VERSION_3,
             "a table has another layout ({found:#x}): raise VERSION, and put this digest here with it:\n{}",
             layout.join("\n")
         );

@@ -1,6 +1,6 @@
 //! The structs of the tables, by their fields: a field that is missing here does not compile, nor does one too many.
 
-use model_core::{compensation, gears, observer, virtual_joint};
+use model_core::{compensation, gears, observer, virtual_joint, wiring};
 
 use crate::fixed::Fixed;
 
@@ -104,12 +104,16 @@ structs! {
         torque, rise, damping, moving, loaded, furthest, longest, settle, still, per_still, turn, deflection,
         least, variance
     }
+    wiring::WiringTable<f32> {
+        clock, counts, ratio, per_ratio, block, per_block, impulse, slack, lost_motion, play, ratio_tolerance,
+        torque_factor, leads, leg, limit, rise, torque, torque_limit, friction, rest, window, hold, longest
+    }
     compensation::tables::CompensationTables<f32> {
-        clock, gear, body, limits, law, crossing, landing, switching, rest, load
+        clock, gear, body, limits, law, crossing, landing, switching, rest, load, watch
     }
     compensation::tables::ClockTable<f32> { rate, period }
     compensation::tables::GearTable<f32> {
-        ratio, motor_per_link, link_per_motor, inverse_denominator, turn, inverse_lever,
+        motor_per_link, link_per_motor, turn, inverse_lever,
         mesh_phase_per_radian, radians_per_mesh, cogging_periods, cogging_phase_per_radian, losses
     }
     compensation::tables::BodyTable<f32> {
@@ -134,6 +138,10 @@ structs! {
     compensation::tables::RestTable<f32> { hunting, first_deadband, largest_deadband, deadband_left }
     compensation::tables::LoadTable<f32> {
         variances, gain, rate_gain, rate_left, fastest, friction_slope, planned_friction_slope
+    }
+    compensation::tables::WatchTable<f32> {
+        smoothing, least_demand, leaks, most, calm_per_half, memory, error_per_half, error_per_demand, first_away, longest_away,
+        longer
     }
     virtual_joint::tables::SurroundingsTable<f32> {
         period, clock_ticks, turn, ratio, gear, units_per_radian, motor_rate, link_rate, current,

@@ -22,9 +22,10 @@ use model_core::gears::Tables;
 use model_core::numbers::digest;
 use model_core::observer::{ObserverTables, ProbeTable};
 use model_core::virtual_joint::SurroundingsTable;
+use model_core::wiring::WiringTable;
 
 /// Version of the layout: the next one as soon as a struct of a table changes (the test `layout` tells).
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 /// How a blob begins.
 const MARK: [u8; 8] = *b"JOINTTAB";
 /// Bytes of a joint's name, zeros after its end.
@@ -32,7 +33,7 @@ pub const NAME_BYTES: usize = 32;
 /// Bytes of a word: what blob and parts are aligned to.
 const WORD: usize = 8;
 /// Kinds of parts.
-const PARTS: usize = 5;
+const PARTS: usize = 6;
 
 /// Where a part is.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -66,7 +67,7 @@ pub struct Header {
     pub bandwidth: f32,
     /// Planets of the plant; zero without a plant.
     pub planets: u32,
-    /// Gears, surroundings, observer, probe, compensation.
+    /// Gears, surroundings, observer, probe, compensation, wiring check.
     parts: [Part; PARTS],
 }
 
@@ -154,6 +155,11 @@ impl<'a> Blob<'a> {
     /// Tables of the compensation.
     pub fn compensation(&self) -> Result<&'a CompensationTables<f32>, BlobError> {
         self.part(4)
+    }
+
+    /// Table of the wiring check.
+    pub fn wiring(&self) -> Result<&'a WiringTable<f32>, BlobError> {
+        self.part(5)
     }
 
     /// Tables of the plant.

@@ -1,6 +1,6 @@
 //! What is read in place is what was designed, in every bit; what was changed on the way is refused by name.
 
-use model_core::controller::design::{ControlRequest, NominalPlant, control_tables};
+use model_core::controller::design::{ControlRequest, NominalPlant, control_tables, wiring_table};
 use model_core::gears::Tables;
 use model_core::gears::design::{Effort, Processor, design_scheme};
 use model_core::gears::tables::Scheme;
@@ -8,7 +8,7 @@ use model_core::numbers::digest;
 use model_core::virtual_joint::design::design_surroundings;
 use table_blob::{Blob, BlobError, Gears, VERSION, Wanted, design};
 
-const REQUEST: ControlRequest = ControlRequest { bandwidth: 60.0, output_encoder: true };
+const REQUEST: ControlRequest = ControlRequest { bandwidth: None, output_encoder: true };
 /// Words of version with length, and of the digest.
 const VERSION_AT: usize = 1;
 const DIGEST_AT: usize = 2;
@@ -41,6 +41,7 @@ fn every_joint_s_tables_are_read_in_place_as_they_were_designed() {
         assert_eq!(blob.observer().unwrap(), &tables.observer);
         assert_eq!(blob.probe().ok(), tables.probe.as_ref());
         assert_eq!(blob.compensation().unwrap(), &tables.compensation);
+        assert_eq!(blob.wiring().unwrap(), &wiring_table(&nominal).unwrap());
         let (gears, around) = blob.plant().unwrap();
         let rate = joint.surroundings.control_rate;
         if let Gears::Three(gears) = gears {

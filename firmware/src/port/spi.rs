@@ -12,7 +12,7 @@ use model_core::observer::Samples;
 use super::{ControllerPort, PortError, asked};
 
 /// Bytes of a frame either way: the longer of samples and answer, with its checksum.
-pub const FRAME_BYTES: usize = 192;
+pub const FRAME_BYTES: usize = 196;
 
 /// A frame.
 pub type Frame = [u8; FRAME_BYTES];

@@ -4,8 +4,8 @@ use scenario::controller::ControllerName::{MotorPid, NoPreview};
 
 use super::{figures, shipped};
 
-/// From a flank the wrong blow had 1.16 of PID's peak, with seeds 15 and 105 still 1.1 from one that friction kept; with seed 10
-/// plain control met the first blow with 1.13 of PID's mesh force.
+/// From a flank the wrong blow had 1.16 of PID's peak, with seeds 15 and 105 still 1.1 from one that friction kept. The first blow
+/// meets a joint that does not know its gap yet: with seed 15 it has 1.11 of PID's mesh force.
 #[test]
 fn a_blow_throws_the_link_no_further_than_under_pid_and_strikes_hardly_harder() {
     let test = shipped("impact");

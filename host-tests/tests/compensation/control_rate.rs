@@ -26,6 +26,7 @@ fn tables(joint: &JointParameters, settings: &CompensationSettings) -> Result<Co
 fn refused(joint: &JointParameters, settings: &CompensationSettings) -> (Option<u32>, f64) {
     match tables(joint, settings) {
         Err(DesignError::ControlTooSlow { lowest, widest, .. }) => (lowest, widest),
+        Err(DesignError::BandwidthTooWide { widest, .. }) => (None, widest),
         other => panic!("{settings:?} is to be refused: {:?}", other.err()),
     }
 }
@@ -52,7 +53,7 @@ fn excursion(tables: &CompensationTables<f64>, settings: &CompensationSettings, 
             load_torque: known(0.0),
             ..Estimates::default()
         };
-        estimates.motor.fraction = place * tables.gear.motor_per_link / tables.gear.turn;
+        estimates.motor_lead = place;
         estimates.motor.speed = speed * tables.gear.motor_per_link;
         wanted = [compensation.step(&estimates, &command).torque * tables.gear.motor_per_link, wanted[0]];
         for fine in 0..FINE {
@@ -80,7 +81,7 @@ fn the_named_rate_and_the_named_bandwidth_are_taken_and_a_little_less_is_not() {
         (&heavy, 2500, 0.2e-3, 60.0, true),
         (&light, 2000, 2.5e-3, 60.0, true),
         (&joint, 1000, 0.2e-3, 60.0, false),
-        (&light, 3000, 0.2e-3, 120.0, false),
+        (&light, 2500, 0.2e-3, 90.0, false),
         (&joint, 500, 0.2e-3, 60.0, false),
     ] {
         let slow = CompensationSettings { control_rate: rate, torque_lag: lag, bandwidth, ..usual.clone() };

@@ -13,6 +13,7 @@ mod monte_carlo;
 mod page;
 mod plain;
 mod position;
+mod power_up;
 mod stepping;
 mod width;
 

@@ -1,8 +1,8 @@
-//! What plain control, which stays where the gap is not seen, does with its integral.
+//! What plain control, which stays where the link is not seen, does with its integral.
 
 use model_core::compensation::design::{compensation_settings, design_compensation};
 use model_core::compensation::{Command, Compensation, Motion, Stage};
-use model_core::observer::{Estimate, Estimates, Source};
+use model_core::observer::{Estimate, Estimates, OutputFault, Source};
 use reference::drive_train::DriveTrainParameters;
 use reference::scenarios::q1;
 
@@ -12,10 +12,10 @@ const LIMIT: f32 = 2.5;
 /// A speed of the motor at rest that its damper answers with the largest torque [rad/s].
 const SLOWER: f32 = 10.0;
 
-/// Of a joint whose gap is not known, with a motor of some speed [rad/s] where it should be.
+/// Of a joint whose link is not seen, with a motor of some speed [rad/s] where it should be.
 fn estimates(motor_speed: f32) -> Estimates<f32> {
     let mut estimates = Estimates {
-        source: Source::Both,
+        source: Source::MotorOnly(OutputFault::Silent),
         load_torque: Estimate { value: 0.0, variance: 0.0, valid: true },
         ..Estimates::default()
     };

@@ -2,6 +2,7 @@
 
 use host_tests::tolerance::compensation::FIXED_STEPS;
 use reference::drive_train::Stepping;
+use reference::joint::{RelativeState, Start};
 use scenario::controller::ControllerName;
 use scenario::execution::setup;
 use scenario::rig::{ActiveController, Rig, Setup};
@@ -19,8 +20,14 @@ fn fixed_steps_move_the_joint_as_adaptive_ones_do() {
     let case = test.case(seed).expect("a case of the test");
     let spec = on_reference(ControllerName::MotorPid);
     let [fixed, adaptive] = [Stepping::Fixed, Stepping::Adaptive].map(|stepping| {
-        let setup = Setup { stepping, ..setup(&test.file, &case, seed, spec) };
-        let mut controller = ActiveController::rival(spec.controller, case.knowledge(), test.file.bandwidth);
+        // From the middle of the gap, which the bound was measured from.
+        let start = Start::Relative(RelativeState::centred(case.truth.parameters.geometry.planets));
+        let setup = Setup { stepping, start, ..setup(&test.file, &case, seed, spec) };
+        let mut controller = ActiveController::rival(
+            spec.controller,
+            case.knowledge(),
+            case.bandwidth(&test.file).expect("a bandwidth"),
+        );
         let mut set_points = SetPointSource::of_positions(case.motion.clone());
         let moments = Rig::new(&setup).expect("a sound drive train").record(&mut controller, &mut set_points);
         moments.expect("it runs").into_iter().map(|moment| moment.link[0]).collect::<Vec<f64>>()

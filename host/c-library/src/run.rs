@@ -6,6 +6,7 @@ use model_core::gears::Tables;
 use model_core::numbers::digest::{START, chain};
 use model_core::observer::{MAPPED, Observer, Progress, Source};
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
+use model_core::wiring::{WiringCheck, WiringProgress};
 use report::failure::{Failure, Outcome};
 use table_blob::{Blob, Gears};
 
@@ -93,6 +94,38 @@ fn motion(scale: u32, period: u32) -> Motion<f32> {
         speed: speed as f32 * (0.002_010_619_3 * share),
         acceleration: if begun == backwards { -20.106_193 } else { 20.106_193 },
     }
+}
+
+/// The wiring checks of `bindings/c/programs/wiring.c` on the core itself: digest of their torques.
+pub fn wiring_digest(words: &[u64]) -> Outcome<u64> {
+    let broken = |error| Failure::new(format!("the tables: {error:?}"));
+    let blob = Blob::open(words).map_err(broken)?;
+    let (Gears::Three(gears), around) = blob.plant().map_err(broken)? else {
+        return Err(Failure::new("the wiring is checked on a joint of three planets"));
+    };
+    let table = blob.wiring().map_err(broken)?;
+    let mut running = START;
+    for miswiring in 0..4 {
+        let (mut joint, mut check) = (VirtualJoint::new(gears, around), WiringCheck::new(table));
+        let mut torque = 0.0;
+        for _ in 0..200_000 {
+            let mut samples = joint.samples();
+            if let (1, Some(output)) = (miswiring, &mut samples.output) {
+                output.counts = table.counts.output.last - output.counts;
+            } else if miswiring == 2 {
+                samples.motor.counts = table.counts.motor.last - samples.motor.counts;
+            }
+            samples.torque = torque;
+            let progress;
+            (torque, progress) = check.step(&samples, 0.5);
+            joint.advance(if miswiring == 3 { -torque } else { torque }, 0.0);
+            running = chain(running, torque.to_bits().into());
+            if progress != WiringProgress::Running {
+                break;
+            }
+        }
+    }
+    Ok(running)
 }
 
 /// The width probe of `bindings/c/programs/probe.c` on the core itself: digest of torques and widths over so many periods.

@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 use board::target::board::Board;
 use joint_file::JointFile;
 use joint_file::{named, warned};
+use model_core::compensation::design::good_bandwidth;
 use model_core::controller::design::{ControlRequest, NominalPlant};
 use report::failure::{Failure, Outcome};
 use report::folder::{Folder, file_part};
 use table_blob::{VERSION, Wanted, design};
 
 /// What a controller is asked for unless something else is said.
-pub const USUAL: ControlRequest = ControlRequest { bandwidth: 60.0, output_encoder: true };
+pub const USUAL: ControlRequest = ControlRequest { bandwidth: None, output_encoder: true };
 
 /// What is written.
 const FILES: [&str; 3] = ["*_tables.h", "*_tables.c", "*_tables.bin"];
@@ -34,9 +35,9 @@ pub struct Arguments {
     /// Control periods a second, in Hz [default: what the joint file says]
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..))]
     pub rate: Option<u32>,
-    /// Bandwidth of the loop, in rad/s
-    #[arg(long, value_name = "RAD/S", value_parser = bandwidth, default_value_t = USUAL.bandwidth)]
-    pub bandwidth: f64,
+    /// Bandwidth of the loop, in rad/s [default: 60, or as much as the joint allows]
+    #[arg(long, value_name = "RAD/S", value_parser = bandwidth)]
+    pub bandwidth: Option<f64>,
     /// Joint file that observer and compensation are designed for [default: FILE]
     #[arg(long, value_name = "FILE")]
     pub told: Option<PathBuf>,
@@ -107,23 +108,33 @@ pub fn make(
     let plant = plant.then_some((&joint.parameters, &joint.surroundings));
     let told = NominalPlant { joint: &nominal.parameters, surroundings: &nominal.surroundings, request };
     let wanted = Wanted { plant, nominal: told, processor: board.chip().processor() };
-    let words = design(&wanted).map_err(|error| {
+    let words = design(&wanted).and_then(|words| {
+        let bandwidth = match request.bandwidth {
+            Some(asked) => asked,
+            None => good_bandwidth(&nominal.parameters, &nominal.surroundings)?,
+        };
+        Ok((words, bandwidth))
+    });
+    let (words, bandwidth) = words.map_err(|error| {
         Failure::new(error.to_string()).with_help(
             "`joint check` says what follows from the file; `--rate` and `--bandwidth` change what is asked for",
         )
     })?;
     let parts = match plant {
         Some(_) => {
-            format!("plant (sub-steps for {}), observer, width probe where one can be, compensation", board.name())
+            format!(
+                "plant (sub-steps for {}), observer, width probe where one can be, compensation, wiring check",
+                board.name()
+            )
         }
-        None => "observer, width probe where one can be, compensation; no plant".to_owned(),
+        None => "observer, width probe where one can be, compensation, wiring check; no plant".to_owned(),
     };
     let made_from = vec![
         format!("joint {}, told {}", joint.parameters.name, nominal.parameters.name),
         format!(
             "{} control periods a second, bandwidth {} rad/s, {}",
             nominal.surroundings.control_rate,
-            request.bandwidth,
+            bandwidth,
             if request.output_encoder { "both encoders" } else { "motor encoder alone" }
         ),
         parts,

@@ -103,6 +103,24 @@ fn a_width_probe_finds_the_width_bit_for_bit_and_what_was_learnt_goes_on_in_anot
     assert!(lines.contains(&"memory the same".to_owned()), "{lines:?}");
 }
 
+#[test]
+fn a_wiring_check_names_what_is_reversed_bit_for_bit_as_the_core_does() {
+    let tables = designed("q1", 10_000);
+    let bench = Workbench::new(&LIBRARY, &tables).expect("room");
+    let program =
+        bench.compile("gcc", &[&programs::folder().join("wiring.c")], &["-std=c99", "-O2"]).expect("a program");
+    let lines = programs::run(&program, &[]).expect("a run");
+    let expected = [
+        "progress 1, all right",
+        "progress 1, bad: output_direction",
+        "progress 1, bad: motor_direction",
+        "progress 1, bad: torque_direction",
+    ];
+    assert_eq!(lines[..4], expected, "{lines:?}");
+    let digest = run::wiring_digest(&tables.words).expect("a run");
+    assert_eq!(said(&lines, "digest ").expect("a digest"), format!("{digest:016x}"));
+}
+
 /// Set to try more sequences of wrong calls than the short form does.
 const SEQUENCES: &str = "C_SEQUENCES";
 

@@ -66,6 +66,8 @@ const PHASE_HINT: &str = "in rad, within a turn: one number is the phase of plan
 const TURNS_HINT: &str =
     "whole turns of motor and link after which both are back where they were: 29 and 3 are a ratio of 29/3";
 const FRICTION_HINT: &str = "a torque in N m, 0 if there is none";
+const PRESLIDING_HINT: &str = "displacement in mrad at which the dry friction is reached; 0 sticks at once";
+const DRIFT_HINT: &str = "change a second over the value at time 0: 30 % in 60 s are 0.005";
 
 /// All keys, in the order of the documentation.
 pub(crate) const KEYS: &[Key] = &[
@@ -373,6 +375,12 @@ pub(crate) const KEYS: &[Key] = &[
     ),
     key(
         "drive_train",
+        "motor_speed_limit_rad_per_s",
+        Number(Si, Between(1.0, 1e5)),
+        "the motor's top speed; counts that turn faster are taken for a fault of its encoder",
+    ),
+    key(
+        "drive_train",
         "current_lag_ms",
         Number(Milli, Between(0.0, 100.0)),
         "the time constant of the current loop in ms",
@@ -391,12 +399,116 @@ pub(crate) const KEYS: &[Key] = &[
         Number(Si, Between(0.0, 100.0)),
         "from measuring to acting, in control periods",
     ),
+    key(
+        "drive_train",
+        "payload_inertia_share",
+        Number(Si, FromToBelow(0.0, 1.0)),
+        "the part of the link's inertia that hangs on a spring; 40 % is 0.4",
+    ),
+    key(
+        "drive_train",
+        "payload_frequency_Hz",
+        Number(Si, Between(0.1, 1000.0)),
+        "the frequency of that part while the link is held, undamped",
+    ),
+    key(
+        "drive_train",
+        "payload_damping_ratio",
+        Number(Si, FromToBelow(0.0, 1.0)),
+        "of that part while the link is held",
+    ),
+    key("drive_train", "payload_step_time_s", Number(Si, Between(0.0, 1e5)), "when the link's inertia changes"),
+    key(
+        "drive_train",
+        "payload_step_ratio",
+        Number(Si, Between(0.01, 100.0)),
+        "inertia and weight of the link after the change over those before: 3 has gripped, 0.33 has let go",
+    ),
+    key("drive_train", "motor_presliding_mrad", Number(Milli, ZeroOr(1e-3, 1000.0)), PRESLIDING_HINT),
+    key("drive_train", "load_presliding_mrad", Number(Milli, ZeroOr(1e-3, 1000.0)), PRESLIDING_HINT),
+    key(
+        "drive_train",
+        "hysteresis_stiffness_share",
+        Number(Si, FromToBelow(0.0, 1.0)),
+        "the part of the stiffness between carrier and link that slips; 20 % is 0.2",
+    ),
+    key("drive_train", "hysteresis_torque_N_m", Number(Si, TORQUE), "the torque at which that part slips, at the link"),
+    key(
+        "drive_train",
+        "width_once_per_link_turn_ratio",
+        Number(Si, FromToBelow(0.0, 1.0)),
+        "amplitude over the half-backlash, once a turn of the link; 30 % is 0.3",
+    ),
+    key(
+        "drive_train",
+        "width_once_per_motor_turn_ratio",
+        Number(Si, FromToBelow(0.0, 1.0)),
+        "amplitude over the half-backlash, once a turn of the motor; both amplitudes together stay below 1",
+    ),
+    key("drive_train", "friction_drift_ratio_per_s", Number(Si, Between(-0.1, 0.1)), DRIFT_HINT),
+    key("drive_train", "width_drift_ratio_per_s", Number(Si, Between(-0.1, 0.1)), DRIFT_HINT),
+    key(
+        "drive_train",
+        "torque_ripple_ratio",
+        Number(Si, FromToBelow(0.0, 1.0)),
+        "amplitude of the ripple over the torque; 2 % is 0.02",
+    ),
+    key(
+        "drive_train",
+        "torque_ripple_periods_per_turn",
+        Whole(1, 10_000),
+        "six times the pole pairs for a motor with sinusoidal currents",
+    ),
+    key(
+        "drive_train",
+        "torque_resolution_ratio",
+        Number(Si, Between(0.0, 0.5)),
+        "step of the torque command over the motor's limit; 12 bits with sign are 0.0005",
+    ),
+    key(
+        "drive_train",
+        "torque_saturation_ratio",
+        Number(Si, FromToBelow(0.0, 1.0)),
+        "torque that is lost at the motor's limit, over that limit; 10 % is 0.1",
+    ),
+    key(
+        "drive_train",
+        "control_jitter_ratio",
+        Number(Si, Between(0.0, 0.5)),
+        "longest delay of a control period's start over the period; 5 % is 0.05",
+    ),
     section("drive_train", "motor_encoder", "bits, once_per_turn_error_deg, twice_per_turn_error_deg, skew_us"),
     section("drive_train", "output_encoder", "bits, once_per_turn_error_deg, twice_per_turn_error_deg, skew_us"),
     key("encoder", "bits", Whole(8, 32), "the resolution: 14 bits are 16384 counts a turn"),
     key("encoder", "once_per_turn_error_deg", Number(Degrees, Between(0.0, 10.0)), "an amplitude in degrees"),
     key("encoder", "twice_per_turn_error_deg", Number(Degrees, Between(0.0, 10.0)), "an amplitude in degrees"),
     key("encoder", "skew_us", Number(Micro, Between(0.0, 1e5)), "how late the reading is, in us"),
+    key(
+        "encoder",
+        "age_jitter_us",
+        Number(Micro, Between(0.0, 1e5)),
+        "further age of a reading, from 0 to this, which its time does not say",
+    ),
+    key("encoder", "noise_counts", Number(Si, Between(0.0, 1e6)), "standard deviation in counts, before rounding"),
+    key(
+        "encoder",
+        "subdivisional_error_deg",
+        Number(Degrees, Between(0.0, 10.0)),
+        "amplitude in degrees of the error that comes once a period of the scale",
+    ),
+    key(
+        "encoder",
+        "subdivisional_second_error_deg",
+        Number(Degrees, Between(0.0, 10.0)),
+        "amplitude in degrees of the error that comes twice a period of the scale",
+    ),
+    key("encoder", "subdivisional_periods_per_turn", Whole(1, 65_536), "periods of the scale in a turn"),
+    key(
+        "encoder",
+        "missing_frames_share",
+        Number(Si, Between(0.0, 1.0)),
+        "the part of the control periods in which no reading comes; 1 % is 0.01",
+    ),
 ];
 
 /// Whether a section has that name.

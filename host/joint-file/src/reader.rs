@@ -82,6 +82,7 @@ fn read_table(top: &Section<'_>) -> Option<JointFile> {
         warnings: Vec::new(),
         sources: Vec::new(),
     };
+    drive_train::check(&file.parameters, &file.surroundings, top.notes);
     // What is wrong by itself contradicts everything.
     if !top.notes.has_errors() {
         plausible::check(&file, top.notes);

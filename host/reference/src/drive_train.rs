@@ -6,25 +6,41 @@
 //! is held at its value from the angles and speeds at the part's beginning, friction so that it sticks instead of
 //! chattering; the joint itself moves by the reference's own adaptive steps. All randomness comes from one seed.
 //!
+//! Backlash and dry friction that vary take their values once a control period, at its beginning: with the time t, the angles of link and
+//! motor and the amplitudes a and phases p of the two variations, the half-backlash of every mesh is
+//!
+//! ```text
+//! b max(0, 1 + drift t) (1 + a_l sin(theta_l + p_l) + a_m sin(theta_m + p_m))   (W1)
+//! ```
+//!
+//! and both dry frictions are multiplied by max(0, 1 + drift t). Control period k begins at (k + j u_k) T with the period T, the jitter j
+//! and u_k drawn evenly from 0 to 1; the first period begins at 0.
+//!
 //! Losses that grow with the load sit at the sun: dry friction of (1/efficiency - 1) times the torque that the
 //! sun-planet meshes carry while the motor drives, and (1 - efficiency) times it while the load drives.
 
+mod bristles;
 mod current_loop;
 mod disturbance;
 mod encoder;
 mod friction;
 mod joint_model;
 mod parameters;
+mod payload;
+mod random;
 
 use std::f64::consts::TAU;
 
-use ::parameters::JointParameters;
+use ::parameters::{Friction, JointParameters};
+use bristles::Bristles;
 use current_loop::CurrentLoop;
 pub use disturbance::Disturbance;
-use encoder::Encoder;
+use encoder::{Encoder, Place};
 use friction::Shaft;
 pub use joint_model::{JointModel, Stepping};
-pub use parameters::{DriveTrainError, DriveTrainParameters, ErrorPhases};
+pub use parameters::{DriveTrainError, DriveTrainParameters, EffectPhases, ErrorPhases};
+use payload::SwingingPayload;
+use rand_chacha::ChaCha8Rng;
 
 use crate::joint::{Observation, Reference, Start};
 
@@ -65,6 +81,8 @@ pub struct TrueTorques {
     pub gravity: f64,
     /// Sum of the disturbances, braking.
     pub disturbance: f64,
+    /// Spring and damper of the payload, braking.
+    pub payload: f64,
 }
 
 /// A joint with everything around it; `J` is the joint model.
@@ -79,13 +97,29 @@ pub struct DriveTrain<J = Reference> {
     motor_encoder: Encoder,
     output_encoder: Encoder,
     torques: TrueTorques,
+    payload: Option<SwingingPayload>,
+    motor_bristles: Option<Bristles>,
+    load_bristles: Option<Bristles>,
+    /// Dry frictions over those at time zero.
+    friction_scale: f64,
+    /// Half-backlash over the one that the joint was made with or set to.
+    width_scale: f64,
+    /// Inertia and weight of the link over those at time zero.
+    payload_scale: f64,
+    jitter: ChaCha8Rng,
     parts_done: u64,
+    /// Length of a part of time without jitter [s].
     part: f64,
+    /// Start of the present control period and of the next one, beyond those without jitter [s].
+    shifts: [f64; 2],
     delay_parts: u64,
     sun_radius: f64,
     carrier_lever: f64,
     motor_inertia: f64,
+    /// Inertia that the link's friction stops.
     load_inertia: f64,
+    /// Inertia of the link that is not on a spring.
+    rigid_link_inertia: f64,
     compliant: bool,
     stepping: Stepping,
 }
@@ -100,14 +134,16 @@ impl DriveTrain {
         seed: u64,
     ) -> Result<Self, DriveTrainError> {
         parameters.check()?;
-        Self::around(Reference::start(joint, start)?, joint, parameters, disturbances, seed)
+        let hysteresis = parameters.surroundings.hysteresis;
+        let inside = Reference::start(joint, start)?.with_hysteresis(hysteresis.stiffness_share, hysteresis.torque);
+        Self::around(inside, joint, parameters, disturbances, seed)
     }
 }
 
 impl<J: JointModel> DriveTrain<J> {
-    /// A drive train around a joint that is at time zero.
+    /// A drive train around a joint that is at time zero. The hysteresis between carrier and link is the joint's own.
     pub fn around(
-        joint_model: J,
+        mut joint_model: J,
         joint: &JointParameters,
         parameters: DriveTrainParameters,
         disturbances: Vec<Disturbance>,
@@ -122,19 +158,55 @@ impl<J: JointModel> DriveTrain<J> {
         let carrier_inertia = joint.bodies.carrier_inertia_over_radius_squared * joint.geometry.carrier_radius.powi(2)
             + joint.geometry.planets as f64 * joint.bodies.planet_mass * joint.geometry.carrier_radius.powi(2);
         let compliant = joint.compliance.is_some();
+        let payload = SwingingPayload::on_link(
+            &around.payload,
+            joint.link_inertia,
+            observation.link_angle,
+            observation.link_speed,
+        );
+        let rigid_link_inertia = (1.0 - around.payload.inertia_share) * joint.link_inertia;
+        if payload.is_some() {
+            joint_model.set_link_inertia(rigid_link_inertia);
+        }
+        let motor_inertia = joint.rotor_inertia + joint.bodies.sun_equivalent_mass * sun_radius.powi(2);
+        let load_inertia = rigid_link_inertia + if compliant { 0.0 } else { carrier_inertia };
+        let presliding = around.presliding;
+        parameters.check_presliding([motor_inertia, load_inertia], part)?;
+        let phases = &parameters.effect_phases;
         let mut train = Self {
             disturbances,
-            current_loop: CurrentLoop::new(*around, part, seed),
-            motor_encoder: Encoder::new(around.motor_encoder, parameters.motor_error_phases),
-            output_encoder: Encoder::new(around.output_encoder, parameters.output_error_phases),
+            current_loop: CurrentLoop::new(*around, seed),
+            motor_encoder: Encoder::new(
+                around.motor_encoder,
+                parameters.motor_error_phases,
+                phases.motor_subdivision,
+                Place::Motor,
+                seed,
+            ),
+            output_encoder: Encoder::new(
+                around.output_encoder,
+                parameters.output_error_phases,
+                phases.output_subdivision,
+                Place::Output,
+                seed,
+            ),
             torques: TrueTorques::default(),
+            payload,
+            motor_bristles: Bristles::new(&around.motor_friction, presliding.motor, motor_inertia),
+            load_bristles: Bristles::new(&around.load_friction, presliding.load, load_inertia),
+            friction_scale: 1.0,
+            width_scale: 1.0,
+            payload_scale: 1.0,
+            jitter: random::stream(seed, random::CONTROL_JITTER),
             parts_done: 0,
             part,
+            shifts: [0.0; 2],
             delay_parts: (around.delay * f64::from(parameters.parts_per_period)).round() as u64,
             sun_radius,
             carrier_lever,
-            motor_inertia: joint.rotor_inertia + joint.bodies.sun_equivalent_mass * sun_radius.powi(2),
-            load_inertia: joint.link_inertia + if compliant { 0.0 } else { carrier_inertia },
+            motor_inertia,
+            load_inertia,
+            rigid_link_inertia,
             compliant,
             stepping: Stepping::default(),
             parameters,
@@ -153,17 +225,69 @@ impl<J: JointModel> DriveTrain<J> {
     /// Moves on by one control period under a torque command [N m].
     pub fn advance(&mut self, command: f64) -> Result<(), DriveTrainError> {
         self.current_loop.command(command, self.parts_done + self.delay_parts);
-        for _ in 0..self.parameters.parts_per_period {
-            self.torques = self.torques_now();
-            let drive = self.torques.air_gap + self.torques.cogging - self.torques.motor_friction;
-            let load = self.torques.load_friction + self.torques.gravity + self.torques.disturbance;
+        self.begin_period();
+        for part in 0..self.parameters.parts_per_period {
+            let torques = self.torques_now(part);
+            self.torques = torques;
+            let drive = torques.air_gap + torques.cogging - torques.motor_friction;
+            let load = torques.load_friction + torques.gravity + torques.disturbance + torques.payload;
             self.parts_done += 1;
-            let end = self.parts_done as f64 * self.part;
+            let end = self.moment(self.parts_done as f64, f64::from(part + 1));
             self.joint_model.advance(end, drive, load, self.stepping)?;
             self.joint = self.joint_model.observe();
             self.note();
         }
+        self.motor_encoder.begin_reading();
+        self.output_encoder.begin_reading();
         Ok(())
+    }
+
+    /// Draws where the next period begins and takes what varies: backlash, friction, and the link's inertia.
+    fn begin_period(&mut self) {
+        let around = &self.parameters.surroundings;
+        let period = self.part * f64::from(self.parameters.parts_per_period);
+        if around.control_jitter_ratio > 0.0 {
+            let lateness = around.control_jitter_ratio * random::uniform(&mut self.jitter);
+            self.shifts = [self.shifts[1], lateness * period];
+        }
+        let time = self.joint.time;
+        self.friction_scale = (1.0 + around.drift.friction * time).max(0.0);
+        let phases = &self.parameters.effect_phases.width;
+        let width = around.width;
+        let around_the_turn = 1.0
+            + width.per_link_turn * (self.joint.link_angle + phases[0]).sin()
+            + width.per_motor_turn * (self.joint.motor_angle + phases[1]).sin();
+        let scale = (1.0 + around.drift.width * time).max(0.0) * around_the_turn;
+        if scale != self.width_scale {
+            self.width_scale = scale;
+            self.joint_model.scale_half_backlash(scale);
+        }
+        let step = around.payload_step;
+        if step.ratio != self.payload_scale && step.ratio != 1.0 && time >= step.time {
+            self.payload_scale = step.ratio;
+            let more = (step.ratio - 1.0) * self.rigid_link_inertia;
+            self.load_inertia += more;
+            self.joint_model.set_link_inertia(self.rigid_link_inertia + more);
+            if let Some(payload) = &mut self.payload {
+                payload.scale(step.ratio);
+            }
+        }
+    }
+
+    /// Time after so many parts, of which this many belong to the present control period [s].
+    fn moment(&self, parts: f64, of_period: f64) -> f64 {
+        let [begin, end] = self.shifts;
+        parts * self.part + (begin + (end - begin) * of_period / f64::from(self.parameters.parts_per_period))
+    }
+
+    /// Delay of the present control period's start, as the jitter of the control loop has it [s].
+    pub fn lateness(&self) -> f64 {
+        self.shifts[1]
+    }
+
+    /// Half-backlash over the one that the joint was made with or set to, as it varies around the turn and over time [-].
+    pub fn width_scale(&self) -> f64 {
+        self.width_scale
     }
 
     /// What a controller is given now.
@@ -190,12 +314,16 @@ impl<J: JointModel> DriveTrain<J> {
         self.torques
     }
 
-    fn torques_now(&mut self) -> TrueTorques {
+    /// Torques of a part of the present control period.
+    fn torques_now(&mut self, part_of_period: u32) -> TrueTorques {
+        let parts = f64::from(self.parameters.parts_per_period);
+        let part = self.part + (self.shifts[1] - self.shifts[0]) / parts;
+        let middle_of_part = self.moment(self.parts_done as f64 + 0.5, f64::from(part_of_period) + 0.5);
         let joint = &self.joint;
         let around = &self.parameters.surroundings;
-        let air_gap = self.current_loop.torque(self.parts_done);
-        let cogging_angle = f64::from(around.cogging_periods_per_turn)
-            * (joint.motor_angle + 0.5 * self.part * joint.motor_speed).rem_euclid(TAU);
+        let motor_angle = joint.motor_angle + 0.5 * part * joint.motor_speed;
+        let air_gap = self.current_loop.torque(self.parts_done, part, motor_angle);
+        let cogging_angle = f64::from(around.cogging_periods_per_turn) * motor_angle.rem_euclid(TAU);
         let cogging = around.cogging_torque * cogging_angle.sin();
         let transmitted = joint.sun_force() * self.sun_radius;
         let driving = transmitted * joint.motor_speed >= 0.0;
@@ -205,13 +333,14 @@ impl<J: JointModel> DriveTrain<J> {
             speed: joint.motor_speed,
             driving_torque: air_gap + cogging - transmitted,
             inertia: self.motor_inertia,
-            part: self.part,
+            part,
         };
 
-        let gravity = around.gravity_torque * joint.link_angle.sin();
+        let gravity = self.payload_scale * around.gravity_torque * joint.link_angle.sin();
         // The middle of the part stands for the whole of it.
-        let middle = (self.parts_done as f64 + 0.5) * self.part;
-        let disturbance = self.disturbances.iter().map(|disturbance| disturbance.torque(middle)).sum::<f64>();
+        let disturbance = self.disturbances.iter().map(|disturbance| disturbance.torque(middle_of_part)).sum::<f64>();
+        let payload =
+            self.payload.as_mut().map_or(0.0, |payload| payload.advance(joint.link_angle, joint.link_speed, part));
         let from_gears = if self.compliant {
             joint.wind_up_torque
         } else {
@@ -219,17 +348,23 @@ impl<J: JointModel> DriveTrain<J> {
         };
         let load = Shaft {
             speed: joint.link_speed,
-            driving_torque: from_gears - gravity - disturbance,
+            driving_torque: from_gears - gravity - disturbance - payload,
             inertia: self.load_inertia,
-            part: self.part,
+            part,
+        };
+        let drifted = |of: &Friction| Friction { coulomb: self.friction_scale * of.coulomb, ..*of };
+        let friction = |shaft: &Shaft, of: &Friction, bristles: &mut Option<Bristles>, extra: f64| match bristles {
+            Some(bristles) => bristles.friction(shaft, &drifted(of), extra),
+            None => shaft.friction(&drifted(of), extra),
         };
         TrueTorques {
             air_gap,
             cogging,
-            motor_friction: motor.friction(&around.motor_friction, loss),
-            load_friction: load.friction(&around.load_friction, 0.0),
+            motor_friction: friction(&motor, &around.motor_friction, &mut self.motor_bristles, loss),
+            load_friction: friction(&load, &around.load_friction, &mut self.load_bristles, 0.0),
             gravity,
             disturbance,
+            payload,
         }
     }
 

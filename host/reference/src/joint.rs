@@ -3,11 +3,13 @@
 //! core, whose parameters it reads as plain data; eq. 13's smoothed dead zone is refused.
 //!
 //! `reference` moves the joint by `equations`, with parameters from `assembly` and mesh forces from `mesh_law`; `start` has its
-//! initial states, `reading` computes an `observation`, `fixed_step` is a faster integration, `wear` changes the teeth.
+//! initial states, `reading` computes an `observation`, `fixed_step` is a faster integration, `hysteresis` is a spring that slips,
+//! `wear` changes teeth and link.
 
 mod assembly;
 mod equations;
 mod fixed_step;
+mod hysteresis;
 mod mesh_law;
 mod observation;
 mod reading;

@@ -18,7 +18,7 @@ Examples:
   joint replay my_log.csv my_joint.toml --out results                  what does the observer make of a recorded test?
   joint replay drive.csv my_joint.toml --map moteus --set control_rate_Hz=1000
 
-Exit code: 0 if a run is repeated, or of a log that is none; 1 if a run is not repeated; 2 for bad input, 130 after Ctrl-C."
+Exit code: 0 if a run is repeated, or of a log that is none; 1 if a run is not repeated; 2 for bad input or a wiring that is not the joint file's, 130 after Ctrl-C."
 )]
 pub struct ReplayArguments {
     /// A run's log, or a recorded test

@@ -2,7 +2,8 @@
 //! log of `joint hil TEST` says itself what its observer was told, and whether its run is repeated in every bit is checked;
 //! of any other log the estimates are shown.
 //!
-//! `arguments` is the command line, `samples` makes an observer's samples of columns, `pass` runs the observer over them,
+//! `arguments` is the command line, `samples` makes an observer's samples of columns, `wiring` judges what the log
+//! contradicts, `pass` runs the observer over them,
 //! `recorded` is what a run has said of itself, `history` writes estimates as CSV and MCAP, `record` is the JSON, `page` and
 //! `pictures` show it.
 
@@ -16,6 +17,7 @@ mod recorded;
 mod samples;
 #[cfg(test)]
 mod schema;
+mod wiring;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -100,7 +102,8 @@ pub fn run(arguments: &ReplayArguments, progress: &Progress) -> Outcome<String> 
     }
     let learnt = Content::of(&observer.save(), &loaded).map_or_else(|_| Vec::new(), Content::into_values);
     let repeated = agreement.map(recorded::Agreement::finish);
-    let record = ReplayRecord::of(&name, &loaded, &samples, &pass, learnt, repeated);
+    let wiring = wiring::judge(&loaded.file.parameters, &settings, &samples)?;
+    let record = ReplayRecord::of(&name, &loaded, &samples, &pass, learnt, repeated, wiring);
 
     folder.make()?;
     let document = page::document(&record, &loaded.text, pictures::all(&pass, &record));
@@ -108,6 +111,7 @@ pub fn run(arguments: &ReplayArguments, progress: &Progress) -> Outcome<String> 
     let json = output::json("replay", &record)?;
     folder.write_text(RECORD, &json)?;
     let every = arguments.every.map_or_else(|| samples.usual_thinning(), |every| every.get().into());
+    let remarks_of_run = remarks.contains_key(samples::RUN);
     let remarks: BTreeMap<String, String> = [("log", name.clone()), ("joint", record.joint.clone())]
         .into_iter()
         .map(|(key, value)| (key.to_owned(), value))
@@ -121,7 +125,14 @@ pub fn run(arguments: &ReplayArguments, progress: &Progress) -> Outcome<String> 
     progress.clear();
     let text = format!("{}\nreport: {}\n", terminal(&document), folder.file(REPORT).display());
     match record.repeats.as_ref().filter(|repeats| !repeats.every_bit) {
-        None => Ok(text),
+        None if remarks_of_run => Ok(text),
+        None => match wiring::refuse(&record.wiring) {
+            Ok(()) => Ok(text),
+            Err(failure) => {
+                output::print(&text)?;
+                Err(failure)
+            }
+        },
         Some(repeats) => {
             output::print(&text)?;
             Err(Failure::check_failed(repeats.sentence())

@@ -27,6 +27,7 @@ pub fn document(record: &ReplayRecord, file: &str, figures: Vec<Figure>) -> Docu
     if let Some(difference) = repeats.as_ref().and_then(|repeats| repeats.first_difference.as_ref()) {
         blocks.push(differences(difference));
     }
+    blocks.push(section_everywhere("Wiring", vec![wiring(record)]));
     blocks.push(section_everywhere("What the estimates stand on", standing(record)));
     blocks.push(section_bare("What was learnt", findings(&record.learnt, file)));
     blocks.push(section("The estimates", figures.into_iter().map(|figure| picture(figure, Text::default())).collect()));
@@ -41,6 +42,29 @@ pub fn document(record: &ReplayRecord, file: &str, figures: Vec<Figure>) -> Docu
         footer: text("joint ") + VERSION,
         ..Document::default()
     }
+}
+
+/// Verdicts on the wiring; those that are right in one row.
+fn wiring(record: &ReplayRecord) -> Block {
+    let of = |verdict: &str| {
+        let items = record.wiring.iter().filter(|finding| finding.verdict == verdict);
+        items.map(|finding| finding.item.replace('_', " ")).collect::<Vec<_>>().join(", ")
+    };
+    let bad = record.wiring.iter().filter(|finding| finding.help.is_some()).map(|finding| {
+        let found = number(finding.found.unwrap_or_default());
+        row([
+            text(finding.verdict.as_str()),
+            text(finding.item.replace('_', " ")),
+            found,
+            text(finding.help.clone().unwrap_or_default()),
+        ])
+    });
+    let rest = ["right", "not_seen"]
+        .into_iter()
+        .filter(|verdict| !of(verdict).is_empty())
+        .map(|verdict| row([text(verdict.replace('_', " ")), text(of(verdict)), text(""), text("")]));
+    let columns = vec![words("verdict"), words("item"), numbers("found"), notes("what to do")];
+    table(columns, bad.chain(rest).collect())
 }
 
 fn standing(record: &ReplayRecord) -> Vec<Block> {

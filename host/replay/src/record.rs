@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::pass::{Pass, SourceChange};
 use crate::samples::ReplaySamples;
+use crate::wiring::WiringFinding;
 use identify::findings::Finding;
 use joint_file::named::Loaded;
 use report::provenance;
@@ -44,6 +45,8 @@ pub struct ReplayRecord {
     pub sources_left_out: usize,
     /// Control periods with a notice about their samples, by its name.
     pub notices: std::collections::BTreeMap<String, usize>,
+    /// Whether signs, counts, ratio, torque, rate and clock are those of the joint file.
+    pub wiring: Vec<WiringFinding>,
     /// What was learnt at the end.
     pub learnt: Vec<Finding>,
 }
@@ -99,6 +102,7 @@ impl ReplayRecord {
         pass: &Pass,
         learnt: Vec<Finding>,
         repeats: Option<Repeats>,
+        wiring: Vec<WiringFinding>,
     ) -> Self {
         let percent = |count: usize| 100.0 * count as f64 / samples.len().max(1) as f64;
         Self {
@@ -116,6 +120,7 @@ impl ReplayRecord {
             sources: pass.sources.clone(),
             sources_left_out: pass.sources_left_out,
             notices: pass.notices.iter().map(|(name, count)| ((*name).to_owned(), *count)).collect(),
+            wiring,
             learnt,
         }
     }

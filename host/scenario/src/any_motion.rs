@@ -1,13 +1,13 @@
-//! The profile `any`: a motion that each seed draws, and in many of them a load on the link, both together within the
+//! The profiles `any` and `real`. `any`: a motion that each seed draws, and in many of them a load on the link, both together within the
 //! motor's torque. What is drawn depends on the seed and the true joint only, so that any one of ten thousand is run
-//! again by its number.
+//! again by its number. `real`: one of seven motions that joints of robots make, its size drawn likewise.
 
 use std::f64::consts::TAU;
 
 use joint_file::JointFile;
 use reference::closed_loop::rivals::Knowledge;
 
-use super::file::{MotionProfile, ProfileLoad, Trajectory, Wave};
+use super::file::{MotionProfile, ProfileLoad, RealMotion, STEPS, Trajectory, Wave};
 use super::random::{NumberOrRange, RandomStream};
 
 /// Part of what the motor can give that motion and load may take together. The rest is the controllers', for their
@@ -21,6 +21,8 @@ const FREQUENCY: [f64; 2] = [0.1, 3.0];
 const LOAD_FREQUENCY: [f64; 2] = [0.3, 2.0];
 /// Durations of a move [s], from steps to moves that are no shorter than those of an arm.
 const MOVE: [f64; 2] = [0.04, 1.0];
+/// Durations of a move of a real joint [s].
+const REAL_MOVE: [f64; 2] = [0.1, 0.6];
 /// Shortest rests between moves [s].
 const REST: NumberOrRange = NumberOrRange::Between(0.2, 1.0);
 /// A slow motion goes no farther than this [rad].
@@ -67,12 +69,52 @@ pub fn any_motion(joint: &Knowledge, truth: &JointFile, seed: u64) -> MotionProf
     MotionProfile { trajectory, load: if loaded { load } else { ProfileLoad::None }, ..usual }
 }
 
+/// One of the motions of real joints for a seed, at most as large as the motor can follow with the heaviest payload.
+pub fn real_motion(motion: Option<RealMotion>, joint: &Knowledge, truth: &JointFile, seed: u64) -> MotionProfile {
+    let mut stream = RandomStream::new(seed, "real motion");
+    let room = (TAKEN * torque_left(joint, truth)).max(0.0);
+    let heavier = truth.surroundings.payload_step.ratio.max(1.0) - 1.0;
+    let inertia = joint.total_inertia * joint.ratio * joint.ratio + heavier * truth.parameters.link_inertia;
+    let acceleration = SHARE.draw(&mut stream) * room / inertia;
+    // Drawn for every motion, so that the draws of one do not depend on which one it is.
+    let duration = evenly_in_logarithm(REAL_MOVE, &mut stream);
+    let rest = REST.draw(&mut stream);
+    let load = (SHARE.draw(&mut stream) * HARDEST_LOAD * truth.parameters.rated_output_torque).min(room);
+    let of_sine = |frequency: f64, most: f64| (acceleration / (TAU * frequency).powi(2)).min(most);
+    let (trajectory, load) = match motion.unwrap_or(RealMotion::of_seed(seed)) {
+        RealMotion::Sine => (Trajectory::Sine(of_sine(1.0, FARTHEST), 1.0), ProfileLoad::None),
+        RealMotion::SlowSine => (Trajectory::Sine(of_sine(0.15, FARTHEST), 0.15), ProfileLoad::None),
+        RealMotion::Random => (Trajectory::Random(of_sine(2.0, 0.5 * FARTHEST) / FIVE_SINES, 2.0), ProfileLoad::None),
+        RealMotion::Moves => {
+            let height = (acceleration * duration * duration / LEAST_JERK).min(FARTHEST);
+            (Trajectory::Steps(height, duration, rest), ProfileLoad::None)
+        }
+        RealMotion::DisturbedHold => {
+            let wave = ProfileLoad::Wave(Wave::Walk, Some(break_away(joint, truth) + load), 1.0);
+            (Trajectory::Hold(0.0), wave)
+        }
+        RealMotion::Walking => {
+            // What the foot takes of the torque is not there for the swing; the largest acceleration is 2 of the first harmonic's.
+            let left = 0.5 * (acceleration - load / inertia).max(0.1 * acceleration);
+            let amplitude = (1.5 * left / (TAU * STEPS).powi(2)).min(FARTHEST);
+            (Trajectory::Walking(amplitude, STEPS), ProfileLoad::Stance(Some(load), STEPS))
+        }
+        RealMotion::Rest => (Trajectory::Hold(0.0), ProfileLoad::None),
+    };
+    MotionProfile { trajectory, load, ..MotionProfile::of_kind("real") }
+}
+
 /// What is left of the motor's torque, at the link, for acceleration and load [N m].
 pub(super) fn torque_left(joint: &Knowledge, truth: &JointFile) -> f64 {
     let around = &truth.surroundings;
-    let motor = around.torque_limit * (1.0 + around.torque_constant_error_ratio.min(0.0));
+    let errors = &around.torque_errors;
+    let motor = around.torque_limit
+        * (1.0 + around.torque_constant_error_ratio.min(0.0))
+        * (1.0 - errors.saturation_ratio)
+        * (1.0 - errors.ripple_ratio);
     let at_motor = motor - joint.motor_friction - around.cogging_torque;
-    around.efficiency * joint.ratio * at_motor - joint.gravity.abs() - break_away(joint, truth)
+    let weight = around.payload_step.ratio.max(1.0) * joint.gravity.abs();
+    around.efficiency * joint.ratio * at_motor - weight - break_away(joint, truth)
 }
 
 /// Dry friction of the link at rest [N m].

@@ -7,7 +7,9 @@ use std::sync::Arc;
 
 use joint_file::{JointFile, Problem, Severity};
 use model_core::compensation::CompensationTables;
-use model_core::compensation::design::{CompensationSettings, compensation_settings, design_compensation};
+use model_core::compensation::design::{
+    CompensationSettings, compensation_settings, design_compensation, good_bandwidth,
+};
 use model_core::observer::design::{design_observer, design_usual_probe, observer_settings};
 use model_core::observer::{Memory, ObserverTables, ProbeTable};
 use parameters::{JointParameters, Surroundings};
@@ -15,9 +17,10 @@ use reference::closed_loop::rivals::Knowledge;
 use reference::closed_loop::{Profile as Standard, SharedProfile};
 use reference::drive_train::{Disturbance, DriveTrainParameters};
 
-use super::any_motion::any_motion;
+use super::any_motion::{any_motion, real_motion};
 use super::controller_log::ObserverOrigin;
 use super::disturbances::disturbances;
+use super::encoder_zeros::EncoderZeros;
 use super::file::{Change, MotionProfile, NewValue, TestFile, Trajectory};
 use super::plant::half_backlash;
 use super::random::{NumberOrRange, RandomStream};
@@ -37,6 +40,8 @@ pub struct Case {
     pub nominal_surroundings: Surroundings,
     /// Guessed over true half-backlash.
     pub width_guess: f64,
+    /// Where the zeros of the encoders lie.
+    pub zeros: EncoderZeros,
     /// Where the link shall be.
     pub motion: SharedProfile,
     /// Disturbance torques on the link.
@@ -100,12 +105,16 @@ impl Case {
         let train = train(&truth.surroundings, seed);
         let profile = match file.profile.trajectory {
             Trajectory::Any => any_motion(&Knowledge::of(&truth.parameters, &train, width_guess), &truth, seed),
+            Trajectory::Real(motion) => {
+                real_motion(motion, &Knowledge::of(&truth.parameters, &train, width_guess), &truth, seed)
+            }
             _ => file.profile.clone(),
         };
-        if matches!(file.profile.trajectory, Trajectory::Any) {
+        if matches!(file.profile.trajectory, Trajectory::Any | Trajectory::Real(_)) {
             drawn.extend(profile.numbers().into_iter().map(|(name, value)| (name.to_owned(), value)));
         }
         Ok(Self {
+            zeros: EncoderZeros::draw(seed),
             nominal,
             nominal_surroundings: known.surroundings,
             train,
@@ -178,20 +187,30 @@ impl Case {
         if !file.output_encoder {
             settings.output_encoder = None;
         }
-        let refused = |what: &str, error: &dyn std::fmt::Display| {
-            Failure::new(format!("no {what} can be designed for joint `{}`: {error}", self.nominal.name))
-        };
-        let observer = design_observer(&self.nominal, &settings).map_err(|error| refused("observer", &error))?;
-        let compensation = design_compensation(&self.nominal, &self.settings_of_law(file))
-            .map_err(|error| refused("compensation", &error))?;
-        let probe = design_usual_probe(&self.nominal, &settings).map_err(|error| refused("width probe", &error))?;
+        let observer = design_observer(&self.nominal, &settings).map_err(|error| self.refused("observer", &error))?;
+        let law = self.settings_of_law(file, self.bandwidth(file)?);
+        let compensation =
+            design_compensation(&self.nominal, &law).map_err(|error| self.refused("compensation", &error))?;
+        let probe =
+            design_usual_probe(&self.nominal, &settings).map_err(|error| self.refused("width probe", &error))?;
         Ok(Designed { observer, compensation, probe, ticks: settings.clock_rate / settings.control_rate })
     }
 
     /// What a compensation is designed to, as a file asks for it.
-    pub fn settings_of_law(&self, file: &TestFile) -> CompensationSettings {
-        let usual = compensation_settings(&self.nominal_surroundings, file.bandwidth);
+    pub fn settings_of_law(&self, file: &TestFile, bandwidth: f64) -> CompensationSettings {
+        let usual = compensation_settings(&self.nominal_surroundings, bandwidth);
         CompensationSettings { peak_torque: file.peak_torque, ..usual }
+    }
+
+    /// Bandwidth of all controllers of a test [rad/s]: what its file asks for, or what is good for the nominal joint.
+    pub fn bandwidth(&self, file: &TestFile) -> Outcome<f64> {
+        let good = || good_bandwidth(&self.nominal, &self.nominal_surroundings);
+        file.bandwidth.map_or_else(good, Ok).map_err(|error| self.refused("compensation", &error))
+    }
+
+    /// Why nothing can be designed for the nominal joint.
+    fn refused(&self, what: &str, error: &dyn std::fmt::Display) -> Failure {
+        Failure::new(format!("no {what} can be designed for joint `{}`: {error}", self.nominal.name))
     }
 }
 
@@ -229,29 +248,44 @@ fn texts(file: &TestFile, text: &str, draw: &mut Draw<'_>) -> Result<[String; 2]
     Ok([known, truth])
 }
 
+/// Applies changes to the text of a joint file. Keys may need one another, so the joint is read once all changes are made; only if it
+/// cannot be read is the first change found with which it cannot.
 fn apply(text: &mut String, changes: &[Change], section: &str, draw: &mut Draw<'_>) -> Result<(), Problem> {
+    let before = text.clone();
     for change in changes {
-        let name = format!("{section}.{}", change.key);
-        let value = match &change.value {
-            NewValue::Text(text) => text.clone(),
-            NewValue::Number(quantity) => typed(draw(&name, *quantity), *quantity),
-            NewValue::Times(quantity) => {
-                let stated = joint_file::value(text, &change.key).ok().flatten();
-                let was: f64 = stated.and_then(|typed| typed.replace('_', "").parse().ok()).ok_or_else(|| {
-                    let message = format!("the joint file does not state `{}` as one number", change.key);
-                    problem(change.span.clone(), message, "give the new value itself, in place of { times = ... }")
-                })?;
-                (was * draw(&name, *quantity)).to_string()
-            }
-        };
-        *text = joint_file::change(text, &change.key, &value)
-            .map_err(|refused| problem(change.span.clone(), refused.message, refused.help))?;
-        if let Err(problems) = joint_file::read(text) {
-            let first = problems.into_iter().find(|problem| problem.severity == Severity::Error);
-            let (message, help) = first.map_or_else(Default::default, |first| (first.message, first.help));
-            return Err(problem(change.span.clone(), format!("the joint would be none: {message}"), help));
-        }
+        apply_one(text, change, section, draw)?;
     }
+    if joint_file::read(text).is_ok() {
+        return Ok(());
+    }
+    *text = before;
+    let mut last = None;
+    for change in changes {
+        apply_one(text, change, section, draw)?;
+        let problems = joint_file::read(text).err();
+        let first = problems.and_then(|list| list.into_iter().find(|problem| problem.severity == Severity::Error));
+        // What a later change mends is no problem of this one.
+        last = first.map(|first| last.take().unwrap_or((change.span.clone(), first.message, first.help)));
+    }
+    last.map_or(Ok(()), |(span, message, help)| Err(problem(span, format!("the joint would be none: {message}"), help)))
+}
+
+fn apply_one(text: &mut String, change: &Change, section: &str, draw: &mut Draw<'_>) -> Result<(), Problem> {
+    let name = format!("{section}.{}", change.key);
+    let value = match &change.value {
+        NewValue::Text(text) => text.clone(),
+        NewValue::Number(quantity) => typed(draw(&name, *quantity), *quantity),
+        NewValue::Times(quantity) => {
+            let stated = joint_file::value(text, &change.key).ok().flatten();
+            let was: f64 = stated.and_then(|typed| typed.replace('_', "").parse().ok()).ok_or_else(|| {
+                let message = format!("the joint file does not state `{}` as one number", change.key);
+                problem(change.span.clone(), message, "give the new value itself, in place of { times = ... }")
+            })?;
+            (was * draw(&name, *quantity)).to_string()
+        }
+    };
+    *text = joint_file::change(text, &change.key, &value)
+        .map_err(|refused| problem(change.span.clone(), refused.message, refused.help))?;
     Ok(())
 }
 
@@ -288,17 +322,20 @@ fn trajectory(profile: &MotionProfile, recorded: Option<&RecordedMotion>, seed: 
         (Trajectory::Steps(height, duration, rest), _) => {
             Arc::new(Standard::Steps { height: *height, duration: *duration, rest: *rest, seed })
         }
+        (Trajectory::Walking(amplitude, frequency), _) => {
+            Arc::new(Standard::Walking { amplitude: *amplitude, frequency: *frequency })
+        }
         (Trajectory::Hold(angle), _) => Arc::new(Standard::Hold(*angle)),
-        // A recording has been read, and any motion is drawn before it comes here.
-        (Trajectory::File(_) | Trajectory::Any, None) => Arc::new(Standard::Hold(0.0)),
+        // A recording has been read, and a motion of a seed is drawn before it comes here.
+        (Trajectory::File(_) | Trajectory::Any | Trajectory::Real(_), None) => Arc::new(Standard::Hold(0.0)),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::Case;
-    use crate::any_motion::{TAKEN, any_motion, break_away, torque_left};
-    use crate::file::{self, ProfileLoad, Trajectory};
+    use crate::any_motion::{TAKEN, any_motion, break_away, real_motion, torque_left};
+    use crate::file::{self, ProfileLoad, RealMotion, Trajectory};
     use reference::closed_loop::rivals::Knowledge;
 
     /// A hundred motions with their loads of the preset Q1: each seed its own, all of them within the motor's torque.
@@ -339,5 +376,42 @@ mod tests {
             before = numbers;
         }
         assert!(kinds.iter().all(|count| *count >= 10), "{kinds:?}");
+    }
+
+    #[test]
+    fn seven_seeds_have_the_seven_real_motions_within_the_torque() {
+        let text = joint_file::preset("q1").expect("a preset");
+        let light = "known.gravity_torque_N_m = 2\nplant.payload_step_ratio = 3";
+        let test = file::read(&format!("profile = \"real\"\n{light}")).expect("a test file");
+        for first in [1, 8, 700] {
+            let mut kinds = Vec::new();
+            for seed in first..first + 7 {
+                let case = Case::new(&test, text, seed, None).expect("a case");
+                let joint = Knowledge::of(&case.truth.parameters, &case.train, case.width_guess);
+                let profile = real_motion(None, &joint, &case.truth, seed);
+                kinds.push(RealMotion::of_seed(seed));
+                let inertia = joint.total_inertia * 36.0 + 2.0 * case.truth.parameters.link_inertia;
+                let times = (1000..8000).map(|moment| f64::from(moment) * 1e-3);
+                let asked = times.map(|time| inertia * case.motion.at(time).acceleration.abs()).fold(0.0, f64::max);
+                let load = match profile.load {
+                    ProfileLoad::Stance(Some(torque), _) => torque,
+                    _ => 0.0,
+                };
+                let room = TAKEN * torque_left(&joint, &case.truth);
+                assert!(asked + load <= room * (1.0 + 1e-9), "seed {seed}, {profile:?}: {asked} + {load} of {room}");
+                assert_eq!(asked + load > 0.0, !matches!(profile.trajectory, Trajectory::Hold(_)), "seed {seed}");
+            }
+            assert!(RealMotion::ALL.iter().all(|motion| kinds.contains(motion)), "{kinds:?}");
+        }
+    }
+
+    #[test]
+    fn a_file_can_fix_the_real_motion() {
+        let text = joint_file::preset("q1").expect("a preset");
+        let test = file::read("[profile]\nkind = \"real\"\nmotion = \"slow_sine\"").expect("a test file");
+        for seed in 1..8 {
+            let case = Case::new(&test, text, seed, None).expect("a case");
+            assert_eq!(case.drawn.get("profile.sine.frequency_Hz"), Some(&0.15), "seed {seed}");
+        }
     }
 }

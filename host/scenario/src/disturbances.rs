@@ -17,6 +17,15 @@ const BEFORE: f64 = 0.1;
 /// A foot is set down, or lifted, within this time [s].
 const STEP_OF_A_FOOT: f64 = 0.02;
 
+/// Load of a foot over the rated torque: 3 N m for Q1. Assumed.
+const STANCE: f64 = 0.25;
+
+/// Share of a step in which the foot is on the ground: that of walking people.
+const ON_THE_GROUND: f64 = 0.6;
+
+/// Length of the blow as the foot touches down, of half its load [s]. Assumed.
+const TOUCH_DOWN: f64 = 0.01;
+
 /// All torques on the link in a run of a file, under the load of its profile.
 pub fn disturbances(
     file: &TestFile,
@@ -42,6 +51,19 @@ pub fn disturbances(
                     Wave::Walk => Disturbance::Ramp { start, duration: STEP_OF_A_FOOT, torque },
                     _ => Disturbance::Step { start, torque },
                 }
+            }));
+        }
+        ProfileLoad::Stance(torque, frequency) => {
+            let torque = torque.unwrap_or(STANCE * rated);
+            let steps = (file.duration * frequency) as usize;
+            list.extend((0..=steps).flat_map(|step| {
+                let start = step as f64 / frequency;
+                let end = start + ON_THE_GROUND / frequency;
+                [
+                    Disturbance::Pulse { start, duration: TOUCH_DOWN, torque: 0.5 * torque },
+                    Disturbance::Ramp { start, duration: STEP_OF_A_FOOT, torque },
+                    Disturbance::Ramp { start: end, duration: STEP_OF_A_FOOT, torque: -torque },
+                ]
             }));
         }
         ProfileLoad::Kick(torque, length) => {

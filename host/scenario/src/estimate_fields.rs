@@ -201,6 +201,7 @@ fn source(source: Source) -> (&'static str, &'static str) {
             "motor_only",
             match fault {
                 OutputFault::Absent => "output_absent",
+                OutputFault::Unheard => "output_unheard",
                 OutputFault::Silent => "output_silent",
                 OutputFault::Frozen => "output_frozen",
                 OutputFault::OutOfRange => "output_out_of_range",

@@ -9,11 +9,14 @@ use model_core::observer::design::observer_settings;
 use super::case::{Case, Designed};
 use super::controller::ControllerName;
 use super::file::TestFile;
-use super::plant::PlantName;
+use super::plant::{PlantName, half_backlash};
 use super::port::{ControllerPort, HostPort, Translator};
+use super::random::RandomStream;
 use super::rig::{ActiveController, Rig, RunError, Setup, TrueStateCompensation};
 use super::run_history::RunHistory;
 use super::set_point_source::SetPointSource;
+use parameters::JointParameters;
+use reference::joint::{RelativeState, Start};
 use report::failure::{Failure, Outcome};
 use report::interruption;
 
@@ -27,6 +30,9 @@ pub struct RunSpec {
     /// On teeth without a gap and without faults: what an impedance's deviation is measured from.
     pub without_gap: bool,
 }
+
+/// Share of the runs that start on a flank; the others start in the open gap.
+const ON_FLANK: f64 = 0.33;
 
 /// Periods between checks of the clock and of Ctrl-C.
 const PERIODS_BETWEEN_CHECKS: u64 = 500;
@@ -63,7 +69,7 @@ pub fn execute_with(
         (None, Some(tables)) => {
             ActiveController::TrueState(Box::new(TrueStateCompensation::new(tables, &case.truth.parameters)))
         }
-        (None, None) => ActiveController::rival(spec.controller, case.knowledge(), file.bandwidth),
+        (None, None) => ActiveController::rival(spec.controller, case.knowledge(), case.bandwidth(file)?),
     };
     let run = RunContext { file, case, spec, designed: designed.as_ref(), deadline };
     if file.from_memory && spec.controller.is_compensation() {
@@ -80,10 +86,21 @@ pub fn setup(file: &TestFile, case: &Case, seed: u64, spec: RunSpec) -> Setup {
     let joint = if spec.without_gap { case.joint_without_gap() } else { case.truth.parameters.clone() };
     Setup {
         plant: spec.plant,
+        start: Start::Relative(start(&joint, seed)),
         disturbances: case.disturbances.clone(),
         faults: if spec.without_gap { Vec::new() } else { file.faults.clone() },
         ..Setup::new(joint, case.train.clone(), case.motion.clone(), file.duration, seed)
     }
+}
+
+/// A joint at rest anywhere in its gap, every third on one of its flanks: where a joint was left when it was switched off. Both meshes
+/// of every planet share the gap.
+fn start(joint: &JointParameters, seed: u64) -> RelativeState {
+    let mut stream = RandomStream::new(seed, "start in the gap");
+    let (on_flank, place) = (stream.uniform() < ON_FLANK, 2.0 * stream.uniform() - 1.0);
+    let mesh = half_backlash(joint) * if on_flank { place.signum() } else { place };
+    let centred = RelativeState::centred(joint.geometry.planets);
+    RelativeState { sun_planet: centred.sun_planet.iter().map(|_| mesh).collect(), gap: 2.0 * mesh, ..centred }
 }
 
 /// A run from its first period to its last.
@@ -138,12 +155,12 @@ fn translator(case: &Case) -> Translator {
     let around = &case.nominal_surroundings;
     let settings = observer_settings(around);
     let bits = [around.motor_encoder.bits, around.output_encoder.bits];
-    Translator::new(settings.clock_rate / settings.control_rate, bits)
+    Translator::new(settings.clock_rate / settings.control_rate, bits, &case.zeros)
 }
 
 /// The compensation fed with the true state is designed to the true joint.
 fn design_from_truth(file: &TestFile, case: &Case) -> Outcome<CompensationTables<f64>> {
     let joint = &case.truth.parameters;
-    design_compensation(joint, &case.settings_of_law(file))
+    design_compensation(joint, &case.settings_of_law(file, case.bandwidth(file)?))
         .map_err(|error| Failure::new(format!("no compensation can be designed for joint `{}`: {error}", joint.name)))
 }

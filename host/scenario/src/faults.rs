@@ -18,6 +18,7 @@ use teeth::ToothState;
 
 use super::file::{Fault, HostOnlyFault, fault_is_on};
 use super::plant::Teeth;
+use super::random::RandomStream;
 
 /// One encoder reading and when it was taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,6 +27,8 @@ pub struct TimedReading {
     pub counts: i64,
     /// Control period.
     pub period: u64,
+    /// Delay of that period's start [thousandths of a period].
+    pub lateness: u32,
 }
 
 /// The sensor readings that reach a controller in one control period.
@@ -33,6 +36,8 @@ pub struct TimedReading {
 pub struct ControllerInputs {
     /// Now.
     pub period: u64,
+    /// Delay of this period's start [thousandths of a period]: a clock of the controller sees it.
+    pub lateness: u32,
     /// From the motor's encoder.
     pub motor: TimedReading,
     /// From the output encoder, if a frame came.
@@ -45,8 +50,10 @@ pub struct HostFaults {
     faults: Vec<Active>,
     period: f64,
     counts_per_turn: [f64; 2],
-    /// What the encoders read at the start, where they are homed: what they say is counted from there.
+    /// Counts of the encoders where they are homed: what they say is counted from there.
     home: Option<[i64; 2]>,
+    /// What homed encoders say at the start: where the link is then, and where a motor is that leads it by nothing.
+    start: [i64; 2],
     past: [VecDeque<TimedReading>; 2],
     /// Periods of the last readings that came.
     come: [Option<u64>; 2],
@@ -56,6 +63,9 @@ pub struct HostFaults {
     teeth: ToothState,
 }
 
+/// Parts of a control period in which delays of its start are counted.
+pub const LATENESS_PARTS: u32 = 1000;
+
 /// Readings and set-points kept for delayed delivery [periods]: delays are a second at most.
 const MEMORY: usize = 100_000;
 
@@ -64,11 +74,13 @@ impl HostFaults {
     pub fn new(faults: &[Fault], seed: u64, joint: &JointParameters, train: &DriveTrainParameters) -> Self {
         let around = &train.surroundings;
         let encoders = [&around.motor_encoder, &around.output_encoder];
+        let stated = faults.iter().enumerate().map(|(index, fault)| Active::new(fault, index, seed));
         Self {
-            faults: faults.iter().enumerate().map(|(index, fault)| Active::new(fault, index, seed)).collect(),
+            faults: stated.chain(missing_frames(encoders.map(|encoder| encoder.missing_share), seed)).collect(),
             period: 1.0 / f64::from(around.control_rate),
             counts_per_turn: encoders.map(|encoder| (1_u64 << encoder.bits) as f64),
             home: None,
+            start: [0; 2],
             past: Default::default(),
             come: [None; 2],
             last: None,
@@ -78,14 +90,28 @@ impl HostFaults {
         }
     }
 
+    /// The same for a link that starts at an angle [rad] behind gears of a ratio.
+    pub fn starting_at(self, link_angle: f64, ratio: f64) -> Self {
+        let [motor, output] = self.counts_per_turn.map(|counts| link_angle / std::f64::consts::TAU * counts);
+        Self { start: [ratio * motor, output].map(|counts| counts.round() as i64), ..self }
+    }
+
     /// Applies faults to a measurement on its way to the controller.
     pub fn sense(&mut self, measurement: &Measurement) -> ControllerInputs {
+        self.sense_late(measurement, 0.0)
+    }
+
+    /// Applies faults to a measurement of a control period that began so late [s].
+    pub fn sense_late(&mut self, measurement: &Measurement, lateness: f64) -> ControllerInputs {
+        let lateness = (lateness / self.period * f64::from(LATENESS_PARTS)).round() as u32;
         let time = measurement.period as f64 * self.period;
         let shafts = [Shaft::Motor, Shaft::Link];
         let counts = [measurement.motor_counts, measurement.output_counts];
-        let home = *self.home.get_or_insert(counts);
-        let frame =
-            |index: usize| Some(TimedReading { counts: counts[index] - home[index], period: measurement.period });
+        let start = self.start;
+        let home = *self.home.get_or_insert([counts[0] - start[0], counts[1] - start[1]]);
+        let frame = |index: usize| {
+            Some(TimedReading { counts: counts[index] - home[index], period: measurement.period, lateness })
+        };
         let mut frames = [frame(0), frame(1)];
         for (index, frame) in frames.iter_mut().enumerate() {
             for fault in self.faults.iter_mut() {
@@ -125,8 +151,12 @@ impl HostFaults {
             self.come[index] = frame.map(|frame| frame.period).or(self.come[index]);
         }
         // A silent motor encoder leaves its last reading in place, with the time of that reading.
-        let motor = frames[0].or(self.last.map(|last| last.motor)).unwrap_or(TimedReading { counts: 0, period: 0 });
-        let seen = ControllerInputs { period: measurement.period, motor, output: frames[1] };
+        let motor = frames[0].or(self.last.map(|last| last.motor)).unwrap_or(TimedReading {
+            counts: 0,
+            period: 0,
+            lateness: 0,
+        });
+        let seen = ControllerInputs { period: measurement.period, lateness, motor, output: frames[1] };
         self.last = Some(seen);
         seen
     }
@@ -186,6 +216,16 @@ impl HostFaults {
     pub fn wear(&mut self, time: f64, joint: &Observation, inside: &mut dyn Teeth) {
         self.teeth.wear(&self.faults, time, joint, inside);
     }
+}
+
+/// Readings that an encoder leaves out by itself, as faults of the whole run with random numbers of their own.
+fn missing_frames(shares: [f64; 2], seed: u64) -> impl Iterator<Item = Active> {
+    let of = [(Shaft::Motor, "missing frames motor"), (Shaft::Link, "missing frames output")];
+    of.into_iter().zip(shares).filter(|(_, share)| *share > 0.0).map(move |((shaft, stream), share)| {
+        let kind = FaultKind::LostReadings(shaft, share);
+        let fault = Fault { start: 0.0, end: f64::INFINITY, seed: (), kind };
+        Active::with_stream(&fault, RandomStream::new(seed, stream))
+    })
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ pub mod case;
 pub mod controller;
 pub mod controller_log;
 mod disturbances;
+pub mod encoder_zeros;
 pub mod estimate_fields;
 pub mod execution;
 pub mod faults;

@@ -23,7 +23,7 @@ const SCHEMA_NAME: &str = "joint_msgs/msg/Trial";
 const RATE: f64 = 1000.0;
 
 /// Fields that are numbers, in SI, with what they mean.
-const NUMBERS: [(&str, &str); 20] = [
+const NUMBERS: [(&str, &str); 21] = [
     ("time_s", "since the start [s]"),
     ("wanted_rad", "where the link was to be [rad]"),
     ("link_rad", "where it is [rad]"),
@@ -44,6 +44,7 @@ const NUMBERS: [(&str, &str); 20] = [
     ("set_point_damping_Nms_per_rad", "of an impedance [N m s/rad]"),
     ("trust", "share of the compensation in the torque"),
     ("short_of_torque", "1: the law asks for more torque than there is, or brakes early because of that"),
+    ("stepped_back", "1: the motor alone is controlled because the loop hunted"),
 ];
 /// The field of faults.
 const FAULTS: (&str, &str) = ("injected_faults", "faults of the test that act, by their words in its file");
@@ -105,6 +106,7 @@ fn fill(out: &mut impl Write, run: LoggedRun<'_>) -> io::Result<()> {
             asked.damping,
             observed.trust.into(),
             f64::from(u8::from(observed.short_of_torque)),
+            f64::from(u8::from(observed.stepped_back)),
         ];
         let mut message = Message::default();
         numbers.into_iter().for_each(|number| message.number(number));

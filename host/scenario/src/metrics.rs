@@ -51,6 +51,7 @@ pub static METRICS: &[Metric] = &[
     metric("lost_motion", "ms", Motion, "from leaving one flank to touching the other, mean"),
     metric("longest_lost_motion", "ms", Motion, "the longest of them"),
     metric("crossings", "", Motion, "changes from one flank to the other"),
+    metric("strikes", "", Motion, "landings on either flank after the teeth had left one by a fifth of the half-gap"),
     metric("last_crossing", "s", Motion, "time of the last of them; 0 without any"),
     metric("quiet", "s", Motion, "time from the last crossing to the end"),
     metric("peak_mesh_force", "N", Motion, "largest net force between the flanks at the motor's side"),
@@ -71,6 +72,29 @@ pub static METRICS: &[Metric] = &[
     metric("gap_valid", "percent", Observer, "part of the time in which the gap coordinate is said to be valid"),
     metric("gap_error_valid", "percent", Observer, "its error while it is said to be valid, root mean square"),
     metric("gap_surprise", "", Observer, "mean squared error of a valid gap over its stated variance; 1 is honest"),
+    metric(
+        "gap_wrong",
+        "percent",
+        Observer,
+        "part of the time in which the gap coordinate is said to be valid and is wrong by more than 20 % of the lost motion, the gap 4b",
+    ),
+    metric("contact_valid", "percent", Observer, "part of the time in which the contact side is said to be valid"),
+    metric("width_valid", "percent", Observer, "part of the time in which the half-backlash is said to be valid"),
+    metric(
+        "width_wrong",
+        "percent",
+        Observer,
+        "part of the time in which the half-backlash is said to be valid and is wrong by more than 20 %",
+    ),
+    metric("load_torque_valid", "percent", Observer, "part of the time in which the load torque is said to be valid"),
+    metric(
+        "mesh_torque_valid",
+        "percent",
+        Observer,
+        "part of the time in which the transmitted torque is said to be valid",
+    ),
+    metric("compliance_valid", "percent", Observer, "part of the time in which the compliance is said to be valid"),
+    metric("skew_valid", "percent", Observer, "part of the time in which the skew of the encoders is said to be valid"),
     metric("side_right", "percent", Observer, "part of the time with the right contact side, outside a band of 5 %"),
     metric("missed_landings", "", Observer, "landings on a flank that were never reported"),
     metric("landing_delay_median", "ms", Observer, "from a landing to its report, median"),
@@ -101,6 +125,7 @@ pub static METRICS: &[Metric] = &[
         Observer,
         "time in which the law asks for more torque than there is, or brakes early because of that",
     ),
+    metric("stepped_back", "percent", Observer, "time in which the motor alone is controlled because the loop hunted"),
     metric("probe_error", "percent", Probe, "half-backlash that the width probe found against the truth"),
     metric("probe_time", "ms", Probe, "from the first torque of the width probe to its result"),
     metric("probe_refused", "", Probe, "1 if the width probe refused to say a width, 0 if it said one"),
@@ -125,6 +150,8 @@ pub enum Relation {
     GainOver(ControllerName),
     /// The controller's over the other's: below 1 is better.
     RatioTo(ControllerName),
+    /// The other's own.
+    Of(ControllerName),
 }
 
 impl Metric {
@@ -164,6 +191,7 @@ pub fn names(impedance: bool) -> Vec<String> {
         for (other, _) in others(impedance) {
             names.push(format!("{}_gain_over_{other}", metric.stem));
             names.push(format!("{}_ratio_to_{other}", metric.stem));
+            names.push(format!("{}_of_{other}", metric.name()));
         }
     }
     names
@@ -175,13 +203,19 @@ impl NamedMetric {
         if let Some(index) = METRICS.iter().position(|metric| metric.name() == name) {
             return Some(Self { index, relation: Relation::Own });
         }
+        let of_motion = |metric: &Metric| matches!(metric.requires, Motion | Impedance);
+        if let Some((own, other)) = name.rsplit_once("_of_")
+            && let Some((_, other)) = others(impedance).into_iter().find(|(word, _)| *word == other)
+        {
+            let index = METRICS.iter().position(|metric| metric.name() == own && of_motion(metric))?;
+            return Some(Self { index, relation: Relation::Of(other) });
+        }
         let (stem, other, gain) = match (name.split_once("_gain_over_"), name.split_once("_ratio_to_")) {
             (Some((stem, other)), _) => (stem, other, true),
             (None, Some((stem, other))) => (stem, other, false),
             (None, None) => return None,
         };
-        let index =
-            METRICS.iter().position(|metric| metric.stem == stem && matches!(metric.requires, Motion | Impedance))?;
+        let index = METRICS.iter().position(|metric| metric.stem == stem && of_motion(metric))?;
         let (_, other) = others(impedance).into_iter().find(|(word, _)| *word == other)?;
         let relation = if gain { Relation::GainOver(other) } else { Relation::RatioTo(other) };
         Some(Self { index, relation })

@@ -6,10 +6,12 @@ use model_core::virtual_joint::fault::{FaultKind, Shaft};
 
 use super::case::Case;
 use super::file::{Fault, TestFile, fault_is_on};
-use super::run_history::RunHistory;
+use super::run_history::{ObserverOutput, RunHistory, Validity};
 
 /// A width counts as right within this part.
 const WIDTH_RIGHT: f64 = 0.05;
+/// Part of the gap, or of the half-backlash, from which on a value that is said to be valid counts as wrong.
+const WRONG: f64 = 0.2;
 /// No side is judged within this part of the gap from an edge, or with less than this part of the rated force.
 const BAND: f64 = 0.05;
 /// Slower links do not count as moving [rad/s].
@@ -47,11 +49,13 @@ pub fn values(file: &TestFile, case: &Case, history: &RunHistory) -> Vec<(&'stat
         sums.mesh += ((f64::from(observed.mesh_torque) - 2.0 * lever * sample.mesh_force) / rated).powi(2);
         sums.trust += f64::from(observed.trust);
         sums.short += f64::from(u8::from(observed.short_of_torque));
+        sums.stepped_back += f64::from(u8::from(observed.stepped_back));
         if observed.valid {
             sums.valid += 1.0;
             sums.gap_valid += (error / gap).powi(2);
             sums.nees += error * error / f64::from(observed.gap_variance).max(1e-30);
         }
+        sums.shares.note(observed, (error / gap).abs() > WRONG, width.is_nan() || width.abs() > WRONG);
         // Rated force at the sun: the torque over both levers of the carrier.
         let force = sample.mesh_force * 2.0 * lever / rated;
         let side = if force > 0.0 {
@@ -83,7 +87,9 @@ pub fn values(file: &TestFile, case: &Case, history: &RunHistory) -> Vec<(&'stat
         ("width_right_after_contact", contact_then),
         ("compensated", 100.0 * sums.trust / sums.count),
         ("short_of_torque", 100.0 * sums.short / sums.count),
+        ("stepped_back", 100.0 * sums.stepped_back / sums.count),
     ];
+    list.extend(sums.shares.percent(sums.count));
     list.extend(landings.delays());
     list.extend(at_the_end(case, history));
     list.extend(alarms(file, history));
@@ -114,11 +120,50 @@ struct Sums {
     mesh: f64,
     trust: f64,
     short: f64,
+    stepped_back: f64,
     valid: f64,
     gap_valid: f64,
     nees: f64,
     judged: f64,
     right: f64,
+    shares: Shares,
+}
+
+/// Names of [`Shares`], in their order.
+const SHARES: [&str; 8] = [
+    "gap_wrong",
+    "width_wrong",
+    "contact_valid",
+    "width_valid",
+    "load_torque_valid",
+    "mesh_torque_valid",
+    "compliance_valid",
+    "skew_valid",
+];
+
+/// Numbers of periods in which outputs are said to be valid, and in which they are valid and wrong.
+#[derive(Default)]
+struct Shares([usize; SHARES.len()]);
+
+impl Shares {
+    fn note(&mut self, observed: &ObserverOutput, gap_wrong: bool, width_wrong: bool) {
+        let Validity { contact, half_backlash, mesh_torque, load_torque, compliance, skew } = observed.validity;
+        let now = [
+            observed.valid && gap_wrong,
+            half_backlash && width_wrong,
+            contact,
+            half_backlash,
+            load_torque,
+            mesh_torque,
+            compliance,
+            skew,
+        ];
+        self.0.iter_mut().zip(now).for_each(|(count, now)| *count += usize::from(now));
+    }
+
+    fn percent(&self, periods: f64) -> impl Iterator<Item = (&'static str, f64)> {
+        SHARES.into_iter().zip(self.0.map(|count| 100.0 * count as f64 / periods))
+    }
 }
 
 /// Landings on the flank opposite to the last one, and when they were reported.
@@ -208,4 +253,25 @@ fn alarms(file: &TestFile, history: &RunHistory) -> Vec<(&'static str, f64)> {
         list.push(("fault_found", 1e3 * found.unwrap_or((end - first).max(0.0) + 1e3)));
     }
     list
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_output_is_wrong_only_while_it_is_said_to_be_valid() {
+        let valid = ObserverOutput {
+            valid: true,
+            validity: Validity { half_backlash: true, skew: true, ..Validity::default() },
+            ..ObserverOutput::default()
+        };
+        let mut shares = Shares::default();
+        shares.note(&valid, true, false);
+        shares.note(&valid, true, true);
+        shares.note(&ObserverOutput::default(), true, true);
+        shares.note(&ObserverOutput::default(), false, false);
+        let found: Vec<_> = shares.percent(4.0).filter(|(_, share)| *share > 0.0).collect();
+        assert_eq!(found, [("gap_wrong", 50.0), ("width_wrong", 25.0), ("width_valid", 50.0), ("skew_valid", 50.0)]);
+    }
 }

@@ -3,8 +3,8 @@
 
 use clap::ValueEnum;
 use model_core::gears::design::design;
-use model_core::gears::{Kinematics, Mechanics, Model, Scales, State, Tables, Torques};
-use parameters::{ContactState, JointParameters};
+use model_core::gears::{Kinematics, Mechanics, Model, Relative, Scales, State, Tables, Torques};
+use parameters::{ContactState, Effect, JointParameters, Surroundings};
 use reference::drive_train::{Disturbance, DriveTrain, DriveTrainParameters, JointModel, Stepping};
 use reference::joint::{Observation, Reference, ReferenceError, RelativeState, Start, Work};
 
@@ -69,8 +69,7 @@ pub fn plant(
     plant_from(name, joint, &centred, train, disturbances, seed).map(|plant| plant.stepped(Stepping::Fixed))
 }
 
-/// A joint from a start of its own, with what surrounds it; the core's own step begins at rest in the middle of its gap,
-/// whatever the start.
+/// A joint from a start of its own, with what surrounds it.
 pub fn plant_from(
     name: PlantName,
     joint: &JointParameters,
@@ -82,27 +81,71 @@ pub fn plant_from(
     let refused =
         |error: &dyn std::fmt::Display| Failure::new(format!("joint `{}` cannot be run: {error}", joint.name));
     let mut train = train.clone();
+    refuse_effects(name, &train.surroundings)?;
     let inside: Box<dyn Teeth> = match name {
-        PlantName::Reference => Box::new(Reference::start(joint, start).map_err(|error| refused(&error))?),
+        PlantName::Reference => {
+            let hysteresis = train.surroundings.hysteresis;
+            let reference = Reference::start(joint, start).map_err(|error| refused(&error))?;
+            Box::new(reference.with_hysteresis(hysteresis.stiffness_share, hysteresis.torque))
+        }
         PlantName::Core => {
             let control_rate = f64::from(train.surroundings.control_rate);
             // As on a board: whole ticks in a control period, as near to the usual rate as that allows.
             train.parts_per_period = (f64::from(DEFAULT_TICK_RATE) / control_rate).round().max(1.0) as u32;
             let rate = (control_rate * f64::from(train.parts_per_period)).round() as u32;
             match joint.geometry.planets {
-                1 => Box::new(CoreJoint::<1>::new(joint, rate)?),
-                3 => Box::new(CoreJoint::<3>::new(joint, rate)?),
-                4 => Box::new(CoreJoint::<4>::new(joint, rate)?),
-                _ => Box::new(CoreJoint::<5>::new(joint, rate)?),
+                1 => Box::new(CoreJoint::<1>::new(joint, start, rate)?),
+                3 => Box::new(CoreJoint::<3>::new(joint, start, rate)?),
+                4 => Box::new(CoreJoint::<4>::new(joint, start, rate)?),
+                _ => Box::new(CoreJoint::<5>::new(joint, start, rate)?),
             }
         }
     };
     DriveTrain::around(inside, joint, train, disturbances, seed).map_err(|error| refused(&error))
 }
 
+/// State of the core's own step at a start.
+fn state_of<const N: usize>(joint: &JointParameters, tables: &Tables<f32, N>, start: &RelativeState) -> State<f32, N> {
+    let scales = Scales::new(joint);
+    let scaled = |planets: &[f64], gap: f64, wind_up: f64, unit: f64| Relative {
+        planets: std::array::from_fn(|planet| (planets.get(planet).copied().unwrap_or(0.0) / unit) as f32),
+        gap: (gap / unit) as f32,
+        wind_up: (wind_up / unit) as f32,
+    };
+    let deflections = scaled(&start.sun_planet, start.gap, start.wind_up, scales.length);
+    let speed_unit = scales.length * scales.frequency;
+    let rates = scaled(&start.sun_planet_rate, start.gap_rate, start.wind_up_rate, speed_unit);
+    State::from_deflections(tables, &deflections, &rates, start.rigid_speed as f32)
+}
+
+/// Refuses by name the effects that a plant does not have.
+pub fn refuse_effects(name: PlantName, around: &Surroundings) -> Outcome<()> {
+    let why = |effect: Effect| match effect {
+        Effect::Hysteresis => Some("its spring between carrier and link has no loss but damping"),
+        Effect::PayloadStep => Some("its inertias are tables"),
+        Effect::ControlJitter => Some("it is stepped by whole ticks"),
+        _ => None,
+    };
+    let lacking = around.effects().find_map(|effect| Some((effect, why(effect)?)));
+    match lacking.filter(|_| name == PlantName::Core) {
+        Some((effect, why)) => {
+            let message = format!("the core's joint cannot have `{}`: {why}", effect.key());
+            Err(Failure::new(message).with_help("run it with --plant reference, with --host or --role observer"))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Change of the half-backlash from which on the core's joint is designed anew [-]. Between the designs its gap is wrong by half of it
+/// at most.
+const DESIGN_STEP: f64 = 0.005;
+
 /// The core's fixed step as a joint in motion.
 struct CoreJoint<const N: usize> {
+    /// With the half-backlash that it was made with or set to.
     joint: JointParameters,
+    /// Half-backlash of the tables over the joint's.
+    backlash_scale: f64,
     tables: Tables<f32, N>,
     state: State<f32, N>,
     ticks: u32,
@@ -111,27 +154,35 @@ struct CoreJoint<const N: usize> {
 }
 
 impl<const N: usize> CoreJoint<N> {
-    fn new(joint: &JointParameters, tick_rate: u32) -> Outcome<Self> {
-        let tables = design(joint, tick_rate).map_err(|error| {
+    fn new(joint: &JointParameters, start: &Start, tick_rate: u32) -> Outcome<Self> {
+        let tables: Tables<f32, N> = design(joint, tick_rate).map_err(|error| {
             Failure::new(format!("joint `{}` cannot be designed for {tick_rate} Hz: {error}", joint.name))
                 .with_help("--plant reference needs no such design")
         })?;
-        let lever = joint.geometry.carrier_base_radius();
-        let compliance_damping = joint.compliance.map_or(0.0, |compliance| {
-            let sun = joint.bodies.sun_equivalent_mass + joint.rotor_equivalent_mass();
-            let planets = N as f64 * joint.bodies.planet_equivalent_mass;
-            let geared = 4.0 * sun + planets + joint.carrier_equivalent_mass();
-            let link = joint.link_equivalent_mass();
-            let reduced = geared * link / (geared + link) * lever * lever;
-            2.0 * compliance.damping_ratio * (compliance.stiffness * reduced).sqrt()
-        });
-        Ok(Self { joint: joint.clone(), tables, state: State::REST, ticks: 0, compliance_damping })
+        let compliance_damping = compliance_damping(joint);
+        let state = match start {
+            Start::Still => State::REST,
+            Start::Relative(start) => state_of(joint, &tables, start),
+        };
+        Ok(Self { joint: joint.clone(), tables, state, ticks: 0, compliance_damping, backlash_scale: 1.0 })
     }
 
     fn model(&self) -> Model<'_, f32, N> {
         let mut model = Model::new(&self.tables);
         model.set_state(self.state);
         model
+    }
+
+    /// Makes the tables of the joint as it is now. Scales do not depend on the backlash, so the state stands; a joint that was designed
+    /// once is again.
+    fn design_again(&mut self) {
+        let mut joint = self.joint.clone();
+        for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
+            mesh.half_backlash.iter_mut().for_each(|value| *value *= self.backlash_scale);
+        }
+        if let Ok(tables) = design(&joint, self.tables.tick_rate) {
+            self.tables = tables;
+        }
     }
 
     /// Rate of an angle that differs from its rigid share by these gains of planets, gap and wind-up [rad/s].
@@ -144,16 +195,27 @@ impl<const N: usize> CoreJoint<N> {
     }
 }
 
+/// Damping between carrier and link [N m s/rad].
+fn compliance_damping(joint: &JointParameters) -> f64 {
+    joint.compliance.map_or(0.0, |compliance| {
+        let lever = joint.geometry.carrier_base_radius();
+        let sun = joint.bodies.sun_equivalent_mass + joint.rotor_equivalent_mass();
+        let planets = joint.geometry.planets as f64 * joint.bodies.planet_equivalent_mass;
+        let geared = 4.0 * sun + planets + joint.carrier_equivalent_mass();
+        let link = joint.link_equivalent_mass();
+        let reduced = geared * link / (geared + link) * lever * lever;
+        2.0 * compliance.damping_ratio * (compliance.stiffness * reduced).sqrt()
+    })
+}
+
 impl<const N: usize> Teeth for CoreJoint<N> {
     fn set_half_backlash(&mut self, half_backlash: f64) {
         let mut joint = self.joint.clone();
         for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
             mesh.half_backlash.iter_mut().for_each(|value| *value = half_backlash);
         }
-        // Scales do not depend on the backlash, so the state stands; a joint that was designed once is again.
-        if let Ok(tables) = design(&joint, self.tables.tick_rate) {
-            (self.joint, self.tables) = (joint, tables);
-        }
+        self.joint = joint;
+        self.design_again();
     }
 
     fn set_sun_planet_stiffness(&mut self, _: usize, _: f64) {
@@ -171,6 +233,20 @@ impl<const N: usize> JointModel for CoreJoint<N> {
         self.state = *model.state();
         self.ticks = until;
         Ok(())
+    }
+
+    fn scale_half_backlash(&mut self, factor: f64) {
+        if (factor - self.backlash_scale).abs() > DESIGN_STEP {
+            self.backlash_scale = factor;
+            self.design_again();
+        }
+    }
+
+    /// Only at rest in the middle of the gap, where the rigid body is at zero whatever its inertia: a step of the payload is refused.
+    fn set_link_inertia(&mut self, link_inertia: f64) {
+        self.joint.link_inertia = link_inertia;
+        self.compliance_damping = compliance_damping(&self.joint);
+        self.design_again();
     }
 
     fn observe(&self) -> Observation {
@@ -212,6 +288,88 @@ impl<const N: usize> JointModel for CoreJoint<N> {
             kinetic_energy: 0.0,
             elastic_energy: 0.0,
             work: Work::default(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use parameters::{Friction, Hysteresis, Payload, PayloadStep, WidthVariation};
+
+    use super::*;
+
+    fn q1() -> JointParameters {
+        joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint").parameters
+    }
+
+    fn plant_of(name: PlantName, around: Surroundings, pushes: Vec<Disturbance>) -> Outcome<Plant> {
+        let train = DriveTrainParameters {
+            effect_phases: reference::drive_train::EffectPhases {
+                width: [std::f64::consts::FRAC_PI_2, 0.0],
+                ..Default::default()
+            },
+            ..around.into()
+        };
+        plant(name, &q1(), &train, pushes, 1)
+    }
+
+    #[test]
+    fn the_core_refuses_by_name_what_it_lacks() {
+        type Lacking = (&'static str, fn(&mut Surroundings));
+        let lacking: [Lacking; 3] = [
+            ("`hysteresis_stiffness_share`", |of| of.hysteresis = Hysteresis { stiffness_share: 0.2, torque: 1.0 }),
+            ("`payload_step_ratio`", |of| of.payload_step = PayloadStep { time: 1.0, ratio: 3.0 }),
+            ("`control_jitter_ratio`", |of| of.control_jitter_ratio = 0.05),
+        ];
+        for (key, change) in lacking {
+            let mut around = Surroundings::ideal();
+            change(&mut around);
+            assert!(plant_of(PlantName::Reference, around, Vec::new()).is_ok(), "{key}");
+            let refused = plant_of(PlantName::Core, around, Vec::new()).err().expect("it is refused");
+            assert!(refused.message().contains(key), "{refused}");
+            assert!(refused.help().is_some_and(|help| help.contains("--plant reference")), "{refused}");
+        }
+    }
+
+    #[test]
+    fn a_payload_swings_alike_on_both_plants() {
+        let around = Surroundings {
+            payload: Payload { inertia_share: 0.5, frequency: 12.0, damping_ratio: 0.02 },
+            ..Surroundings::ideal()
+        };
+        let push = |start, torque| Disturbance::Pulse { start, duration: 2e-3, torque };
+        let speeds = |name| -> Vec<f64> {
+            let pushes = vec![push(0.0, 1.0), push(0.004, -1.0)];
+            let mut plant = plant_of(name, around, pushes).expect("a plant");
+            let step = |_| {
+                plant.advance(0.0).expect("it runs");
+                plant.joint().link_speed
+            };
+            (0..5000).map(step).collect()
+        };
+        let (core, reference) = (speeds(PlantName::Core), speeds(PlantName::Reference));
+        let most = reference.iter().map(|speed| speed.abs()).fold(0.0, f64::max);
+        let apart = core.iter().zip(&reference).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(apart < 0.02 * most, "{apart} of {most} rad/s");
+    }
+
+    #[test]
+    fn the_backlash_varies_alike_on_both_plants() {
+        let around = Surroundings {
+            width: WidthVariation { per_link_turn: 0.3, per_motor_turn: 0.0 },
+            load_friction: Friction { coulomb: 5.0, ..Friction::default() },
+            motor_friction: Friction { viscous: 2e-2, ..Friction::default() },
+            ..Surroundings::ideal()
+        };
+        for name in [PlantName::Core, PlantName::Reference] {
+            let mut plant = plant_of(name, around, Vec::new()).expect("a plant");
+            let mut end = |push: f64| {
+                (0..1500).for_each(|_| plant.advance(push).expect("it runs"));
+                plant.joint().gap
+            };
+            let width = end(0.2) - end(-0.2);
+            let expected = 1.3 * 4.0 * half_backlash(&q1());
+            assert!((width / expected - 1.0).abs() < 0.015, "{name:?}: {width} m for {expected} m");
         }
     }
 }

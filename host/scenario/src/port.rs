@@ -10,7 +10,8 @@ use model_core::observer::{Memory, Reading, Samples};
 use reference::closed_loop::{Motion, SetPoint};
 
 use super::case::Designed;
-use super::faults::{ControllerInputs, TimedReading};
+use super::encoder_zeros::EncoderZeros;
+use super::faults::{ControllerInputs, LATENESS_PARTS, TimedReading};
 use report::failure::{Failure, Outcome};
 
 /// The answer of one control period.
@@ -80,20 +81,18 @@ pub struct Translator {
     ticks: u32,
     /// Raw counts before they wrap: motor, output.
     ranges: [i64; 2],
+    /// Raw counts where the joint starts: motor, output.
+    zeros: [i64; 2],
     /// Turn of the output encoder's first reading, which is the observer's turn zero.
     first_turn: Option<i32>,
     torque: f32,
 }
 
 impl Translator {
-    /// For encoders of so many bits.
-    pub fn new(ticks: u32, bits: [u32; 2]) -> Self {
-        Self { ticks, ranges: bits.map(|bits| 1 << bits), first_turn: None, torque: 0.0 }
-    }
-
-    /// For set-points alone, whose observer counts the link's turns from this one.
-    pub fn from_turn(ticks: u32, first_turn: i32) -> Self {
-        Self { first_turn: Some(first_turn), ..Self::new(ticks, [0, 0]) }
+    /// For encoders of so many bits, mounted with these zeros.
+    pub fn new(ticks: u32, bits: [u32; 2], zeros: &EncoderZeros) -> Self {
+        let ranges = bits.map(|bits| 1 << bits);
+        Self { ticks, ranges, zeros: zeros.counts(ranges), first_turn: None, torque: 0.0 }
     }
 
     /// The next reading is the first again.
@@ -103,25 +102,28 @@ impl Translator {
 
     /// Readings with their own times; the torque is that of the period before.
     pub fn samples(&mut self, seen: &ControllerInputs) -> Samples<f32> {
+        let raw = |frame: TimedReading, encoder: usize| frame.counts + self.zeros[encoder];
         if let (None, Some(first)) = (self.first_turn, seen.output) {
-            self.first_turn = Some(first.counts.div_euclid(self.ranges[1]) as i32);
+            self.first_turn = Some(raw(first, 1).div_euclid(self.ranges[1]) as i32);
         }
-        let time = |period: u64| (period as u32).wrapping_mul(self.ticks);
-        let reading = |frame: TimedReading, range: i64| Reading {
-            counts: frame.counts.rem_euclid(range) as u32,
-            time: time(frame.period),
+        let time = |period: u64, lateness: u32| {
+            (period as u32).wrapping_mul(self.ticks).wrapping_add(lateness * self.ticks / LATENESS_PARTS)
+        };
+        let reading = |frame: TimedReading, encoder: usize| Reading {
+            counts: raw(frame, encoder).rem_euclid(self.ranges[encoder]) as u32,
+            time: time(frame.period, frame.lateness),
         };
         Samples {
-            time: time(seen.period),
-            motor: reading(seen.motor, self.ranges[0]),
-            output: seen.output.map(|frame| reading(frame, self.ranges[1])),
+            time: time(seen.period, seen.lateness),
+            motor: reading(seen.motor, 0),
+            output: seen.output.map(|frame| reading(frame, 1)),
             torque: self.torque,
         }
     }
 
     /// A set-point on the scale of the observer's link shaft, its angles in whole turns and the rest.
     pub fn command(&self, set_point: &SetPoint) -> Command<f32> {
-        command(set_point, self.first_turn.unwrap_or(0))
+        command(set_point, self.zeros[1] as f64 / self.ranges[1] as f64 - f64::from(self.first_turn.unwrap_or(0)))
     }
 
     /// Remembers the torque that the observer is shown next.
@@ -130,9 +132,9 @@ impl Translator {
     }
 }
 
-/// A set-point as the compensation takes it, turns counted from one of them.
-pub fn command<T: Real>(set_point: &SetPoint, first_turn: i32) -> Command<T> {
-    let motion = |of: Motion| motion(of, first_turn);
+/// A set-point as the compensation takes it, on a scale whose reading at angle zero is `zero` [turns].
+pub fn command<T: Real>(set_point: &SetPoint, zero: f64) -> Command<T> {
+    let motion = |of: Motion| motion(of, zero);
     match *set_point {
         SetPoint::Position { now, ahead } => Command::Position { now: motion(now), ahead: ahead.map(motion) },
         SetPoint::Impedance { about, torque, stiffness, damping } => {
@@ -148,16 +150,31 @@ pub fn command<T: Real>(set_point: &SetPoint, first_turn: i32) -> Command<T> {
     }
 }
 
-/// An angle as whole turns and the rest.
-pub fn position<T: Real>(angle: f64, first_turn: i32) -> Position<T> {
-    let turns = (angle / TAU).floor();
-    Position { turns: turns as i32 - first_turn, fraction: T::from_f64(angle / TAU - turns) }
+/// An angle as whole turns and the rest, on a scale whose reading at angle zero is `zero` [turns].
+pub fn position<T: Real>(angle: f64, zero: f64) -> Position<T> {
+    let place = angle / TAU + zero;
+    let turns = place.floor();
+    Position { turns: turns as i32, fraction: T::from_f64(place - turns) }
 }
 
-fn motion<T: Real>(of: Motion, first_turn: i32) -> compensation::Motion<T> {
+fn motion<T: Real>(of: Motion, zero: f64) -> compensation::Motion<T> {
     compensation::Motion {
-        position: position(of.position, first_turn),
+        position: position(of.position, zero),
         speed: T::from_f64(of.speed),
         acceleration: T::from_f64(of.acceleration),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_late_period_has_the_time_of_its_start() {
+        let frame = TimedReading { counts: 0, period: 7, lateness: 42 };
+        let seen = ControllerInputs { period: 7, lateness: 42, motor: frame, output: Some(frame) };
+        let samples = Translator::new(1000, [14, 17], &EncoderZeros::default()).samples(&seen);
+        let times = (samples.time, samples.motor.time, samples.output.map(|reading| reading.time));
+        assert_eq!(times, (7042, 7042, Some(7042)));
     }
 }

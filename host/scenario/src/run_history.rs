@@ -94,8 +94,29 @@ pub struct ObserverOutput {
     pub trust: f32,
     /// The law asked for more torque than there is, or brakes early because of that.
     pub short_of_torque: bool,
+    /// Plain control has taken over because the loop hunted.
+    pub stepped_back: bool,
+    /// Which of the outputs may be used.
+    pub validity: Validity,
     /// Where the width probe stands, if there is one.
     pub probed: Option<Progress<f32>>,
+}
+
+/// Which outputs of an observer may be used, the gap coordinate left out.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Validity {
+    /// Contact side.
+    pub contact: bool,
+    /// Half-backlash.
+    pub half_backlash: bool,
+    /// Transmitted torque.
+    pub mesh_torque: bool,
+    /// Load torque.
+    pub load_torque: bool,
+    /// Compliance.
+    pub compliance: bool,
+    /// Skew of the encoders.
+    pub skew: bool,
 }
 
 impl RunHistory {
@@ -198,6 +219,15 @@ impl ObserverOutput {
             both: estimates.source == Source::Both,
             trust: shaped.trust,
             short_of_torque: shaped.short_of_torque,
+            stepped_back: shaped.stepped_back,
+            validity: Validity {
+                contact: estimates.contact_valid,
+                half_backlash: estimates.half_backlash.valid,
+                mesh_torque: estimates.mesh_torque.valid,
+                load_torque: estimates.load_torque.valid,
+                compliance: estimates.compliance.valid,
+                skew: estimates.skew.valid,
+            },
             probed,
         }
     }

@@ -11,7 +11,7 @@ use sha2::{Digest, Sha256};
 
 use super::case::{Case, check_changes, recorded};
 use super::file::{self, HostOnlyFault, TestFile, Trajectory};
-use super::plant::PlantName;
+use super::plant::{PlantName, refuse_effects};
 use super::record::NotRun;
 use super::recorded::RecordedMotion;
 use board::profile::check_length;
@@ -185,7 +185,7 @@ fn test_of(name: String, text: String, file: TestFile, folder: &Path, plant: Pla
         _ => file,
     };
     let test = Test { name, sha256: sha256(&text), file, joint, motion };
-    test.try_design()?;
+    test.try_design(plant)?;
     Ok(test)
 }
 
@@ -207,10 +207,11 @@ impl Test {
         Case::new(&self.file, &self.joint.text, seed, self.motion.as_ref()).map_err(|f| f.while_doing(&self.name))
     }
 
-    /// What cannot be designed should be known before the first run.
-    fn try_design(&self) -> Outcome<()> {
+    /// What cannot be designed, or a plant does not have, should be known before the first run.
+    fn try_design(&self, plant: PlantName) -> Outcome<()> {
         let seed = self.file.seeds.first().copied().unwrap_or(1);
         let case = self.case(seed)?;
+        refuse_effects(plant, &case.truth.surroundings).map_err(|failure| failure.while_doing(&self.name))?;
         if self.file.controller.is_compensation() {
             case.design(&self.file).map_err(|failure| failure.while_doing(&self.name))?;
         }
@@ -238,5 +239,28 @@ impl Test {
     /// Name of the file without folders and ending, for the names of logs.
     pub fn stem(&self) -> String {
         Path::new(&self.name).file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn test(keys: &str, plant: PlantName) -> Outcome<Test> {
+        from_text("a.toml", &format!("profile = \"real\"\n[plant]\n{keys}"), Path::new("."), plant)
+    }
+
+    #[test]
+    fn keys_that_need_one_another_may_stand_in_any_order() {
+        let keys = "payload_inertia_share = [0.2, 0.6]\npayload_frequency_Hz = [8, 25]";
+        assert!(test(keys, PlantName::Core).is_ok());
+        assert!(test("payload_inertia_share = 0.2", PlantName::Core).is_err(), "one alone is refused");
+    }
+
+    #[test]
+    fn what_the_plant_lacks_is_refused_before_anything_runs() {
+        assert!(test("control_jitter_ratio = 0.05", PlantName::Reference).is_ok());
+        let refused = test("control_jitter_ratio = 0.05", PlantName::Core).err().expect("refused");
+        assert!(refused.message().contains("`control_jitter_ratio`"), "{refused}");
     }
 }

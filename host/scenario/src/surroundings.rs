@@ -1,18 +1,28 @@
 //! The drive train of a joint file's surroundings, with the encoders' error phases drawn for a seed.
 
 use parameters::Surroundings;
-use reference::drive_train::{DriveTrainParameters, ErrorPhases};
+use reference::drive_train::{DriveTrainParameters, EffectPhases, ErrorPhases};
 
 use super::random::RandomStream;
 
-/// The drive train of a joint file's surroundings. How an encoder is mounted is unknown: every seed draws the phases of its errors.
+/// The drive train of a joint file's surroundings. How an encoder is mounted is unknown, and so is how the gears are: every seed draws the
+/// phases of the encoders' errors and of the backlash around the turn.
 pub fn train(surroundings: &Surroundings, seed: u64) -> DriveTrainParameters {
     let phases = |name: &str| {
         let mut stream = RandomStream::new(seed, &format!("encoder {name}"));
         let mut phase = || std::f64::consts::TAU * stream.uniform();
         ErrorPhases { once_per_turn: phase(), twice_per_turn: phase() }
     };
+    let pair = |name: &str| {
+        let mut stream = RandomStream::new(seed, name);
+        [(); 2].map(|()| std::f64::consts::TAU * stream.uniform())
+    };
     DriveTrainParameters {
+        effect_phases: EffectPhases {
+            motor_subdivision: pair("subdivision motor"),
+            output_subdivision: pair("subdivision output"),
+            width: pair("width around the turn"),
+        },
         motor_error_phases: phases("motor"),
         output_error_phases: phases("output"),
         ..DriveTrainParameters::from(*surroundings)

@@ -61,6 +61,7 @@ impl MetricValues {
         match named.relation {
             Relation::Own => Some(own),
             Relation::GainOver(other) => Some(ratio(of(other)?.at(named.place())?, own)),
+            Relation::Of(other) => of(other)?.at(named.place()),
             Relation::RatioTo(other) => Some(ratio(own, of(other)?.at(named.place())?)),
         }
     }
@@ -86,6 +87,7 @@ impl MetricValues {
         self.set("lost_motion", 1e3 * plain.lost_motion_time);
         self.set("longest_lost_motion", 1e3 * plain.longest_lost_motion);
         self.set("crossings", plain.crossings as f64);
+        self.set("strikes", plain.strikes as f64);
         self.set("last_crossing", plain.last_crossing);
         self.set("quiet", end - plain.last_crossing.max(file.settle));
         self.set("peak_mesh_force", plain.peak_mesh_force);

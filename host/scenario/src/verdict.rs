@@ -2,6 +2,7 @@
 
 use super::controller::ControllerName;
 use super::file::{Aggregate, Assertion, TestFile};
+use super::metrics::Relation;
 use super::record::AssertionRecord;
 use super::values::MetricValues;
 use report::checks::{Bound, Verdict};
@@ -60,7 +61,7 @@ fn one(file: &TestFile, assertion: &Assertion, results: &Results<'_>) -> Asserti
         name: assertion.name.clone(),
         aggregate: assertion.aggregate.word(),
         figure,
-        unit: match assertion.rival() {
+        unit: match assertion.rival().filter(|_| !matches!(assertion.metric.relation, Relation::Of(_))) {
             None => assertion.metric.base().printed_unit().to_owned(),
             Some(_) => String::new(),
         },

@@ -80,6 +80,8 @@ pub struct WireShaped {
     pub trust: f32,
     /// The law asked for more torque than there is, or brakes early because of that.
     pub short_of_torque: bool,
+    /// The loop hunted: the motor alone is controlled for a while.
+    pub stepped_back: bool,
 }
 
 /// A value, its variance, and whether it may be used.
@@ -89,7 +91,8 @@ pub type WireEstimate = (f32, f32, bool);
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WireEstimates {
     /// 0 both encoders; motor only, because the output's is 1 absent, 2 silent, 3 frozen, 4 out of range; nothing, because the
-    /// motor's is 5 silent, 6 late, 7 frozen, 8 jumped.
+    /// motor's is 5 silent, 6 late, 7 frozen, 8 jumped; 9 motor only, because the output
+    /// has given no reading yet.
     pub source: u8,
     /// Bits, the first lowest: torque unknown, out of time, motor implausible, motor jumped, contact valid, settled.
     pub flags: u8,
@@ -108,14 +111,14 @@ pub struct WireEstimates {
 
 impl From<&Shaped<f32>> for WireShaped {
     fn from(shaped: &Shaped<f32>) -> Self {
-        let Shaped { torque, stage, flank, demand, load, trust, short_of_torque } = *shaped;
-        Self { torque, stage: stage as u8, side: sign(flank), demand, load, trust, short_of_torque }
+        let Shaped { torque, stage, flank, demand, load, trust, short_of_torque, stepped_back } = *shaped;
+        Self { torque, stage: stage as u8, side: sign(flank), demand, load, trust, short_of_torque, stepped_back }
     }
 }
 
 impl From<WireShaped> for Shaped<f32> {
     fn from(wire: WireShaped) -> Self {
-        let WireShaped { torque, stage, side, demand, load, trust, short_of_torque } = wire;
+        let WireShaped { torque, stage, side, demand, load, trust, short_of_torque, stepped_back } = wire;
         let stage = match stage {
             0 => Stage::Touching,
             1 => Stage::Crossing,
@@ -123,7 +126,7 @@ impl From<WireShaped> for Shaped<f32> {
             3 => Stage::Plain,
             _ => Stage::Off,
         };
-        Self { torque, stage, flank: Flank::towards(side), demand, load, trust, short_of_torque }
+        Self { torque, stage, flank: Flank::towards(side), demand, load, trust, short_of_torque, stepped_back }
     }
 }
 
@@ -174,6 +177,7 @@ impl From<&Estimates<f32>> for WireEstimates {
                 Source::Nothing(MotorFault::Late) => 6,
                 Source::Nothing(MotorFault::Frozen) => 7,
                 Source::Nothing(MotorFault::Jumped) => 8,
+                Source::MotorOnly(OutputFault::Unheard) => 9,
             },
             flags: flags.iter().rev().fold(0, |bits, flag| bits << 1 | u8::from(*flag)),
             contacts: (contact(of.contact), contact(of.reported_contact)),
@@ -215,6 +219,7 @@ impl From<WireEstimates> for Estimates<f32> {
                 6 => Source::Nothing(MotorFault::Late),
                 7 => Source::Nothing(MotorFault::Frozen),
                 8 => Source::Nothing(MotorFault::Jumped),
+                9 => Source::MotorOnly(OutputFault::Unheard),
                 _ => Source::Nothing(MotorFault::Silent),
             },
             notices: Notices {
@@ -241,6 +246,7 @@ impl From<WireEstimates> for Estimates<f32> {
             motor_friction,
             // Only the compensation on the board needs it: it is not sent.
             cogging: [0.0; 2],
+            motor_lead: 0.0,
             link_inertia_ratio,
             motor,
             link,

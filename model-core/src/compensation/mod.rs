@@ -11,6 +11,7 @@
 //! 6. `plain` is control without compensation: a PID on the motor's place with part of the feed-forward and no limit of
 //!    the teeth, or the impedance law on the motor. Where the estimates are not valid it takes over in one control
 //!    period; only the way back is blended.
+//! 7. `watch` notices a loop that hunts, and `inverse` then controls the motor alone, with an inverse of the backlash that it learns itself.
 //!
 //! `docs/theory/compensation.md` derives all of it and says where its limits are.
 
@@ -21,7 +22,9 @@ pub mod design;
 mod easing;
 mod flank;
 mod impedance;
+mod integral;
 mod intent;
+mod inverse;
 mod limit;
 mod load;
 mod path;
@@ -32,8 +35,11 @@ mod situation;
 mod start_prediction;
 mod step;
 mod stream;
+mod swing;
 pub mod tables;
 pub mod transitions;
+mod turn;
+mod watch;
 
 pub use set_point::{Command, CommandRef, ImpedancePoint, Motion, Position, Shaped, Stage};
 pub use step::Compensation;

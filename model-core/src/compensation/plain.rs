@@ -1,29 +1,24 @@
-//! Control without compensation, on the motor's place: PID with all poles at the bandwidth in position mode, what is
-//! known of the load fed forward, and the commanded spring and damper in impedance mode. It is what remains when the gap
-//! cannot be seen.
+//! Control of a link that is not seen, on the motor's place: PID with all poles at the bandwidth in position mode, what is
+//! known of the load fed forward. The commanded spring and damper of impedance mode, whenever the gap is not seen.
 
+use super::integral::Integral;
 use super::load::LoadModel;
 use super::set_point::{ImpedancePoint, Motion};
 use super::situation::Situation;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
-use crate::numbers::arithmetic::{beyond, clamp};
+use crate::numbers::arithmetic::clamp;
 
 /// The integral of the PID, and what lies between motor and link.
 #[derive(Debug, Clone)]
 pub(super) struct Plain<T: Real> {
-    integral: T,
+    integral: Integral<T>,
     /// Motor beyond the link on the flank that carries, smoothed [rad].
     beyond: T,
     /// 1 or -1: the flank that the motion asked for and the load will have carry; less of it where that is as small as what
     /// the torques are known to. Nothing is foreseen of an impedance, nor of a link that is not seen behind a gap that is
     /// not known.
     foreseen: Option<T>,
-    /// 1 or -1: to which side the torque last was large, fading to 0.
-    large: T,
-    /// Whether the torque has gone from large to large of the other side within that: the loop has more delay than it was
-    /// designed for.
-    swings: bool,
 }
 
 impl<T: Real> Plain<T> {
@@ -34,15 +29,8 @@ impl<T: Real> Plain<T> {
     /// By how much slower than the loop itself what lies between motor and link is smoothed [-].
     const SMOOTHING: T = T::QUARTER;
 
-    /// A torque is large beyond this part of the motor's limit [-].
-    const LARGE: T = T::HALF;
-
-    /// Time constants of the loop over that within which the torque goes from side to side where it swings [-]. No motion
-    /// that the loop can follow does.
-    const SWINGS: T = T::FOUR;
-
     pub fn new() -> Self {
-        Self { integral: T::ZERO, beyond: T::ZERO, foreseen: None, large: T::ZERO, swings: false }
+        Self { integral: Integral::new(), beyond: T::ZERO, foreseen: None }
     }
 
     /// Where the motor is, less what lies between it and the link [rad].
@@ -50,7 +38,7 @@ impl<T: Real> Plain<T> {
         situation.confirmed_motor - self.beyond
     }
 
-    /// Torque of the PID [N m].
+    /// Torque of the PID on a link that is not seen [N m].
     pub fn follow(
         &mut self,
         tables: &CompensationTables<T>,
@@ -58,41 +46,28 @@ impl<T: Real> Plain<T> {
         situation: &Situation<T>,
         now: &Motion<T>,
     ) -> T {
-        // Of a link that is not seen the integral says what loads it.
-        let level = if situation.feels { load.even() } else { self.integral };
-        let demand = tables.body.load_inertia * now.acceleration + level + load.planned_drag(tables, now.speed);
+        // What the load model gives up of a link that is not seen passes to the integral, so that the torque does not sag.
+        self.integral.add(tables, tables.law.back_calculation * load.even());
+        // So the integral says what loads the link.
+        let drag = load.planned_drag(tables, now.speed);
+        let demand = tables.body.load_inertia * now.acceleration + self.integral.torque() + drag;
         let share = clamp(tables.switching.inverse_step * demand, -T::ONE, T::ONE);
-        self.foreseen = (situation.feels || situation.half_is_known).then_some(share);
-        // In the open gap the motor is alone, and takes little more damping than the loop's delays allow; the rest of what both
-        // need together acts on the link, where that is seen and the teeth may carry: a motor that went after the link in the
-        // open gap would strike. At rest all of it acts on the motor, as long as that does not swing: it takes the link's
-        // energy out in fewer blows, which show the gap sooner.
-        let rests = now.speed == T::ZERO && now.acceleration == T::ZERO;
+        self.foreseen = situation.half_is_known.then_some(share);
         // A thrown link closes its flank by itself: all of the damping on the motor would meet it too hard, none of the rest on
-        // the link too late.
-        let thrown = load.throws(tables);
-        let on_motor = if !thrown && (!situation.feels || (rests && !self.swings)) {
-            tables.law.damping
+        // the link too late. A blow is over before it could be answered.
+        let (on_motor, on_link, known) = if load.throws(tables) {
+            let on_motor = damping_on_motor(tables.law.motor_damping);
+            (on_motor, T::HALF * (tables.law.damping - on_motor), T::ZERO)
         } else {
-            damping_on_motor(tables.law.motor_damping)
+            (tables.law.damping, T::ZERO, load.even() + drag)
         };
-        let rest = tables.law.damping - on_motor;
-        let on_link = if thrown {
-            T::HALF * rest
-        } else if situation.open {
-            T::ZERO
-        } else {
-            rest
-        };
-        // A blow is over before it could be answered.
-        let known = if thrown { T::ZERO } else { load.even() + load.planned_drag(tables, now.speed) };
         let torque = (tables.body.load_inertia + tables.body.motor_inertia) * now.acceleration
             - tables.law.position * self.place(situation)
             + on_motor * (now.speed - situation.motor_speed)
             + on_link * situation.error_rate
             + known
-            + self.integral;
-        self.watch(tables, torque);
+            + self.integral.torque();
+        self.integral.watch(tables, torque);
         torque
     }
 
@@ -102,53 +77,31 @@ impl<T: Real> Plain<T> {
         point.torque - point.stiffness * self.place(situation) + point.damping * (point.speed - situation.motor_speed)
     }
 
-    /// Integrates; `cut` is what the limit took off. Under compensation the integral fades, so that it is ready and
-    /// empty when it is needed.
-    pub fn take(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, cut: T, trust: T) {
-        // What the limit cuts off a torque that swings from side to side does not say that the integral is too large.
-        let cut = if self.swings { T::ZERO } else { cut };
-        let growth = tables.law.back_calculation * cut - tables.law.integral * self.place(situation);
-        // What a flank carries is as far from the link as it is; nothing is said by teeth that may be open, nor while the
-        // link is thrown to and fro.
-        let thrown = tables.clock.period * situation.error_rate.abs()
-            > Self::THROWN * tables.law.back_calculation * situation.half;
-        // Put right on one flank, the link would be left by the whole lost motion once the other one carries. So before that
-        // the motor goes to where the other flank is thought to be, by way of the middle. Where the link is not
-        // seen, that is all there is to put right.
-        let leaves = |share: &T| match situation.contact {
-            _ if !situation.feels => true,
-            Some(flank) => flank.sign::<T>() * *share < T::ONE,
-            None => share.abs() < T::ONE,
-        };
+    /// Integrates while the link is not seen; `cut` is what the limit took off. While it is, others control: the integral fades, so that
+    /// it is ready and empty when it is needed, and what the flank in use carries says how far the motor is beyond the link.
+    pub fn take(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, cut: T) {
         let slowly = Self::SMOOTHING * tables.law.back_calculation;
-        let (towards, part) = if let Some(share) = self.foreseen.filter(leaves) {
-            (share * situation.half, tables.law.back_calculation)
-        } else if !situation.feels {
-            (T::ZERO, slowly)
-        } else if situation.contact.is_none() || thrown {
-            (self.beyond, slowly)
+        let (towards, part) = if situation.feels {
+            self.foreseen = None;
+            self.integral.approach(tables, T::ZERO);
+            // Nothing is said by teeth that may be open, nor while the link is thrown to and fro.
+            let thrown = tables.clock.period * situation.error_rate.abs()
+                > Self::THROWN * tables.law.back_calculation * situation.half;
+            let says_nothing = situation.contact.is_none() || thrown;
+            let towards = if says_nothing { self.beyond } else { situation.beyond_link() };
+            (towards, slowly)
         } else {
-            (situation.beyond_link(), slowly)
+            // What the limit cuts off a torque that swings from side to side does not say that the integral is too large.
+            let cut = if self.integral.swings() { T::ZERO } else { cut };
+            self.integral.integrate(tables, self.place(situation), cut);
+            // Put right on one flank, the link would be left by the whole lost motion once the other one carries: the motor goes to
+            // where the flank is thought to be.
+            let foreseen = |share: T| (share * situation.half, tables.law.back_calculation);
+            self.foreseen.map_or((T::ZERO, slowly), foreseen)
         };
         let beyond = self.beyond + part * (towards - self.beyond);
         if beyond.is_finite() {
             self.beyond = beyond;
-        }
-        let next = self.integral + (T::ONE - trust) * growth - trust * tables.law.back_calculation * self.integral;
-        if next.is_finite() {
-            self.integral = clamp(next, -tables.limits.motor, tables.limits.motor);
-        }
-    }
-
-    /// Notices a swing of the torque from side to side.
-    fn watch(&mut self, tables: &CompensationTables<T>, torque: T) {
-        let excess = beyond(torque, Self::LARGE * tables.limits.motor);
-        if excess == T::ZERO {
-            self.large = beyond(self.large, Self::SWINGS * tables.law.back_calculation);
-        } else {
-            let side = if excess > T::ZERO { T::ONE } else { -T::ONE };
-            self.swings |= side * self.large < T::ZERO;
-            self.large = side;
         }
     }
 }

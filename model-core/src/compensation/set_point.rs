@@ -149,6 +149,8 @@ pub struct Shaped<T: Real> {
     pub stage: Stage,
     /// The flank that carries or is being gone to; `None` without a compensation.
     pub flank: Option<Flank>,
+    /// The loop hunted: the motor alone is controlled for a while.
+    pub stepped_back: bool,
     /// The law asked for more torque than the motor has, or brakes early because of that: the link does not keep to what it
     /// is asked for.
     pub short_of_torque: bool,

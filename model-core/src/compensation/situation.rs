@@ -18,7 +18,11 @@ pub(super) struct Situation<T: Real> {
     pub error_rate: T,
     /// Motor, referred to the link with every tooth centred, less set-point [rad].
     pub motor: T,
-    /// The same as far as the link's place bears it out: what is more than the guess of the gap allows is wind-up [rad].
+    /// Motor beyond the link since the first readings, wherever the encoders' zeros lie [rad].
+    pub lead: T,
+    /// Of that with every tooth centred, as last known [rad].
+    pub offset: T,
+    /// `motor` as far as the link's place bears it out: what is more than the guess of the gap allows is wind-up [rad].
     pub confirmed_motor: T,
     /// [rad/s].
     pub motor_speed: T,
@@ -68,11 +72,6 @@ impl<T: Real> Situation<T> {
             CommandRef::Impedance(point) => (point.position, point.speed),
         };
         let contact = Flank::touched(estimates.reported_contact);
-        let [numerator, denominator] = tables.gear.ratio.map(i64::from);
-        let whole = denominator * i64::from(estimates.motor.turns) - numerator * i64::from(origin.turns);
-        let motor_turns = T::from_i64(whole) * tables.gear.inverse_denominator + estimates.motor.fraction
-            - tables.gear.motor_per_link * origin.fraction;
-        let motor = tables.gear.turn * tables.gear.link_per_motor * motor_turns - offset;
         let half = clamp(tables.gear.inverse_lever * estimates.half_backlash.value, T::ZERO, tables.body.widest_half);
         let [softest, stiffest] = tables.body.compliances;
         let stiffness = T::ONE.over(clamp(estimates.compliance.value, stiffest, softest));
@@ -80,15 +79,19 @@ impl<T: Real> Situation<T> {
         let ratio = if learnt.valid { clamp(learnt.value, T::QUARTER, T::FOUR) } else { T::ONE };
         let at_link = T::HALF * tables.gear.inverse_lever;
         let error = tables.gear.turn * origin.less(estimates.link.turns, estimates.link.fraction);
+        // The shafts' own angles are counted from their encoders' zeros, which may lie anywhere against each other.
+        let motor = estimates.motor_lead - offset - error;
         let confirmed_motor = if estimates.source == Source::Both && error.is_finite() {
             clamp(motor, -error - half - half, half + half - error)
         } else {
             motor
         };
-        let situation = Self {
+        let mut situation = Self {
             error,
             error_rate: speed - estimates.link.speed,
             motor,
+            lead: estimates.motor_lead,
+            offset,
             confirmed_motor,
             motor_speed: tables.gear.link_per_motor * estimates.motor.speed,
             motor_place: estimates.motor.fraction,
@@ -115,9 +118,10 @@ impl<T: Real> Situation<T> {
         let sum =
             sum + situation.shift + situation.transmission_error_speed + situation.losses[0] + situation.losses[1];
         let sum = sum + situation.mesh_torque + situation.stiffness + situation.inertia;
-        let feels = estimates.source == Source::Both && sum.is_finite();
+        situation.feels = estimates.source == Source::Both && sum.is_finite();
         let knows = estimates.contact_valid && estimates.gap.valid && estimates.half_backlash.value.is_finite();
-        Self { feels, sees: feels && knows, ..situation }
+        situation.sees = situation.feels && knows;
+        situation
     }
 
     /// The shift of the flanks when the link will have turned by an angle [rad].

@@ -2,11 +2,14 @@
 
 use super::flank::FlankControl;
 use super::impedance::ImpedanceLaw;
+use super::inverse::BacklashInverse;
 use super::load::LoadModel;
 use super::plain::Plain;
 use super::position::PositionLaw;
 use super::set_point::{Command, CommandRef, Shaped, Stage};
 use super::situation::Situation;
+use super::turn::Turn;
+use super::watch::{Watch, Watched};
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
@@ -56,11 +59,14 @@ pub struct Compensation<'tables, T: Real> {
     position: PositionLaw<T>,
     impedance: ImpedanceLaw<T>,
     plain: Plain<T>,
+    inverse: BacklashInverse<T>,
     /// By how much the motor's encoder leads the output's, as last valid alone or as part of the gap coordinate; at
     /// the output [rad].
     offset: T,
-    /// 0: plain control; 1: compensation.
+    /// 0: control without compensation; 1: compensation.
     trust: T,
+    watch: Watch<T>,
+    turn: Turn,
 }
 
 impl<'tables, T: Real> Compensation<'tables, T> {
@@ -73,8 +79,11 @@ impl<'tables, T: Real> Compensation<'tables, T> {
             position: PositionLaw::new(),
             impedance: ImpedanceLaw::new(),
             plain: Plain::new(),
+            inverse: BacklashInverse::new(),
             offset: T::ZERO,
             trust: T::ZERO,
+            watch: Watch::new(tables),
+            turn: Turn::Judges,
         }
     }
 
@@ -82,6 +91,8 @@ impl<'tables, T: Real> Compensation<'tables, T> {
     pub fn restart(&mut self) {
         self.load = LoadModel::new();
         self.offset = T::ZERO;
+        self.watch = Watch::new(self.tables);
+        self.inverse = BacklashInverse::new();
         self.let_go();
     }
 
@@ -91,10 +102,11 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         self.position.forget();
         self.impedance.forget();
         self.plain = Plain::new();
+        self.inverse.forget_places();
         self.trust = T::ZERO;
     }
 
-    /// No torque while it is not known where the motor is.
+    /// No torque while it is not known where motor and link are.
     #[cold]
     fn stay_off(&mut self) -> Shaped<T> {
         self.let_go();
@@ -110,46 +122,64 @@ impl<'tables, T: Real> Compensation<'tables, T> {
     /// The same with a command that lies elsewhere.
     pub fn step_by_reference(&mut self, estimates: &Estimates<T>, command: CommandRef<T>) -> Shaped<T> {
         let tables = self.tables;
-        if !estimates.source.has_motor() {
+        if !estimates.source.allows_control() {
             return self.stay_off();
         }
         let known = estimates.encoder_offset.valid || estimates.gap.valid;
         if known && estimates.encoder_offset.value.is_finite() {
             self.offset = estimates.encoder_offset.value;
         }
-        let situation = Situation::new(tables, estimates, self.offset, command);
+        let mut situation = Situation::new(tables, estimates, self.offset, command);
         // Teeth that lie by a flank too early are felt now and then, but carry nothing of the load.
-        let situation = Situation { open: situation.open || self.flank.waits(), ..situation };
+        situation.open |= self.flank.waits();
         let leans = self.flank.stage() == Stage::Touching && situation.open && situation.sees;
         if leans && matches!(command, CommandRef::Position { .. }) {
             self.load.lean(tables, self.position.heeded(&situation));
         }
         self.load.observe(tables, estimates, &situation);
-        let (intent, plain) = match command {
-            CommandRef::Position { now, ahead } => (
-                self.position.intend(tables, &self.load, &situation, now, ahead),
-                self.plain.follow(tables, &self.load, &situation, now),
-            ),
-            CommandRef::Impedance(point) => {
-                (self.impedance.intend(tables, &self.load, &situation, point), self.plain.yield_to(&situation, point))
+        let intent = match command {
+            CommandRef::Position { now, ahead } => {
+                if situation.feels && self.turn == Turn::Observes {
+                    self.inverse.observe(tables, &situation, now);
+                }
+                self.position.intend(tables, &self.load, &situation, now, ahead)
             }
+            CommandRef::Impedance(point) => self.impedance.intend(tables, &self.load, &situation, point),
         };
-        let sees = situation.sees && intent.is_finite();
+        if self.turn == Turn::Judges {
+            let watched = self.watched(&situation, &command);
+            // A set-point that makes no sense changes the flank as it likes.
+            let makes_sense = watched.has_error || matches!(command, CommandRef::Impedance(_));
+            let acting = (self.trust > T::ZERO && situation.sees && makes_sense).then(|| self.flank.flank());
+            self.watch.step(tables, &situation, &watched, acting);
+        }
+        let stepped_back = self.watch.is_away();
+        let sees = situation.sees && intent.is_finite() && !stepped_back;
         let change = if sees { tables.law.trust_step } else { -tables.law.trust_step };
         self.trust = clamp(self.trust + change, T::ZERO, T::ONE);
+        // The law that controls without compensation is asked while it has a share in the torque.
+        let shares = !sees || self.trust < T::ONE;
+        let alone = if shares { self.alone(&situation, &command) } else { T::ZERO };
         let compensated = if sees {
             self.flank.step(tables, &situation, &intent)
         } else {
             self.flank.forget(&situation);
             self.position.forget();
             self.impedance.forget();
-            plain
+            alone
         };
-        let wanted = plain + self.trust * (compensated - plain);
+        let wanted = alone + self.trust * (compensated - alone);
         let torque =
             if wanted.is_finite() { clamp(wanted, -tables.limits.motor, tables.limits.motor) } else { T::ZERO };
         self.load.take_cut(tables, torque != wanted);
-        self.plain.take(tables, &situation, torque - wanted, self.trust);
+        let cut = torque - wanted;
+        self.plain.take(tables, &situation, cut);
+        let inverse_acts = shares && situation.feels && matches!(command, CommandRef::Position { .. });
+        self.inverse.take(tables, &situation, inverse_acts.then_some(cut));
+        if self.turn == Turn::Learns {
+            self.inverse.learn(tables, torque);
+        }
+        self.turn = self.turn.next();
         let stage = if self.trust > T::ZERO { self.flank.stage() } else { Stage::Plain };
         Shaped {
             torque: torque * tables.gear.link_per_motor,
@@ -158,7 +188,45 @@ impl<'tables, T: Real> Compensation<'tables, T> {
             demand: if sees { intent.demand_ahead } else { T::ZERO },
             load: [self.load.even(), self.load.friction()],
             trust: self.trust,
+            stepped_back,
             short_of_torque: torque != wanted || sees && intent.brakes_early,
+        }
+    }
+
+    /// Torque of the law that controls without compensation [N m].
+    fn alone(&mut self, situation: &Situation<T>, command: &CommandRef<T>) -> T {
+        match command {
+            CommandRef::Position { now, .. } if situation.feels => self.inverse.follow(self.tables, situation, now),
+            CommandRef::Position { now, .. } => self.plain.follow(self.tables, &self.load, situation, now),
+            CommandRef::Impedance(point) => self.plain.yield_to(situation, point),
+        }
+    }
+
+    /// Quantities of a period that the monitor judges.
+    fn watched(&self, situation: &Situation<T>, command: &CommandRef<T>) -> Watched<T> {
+        let (tables, load) = (self.tables, &self.load);
+        match command {
+            CommandRef::Position { now, .. } => {
+                let planned = tables.body.load_inertia * now.acceleration + load.planned_drag(tables, now.speed);
+                let most = tables.limits.braking * tables.limits.motor;
+                let whole = planned + tables.body.motor_inertia * now.acceleration;
+                let is_asked_too_much = (whole + load.even()).abs() > most;
+                Watched {
+                    planned,
+                    load: load.even(),
+                    // The error of a motion beyond the motor's torque is the motion's, and one of a radian is a set-point or a reading
+                    // that makes no sense: a loop that runs away has shown it long before.
+                    has_error: situation.feels && !is_asked_too_much && situation.error.abs() < T::ONE,
+                    is_thrown: load.throws(tables),
+                }
+            }
+            // The spring's own torque is what is asked for: it explains the flank that it presses.
+            CommandRef::Impedance(point) => Watched {
+                planned: point.torque + point.stiffness * situation.error,
+                load: T::ZERO,
+                has_error: false,
+                is_thrown: false,
+            },
         }
     }
 }

@@ -27,6 +27,8 @@ pub struct CompensationTables<T: Real> {
     pub rest: RestTable<T>,
     /// Learner of the load.
     pub load: LoadTable<T>,
+    /// Monitor of the loop.
+    pub watch: WatchTable<T>,
 }
 
 /// The control clock.
@@ -43,14 +45,10 @@ pub struct ClockTable<T: Real> {
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct GearTable<T: Real> {
-    /// Motor turns over link turns as a fraction of whole numbers.
-    pub ratio: [i32; 2],
-    /// The same as a number.
+    /// Motor turns over link turns.
     pub motor_per_link: T,
     /// Its inverse.
     pub link_per_motor: T,
-    /// Inverse of the ratio's denominator.
-    pub inverse_denominator: T,
     /// A whole turn [rad].
     pub turn: T,
     /// 1 / (r_c cos alpha): from half-backlash to half the lost motion [1/m].
@@ -212,6 +210,34 @@ pub struct RestTable<T: Real> {
     pub largest_deadband: T,
     /// What is left of it after one period.
     pub deadband_left: T,
+}
+
+/// Monitor of the compensated loop.
+#[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
+pub struct WatchTable<T: Real> {
+    /// Share of the load that the slow load takes up in one period, twice [-].
+    pub smoothing: T,
+    /// Demand that explains a flank, at least [N m].
+    pub least_demand: T,
+    /// Unexplained flank changes that are forgotten in a second, and while the error is small [1/s].
+    pub leaks: [T; 2],
+    /// Unexplained flank changes beyond which the loop hunts [-].
+    pub most: T,
+    /// Root of the mean squared error that is small, over half the lost motion [-].
+    pub calm_per_half: T,
+    /// Share of the squared error that its mean takes up in one period [-].
+    pub memory: T,
+    /// Root of the mean squared error beyond which the loop hunts, over half the lost motion [-].
+    pub error_per_half: T,
+    /// Part of that bound for each N m of the demand [rad/(N m)].
+    pub error_per_demand: T,
+    /// Time for which plain control takes over at the first trip [s].
+    pub first_away: T,
+    /// The longest such time [s].
+    pub longest_away: T,
+    /// Growth of that time with each trip [-].
+    pub longer: T,
 }
 
 /// Learner of the load.

@@ -5,21 +5,25 @@ use std::format;
 use std::string::String;
 
 use crate::compensation::CompensationTables;
-use crate::compensation::design::{compensation_settings, design_compensation};
+use crate::compensation::design::{compensation_settings, design_compensation, good_bandwidth};
 use crate::gears::design::{DesignError, Effort, Processor, design_scheme};
 use crate::gears::{Scheme, Tables};
 use crate::numbers::digest;
-use crate::observer::design::{design_observer, design_usual_probe, observer_settings, observer_text};
+use crate::observer::design::{
+    ObserverSettings, design_observer, design_usual_probe, observer_settings, observer_text,
+};
 use crate::observer::{ObserverTables, ProbeTable};
 use crate::virtual_joint::SurroundingsTable;
 use crate::virtual_joint::design::design_surroundings;
+use crate::wiring::WiringTable;
+use crate::wiring::design::design_wiring;
 use parameters::{JointParameters, ParameterError, Surroundings};
 
 /// Requirements on a controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ControlRequest {
-    /// Bandwidth of the loop [rad/s].
-    pub bandwidth: f64,
+    /// Bandwidth of the loop [rad/s]; [`good_bandwidth`] if none is asked for.
+    pub bandwidth: Option<f64>,
     /// Whether the observer is shown the output encoder.
     pub output_encoder: bool,
 }
@@ -57,18 +61,30 @@ pub struct ControlTables {
 
 /// Tables of a controller for the nominal plant.
 pub fn control_tables(nominal: &NominalPlant<'_>) -> Result<ControlTables, DesignError> {
+    let settings = settings(nominal);
+    let bandwidth = match nominal.request.bandwidth {
+        Some(asked) => asked,
+        None => good_bandwidth(nominal.joint, nominal.surroundings)?,
+    };
+    Ok(ControlTables {
+        observer: design_observer(nominal.joint, &settings)?,
+        probe: design_usual_probe(nominal.joint, &settings)?,
+        compensation: design_compensation(nominal.joint, &compensation_settings(nominal.surroundings, bandwidth))?,
+    })
+}
+
+/// Table of the wiring check for the nominal plant.
+pub fn wiring_table(nominal: &NominalPlant<'_>) -> Result<WiringTable<f32>, DesignError> {
+    design_wiring(nominal.joint, &settings(nominal))
+}
+
+/// Settings of the observer for the nominal plant.
+fn settings(nominal: &NominalPlant<'_>) -> ObserverSettings {
     let mut settings = observer_settings(nominal.surroundings);
     if !nominal.request.output_encoder {
         settings.output_encoder = None;
     }
-    Ok(ControlTables {
-        observer: design_observer(nominal.joint, &settings)?,
-        probe: design_usual_probe(nominal.joint, &settings)?,
-        compensation: design_compensation(
-            nominal.joint,
-            &compensation_settings(nominal.surroundings, nominal.request.bandwidth),
-        )?,
-    })
+    settings
 }
 
 /// Tables of a controller for the nominal plant, and of the true surroundings of the joint, as source.

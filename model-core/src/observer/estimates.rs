@@ -44,9 +44,10 @@ impl Default for Source {
 }
 
 impl Source {
-    /// Whether it is known where the motor is, so that it may be driven.
-    pub fn has_motor(self) -> bool {
+    /// Returns whether the motor may be driven: the motor's place is known, and so is the link's on the scale of the set-points.
+    pub fn allows_control(self) -> bool {
         match self {
+            Self::MotorOnly(OutputFault::Unheard) => false,
             Self::Both | Self::MotorOnly(_) | Self::Nothing(MotorFault::Late) => true,
             Self::Nothing(MotorFault::Silent | MotorFault::Frozen | MotorFault::Jumped) => false,
         }
@@ -71,6 +72,9 @@ pub enum MotorFault {
 pub enum OutputFault {
     /// There is none by design.
     Absent,
+    /// It has given no reading since the observer began: the link's place on the scale of the set-points is not known yet, and the
+    /// compensation gives no torque.
+    Unheard,
     /// It has given no fresh reading for 10 ms.
     Silent,
     /// Its counts stand still while the motor turns.
@@ -143,6 +147,10 @@ pub struct Estimates<T: Real> {
     /// Inertia of link and carrier over what the joint file has; the motor's torque constant is in it, as it is in the
     /// torques [-].
     pub link_inertia_ratio: Estimate<T>,
+    /// Angle by which the motor leads the link, referred to the output, counted from where both stood at the first reading of the
+    /// output encoder; encoder errors that were learnt are taken out [rad]. `encoder_offset` is its value with every tooth centred.
+    /// Where the zeros of the two encoders lie does not enter. Messages to a host leave it out.
+    pub motor_lead: T,
     /// Motor shaft; encoder errors that were learnt are taken out.
     pub motor: Shaft<T>,
     /// Link; likewise. Motor only, this is what the motor implies.

@@ -24,7 +24,7 @@ mod memory;
 mod outputs;
 mod probe;
 mod samples;
-mod sensors;
+pub(crate) mod sensors;
 pub mod tables;
 
 use contact::Contact;

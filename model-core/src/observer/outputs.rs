@@ -64,6 +64,7 @@ impl<T: Real, const P: usize> State<'_, T, P> {
         estimates.mesh_torque.valid = estimates.contact_valid;
         estimates.load_torque.value = self.filters.load.torque * estimates.link_inertia_ratio.value;
         estimates.load_torque.valid = both || touching;
+        estimates.motor_lead = (fused.deflection + self.learnt.learner.value(OFFSET)) * tables.levers.per_output;
         estimates.motor = motor;
         estimates.link = link;
     }

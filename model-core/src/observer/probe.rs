@@ -140,7 +140,7 @@ impl<'tables, T: Real> Probe<'tables, T> {
         let table = self.table;
         let notices = estimates.notices;
         let bad = notices.torque_unknown || notices.out_of_time || notices.motor_implausible || notices.motor_jumped;
-        if bad || !estimates.source.has_motor() {
+        if bad || !estimates.source.allows_control() {
             return Progress::Refused(Refusal::BadSamples);
         }
         let speed = estimates.motor.speed.abs();

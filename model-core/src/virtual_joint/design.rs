@@ -97,6 +97,9 @@ fn friction<T: Real>(of: &Friction, stop: f64) -> FrictionTable<T> {
 }
 
 fn check(joint: &JointParameters, of: &Surroundings, tick_rate: u32) -> Result<(), DesignError> {
+    if let Some(effect) = of.effects().next() {
+        return Err(DesignError::NoSuchEffect { key: effect.key() });
+    }
     let within = |what, given: f64, least: f64, most: f64, must_be| {
         if given >= least && given <= most { Ok(()) } else { Err(DesignError::OutOfRange { what, given, must_be }) }
     };
@@ -120,4 +123,30 @@ fn check(joint: &JointParameters, of: &Surroundings, tick_rate: u32) -> Result<(
 
 fn common_divisor(a: u32, b: u32) -> u32 {
     if b == 0 { a } else { common_divisor(b, a % b) }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString;
+
+    use parameters::{Effect, PayloadStep};
+
+    use super::*;
+    use crate::gears::design::design;
+
+    #[test]
+    fn an_effect_that_a_virtual_joint_lacks_is_refused_by_its_key() {
+        let file = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
+        let tables: Tables<f32, 3> = design(&file.parameters, 10_000).expect("tables");
+        let mut around = file.surroundings;
+        assert!(design_surroundings::<f32, 3>(&file.parameters, &around, &tables).is_ok());
+        around.payload_step = PayloadStep { time: 1.0, ratio: 3.0 };
+        let refused = design_surroundings::<f32, 3>(&file.parameters, &around, &tables).expect_err("refused");
+        assert_eq!(refused, DesignError::NoSuchEffect { key: Effect::PayloadStep.key() });
+        assert!(refused.to_string().contains("`payload_step_ratio`"), "{refused}");
+        around = file.surroundings;
+        around.output_encoder.noise_counts = 1.0;
+        let refused = design_surroundings::<f32, 3>(&file.parameters, &around, &tables).expect_err("refused");
+        assert!(refused.to_string().contains("`noise_counts`"), "{refused}");
+    }
 }

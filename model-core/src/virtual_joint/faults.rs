@@ -9,8 +9,8 @@ use crate::observer::{Reading, Samples};
 use crate::virtual_joint::fault::{Fault, FaultKind, FixedPoint, Shaft};
 use crate::virtual_joint::tables::SurroundingsTable;
 
-/// Most faults of a run on a board.
-pub const MOST_FAULTS: usize = 8;
+/// Most faults of a run on a board: eight of the user's, and the zeros of both encoders.
+pub const MOST_FAULTS: usize = 10;
 
 /// A fault with its state.
 #[derive(Debug, Clone, Copy)]

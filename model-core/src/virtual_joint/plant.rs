@@ -121,15 +121,17 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         let [motor, output] = &table.encoders;
         Samples {
             time,
-            motor: Reading { counts: counts(motor, shafts.motor.into(), shafts.speeds[0]).0, time },
-            output: Some(Reading { counts: counts(output, shafts.link, shafts.speeds[1]).0, time }),
+            motor: Reading { counts: counts(motor, shafts.motor.into(), shafts.speeds[0]), time },
+            output: Some(Reading { counts: counts(output, shafts.link, shafts.speeds[1]), time }),
             torque: self.commands[0],
         }
     }
 
-    /// Whole turns of what the output encoder reads now: the observer counts the link's turns from its first reading's.
-    pub fn output_turn(&self) -> i32 {
-        counts(&self.table.encoders[1], self.shafts.link, self.shafts.speeds[1]).1
+    /// Whole turns of the output encoder's reading now, mounted so that it reads `zero` at angle zero [2^-32 turns]: the observer
+    /// counts the link's turns from the turn of its first reading.
+    pub fn output_turn(&self, zero: u32) -> i32 {
+        let reading = reading(&self.table.encoders[1], self.shafts.link, self.shafts.speeds[1]);
+        (reading.wrapping_add(zero.into()) >> 32) as i32
     }
 
     /// Moves on by one period under a torque command and a torque that brakes the link [N m]. Its parts are not inlined: each
@@ -214,14 +216,18 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
     }
 }
 
-/// Counts within a turn, and the turn, of what an encoder reads.
-fn counts<T: Real>(table: &EncoderErrorTable<T>, angle: i64, speed: T) -> (u32, i32) {
+/// Counts within a turn that an encoder reads.
+fn counts<T: Real>(table: &EncoderErrorTable<T>, angle: i64, speed: T) -> u32 {
+    (reading(table, angle, speed) as u32).checked_shr(table.shift).unwrap_or(0)
+}
+
+/// Angle that an encoder reads, with its errors [2^-32 turns].
+fn reading<T: Real>(table: &EncoderErrorTable<T>, angle: i64, speed: T) -> i64 {
     let then = angle.wrapping_sub((table.lag * speed).to_i64());
     let phase = then as u32;
     let (once, _) = sine_cosine::<T>(phase);
     let (twice, _) = sine_cosine::<T>(phase.wrapping_mul(2));
-    let read = then.wrapping_add((table.errors[0] * once + table.errors[1] * twice).to_i64());
-    ((read as u32).checked_shr(table.shift).unwrap_or(0), (read >> 32) as i32)
+    then.wrapping_add((table.errors[0] * once + table.errors[1] * twice).to_i64())
 }
 
 /// Torque against a shaft's motion: dry friction is at most what would stop it within the period, so that it sticks.

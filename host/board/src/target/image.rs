@@ -88,8 +88,8 @@ fn fitted(joint_file: &Path, board: &Board, role: Role, rate: u32, forced: bool,
 pub struct Control {
     /// Control periods, and ticks, a second [Hz].
     pub rate: u32,
-    /// Bandwidth of the loop [rad/s].
-    pub bandwidth: f64,
+    /// Bandwidth of the loop [rad/s]; what is good for the joint that the controller is told if none is asked for.
+    pub bandwidth: Option<f64>,
     /// Whether the observer is shown the output encoder.
     pub output_encoder: bool,
     /// Built although the board has no time for it.
@@ -99,7 +99,7 @@ pub struct Control {
 impl Control {
     /// At a rate, with the defaults of the firmware's build.
     pub fn usual(rate: u32) -> Self {
-        Self { rate, bandwidth: 60.0, output_encoder: true, forced: false }
+        Self { rate, bandwidth: None, output_encoder: true, forced: false }
     }
 }
 
@@ -166,7 +166,8 @@ fn finish(
     name: &str,
     say: Say<'_>,
 ) -> Outcome<Image> {
-    let (rate, bandwidth) = (control.rate.to_string(), control.bandwidth.to_string());
+    let (rate, bandwidth) =
+        (control.rate.to_string(), control.bandwidth.map_or_else(String::new, |asked| asked.to_string()));
     let [motor_only, forced] = [!control.output_encoder, control.forced].map(|yes| if yes { "1" } else { "0" });
     let own_flags = if has_room_for_all(board) { "" } else { LESS_INLINED };
     let mut target_flags = toolchain.target_flags();

@@ -45,7 +45,7 @@ fn sweeps() -> String {
 
 /// Half a second of a joint that hardly moves, a row each control period.
 fn still() -> String {
-    let row = |row: i32| format!("{},{},{row},0.1\n", 1e-4 * f64::from(row), row / 3);
+    let row = |row: i32| format!("{},{},{row},0.1\n", 1e-4 * f64::from(row), 3 * row / 4);
     "time_s,motor_counts,output_counts,motor_torque_N_m\n".to_owned() + &(0..5000).map(row).collect::<String>()
 }
 

@@ -45,7 +45,7 @@ pub fn learnt(told: &JointFile, truth: &JointFile, periods: u32) -> (Memory, Est
     let mut estimates = Estimates::default();
     for period in 0..periods {
         let (sine, cosine) = (core::f32::consts::TAU * 2.0 / around.control_rate as f32 * period as f32).sin_cos();
-        let position = Position { turns: virtual_joint.output_turn(), fraction: 0.02 * sine };
+        let position = Position { turns: virtual_joint.output_turn(0), fraction: 0.02 * sine };
         let now = Motion { position, speed: 1.6 * cosine, acceleration: -20.0 * sine };
         let answer = controller.step(&virtual_joint.samples(), &Command::Position { now, ahead: None });
         virtual_joint.advance(answer.shaped.torque, 0.0);

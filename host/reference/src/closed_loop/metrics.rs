@@ -5,6 +5,9 @@ use super::{Run, Sample};
 /// Share of the half-gap within which a flank counts as touching: mesh deflection and transmission error are less.
 const NEAR: f64 = 0.9;
 
+/// Share of the half-gap below which a flank counts as left: a bounce that is shorter is part of the strike before it. Chosen.
+const LEFT: f64 = 0.8;
+
 /// Figures of one run from a moment on.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Figures {
@@ -16,6 +19,8 @@ pub struct Figures {
     pub peak_to_peak: f64,
     /// Changes from one flank to the other.
     pub crossings: usize,
+    /// Landings on either flank, the one that was left among them.
+    pub strikes: usize,
     /// Mean time from leaving one flank to touching the other [s].
     pub lost_motion_time: f64,
     /// The longest of them [s].
@@ -51,6 +56,7 @@ impl Figures {
             ..Self::default()
         };
         figures.count_crossings(&samples);
+        figures.strikes = strikes(&samples);
         figures
     }
 
@@ -76,6 +82,19 @@ impl Figures {
     }
 }
 
+/// Landings of the teeth on a flank after they have left one.
+fn strikes(samples: &[Sample]) -> usize {
+    let (mut free, mut strikes) = (false, 0);
+    for sample in samples {
+        let gap = sample.gap.abs();
+        if free && gap > NEAR {
+            (free, strikes) = (false, strikes + 1);
+        }
+        free |= gap < LEFT;
+    }
+    strikes
+}
+
 /// How far a run is from another of the same motion: link position RMS and peak [rad], and RMS of the torque between
 /// carrier and link [N m].
 pub fn deviation(run: &Run, from_run: &Run, from: f64) -> (f64, f64, f64) {
@@ -89,4 +108,21 @@ pub fn deviation(run: &Run, from_run: &Run, from: f64) -> (f64, f64, f64) {
         torques += (sample.transmitted - other.transmitted).powi(2);
     }
     ((squares / count.max(1.0)).sqrt(), peak, (torques / count.max(1.0)).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_strike_is_a_landing_after_the_flank_was_left() {
+        let of = |gaps: &[f64]| {
+            let samples: Vec<Sample> = gaps.iter().map(|gap| Sample { gap: *gap, ..Sample::default() }).collect();
+            (strikes(&samples), Figures::of(&Run { samples, period: 1.0 }, 0.0).crossings)
+        };
+        assert_eq!(of(&[1.0, 0.0, -1.0]), (1, 1), "a crossing is one strike");
+        assert_eq!(of(&[1.0, 0.5, 1.0, 0.7, 1.0]), (2, 0), "bounces on one flank are strikes and no crossings");
+        assert_eq!(of(&[1.0, 0.85, 1.0]), (0, 0), "a flank that is hardly left is not struck");
+        assert_eq!(of(&[0.0, 0.3, -0.5]), (0, 0), "teeth that stay in the gap strike nothing");
+    }
 }

@@ -48,6 +48,14 @@ pub enum Profile {
         /// Of the rests' lengths.
         seed: u64,
     },
+    /// Periodic path of a leg's joint, swelling up over the first second: amplitude (sin p + sin(2 p + 1) / 2) / 1.5 with p = 2 pi
+    /// frequency t. The second harmonic gives the two unequal bends of a knee in a step (assumed shape).
+    Walking {
+        /// [rad].
+        amplitude: f64,
+        /// Steps a second [Hz].
+        frequency: f64,
+    },
     /// Stay at an angle [rad].
     Hold(f64),
 }
@@ -91,6 +99,16 @@ impl MotionProfile for Profile {
     fn at(&self, time: f64) -> Motion {
         match *self {
             Self::Sine { amplitude, frequency } => swelling(time, 1.0, sine(amplitude, frequency, 0.0, time)),
+            Self::Walking { amplitude, frequency } => {
+                let first = sine(amplitude / 1.5, frequency, 0.0, time);
+                let second = sine(0.5 * amplitude / 1.5, 2.0 * frequency, 1.0, time);
+                let sum = Motion {
+                    position: first.position + second.position,
+                    speed: first.speed + second.speed,
+                    acceleration: first.acceleration + second.acceleration,
+                };
+                swelling(time, 1.0, sum)
+            }
             Self::Random { amplitude, highest, seed } => {
                 let mut random = ChaCha8Rng::seed_from_u64(seed);
                 let mut sum = Motion::default();

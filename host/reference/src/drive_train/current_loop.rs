@@ -1,12 +1,24 @@
-//! From a torque command to the torque in the air gap: delay, limit, lag, wrong torque constant, noise. Electrical
-//! dynamics beyond one first-order lag are left out.
+//! From a torque command to the torque in the air gap: delay, limit, steps, lag, saturation, ripple, wrong torque constant, noise.
+//! Electrical dynamics beyond one first-order lag are left out.
+//!
+//! With the torque T of the lag, the limit L, the error k of the torque constant, the loss a at the limit, the ripple's amplitude r and its
+//! N periods in a turn of the motor, and the noise n with its ratio, the air gap has the torque
+//!
+//! ```text
+//! T (1 - a min(1, (T / L)^2)) (1 + k) (1 + r sin(N theta_m)) (1 + ratio n)   (M1)
+//! ```
+//!
+//! A motor's flux grows less than its current as the iron saturates; the first term of that is odd and cubic in the current (J. R.
+//! Hendershot, T. J. E. Miller, "Design of brushless permanent-magnet motors"). Commands are rounded to whole steps of
+//! resolution x L.
 
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
 use parameters::Surroundings;
 use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use super::random::{self, normal};
 
 /// A command on its way.
 #[derive(Debug, Clone, Copy)]
@@ -19,7 +31,6 @@ struct Command {
 #[derive(Debug, Clone)]
 pub(super) struct CurrentLoop {
     around: Surroundings,
-    part: f64,
     pending: VecDeque<Command>,
     wanted: f64,
     current: f64,
@@ -28,33 +39,36 @@ pub(super) struct CurrentLoop {
 }
 
 impl CurrentLoop {
-    pub fn new(around: Surroundings, part: f64, seed: u64) -> Self {
+    pub fn new(around: Surroundings, seed: u64) -> Self {
         Self {
             around,
-            part,
             pending: VecDeque::new(),
             wanted: 0.0,
             current: 0.0,
             noise: 0.0,
-            random: ChaCha8Rng::seed_from_u64(seed),
+            random: random::stream(seed, random::TORQUE_NOISE),
         }
     }
 
     /// Takes a command that will act from a part of time on, and draws the noise of this period.
     pub fn command(&mut self, torque: f64, acts_from: u64) {
         let limit = self.around.torque_limit;
-        self.pending.push_back(Command { acts_from, torque: torque.clamp(-limit, limit) });
-        self.noise = self.normal();
+        let step = self.around.torque_errors.resolution_ratio * limit;
+        let torque = torque.clamp(-limit, limit);
+        let torque = if step > 0.0 { step * (torque / step).round() } else { torque };
+        self.pending.push_back(Command { acts_from, torque });
+        self.noise = normal(&mut self.random);
     }
 
-    /// Mean torque in the air gap during a part of time: exact for a command that does not change within it [N m].
-    pub fn torque(&mut self, part: u64) -> f64 {
+    /// Mean torque in the air gap during a part of time of this length [s], the motor at this angle [rad]: exact for a command that does not
+    /// change within the part [N m].
+    pub fn torque(&mut self, part: u64, length: f64, motor_angle: f64) -> f64 {
         while let Some(command) = self.pending.front().filter(|command| command.acts_from <= part) {
             self.wanted = command.torque;
             self.pending.pop_front();
         }
         let mean = if self.around.current_lag > 0.0 {
-            let ratio = self.part / self.around.current_lag;
+            let ratio = length / self.around.current_lag;
             let decay = -(-ratio).exp_m1();
             let lacking = self.wanted - self.current;
             self.current += lacking * decay;
@@ -63,14 +77,18 @@ impl CurrentLoop {
             self.current = self.wanted;
             self.wanted
         };
-        mean * (1.0 + self.around.torque_constant_error_ratio) * (1.0 + self.around.torque_noise_ratio * self.noise)
-    }
-
-    /// A standard normal deviate, by Box and Muller.
-    fn normal(&mut self) -> f64 {
-        // 53 random bits; the first is kept off zero for the logarithm.
-        let mut uniform = || ((self.random.next_u64() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64;
-        let (radius, turn) = ((-2.0 * uniform().ln()).sqrt(), uniform());
-        radius * (TAU * turn).cos()
+        let errors = &self.around.torque_errors;
+        let flux = if errors.saturation_ratio > 0.0 {
+            1.0 - errors.saturation_ratio * (mean / self.around.torque_limit).powi(2).min(1.0)
+        } else {
+            1.0
+        };
+        let ripple = if errors.ripple_ratio > 0.0 {
+            1.0 + errors.ripple_ratio * (f64::from(errors.ripple_periods_per_turn) * motor_angle.rem_euclid(TAU)).sin()
+        } else {
+            1.0
+        };
+        let given = mean * flux * ripple;
+        given * (1.0 + self.around.torque_constant_error_ratio) * (1.0 + self.around.torque_noise_ratio * self.noise)
     }
 }

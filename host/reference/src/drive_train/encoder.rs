@@ -1,11 +1,25 @@
 //! An absolute encoder: the past of an angle, its errors, its counts.
+//!
+//! A reading of the shaft's angle theta is, with the amplitudes and phases of its errors, N periods of its scale in a turn, the standard
+//! deviation sigma of its noise and a standard normal deviate n,
+//!
+//! ```text
+//! counts = floor(2^bits / 2 pi (theta + e_1 sin(theta + p_1) + e_2 sin(2 theta + p_2)
+//!                               + s_1 sin(N theta + q_1) + s_2 sin(2 N theta + q_2)) + sigma n)   (E1)
+//! ```
+//!
+//! s_1 and s_2 are what offsets and unequal amplitudes of the sine and cosine of a scale leave after interpolation (P. L. M. Heydemann,
+//! "Determination and correction of quadrature fringe measurement errors in interferometers", Applied Optics 20, 1981). theta is the angle
+//! at the reading's own time, less the skew and, for each reading anew, an age that is drawn evenly from 0 to the age jitter.
 
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
 use parameters::AbsoluteEncoder;
+use rand_chacha::ChaCha8Rng;
 
 use super::parameters::ErrorPhases;
+use super::random::{self, normal, uniform};
 
 #[derive(Debug, Clone, Copy)]
 struct Point {
@@ -19,19 +33,61 @@ struct Point {
 pub(super) struct Encoder {
     parameters: AbsoluteEncoder,
     phases: ErrorPhases,
+    subdivision_phases: [f64; 2],
     past: VecDeque<Point>,
+    ages: ChaCha8Rng,
+    noises: ChaCha8Rng,
+    /// Further age of the present reading [s].
+    age: f64,
+    /// Noise of the present reading [counts].
+    noise: f64,
+}
+
+/// Which encoder: its random numbers are its own.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Place {
+    Motor,
+    Output,
 }
 
 impl Encoder {
-    pub fn new(parameters: AbsoluteEncoder, phases: ErrorPhases) -> Self {
-        Self { parameters, phases, past: VecDeque::new() }
+    pub fn new(
+        parameters: AbsoluteEncoder,
+        phases: ErrorPhases,
+        subdivision_phases: [f64; 2],
+        place: Place,
+        seed: u64,
+    ) -> Self {
+        let (ages, noises) = match place {
+            Place::Motor => (random::MOTOR_AGE, random::MOTOR_NOISE),
+            Place::Output => (random::OUTPUT_AGE, random::OUTPUT_NOISE),
+        };
+        let mut encoder = Self {
+            parameters,
+            phases,
+            subdivision_phases,
+            past: VecDeque::new(),
+            ages: random::stream(seed, ages),
+            noises: random::stream(seed, noises),
+            age: 0.0,
+            noise: 0.0,
+        };
+        encoder.begin_reading();
+        encoder
+    }
+
+    /// Draws age and noise of the next reading.
+    pub fn begin_reading(&mut self) {
+        self.age = self.parameters.age_jitter * uniform(&mut self.ages);
+        self.noise = self.parameters.noise_counts * normal(&mut self.noises);
     }
 
     /// Notes where the shaft is; times must rise.
     pub fn note(&mut self, time: f64, angle: f64, speed: f64) {
         self.past.push_back(Point { time, angle, speed });
+        let oldest = self.parameters.skew + self.parameters.age_jitter;
         // One point at or before the moment that is read now, the rest after it.
-        while self.past.len() > 2 && self.past[1].time <= time - self.parameters.skew {
+        while self.past.len() > 2 && self.past[1].time <= time - oldest {
             self.past.pop_front();
         }
     }
@@ -41,14 +97,19 @@ impl Encoder {
         let angle = self.angle_then();
         let once = self.parameters.once_per_turn_error * (angle + self.phases.once_per_turn).sin();
         let twice = self.parameters.twice_per_turn_error * (2.0 * angle + self.phases.twice_per_turn).sin();
+        let of_scale = self.parameters.subdivision;
+        let periods = f64::from(of_scale.periods_per_turn);
+        let [first, second] = self.subdivision_phases;
+        let within_period =
+            of_scale.first * (periods * angle + first).sin() + of_scale.second * (2.0 * periods * angle + second).sin();
         let counts_per_turn = f64::from(1_u32 << self.parameters.bits);
-        ((angle + once + twice) / TAU * counts_per_turn).floor() as i64
+        ((angle + once + twice + within_period) / TAU * counts_per_turn + self.noise).floor() as i64
     }
 
     /// The angle when the reading was taken: the cubic between the two nearest points.
     fn angle_then(&self) -> f64 {
         let Some(last) = self.past.back() else { return 0.0 };
-        let then = last.time - self.parameters.skew;
+        let then = last.time - self.parameters.skew - self.age;
         let after = self.past.partition_point(|point| point.time <= then);
         let (Some(from), Some(to)) =
             (after.checked_sub(1).and_then(|index| self.past.get(index)), self.past.get(after))

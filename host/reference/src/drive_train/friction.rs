@@ -21,14 +21,19 @@ impl Shaft {
     /// Dry friction is at most what would stop the shaft within the part: it sticks instead of chattering about zero,
     /// and it never turns a shaft round.
     pub fn friction(&self, friction: &Friction, extra: f64) -> f64 {
-        let rise = if friction.stribeck_speed > 0.0 {
-            friction.stribeck_rise_ratio * (-self.speed.abs() / friction.stribeck_speed).exp()
-        } else {
-            0.0
-        };
-        let dry = friction.coulomb * (1.0 + rise) + extra;
+        let dry = dry_friction(friction, self.speed) + extra;
         let viscous = friction.viscous * self.speed;
         let to_stop = self.inertia * self.speed / self.part + self.driving_torque - viscous;
         viscous + to_stop.clamp(-dry, dry)
     }
+}
+
+/// Dry friction at a speed, with its Stribeck rise [N m].
+pub(super) fn dry_friction(friction: &Friction, speed: f64) -> f64 {
+    let rise = if friction.stribeck_speed > 0.0 {
+        friction.stribeck_rise_ratio * (-speed.abs() / friction.stribeck_speed).exp()
+    } else {
+        0.0
+    };
+    friction.coulomb * (1.0 + rise)
 }

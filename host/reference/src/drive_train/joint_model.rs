@@ -20,6 +20,12 @@ pub trait JointModel {
 
     /// Outputs now.
     fn observe(&self) -> Observation;
+
+    /// Multiplies the half-backlash of every mesh by a factor, which stays until it is changed.
+    fn scale_half_backlash(&mut self, factor: f64);
+
+    /// From now on the link has this inertia [kg m^2].
+    fn set_link_inertia(&mut self, link_inertia: f64);
 }
 
 impl JointModel for Reference {
@@ -36,6 +42,14 @@ impl JointModel for Reference {
     fn observe(&self) -> Observation {
         Reference::observe(self)
     }
+
+    fn scale_half_backlash(&mut self, factor: f64) {
+        Reference::scale_half_backlash(self, factor);
+    }
+
+    fn set_link_inertia(&mut self, link_inertia: f64) {
+        Reference::set_link_inertia(self, link_inertia);
+    }
 }
 
 impl<I: JointModel + ?Sized> JointModel for Box<I> {
@@ -45,5 +59,13 @@ impl<I: JointModel + ?Sized> JointModel for Box<I> {
 
     fn observe(&self) -> Observation {
         (**self).observe()
+    }
+
+    fn scale_half_backlash(&mut self, factor: f64) {
+        (**self).scale_half_backlash(factor);
+    }
+
+    fn set_link_inertia(&mut self, link_inertia: f64) {
+        (**self).set_link_inertia(link_inertia);
     }
 }

@@ -5,6 +5,7 @@ use std::fmt;
 
 use parameters::{AbsoluteEncoder, Friction, Surroundings};
 
+use super::bristles::Bristles;
 use crate::joint::ReferenceError;
 
 /// What surrounds the gears, and what no data sheet tells of it.
@@ -16,6 +17,8 @@ pub struct DriveTrainParameters {
     pub motor_error_phases: ErrorPhases,
     /// Of the output encoder.
     pub output_error_phases: ErrorPhases,
+    /// Phases of further effects.
+    pub effect_phases: EffectPhases,
     /// Torques are held constant over this part of a control period, and follow angles and speeds from part to part.
     pub parts_per_period: u32,
 }
@@ -27,6 +30,17 @@ pub struct ErrorPhases {
     pub once_per_turn: f64,
     /// Of the error that comes twice a turn [rad].
     pub twice_per_turn: f64,
+}
+
+/// Phases at angle zero that no data sheet states [rad].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct EffectPhases {
+    /// Of the motor encoder's error within a period of its scale: first and second harmonic.
+    pub motor_subdivision: [f64; 2],
+    /// Of the output encoder's, likewise.
+    pub output_subdivision: [f64; 2],
+    /// Of the backlash around the turn: of the link, of the motor.
+    pub width: [f64; 2],
 }
 
 /// Why a drive train cannot run.
@@ -71,6 +85,7 @@ impl From<Surroundings> for DriveTrainParameters {
             surroundings,
             motor_error_phases: ErrorPhases::default(),
             output_error_phases: ErrorPhases::default(),
+            effect_phases: EffectPhases::default(),
             parts_per_period: 10,
         }
     }
@@ -113,12 +128,6 @@ impl DriveTrainParameters {
 
     pub(super) fn check(&self) -> Result<(), DriveTrainError> {
         let around = &self.surroundings;
-        let must = |quantity, value: f64, holds: bool, must_be| {
-            if holds { Ok(()) } else { Err(DriveTrainError::OutOfRange { quantity, value, must_be }) }
-        };
-        let not_negative = |quantity, value: f64| {
-            must(quantity, value, value >= 0.0 && value.is_finite(), "zero or positive, and finite")
-        };
         must("control rate", around.control_rate.into(), around.control_rate > 0, "positive")?;
         must("parts per period", self.parts_per_period.into(), self.parts_per_period > 0, "at least 1")?;
         let efficiency = around.efficiency;
@@ -136,7 +145,81 @@ impl DriveTrainParameters {
         for encoder in [&around.motor_encoder, &around.output_encoder] {
             must("encoder bits", encoder.bits.into(), (1..=30).contains(&encoder.bits), "from 1 to 30")?;
             not_negative("encoder skew", encoder.skew)?;
+            not_negative("jitter of the age of an encoder's readings", encoder.age_jitter)?;
+            not_negative("noise of an encoder in counts", encoder.noise_counts)?;
+            let share = encoder.missing_share;
+            must("share of missing readings", share, (0.0..=1.0).contains(&share), "from 0 to 1")?;
+            for amplitude in [encoder.subdivision.first, encoder.subdivision.second] {
+                not_negative("sub-divisional error of an encoder", amplitude)?;
+            }
         }
-        Ok(())
+        self.check_effects()
     }
+
+    fn check_effects(&self) -> Result<(), DriveTrainError> {
+        let around = &self.surroundings;
+        let below_one =
+            |quantity, value: f64| must(quantity, value, (0.0..1.0).contains(&value), "at least 0 and less than 1");
+        let payload = &around.payload;
+        below_one("share of the payload", payload.inertia_share)?;
+        below_one("damping ratio of the payload", payload.damping_ratio)?;
+        if payload.inertia_share > 0.0 {
+            positive("frequency of the payload", payload.frequency)?;
+        }
+        positive("ratio of the payload step", around.payload_step.ratio)?;
+        not_negative("time of the payload step", around.payload_step.time)?;
+        below_one("share of the stiffness with hysteresis", around.hysteresis.stiffness_share)?;
+        if around.hysteresis.stiffness_share > 0.0 {
+            positive("torque of the hysteresis", around.hysteresis.torque)?;
+        }
+        not_negative("presliding of the motor", around.presliding.motor)?;
+        not_negative("presliding of the link", around.presliding.load)?;
+        not_negative("variation of the backlash once a turn of the link", around.width.per_link_turn)?;
+        not_negative("variation of the backlash once a turn of the motor", around.width.per_motor_turn)?;
+        below_one("variation of the backlash", around.width.per_link_turn + around.width.per_motor_turn)?;
+        for drift in [around.drift.friction, around.drift.width] {
+            must("drift a second", drift, drift.is_finite(), "finite")?;
+        }
+        let errors = &around.torque_errors;
+        below_one("ripple of the torque", errors.ripple_ratio)?;
+        below_one("loss of torque at the limit", errors.saturation_ratio)?;
+        below_one("step of the torque over the limit", errors.resolution_ratio)?;
+        if errors.saturation_ratio + errors.resolution_ratio > 0.0 {
+            let limit = around.torque_limit;
+            let must_be = "finite and positive: saturation and steps of the torque are parts of it";
+            must("motor torque limit", limit, limit.is_finite() && limit > 0.0, must_be)?;
+        }
+        let jitter = around.control_jitter_ratio;
+        must("jitter of the control loop", jitter, (0.0..=0.5).contains(&jitter), "from 0 to 0.5")
+    }
+
+    /// Refuses bristles that parts of time of this length [s] cannot follow, for the inertias of motor and link [kg m^2].
+    pub(super) fn check_presliding(&self, inertias: [f64; 2], part: f64) -> Result<(), DriveTrainError> {
+        let around = &self.surroundings;
+        let shafts = [
+            ("presliding of the motor", around.presliding.motor, &around.motor_friction),
+            ("presliding of the link", around.presliding.load, &around.load_friction),
+        ];
+        shafts.into_iter().zip(inertias).try_for_each(|((quantity, value, friction), inertia)| {
+            let holds = value == 0.0 || value >= Bristles::least_presliding(friction, inertia, part);
+            must(
+                quantity,
+                value,
+                holds,
+                "zero, or so large that the shaft swings on its bristles slower than a part of time",
+            )
+        })
+    }
+}
+
+fn must(quantity: &'static str, value: f64, holds: bool, must_be: &'static str) -> Result<(), DriveTrainError> {
+    if holds { Ok(()) } else { Err(DriveTrainError::OutOfRange { quantity, value, must_be }) }
+}
+
+fn not_negative(quantity: &'static str, value: f64) -> Result<(), DriveTrainError> {
+    must(quantity, value, value >= 0.0 && value.is_finite(), "zero or positive, and finite")
+}
+
+fn positive(quantity: &'static str, value: f64) -> Result<(), DriveTrainError> {
+    must(quantity, value, value > 0.0 && value.is_finite(), "positive and finite")
 }

@@ -3,7 +3,7 @@
 use super::guard::Guards;
 
 /// The most entries that a state may have.
-pub const MAX_ENTRIES: usize = 20;
+pub const MAX_ENTRIES: usize = 21;
 
 /// A state or its rates; only the first `dimension` entries count.
 pub type Entries = [f64; MAX_ENTRIES];

@@ -55,6 +55,7 @@ impl JointEquations {
             constants(joint, &joint.sun_planet, sun_reduced, i64::from(geometry.sun_teeth)),
             constants(joint, &joint.ring_planet, planet, -i64::from(geometry.ring_teeth)),
         ];
+        let carried = geometry.planets as f64 * (crest(&joint.sun_planet) + crest(&joint.ring_planet));
         let highest_frequency = highest_frequency(joint, &masses, compliance.map_or(0.0, |(stiffness, _)| stiffness));
         Ok(Self {
             planets: geometry.planets,
@@ -64,7 +65,10 @@ impl JointEquations {
             ring_teeth: f64::from(geometry.ring_teeth),
             length: joint.characteristic_length,
             masses,
+            link_mass: link,
+            link_stiffness: compliance.map_or(carried, |(stiffness, _)| stiffness),
             compliance,
+            hysteresis: None,
             meshes,
             zones: [[Zone::Free; MAX_PLANETS]; 2],
             excitation: joint.excitation,
@@ -94,6 +98,7 @@ impl JointEquations {
                 damping: 0.5 * damping / arm,
                 law: DampingLaw::Contact,
                 half_backlash: 0.5 * gear.lost_motion * lever,
+                nominal_half_backlash: 0.5 * gear.lost_motion * lever,
                 error_amplitude: 0.0,
                 error_phase: 0.0,
             };
@@ -107,7 +112,10 @@ impl JointEquations {
             ring_teeth: PARTS_OF_A_TURN,
             length: joint.characteristic_length,
             masses: Vec::from_iter([motor_inertia / (sun_lever * sun_lever), joint.link_inertia / arm]),
+            link_mass: joint.link_inertia / arm,
+            link_stiffness: gear.stiffness / arm,
             compliance: None,
+            hysteresis: None,
             meshes: [mesh(), mesh()],
             zones: [[Zone::Free; MAX_PLANETS]; 2],
             excitation: joint.excitation,
@@ -144,6 +152,7 @@ fn constants(
             damping: 2.0 * mesh.damping_ratio * (mesh.mean_stiffness * reduced_mass).sqrt(),
             law: joint.damping_law,
             half_backlash: mesh.half_backlash[planet],
+            nominal_half_backlash: mesh.half_backlash[planet],
             error_amplitude: mesh.transmission_error[planet],
             error_phase: phases(planet).1,
         })
@@ -158,16 +167,18 @@ fn harmonics(mesh: &Mesh) -> f64 {
     }
 }
 
+/// Stiffness of a mesh at the crest of its wave [N/m].
+fn crest(mesh: &Mesh) -> f64 {
+    let ratio = match mesh.stiffness_wave {
+        StiffnessWave::Harmonic { stiffness_ratio } => stiffness_ratio,
+        StiffnessWave::Rectangular { stiffness_ratio, .. } => 2.0 * stiffness_ratio,
+    };
+    mesh.mean_stiffness * (1.0 + ratio.abs())
+}
+
 /// A bound on the highest natural frequency (Gershgorin, row by row), with the stiffness at its crest [rad/s].
 fn highest_frequency(joint: &JointParameters, masses: &[f64], compliance: f64) -> f64 {
     let planets = joint.geometry.planets as f64;
-    let crest = |mesh: &Mesh| {
-        let ratio = match mesh.stiffness_wave {
-            StiffnessWave::Harmonic { stiffness_ratio } => stiffness_ratio,
-            StiffnessWave::Rectangular { stiffness_ratio, .. } => 2.0 * stiffness_ratio,
-        };
-        mesh.mean_stiffness * (1.0 + ratio.abs())
-    };
     let (sun_planet, ring_planet) = (crest(&joint.sun_planet), crest(&joint.ring_planet));
     let carrier = joint.geometry.planets + 1;
     let rows = masses.iter().enumerate().map(|(body, mass)| {

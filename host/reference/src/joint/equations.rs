@@ -4,6 +4,7 @@
 use heapless::Vec;
 use parameters::{Excitation, MAX_PLANETS};
 
+use super::hysteresis::Slip;
 use super::mesh_law::{MeshConstants, MeshState, Phase, Zone};
 use crate::integrator::{Entries, Guards, MAX_ENTRIES, SwitchedSystem};
 
@@ -35,8 +36,14 @@ pub(super) struct JointEquations {
     pub length: f64,
     /// Equivalent masses in the order of the state: sun, planets, carrier, then the link if it is a body of its own.
     pub masses: Vec<f64, { MAX_PLANETS + 3 }>,
+    /// Share of the link in the last body's mass.
+    pub link_mass: f64,
+    /// Stiffness of all springs at the last body, at their crests.
+    pub link_stiffness: f64,
     /// Stiffness and damping between carrier and link.
     pub compliance: Option<(f64, f64)>,
+    /// Part of the stiffness between carrier and link that slips; its deflection follows the works in the state.
+    pub hysteresis: Option<Slip>,
     pub meshes: [Vec<MeshConstants, MAX_PLANETS>; 2],
     pub zones: [[Zone; MAX_PLANETS]; 2],
     pub excitation: Excitation,
@@ -132,6 +139,11 @@ impl JointEquations {
         forces[self.carrier()] += both;
     }
 
+    /// Place of the slipping part's deflection in the state.
+    pub fn slip_entry(&self) -> usize {
+        2 * self.bodies() + WORKS
+    }
+
     pub fn internal_forces(&self, time: f64, state: &Entries) -> InternalForces {
         let phase = self.phase(time, state);
         let speeds = &state[self.bodies()..];
@@ -142,17 +154,20 @@ impl JointEquations {
                 meshes[kind][planet] = mesh.state(self.zones[kind][planet], position, speed, phase);
             }
         }
-        let wind_up_force = self.compliance.map_or(0.0, |(stiffness, damping)| {
+        let mut wind_up_force = self.compliance.map_or(0.0, |(stiffness, damping)| {
             let (carrier, link) = (self.carrier(), self.link());
             stiffness * (state[carrier] - state[link]) + damping * (speeds[carrier] - speeds[link])
         });
+        if let Some(slip) = self.hysteresis {
+            wind_up_force += slip.stiffness * state[self.slip_entry()];
+        }
         InternalForces { meshes, wind_up_force }
     }
 }
 
 impl SwitchedSystem for JointEquations {
     fn dimension(&self) -> usize {
-        2 * self.bodies() + WORKS
+        self.slip_entry() + usize::from(self.hysteresis.is_some())
     }
 
     fn derivative(&self, time: f64, state: &Entries, rates: &mut Entries) {
@@ -177,6 +192,11 @@ impl SwitchedSystem for JointEquations {
             forces[carrier] -= internal.wind_up_force;
             forces[link] += internal.wind_up_force;
             dissipated += damping * (speeds[carrier] - speeds[link]).powi(2);
+        }
+        if let Some(slip) = self.hysteresis {
+            let (deflection, rate) = (state[self.slip_entry()], speeds[carrier] - speeds[link]);
+            rates[self.slip_entry()] = slip.rate(deflection, rate);
+            dissipated += slip.loss(deflection, rate);
         }
         forces[link] -= self.load_force;
         for body in 0..bodies {
@@ -223,6 +243,8 @@ impl SwitchedSystem for JointEquations {
             STEP_TOLERANCE * self.length
         } else if entry < 2 * self.bodies() {
             STEP_TOLERANCE * self.length * self.highest_frequency
+        } else if entry == self.slip_entry() {
+            STEP_TOLERANCE * self.length
         } else {
             // The works follow from the motion and do not limit the step.
             f64::INFINITY
@@ -234,4 +256,4 @@ impl SwitchedSystem for JointEquations {
     }
 }
 
-const _: () = assert!(2 * (MAX_PLANETS + 3) + WORKS <= MAX_ENTRIES);
+const _: () = assert!(2 * (MAX_PLANETS + 3) + WORKS < MAX_ENTRIES);

@@ -56,12 +56,16 @@ impl Reference {
             }
         }
         let bodies = equations.bodies();
+        let slip_entry = equations.slip_entry();
         let (positions, rest) = state.split_at_mut(bodies);
-        let speeds = &mut rest[..bodies];
+        let (speeds, rest) = rest.split_at_mut(bodies);
+        let slipped = &mut rest[slip_entry - 2 * bodies];
         for index in 0..steps as u64 {
             drift(positions, speeds, 0.5 * step);
-            kick(equations, &excited, positions, speeds, (index as f64 + 0.5) * step, step);
+            slide(equations, speeds, slipped, 0.5 * step);
+            kick(equations, &excited, (positions, *slipped), speeds, (index as f64 + 0.5) * step, step);
             drift(positions, speeds, 0.5 * step);
+            slide(equations, speeds, slipped, 0.5 * step);
         }
         self.integrator.move_time(time);
         // What is read off next goes by the zones.
@@ -75,11 +79,18 @@ fn drift(positions: &mut [f64], speeds: &[f64], step: f64) {
     }
 }
 
-/// Changes the speeds by the forces at these positions.
+/// Moves the slipping part of the compliance on.
+fn slide(equations: &JointEquations, speeds: &[f64], slipped: &mut f64, step: f64) {
+    if let Some(slip) = equations.hysteresis {
+        *slipped = slip.after(*slipped, step * (speeds[equations.carrier()] - speeds[equations.link()]));
+    }
+}
+
+/// Changes the speeds by the forces at these positions, the slipping part's deflection beside them.
 fn kick(
     equations: &JointEquations,
     excited: &[[Excited; MAX_PLANETS]; 2],
-    positions: &[f64],
+    (positions, slipped): (&[f64], f64),
     speeds: &mut [f64],
     since: f64,
     step: f64,
@@ -96,7 +107,11 @@ fn kick(
         equations.apply(planet, force(0, planet), force(1, planet), &mut forces);
     }
     if let Some((stiffness, damping)) = equations.compliance {
-        let wind_up = stiffness * (positions[carrier] - positions[link]) + damping * (speeds[carrier] - speeds[link]);
+        let mut wind_up =
+            stiffness * (positions[carrier] - positions[link]) + damping * (speeds[carrier] - speeds[link]);
+        if let Some(slip) = equations.hysteresis {
+            wind_up += slip.stiffness * slipped;
+        }
         forces[carrier] -= wind_up;
         forces[link] += wind_up;
     }

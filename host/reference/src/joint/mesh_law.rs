@@ -41,6 +41,8 @@ pub(super) struct MeshConstants {
     pub damping: f64,
     pub law: DampingLaw,
     pub half_backlash: f64,
+    /// Half-backlash before it varies around the turn or over time.
+    pub nominal_half_backlash: f64,
     pub error_amplitude: f64,
     pub error_phase: f64,
 }

@@ -35,6 +35,8 @@ impl Reference {
             internal.meshes.iter().flatten().map(|mesh| 0.5 * mesh.stiffness * mesh.overlap.powi(2)).sum();
         let wind_up = positions[carrier] - positions[link];
         let in_compliance = equations.compliance.map_or(0.0, |(stiffness, _)| 0.5 * stiffness * wind_up * wind_up);
+        let in_slip =
+            equations.hysteresis.map_or(0.0, |slip| 0.5 * slip.stiffness * state[equations.slip_entry()].powi(2));
         let work = &state[2 * bodies..];
         Observation {
             time,
@@ -62,7 +64,7 @@ impl Reference {
             }),
             wind_up_torque: internal.wind_up_force * lever,
             kinetic_energy: kinetic,
-            elastic_energy: in_meshes + in_compliance,
+            elastic_energy: in_meshes + in_compliance + in_slip,
             work: Work { supplied: work[0], dissipated: work[1], against_errors: work[2], by_stiffness: work[3] },
         }
     }

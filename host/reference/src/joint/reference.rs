@@ -32,6 +32,8 @@ pub struct Reference {
     pub(super) integrator: Integrator,
     /// Ring teeth that the carrier has passed and that were taken off all coordinates.
     pub(super) teeth_passed: i64,
+    /// Half-backlash of every mesh over the one that it was made with or set to.
+    pub(super) backlash_scale: f64,
 }
 
 impl Reference {
@@ -48,7 +50,7 @@ impl Reference {
         let mut equations = JointEquations::new(joint)?;
         let state = resolve(start, &equations);
         equations.select_mode(0.0, &state);
-        Ok(Self { equations, integrator: Integrator::new(0.0, state), teeth_passed: 0 })
+        Ok(Self { equations, integrator: Integrator::new(0.0, state), teeth_passed: 0, backlash_scale: 1.0 })
     }
 
     /// Present time [s].

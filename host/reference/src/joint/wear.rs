@@ -1,15 +1,54 @@
-//! Teeth that change while the joint moves: backlash that has grown, a mesh whose stiffness has fallen. Between changes the
-//! equations are those of any joint.
+//! Teeth and link that change while the joint moves: backlash that has grown or varies, a mesh whose stiffness has fallen, a link that
+//! has gripped a payload. Between changes the equations are those of any joint.
 
+use super::hysteresis::Slip;
 use super::reference::Reference;
 use crate::integrator::SwitchedSystem;
 
 impl Reference {
+    /// Lets a share of the stiffness between carrier and link slip at a torque [N m]. A joint without compliance stays as it is.
+    pub fn with_hysteresis(mut self, stiffness_share: f64, torque: f64) -> Self {
+        if let Some((stiffness, _)) = &mut self.equations.compliance
+            && stiffness_share > 0.0
+        {
+            let slipping = stiffness_share * *stiffness;
+            *stiffness -= slipping;
+            let limit = torque / self.equations.carrier_lever / slipping;
+            self.equations.hysteresis = Some(Slip { stiffness: slipping, limit });
+        }
+        self
+    }
+
     /// From now on every mesh has this half-backlash [m].
     pub fn set_half_backlash(&mut self, half_backlash: f64) {
         for mesh in self.equations.meshes.iter_mut().flatten() {
-            mesh.half_backlash = half_backlash;
+            mesh.nominal_half_backlash = half_backlash;
+            mesh.half_backlash = self.backlash_scale * half_backlash;
         }
+        self.select_mode_again();
+    }
+
+    /// Multiplies the half-backlash that each mesh was made with, or was last set to, by a factor.
+    pub fn scale_half_backlash(&mut self, factor: f64) {
+        self.backlash_scale = factor;
+        for mesh in self.equations.meshes.iter_mut().flatten() {
+            mesh.half_backlash = factor * mesh.nominal_half_backlash;
+        }
+        self.select_mode_again();
+    }
+
+    /// From now on the link has this inertia; a carrier that it is rigidly joined to keeps its own [kg m^2]. Speeds and the damping
+    /// between carrier and link stay.
+    pub fn set_link_inertia(&mut self, link_inertia: f64) {
+        let equations = &mut self.equations;
+        let link = equations.link();
+        let mass = link_inertia / equations.carrier_lever.powi(2);
+        let before = equations.masses[link];
+        equations.masses[link] = before + mass - equations.link_mass;
+        equations.link_mass = mass;
+        // By Weyl's inequality the largest square of a frequency grows by no more than the last body's stiffness over its mass does.
+        let lighter = (1.0 / equations.masses[link] - 1.0 / before).max(0.0);
+        equations.highest_frequency = (equations.highest_frequency.powi(2) + equations.link_stiffness * lighter).sqrt();
         self.select_mode_again();
     }
 

@@ -24,14 +24,12 @@ pub(super) struct Active {
 impl Active {
     /// Nothing has gone wrong yet; `index` is its place in the file.
     pub fn new(fault: &Fault, index: usize, seed: u64) -> Self {
-        Self {
-            fault: *fault,
-            stream: fault_stream(fault, index, seed),
-            held: None,
-            lost: 0.0,
-            before: None,
-            dropped: None,
-        }
+        Self::with_stream(fault, fault_stream(fault, index, seed))
+    }
+
+    /// Nothing has gone wrong yet; random numbers come from this stream.
+    pub fn with_stream(fault: &Fault, stream: RandomStream) -> Self {
+        Self { fault: *fault, stream, held: None, lost: 0.0, before: None, dropped: None }
     }
 
     /// What an encoder says in place of its counts.

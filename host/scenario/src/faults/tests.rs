@@ -60,10 +60,42 @@ fn frames_are_lost_as_often_as_stated_and_late_ones_keep_their_time() {
     let share = lost.iter().filter(|frame| frame.is_none()).count() as f64 / 20_000.0;
     assert!((share - 0.2).abs() < 0.01, "{share}");
     let late = counts("[[fault]]\nkind = \"late_frames\"\ndelay_ms = 0.5\nstart_s = 0.001", 30, 3);
-    assert_eq!(late[9], Some(TimedReading { counts: 27, period: 9 }));
-    assert_eq!(late[20], Some(TimedReading { counts: 45, period: 15 }));
+    assert_eq!(late[9], Some(TimedReading { counts: 27, period: 9, lateness: 0 }));
+    assert_eq!(late[20], Some(TimedReading { counts: 45, period: 15, lateness: 0 }));
     assert_eq!(late[10..15], [None; 5], "a reading that came does not come again");
-    assert_eq!(late[15], Some(TimedReading { counts: 30, period: 10 }));
+    assert_eq!(late[15], Some(TimedReading { counts: 30, period: 10, lateness: 0 }));
+}
+
+#[test]
+fn a_late_period_is_stamped_with_its_lateness() {
+    let (mut faults, _) = at_work("");
+    let seen = faults.sense_late(&Measurement { period: 7, motor_counts: 0, output_counts: 0 }, 4.2e-6);
+    assert_eq!((seen.lateness, seen.motor.lateness, seen.output.map(|frame| frame.lateness)), (42, 42, Some(42)));
+}
+
+#[test]
+fn missing_frames_come_as_rarely_as_stated_each_encoder_by_itself() {
+    let keys = "plant.motor_encoder.missing_frames_share = 0.05\nplant.output_encoder.missing_frames_share = 0.01";
+    let missing = |keys: &str| {
+        let (mut faults, _) = at_work(keys);
+        let mut missing = [0.0; 2];
+        let mut periods = Vec::new();
+        for period in 0..40_000 {
+            let seen = faults.sense(&Measurement { period, motor_counts: 0, output_counts: 0 });
+            missing[0] += f64::from(u8::from(seen.motor.period != period));
+            missing[1] += f64::from(u8::from(seen.output.is_none()));
+            if seen.output.is_none() {
+                periods.push(period);
+            }
+        }
+        (missing.map(|count| count / 40_000.0), periods)
+    };
+    let ([motor, output], periods) = missing(keys);
+    // Four standard deviations of such shares.
+    assert!((motor - 0.05).abs() < 0.0044 && (output - 0.01).abs() < 0.002, "{motor} and {output}");
+    let (_, alone) = missing("plant.output_encoder.missing_frames_share = 0.01");
+    assert_eq!(periods, alone, "the motor's missing readings leave the output's as they were");
+    assert_eq!(missing("").0, [0.0; 2]);
 }
 
 #[test]

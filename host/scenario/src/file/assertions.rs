@@ -65,7 +65,7 @@ impl Assertion {
     pub fn rival(&self) -> Option<ControllerName> {
         match self.metric.relation {
             Relation::Own => None,
-            Relation::GainOver(rival) | Relation::RatioTo(rival) => Some(rival),
+            Relation::GainOver(rival) | Relation::RatioTo(rival) | Relation::Of(rival) => Some(rival),
         }
     }
 }

@@ -85,9 +85,14 @@ pub(super) const PROFILES: &[&str] = &[
     "impedance",
     "hysteresis",
     "held",
+    "walking",
+    "real",
     "any",
     "csv",
 ];
+
+/// Motions of real joints.
+pub(super) const REAL_MOTIONS: &[&str] = &["sine", "random", "moves", "slow_sine", "disturbed_hold", "walking", "rest"];
 
 /// Kinds of faults.
 pub(super) const FAULTS: &[&str] = &[
@@ -138,6 +143,7 @@ pub(super) const KEYS: &[Key] = &[
     key("", "assert", Section, "figures and their bounds, as in rms_gain_over_pid = \">= 8\""),
     // Profile
     key("profile", "kind", Word(PROFILES), "the motion"),
+    key("profile", "motion", Word(REAL_MOTIONS), "which of the real motions; each seed's own if left out"),
     key("profile", "amplitude_rad", AMPLITUDE, "amplitude of the sine, or standard deviation of the random motion"),
     key("profile", "frequency_Hz", Number(0.001, 100.0), "of the sine, or of the load that changes its sign"),
     key("profile", "highest_Hz", Number(0.01, 100.0), "the random motion has nothing above it"),
@@ -156,7 +162,12 @@ pub(super) const KEYS: &[Key] = &[
         Word(MODES),
         "preview, no_preview, impedance or probe; none or a rival for a test of those",
     ),
-    key("controller", "bandwidth_rad_per_s", Number(1.0, 1e4), "bandwidth of all controllers alike; 60 if left out"),
+    key(
+        "controller",
+        "bandwidth_rad_per_s",
+        Number(1.0, 1e4),
+        "bandwidth of all controllers alike; 60, or as much as the joint allows, if left out",
+    ),
     key(
         "controller",
         "peak_torque_N_m",

@@ -15,7 +15,7 @@ mod section;
 pub use assertions::{Aggregate, Assertion};
 pub use changes::{Change, NewValue};
 pub use faults::{Fault, HostOnlyFault, Offset, Si, fault_is_on, fault_stream, fault_word};
-pub use motion::{DisturbanceSpec, MotionProfile, ProfileLoad, Trajectory, Wave};
+pub use motion::{DisturbanceSpec, MotionProfile, ProfileLoad, RealMotion, STEPS, Trajectory, Wave};
 
 use joint_file::{Keys, Notes, Problem};
 use link::messages::Role;
@@ -60,8 +60,8 @@ pub struct TestFile {
     pub controller: ControllerName,
     /// Who runs beside.
     pub rivals: Vec<ControllerName>,
-    /// Bandwidth of all of them [rad/s].
-    pub bandwidth: f64,
+    /// Bandwidth of all of them [rad/s]; what is good for the nominal joint if the file asks for none.
+    pub bandwidth: Option<f64>,
     /// Most that the teeth shall pass on [N m]; `None` is what the motor gives.
     pub peak_torque: Option<f64>,
     /// Guessed over true half-backlash; `None` is wrong by half, one way or the other by the seed.
@@ -82,9 +82,6 @@ pub struct TestFile {
 
 /// Time on the clock that a test may take by default [s].
 const TIMEOUT: f64 = 600.0;
-
-/// Bandwidth by default [rad/s].
-const BANDWIDTH: f64 = 60.0;
 
 /// Whether a text is meant as a test file rather than as a joint file. What is no TOML is told apart by its headers.
 pub fn is_test_file(text: &str) -> bool {
@@ -205,7 +202,7 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
         },
         only_with_full: top.or("only_with_full", Section::flag, false)?,
         timeout: top.or("timeout_s", Section::number, TIMEOUT)?,
-        bandwidth: controller.or("bandwidth_rad_per_s", Section::number, BANDWIDTH)?,
+        bandwidth: controller.or("bandwidth_rad_per_s", |section, name| section.number(name).map(Some), None)?,
         peak_torque: controller.or("peak_torque_N_m", |section, name| section.number(name).map(Some), None)?,
         width_guess: controller.or("width_guess_ratio", |section, name| section.range(name).map(Some), None)?,
         output_encoder: controller.or("output_encoder", Section::flag, true)?,

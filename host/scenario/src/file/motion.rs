@@ -3,6 +3,7 @@
 
 use toml::Spanned;
 
+use super::keys::REAL_MOTIONS;
 use super::section::Section;
 
 /// A reference motion with its load.
@@ -33,12 +34,50 @@ pub enum Trajectory {
     Random(f64, f64),
     /// Height [rad], duration [s] and shortest rest [s].
     Steps(f64, f64, f64),
+    /// Amplitude [rad] and steps a second [Hz] of a leg's joint.
+    Walking(f64, f64),
     /// At an angle [rad].
     Hold(f64),
     /// As a CSV file has it.
     File(String),
     /// Any that the motor can follow: each seed draws one, and a load with it.
     Any,
+    /// One of the motions of real joints: the stated one, or each seed's own.
+    Real(Option<RealMotion>),
+}
+
+/// One of the motions that joints of robots make.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RealMotion {
+    /// Sine of 1 Hz.
+    Sine,
+    /// Five sines up to 2 Hz.
+    Random,
+    /// Moves to and fro on least-jerk paths.
+    Moves,
+    /// Sine of 0.15 Hz.
+    SlowSine,
+    /// Hold under a load that walks.
+    DisturbedHold,
+    /// Path of a leg's joint with the load of its foot.
+    Walking,
+    /// Rest without a load.
+    Rest,
+}
+
+impl RealMotion {
+    /// All of them, in the order of their words and in which successive seeds draw them.
+    pub const ALL: [Self; 7] =
+        [Self::Sine, Self::Random, Self::Moves, Self::SlowSine, Self::DisturbedHold, Self::Walking, Self::Rest];
+
+    /// Motion of a seed: seven successive seeds have all seven.
+    pub fn of_seed(seed: u64) -> Self {
+        Self::ALL[(seed % 7) as usize]
+    }
+
+    fn of_word(word: &str) -> Option<Self> {
+        REAL_MOTIONS.iter().position(|known| *known == word).map(|index| Self::ALL[index])
+    }
 }
 
 /// The load on the link as part of the profile; a torque that is not given scales with the rated one.
@@ -52,6 +91,8 @@ pub enum ProfileLoad {
     Kick(Option<f64>, f64),
     /// A push each second, to and fro: torque [N m], length [s].
     Impacts(Option<f64>, f64),
+    /// Load of a foot in each step, whose path is a [`Trajectory::Walking`] of this frequency: torque [N m], frequency [Hz].
+    Stance(Option<f64>, f64),
     /// Slowly to and fro: torque [N m], frequency [Hz].
     Slow(Option<f64>, f64),
 }
@@ -86,6 +127,8 @@ pub struct DisturbanceSpec {
 const FRICTION: f64 = 1.0 / 12.0;
 /// T2b has a weight of this part of the rated torque: 6 N m for Q1.
 const WEIGHT: f64 = 0.5;
+/// Steps of a walking robot a second [Hz].
+pub const STEPS: f64 = 1.2;
 /// A brake that holds the link does so with this part of the rated torque: no probe comes near it.
 const BRAKE: f64 = 4.0;
 
@@ -113,6 +156,13 @@ impl MotionProfile {
             "impact" => Self { load: ProfileLoad::Impacts(None, 0.01), ..usual },
             "hysteresis" => Self { load: ProfileLoad::Slow(None, 0.25), duration: 9.0, settle: 1.0, ..usual },
             "held" => Self { friction: Some(BRAKE), duration: 1.0, settle: 0.0, ..usual },
+            "walking" => Self {
+                trajectory: Trajectory::Walking(0.3, STEPS),
+                load: ProfileLoad::Stance(None, STEPS),
+                gravity: None,
+                ..usual
+            },
+            "real" => Self { trajectory: Trajectory::Real(None), gravity: None, ..usual },
             // What the file says of the link stays.
             "any" => Self { trajectory: Trajectory::Any, gravity: None, ..usual },
             // A recording brings its own load, or none.
@@ -134,8 +184,14 @@ impl MotionProfile {
                 ("profile.steps.move_s", duration),
                 ("profile.steps.rest_s", rest),
             ],
-            Trajectory::Hold(_) | Trajectory::File(_) | Trajectory::Any => Vec::new(),
+            Trajectory::Walking(amplitude, frequency) => {
+                vec![("profile.walking.amplitude_rad", amplitude), ("profile.walking.frequency_Hz", frequency)]
+            }
+            Trajectory::Hold(_) | Trajectory::File(_) | Trajectory::Any | Trajectory::Real(_) => Vec::new(),
         };
+        if let ProfileLoad::Stance(Some(torque), _) = self.load {
+            numbers.push(("profile.load.stance_N_m", torque));
+        }
         if let ProfileLoad::Wave(wave, Some(torque), frequency) = self.load {
             let of_wave = match wave {
                 Wave::Sine => "profile.load.sine_N_m",
@@ -178,16 +234,29 @@ pub(super) fn read(section: &Section<'_>) -> Option<MotionProfile> {
                 set("move_s", duration);
                 set("rest_s", rest);
             }
+            Trajectory::Walking(amplitude, frequency) => {
+                set("amplitude_rad", amplitude);
+                set("frequency_Hz", frequency);
+            }
             Trajectory::Hold(angle) => set("angle_rad", angle),
-            Trajectory::File(_) | Trajectory::Any => {}
+            Trajectory::File(_) | Trajectory::Any | Trajectory::Real(_) => {}
         }
         match &mut profile.load {
-            ProfileLoad::None => {}
+            ProfileLoad::None | ProfileLoad::Stance(..) => {}
             ProfileLoad::Wave(_, _, frequency) | ProfileLoad::Slow(_, frequency) => set("frequency_Hz", frequency),
             ProfileLoad::Kick(_, length) | ProfileLoad::Impacts(_, length) => set("pulse_s", length),
         }
     }
+    if let (Trajectory::Walking(_, steps), ProfileLoad::Stance(_, frequency)) = (&profile.trajectory, &mut profile.load)
+    {
+        *frequency = *steps;
+    }
+    if let Trajectory::Real(motion) = &mut profile.trajectory {
+        taken.push("motion");
+        *motion = section.word("motion").and_then(RealMotion::of_word);
+    }
     if let ProfileLoad::Wave(_, torque, _)
+    | ProfileLoad::Stance(torque, _)
     | ProfileLoad::Slow(torque, _)
     | ProfileLoad::Kick(torque, _)
     | ProfileLoad::Impacts(torque, _) = &mut profile.load

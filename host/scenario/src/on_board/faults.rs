@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use model_core::virtual_joint::fault::{Fault, FaultKind, FixedPoint, Shaft};
 use model_core::virtual_joint::faults::MOST_FAULTS;
 
+use crate::encoder_zeros::EncoderZeros;
 use crate::file;
 use crate::file::{HostOnlyFault, Offset, fault_stream, fault_word};
 use report::failure::{Failure, Outcome};
@@ -13,10 +14,22 @@ use report::failure::{Failure, Outcome};
 /// Whole turns, and whole shares.
 const WHOLE: f64 = 4_294_967_296.0;
 
+/// Most faults of a test: two places are taken by the zeros of the encoders.
+const MOST_OF_A_TEST: usize = MOST_FAULTS - 2;
+
+/// The zeros of both encoders as faults that last for the whole run: a board's virtual joint reads zero at angle zero.
+pub fn mounting(zeros: &EncoderZeros, bits: [u32; 2]) -> [Fault<FixedPoint<f32>>; 2] {
+    let counts = zeros.counts(bits.map(|bits| 1 << bits));
+    [(Shaft::Motor, 0), (Shaft::Link, 1)].map(|(shaft, encoder)| {
+        let offset = (counts[encoder] << (32 - bits[encoder])) as u32 as i32;
+        Fault { start: 0, end: u32::MAX, seed: 0, kind: FaultKind::Offset(shaft, offset) }
+    })
+}
+
 /// The faults of a test file as whole numbers, for a seed and encoders of so many bits: motor, link.
 pub fn quantised(faults: &[file::Fault], rate: f64, bits: [u32; 2], seed: u64) -> Outcome<Vec<Fault<FixedPoint<f32>>>> {
-    if faults.len() > MOST_FAULTS {
-        let message = format!("a board that runs the whole loop takes {MOST_FAULTS} faults, not {}", faults.len());
+    if faults.len() > MOST_OF_A_TEST {
+        let message = format!("a board that runs the whole loop takes {MOST_OF_A_TEST} faults, not {}", faults.len());
         return Err(Failure::new(message).with_help("run it with --role observer, or with --host"));
     }
     let one = |(index, fault): (usize, &file::Fault)| {
@@ -161,7 +174,7 @@ mod tests {
             assert!(failure.message().contains(&name) && failure.help().is_some(), "{failure}");
         }
         let kind = FaultKind::Frozen(Shaft::Motor);
-        let many = vec![Fault { start: 0.0, end: 1.0, seed: (), kind }; MOST_FAULTS + 1];
+        let many = vec![Fault { start: 0.0, end: 1.0, seed: (), kind }; MOST_OF_A_TEST + 1];
         assert!(quantised(&many, RATE, [14, 17], 1).is_err());
     }
 }

@@ -141,7 +141,7 @@ impl<'w> Boards<'w> {
         [&mut nominal, &mut truth].into_iter().for_each(|joint| joint.surroundings.control_rate = rate);
         let control = Control {
             rate,
-            bandwidth: test.file.bandwidth,
+            bandwidth: Some(case.bandwidth(&test.file)?),
             output_encoder: test.file.output_encoder,
             forced: self.request.force,
         };

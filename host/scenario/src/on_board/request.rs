@@ -48,6 +48,13 @@ pub fn check_test(request: &BoardRequest<'_>, test: &Test) -> Outcome<()> {
             let message = format!("{name} tests `probe`, which the role `loop` does not know");
             return Err(Failure::new(message).with_help("run it with --role observer, or with --host"));
         }
+        let seed = test.file.seeds.first().copied().unwrap_or(1);
+        if let Some(effect) = test.case(seed)?.truth.surroundings.effects().next() {
+            let message =
+                format!("{name} asks for `{}`, which the virtual joint of a board does not have", effect.key());
+            let help = "run it with --role observer --plant reference, or with --host --plant reference";
+            return Err(Failure::new(message).with_help(help));
+        }
         quantised(&test.file.faults, 1.0, [0; 2], 0).map_err(|failure| failure.while_doing(name))?;
     }
     Ok(())

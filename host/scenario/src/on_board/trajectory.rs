@@ -10,20 +10,19 @@ use reference::closed_loop::{Motion, SetPoint};
 use crate::case::{Case, Designed};
 use crate::controller::ControllerName;
 use crate::file::TestFile;
-use crate::port::Translator;
+use crate::port::command;
 use crate::set_point_source::SetPointSource;
 
 /// Length of a polynomial at most [s]: a motion of 20 Hz is met to a millionth.
 const SEGMENT: f64 = 5e-3;
 
-/// The knots of a test, `first_turn` being the turn from which the observer counts the link's.
-pub fn knots(file: &TestFile, case: &Case, designed: &Designed, first_turn: i32) -> Vec<Knot> {
+/// The knots of a test on the observer's scale of the link, which is `zero` at the joint's angle zero [turns].
+pub fn knots(file: &TestFile, case: &Case, designed: &Designed, zero: f64) -> Vec<Knot> {
     let rate = f64::from(case.nominal_surroundings.control_rate);
     let periods = (file.duration * rate).round() as u32;
     let segment = file.gains.map_or(SEGMENT, |gains| 1.0 / gains.rate);
     let every = (segment * rate).round().max(1.0) as u32;
     let mut set_points = SetPointSource::new(file, case, file.controller, Some(designed));
-    let translator = Translator::from_turn(designed.ticks, first_turn);
     let lead = f64::from(designed.compensation.crossing.lead);
     let rests = |tick: u32| {
         let at = |time: f64| still(case.motion.at(time));
@@ -36,12 +35,15 @@ pub fn knots(file: &TestFile, case: &Case, designed: &Designed, first_turn: i32)
         let [start, end] = [tick, next].map(|tick| f64::from(tick) / rate);
         let demand = match set_points.at(start, tick.into()).1 {
             SetPoint::Position { ahead, .. } => {
-                let between = |from: f64, to: f64| polynomial(case.motion.at(from), case.motion.at(to), end - start);
-                let turned = |segment: Segment<f32>| Segment { turns: segment.turns - first_turn, ..segment };
-                let ahead = ahead.map(|_| turned(between(start + lead, end + lead)));
-                Trajectory::Position { now: turned(between(start, end)), ahead }
+                let on_scale = |time: f64| {
+                    let motion = case.motion.at(time);
+                    Motion { position: motion.position + TAU * zero, ..motion }
+                };
+                let between = |from: f64, to: f64| polynomial(on_scale(from), on_scale(to), end - start);
+                let ahead = ahead.map(|_| between(start + lead, end + lead));
+                Trajectory::Position { now: between(start, end), ahead }
             }
-            impedance => match translator.command(&impedance) {
+            impedance => match command(&impedance, zero) {
                 model_core::compensation::Command::Impedance(point) => Trajectory::Impedance(point),
                 model_core::compensation::Command::Position { .. } => Trajectory::HOLD,
             },

@@ -97,8 +97,13 @@ impl Twin<'_> {
         let mut faults = Faults::default();
         let all_taken = self.faults.iter().all(|fault| faults.add(*fault));
         debug_assert!(all_taken, "more than fit were refused before");
-        let first_turn = virtual_joint.output_turn();
-        let knots = trajectory::knots(self.file, self.case, self.designed, first_turn);
+        let bits = {
+            let around = &self.truth.surroundings;
+            [around.motor_encoder.bits, around.output_encoder.bits]
+        };
+        let mounted = self.case.zeros.counts(bits.map(|bits| 1 << bits))[1] << (32 - bits[1]);
+        let zero = mounted as f64 / 2.0_f64.powi(32) - f64::from(virtual_joint.output_turn(mounted as u32));
+        let knots = trajectory::knots(self.file, self.case, self.designed, zero);
         let joint = &self.truth.parameters;
         let reader = Reader::new(joint, tables);
 
@@ -142,15 +147,15 @@ impl Twin<'_> {
                 load_torque: f64::from(virtual_joint.acting().load),
                 motor: moment.motor_angle(joint),
             };
-            history.add(sample, truth, samples, asked(&command, first_turn), Some(&answer));
+            history.add(sample, truth, samples, asked(&command, zero), Some(&answer));
         }
         TwinResult { knots, history, digests }
     }
 }
 
-/// A set-point with its turns counted from the joint's own zero.
-fn asked(command: &Command<f32>, first_turn: i32) -> Asked {
-    let angle = |position: Position<f32>| TAU * (f64::from(position.turns + first_turn) + f64::from(position.fraction));
+/// A set-point with its angle counted from the joint's own zero, at which the observer's scale is `zero` [turns].
+fn asked(command: &Command<f32>, zero: f64) -> Asked {
+    let angle = |position: Position<f32>| TAU * (f64::from(position.turns) + f64::from(position.fraction) - zero);
     match command {
         Command::Position { now, .. } => Asked {
             motion: Motion {

@@ -1,7 +1,8 @@
 //! The one closed loop of a joint on the host: a plant in its drive train, a reference motion, faults between plant and
 //! controller, and a controller.
 //!
-//! A control period: faults of the teeth; the set-point passes through its faults to the controller; the encoders are
+//! A control period begins late by what the jitter of the loop has drawn, and its samples and set-points are those of that moment. Then:
+//! faults of the teeth; the set-point passes through its faults to the controller; the encoders are
 //! read and pass through theirs; the controller gives a torque; the motor applies what its faults let through, and the
 //! plant moves on. Encoders are homed at the start of a run.
 
@@ -19,6 +20,7 @@ pub use recording::PeriodSample;
 pub use setup::Setup;
 pub use true_state::TrueStateCompensation;
 
+use model_core::gears::Kinematics;
 use reference::closed_loop::SharedProfile;
 use reference::drive_train::Measurement;
 
@@ -47,9 +49,11 @@ impl Rig {
         let Setup { joint, train, .. } = setup;
         let rate = f64::from(train.surroundings.control_rate);
         let plant = plant_from(setup.plant, joint, &setup.start, train, setup.disturbances.clone(), setup.seed)?;
+        let faults = HostFaults::new(&setup.faults, setup.seed, joint, train);
+        let faults = faults.starting_at(plant.joint().link_angle, joint.geometry.ratio_by_teeth());
         Ok(Self {
             plant: plant.stepped(setup.stepping),
-            faults: HostFaults::new(&setup.faults, setup.seed, joint, train),
+            faults,
             motion: setup.motion.clone(),
             period: 1.0 / rate,
             periods: (setup.duration * rate).round() as u64,
@@ -80,12 +84,13 @@ impl Rig {
     ) -> Result<(), RunError> {
         let Self { plant, faults, motion, period, periods } = &mut self;
         for index in 0..*periods {
-            let time = index as f64 * *period;
+            // Set-points are made and samples taken when the period truly begins.
+            let time = index as f64 * *period + plant.lateness();
             let joint = plant.joint().clone();
             faults.wear(time, &joint, plant.joint_model().as_mut());
             let (number, set_point) = set_points.at(time, index);
             let set_point = faults.receive(time, number, set_point);
-            let seen = faults.sense(&plant.measure());
+            let seen = faults.sense_late(&plant.measure(), plant.lateness());
             controller.show(&joint, &plant.torques());
             let (command, answer) = controller.period(&seen, &set_point)?;
             if !command.is_finite() {
@@ -100,7 +105,7 @@ impl Rig {
                 time,
                 plant,
                 wanted: motion.at(joint.time).position,
-                half_backlash: faults.half_backlash_now(),
+                half_backlash: plant.width_scale() * faults.half_backlash_now(),
                 seen: &seen,
                 set_point: &set_point,
                 command,

@@ -26,6 +26,8 @@ pub struct TrueStateCompensation<'t> {
     compliance: f64,
     /// Base radius of the carrier [m].
     lever: f64,
+    /// Motor turns in a turn of the link.
+    ratio: f64,
 }
 
 impl<'t> TrueStateCompensation<'t> {
@@ -37,6 +39,7 @@ impl<'t> TrueStateCompensation<'t> {
             half_backlash: half_backlash(joint),
             compliance: joint.compliance.map_or(0.0, |compliance| 1.0 / compliance.stiffness),
             lever: joint.geometry.carrier_base_radius(),
+            ratio: joint.geometry.ratio_by_teeth(),
         }
     }
 
@@ -63,6 +66,7 @@ impl<'t> TrueStateCompensation<'t> {
             load_torque: exact(torques.load_friction + torques.gravity + torques.disturbance),
             half_backlash: exact(self.half_backlash),
             compliance: exact(self.compliance),
+            motor_lead: joint.motor_angle / self.ratio - joint.link_angle,
             motor: shaft(joint.motor_angle, joint.motor_speed),
             link: shaft(joint.link_angle, joint.link_speed),
             ..Estimates::default()
@@ -71,11 +75,11 @@ impl<'t> TrueStateCompensation<'t> {
 
     /// Torque for the period that begins now [N m].
     pub fn period(&mut self, set_point: &SetPoint) -> f64 {
-        self.compensation.step(&self.estimates, &command(set_point, 0)).torque
+        self.compensation.step(&self.estimates, &command(set_point, 0.0)).torque
     }
 }
 
 fn shaft(angle: f64, speed: f64) -> Shaft<f64> {
-    let of = position(angle, 0);
+    let of = position(angle, 0.0);
     Shaft { turns: of.turns, fraction: of.fraction, speed }
 }

@@ -2,9 +2,14 @@
 
 mod body;
 mod damping;
+#[cfg(test)]
+mod inverse_tests;
 mod settings;
 mod stability;
 mod tables;
+#[cfg(test)]
+mod watch_tests;
 
 pub use settings::{CompensationSettings, compensation_settings};
+pub use stability::good_bandwidth;
 pub use tables::design_compensation;

@@ -12,7 +12,7 @@ use super::stability;
 use crate::compensation::crossing::Crossing;
 use crate::compensation::tables::{
     BodyTable, ClockTable, CompensationTables, CrossingTable, GearTable, LandingTable, LawTable, LimitTable, LoadTable,
-    RestTable, SwitchingTable,
+    RestTable, SwitchingTable, WatchTable,
 };
 use crate::gears::design::{DesignError, validate};
 use crate::gears::gear_losses;
@@ -141,6 +141,33 @@ const LONGEST_HOLD: f64 = 5e-3;
 /// period.
 const TRUST: f64 = 1.2;
 
+/// Corner of the slow load that explains a flank [rad/s]: below the modes of flexible payloads from 8 Hz on, above loads that people
+/// and steps put on a link.
+const SLOW_LOAD: f64 = 25.0;
+
+/// Unexplained flank changes that are forgotten in a second, and while the error is small [1/s]: a link without friction drifts from flank to
+/// flank fifteen times a second, at a tenth of the error that plain control leaves.
+const HUNTING_LEAK: [f64; 2] = [1.0, 20.0];
+
+/// Unexplained flank changes beyond which the loop hunts [-]. Tuned on `hil/never-worse.toml`: a joint that follows a load to and fro leaves a
+/// flank as often as some that hunt.
+const HUNTING_CHANGES: f64 = 4.0;
+
+/// Root of the mean squared error that is small, over half the lost motion [-]: a third of what control without compensation leaves.
+const HUNTING_CALM: f64 = 0.35;
+
+/// Time over which the squared error is averaged [s]; the root of that mean over half the lost motion beyond which the loop hunts [-]:
+/// control that ignores the gap leaves the link on either flank, at half the lost motion.
+const HUNTING_ERROR_TIME: f64 = 0.15;
+const HUNTING_ERROR: f64 = 1.5;
+
+/// Error that is granted on top, over what the demand would move the loop's spring by [-]: inertia and load that are 30 % off.
+const HUNTING_ERROR_BY_DEMAND: f64 = 0.3;
+
+/// Times for which a loop that hunts is controlled without compensation: at first, and at most [s]; growth with each trip [-].
+const AWAY: [f64; 2] = [10.0, 120.0];
+const AWAY_GROWTH: f64 = 4.0;
+
 /// Half the lost motion is never taken for more than so many times the guess.
 const WIDEST: f64 = 5.0;
 
@@ -181,10 +208,8 @@ pub fn design_compensation<T: Real>(
     Ok(CompensationTables {
         clock: ClockTable { rate: real(f64::from(settings.control_rate)), period: real(period) },
         gear: GearTable {
-            ratio: [(joint.geometry.sun_teeth + joint.geometry.ring_teeth) as i32, joint.geometry.sun_teeth as i32],
             motor_per_link: real(body.gear),
             link_per_motor: real(1.0 / body.gear),
-            inverse_denominator: real(1.0 / f64::from(joint.geometry.sun_teeth)),
             turn: real(TAU),
             inverse_lever: real(1.0 / body.lever),
             mesh_phase_per_radian: real(f64::from(joint.geometry.ring_teeth) / TAU * f64::powi(2.0, 32)),
@@ -269,6 +294,19 @@ pub fn design_compensation<T: Real>(
             fastest: real(limit / LOAD_RATE),
             friction_slope: real(1.0 / FRICTION_SPEED),
             planned_friction_slope: real(1.0 / PLANNED_FRICTION_SPEED),
+        },
+        watch: WatchTable {
+            smoothing: real(-libm::expm1(-period * SLOW_LOAD)),
+            least_demand: real(PLANNED * limit),
+            leaks: HUNTING_LEAK.map(real),
+            most: real(HUNTING_CHANGES),
+            calm_per_half: real(HUNTING_CALM),
+            memory: real(-libm::expm1(-period / HUNTING_ERROR_TIME)),
+            error_per_half: real(HUNTING_ERROR),
+            error_per_demand: real(HUNTING_ERROR_BY_DEMAND / (3.0 * inertia * pole * pole)),
+            first_away: real(AWAY[0]),
+            longest_away: real(AWAY[1]),
+            longer: real(AWAY_GROWTH),
         },
     })
 }

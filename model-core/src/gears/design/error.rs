@@ -43,13 +43,45 @@ pub enum DesignError {
         /// The widest bandwidth that works at the rate [rad/s].
         widest: f64,
     },
+    /// The bandwidth exceeds the one up to which the joint itself lets the loop keep its margin.
+    BandwidthTooWide {
+        /// Bandwidth that was asked for [rad/s].
+        bandwidth: f64,
+        /// The widest bandwidth that works [rad/s].
+        widest: f64,
+        /// Property of the joint that limits it.
+        limit: BandwidthLimit,
+    },
     /// A scheme of planets' meshes for a gear without them.
     OneSchemeOnly,
+    /// An effect of real joints that a virtual joint does not have.
+    NoSuchEffect {
+        /// Key of the joint file that states it.
+        key: &'static str,
+    },
     /// A number does not fit into single precision.
     NotRepresentable {
         /// Which table.
         what: &'static str,
     },
+}
+
+/// Property of a joint that limits the bandwidth of its compensation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum BandwidthLimit {
+    /// First swing of the motor against the link in contact [rad/s].
+    Swing(f64),
+    /// Time in which the motor crosses the gap from rest to rest at its largest torque [s].
+    Crossing(f64),
+}
+
+impl fmt::Display for BandwidthLimit {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Swing(frequency) => write!(formatter, "first swing of motor against link {frequency:.0} rad/s"),
+            Self::Crossing(time) => write!(formatter, "the motor takes {:.1} ms to cross the gap", 1e3 * time),
+        }
+    }
 }
 
 impl fmt::Display for DesignError {
@@ -60,6 +92,12 @@ impl fmt::Display for DesignError {
                 write!(formatter, "tables for {wanted} planets were asked for, but the joint has {given}")
             }
             Self::OutOfRange { what, given, must_be } => write!(formatter, "{what} is {given}: it must be {must_be}"),
+            Self::NoSuchEffect { key } => {
+                write!(
+                    formatter,
+                    "a virtual joint does not have `{key}`: leave it out, or run it with --plant reference"
+                )
+            }
             Self::RateTooLow { given, lowest } => {
                 write!(formatter, "a tick rate of {given} Hz is too low for this joint: use {lowest} Hz or more")
             }
@@ -73,6 +111,9 @@ impl fmt::Display for DesignError {
                     write!(formatter, "{lowest} Hz or more, or ")?;
                 }
                 write!(formatter, "a bandwidth of {widest} rad/s or less")
+            }
+            Self::BandwidthTooWide { bandwidth, widest, limit } => {
+                write!(formatter, "bandwidth: {bandwidth} rad/s asked, {widest} at most: {limit}")
             }
             Self::OneSchemeOnly => formatter.write_str("an equivalent gear has one scheme, the board's"),
             Self::NotRepresentable { what } => write!(

@@ -21,7 +21,7 @@ pub mod verlet_tables;
 
 pub use certificate::certificate;
 pub use cost::Cost;
-pub use error::DesignError;
+pub use error::{BandwidthLimit, DesignError};
 pub use processor::Processor;
 pub use source::{rust_source, rust_source_for};
 pub use step_size::{Effort, StepSize, Substeps};

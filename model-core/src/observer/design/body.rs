@@ -4,7 +4,7 @@ use crate::gears::{Kinematics, Mechanics};
 use parameters::{JointParameters, MeshKind};
 
 /// What the observer needs of the joint, referred to the line of action.
-pub(super) struct Body {
+pub(crate) struct Body {
     pub sun_lever: f64,
     /// Ratio by teeth times the sun's base radius.
     pub output_lever: f64,

@@ -1,6 +1,6 @@
 //! The offline half of the observer: settings, and from them and a joint the tables.
 
-mod body;
+pub(crate) mod body;
 mod cogging;
 mod filter;
 mod inertia;

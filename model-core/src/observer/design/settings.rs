@@ -113,7 +113,7 @@ pub fn observer_settings(of: &Surroundings) -> ObserverSettings {
         clock_rate: CLOCK_TICKS * of.control_rate,
         motor_encoder: encoder(&of.motor_encoder),
         output_encoder: Some(encoder(&of.output_encoder)),
-        fastest_motor: 300.0,
+        fastest_motor: of.speed_limit,
         // The observer is shown the torque of the period before.
         torque_delay: (of.delay - 1.0).max(0.0),
         torque_lag: of.current_lag,

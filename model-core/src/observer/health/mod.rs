@@ -55,10 +55,10 @@ pub enum Judged {
 }
 
 impl<T: Real> Health<T> {
-    /// Until the output encoder is heard of for the first time there is the motor's only.
+    /// Until the output encoder gives its first reading there is the motor's only.
     pub fn new(has_output: bool) -> Self {
         Self {
-            source: Source::MotorOnly(if has_output { OutputFault::Silent } else { OutputFault::Absent }),
+            source: Source::MotorOnly(if has_output { OutputFault::Unheard } else { OutputFault::Absent }),
             motor: MotorFaultDetector::new(),
             faults: OutputFaultDetector::new(),
             recovery: Recovery::new(),

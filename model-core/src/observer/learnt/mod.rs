@@ -524,6 +524,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         let (regressors, deflection) = self.block.full();
         let weight = table.weight * self.block.worth(table, self.uncertainty.half_gap_is_known);
         let innovation = self.learner.innovation(table, &regressors, deflection, weight);
+        self.uncertainty.take_innovation(innovation.value * innovation.value, innovation.variance);
         if !innovation.is_within(GATE) {
             let large = innovation.value.abs() * table.noise > half_gap * tables.contact.known_part;
             let verdict = self.consistency.outlier(large, self.trusted.is_some());

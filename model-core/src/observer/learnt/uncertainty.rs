@@ -60,6 +60,8 @@ pub struct Uncertainty<T: Real> {
     pub flanks_swap: bool,
     /// The last interval was in settled contact.
     pub settled: bool,
+    /// Mean square of the normalised innovations of rests, 1 while the model describes joint and encoders [-].
+    scatter: T,
     /// What comes next.
     turn: u8,
 }
@@ -72,6 +74,12 @@ impl<T: Real> Uncertainty<T> {
     /// Largest distance from a flank within which teeth count as touching, as a part of the half-gap [-]: what the gap
     /// coordinate may be off by and still be worth compensating.
     const NEAREST: T = T::TWENTIETH;
+
+    /// Share of a rest in the scatter [-].
+    const OF_A_REST: T = T::TWENTIETH;
+
+    /// The most that one rest counts for in the scatter [-]: as large as what still belongs to the model.
+    const ODDEST: i32 = 25;
 
     /// Before anything is learnt.
     pub fn new<const P: usize>(tables: &ObserverTables<T>, learner: &Learner<T, P>) -> Self {
@@ -98,6 +106,7 @@ impl<T: Real> Uncertainty<T> {
             widest_variance: T::ZERO,
             flanks_swap: false,
             settled: false,
+            scatter: T::ONE,
             turn: 0,
         };
         let free = regressors::free(T::ZERO, 0, Some(0));
@@ -125,6 +134,20 @@ impl<T: Real> Uncertainty<T> {
         self.mean_force_deviation = (known + contact.force_variance * tables.learner.per_periods).square_root();
     }
 
+    /// Takes in by how much a rest was off what was learnt: square of the innovation, and its variance.
+    pub fn take_innovation(&mut self, square: T, variance: T) {
+        let most = T::from_i32(Self::ODDEST) * variance;
+        let normalised = if square < most { square.over(variance) } else { T::from_i32(Self::ODDEST) };
+        if normalised.is_finite() {
+            self.scatter += Self::OF_A_REST * (normalised - self.scatter);
+        }
+    }
+
+    /// Factor by which what the model says of variances falls short of what rests show, at least 1 [-].
+    fn excess(&self) -> T {
+        if self.scatter > T::ONE { self.scatter } else { T::ONE }
+    }
+
     /// The next part of what the learner knows.
     pub fn next<const P: usize>(
         &mut self,
@@ -136,16 +159,17 @@ impl<T: Real> Uncertainty<T> {
         let table = &tables.learner;
         let noise = tables.contact.deflection_variance;
         let [of_deflection, of_flank] = self.wind_up_variance;
+        let excess = self.excess();
         let [touching, open] = &mut self.gap_variance;
         match self.turn {
             0 => {
                 self.deflection_variance = learner.variance(table, free);
-                *open = self.deflection_variance + of_deflection + noise;
+                *open = excess * (self.deflection_variance + of_deflection + noise);
             }
-            1 => *touching = learner.variance(table, &touch.on(&[T::ZERO; P])) + of_flank + noise,
+            1 => *touching = excess * (learner.variance(table, &touch.on(&[T::ZERO; P])) + of_flank + noise),
             2 => {
-                self.variances =
-                    [HALF_GAP, OFFSET, COMPLIANCE, SKEW].map(|parameter| learner.variance_of(table, parameter));
+                self.variances = [HALF_GAP, OFFSET, COMPLIANCE, SKEW]
+                    .map(|parameter| excess * learner.variance_of(table, parameter));
             }
             _ => self.of_edge(tables, learner, learner.variance(table, &touch.on(free))),
         }

@@ -161,7 +161,7 @@ fn whole_ranges<T: Real>(units: i64, table: &EncoderTable<T>, weight: i64) -> i6
 }
 
 /// From `before` to `now` the shorter way round; both within their range.
-fn difference<T: Real>(now: u32, before: u32, table: &EncoderTable<T>) -> i32 {
+pub fn difference<T: Real>(now: u32, before: u32, table: &EncoderTable<T>) -> i32 {
     let up = now.wrapping_sub(before);
     let up = if now < before { up.wrapping_add(table.wraps_at) } else { up };
     (if up > table.last / 2 { up.wrapping_sub(table.wraps_at) } else { up }) as i32

@@ -1,0 +1,272 @@
+//! The wiring check: whether signs, counts, ratio, torque, rate and clock are those of the tables, by a motor that is moved
+//! gently, or by any motion that is given to it.
+
+use core::ffi::{CStr, c_char};
+
+use model_core::wiring::{Verdict, Wiring, WiringCheck, WiringProgress, WiringRefusal};
+
+use crate::estimates::JointSamples;
+use crate::fp_mode;
+use crate::object::{Kind, look, open, read, start, usable};
+use crate::status::JointStatus;
+
+/// 64-bit words of a wiring check.
+pub const JOINT_WIRING_WORDS: usize = 72;
+
+/// Number of items of the wiring.
+pub const JOINT_WIRING_ITEMS: usize = 13;
+const _: () = assert!(JOINT_WIRING_ITEMS == model_core::wiring::WIRING_ITEMS);
+
+/// Storage of a wiring check. Its content is the library's own.
+#[repr(C)]
+pub struct JointWiring {
+    storage: [u64; JOINT_WIRING_WORDS],
+}
+
+/// A check.
+struct Check(WiringCheck<'static, f32>);
+
+impl Kind for Check {
+    type Storage = JointWiring;
+    const MARK: u32 = 0x3b3b_3b3b;
+}
+
+/// An item of the wiring: its place in `verdicts`, with what `found` means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum JointWiringItem {
+    /// Each control period gives its samples once. Found: calls for each sample.
+    Calls = 0,
+    /// The control rate is that of the tables. Found: control period over that of the tables.
+    Period = 1,
+    /// The clock has the tick rate of the tables. Found: tick rate over that of the tables.
+    Clock = 2,
+    /// The motor's readings carry times of the samples' clock. Found: 0.
+    MotorTime = 3,
+    /// The motor did move. Found: torque that is expected to move it, in N m.
+    Motion = 4,
+    /// Counts in a turn of the motor encoder. Found: their number; 0 for counts that stand still.
+    MotorCounts = 5,
+    /// Counts in a turn of the output encoder. Found: their number; 0 for counts that stand still.
+    OutputCounts = 6,
+    /// Each encoder is read as itself; else both are exchanged. Found: 0.
+    Places = 7,
+    /// Gear ratio. Found: motor turns in an output turn.
+    Ratio = 8,
+    /// The motor encoder counts up in the direction of a positive torque. Found: -1.
+    MotorDirection = 9,
+    /// The output encoder counts up where the motor encoder does. Found: -1.
+    OutputDirection = 10,
+    /// A positive torque drives in the direction in which both encoders count up. Found: -1.
+    TorqueDirection = 11,
+    /// Acting torque over commanded torque. Found: that factor.
+    TorqueScale = 12,
+}
+
+/// Verdict on an item of the wiring.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum JointVerdict {
+    /// The samples do not show it.
+    NotSeen = 0,
+    /// As in the tables.
+    Right = 1,
+    /// Not as in the tables; `found` is what was found instead.
+    Wrong = 2,
+    /// This item or another suspect is wrong, and the samples do not tell which; `found` is what it would be.
+    Suspect = 3,
+}
+
+/// Progress of a wiring check.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum JointWiringProgress {
+    /// Go on: command the torque, and call again in the next period.
+    Running = 0,
+    /// The check is over: read the verdicts.
+    Done = 1,
+    /// The joint moved before any torque was given: let it come to rest.
+    NotAtRest = 2,
+    /// The joint moved further than the check may: look for what else drives it. The verdicts hold as far as they go.
+    TooFar = 3,
+    /// The check took too long: look at the times of the samples. The verdicts hold as far as they go.
+    TooLong = 4,
+}
+
+/// Outputs of one control period of a wiring check.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct JointWiringStep {
+    /// Torque to command next at the motor's shaft, never larger than allowed; zero once the check has ended.
+    pub motor_torque_Nm: f32,
+    /// Progress.
+    pub progress: JointWiringProgress,
+}
+
+/// Verdicts on all items, each at the place of its JointWiringItem.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct JointWiringVerdicts {
+    /// 1 if every item that these tables let be judged was seen and is right, else 0.
+    pub all_right: u32,
+    /// Items that are wrong or suspect.
+    pub bad: u32,
+    /// Verdicts.
+    pub verdicts: [JointVerdict; JOINT_WIRING_ITEMS],
+    /// What was found, where a verdict is wrong or suspect; else 0.
+    pub found: [f32; JOINT_WIRING_ITEMS],
+}
+
+impl From<&Wiring<f32>> for JointWiringVerdicts {
+    fn from(of: &Wiring<f32>) -> Self {
+        let mut all = Self {
+            all_right: of.is_all_right().into(),
+            bad: 0,
+            verdicts: [JointVerdict::NotSeen; JOINT_WIRING_ITEMS],
+            found: [0.0; JOINT_WIRING_ITEMS],
+        };
+        for (((_, verdict), place), found) in of.iter().zip(&mut all.verdicts).zip(&mut all.found) {
+            (*place, *found) = match verdict {
+                Verdict::NotSeen => (JointVerdict::NotSeen, 0.0),
+                Verdict::Right => (JointVerdict::Right, 0.0),
+                Verdict::Wrong(value) => (JointVerdict::Wrong, value),
+                Verdict::Suspect(value) => (JointVerdict::Suspect, value),
+            };
+            all.bad += u32::from(verdict.is_bad());
+        }
+        all
+    }
+}
+
+/// Starts a wiring check. `bytes` is sizeof(JointWiring). The joint is to be at rest, and free to turn by a few degrees at the
+/// output.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn joint_wiring_start(
+    wiring: *mut JointWiring,
+    bytes: usize,
+    tables: *const u64,
+    tables_bytes: usize,
+) -> JointStatus {
+    fp_mode::standard(|| {
+        // SAFETY: the caller's word, as the header asks for it.
+        unsafe {
+            start(wiring, bytes, tables, tables_bytes, |blob| {
+                let table = blob.wiring()?;
+                Ok(Check(WiringCheck::new(table)))
+            })
+        }
+    })
+    .into()
+}
+
+/// One control period of a wiring check, in place of the observer's and the compensation's steps. With an allowed torque of
+/// zero, or with another torque than the answer's in force, it judges whatever motion the samples show.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn joint_wiring_step(
+    wiring: *mut JointWiring,
+    samples: *const JointSamples,
+    allowed_torque_Nm: f32,
+    step: *mut JointWiringStep,
+) -> JointStatus {
+    fp_mode::standard(|| {
+        // SAFETY: the caller's word, as the header asks for it.
+        let object = unsafe { open::<Check>(wiring) }?;
+        // SAFETY: likewise.
+        let samples = unsafe { read(samples) }?.samples()?;
+        usable(step)?;
+        if !allowed_torque_Nm.is_finite() {
+            return Err(JointStatus::NotFinite);
+        }
+        let (motor_torque_Nm, progress) = object.value.0.step(&samples, allowed_torque_Nm);
+        let progress = match progress {
+            WiringProgress::Running => JointWiringProgress::Running,
+            WiringProgress::Done(_) => JointWiringProgress::Done,
+            WiringProgress::Refused(WiringRefusal::NotAtRest) => JointWiringProgress::NotAtRest,
+            WiringProgress::Refused(WiringRefusal::TooFar) => JointWiringProgress::TooFar,
+            WiringProgress::Refused(WiringRefusal::TooLong) => JointWiringProgress::TooLong,
+        };
+        // SAFETY: aligned, not NULL, and the caller's to give.
+        unsafe { step.write(JointWiringStep { motor_torque_Nm, progress }) };
+        Ok(())
+    })
+    .into()
+}
+
+/// The verdicts on what a check has seen so far, outside of the control period.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn joint_wiring_verdicts(
+    wiring: *const JointWiring,
+    verdicts: *mut JointWiringVerdicts,
+) -> JointStatus {
+    fp_mode::standard(|| {
+        // SAFETY: the caller's word, as the header asks for it.
+        let object = unsafe { look::<Check>(wiring) }?;
+        usable(verdicts)?;
+        let found = JointWiringVerdicts::from(&object.value.0.wiring());
+        // SAFETY: aligned, not NULL, and the caller's to give.
+        unsafe { verdicts.write(found) };
+        Ok(())
+    })
+    .into()
+}
+
+/// Names and helps by number: C texts of those of the core, which a test compares.
+const TEXTS: [[&CStr; 2]; JOINT_WIRING_ITEMS] = [
+    [c"calls", c"samples come more than once: call the step once a control period"],
+    [c"period", c"the control rate is not that of the tables: call at control_rate_Hz, or make tables for this rate"],
+    [c"clock", c"the clock of the samples has another tick rate than the tables: give ticks of clock_rate_Hz"],
+    [
+        c"motor_time",
+        c"the times of the motor's readings stand still or are of another clock: give the time of the latch",
+    ],
+    [
+        c"motion",
+        c"nothing moved: enable the drive, release the brake, or allow the torque that is expected to move the joint",
+    ],
+    [c"motor_counts", c"the motor encoder has another number of counts in a turn than the tables, or stands still"],
+    [c"output_counts", c"the output encoder has another number of counts in a turn than the tables, or stands still"],
+    [c"places", c"motor and output encoder are exchanged"],
+    [c"ratio", c"the gear ratio is not that of the tables: these are tables of another joint"],
+    [c"motor_direction", c"the motor encoder counts down under a positive torque: give the range less the counts"],
+    [c"output_direction", c"the output encoder counts against the motor encoder: give the range less the counts"],
+    [
+        c"torque_direction",
+        c"a positive torque drives backwards: change the sign of the current, or exchange two phases",
+    ],
+    [
+        c"torque_scale",
+        c"the torque that acts is not the commanded one: check torque constant, unit, and the link's inertia",
+    ],
+];
+
+fn text(item: u32, which: usize) -> *const c_char {
+    let unknown = [c"unknown", c"this is no item of the wiring"];
+    let [name, help] = TEXTS.get(item as usize).copied().unwrap_or(unknown);
+    if which == 0 { name.as_ptr() } else { help.as_ptr() }
+}
+
+/// The name of an item of the wiring, such as "output_direction"; never NULL.
+#[unsafe(no_mangle)]
+pub extern "C" fn joint_wiring_item_name(item: u32) -> *const c_char {
+    text(item, 0)
+}
+
+/// What is wrong with an item of the wiring, and what to do about it, in one sentence; never NULL.
+#[unsafe(no_mangle)]
+pub extern "C" fn joint_wiring_item_text(item: u32) -> *const c_char {
+    text(item, 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use model_core::wiring::WiringItem;
+
+    use super::TEXTS;
+
+    #[test]
+    fn texts_of_items_are_those_of_the_core() {
+        for (item, [name, help]) in WiringItem::ALL.into_iter().zip(TEXTS) {
+            assert_eq!([name.to_str(), help.to_str()], [Ok(item.name()), Ok(item.help())]);
+        }
+    }
+}

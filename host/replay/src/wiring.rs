@@ -1,0 +1,75 @@
+//! Wiring of the joint that a log was recorded from: whether signs, counts, ratio, torque, rate and clock are those of the
+//! joint file. The judge is the core's own, in f64.
+
+use model_core::observer::Samples;
+use model_core::observer::design::ObserverSettings;
+use model_core::wiring::design::design_wiring;
+use model_core::wiring::{Verdict, WiringItem, WiringJudge};
+use parameters::JointParameters;
+use report::failure::{Failure, Outcome};
+use report::number::ESTIMATE;
+use serde::Serialize;
+
+use crate::samples::ReplaySamples;
+
+/// Verdict on an item of the wiring.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct WiringFinding {
+    /// Item, such as `output_direction`.
+    pub item: String,
+    /// `right`, `wrong`, `suspect` (it or another suspect is wrong) or `not_seen`.
+    pub verdict: String,
+    /// Found instead: counts in a turn, ratio, -1 for a direction, a factor for torque, rate and clock.
+    pub found: Option<f64>,
+    /// What to do.
+    pub help: Option<String>,
+}
+
+impl WiringFinding {
+    /// Whether a log is refused for it. A torque scale depends on what else pushes at the link, and a log without motion is
+    /// no wrong one.
+    fn contradicts(&self) -> bool {
+        let doubtful = [WiringItem::TorqueScale, WiringItem::Motion].map(WiringItem::name);
+        self.verdict == "wrong" && !doubtful.contains(&self.item.as_str())
+    }
+}
+
+/// Judges the wiring by the motion of a log.
+pub fn judge(
+    joint: &JointParameters,
+    settings: &ObserverSettings,
+    samples: &ReplaySamples,
+) -> Outcome<Vec<WiringFinding>> {
+    let table = design_wiring::<f64>(joint, settings).map_err(|error| {
+        Failure::new(format!("no wiring check can be designed for joint `{}`: {error}", joint.name))
+    })?;
+    let mut judge = WiringJudge::new(&table);
+    for index in 0..samples.len() {
+        let Samples { time, motor, output, torque } = samples.at(index);
+        judge.step(&Samples { time, motor, output, torque: torque.into() });
+    }
+    let finding = |(item, verdict): (WiringItem, Verdict<f64>)| {
+        let (word, found) = match verdict {
+            Verdict::NotSeen => ("not_seen", None),
+            Verdict::Right => ("right", None),
+            Verdict::Wrong(found) => ("wrong", Some(found)),
+            Verdict::Suspect(found) => ("suspect", Some(found)),
+        };
+        let help = verdict.is_bad().then(|| item.help().to_owned());
+        WiringFinding { item: item.name().to_owned(), verdict: word.to_owned(), found, help }
+    };
+    Ok(judge.wiring().iter().map(finding).collect())
+}
+
+/// Refuses a log whose wiring is not that of the joint file.
+pub fn refuse(findings: &[WiringFinding]) -> Outcome<()> {
+    let wrong: Vec<&WiringFinding> = findings.iter().filter(|finding| finding.contradicts()).collect();
+    let Some(first) = wrong.first() else { return Ok(()) };
+    let named: Vec<String> = wrong
+        .iter()
+        .map(|finding| format!("{} ({})", finding.item, ESTIMATE.write(finding.found.unwrap_or_default())))
+        .collect();
+    let message = format!("the wiring of this log is not that of the joint file: {}", named.join(", "));
+    Err(Failure::new(message).with_help(first.help.clone().unwrap_or_default()))
+}

@@ -1,0 +1,173 @@
+//! The adaptive inverse of the backlash, on tables as they are designed, in control of a motor and a link with play between them.
+
+use super::watch_tests::tables;
+use crate::compensation::inverse::BacklashInverse;
+use crate::compensation::set_point::{CommandRef, Motion, Position};
+use crate::compensation::situation::Situation;
+use crate::compensation::tables::CompensationTables;
+use crate::observer::{Estimates, Source};
+
+/// Half of the play [rad].
+const HALF: f64 = 2e-3;
+
+/// Motor and link without compliance, teeth that meet without a rebound, referred to the link.
+struct Rig {
+    tables: CompensationTables<f32>,
+    inverse: BacklashInverse<f32>,
+    /// Link's inertia over the designed.
+    ratio: f64,
+    friction: f64,
+    /// Motor beyond the link in the middle of the play [rad].
+    middle: f64,
+    /// Motor and link: place [rad] and speed [rad/s].
+    motor: [f64; 2],
+    link: [f64; 2],
+    period: u32,
+}
+
+impl Rig {
+    /// At rest in the middle of the play.
+    fn new(ratio: f64, friction: f64) -> Self {
+        let (tables, middle) = (tables(), 0.05);
+        Self {
+            tables,
+            inverse: BacklashInverse::new(),
+            ratio,
+            friction,
+            middle,
+            motor: [middle, 0.0],
+            link: [0.0; 2],
+            period: 0,
+        }
+    }
+
+    /// Where the situation is for a set-point.
+    fn situation(&self, now: &Motion<f32>) -> Situation<f32> {
+        let turns = |radians: f64| (radians / core::f64::consts::TAU) as f32;
+        let mut estimates = Estimates {
+            source: Source::Both,
+            motor_lead: (self.motor[0] - self.link[0]) as f32,
+            ..Estimates::default()
+        };
+        estimates.link.fraction = turns(self.link[0]);
+        estimates.link.speed = self.link[1] as f32;
+        estimates.motor.speed = self.motor[1] as f32 / self.tables.gear.link_per_motor;
+        Situation::new(&self.tables, &estimates, 0.0, CommandRef::Position { now, ahead: None })
+    }
+
+    /// A period; returns the link's error [rad] and the torque [N m].
+    fn step(&mut self, now: &Motion<f32>) -> (f64, f64) {
+        let situation = self.situation(now);
+        if self.period.is_multiple_of(3) {
+            self.inverse.observe(&self.tables, &situation, now);
+        }
+        let torque = self.inverse.follow(&self.tables, &situation, now);
+        self.inverse.take(&self.tables, &situation, Some(0.0));
+        if self.period % 3 == 1 {
+            self.inverse.learn(&self.tables, torque);
+        }
+        self.period += 1;
+        self.advance(f64::from(torque));
+        (f64::from(situation.error), f64::from(torque))
+    }
+
+    fn advance(&mut self, torque: f64) {
+        let period = f64::from(self.tables.clock.period);
+        let (heavy, light) =
+            (self.ratio * f64::from(self.tables.body.load_inertia), f64::from(self.tables.body.motor_inertia));
+        let brakes = period * self.friction / heavy;
+        self.motor[1] += period * torque / light;
+        self.link[1] -= self.link[1].clamp(-brakes, brakes);
+        for [place, speed] in [&mut self.motor, &mut self.link] {
+            *place += period * *speed;
+        }
+        for side in [-1.0, 1.0] {
+            let beyond = side * (self.motor[0] - self.link[0] - self.middle) - HALF;
+            if beyond >= 0.0 {
+                self.link[0] += side * beyond;
+                if side * (self.motor[1] - self.link[1]) > 0.0 {
+                    let both = (light * self.motor[1] + heavy * self.link[1]) / (light + heavy);
+                    (self.motor[1], self.link[1]) = (both, both);
+                }
+            }
+        }
+    }
+
+    /// RMS error of the link [rad] over a time [s] of a sine that begins at rest.
+    fn sine(&mut self, amplitude: f64, frequency: f64, time: f64) -> f64 {
+        let rate = core::f64::consts::TAU * frequency;
+        let periods = (time * f64::from(self.tables.clock.rate)) as u32;
+        let squares: f64 = (0..periods)
+            .map(|_| {
+                let phase = rate * f64::from(self.period) * f64::from(self.tables.clock.period);
+                let now = Motion {
+                    position: Position {
+                        turns: 0,
+                        fraction: (amplitude * (1.0 - libm::cos(phase)) / core::f64::consts::TAU) as f32,
+                    },
+                    speed: (amplitude * rate * libm::sin(phase)) as f32,
+                    acceleration: (amplitude * rate * rate * libm::cos(phase)) as f32,
+                };
+                self.step(&now).0.powi(2)
+            })
+            .sum();
+        libm::sqrt(squares / f64::from(periods))
+    }
+}
+
+#[test]
+fn edges_that_the_torque_has_pressed_take_most_of_the_lost_motion_out() {
+    // A link that friction brakes is carried by the flank of its direction: without an inverse it is half the play behind.
+    let mut rig = Rig::new(1.0, 2.0);
+    let [first, last] = [(); 2].map(|()| rig.sine(0.3, 0.5, 2.0));
+    assert!(last < 0.3 * HALF && last < first, "{first} rad at first, {last} rad then");
+}
+
+#[test]
+fn an_inertia_that_nobody_told_is_learnt_from_the_torque() {
+    let rig = Rig::new(1.0, 0.0);
+    let total = rig.tables.body.motor_inertia + rig.tables.body.load_inertia;
+    for ratio in [0.7, 1.6] {
+        let mut inverse = BacklashInverse::new();
+        // The other law gives what the joint asks for.
+        for period in 0..60_000_u32 {
+            let phase = core::f32::consts::TAU * 3.0 * rig.tables.clock.period * period as f32;
+            let now = Motion { acceleration: 20.0 * libm::sinf(phase), ..Motion::default() };
+            let situation = rig.situation(&now);
+            inverse.observe(&rig.tables, &situation, &now);
+            inverse.take(&rig.tables, &situation, None);
+            inverse.learn(&rig.tables, ratio * total * now.acceleration);
+        }
+        let [some, none] = [20.0, 0.0].map(|acceleration| {
+            let now = Motion { acceleration, ..Motion::default() };
+            inverse.clone().follow(&rig.tables, &rig.situation(&now), &now)
+        });
+        let fed_forward = (some - none) / (20.0 * total);
+        assert!((fed_forward - ratio).abs() < 0.03, "{fed_forward} of what was designed, {ratio} in truth");
+    }
+}
+
+#[test]
+fn a_joint_at_rest_whose_gap_nobody_knows_stays_as_it_stands() {
+    let mut rig = Rig::new(1.0, 0.5);
+    rig.motor[0] += 0.8 * HALF;
+    for _ in 0..10_000 {
+        let (error, torque) = rig.step(&Motion::default());
+        assert!(error == 0.0 && torque.abs() < 1e-3, "{error} rad, {torque} N m");
+    }
+}
+
+#[test]
+fn it_takes_over_from_another_law_where_the_motor_stands_with_the_torque_that_holds_the_load() {
+    let mut rig = Rig::new(1.0, 0.5);
+    // The other law pushes with 3 N m, and something holds the link.
+    for _ in 0..30_000 {
+        let situation = rig.situation(&Motion::default());
+        rig.inverse.observe(&rig.tables, &situation, &Motion::default());
+        rig.inverse.take(&rig.tables, &situation, None);
+        rig.inverse.learn(&rig.tables, 3.0);
+    }
+    let situation = rig.situation(&Motion::default());
+    let torque = rig.inverse.follow(&rig.tables, &situation, &Motion::default());
+    assert!((torque - 3.0).abs() < 0.15, "{torque} N m");
+}

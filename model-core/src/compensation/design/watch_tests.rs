@@ -1,0 +1,190 @@
+//! The loop monitor on tables as they are designed.
+
+use crate::compensation::design::{compensation_settings, design_compensation};
+use crate::compensation::set_point::{CommandRef, Motion};
+use crate::compensation::situation::Situation;
+use crate::compensation::tables::CompensationTables;
+use crate::compensation::watch::{Watch, Watched};
+use crate::gears::Flank;
+use crate::observer::Estimates;
+
+/// Those of Q1 at 60 rad/s.
+pub(super) fn tables() -> CompensationTables<f32> {
+    let q1 = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
+    design_compensation(&q1.parameters, &compensation_settings(&q1.surroundings, 60.0)).expect("tables")
+}
+
+/// A link beside its set-point by a part of half the lost motion.
+fn situation(tables: &CompensationTables<f32>, part: f32) -> Situation<f32> {
+    let mut estimates = Estimates::default();
+    estimates.half_backlash.value = 40e-6;
+    let mut situation =
+        Situation::new(tables, &estimates, 0.0, CommandRef::Position { now: &Motion::default(), ahead: None });
+    situation.error = part * situation.half;
+    situation
+}
+
+/// Control periods from one judgement to the next.
+const TURN: usize = 3;
+
+/// Periods in which an error grows to its size: as slowly as no jump of a set-point.
+const GROWS: u32 = 500;
+
+/// A monitor that has seen a good loop for a second, so that it owes nothing to what the loop found.
+fn settled(tables: &CompensationTables<f32>) -> Watch<f32> {
+    let (good, mut watch) = (situation(tables, 0.0), Watch::new(tables));
+    let watched = Watched { planned: 1.0, load: 0.0, has_error: true, is_thrown: false };
+    (0..10_000).step_by(TURN).for_each(|_| watch.step(tables, &good, &watched, Some(Flank::Drive)));
+    watch
+}
+
+/// Periods after which the monitor steps back while the error grows to a part of half the lost motion and flanks change every `dwell`
+/// periods under a demand; at most 10 s.
+fn trips_after(part: f32, dwell: u32, planned: impl Fn(Flank) -> f32) -> Option<u32> {
+    let tables = tables();
+    let mut watch = settled(&tables);
+    (0..100_000).step_by(TURN).find(|&period: &u32| {
+        let flank = if (period / dwell).is_multiple_of(2) { Flank::Drive } else { Flank::Back };
+        let watched = Watched { planned: planned(flank), load: 0.0, has_error: true, is_thrown: false };
+        let situation = situation(&tables, part * (period.min(GROWS) as f32 / GROWS as f32));
+        watch.step(&tables, &situation, &watched, Some(flank));
+        watch.is_away()
+    })
+}
+
+#[test]
+fn explained_changes_never_trip() {
+    assert_eq!(trips_after(0.9, 250, |flank| flank.sign::<f32>()), None);
+}
+
+#[test]
+fn unexplained_changes_trip_in_half_a_second() {
+    // A payload's mode of 20 Hz: forty changes a second.
+    let tripped = trips_after(0.9, 250, |_| 0.0).expect("hunting");
+    assert!(tripped < 5000, "{tripped}");
+}
+
+#[test]
+fn a_load_changes_flanks_eight_times_a_second_at_most() {
+    // Twice in 0.2 s, as a gait does, and forty times a second, as a payload's mode that is felt as a load.
+    let [gait, mode] = [1000, 250].map(|dwell| {
+        let (tables, good) = (tables(), situation(&tables(), 0.9));
+        let mut watch = settled(&tables);
+        (0..100_000).step_by(TURN).find(|&period: &u32| {
+            let flank = if (period / dwell).is_multiple_of(2) { Flank::Drive } else { Flank::Back };
+            // Slowly enough to pass the smoothing of the load.
+            let watched =
+                Watched { planned: 0.0, load: 100.0 * flank.sign::<f32>(), has_error: true, is_thrown: false };
+            watch.step(&tables, &good, &watched, Some(flank));
+            watch.is_away()
+        })
+    });
+    assert!(gait.is_none() && mode.is_some_and(|periods| periods < 20_000), "{gait:?} {mode:?}");
+}
+
+#[test]
+fn small_error_bears_a_drift_from_flank_to_flank() {
+    // Fifteen changes a second.
+    let [calm, rough] = [0.1, 0.9].map(|part| trips_after(part, 667, |_| 0.0));
+    assert!(calm.is_none() && rough.is_some_and(|periods| periods < 6000), "{calm:?} {rough:?}");
+}
+
+#[test]
+fn error_of_plain_control_does_not_trip() {
+    assert_eq!(trips_after(1.0, 1_000_000, |_| 1.0), None);
+    assert!(trips_after(3.0, 1_000_000, |_| 1.0).expect("worse than plain") < 1500);
+}
+
+#[test]
+fn error_that_the_loop_has_found_does_not_trip() {
+    let (tables, trips) = (tables(), |watch: &mut Watch<f32>| {
+        let tables = tables();
+        let watched = Watched { planned: 1.0, load: 0.0, has_error: true, is_thrown: false };
+        (0..10_000).step_by(TURN).any(|period| {
+            // Ten times half the lost motion, which plain control takes back in a few time constants.
+            let situation = situation(&tables, 10.0 * (-0.006 * period as f32).exp());
+            watch.step(&tables, &situation, &watched, Some(Flank::Drive));
+            watch.is_away()
+        })
+    });
+    assert!(!trips(&mut Watch::new(&tables)), "found when it was switched on");
+    assert!(!trips(&mut settled(&tables)), "a jump of the set-point");
+}
+
+#[test]
+fn time_away_grows_and_is_forgiven() {
+    let tables = tables();
+    let good = situation(&tables, 0.0);
+    let watched = Watched { planned: 1.0, load: 0.0, has_error: true, is_thrown: false };
+    let mut watch = settled(&tables);
+    let mut step = |situation: &Situation<f32>| {
+        watch.step(&tables, situation, &watched, Some(Flank::Drive));
+        watch.is_away()
+    };
+    let bad = |period: u32| situation(&tables, 4.0 * (period.min(GROWS) as f32 / GROWS as f32));
+    let mut seconds_away = || {
+        let trips = (0..2000).step_by(TURN).find(|&period| step(&bad(period))).expect("worse than plain control");
+        let periods = (0..2_000_000).step_by(TURN).find(|_| !step(&good)).expect("the compensation tries again");
+        assert!(trips < 1500, "{trips}");
+        (0..5000).step_by(TURN).for_each(|_| assert!(!step(&good)));
+        periods as f32 * tables.clock.period
+    };
+    let [first, second] = [(); 2].map(|()| seconds_away());
+    assert!((9.9..10.1).contains(&first) && (39.8..40.2).contains(&second), "{first} {second}");
+    (0..1_700_000).step_by(TURN).for_each(|_| assert!(!step(&good)));
+    let mut seconds_away = || {
+        let _ = (0..2000).step_by(TURN).find(|&period| step(&bad(period)));
+        let periods = (0..2_000_000).step_by(TURN).find(|_| !step(&good)).expect("the compensation tries again");
+        periods as f32 * tables.clock.period
+    };
+    assert!((9.9..10.1).contains(&seconds_away()), "forgiven");
+}
+
+#[test]
+fn after_a_trip_an_error_beyond_that_of_the_law_that_took_over_trips_at_once() {
+    let tables = tables();
+    let watched = Watched { planned: 0.0, load: 0.0, has_error: true, is_thrown: false };
+    // Of a law that has left the link by twice half the lost motion of late, nothing less trips; of one that has not, half of it does.
+    let trips_at = |left: f32, part: f32| {
+        let acts = |watch: &mut Watch<f32>, part: f32| {
+            watch.step(&tables, &situation(&tables, part), &watched, Some(Flank::Drive));
+            watch.is_away()
+        };
+        let mut watch = settled(&tables);
+        assert!(
+            !(0..GROWS).step_by(TURN).any(|period| acts(&mut watch, 2.2 * period as f32 / GROWS as f32)),
+            "at first"
+        );
+        assert!((0..10_000).any(|_| acts(&mut watch, 4.0)));
+        while watch.is_away() {
+            watch.step(&tables, &situation(&tables, left), &watched, None);
+        }
+        // The error is found first, and that fades.
+        assert!((0..4000).step_by(TURN).all(|_| !acts(&mut watch, 0.0)));
+        // Grows over 50 ms, which is no jump of the set-point, and is long enough for no mean.
+        (0..GROWS).step_by(TURN).any(|period| acts(&mut watch, part * period as f32 / GROWS as f32))
+    };
+    assert!(!trips_at(0.0, 1.4) && trips_at(0.0, 1.7), "of a law that serves well");
+    assert!(!trips_at(2.0, 1.7) && trips_at(2.0, 2.2), "of a law that does not");
+}
+
+#[test]
+fn numbers_that_are_none_pass_through_nothing() {
+    let tables = tables();
+    let (situation, mut watch) = (situation(&tables, 0.1), Watch::new(&tables));
+    watch.step(
+        &tables,
+        &situation,
+        &Watched { planned: 1.0, load: f32::NAN, has_error: true, is_thrown: false },
+        Some(Flank::Drive),
+    );
+    let watched = Watched { planned: 1.0, load: 0.0, has_error: true, is_thrown: false };
+    (0..1000).step_by(TURN).for_each(|_| watch.step(&tables, &situation, &watched, Some(Flank::Drive)));
+    assert!(!watch.is_away());
+    // It judges on.
+    let bad = self::situation(&tables, 9.0);
+    assert!((0..100_000).step_by(TURN).any(|_| {
+        watch.step(&tables, &bad, &watched, Some(Flank::Drive));
+        watch.is_away()
+    }));
+}

@@ -1,0 +1,336 @@
+//! Wiring check with a driven motor: a few gentle legs to and fro, whatever is wired the wrong way.
+//!
+//! The sign of the torque's effect is not known beforehand, so each leg measures it: the torque rises until the motor or the
+//! output has turned by half of a small travel, then the opposite torque brakes what moves. Friction, ratio and signs need not
+//! be known for that; the travel is bounded by the design (`wiring::design`).
+//!
+//! | state | torque | ends when | then |
+//! |---|---|---|---|
+//! | rest | 0 | the time of a rest is over: nothing moves | push |
+//! | | | it is over and something moves, at first | refused |
+//! | | | it is over and something moves, later | brake, with a quarter of the torque, three times at most |
+//! | push | rises to the allowed torque | motor or output has turned by half of the travel | brake |
+//! | | | the time at the allowed torque is over | rest; the next leg |
+//! | brake | against the motion | the motion is over | rest; the next leg |
+//! | any | | motor or output is beyond the travel limit | refused |
+
+use core::fmt;
+
+use super::judge::WiringJudge;
+use super::tables::WiringTable;
+use super::verdict::Wiring;
+use crate::numbers::Real;
+use crate::observer::Samples;
+
+/// Legs of a check: two each way, so that dry friction and lost motion are told from torque and ratio.
+const LEGS: u8 = 4;
+
+/// Brakings after a leg.
+const BRAKINGS: u8 = 4;
+
+/// Counts by which a shaft that rests may flicker over a rest.
+const RESTS: i64 = 4;
+
+/// Part of a leg by which a shaft that rests may creep over a rest, as a power of two.
+const CREEPS: u32 = 5;
+
+/// Part of the speed at which braking began at which it ends, as a power of two.
+const STOPS: u32 = 4;
+
+/// Counts beyond which a travel is cut off: their products fit.
+const MOST_COUNTS: u64 = u32::MAX as u64;
+
+/// Times of its limit that the motor may go while the output lags behind what the ratio says.
+const MOST_TIMES: u64 = 3;
+
+/// Counts by which a shaft has moved for sure.
+const MOVED: i64 = 8;
+
+/// Why a check ended before its last leg.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WiringRefusal {
+    /// The joint moved before any torque was given: let it come to rest.
+    NotAtRest,
+    /// The joint moved further than the check may: something else drives it.
+    TooFar,
+    /// The check took too long.
+    TooLong,
+}
+
+impl fmt::Display for WiringRefusal {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::NotAtRest => "the joint moved before any torque was given: let it come to rest",
+            Self::TooFar => "the joint moved further than the wiring check may: look for what else drives it",
+            Self::TooLong => "the wiring check took too long: look at the times of the samples",
+        })
+    }
+}
+
+/// Progress of a check.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum WiringProgress<T: Real> {
+    /// Command the torque and give the samples of the next period.
+    Running,
+    /// The last leg is over.
+    Done(Wiring<T>),
+    /// The check ended early; what was seen until then is in [`WiringCheck::wiring`].
+    Refused(WiringRefusal),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum State {
+    Rest,
+    Push,
+    Brake,
+    Done,
+    Refused(WiringRefusal),
+}
+
+/// A wiring check of one joint.
+///
+/// ```
+/// use model_core::gears::{Tables, design::design};
+/// use model_core::observer::design::observer_settings;
+/// use model_core::wiring::{WiringCheck, WiringProgress};
+/// use model_core::virtual_joint::{VirtualJoint, design::design_surroundings};
+/// use model_core::wiring::design::design_wiring;
+///
+/// let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
+/// let gears: Tables<f32, 3> = design(&q1.parameters, q1.surroundings.control_rate)?;
+/// let around = design_surroundings(&q1.parameters, &q1.surroundings, &gears)?;
+/// let table = design_wiring(&q1.parameters, &observer_settings(&q1.surroundings))?;
+/// let (mut joint, mut check) = (VirtualJoint::new(&gears, &around), WiringCheck::<f32>::new(&table));
+/// let wiring = loop {
+///     // No more than 0.5 N m.
+///     let (torque, progress) = check.step(&joint.samples(), 0.5);
+///     match progress {
+///         WiringProgress::Running => joint.advance(torque, 0.0),
+///         WiringProgress::Done(wiring) => break wiring,
+///         WiringProgress::Refused(refusal) => panic!("{refusal}"),
+///     }
+/// };
+/// assert!(wiring.is_right(), "{wiring}");
+/// # Ok::<(), model_core::gears::design::DesignError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct WiringCheck<'tables, T: Real> {
+    table: &'tables WiringTable<T>,
+    judge: WiringJudge<'tables, T>,
+    state: State,
+    leg: u8,
+    brakings: u8,
+    /// Periods since the beginning, in this state, at the allowed torque, and in this window.
+    total: u32,
+    periods: u32,
+    held: u32,
+    window: u32,
+    /// Size of the torque, and its direction: 1 or -1.
+    size: T,
+    direction: i32,
+    /// Positions at the beginning of the leg or rest, and of the window.
+    from: [i64; 2],
+    mark: [i64; 2],
+    /// The output is watched while it is braked, rather than the motor; the direction that is braked; its counts in the last
+    /// window of the push.
+    watches_output: bool,
+    sense: i64,
+    fast: i64,
+    torque: T,
+}
+
+impl<'tables, T: Real> WiringCheck<'tables, T> {
+    /// A check that has not begun. The joint shall be at rest, and free to move by a few degrees.
+    pub fn new(table: &'tables WiringTable<T>) -> Self {
+        Self {
+            table,
+            judge: WiringJudge::new(table),
+            state: State::Rest,
+            leg: 0,
+            brakings: 0,
+            total: 0,
+            periods: 0,
+            held: 0,
+            window: 0,
+            size: T::ZERO,
+            direction: 1,
+            from: [0; 2],
+            mark: [0; 2],
+            watches_output: false,
+            sense: 0,
+            fast: 0,
+            torque: T::ZERO,
+        }
+    }
+
+    /// Verdicts on what was seen so far.
+    pub fn wiring(&self) -> Wiring<T> {
+        self.judge.wiring()
+    }
+
+    /// One control period: returns the torque to command next, never larger than `allowed` [N m], and the progress. The
+    /// torque is zero once the check has ended.
+    pub fn step(&mut self, samples: &Samples<T>, allowed: T) -> (T, WiringProgress<T>) {
+        let is_new = self.judge.step(samples);
+        self.total = self.total.saturating_add(1);
+        if self.is_running() && self.total > self.table.longest {
+            self.state = State::Refused(WiringRefusal::TooLong);
+        }
+        let least = |one: T, other: T| if one < other { one } else { other };
+        // Zero for what is not a number, too.
+        let allowed = if allowed > T::ZERO { least(allowed, self.table.torque_limit) } else { T::ZERO };
+        if is_new && self.is_running() {
+            self.advance(allowed);
+        }
+        self.size = least(self.size, allowed);
+        let progress = match self.state {
+            State::Done => WiringProgress::Done(self.judge.wiring()),
+            State::Refused(refusal) => WiringProgress::Refused(refusal),
+            State::Rest => {
+                self.torque = T::ZERO;
+                return (T::ZERO, WiringProgress::Running);
+            }
+            State::Push | State::Brake => {
+                self.torque = T::from_i32(self.direction) * self.size;
+                return (self.torque, WiringProgress::Running);
+            }
+        };
+        self.torque = T::ZERO;
+        (T::ZERO, progress)
+    }
+
+    fn is_running(&self) -> bool {
+        matches!(self.state, State::Rest | State::Push | State::Brake)
+    }
+
+    fn advance(&mut self, allowed: T) {
+        let places = [self.judge.motor.position, self.judge.output.position];
+        if self.is_far(places, self.table.limit) {
+            self.state = State::Refused(WiringRefusal::TooFar);
+            return;
+        }
+        self.periods = self.periods.saturating_add(1);
+        match self.state {
+            State::Rest => self.rest(places),
+            State::Push => self.push(places, allowed),
+            State::Brake => self.brake(places),
+            State::Done | State::Refused(_) => {}
+        }
+    }
+
+    /// Whether the joint has moved as far as a limit. An encoder with other counts than the tables' overstates or understates
+    /// the travel, so the geometric mean of both travels decides, which is right even for encoders that are exchanged. A
+    /// motor alone, or beside an output that stands, is held to its own limit.
+    fn is_far(&self, moved: [i64; 2], limit: [u32; 2]) -> bool {
+        let [motor, output] = moved.map(|by| by.unsigned_abs().min(MOST_COUNTS));
+        let [motor_limit, output_limit] = limit.map(u64::from);
+        let stands = [motor, output].map(|by| by <= MOVED.unsigned_abs());
+        let alone = (stands[1] && motor >= motor_limit) || (stands[0] && output >= output_limit);
+        let both = motor.saturating_mul(output) >= motor_limit.saturating_mul(output_limit);
+        alone || both || motor >= motor_limit.saturating_mul(MOST_TIMES)
+    }
+
+    fn enter(&mut self, state: State, places: [i64; 2]) {
+        self.state = state;
+        (self.periods, self.held, self.window) = (0, 0, 0);
+        (self.from, self.mark) = (places, places);
+    }
+
+    fn rest(&mut self, places: [i64; 2]) {
+        if self.periods < self.table.rest {
+            return;
+        }
+        let moved = by(places, self.from);
+        let creeps = |shaft: usize| {
+            let most = RESTS.saturating_add(i64::from(at(self.table.leg, shaft) >> CREEPS));
+            at(moved, shaft).saturating_abs() > most
+        };
+        let watched = usize::from(self.watches_output);
+        if self.leg == 0 && self.sense == 0 {
+            if creeps(0) || creeps(1) {
+                self.state = State::Refused(WiringRefusal::NotAtRest);
+                return;
+            }
+        } else if creeps(watched) && self.brakings > 0 {
+            // Something still moves: brake it, by what the leg has shown of the torque's effect.
+            self.brakings -= 1;
+            let goes = at(moved, watched).signum();
+            if goes != self.sense {
+                self.direction = -self.direction;
+            }
+            self.sense = goes;
+            self.size *= T::QUARTER;
+            let windows = i64::from(self.table.rest.checked_div(self.table.window).unwrap_or(1).max(1));
+            self.fast = at(moved, watched).saturating_abs().checked_div(windows).unwrap_or(0);
+            self.enter(State::Brake, places);
+            return;
+        } else if self.leg >= LEGS {
+            self.state = State::Done;
+            return;
+        }
+        self.direction = if self.leg & 1 == 0 { 1 } else { -1 };
+        self.leg += 1;
+        self.size = T::ZERO;
+        self.brakings = BRAKINGS;
+        self.enter(State::Push, places);
+    }
+
+    fn push(&mut self, places: [i64; 2], allowed: T) {
+        self.size += self.table.rise;
+        if self.size >= allowed {
+            self.size = allowed;
+            self.held = self.held.saturating_add(1);
+        }
+        let moved = by(places, self.from);
+        let is_far = self.is_far(moved, self.table.leg);
+        let output_moved = at(moved, 1).saturating_abs() >= MOVED;
+        let watched = usize::from(output_moved);
+        let window_over = self.window_over();
+        if window_over {
+            self.fast = at(by(places, self.mark), watched).saturating_abs();
+            self.mark = places;
+        }
+        if is_far {
+            self.watches_output = output_moved;
+            self.sense = at(moved, watched).signum();
+            self.direction = -self.direction;
+            self.enter(State::Brake, places);
+        } else if self.held > self.table.hold {
+            self.watches_output = output_moved;
+            self.sense = if self.sense == 0 { 1 } else { self.sense };
+            self.brakings = 0;
+            self.enter(State::Rest, places);
+        }
+    }
+
+    fn brake(&mut self, places: [i64; 2]) {
+        if !self.window_over() {
+            return;
+        }
+        let along = at(by(places, self.mark), usize::from(self.watches_output)).saturating_mul(self.sense);
+        self.mark = places;
+        let braked = along <= (self.fast >> STOPS).max(1);
+        if braked || self.periods > self.table.hold {
+            self.enter(State::Rest, places);
+        }
+    }
+
+    /// Counts a period of the window; whether it is its last one.
+    fn window_over(&mut self) -> bool {
+        self.window += 1;
+        let over = self.window >= self.table.window;
+        if over {
+            self.window = 0;
+        }
+        over
+    }
+}
+
+fn by(places: [i64; 2], from: [i64; 2]) -> [i64; 2] {
+    let ([motor, output], [motor_from, output_from]) = (places, from);
+    [motor.saturating_sub(motor_from), output.saturating_sub(output_from)]
+}
+
+fn at<V: Copy + Default>(of_shafts: [V; 2], shaft: usize) -> V {
+    of_shafts.get(shaft).copied().unwrap_or_default()
+}

@@ -1,0 +1,602 @@
+//! Judge of the wiring: raw counts, times and torques of any motion in, verdicts out.
+//!
+//! **Important terms**
+//!
+//! - `F`, the angle factor: motor angle over the ratio, divided by the output angle, both as the tables count them. Rightly
+//!   wired it is 1. It is the slope of motor over output angle, with the direction of motion as second regressor; the step of
+//!   that is half of the lost motion, by which the motor leads (`line.rs`).
+//! - `A_m`, `A_o`: change of speed of motor and output for a unit of torque, the slopes of second differences of their
+//!   angles over torque, with the direction (dry friction) as second regressor. Over two neighbouring blocks of the length `L`
+//!
+//!   `x(k+1) - 2 x(k) + x(k-1) = integral of w(t) a(t) dt` (2)
+//!
+//!   where `w` rises over the first block from 0 to `L` and falls over the second: torque is weighted alike.
+//! - `G = J_m A_m + (J_l/r) A_o`, the torque factor: momentum that a unit of torque makes, whether teeth touch or not. Rightly
+//!   wired it is 1.
+//!
+//! Signs of `A_m` and `F` tell three reversals apart, if one thing is reversed and not two:
+//!
+//! | `A_m` | `F` | reversed |
+//! |---|---|---|
+//! | + | + | nothing, or all three |
+//! | + | - | output encoder |
+//! | - | + | torque |
+//! | - | - | motor encoder |
+//!
+//! `F` of 2^k is an encoder with other bits than the tables'. The encoder with which `G` comes out nearer to 1 is blamed.
+
+use super::line::{Fit, Line};
+use super::tables::WiringTable;
+use super::track::Track;
+use super::verdict::{Verdict, Wiring, WiringItem};
+use crate::numbers::Real;
+use crate::observer::Samples;
+
+/// Counts that are motion: noise flickers by less.
+const MOVED: i64 = 8;
+
+/// Counts in a block that have a direction.
+const DIRECTED: i64 = 3;
+
+/// Counts that an encoder flickers by while it stands.
+const FLICKER: i64 = 4;
+
+/// Bits by which an encoder may be told wrong.
+const BITS: usize = 5;
+
+/// Blocks in a row with a torque of one sign after which torque is compared with motion: after a change of sign the motor
+/// crosses the gap.
+const ROW: u8 = 3;
+
+/// Calls after which times are judged.
+const CALLS: u32 = 32;
+
+/// What a block leaves to the next one.
+#[derive(Debug, Clone, Copy, Default)]
+struct Block<T: Real> {
+    /// Positions at its end.
+    ends: [i64; 2],
+    /// Counts turned in it.
+    turned: [i64; 2],
+    /// Torque, weighted from 0 at its beginning to 1 at its end, times its periods [N m].
+    rise: T,
+    direction: i32,
+    /// Sign of the torque, if it was the same all over it, and blocks in a row with that sign.
+    sign: i32,
+    row: u8,
+}
+
+/// Judge of the wiring of one joint.
+///
+/// A log of a joint whose output encoder counts the wrong way:
+///
+/// ```
+/// use model_core::gears::{Tables, design::design};
+/// use model_core::observer::design::observer_settings;
+/// use model_core::wiring::{Verdict, WiringItem, WiringJudge};
+/// use model_core::virtual_joint::{VirtualJoint, design::design_surroundings};
+/// use model_core::wiring::design::design_wiring;
+///
+/// let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
+/// let gears: Tables<f32, 3> = design(&q1.parameters, q1.surroundings.control_rate)?;
+/// let around = design_surroundings(&q1.parameters, &q1.surroundings, &gears)?;
+/// let table = design_wiring(&q1.parameters, &observer_settings(&q1.surroundings))?;
+/// let (mut joint, mut judge) = (VirtualJoint::new(&gears, &around), WiringJudge::<f32>::new(&table));
+/// for period in 0..20_000 {
+///     let mut samples = joint.samples();
+///     let output = samples.output.as_mut().unwrap();
+///     output.counts = (1 << 17) - 1 - output.counts;
+///     judge.step(&samples);
+///     joint.advance(0.5 * (12.6 * 1e-4 * period as f32).cos(), 0.0);
+/// }
+/// let wiring = judge.wiring();
+/// assert_eq!(wiring.of(WiringItem::OutputDirection), Verdict::Wrong(-1.0), "{wiring}");
+/// assert_eq!(wiring.of(WiringItem::MotorDirection), Verdict::Right, "{wiring}");
+/// # Ok::<(), model_core::gears::design::DesignError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct WiringJudge<'tables, T: Real> {
+    table: &'tables WiringTable<T>,
+    began: bool,
+    time: u32,
+    motor_time: u32,
+    /// Calls, those with the samples of the call before, those a period apart, those with a motor reading that is not new.
+    calls: u32,
+    repeats: u32,
+    on_time: u32,
+    stale: u32,
+    /// Calls that are not far apart, and the ticks between them.
+    near: u32,
+    ticks: u64,
+    pub(super) motor: Track,
+    pub(super) output: Track,
+    strongest: T,
+    /// Periods in this block, torque in it, and the same weighted from 0 at its beginning to 1 at its end.
+    periods: u32,
+    torque: T,
+    rise: T,
+    sign: i32,
+    block: Block<T>,
+    /// Blocks behind.
+    blocks: u8,
+    angles: Line<T>,
+    /// Second differences of both angles over torque.
+    responses: Line<T>,
+    /// The same, where the torque has had one sign for some blocks.
+    steady: Line<T>,
+    /// Positions of the last standstill, until one shaft has moved from there.
+    standstill: Option<[i64; 2]>,
+    /// Times that motor or output moved first.
+    leads: [u16; 2],
+    /// Starts of the motor with and against the torque.
+    starts: [u16; 2],
+}
+
+impl<'tables, T: Real> WiringJudge<'tables, T> {
+    /// A judge that has seen nothing.
+    pub fn new(table: &'tables WiringTable<T>) -> Self {
+        Self {
+            table,
+            began: false,
+            time: 0,
+            motor_time: 0,
+            calls: 0,
+            repeats: 0,
+            on_time: 0,
+            stale: 0,
+            near: 0,
+            ticks: 0,
+            motor: Track::default(),
+            output: Track::default(),
+            strongest: T::ZERO,
+            periods: 0,
+            torque: T::ZERO,
+            rise: T::ZERO,
+            sign: 0,
+            block: Block::default(),
+            blocks: 0,
+            angles: Line::default(),
+            responses: Line::default(),
+            steady: Line::default(),
+            standstill: None,
+            leads: [0; 2],
+            starts: [0; 2],
+        }
+    }
+
+    /// Takes the samples of one control period. Returns whether they are new.
+    pub fn step(&mut self, samples: &Samples<T>) -> bool {
+        if !self.note_times(samples) {
+            return false;
+        }
+        self.motor.read(&self.table.counts.motor, samples.motor.counts);
+        if let Some(output) = samples.output.filter(|_| self.table.counts.has_output) {
+            self.output.read(&self.table.counts.output, output.counts);
+        }
+        // False for what is not a number, too.
+        let believed = samples.torque.abs() <= T::TWO * self.table.torque_limit;
+        let torque = if believed { samples.torque } else { T::ZERO };
+        if torque.abs() > self.strongest {
+            self.strongest = torque.abs();
+        }
+        let sign = if torque > T::ZERO {
+            1
+        } else if torque < T::ZERO {
+            -1
+        } else {
+            0
+        };
+        self.sign = if self.periods == 0 || sign == self.sign { sign } else { 0 };
+        self.torque += torque;
+        self.rise += torque * (T::from_i32(self.periods as i32) + T::HALF) * self.table.per_block;
+        self.note_lead();
+        self.periods += 1;
+        if self.periods >= self.table.block {
+            self.close_block();
+        }
+        true
+    }
+
+    /// Notes the times of a call; whether its samples are new.
+    fn note_times(&mut self, samples: &Samples<T>) -> bool {
+        let clock = &self.table.clock;
+        let elapsed = samples.time.wrapping_sub(core::mem::replace(&mut self.time, samples.time));
+        let motor_elapsed =
+            samples.motor.time.wrapping_sub(core::mem::replace(&mut self.motor_time, samples.motor.time));
+        if !core::mem::replace(&mut self.began, true) {
+            return true;
+        }
+        self.calls = self.calls.saturating_add(1);
+        if elapsed == 0 {
+            self.repeats = self.repeats.saturating_add(1);
+            return false;
+        }
+        let quarter = clock.period >> 2;
+        if elapsed.abs_diff(clock.period) <= quarter {
+            self.on_time = self.on_time.saturating_add(1);
+        }
+        if elapsed <= clock.oldest {
+            self.near = self.near.saturating_add(1);
+            self.ticks = self.ticks.saturating_add(elapsed.into());
+        }
+        let age = (samples.time.wrapping_sub(samples.motor.time) as i32).unsigned_abs();
+        if motor_elapsed == 0 || age > clock.oldest {
+            self.stale = self.stale.saturating_add(1);
+        }
+        true
+    }
+
+    /// Notes which shaft moves first from a standstill: the one whose motion, if the other had followed it, would have moved
+    /// the other, too.
+    fn note_lead(&mut self) {
+        let Some([motor_from, output_from]) = self.standstill else { return };
+        let motor = self.motor.position.saturating_sub(motor_from).saturating_abs();
+        let output = self.output.position.saturating_sub(output_from).saturating_abs();
+        let [motor_leads, output_leads] = self.table.leads.map(i64::from);
+        if motor >= motor_leads || output >= output_leads {
+            self.standstill = None;
+            let [by_motor, by_output] = &mut self.leads;
+            if output <= FLICKER && motor >= motor_leads {
+                *by_motor = by_motor.saturating_add(1);
+            } else if motor <= FLICKER && output >= output_leads {
+                *by_output = by_output.saturating_add(1);
+            }
+        }
+    }
+
+    fn close_block(&mut self) {
+        let table = self.table;
+        let ends = [self.motor.position, self.output.position];
+        let before = self.block;
+        let turned = [0, 1].map(|shaft: usize| {
+            let [end, begin] = [&ends, &before.ends].map(|places| places.get(shaft).copied().unwrap_or(0));
+            end.saturating_sub(begin)
+        });
+        let moves = |by: i64| {
+            if by >= DIRECTED {
+                1
+            } else if by <= -DIRECTED {
+                -1
+            } else {
+                0
+            }
+        };
+        let [motor, output] = turned.map(moves);
+        let direction = if motor == 0 { output } else { motor };
+        if turned.iter().all(|by| by.saturating_abs() < DIRECTED) && self.table.counts.has_output {
+            self.standstill = Some(ends);
+        }
+        let rise = core::mem::replace(&mut self.rise, T::ZERO);
+        let sum = core::mem::replace(&mut self.torque, T::ZERO);
+        self.periods = 0;
+        let row = if self.sign != 0 && self.sign == before.sign { before.row.saturating_add(1) } else { 1 };
+        self.block = Block { ends, turned, rise, direction, sign: self.sign, row };
+        self.blocks = self.blocks.saturating_add(1);
+        if self.blocks < 2 {
+            return;
+        }
+        let torque = (before.rise + (sum - rise)) * table.per_block;
+        if motor != 0 && before.direction == 0 {
+            let against = usize::from((torque > T::ZERO) != (motor > 0));
+            if let Some(starts) = self.starts.get_mut(against).filter(|_| torque.abs() > T::ZERO) {
+                *starts = starts.saturating_add(1);
+            }
+        }
+        // A motor that moves alone winds up or crosses the gap: what torque does to the joint does not show.
+        let alone = table.counts.has_output && (motor == 0 || output == 0);
+        if alone || direction == 0 || direction != before.direction {
+            return;
+        }
+        let side = T::from_i32(direction);
+        let angles = [table.counts.motor.angle, table.counts.output.angle];
+        let [motor, output] = [0, 1].map(|shaft: usize| {
+            let [now, last] = [&turned, &before.turned].map(|of| of.get(shaft).copied().unwrap_or(0));
+            T::from_i64(now.saturating_sub(last))
+        });
+        let response = [angles[0] * motor, angles[1] * output];
+        self.responses.add(torque, side, response);
+        if row >= ROW {
+            self.steady.add(torque, side, response);
+        }
+        if table.counts.has_output {
+            let [motor, output] = ends;
+            let y = angles[0] * table.per_ratio * T::from_i64(motor);
+            self.angles.add(angles[1] * T::from_i64(output), side, [y, T::ZERO]);
+        }
+    }
+
+    /// Verdicts on all that was seen.
+    pub fn wiring(&self) -> Wiring<T> {
+        let table = self.table;
+        let mut wiring = Wiring { has_output: table.counts.has_output, ..Wiring::default() };
+        self.judge_times(&mut wiring);
+        let has_output = table.counts.has_output;
+        let spans = [self.motor.span(), self.output.span()];
+        let [motor_moved, output_moved] = spans.map(|span| span >= MOVED);
+        let motor_travel = table.counts.motor.angle * table.per_ratio * T::from_i64(spans[0]);
+        let output_travel = table.counts.output.angle * T::from_i64(spans[1]);
+        self.judge_ranges(&mut wiring);
+        if motor_moved || output_moved {
+            wiring.set(WiringItem::Motion, Verdict::Right);
+        } else if self.strongest > T::ZERO {
+            wiring.set(WiringItem::Motion, Verdict::Wrong(table.friction));
+        }
+        if has_output && spans[1] <= FLICKER && motor_travel > table.play {
+            wiring.set(WiringItem::OutputCounts, Verdict::Wrong(T::ZERO));
+        }
+        if has_output && spans[0] <= FLICKER && output_travel > table.play {
+            // Counts of a motor that only crosses its gap, read as the output's, look like that, too.
+            let exchanged = table.counts.motor.angle * table.per_ratio * T::from_i64(spans[1]) < table.play;
+            let stands = if exchanged { Verdict::Suspect(T::ZERO) } else { Verdict::Wrong(T::ZERO) };
+            wiring.set(WiringItem::MotorCounts, stands);
+            wiring.set(WiringItem::Places, if exchanged { stands } else { Verdict::NotSeen });
+        }
+        let fit = self.angles.fit([T::ONE, T::ZERO]).filter(|_| motor_moved && output_moved && has_output);
+        let goes = fit.map_or(0, |fit| fit.sign());
+        judge_directions(&mut wiring, self.drive_sign(goes), goes, has_output);
+        // As in the check: an encoder with other counts overstates or understates its travel.
+        let travel = (motor_travel * output_travel).square_root();
+        let tolerance = table.ratio_tolerance + table.slack.over(positive(travel));
+        let fits = motor_moved && output_moved && has_output && {
+            let fit = fit.unwrap_or_default();
+            let tolerance = tolerance + T::FOUR * fit.deviation.over(positive(fit.slope.abs()));
+            self.judge_factor(&mut wiring, &fit, tolerance, [motor_travel, output_travel])
+        };
+        if fits || !has_output {
+            self.judge_torque(&mut wiring, goes);
+        }
+        wiring
+    }
+
+    fn judge_times(&self, wiring: &mut Wiring<T>) {
+        let new = self.calls.saturating_sub(self.repeats);
+        if self.calls < CALLS {
+            return;
+        }
+        let count = |number: u32| T::from_i64(number.into());
+        let repeated = self.repeats > self.calls >> 2;
+        let calls = Verdict::Wrong(count(self.calls).over(count(new.max(1))));
+        wiring.set(WiringItem::Calls, if repeated { calls } else { Verdict::Right });
+        if new < CALLS >> 1 {
+            return;
+        }
+        let mostly = |part: u32| part >= new.saturating_sub(new >> 2);
+        wiring.set(WiringItem::MotorTime, if mostly(self.stale) { Verdict::Wrong(T::ZERO) } else { Verdict::Right });
+        if mostly(self.on_time) {
+            wiring.set(WiringItem::Period, Verdict::Right);
+            wiring.set(WiringItem::Clock, Verdict::Right);
+            return;
+        }
+        let found = self.period_found();
+        wiring.set(WiringItem::Period, Verdict::Suspect(found));
+        wiring.set(WiringItem::Clock, Verdict::Suspect(found));
+    }
+
+    /// Mean time between calls over the control period [-].
+    fn period_found(&self) -> T {
+        let ticks = T::from_i64(self.ticks.min(i64::MAX as u64) as i64);
+        let periods = T::from_i64(self.near.into()) * T::from_i64(self.table.clock.period.into());
+        ticks.over(positive(periods))
+    }
+
+    /// Raw counts beyond the range of the tables: the encoder has more of them, a power of two.
+    fn judge_ranges(&self, wiring: &mut Wiring<T>) {
+        let counts = &self.table.counts;
+        for (item, track, table) in [
+            (WiringItem::MotorCounts, &self.motor, &counts.motor),
+            (WiringItem::OutputCounts, &self.output, &counts.output),
+        ] {
+            if track.beyond > 0 {
+                let turn = u64::from(track.beyond).saturating_add(1).checked_next_power_of_two().unwrap_or(0);
+                let found = turn.max(u64::from(table.turn)) as i64;
+                wiring.set(item, Verdict::Wrong(T::from_i64(found)));
+            }
+        }
+    }
+
+    /// Direction of the motor under a positive torque; 0 while it is not known. `goes` is that of the output beside the motor.
+    fn drive_sign(&self, goes: i32) -> i32 {
+        let [motor, output] = [[T::ONE, T::ZERO], [T::ZERO, T::ONE]].map(|weights| self.responses.fit(weights));
+        // The output's response is the steadier one: the motor crosses the gap in between.
+        let by_output = output.map_or(0, |fit| goes * fit.sign());
+        if by_output != 0 {
+            return by_output;
+        }
+        let by_motor = motor.map_or(0, |fit| fit.sign());
+        if by_motor != 0 {
+            return by_motor;
+        }
+        match self.starts {
+            [with, 0] if with >= 2 => 1,
+            [0, against] if against >= 2 => -1,
+            _ => 0,
+        }
+    }
+
+    /// Judges ratio, counts and places by the angle factor; whether the angles go together as they shall.
+    fn judge_factor(&self, wiring: &mut Wiring<T>, fit: &Fit<T>, tolerance: T, travels: [T; 2]) -> bool {
+        let [motor_travel, output_travel] = travels;
+        let crude = motor_travel.over(positive(output_travel));
+        let table = self.table;
+        let counts = &table.counts;
+        let size = fit.slope.abs();
+        let is_sure = fit.sign() != 0 && tolerance < T::QUARTER;
+        let is = |expected: T| is_sure && (size - expected).abs() <= tolerance * expected;
+        let [motor_turn, output_turn] = [&counts.motor, &counts.output].map(|encoder| T::from_i64(encoder.turn.into()));
+        // Exchanged encoders: the motor's place reads output turns times output counts, and the other way round.
+        let exchange = output_turn.over(positive(motor_turn)) * table.per_ratio;
+        let exchanged = exchange * exchange;
+        let lags = fit.step < -T::EIGHTH * exchange * table.lost_motion && -fit.step > T::FOUR * fit.step_deviation;
+        let [by_motor, by_output] = self.leads;
+        let output_leads = by_output >= 2 && by_output > by_motor;
+        let near = off_by(crude.over(positive(exchanged))) < T::THREE;
+        let bad = [WiringItem::MotorCounts, WiringItem::OutputCounts].map(|item| wiring.of(item).is_bad());
+        // The travel may be half of what it seems, and counts beyond their range leave only bits.
+        let wide = if bad == [false; 2] && tolerance < T::EIGHTH { tolerance + tolerance } else { T::QUARTER };
+        let bits = if is_sure { bits_off(size, wide) } else { None };
+        let blamed = bits.and_then(|power| self.blame(power, fit.sign(), bad));
+        let least = if size < T::ONE { size } else { T::ONE };
+        let ahead = fit.step > T::EIGHTH * least * table.lost_motion && fit.step > T::FOUR * fit.step_deviation;
+        let no_other = is(exchanged) && !is(T::ONE) && bits.is_none() && by_output >= by_motor;
+        // Leads decide where no bits explain the angles, or explain them less well, or neither encoder is to blame.
+        let explains = bits.is_some_and(|power| {
+            blamed.is_some() && off_by(size.over(power)) <= off_by(size.over(positive(exchanged)))
+        });
+        if near && !ahead && (lags || (output_leads && !explains) || no_other) {
+            wiring.set(WiringItem::Places, Verdict::Wrong(T::ZERO));
+            // Counts of the other encoder are beyond no range of their own.
+            wiring.set(WiringItem::MotorCounts, Verdict::NotSeen);
+            wiring.set(WiringItem::OutputCounts, Verdict::NotSeen);
+            return false;
+        }
+        if !is_sure {
+            self.suspect_counts(wiring, crude, near, motor_travel, output_travel);
+            return false;
+        }
+        wiring.set(WiringItem::Places, Verdict::Right);
+        if is(T::ONE) {
+            for item in [WiringItem::Ratio, WiringItem::MotorCounts, WiringItem::OutputCounts] {
+                if !wiring.of(item).is_bad() {
+                    wiring.set(item, Verdict::Right);
+                }
+            }
+            return bad == [false; 2];
+        }
+        let Some(power) = bits else {
+            wiring.set(WiringItem::Ratio, Verdict::Wrong(table.ratio * size));
+            return false;
+        };
+        let (of_motor, of_output) = (motor_turn * power, output_turn.over(power));
+        let [motor, output] = match blamed {
+            Some(true) => [Verdict::Wrong(of_motor), Verdict::Right],
+            Some(false) => [Verdict::Right, Verdict::Wrong(of_output)],
+            None => [Verdict::Suspect(of_motor), Verdict::Suspect(of_output)],
+        };
+        wiring.set(WiringItem::MotorCounts, motor);
+        wiring.set(WiringItem::OutputCounts, output);
+        false
+    }
+
+    /// Travels that do not go together at all, where no line is to be had: counts are wrong, or encoders exchanged.
+    fn suspect_counts(&self, wiring: &mut Wiring<T>, crude: T, near: bool, motor_travel: T, output_travel: T) {
+        let counts = &self.table.counts;
+        let further = if motor_travel > output_travel { motor_travel } else { output_travel };
+        if further < self.table.play || off_by(crude) < T::THREE {
+            return;
+        }
+        let turns = [&counts.motor, &counts.output].map(|encoder| T::from_i64(encoder.turn.into()));
+        let [motor, output] = [turns[0] * crude, turns[1].over(positive(crude))].map(Verdict::Suspect);
+        wiring.set(WiringItem::MotorCounts, motor);
+        wiring.set(WiringItem::OutputCounts, output);
+        if near {
+            wiring.set(WiringItem::Places, Verdict::Suspect(T::ZERO));
+        }
+    }
+
+    /// Whether the motor encoder is to blame for an angle factor of a power of two, rather than the output's.
+    fn blame(&self, power: T, goes: i32, [motor_beyond, output_beyond]: [bool; 2]) -> Option<bool> {
+        if motor_beyond != output_beyond {
+            return Some(motor_beyond);
+        }
+        if (self.motor.wrap > 0) != (self.output.wrap > 0) {
+            return Some(self.motor.wrap > 0);
+        }
+        let motor = off_by(self.momentum(&self.responses, [T::ONE.over(positive(power)), T::ONE], goes)?);
+        let output = off_by(self.momentum(&self.responses, [T::ONE, power], goes)?);
+        let least = if motor < output { motor } else { output };
+        (least < self.table.torque_factor).then_some(motor < output)
+    }
+
+    /// Momentum that a unit of torque makes, if angles of motor and output are off by such factors and the output goes in such a
+    /// direction beside the motor; none while it is not known within a quarter.
+    fn momentum(&self, line: &Line<T>, [motor, output]: [T; 2], goes: i32) -> Option<T> {
+        let table = self.table;
+        let [of_motor, of_output] = table.impulse;
+        let weights = if table.counts.has_output {
+            [of_motor * motor, of_output * output * T::from_i32(if goes < 0 { -1 } else { 1 })]
+        } else {
+            [of_motor + of_output * table.per_ratio, T::ZERO]
+        };
+        let fit = line.fit(weights)?;
+        (fit.deviation < T::QUARTER * fit.slope.abs()).then_some(fit.slope.abs())
+    }
+
+    /// Judges the torque, or, where times are wrong, which of rate and clock is.
+    fn judge_torque(&self, wiring: &mut Wiring<T>, goes: i32) {
+        let known = [&self.responses, &self.steady].map(|line| self.momentum(line, [T::ONE; 2], goes));
+        if known == [None; 2] {
+            return;
+        }
+        // Friction, weight and the gap disturb either line in a way of its own: what is wrong is wrong by both.
+        let nearest = |expected: T| {
+            let off = |factor: T| off_by(factor.over(positive(expected)));
+            let nearer = |one: T, other: T| if off(one) <= off(other) { one } else { other };
+            match known {
+                [Some(all), Some(steady)] => nearer(all, steady),
+                [all, steady] => all.or(steady).unwrap_or(expected),
+            }
+        };
+        let Verdict::Suspect(period) = wiring.of(WiringItem::Period) else {
+            if wiring.of(WiringItem::Period) == Verdict::Right {
+                let found = nearest(T::ONE);
+                let is_right = off_by(found) < self.table.torque_factor;
+                wiring.set(WiringItem::TorqueScale, if is_right { Verdict::Right } else { Verdict::Wrong(found) });
+            }
+            return;
+        };
+        // Calls that are `period` apart in truth see accelerations times its square; a clock alone changes nothing.
+        let square = period * period;
+        let by_clock = off_by(nearest(T::ONE));
+        let by_rate = off_by(nearest(square).over(positive(square)));
+        let least = if by_clock < by_rate { by_clock } else { by_rate };
+        if least < self.table.torque_factor {
+            let (rate, clock) = (WiringItem::Period, WiringItem::Clock);
+            let (right, wrong) = if by_clock < by_rate { (rate, clock) } else { (clock, rate) };
+            wiring.set(right, Verdict::Right);
+            wiring.set(wrong, Verdict::Wrong(period));
+        }
+    }
+}
+
+/// Judges the three directions by the sign of the motor's response to torque and of the output's motion beside the motor's.
+fn judge_directions<T: Real>(wiring: &mut Wiring<T>, drives: i32, goes: i32, has_output: bool) {
+    let (motor, output, torque) =
+        (WiringItem::MotorDirection, WiringItem::OutputDirection, WiringItem::TorqueDirection);
+    let wrong = Verdict::Wrong(-T::ONE);
+    let suspect = Verdict::Suspect(-T::ONE);
+    let [of_motor, of_output, of_torque] = match (drives, goes) {
+        (1, 1) => [Verdict::Right; 3],
+        (1, -1) => [Verdict::Right, wrong, Verdict::Right],
+        (-1, 1) => [Verdict::Right, Verdict::Right, wrong],
+        (-1, -1) => [wrong, Verdict::Right, Verdict::Right],
+        (-1, _) => [suspect, Verdict::NotSeen, suspect],
+        (1, _) => [Verdict::Right, Verdict::NotSeen, Verdict::Right],
+        (_, -1) => [suspect, suspect, Verdict::NotSeen],
+        _ => [Verdict::NotSeen; 3],
+    };
+    wiring.set(motor, of_motor);
+    wiring.set(output, if has_output { of_output } else { Verdict::NotSeen });
+    wiring.set(torque, of_torque);
+}
+
+/// A number that may be divided by.
+fn positive<T: Real>(value: T) -> T {
+    if value > T::LEAST { value } else { T::LEAST }
+}
+
+/// Factor by which a positive number is off 1, whichever way.
+fn off_by<T: Real>(value: T) -> T {
+    if value > T::ONE { value } else { T::ONE.over(positive(value)) }
+}
+
+/// Power of two, other than 1, that the angle factor is.
+fn bits_off<T: Real>(size: T, tolerance: T) -> Option<T> {
+    let (mut up, mut down) = (T::ONE, T::ONE);
+    for _ in 0..BITS {
+        (up, down) = (up + up, down * T::HALF);
+        if let Some(power) = [up, down].into_iter().find(|power| (size - *power).abs() <= tolerance * *power) {
+            return Some(power);
+        }
+    }
+    None
+}

@@ -1,0 +1,93 @@
+//! Straight lines through points that come one by one: `y = slope x + step s + constant`, by least squares, for two `y` and
+//! every weighted sum of them.
+
+use crate::numbers::Real;
+
+/// Points that count as much as the latest ones: older points fade, so that sums stay within their precision.
+const MOST: u16 = 4096;
+
+/// Points below which there is no line.
+const LEAST: u16 = 8;
+
+/// Sums over points (x, s, y1, y2), less their means.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Line<T: Real> {
+    points: u16,
+    mean: [T; 4],
+    /// Covariances xx, xs, ss.
+    moment: [T; 3],
+    /// Covariances of x and s with y1 and y2.
+    with: [[T; 2]; 2],
+    /// Covariances y1 y1, y1 y2, y2 y2.
+    own: [T; 3],
+}
+
+/// A line.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Fit<T: Real> {
+    pub slope: T,
+    /// Change of y for a unit of s.
+    pub step: T,
+    /// Standard deviation of the slope.
+    pub deviation: T,
+    /// Standard deviation of the step.
+    pub step_deviation: T,
+}
+
+impl<T: Real> Fit<T> {
+    /// Direction of the line; 0 for a slope that noise could make.
+    pub fn sign(&self) -> i32 {
+        match self.slope.abs() > T::FOUR * self.deviation {
+            true if self.slope > T::ZERO => 1,
+            true => -1,
+            false => 0,
+        }
+    }
+}
+
+impl<T: Real> Line<T> {
+    /// Adds a point.
+    pub fn add(&mut self, x: T, s: T, y: [T; 2]) {
+        self.points = self.points.saturating_add(1).min(MOST);
+        let weight = T::ONE.over(T::from_i32(self.points.into()));
+        let [mean_x, mean_s, mean_1, mean_2] = self.mean;
+        let [y_1, y_2] = y;
+        let (dx, ds, d1, d2) = (x - mean_x, s - mean_s, y_1 - mean_1, y_2 - mean_2);
+        self.mean = [mean_x + weight * dx, mean_s + weight * ds, mean_1 + weight * d1, mean_2 + weight * d2];
+        let rest = T::ONE - weight;
+        let fold = |moment: &mut T, product: T| *moment = rest * (*moment + weight * product);
+        let [of_x, of_s] = &mut self.with;
+        let moments = self.moment.iter_mut().chain(of_x).chain(of_s).chain(&mut self.own);
+        let products = [dx * dx, dx * ds, ds * ds, dx * d1, dx * d2, ds * d1, ds * d2, d1 * d1, d1 * d2, d2 * d2];
+        moments.zip(products).for_each(|(moment, product)| fold(moment, product));
+    }
+
+    /// The line of `y = weights . (y1, y2)`, if the points have one.
+    pub fn fit(&self, weights: [T; 2]) -> Option<Fit<T>> {
+        let [xx, xs, ss] = self.moment;
+        let tiny = T::TWENTIETH * T::TWENTIETH;
+        // An x that stays where it is varies by its rounding.
+        let rounded = tiny * self.mean[0];
+        if self.points < LEAST || xx <= rounded * rounded {
+            return None;
+        }
+        let [w1, w2] = weights;
+        let [xy, sy] = self.with.map(|[with_1, with_2]| w1 * with_1 + w2 * with_2);
+        let [of_1, of_both, of_2] = self.own;
+        let yy = w1 * w1 * of_1 + T::TWO * w1 * w2 * of_both + w2 * w2 * of_2;
+        // Points of one direction alone, or of an x that goes with the direction, tell no step.
+        let left = if ss > tiny { xx - (xs * xs).over(ss) } else { T::ZERO };
+        let (slope, step, spread) = if left > tiny * xx {
+            let slope = (xy - (xs * sy).over(ss)).over(left);
+            (slope, (sy - slope * xs).over(ss), left)
+        } else {
+            (xy.over(xx), T::ZERO, xx)
+        };
+        let residual = (yy - slope * xy - step * sy).abs();
+        // Half of the points count: neighbours share a block, and their errors are alike.
+        let count = T::HALF * T::from_i32(self.points.into());
+        let deviation = residual.over(count * spread).square_root();
+        let step_deviation = if ss > tiny { residual.over(count * ss).square_root() } else { T::ZERO };
+        Some(Fit { slope, step, deviation, step_deviation })
+    }
+}

@@ -1,0 +1,58 @@
+//! Table of the wiring check: what a rightly wired joint shows, and how far the check may move it. Made by
+//! `wiring::design`.
+
+use crate::numbers::Real;
+use crate::observer::tables::{ClockTable, CountTable};
+
+/// Table of the wiring check.
+#[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
+pub struct WiringTable<T: Real> {
+    /// Clock of the samples.
+    pub clock: ClockTable<T>,
+    /// Both encoders.
+    pub counts: CountTable<T>,
+    /// Motor turns in an output turn.
+    pub ratio: T,
+    /// Output turns in a motor turn.
+    pub per_ratio: T,
+    /// Control periods of a block, over which motion is compared with torque.
+    pub block: u32,
+    /// 1 over the periods of a block.
+    pub per_block: T,
+    /// Inertias of motor and link over the square of a block, for angles of motor and output [N m/rad].
+    pub impulse: [T; 2],
+    /// Output angle by which motor and output may be apart without a fault: half of the lost motion, encoder errors, counts
+    /// [rad].
+    pub slack: T,
+    /// Lost motion at the output [rad].
+    pub lost_motion: T,
+    /// Output angle that the motor may turn while the output stands: lost motion, wind-up, slack [rad].
+    pub play: T,
+    /// Part by which the measured ratio may be off, beside slack over travel [-].
+    pub ratio_tolerance: T,
+    /// Factor by which the torque may be off [-].
+    pub torque_factor: T,
+    /// Travel of motor and output from a standstill at which the other shaft, had it followed, would have moved [counts].
+    pub leads: [u32; 2],
+    /// Travel of motor and output, from the start of a leg, at which the motor is braked [counts].
+    pub leg: [u32; 2],
+    /// Travel of motor and output, from the start of the check, at which the check ends [counts].
+    pub limit: [u32; 2],
+    /// Growth of the torque [N m/period].
+    pub rise: T,
+    /// Torque that is used at most [N m].
+    pub torque: T,
+    /// Largest torque of the motor [N m].
+    pub torque_limit: T,
+    /// Torque that is expected to set the joint in motion [N m].
+    pub friction: T,
+    /// Periods without torque before each leg.
+    pub rest: u32,
+    /// Periods of a window over which speed is measured.
+    pub window: u32,
+    /// Periods at the full torque after which a leg ends.
+    pub hold: u32,
+    /// Periods after which the check ends.
+    pub longest: u32,
+}

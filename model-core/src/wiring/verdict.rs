@@ -1,0 +1,195 @@
+//! Verdicts of the wiring check: one for each item, with its name and with what to do.
+
+use core::fmt;
+
+use crate::numbers::Real;
+
+/// An item of a joint's wiring.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum WiringItem {
+    /// Each control period gives its samples once. Found: calls for each sample.
+    Calls = 0,
+    /// The control rate is that of the tables. Found: control period over that of the tables.
+    Period = 1,
+    /// The clock of the samples has the tick rate of the tables. Found: tick rate over that of the tables.
+    Clock = 2,
+    /// The motor's readings carry times of the samples' clock. Found: 0.
+    MotorTime = 3,
+    /// The motor did move. Found: torque that is expected to move it [N m].
+    Motion = 4,
+    /// Counts in a turn of the motor encoder. Found: their number; 0 for counts that stand still.
+    MotorCounts = 5,
+    /// Counts in a turn of the output encoder. Found: their number; 0 for counts that stand still.
+    OutputCounts = 6,
+    /// Each encoder is read as itself. Found: 0.
+    Places = 7,
+    /// Gear ratio. Found: motor turns in an output turn.
+    Ratio = 8,
+    /// The motor encoder counts up in the direction of a positive torque. Found: -1.
+    MotorDirection = 9,
+    /// The output encoder counts up where the motor encoder does. Found: -1.
+    OutputDirection = 10,
+    /// A positive torque drives in the direction in which both encoders count up. Found: -1.
+    TorqueDirection = 11,
+    /// Acting torque over commanded torque. Found: that factor.
+    TorqueScale = 12,
+}
+
+/// Number of items.
+pub const WIRING_ITEMS: usize = 13;
+
+impl WiringItem {
+    /// All of them, each at the place of its number.
+    pub const ALL: [Self; WIRING_ITEMS] = [
+        Self::Calls,
+        Self::Period,
+        Self::Clock,
+        Self::MotorTime,
+        Self::Motion,
+        Self::MotorCounts,
+        Self::OutputCounts,
+        Self::Places,
+        Self::Ratio,
+        Self::MotorDirection,
+        Self::OutputDirection,
+        Self::TorqueDirection,
+        Self::TorqueScale,
+    ];
+
+    /// Name, such as `output_direction`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Calls => "calls",
+            Self::Period => "period",
+            Self::Clock => "clock",
+            Self::MotorTime => "motor_time",
+            Self::Motion => "motion",
+            Self::MotorCounts => "motor_counts",
+            Self::OutputCounts => "output_counts",
+            Self::Places => "places",
+            Self::Ratio => "ratio",
+            Self::MotorDirection => "motor_direction",
+            Self::OutputDirection => "output_direction",
+            Self::TorqueDirection => "torque_direction",
+            Self::TorqueScale => "torque_scale",
+        }
+    }
+
+    /// Whether only a joint with an output encoder shows it.
+    pub const fn needs_output(self) -> bool {
+        matches!(self, Self::OutputCounts | Self::MotorCounts | Self::Places | Self::Ratio | Self::OutputDirection)
+    }
+
+    /// What is wrong and what to do, in one sentence.
+    pub const fn help(self) -> &'static str {
+        match self {
+            Self::Calls => "samples come more than once: call the step once a control period",
+            Self::Period => {
+                "the control rate is not that of the tables: call at control_rate_Hz, or make tables for this rate"
+            }
+            Self::Clock => {
+                "the clock of the samples has another tick rate than the tables: give ticks of clock_rate_Hz"
+            }
+            Self::MotorTime => {
+                "the times of the motor's readings stand still or are of another clock: give the time of the latch"
+            }
+            Self::Motion => {
+                "nothing moved: enable the drive, release the brake, or allow the torque that is expected to move the joint"
+            }
+            Self::MotorCounts => {
+                "the motor encoder has another number of counts in a turn than the tables, or stands still"
+            }
+            Self::OutputCounts => {
+                "the output encoder has another number of counts in a turn than the tables, or stands still"
+            }
+            Self::Places => "motor and output encoder are exchanged",
+            Self::Ratio => "the gear ratio is not that of the tables: these are tables of another joint",
+            Self::MotorDirection => {
+                "the motor encoder counts down under a positive torque: give the range less the counts"
+            }
+            Self::OutputDirection => {
+                "the output encoder counts against the motor encoder: give the range less the counts"
+            }
+            Self::TorqueDirection => {
+                "a positive torque drives backwards: change the sign of the current, or exchange two phases"
+            }
+            Self::TorqueScale => {
+                "the torque that acts is not the commanded one: check torque constant, unit, and the link's inertia"
+            }
+        }
+    }
+}
+
+/// Verdict on one item.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub enum Verdict<T: Real> {
+    /// The samples do not show it.
+    #[default]
+    NotSeen,
+    /// As in the tables.
+    Right,
+    /// Not as in the tables; what was found instead.
+    Wrong(T),
+    /// This item or another suspect is wrong, and the samples do not tell which; what it would be.
+    Suspect(T),
+}
+
+impl<T: Real> Verdict<T> {
+    /// Whether the item is wrong or may be.
+    pub fn is_bad(self) -> bool {
+        matches!(self, Self::Wrong(_) | Self::Suspect(_))
+    }
+}
+
+/// Verdicts on all items.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Wiring<T: Real> {
+    pub(super) verdicts: [Verdict<T>; WIRING_ITEMS],
+    pub(super) has_output: bool,
+}
+
+impl<T: Real> Wiring<T> {
+    /// Verdict on an item.
+    pub fn of(&self, item: WiringItem) -> Verdict<T> {
+        self.verdicts.get(item as usize).copied().unwrap_or_default()
+    }
+
+    /// Items with their verdicts.
+    pub fn iter(&self) -> impl Iterator<Item = (WiringItem, Verdict<T>)> + '_ {
+        WiringItem::ALL.into_iter().zip(self.verdicts)
+    }
+
+    /// Whether every item was seen and is right. Without an output encoder nothing is seen of places, ratio, and of counts and
+    /// direction of the output.
+    pub fn is_all_right(&self) -> bool {
+        self.iter().all(|(item, verdict)| verdict == Verdict::Right || (!self.has_output && item.needs_output()))
+    }
+
+    /// Whether nothing is wrong or suspect.
+    pub fn is_right(&self) -> bool {
+        !self.verdicts.iter().any(|verdict| verdict.is_bad())
+    }
+
+    pub(super) fn set(&mut self, item: WiringItem, verdict: Verdict<T>) {
+        if let Some(place) = self.verdicts.get_mut(item as usize) {
+            *place = verdict;
+        }
+    }
+}
+
+impl<T: Real> fmt::Display for Wiring<T> {
+    /// A line an item: name, verdict, what was found, and what to do.
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (item, verdict) in self.iter() {
+            let name = item.name();
+            match verdict {
+                Verdict::Right => writeln!(out, "{name}: right")?,
+                Verdict::NotSeen => writeln!(out, "{name}: not seen")?,
+                Verdict::Wrong(found) => writeln!(out, "{name}: WRONG, found {found:?}: {}", item.help())?,
+                Verdict::Suspect(found) => writeln!(out, "{name}: SUSPECT, perhaps {found:?}: {}", item.help())?,
+            }
+        }
+        Ok(())
+    }
+}

@@ -137,7 +137,8 @@ structs! {
     }
     compensation::tables::RestTable<f32> { hunting, first_deadband, largest_deadband, deadband_left }
     compensation::tables::LoadTable<f32> {
-        variances, gain, rate_gain, rate_left, fastest, friction_slope, planned_friction_slope
+        variances, gain, rate_gain, rate_left, fastest, friction_slope, planned_friction_slope,
+        frictions
     }
     compensation::tables::WatchTable<f32> {
         smoothing, least_demand, leaks, most, calm_per_half, memory, error_per_half, error_per_demand, first_away, longest_away,

@@ -31,8 +31,8 @@ fn refused(joint: &JointParameters, settings: &CompensationSettings) -> (Option<
     }
 }
 
-/// Largest excursion of a motor alone in the open gap between two times [rad], after it began half a milliradian beside the
-/// set-point. Its torques act after the settings' delay and the current loop's `lag` [s].
+/// Half of the swing of a motor alone in the open gap between two times [rad], wherever in the gap it swings, after it began half a
+/// milliradian beside the set-point. Its torques act after the settings' delay and the current loop's `lag` [s].
 fn excursion(tables: &CompensationTables<f64>, settings: &CompensationSettings, lag: f64, from: f64, to: f64) -> f64 {
     const FINE: usize = 50;
     let step = tables.clock.period / FINE as f64;
@@ -41,7 +41,7 @@ fn excursion(tables: &CompensationTables<f64>, settings: &CompensationSettings, 
     let command = Command::Position { now: Motion { speed: 1e-9, ..Motion::default() }, ahead: None };
     let mut compensation = Compensation::new(tables);
     let (mut place, mut speed, mut torque) = (0.5e-3, 0.0, 0.0);
-    let (mut wanted, mut largest, mut time) = ([0.0; 2], 0.0_f64, 0.0);
+    let (mut wanted, mut swing, mut time) = ([0.0; 2], [f64::INFINITY, f64::NEG_INFINITY], 0.0);
     let delayed = (settings.torque_delay * FINE as f64).round() as usize;
     assert!(delayed <= FINE, "a period of delay at most");
     while time < to {
@@ -64,10 +64,10 @@ fn excursion(tables: &CompensationTables<f64>, settings: &CompensationSettings, 
         }
         time += tables.clock.period;
         if time >= from {
-            largest = largest.max(place.abs());
+            swing = [swing[0].min(place), swing[1].max(place)];
         }
     }
-    largest
+    0.5 * (swing[1] - swing[0])
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Holding a position: under a disturbance, and after a push with and without dry friction.
 
 use host_tests::tolerance::compensation::{
-    FREE_HOLD_SWING, HOLD_OVER_PID, HOLD_SWING_OVER_PID, UNKNOWN_FREE_HOLD_SWING,
+    FREE_HOLD_SWING, HOLD_OVER_PID, HOLD_SWING_OVER_PID, UNKNOWN_FREE_HOLD_OVER_PID, UNKNOWN_FREE_HOLD_SWING,
 };
 use reference::closed_loop::Figures;
 use scenario::controller::ControllerName::{LoadCascade, MotorPid, NoPreview, TrueStateCompensation};
@@ -51,5 +51,6 @@ fn without_any_friction_a_gap_that_is_not_known_yet_is_learnt_from_the_first_sof
         let (ours, cascade) = (figures(&test, seed, NoPreview), figures(&test, seed, LoadCascade));
         assert!(ours.crossings < cascade.crossings, "{} crossings against {}", ours.crossings, cascade.crossings);
         UNKNOWN_FREE_HOLD_SWING.check(ours.peak_to_peak / LOST_MOTION);
+        UNKNOWN_FREE_HOLD_OVER_PID.check(ours.rms / figures(&test, seed, MotorPid).rms);
     }
 }

@@ -23,9 +23,9 @@ impl<T: Real> Integral<T> {
         self.torque
     }
 
-    /// Takes the torque that the PID gives before its limit [N m].
-    pub fn watch(&mut self, tables: &CompensationTables<T>, torque: T) {
-        self.swing.watch(tables, torque);
+    /// Takes the torque that the PID gives before its limit, in one of so many periods [N m].
+    pub fn watch(&mut self, tables: &CompensationTables<T>, torque: T, periods: T) {
+        self.swing.watch(tables, torque, periods);
     }
 
     /// Whether that has swung from side to side.

@@ -1,7 +1,7 @@
-//! What brakes the link, split into a part that does not care for the direction of motion (weight, a push) and dry
-//! friction, which changes its sign with it: a Kalman filter with two states. The split is what makes the torque after
-//! a reversal predictable.
+//! What brakes the link, by the observer's load torque, split into an even part and dry friction (`brakes`). The split is what makes the
+//! torque after a reversal predictable.
 
+use super::brakes::Brakes;
 use super::situation::{Situation, planned_direction};
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
@@ -11,8 +11,7 @@ use crate::observer::Estimates;
 /// Even part and dry friction of the load torque.
 #[derive(Debug, Clone)]
 pub(super) struct LoadModel<T: Real> {
-    even: T,
-    friction: T,
+    brakes: Brakes<T>,
     /// By how much the link is slower than asked, smoothed [rad/s].
     slip: T,
     /// Its speed over that at which dry friction has its full size.
@@ -23,8 +22,6 @@ pub(super) struct LoadModel<T: Real> {
     alone: Option<T>,
     /// The hardest that the link was pushed of late, fading [N m].
     hardest: T,
-    /// Variances of both and their covariance.
-    variance: [T; 3],
     /// 1 or -1: where the link last moved to, 0 before it has.
     moved: T,
     /// How it began to creep, while it does.
@@ -48,14 +45,12 @@ impl<T: Real> LoadModel<T> {
 
     pub fn new() -> Self {
         Self {
-            even: T::ZERO,
-            friction: T::ZERO,
+            brakes: Brakes::new(T::ZERO, [T::ONE; 2]),
             slip: T::ZERO,
             speed: T::ZERO,
             rate: T::ZERO,
             alone: None,
             hardest: T::ZERO,
-            variance: [T::ONE, T::ONE, T::ZERO],
             moved: T::ZERO,
             creep: None,
             cut: T::ZERO,
@@ -73,7 +68,7 @@ impl<T: Real> LoadModel<T> {
     }
 
     pub fn even(&self) -> T {
-        self.even
+        self.brakes.even
     }
 
     /// Rate of the even part: weight turns with the link [N m/s].
@@ -82,7 +77,7 @@ impl<T: Real> LoadModel<T> {
     }
 
     pub fn friction(&self) -> T {
-        self.friction
+        self.brakes.friction
     }
 
     /// Whether the link was pushed of late with more than the teeth shall pass on. Then the teeth are not spared: whoever pushes presses them.
@@ -92,24 +87,24 @@ impl<T: Real> LoadModel<T> {
 
     /// What would brake the link now if no flank carried it.
     pub fn free(&self) -> T {
-        self.alone.unwrap_or(self.even + self.drag())
+        self.alone.unwrap_or(self.brakes.even + self.drag())
     }
 
     /// What the start of a link at rest will ask for at least [N m]; 0 for a link that a flank has to hold. Under a
     /// load within its friction the link stays where it is without a flank, but a start must overcome that friction.
     pub fn start(&self, tables: &CompensationTables<T>) -> T {
-        let held = beyond(self.even, tables.switching.measured + self.friction) == T::ZERO;
-        if held { T::TWO * tables.switching.measured + self.friction } else { T::ZERO }
+        let held = beyond(self.brakes.even, tables.switching.measured + self.brakes.friction) == T::ZERO;
+        if held { T::TWO * tables.switching.measured + self.brakes.friction } else { T::ZERO }
     }
 
     /// Friction at a speed that is planned.
     pub fn planned_drag(&self, tables: &CompensationTables<T>, speed: T) -> T {
-        self.friction * planned_direction(tables, speed)
+        self.brakes.friction * planned_direction(tables, speed)
     }
 
     /// Friction at the speed that the link has.
     pub fn drag(&self) -> T {
-        self.friction * self.direction()
+        self.brakes.friction * self.direction()
     }
 
     /// Whether the link is so slow that it may rub with any part of its friction.
@@ -124,10 +119,11 @@ impl<T: Real> LoadModel<T> {
         if self.creeps() {
             self.rate = T::ZERO;
         }
-        self.even = clamp(self.even + tables.clock.period * self.rate, -tables.limits.motor, tables.limits.motor);
+        self.brakes.even =
+            clamp(self.brakes.even + tables.clock.period * self.rate, -tables.limits.motor, tables.limits.motor);
         // Without a link to be seen the integral of plain control takes over.
         if !situation.feels {
-            self.even -= tables.law.back_calculation * self.even;
+            self.brakes.even -= tables.law.back_calculation * self.brakes.even;
         }
         let torque = estimates.load_torque;
         let known = torque.valid && torque.value.is_finite() && situation.feels;
@@ -142,7 +138,7 @@ impl<T: Real> LoadModel<T> {
         // What brakes a link that is jerked from limit to limit is known with a lag: it is followed as one, for shared out it
         // would make friction of the lag.
         if carried && self.cut > T::HALF {
-            self.even += tables.load.gain * (held - self.even - self.drag());
+            self.brakes.even += tables.load.gain * (held - self.brakes.even - self.drag());
         } else if carried {
             self.learn(tables, held);
         } else {
@@ -154,15 +150,15 @@ impl<T: Real> LoadModel<T> {
         if let Some(alone) = self.alone
             && self.creeps()
         {
-            self.even = clamp(self.even, alone - self.friction, alone + self.friction);
+            self.brakes.even = clamp(self.brakes.even, alone - self.brakes.friction, alone + self.brakes.friction);
         }
     }
 
     /// Integrates an error instead, where a flank should carry and no estimate says with what force.
     pub fn lean(&mut self, tables: &CompensationTables<T>, error: T) {
-        let next = self.even + tables.law.integral * error;
+        let next = self.brakes.even + tables.law.integral * error;
         if next.is_finite() {
-            self.even = clamp(next, -tables.limits.motor, tables.limits.motor);
+            self.brakes.even = clamp(next, -tables.limits.motor, tables.limits.motor);
         }
     }
 
@@ -182,42 +178,25 @@ impl<T: Real> LoadModel<T> {
         let [growth_even, growth_friction, noise] = tables.load.variances;
         // Once it creeps, a speed that noise may have made does not say that it moves.
         if creeps(if self.creep.is_some() { Self::STILL_CREEPS * self.speed } else { self.speed }) {
-            let creep = self.creep.get_or_insert(Creep { even: self.even, variance: T::ZERO });
+            let even = self.brakes.even;
+            let creep = self.creep.get_or_insert(Creep { even, variance: T::ZERO });
             creep.variance += growth_even;
-            self.even += tables.load.gain * (torque - self.even - self.drag());
+            self.brakes.even += tables.load.gain * (torque - self.brakes.even - self.drag());
             return;
         }
         let direction = self.direction();
         if let Some(creep) = self.creep.take()
             && self.moved * direction <= T::ZERO
         {
-            let followed = self.even + self.friction * direction;
-            self.even = creep.even;
-            self.variance[0] += creep.variance;
-            self.split(tables, followed, direction, tables.load.gain * noise);
+            let followed = self.brakes.even + self.brakes.friction * direction;
+            self.brakes.even = creep.even;
+            self.brakes.grow([creep.variance, T::ZERO]);
+            self.brakes.take(followed, direction, tables.load.gain * noise, tables.limits.motor);
         }
         self.moved = direction;
-        self.variance[0] += growth_even;
-        self.variance[1] += growth_friction;
-        let by = self.split(tables, torque, direction, noise);
+        self.brakes.grow([growth_even, growth_friction]);
+        let by = self.brakes.take(torque, direction, noise, tables.limits.motor);
         self.rate = clamp(self.rate + tables.load.rate_gain * by, -tables.load.fastest, tables.load.fastest);
-    }
-
-    /// Shares out what a moving link is braked with, read with the given variance; gives what the even part gets.
-    fn split(&mut self, tables: &CompensationTables<T>, torque: T, direction: T, noise: T) -> T {
-        let [even, friction, both] = self.variance;
-        let (to_even, to_friction) = (even + both * direction, both + friction * direction);
-        let total = to_even + to_friction * direction + noise;
-        if total <= T::ZERO || !total.is_finite() {
-            return T::ZERO;
-        }
-        let (gain_even, gain_friction) = (to_even.over(total), to_friction.over(total));
-        let innovation = torque - self.even - self.friction * direction;
-        self.even += gain_even * innovation;
-        self.friction = clamp(self.friction + gain_friction * innovation, T::ZERO, tables.limits.motor);
-        self.variance =
-            [even - gain_even * to_even, friction - gain_friction * to_friction, both - gain_even * to_friction];
-        gain_even * innovation
     }
 }
 

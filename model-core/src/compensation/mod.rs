@@ -15,8 +15,10 @@
 //!
 //! `docs/theory/compensation.md` derives all of it and says where its limits are.
 
+mod brakes;
 mod braking;
 mod crossing;
+mod demand;
 #[cfg(feature = "design")]
 pub mod design;
 mod easing;

@@ -67,7 +67,7 @@ impl<T: Real> Plain<T> {
             + on_link * situation.error_rate
             + known
             + self.integral.torque();
-        self.integral.watch(tables, torque);
+        self.integral.watch(tables, torque, T::ONE);
         torque
     }
 

@@ -79,7 +79,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
             position: PositionLaw::new(),
             impedance: ImpedanceLaw::new(),
             plain: Plain::new(),
-            inverse: BacklashInverse::new(),
+            inverse: BacklashInverse::new(tables),
             offset: T::ZERO,
             trust: T::ZERO,
             watch: Watch::new(tables),
@@ -92,7 +92,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         self.load = LoadModel::new();
         self.offset = T::ZERO;
         self.watch = Watch::new(self.tables);
-        self.inverse = BacklashInverse::new();
+        self.inverse = BacklashInverse::new(self.tables);
         self.let_go();
     }
 

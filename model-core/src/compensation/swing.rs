@@ -29,11 +29,11 @@ impl<T: Real> Swing<T> {
         self.swings
     }
 
-    /// Takes the torque of a period [N m].
-    pub fn watch(&mut self, tables: &CompensationTables<T>, torque: T) {
+    /// Takes the torque of one of so many periods [N m].
+    pub fn watch(&mut self, tables: &CompensationTables<T>, torque: T, periods: T) {
         let excess = beyond(torque, Self::LARGE * tables.limits.motor);
         if excess == T::ZERO {
-            self.large = beyond(self.large, Self::SWINGS * tables.law.back_calculation);
+            self.large = beyond(self.large, Self::SWINGS * periods * tables.law.back_calculation);
         } else {
             let side = if excess > T::ZERO { T::ONE } else { -T::ONE };
             self.swings |= side * self.large < T::ZERO;

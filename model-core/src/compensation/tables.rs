@@ -258,4 +258,6 @@ pub struct LoadTable<T: Real> {
     pub friction_slope: T,
     /// The same for a speed that is planned [s/rad].
     pub planned_friction_slope: T,
+    /// Dry friction of the motor and of the link, as far as they are known beforehand [N m].
+    pub frictions: [T; 2],
 }

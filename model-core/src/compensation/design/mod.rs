@@ -3,6 +3,8 @@
 mod body;
 mod damping;
 #[cfg(test)]
+mod demand_tests;
+#[cfg(test)]
 mod inverse_tests;
 mod settings;
 mod stability;

@@ -25,6 +25,10 @@ pub struct CompensationSettings {
     pub torque_delay: f64,
     /// Time constant of the current loop after that [s].
     pub torque_lag: f64,
+    /// Dry friction of the motor, as far as it is known, at the motor [N m].
+    pub motor_friction: f64,
+    /// That of the link [N m].
+    pub load_friction: f64,
 }
 
 /// Refuses settings that no gain can be made from.
@@ -47,7 +51,11 @@ pub(super) fn check(settings: &CompensationSettings) -> Result<(), DesignError> 
         "above 0, at most 1",
     )?;
     must("torque delay", torque_delay, torque_delay >= 0.0, "zero or positive")?;
-    must("torque lag", torque_lag, torque_lag >= 0.0, "zero or positive")
+    must("torque lag", torque_lag, torque_lag >= 0.0, "zero or positive")?;
+    for (what, friction) in [("motor friction", settings.motor_friction), ("load friction", settings.load_friction)] {
+        must(what, friction, friction >= 0.0, "zero or positive")?;
+    }
+    Ok(())
 }
 
 /// Settings of a compensation for these surroundings, at a bandwidth [rad/s].
@@ -61,5 +69,7 @@ pub fn compensation_settings(of: &Surroundings, bandwidth: f64) -> CompensationS
         cogging_periods: of.cogging_periods_per_turn,
         torque_delay: of.delay,
         torque_lag: of.current_lag,
+        motor_friction: of.motor_friction.coulomb,
+        load_friction: of.load_friction.coulomb,
     }
 }

@@ -294,6 +294,7 @@ pub fn design_compensation<T: Real>(
             fastest: real(limit / LOAD_RATE),
             friction_slope: real(1.0 / FRICTION_SPEED),
             planned_friction_slope: real(1.0 / PLANNED_FRICTION_SPEED),
+            frictions: [body.gear * settings.motor_friction, settings.load_friction].map(real),
         },
         watch: WatchTable {
             smoothing: real(-libm::expm1(-period * SLOW_LOAD)),

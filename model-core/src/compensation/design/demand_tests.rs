@@ -1,0 +1,65 @@
+//! What a motion asks of the teeth, learnt from the torque that moves a joint of which the data sheet says the friction.
+
+use super::watch_tests::tables;
+use crate::compensation::demand::Demand;
+use crate::compensation::set_point::Motion;
+use crate::compensation::tables::CompensationTables;
+
+/// Tables with a dry friction of motor and link on their data sheet [N m at the link].
+fn with_friction(motor: f32, link: f32) -> CompensationTables<f32> {
+    let mut tables = tables();
+    tables.load.frictions = [motor, link];
+    tables
+}
+
+/// How far a set-point presses a flank after a way of 2 s in positive direction, once as it goes on and once as it turns round, where
+/// torque moves a joint with a friction and a load.
+fn pressing(tables: &CompensationTables<f32>, friction: f32, load: f32) -> [f32; 2] {
+    let mut demand = Demand::new(tables);
+    let at = |speed: f32| Motion { speed, ..Motion::default() };
+    let periods = 2.0 * tables.clock.rate / 3.0;
+    for _ in 0..periods as u32 {
+        demand.plan(tables, &at(0.2)).expect("a number");
+        demand.learn(tables, friction + load);
+    }
+    [0.2, -0.2].map(|speed| demand.plan(tables, &at(speed)).expect("a number"))
+}
+
+#[test]
+fn friction_turns_the_demand_round_with_the_motion_though_it_was_seen_one_way_only() {
+    // In truth a third more than on the sheet.
+    let [on, back] = pressing(&with_friction(0.3, 1.0), 1.7, 0.2);
+    assert!(on > 1.0 && back < 0.0, "{on} on the way, {back} after it");
+}
+
+#[test]
+fn a_weight_beyond_the_friction_keeps_its_flank() {
+    let [on, back] = pressing(&with_friction(0.3, 1.0), 1.3, 4.0);
+    assert!(on > 1.0 && back > 0.0, "{on} on the way, {back} after it");
+}
+
+#[test]
+fn a_load_that_may_be_friction_alone_presses_nothing_for_sure() {
+    // The sheet says nothing of friction.
+    let [on, back] = pressing(&with_friction(0.0, 0.0), 0.2, 0.2);
+    assert!(on > 1.0 && back.abs() < 1.0, "{on} on the way, {back} after it");
+}
+
+#[test]
+fn torque_that_the_motor_alone_takes_passes_no_demand() {
+    let tables = with_friction(0.0, 0.0);
+    let now = Motion { acceleration: 20.0, ..Motion::default() };
+    let [alone, both] = [0.0, tables.body.load_inertia].map(|load| {
+        let mut demand = Demand::new(&tables);
+        for _ in 0..3000 {
+            demand.plan(&tables, &now).expect("a number");
+            demand.learn(&tables, (tables.body.motor_inertia + load) * now.acceleration);
+        }
+        // The inertia is learnt as well: what is asked for is what was designed.
+        let mut fresh = Demand::new(&tables);
+        fresh.plan(&tables, &now).expect("a number");
+        (demand.is_passed(), fresh.torque())
+    });
+    assert!(!alone.0, "a motor in the open gap is taken to press {} N m", alone.1);
+    assert!(both.0, "teeth that pass {} N m are taken for open", both.1);
+}

@@ -8,10 +8,11 @@
 //! 4. `limit` keeps what the teeth pass on within bounds, `braking` the link's speed within what the motor can brake.
 //! 5. `load` knows what brakes the link and how that changes when the motion turns round, `start_prediction` how
 //!    motions start, `easing` what friction holds at rest.
-//! 6. `plain` is control without compensation: a PID on the motor's place with part of the feed-forward and no limit of
-//!    the teeth, or the impedance law on the motor. Where the estimates are not valid it takes over in one control
+//! 6. `plain` is control without compensation of a link that is not seen: a PID on the motor's place with part of the feed-forward and no
+//!    limit of the teeth; or the impedance law on the motor. Where the estimates are not valid it or `inverse` takes over in one control
 //!    period; only the way back is blended.
-//! 7. `watch` notices a loop that hunts, and `inverse` then controls the motor alone, with an inverse of the backlash that it learns itself.
+//! 7. `inverse` controls the motor alone until the gap is known, and where `watch` notices a loop that hunts: with an inverse of the
+//!    backlash that it learns itself, for the `demand` that it learns from the torque. `brakes` tells weight from friction, for `load` as well.
 //!
 //! `docs/theory/compensation.md` derives all of it and says where its limits are.
 

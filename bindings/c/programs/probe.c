@@ -2,6 +2,7 @@
  * The width probe against a plant whose link somebody holds, then what was learnt, saved and given to another observer.
  * Prints every torque and width into a digest, and the width.
  */
+#include "expect.h"
 #include "run.h"
 #include "say.h"
 #include "tables_of_test.h"
@@ -9,17 +10,6 @@
 static JointPlant plant;
 static JointObserver observer, other;
 static JointProbe probe;
-
-static int is(JointStatus found, JointStatus expected, const char *what) {
-    if (found != expected) {
-        say(what);
-        say(": ");
-        say(joint_status_name(found));
-        say("\n");
-        return 0;
-    }
-    return 1;
-}
 
 int main(void) {
     const size_t bytes = sizeof tables_of_test;

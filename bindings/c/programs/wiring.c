@@ -2,6 +2,7 @@
  * The wiring check against a plant: wired rightly, and with an output encoder, a motor encoder or a torque that is reversed.
  * Prints a digest of every torque, and what each check has found.
  */
+#include "expect.h"
 #include "run.h"
 #include "say.h"
 #include "tables_of_test.h"
@@ -10,17 +11,6 @@ static JointPlant plant;
 static JointWiring wiring;
 
 enum { RIGHT, OUTPUT_REVERSED, MOTOR_REVERSED, TORQUE_REVERSED, MISWIRINGS };
-
-static int is(JointStatus found, JointStatus expected, const char *what) {
-    if (found != expected) {
-        say(what);
-        say(": ");
-        say(joint_status_name(found));
-        say("\n");
-        return 0;
-    }
-    return 1;
-}
 
 int main(void) {
     const size_t bytes = sizeof tables_of_test;

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use board::target::board::Board;
 use joint_file::JointFile;
 use joint_file::{named, warned};
-use model_core::compensation::design::good_bandwidth;
 use model_core::controller::design::{ControlRequest, NominalPlant};
 use report::failure::{Failure, Outcome};
 use report::folder::{Folder, file_part};
@@ -108,13 +107,7 @@ pub fn make(
     let plant = plant.then_some((&joint.parameters, &joint.surroundings));
     let told = NominalPlant { joint: &nominal.parameters, surroundings: &nominal.surroundings, request };
     let wanted = Wanted { plant, nominal: told, processor: board.chip().processor() };
-    let words = design(&wanted).and_then(|words| {
-        let bandwidth = match request.bandwidth {
-            Some(asked) => asked,
-            None => good_bandwidth(&nominal.parameters, &nominal.surroundings)?,
-        };
-        Ok((words, bandwidth))
-    });
+    let words = design(&wanted).and_then(|words| Ok((words, told.bandwidth()?)));
     let (words, bandwidth) = words.map_err(|error| {
         Failure::new(error.to_string()).with_help(
             "`joint check` says what follows from the file; `--rate` and `--bandwidth` change what is asked for",

@@ -39,6 +39,16 @@ pub struct NominalPlant<'t> {
     pub request: ControlRequest,
 }
 
+impl NominalPlant<'_> {
+    /// Bandwidth of the loop [rad/s]: the one that is asked for, or what is good for the plant.
+    pub fn bandwidth(&self) -> Result<f64, DesignError> {
+        match self.request.bandwidth {
+            Some(asked) => Ok(asked),
+            None => good_bandwidth(self.joint, self.surroundings),
+        }
+    }
+}
+
 /// Tables as Rust source.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ControlSource {
@@ -62,10 +72,7 @@ pub struct ControlTables {
 /// Tables of a controller for the nominal plant.
 pub fn control_tables(nominal: &NominalPlant<'_>) -> Result<ControlTables, DesignError> {
     let settings = settings(nominal);
-    let bandwidth = match nominal.request.bandwidth {
-        Some(asked) => asked,
-        None => good_bandwidth(nominal.joint, nominal.surroundings)?,
-    };
+    let bandwidth = nominal.bandwidth()?;
     Ok(ControlTables {
         observer: design_observer(nominal.joint, &settings)?,
         probe: design_usual_probe(nominal.joint, &settings)?,

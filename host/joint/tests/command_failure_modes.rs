@@ -7,10 +7,14 @@ mod pseudo_terminal;
 mod thread_board;
 
 use std::fs::{self, File};
+use std::io::{self, Read, Write};
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicUsize;
+use std::sync::atomic::Ordering::Relaxed;
 use std::time::{Duration, Instant};
 
-use command::{Ended, folder, interrupt, joint, json, start, text, wait};
+use command::{Ended, folder, interrupt, joint, json, start, text, until, wait};
 use link::PROTOCOL_VERSION;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -25,6 +29,30 @@ fn board(misbehaviour: Misbehaviour) -> (String, File) {
     // The thread ends with the test's process: a pseudo-terminal does not end while one side is open.
     drop(thread_board::start(master, misbehaviour));
     (path, slave)
+}
+
+/// A board's stream that counts the bytes that the board says.
+struct Counted<S> {
+    stream: S,
+    said: Arc<AtomicUsize>,
+}
+
+impl<S: Read> Read for Counted<S> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.stream.read(buffer)
+    }
+}
+
+impl<S: Write> Write for Counted<S> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = self.stream.write(bytes)?;
+        self.said.fetch_add(count, Relaxed);
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.stream.flush()
+    }
 }
 
 /// The command line of a run on a port.
@@ -142,10 +170,12 @@ fn a_full_disk_at_the_end_does_not_cost_the_record() {
 
 #[test]
 fn ctrl_c_stops_the_run_and_keeps_the_record() {
-    let (port, _open) = board(Misbehaviour::None);
+    let (master, _open, port) = pseudo_terminal::pair();
+    let said = Arc::new(AtomicUsize::new(0));
+    drop(thread_board::start(Counted { stream: master, said: said.clone() }, Misbehaviour::None));
     let out = folder();
     let child = start(&line("3600", &port, out.path()));
-    std::thread::sleep(Duration::from_secs(2));
+    until("samples arrive", || said.load(Relaxed) > 20_000);
     interrupt(&child);
     let start = Instant::now();
     let ended = wait(child);

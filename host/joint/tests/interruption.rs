@@ -2,11 +2,13 @@
 
 mod command;
 
-use std::path::Path;
+use std::fs::{File, OpenOptions};
+use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use command::{folder, send, start, text, wait};
+use command::{TIMEOUT, folder, send, start, text, wait};
 
 /// It is 0.2 s; a busy machine is given more.
 const AT_ONCE: Duration = Duration::from_secs(5);
@@ -14,6 +16,14 @@ const AT_ONCE: Duration = Duration::from_secs(5);
 /// A pipe that nobody writes to: whoever reads it waits for ever, in the system.
 fn pipe(path: &Path) {
     assert!(Command::new("mkfifo").arg(path).status().expect("`mkfifo` is there").success());
+}
+
+/// The end of a pipe that is written to: it can be opened once somebody reads, and the pipe does not end while it is open.
+fn read_by_somebody(path: PathBuf) -> File {
+    let (opened, open) = mpsc::channel();
+    // Opening it waits in the system, for ever if nobody reads.
+    std::thread::spawn(move || opened.send(OpenOptions::new().write(true).open(path)));
+    open.recv_timeout(TIMEOUT).expect("the command reads the pipe").expect("a pipe")
 }
 
 #[test]
@@ -32,8 +42,7 @@ fn a_command_that_waits_for_its_input_hears_that_it_is_to_end() {
     ] {
         for signal in ["-INT", "-TERM"] {
             let child = start(arguments);
-            // It listens once it does not end by the signal alone; sooner is no harm.
-            std::thread::sleep(Duration::from_millis(700));
+            let _open = read_by_somebody(path.clone());
             let start = Instant::now();
             send(signal, &child);
             let ended = wait(child);

@@ -20,7 +20,7 @@ pub struct Ended {
 }
 
 /// A machine under load is slow, but not for ever.
-const TIMEOUT: Duration = Duration::from_secs(120);
+pub const TIMEOUT: Duration = Duration::from_secs(120);
 
 fn command(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_joint"));

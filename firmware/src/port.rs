@@ -6,7 +6,7 @@
 //! |---|---|---|
 //! | [`Direct`] | to these samples | the controller's own |
 //! | [`SharedMemory`](shared_memory) | to the samples before | two moves through a queue |
-//! | [`SpiPort`] | to the samples before | [`spi::FRAME_BYTES`] bytes at the bus's rate: 73 us at 21 MHz; [`spi_slave`] at its other end |
+//! | [`SpiPort`] | to the samples before | [`spi::FRAME_BYTES`] bytes at the bus's rate: 75 us at 21 MHz; [`spi_slave`] at its other end |
 //! | [`SerialPort`] | to the last samples that were answered | bytes into and out of queues; [`serial::exchanges_per_second`] |
 //!
 //! A port that answers one tick late adds that tick to the loop's delay: `control_delay_periods` of the joint file.

@@ -1,6 +1,7 @@
 //! The slave on SPI: good transfers are answered in the next one, and after every kind of bad transfer the next good one is
 //! too.
 
+use firmware::port::spi::FRAME_BYTES as FRAME;
 use link::controller::{Answered, Exchange, Motion, SetPoint};
 use link::framing::{sealed, unsealed};
 
@@ -10,8 +11,6 @@ use crate::cpu::Board;
 use crate::talk::Talk;
 use crate::wires::{MICROSECOND, Pin, SECOND, Time};
 
-/// Bytes of a frame.
-const FRAME: usize = 192;
 /// What the master leaves the slave between two transfers: a control period at 5 kHz, less the transfer.
 const BETWEEN: Time = 120 * MICROSECOND;
 /// A byte at 21 MHz.
@@ -147,7 +146,7 @@ pub fn transfers(subject: &Subject) -> Result<String, String> {
 pub fn too_long(subject: &Subject) -> Result<String, String> {
     let mut master = master(subject, subject.start()?)?;
     master.is_answered()?;
-    let extra = [1, 2, 3, 4, 5, 8, 100, 192, 1000];
+    let extra = [1, 2, 3, 4, 5, 8, 100, FRAME, 1000];
     let mut taken = Vec::new();
     for more in extra {
         let frame = master.good();

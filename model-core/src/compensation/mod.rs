@@ -30,6 +30,7 @@ mod intent;
 mod inverse;
 mod limit;
 mod load;
+mod load_swing;
 mod path;
 mod plain;
 mod position;

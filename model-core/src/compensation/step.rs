@@ -136,7 +136,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         if leans && matches!(command, CommandRef::Position { .. }) {
             self.load.lean(tables, self.position.heeded(&situation));
         }
-        self.load.observe(tables, estimates, &situation);
+        self.load.observe(tables, estimates, &situation, self.trust == T::ONE);
         let intent = match command {
             CommandRef::Position { now, ahead } => {
                 if situation.feels && self.turn == Turn::Observes {

@@ -69,6 +69,11 @@ impl<T: Real> LoadModel<T> {
         self.cut = if is_cut { T::ONE } else { self.cut * tables.switching.transient_left };
     }
 
+    /// Whether the load swings as a payload on a flexible arm does.
+    pub fn swings(&self) -> bool {
+        self.swing.swings()
+    }
+
     /// How fast the load is followed, over how fast a load is that does not swing [-].
     fn pace(&self) -> T {
         if self.swing.may_swing() { Self::SLOWLY } else { T::ONE }

@@ -38,9 +38,14 @@ impl<T: Real> LoadSwing<T> {
         Self { means: [T::ZERO; 2], side: T::ZERO, since: T::ZERO, changes: T::ZERO, left: Self::KEPT }
     }
 
-    /// Whether the load swings, or might.
+    /// Whether the load swings, or might: nothing has shown yet that it does not.
     pub fn may_swing(&self) -> bool {
         self.left > T::ZERO
+    }
+
+    /// Whether the load swings for sure.
+    pub fn swings(&self) -> bool {
+        self.may_swing() && self.changes >= Self::SWING
     }
 
     /// Takes a period with a reading of the load, if there is one [N m].

@@ -5,7 +5,7 @@ use core::f32::consts::TAU;
 use super::watch_tests::tables;
 use crate::compensation::load_swing::LoadSwing;
 
-/// Whether a load that depends on time and on the torque that measured ones are uncertain by still may swing after 3 s.
+/// Whether a load that depends on time and on the torque that measured ones are uncertain by swings or may swing after 3 s.
 fn may_swing(load: impl Fn(f32, f32) -> f32) -> bool {
     let tables = tables();
     let mut swing = LoadSwing::new();
@@ -13,6 +13,8 @@ fn may_swing(load: impl Fn(f32, f32) -> f32) -> bool {
         let time = period as f32 * tables.clock.period;
         swing.take(&tables, Some(load(time, tables.switching.measured)));
     }
+    // What only might swing has shown within that time whether it does.
+    assert_eq!(swing.may_swing(), swing.swings());
     swing.may_swing()
 }
 
@@ -44,7 +46,7 @@ fn a_link_of_which_nothing_is_known_might_and_time_without_a_reading_tells_nothi
     let tables = tables();
     let mut swing = LoadSwing::new();
     (0..100_000).for_each(|_| swing.take(&tables, None));
-    assert!(swing.may_swing());
+    assert!(swing.may_swing() && !swing.swings());
     swing.take(&tables, Some(f32::NAN));
     (0..20_000).for_each(|_| swing.take(&tables, Some(0.0)));
     assert!(!swing.may_swing());

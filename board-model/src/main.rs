@@ -92,7 +92,7 @@ fn run(image: &Path, board: Board, source: Option<u64>, cost: u64) -> Result<(),
 /// All of them, whatever fails; then how many did.
 fn check(only_board: Option<Board>, only: Option<&str>, full: bool) -> Result<(), String> {
     let mut images = Images::prepare()?;
-    let mut failed = 0;
+    let (mut failed, mut ran) = (0, 0);
     let wanted = |board: &Board, name: &str| {
         only_board.as_ref().is_none_or(|wanted| wanted == board) && only.is_none_or(|text| name.contains(text))
     };
@@ -104,6 +104,7 @@ fn check(only_board: Option<Board>, only: Option<&str>, full: bool) -> Result<()
         for check in checks::ALL.iter().filter(chosen) {
             for work in check.works(board, is_first) {
                 let subject = Subject { board: board.clone(), image: images.get(board, work)?, tampers: &[] };
+                ran += 1;
                 let start = Instant::now();
                 let outcome = (check.run)(&subject);
                 let what = format!("{}, {}: {}", board.name(), work.name(), check.name);
@@ -138,6 +139,7 @@ fn check(only_board: Option<Board>, only: Option<&str>, full: bool) -> Result<()
         if !wanted(&board, what) {
             continue;
         }
+        ran += 1;
         let image = images.get(&board, *work)?;
         let what = format!("{}, planted: {what}", board.name());
         let subject = Subject { board, image, tampers };
@@ -148,6 +150,10 @@ fn check(only_board: Option<Board>, only: Option<&str>, full: bool) -> Result<()
                 println!("FAILED   {what}: nothing was noticed");
             }
         }
+    }
+    if ran == 0 {
+        let full = if full { "" } else { ", or --full for the long ones" };
+        return Err(format!("no check has `{}` in its name: leave --only out for all{full}", only.unwrap_or_default()));
     }
     if failed == 0 { Ok(()) } else { Err(format!("{failed} checks failed")) }
 }

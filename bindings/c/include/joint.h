@@ -68,7 +68,7 @@
 #define JOINT_MEMORY_BYTES 544
 
 // 64-bit words of a compensation.
-#define JOINT_COMPENSATION_WORDS 65
+#define JOINT_COMPENSATION_WORDS 62
 
 // 64-bit words of a width probe.
 #define JOINT_PROBE_WORDS 16

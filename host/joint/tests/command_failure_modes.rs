@@ -25,13 +25,20 @@ const LIVENESS: Duration = Duration::from_secs(20);
 
 /// Path of the port that a board is behind; the port stays open as long as the file.
 fn board(misbehaviour: Misbehaviour) -> (String, File) {
-    let (master, slave, path) = pseudo_terminal::pair();
-    // The thread ends with the test's process: a pseudo-terminal does not end while one side is open.
-    drop(thread_board::start(master, misbehaviour));
+    let (path, slave, _) = counted_board(misbehaviour);
     (path, slave)
 }
 
-/// A board's stream that counts the bytes that the board says.
+/// The same, and how many bytes the board has said.
+fn counted_board(misbehaviour: Misbehaviour) -> (String, File, Arc<AtomicUsize>) {
+    let (stream, slave, path) = pseudo_terminal::pair();
+    let said = Arc::new(AtomicUsize::new(0));
+    // The thread ends with the test's process: a pseudo-terminal does not end while one side is open.
+    drop(thread_board::start(Counted { stream, said: said.clone() }, misbehaviour));
+    (path, slave, said)
+}
+
+/// A stream that counts the bytes that are written to it.
 struct Counted<S> {
     stream: S,
     said: Arc<AtomicUsize>,
@@ -170,9 +177,7 @@ fn a_full_disk_at_the_end_does_not_cost_the_record() {
 
 #[test]
 fn ctrl_c_stops_the_run_and_keeps_the_record() {
-    let (master, _open, port) = pseudo_terminal::pair();
-    let said = Arc::new(AtomicUsize::new(0));
-    drop(thread_board::start(Counted { stream: master, said: said.clone() }, Misbehaviour::None));
+    let (port, _open, said) = counted_board(Misbehaviour::None);
     let out = folder();
     let child = start(&line("3600", &port, out.path()));
     until("samples arrive", || said.load(Relaxed) > 20_000);

@@ -62,13 +62,13 @@
 #define JOINT_WIRING_ITEMS 13
 
 // 64-bit words of an observer.
-#define JOINT_OBSERVER_WORDS 256
+#define JOINT_OBSERVER_WORDS 265
 
 // Bytes of what an observer has learnt.
 #define JOINT_MEMORY_BYTES 544
 
 // 64-bit words of a compensation.
-#define JOINT_COMPENSATION_WORDS 62
+#define JOINT_COMPENSATION_WORDS 65
 
 // 64-bit words of a width probe.
 #define JOINT_PROBE_WORDS 16

@@ -14,7 +14,7 @@ use crate::observer::{AnyObserver, JointObserver};
 use crate::status::JointStatus;
 
 /// 64-bit words of a compensation.
-pub const JOINT_COMPENSATION_WORDS: usize = 62;
+pub const JOINT_COMPENSATION_WORDS: usize = 65;
 
 /// Storage of a compensation. Its content is the library's own.
 #[repr(C)]

@@ -171,7 +171,13 @@ impl<T: Real> BacklashInverse<T> {
     /// Torque of a period [N m].
     // A function of its own leaves the registers to the law that controls instead: fewer instructions a tick on a Cortex-M4F.
     #[inline(never)]
-    pub fn follow(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, now: &Motion<T>) -> T {
+    pub fn follow(
+        &mut self,
+        tables: &CompensationTables<T>,
+        situation: &Situation<T>,
+        now: &Motion<T>,
+        payload_swings: bool,
+    ) -> T {
         let pole = Self::PATH * tables.law.rate;
         self.stand(situation);
         let [shift, rate] = self.shift;
@@ -182,9 +188,12 @@ impl<T: Real> BacklashInverse<T> {
             self.shift = [shift, rate];
         }
         // All of the damping on the motor, as long as that does not swing against the loop's delays; then the link takes over what
-        // the motor does not bear, while the teeth may carry.
-        let on_motor =
-            if self.integral.swings() { damping_on_motor(tables.law.motor_damping) } else { tables.law.damping };
+        // the motor does not bear, while the teeth may carry. Where a payload swings, that is the reason, and damping on the link drives it.
+        let on_motor = if self.integral.swings() && !payload_swings {
+            damping_on_motor(tables.law.motor_damping)
+        } else {
+            tables.law.damping
+        };
         let on_link = if situation.open { T::ZERO } else { tables.law.damping - on_motor };
         let torque = self.demand.feed_forward(tables, now) + tables.body.motor_inertia * acceleration
             - tables.law.position * self.place(situation)

@@ -1,7 +1,8 @@
 //! What brakes the link, by the observer's load torque, split into an even part and dry friction (`brakes`). The split is what makes the
-//! torque after a reversal predictable.
+//! torque after a reversal predictable. A load that may swing (`load_swing`) is followed more slowly than it swings.
 
 use super::brakes::Brakes;
+use super::load_swing::LoadSwing;
 use super::situation::{Situation, planned_direction};
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
@@ -28,6 +29,8 @@ pub(super) struct LoadModel<T: Real> {
     creep: Option<Creep<T>>,
     /// 1 while the motor's limit cuts torque off, fading over the loop's transient [-].
     cut: T,
+    /// Whether it is a payload that swings.
+    swing: LoadSwing<T>,
 }
 
 /// What was known before the link began to creep.
@@ -43,6 +46,9 @@ impl<T: Real> LoadModel<T> {
     /// the speed of creeping.
     const STILL_CREEPS: T = T::THIRD;
 
+    /// How fast a load is followed that may swing, over how fast another one is [-]: in 25 ms, half the period of 20 Hz.
+    const SLOWLY: T = T::EIGHTH;
+
     pub fn new() -> Self {
         Self {
             brakes: Brakes::new(T::ZERO, [T::ONE; 2]),
@@ -54,12 +60,23 @@ impl<T: Real> LoadModel<T> {
             moved: T::ZERO,
             creep: None,
             cut: T::ZERO,
+            swing: LoadSwing::new(),
         }
     }
 
     /// Whether the motor's limit has cut torque off in this period.
     pub fn take_cut(&mut self, tables: &CompensationTables<T>, is_cut: bool) {
         self.cut = if is_cut { T::ONE } else { self.cut * tables.switching.transient_left };
+    }
+
+    /// Whether the load swings as a payload on a flexible arm does.
+    pub fn swings(&self) -> bool {
+        self.swing.swings()
+    }
+
+    /// How fast the load is followed, over how fast a load is that does not swing [-].
+    fn pace(&self) -> T {
+        if self.swing.may_swing() { Self::SLOWLY } else { T::ONE }
     }
 
     /// -1 to 1: what share of the dry friction brakes the link.
@@ -112,8 +129,15 @@ impl<T: Real> LoadModel<T> {
         creeps(self.speed)
     }
 
-    /// Takes the estimate of the load torque, unless the teeth are known to be open.
-    pub fn observe(&mut self, tables: &CompensationTables<T>, estimates: &Estimates<T>, situation: &Situation<T>) {
+    /// Takes the estimate of the load torque, unless the teeth are known to be open. `acts` is whether it is fed forward: only then is a
+    /// swing the loop's own affair.
+    pub fn observe(
+        &mut self,
+        tables: &CompensationTables<T>,
+        estimates: &Estimates<T>,
+        situation: &Situation<T>,
+        acts: bool,
+    ) {
         self.follow(tables, situation);
         // A weight turns with the link.
         if self.creeps() {
@@ -135,10 +159,11 @@ impl<T: Real> LoadModel<T> {
             self.hardest = push;
         }
         let carried = known && !situation.open;
+        self.swing.take(tables, (carried && acts).then_some(held - self.drag()));
         // What brakes a link that is jerked from limit to limit is known with a lag: it is followed as one, for shared out it
         // would make friction of the lag.
         if carried && self.cut > T::HALF {
-            self.brakes.even += tables.load.gain * (held - self.brakes.even - self.drag());
+            self.brakes.even += self.pace() * tables.load.gain * (held - self.brakes.even - self.drag());
         } else if carried {
             self.learn(tables, held);
         } else {
@@ -176,12 +201,14 @@ impl<T: Real> LoadModel<T> {
     /// it is followed then without asking which part it is, until it moves again.
     fn learn(&mut self, tables: &CompensationTables<T>, torque: T) {
         let [growth_even, growth_friction, noise] = tables.load.variances;
+        let pace = self.pace();
+        let [growth_even, growth_friction] = [growth_even, growth_friction].map(|growth| pace * pace * growth);
         // Once it creeps, a speed that noise may have made does not say that it moves.
         if creeps(if self.creep.is_some() { Self::STILL_CREEPS * self.speed } else { self.speed }) {
             let even = self.brakes.even;
             let creep = self.creep.get_or_insert(Creep { even, variance: T::ZERO });
             creep.variance += growth_even;
-            self.brakes.even += tables.load.gain * (torque - self.brakes.even - self.drag());
+            self.brakes.even += self.pace() * tables.load.gain * (torque - self.brakes.even - self.drag());
             return;
         }
         let direction = self.direction();

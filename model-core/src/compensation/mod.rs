@@ -6,7 +6,8 @@
 //! 2. `flank` decides from that which flank shall carry, and when to leave for it, by the table in [`transitions`].
 //! 3. `crossing` and `path` take the motor through the gap to where the load will be, and softly onto the flank.
 //! 4. `limit` keeps what the teeth pass on within bounds, `braking` the link's speed within what the motor can brake.
-//! 5. `load` knows what brakes the link and how that changes when the motion turns round, `start_prediction` how
+//! 5. `load` knows what brakes the link and how that changes when the motion turns round, `load_swing` whether it is a payload that
+//!    swings, `start_prediction` how
 //!    motions start, `easing` what friction holds at rest.
 //! 6. `plain` is control without compensation of a link that is not seen: a PID on the motor's place with part of the feed-forward and no
 //!    limit of the teeth; or the impedance law on the motor. Where the estimates are not valid it or `inverse` takes over in one control
@@ -30,6 +31,7 @@ mod intent;
 mod inverse;
 mod limit;
 mod load;
+mod load_swing;
 mod path;
 mod plain;
 mod position;

@@ -136,7 +136,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         if leans && matches!(command, CommandRef::Position { .. }) {
             self.load.lean(tables, self.position.heeded(&situation));
         }
-        self.load.observe(tables, estimates, &situation);
+        self.load.observe(tables, estimates, &situation, self.trust == T::ONE);
         let intent = match command {
             CommandRef::Position { now, ahead } => {
                 if situation.feels && self.turn == Turn::Observes {
@@ -196,7 +196,9 @@ impl<'tables, T: Real> Compensation<'tables, T> {
     /// Torque of the law that controls without compensation [N m].
     fn alone(&mut self, situation: &Situation<T>, command: &CommandRef<T>) -> T {
         match command {
-            CommandRef::Position { now, .. } if situation.feels => self.inverse.follow(self.tables, situation, now),
+            CommandRef::Position { now, .. } if situation.feels => {
+                self.inverse.follow(self.tables, situation, now, self.load.swings())
+            }
             CommandRef::Position { now, .. } => self.plain.follow(self.tables, &self.load, situation, now),
             CommandRef::Impedance(point) => self.plain.yield_to(situation, point),
         }

@@ -106,6 +106,8 @@ pub(super) fn load<T: Real, const P: usize>(
     if !(learner.is_possible(tables) && bias.is_possible(&tables.contact) && inertia.is_possible(&tables.inertia)) {
         return Err(MemoryError::OutOfRange);
     }
+    // What was weighed against other numbers is not learnt by these.
+    learnt.interrupt();
     learnt.learner = learner;
     learnt.bias = bias;
     learnt.inertia = inertia;

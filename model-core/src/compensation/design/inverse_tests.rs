@@ -77,7 +77,7 @@ impl Rig {
         if self.period.is_multiple_of(3) {
             self.inverse.observe(&self.tables, &situation, now);
         }
-        let torque = self.inverse.follow(&self.tables, &situation, now);
+        let torque = self.inverse.follow(&self.tables, &situation, now, false);
         self.inverse.take(&self.tables, &situation, Some(0.0));
         if self.period % 3 == 1 {
             self.inverse.learn(&self.tables, torque);
@@ -158,7 +158,7 @@ fn an_inertia_that_nobody_told_is_learnt_from_the_torque() {
         }
         let [some, none] = [20.0, 0.0].map(|acceleration| {
             let now = Motion { acceleration, ..Motion::default() };
-            inverse.clone().follow(&rig.tables, &rig.situation(&now), &now)
+            inverse.clone().follow(&rig.tables, &rig.situation(&now), &now, false)
         });
         let fed_forward = (some - none) / (20.0 * total);
         assert!((fed_forward - ratio).abs() < 0.03, "{fed_forward} of what was designed, {ratio} in truth");
@@ -186,7 +186,7 @@ fn it_takes_over_from_another_law_where_the_motor_stands_with_the_torque_that_ho
         rig.inverse.learn(&rig.tables, 3.0);
     }
     let situation = rig.situation(&Motion::default());
-    let torque = rig.inverse.follow(&rig.tables, &situation, &Motion::default());
+    let torque = rig.inverse.follow(&rig.tables, &situation, &Motion::default(), false);
     assert!((torque - 3.0).abs() < 0.15, "{torque} N m");
 }
 

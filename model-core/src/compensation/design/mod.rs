@@ -6,6 +6,8 @@ mod damping;
 mod demand_tests;
 #[cfg(test)]
 mod inverse_tests;
+#[cfg(test)]
+mod load_swing_tests;
 mod settings;
 mod stability;
 mod tables;

@@ -105,7 +105,9 @@ pub enum Task {
     Inertia(bool),
     /// On which flank the teeth came to rest.
     Flank,
-    /// Learning from it, if it belongs to what was learnt.
+    /// Whether a rest on a flank belongs to what was learnt.
+    Weigh,
+    /// Learning from it.
     Learn,
     /// How uncertain everything is now.
     Uncertainty,

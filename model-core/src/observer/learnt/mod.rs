@@ -32,7 +32,7 @@ use fusion::{Fused, small};
 use inertia::Inertia;
 use interval::{Interval, Mean, Rest, Task, rests};
 use last_rest::LastRest;
-use learner::Learner;
+use learner::{Innovation, Learner};
 use position_errors::PositionErrors;
 use regressors::{COMPLIANCE, ERROR, HALF_GAP, MAPPED, OFFSET, Regressors, SKEW, Touch};
 use travel::{Travel, TravelDetector};
@@ -70,6 +70,8 @@ pub struct Learnt<T: Real, const P: usize> {
     consistency: Consistency,
     /// Kept until something else is trusted.
     trusted: Option<Trusted<T, P>>,
+    /// What is learnt from in the next period.
+    weighed: Option<Innovation<T, P>>,
 }
 
 /// What an interval showed, before anything is learnt from it.
@@ -139,6 +141,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
             last_rest: LastRest::new(),
             consistency: Consistency::default(),
             trusted: None,
+            weighed: None,
         }
     }
 
@@ -158,6 +161,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
             last_rest,
             consistency,
             trusted,
+            weighed,
         } = self;
         *learner = Learner::new(&tables.learner);
         *bias = Bias::new(&tables.contact);
@@ -171,6 +175,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         *last_rest = LastRest::new();
         *consistency = Consistency::default();
         *trusted = None;
+        *weighed = None;
     }
 
     /// Half-gap [m] and compliance [m/N] as learnt so far.
@@ -235,6 +240,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
     /// The output encoder has come back elsewhere: everything may be wrong, the rest that was remembered too.
     pub fn reopen(&mut self, tables: &ObserverTables<T>) {
         self.learner.reopen();
+        self.weighed = None;
         self.last_rest = LastRest::new();
         self.find_uncertainty(tables, true);
     }
@@ -243,6 +249,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
     pub fn return_to_trusted(&mut self, tables: &ObserverTables<T>) -> bool {
         let Some(trusted) = self.trusted.filter(|_| !self.consistency.is_trusted()) else { return false };
         trusted.restore(&mut self.learner);
+        self.weighed = None;
         self.find_uncertainty(tables, false);
         self.uncertainty.of_learnt(tables, &self.learner, self.trusted.is_some());
         true
@@ -251,6 +258,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
     /// The motor encoder has come back elsewhere.
     pub fn doubt_motor(&mut self, tables: &ObserverTables<T>) {
         self.trusted = None;
+        self.weighed = None;
         self.cogging = Cogging::new(&tables.cogging);
         self.learner.doubt_motor();
         self.find_uncertainty(tables, true);
@@ -262,6 +270,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         self.travel = TravelDetector::new();
         self.block = Block::new();
         self.last_rest = LastRest::new();
+        self.weighed = None;
     }
 
     /// Finds exactly what the deflection depends on by where the shafts are: regressors of teeth that do not touch, and
@@ -449,17 +458,18 @@ impl<T: Real, const P: usize> Learnt<T, P> {
                 if rest { Task::Flank } else { Task::Uncertainty }
             }
             Task::Flank => {
-                if self.tell_flank(tables) {
-                    Task::Learn
-                } else {
-                    Task::Uncertainty
-                }
+                self.tell_flank(tables);
+                if self.block.flank().is_some() { Task::Weigh } else { Task::Learn }
             }
-            Task::Learn => {
+            Task::Weigh => {
                 self.interval.learnt_on = self.block.flank();
-                if self.learn_rest(tables) == Verdict::EncoderFails {
+                if self.weigh_rest(tables) == Verdict::EncoderFails {
                     outcome = Outcome::EncoderFails;
                 }
+                Task::Learn
+            }
+            Task::Learn => {
+                self.learn_rest(tables);
                 Task::Uncertainty
             }
             Task::Uncertainty => {
@@ -476,8 +486,8 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         outcome
     }
 
-    /// On which flank teeth came to rest: by force, or by how they came there. True if it is known.
-    fn tell_flank(&mut self, tables: &ObserverTables<T>) -> bool {
+    /// On which flank teeth came to rest: by force, or by how they came there.
+    fn tell_flank(&mut self, tables: &ObserverTables<T>) {
         let (regressors, deflection) = self.block.full();
         let mut flank = self.block.flank();
         if let Some(told) = flank {
@@ -487,11 +497,10 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         }
         self.last_rest.put(&regressors, deflection, flank);
         self.block.tell(flank);
-        flank.is_some()
     }
 
     /// On which flank teeth came to rest, by the deflection. Where that is not known, what the deflection depends on beside
-    /// the flank is learnt, if it is known at least that it is one.
+    /// the flank is to be learnt, if it is known at least that it is one.
     fn flank_without_force(
         &mut self,
         tables: &ObserverTables<T>,
@@ -512,13 +521,13 @@ impl<T: Real, const P: usize> Learnt<T, P> {
             }
         }
         if innovation.is_within(GATE) && self.last_rest.co_motion().lasts(half_gap) {
-            self.errors.relearn(&mut self.learner, |learner| learner.learn(&tables.learner, &innovation));
+            self.weighed = Some(innovation);
         }
         None
     }
 
-    /// Learns from a rest on a flank, unless it does not belong to the model.
-    fn learn_rest(&mut self, tables: &ObserverTables<T>) -> Verdict {
+    /// Whether a rest on a flank belongs to the model: then it is to be learnt from.
+    fn weigh_rest(&mut self, tables: &ObserverTables<T>) -> Verdict {
         let table = &tables.learner;
         let [half_gap, _] = self.shape();
         let (regressors, deflection) = self.block.full();
@@ -532,11 +541,17 @@ impl<T: Real, const P: usize> Learnt<T, P> {
             return verdict;
         }
         self.consistency.fits(self.block.flank());
-        self.errors.relearn(&mut self.learner, |learner| learner.learn(table, &innovation));
-        if self.consistency.is_trusted() {
+        self.weighed = Some(innovation);
+        Verdict::Keep
+    }
+
+    /// Learns from the rest that was weighed last, if there is one.
+    fn learn_rest(&mut self, tables: &ObserverTables<T>) {
+        let Some(innovation) = self.weighed.take() else { return };
+        self.errors.relearn(&mut self.learner, |learner| learner.learn(&tables.learner, &innovation));
+        if self.block.flank().is_some() && self.consistency.is_trusted() {
             self.trusted = Some(Trusted::of(&self.learner));
         }
-        Verdict::Keep
     }
 
     /// Forgets what a verdict says is wrong.

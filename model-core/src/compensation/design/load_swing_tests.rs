@@ -1,0 +1,53 @@
+//! Which loads count as swinging, on tables as they are designed.
+
+use core::f32::consts::TAU;
+
+use super::watch_tests::tables;
+use crate::compensation::load_swing::LoadSwing;
+
+/// Whether a load that depends on time and on the torque that measured ones are uncertain by swings or may swing after 3 s.
+fn may_swing(load: impl Fn(f32, f32) -> f32) -> bool {
+    let tables = tables();
+    let mut swing = LoadSwing::new();
+    for period in 0..(3.0 * tables.clock.rate) as u32 {
+        let time = period as f32 * tables.clock.period;
+        swing.take(&tables, Some(load(time, tables.switching.measured)));
+    }
+    // What only might swing has shown within that time whether it does.
+    assert_eq!(swing.may_swing(), swing.swings());
+    swing.may_swing()
+}
+
+#[test]
+fn a_payload_on_a_flexible_arm_swings() {
+    for frequency in [8.0, 12.0, 25.0] {
+        assert!(may_swing(|time, uncertain| 4.0 * uncertain * (TAU * frequency * time).sin()), "{frequency} Hz");
+    }
+}
+
+#[test]
+fn a_motion_and_a_steady_load_do_not() {
+    assert!(!may_swing(|_, uncertain| 10.0 * uncertain));
+    assert!(!may_swing(|time, uncertain| 20.0 * uncertain * (TAU * 2.0 * time).sin()), "2 Hz");
+}
+
+#[test]
+fn a_push_each_half_second_does_not() {
+    assert!(!may_swing(|time, uncertain| if time % 0.5 < 0.1 { 20.0 * uncertain } else { 0.0 }));
+}
+
+#[test]
+fn what_measured_torques_are_uncertain_by_does_not() {
+    assert!(!may_swing(|time, uncertain| 0.8 * uncertain * (TAU * 12.0 * time).sin()));
+}
+
+#[test]
+fn a_link_of_which_nothing_is_known_might_and_time_without_a_reading_tells_nothing() {
+    let tables = tables();
+    let mut swing = LoadSwing::new();
+    (0..100_000).for_each(|_| swing.take(&tables, None));
+    assert!(swing.may_swing() && !swing.swings());
+    swing.take(&tables, Some(f32::NAN));
+    (0..20_000).for_each(|_| swing.take(&tables, Some(0.0)));
+    assert!(!swing.may_swing());
+}

@@ -217,7 +217,7 @@ fn identify_finds_the_joint_in_the_log_of_a_test() {
     }
 
     // A link that hardly moves and turns once tells nothing.
-    let still = "duration_s = 2\nsettle_s = 0.5\nseeds = [1]\n[profile]\nkind = \"sine\"\namplitude_rad = 0.02\nfrequency_Hz = 0.5\n\
+    let still = "duration_s = 2\nsettle_s = 0.5\nseeds = [2]\n[profile]\nkind = \"sine\"\namplitude_rad = 0.02\nfrequency_Hz = 0.5\n\
                  [controller]\nrivals = []\n";
     let log = log_of(folder.path(), still, "reference");
     let out = folder.path().join("nothing");

@@ -11,6 +11,7 @@ use model_core::controller::trajectory::{Segment, Trajectory};
 use model_core::gears::Flank;
 use model_core::observer::{
     Estimate, Estimates, MotorFault, Notices, OutputFault, Progress, Reading, Refusal, Samples, Shaft, Source,
+    TorqueResponse,
 };
 use parameters::ContactState;
 
@@ -35,6 +36,7 @@ fn estimates() -> Estimates<f32> {
     Estimates {
         source: Source::MotorOnly(OutputFault::Frozen),
         notices: Notices { torque_unknown: true, out_of_time: false, motor_implausible: true, motor_jumped: false },
+        torque_response: TorqueResponse::Reversed,
         gap: estimate(1.0),
         gap_rate: 2.0,
         flank_shift: 2.25,
@@ -87,7 +89,7 @@ fn probes() -> Vec<Option<Progress<f32>>> {
 
 #[test]
 fn answers_come_out_as_they_went_in() {
-    for stage in [Stage::Touching, Stage::Crossing, Stage::Landing, Stage::Plain, Stage::Off] {
+    for stage in [Stage::Touching, Stage::Crossing, Stage::Landing, Stage::Plain, Stage::Off, Stage::Reversed] {
         let shaped = Shaped {
             torque: 1.0,
             stage,

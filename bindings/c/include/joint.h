@@ -41,7 +41,7 @@
 #define JOINT_NAME_BYTES 32
 
 // Version of tables that this library reads.
-#define JOINT_TABLES_VERSION 3
+#define JOINT_TABLES_VERSION 4
 
 // In `notices`: the torque was more than twice what the motor can give; none was assumed.
 #define JOINT_NOTICE_TORQUE_UNKNOWN 1
@@ -55,6 +55,9 @@
 // In `notices`: the motor's counts are elsewhere time after time.
 #define JOINT_NOTICE_MOTOR_JUMPED 8
 
+// In `notices`, until the observer is started anew: the motor ran against its torque. Torque or motor encoder has the wrong sign.
+#define JOINT_NOTICE_TORQUE_REVERSED 16
+
 // 64-bit words of a wiring check.
 #define JOINT_WIRING_WORDS 72
 
@@ -62,7 +65,7 @@
 #define JOINT_WIRING_ITEMS 13
 
 // 64-bit words of an observer.
-#define JOINT_OBSERVER_WORDS 265
+#define JOINT_OBSERVER_WORDS 270
 
 // Bytes of what an observer has learnt.
 #define JOINT_MEMORY_BYTES 544
@@ -265,6 +268,9 @@ enum JointStage
   JOINT_STAGE_PLAIN = 3,
   // No torque: it is not known where the motor is.
   JOINT_STAGE_OFF = 4,
+  // No torque until observer and compensation are started anew: the motor ran against its torque, so torque or motor encoder has
+  // the wrong sign.
+  JOINT_STAGE_REVERSED = 5,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

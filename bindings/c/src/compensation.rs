@@ -131,6 +131,9 @@ pub enum JointStage {
     Plain = 3,
     /// No torque: it is not known where the motor is.
     Off = 4,
+    /// No torque until observer and compensation are started anew: the motor ran against its torque, so torque or motor encoder has
+    /// the wrong sign.
+    Reversed = 5,
 }
 
 /// What the compensation answers.
@@ -172,6 +175,7 @@ impl JointTorque {
             Stage::Landing => JointStage::Landing,
             Stage::Plain => JointStage::Plain,
             Stage::Off => JointStage::Off,
+            Stage::Reversed => JointStage::Reversed,
         };
         let flank = match of.flank {
             Some(Flank::Drive) => JointContact::DriveSide,

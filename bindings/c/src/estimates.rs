@@ -1,6 +1,8 @@
 //! What goes in and out of the observer, with units in the names.
 
-use model_core::observer::{Estimate, Estimates, MotorFault, OutputFault, Reading, Samples, Shaft, Source};
+use model_core::observer::{
+    Estimate, Estimates, MotorFault, OutputFault, Reading, Samples, Shaft, Source, TorqueResponse,
+};
 use parameters::ContactState;
 
 use crate::status::JointStatus;
@@ -160,6 +162,8 @@ pub const JOINT_NOTICE_OUT_OF_TIME: u32 = 2;
 pub const JOINT_NOTICE_MOTOR_IMPLAUSIBLE: u32 = 4;
 /// In `notices`: the motor's counts are elsewhere time after time.
 pub const JOINT_NOTICE_MOTOR_JUMPED: u32 = 8;
+/// In `notices`, until the observer is started anew: the motor ran against its torque. Torque or motor encoder has the wrong sign.
+pub const JOINT_NOTICE_TORQUE_REVERSED: u32 = 16;
 
 /// All estimates of one control period. A positive gap coordinate, force or torque drives the load forwards.
 #[derive(Debug, Clone, Copy)]
@@ -239,7 +243,8 @@ impl JointEstimates {
         let notices = bit(of.notices.torque_unknown, JOINT_NOTICE_TORQUE_UNKNOWN)
             | bit(of.notices.out_of_time, JOINT_NOTICE_OUT_OF_TIME)
             | bit(of.notices.motor_implausible, JOINT_NOTICE_MOTOR_IMPLAUSIBLE)
-            | bit(of.notices.motor_jumped, JOINT_NOTICE_MOTOR_JUMPED);
+            | bit(of.notices.motor_jumped, JOINT_NOTICE_MOTOR_JUMPED)
+            | bit(of.torque_response == TorqueResponse::Reversed, JOINT_NOTICE_TORQUE_REVERSED);
         Self {
             source,
             motor_fault,

@@ -63,7 +63,7 @@ structs! {
     gears::tables::Inputs<f32> { in_phase, deviation }
     observer::tables::ObserverTables<f32> {
         identity, control_rate, period, clock, counts, levers, current, drive, load, inertia, cogging, contact,
-        learner, supervisor
+        learner, supervisor, response
     }
     observer::tables::ClockTable<f32> { tick, period, shortest, longer, oldest }
     observer::tables::EncoderTable<f32> { turn, wraps_at, last, phase, fastest, angle, fraction, turns }
@@ -92,6 +92,7 @@ structs! {
         motor_trusted_after, motor_slipped_after, silent_after, failed_after, trusted_after, moved, margin,
         widest_part
     }
+    observer::tables::ResponseTable<f32> { block, per_block, inertia, large, alone }
     observer::tables::InertiaTable<f32> {
         per_periods, still, slow, moving, settled_after, least, noise, most_restless, memory, prior, limit,
         known, drift

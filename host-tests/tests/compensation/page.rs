@@ -34,5 +34,5 @@ fn the_page_shows_the_transitions_that_the_control_runs() {
 
 #[test]
 fn a_stage_without_compensation_has_no_transitions() {
-    assert!([Stage::Plain, Stage::Off].map(transitions).iter().all(|lines| lines.is_empty()));
+    assert!([Stage::Plain, Stage::Off, Stage::Reversed].map(transitions).iter().all(|lines| lines.is_empty()));
 }

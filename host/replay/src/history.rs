@@ -37,7 +37,7 @@ pub fn csv(
         for word in WORDS {
             write!(out, ",{}", (word.word)(estimates))?;
         }
-        writeln!(out, ",{}", notices(estimates.notices).join(" "))?;
+        writeln!(out, ",{}", notices(estimates).join(" "))?;
     }
     out.flush()
 }

@@ -100,7 +100,7 @@ impl<'s> Pass<'s> {
         let time = self.samples.time[index];
         self.both += usize::from(of.source == Source::Both);
         self.gap_valid += usize::from(of.gap.valid);
-        notices(of.notices).into_iter().for_each(|name| *self.notices.entry(name).or_default() += 1);
+        notices(of).into_iter().for_each(|name| *self.notices.entry(name).or_default() += 1);
         if self.source.replace(of.source) != Some(of.source) {
             let [estimates_from, encoder_fault] =
                 ["estimates_from", "encoder_fault"].map(|name| word(name, of).to_owned());

@@ -2,7 +2,7 @@
 //! for the logs of runs and for whoever replays them.
 
 use model_core::numbers::digest;
-use model_core::observer::{Estimates, MotorFault, Notices, OutputFault, Source};
+use model_core::observer::{Estimates, MotorFault, Notices, OutputFault, Source, TorqueResponse};
 use parameters::ContactState;
 use report::contacts::Contact;
 use report::log::{Message, field};
@@ -119,7 +119,7 @@ pub const WORDS: [WordField; 4] = [
 /// The field of all notices.
 pub const NOTICES: (&str, &str) = (
     "observer_notices",
-    "what was wrong with the samples: torque_unknown, out_of_time, motor_implausible, motor_jumped",
+    "what was wrong with the samples: torque_unknown, out_of_time, motor_implausible, motor_jumped; torque_reversed, which stays",
 );
 
 /// All fields that are numbers or flags.
@@ -161,26 +161,27 @@ pub fn add(message: &mut Message, estimates: Option<&Estimates<f32>>) {
     for field in WORDS {
         message.word(estimates.map_or("none", field.word));
     }
-    message.words(estimates.map_or_else(Vec::new, |known| notices(known.notices)).into_iter());
+    message.words(estimates.map_or_else(Vec::new, notices).into_iter());
 }
 
 /// Digest over every bit of the estimates, in 32 bits: two that differ once differ in the periods after that too.
 pub fn digest_of(estimates: &Estimates<f32>) -> u32 {
     let numbers = fields().map(|field| field.of(estimates).to_bits());
     let words = WORDS.iter().flat_map(|field| (field.word)(estimates).bytes().map(u64::from));
-    let notices = notices(estimates.notices).into_iter().flat_map(|word| word.bytes().map(u64::from));
+    let notices = notices(estimates).into_iter().flat_map(|word| word.bytes().map(u64::from));
     let digest = numbers.chain(words).chain(notices).fold(digest::START, digest::chain);
     (digest ^ (digest >> 32)) as u32
 }
 
 /// Notices by name.
-pub fn notices(of: Notices) -> Vec<&'static str> {
-    let Notices { torque_unknown, out_of_time, motor_implausible, motor_jumped } = of;
+pub fn notices(of: &Estimates<f32>) -> Vec<&'static str> {
+    let Notices { torque_unknown, out_of_time, motor_implausible, motor_jumped } = of.notices;
     let all = [
         ("torque_unknown", torque_unknown),
         ("out_of_time", out_of_time),
         ("motor_implausible", motor_implausible),
         ("motor_jumped", motor_jumped),
+        ("torque_reversed", of.torque_response == TorqueResponse::Reversed),
     ];
     all.into_iter().filter(|(_, set)| *set).map(|(word, _)| word).collect()
 }

@@ -126,6 +126,7 @@ pub static METRICS: &[Metric] = &[
         "time in which the law asks for more torque than there is, or brakes early because of that",
     ),
     metric("stepped_back", "percent", Observer, "time in which the motor alone is controlled because the loop hunted"),
+    metric("torque_reversed", "percent", Observer, "time after the motor ran against its torque, which was taken away"),
     metric("probe_error", "percent", Probe, "half-backlash that the width probe found against the truth"),
     metric("probe_time", "ms", Probe, "from the first torque of the width probe to its result"),
     metric("probe_refused", "", Probe, "1 if the width probe refused to say a width, 0 if it said one"),

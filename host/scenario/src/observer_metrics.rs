@@ -50,6 +50,7 @@ pub fn values(file: &TestFile, case: &Case, history: &RunHistory) -> Vec<(&'stat
         sums.trust += f64::from(observed.trust);
         sums.short += f64::from(u8::from(observed.short_of_torque));
         sums.stepped_back += f64::from(u8::from(observed.stepped_back));
+        sums.reversed += f64::from(u8::from(observed.reversed));
         if observed.valid {
             sums.valid += 1.0;
             sums.gap_valid += (error / gap).powi(2);
@@ -88,6 +89,7 @@ pub fn values(file: &TestFile, case: &Case, history: &RunHistory) -> Vec<(&'stat
         ("compensated", 100.0 * sums.trust / sums.count),
         ("short_of_torque", 100.0 * sums.short / sums.count),
         ("stepped_back", 100.0 * sums.stepped_back / sums.count),
+        ("torque_reversed", 100.0 * sums.reversed / sums.count),
     ];
     list.extend(sums.shares.percent(sums.count));
     list.extend(landings.delays());
@@ -121,6 +123,7 @@ struct Sums {
     trust: f64,
     short: f64,
     stepped_back: f64,
+    reversed: f64,
     valid: f64,
     gap_valid: f64,
     nees: f64,

@@ -2,7 +2,7 @@
 
 use model_core::gears::{Flank, sign};
 use model_core::numbers::digest;
-use model_core::observer::{Memory, Progress, Refusal, Samples, Source};
+use model_core::observer::{Memory, Progress, Refusal, Samples, Source, TorqueResponse};
 use reference::closed_loop::{Motion, Run, Sample, SetPoint};
 
 use super::controller_log::ControllerPeriod;
@@ -96,6 +96,8 @@ pub struct ObserverOutput {
     pub short_of_torque: bool,
     /// Plain control has taken over because the loop hunted.
     pub stepped_back: bool,
+    /// The motor ran against its torque, which was taken away for that.
+    pub reversed: bool,
     /// Which of the outputs may be used.
     pub validity: Validity,
     /// Where the width probe stands, if there is one.
@@ -220,6 +222,7 @@ impl ObserverOutput {
             trust: shaped.trust,
             short_of_torque: shaped.short_of_torque,
             stepped_back: shaped.stepped_back,
+            reversed: estimates.torque_response == TorqueResponse::Reversed,
             validity: Validity {
                 contact: estimates.contact_valid,
                 half_backlash: estimates.half_backlash.valid,

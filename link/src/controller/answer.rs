@@ -4,7 +4,9 @@
 use model_core::compensation::{Shaped, Stage};
 use model_core::controller::Answer;
 use model_core::gears::{Flank, sign};
-use model_core::observer::{Estimate, Estimates, MotorFault, Notices, OutputFault, Progress, Refusal, Shaft, Source};
+use model_core::observer::{
+    Estimate, Estimates, MotorFault, Notices, OutputFault, Progress, Refusal, Shaft, Source, TorqueResponse,
+};
 use parameters::ContactState;
 use serde::{Deserialize, Serialize};
 
@@ -68,7 +70,7 @@ impl From<WireProbed> for Progress<f32> {
 pub struct WireShaped {
     /// Torque for the motor [N m].
     pub torque: f32,
-    /// 0 touching, 1 crossing, 2 landing, 3 plain.
+    /// 0 touching, 1 crossing, 2 landing, 3 plain, 4 off, 5 reversed.
     pub stage: u8,
     /// The flank in use: 1 the drive flank, -1 the back flank, 0 none.
     pub side: f32,
@@ -94,7 +96,8 @@ pub struct WireEstimates {
     /// motor's is 5 silent, 6 late, 7 frozen, 8 jumped; 9 motor only, because the output
     /// has given no reading yet.
     pub source: u8,
-    /// Bits, the first lowest: torque unknown, out of time, motor implausible, motor jumped, contact valid, settled.
+    /// Bits, the first lowest: torque unknown, out of time, motor implausible, motor jumped, contact valid, settled, torque
+    /// or motor encoder reversed.
     pub flags: u8,
     /// Contact by force and as reported: 0 separated, 1 drive side, 2 back side.
     pub contacts: (u8, u8),
@@ -124,6 +127,7 @@ impl From<WireShaped> for Shaped<f32> {
             1 => Stage::Crossing,
             2 => Stage::Landing,
             3 => Stage::Plain,
+            5 => Stage::Reversed,
             _ => Stage::Off,
         };
         Self { torque, stage, flank: Flank::towards(side), demand, load, trust, short_of_torque, stepped_back }
@@ -164,6 +168,7 @@ impl From<&Estimates<f32>> for WireEstimates {
             notices.motor_jumped,
             of.contact_valid,
             of.settled,
+            of.torque_response == TorqueResponse::Reversed,
         ];
         let shaft = |shaft: Shaft<f32>| (shaft.turns, shaft.fraction, shaft.speed);
         Self {
@@ -236,6 +241,7 @@ impl From<WireEstimates> for Estimates<f32> {
             reported_contact: contacted(wire.contacts.1),
             contact_valid: flag(4),
             settled: flag(5),
+            torque_response: if flag(6) { TorqueResponse::Reversed } else { TorqueResponse::Unknown },
             mesh_torque,
             load_torque,
             half_backlash,

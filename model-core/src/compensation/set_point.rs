@@ -131,6 +131,9 @@ pub enum Stage {
     Plain,
     /// No torque: it is not known where the motor is.
     Off,
+    /// No torque until observer and compensation are started anew: the motor ran against its torque, so torque or motor encoder has
+    /// the wrong sign.
+    Reversed,
 }
 
 /// What the compensation answers. The numbers lie first, so that they are copied in one go.

@@ -13,7 +13,7 @@ use super::watch::{Watch, Watched};
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
-use crate::observer::Estimates;
+use crate::observer::{Estimates, TorqueResponse};
 
 /// The compensation of one joint.
 ///
@@ -106,11 +106,11 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         self.trust = T::ZERO;
     }
 
-    /// No torque while it is not known where motor and link are.
+    /// No torque while it is not known where motor and link are, or which way a torque drives the motor.
     #[cold]
-    fn stay_off(&mut self) -> Shaped<T> {
+    fn stay_off(&mut self, stage: Stage) -> Shaped<T> {
         self.let_go();
-        Shaped { stage: Stage::Off, load: [self.load.even(), self.load.friction()], ..Shaped::default() }
+        Shaped { stage, load: [self.load.even(), self.load.friction()], ..Shaped::default() }
     }
 
     /// Takes the estimates and the command of one control period. The torque is always finite and within its limit.
@@ -122,8 +122,11 @@ impl<'tables, T: Real> Compensation<'tables, T> {
     /// The same with a command that lies elsewhere.
     pub fn step_by_reference(&mut self, estimates: &Estimates<T>, command: CommandRef<T>) -> Shaped<T> {
         let tables = self.tables;
+        if estimates.torque_response == TorqueResponse::Reversed {
+            return self.stay_off(Stage::Reversed);
+        }
         if !estimates.source.allows_control() {
-            return self.stay_off();
+            return self.stay_off(Stage::Off);
         }
         let known = estimates.encoder_offset.valid || estimates.gap.valid;
         if known && estimates.encoder_offset.value.is_finite() {
@@ -169,8 +172,8 @@ impl<'tables, T: Real> Compensation<'tables, T> {
             alone
         };
         let wanted = alone + self.trust * (compensated - alone);
-        let torque =
-            if wanted.is_finite() { clamp(wanted, -tables.limits.motor, tables.limits.motor) } else { T::ZERO };
+        let may_act = wanted.is_finite() && estimates.torque_response != TorqueResponse::Tested;
+        let torque = if may_act { clamp(wanted, -tables.limits.motor, tables.limits.motor) } else { T::ZERO };
         self.load.take_cut(tables, torque != wanted);
         let cut = torque - wanted;
         self.plain.take(tables, &situation, cut);

@@ -122,7 +122,7 @@ pub const fn transitions(stage: Stage) -> &'static [Transition] {
         Stage::Touching => TOUCHING,
         Stage::Crossing => CROSSING,
         Stage::Landing => LANDING,
-        Stage::Plain | Stage::Off => &[],
+        Stage::Plain | Stage::Off | Stage::Reversed => &[],
     }
 }
 
@@ -157,7 +157,7 @@ const fn answered(stage: Stage) -> u8 {
         Stage::Touching => const { bits(TOUCHING) },
         Stage::Crossing => const { bits(CROSSING) },
         Stage::Landing => const { bits(LANDING) },
-        Stage::Plain | Stage::Off => 0,
+        Stage::Plain | Stage::Off | Stage::Reversed => 0,
     }
 }
 

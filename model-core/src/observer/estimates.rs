@@ -83,6 +83,22 @@ pub enum OutputFault {
     OutOfRange,
 }
 
+/// What is known of the signs of torque and motor encoder.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum TorqueResponse {
+    /// Large torques have not shown it yet.
+    #[default]
+    Unknown,
+    /// Likewise, and the motor runs against its torque, faster and faster: that may be a load. A moment without torque
+    /// tells: the compensation gives none.
+    Tested,
+    /// A positive torque drives the motor the way in which its counts go up.
+    Right,
+    /// A positive torque drives the motor the way in which its counts go down: torque or motor encoder has the wrong sign. The observer
+    /// says so until it is started anew, and the compensation gives no torque.
+    Reversed,
+}
+
 /// What was wrong with the last samples. The observer goes on, with what it had.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Notices {
@@ -105,6 +121,8 @@ pub struct Estimates<T: Real> {
     pub source: Source,
     /// What was wrong with the samples.
     pub notices: Notices,
+    /// What is known of the signs of torque and motor encoder. Messages to a host carry whether it is `Reversed`.
+    pub torque_response: TorqueResponse,
     /// Gap coordinate X = u_s - 2 u_c: from -2b to 2b while every mesh is free [m].
     pub gap: Estimate<T>,
     /// Its rate [m/s].

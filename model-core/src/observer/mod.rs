@@ -33,14 +33,14 @@ use health::motor_faults::{MotorScreened, Outlook};
 use health::{Health, Judged, LastMotion, Return, Screened};
 use learnt::fusion::Fused;
 use learnt::{Learnt, Outcome};
-use sensors::Sensors;
 use sensors::counts::Advance;
 use sensors::latency::Freshness;
+use sensors::{Sensed, Sensors};
 
 use crate::gears::sign;
 use crate::numbers::Real;
 
-pub use estimates::{Estimate, Estimates, MotorFault, Notices, OutputFault, Shaft, Source};
+pub use estimates::{Estimate, Estimates, MotorFault, Notices, OutputFault, Shaft, Source, TorqueResponse};
 pub use learnt::regressors::{MAPPED, PLAIN};
 pub use memory::{MEMORY_BYTES, Memory, MemoryError, memory_numbers};
 pub use probe::{Probe, Progress, Refusal};
@@ -131,6 +131,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         let tables = self.tables;
         let sensed = self.sensors.step(tables, samples);
         self.estimates.notices = sensed.notices();
+        self.check_response(&sensed);
         let motor = self.health.screen_motor(tables, &sensed, &self.sensors, &self.filters);
         self.filters.step(tables, &sensed, motor == MotorScreened::Used);
         let screened = self.health.screen(tables, &sensed);
@@ -174,6 +175,18 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
             }
         }
         &self.estimates
+    }
+
+    /// Whether the motor goes where the torque drives it.
+    #[inline(always)]
+    fn check_response(&mut self, sensed: &Sensed<T>) {
+        let response = &mut self.health.response;
+        if sensed.torque_known && !sensed.out_of_time && matches!(sensed.motor, Advance::By(_)) {
+            response.step(&self.tables.response, sensed.command, sensed.motor_turned);
+        } else {
+            response.interrupt();
+        }
+        self.estimates.torque_response = response.response();
     }
 
     /// What has been learnt so far, as bytes.

@@ -49,6 +49,8 @@ pub struct ObserverTables<T: Real> {
     pub learner: LearnerTable<T>,
     /// When the output encoder is given up and taken back.
     pub supervisor: SupervisorTable<T>,
+    /// Whether the motor goes where the torque drives it.
+    pub response: ResponseTable<T>,
 }
 
 impl<T: Real> ObserverTables<T> {
@@ -313,4 +315,20 @@ pub struct SupervisorTable<T: Real> {
     pub margin: T,
     /// Estimates of the gap are given out up to this standard deviation, as a part of the gap 4b [-].
     pub widest_part: T,
+}
+
+/// Whether the motor goes where the torque drives it.
+#[derive(Debug, Clone, PartialEq)]
+#[repr(C)]
+pub struct ResponseTable<T: Real> {
+    /// Control periods of a block.
+    pub block: u16,
+    /// 1 over them.
+    pub per_block: T,
+    /// Inertia of motor and link at the motor, over the square of a block's length [N m/rad].
+    pub inertia: T,
+    /// Torque, and change of torque, that shows [N m].
+    pub large: T,
+    /// The most that a change of torque can be felt as, over itself: by the motor alone, twice [-].
+    pub alone: T,
 }

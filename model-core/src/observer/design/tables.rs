@@ -16,7 +16,7 @@ use crate::gears::design::{DesignError, validate};
 use crate::numbers::{Real, digest};
 use crate::observer::tables::{
     ClockTable, ContactTable, CountTable, EncoderTable, LearnerTable, LeverTable, LoadTable, MOST_PARAMETERS,
-    ObserverTables, StopTable, SupervisorTable,
+    ObserverTables, ResponseTable, StopTable, SupervisorTable,
 };
 use parameters::JointParameters;
 
@@ -97,6 +97,26 @@ const FEW_INTERVALS: f64 = 1.5;
 /// encoder, counts last longer than a period, and readings within one are rounded alike. Chosen: that of a robot's joint at
 /// work, so that with 10 kHz it makes a difference below 15 bits.
 const LINK_AT_WORK: f64 = 2.0;
+
+/// Motor counts by which the largest torque changes the angle turned in a block, from one to the next, at least [counts]: noise of a
+/// count makes 3 of them.
+const BLOCK_COUNTS: f64 = 24.0;
+
+/// The same over the gap at the motor [-]: a motor that rattles between the flanks makes one of them.
+const BLOCK_GAPS: f64 = 4.0;
+
+/// Periods of the swing of motor against link in a block, at least [-]: what it does shall be over.
+const BLOCK_SWINGS: f64 = 0.5;
+
+/// Shortest and longest block in which torque and acceleration are compared [s]: teeth ring for a shorter time, and a joint that runs
+/// away shall be found soon.
+const RESPONSE_BLOCK: [f64; 2] = [2e-3, 30e-3];
+
+/// Control periods of such a block, at least [-]: a torque takes one to three until it acts.
+const BLOCK_PERIODS: f64 = 8.0;
+
+/// Torque, and change of torque, that tells the signs of torque and encoder, over the motor's largest [-]: friction and bias are smaller.
+const LARGE_TORQUE: f64 = 0.25;
 
 /// Slope of a motor encoder's once- and twice-per-turn errors of one size together, over that size: sqrt(1 + 2^2).
 const HARMONIC_SLOPE: f64 = 2.2;
@@ -252,8 +272,27 @@ pub fn design_observer<T: Real>(
             margin: real(MARGIN * half_gap + MARGIN * body.compliance * largest_force),
             widest_part: real(WIDEST_PART),
         },
+        response: response(&body, settings, motor_count, step),
     };
     Ok(tables)
+}
+
+/// Whether the motor goes where the torque drives it.
+fn response<T: Real>(body: &Body, settings: &ObserverSettings, motor_count: f64, step: f64) -> ResponseTable<T> {
+    let inertia = body.motor_inertia + body.load_inertia / (body.ratio * body.ratio);
+    let gap = 4.0 * body.half_backlash / body.sun_lever;
+    let unsure = (BLOCK_COUNTS * motor_count).max(BLOCK_GAPS * gap);
+    let length =
+        libm::sqrt(unsure * inertia / settings.torque_limit).max(BLOCK_SWINGS * TAU / body.contact_frequency());
+    let block = libm::round(length.clamp(RESPONSE_BLOCK[0], RESPONSE_BLOCK[1]) / step).max(BLOCK_PERIODS);
+    let length = block * step;
+    ResponseTable {
+        block: block as u16,
+        per_block: T::from_f64(1.0 / block),
+        inertia: T::from_f64(inertia / (length * length)),
+        large: T::from_f64(LARGE_TORQUE * settings.torque_limit),
+        alone: T::from_f64(2.0 * inertia / body.motor_inertia),
+    }
 }
 
 fn counts<T: Real>(

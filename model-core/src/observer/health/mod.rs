@@ -6,11 +6,13 @@ pub mod motor_only;
 mod output_faults;
 mod plausibility;
 mod recovery;
+mod torque_response;
 
 use motor_faults::{MotorFaultDetector, MotorScreened, MotorSurroundings, Outlook};
 use motor_only::MotorOnly;
 use output_faults::OutputFaultDetector;
 use recovery::Recovery;
+use torque_response::ResponseCheck;
 
 use super::estimates::{MotorFault, OutputFault, Source};
 use super::filters::Filters;
@@ -36,6 +38,8 @@ pub struct Health<T: Real> {
     motor: MotorFaultDetector<T>,
     faults: OutputFaultDetector<T>,
     recovery: Recovery<T>,
+    /// Whether the motor goes where the torque drives it.
+    pub response: ResponseCheck<T>,
     /// What is known of the link without its encoder.
     pub motor_only: MotorOnly<T>,
     /// Load torque of the last and of the last but one look, before a failing encoder could spoil it [N m].
@@ -62,6 +66,7 @@ impl<T: Real> Health<T> {
             motor: MotorFaultDetector::new(),
             faults: OutputFaultDetector::new(),
             recovery: Recovery::new(),
+            response: ResponseCheck::new(),
             motor_only: MotorOnly::default(),
             load_torques: [T::ZERO; 2],
             looked: 0,

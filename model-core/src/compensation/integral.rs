@@ -42,8 +42,12 @@ impl<T: Real> Integral<T> {
     }
 
     /// Integrates over a period in which the motor stands beyond its place by an angle [rad] and the limit took `cut` off
-    /// [N m].
+    /// [N m]. What the limit cuts off a torque that swings from side to side does not say that the integral is too large; but with an
+    /// integral that goes on under the limit, a loop of a heavier link than designed would swing from limit to limit for good.
     pub fn integrate(&mut self, tables: &CompensationTables<T>, beyond: T, cut: T) {
+        if self.swings() && cut != T::ZERO {
+            return;
+        }
         self.add(tables, tables.law.back_calculation * cut - tables.law.integral * beyond);
     }
 

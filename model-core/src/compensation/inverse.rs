@@ -208,8 +208,6 @@ impl<T: Real> BacklashInverse<T> {
     /// take over where the motor is.
     pub fn take(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, cut: Option<T>) {
         if let Some(cut) = cut {
-            // What the limit cuts off a torque that swings from side to side does not say that the integral is too large.
-            let cut = if self.integral.swings() { T::ZERO } else { cut };
             self.integral.integrate(tables, self.place(situation), cut);
         } else {
             self.integral.approach(tables, self.demand.even());

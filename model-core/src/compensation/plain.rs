@@ -91,8 +91,6 @@ impl<T: Real> Plain<T> {
             let towards = if says_nothing { self.beyond } else { situation.beyond_link() };
             (towards, slowly)
         } else {
-            // What the limit cuts off a torque that swings from side to side does not say that the integral is too large.
-            let cut = if self.integral.swings() { T::ZERO } else { cut };
             self.integral.integrate(tables, self.place(situation), cut);
             // Put right on one flank, the link would be left by the whole lost motion once the other one carries: the motor goes to
             // where the flank is thought to be.

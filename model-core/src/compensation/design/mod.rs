@@ -5,6 +5,8 @@ mod damping;
 #[cfg(test)]
 mod demand_tests;
 #[cfg(test)]
+mod integral_tests;
+#[cfg(test)]
 mod inverse_tests;
 #[cfg(test)]
 mod load_swing_tests;

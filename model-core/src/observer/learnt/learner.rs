@@ -224,6 +224,15 @@ impl<T: Real, const P: usize> Learner<T, P> {
         }
     }
 
+    /// Keeps the parameters and knows the half-gap less well: a standard deviation is added, over it [-].
+    pub fn loosen_half_gap(&mut self, table: &LearnerTable<T>, by: T) {
+        let [half_gap, deviation] = [self.value(HALF_GAP), table.deviation[HALF_GAP]];
+        if let Some(width) = self.factors.first_mut().and_then(|column| column.first_mut()) {
+            let grown = *width + (by * by * half_gap * half_gap).over(deviation * deviation);
+            *width = if grown < T::ONE { grown } else { T::ONE };
+        }
+    }
+
     /// Keeps the parameters and forgets how sure the half-gap is, and nothing else: it is the first of them, so its
     /// entry on the diagonal is its own.
     pub fn doubt_half_gap(&mut self) {

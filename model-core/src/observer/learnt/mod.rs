@@ -26,7 +26,7 @@ pub mod uncertainty;
 use bias::Bias;
 use block::{Block, Settled};
 use cogging::Cogging;
-use consistency::{Consistency, GATE, Verdict};
+use consistency::{Consistency, GATE, Off, Verdict};
 use flank::Signs;
 use fusion::{Fused, small};
 use inertia::Inertia;
@@ -124,6 +124,13 @@ impl<T: Real, const P: usize> Learnt<T, P> {
     /// Distance from a flank within which the gap may not be open any more, as a part of the half-gap [-]: teeth of a motor
     /// that crosses in a moment land before the deflection says so.
     const NEAR_FLANK: T = T::EIGHTH;
+
+    /// Part of the half-gap by which that of another place in the turn may differ [-]: worn gears vary by 30 %.
+    const VARIES: T = T::THREE_EIGHTHS;
+
+    /// Standard deviation of a half-gap that is another one here, over it [-]: with it the half-gap is not valid until a rest has shown
+    /// it, and the gap coordinate is.
+    const LOOSENED: T = T::EIGHTH;
 
     /// What was designed.
     pub fn new(tables: &ObserverTables<T>) -> Self {
@@ -371,7 +378,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         }
         self.uncertainty.settled = reading.flank.is_some();
         let verdict = self.consistency.step(self.force_between_flanks(tables, deflection, *travel));
-        self.obey(verdict);
+        self.obey(tables, verdict);
         let encoder_fails = verdict == Verdict::EncoderFails;
 
         let rise = mean.force - core::mem::replace(&mut self.interval.force, mean.force);
@@ -411,14 +418,15 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         if both_encoders && new && (told.is_some() || rests_somewhere) { Rest::On(told) } else { Rest::No }
     }
 
-    /// Whether there is force at rest between the flanks, bias and stiction aside.
-    fn force_between_flanks(&self, tables: &ObserverTables<T>, deflection: T, travel: Travel<T>) -> bool {
+    /// Whether there is force at rest between the flanks, bias and stiction aside, and how far from them.
+    fn force_between_flanks(&self, tables: &ObserverTables<T>, deflection: T, travel: Travel<T>) -> Option<Off> {
         let known = &self.uncertainty;
         let [half_gap, _] = self.shape();
         let thrice = T::THREE * known.steady_force_deviation + T::TWO * self.bias.friction.abs();
         let inside = half_gap - known.blur - tables.rounding();
         let between = known.half_gap_is_known && deflection.abs() < inside;
-        between && rests(travel) && self.interval.steady.abs() > thrice
+        let off = if half_gap - deflection.abs() < Self::VARIES * half_gap { Off::AsInAnotherPlace } else { Off::Far };
+        (between && rests(travel) && self.interval.steady.abs() > thrice).then_some(off)
     }
 
     /// Reads the torque bias where the gap is open for sure.
@@ -535,9 +543,16 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         let innovation = self.learner.innovation(table, &regressors, deflection, weight);
         self.uncertainty.take_innovation(innovation.value * innovation.value, innovation.variance);
         if !innovation.is_within(GATE) {
-            let large = innovation.value.abs() * table.noise > half_gap * tables.contact.known_part;
-            let verdict = self.consistency.outlier(large, self.trusted.is_some());
-            self.obey(verdict);
+            let beyond = innovation.value.abs() * table.noise;
+            let off = if beyond <= half_gap * tables.contact.known_part {
+                Off::Little
+            } else if beyond < Self::VARIES * half_gap {
+                Off::AsInAnotherPlace
+            } else {
+                Off::Far
+            };
+            let verdict = self.consistency.outlier(off, self.trusted.is_some());
+            self.obey(tables, verdict);
             return verdict;
         }
         self.consistency.fits(self.block.flank());
@@ -555,9 +570,10 @@ impl<T: Real, const P: usize> Learnt<T, P> {
     }
 
     /// Forgets what a verdict says is wrong.
-    fn obey(&mut self, verdict: Verdict) {
+    fn obey(&mut self, tables: &ObserverTables<T>, verdict: Verdict) {
         match verdict {
             Verdict::Keep | Verdict::EncoderFails => {}
+            Verdict::LoosenHalfGap => self.learner.loosen_half_gap(&tables.learner, Self::LOOSENED),
             Verdict::RelearnHalfGap => self.learner.doubt_half_gap(),
             Verdict::RelearnAll => self.learner.reopen(),
         }

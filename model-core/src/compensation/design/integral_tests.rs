@@ -1,0 +1,34 @@
+//! The integral under the motor's limit.
+
+use super::watch_tests::tables;
+use crate::compensation::integral::Integral;
+use crate::compensation::tables::CompensationTables;
+
+/// An integral whose torque has gone from limit to limit.
+fn swinging(tables: &CompensationTables<f32>) -> Integral<f32> {
+    let mut integral = Integral::new();
+    integral.watch(tables, tables.limits.motor, 1.0);
+    integral.watch(tables, -tables.limits.motor, 1.0);
+    assert!(integral.swings());
+    integral
+}
+
+#[test]
+fn a_swinging_integral_waits_under_the_limit() {
+    let tables = tables();
+    let mut integral = swinging(&tables);
+    for cut in [-1.0, 1.0] {
+        integral.integrate(&tables, 1e-3, cut);
+        assert_eq!(integral.torque(), 0.0);
+    }
+    integral.integrate(&tables, 1e-3, 0.0);
+    assert!(integral.torque() < 0.0, "{}", integral.torque());
+}
+
+#[test]
+fn a_steady_integral_gives_up_what_the_limit_cuts_off() {
+    let tables = tables();
+    let mut integral = Integral::new();
+    integral.integrate(&tables, 0.0, -1.0);
+    assert!(integral.torque() < 0.0, "{}", integral.torque());
+}

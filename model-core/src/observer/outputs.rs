@@ -168,6 +168,7 @@ pub(super) fn say_learnt<T: Real, const P: usize>(
     let sun_squared = levers.sun * levers.sun;
     let [_, of_flank] = known.wind_up_variance;
     let half_gap_variance = half_gap_variance + of_flank;
+    let here = half_gap_variance + learnt.variation(tables);
     let rough = T::HALF_GAP * half_gap;
     let bias_known = T::BIAS * tables.contact.bias_prior;
     let force_deviation = if both && known.half_gap_serves { known.both_deviation } else { known.force_deviation };
@@ -177,10 +178,11 @@ pub(super) fn say_learnt<T: Real, const P: usize>(
     estimates.settled = known.settled;
     estimates.mesh_torque.variance = mesh_deviation * mesh_deviation;
     estimates.load_torque.variance = load_variance;
+    estimates.half_backlash_serves = half_gap > T::ZERO && half_gap_variance < rough * rough;
     estimates.half_backlash = Estimate {
         value: half_gap * T::HALF,
-        variance: half_gap_variance * T::HALF * T::HALF,
-        valid: half_gap > T::ZERO && half_gap_variance < rough * rough,
+        variance: here * T::HALF * T::HALF,
+        valid: half_gap > T::ZERO && here < rough * rough,
     };
     estimates.encoder_offset = Estimate {
         value: offset * levers.per_output,

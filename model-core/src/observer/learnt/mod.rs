@@ -17,6 +17,7 @@ mod inertia;
 mod interval;
 mod last_rest;
 pub mod learner;
+mod places;
 pub mod position_errors;
 pub mod regressors;
 mod travel;
@@ -33,6 +34,7 @@ use inertia::Inertia;
 use interval::{Interval, Mean, Rest, Task, rests};
 use last_rest::LastRest;
 use learner::{Innovation, Learner};
+use places::Places;
 use position_errors::PositionErrors;
 use regressors::{COMPLIANCE, ERROR, HALF_GAP, MAPPED, OFFSET, Regressors, SKEW, Touch};
 use travel::{Travel, TravelDetector};
@@ -68,6 +70,7 @@ pub struct Learnt<T: Real, const P: usize> {
     block: Block<T, P>,
     last_rest: LastRest<T, P>,
     consistency: Consistency,
+    places: Places<T>,
     /// Kept until something else is trusted.
     trusted: Option<Trusted<T, P>>,
     /// What is learnt from in the next period.
@@ -147,6 +150,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
             block: Block::new(),
             last_rest: LastRest::new(),
             consistency: Consistency::default(),
+            places: Places::new(),
             trusted: None,
             weighed: None,
         }
@@ -167,6 +171,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
             block,
             last_rest,
             consistency,
+            places,
             trusted,
             weighed,
         } = self;
@@ -181,6 +186,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         *block = Block::new();
         *last_rest = LastRest::new();
         *consistency = Consistency::default();
+        *places = Places::new();
         *trusted = None;
         *weighed = None;
     }
@@ -188,6 +194,11 @@ impl<T: Real, const P: usize> Learnt<T, P> {
     /// Half-gap [m] and compliance [m/N] as learnt so far.
     pub fn shape(&self) -> [T; 2] {
         [self.learner.value(HALF_GAP), self.learner.value(COMPLIANCE)]
+    }
+
+    /// Variance of the half-gap here, by how much it varies around the turn [m^2].
+    pub fn variation(&self, tables: &ObserverTables<T>) -> T {
+        self.places.variance(&tables.counts, self.learner.value(HALF_GAP))
     }
 
     /// Transmission error at a mesh phase, given by sine and cosine [m].
@@ -330,6 +341,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         filters: &Filters<T>,
         both_encoders: bool,
     ) {
+        self.places.go_to(sensors.counts.output.phase(&tables.counts.output));
         (self.errors.free, self.errors.mesh_then) = self.find_errors(tables, sensors, filters, both_encoders);
     }
 
@@ -542,7 +554,13 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         let weight = table.weight * self.block.worth(table, self.uncertainty.half_gap_is_known);
         let innovation = self.learner.innovation(table, &regressors, deflection, weight);
         self.uncertainty.take_innovation(innovation.value * innovation.value, innovation.variance);
-        if !innovation.is_within(GATE) {
+        let belongs = innovation.is_within(GATE);
+        if let Some(flank) = self.block.flank() {
+            let off =
+                [innovation.value * innovation.value, innovation.variance].map(|square| square.over(weight * weight));
+            self.places.take(&tables.counts, flank, off, half_gap, belongs);
+        }
+        if !belongs {
             let beyond = innovation.value.abs() * table.noise;
             let off = if beyond <= half_gap * tables.contact.known_part {
                 Off::Little

@@ -76,8 +76,8 @@ impl<T: Real> Places<T> {
             *squares += beyond.over(half_gap * half_gap);
             *angles += angle * angle;
             if *angles > Self::MOST {
-                *squares = *squares * T::HALF;
-                *angles = *angles * T::HALF;
+                *squares *= T::HALF;
+                *angles *= T::HALF;
             }
         }
         if belongs {

@@ -48,7 +48,7 @@ fn estimates() -> Estimates<f32> {
         mesh_torque: estimate(3.0),
         load_torque: estimate(4.0),
         half_backlash: estimate(5.0),
-        half_backlash_serves: false,
+        half_backlash_usable: false,
         encoder_offset: estimate(6.0),
         compliance: estimate(7.0),
         skew: estimate(8.0),

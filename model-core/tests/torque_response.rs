@@ -6,8 +6,9 @@ use model_core::compensation::{Command, ImpedancePoint, Motion, Position, Stage}
 use model_core::controller::Controller;
 use model_core::gears::{Kinematics, Tables, design::design};
 use model_core::numbers::random::splitmix64;
+use model_core::observer::design::design_usual_probe;
 use model_core::observer::design::{design_observer, observer_settings};
-use model_core::observer::{Samples, TorqueResponse};
+use model_core::observer::{OutputFault, Probe, Progress, Refusal, Samples, Source, TorqueResponse};
 use model_core::virtual_joint::{VirtualJoint, design::design_surroundings};
 use parameters::{JointParameters, Surroundings};
 
@@ -19,6 +20,7 @@ enum Wiring {
     Right,
     MotorReversed,
     TorqueReversed,
+    OutputReversed,
 }
 
 /// What is asked for.
@@ -41,6 +43,11 @@ struct Outcome {
     torque_after: f32,
     /// What the observer says at the end.
     response: TorqueResponse,
+    source: Source,
+    /// How far the link had gone at most [rad].
+    furthest: f64,
+    /// What a width probe says that begins then.
+    probe: Option<Progress<f32>>,
 }
 
 fn loops(name: &str, wiring: Wiring, task: Task, seconds: f64) -> Outcome {
@@ -72,12 +79,23 @@ fn closed<const N: usize>(
     let sign = if wiring == Wiring::TorqueReversed { -1.0 } else { 1.0 };
     let holds = (around.torque_limit * joint.geometry.ratio_by_teeth()) as f32;
     let (mut torque, mut start, mut furthest) = (0.0_f32, None, 0.0_f64);
-    let mut outcome = Outcome { reversed: None, torque_after: 0.0, response: TorqueResponse::Unknown };
+    let mut outcome = Outcome {
+        reversed: None,
+        torque_after: 0.0,
+        response: TorqueResponse::Unknown,
+        source: Source::default(),
+        furthest: 0.0,
+        probe: None,
+    };
+    let probe = design_usual_probe(joint, &observer_settings(around)).expect("a design");
     for period in 0..(seconds * rate) as u32 {
         let time = f64::from(period) / rate;
         let mut samples = Samples { torque, ..plant.samples() };
         if wiring == Wiring::MotorReversed {
             samples.motor.counts = last - samples.motor.counts;
+        }
+        if let (Wiring::OutputReversed, Some(output)) = (wiring, samples.output.as_mut()) {
+            output.counts = (1 << around.output_encoder.bits) - 1 - output.counts;
         }
         let origin = start.unwrap_or_default();
         let command = command(task, origin, time as f32, holds);
@@ -93,7 +111,9 @@ fn closed<const N: usize>(
         } else if answer.shaped.stage == Stage::Reversed {
             outcome.reversed = Some((time, furthest));
         }
-        outcome.response = answer.estimates.torque_response;
+        (outcome.response, outcome.source) = (answer.estimates.torque_response, answer.estimates.source);
+        outcome.furthest = furthest;
+        outcome.probe = probe.as_ref().map(|table| Probe::new(table).step(&answer.estimates).1);
         let load = match task {
             Task::Swing(_) => 0.0,
             Task::Impedance => 0.1 * holds,
@@ -140,8 +160,21 @@ fn a_reversed_loop_loses_its_torque() {
                 let (time, travel) = outcome.reversed.unwrap_or((f64::INFINITY, f64::INFINITY));
                 assert!(time < 0.5 && travel < 1.2, "{name} {wiring:?} {task:?}: {outcome:?}");
                 assert_eq!((outcome.torque_after, outcome.response), (0.0, TorqueResponse::Reversed), "{name}");
+                let refused = outcome.probe.is_none_or(|said| said == Progress::Refused(Refusal::BadSamples));
+                assert!(refused, "{name}: {outcome:?}");
             }
         }
+    }
+}
+
+/// The link follows the motor, whose sign is right, and the observer goes on without the output encoder.
+#[test]
+fn a_reversed_output_encoder_is_given_up() {
+    for name in PRESETS {
+        let outcome = loops(name, Wiring::OutputReversed, Task::Swing(0.03), 1.5);
+        println!("{name}: {outcome:?}");
+        assert_eq!(outcome.source, Source::MotorOnly(OutputFault::OutOfRange), "{name}");
+        assert!(outcome.reversed.is_none() && outcome.furthest < 0.3, "{name}: {outcome:?}");
     }
 }
 

@@ -300,7 +300,7 @@ enum JointProgress
   JOINT_PROGRESS_STUCK = 5,
   // The first and the last pass do not agree: something moved.
   JOINT_PROGRESS_UNSTEADY = 6,
-  // Samples were missing or wrong.
+  // Samples were missing or wrong, or torque or motor encoder has the wrong sign.
   JOINT_PROGRESS_BAD_SAMPLES = 7,
 };
 #ifndef __cplusplus

@@ -46,7 +46,7 @@ pub enum JointProgress {
     Stuck = 5,
     /// The first and the last pass do not agree: something moved.
     Unsteady = 6,
-    /// Samples were missing or wrong.
+    /// Samples were missing or wrong, or torque or motor encoder has the wrong sign.
     BadSamples = 7,
 }
 

@@ -15,7 +15,7 @@ fn sound() -> Estimates<f32> {
         gap: known(80e-6),
         contact_valid: true,
         half_backlash: known(40e-6),
-        half_backlash_serves: true,
+        half_backlash_usable: true,
         load_torque: known(0.3),
         ..Estimates::default()
     }

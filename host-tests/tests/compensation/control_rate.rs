@@ -49,7 +49,7 @@ fn excursion(tables: &CompensationTables<f64>, settings: &CompensationSettings, 
             source: Source::Both,
             contact_valid: true,
             half_backlash: known(40e-6),
-            half_backlash_serves: true,
+            half_backlash_usable: true,
             encoder_offset: known(0.0),
             load_torque: known(0.0),
             ..Estimates::default()

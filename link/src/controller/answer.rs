@@ -252,7 +252,7 @@ impl From<WireEstimates> for Estimates<f32> {
             motor_friction,
             // Only the compensation on the board needs it: it is not sent.
             cogging: [0.0; 2],
-            half_backlash_serves: false,
+            half_backlash_usable: false,
             motor_lead: 0.0,
             link_inertia_ratio,
             motor,

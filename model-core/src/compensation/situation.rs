@@ -99,7 +99,7 @@ impl<T: Real> Situation<T> {
             link_speed: estimates.link.speed,
             origin,
             half,
-            half_is_known: estimates.half_backlash_serves,
+            half_is_known: estimates.half_backlash_usable,
             mesh_torque: estimates.mesh_torque.value,
             stiffness,
             inertia: tables.body.motor_inertia + ratio * tables.body.load_inertia,

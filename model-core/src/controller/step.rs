@@ -2,10 +2,10 @@
 //! period; or the width probe in place of the compensation.
 
 use crate::compensation::CompensationTables;
-use crate::compensation::{Command, Compensation, Shaped, Stage};
+use crate::compensation::{Command, Compensation, Shaped};
 use crate::numbers::Real;
 use crate::numbers::digest::chain;
-use crate::observer::{Estimates, MAPPED, Memory, MemoryError, Observer, Probe, Progress, Samples, TorqueResponse};
+use crate::observer::{Estimates, MAPPED, Memory, MemoryError, Observer, Probe, Progress, Samples};
 use crate::observer::{ObserverTables, ProbeTable};
 
 /// Outputs of one control period.
@@ -126,9 +126,6 @@ impl<'tables, T: Real> Controller<'tables, T> {
     pub fn probe(&mut self, samples: &Samples<T>) -> Answer<T> {
         let estimates = *self.observer.step(samples);
         let still = Answer { estimates, ..Answer::default() };
-        if estimates.torque_response == TorqueResponse::Reversed {
-            return Answer { shaped: Shaped { stage: Stage::Reversed, ..Shaped::default() }, ..still };
-        }
         let Some(table) = self.probe_table else { return still };
         let Some(Probing { probe, wait }) = &mut self.probing else {
             self.compensation.restart();

@@ -148,9 +148,9 @@ pub struct Estimates<T: Real> {
     pub load_torque: Estimate<T>,
     /// Half-backlash b of each mesh, all meshes alike [m].
     pub half_backlash: Estimate<T>,
-    /// Whether it is known where it was learnt; `half_backlash.valid` also asks that it can hardly be another one where the link is now.
-    /// Messages to a host leave it out.
-    pub half_backlash_serves: bool,
+    /// Whether a controller may use the half-backlash: it is known where it was learnt. `half_backlash.valid` also requires that the
+    /// half-backlash can hardly differ where the link is now. Messages to a host leave this field out.
+    pub half_backlash_usable: bool,
     /// By how much the motor encoder leads the output encoder with every tooth centred, beyond where they were at the
     /// start; at the output [rad].
     pub encoder_offset: Estimate<T>,

@@ -178,7 +178,7 @@ pub(super) fn say_learnt<T: Real, const P: usize>(
     estimates.settled = known.settled;
     estimates.mesh_torque.variance = mesh_deviation * mesh_deviation;
     estimates.load_torque.variance = load_variance;
-    estimates.half_backlash_serves = half_gap > T::ZERO && half_gap_variance < rough * rough;
+    estimates.half_backlash_usable = half_gap > T::ZERO && half_gap_variance < rough * rough;
     estimates.half_backlash = Estimate {
         value: half_gap * T::HALF,
         variance: here * T::HALF * T::HALF,

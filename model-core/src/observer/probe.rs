@@ -8,7 +8,7 @@
 
 use core::fmt;
 
-use super::estimates::{Estimate, Estimates, Shaft};
+use super::estimates::{Estimate, Estimates, Shaft, TorqueResponse};
 use crate::numbers::Real;
 use crate::observer::tables::ProbeTable;
 
@@ -28,7 +28,7 @@ pub enum Refusal {
     Stuck,
     /// The first and the last pass do not agree: something moved.
     Unsteady,
-    /// Samples were missing or wrong.
+    /// Samples were missing or wrong, or torque or motor encoder has the wrong sign.
     BadSamples,
 }
 
@@ -40,7 +40,7 @@ impl fmt::Display for Refusal {
             Self::NotHeld => "the motor did not come to rest, or went further than the teeth allow: hold the load",
             Self::Stuck => "the motor hardly moved: friction is more than the probe may use, or the joint is blocked",
             Self::Unsteady => "the first and the last pass do not agree: something moved",
-            Self::BadSamples => "samples were missing or wrong",
+            Self::BadSamples => "samples were missing or wrong, or torque or motor encoder has the wrong sign",
         })
     }
 }
@@ -140,7 +140,8 @@ impl<'tables, T: Real> Probe<'tables, T> {
         let table = self.table;
         let notices = estimates.notices;
         let bad = notices.torque_unknown || notices.out_of_time || notices.motor_implausible || notices.motor_jumped;
-        if bad || !estimates.source.allows_control() {
+        let reversed = estimates.torque_response == TorqueResponse::Reversed;
+        if bad || reversed || !estimates.source.allows_control() {
             return Progress::Refused(Refusal::BadSamples);
         }
         let speed = estimates.motor.speed.abs();

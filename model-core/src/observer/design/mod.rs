@@ -6,6 +6,8 @@ mod filter;
 mod inertia;
 mod integers;
 mod learning;
+#[cfg(test)]
+mod places_tests;
 mod probe;
 mod settings;
 mod sides;

@@ -91,16 +91,19 @@ impl<T: Real> ResponseCheck<T> {
     /// Begins a block anew, after a reading or a torque that cannot be used. What was voted stays.
     #[cold]
     pub fn interrupt(&mut self) {
-        *self = Self { response: self.response, votes: self.votes, ..Self::new() };
-        if self.response != TorqueResponse::Right && self.response != TorqueResponse::Reversed {
-            self.response = TorqueResponse::Unknown;
-        }
+        let response = if self.is_decided() { self.response } else { TorqueResponse::Unknown };
+        *self = Self { response, votes: self.votes, ..Self::new() };
+    }
+
+    /// Whether nothing is asked any more.
+    fn is_decided(&self) -> bool {
+        matches!(self.response, TorqueResponse::Right | TorqueResponse::Reversed)
     }
 
     /// Takes the torque [N m] and the angle that the motor has turned [rad] in a control period.
     #[inline(always)]
     pub fn step(&mut self, table: &ResponseTable<T>, torque: T, turned: T) {
-        if matches!(self.response, TorqueResponse::Right | TorqueResponse::Reversed) {
+        if self.is_decided() {
             return;
         }
         self.torque += torque;
@@ -155,13 +158,7 @@ impl<T: Real> ResponseCheck<T> {
         if self.tested == 0 {
             self.votes = self.votes.max(0);
         }
-        self.tested = if !goes_on {
-            0
-        } else if self.tested < PATTERN_BLOCKS {
-            self.tested + 1
-        } else {
-            1
-        };
+        self.tested = if goes_on { self.tested % PATTERN_BLOCKS + 1 } else { 0 };
         goes_on && PATTERN >> (self.tested - 1) & 1 == 1
     }
 

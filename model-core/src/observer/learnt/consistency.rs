@@ -85,8 +85,9 @@ impl Consistency {
     /// Whether a trusted half-gap may be another one in this place once more.
     fn forgives(&mut self) -> bool {
         self.sound = 0;
-        self.forgiven = (self.forgiven + 1).min(FORGIVEN + 1);
-        self.forgiven <= FORGIVEN
+        let forgives = self.forgiven < FORGIVEN;
+        self.forgiven = self.forgiven.saturating_add(1);
+        forgives
     }
 
     /// A rest that does not belong to the model, and by how much not; whether anything was ever learnt for sure.

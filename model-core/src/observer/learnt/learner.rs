@@ -224,11 +224,16 @@ impl<T: Real, const P: usize> Learner<T, P> {
         }
     }
 
-    /// Keeps the parameters and knows the half-gap less well: a standard deviation is added, over it [-].
+    /// Keeps the parameters and adds a variance to the half-gap: the square of a part of it [-], up to what was known beforehand.
     pub fn loosen_half_gap(&mut self, table: &LearnerTable<T>, by: T) {
         let [half_gap, deviation] = [self.value(HALF_GAP), table.deviation[HALF_GAP]];
         if let Some(width) = self.factors.first_mut().and_then(|column| column.first_mut()) {
-            let grown = *width + (by * by * half_gap * half_gap).over(deviation * deviation);
+            // A joint that is designed without a gap has no deviation to divide by.
+            let grown = if by * half_gap < deviation {
+                *width + (by * by * half_gap * half_gap).over(deviation * deviation)
+            } else {
+                T::ONE
+            };
             *width = if grown < T::ONE { grown } else { T::ONE };
         }
     }

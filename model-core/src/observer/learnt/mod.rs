@@ -17,7 +17,7 @@ mod inertia;
 mod interval;
 mod last_rest;
 pub mod learner;
-mod places;
+pub(crate) mod places;
 pub mod position_errors;
 pub mod regressors;
 mod travel;
@@ -553,11 +553,11 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         let (regressors, deflection) = self.block.full();
         let weight = table.weight * self.block.worth(table, self.uncertainty.half_gap_is_known);
         let innovation = self.learner.innovation(table, &regressors, deflection, weight);
-        self.uncertainty.take_innovation(innovation.value * innovation.value, innovation.variance);
+        let square = innovation.value * innovation.value;
+        self.uncertainty.take_innovation(square, innovation.variance);
         let belongs = innovation.is_within(GATE);
         if let Some(flank) = self.block.flank() {
-            let off =
-                [innovation.value * innovation.value, innovation.variance].map(|square| square.over(weight * weight));
+            let off = [square, innovation.variance].map(|normalised| normalised.over(weight * weight));
             self.places.take(&tables.counts, flank, off, half_gap, belongs);
         }
         if !belongs {

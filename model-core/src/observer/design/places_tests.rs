@@ -1,0 +1,64 @@
+//! The half-gap in another place of the turn than where it was learnt.
+
+use super::{design_observer, observer_settings};
+use crate::gears::Flank;
+use crate::numbers::Real;
+use crate::observer::learnt::places::Places;
+use crate::observer::tables::CountTable;
+
+const HALF_GAP: f32 = 80e-6;
+
+fn counts() -> CountTable<f32> {
+    let q1 = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
+    design_observer(&q1.parameters, &observer_settings(&q1.surroundings)).expect("tables").counts
+}
+
+/// The place of a link [2^-32 turns] that has turned by an angle [rad].
+fn phase(angle: f64) -> u32 {
+    (angle / core::f64::consts::TAU * 4_294_967_296.0) as i64 as u32
+}
+
+/// Standard deviation of the half-gap over it, at an angle.
+fn deviation(places: &mut Places<f32>, table: &CountTable<f32>, angle: f64) -> f32 {
+    places.go_to(phase(angle));
+    places.variance(table, HALF_GAP).square_root() / HALF_GAP
+}
+
+/// Both flanks at an angle, each off by a part of the half-gap.
+fn see(places: &mut Places<f32>, table: &CountTable<f32>, angle: f64, off: f32) {
+    places.go_to(phase(angle));
+    for flank in [Flank::Drive, Flank::Back] {
+        places.take(table, flank, [(off * HALF_GAP).powi(2), 0.0], HALF_GAP, true);
+    }
+}
+
+#[test]
+fn nothing_is_added_where_both_flanks_were_seen() {
+    let (table, mut places) = (counts(), Places::new());
+    assert_eq!(
+        deviation(&mut places, &table, 1.0),
+        0.0,
+        "nothing was seen yet: the half-gap itself says that it is not known"
+    );
+    see(&mut places, &table, -0.1, 0.0);
+    assert_eq!(deviation(&mut places, &table, -0.1), 0.0);
+}
+
+#[test]
+fn what_is_further_away_is_known_less() {
+    let (table, mut places) = (counts(), Places::new());
+    see(&mut places, &table, -0.1, 0.0);
+    let [near, far] = [0.2, 0.5].map(|angle| deviation(&mut places, &table, angle));
+    assert!((near - 0.3 * 0.25).abs() < 1e-3 && (far - 0.6 * 0.25).abs() < 1e-3, "{near} {far}");
+}
+
+#[test]
+fn even_gears_are_trusted_and_worn_ones_are_not() {
+    let table = counts();
+    let [even, worn] = [0.0, 0.3].map(|off| {
+        let mut places = Places::new();
+        (0..8).for_each(|pass| see(&mut places, &table, if pass % 2 == 0 { 0.0 } else { 0.8 }, off));
+        deviation(&mut places, &table, 0.4)
+    });
+    assert!(even < 0.04 && worn > 0.12, "{even} {worn}");
+}

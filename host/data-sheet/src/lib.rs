@@ -22,6 +22,7 @@ use joint_file::{diagnostic, warned};
 use report::failure::{Failure, Outcome};
 use report::progress::Progress;
 use report::write::write_text;
+use simulation::bandwidth::Bandwidth;
 use simulation::check;
 
 use arguments::DataSheet;
@@ -76,6 +77,10 @@ fn make(sheet: &DataSheet, path: &Path, measured: bool, progress: &Progress) -> 
         for (key, moved) in most(&lines) {
             told += &format!("  {key:<55} {moved}\n");
         }
+    }
+    if let Some(bandwidth) = Bandwidth::of(&loaded.file) {
+        let (usual, widest) = (bandwidth.usual_rad_per_s, bandwidth.widest_in_words());
+        told += &format!("bandwidth: {usual} rad/s if none is asked for, at most {widest}\n");
     }
     // A board's time is no part of a data sheet: the joint is as it is.
     if let Err(failure) = OnBoard::plant(&loaded.file.parameters, &Board::load(board_file::DEFAULT)?).refuse(RATE) {

@@ -54,7 +54,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     let wanted = arguments.accuracy.unwrap_or(ACCURACY);
     let progress = Progress::new();
     progress.stage("measuring the error");
-    let summary = summary(parameters, board, role, rate, wanted);
+    let summary = summary(&loaded.file, board, role, rate, wanted);
     progress.clear();
     let summary = summary?;
     output::deliver(&summary, &layout(&summary), arguments.json.as_deref(), &[&arguments.file])?;

@@ -143,7 +143,7 @@ fn four_commands_say_the_same_of_random_joints() {
         }
         // Errors are measured for some only: they take a second each.
         if seed % 16 == 0 {
-            let told = budget::summary(&joint, &board, Role::Plant, rate, 0.5).expect("figures").verdicts;
+            let told = budget::summary(&load().file, &board, Role::Plant, rate, 0.5).expect("figures").verdicts;
             assert_eq!((told.method, told.substeps), said, "seed {seed}: budget");
             let again = check::summary(&load(), &board, rate, Some(0.5)).expect("figures").fixed_step.verdicts;
             assert_eq!(again.as_ref(), Some(&told), "seed {seed}: check and budget");

@@ -11,6 +11,9 @@ pub fn layout(summary: &BudgetSummary) -> String {
     work(&mut page, summary);
     memory(&mut page, summary);
     limits(&mut page, summary);
+    if let Some(bandwidth) = &summary.bandwidth {
+        bandwidth.rows(&mut page);
+    }
     verdicts.rows(&mut page);
     terminal(&page.document())
 }

@@ -2,12 +2,13 @@
 //! `joint-budget/2`.
 
 use board::target::board::Board;
+use joint_file::JointFile;
 use link::messages::Role;
 use model_core::gears::design::{DesignError, Effort, Processor, certificate};
-use parameters::JointParameters;
 use report::failure::{Failure, Outcome};
 use serde::Serialize;
 
+use crate::bandwidth::Bandwidth;
 use crate::verdicts::{Verdicts, verdicts};
 
 /// Says which fields there are; rises when one changes its meaning or goes.
@@ -51,6 +52,9 @@ pub struct BudgetSummary {
     pub unseen_departure: Option<f64>,
     /// Below it no step is stable.
     pub lowest_rate_Hz: u32,
+    /// How fast its control may be; not of gears without motor and link.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bandwidth: Option<Bandwidth>,
 }
 
 /// Cost of a tick.
@@ -66,13 +70,8 @@ pub struct TickWork {
 }
 
 /// The figures of a joint on a board in a role at a rate [Hz]; an error up to the wanted one is small enough.
-pub fn summary(
-    parameters: &JointParameters,
-    board: &Board,
-    role: Role,
-    rate: u32,
-    wanted: f64,
-) -> Outcome<BudgetSummary> {
+pub fn summary(file: &JointFile, board: &Board, role: Role, rate: u32, wanted: f64) -> Outcome<BudgetSummary> {
+    let parameters = &file.parameters;
     let verdicts = verdicts(parameters, board, role, rate, wanted)?;
     let processor = board.processor();
     let failed = |error: DesignError| Failure::new(format!("no fixed step for {}: {error}", parameters.name));
@@ -96,6 +95,7 @@ pub fn summary(
         unseen_for_s: certificate.unseen.duration,
         unseen_departure: certificate.unseen.departure,
         lowest_rate_Hz: certificate.lowest_rate,
+        bandwidth: Bandwidth::of(file),
     })
 }
 

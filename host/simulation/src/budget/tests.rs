@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use joint_file::{PRESETS, named};
+use joint_file::{JointFile, PRESETS, named};
 use link::messages::Role;
 use model_core::gears::design::{Effort, Processor, certificate};
 use parameters::JointParameters;
@@ -13,12 +13,16 @@ use board::target::board::Board;
 use board::target::tick_time::OnBoard;
 use report::output;
 
+fn file(name: &str) -> JointFile {
+    named::load(Path::new(name)).expect("a preset").file
+}
+
 fn preset(name: &str) -> JointParameters {
-    named::load(Path::new(name)).expect("a preset").file.parameters
+    file(name).parameters
 }
 
 fn budget(name: &str, board: &Board, rate: u32) -> BudgetSummary {
-    summary(&preset(name), board, Role::Plant, rate, ACCURACY).expect("figures")
+    summary(&file(name), board, Role::Plant, rate, ACCURACY).expect("figures")
 }
 
 #[test]
@@ -47,7 +51,7 @@ fn a_rate_that_takes_too_long_is_told_with_the_nearest_that_fits() {
 
 #[test]
 fn a_rate_that_is_unstable_is_refused_and_one_that_cannot_be_made_is_told() {
-    let failure = summary(&preset("q1"), &Board::emulated(), Role::Plant, 100, ACCURACY).expect_err("not possible");
+    let failure = summary(&file("q1"), &Board::emulated(), Role::Plant, 100, ACCURACY).expect_err("not possible");
     assert!(failure.message().contains("no step is stable"), "{failure}");
     assert!(failure.help().expect("a help").contains("--rate "), "{failure}");
     let told = budget("q1", &Board::emulated(), 20_001);
@@ -56,7 +60,7 @@ fn a_rate_that_is_unstable_is_refused_and_one_that_cannot_be_made_is_told() {
 
 #[test]
 fn a_rate_that_reaches_the_accuracy_is_offered_and_does() {
-    let (joint, board) = (preset("q1"), Board::emulated());
+    let (joint, board) = (file("q1"), Board::emulated());
     let here = budget("q1", &board, 20_000).verdicts.accuracy.error.expect("a motion that can be predicted");
     let wanted = 0.5 * here;
     let told = summary(&joint, &board, Role::Plant, 20_000, wanted).expect("figures").verdicts.accuracy;
@@ -84,4 +88,21 @@ fn text_and_json_say_the_same() {
     assert!(text.contains(&instructions) && json.contains(&instructions), "{text}{json}");
     assert!(json.contains("\"schema\": \"joint-budget/2\""), "{json}");
     assert!(text.contains("fits:") && text.contains(&summary.verdicts.substeps_in_words()), "{text}");
+}
+
+#[test]
+fn the_widest_bandwidth_is_told_with_what_limits_it() {
+    use model_core::compensation::design::{compensation_settings, design_compensation};
+    for name in ["q1", "s1", "d2", "l1", "c1"] {
+        let file = file(name);
+        let bandwidth = budget(name, &Board::emulated(), 20_000).bandwidth.expect("a drive train");
+        let asked = |bandwidth: f64| {
+            design_compensation::<f32>(&file.parameters, &compensation_settings(&file.surroundings, bandwidth))
+        };
+        let widest = bandwidth.widest_rad_per_s;
+        asked(widest).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let refused = asked(1.02 * widest).expect_err("more than the widest").to_string();
+        assert!(refused.contains(&widest.to_string()), "{name}: {refused}");
+        assert!(bandwidth.usual_rad_per_s <= widest, "{name}");
+    }
 }

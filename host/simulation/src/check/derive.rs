@@ -13,6 +13,7 @@ use super::summary::{
     CheckSummary, EquivalentFigures, FixedStep, Frequencies, GeometryFigures, Masses, MeshFigures, Numbers, Output,
     SCHEMA, Warning,
 };
+use crate::bandwidth::Bandwidth;
 use crate::verdicts::verdicts;
 use board::target::board::Board;
 use board::target::tick_time::OnBoard;
@@ -44,6 +45,7 @@ pub fn summary(loaded: &Loaded, board: &Board, rate: u32, wanted: Option<f64>) -
             DampingLaw::Paper => "paper",
         },
         output: output(parameters),
+        bandwidth: Bandwidth::of(&loaded.file),
         fixed_step: fixed_step(parameters, board, rate, wanted)?,
         numbers: numbers(loaded),
         warnings: warnings(loaded),

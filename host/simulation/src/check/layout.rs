@@ -26,6 +26,9 @@ pub fn layout(summary: &CheckSummary) -> String {
     frequencies(&mut page, summary);
     meshes(&mut page, summary);
     output(&mut page, summary);
+    if let Some(bandwidth) = &summary.bandwidth {
+        bandwidth.rows(&mut page);
+    }
     step(&mut page, summary);
     file(&mut page, summary);
     terminal(&page.document())

@@ -3,6 +3,7 @@
 
 use serde::Serialize;
 
+use crate::bandwidth::Bandwidth;
 use crate::verdicts::Verdicts;
 
 /// Says which fields there are; rises when one changes its meaning or goes.
@@ -37,6 +38,9 @@ pub struct CheckSummary {
     pub damping_law: &'static str,
     /// What the output does under load and when it is turned by hand.
     pub output: Output,
+    /// How fast its control may be; not of gears without motor and link.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bandwidth: Option<Bandwidth>,
     /// The fixed step at the wanted rate.
     pub fixed_step: FixedStep,
     /// How many numbers the file states, and how many of them it calls assumed.

@@ -17,5 +17,5 @@ mod tables;
 mod watch_tests;
 
 pub use settings::{CompensationSettings, compensation_settings};
-pub use stability::good_bandwidth;
+pub use stability::{BandwidthRange, bandwidth_range, good_bandwidth};
 pub use tables::design_compensation;

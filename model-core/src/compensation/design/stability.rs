@@ -79,22 +79,55 @@ fn of_joint(body: &Body, settings: &CompensationSettings) -> (f64, BandwidthLimi
     }
 }
 
+/// Up to which bandwidth a joint can be controlled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BandwidthRange {
+    /// Of a compensation whose user asks for none: 60 rad/s, or the widest if that is less [rad/s].
+    pub usual: f64,
+    /// The widest that joint, control rate and delays allow, to three digits [rad/s].
+    pub widest: f64,
+    /// What sets that limit: a property of the joint, or none where control rate and delays do.
+    pub limit: Option<BandwidthLimit>,
+}
+
+/// Up to which bandwidth a joint can be controlled at the control rate of its surroundings, with their delays of torque and current loop.
+///
+/// ```
+/// use model_core::compensation::design::bandwidth_range;
+///
+/// let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
+/// let range = bandwidth_range(&q1.parameters, &q1.surroundings)?;
+/// assert_eq!(range.usual, 60.0);
+/// assert!(range.widest > range.usual);
+/// # Ok::<(), model_core::gears::design::DesignError>(())
+/// ```
+///
+/// # Errors
+///
+/// A joint that is none, or settings out of their range.
+pub fn bandwidth_range(joint: &JointParameters, of: &Surroundings) -> Result<BandwidthRange, DesignError> {
+    validate(joint)?;
+    let mut settings = compensation_settings(of, USUAL);
+    settings::check(&settings)?;
+    let body = Body::new(joint);
+    let (of_joint, limit) = of_joint(&body, &settings);
+    // Without a gap and a swing only the rate is left; more than a radian a control period is no bandwidth of it.
+    settings.bandwidth = of_joint.min(f64::from(of.control_rate));
+    let (widest, limit) = match check_rate(&body, &settings) {
+        Ok(()) => (of_joint, Some(limit)),
+        Err(DesignError::ControlTooSlow { widest, .. }) => (widest, None),
+        Err(other) => return Err(other),
+    };
+    Ok(BandwidthRange { usual: USUAL.min(widest), widest, limit })
+}
+
 /// Bandwidth of a compensation whose user asks for none: 60 rad/s, or as much as joint, control rate and delays allow [rad/s].
 ///
 /// # Errors
 ///
 /// A joint that is none, or settings out of their range.
 pub fn good_bandwidth(joint: &JointParameters, of: &Surroundings) -> Result<f64, DesignError> {
-    validate(joint)?;
-    let mut settings = compensation_settings(of, USUAL);
-    settings::check(&settings)?;
-    let body = Body::new(joint);
-    let (widest, _) = of_joint(&body, &settings);
-    settings.bandwidth = USUAL.min(widest);
-    match check_rate(&body, &settings) {
-        Err(DesignError::ControlTooSlow { widest, .. }) => Ok(widest),
-        other => other.map(|()| settings.bandwidth),
-    }
+    bandwidth_range(joint, of).map(|range| range.usual)
 }
 
 /// Refuses a control rate that is too slow for the bandwidth.

@@ -21,13 +21,12 @@ pub struct Bandwidth {
 }
 
 impl Bandwidth {
-    /// The bandwidth of a joint in its drive train; none of one that no compensation can be designed for, as gears without motor and link.
+    /// The bandwidth of a joint in its drive train; none of a joint that no compensation can be designed for.
     pub fn of(file: &JointFile) -> Option<Self> {
         let around = &file.surroundings;
         let BandwidthRange { usual, widest, limit } = bandwidth_range(&file.parameters, around).ok()?;
         let by_rate = || "control rate, and delays of torque and current loop".to_owned();
-        let possible = [usual, widest].iter().all(|bandwidth| bandwidth.is_finite() && *bandwidth > 0.0);
-        possible.then(|| Self {
+        Some(Self {
             control_rate_Hz: around.control_rate,
             usual_rad_per_s: usual,
             widest_rad_per_s: widest,

@@ -52,7 +52,7 @@ pub struct BudgetSummary {
     pub unseen_departure: Option<f64>,
     /// Below it no step is stable.
     pub lowest_rate_Hz: u32,
-    /// How fast its control may be; not of gears without motor and link.
+    /// How fast its control may be; left out where no compensation can be designed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bandwidth: Option<Bandwidth>,
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use joint_file::{JointFile, PRESETS, named};
 use link::messages::Role;
+use model_core::compensation::design::{compensation_settings, design_compensation};
 use model_core::gears::design::{Effort, Processor, certificate};
 use parameters::JointParameters;
 
@@ -92,8 +93,7 @@ fn text_and_json_say_the_same() {
 
 #[test]
 fn the_widest_bandwidth_is_told_with_what_limits_it() {
-    use model_core::compensation::design::{compensation_settings, design_compensation};
-    for name in ["q1", "s1", "d2", "l1", "c1"] {
+    for name in PRESETS {
         let file = file(name);
         let bandwidth = budget(name, &Board::emulated(), 20_000).bandwidth.expect("a drive train");
         let asked = |bandwidth: f64| {
@@ -103,6 +103,8 @@ fn the_widest_bandwidth_is_told_with_what_limits_it() {
         asked(widest).unwrap_or_else(|error| panic!("{name}: {error}"));
         let refused = asked(1.02 * widest).expect_err("more than the widest").to_string();
         assert!(refused.contains(&widest.to_string()), "{name}: {refused}");
+        let slow = refused.contains("too slow") && bandwidth.limited_by.starts_with("control rate");
+        assert!(slow || refused.contains(&bandwidth.limited_by), "{name}: {refused}, not {}", bandwidth.limited_by);
         assert!(bandwidth.usual_rad_per_s <= widest, "{name}");
     }
 }

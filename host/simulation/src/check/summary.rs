@@ -38,7 +38,7 @@ pub struct CheckSummary {
     pub damping_law: &'static str,
     /// What the output does under load and when it is turned by hand.
     pub output: Output,
-    /// How fast its control may be; not of gears without motor and link.
+    /// How fast its control may be; left out where no compensation can be designed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bandwidth: Option<Bandwidth>,
     /// The fixed step at the wanted rate.

@@ -86,7 +86,7 @@ pub struct BandwidthRange {
     pub usual: f64,
     /// The widest that joint, control rate and delays allow, to three digits [rad/s].
     pub widest: f64,
-    /// What sets that limit: a property of the joint, or none where control rate and delays do.
+    /// Property of the joint that sets the widest; none where control rate and delays set it.
     pub limit: Option<BandwidthLimit>,
 }
 
@@ -111,7 +111,7 @@ pub fn bandwidth_range(joint: &JointParameters, of: &Surroundings) -> Result<Ban
     settings::check(&settings)?;
     let body = Body::new(joint);
     let (of_joint, limit) = of_joint(&body, &settings);
-    // Without a gap and a swing only the rate is left; more than a radian a control period is no bandwidth of it.
+    // A joint without limits of its own is asked for a bandwidth that no control rate bears.
     settings.bandwidth = of_joint.min(f64::from(of.control_rate));
     let (widest, limit) = match check_rate(&body, &settings) {
         Ok(()) => (of_joint, Some(limit)),
@@ -156,8 +156,11 @@ fn between(bad: f64, good: f64, holds: impl Fn(f64) -> bool) -> f64 {
     good
 }
 
-/// To three digits, no larger than it is.
+/// To three digits, no larger than it is; infinite as it is.
 fn rounded_down(value: f64) -> f64 {
+    if value.is_infinite() {
+        return value;
+    }
     let per_unit = libm::exp10(2.0 - libm::floor(libm::log10(value)));
     libm::floor(value * per_unit) / per_unit
 }

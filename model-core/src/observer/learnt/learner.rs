@@ -138,17 +138,14 @@ impl<T: Real, const P: usize> Learner<T, P> {
         self.value(HALF_GAP) >= T::ZERO && values.chain(factors).all(|possible| possible)
     }
 
-    /// Forgets how sure everything is that depends on where the encoders' zeros are.
+    /// Forgets how sure everything is that depends on where the encoders' zeros are. Half-gap, compliance and skew keep the variances
+    /// that they have with everything else unknown.
+    #[cold]
     pub fn forget_places(&mut self) {
-        for (index, column) in self.factors.iter_mut().enumerate() {
-            let kept = [HALF_GAP, COMPLIANCE, SKEW].contains(&index);
-            for (row, factor) in column.iter_mut().enumerate() {
-                if row < index {
-                    *factor = T::ZERO;
-                } else if row == index && !kept {
-                    *factor = T::ONE;
-                }
-            }
+        let kept = [HALF_GAP, COMPLIANCE, SKEW].map(|parameter| (parameter, self.relative_variance(parameter)));
+        self.reopen();
+        for (parameter, variance) in kept {
+            self.set_relative_variance(parameter, if variance < T::ONE { variance } else { T::ONE });
         }
     }
 

@@ -1,6 +1,6 @@
 //! What is believed of a parameter, and what is not.
 
-use super::super::regressors::{COMPLIANCE, OFFSET, PLAIN};
+use super::super::regressors::{COMPLIANCE, HALF_GAP, OFFSET, PLAIN};
 use super::{FURTHEST, Learner};
 use crate::observer::tables::{LearnerTable, MOST_PARAMETERS};
 
@@ -53,4 +53,19 @@ fn what_can_be_is_believed() {
     let innovation = learner.innovation(&table, &regressors, 8e-3, table.weight);
     learner.learn(&table, &innovation);
     assert!((learner.value(COMPLIANCE) - 4e-3).abs() < 1e-6);
+}
+
+#[test]
+fn half_gap_keeps_its_variance_without_places() {
+    // One flank alone shows the sum of half-gap and offset: each of them stays half unknown.
+    let table = table();
+    let mut learner = Learner::<f32, PLAIN>::new(&table);
+    let mut regressors = [0.0; PLAIN];
+    (regressors[HALF_GAP], regressors[OFFSET]) = (1.0, 1.0);
+    let innovation = learner.innovation(&table, &regressors, 0.0, table.weight);
+    learner.learn(&table, &innovation);
+    learner.forget_places();
+    let [half_gap, offset] = [HALF_GAP, OFFSET].map(|parameter| learner.relative_variance(parameter));
+    assert!((half_gap - 0.5).abs() < 1e-3, "{half_gap}");
+    assert_eq!(offset, 1.0);
 }

@@ -78,7 +78,7 @@ fn make(sheet: &DataSheet, path: &Path, measured: bool, progress: &Progress) -> 
             told += &format!("  {key:<55} {moved}\n");
         }
     }
-    if let Some(bandwidth) = Bandwidth::of(&loaded.file) {
+    if let Some(bandwidth) = Bandwidth::of(&loaded.file.parameters, &loaded.file.surroundings) {
         let (usual, widest) = (bandwidth.usual_rad_per_s, bandwidth.widest_in_words());
         told += &format!("bandwidth: {usual} rad/s if none is asked for, at most {widest}\n");
     }

@@ -152,6 +152,32 @@ fn a_controller_that_does_nothing_fails_and_the_report_leads_with_it() {
 }
 
 #[test]
+fn bandwidth_is_told_with_its_limit() {
+    let usual = compensation_bandwidth("profile = \"T2\"");
+    assert_eq!(usual["asked"], false, "{usual}");
+    let asked = compensation_bandwidth("profile = \"T2\"\n[controller]\nbandwidth_rad_per_s = 30");
+    assert_eq!((&asked["asked"], &asked["used_rad_per_s"]), (&true.into(), &30.0.into()), "{asked}");
+    assert_eq!(asked["widest_rad_per_s"], usual["widest_rad_per_s"]);
+    let off = compensation_bandwidth("profile = \"T2\"\n[controller]\nmode = \"off\"");
+    assert!(off.is_null(), "{off}");
+}
+
+/// Record of the bandwidth in the results of a test, which the terminal has as well.
+fn compensation_bandwidth(more: &str) -> serde_json::Value {
+    let folder = folder();
+    let ended = run(folder.path(), more, &[]).well();
+    let bandwidth = results(folder.path())["tests"][0]["bandwidth"].clone();
+    if let Some(limit) = bandwidth["limited_by"].as_str() {
+        let [used, widest] =
+            ["used_rad_per_s", "widest_rad_per_s"].map(|key| bandwidth[key].as_f64().expect("a number"));
+        let asked = if bandwidth["asked"] == true { " asked" } else { "" };
+        let line = format!("  bandwidth {used} rad/s{asked}, {widest} at most: {limit}\n");
+        assert!(ended.out.contains(&line), "no `{line}`: {ended:?}");
+    }
+    bandwidth
+}
+
+#[test]
 fn a_motor_that_is_held_is_called_locked_and_runs_once() {
     let folder = folder();
     let ended = run(folder.path(), "profile = \"hysteresis\"", &[]).well();

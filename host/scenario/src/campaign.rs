@@ -15,7 +15,7 @@ use super::log_file::{self, LoggedRun};
 use super::memory_file;
 use super::on_board::Boards;
 use super::plant::PlantName;
-use super::record::{AssertionRecord, TestRecord, TestRun};
+use super::record::{AssertionRecord, BandwidthRecord, TestRecord, TestRun};
 use super::rig::RunError;
 use super::suite::Test;
 use super::trace::Trace;
@@ -26,6 +26,7 @@ use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
 use report::folder::Folder;
 use report::seeds::Seeds;
+use simulation::bandwidth::Bandwidth;
 
 /// How tests are run.
 pub struct RunOptions<'c> {
@@ -148,6 +149,7 @@ pub fn run(test: &Test, options: &RunOptions<'_>, before: &AtomicU32) -> Outcome
         plant: options.plant.word().to_owned(),
         profile: test.file.profile.kind.to_owned(),
         controller: test.file.controller.word().to_owned(),
+        bandwidth: bandwidth(test, shown_seed),
         duration_s: test.file.duration,
         settle_s: test.file.settle,
         faults: test.file.faults.iter().map(|fault| fault_word(fault).to_owned()).collect(),
@@ -162,6 +164,21 @@ pub fn run(test: &Test, options: &RunOptions<'_>, before: &AtomicU32) -> Outcome
     };
     let faults = test.file.faults.iter().map(|fault| (fault_word(fault), [fault.start, fault.end])).collect();
     Ok(FinishedTest { record, shown, faults })
+}
+
+/// Bandwidth of a test's compensation in a seed.
+fn bandwidth(test: &Test, seed: u64) -> Option<BandwidthRecord> {
+    if !test.file.controller.is_compensation() || test.file.controller == ControllerName::Probe {
+        return None;
+    }
+    let case = test.case(seed).ok()?;
+    let range = Bandwidth::of(&case.nominal, &case.nominal_surroundings)?;
+    Some(BandwidthRecord {
+        used_rad_per_s: case.bandwidth(&test.file).ok()?,
+        asked: test.file.bandwidth.is_some(),
+        widest_rad_per_s: range.widest_rad_per_s,
+        limited_by: range.limited_by,
+    })
 }
 
 /// The seed whose run alone shows all that failed, if there is one: what is made of several seeds, or fails with several,

@@ -80,6 +80,8 @@ pub struct TestRecord {
     pub profile: String,
     /// The controller's word.
     pub controller: String,
+    /// Bandwidth of the tested compensation; absent where another controller is tested.
+    pub bandwidth: Option<BandwidthRecord>,
     /// Length of a run [s].
     pub duration_s: f64,
     /// Figures are taken from here on [s].
@@ -102,6 +104,28 @@ pub struct TestRecord {
     pub replay: String,
     /// Time on the clock [s].
     pub seconds: f64,
+}
+
+/// Bandwidth of a compensation in the shown seed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct BandwidthRecord {
+    /// Bandwidth that the controllers have [rad/s].
+    pub used_rad_per_s: f64,
+    /// `true` if the test file asks for it; otherwise it follows from the joint.
+    pub asked: bool,
+    /// Widest bandwidth that the joint allows [rad/s].
+    pub widest_rad_per_s: f64,
+    /// Reason for the widest.
+    pub limited_by: String,
+}
+
+impl BandwidthRecord {
+    /// The bandwidth in words.
+    pub fn in_words(&self) -> String {
+        let asked = if self.asked { " asked" } else { "" };
+        format!("{} rad/s{asked}, {} at most: {}", self.used_rad_per_s, self.widest_rad_per_s, self.limited_by)
+    }
 }
 
 /// One bound on one figure.

@@ -1,7 +1,7 @@
 //! Up to which bandwidth a joint can be controlled, in the same words and figures for `joint check`, `joint budget` and `joint new`.
 
-use joint_file::JointFile;
 use model_core::compensation::design::{BandwidthRange, bandwidth_range};
+use parameters::{JointParameters, Surroundings};
 use report::document::Sheet;
 use serde::Serialize;
 
@@ -22,9 +22,8 @@ pub struct Bandwidth {
 
 impl Bandwidth {
     /// The bandwidth of a joint in its drive train; none of a joint that no compensation can be designed for.
-    pub fn of(file: &JointFile) -> Option<Self> {
-        let around = &file.surroundings;
-        let BandwidthRange { usual, widest, limit } = bandwidth_range(&file.parameters, around).ok()?;
+    pub fn of(joint: &JointParameters, around: &Surroundings) -> Option<Self> {
+        let BandwidthRange { usual, widest, limit } = bandwidth_range(joint, around).ok()?;
         let by_rate = || "control rate, and delays of torque and current loop".to_owned();
         Some(Self {
             control_rate_Hz: around.control_rate,

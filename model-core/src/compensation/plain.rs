@@ -71,10 +71,11 @@ impl<T: Real> Plain<T> {
         torque
     }
 
-    /// Torque of the impedance law [N m].
+    /// Torque of the impedance law [N m]: the damper on the motor, the spring on the link where its encoder is read, otherwise on the motor.
     pub fn yield_to(&mut self, situation: &Situation<T>, point: &ImpedancePoint<T>) -> T {
         self.foreseen = None;
-        point.torque - point.stiffness * self.place(situation) + point.damping * (point.speed - situation.motor_speed)
+        let error = if situation.feels { situation.error } else { -self.place(situation) };
+        point.torque + point.stiffness * error + point.damping * (point.speed - situation.motor_speed)
     }
 
     /// Integrates while the link is not seen; `cut` is what the limit took off. While it is, others control: the integral fades, so that

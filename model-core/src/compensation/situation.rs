@@ -119,7 +119,10 @@ impl<T: Real> Situation<T> {
             sum + situation.shift + situation.transmission_error_speed + situation.losses[0] + situation.losses[1];
         let sum = sum + situation.mesh_torque + situation.stiffness + situation.inertia;
         situation.feels = estimates.source == Source::Both && sum.is_finite();
-        let knows = estimates.contact_valid && estimates.gap.valid && estimates.half_backlash.value.is_finite();
+        // A position law corrects the link's error after a crossing to a flank that lies elsewhere; an impedance law does not.
+        let flanks_known = matches!(command, CommandRef::Position { .. }) || estimates.half_backlash.valid;
+        let gap_known = estimates.gap.valid && estimates.half_backlash.value.is_finite();
+        let knows = estimates.contact_valid && gap_known && flanks_known;
         situation.sees = situation.feels && knows;
         situation
     }

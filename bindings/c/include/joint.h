@@ -65,7 +65,7 @@
 #define JOINT_WIRING_ITEMS 13
 
 // 64-bit words of an observer.
-#define JOINT_OBSERVER_WORDS 274
+#define JOINT_OBSERVER_WORDS 275
 
 // Bytes of what an observer has learnt.
 #define JOINT_MEMORY_BYTES 544

@@ -13,7 +13,7 @@ use crate::object::{Kind, look, open, read, start, usable};
 use crate::status::JointStatus;
 
 /// 64-bit words of an observer.
-pub const JOINT_OBSERVER_WORDS: usize = 274;
+pub const JOINT_OBSERVER_WORDS: usize = 275;
 /// Bytes of what an observer has learnt.
 pub const JOINT_MEMORY_BYTES: usize = 544;
 const _: () = assert!(JOINT_MEMORY_BYTES == MEMORY_BYTES);

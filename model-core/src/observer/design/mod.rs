@@ -9,6 +9,8 @@ mod learning;
 #[cfg(test)]
 mod places_tests;
 mod probe;
+#[cfg(test)]
+mod rest_noise_tests;
 mod settings;
 mod sides;
 mod source;

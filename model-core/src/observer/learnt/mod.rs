@@ -551,17 +551,17 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         let table = &tables.learner;
         let [half_gap, _] = self.shape();
         let (regressors, deflection) = self.block.full();
-        let weight = table.weight * self.block.worth(table, self.uncertainty.half_gap_is_known);
+        let worth = self.block.worth(table, self.uncertainty.half_gap_is_known);
+        let weight = (table.weight * worth).over(self.uncertainty.rest_deviation);
         let innovation = self.learner.innovation(table, &regressors, deflection, weight);
         let square = innovation.value * innovation.value;
-        self.uncertainty.take_innovation(square, innovation.variance);
         let belongs = innovation.is_within(GATE);
         if let Some(flank) = self.block.flank() {
             let off = [square, innovation.variance].map(|normalised| normalised.over(weight * weight));
             self.places.take(&tables.counts, flank, off, half_gap, belongs);
         }
         if !belongs {
-            let beyond = innovation.value.abs() * table.noise;
+            let beyond = innovation.value.abs().over(weight);
             let off = if beyond <= half_gap * tables.contact.known_part {
                 Off::Little
             } else if beyond < Self::VARIES * half_gap {
@@ -582,8 +582,13 @@ impl<T: Real, const P: usize> Learnt<T, P> {
     fn learn_rest(&mut self, tables: &ObserverTables<T>) {
         let Some(innovation) = self.weighed.take() else { return };
         self.errors.relearn(&mut self.learner, |learner| learner.learn(&tables.learner, &innovation));
-        if self.block.flank().is_some() && self.consistency.is_trusted() {
+        let Some(flank) = self.block.flank() else { return };
+        self.uncertainty.take_innovation(innovation.value, innovation.variance, flank);
+        if self.consistency.is_trusted() {
             self.trusted = Some(Trusted::of(&self.learner));
+            if self.uncertainty.half_gap_is_off() {
+                self.learner.loosen_half_gap(&tables.learner, Self::LOOSENED);
+            }
         }
     }
 

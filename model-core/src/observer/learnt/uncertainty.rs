@@ -60,8 +60,11 @@ pub struct Uncertainty<T: Real> {
     pub flanks_swap: bool,
     /// The last interval was in settled contact.
     pub settled: bool,
-    /// Mean square of the normalised innovations of rests, 1 while the model describes joint and encoders [-].
-    scatter: T,
+    /// Standard deviation of a rest's noise over that of the encoders' noise, at least 1 [-]. Effects that the model lacks count as noise.
+    pub rest_deviation: T,
+    /// Mean of the normalised innovations of rests, positive where they show a wider gap [-]. With noise alone its standard deviation is a
+    /// sixth, so that 1 is six of them.
+    wider: T,
     /// What comes next.
     turn: u8,
 }
@@ -75,11 +78,8 @@ impl<T: Real> Uncertainty<T> {
     /// coordinate may be off by and still be worth compensating.
     const NEAREST: T = T::TWENTIETH;
 
-    /// Share of a rest in the scatter [-].
+    /// Share of a rest in the mean over rests [-].
     const OF_A_REST: T = T::TWENTIETH;
-
-    /// The most that one rest counts for in the scatter [-]: as large as what still belongs to the model.
-    const ODDEST: i32 = 25;
 
     /// Before anything is learnt.
     pub fn new<const P: usize>(tables: &ObserverTables<T>, learner: &Learner<T, P>) -> Self {
@@ -106,7 +106,8 @@ impl<T: Real> Uncertainty<T> {
             widest_variance: T::ZERO,
             flanks_swap: false,
             settled: false,
-            scatter: T::ONE,
+            rest_deviation: T::ONE,
+            wider: T::ZERO,
             turn: 0,
         };
         let free = regressors::free(T::ZERO, 0, Some(0));
@@ -134,18 +135,27 @@ impl<T: Real> Uncertainty<T> {
         self.mean_force_deviation = (known + contact.force_variance * tables.learner.per_periods).square_root();
     }
 
-    /// Takes in by how much a rest was off what was learnt: square of the innovation, and its variance.
-    pub fn take_innovation(&mut self, square: T, variance: T) {
-        let most = T::from_i32(Self::ODDEST) * variance;
-        let normalised = if square < most { square.over(variance) } else { T::from_i32(Self::ODDEST) };
-        if normalised.is_finite() {
-            self.scatter += Self::OF_A_REST * (normalised - self.scatter);
-        }
+    /// Takes in by how much a rest on a flank, that is learnt from, was off what was learnt: innovation v and its variance. With n = v^2 / variance the
+    /// standard deviation r of a rest's noise follows r' = r (1 + share (n - 1) / 2), so that n is 1 in the mean (covariance matching: R. K.
+    /// Mehra, *On the identification of variances and adaptive Kalman filtering*, IEEE Transactions on Automatic Control 15(2), 1970).
+    /// Outliers, which nothing is learnt from, leave r as it is: the joint has changed then, or its encoder fails.
+    pub fn take_innovation(&mut self, innovation: T, variance: T, flank: Flank) {
+        let square = (innovation * innovation).over(variance);
+        let grown = self.rest_deviation * (T::ONE + T::HALF * Self::OF_A_REST * (square - T::ONE));
+        self.rest_deviation = if grown > T::ONE { grown } else { T::ONE };
+        let size = square.square_root();
+        let wider = if innovation * flank.sign() < T::ZERO { -size } else { size };
+        self.wider += Self::OF_A_REST * (wider - self.wider);
     }
 
-    /// Factor by which what the model says of variances falls short of what rests show, at least 1 [-].
-    fn excess(&self) -> T {
-        if self.scatter > T::ONE { self.scatter } else { T::ONE }
+    /// Whether rests on both flanks have shown again and again that the half-gap is another one than was learnt, which is noise no more.
+    /// Begins anew then.
+    pub fn half_gap_is_off(&mut self) -> bool {
+        let off = self.wider.abs() > T::ONE;
+        if off {
+            self.wider = T::ZERO;
+        }
+        off
     }
 
     /// The next part of what the learner knows.
@@ -159,17 +169,16 @@ impl<T: Real> Uncertainty<T> {
         let table = &tables.learner;
         let noise = tables.contact.deflection_variance;
         let [of_deflection, of_flank] = self.wind_up_variance;
-        let excess = self.excess();
         let [touching, open] = &mut self.gap_variance;
         match self.turn {
             0 => {
                 self.deflection_variance = learner.variance(table, free);
-                *open = excess * (self.deflection_variance + of_deflection + noise);
+                *open = self.deflection_variance + of_deflection + noise;
             }
-            1 => *touching = excess * (learner.variance(table, &touch.on(&[T::ZERO; P])) + of_flank + noise),
+            1 => *touching = learner.variance(table, &touch.on(&[T::ZERO; P])) + of_flank + noise,
             2 => {
-                self.variances = [HALF_GAP, OFFSET, COMPLIANCE, SKEW]
-                    .map(|parameter| excess * learner.variance_of(table, parameter));
+                self.variances =
+                    [HALF_GAP, OFFSET, COMPLIANCE, SKEW].map(|parameter| learner.variance_of(table, parameter));
             }
             _ => self.of_edge(tables, learner, learner.variance(table, &touch.on(free))),
         }

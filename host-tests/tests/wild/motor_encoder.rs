@@ -183,8 +183,7 @@ fn survives(fault: Fault) {
                 let slipped = fault == Fault::Slipped;
                 let left = match lasts {
                     None => 0.5 * subject.lost_motion(),
-                    // L1: 0.58 to 0.59 mrad after a slip in the swing of 5 s. Without one it was 0.95 mrad, and is 0.15 since the noise of
-                    // rests is followed.
+                    // L1 in the swing of 5 s: 0.59 mrad after a slip, 0.15 mrad without one.
                     Some(_) if slipped && name == "l1" => 0.3 * subject.lost_motion(),
                     Some(_) if slipped => 0.25 * subject.lost_motion(),
                     // The transmission error of S1 hides its gap: 0.76 to 0.94 mrad a second after a fault, 0.46 without one.

@@ -1,4 +1,5 @@
-//! Up to which bandwidth a joint can be controlled, in the same words and figures for `joint check`, `joint budget` and `joint new`.
+//! Up to which bandwidth a joint can be controlled, in the same words and figures for `joint check`, `joint budget`, `joint
+//! new` and `joint hil`.
 
 use model_core::compensation::design::{BandwidthRange, bandwidth_range};
 use parameters::{JointParameters, Surroundings};

@@ -10,7 +10,7 @@
 //!    swings, `start_prediction` how
 //!    motions start, `easing` what friction holds at rest.
 //! 6. `plain` is control without compensation of a link that is not seen: a PID on the motor's place with part of the feed-forward and no
-//!    limit of the teeth; or the impedance law on the motor. Where the estimates are not valid it or `inverse` takes over in one control
+//!    limit of the teeth; or the commanded impedance law. Where the estimates are not valid it or `inverse` takes over in one control
 //!    period; only the way back is blended.
 //! 7. `inverse` controls the motor alone until the gap is known, and where `watch` notices a loop that hunts: with an inverse of the
 //!    backlash that it learns itself, for the `demand` that it learns from the torque. `brakes` tells weight from friction, for `load` as well.

@@ -1,5 +1,5 @@
 //! Control of a link that is not seen, on the motor's place: PID with all poles at the bandwidth in position mode, what is
-//! known of the load fed forward. The commanded spring and damper of impedance mode, whenever the gap is not seen.
+//! known of the load fed forward. The commanded spring and damper of impedance mode, while the compensation does not act.
 
 use super::integral::Integral;
 use super::load::LoadModel;

@@ -61,7 +61,7 @@ pub(super) struct Situation<T: Real> {
     pub open: bool,
     /// Whether both shafts are seen.
     pub feels: bool,
-    /// Whether it is known where in the gap the motor is as well.
+    /// Whether the motor's place in the gap is known as well; for an impedance, the flanks' places too.
     pub sees: bool,
 }
 

@@ -15,7 +15,7 @@
 //!
 //! An impedance has no error of its own: there only the count decides, with the large leak.
 //!
-//! A loop that hunts is left to control on the motor alone (`inverse`) for a time that grows by `longer` with each trip, and is
+//! A loop that hunts is left to control on the motor alone (`inverse`; an impedance to `plain`) for a time that grows by `longer` with each trip, and is
 //! forgiven when the compensation has served for as long.
 
 use super::situation::Situation;

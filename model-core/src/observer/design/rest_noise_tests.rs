@@ -41,13 +41,13 @@ fn noise_of_rests_is_followed() {
 }
 
 #[test]
-fn half_gap_is_off_where_both_flanks_agree() {
+fn half_gap_change_shows_on_both_flanks() {
     let mut wider = uncertainty();
     take(&mut wider, 40, 4.0, 1);
-    assert!(wider.half_gap_is_off());
-    assert!(!wider.half_gap_is_off(), "it has begun anew");
+    assert!(wider.detect_half_gap_change());
+    assert!(!wider.detect_half_gap_change(), "it has begun anew");
     // Innovations of one sign on both flanks show another offset.
     let mut offset = uncertainty();
     take(&mut offset, 40, 4.0, 40);
-    assert!(!offset.half_gap_is_off());
+    assert!(!offset.detect_half_gap_change());
 }

@@ -586,7 +586,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         self.uncertainty.take_innovation(innovation.value, innovation.variance, flank);
         if self.consistency.is_trusted() {
             self.trusted = Some(Trusted::of(&self.learner));
-            if self.uncertainty.half_gap_is_off() {
+            if self.uncertainty.detect_half_gap_change() {
                 self.learner.loosen_half_gap(&tables.learner, Self::LOOSENED);
             }
         }

@@ -62,9 +62,8 @@ pub struct Uncertainty<T: Real> {
     pub settled: bool,
     /// Standard deviation of a rest's noise over that of the encoders' noise, at least 1 [-]. Effects that the model lacks count as noise.
     pub rest_deviation: T,
-    /// Mean of the normalised innovations of rests, positive where they show a wider gap [-]. With noise alone its standard deviation is a
-    /// sixth, so that 1 is six of them.
-    wider: T,
+    /// Mean of the normalised innovations of rests, positive where the rests show a wider gap [-].
+    half_gap_error: T,
     /// What comes next.
     turn: u8,
 }
@@ -80,6 +79,10 @@ impl<T: Real> Uncertainty<T> {
 
     /// Share of a rest in the mean over rests [-].
     const OF_A_REST: T = T::TWENTIETH;
+
+    /// Mean normalised innovation beyond which the half-gap has changed [-]. Derived: the mean over rests of independent noise has a standard
+    /// deviation of sqrt(share / (2 - share)) = 0.16, so that 1 is six of them.
+    const HALF_GAP_CHANGED: T = T::ONE;
 
     /// Before anything is learnt.
     pub fn new<const P: usize>(tables: &ObserverTables<T>, learner: &Learner<T, P>) -> Self {
@@ -107,7 +110,7 @@ impl<T: Real> Uncertainty<T> {
             flanks_swap: false,
             settled: false,
             rest_deviation: T::ONE,
-            wider: T::ZERO,
+            half_gap_error: T::ZERO,
             turn: 0,
         };
         let free = regressors::free(T::ZERO, 0, Some(0));
@@ -135,27 +138,27 @@ impl<T: Real> Uncertainty<T> {
         self.mean_force_deviation = (known + contact.force_variance * tables.learner.per_periods).square_root();
     }
 
-    /// Takes in by how much a rest on a flank, that is learnt from, was off what was learnt: innovation v and its variance. With n = v^2 / variance the
-    /// standard deviation r of a rest's noise follows r' = r (1 + share (n - 1) / 2), so that n is 1 in the mean (covariance matching: R. K.
-    /// Mehra, *On the identification of variances and adaptive Kalman filtering*, IEEE Transactions on Automatic Control 15(2), 1970).
-    /// Outliers, which nothing is learnt from, leave r as it is: the joint has changed then, or its encoder fails.
+    /// Updates the noise of rests and the half-gap's error by a rest on a flank that was learnt from: its innovation v and the variance of v.
+    ///
+    /// With n = v^2 / variance, the standard deviation r of a rest's noise follows r' = max(1, r (1 + share (n - 1) / 2)), so that n is 1 in the
+    /// mean (covariance matching: R. K. Mehra, *On the identification of variances and adaptive Kalman filtering*, IEEE Transactions on
+    /// Automatic Control 15(2), 1970). Outliers are not learnt from and leave r as it is: the joint has changed, or its encoder fails.
     pub fn take_innovation(&mut self, innovation: T, variance: T, flank: Flank) {
         let square = (innovation * innovation).over(variance);
         let grown = self.rest_deviation * (T::ONE + T::HALF * Self::OF_A_REST * (square - T::ONE));
         self.rest_deviation = if grown > T::ONE { grown } else { T::ONE };
         let size = square.square_root();
         let wider = if innovation * flank.sign() < T::ZERO { -size } else { size };
-        self.wider += Self::OF_A_REST * (wider - self.wider);
+        self.half_gap_error += Self::OF_A_REST * (wider - self.half_gap_error);
     }
 
-    /// Whether rests on both flanks have shown again and again that the half-gap is another one than was learnt, which is noise no more.
-    /// Begins anew then.
-    pub fn half_gap_is_off(&mut self) -> bool {
-        let off = self.wider.abs() > T::ONE;
-        if off {
-            self.wider = T::ZERO;
+    /// Returns true once rests on both flanks have shown that the half-gap has changed; the mean of their innovations then begins anew.
+    pub fn detect_half_gap_change(&mut self) -> bool {
+        let changed = self.half_gap_error.abs() > Self::HALF_GAP_CHANGED;
+        if changed {
+            self.half_gap_error = T::ZERO;
         }
-        off
+        changed
     }
 
     /// The next part of what the learner knows.

@@ -108,6 +108,14 @@ fn a_sound_encoder_is_kept_while_the_gap_is_not_known() {
     }
 }
 
+/// Joints whose output encoder has sub-divisional errors: taken for noise of rests, they blame no encoder.
+#[test]
+fn subdivisional_error_blames_no_encoder() {
+    for seed in ["603", "612"] {
+        assert_eq!(false_alarms("real-subdivision.toml", "reference", seed), 0.0, "false alarms with seed {seed}");
+    }
+}
+
 /// A torque that has moved the motor once, and then is less than its friction, leaves it within the gap while the link goes on.
 #[test]
 fn a_motor_that_friction_has_stopped_is_not_taken_for_one_that_teeth_hold() {

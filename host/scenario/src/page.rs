@@ -208,11 +208,12 @@ fn one(tested: &FinishedTest) -> Block {
     );
     let mut checks: Vec<Check> = test.assertions.iter().map(AssertionRecord::check).collect();
     checks.sort_by_key(|check| check.verdict != Verdict::Failed);
-    let bandwidth = test.bandwidth.as_ref().map(|bandwidth| format!("bandwidth {}", bandwidth.in_words()));
-    let below = bandwidth.iter().map(|words| Block::Paragraph(text("  ") + words));
-    let below = [Block::Paragraph(text("  ") + &test.title)].into_iter().chain(below).collect();
-    let mut blocks = vec![Block::Only(TERMINALS, below)];
-    blocks.extend(bandwidth.as_ref().map(|words| Block::Only(PAGES, vec![Block::Note(words.clone().into())])));
+    let mut blocks = vec![Block::Only(TERMINALS, vec![Block::Paragraph(text("  ") + &test.title)])];
+    if let Some(bandwidth) = &test.bandwidth {
+        let words = format!("bandwidth {}", bandwidth.in_words());
+        blocks.push(Block::Only(TERMINALS, vec![Block::Paragraph(text("  ") + &words)]));
+        blocks.push(Block::Only(PAGES, vec![Block::Note(words.into())]));
+    }
     blocks.extend(test.broken.as_ref().map(|why| alert(strong("BROKEN") + " off: " + why)));
     blocks.push(if checks.is_empty() {
         let rms = test.largest(&test.controller, "rms_mrad").map_or("–".to_owned(), |rms| fixed(3).write(rms));

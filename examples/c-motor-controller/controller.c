@@ -21,12 +21,23 @@ JointStatus controller_start(Controller *controller, const uint64_t *tables, siz
     return status;
 }
 
+/*
+ * Raw counts of two encoders have different zeros. Observer and compensation estimate the difference by themselves; a loop on
+ * the motor alone takes it from the first reading, and is off by the place in the gap at that moment.
+ */
+static void refer_motor_to_link(Controller *controller) {
+    const JointShaft *motor = &controller->estimates.motor, *link = &controller->estimates.link;
+    const float place_turns = ((float)motor->turns + motor->fraction_turns) / controller->facts.ratio;
+    controller->motor_zero_turns = place_turns - ((float)link->turns + link->fraction_turns);
+    controller->has_motor_zero = 1;
+}
+
 /* The usual: a PID on the motor's place with three poles at the bandwidth, and the acceleration fed forward. */
 static float without_compensation(Controller *controller, const JointMotion *now) {
     const JointTablesFacts *facts = &controller->facts;
     const JointShaft *motor = &controller->estimates.motor;
     const float pole = facts->bandwidth_rad_per_s;
-    const float place_turns = ((float)motor->turns + motor->fraction_turns) / facts->ratio;
+    const float place_turns = ((float)motor->turns + motor->fraction_turns) / facts->ratio - controller->motor_zero_turns;
     const float error_rad = TURN_RAD * ((float)now->turns + now->fraction_turns - place_turns);
     const float error_rad_per_s = now->speed_rad_per_s - motor->speed_rad_per_s / facts->ratio;
     const float at_link_Nm =
@@ -52,6 +63,9 @@ JointStatus controller_period(Controller *controller, JointSamples *samples, con
     status = joint_observer_step(&controller->observer, samples);
     if (status == JOINT_STATUS_OK) {
         status = joint_observer_estimates(&controller->observer, &controller->estimates);
+    }
+    if (status == JOINT_STATUS_OK && !controller->has_motor_zero) {
+        refer_motor_to_link(controller);
     }
     if (status == JOINT_STATUS_OK && controller->mode == MODE_POSITION) {
         status = joint_compensation_follow(&controller->compensation, &controller->observer, now, ahead,

@@ -22,8 +22,9 @@ typedef struct Controller {
     Mode mode;
     /* The current that is asked for, and what the model of the loop says flows. */
     float reference_A, current_A;
-    /* Of the PID without compensation. */
-    float integral_rad_s;
+    /* Of the PID without compensation: its integral, and the angle that the motor reads at the output where the link reads zero. */
+    float integral_rad_s, motor_zero_turns;
+    int has_motor_zero;
 } Controller;
 
 /* Of the motor. A power of two loses no bit on the way from torque to current and back. */

@@ -19,6 +19,13 @@
 #define TURN_RAD 6.2831853f
 #define AMPLITUDE_RAD 0.5f
 #define SECONDS 5u
+/* The encoders of joint Q1 count to 2^14 and 2^17, and are mounted as they come: the motor's reads 0.28 turns and the output's
+   0.3 turns where the plant is at zero. */
+#define MOTOR_COUNTS 16384u
+#define MOTOR_ZERO 4660u
+#define OUTPUT_COUNTS 131072u
+#define OUTPUT_ZERO 39322u
+#define OUTPUT_ZERO_TURNS ((float)OUTPUT_ZERO / (float)OUTPUT_COUNTS)
 /* Of joint Q1. A flank counts as touching where this much of the gap is left behind: deflection and transmission error are
    less. */
 #define HALF_BACKLASH_M 40e-6f
@@ -68,10 +75,16 @@ static Angle turned(Angle from, Angle by) {
     return to;
 }
 
+/* Wanted position as the plant counts it [turns]. */
+static float swing_turns(Angle at) {
+    return AMPLITUDE_RAD / TURN_RAD * (1.0f - at.cosine);
+}
+
+/* Wanted motion as the output encoder counts it. */
 static JointMotion motion(Angle at) {
     JointMotion motion;
     motion.turns = 0;
-    motion.fraction_turns = AMPLITUDE_RAD / TURN_RAD * (1.0f - at.cosine);
+    motion.fraction_turns = OUTPUT_ZERO_TURNS + swing_turns(at);
     motion.speed_rad_per_s = AMPLITUDE_RAD * TURN_RAD * at.sine;
     motion.acceleration_rad_per_s2 = AMPLITUDE_RAD * TURN_RAD * TURN_RAD * at.cosine;
     return motion;
@@ -81,9 +94,9 @@ static uint64_t chain(uint64_t running, uint64_t word) {
     return (((running << 5) | (running >> 59)) ^ word) * 0x9e3779b97f4a7c15ull;
 }
 
-static void judge(const JointMotion *wanted, const JointPlantOutputs *is) {
+static void judge(float wanted_turns, const JointPlantOutputs *is) {
     const float carrier_turns = (float)is->carrier_turns + (float)is->carrier_fraction / 4294967296.0f;
-    const float error_rad = TURN_RAD * (wanted->fraction_turns - carrier_turns) - is->link_offset_rad;
+    const float error_rad = TURN_RAD * (wanted_turns - carrier_turns) - is->link_offset_rad;
     figures.sum_of_squares += error_rad * error_rad;
     figures.counted++;
     figures.peak_rad = fabsf(error_rad) > figures.peak_rad ? fabsf(error_rad) : figures.peak_rad;
@@ -112,6 +125,8 @@ static JointStatus tick(void) {
         status = joint_plant_outputs(&plant, &outputs);
     }
     if (status == JOINT_STATUS_OK) {
+        samples.motor.counts = (samples.motor.counts + MOTOR_ZERO) % MOTOR_COUNTS;
+        samples.output.counts = (samples.output.counts + OUTPUT_ZERO) % OUTPUT_COUNTS;
         status = controller_period(&controller, &samples, &here, &ahead);
     }
     if (status == JOINT_STATUS_OK) {
@@ -126,7 +141,7 @@ static JointStatus tick(void) {
     memcpy(&reference, &controller.reference_A, sizeof reference);
     figures.digest = chain(chain(figures.digest, reference), digest);
     if (period >= 2u * controller.facts.control_rate_Hz) {
-        judge(&here, &outputs);
+        judge(swing_turns(now_at), &outputs);
     }
     return status;
 }

@@ -3,11 +3,15 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstdint>
 
 #include "controller.h"
 #include "tables_of_test.h"
 
 namespace {
+
+// Count of the output encoder where the plant's link is at zero.
+constexpr std::uint32_t output_zero = 39322;
 
 // The link's angle after so many periods at a place.
 double link_turns_after(Mode mode, unsigned periods, float place_turns) {
@@ -20,9 +24,12 @@ double link_turns_after(Mode mode, unsigned periods, float place_turns) {
     for (unsigned period = 0; period < periods; period++) {
         // Half a second on the way, softly.
         const float s = std::fmin(1.0f, static_cast<float>(period) * controller.facts.period_s * 2.0f);
-        there.fraction_turns = place_turns * s * s * (3.0f - 2.0f * s);
+        there.fraction_turns = output_zero / 131072.0f + place_turns * s * s * (3.0f - 2.0f * s);
         JointSamples samples;
         REQUIRE(joint_plant_samples(&plant, &samples) == JOINT_STATUS_OK);
+        // Encoders as they are mounted: raw counts of 14 and 17 bits, each with a zero of its own.
+        samples.motor.counts = (samples.motor.counts + 4660u) % 16384u;
+        samples.output.counts = (samples.output.counts + output_zero) % 131072u;
         REQUIRE(controller_period(&controller, &samples, &there, nullptr) == JOINT_STATUS_OK);
         REQUIRE(joint_plant_step(&plant, TORQUE_CONSTANT_NM_PER_A * controller.reference_A, 0.0f) == JOINT_STATUS_OK);
     }

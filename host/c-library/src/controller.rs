@@ -40,6 +40,11 @@ const AMPLITUDE: f32 = 0.5;
 const SECONDS: u32 = 5;
 const TORQUE_CONSTANT: f32 = 0.125;
 const INERTIA: f32 = 0.160;
+const MOTOR_COUNTS: u32 = 1 << 14;
+const MOTOR_ZERO: u32 = 4660;
+const OUTPUT_COUNTS: u32 = 1 << 17;
+const OUTPUT_ZERO: u32 = 39322;
+const OUTPUT_ZERO_TURNS: f32 = OUTPUT_ZERO as f32 / OUTPUT_COUNTS as f32;
 
 #[derive(Clone, Copy)]
 struct Angle {
@@ -63,9 +68,13 @@ impl Angle {
         }
     }
 
+    fn swing(self) -> f32 {
+        AMPLITUDE / TURN * (1.0 - self.cosine)
+    }
+
     fn motion(self) -> Motion<f32> {
         Motion {
-            position: Position { turns: 0, fraction: AMPLITUDE / TURN * (1.0 - self.cosine) },
+            position: Position { turns: 0, fraction: OUTPUT_ZERO_TURNS + self.swing() },
             speed: AMPLITUDE * TURN * self.sine,
             acceleration: AMPLITUDE * TURN * TURN * self.cosine,
         }
@@ -87,15 +96,24 @@ pub fn run(words: &[u64], mode: Mode, mut show: impl FnMut(&Moment<'_>)) -> Outc
     let (ratio, pole) = (tables.gear.motor_per_link, blob.header().bandwidth);
     let limit = tables.limits.motor * tables.gear.link_per_motor;
     let (one_period, one_lead) = (Angle::of(TURN * period_s), Angle::of(TURN * lead));
+    let mut motor_zero = None;
     let (mut at, mut integral, mut reference, mut running) = (Angle::of(0.0), 0.0_f32, 0.0_f32, 0);
     for period in 0..SECONDS * rate {
         let (now, ahead) = (at.motion(), at.turned(one_lead).motion());
         let command = TORQUE_CONSTANT * reference;
-        let wanted = f64::from(now.position.fraction) * std::f64::consts::TAU;
+        let wanted = f64::from(at.swing()) * std::f64::consts::TAU;
         show(&Moment { period, wanted, joint: &joint, gears, command: command.into() });
         let mut samples = joint.samples();
         samples.torque = command;
+        samples.motor.counts = (samples.motor.counts + MOTOR_ZERO) % MOTOR_COUNTS;
+        if let Some(output) = &mut samples.output {
+            output.counts = (output.counts + OUTPUT_ZERO) % OUTPUT_COUNTS;
+        }
         let estimates = observer.step(&samples);
+        let motor_zero = *motor_zero.get_or_insert_with(|| {
+            let (motor, link) = (&estimates.motor, &estimates.link);
+            (motor.turns as f32 + motor.fraction) / ratio - (link.turns as f32 + link.fraction)
+        });
         let torque = match mode {
             Mode::Position => {
                 let command = CommandRef::Position { now: &now, ahead: Some(&ahead) };
@@ -108,7 +126,7 @@ pub fn run(words: &[u64], mode: Mode, mut show: impl FnMut(&Moment<'_>)) -> Outc
             }
             Mode::WithoutCompensation => {
                 let motor = &estimates.motor;
-                let place = (motor.turns as f32 + motor.fraction) / ratio;
+                let place = (motor.turns as f32 + motor.fraction) / ratio - motor_zero;
                 let error = TURN * (now.position.turns as f32 + now.position.fraction - place);
                 let error_rate = now.speed - motor.speed / ratio;
                 let at_link = INERTIA

@@ -1,7 +1,7 @@
 //! Reads a whole board file: parses, takes the sections' values, holds them against the chip, and gives either the board with
 //! its warnings or everything that is wrong at once.
 
-use joint_file::{Notes, Problem};
+use joint_file::{Notes, Problems};
 use toml::de::DeTable;
 
 use crate::board::{Board, ExternalClock, Level, Output, Serial, SpiSlave};
@@ -31,7 +31,7 @@ const GREATEST_BAUD_DIVIDER: u32 = 0xffff;
 /// assert_eq!(&slip[problems[0].span.clone()], "\"PA8\"");
 /// assert!(problems[0].help.contains("PA9 or PB6"), "{}", problems[0]);
 /// ```
-pub fn read(text: &str) -> Result<Board, Vec<Problem>> {
+pub fn read(text: &str) -> Result<Board, Problems> {
     let notes = Notes::new(text);
     let (table, syntax) = DeTable::parse_recoverable(text);
     syntax.iter().take(1).for_each(|error| notes.syntax(error));
@@ -41,7 +41,7 @@ pub fn read(text: &str) -> Result<Board, Vec<Problem>> {
     let (problems, sources) = notes.into_parts();
     match board {
         Some(board) if !failed => Ok(Board { warnings: problems, sources, ..board }),
-        _ => Err(problems),
+        _ => Err(problems.into()),
     }
 }
 

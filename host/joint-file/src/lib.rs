@@ -40,7 +40,7 @@ pub use contents::JointFile;
 pub use motion::Profile;
 pub use notes::{Notes, Source};
 pub use presets::{PRESETS, preset};
-pub use problem::{Problem, Severity};
+pub use problem::{Problem, Problems, Severity};
 pub use reader::read;
 pub use spelling::nearest;
 pub use table::{Key, Keys, Table};

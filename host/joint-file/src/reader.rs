@@ -10,7 +10,7 @@ use toml::de::DeTable;
 use crate::contents::JointFile;
 use crate::motion;
 use crate::notes::Notes;
-use crate::problem::Problem;
+use crate::problem::Problems;
 use crate::section::Section;
 use crate::{bodies, coherence, drive_train, equivalent, geometry, meshes, plausible};
 
@@ -30,7 +30,7 @@ use crate::{bodies, coherence, drive_train, equivalent, geometry, meshes, plausi
 /// assert!(misspelt.help.contains("half_backlash_um"), "{misspelt}");
 /// assert!(problems.iter().any(|problem| &slip[problem.span.clone()] == "[mesh]"));
 /// ```
-pub fn read(text: &str) -> Result<JointFile, Vec<Problem>> {
+pub fn read(text: &str) -> Result<JointFile, Problems> {
     let notes = Notes::new(text);
     let (table, syntax) = DeTable::parse_recoverable(text);
     let mut blamed_lines: Vec<Range<usize>> = Vec::new();
@@ -51,7 +51,7 @@ pub fn read(text: &str) -> Result<JointFile, Vec<Problem>> {
     let (problems, sources) = notes.into_parts();
     match joint {
         Some(joint) if !failed => Ok(JointFile { warnings: problems, sources, ..joint }),
-        _ => Err(problems),
+        _ => Err(problems.into()),
     }
 }
 

@@ -170,7 +170,7 @@ fn an_inertia_at_the_input_in_another_unit_is_named_by_its_key() {
     assert!((1e4 * sheet::inertia_at_input(&own.bodies, &own.geometry) - 0.0608).abs() < 5e-5);
     for (value, foil) in [("900", false), ("1e-5", true)] {
         let text = with(&[("gear_inertia_at_input_kg_cm2", value)]);
-        let said = read(&text).map_or_else(|problems| problems, |file| file.warnings);
+        let said = read(&text).map_or_else(|problems| problems.0, |file| file.warnings);
         let named = said.iter().filter(|problem| problem.message.contains("`gear_inertia_at_input_kg_cm2`"));
         let named: Vec<String> = named.map(ToString::to_string).collect();
         assert!(

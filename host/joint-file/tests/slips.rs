@@ -104,7 +104,7 @@ fn slipped(name: &str, key: &str, slip: Slip) -> String {
 
 /// Everything that is said of a text.
 fn said(text: &str) -> Vec<Problem> {
-    read(text).map_or_else(|problems| problems, |file| file.warnings)
+    read(text).map_or_else(|problems| problems.0, |file| file.warnings)
 }
 
 #[test]

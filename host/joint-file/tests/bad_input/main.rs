@@ -16,7 +16,7 @@ fn spoilt(from: &str, to: &str) -> String {
 }
 
 fn problems(text: &str) -> Vec<Problem> {
-    read(text).expect_err("the file is spoilt")
+    read(text).expect_err("the file is spoilt").0
 }
 
 /// The only problem, by its message, the text that it underlines, and its help.

@@ -5,7 +5,7 @@
 #ifndef CONTROLLER_H
 #define CONTROLLER_H
 
-#include "joint.h"
+#include <lostmotion/joint.h>
 
 #ifdef __cplusplus
 extern "C" {

@@ -2,7 +2,7 @@
  * The observer alone, on a PC: reads a recorded log from the standard input and prints the gap. Columns as those of
  * `joint identify`: time_s, motor_counts, output_counts, motor_torque_N_m, a row each control period.
  */
-#include "joint.h"
+#include <lostmotion/joint.h>
 #include "tables_of_test.h"
 
 #include <stdio.h>

@@ -95,8 +95,11 @@ int main(void) {
           joint_observer_start(&run.observer, sizeof run.observer, tables_of_test, sizeof tables_of_test));
 #ifdef MEASURING
     static Cost bare_step = {"core's observer", 0, 0, 0}, bare_follow = {"core's compensation", 0, 0, 0};
-    (void)joint_observer_start(&bare_observer, sizeof bare_observer, tables_of_test, sizeof tables_of_test);
-    (void)joint_compensation_start(&bare_compensation, sizeof bare_compensation, tables_of_test, sizeof tables_of_test);
+    if (joint_observer_start(&bare_observer, sizeof bare_observer, tables_of_test, sizeof tables_of_test) != JOINT_STATUS_OK ||
+        joint_compensation_start(&bare_compensation, sizeof bare_compensation, tables_of_test, sizeof tables_of_test) !=
+            JOINT_STATUS_OK) {
+        return 1;
+    }
     void *const core_observer = joint_bare_observer(&bare_observer);
     void *const core_compensation = joint_bare_compensation(&bare_compensation);
     const void *const core_estimates = joint_bare_estimates(&bare_observer);
@@ -143,6 +146,9 @@ int main(void) {
 #endif
     }
     COUNT(save, joint_observer_save(&run.observer, memory, sizeof memory));
+    if (joint_observer_start(&run.observer, sizeof run.observer, tables_of_test, sizeof tables_of_test) != JOINT_STATUS_OK) {
+        return 1;
+    }
     COUNT(load, joint_observer_load(&run.observer, memory, sizeof memory));
     tell(&step);
     tell(&estimates);

@@ -2,7 +2,7 @@
 #ifndef EXPECT_H
 #define EXPECT_H
 
-#include "joint.h"
+#include <lostmotion/joint.h>
 #include "say.h"
 
 /* Whether a status is the expected one; if not, says which call it was and what it answered. */

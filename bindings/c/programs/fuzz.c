@@ -6,7 +6,7 @@
  */
 #define _DEFAULT_SOURCE 1
 
-#include "joint.h"
+#include <lostmotion/joint.h>
 #include "say.h"
 #include "tables_of_test.h"
 
@@ -154,7 +154,7 @@ int main(int count, char **arguments) {
     damaged = damaged_tables;
     for (sequence = 0; sequence < sequences; sequence++) {
         /* What is started, in this sequence: observers, compensation, probe, plant. */
-        int started[5] = {0, 0, 0, 0, 0};
+        int started[5] = {0, 0, 0, 0, 0}, stepped[2] = {0, 0};
         int saved = 0, call;
         unsigned index;
         for (index = 0; index + 1u < used; index++) {
@@ -212,6 +212,7 @@ int main(int count, char **arguments) {
                 status = kind == 0u ? joint_observer_start((JointObserver *)to, bytes, from, of)
                                     : joint_observer_start_without_maps((JointObserver *)to, bytes, from, of);
                 started[which] |= status == JOINT_STATUS_OK;
+                stepped[which] &= status != JOINT_STATUS_OK;
                 break;
             }
             case 2: {
@@ -248,6 +249,7 @@ int main(int count, char **arguments) {
                 void *const to = pointer(observer, plant);
                 is_wrong |= !started[which];
                 status = joint_observer_step((JointObserver *)to, (JointSamples *)pointer(samples, NULL));
+                stepped[which] |= status == JOINT_STATUS_OK;
                 break;
             }
             case 9: {
@@ -295,7 +297,7 @@ int main(int count, char **arguments) {
                 void *const to = pointer(observer, probe);
                 const size_t bytes = size(JOINT_MEMORY_BYTES);
                 /* Whether it is this kind of observer's, nobody here keeps account of. */
-                const int sure = is_wrong || !started[which] || !saved;
+                const int sure = is_wrong || !started[which] || stepped[which] || !saved;
                 status = joint_observer_load((JointObserver *)to, memory, bytes);
                 is_wrong = sure || status != JOINT_STATUS_OK;
                 break;

@@ -7,7 +7,7 @@
 #ifndef RUN_H
 #define RUN_H
 
-#include "joint.h"
+#include <lostmotion/joint.h>
 
 #include <string.h>
 
@@ -90,6 +90,26 @@ static inline JointStatus run_start(Run *run, const uint64_t *tables, size_t byt
     return status;
 }
 
+/* Takes what a period gave into the digest. */
+static inline void run_note(Run *run, uint64_t plant_digest) {
+    const float said[] = {
+        run->torque.motor_torque_Nm,          run->torque.trust,
+        run->torque.demand_Nm,                run->estimates.gap_m.value,
+        run->estimates.gap_m.variance,        run->estimates.half_backlash_m.value,
+        run->estimates.load_torque_Nm.value,  run->estimates.compliance_rad_per_Nm.value,
+        run->estimates.skew_s.value,          run->estimates.motor.fraction_turns,
+        run->estimates.link.speed_rad_per_s,
+    };
+    size_t index;
+    uint64_t digest = run->digest;
+    for (index = 0; index < sizeof said / sizeof said[0]; index++) {
+        digest = run_chain_number(digest, said[index]);
+    }
+    digest = run_chain(digest, (uint64_t)run->estimates.contact << 8 | (uint64_t)run->estimates.source);
+    run->digest = run_chain(digest, plant_digest);
+    run->period++;
+}
+
 static inline JointStatus run_period(Run *run) {
     const uint32_t period = run->period, scale = run->scale;
     const JointMotion now = run_motion(run, period), ahead = run_motion(run, period + run->lead);
@@ -130,22 +150,7 @@ static inline JointStatus run_period(Run *run) {
     }
     RUN_CALLS_END(status);
     if (status == JOINT_STATUS_OK) {
-        const float said[] = {
-            run->torque.motor_torque_Nm,          run->torque.trust,
-            run->torque.demand_Nm,                run->estimates.gap_m.value,
-            run->estimates.gap_m.variance,        run->estimates.half_backlash_m.value,
-            run->estimates.load_torque_Nm.value,  run->estimates.compliance_rad_per_Nm.value,
-            run->estimates.skew_s.value,          run->estimates.motor.fraction_turns,
-            run->estimates.link.speed_rad_per_s,
-        };
-        size_t index;
-        uint64_t digest = run->digest;
-        for (index = 0; index < sizeof said / sizeof said[0]; index++) {
-            digest = run_chain_number(digest, said[index]);
-        }
-        digest = run_chain(digest, (uint64_t)run->estimates.contact << 8 | (uint64_t)run->estimates.source);
-        run->digest = run_chain(digest, plant_digest);
-        run->period = period + 1u;
+        run_note(run, plant_digest);
     }
     return status;
 }

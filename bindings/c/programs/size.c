@@ -1,7 +1,7 @@
 /* As much of the library as a kind of firmware takes, for its size: chosen by one of the names below. */
 #include "say.h"
 
-#include "joint.h"
+#include <lostmotion/joint.h>
 #include "tables_of_test.h"
 
 static JointSamples samples;

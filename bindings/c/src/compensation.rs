@@ -1,5 +1,7 @@
 //! The compensation: from the observer's estimates and a set-point to a motor torque.
 
+use core::mem::MaybeUninit;
+
 use core::mem::offset_of;
 use core::ptr;
 
@@ -7,9 +9,11 @@ use model_core::compensation::{CommandRef, Compensation, ImpedancePoint, Motion,
 
 use model_core::gears::Flank;
 
+use table_blob::Blob;
+
 use crate::estimates::JointContact;
 use crate::fp_mode;
-use crate::object::{Kind, marked, start};
+use crate::object::{Kind, Storage, marked, start};
 use crate::observer::{AnyObserver, JointObserver};
 use crate::status::JointStatus;
 
@@ -193,24 +197,29 @@ impl JointTorque {
     }
 }
 
-/// Starts a compensation. `bytes` is sizeof(JointCompensation). The tables must stay as they are for as long as it is used.
+/// Starts a compensation, as joint_compensation_start; `abi` is JOINT_ABI.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn joint_compensation_start(
+#[must_use]
+pub unsafe extern "C" fn joint_compensation_start_checked(
     compensation: *mut JointCompensation,
     bytes: usize,
     tables: *const u64,
     tables_bytes: usize,
+    abi: u32,
 ) -> JointStatus {
-    fp_mode::standard(|| {
-        // SAFETY: the caller's word, as the header asks for it.
-        unsafe { start(compensation, bytes, tables, tables_bytes, |blob| Ok(Compensation::new(blob.compensation()?))) }
-    })
-    .into()
+    let storage = Storage { at: compensation, bytes, abi };
+    let make = |blob: &Blob<'static>, place: &mut MaybeUninit<_>| {
+        place.write(Compensation::new(blob.compensation()?));
+        Ok(())
+    };
+    // SAFETY: the caller's word, as the header asks for it.
+    fp_mode::standard(|| unsafe { start(storage, tables, tables_bytes, make) }).into()
 }
 
 /// One control period of position control, after the observer's step: follow a motion. `ahead` is the motion by
 /// `lead_s` (joint_tables_facts) later than `now`, or NULL if that is not known.
 #[unsafe(no_mangle)]
+#[must_use]
 pub unsafe extern "C" fn joint_compensation_follow(
     compensation: *mut JointCompensation,
     observer: *const JointObserver,
@@ -241,6 +250,7 @@ pub unsafe extern "C" fn joint_compensation_follow(
 
 /// One control period of impedance control, after the observer's step: be a spring and damper at the link.
 #[unsafe(no_mangle)]
+#[must_use]
 pub unsafe extern "C" fn joint_compensation_yield(
     compensation: *mut JointCompensation,
     observer: *const JointObserver,

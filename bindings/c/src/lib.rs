@@ -1,6 +1,6 @@
 #![cfg_attr(feature = "library", no_std)]
 //! Plant, observer, compensation, width probe and wiring check of `model-core` for programs in C and C++. The header is
-//! `bindings/c/include/joint.h`; everything that its reader must know stands there, and is written here.
+//! `bindings/c/include/lostmotion/joint.h`; everything that its reader must know stands there, and is written here.
 //!
 //! Thin: a function takes pointers, checks them, sets the floating-point unit to the mode that the numbers are made for,
 //! and calls the core. The caller owns all storage. There is no heap, no global that changes, no call into libc and no
@@ -23,6 +23,7 @@ mod plant;
 mod probe;
 mod status;
 mod tables;
+mod version;
 mod wiring;
 
 pub use compensation::*;
@@ -32,6 +33,7 @@ pub use plant::*;
 pub use probe::*;
 pub use status::*;
 pub use tables::*;
+pub use version::*;
 pub use wiring::*;
 
 /// Nothing in here panics: a test looks for what would lead here in linked programs, and finds nothing.

@@ -1,10 +1,11 @@
 //! Objects in the caller's storage: how they are told from storage that holds none, and how pointers are checked.
 
-use core::ptr;
+use core::mem::MaybeUninit;
 
 use table_blob::{Blob, Header};
 
 use crate::status::JointStatus;
+use crate::version::has_abi;
 
 /// A kind of object: the type of its storage in the header, and what lies in it.
 pub trait Kind: Sized {
@@ -104,30 +105,48 @@ pub unsafe fn look<'a, K: Kind>(storage: *const K::Storage) -> Result<&'a Object
     unsafe { open::<K>(storage.cast_mut()) }.map(|object| &*object)
 }
 
-/// Puts an object, made from tables, into a storage.
+/// Storage of an object, as a caller hands it over to have an object started in it.
+#[derive(Debug, Clone, Copy)]
+pub struct Storage<S> {
+    /// Where it is.
+    pub at: *mut S,
+    /// Its size, by the caller's word [B].
+    pub bytes: usize,
+    /// `JOINT_ABI` of the caller's header.
+    pub abi: u32,
+}
+
+/// Makes an object from tables where it stays: the stack of a caller may have no room for a second one. `make` writes to its
+/// place if it succeeds, and only then.
 ///
 /// # Safety
 /// Storage that is not NULL is of `bytes` and in nobody else's use; tables that are not NULL are of `tables_bytes`, and stay
 /// as they are for as long as the object is used.
 pub unsafe fn start<K: Kind>(
-    storage: *mut K::Storage,
-    bytes: usize,
+    storage: Storage<K::Storage>,
     tables: *const u64,
     tables_bytes: usize,
-    make: impl FnOnce(&Blob<'static>) -> Result<K, JointStatus>,
+    make: impl FnOnce(&Blob<'static>, &mut MaybeUninit<K>) -> Result<(), JointStatus>,
 ) -> Result<(), JointStatus> {
     const { assert!(size_of::<Object<K>>() <= size_of::<K::Storage>()) };
     const { assert!(align_of::<Object<K>>() <= align_of::<K::Storage>()) };
-    usable(storage)?;
-    if bytes != size_of::<K::Storage>() {
+    usable(storage.at)?;
+    has_abi(storage.abi)?;
+    if storage.bytes != size_of::<K::Storage>() {
         return Err(JointStatus::WrongSize);
     }
     // SAFETY: the caller's word on the tables.
     let blob = unsafe { blob(tables, tables_bytes) }?;
-    let (value, tables) = (make(&blob)?, blob.header());
-    let object = Object { mark: mark::<K>(storage), tables, tables_digest: tables.digest, value };
-    // SAFETY: aligned, large enough, and the caller's to give.
-    unsafe { ptr::write(storage.cast(), object) };
+    let object = storage.at.cast::<Object<MaybeUninit<K>>>();
+    // SAFETY: aligned, large enough, and the caller's to give; a place without a value may hold any bits.
+    make(&blob, unsafe { &mut (*object).value })?;
+    let tables = blob.header();
+    // SAFETY: likewise; the mark comes last, when everything else is in place.
+    unsafe {
+        (&raw mut (*object).tables).write(tables);
+        (&raw mut (*object).tables_digest).write(tables.digest);
+        (&raw mut (*object).mark).write(mark::<K>(storage.at));
+    }
     Ok(())
 }
 

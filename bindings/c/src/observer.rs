@@ -9,7 +9,7 @@ use table_blob::Blob;
 
 use crate::estimates::{JointEstimates, JointSamples};
 use crate::fp_mode;
-use crate::object::{Kind, look, open, read, start, usable};
+use crate::object::{Kind, Storage, look, open, read, start, usable};
 use crate::status::JointStatus;
 
 /// 64-bit words of an observer.
@@ -31,6 +31,8 @@ pub(crate) struct AnyObserver {
     /// From the observer's beginning [B].
     estimates: usize,
     has_maps: bool,
+    /// A memory is loaded before the first step alone.
+    stepped: bool,
     pub(crate) observer: MaybeUninit<Observer<'static, f32, MAPPED>>,
 }
 
@@ -40,20 +42,29 @@ impl Kind for AnyObserver {
 }
 
 impl AnyObserver {
-    fn new<const P: usize>(blob: &Blob<'static>) -> Result<Self, JointStatus> {
+    /// Builds an observer of a kind in its place.
+    fn new_in<const P: usize>(blob: &Blob<'static>, place: &mut MaybeUninit<Self>) -> Result<(), JointStatus> {
         const { assert!(size_of::<Observer<'static, f32, P>>() <= size_of::<Observer<'static, f32, MAPPED>>()) };
         const { assert!(align_of::<Observer<'static, f32, P>>() <= align_of::<Observer<'static, f32, MAPPED>>()) };
         let step = |observer: *mut (), samples: &Samples<f32>| {
             // SAFETY: an observer of this kind is put beside this function.
             unsafe { &mut *observer.cast::<Observer<'static, f32, P>>() }.step(samples);
         };
-        let mut any = Self { step, estimates: 0, has_maps: P == MAPPED, observer: MaybeUninit::uninit() };
-        let place = any.observer.as_mut_ptr().cast::<Observer<'static, f32, P>>();
-        // SAFETY: large enough and aligned, as was asserted.
-        unsafe { place.write(Observer::new(blob.observer()?)) };
-        // SAFETY: it was written.
-        any.estimates = ptr::from_ref(unsafe { &*place }.estimates()).addr() - place.addr();
-        Ok(any)
+        let tables = blob.observer()?;
+        let any = place.as_mut_ptr();
+        // SAFETY: inside of the place.
+        let room = unsafe { &raw mut (*any).observer }.cast::<MaybeUninit<Observer<'static, f32, P>>>();
+        // SAFETY: large enough and aligned, as was asserted; it may hold any bits.
+        let observer = Observer::new_in(unsafe { &mut *room }, tables);
+        let estimates = ptr::from_ref(observer.estimates()).addr() - room.addr();
+        // SAFETY: inside of the place; the observer is written already.
+        unsafe {
+            (&raw mut (*any).step).write(step);
+            (&raw mut (*any).estimates).write(estimates);
+            (&raw mut (*any).has_maps).write(P == MAPPED);
+            (&raw mut (*any).stepped).write(false);
+        }
+        Ok(())
     }
 
     /// The estimates of the last step.
@@ -81,35 +92,39 @@ impl AnyObserver {
 /// An observer without maps.
 type Plain = Observer<'static, f32, PLAIN>;
 
-/// Starts an observer with maps of the encoders' errors. `bytes` is sizeof(JointObserver). The tables must stay as they are
-/// for as long as it is used.
+/// Starts an observer, as joint_observer_start; `abi` is JOINT_ABI.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn joint_observer_start(
+#[must_use]
+pub unsafe extern "C" fn joint_observer_start_checked(
     observer: *mut JointObserver,
     bytes: usize,
     tables: *const u64,
     tables_bytes: usize,
+    abi: u32,
 ) -> JointStatus {
-    let make = |blob: &Blob<'static>| AnyObserver::new::<MAPPED>(blob);
+    let storage = Storage { at: observer, bytes, abi };
     // SAFETY: the caller's word, as the header asks for it.
-    fp_mode::standard(|| unsafe { start(observer, bytes, tables, tables_bytes, make) }).into()
+    fp_mode::standard(|| unsafe { start(storage, tables, tables_bytes, AnyObserver::new_in::<MAPPED>) }).into()
 }
 
-/// Starts an observer without maps of the encoders' errors: for ideal encoders, or where flash is short.
+/// Starts an observer, as joint_observer_start_without_maps; `abi` is JOINT_ABI.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn joint_observer_start_without_maps(
+#[must_use]
+pub unsafe extern "C" fn joint_observer_start_without_maps_checked(
     observer: *mut JointObserver,
     bytes: usize,
     tables: *const u64,
     tables_bytes: usize,
+    abi: u32,
 ) -> JointStatus {
-    let make = |blob: &Blob<'static>| AnyObserver::new::<PLAIN>(blob);
+    let storage = Storage { at: observer, bytes, abi };
     // SAFETY: the caller's word, as the header asks for it.
-    fp_mode::standard(|| unsafe { start(observer, bytes, tables, tables_bytes, make) }).into()
+    fp_mode::standard(|| unsafe { start(storage, tables, tables_bytes, AnyObserver::new_in::<PLAIN>) }).into()
 }
 
 /// One control period: takes what was measured.
 #[unsafe(no_mangle)]
+#[must_use]
 pub unsafe extern "C" fn joint_observer_step(
     observer: *mut JointObserver,
     samples: *const JointSamples,
@@ -120,6 +135,7 @@ pub unsafe extern "C" fn joint_observer_step(
         // SAFETY: likewise.
         let samples = unsafe { read(samples) }?.samples()?;
         let any = &mut object.value;
+        any.stepped = true;
         // SAFETY: the observer beside this function is of its kind.
         unsafe { (any.step)(any.observer.as_mut_ptr().cast(), &samples) };
         Ok(())
@@ -129,6 +145,7 @@ pub unsafe extern "C" fn joint_observer_step(
 
 /// The estimates of the last period.
 #[unsafe(no_mangle)]
+#[must_use]
 pub unsafe extern "C" fn joint_observer_estimates(
     observer: *const JointObserver,
     estimates: *mut JointEstimates,
@@ -146,6 +163,7 @@ pub unsafe extern "C" fn joint_observer_estimates(
 
 /// Saves what was learnt, outside of the control period. `bytes` is JOINT_MEMORY_BYTES.
 #[unsafe(no_mangle)]
+#[must_use]
 pub unsafe extern "C" fn joint_observer_save(
     observer: *const JointObserver,
     memory: *mut u8,
@@ -167,6 +185,7 @@ pub unsafe extern "C" fn joint_observer_save(
 
 /// Goes on from what was saved, outside of the control period, before the first step. `bytes` is JOINT_MEMORY_BYTES.
 #[unsafe(no_mangle)]
+#[must_use]
 pub unsafe extern "C" fn joint_observer_load(
     observer: *mut JointObserver,
     memory: *const u8,
@@ -178,6 +197,9 @@ pub unsafe extern "C" fn joint_observer_load(
         usable(memory)?;
         if bytes != JOINT_MEMORY_BYTES {
             return Err(JointStatus::WrongSize);
+        }
+        if object.value.stepped {
+            return Err(JointStatus::AlreadyStepped);
         }
         // SAFETY: not NULL, of this size, and not the object's own.
         let memory = unsafe { core::slice::from_raw_parts(memory, bytes) };

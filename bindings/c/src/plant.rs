@@ -1,11 +1,15 @@
 //! The plant: the gears with motor, current loop, frictions, weight and encoders around them, for a controller to be tried
 //! on.
 
+use core::mem::MaybeUninit;
+
 use c_plant::{MOST_PLANETS, Motion, Plant};
+
+use table_blob::Blob;
 
 use crate::estimates::{JointContact, JointSamples};
 use crate::fp_mode;
-use crate::object::{Kind, look, open, start, usable};
+use crate::object::{Kind, Storage, look, open, start, usable};
 use crate::status::JointStatus;
 
 /// 64-bit words of a plant.
@@ -82,23 +86,25 @@ fn outputs(of: &Motion) -> JointPlantOutputs {
     }
 }
 
-/// Starts a plant, at rest. `bytes` is sizeof(JointPlant). The tables must stay as they are for as long as it is used.
+/// Starts a plant, as joint_plant_start; `abi` is JOINT_ABI.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn joint_plant_start(
+#[must_use]
+pub unsafe extern "C" fn joint_plant_start_checked(
     plant: *mut JointPlant,
     bytes: usize,
     tables: *const u64,
     tables_bytes: usize,
+    abi: u32,
 ) -> JointStatus {
-    fp_mode::standard(|| {
-        // SAFETY: the caller's word, as the header asks for it.
-        unsafe { start(plant, bytes, tables, tables_bytes, |blob| Ok(Plant::new(blob)?)) }
-    })
-    .into()
+    let storage = Storage { at: plant, bytes, abi };
+    let make = |blob: &Blob<'static>, place: &mut MaybeUninit<Plant<'static>>| Ok(Plant::new_in(place, blob)?);
+    // SAFETY: the caller's word, as the header asks for it.
+    fp_mode::standard(|| unsafe { start(storage, tables, tables_bytes, make) }).into()
 }
 
 /// Moves on by one control period under a torque command for the motor and a torque that brakes the link.
 #[unsafe(no_mangle)]
+#[must_use]
 pub unsafe extern "C" fn joint_plant_step(
     plant: *mut JointPlant,
     motor_torque_Nm: f32,
@@ -118,6 +124,7 @@ pub unsafe extern "C" fn joint_plant_step(
 
 /// What the encoders read now, and the torque that was commanded last.
 #[unsafe(no_mangle)]
+#[must_use]
 pub unsafe extern "C" fn joint_plant_samples(plant: *const JointPlant, samples: *mut JointSamples) -> JointStatus {
     fp_mode::standard(|| {
         // SAFETY: the caller's word, as the header asks for it.
@@ -133,6 +140,7 @@ pub unsafe extern "C" fn joint_plant_samples(plant: *const JointPlant, samples: 
 
 /// The motion now.
 #[unsafe(no_mangle)]
+#[must_use]
 pub unsafe extern "C" fn joint_plant_outputs(plant: *const JointPlant, motion: *mut JointPlantOutputs) -> JointStatus {
     fp_mode::standard(|| {
         // SAFETY: the caller's word, as the header asks for it.
@@ -148,6 +156,7 @@ pub unsafe extern "C" fn joint_plant_outputs(plant: *const JointPlant, motion: *
 
 /// Digest of every bit of the gears' state: two runs of which it is the same have gone the same way so far.
 #[unsafe(no_mangle)]
+#[must_use]
 pub unsafe extern "C" fn joint_plant_digest(plant: *const JointPlant, digest: *mut u64) -> JointStatus {
     fp_mode::standard(|| {
         // SAFETY: the caller's word, as the header asks for it.

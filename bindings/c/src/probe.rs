@@ -1,10 +1,14 @@
 //! The width probe: a motor that wiggles against a held load and reads the half-backlash off where it comes to rest.
 
+use core::mem::MaybeUninit;
+
 use model_core::observer::{Probe, Progress, Refusal};
+
+use table_blob::Blob;
 
 use crate::estimates::JointEstimate;
 use crate::fp_mode;
-use crate::object::{Kind, look, open, start, usable};
+use crate::object::{Kind, Storage, look, open, start, usable};
 use crate::observer::{AnyObserver, JointObserver};
 use crate::status::JointStatus;
 
@@ -62,29 +66,30 @@ pub struct JointProbed {
     pub half_backlash_m: JointEstimate,
 }
 
-/// Starts a width probe. `bytes` is sizeof(JointProbe). The load is to be held, and the motor at rest.
+/// Starts a width probe, as joint_probe_start; `abi` is JOINT_ABI.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn joint_probe_start(
+#[must_use]
+pub unsafe extern "C" fn joint_probe_start_checked(
     probe: *mut JointProbe,
     bytes: usize,
     tables: *const u64,
     tables_bytes: usize,
+    abi: u32,
 ) -> JointStatus {
-    fp_mode::standard(|| {
-        // SAFETY: the caller's word, as the header asks for it.
-        unsafe {
-            start(probe, bytes, tables, tables_bytes, |blob| {
-                let table = blob.probe()?;
-                // The core's controller begins in a period of its own.
-                Ok(Waiting { probe: Probe::new(table), wait: table.settle.saturating_add(1) })
-            })
-        }
-    })
-    .into()
+    let storage = Storage { at: probe, bytes, abi };
+    let make = |blob: &Blob<'static>, place: &mut MaybeUninit<_>| {
+        let table = blob.probe()?;
+        // The core's controller begins in a period of its own.
+        place.write(Waiting { probe: Probe::new(table), wait: table.settle.saturating_add(1) });
+        Ok(())
+    };
+    // SAFETY: the caller's word, as the header asks for it.
+    fp_mode::standard(|| unsafe { start(storage, tables, tables_bytes, make) }).into()
 }
 
 /// One control period of a probe, after the observer's step and in place of the compensation's.
 #[unsafe(no_mangle)]
+#[must_use]
 pub unsafe extern "C" fn joint_probe_step(
     probe: *mut JointProbe,
     observer: *const JointObserver,

@@ -43,6 +43,10 @@ pub enum JointStatus {
     MemoryOutOfRange = 15,
     /// A fraction of a turn is more than a turn.
     FractionOutOfRange = 16,
+    /// The caller was compiled with a header of another version.
+    OtherHeader = 17,
+    /// The observer has been stepped; a memory is loaded before the first step.
+    AlreadyStepped = 18,
 }
 
 impl From<BlobError> for JointStatus {
@@ -76,7 +80,7 @@ impl From<Result<(), JointStatus>> for JointStatus {
 }
 
 /// Names and texts by number.
-const SAID: [[&core::ffi::CStr; 2]; 17] = [
+const SAID: [[&core::ffi::CStr; 2]; 19] = [
     [c"JOINT_STATUS_OK", c"done"],
     [c"JOINT_STATUS_NULL_POINTER", c"a pointer is NULL: give the object that the header asks for"],
     [c"JOINT_STATUS_MISALIGNED", c"a pointer is not aligned for its type: use the header's types, not bytes"],
@@ -94,6 +98,8 @@ const SAID: [[&core::ffi::CStr; 2]; 17] = [
     [c"JOINT_STATUS_OTHER_JOINT", c"the memory belongs to another joint, to other encoders, or to an observer with or without maps"],
     [c"JOINT_STATUS_MEMORY_OUT_OF_RANGE", c"the memory holds a number that no joint of this design can have: let the observer learn again"],
     [c"JOINT_STATUS_FRACTION_OUT_OF_RANGE", c"a fraction of a turn is more than a turn: give turns, neither counts nor degrees nor radians, and whole ones in `turns`"],
+    [c"JOINT_STATUS_OTHER_HEADER", c"the caller was compiled with a header of another version: take header and library from one archive"],
+    [c"JOINT_STATUS_ALREADY_STEPPED", c"the observer has been stepped: start it anew, and load before the first step"],
 ];
 
 fn said(status: u32, which: usize) -> *const c_char {

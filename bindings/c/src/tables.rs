@@ -5,6 +5,7 @@ use core::ffi::c_char;
 use crate::fp_mode;
 use crate::object::{blob, usable};
 use crate::status::JointStatus;
+use crate::version::has_abi;
 
 /// Bytes of a joint's name, with the zero at its end.
 pub const JOINT_NAME_BYTES: usize = 32;
@@ -44,14 +45,17 @@ pub struct JointTablesFacts {
     pub name: [c_char; JOINT_NAME_BYTES],
 }
 
-/// Looks at tables: whether they are sound, and what they were made for. `facts` may be NULL.
+/// Looks at tables, as joint_tables_facts; `abi` is JOINT_ABI.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn joint_tables_facts(
+#[must_use]
+pub unsafe extern "C" fn joint_tables_facts_checked(
     tables: *const u64,
     tables_bytes: usize,
     facts: *mut JointTablesFacts,
+    abi: u32,
 ) -> JointStatus {
     fp_mode::standard(|| {
+        has_abi(abi)?;
         // SAFETY: the caller's word, as the header asks for it.
         let blob = unsafe { blob(tables, tables_bytes) }?;
         let (header, observer, compensation) = (blob.header(), blob.observer()?, blob.compensation()?);

@@ -1,13 +1,17 @@
 //! The wiring check: whether signs, counts, ratio, torque, rate and clock are those of the tables, by a motor that is moved
 //! gently, or by any motion that is given to it.
 
+use core::mem::MaybeUninit;
+
 use core::ffi::{CStr, c_char};
 
 use model_core::wiring::{Verdict, Wiring, WiringCheck, WiringProgress, WiringRefusal};
 
+use table_blob::Blob;
+
 use crate::estimates::JointSamples;
 use crate::fp_mode;
-use crate::object::{Kind, look, open, read, start, usable};
+use crate::object::{Kind, Storage, look, open, read, start, usable};
 use crate::status::JointStatus;
 
 /// 64-bit words of a wiring check.
@@ -138,30 +142,29 @@ impl From<&Wiring<f32>> for JointWiringVerdicts {
     }
 }
 
-/// Starts a wiring check. `bytes` is sizeof(JointWiring). The joint is to be at rest, and free to turn by a few degrees at the
-/// output.
+/// Starts a wiring check, as joint_wiring_start; `abi` is JOINT_ABI.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn joint_wiring_start(
+#[must_use]
+pub unsafe extern "C" fn joint_wiring_start_checked(
     wiring: *mut JointWiring,
     bytes: usize,
     tables: *const u64,
     tables_bytes: usize,
+    abi: u32,
 ) -> JointStatus {
-    fp_mode::standard(|| {
-        // SAFETY: the caller's word, as the header asks for it.
-        unsafe {
-            start(wiring, bytes, tables, tables_bytes, |blob| {
-                let table = blob.wiring()?;
-                Ok(Check(WiringCheck::new(table)))
-            })
-        }
-    })
-    .into()
+    let storage = Storage { at: wiring, bytes, abi };
+    let make = |blob: &Blob<'static>, place: &mut MaybeUninit<_>| {
+        place.write(Check(WiringCheck::new(blob.wiring()?)));
+        Ok(())
+    };
+    // SAFETY: the caller's word, as the header asks for it.
+    fp_mode::standard(|| unsafe { start(storage, tables, tables_bytes, make) }).into()
 }
 
 /// One control period of a wiring check, in place of the observer's and the compensation's steps. With an allowed torque of
 /// zero, or with another torque than the answer's in force, it judges whatever motion the samples show.
 #[unsafe(no_mangle)]
+#[must_use]
 pub unsafe extern "C" fn joint_wiring_step(
     wiring: *mut JointWiring,
     samples: *const JointSamples,
@@ -194,6 +197,7 @@ pub unsafe extern "C" fn joint_wiring_step(
 
 /// The verdicts on what a check has seen so far, outside of the control period.
 #[unsafe(no_mangle)]
+#[must_use]
 pub unsafe extern "C" fn joint_wiring_verdicts(
     wiring: *const JointWiring,
     verdicts: *mut JointWiringVerdicts,

@@ -9,7 +9,8 @@ use cbindgen::{Builder, Config, Language, Style};
 /// Set to write the header anew.
 const WRITE: &str = "UPDATE_HEADER";
 /// In the order in which a reader wants them.
-const SOURCES: [&str; 8] = ["status", "tables", "estimates", "wiring", "observer", "compensation", "probe", "plant"];
+const SOURCES: [&str; 9] =
+    ["version", "status", "tables", "estimates", "wiring", "observer", "compensation", "probe", "plant"];
 /// What is asked of the header.
 const FLAGS: [&str; 6] = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-fsyntax-only"];
 const C: [&str; 3] = ["c99", "c11", "c17"];
@@ -43,8 +44,9 @@ fn tail() -> String {
             )
         })
         .collect();
+    let (abi, starts) = (abi(), starts());
     format!(
-        "/* Size and alignment of the storage that the caller owns. */\n\
+        "{abi}\n{starts}\n/* Size and alignment of the storage that the caller owns. */\n\
          #if defined(__cplusplus)\n\
          #define JOINT_ASSERT(holds, name) static_assert(holds, #name)\n\
          #elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L\n\
@@ -54,8 +56,99 @@ fn tail() -> String {
          #endif\n\
          {sizes}\
          #if defined(__cplusplus)\n{aligned}#else\n{aligned_c}#endif\n\
-         #undef JOINT_ASSERT\n\n#endif /* JOINT_H */\n"
+         #undef JOINT_ASSERT\n\n#endif /* LOSTMOTION_JOINT_H */\n"
     )
+}
+
+/// A status that nobody looks at is a fault that nobody hears of.
+const MUST_USE: &str = "#if defined(__cplusplus) && __cplusplus >= 201703L
+#define JOINT_MUST_USE [[nodiscard]]
+#elif defined(__GNUC__)
+#define JOINT_MUST_USE __attribute__((warn_unused_result))
+#else
+#define JOINT_MUST_USE
+#endif";
+
+/// Structs of the header, in the order of the library's own sum.
+const CROSSING: [&str; 18] = [
+    "TablesFacts",
+    "Reading",
+    "Samples",
+    "Estimate",
+    "Shaft",
+    "Estimates",
+    "Motion",
+    "Impedance",
+    "Torque",
+    "Probed",
+    "PlantOutputs",
+    "WiringStep",
+    "WiringVerdicts",
+    "Observer",
+    "Compensation",
+    "Probe",
+    "Plant",
+    "Wiring",
+];
+
+/// The sum over the version and the sizes of all structs, as the caller's compiler has them.
+fn abi() -> String {
+    let folded = CROSSING
+        .iter()
+        .fold("(uint32_t)JOINT_ABI_VERSION".to_owned(), |sum, name| format!("JOINT_FOLD( \\\n  {sum}, Joint{name})"));
+    format!(
+        "/* Version of what crosses the boundary, and sizes of all structs as this compiler has them. The library refuses to start\n   \
+         an object for a header whose sum differs: it would write beyond the caller's structs. */\n\
+         #define JOINT_FOLD(sum, type) (31u * (sum) + (uint32_t)sizeof(type))\n#define JOINT_ABI {folded}\n"
+    )
+}
+
+/// Functions that a caller uses, with what the header knows added to the arguments.
+fn starts() -> String {
+    const STARTS: [(&str, &str, &str); 6] = [
+        (
+            "observer_start",
+            "Observer",
+            "Starts an observer with maps of the encoders' errors. `bytes` is sizeof(JointObserver). The tables must stay as they are\n   for as long as it is used.",
+        ),
+        (
+            "observer_start_without_maps",
+            "Observer",
+            "Starts an observer without maps of the encoders' errors: for ideal encoders, or where flash is short.",
+        ),
+        (
+            "compensation_start",
+            "Compensation",
+            "Starts a compensation. `bytes` is sizeof(JointCompensation). The tables must stay as they are for as long as it is used.",
+        ),
+        (
+            "probe_start",
+            "Probe",
+            "Starts a width probe. `bytes` is sizeof(JointProbe). The load is to be held, and the motor at rest.",
+        ),
+        (
+            "plant_start",
+            "Plant",
+            "Starts a plant, at rest. `bytes` is sizeof(JointPlant). The tables must stay as they are for as long as it is used.",
+        ),
+        (
+            "wiring_start",
+            "Wiring",
+            "Starts a wiring check. `bytes` is sizeof(JointWiring). The joint is to be at rest, and free to turn by a few degrees at\n   the output.",
+        ),
+    ];
+    let facts = "/* Looks at tables: whether they are sound, and what they were made for. `facts` may be NULL. */\n\
+                 JOINT_MUST_USE static inline JointStatus joint_tables_facts(const uint64_t *tables, size_t tables_bytes,\n    \
+                 JointTablesFacts *facts) {\n  \
+                 return joint_tables_facts_checked(tables, tables_bytes, facts, JOINT_ABI);\n}\n";
+    let start = |(name, object, text): &(&str, &str, &str)| {
+        format!(
+            "\n/* {text} */\nJOINT_MUST_USE static inline JointStatus joint_{name}(Joint{object} *object, size_t bytes,\n    \
+             const uint64_t *tables, size_t tables_bytes) {{\n  \
+             return joint_{name}_checked(object, bytes, tables, tables_bytes, JOINT_ABI);\n}}\n"
+        )
+    };
+    format!("{facts}{}", STARTS.iter().map(start).collect::<String>())
 }
 
 fn header() -> String {
@@ -64,10 +157,14 @@ fn header() -> String {
         style: Style::Both,
         cpp_compat: true,
         usize_is_size_t: true,
-        header: Some(format!("{}\n\n#ifndef JOINT_H\n#define JOINT_H", HEAD.trim_end())),
+        header: Some(format!(
+            "{}\n\n#ifndef LOSTMOTION_JOINT_H\n#define LOSTMOTION_JOINT_H\n\n{MUST_USE}",
+            HEAD.trim_end()
+        )),
         trailer: Some(tail().trim_end().into()),
         line_length: 110,
         documentation: true,
+        function: cbindgen::FunctionConfig { must_use: Some("JOINT_MUST_USE".into()), ..Default::default() },
         enumeration: cbindgen::EnumConfig {
             prefix_with_name: true,
             rename_variants: cbindgen::RenameRule::ScreamingSnakeCase,
@@ -87,14 +184,14 @@ fn header() -> String {
 
 #[test]
 fn the_header_is_what_the_sources_say() {
-    let (path, found) = (package().join("include/joint.h"), header());
+    let (path, found) = (package().join("include/lostmotion/joint.h"), header());
     if std::env::var_os(WRITE).is_some() {
         fs::write(&path, &found).expect("a header that can be written");
     }
     let committed = fs::read_to_string(&path).unwrap_or_default();
     assert!(
         committed == found,
-        "bindings/c/include/joint.h is not what the sources say: {WRITE}=1 cargo test -p c-bindings --test header"
+        "bindings/c/include/lostmotion/joint.h is not what the sources say: {WRITE}=1 cargo test -p c-bindings --test header"
     );
 }
 
@@ -105,7 +202,7 @@ fn the_header_is_clean_in_every_c_and_c_plus_plus() {
     // Twice: the guard works.
     fs::write(
         &source,
-        "#include \"joint.h\"\n#include \"joint.h\"\nint main(void) { return joint_status_name(0) == 0; }\n",
+        "#include <lostmotion/joint.h>\n#include <lostmotion/joint.h>\nint main(void) { return joint_status_name(0) == 0; }\n",
     )
     .expect("a file");
     let mut compiled = 0;

@@ -2,8 +2,11 @@
 //! A plant of any number of planets behind one type. It is a crate of its own because it is compiled for speed, as it is in
 //! the firmware's images, while `bindings/c` around it is compiled for size: nothing in here is generic for a caller.
 
+use core::mem::MaybeUninit;
+
+use model_core::gears::Tables;
 use model_core::observer::Samples;
-use model_core::virtual_joint::VirtualJoint;
+use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 use parameters::ContactState;
 use table_blob::{Blob, BlobError, Gears};
 
@@ -56,16 +59,28 @@ macro_rules! each {
 }
 
 impl<'t> Plant<'t> {
-    /// At rest.
+    /// Builds a plant at rest in its place, which is not written to if the tables have no plant.
     #[inline(never)]
-    pub fn new(blob: &Blob<'t>) -> Result<Self, BlobError> {
+    pub fn new_in(place: &mut MaybeUninit<Self>, blob: &Blob<'t>) -> Result<(), BlobError> {
         let (gears, around) = blob.plant()?;
-        Ok(Self(match gears {
-            Gears::One(gears) => Joint::One(VirtualJoint::new(gears, around)),
-            Gears::Three(gears) => Joint::Three(VirtualJoint::new(gears, around)),
-            Gears::Four(gears) => Joint::Four(VirtualJoint::new(gears, around)),
-            Gears::Five(gears) => Joint::Five(VirtualJoint::new(gears, around)),
-        }))
+        match gears {
+            Gears::One(gears) => Self::put(place, gears, around, Joint::One),
+            Gears::Three(gears) => Self::put(place, gears, around, Joint::Three),
+            Gears::Four(gears) => Self::put(place, gears, around, Joint::Four),
+            Gears::Five(gears) => Self::put(place, gears, around, Joint::Five),
+        }
+        Ok(())
+    }
+
+    /// A function of its own for each number of planets: together, their joints would lie side by side on the stack.
+    #[inline(never)]
+    fn put<const N: usize>(
+        place: &mut MaybeUninit<Self>,
+        gears: &'t Tables<f32, N>,
+        around: &'t SurroundingsTable<f32>,
+        kind: impl FnOnce(VirtualJoint<'t, f32, N>) -> Joint<'t>,
+    ) {
+        place.write(Self(kind(VirtualJoint::new(gears, around))));
     }
 
     /// Moves on by one control period under a torque command and a torque that brakes the link [N m].

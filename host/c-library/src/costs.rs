@@ -44,14 +44,27 @@ pub struct Calls {
     pub most: u64,
 }
 
+/// Stack of a call.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Stack {
+    /// The function.
+    pub name: String,
+    /// Bytes below the caller's stack pointer, arguments on the stack included [B].
+    pub bytes: u64,
+}
+
 /// The machine of the emulator that stands for a target.
 pub fn machine(target: Target) -> Option<Machine> {
     MACHINES.into_iter().find(|machine| machine.target == target)
 }
 
-/// SysTick's counts in a thousand instructions, of 64 ns each: its clock is 168 MHz, or 25 MHz.
+/// SysTick's counts in a thousand instructions, of 64 ns each: its clock is 168 MHz, 20 MHz or 25 MHz.
 fn counts(machine: Machine) -> u32 {
-    if machine.name == "netduinoplus2" { 10_752 } else { 1600 }
+    match machine.name {
+        "netduinoplus2" => 10_752,
+        "mps2-an505" => 1280,
+        _ => 1600,
+    }
 }
 
 /// Memory by use, less what a program without the library takes, with tables for that use.
@@ -100,4 +113,47 @@ pub fn calls(bench: &Workbench, machine: Machine, measuring: bool) -> Outcome<Ve
         .iter()
         .map(|line| parse(line).ok_or_else(|| Failure::new(format!("{} said: {line}", machine.name))))
         .collect()
+}
+
+/// Stack of each call.
+pub fn stacks(bench: &Workbench, machine: Machine) -> Outcome<Vec<Stack>> {
+    let source = programs::folder().join("stack.c");
+    let elf = bench.compile_for(machine, &[&source], &["-O2"])?;
+    let parse = |line: &String| {
+        let (name, bytes) = line.strip_prefix("stack;")?.split_once(';')?;
+        // Zero stands for more than was looked for.
+        Some(Stack { name: name.to_owned(), bytes: bytes.parse().ok().filter(|bytes| *bytes > 0)? })
+    };
+    programs::run_on(machine, &elf)?
+        .iter()
+        .map(|line| parse(line).ok_or_else(|| Failure::new(format!("{} said: {line}", machine.name))))
+        .collect()
+}
+
+/// Costs of a library as text: the archive and the docs have the same.
+pub fn section(library: &Library, joint: &JointFile, machine: Machine) -> Outcome<String> {
+    let mut text = format!(
+        "\nMemory that a program takes beyond one without the library: tables of joint {} are in flash, objects, samples and results\n\
+         in RAM. Linked with `-Wl,--gc-sections`.\n\n| use | flash [B] | RAM [B] |\n|---|---|---|\n",
+        joint.parameters.name
+    );
+    for use_of in memory(library, joint, machine)? {
+        text += &format!("| {} | {} | {} |\n", use_of.what, use_of.flash, use_of.ram);
+    }
+    let tables = tables::for_tests(joint, true, &Board::emulated())?;
+    let bench = Workbench::new(library, &tables)?;
+    let (calls, stacks) = (calls(&bench, machine, false)?, stacks(&bench, machine)?);
+    text += &format!(
+        "\nInstructions of a call over three seconds of a closed loop at {} Hz, and the most stack below its caller. EMULATED:\n\
+         counted on `{}` of the emulator, never on silicon.\n\n\
+         | function | instructions, mean | most | stack [B] |\n|---|---|---|---|\n",
+        joint.surroundings.control_rate, machine.name
+    );
+    for stack in stacks {
+        let counted = calls.iter().find(|call| call.name == stack.name);
+        let [mean, most] =
+            counted.map_or(["".to_owned(), "".to_owned()], |it| [it.mean, it.most].map(|it| it.to_string()));
+        text += &format!("| `{}` | {mean} | {most} | {} |\n", stack.name, stack.bytes);
+    }
+    Ok(text)
 }

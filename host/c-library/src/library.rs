@@ -16,6 +16,8 @@ use report::workspace::workspace;
 
 /// The package.
 const PACKAGE: &str = "c-bindings";
+/// Name of the shared library for the loader. The number grows when programs that were linked before must be linked anew.
+pub const SONAME: &str = "liblostmotion.so.0";
 /// What C programs for boards are built with.
 const CROSS: [&str; 2] = ["gcc-arm-none-eabi", "libnewlib-arm-none-eabi"];
 /// What C programs for this machine are built with.
@@ -41,6 +43,8 @@ const BARE: [&str; 7] = [
 pub enum Target {
     /// Cortex-M4 with FPU, hard-float ABI
     M4f,
+    /// Cortex-M33 with FPU and DSP extension, hard-float ABI
+    M33,
     /// Cortex-M7 with FPU, hard-float ABI
     M7,
     /// This machine
@@ -52,6 +56,7 @@ impl Target {
     pub fn name(self) -> &'static str {
         match self {
             Self::M4f => "m4f",
+            Self::M33 => "m33",
             Self::M7 => "m7",
             Self::Host => "host",
         }
@@ -61,6 +66,7 @@ impl Target {
     pub fn c_flags(self) -> &'static [&'static str] {
         match self {
             Self::M4f => &["-mthumb", "-mcpu=cortex-m4", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard"],
+            Self::M33 => &["-mthumb", "-mcpu=cortex-m33", "-mfpu=fpv5-sp-d16", "-mfloat-abi=hard"],
             Self::M7 => &["-mthumb", "-mcpu=cortex-m7", "-mfpu=fpv5-d16", "-mfloat-abi=hard"],
             Self::Host => &[],
         }
@@ -89,26 +95,35 @@ impl Target {
 pub struct Library {
     /// What it is for.
     pub target: Target,
-    /// `libjoint.a`.
+    /// `liblostmotion.a`.
     pub archive: Vec<u8>,
-    /// `libjoint.so`, for a host.
+    /// `liblostmotion.so`, for a host.
     pub shared: Option<Vec<u8>>,
     /// The compiler.
     pub compiler: String,
 }
 
-/// The header.
-pub fn header() -> PathBuf {
-    workspace().join("bindings/c/include/joint.h")
+/// Folder of the headers.
+pub fn include() -> PathBuf {
+    workspace().join("bindings/c/include")
 }
 
-/// The functions of the header.
+/// The header.
+pub fn header() -> PathBuf {
+    include().join("lostmotion/joint.h")
+}
+
+/// Beginnings of the lines that declare a function; inline functions of the header begin otherwise.
+const DECLARATIONS: [&str; 3] = ["JointStatus joint_", "uint32_t joint_", "const char *joint_"];
+
+/// Functions of the library that the header declares.
 pub fn functions() -> Outcome<Vec<String>> {
     let path = header();
     let text = fs::read_to_string(&path).map_err(|error| Failure::new(format!("{}: {error}", path.display())))?;
     let mut found: Vec<String> = text
         .lines()
-        .filter(|line| line.starts_with("JointStatus joint_") || line.starts_with("const char *joint_"))
+        .map(|line| line.strip_prefix("JOINT_MUST_USE ").unwrap_or(line))
+        .filter(|line| DECLARATIONS.iter().any(|declaration| line.starts_with(declaration)))
         .filter_map(|line| Some(line[line.find("joint_")?..].split_once('(')?.0.to_owned()))
         .collect();
     found.sort();
@@ -126,14 +141,15 @@ pub fn build_in(folder: Option<&Path>, target: Target, features: &str, say: Say<
     let (all, shared, compiler) = match target {
         Target::Host => {
             let folder = folder.map_or_else(target_directory, Path::to_path_buf);
-            let [all, shared] = compile_library_for_host(&folder, PACKAGE, features, say)?;
+            let [all, shared] = compile_library_for_host(&folder, PACKAGE, features, SONAME, say)?;
             let version = tool::output_of(Command::new("rustc").arg("--version").current_dir(workspace()))?;
             (all, Some(shared), version.trim().to_owned())
         }
-        Target::M4f | Target::M7 => {
+        Target::M4f | Target::M33 | Target::M7 => {
             let toolchain = Toolchain::prepare(say)?;
             let toolchain = folder.map_or_else(|| toolchain.clone(), |folder| toolchain.in_folder(folder));
-            let processor = if target == Target::M4f { "cortex-m4" } else { "cortex-m7" };
+            // A Cortex-M33 executes every instruction of a Cortex-M4F, so both targets share one build.
+            let processor = if target == Target::M7 { "cortex-m7" } else { "cortex-m4" };
             let flags = format!("-Ctarget-cpu={processor} {INLINED}");
             (compile_library(&toolchain, PACKAGE, features, &flags, say)?, None, toolchain.compiler().to_owned())
         }
@@ -186,8 +202,8 @@ fn one_object(target: Target, all: &[u8], measuring: bool) -> Outcome<Vec<u8>> {
     ]);
     tool::output_of(copy.args(["--keep-global-symbols=names", "linked.o", "joint.o"]))?;
     let mut archive = Command::new(target.tool("ar"));
-    tool::output_of(archive.current_dir(folder.path()).args(["rcsD", "libjoint.a", "joint.o"]))?;
-    read(&place("libjoint.a"))
+    tool::output_of(archive.current_dir(folder.path()).args(["rcsD", "liblostmotion.a", "joint.o"]))?;
+    read(&place("liblostmotion.a"))
 }
 
 fn read(path: &Path) -> Outcome<Vec<u8>> {

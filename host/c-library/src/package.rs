@@ -12,12 +12,14 @@ use report::folder::Folder;
 use report::progress::Progress;
 use report::workspace::workspace;
 
-use crate::library::{self, Library, Target};
-use crate::programs::{self, Workbench};
+use crate::library::{self, Library, SONAME, Target};
+use crate::programs;
 use crate::{build_files, costs, run, tables};
 
 /// What is written.
-const FILES: [&str; 1] = ["joint-*.tar"];
+const FILES: [&str; 1] = ["lostmotion-*.tar"];
+/// Name under which a linker finds the shared library.
+const LINKED_NAME: &str = "lib/liblostmotion.so";
 /// The library's version: the workspace's.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Control periods of the test program.
@@ -28,11 +30,12 @@ const RATE: u32 = 10_000;
 /// Arguments of `joint library`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
-  joint library --target m4f --out vendor        vendor/joint-VERSION-m4f.tar, for STM32F4 and STM32G4
+  joint library --target m4f --out vendor        vendor/lostmotion-VERSION-m4f.tar, for STM32F4 and STM32G4
+  joint library --target m33 --out vendor        for RP2350, STM32H5 and STM32U5
   joint library --target host                    for unit tests on this machine: static and shared
 
-The archive holds header, library, CMake and pkg-config files, library.properties for Arduino, module.yml for Zephyr, the
-licence, a table of costs and a test program. Two builds of one checkout give the same bytes. Tables of a joint come from
+The archive holds headers for C and C++, library, CMake and pkg-config files, library.properties for Arduino,
+library.json for PlatformIO, module.yml for Zephyr, the licence, a table of costs and a test program. Two builds of one checkout give the same bytes. Tables of a joint come from
 `joint tables`.")]
 pub struct Arguments {
     /// What the library is for
@@ -58,7 +61,7 @@ pub fn run(arguments: &Arguments) -> Outcome<String> {
     let name = format!("{}.tar", prefix(target));
     folder.write_with(&name, |file| std::io::Write::write_all(file, &archive))?;
     Ok(format!(
-        "{}: {} B, libjoint.a {} B, built by {}\n",
+        "{}: {} B, liblostmotion.a {} B, built by {}\n",
         folder.file(&name).display(),
         archive.len(),
         library.archive.len(),
@@ -68,22 +71,31 @@ pub fn run(arguments: &Arguments) -> Outcome<String> {
 
 /// The folder in the archive, which is also how the archive is called.
 pub fn prefix(target: Target) -> String {
-    format!("joint-{VERSION}-{}", target.name())
+    format!("lostmotion-{VERSION}-{}", target.name())
 }
 
 /// The archive: the same bytes for the same library.
 pub fn archive(library: &Library, say: Say<'_>) -> Outcome<Vec<u8>> {
     let mut builder = tar::Builder::new(Vec::new());
-    for (name, bytes) in contents(library, say)? {
+    let new_header = |entry: tar::EntryType, bytes: &[u8]| {
         let mut header = tar::Header::new_ustar();
         header.set_size(bytes.len() as u64);
         header.set_mode(0o644);
         header.set_mtime(0);
-        header.set_entry_type(tar::EntryType::Regular);
-        let path = format!("{}/{name}", prefix(library.target));
-        builder
-            .append_data(&mut header, path, Cursor::new(bytes))
-            .map_err(|error| Failure::new(format!("cannot pack {name}: {error}")))?;
+        header.set_entry_type(entry);
+        header
+    };
+    let path = |name: &str| format!("{}/{name}", prefix(library.target));
+    let unpacked = |name: &str, error| Failure::new(format!("cannot pack {name}: {error}"));
+    for (name, bytes) in contents(library, say)? {
+        let mut header = new_header(tar::EntryType::Regular, &bytes);
+        let packed = builder.append_data(&mut header, path(&name), Cursor::new(bytes));
+        packed.map_err(|error| unpacked(&name, error))?;
+    }
+    if library.shared.is_some() {
+        let mut header = new_header(tar::EntryType::Symlink, &[]);
+        let packed = builder.append_link(&mut header, path(LINKED_NAME), SONAME);
+        packed.map_err(|error| unpacked(LINKED_NAME, error))?;
     }
     builder.into_inner().map_err(|error| Failure::new(format!("cannot pack the library: {error}")))
 }
@@ -100,8 +112,10 @@ fn contents(library: &Library, say: Say<'_>) -> Outcome<Vec<(String, Vec<u8>)>> 
         ("README.md".to_owned(), text(&readme(target))),
         ("COSTS.md".to_owned(), text(&costs_page(library, &joint, say)?)),
         ("LICENSE".to_owned(), read(&workspace().join("LICENSE"))?),
-        ("include/joint.h".to_owned(), header.clone()),
-        ("lib/libjoint.a".to_owned(), library.archive.clone()),
+        ("include/lostmotion/joint.h".to_owned(), header.clone()),
+        ("include/lostmotion/joint.hpp".to_owned(), read(&library::include().join("lostmotion/joint.hpp"))?),
+        ("include/joint.h".to_owned(), read(&library::include().join("joint.h"))?),
+        ("lib/liblostmotion.a".to_owned(), library.archive.clone()),
         ("test/test_tables.h".to_owned(), text(&test_tables.header())),
         ("test/test_tables.c".to_owned(), text(&test_tables.source())),
         (
@@ -113,12 +127,19 @@ fn contents(library: &Library, say: Say<'_>) -> Outcome<Vec<(String, Vec<u8>)>> 
         ),
     ];
     if let Some(shared) = &library.shared {
-        files.push(("lib/libjoint.so".to_owned(), shared.clone()));
+        files.push((format!("lib/{SONAME}"), shared.clone()));
     }
-    let board = ["board/start.c", "board/sections.ld", "board/netduinoplus2.ld", "board/mps2.ld"];
+    let board = [
+        "board/start.c",
+        "board/memory.c",
+        "board/sections.ld",
+        "board/netduinoplus2.ld",
+        "board/mps2.ld",
+        "board/mps2-an505.ld",
+    ];
     let own: &[&str] = match target {
         Target::Host => &["host.c"],
-        Target::M4f | Target::M7 => &board,
+        Target::M4f | Target::M33 | Target::M7 => &board,
     };
     for name in ["test_joint.c", "run.h", "say.h"].iter().chain(own) {
         files.push((format!("test/{name}"), read(&programs::folder().join(name))?));
@@ -126,8 +147,9 @@ fn contents(library: &Library, say: Say<'_>) -> Outcome<Vec<(String, Vec<u8>)>> 
     let build_files = build_files::all(target, VERSION).into_iter();
     files.extend(build_files.map(|(name, text)| (name.to_owned(), text.into_bytes())));
     if let Some(folder) = build_files::arduino_folder(target) {
-        files.push((format!("{folder}/libjoint.a"), library.archive.clone()));
-        files.push(("src/joint.h".to_owned(), header));
+        files.push((format!("{folder}/liblostmotion.a"), library.archive.clone()));
+        files.push(("src/lostmotion/joint.h".to_owned(), header));
+        files.push(("src/lostmotion.h".to_owned(), text(build_files::ARDUINO_HEADER)));
     }
     Ok(files)
 }
@@ -142,18 +164,22 @@ fn readme(target: Target) -> String {
     let (title, test, with_cmake) = match build_files::linker_script(target) {
         None => (
             "A program for this kind of machine",
-            "cd test && cc -I../include test_joint.c test_tables.c host.c ../lib/libjoint.a -o test_joint && ./test_joint"
+            "cd test && cc -I../include test_joint.c test_tables.c host.c ../lib/liblostmotion.a -o test_joint && ./test_joint"
                 .to_owned(),
             "cmake -S test -B build && cmake --build build && build/test_joint".to_owned(),
         ),
         Some(script) => {
-            let machine = if target == Target::M4f { "netduinoplus2" } else { "mps2-an500" };
+            let machine = match target {
+                Target::M33 => "mps2-an505",
+                Target::M7 => "mps2-an500",
+                _ => "netduinoplus2",
+            };
             let run = format!("qemu-system-arm -M {machine} -nographic -semihosting -kernel");
             (
                 "Firmware",
                 format!(
                     "cd test && arm-none-eabi-gcc {flags} -O2 -nostartfiles -I../include -L board -T board/{script} \\\n    \
-                     test_joint.c test_tables.c board/start.c ../lib/libjoint.a -o test_joint.elf\n{run} test_joint.elf"
+                     test_joint.c test_tables.c board/start.c ../lib/liblostmotion.a -o test_joint.elf\n{run} test_joint.elf"
                 ),
                 format!(
                     "cmake -S test -B build -DCMAKE_TOOLCHAIN_FILE=board/toolchain.cmake && cmake --build build\n\
@@ -164,17 +190,19 @@ fn readme(target: Target) -> String {
     };
     let flags = if flags.is_empty() { "none in particular" } else { &flags };
     format!(
-        "# The joint library for C and C++, {VERSION}, target {}\n\n\
-         Observer, compensation, width probe and plant of a geared joint with backlash. `include/joint.h` says all that its\n\
-         caller must know. COSTS.md says what it takes.\n\n\
+        "# lostmotion {VERSION} for C and C++, target {}\n\n\
+         Observer, compensation, width probe and plant of a geared joint with backlash. `include/lostmotion/joint.h` says all that\n\
+         its caller must know; `include/lostmotion/joint.hpp` is a C++ interface over it. COSTS.md has flash, RAM, stack and\n\
+         instructions of each call.\n\n\
          ## {title}\n\n\
          1. Write the tables of your joint: `joint tables my_joint.toml --out tables`, where this archive was written.\n\
          2. Compile `tables/*_tables.c` with your sources; flags: `{flags}`.\n\
-         3. Give the compiler `-Iinclude` and the linker `lib/libjoint.a`, or let a build system do so:\n   \
-         - CMake: `find_package(joint CONFIG REQUIRED)` with this folder in `CMAKE_PREFIX_PATH`, or `add_subdirectory` of it;\n     \
-         then `target_link_libraries(... joint::joint)`.\n   \
-         - pkg-config: `PKG_CONFIG_PATH=lib/pkgconfig pkg-config --cflags --libs joint`.\n   \
+         3. Give the compiler `-Iinclude` and the linker `lib/liblostmotion.a`, or let a build system do so:\n   \
+         - CMake: `find_package(lostmotion CONFIG REQUIRED)` with this folder in `CMAKE_PREFIX_PATH`, or `add_subdirectory` of it;\n     \
+         then `target_link_libraries(... lostmotion::joint)`.\n   \
+         - pkg-config: `PKG_CONFIG_PATH=lib/pkgconfig pkg-config --cflags --libs lostmotion` (static);\n     `lostmotion-shared` on a host is the shared library.\n   \
          - Zephyr: this folder in `ZEPHYR_EXTRA_MODULES`.\n   \
+         - PlatformIO: this folder in the project's `lib`.\n   \
          - Arduino, for boards of STM32duino: this folder in the sketchbook's `libraries`.\n\n\
          ## The test program\n\n\
          It compares this library with the core bit for bit; it prints `as expected`.\n\n\
@@ -183,30 +211,15 @@ fn readme(target: Target) -> String {
     )
 }
 
-/// Flash, RAM and instructions.
+/// Flash, RAM, stack and instructions.
 fn costs_page(library: &Library, joint: &joint_file::JointFile, say: Say<'_>) -> Outcome<String> {
-    let mut page = format!("# What it costs, target {}\n\nBuilt by {}.\n", library.target.name(), library.compiler);
-    let Some(machine) = costs::machine(library.target) else {
-        page += "\nNothing is counted on a host: its compiler and processor decide.\n";
-        return Ok(page);
+    let mut page = format!("# Costs, target {}\n\nBuilt by {}.\n", library.target.name(), library.compiler);
+    page += &match costs::machine(library.target) {
+        None => "\nNothing is counted on a host: its compiler and processor decide.\n".to_owned(),
+        Some(machine) => {
+            emulator::ensure(say)?;
+            costs::section(library, joint, machine)?
+        }
     };
-    emulator::ensure(say)?;
-    page += &format!(
-        "\nMemory that a program takes beyond one without the library, in bytes: tables of joint {} are in flash, objects,\n\
-         samples and results in RAM. Linked with `-Wl,--gc-sections`, less than all of it is.\n\n| use | flash | RAM |\n|---|---|---|\n",
-        joint.parameters.name
-    );
-    for use_of in costs::memory(library, joint, machine)? {
-        page += &format!("| {} | {} | {} |\n", use_of.what, use_of.flash, use_of.ram);
-    }
-    page += &format!(
-        "\nInstructions of a call, over three seconds of a closed loop at {RATE} Hz. EMULATED: counted on `{}` of the\n\
-         emulator, never on silicon.\n\n| function | mean | most |\n|---|---|---|\n",
-        machine.name
-    );
-    let tables = tables::for_tests(joint, true, &Board::emulated())?;
-    for call in costs::calls(&Workbench::new(library, &tables)?, machine, false)? {
-        page += &format!("| `{}` | {} | {} |\n", call.name, call.mean, call.most);
-    }
     Ok(page)
 }

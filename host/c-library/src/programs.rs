@@ -26,10 +26,11 @@ pub struct Machine {
     memory: &'static str,
 }
 
-/// The machines: an STM32F405, another Cortex-M4F, a Cortex-M7.
-pub const MACHINES: [Machine; 3] = [
+/// The machines: an STM32F405, another Cortex-M4F, a Cortex-M33, a Cortex-M7.
+pub const MACHINES: [Machine; 4] = [
     Machine { name: "netduinoplus2", target: Target::M4f, memory: "netduinoplus2.ld" },
     Machine { name: "mps2-an386", target: Target::M4f, memory: "mps2.ld" },
+    Machine { name: "mps2-an505", target: Target::M33, memory: "mps2-an505.ld" },
     Machine { name: "mps2-an500", target: Target::M7, memory: "mps2.ld" },
 ];
 
@@ -38,7 +39,7 @@ pub fn folder() -> PathBuf {
     workspace().join("bindings/c/programs")
 }
 
-/// A folder with the header, the library and tables called `tables_of_test`, for programs to be compiled in.
+/// A folder with the library and tables called `tables_of_test`, for programs to be compiled in.
 #[derive(Debug)]
 pub struct Workbench {
     folder: tempfile::TempDir,
@@ -50,10 +51,7 @@ impl Workbench {
     pub fn new(library: &Library, tables: &CTables) -> Outcome<Self> {
         let folder = tempfile::tempdir().map_err(|error| Failure::new(format!("no folder for a build: {error}")))?;
         let bench = Self { folder, target: library.target };
-        bench.write("libjoint.a", &library.archive)?;
-        let header = crate::library::header();
-        let text = fs::read(&header).map_err(|error| Failure::new(format!("{}: {error}", header.display())))?;
-        bench.write("joint.h", &text)?;
+        bench.write("liblostmotion.a", &library.archive)?;
         bench.write("test_tables.h", tables.header().as_bytes())?;
         bench.write("test_tables.c", tables.source().as_bytes())?;
         bench.write("tables_of_test.h", b"#include \"test_tables.h\"\n#define tables_of_test test_tables\n")?;
@@ -75,11 +73,19 @@ impl Workbench {
     pub fn compile(&self, compiler: &str, sources: &[&Path], flags: &[&str]) -> Outcome<PathBuf> {
         let program = self.path("program");
         let mut command = Command::new(compiler);
-        command.current_dir(self.folder.path()).args(WARNINGS).args(flags).arg("-I.").arg("-I").arg(folder());
+        command
+            .current_dir(self.folder.path())
+            .args(WARNINGS)
+            .args(flags)
+            .arg("-I.")
+            .arg("-I")
+            .arg(crate::library::include())
+            .arg("-I")
+            .arg(folder());
         command
             .args(sources)
             .arg(folder().join("host.c"))
-            .args(["test_tables.c", "libjoint.a", "-lm", "-o"])
+            .args(["test_tables.c", "liblostmotion.a", "-lm", "-o"])
             .arg(&program);
         tool::output_of(&mut command)?;
         Ok(program)
@@ -94,11 +100,20 @@ impl Workbench {
         let mut command = Command::new(self.target.tool("gcc"));
         command.current_dir(self.folder.path()).args(self.target.c_flags()).args(WARNINGS).args(flags);
         command.args(["-std=c99", "-ffunction-sections", "-fdata-sections", "-nostartfiles", "-Wl,--gc-sections"]);
-        command.arg("-I.").arg("-I").arg(folder()).arg("-L").arg(&board).arg("-T").arg(board.join(machine.memory));
+        command
+            .arg("-I.")
+            .arg("-I")
+            .arg(crate::library::include())
+            .arg("-I")
+            .arg(folder())
+            .arg("-L")
+            .arg(&board)
+            .arg("-T")
+            .arg(board.join(machine.memory));
         command
             .args(sources)
             .arg(board.join("start.c"))
-            .args(["test_tables.c", "libjoint.a", "-lm", "-o"])
+            .args(["test_tables.c", "liblostmotion.a", "-lm", "-lgcc", "-o"])
             .arg(&program);
         tool::output_of(&mut command)?;
         Ok(program)

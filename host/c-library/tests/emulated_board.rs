@@ -23,15 +23,18 @@ use simulation::sim::snapshot::Reader;
 
 const PERIODS: u32 = 100_000;
 
+/// Targets of boards.
+const BOARDS: [Target; 3] = [Target::M4f, Target::M33, Target::M7];
+
 fn say(line: &str) {
     println!("{line}");
 }
 
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn three_machines_compute_what_the_core_computes_here_in_every_bit() {
+fn four_machines_compute_every_bit_of_the_core() {
     emulator::ensure(&say).expect("an emulator");
-    for target in [Target::M4f, Target::M7] {
+    for target in BOARDS {
         let library = library::build(target, "library", &say).expect("a library");
         for rate in [10_000, 20_000] {
             let joint = joint_at(Path::new("q1"), rate).expect("a joint");
@@ -62,7 +65,7 @@ const MEMORY: [(&str, u64, u64); 2] = [
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
 fn calls_and_memory_cost_what_is_promised() {
     emulator::ensure(&say).expect("an emulator");
-    for target in [Target::M4f, Target::M7] {
+    for target in BOARDS {
         let library = library::build(target, "library,measuring", &say).expect("a library");
         let joint = joint_at(Path::new("q1"), 10_000).expect("a joint");
         let tables = tables::for_tests(&joint, true, &Board::emulated()).expect("tables");
@@ -94,9 +97,107 @@ fn calls_and_memory_cost_what_is_promised() {
 }
 
 #[test]
+#[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
+fn stack_of_each_call_is_within_the_header_s_bound() {
+    emulator::ensure(&say).expect("an emulator");
+    let header = std::fs::read_to_string(library::header()).expect("a header");
+    let bounds: Vec<(&str, u64)> = header
+        .lines()
+        .skip_while(|line| !line.starts_with(" * Most stack of a call"))
+        .skip(1)
+        .map_while(|line| line.strip_prefix(" *     "))
+        .filter_map(|line| line.rsplit_once(' ').and_then(|(names, bytes)| Some((names, bytes.parse().ok()?))))
+        .flat_map(|(names, bytes)| {
+            names.split([',', ' ']).filter(|name| !name.is_empty()).map(move |name| (name, bytes))
+        })
+        .collect();
+    let joint = joint_at(Path::new("q1"), 10_000).expect("a joint");
+    let tables = tables::for_tests(&joint, true, &Board::emulated()).expect("tables");
+    for target in BOARDS {
+        let library = library::build(target, "library", &say).expect("a library");
+        let bench = Workbench::new(&library, &tables).expect("room");
+        let machine = costs::machine(target).expect("a machine");
+        let stacks = costs::stacks(&bench, machine).expect("stacks");
+        for stack in &stacks {
+            println!("{}: {stack:?}", target.name());
+        }
+        assert_eq!(stacks.len(), bounds.len(), "every call has a bound");
+        for stack in stacks {
+            let (_, most) = bounds.iter().find(|(name, _)| *name == stack.name).expect("a bound");
+            assert!(stack.bytes <= *most && 2 * stack.bytes >= *most, "{}: {stack:?}, {most} B stated", target.name());
+        }
+    }
+}
+
+/// Set to write the costs into the docs.
+const WRITE: &str = "UPDATE_COSTS";
+
+#[test]
+#[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
+fn costs_in_the_docs_are_those_of_the_archives() {
+    const BEGIN: &str = "<!-- Costs: written by the command above. -->\n";
+    const END: &str = "<!-- End of the costs. -->\n";
+    emulator::ensure(&say).expect("an emulator");
+    let joint = joint_at(Path::new("q1"), 10_000).expect("a joint");
+    let mut costs = String::new();
+    for target in BOARDS {
+        let library = library::build(target, "library", &say).expect("a library");
+        let machine = costs::machine(target).expect("a machine");
+        let section = costs::section(&library, &joint, machine).expect("costs");
+        costs += &format!("\n### Target {}\n{section}", target.name());
+    }
+    let path = workspace().join("docs/reference/c-library.md");
+    let page = std::fs::read_to_string(&path).expect("a page");
+    let (head, rest) = page.split_once(BEGIN).expect("a beginning");
+    let (written, tail) = rest.split_once(END).expect("an end");
+    if std::env::var_os(WRITE).is_some() {
+        std::fs::write(&path, format!("{head}{BEGIN}{costs}\n{END}{tail}")).expect("a page that can be written");
+        return;
+    }
+    assert!(
+        written.trim() == costs.trim(),
+        "docs/reference/c-library.md: {WRITE}=1 cargo test -p c-library --test emulated_board costs_in -- --ignored"
+    );
+}
+
+/// Functions of a C library and of the Arm run-time ABI that the header names.
+const FROM_C: [&str; 4] = ["memcpy", "memmove", "memset", "memclr"];
+
+#[test]
+#[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
+fn library_links_without_a_c_library() {
+    emulator::ensure(&say).expect("an emulator");
+    let joint = joint_at(Path::new("q1"), 10_000).expect("a joint");
+    let tables = tables::for_tests(&joint, true, &Board::emulated()).expect("tables");
+    let expected = run::digest(&tables.words, 1000).expect("a run");
+    for target in BOARDS {
+        let library = library::build(target, "library", &say).expect("a library");
+        let bench = Workbench::new(&library, &tables).expect("room");
+        let open = must(
+            std::process::Command::new(target.tool("nm")).arg("--undefined-only").arg(bench.path("liblostmotion.a")),
+        );
+        let open: Vec<&str> = open.lines().filter_map(|line| line.trim().strip_prefix("U ")).collect();
+        println!("{}: {}", target.name(), open.join(" "));
+        for name in &open {
+            let of_libgcc = name.starts_with("__aeabi_") && !name.starts_with("__aeabi_mem");
+            let plain = name.trim_start_matches("__aeabi_").trim_end_matches(['4', '8']);
+            assert!(of_libgcc || FROM_C.contains(&plain), "{name} is not what the header states");
+        }
+        let sources = [programs::folder().join("test_joint.c"), programs::folder().join("board/memory.c")];
+        let sources: Vec<&Path> = sources.iter().map(PathBuf::as_path).collect();
+        let machine = costs::machine(target).expect("a machine");
+        // The last flag keeps the compiler from making calls of strlen out of the loops of start.c.
+        let flags = ["-DPERIODS=1000u", "-O2", "-nostdlib", "-fno-tree-loop-distribute-patterns"];
+        let program = bench.compile_for(machine, &sources, &flags).expect("a program");
+        let lines = programs::run_on(machine, &program).expect("a run");
+        assert_eq!(said(&lines, "digest "), Some(format!("{expected:016x}")));
+    }
+}
+
+#[test]
 #[ignore = "builds the library once more from nothing: run by `cargo joint hil --check`"]
 fn two_builds_give_the_same_bytes() {
-    for target in [Target::M4f, Target::M7, Target::Host] {
+    for target in [Target::M4f, Target::M33, Target::M7, Target::Host] {
         let first = library::build(target, "library", &say).expect("a library");
         // Again from nothing, and elsewhere.
         let folder = tempfile::tempdir().expect("a folder");
@@ -125,15 +226,15 @@ project(stranger C CXX)
 set(CMAKE_C_STANDARD 99)
 set(CMAKE_CXX_STANDARD 20)
 if(HOW STREQUAL "find_package")
-  find_package(joint 0.1 CONFIG REQUIRED)
-  find_package(joint 7 CONFIG QUIET)
-  if(NOT joint_FOUND EQUAL 0)
+  find_package(lostmotion 0.1 CONFIG REQUIRED)
+  find_package(lostmotion 7 CONFIG QUIET)
+  if(NOT lostmotion_FOUND EQUAL 0)
     message(FATAL_ERROR "a version that is not there was found")
   endif()
-  set(LIBRARIES joint::joint joint::shared)
+  set(LIBRARIES lostmotion::joint lostmotion::joint_shared)
 elseif(HOW STREQUAL "add_subdirectory")
-  add_subdirectory(${ARCHIVE} joint)
-  set(LIBRARIES joint::joint)
+  add_subdirectory(${ARCHIVE} lostmotion)
+  set(LIBRARIES lostmotion::joint)
 else()
   function(zephyr_include_directories folder)
     include_directories(${CMAKE_CURRENT_SOURCE_DIR}/${folder})
@@ -144,10 +245,10 @@ else()
     set_target_properties(${name} PROPERTIES IMPORTED_LOCATION ${path})
   endfunction()
   set(CONFIG_64BIT y)
-  add_subdirectory(${ARCHIVE}/zephyr joint)
+  add_subdirectory(${ARCHIVE}/zephyr lostmotion)
   get_property(INCLUDED GLOBAL PROPERTY INCLUDED)
   include_directories(${INCLUDED})
-  set(LIBRARIES joint)
+  set(LIBRARIES lostmotion)
 endif()
 foreach(library ${LIBRARIES})
   string(MAKE_C_IDENTIFIER ${library} name)
@@ -161,7 +262,7 @@ foreach(library ${LIBRARIES})
 endforeach()
 "#;
 
-const STRANGER_S_PROGRAM: &str = "#include \"joint.h\"\nint main(void) {\n    static JointObserver observer;\n    \
+const STRANGER_S_PROGRAM: &str = "#include <lostmotion/joint.h>\nint main(void) {\n    static JointObserver observer;\n    \
      return joint_observer_step(&observer, 0) == JOINT_STATUS_NOT_STARTED ? 0 : 1;\n}\n";
 
 #[test]
@@ -169,7 +270,7 @@ const STRANGER_S_PROGRAM: &str = "#include \"joint.h\"\nint main(void) {\n    st
 fn cmake_and_pkg_config_take_the_archive() {
     packages::ensure(&["cmake", "make", "pkg-config", "g++"], "to try the library in build systems", &say)
         .expect("packages");
-    for target in [Target::Host, Target::M4f, Target::M7] {
+    for target in [Target::Host, Target::M4f, Target::M33, Target::M7] {
         let library = library::build(target, "library", &say).expect("a library");
         let folder = tempfile::tempdir().expect("a folder");
         let bytes = package::archive(&library, &say).expect("an archive");
@@ -223,21 +324,21 @@ fn as_a_stranger(folder: &Path, root: &Path) {
         assert!(said.contains("100% tests passed"), "{how}: {said}");
         println!("{how}: programs in C99 and C++20 run");
     }
-    let flags = must(
-        std::process::Command::new("pkg-config")
-            .args(["--cflags", "--libs", "joint >= 0.1"])
-            .env("PKG_CONFIG_PATH", root.join("lib/pkgconfig")),
-    );
-    let program = project.join("by_pkg_config");
-    must(
-        std::process::Command::new("gcc")
-            .arg("-o")
-            .arg(&program)
-            .arg(project.join("program.c"))
-            .args(flags.split_whitespace())
-            .arg(format!("-Wl,-rpath,{}", root.join("lib").display())),
-    );
-    must(&mut std::process::Command::new(&program));
+    for (package, is_shared) in [("lostmotion", false), ("lostmotion-shared", true)] {
+        let flags = must(
+            std::process::Command::new("pkg-config")
+                .args(["--cflags", "--libs", &format!("{package} >= 0.1")])
+                .env("PKG_CONFIG_PATH", root.join("lib/pkgconfig")),
+        );
+        let program = project.join(package);
+        let mut compile = std::process::Command::new("gcc");
+        compile.arg("-o").arg(&program).arg(project.join("program.c"));
+        must(compile.args(flags.split_whitespace()));
+        // From another folder, as a user starts it.
+        must(std::process::Command::new(&program).current_dir("/"));
+        let needs = must(std::process::Command::new("readelf").arg("-d").arg(&program));
+        assert_eq!(needs.contains(library::SONAME), is_shared, "{package}: {needs}");
+    }
 }
 
 fn example(name: &str) -> PathBuf {
@@ -274,10 +375,10 @@ fn in_rust(joint: &JointFile, words: &[u64], mode: Mode) -> (Figures, u64) {
 
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn a_motor_controller_in_c_takes_the_lost_motion_out_on_three_machines() {
+fn controller_in_c_removes_the_lost_motion() {
     const MODES: [Mode; 3] = [Mode::Position, Mode::WithoutCompensation, Mode::Impedance];
     emulator::ensure(&say).expect("an emulator");
-    let [m4f, m7] = [Target::M4f, Target::M7].map(|target| library::build(target, "library", &say).expect("a library"));
+    let libraries = BOARDS.map(|target| library::build(target, "library", &say).expect("a library"));
     for rate in [10_000, 20_000] {
         let joint = without_weight(rate);
         let tables = tables::for_tests(&joint, true, &Board::emulated()).expect("tables");
@@ -292,9 +393,13 @@ fn a_motor_controller_in_c_takes_the_lost_motion_out_on_three_machines() {
         let sources = [example("on_board.c"), example("controller.c")];
         let sources: Vec<&Path> = sources.iter().map(PathBuf::as_path).collect();
         for machine in MACHINES {
-            let library = if machine.target == Target::M4f { &m4f } else { &m7 };
+            let library = libraries.iter().find(|library| library.target == machine.target).expect("a library");
             let bench = Workbench::new(library, &tables).expect("room");
-            let clock = if machine.name == "netduinoplus2" { "-DCORE_HZ=168000000u" } else { "-DCORE_HZ=25000000u" };
+            let clock = match machine.name {
+                "netduinoplus2" => "-DCORE_HZ=168000000u",
+                "mps2-an505" => "-DCORE_HZ=20000000u",
+                _ => "-DCORE_HZ=25000000u",
+            };
             let program = bench.compile_for(machine, &sources, &["-O2", &include, clock]).expect("a program");
             let lines = programs::run_on(machine, &program).expect("a run");
             println!("{} at {rate} Hz: {}", machine.name, lines.join(", "));

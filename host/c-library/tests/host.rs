@@ -61,10 +61,23 @@ fn the_same_program_is_c_plus_plus_and_any_joint_will_do() {
 }
 
 #[test]
+fn cpp_interface_gives_the_digest_of_the_core() {
+    let tables = designed("q1", 10_000);
+    let bench = Workbench::new(&LIBRARY, &tables).expect("room");
+    let expected = run::digest(&tables.words, 20_000).expect("a run");
+    let source = programs::folder().join("wrapped.cpp");
+    let flags = ["-std=c++20", "-O2", "-fno-exceptions", "-fno-rtti"];
+    let program = bench.compile("g++", &[&source], &flags).expect("a program");
+    let lines = programs::run(&program, &[]).expect("a run");
+    assert_eq!(said(&lines, "digest "), Some(format!("{expected:016x}")));
+}
+
+#[test]
 fn a_library_has_no_name_but_the_header_s_and_needs_no_library_of_c() {
     let bench = Workbench::new(&LIBRARY, &designed("q1", 10_000)).expect("room");
     let names = |options: &[&str]| {
-        let out = std::process::Command::new("nm").args(options).arg(bench.path("libjoint.a")).output().expect("nm");
+        let out =
+            std::process::Command::new("nm").args(options).arg(bench.path("liblostmotion.a")).output().expect("nm");
         let text = String::from_utf8(out.stdout).expect("a text");
         let mut names: Vec<String> =
             text.lines().filter_map(|line| line.split_whitespace().last()).map(str::to_owned).collect();
@@ -73,7 +86,7 @@ fn a_library_has_no_name_but_the_header_s_and_needs_no_library_of_c() {
         names
     };
     assert_eq!(names(&["--defined-only", "--extern-only"]), library::functions().expect("a header"));
-    assert_eq!(names(&["--undefined-only"]), ["memcpy", "memset"], "what every C toolchain has");
+    assert_eq!(names(&["--undefined-only"]), ["memcpy", "memset"], "as the header states");
     // Neither a panic nor what would say it: they are not linked, so nothing leads there.
     let all = names(&[]);
     assert!(all.len() > 50 && !all.iter().any(|name| name.contains("panic")), "{all:?}");
@@ -119,6 +132,43 @@ fn a_wiring_check_names_what_is_reversed_bit_for_bit_as_the_core_does() {
     assert_eq!(lines[..4], expected, "{lines:?}");
     let digest = run::wiring_digest(&tables.words).expect("a run");
     assert_eq!(said(&lines, "digest ").expect("a digest"), format!("{digest:016x}"));
+}
+
+/// Lines of a program that starts an observer, compiled with a header of the caller's.
+fn with_header(text: &str) -> Vec<String> {
+    let bench = Workbench::new(&LIBRARY, &designed("q1", 10_000)).expect("room");
+    std::fs::create_dir(bench.path("lostmotion")).expect("a folder");
+    bench.write("lostmotion/joint.h", text.as_bytes()).expect("a header");
+    let source = programs::folder().join("header.c");
+    let program = bench.compile("gcc", &[&source], &["-std=c99", "-O2"]).expect("a program");
+    programs::run(&program, &[]).expect("a run")
+}
+
+#[test]
+fn header_of_another_version_is_refused() {
+    let header = std::fs::read_to_string(library::header()).expect("a header");
+    assert_eq!(with_header(&header), ["JOINT_STATUS_OK", "nothing was written"]);
+    for (this, other) in [
+        ("#define JOINT_ABI_VERSION 1", "#define JOINT_ABI_VERSION 2"),
+        ("} JointEstimates;", "  uint32_t added;\n} JointEstimates;"),
+        ("} JointTorque;", "  float added;\n} JointTorque;"),
+        ("float lead_s;", "double lead_s;"),
+    ] {
+        assert!(header.contains(this), "{this}");
+        assert_eq!(with_header(&header.replace(this, other)), ["JOINT_STATUS_OTHER_HEADER"], "{other}");
+    }
+}
+
+#[test]
+fn unlooked_status_is_a_warning() {
+    let bench = Workbench::new(&LIBRARY, &designed("q1", 10_000)).expect("room");
+    let program = "#include <lostmotion/joint.h>\nint main(void) {\n    \
+                   joint_observer_step(0, 0);\n    return 0;\n}\n";
+    for (compiler, name) in [("gcc", "careless.c"), ("g++", "careless.cpp")] {
+        bench.write(name, program.as_bytes()).expect("a file");
+        let refused = bench.compile(compiler, &[&bench.path(name)], &["-O2"]).expect_err("a warning").to_string();
+        assert!(refused.contains("unused-result") || refused.contains("nodiscard"), "{refused}");
+    }
 }
 
 /// Set to try more sequences of wrong calls than the short form does.

@@ -27,6 +27,8 @@ mod samples;
 pub(crate) mod sensors;
 pub mod tables;
 
+use core::mem::MaybeUninit;
+
 use contact::Contact;
 use filters::Filters;
 use health::motor_faults::{MotorScreened, Outlook};
@@ -89,18 +91,42 @@ pub struct Observer<'tables, T: Real, const P: usize> {
 impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
     /// An observer that has seen nothing yet and knows what was designed.
     pub fn new(tables: &'tables ObserverTables<T>) -> Self {
+        let mut observer = Self::unbegun(tables);
+        observer.learnt.begin(tables);
+        observer.begin();
+        observer
+    }
+
+    /// Builds a new observer where it stays, on a stack that has no room for a second one.
+    pub fn new_in<'place>(
+        place: &'place mut MaybeUninit<Self>,
+        tables: &'tables ObserverTables<T>,
+    ) -> &'place mut Self {
+        let observer = Self::put(place, tables);
+        observer.learnt.begin(tables);
+        observer.begin();
+        observer
+    }
+
+    /// Its stack is free again when the parts begin.
+    #[inline(never)]
+    fn put<'place>(place: &'place mut MaybeUninit<Self>, tables: &'tables ObserverTables<T>) -> &'place mut Self {
+        place.write(Self::unbegun(tables))
+    }
+
+    /// An observer whose published estimates do not follow from the tables yet.
+    #[inline(always)]
+    fn unbegun(tables: &'tables ObserverTables<T>) -> Self {
         let has_output = tables.counts.has_output;
-        let mut observer = Self {
+        Self {
             tables,
             sensors: Sensors::new(has_output),
             filters: Filters::default(),
             contact: Contact::default(),
-            learnt: Learnt::new(tables),
+            learnt: Learnt::unbegun(tables),
             health: Health::new(has_output),
             estimates: Estimates::default(),
-        };
-        observer.begin();
-        observer
+        }
     }
 
     /// Back to what was designed, part by part: a whole new observer would need as much stack again.

@@ -61,11 +61,12 @@ pub fn compile_library(
     read_library(&toolchain.folder().join(TARGET), package, "a")
 }
 
-/// The same for this machine, static and shared.
+/// Compiles a package as a static and a shared library for this machine. The shared one carries its name for the loader.
 pub fn compile_library_for_host(
     target_directory: &Path,
     package: &str,
     features: &str,
+    soname: &str,
     say: Say<'_>,
 ) -> Outcome<[Vec<u8>; 2]> {
     let folder = target_directory.join("c-library");
@@ -73,6 +74,7 @@ pub fn compile_library_for_host(
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     clean(&mut command).current_dir(workspace()).arg("rustc").arg("--target-dir").arg(&folder);
     as_library(&mut command, package, "staticlib,cdylib", features);
+    command.arg("--").arg(format!("-Clink-arg=-Wl,-soname,{soname}"));
     tool::follow(&mut command, "building the library", say)?;
     Ok([read_library(&folder, package, "a")?, read_library(&folder, package, "so")?])
 }

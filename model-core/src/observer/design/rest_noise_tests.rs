@@ -11,7 +11,10 @@ fn uncertainty() -> Uncertainty<f64> {
     let q1 = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
     let tables: ObserverTables<f64> =
         design_observer(&q1.parameters, &observer_settings(&q1.surroundings)).expect("tables");
-    Uncertainty::new::<MAPPED>(&tables, &Learner::new(&tables.learner))
+    let (mut learner, mut uncertainty) = (Learner::<_, MAPPED>::unbegun(), Uncertainty::unbegun());
+    learner.restart(&tables.learner);
+    uncertainty.restart(&tables, &learner);
+    uncertainty
 }
 
 /// Takes rests on alternate flanks whose deflections are off by a number of deviations of the encoders' noise. The sign changes with each

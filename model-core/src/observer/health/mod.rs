@@ -60,6 +60,7 @@ pub enum Judged {
 
 impl<T: Real> Health<T> {
     /// Until the output encoder gives its first reading there is the motor's only.
+    #[inline(always)]
     pub fn new(has_output: bool) -> Self {
         Self {
             source: Source::MotorOnly(if has_output { OutputFault::Unheard } else { OutputFault::Absent }),

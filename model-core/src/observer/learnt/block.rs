@@ -67,21 +67,25 @@ impl<T: Real, const P: usize> Block<T, P> {
     /// of them count as one rest.
     const UNSURE_TOUCH: T = T::QUARTER;
 
+    /// A constant, so that the compiler writes it to its place instead of copying one from the stack.
+    const NEW: Self = Self {
+        intervals: 0,
+        brief: 0,
+        averaged: [0; 2],
+        touch: Touch::NONE,
+        free: [T::ZERO; P],
+        deflection: T::ZERO,
+        forces: [Forces::NONE; 2],
+    };
+
+    #[inline(always)]
     pub fn new() -> Self {
-        Self {
-            intervals: 0,
-            brief: 0,
-            averaged: [0; 2],
-            touch: Touch::default(),
-            free: [T::ZERO; P],
-            deflection: T::ZERO,
-            forces: [Forces::NONE; 2],
-        }
+        Self::NEW
     }
 
     /// Begins anew on a flank.
     fn clear(&mut self, flank: Option<Flank>) {
-        let touch = Touch { flank, ..Touch::default() };
+        let touch = Touch { flank, ..Touch::NONE };
         *self = Self { averaged: self.averaged, forces: self.forces, touch, ..Self::new() };
     }
 

@@ -28,15 +28,19 @@ pub struct LastRest<T: Real, const P: usize> {
 }
 
 impl<T: Real, const P: usize> LastRest<T, P> {
+    /// A constant, so that the compiler writes it to its place instead of copying one from the stack.
+    const NEW: Self = Self {
+        then: [T::ZERO; P],
+        flank: None,
+        deflection: T::ZERO,
+        co_motion: CoMotion::NONE,
+        held: false,
+        goes_on: false,
+    };
+
+    #[inline(always)]
     pub fn new() -> Self {
-        Self {
-            then: [T::ZERO; P],
-            flank: None,
-            deflection: T::ZERO,
-            co_motion: CoMotion::NONE,
-            held: false,
-            goes_on: false,
-        }
+        Self::NEW
     }
 
     /// Remembers a rest.

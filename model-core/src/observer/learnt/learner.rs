@@ -51,11 +51,21 @@ impl<T: Real, const P: usize> Innovation<T, P> {
 }
 
 impl<T: Real, const P: usize> Learner<T, P> {
-    pub fn new(table: &LearnerTable<T>) -> Self {
-        let values = array::from_fn(|parameter| table.mean.get(parameter).copied().unwrap_or(T::ZERO));
-        let mut learner = Self { factors: [[T::ZERO; P]; P], values };
-        learner.reopen();
-        learner
+    /// A constant, so that the compiler clears its place instead of copying one from the stack.
+    const UNBEGUN: Self = Self { factors: [[T::ZERO; P]; P], values: [T::ZERO; P] };
+
+    /// A learner that has not taken its table yet.
+    #[inline(always)]
+    pub fn unbegun() -> Self {
+        Self::UNBEGUN
+    }
+
+    /// Back to what was designed.
+    pub fn restart(&mut self, table: &LearnerTable<T>) {
+        for (parameter, value) in self.values.iter_mut().enumerate() {
+            *value = table.mean.get(parameter).copied().unwrap_or(T::ZERO);
+        }
+        self.reopen();
     }
 
     /// A parameter, in SI.

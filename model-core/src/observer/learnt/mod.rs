@@ -136,15 +136,16 @@ impl<T: Real, const P: usize> Learnt<T, P> {
     const LOOSENED: T = T::EIGHTH;
 
     /// What was designed.
-    pub fn new(tables: &ObserverTables<T>) -> Self {
-        let learner = Learner::new(&tables.learner);
+    /// An estimator whose largest parts have not taken their tables yet: a copy of them would not fit on a small stack.
+    #[inline(always)]
+    pub fn unbegun(tables: &ObserverTables<T>) -> Self {
         Self {
             bias: Bias::new(&tables.contact),
             inertia: Inertia::new(&tables.inertia),
             cogging: Cogging::new(&tables.cogging),
             errors: PositionErrors::new(),
-            uncertainty: Uncertainty::new(tables, &learner),
-            learner,
+            uncertainty: Uncertainty::unbegun(),
+            learner: Learner::unbegun(),
             interval: Interval::new(),
             travel: TravelDetector::new(),
             block: Block::new(),
@@ -154,6 +155,12 @@ impl<T: Real, const P: usize> Learnt<T, P> {
             trusted: None,
             weighed: None,
         }
+    }
+
+    /// Hands their tables to the parts that have not taken them yet.
+    pub fn begin(&mut self, tables: &ObserverTables<T>) {
+        self.learner.restart(&tables.learner);
+        self.uncertainty.restart(tables, &self.learner);
     }
 
     /// Back to what was designed, part by part: a whole new one would need as much stack again.
@@ -175,12 +182,12 @@ impl<T: Real, const P: usize> Learnt<T, P> {
             trusted,
             weighed,
         } = self;
-        *learner = Learner::new(&tables.learner);
+        learner.restart(&tables.learner);
         *bias = Bias::new(&tables.contact);
         *inertia = Inertia::new(&tables.inertia);
         *cogging = Cogging::new(&tables.cogging);
         *errors = PositionErrors::new();
-        *uncertainty = Uncertainty::new(tables, learner);
+        uncertainty.restart(tables, learner);
         *interval = Interval::new();
         *travel = TravelDetector::new();
         *block = Block::new();

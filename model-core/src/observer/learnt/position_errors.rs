@@ -27,15 +27,19 @@ impl<T: Real, const P: usize> PositionErrors<T, P> {
     /// second harmonic, at twice the angle, is off by an eighth of itself.
     const FAR: T = T::QUARTER;
 
+    /// A constant, so that the compiler writes it to its place instead of copying one from the stack.
+    const NEW: Self = Self {
+        free: [T::ZERO; P],
+        mesh_then: [T::ZERO, T::ONE],
+        mesh: [T::ZERO, T::ONE],
+        errors: [T::ZERO; 2],
+        slopes: [T::ZERO; 2],
+        turned: T::ZERO,
+    };
+
+    #[inline(always)]
     pub fn new() -> Self {
-        Self {
-            free: [T::ZERO; P],
-            mesh_then: [T::ZERO, T::ONE],
-            mesh: [T::ZERO, T::ONE],
-            errors: [T::ZERO; 2],
-            slopes: [T::ZERO; 2],
-            turned: T::ZERO,
-        }
+        Self::NEW
     }
 
     /// Both shafts have turned by so much [rad], with so many mesh periods in a turn of the output. True when that was too

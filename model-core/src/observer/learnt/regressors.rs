@@ -48,7 +48,7 @@ pub fn free<T: Real, const P: usize>(link_speed: T, motor: u32, output: Option<u
 }
 
 /// What touching teeth add: flank, force, sine and cosine of the mesh phase.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub struct Touch<T: Real> {
     /// The flank, if it is known.
     pub flank: Option<Flank>,
@@ -59,6 +59,9 @@ pub struct Touch<T: Real> {
 }
 
 impl<T: Real> Touch<T> {
+    /// Teeth that do not touch.
+    pub const NONE: Self = Self { flank: None, force: T::ZERO, mesh: [T::ZERO; 2] };
+
     /// Regressors with this added.
     pub fn on<const P: usize>(&self, free: &Regressors<T, P>) -> Regressors<T, P> {
         let mut regressors = *free;

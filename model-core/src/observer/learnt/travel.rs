@@ -40,16 +40,20 @@ impl<T: Real> TravelDetector<T> {
     /// Part of the half-gap that noise may hide in a window of rest [-].
     const HIDDEN: T = T::QUARTER;
 
+    /// A constant, so that the compiler writes it to its place instead of copying one from the stack.
+    const NEW: Self = Self {
+        deflections: [T::ZERO; WINDOW + 1],
+        forces: [T::ZERO; WINDOW + 1],
+        directions: [0; WINDOW + 1],
+        at: 0,
+        known: 0,
+        still_for: 0,
+        limit: T::ZERO,
+    };
+
+    #[inline(always)]
     pub fn new() -> Self {
-        Self {
-            deflections: [T::ZERO; WINDOW + 1],
-            forces: [T::ZERO; WINDOW + 1],
-            directions: [0; WINDOW + 1],
-            at: 0,
-            known: 0,
-            still_for: 0,
-            limit: T::ZERO,
-        }
+        Self::NEW
     }
 
     /// Takes in one interval: deflection less wind-up [m], and force [N] with direction. `blur` is what error maps that

@@ -84,9 +84,10 @@ impl<T: Real> Uncertainty<T> {
     /// deviation of sqrt(share / (2 - share)) = 0.16, so that 1 is six of them.
     const HALF_GAP_CHANGED: T = T::ONE;
 
-    /// Before anything is learnt.
-    pub fn new<const P: usize>(tables: &ObserverTables<T>, learner: &Learner<T, P>) -> Self {
-        let mut uncertainty = Self {
+    /// An uncertainty that has not taken its tables yet.
+    #[inline(always)]
+    pub fn unbegun() -> Self {
+        Self {
             force_deviation: T::ZERO,
             mean_force_deviation: T::ZERO,
             steady_force_deviation: T::ZERO,
@@ -112,15 +113,19 @@ impl<T: Real> Uncertainty<T> {
             rest_deviation: T::ONE,
             half_gap_error: T::ZERO,
             turn: 0,
-        };
-        let free = regressors::free(T::ZERO, 0, Some(0));
-        let touch = Touch { flank: Some(Flank::Drive), ..Touch::default() };
-        uncertainty.of_force(tables, &Bias::new(&tables.contact), learner.value(COMPLIANCE), T::ZERO);
-        for _ in 0..PARTS {
-            uncertainty.next(tables, learner, &free, &touch);
         }
-        uncertainty.of_learnt(tables, learner, false);
-        uncertainty
+    }
+
+    /// Back to what holds before anything is learnt.
+    pub fn restart<const P: usize>(&mut self, tables: &ObserverTables<T>, learner: &Learner<T, P>) {
+        *self = Self::unbegun();
+        let free = regressors::free(T::ZERO, 0, Some(0));
+        let touch = Touch { flank: Some(Flank::Drive), ..Touch::NONE };
+        self.of_force(tables, &Bias::new(&tables.contact), learner.value(COMPLIANCE), T::ZERO);
+        for _ in 0..PARTS {
+            self.next(tables, learner, &free, &touch);
+        }
+        self.of_learnt(tables, learner, false);
     }
 
     /// How well the motor side knows the mesh force.

@@ -30,7 +30,8 @@ fn nothing_but_an_offset_is_believed_beyond_what_can_be() {
     let table = table();
     let furthest = FURTHEST as f32 * DEVIATION;
     for parameter in 0..PLAIN {
-        let mut learner = Learner::<f32, PLAIN>::new(&table);
+        let mut learner = Learner::<f32, PLAIN>::unbegun();
+        learner.restart(&table);
         let mut regressors = [0.0; PLAIN];
         regressors[parameter] = 1.0;
         let innovation = learner.innovation(&table, &regressors, 1.0, table.weight);
@@ -47,7 +48,8 @@ fn nothing_but_an_offset_is_believed_beyond_what_can_be() {
 #[test]
 fn what_can_be_is_believed() {
     let table = table();
-    let mut learner = Learner::<f32, PLAIN>::new(&table);
+    let mut learner = Learner::<f32, PLAIN>::unbegun();
+    learner.restart(&table);
     let mut regressors = [0.0; PLAIN];
     regressors[COMPLIANCE] = 2.0;
     let innovation = learner.innovation(&table, &regressors, 8e-3, table.weight);
@@ -59,7 +61,8 @@ fn what_can_be_is_believed() {
 fn half_gap_keeps_its_variance_without_places() {
     // One flank alone shows the sum of half-gap and offset: each of them stays half unknown.
     let table = table();
-    let mut learner = Learner::<f32, PLAIN>::new(&table);
+    let mut learner = Learner::<f32, PLAIN>::unbegun();
+    learner.restart(&table);
     let mut regressors = [0.0; PLAIN];
     (regressors[HALF_GAP], regressors[OFFSET]) = (1.0, 1.0);
     let innovation = learner.innovation(&table, &regressors, 0.0, table.weight);

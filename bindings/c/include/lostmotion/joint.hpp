@@ -1,0 +1,149 @@
+/*
+ * C++ interface over joint.h: objects that start in their own storage and can neither be copied nor moved, tables and
+ * memories as spans. No allocation, no exception, no run-time type information. C++20.
+ * MIT OR Apache-2.0.
+ *
+ *     lostmotion::Observer observer;
+ *     lostmotion::Compensation compensation;
+ *     lostmotion::Status status = observer.start(q1_tables);
+ *     if (ok(status)) status = compensation.start(q1_tables);
+ *     ...
+ *     status = observer.step(samples);
+ *     if (ok(status)) status = compensation.follow(observer, now, &ahead, torque);
+ */
+#ifndef LOSTMOTION_JOINT_HPP
+#define LOSTMOTION_JOINT_HPP
+
+#include <lostmotion/joint.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace lostmotion {
+
+using Status = JointStatus;
+using Samples = JointSamples;
+using Estimates = JointEstimates;
+using Motion = JointMotion;
+using Impedance = JointImpedance;
+using Torque = JointTorque;
+
+/* Tables that `joint tables` wrote. They stay where they are and as they are while an object is used. */
+using Tables = std::span<const std::uint64_t>;
+/* What an observer has learnt, for the next power-up. */
+using Memory = std::array<std::uint8_t, JOINT_MEMORY_BYTES>;
+
+[[nodiscard]] constexpr bool ok(Status status) noexcept { return status == JOINT_STATUS_OK; }
+[[nodiscard]] inline const char *name(Status status) noexcept { return joint_status_name(status); }
+[[nodiscard]] inline const char *text(Status status) noexcept { return joint_status_text(status); }
+
+/* Facts of tables: rate, period, ratio, limits. */
+[[nodiscard]] inline Status facts(Tables tables, JointTablesFacts &facts) noexcept {
+    return joint_tables_facts(tables.data(), tables.size_bytes(), &facts);
+}
+
+/* Storage of an object. Its address is part of it. */
+template <typename Storage> class Object {
+  public:
+    Object() = default;
+    Object(const Object &) = delete;
+    Object(Object &&) = delete;
+    Object &operator=(const Object &) = delete;
+    Object &operator=(Object &&) = delete;
+    ~Object() = default;
+
+    /* For functions of joint.h. */
+    [[nodiscard]] Storage *get() noexcept { return &storage; }
+    [[nodiscard]] const Storage *get() const noexcept { return &storage; }
+
+  private:
+    Storage storage{};
+};
+
+class Observer : public Object<JointObserver> {
+  public:
+    /* With maps of the encoders' errors. */
+    [[nodiscard]] Status start(Tables tables) noexcept {
+        return joint_observer_start(get(), sizeof(JointObserver), tables.data(), tables.size_bytes());
+    }
+    /* For ideal encoders, or where flash is short. */
+    [[nodiscard]] Status start_without_maps(Tables tables) noexcept {
+        return joint_observer_start_without_maps(get(), sizeof(JointObserver), tables.data(), tables.size_bytes());
+    }
+    /* One control period. */
+    [[nodiscard]] Status step(const Samples &samples) noexcept { return joint_observer_step(get(), &samples); }
+    /* Estimates of the last period. */
+    [[nodiscard]] Status estimates(Estimates &estimates) const noexcept {
+        return joint_observer_estimates(get(), &estimates);
+    }
+    /* Outside of the control period. */
+    [[nodiscard]] Status save(Memory &memory) const noexcept {
+        return joint_observer_save(get(), memory.data(), memory.size());
+    }
+    /* Outside of the control period, before the first step. */
+    [[nodiscard]] Status load(std::span<const std::uint8_t> memory) noexcept {
+        return joint_observer_load(get(), memory.data(), memory.size());
+    }
+};
+
+class Compensation : public Object<JointCompensation> {
+  public:
+    [[nodiscard]] Status start(Tables tables) noexcept {
+        return joint_compensation_start(get(), sizeof(JointCompensation), tables.data(), tables.size_bytes());
+    }
+    /* One control period of position control. `ahead` is the motion by facts.lead_s later, or nullptr if that is not known. */
+    [[nodiscard]] Status follow(const Observer &observer, const Motion &now, const Motion *ahead, Torque &torque) noexcept {
+        return joint_compensation_follow(get(), observer.get(), &now, ahead, &torque);
+    }
+    /* One control period of impedance control. */
+    [[nodiscard]] Status yield(const Observer &observer, const Impedance &impedance, Torque &torque) noexcept {
+        return joint_compensation_yield(get(), observer.get(), &impedance, &torque);
+    }
+};
+
+class Probe : public Object<JointProbe> {
+  public:
+    /* The load is to be held, and the motor at rest. */
+    [[nodiscard]] Status start(Tables tables) noexcept {
+        return joint_probe_start(get(), sizeof(JointProbe), tables.data(), tables.size_bytes());
+    }
+    /* One control period, in place of the compensation's. */
+    [[nodiscard]] Status step(const Observer &observer, JointProbed &probed) noexcept {
+        return joint_probe_step(get(), observer.get(), &probed);
+    }
+};
+
+class Wiring : public Object<JointWiring> {
+  public:
+    /* The joint is to be at rest, and free to turn by a few degrees at the output. */
+    [[nodiscard]] Status start(Tables tables) noexcept {
+        return joint_wiring_start(get(), sizeof(JointWiring), tables.data(), tables.size_bytes());
+    }
+    /* One control period, in place of the observer's and the compensation's. */
+    [[nodiscard]] Status step(const Samples &samples, float allowed_torque_Nm, JointWiringStep &step) noexcept {
+        return joint_wiring_step(get(), &samples, allowed_torque_Nm, &step);
+    }
+    /* Outside of the control period. */
+    [[nodiscard]] Status verdicts(JointWiringVerdicts &verdicts) const noexcept {
+        return joint_wiring_verdicts(get(), &verdicts);
+    }
+};
+
+class Plant : public Object<JointPlant> {
+  public:
+    [[nodiscard]] Status start(Tables tables) noexcept {
+        return joint_plant_start(get(), sizeof(JointPlant), tables.data(), tables.size_bytes());
+    }
+    [[nodiscard]] Status step(float motor_torque_Nm, float load_torque_Nm) noexcept {
+        return joint_plant_step(get(), motor_torque_Nm, load_torque_Nm);
+    }
+    [[nodiscard]] Status samples(Samples &samples) const noexcept { return joint_plant_samples(get(), &samples); }
+    [[nodiscard]] Status outputs(JointPlantOutputs &outputs) const noexcept { return joint_plant_outputs(get(), &outputs); }
+    [[nodiscard]] Status digest(std::uint64_t &digest) const noexcept { return joint_plant_digest(get(), &digest); }
+};
+
+} // namespace lostmotion
+
+#endif

@@ -1,6 +1,7 @@
 //! Every program runs, ends well and prints numbers, none of which is infinite or NaN.
 
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// Where Cargo puts a program of this package: beside the folder of its tests.
@@ -85,4 +86,49 @@ fn compensation_shortens_the_lost_motion_to_a_third_or_less() {
     let [without, with] = &rows[..] else { panic!("{text}") };
     assert!(without[0] >= 5.0 && with[0] >= 5.0, "the teeth cross in both: {text}");
     assert!(with[1] < without[1] / 3.0 && with[2] < without[2] / 3.0, "{text}");
+}
+
+/// Folder of the workspace.
+fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("examples are in the workspace").to_owned()
+}
+
+#[test]
+fn own_project_builds_outside_and_finds_the_lost_motion() {
+    let (workspace, folder) = (workspace(), tempfile::tempdir().expect("a folder"));
+    let from = workspace.join("examples/own-project");
+    fs::create_dir(folder.path().join("src")).expect("a folder");
+    for name in ["build.rs", "my_joint.toml", "src/main.rs", "src/control.rs"] {
+        fs::copy(from.join(name), folder.path().join(name)).expect("a file");
+    }
+    let manifest = fs::read_to_string(from.join("Cargo.toml")).expect("a manifest");
+    let elsewhere = manifest.replace("path = \"../..", &format!("path = \"{}", workspace.display()));
+    fs::write(folder.path().join("Cargo.toml"), elsewhere).expect("a manifest");
+    // The same versions as here, all of which are there already.
+    fs::copy(workspace.join("Cargo.lock"), folder.path().join("Cargo.lock")).expect("a lock file");
+    let target = program("own-project").ancestors().nth(3).expect("a target folder").join("own-project");
+    let output = Command::new(env!("CARGO"))
+        .args(["run", "--offline"])
+        .current_dir(folder.path())
+        .env("CARGO_TARGET_DIR", target)
+        .output()
+        .expect("cargo");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && !said.contains("warning"), "{said}");
+    let text = String::from_utf8(output.stdout).expect("text");
+    let last = numbers(text.lines().last().unwrap_or_default());
+    let [_, error_mrad, lost_motion_arcmin] = last[..] else { panic!("{text}") };
+    assert!((lost_motion_arcmin - 3.0).abs() < 0.06 && error_mrad.abs() < 0.1, "{text}");
+}
+
+#[test]
+fn readme_shows_the_own_project() {
+    let read = |name: &str| fs::read_to_string(workspace().join(name)).expect("a file");
+    let readme = read("README.md");
+    let files = ["build.rs", "src/control.rs"].map(|name| read(&format!("examples/own-project/{name}")));
+    let blocks: Vec<&str> = readme.split("```rust\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert_eq!(blocks.len(), 2, "the build script and the control");
+    for block in blocks {
+        assert!(files.iter().any(|file| file.contains(block.trim_end())), "README shows what no file has:\n{block}");
+    }
 }

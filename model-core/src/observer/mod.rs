@@ -286,6 +286,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
     fn lose_motor(&mut self, last: Advance) -> &Estimates<T> {
         self.sensors.counts.doubt_motor(&self.tables.counts, last);
         self.learnt.interrupt();
+        self.learnt.lose_encoder();
         self.say_nothing()
     }
 
@@ -329,6 +330,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
     #[cold]
     fn rely_on_motor(&mut self, last: Option<LastMotion<T>>) {
         let tables = self.tables;
+        self.learnt.lose_encoder();
         if self.learnt.return_to_trusted(tables) {
             self.find_errors();
             self.say_learnt();

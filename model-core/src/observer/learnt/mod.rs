@@ -56,6 +56,11 @@ const LONG_REST: u8 = 16;
 /// Intervals well inside the gap after which the mesh force counts as gone from the motor side's estimate.
 const OPEN_AFTER: u8 = 3;
 
+/// Intervals after the loss of an encoder, from its return on, in which torque bias, friction, inertia and cogging are not
+/// estimated: 0.5 s. The loop takes up to 0.15 s to bring the link back at full torque (measured, presets Q1, L1, C1 and D2, motor encoder
+/// frozen or random for half a second), and the filters carry what they took in before the fault was declared.
+const PROBATION: u16 = 500;
+
 /// Everything that is learnt, and what it is learnt from. `P` is the number of parameters.
 #[derive(Debug, Clone)]
 pub struct Learnt<T: Real, const P: usize> {
@@ -71,6 +76,8 @@ pub struct Learnt<T: Real, const P: usize> {
     last_rest: LastRest<T, P>,
     consistency: Consistency,
     places: Places<T>,
+    /// Intervals until forces are learnt from again.
+    probation: u16,
     /// Kept until something else is trusted.
     trusted: Option<Trusted<T, P>>,
     /// What is learnt from in the next period.
@@ -152,6 +159,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
             last_rest: LastRest::new(),
             consistency: Consistency::default(),
             places: Places::new(),
+            probation: 0,
             trusted: None,
             weighed: None,
         }
@@ -179,6 +187,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
             last_rest,
             consistency,
             places,
+            probation,
             trusted,
             weighed,
         } = self;
@@ -194,6 +203,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         *last_rest = LastRest::new();
         *consistency = Consistency::default();
         *places = Places::new();
+        *probation = 0;
         *trusted = None;
         *weighed = None;
     }
@@ -287,6 +297,11 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         self.cogging = Cogging::new(&tables.cogging);
         self.learner.doubt_motor();
         self.find_uncertainty(tables, true);
+    }
+
+    /// An encoder was given up. After its return, forces are not learnt from until the loop has settled.
+    pub fn lose_encoder(&mut self) {
+        self.probation = PROBATION;
     }
 
     /// Readings have broken off: what was being learnt from is discarded.
@@ -390,6 +405,9 @@ impl<T: Real, const P: usize> Learnt<T, P> {
     pub fn close(&mut self, tables: &ObserverTables<T>, reading: &Reading<T>, both_encoders: bool) -> Outcome {
         let Reading { mean, travel, .. } = reading;
         let deflection = reading.deflection - reading.flank_shift;
+        if both_encoders {
+            self.probation = self.probation.saturating_sub(1);
+        }
         self.learn_bias(tables, reading, deflection, both_encoders);
         self.bias.age(&tables.contact);
         if reading.flank.is_some() || matches!(travel, Travel::Crossing(..)) {
@@ -457,7 +475,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         let open = known && deflection.abs() < inside;
         self.interval.open_for = if open { self.interval.open_for.saturating_add(1) } else { 0 };
         let read = match reading.travel {
-            _ if !both_encoders => None,
+            _ if !both_encoders || self.probation > 0 => None,
             _ if self.interval.open_for >= OPEN_AFTER => Some((reading.mean.lost, reading.mean.direction)),
             Travel::Crossing(lost, direction) if !known => Some((lost, direction)),
             _ => None,
@@ -470,7 +488,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
     /// Learns the motor's cogging, once an interval, from where the motor is in its turn [turns], how fast it turns [rad/s] and what
     /// brakes the link [N m]; sine and cosine of the torque that drives, referred to the link [N m].
     pub fn learn_cogging(&mut self, tables: &ObserverTables<T>, seen: [T; 3]) -> [T; 2] {
-        let settled = self.interval.flank.filter(|_| self.uncertainty.settled);
+        let settled = self.interval.flank.filter(|_| self.uncertainty.settled && self.probation == 0);
         self.cogging.learn(&tables.cogging, seen, settled);
         self.cogging.torque()
     }
@@ -480,7 +498,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         let mut outcome = Outcome::Nothing;
         self.interval.task = match self.interval.task {
             Task::Inertia(rest) => {
-                let seen = both_encoders && self.uncertainty.half_gap_serves;
+                let seen = both_encoders && self.probation == 0 && self.uncertainty.half_gap_serves;
                 self.inertia.learn(&tables.inertia, load, seen);
                 if rest { Task::Flank } else { Task::Uncertainty }
             }

@@ -127,6 +127,36 @@ impl Part {
         Chip::ALL.into_iter().flat_map(|chip| chip.facts().variants).map(|variant| variant.name).collect()
     }
 
+    /// Help for an order name that is none of these. A name is suggested only within one part number of one maker: chips
+    /// whose names differ by a letter have other registers, other memory and other pins.
+    pub fn help(order_name: &str) -> String {
+        let typed = order_name.trim().to_uppercase();
+        let of_line = |variant: &&str| {
+            Chip::ALL.iter().any(|chip| {
+                let line = chip.name().to_uppercase();
+                typed.starts_with(&line) && variant.starts_with(&line)
+            })
+        };
+        let known = Self::names();
+        let line: Vec<&str> = known.iter().copied().filter(|variant| of_line(&variant)).collect();
+        match line.iter().find(|variant| typed.starts_with(**variant)) {
+            Some(variant) => format!(
+                "did you mean \"{variant}\"? it is written in capitals, up to the letter of the flash size or with those of \
+                 package and temperature range behind it"
+            ),
+            None if !line.is_empty() => {
+                format!(
+                    "write one of {}, with the letter of the flash size as it is printed on the chip",
+                    line.join(", ")
+                )
+            }
+            None => format!(
+                "firmware exists for {}; a chip of another number or maker is another chip, whatever its pins",
+                known.join(", ")
+            ),
+        }
+    }
+
     /// As debug probes know it: the order name with its package and an x for the temperature range.
     pub fn probe_name(&self) -> String {
         format!("{}{}x", self.variant.name, self.package.letter)

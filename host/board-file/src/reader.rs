@@ -122,11 +122,7 @@ fn read_name(top: &Section<'_>) -> Option<heapless::String<16>> {
 fn read_part(top: &Section<'_>, name: &str) -> Option<Part> {
     let part = Part::of(name);
     if part.is_none() {
-        let known = Part::names();
-        let help = match joint_file::nearest(name, known.iter().copied()) {
-            Some(near) => format!("did you mean \"{near}\"? known: {}", known.join(", ")),
-            None => format!("known: {}", known.join(", ")),
-        };
+        let help = Part::help(name);
         top.notes.error(top.place("chip"), format!("there is no firmware for the chip \"{name}\""), help);
     }
     part

@@ -131,10 +131,19 @@ fn a_name_that_no_board_can_have_is_refused() {
 
 #[test]
 fn a_chip_that_is_not_known_is_refused() {
-    for name in ["STM32F407VG", "STM32F405", "stm32f405rg", "STM32F405RGU6"] {
+    let same_number = [
+        ("STM32F405", "write one of STM32F405RG, STM32F405VG"),
+        ("stm32f405rg", "did you mean \"STM32F405RG\"?"),
+        ("STM32F405RGU6", "did you mean \"STM32F405RG\"?"),
+    ];
+    // Another number, or another maker's number, is no slip of the keyboard.
+    let others =
+        ["STM32F407VG", "STM32F446RE", "GD32F405RG", "AT32F405RG", "STM32G473RE", "STM32H750ZI", "STM32F4O5RG"];
+    let others = others.map(|name| (name, "firmware exists for STM32F405RG, STM32F405VG"));
+    for (name, help) in same_number.into_iter().chain(others) {
         let text = spoilt("\"STM32F405RG\"", &format!("\"{name}\""));
         let message = format!("there is no firmware for the chip \"{name}\"");
-        refused(&text, &message, &format!("\"{name}\""), "STM32F405RG");
+        refused(&text, &message, &format!("\"{name}\""), help);
     }
 }
 

@@ -29,9 +29,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("time_s  gap_um  flank       half_backlash_um  deviation_um");
     for (period, row) in (0_u32..).zip(&rows) {
         let time = period.wrapping_mul(design::CLOCK_TICKS);
-        let read = |counts, bits| Reading { counts: (counts as i64).rem_euclid(1_i64 << bits) as u32, time };
-        let output = Some(read(row[2], around.output_encoder.bits));
-        let said = observer.step(&Samples { time, motor: read(row[1], around.motor_encoder.bits), output, torque });
+        let read = |counts, turn: u64| Reading { counts: (counts as i64).rem_euclid(turn as i64) as u32, time };
+        let output = Some(read(row[2], around.output_encoder.counts_per_turn));
+        let said =
+            observer.step(&Samples { time, motor: read(row[1], around.motor_encoder.counts_per_turn), output, torque });
         torque = row[3] as f32;
         if (period + 1).is_multiple_of((around.control_rate / 10).max(1)) {
             let flank = if said.contact_valid { format!("{:?}", said.reported_contact) } else { "unknown".into() };

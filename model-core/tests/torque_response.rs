@@ -75,7 +75,7 @@ fn closed<const N: usize>(
     let compensation = design_compensation(joint, &compensation_settings(around, bandwidth)).expect("tables");
     let mut plant = VirtualJoint::new(&gears, &surroundings);
     let mut controller = Controller::<f32>::new(&observer, &compensation);
-    let last = (1_u32 << around.motor_encoder.bits) - 1;
+    let last = around.motor_encoder.counts_per_turn as u32 - 1;
     let sign = if wiring == Wiring::TorqueReversed { -1.0 } else { 1.0 };
     let holds = (around.torque_limit * joint.geometry.ratio_by_teeth()) as f32;
     let (mut torque, mut start, mut furthest) = (0.0_f32, None, 0.0_f64);
@@ -95,7 +95,7 @@ fn closed<const N: usize>(
             samples.motor.counts = last - samples.motor.counts;
         }
         if let (Wiring::OutputReversed, Some(output)) = (wiring, samples.output.as_mut()) {
-            output.counts = (1 << around.output_encoder.bits) - 1 - output.counts;
+            output.counts = around.output_encoder.counts_per_turn as u32 - 1 - output.counts;
         }
         let origin = start.unwrap_or_default();
         let command = command(task, origin, time as f32, holds);

@@ -9,7 +9,7 @@ use model_core::virtual_joint::{SurroundingsTable, VirtualJoint, design::design_
 use model_core::wiring::WiringTable;
 use model_core::wiring::design::design_wiring;
 use model_core::wiring::{Verdict, Wiring, WiringCheck, WiringItem, WiringJudge, WiringProgress, WiringRefusal};
-use parameters::{JointParameters, Surroundings};
+use parameters::{AbsoluteEncoder, JointParameters, Surroundings};
 
 const PRESETS: [&str; 5] = ["q1", "s1", "c1", "d2", "l1"];
 
@@ -51,8 +51,8 @@ impl Joint {
         joint.around.motor_friction.coulomb *= scale(2.0);
         joint.around.load_friction.coulomb *= scale(2.0);
         joint.around.gravity_torque *= scale(2.0) * 0.5;
-        joint.around.motor_encoder.bits = (16.0 + (scale(7.39).ln()).round()) as u32;
-        joint.around.output_encoder.bits = (18.0 + (scale(7.39).ln()).round()) as u32;
+        joint.around.motor_encoder.counts_per_turn = 1 << (16.0 + (scale(7.39).ln()).round()) as u32;
+        joint.around.output_encoder.counts_per_turn = 1 << (18.0 + (scale(7.39).ln()).round()) as u32;
         joint
     }
 }
@@ -126,10 +126,14 @@ impl Miswiring {
     /// The joint that is there, where the check is told of another one.
     fn real(self, told: &Joint) -> Joint {
         let mut real = told.clone();
-        let bits = |bits: u32, more: i32| bits.checked_add_signed(more).expect("bits");
+        let counts = |of: AbsoluteEncoder, more: i32| 1 << bits(&of).checked_add_signed(more).expect("bits");
         match self {
-            Self::MotorBits(more) => real.around.motor_encoder.bits = bits(real.around.motor_encoder.bits, more),
-            Self::OutputBits(more) => real.around.output_encoder.bits = bits(real.around.output_encoder.bits, more),
+            Self::MotorBits(more) => {
+                real.around.motor_encoder.counts_per_turn = counts(real.around.motor_encoder, more);
+            }
+            Self::OutputBits(more) => {
+                real.around.output_encoder.counts_per_turn = counts(real.around.output_encoder, more);
+            }
             Self::TwiceAsOften => {
                 real.around.control_rate *= 2;
                 real.around.delay = (2.0 * real.around.delay).min(4.0);
@@ -157,6 +161,10 @@ struct Bench<'t, const N: usize> {
     bits: [[u32; 2]; 2],
     zeros: [u32; 2],
     rate: f64,
+}
+
+fn bits(encoder: &AbsoluteEncoder) -> u32 {
+    encoder.bits().expect("a power of two")
 }
 
 /// Counts of an encoder whose zero is elsewhere.
@@ -242,7 +250,7 @@ fn checked<const N: usize>(
     let around = design_surroundings(&real.parameters, &real.around, &gears).expect("tables");
     let table: WiringTable<f32> = design_wiring(&told.parameters, settings).expect("a table");
     let mut state = seed;
-    let bits = [real, told].map(|joint| [joint.around.motor_encoder.bits, joint.around.output_encoder.bits]);
+    let bits = [real, told].map(|joint| [bits(&joint.around.motor_encoder), bits(&joint.around.output_encoder)]);
     let zeros = bits[0].map(|bits| splitmix64(&mut state) as u32 & ((1 << bits) - 1));
     let bench = Bench { gears: &gears, around: &around, bits, zeros, rate: real.around.control_rate.into() };
     (bench.check(is, &table, table.torque), table.torque)

@@ -106,8 +106,8 @@ pub struct Friction {
 /// An absolute encoder of one turn.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct AbsoluteEncoder {
-    /// 2^bits counts in a turn.
-    pub bits: u32,
+    /// Counts in a turn.
+    pub counts_per_turn: u64,
     /// Amplitude of the error that comes once a turn [rad].
     pub once_per_turn_error: f64,
     /// Amplitude of the error that comes twice a turn [rad].
@@ -127,6 +127,24 @@ pub struct AbsoluteEncoder {
 impl AbsoluteEncoder {
     /// Right up to its resolution of 2^bits counts a turn.
     pub fn ideal(bits: u32) -> Self {
-        Self { bits, ..Self::default() }
+        Self { counts_per_turn: Self::counts_of_bits(bits), ..Self::default() }
+    }
+
+    /// Counts in a turn of an encoder of so many bits.
+    ///
+    /// ```
+    /// use parameters::AbsoluteEncoder;
+    /// assert_eq!(AbsoluteEncoder::counts_of_bits(14), 16_384);
+    /// assert_eq!(AbsoluteEncoder::ideal(14).bits(), Some(14));
+    /// let incremental = AbsoluteEncoder { counts_per_turn: 4000, ..AbsoluteEncoder::default() };
+    /// assert_eq!(incremental.bits(), None);
+    /// ```
+    pub fn counts_of_bits(bits: u32) -> u64 {
+        1_u64.checked_shl(bits).unwrap_or(u64::MAX)
+    }
+
+    /// Resolution in bits; `None` where the counts in a turn are no power of two.
+    pub fn bits(&self) -> Option<u32> {
+        self.counts_per_turn.is_power_of_two().then(|| self.counts_per_turn.trailing_zeros())
     }
 }

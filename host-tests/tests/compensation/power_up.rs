@@ -101,11 +101,11 @@ fn turning(test: &Test, seed: u64, controller: ControllerName) -> Figures {
     let rig = Rig::new(&setup).expect("a rig");
     let designed = case.design(&test.file).expect("tables");
     let around = &case.nominal_surroundings;
-    let bits = [around.motor_encoder.bits, around.output_encoder.bits];
+    let turns = [around.motor_encoder, around.output_encoder].map(|encoder| encoder.counts_per_turn);
     let mut loop_controller = match controller {
         NoPreview => ActiveController::Compensation(
             Box::new(HostPort::new(&designed)),
-            Translator::new(designed.ticks, bits, &case.zeros),
+            Translator::new(designed.ticks, turns, &case.zeros),
         ),
         rival => ActiveController::rival(rival, case.knowledge(), case.bandwidth(&test.file).expect("a bandwidth")),
     };

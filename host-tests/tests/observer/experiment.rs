@@ -54,8 +54,8 @@ impl Experiment {
                 train.surroundings.output_encoder = AbsoluteEncoder::ideal(18);
             }
             Encoders::Bits(motor, output) => {
-                train.surroundings.motor_encoder.bits = motor;
-                train.surroundings.output_encoder.bits = output;
+                train.surroundings.motor_encoder.counts_per_turn = 1 << motor;
+                train.surroundings.output_encoder.counts_per_turn = 1 << output;
             }
         }
         if encoders != Encoders::Ideal {

@@ -87,7 +87,7 @@ fn a_harmonic_that_is_not_in_the_map_costs_little() {
     let experiment = Experiment::new("q1", "gravity", Encoders::Preset, Some(40e-6), 9).lasting(4.0);
     let log = experiment.record();
     let clean = with_encoders(&log, &experiment.setup.train);
-    let count = core::f64::consts::TAU / f64::from(1 << experiment.setup.train.surroundings.motor_encoder.bits);
+    let count = core::f64::consts::TAU / experiment.setup.train.surroundings.motor_encoder.counts_per_turn as f64;
     let mut dirty = clean.clone();
     for moment in &mut dirty {
         let error = 0.02_f64.to_radians() * (4.0 * moment.motor[0] + 1.0).sin();

@@ -46,7 +46,7 @@ fn given_up(name: &str, motion: &str, seed: u64) -> usize {
     let mut observer = Observer::<f32, MAPPED>::new(&observer);
     let mut controller = MotorController::new(joint, train);
     let mut uniform = uniform(seed);
-    let turn = 1_i64 << train.surroundings.motor_encoder.bits;
+    let turn = train.surroundings.motor_encoder.counts_per_turn as i64;
     let (mut counts, mut alarms, mut seen, mut commanded) = (0_i64, 0, false, 0.0);
     for period in 0..u64::from(LASTS * rate) {
         let time = period as f64 * controller.period;

@@ -143,7 +143,7 @@ impl MotorController {
             motor_inertia: joint.rotor_inertia
                 + joint.bodies.sun_equivalent_mass * joint.geometry.sun_base_radius.powi(2),
             limit: train.surroundings.torque_limit,
-            per_count: TAU / f64::from(1_u32 << train.surroundings.motor_encoder.bits),
+            per_count: TAU / train.surroundings.motor_encoder.counts_per_turn as f64,
             home: 0,
             period: 1.0 / f64::from(train.surroundings.control_rate),
             integral: 0.0,

@@ -19,8 +19,10 @@ fn single_precision_is_enough_at_the_start_and_after_300_turns() {
         // The joint goes there smoothly before the recording begins, at some four turns of the output a second.
         let mut period = 0;
         let train = &experiment.setup.train;
-        let (motor_turn, output_turn) =
-            (1_i64 << train.surroundings.motor_encoder.bits, 1_i64 << train.surroundings.output_encoder.bits);
+        let (motor_turn, output_turn) = (
+            train.surroundings.motor_encoder.counts_per_turn as i64,
+            train.surroundings.output_encoder.counts_per_turn as i64,
+        );
         let steps = turns * 10_000 / 4;
         for step in 0..steps {
             let part = step as f64 / steps as f64;

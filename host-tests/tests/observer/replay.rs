@@ -17,8 +17,8 @@ pub const CLOCK_RATE: u32 = 10_000_000;
 pub fn settings(train: &DriveTrainParameters) -> ObserverSettings {
     let around = &train.surroundings;
     let encoder = |encoder: &AbsoluteEncoder| EncoderSettings {
-        counts_per_turn: 1 << encoder.bits,
-        wraps_at: 1 << encoder.bits,
+        counts_per_turn: encoder.counts_per_turn as u32,
+        wraps_at: encoder.counts_per_turn as u32,
         absolute: true,
         harmonic_error: encoder.once_per_turn_error.max(encoder.twice_per_turn_error),
     };
@@ -234,7 +234,7 @@ pub fn with_encoders(log: &[PeriodSample], train: &DriveTrainParameters) -> Vec<
         let angle = angle - encoder.skew * speed;
         let error = encoder.once_per_turn_error * (angle + phases.once_per_turn).sin()
             + encoder.twice_per_turn_error * (2.0 * angle + phases.twice_per_turn).sin();
-        ((angle + error) / TAU * f64::from(1_u32 << encoder.bits)).floor() as i64
+        ((angle + error) / TAU * encoder.counts_per_turn as f64).floor() as i64
     };
     log.iter()
         .map(|moment| PeriodSample {

@@ -233,7 +233,7 @@ fn a_drive_train_out_of_range_is_refused_with_the_mend() {
         "efficiency is 1.2; it must be above 0 and at most 1"
     );
     assert_eq!(
-        refusal(|train| train.surroundings.output_encoder.bits = 0),
-        "encoder bits is 0; it must be from 1 to 30"
+        refusal(|train| train.surroundings.output_encoder.counts_per_turn = 1),
+        "counts in a turn of an encoder is 1; it must be from 2 to 2^30"
     );
 }

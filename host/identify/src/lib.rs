@@ -59,6 +59,7 @@ use twist::Twist;
 
 use joint_file::named::{self, Loaded};
 use joint_file::warned;
+use parameters::AbsoluteEncoder;
 use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};
 use report::folder::{self, Folder};
@@ -112,7 +113,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     if arguments.simulate {
         return simulate(arguments, &loaded, progress);
     }
-    let prior = PriorModel::new(&loaded, arguments);
+    let prior = PriorModel::new(&loaded, arguments)?;
     folder::check_files(&[("json", arguments.json.as_deref())], &[&arguments.log, &arguments.joint])?;
     let folder = Folder::choose(arguments.out.as_deref(), "identify", &prior.name, &[REPORT, JOINT, FINDINGS])?;
     progress.stage("fitting");
@@ -353,8 +354,11 @@ fn simulate(arguments: &Arguments, loaded: &Loaded, progress: &Progress) -> Outc
     }
     let mut file = loaded.file.clone();
     let around = &mut file.surroundings;
-    around.motor_encoder.bits = arguments.motor_bits.unwrap_or(around.motor_encoder.bits);
-    around.output_encoder.bits = arguments.output_bits.unwrap_or(around.output_encoder.bits);
+    for (encoder, bits) in
+        [(&mut around.motor_encoder, arguments.motor_bits), (&mut around.output_encoder, arguments.output_bits)]
+    {
+        encoder.counts_per_turn = bits.map_or(encoder.counts_per_turn, AbsoluteEncoder::counts_of_bits);
+    }
     progress.run("testing", 1000_u32);
     let recording = virtual_test::record(&file, arguments.seed, &|share| progress.at((1000.0 * share) as u32))?;
     write_text(&arguments.log, &recording.csv(arguments.with_output_torque))?;

@@ -3,7 +3,8 @@
 
 use joint_file::{JointFile, sheet};
 use model_core::gears::{Kinematics, Mechanics};
-use parameters::{Mesh, MeshKind, StiffnessWave, Surroundings};
+use parameters::{AbsoluteEncoder, Mesh, MeshKind, StiffnessWave, Surroundings};
+use report::failure::{Failure, Outcome};
 
 use super::arguments::{Arguments, INERTIA_ERROR};
 use super::higher::Higher;
@@ -80,15 +81,37 @@ pub struct PriorModel {
     pub inertia_error: f64,
 }
 
+/// Bits of an encoder; the next lower number of bits where its counts in a turn are no power of two.
+fn bits(encoder: &AbsoluteEncoder) -> u32 {
+    encoder.counts_per_turn.checked_ilog2().unwrap_or(0)
+}
+
 impl PriorModel {
-    /// Of a joint file and the command line.
-    pub fn new(loaded: &Loaded, arguments: &Arguments) -> Self {
+    /// Of a joint file and the command line. Encoders whose counts in a turn are no power of two are refused.
+    pub fn new(loaded: &Loaded, arguments: &Arguments) -> Outcome<Self> {
+        let around = &loaded.file.surroundings;
+        let told = [arguments.motor_bits, arguments.output_bits];
+        for ((encoder, name), told) in
+            [(&around.motor_encoder, "motor"), (&around.output_encoder, "output")].into_iter().zip(told)
+        {
+            if encoder.bits().is_none() && told.is_none() {
+                let turn = encoder.counts_per_turn;
+                let message = format!(
+                    "{}: the {name} encoder has {turn} counts in a turn, which is no power of two",
+                    loaded.name
+                );
+                return Err(Failure::new(message).with_help(format!(
+                    "`joint identify` reads encoders of 2^n counts: scale the column to such counts, count x 65536 / {turn} rounded \
+                     down, and give --{name}-bits 16"
+                )));
+            }
+        }
         let mut prior = Self::of(&loaded.file);
         prior.motor_bits = arguments.motor_bits.unwrap_or(prior.motor_bits);
         prior.output_bits = arguments.output_bits.unwrap_or(prior.output_bits);
         prior.torque_error = arguments.torque_error.map_or(prior.torque_error, |percent| percent / 100.0);
         prior.inertia_error = arguments.inertia_error / 100.0;
-        prior
+        Ok(prior)
     }
 
     /// Of a joint file alone.
@@ -128,8 +151,8 @@ impl PriorModel {
             name: joint.name.as_str().to_owned(),
             teeth: [geometry.sun_teeth, geometry.sun_teeth + geometry.ring_teeth],
             ring_teeth: geometry.ring_teeth,
-            motor_bits: around.motor_encoder.bits,
-            output_bits: around.output_encoder.bits,
+            motor_bits: bits(&around.motor_encoder),
+            output_bits: bits(&around.output_encoder),
             lever,
             sun_inertia: sun * lever * lever / (ratio * ratio),
             carrier_inertia: (before - sun) * lever * lever / (ratio * ratio)

@@ -167,7 +167,7 @@ fn encoder(section: &Section<'_>, name: &str) -> AbsoluteEncoder {
     let Some(section) = section.section(name, "encoder") else { return ideal };
     let number = |key: &str| section.number(key).unwrap_or(0.0);
     AbsoluteEncoder {
-        bits: section.required_whole("bits").unwrap_or(ideal.bits),
+        counts_per_turn: counts_per_turn(&section).unwrap_or(ideal.counts_per_turn),
         once_per_turn_error: number("once_per_turn_error_deg"),
         twice_per_turn_error: number("twice_per_turn_error_deg"),
         skew: number("skew_us"),
@@ -175,6 +175,15 @@ fn encoder(section: &Section<'_>, name: &str) -> AbsoluteEncoder {
         noise_counts: number("noise_counts"),
         subdivision: subdivision(&section),
         missing_share: number("missing_frames_share"),
+    }
+}
+
+/// Resolution, in bits or in counts; exactly one of both is stated.
+fn counts_per_turn(section: &Section<'_>) -> Option<u64> {
+    const COUNTS: &str = "counts_per_turn";
+    match section.one_of(&["bits", COUNTS], true)? {
+        COUNTS => section.whole(COUNTS).map(u64::from),
+        bits => section.whole(bits).map(AbsoluteEncoder::counts_of_bits),
     }
 }
 

@@ -6,17 +6,20 @@ use crate::problem::Severity;
 use crate::section::Section;
 
 /// Sections and keys of teeth, which an equivalent gear has none of.
-const OF_TEETH: [&str; 7] =
+pub(crate) const OF_TEETH: [&str; 7] =
     ["coherence", "characteristic_length_um", "geometry", "mesh", "compliance", "contact", "excitation"];
 
 /// Keys of `[bodies]` that an equivalent gear has.
 const BODIES: [&str; 3] = ["gear_inertia_at_input_kg_cm2", "rotor_inertia_kg_m2", "link_inertia_kg_m2"];
 
-/// A decimal number has this many places at most; with more it is a fraction that was rounded.
+/// A decimal number with more places is a fraction that was rounded.
 const MOST_PLACES: usize = 5;
 
 /// From this many places on it may be one.
 const MANY_PLACES: usize = 3;
+
+/// Greatest whole number of a ratio: the difference of two encoders is counted in units of it.
+const GREATEST_WHOLE: u64 = 100_000_000;
 
 /// Ratio and parameters, as far as they are right; what is wrong has been noted.
 pub(crate) fn read(
@@ -78,25 +81,61 @@ fn ratio(section: &Section<'_>) -> Option<[u32; 2]> {
     Some(ratio)
 }
 
-/// A decimal number as a fraction of whole numbers.
+/// A decimal number as a fraction of whole numbers: to the last digit, or with many digits the simplest fraction that is
+/// written so. What else it may stand for is warned of.
 fn decimal(section: &Section<'_>) -> Option<[u32; 2]> {
     let value = section.required_number("ratio")?;
     let typed = value.to_string();
-    let places = typed.split_once('.').map_or(0, |(_, places)| places.len());
-    let whole =
-        "give `motor_turns` and `link_turns` in place of `ratio`: whole numbers of turns after which both are back";
-    if places > MOST_PLACES {
-        let message = format!("`ratio` = {typed} has {places} decimals: a fraction that was rounded");
-        section.notes.error(section.place("ratio"), message, whole);
-        return None;
+    let (whole, decimals) = typed.split_once('.').unwrap_or((&typed, ""));
+    let places = decimals.len();
+    let digits: u64 = format!("{whole}{decimals}").parse().ok()?;
+    let under = 10_u64.checked_pow(places as u32)?;
+    let half = [2 * digits - 1, 2 * digits + 1].map(|twice| [twice, 2 * under]);
+    let simple = simplest(half[0], half[1]);
+    let note = |message: String, help: String| {
+        section.notes.problem(section.place("ratio"), message, help, Severity::Warning);
+    };
+    if places > MOST_PLACES || digits > GREATEST_WHOLE {
+        let [over, under] = simple;
+        note(
+            format!("`ratio` = {typed} is a fraction that was rounded, and is taken as {over}/{under}"),
+            "give `motor_turns` and `link_turns` in place of `ratio` if they are others".to_owned(),
+        );
+        return Some([u32::try_from(over).ok()?, u32::try_from(under).ok()?]);
     }
-    let under = 10_u32.pow(places as u32);
-    let over = (value * f64::from(under)).round() as u32;
+    let [over, few] = simple;
+    // Of two digits one ratio in six is a fraction that teeth give; a divisor of 100 needs no rounding.
+    let may_be_rounded = few * few < under && under % few != 0;
+    let turns = format!("`motor_turns` = {over} and `link_turns` = {few} in place of `ratio`");
     if places >= MANY_PLACES {
-        let message = format!("`ratio` = {typed} is taken as {over}/{under}, to the last turn");
-        section.notes.problem(section.place("ratio"), message, whole, Severity::Warning);
+        let help = match may_be_rounded {
+            true => format!("give {turns} if the teeth do so; else the whole turns after which both are back"),
+            false => "give `motor_turns` and `link_turns` in place of `ratio`: whole numbers of turns after which both are back"
+                .to_owned(),
+        };
+        note(format!("`ratio` = {typed} is taken as {digits}/{under}, to the last turn"), help);
+    } else if may_be_rounded {
+        note(
+            format!(
+                "`ratio` = {typed} is taken as {digits}/{under}, and {over}/{few} is written so when it is rounded"
+            ),
+            format!("give {turns} if the teeth do so: the encoders tell the two apart"),
+        );
     }
-    Some([over, under])
+    Some([u32::try_from(digits).ok()?, u32::try_from(under).ok()?])
+}
+
+/// The fraction of least divisor from one fraction to a greater one.
+fn simplest([a, b]: [u64; 2], [c, d]: [u64; 2]) -> [u64; 2] {
+    let whole = a / b;
+    if whole * b == a {
+        return [whole, 1];
+    }
+    if (whole + 1) * d <= c {
+        return [whole + 1, 1];
+    }
+    let [over, under] = simplest([d, c - whole * d], [b, a - whole * b]);
+    [whole * over + under, over]
 }
 
 fn divisor(a: u32, b: u32) -> u32 {
@@ -121,4 +160,19 @@ fn masses(section: &Section<'_>) -> Option<[f64; 3]> {
         section.notes.error(section.place(BODIES[1]), "nothing turns at the motor's side of the gear", help);
     }
     (link > 0.0 && gear + rotor > 0.0).then_some([gear, rotor, link])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::simplest;
+
+    #[test]
+    fn the_simplest_fraction_of_a_rounded_number_is_found() {
+        let of = |digits: u64, under: u64| simplest([2 * digits - 1, 2 * under], [2 * digits + 1, 2 * under]);
+        assert_eq!(of(9_333_333, 1_000_000), [28, 3]);
+        assert_eq!(of(933, 100), [28, 3]);
+        assert_eq!(of(1_296_714_286, 1_000_000), [9077, 7]);
+        assert_eq!(of(275, 10), [55, 2]);
+        assert_eq!(of(50, 1), [50, 1]);
+    }
 }

@@ -106,7 +106,7 @@ pub(crate) const KEYS: &[Key] = &[
     key(
         "equivalent_gear",
         "ratio",
-        Number(Si, Inside(1.0, 1000.0)),
+        Number(Si, Inside(1.0, 1e5)),
         "motor turns over link turns as a decimal number, such as 50 or 12.5; 29/3 is motor_turns = 29 and link_turns = 3",
     ),
     key("equivalent_gear", "motor_turns", Whole(1, 100_000), TURNS_HINT),
@@ -323,7 +323,7 @@ pub(crate) const KEYS: &[Key] = &[
         "profile",
         "drive_torque_N_m",
         Number(Si, TORQUE),
-        "the rated motor torque; balances the rated output torque if left out",
+        "the rated motor torque; if left out, what balances the rated output torque, or the motor's limit where that is less",
     ),
     key(
         "profile",
@@ -477,9 +477,23 @@ pub(crate) const KEYS: &[Key] = &[
         Number(Si, Between(0.0, 0.5)),
         "longest delay of a control period's start over the period; 5 % is 0.05",
     ),
-    section("drive_train", "motor_encoder", "bits, once_per_turn_error_deg, twice_per_turn_error_deg, skew_us"),
-    section("drive_train", "output_encoder", "bits, once_per_turn_error_deg, twice_per_turn_error_deg, skew_us"),
+    section(
+        "drive_train",
+        "motor_encoder",
+        "bits or counts_per_turn, once_per_turn_error_deg, twice_per_turn_error_deg, skew_us",
+    ),
+    section(
+        "drive_train",
+        "output_encoder",
+        "bits or counts_per_turn, once_per_turn_error_deg, twice_per_turn_error_deg, skew_us",
+    ),
     key("encoder", "bits", Whole(8, 32), "the resolution: 14 bits are 16384 counts a turn"),
+    key(
+        "encoder",
+        "counts_per_turn",
+        Whole(12, 16_777_216),
+        "counts in a turn where they are no power of two, in place of bits: an encoder of 1000 lines read at every edge has 4000",
+    ),
     key("encoder", "once_per_turn_error_deg", Number(Degrees, Between(0.0, 10.0)), "an amplitude in degrees"),
     key("encoder", "twice_per_turn_error_deg", Number(Degrees, Between(0.0, 10.0)), "an amplitude in degrees"),
     key("encoder", "skew_us", Number(Micro, Between(0.0, 1e5)), "how late the reading is, in us"),

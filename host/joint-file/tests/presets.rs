@@ -128,7 +128,7 @@ fn q1_has_its_drive_train_in_si() {
     assert_eq!(around.current_lag, 0.2e-3);
     assert_eq!(around.output_encoder.skew, 50e-6);
     assert_close(around.output_encoder.once_per_turn_error, 0.35e-3, 3e-3);
-    assert_eq!((around.motor_encoder.bits, around.output_encoder.bits), (14, 17));
+    assert_eq!([around.motor_encoder, around.output_encoder].map(|encoder| encoder.bits()), [Some(14), Some(17)]);
     assert_eq!(file("q1").profile.motor_torque_limit, 2.5);
 }
 

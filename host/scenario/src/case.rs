@@ -75,8 +75,8 @@ impl Case {
         let mut drawn = BTreeMap::new();
         let mut draw = |name: &str, quantity: NumberOrRange| {
             let mut stream = RandomStream::new(seed, name);
-            // An encoder has no half bits.
-            let whole = name.ends_with(".bits");
+            // An encoder has no half bits and no half counts.
+            let whole = [".bits", ".counts_per_turn"].iter().any(|key| name.ends_with(key));
             let value = if whole { quantity.draw_whole(&mut stream) } else { quantity.draw(&mut stream) };
             if matches!(quantity, NumberOrRange::Between(..)) {
                 drawn.insert(name.to_owned(), value);
@@ -276,7 +276,7 @@ fn apply_one(text: &mut String, change: &Change, section: &str, draw: &mut Draw<
         NewValue::Text(text) => text.clone(),
         NewValue::Number(quantity) => typed(draw(&name, *quantity), *quantity),
         NewValue::Times(quantity) => {
-            let stated = joint_file::value(text, &change.key).ok().flatten();
+            let stated = joint_file::value(text, &change.typed).ok().flatten();
             let was: f64 = stated.and_then(|typed| typed.replace('_', "").parse().ok()).ok_or_else(|| {
                 let message = format!("the joint file does not state `{}` as one number", change.key);
                 problem(change.span.clone(), message, "give the new value itself, in place of { times = ... }")
@@ -284,7 +284,7 @@ fn apply_one(text: &mut String, change: &Change, section: &str, draw: &mut Draw<
             (was * draw(&name, *quantity)).to_string()
         }
     };
-    *text = joint_file::change(text, &change.key, &value)
+    *text = joint_file::change(text, &change.typed, &value)
         .map_err(|refused| problem(change.span.clone(), refused.message, refused.help))?;
     Ok(())
 }

@@ -48,7 +48,25 @@ pub fn execute(
     spec: RunSpec,
     deadline: Instant,
 ) -> Result<RunHistory, RunError> {
-    execute_with(file, case, seed, spec, deadline, &|designed| Ok(Box::new(HostPort::new(designed))))
+    execute_with(file, case, seed, spec, deadline, &host_port)
+}
+
+/// Runs a compensation in one case, on the host, with tables that were designed before: cases that differ in their seed or in
+/// their true joint alone share them.
+pub fn execute_designed(
+    file: &TestFile,
+    case: &Case,
+    seed: u64,
+    spec: RunSpec,
+    deadline: Instant,
+    designed: &Designed,
+) -> Result<RunHistory, RunError> {
+    run(file, case, seed, spec, deadline, Some(designed), &host_port)
+}
+
+/// The port to observer and compensation in this process.
+fn host_port(designed: &Designed) -> Outcome<Box<dyn ControllerPort + '_>> {
+    Ok(Box::new(HostPort::new(designed)))
 }
 
 /// Runs one controller in one case; observer and compensation are where their port leads.
@@ -61,17 +79,29 @@ pub fn execute_with(
     port: MakePort<'_>,
 ) -> Result<RunHistory, RunError> {
     let designed = if spec.controller.is_compensation() { Some(case.design(file)?) } else { None };
+    run(file, case, seed, spec, deadline, designed.as_ref(), port)
+}
+
+fn run(
+    file: &TestFile,
+    case: &Case,
+    seed: u64,
+    spec: RunSpec,
+    deadline: Instant,
+    designed: Option<&Designed>,
+    port: MakePort<'_>,
+) -> Result<RunHistory, RunError> {
     let from_truth = (spec.controller == ControllerName::TrueStateCompensation)
         .then(|| design_from_truth(file, case))
         .transpose()?;
-    let mut controller = match (&designed, &from_truth) {
+    let mut controller = match (designed, &from_truth) {
         (Some(designed), _) => compensation_controller(spec.controller, case, designed, port)?,
         (None, Some(tables)) => {
             ActiveController::TrueState(Box::new(TrueStateCompensation::new(tables, &case.truth.parameters)))
         }
         (None, None) => ActiveController::rival(spec.controller, case.knowledge(), case.bandwidth(file)?),
     };
-    let run = RunContext { file, case, spec, designed: designed.as_ref(), deadline };
+    let run = RunContext { file, case, spec, designed, deadline };
     if file.from_memory && spec.controller.is_compensation() {
         // The learning run has other noise, so that the memory holds the joint and not the noise.
         run.pass(&mut controller, !seed)?;
@@ -154,8 +184,8 @@ fn compensation_controller<'d>(
 fn translator(case: &Case) -> Translator {
     let around = &case.nominal_surroundings;
     let settings = observer_settings(around);
-    let bits = [around.motor_encoder.bits, around.output_encoder.bits];
-    Translator::new(settings.clock_rate / settings.control_rate, bits, &case.zeros)
+    let turns = [around.motor_encoder, around.output_encoder].map(|encoder| encoder.counts_per_turn);
+    Translator::new(settings.clock_rate / settings.control_rate, turns, &case.zeros)
 }
 
 /// The compensation fed with the true state is designed to the true joint.

@@ -78,7 +78,7 @@ impl HostFaults {
         Self {
             faults: stated.chain(missing_frames(encoders.map(|encoder| encoder.missing_share), seed)).collect(),
             period: 1.0 / f64::from(around.control_rate),
-            counts_per_turn: encoders.map(|encoder| (1_u64 << encoder.bits) as f64),
+            counts_per_turn: encoders.map(|encoder| encoder.counts_per_turn as f64),
             home: None,
             start: [0; 2],
             past: Default::default(),

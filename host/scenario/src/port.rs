@@ -89,9 +89,9 @@ pub struct Translator {
 }
 
 impl Translator {
-    /// For encoders of so many bits, mounted with these zeros.
-    pub fn new(ticks: u32, bits: [u32; 2], zeros: &EncoderZeros) -> Self {
-        let ranges = bits.map(|bits| 1 << bits);
+    /// For encoders of so many counts in a turn, mounted with these zeros.
+    pub fn new(ticks: u32, counts_per_turn: [u64; 2], zeros: &EncoderZeros) -> Self {
+        let ranges = counts_per_turn.map(u64::cast_signed);
         Self { ticks, ranges, zeros: zeros.counts(ranges), first_turn: None, torque: 0.0 }
     }
 

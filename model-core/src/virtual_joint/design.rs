@@ -76,7 +76,7 @@ pub fn design_surroundings<T: Real, const N: usize>(
         to_link: to_link.map(real),
         weight: real(of.gravity_torque),
         encoders: [&of.motor_encoder, &of.output_encoder].map(|encoder| EncoderErrorTable {
-            shift: 32 - encoder.bits,
+            shift: 32 - encoder.counts_per_turn.trailing_zeros(),
             errors: [encoder.once_per_turn_error, encoder.twice_per_turn_error].map(|error| real(error * units)),
             lag: real(encoder.skew * units),
         }),
@@ -109,7 +109,10 @@ fn check(joint: &JointParameters, of: &Surroundings, tick_rate: u32) -> Result<(
     within("the control delay", of.delay, 0.0, most, "from 0 to 4 control periods")?;
     within("the efficiency", of.efficiency, 0.1, 1.0, "from 0.1 to 1")?;
     for encoder in [&of.motor_encoder, &of.output_encoder] {
-        within("the number of bits of an encoder", encoder.bits.into(), 6.0, 24.0, "from 6 to 24")?;
+        let turn = encoder.counts_per_turn as f64;
+        let must_be = "a power of two from 64 to 2^24 in a virtual joint";
+        let least = if encoder.bits().is_some() { 64.0 } else { f64::INFINITY };
+        within("the number of counts in a turn of an encoder", turn, least, 16_777_216.0, must_be)?;
     }
     let ratio = joint.geometry.ratio_by_radii() / joint.geometry.ratio_by_teeth();
     within(

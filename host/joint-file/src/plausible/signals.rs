@@ -131,15 +131,16 @@ fn encoder(file: &JointFile, judge: &Judge<'_>, side: &str, encoder: &AbsoluteEn
     let gap = sheet::lost_motion(&file.parameters);
     let at_link = |angle: f64| angle / ratio;
     if gap > 0.0 {
-        let count = at_link(TAU / 2f64.powi(encoder.bits as i32));
-        judge.judge(&[&key("bits")], count / gap, AGAINST_GAP, |_, name| {
+        let count = at_link(TAU / encoder.counts_per_turn as f64);
+        judge.judge(&[&key("bits"), &key("counts_per_turn")], count / gap, AGAINST_GAP, |_, name| {
+            let stated = if name == "bits" { encoder.bits().map(u64::from) } else { None };
             let message = format!(
                 "`{name}` = {} of the {side} encoder: one count is {} mrad at the link, more than the lost motion of {} mrad",
-                encoder.bits,
+                stated.unwrap_or(encoder.counts_per_turn),
                 figure(1e3 * count),
                 figure(1e3 * gap)
             );
-            (message, "nothing sees this gap; more bits, or the backlash is in another unit".into())
+            (message, "nothing sees this gap; more counts in a turn, or the backlash is in another unit".into())
         });
         let errors = [
             ("once_per_turn_error_deg", encoder.once_per_turn_error),

@@ -31,7 +31,7 @@ pub struct Knowledge {
     /// [s].
     pub period: f64,
     /// Resolution of the encoders: motor, output.
-    pub bits: [u32; 2],
+    pub counts_per_turn: [u64; 2],
     /// Guess of the whole lost motion at the link [rad].
     pub lost_motion: f64,
     /// Dry friction at the link [N m].
@@ -63,7 +63,7 @@ impl Knowledge {
             total_inertia: motor_inertia + carrier / (ratio * ratio),
             torque_limit: around.torque_limit,
             period: 1.0 / f64::from(around.control_rate),
-            bits: [around.motor_encoder.bits, around.output_encoder.bits],
+            counts_per_turn: [around.motor_encoder, around.output_encoder].map(|encoder| encoder.counts_per_turn),
             lost_motion: width_factor * 2.0 * half / lever,
             load_friction: around.load_friction.coulomb,
             motor_friction: around.motor_friction.coulomb,

@@ -18,14 +18,14 @@ pub struct MotorTracker {
 
 impl MotorTracker {
     /// A tracker with its three poles at `pole` [rad/s], for a rotor of `inertia` [kg m^2].
-    pub fn new(bits: u32, inertia: f64, pole: f64, period: f64) -> Self {
+    pub fn new(counts_per_turn: u64, inertia: f64, pole: f64, period: f64) -> Self {
         // Discrete poles at exp(-pole period): gains by matching the characteristic polynomial of the sampled chain.
         let z = (-pole * period).exp();
         let gains =
             [1.0 - z * z * z, 1.5 * (1.0 - z) * (1.0 - z) * (1.0 + z) / period, (1.0 - z).powi(3) / (period * period)];
         Self {
             period,
-            per_count: TAU / f64::from(1_u32 << bits),
+            per_count: TAU / counts_per_turn as f64,
             inertia,
             gains,
             angle: 0.0,
@@ -58,8 +58,8 @@ pub struct LinkTracker(MotorTracker);
 
 impl LinkTracker {
     /// A tracker with its three poles at `pole` [rad/s].
-    pub fn new(bits: u32, pole: f64, period: f64) -> Self {
-        Self(MotorTracker::new(bits, 1.0, pole, period))
+    pub fn new(counts_per_turn: u64, pole: f64, period: f64) -> Self {
+        Self(MotorTracker::new(counts_per_turn, 1.0, pole, period))
     }
 
     /// Takes a reading; gives angle [rad] and speed [rad/s].

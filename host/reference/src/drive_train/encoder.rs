@@ -4,7 +4,7 @@
 //! deviation sigma of its noise and a standard normal deviate n,
 //!
 //! ```text
-//! counts = floor(2^bits / 2 pi (theta + e_1 sin(theta + p_1) + e_2 sin(2 theta + p_2)
+//! counts = floor(N / 2 pi (theta + e_1 sin(theta + p_1) + e_2 sin(2 theta + p_2)
 //!                               + s_1 sin(N theta + q_1) + s_2 sin(2 N theta + q_2)) + sigma n)   (E1)
 //! ```
 //!
@@ -102,7 +102,7 @@ impl Encoder {
         let [first, second] = self.subdivision_phases;
         let within_period =
             of_scale.first * (periods * angle + first).sin() + of_scale.second * (2.0 * periods * angle + second).sin();
-        let counts_per_turn = f64::from(1_u32 << self.parameters.bits);
+        let counts_per_turn = self.parameters.counts_per_turn as f64;
         ((angle + once + twice + within_period) / TAU * counts_per_turn + self.noise).floor() as i64
     }
 

@@ -143,7 +143,8 @@ impl DriveTrainParameters {
             not_negative("Stribeck speed", friction.stribeck_speed)?;
         }
         for encoder in [&around.motor_encoder, &around.output_encoder] {
-            must("encoder bits", encoder.bits.into(), (1..=30).contains(&encoder.bits), "from 1 to 30")?;
+            let turn = encoder.counts_per_turn;
+            must("counts in a turn of an encoder", turn as f64, (2..=1 << 30).contains(&turn), "from 2 to 2^30")?;
             not_negative("encoder skew", encoder.skew)?;
             not_negative("jitter of the age of an encoder's readings", encoder.age_jitter)?;
             not_negative("noise of an encoder in counts", encoder.noise_counts)?;

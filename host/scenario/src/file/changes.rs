@@ -13,8 +13,10 @@ use crate::random::NumberOrRange;
 /// One value of the joint that is changed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Change {
-    /// Full path of the key.
+    /// Full path of the key, by which its draws are named.
     pub key: String,
+    /// The key as typed: the joint's kind of gears says what a short one names.
+    pub typed: String,
     /// What it becomes.
     pub value: NewValue,
     /// Where it stands in the test file.
@@ -33,7 +35,8 @@ pub enum NewValue {
 }
 
 /// Keys that a controller must know to read its encoders and to keep time.
-const ALWAYS_KNOWN: [&str; 6] = ["bits", "control_rate_Hz", "sun_teeth", "planet_teeth", "ring_teeth", "planets"];
+const ALWAYS_KNOWN: [&str; 7] =
+    ["bits", "counts_per_turn", "control_rate_Hz", "sun_teeth", "planet_teeth", "ring_teeth", "planets"];
 
 /// Reads the section of that name.
 pub(super) fn read(top: &Section<'_>, name: &'static str) -> Vec<Change> {
@@ -89,7 +92,7 @@ fn push(path: &str, value: NewValue, span: Range<usize>, section: &str, notes: &
                 let message = format!("no controller can do without knowing `{last}`");
                 notes.error(span, message, "write it in [known]: plant and controllers then agree on it");
             } else {
-                changes.push(Change { key, value, span });
+                changes.push(Change { key, typed: path.to_owned(), value, span });
             }
         }
     }

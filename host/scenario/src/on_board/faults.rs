@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 
 use model_core::virtual_joint::fault::{Fault, FaultKind, FixedPoint, Shaft};
 use model_core::virtual_joint::faults::MOST_FAULTS;
+use parameters::{AbsoluteEncoder, Surroundings};
 
 use crate::encoder_zeros::EncoderZeros;
 use crate::file;
@@ -16,6 +17,18 @@ const WHOLE: f64 = 4_294_967_296.0;
 
 /// Most faults of a test: two places are taken by the zeros of the encoders.
 const MOST_OF_A_TEST: usize = MOST_FAULTS - 2;
+
+/// Bits of both encoders of a board's virtual joint, motor first.
+pub fn bits_of_encoders(around: &Surroundings) -> Outcome<[u32; 2]> {
+    let bits = |encoder: &AbsoluteEncoder, name: &str| {
+        encoder.bits().ok_or_else(|| {
+            let message = format!("the {name} encoder has {} counts in a turn", encoder.counts_per_turn);
+            Failure::new(format!("{message}, and a board's virtual joint has powers of two only"))
+                .with_help("run it with --role observer, or with --host")
+        })
+    };
+    Ok([bits(&around.motor_encoder, "motor")?, bits(&around.output_encoder, "output")?])
+}
 
 /// The zeros of both encoders as faults that last for the whole run: a board's virtual joint reads zero at angle zero.
 pub fn mounting(zeros: &EncoderZeros, bits: [u32; 2]) -> [Fault<FixedPoint<f32>>; 2] {

@@ -17,7 +17,7 @@ use model_core::virtual_joint::fault::{Fault, FaultKind, Shaft};
 use model_core::virtual_joint::faults::Faults;
 use reference::drive_train::Measurement;
 
-use super::faults::quantised;
+use super::faults::{bits_of_encoders, quantised};
 use crate::case::Case;
 use crate::faults::HostFaults;
 use crate::file;
@@ -59,7 +59,7 @@ impl Both {
         let around = case.truth.surroundings;
         let tables: Tables<f32, 3> = design(&case.truth.parameters, around.control_rate).expect("tables");
         let table = design_surroundings(&case.truth.parameters, &around, &tables).expect("surroundings");
-        Self { case, table, bits: [around.motor_encoder.bits, around.output_encoder.bits] }
+        Self { case, table, bits: bits_of_encoders(&around).expect("powers of two") }
     }
 
     /// Both encoders go over more than a turn, forth and back, and the motor is asked for all that it has, both ways.

@@ -97,11 +97,9 @@ impl Twin<'_> {
         let mut faults = Faults::default();
         let all_taken = self.faults.iter().all(|fault| faults.add(*fault));
         debug_assert!(all_taken, "more than fit were refused before");
-        let bits = {
-            let around = &self.truth.surroundings;
-            [around.motor_encoder.bits, around.output_encoder.bits]
-        };
-        let mounted = self.case.zeros.counts(bits.map(|bits| 1 << bits))[1] << (32 - bits[1]);
+        let around = &self.truth.surroundings;
+        let turns = [around.motor_encoder, around.output_encoder].map(|encoder| encoder.counts_per_turn.cast_signed());
+        let mounted = self.case.zeros.counts(turns)[1] << table.encoders[1].shift;
         let zero = mounted as f64 / 2.0_f64.powi(32) - f64::from(virtual_joint.output_turn(mounted as u32));
         let knots = trajectory::knots(self.file, self.case, self.designed, zero);
         let joint = &self.truth.parameters;

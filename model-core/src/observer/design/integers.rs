@@ -15,23 +15,24 @@ impl Weights {
     ///
     /// With n counts of C each, motor less ratio times output is n_m / C_m - (over / under) n_o / C_o turns; times
     /// C_m C_o under and over what all weights share, it is whole.
-    pub fn new(motor_turn: u32, output_turn: u32, over: u32, under: u32) -> Self {
+    /// `None` where a turn has too many units for 64 bits, with some room: whole numbers without a common divisor.
+    pub fn new(motor_turn: u32, output_turn: u32, over: u32, under: u32) -> Option<Self> {
         let shared = divisor(over.into(), under.into());
-        let (over, under) = (u64::from(over) / shared, u64::from(under) / shared);
-        let motor = u64::from(output_turn) * under;
-        let output = u64::from(motor_turn) * over;
+        let (over, under) = (u128::from(over) / shared, u128::from(under) / shared);
+        let motor = u128::from(output_turn) * under;
+        let output = u128::from(motor_turn) * over;
         let shared = divisor(motor, output);
         let (motor, output) = (motor / shared, output / shared);
-        let turn = motor * u64::from(motor_turn);
-        Self {
-            motor: motor as i64,
-            output: output as i64,
-            modulus: divisor(turn, output * u64::from(output_turn)) as i64,
-        }
+        let turns = [motor * u128::from(motor_turn), output * u128::from(output_turn)];
+        let fits = turns.iter().all(|turn| *turn <= MOST_UNITS);
+        fits.then(|| Self { motor: motor as i64, output: output as i64, modulus: divisor(turns[0], turns[1]) as i64 })
     }
 }
 
-fn divisor(a: u64, b: u64) -> u64 {
+/// Units of a turn: the difference of two turns of each encoder stays within 64 bits with sign.
+const MOST_UNITS: u128 = 1 << 60;
+
+fn divisor(a: u128, b: u128) -> u128 {
     if b == 0 { a } else { divisor(b, a % b) }
 }
 
@@ -41,8 +42,13 @@ mod tests {
 
     #[test]
     fn whole_turns_of_a_rigid_joint_leave_no_difference() {
-        for (motor_turn, output_turn, over, under) in [(1 << 14, 1 << 17, 90, 15), (20_000, 1 << 18, 126, 27)] {
-            let weights = Weights::new(motor_turn, output_turn, over, under);
+        for (motor_turn, output_turn, over, under) in [
+            (1 << 14, 1 << 17, 90, 15),
+            (20_000, 1 << 18, 126, 27),
+            (4000, 7200, 28, 3),
+            (24, 1 << 24, 129_671_429, 100_000),
+        ] {
+            let weights = Weights::new(motor_turn, output_turn, over, under).expect("they fit");
             // `over` motor turns are `under` output turns.
             let motor = i64::from(over) * i64::from(motor_turn);
             let output = i64::from(under) * i64::from(output_turn);
@@ -50,5 +56,10 @@ mod tests {
             assert_eq!(i64::from(motor_turn) * weights.motor % weights.modulus, 0);
             assert_eq!(i64::from(output_turn) * weights.output % weights.modulus, 0);
         }
+    }
+
+    #[test]
+    fn turns_of_too_many_units_are_refused() {
+        assert!(Weights::new(16_777_213, 16_777_183, 99_999_989, 100_003).is_none());
     }
 }

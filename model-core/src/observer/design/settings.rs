@@ -101,9 +101,11 @@ impl ObserverSettings {
 
 /// Settings of an observer for these surroundings.
 pub fn observer_settings(of: &Surroundings) -> ObserverSettings {
+    // More counts than fit are refused by the check of the settings.
+    let counts = |encoder: &AbsoluteEncoder| u32::try_from(encoder.counts_per_turn).unwrap_or(u32::MAX);
     let encoder = |encoder: &AbsoluteEncoder| EncoderSettings {
-        counts_per_turn: 1 << encoder.bits,
-        wraps_at: 1 << encoder.bits,
+        counts_per_turn: counts(encoder),
+        wraps_at: counts(encoder),
         absolute: true,
         harmonic_error: encoder.once_per_turn_error.max(encoder.twice_per_turn_error),
     };

@@ -308,7 +308,12 @@ fn counts<T: Real>(
         output.counts_per_turn,
         geometry.sun_teeth + geometry.ring_teeth,
         geometry.sun_teeth,
-    );
+    )
+    .ok_or(DesignError::OutOfRange {
+        what: "the whole numbers of ratio and counts in a turn",
+        given: geometry.ratio_by_teeth(),
+        must_be: "of fewer digits, or share divisors: motor and output could not be compared in 64 bits",
+    })?;
     let encoder = |encoder: EncoderSettings, fastest: f64| EncoderTable {
         turn: encoder.counts_per_turn,
         wraps_at: encoder.wraps_at,

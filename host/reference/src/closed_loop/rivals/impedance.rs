@@ -31,7 +31,7 @@ impl Impedance {
     /// `bandwidth` sets the speed filters only [rad/s].
     pub fn new(knowledge: Knowledge, law: ImpedanceLaw, bandwidth: f64) -> Self {
         let motor = super::motor_pid::tracker(&knowledge, bandwidth);
-        let link = LinkTracker::new(knowledge.bits[1], TRACKER * bandwidth, knowledge.period);
+        let link = LinkTracker::new(knowledge.counts_per_turn[1], TRACKER * bandwidth, knowledge.period);
         Self { knowledge, law, motor, link, torque: 0.0 }
     }
 }

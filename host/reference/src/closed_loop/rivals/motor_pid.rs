@@ -49,7 +49,7 @@ impl MotorPid {
 
 /// Motor speed filter of all rivals.
 pub(super) fn tracker(knowledge: &Knowledge, bandwidth: f64) -> MotorTracker {
-    MotorTracker::new(knowledge.bits[0], knowledge.motor_inertia, TRACKER * bandwidth, knowledge.period)
+    MotorTracker::new(knowledge.counts_per_turn[0], knowledge.motor_inertia, TRACKER * bandwidth, knowledge.period)
 }
 
 /// The motion of the motor shaft that belongs to one of the link.

@@ -29,7 +29,8 @@ pub struct OutputIntegral {
 impl OutputIntegral {
     /// Of a bandwidth [rad/s].
     pub fn new(knowledge: Knowledge, bandwidth: f64) -> Self {
-        let link = LinkTracker::new(knowledge.bits[1], super::motor_pid::TRACKER * bandwidth, knowledge.period);
+        let link =
+            LinkTracker::new(knowledge.counts_per_turn[1], super::motor_pid::TRACKER * bandwidth, knowledge.period);
         Self { pid: MotorPid::new(knowledge, bandwidth), link, rate: INTEGRAL_RATE * bandwidth, side: 0.0, trim: 0.0 }
     }
 }

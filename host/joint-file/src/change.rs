@@ -7,6 +7,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::bodies;
+use crate::equivalent;
 use crate::keys::{self, KEYS, Key, Kind};
 use crate::spelling;
 
@@ -20,7 +21,7 @@ pub struct Refused {
 }
 
 /// Keys that say the same thing in different units or forms: setting one takes the place of the others.
-const SAME_THING: [&[&str]; 8] = [
+const SAME_THING: [&[&str]; 9] = [
     &["half_backlash_um", "backlash_um", "lost_motion_arcmin", "lost_motion_mrad"],
     &["stiffness_N_m_per_rad", "total_stiffness_N_m_per_arcmin"],
     &["motor_coulomb_friction_N_m", "no_load_torque_N_m"],
@@ -28,6 +29,7 @@ const SAME_THING: [&[&str]; 8] = [
     &["planet_equivalent_mass_kg", "planet_inertia_kg_m2"],
     &["carrier_inertia_over_radius_squared_kg", "carrier_equivalent_mass_kg", "carrier_inertia_kg_m2"],
     &["carrier_radius_mm", "carrier_base_radius_mm"],
+    &["bits", "counts_per_turn"],
     &["mesh_frequency_rad_per_s", "mesh_frequency_Hz", "mesh_frequency_over_omega_n"],
 ];
 
@@ -36,14 +38,28 @@ const IN_PLACE_OF: [(&str, &[&str]); 2] =
     [(bodies::AT_INPUT, &bodies::EACH), ("ratio", &["motor_turns", "link_turns"])];
 
 /// The full path of a key, as in `mesh.sun_planet.half_backlash_um`. Its last parts are enough where they name one key;
-/// a key of `[mesh]` without a family stands for both.
+/// a key of `[mesh]` without a family stands for both. Where the joint is not known yet, a key that an equivalent gear and
+/// gears with teeth share is that of the teeth.
 pub fn full_key(key: &str) -> Result<String, Refused> {
-    find(key).map(|(path, _)| path)
+    find(key, None).map(|(path, _)| path)
+}
+
+/// The full path of a key in the joint file of a text, whose kind of gears says which of two keys a short one names.
+///
+/// ```
+/// let [q1, c1] = ["q1", "c1"].map(|name| joint_file::preset(name).unwrap());
+/// assert_eq!(joint_file::full_key_in(q1, "lost_motion_arcmin").unwrap(), "mesh.lost_motion_arcmin");
+/// assert_eq!(joint_file::full_key_in(c1, "lost_motion_arcmin").unwrap(), "equivalent_gear.lost_motion_arcmin");
+/// let refused = joint_file::full_key_in(c1, "mesh.half_backlash_um").unwrap_err();
+/// assert!(refused.help.contains("equivalent_gear.lost_motion_arcmin"));
+/// ```
+pub fn full_key_in(text: &str, key: &str) -> Result<String, Refused> {
+    find(key, Gears::of(text)).map(|(path, _)| path)
 }
 
 /// The value of a key as typed, if the text states it in that form.
 pub fn value<'t>(text: &'t str, key: &str) -> Result<Option<&'t str>, Refused> {
-    let (path, _) = find(key)?;
+    let (path, _) = find(key, Gears::of(text))?;
     Ok(lookup(text, &path).map(|(_, found)| &text[found]))
 }
 
@@ -65,7 +81,7 @@ pub fn change(text: &str, key: &str, value: &str) -> Result<String, Refused> {
 
 /// The same, with a remark of one line behind the value that says where it comes from.
 pub fn change_noting(text: &str, key: &str, value: &str, remark: &str) -> Result<String, Refused> {
-    let (path, known) = find(key)?;
+    let (path, known) = find(key, Gears::of(text))?;
     let remark = format!(" # {}", remark.replace(char::is_control, " "));
     let (section, name) = path.rsplit_once('.').unwrap_or(("", &path));
     let mut text = text.to_owned();
@@ -126,10 +142,67 @@ fn paths() -> impl Iterator<Item = (String, &'static Key)> {
     })
 }
 
-fn find(key: &str) -> Result<(String, &'static Key), Refused> {
+/// Which kind of gears a joint file describes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Gears {
+    Equivalent,
+    WithTeeth,
+}
+
+impl Gears {
+    /// Kind of gears of a joint file; `None` if the text is no TOML, or describes no gears.
+    fn of(text: &str) -> Option<Self> {
+        let table = DeTable::parse(text).ok()?;
+        let holds = |section: &str| table.get_ref().contains_key(section);
+        match (holds(EQUIVALENT), holds("geometry")) {
+            (true, false) => Some(Self::Equivalent),
+            (false, true) => Some(Self::WithTeeth),
+            _ => None,
+        }
+    }
+
+    /// Whether a joint with these gears may state a key.
+    fn have(self, path: &str) -> bool {
+        let top = path.split('.').next().unwrap_or(path);
+        match self {
+            Self::Equivalent => !equivalent::OF_TEETH.contains(&top),
+            Self::WithTeeth => top != EQUIVALENT,
+        }
+    }
+
+    /// Refuses a key that only the other kind of gears has, with the key that says the same of these.
+    fn refuse(self, path: &str) -> Refused {
+        let (of, has) = match self {
+            Self::Equivalent => ("of gears with teeth", "an equivalent gear"),
+            Self::WithTeeth => ("of an equivalent gear", "gears with teeth"),
+        };
+        let name = path.rsplit('.').next().unwrap_or(path);
+        let forms = SAME_THING.iter().find(|forms| forms.contains(&name)).copied().unwrap_or_default();
+        let same = [name].into_iter().chain(forms.iter().copied()).find_map(|form| {
+            let of_form = |path: &String| path.rsplit('.').next() == Some(form);
+            paths().map(|(path, _)| path).find(|path| self.have(path) && of_form(path))
+        });
+        let help = match same {
+            Some(same) => format!("write {same}"),
+            None => "docs/reference/joint-file.md lists the keys of both kinds".to_owned(),
+        };
+        Refused { message: format!("`{path}` is a key {of}, and this joint has {has}"), help }
+    }
+}
+
+const EQUIVALENT: &str = "equivalent_gear";
+
+fn find(key: &str, gears: Option<Gears>) -> Result<(String, &'static Key), Refused> {
     let key = key.trim();
     let ends_so = |path: &str| path == key || path.strip_suffix(key).is_some_and(|rest| rest.ends_with('.'));
     let mut found: Vec<_> = paths().filter(|(path, _)| ends_so(path)).collect();
+    if let Some(gears) = gears {
+        let other = found.first().map(|(path, _)| path.clone());
+        found.retain(|(path, _)| gears.have(path));
+        if let (true, Some(other)) = (found.is_empty(), other) {
+            return Err(gears.refuse(&other));
+        }
+    }
     let depth = |path: &str| path.matches('.').count();
     let least = found.iter().map(|(path, _)| depth(path)).min();
     found.retain(|(path, _)| Some(depth(path)) == least);

@@ -35,10 +35,10 @@ mod table;
 pub mod warned;
 pub mod wording;
 
-pub use change::{Refused, change, change_noting, full_key, value};
+pub use change::{Refused, change, change_noting, full_key, full_key_in, value};
 pub use contents::JointFile;
 pub use motion::Profile;
-pub use notes::{Notes, Source};
+pub use notes::{DERIVED, Notes, Source};
 pub use presets::{PRESETS, preset};
 pub use problem::{Problem, Problems, Severity};
 pub use reader::read;

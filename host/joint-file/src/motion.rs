@@ -8,7 +8,7 @@ use crate::section::Section;
 /// Torques for motion profiles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Profile {
-    /// Rated motor torque; balanced, it carries the rated output torque [N m].
+    /// Rated motor torque; it balances the rated output torque, or is the motor's limit where that is less [N m].
     pub drive_torque: f64,
     /// The motor gives no more than this, either way [N m].
     pub motor_torque_limit: f64,
@@ -56,18 +56,22 @@ pub(crate) fn read_excitation(section: Option<&Section<'_>>, omega_n: Option<f64
     Some(Excitation::Angle)
 }
 
-/// Torques for profiles: `[profile]`; what balances the rated output torque if it is absent.
+/// Torques for profiles: `[profile]`. A drive torque that is not stated balances the rated output torque, as far as a stated
+/// limit of the motor lets it: gearheads are often rated for more than the motor in front of them gives.
 pub(crate) fn read_profile(
     section: Option<&Section<'_>>,
     ratio: Option<f64>,
     rated_output_torque: Option<f64>,
 ) -> Option<Profile> {
     let stated = |key| section.filter(|section| section.has(key)).map(|section| section.number(key));
-    let drive_torque = match stated("drive_torque_N_m") {
-        Some(torque) => torque,
-        None => ratio.zip(rated_output_torque).map(|(ratio, torque)| torque / ratio),
+    let balancing = ratio.zip(rated_output_torque).map(|(ratio, torque)| torque / ratio);
+    let stated_limit = stated("motor_torque_limit_N_m");
+    let drive_torque = match (stated("drive_torque_N_m"), stated_limit) {
+        (Some(torque), _) => torque,
+        (None, Some(limit)) => balancing.zip(limit).map(|(torque, limit)| torque.min(limit)),
+        (None, None) => balancing,
     };
-    let limit = match stated("motor_torque_limit_N_m") {
+    let limit = match stated_limit {
         Some(limit) => limit,
         None => drive_torque.map(|torque| 2.0 * torque),
     };

@@ -16,6 +16,9 @@ pub struct Source {
     pub remark: Option<String>,
 }
 
+/// Begin of the comment behind a number that a program derived from others.
+pub const DERIVED: &str = "derived from";
+
 /// Problems of a file that are told: whoever mends so many runs the command again.
 pub(crate) const MOST_PROBLEMS: usize = 100;
 
@@ -84,6 +87,18 @@ impl<'t> Notes<'t> {
         let places = self.places.borrow();
         let held = keys.iter().find_map(|key| places.get(*key).map(|place| (*key, place.clone())));
         held.unwrap_or((keys.first().copied().unwrap_or_default(), self.top()))
+    }
+
+    /// Whether the file states a key, once it has been read.
+    pub(crate) fn holds(&self, key: &str) -> bool {
+        self.places.borrow().contains_key(key)
+    }
+
+    /// Origin of a number that a program derived, by the comment behind it: what follows on [`DERIVED`].
+    pub(crate) fn derived_from(&self, key: &str) -> Option<String> {
+        let sources = self.sources.borrow();
+        let remark = sources.iter().find(|source| source.key == key)?.remark.as_deref()?;
+        remark.strip_prefix(DERIVED).map(|from| from.trim().to_owned())
     }
 
     /// Remembers the comment behind a number.

@@ -206,10 +206,30 @@ fn an_equivalent_gear_has_the_data_sheets_numbers_and_an_exact_ratio() {
 }
 
 #[test]
-fn a_ratio_that_was_rounded_is_warned_of_or_refused() {
+fn a_ratio_that_was_rounded_is_warned_of() {
     let warned = joint(&c1("ratio = 59", "ratio = 58.333"));
     assert!(warned.warnings[0].message.contains("58333/1000"), "{:?}", warned.warnings);
-    refused(&c1("ratio = 59", "ratio = 58.3333333"), &["rounded", "motor_turns"]);
+    let read_as = |typed: &str| {
+        let file = joint(&c1("ratio = 59", &format!("ratio = {typed}")));
+        let of_ratio = file.warnings.iter().filter(|warning| warning.message.contains("`ratio`"));
+        let said = of_ratio.map(ToString::to_string).collect::<String>();
+        (file.parameters.equivalent_gear().expect("an equivalent gear").ratio, said)
+    };
+    // Six decimals are a fraction that was rounded; the simplest one that is written so is taken.
+    for (typed, ratio) in
+        [("58.3333333", [175, 3]), ("9.333333", [28, 3]), ("1296.714286", [9077, 7]), ("6.142857", [43, 7])]
+    {
+        let (read, said) = read_as(typed);
+        assert!(read == ratio && said.contains(&format!("is taken as {}/{}", ratio[0], ratio[1])), "{read:?}: {said}");
+    }
+    // Two decimals are taken as they are, with a word where a fraction of few teeth is rounded so.
+    let (ratio, said) = read_as("9.33");
+    assert_eq!(ratio, [933, 100]);
+    assert!(said.contains("28/3") && said.contains("`motor_turns` = 28 and `link_turns` = 3"), "{said}");
+    for exact in ["9.34", "27.5", "12.25", "720", "1440"] {
+        assert_eq!(read_as(exact).1, "", "{exact}");
+    }
+    refused(&c1("ratio = 59", "ratio = 100000"), &["ratio", "less than"]);
     refused(&c1("ratio = 59", "motor_turns = 59"), &["link_turns", "missing"]);
     refused(&c1("ratio = 59", "ratio = 59\nlink_turns = 1"), &["both say", "keep `ratio`"]);
     refused(&c1("ratio = 59", "motor_turns = 3\nlink_turns = 29"), &["3/29", "faster"]);
@@ -235,6 +255,53 @@ fn keys_of_an_equivalent_gear_are_set_by_their_section() {
     assert_close(sheet::lost_motion(&wide), 2e-3);
     let geared = read(&set("ratio", "45.5")).expect("a ratio").parameters;
     assert_close(geared.geometry.ratio_by_teeth(), 45.5);
-    // Without the section the key is the meshes', and those are refused here.
-    refused(&set("lost_motion_arcmin", "2"), &["`mesh`", "[equivalent_gear] has none"]);
+    // Without the section the key is the one of the gears that the joint has.
+    let narrow = read(&set("lost_motion_arcmin", "2")).expect("the gear's own").parameters;
+    assert_close(sheet::lost_motion(&narrow), 2.0 * ARCMIN);
+    let refused = change(text, "mesh.lost_motion_arcmin", "2").expect_err("of teeth");
+    assert!(refused.message.contains("an equivalent gear"), "{refused:?}");
+    assert_eq!(refused.help, "write equivalent_gear.lost_motion_arcmin");
+}
+
+#[test]
+fn a_motor_weaker_than_its_gearhead_drives_with_its_limit() {
+    let rated = |limit: &str| c1("motor_torque_limit_N_m = 4.0", &format!("motor_torque_limit_N_m = {limit}"));
+    let file = joint(&rated("0.6"));
+    assert_eq!((file.profile.drive_torque, file.profile.motor_torque_limit), (0.6, 0.6));
+    assert_eq!((file.parameters.rated_output_torque, file.warnings), (100.0, vec![]));
+    // A motor of a hundredth of what the gears carry is in another unit.
+    let said = read(&rated("0.02")).expect_err("frictions alone take more");
+    assert!(said.iter().any(|problem| problem.message.contains("1.18 N m at the link")), "{said:#?}");
+}
+
+#[test]
+fn an_inertia_at_the_input_in_another_unit_is_blamed_by_its_own_key() {
+    let said = |value: &str| {
+        let text = c1("gear_inertia_at_input_kg_cm2 = 0.25", &format!("gear_inertia_at_input_kg_cm2 = {value}"));
+        read(&text).map_or_else(|problems| problems, |file| file.warnings)
+    };
+    let all = said("30600");
+    let text: String = all.iter().map(ToString::to_string).collect();
+    assert!(text.contains("`gear_inertia_at_input_kg_cm2` = 30600: 30600 times the inertia of the rotor"), "{text}");
+    assert!(!text.contains("`link_inertia_kg_m2`"), "{text}");
+    assert!(said("900").iter().any(|problem| problem.help.contains("typed in g cm^2")), "{:?}", said("900"));
+    // A clamping hub of ten times the rotor's inertia is no slip, with teeth behind it or without.
+    assert_eq!(said("10"), []);
+    let hub = joint(&with(&[("gear_inertia_at_input_kg_cm2", "0.9")]));
+    assert_eq!(hub.warnings, []);
+    let foil = read(&with(&[("gear_inertia_at_input_kg_cm2", "1e-7")])).expect_err("a foil");
+    assert_eq!(foil.len(), 1, "{foil:#?}");
+}
+
+#[test]
+fn counts_in_a_turn_stand_in_place_of_bits() {
+    let counts = |by: &str| c1("[drive_train.motor_encoder]\nbits = 17", &format!("[drive_train.motor_encoder]\n{by}"));
+    for turn in [4000, 7200, 24] {
+        let file = read(&counts(&format!("counts_per_turn = {turn}"))).expect("counts in a turn");
+        assert_eq!(file.surroundings.motor_encoder.counts_per_turn, turn);
+    }
+    refused(&counts("bits = 12\ncounts_per_turn = 4000"), &["`bits` and `counts_per_turn` say the same thing twice"]);
+    refused(&counts(""), &["needs one of `bits` and `counts_per_turn`"]);
+    let set = change(preset("c1").expect("a preset"), "motor_encoder.counts_per_turn", "4000").expect("a known key");
+    assert_eq!(joint(&set).surroundings.motor_encoder.counts_per_turn, 4000);
 }

@@ -39,20 +39,26 @@ impl Limits {
 
 impl Judge<'_> {
     /// Judges a figure of the first of `keys` that the file holds; `complaint` gives message and help, and is told
-    /// whether the figure is too large and how the key is called.
+    /// whether the figure is too large and how the key is called. A value that was derived, by what stands behind it, is no
+    /// typing error: the help names what it was derived from. Returns whether there was a complaint.
     pub(super) fn judge(
         &self,
         keys: &[&str],
         figure: f64,
         limits: Limits,
         complaint: impl Fn(bool, &str) -> (String, String),
-    ) {
-        let Some(severity) = limits.severity(figure) else { return };
+    ) -> bool {
+        let Some(severity) = limits.severity(figure) else { return false };
         let (key, place) = self.notes.first_held(keys);
         let name = key.rsplit('.').next().unwrap_or(key);
         let (message, help) = complaint(figure > limits.odd.1, name);
+        let help = match self.notes.derived_from(key) {
+            Some(from) => format!("it was derived from {from}; check that, or give the value of a drawing"),
+            None => help,
+        };
         let severity = if self.lenient { Severity::Warning } else { severity };
         self.notes.problem(place, message, help, severity);
+        true
     }
 }
 

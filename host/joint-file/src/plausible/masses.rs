@@ -11,6 +11,7 @@ use model_core::gears::{Kinematics, Mechanics};
 use super::judge::{ANY, Judge, Limits, figure};
 use super::units;
 use crate::contents::JointFile;
+use crate::sheet;
 
 /// Of steel [kg/m^3].
 const STEEL: f64 = 7850.0;
@@ -22,8 +23,13 @@ const CARRIER_WIDTH: Limits = Limits { odd: (5e-4, 5.0), possible: (1e-5, 25.0) 
 /// What is usual of either.
 const USUAL_WIDTH: (f64, f64) = (0.02, 5.0);
 
-/// Gears with teeth.
+/// Gears with teeth. A data sheet's inertia at the input is all that turns there, a clamping hub among it: it says nothing of the
+/// widths of discs, beyond that it is not less than that of a foil.
 pub(super) fn check_gears(file: &JointFile, judge: &Judge<'_>) {
+    if judge.notes.holds(AT_INPUT) {
+        foil(file, judge);
+        return;
+    }
     gears(file, judge);
     planets(file, judge);
     carrier(file, judge);
@@ -31,8 +37,10 @@ pub(super) fn check_gears(file: &JointFile, judge: &Judge<'_>) {
 
 /// What is on either side of the gears.
 pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
-    rotor(file, judge);
-    link(file, judge);
+    let rotor = rotor(file, judge);
+    let gears = judge.notes.holds(AT_INPUT) && at_input(file, judge);
+    // What is wrong on the motor's side makes the link look wrong against it.
+    link(file, judge, rotor || gears);
 }
 
 /// Width of a disc of steel with such an inertia [m].
@@ -54,7 +62,7 @@ fn gears(file: &JointFile, judge: &Judge<'_>) {
             [format!("bodies.{name}_equivalent_mass_kg"), format!("bodies.{name}_inertia_kg_m2")];
         let wide = width(inertia, radius);
         let relative = wide / radius;
-        judge.judge(&[&as_mass, &as_inertia, AT_INPUT], relative, WIDTH, |too_much, key| {
+        judge.judge(&[&as_mass, &as_inertia], relative, WIDTH, |too_much, key| {
             let (size, wide) = (figure(1e3 * radius), figure(1e3 * wide));
             let message = if too_much {
                 format!(
@@ -69,13 +77,67 @@ fn gears(file: &JointFile, judge: &Judge<'_>) {
 }
 
 const AT_INPUT: &str = "bodies.gear_inertia_at_input_kg_cm2";
+
+/// A data sheet's inertia at the input as discs of steel of one thickness.
+fn foil(file: &JointFile, judge: &Judge<'_>) {
+    let (geometry, bodies) = (&file.parameters.geometry, &file.parameters.bodies);
+    let radius = geometry.sun_base_radius / geometry.working_pressure_angle.cos();
+    let wide = width(bodies.sun_equivalent_mass * geometry.sun_base_radius * geometry.sun_base_radius, radius);
+    let limits = Limits { odd: (WIDTH.odd.0, ANY), possible: (WIDTH.possible.0, ANY) };
+    judge.judge(&[AT_INPUT], wide / radius, limits, |_, key| {
+        let message = format!(
+            "`{key}`: sun, planets and carrier with this inertia are {} mm of steel, a foil, and the sun has {} mm pitch radius",
+            figure(1e3 * wide),
+            figure(1e3 * radius)
+        );
+        (message, "it is in kg cm^2, at the input: 1e-4 kg m^2 are 1 kg cm^2".to_owned() + RADII)
+    });
+}
+
+/// A data sheet's inertia at the input against the rotor and the torque that turn with it. Whether it is odd.
+fn at_input(file: &JointFile, judge: &Judge<'_>) -> bool {
+    /// Over the rotor's inertia: gears in front of which a clamping hub sits have up to 30 times that.
+    const OVER_ROTOR: Limits = Limits { odd: (5e-5, 200.0), possible: (0.0, 1e4) };
+    // Too little of gears with teeth is told as a foil.
+    let equivalent = file.parameters.equivalent_gear().is_some();
+    let [over_rotor, accelerated] = match equivalent {
+        true => [OVER_ROTOR, ACCELERATION],
+        false => [
+            Limits { odd: (0.0, OVER_ROTOR.odd.1), ..OVER_ROTOR },
+            Limits { odd: (ACCELERATION.odd.0, ANY), possible: (ACCELERATION.possible.0, ANY) },
+        ],
+    };
+    let joint = &file.parameters;
+    let inertia = sheet::inertia_at_input(&joint.bodies, &joint.geometry);
+    let in_file = 1e4 * inertia;
+    if inertia == 0.0 {
+        return false;
+    }
+    if joint.rotor_inertia > 0.0 {
+        let over = inertia / joint.rotor_inertia;
+        return judge.judge(&[AT_INPUT], over, over_rotor, |_, key| {
+            let message = format!("`{key}` = {}: {} times the inertia of the rotor", figure(in_file), figure(over));
+            let help = units::likely(units::INERTIA_AT_INPUT, in_file, over, 1, (5e-3, 20.0), "kg cm^2");
+            (message, help + "; or `rotor_inertia_kg_m2` is in another unit")
+        });
+    }
+    let acceleration = file.profile.drive_torque / inertia;
+    judge.judge(&[AT_INPUT], acceleration, accelerated, |_, key| {
+        let message = format!(
+            "`{key}` = {}: the drive torque of {} N m alone brings these gears to {} rad/s^2",
+            figure(in_file),
+            figure(file.profile.drive_torque),
+            figure(acceleration)
+        );
+        (message, units::likely(units::INERTIA_AT_INPUT, in_file, acceleration, -1, (500.0, 5e5), "kg cm^2"))
+    })
+}
 const RADII: &str = "; or the module or radii are wrong";
 
 /// The likely unit of a body's inertia or equivalent mass, by the key that states it.
 fn mend(key: &str, inertia: f64, mass: f64, wide: f64) -> String {
     let likely = |slips, value, unit| units::likely(slips, value, wide, 1, USUAL_WIDTH, unit);
     let unit = match key {
-        key if key.ends_with("kg_cm2") => "it is in kg cm^2, at the input: 1e-4 kg m^2 are 1 kg cm^2".to_owned(),
         key if key.ends_with("kg_m2") => likely(units::INERTIA, inertia, "kg m^2"),
         _ => likely(units::MASS, mass, "kg"),
     };
@@ -135,7 +197,6 @@ fn carrier(file: &JointFile, judge: &Judge<'_>) {
         "bodies.carrier_inertia_over_radius_squared_kg",
         "bodies.carrier_equivalent_mass_kg",
         "bodies.carrier_inertia_kg_m2",
-        AT_INPUT,
     ];
     let relative = wide / geometry.carrier_radius;
     judge.judge(&keys, relative, CARRIER_WIDTH, |too_much, key| {
@@ -150,12 +211,14 @@ fn carrier(file: &JointFile, judge: &Judge<'_>) {
 }
 
 /// Motors bring themselves to some 1e3 to 2e5 rad/s^2 by the torque that they can hold.
-fn rotor(file: &JointFile, judge: &Judge<'_>) {
-    const ACCELERATION: Limits = Limits { odd: (50.0, 3e6), possible: (0.05, 3e9) };
+const ACCELERATION: Limits = Limits { odd: (50.0, 3e6), possible: (0.05, 3e9) };
+
+/// The rotor against the torque that it has. Whether it is odd.
+fn rotor(file: &JointFile, judge: &Judge<'_>) -> bool {
     let inertia = file.parameters.rotor_inertia;
     // 0 leaves the rotor out.
     if inertia == 0.0 {
-        return;
+        return false;
     }
     let acceleration = file.profile.drive_torque / inertia;
     judge.judge(&["bodies.rotor_inertia_kg_m2"], acceleration, ACCELERATION, |_, key| {
@@ -165,11 +228,11 @@ fn rotor(file: &JointFile, judge: &Judge<'_>) {
             figure(acceleration)
         );
         (message, units::likely(units::INERTIA, inertia, acceleration, -1, (500.0, 5e5), "kg m^2"))
-    });
+    })
 }
 
 /// The link, at the motor's side, against all that turns with the motor: joints are built with 0.05 to 50 times.
-fn link(file: &JointFile, judge: &Judge<'_>) {
+fn link(file: &JointFile, judge: &Judge<'_>, motor_side_is_odd: bool) {
     const RATIO: Limits = Limits { odd: (2e-3, 3e3), possible: (0.0, 1e7) };
     let joint = &file.parameters;
     if joint.link_inertia == 0.0 {
@@ -180,7 +243,8 @@ fn link(file: &JointFile, judge: &Judge<'_>) {
     let at_motor = joint.link_inertia / (ratio * ratio);
     let motor = sun * joint.geometry.sun_base_radius.powi(2);
     let keys = ["bodies.link_inertia_kg_m2"];
-    judge.judge(&keys, at_motor / motor, RATIO, |_, key| {
+    let against_motor = if motor_side_is_odd { Limits::above(ANY, ANY) } else { RATIO };
+    judge.judge(&keys, at_motor / motor, against_motor, |_, key| {
         let message = format!(
             "`{key}`: at the motor the link is {} times what turns there ({} against {} kg m^2)",
             figure(at_motor / motor),

@@ -21,6 +21,8 @@ const LOAD_FRICTION: Limits = Limits::above(0.5, 10.0);
 const TOP_SPEED: Limits = Limits { odd: (3.0, ANY), possible: (0.03, ANY) };
 /// Drive torque, through the ratio, over the rated torque.
 const DRIVE: Limits = Limits { odd: (0.4, 2.5), possible: (0.02, 50.0) };
+/// The same where the drive torque is the motor's limit: gearheads that are rated for 20 times their motor are sold.
+const LIMITED_DRIVE: Limits = Limits { odd: (0.02, 2.5), possible: (5e-4, 50.0) };
 /// The motor's limit over its drive torque.
 const LIMIT: Limits = Limits::above(20.0, 500.0);
 
@@ -32,18 +34,20 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
     let (drive, limit) = (file.profile.drive_torque, file.profile.motor_torque_limit);
 
     let over = drive * ratio / rated;
-    judge.judge(&["profile.drive_torque_N_m", "rated_output_torque_N_m"], over, DRIVE, |_, key| {
-        let message = format!(
-            "`{key}`: {} N m at the motor are {} N m at the link, and the rated torque is {} N m",
-            figure(drive),
-            figure(drive * ratio),
-            figure(rated)
-        );
-        (
-            message,
-            format!("drive_torque_N_m = {} balances the rated torque; or the ratio is another", figure(rated / ratio)),
-        )
-    });
+    if limit <= drive && over < 1.0 {
+        let keys = ["profile.motor_torque_limit_N_m", "rated_output_torque_N_m"];
+        judge.judge(&keys, over, LIMITED_DRIVE, |_, key| {
+            let message = format!(
+                "`{key}`: the motor's limit of {} N m gives {} N m at the link, and the rated torque is {} N m",
+                figure(limit),
+                figure(limit * ratio),
+                figure(rated)
+            );
+            (message, units::likely(units::TORQUE, limit, over, 1, (0.05, 5.0), "N m"))
+        });
+    } else {
+        drive_torque(judge, [drive, ratio, rated], over);
+    }
     judge.judge(&["profile.motor_torque_limit_N_m"], limit / drive, LIMIT, |_, key| {
         let message = format!("`{key}` is {} times the drive torque of {} N m", figure(limit / drive), figure(drive));
         (message, units::likely(units::TORQUE, limit, limit / drive, 1, (1.0, 6.0), "N m"))
@@ -72,6 +76,22 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
         let gear = Compliance { stiffness, damping_ratio };
         spring(rated, &gear, ("equivalent_gear", "gear gives"), &keys, judge);
     }
+}
+
+/// A drive torque within the motor's limit against the rated torque.
+fn drive_torque(judge: &Judge<'_>, [drive, ratio, rated]: [f64; 3], over: f64) {
+    judge.judge(&["profile.drive_torque_N_m", "rated_output_torque_N_m"], over, DRIVE, |_, key| {
+        let message = format!(
+            "`{key}`: {} N m at the motor are {} N m at the link, and the rated torque is {} N m",
+            figure(drive),
+            figure(drive * ratio),
+            figure(rated)
+        );
+        (
+            message,
+            format!("drive_torque_N_m = {} balances the rated torque; or the ratio is another", figure(rated / ratio)),
+        )
+    });
 }
 
 /// A spring at the output against the rated torque, and its damping; its section and what it does.

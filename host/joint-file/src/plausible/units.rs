@@ -61,6 +61,15 @@ pub(super) const INERTIA: &[Slip] = &[
     slip("kg m^2 times 1e-3 once too often", 1e3, 0.5),
 ];
 
+/// Moments of inertia at the input, in kg cm^2.
+pub(super) const INERTIA_AT_INPUT: &[Slip] = &[
+    slip("g cm^2", 1e-3, 0.0),
+    slip("g mm^2", 1e-5, 0.2),
+    slip("kg mm^2", 1e-2, 0.2),
+    slip("kg m^2", 1e4, 0.0),
+    slip("g m^2", 10.0, 1.0),
+];
+
 /// Torques.
 pub(super) const TORQUE: &[Slip] =
     &[slip("mN m", 1e-3, 0.0), slip("N cm", 1e-2, 0.2), slip("kN m", 1e3, 0.2), slip("N mm once too often", 1e3, 0.5)];

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use reference::joint::Start;
 use serde::Serialize;
 
-use crate::sim::errors::{DISTURBANCE, Errors, PREDICTABLE, errors, spread};
+use crate::sim::errors::{DISTURBANCE, Errors, PREDICTABLE, errors, is_still, spread};
 use crate::sim::plan::{SPEED, steady_duration};
 use crate::sim::start::{StartName, core_state};
 use crate::sim::stepping::SimulationSpec;
@@ -63,6 +63,31 @@ pub struct MotionErrors {
     pub predictable_until_s: f64,
     /// Its length.
     pub duration_s: f64,
+    /// Why there is no error, if there is none.
+    #[serde(skip)]
+    pub unmeasured: Option<Unmeasured>,
+}
+
+/// Why a motion has no error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unmeasured {
+    /// Deflections, gap and link offset stay where they are: there is no motion to hold an error against.
+    Still,
+    /// The disturbed motion leaves the exact one within a tick.
+    Unpredictable,
+    /// The step breaks off.
+    BreaksOff,
+}
+
+impl Unmeasured {
+    /// The reason in words.
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Self::Still => "nothing swings: no motion to measure an error of",
+            Self::Unpredictable => "chaotic from the first tick on: nothing can be predicted",
+            Self::BreaksOff => "the step breaks off",
+        }
+    }
 }
 
 /// Which kind of motion.
@@ -85,7 +110,7 @@ pub struct Motion {
 
 /// Errors of one run, until when it can be predicted, its length [s].
 struct Found {
-    errors: Option<Errors>,
+    errors: Result<Errors, Unmeasured>,
     predictable: f64,
     duration: f64,
 }
@@ -110,7 +135,7 @@ pub fn measure_up_to(
 /// The typical error of the reversals alone, which are cut off after a time [s].
 pub fn typical(joint: &JointParameters, processor: &Processor, rate: u32, longest: f64) -> Outcome<Option<Errors>> {
     let motion = Motion::new(Kind::Reversals, joint, rate, (0.0, 1.0), longest)?;
-    Ok(motion.measured(processor)?.errors)
+    Ok(motion.measured(processor)?.errors.ok())
 }
 
 /// The standard motion of a kind and others of it.
@@ -128,10 +153,11 @@ fn of_kind(
     let found: Vec<Outcome<Found>> = motions.par_iter().map(|motion| motion.measured(processor)).collect();
     let found = found.into_iter().collect::<Outcome<Vec<Found>>>()?;
     let standard = &found[0];
-    let greatest = found.iter().filter_map(|found| found.errors).reduce(Errors::greater);
+    let greatest = found.iter().filter_map(|found| found.errors.ok()).reduce(Errors::greater);
     Ok(MotionErrors {
-        typical: standard.errors,
-        bound: standard.errors.and(greatest).map(|greatest| greatest.times(MARGIN)),
+        typical: standard.errors.ok(),
+        unmeasured: standard.errors.err(),
+        bound: standard.errors.ok().and(greatest).map(|greatest| greatest.times(MARGIN)),
         predictable_until_s: standard.predictable,
         duration_s: standard.duration,
     })
@@ -229,7 +255,13 @@ impl Motion {
         let board = self.follow::<f32, N>(1, Effort::Within(*processor), 0.0, |tick, _| tick < samples)?;
         let time = |samples: usize| samples.saturating_sub(1) as f64 / f64::from(self.rate);
         Ok(Found {
-            errors: if samples > 1 { Errors::of(errors(&exact, &board, samples)) } else { None },
+            errors: if exact.iter().all(|column| is_still(column)) {
+                Err(Unmeasured::Still)
+            } else if samples > 1 {
+                Errors::of(errors(&exact, &board, samples)).ok_or(Unmeasured::BreaksOff)
+            } else {
+                Err(Unmeasured::Unpredictable)
+            },
             predictable: time(samples),
             duration: time(self.ticks as usize + 1),
         })

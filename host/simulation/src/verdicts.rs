@@ -11,7 +11,7 @@ use report::document::Sheet;
 use report::failure::{Failure, Outcome};
 use serde::Serialize;
 
-use crate::accuracy::{self, MotionErrors, StandardErrors};
+use crate::accuracy::{self, MotionErrors, StandardErrors, Unmeasured};
 use crate::sim::errors::Errors;
 
 /// Error that is small enough unless another is asked for.
@@ -212,7 +212,7 @@ impl Verdicts {
 fn in_words(errors: &MotionErrors) -> String {
     let three = |errors: &Errors| format!("{:.1e}, {:.1e}, {:.1e}", errors.deflections, errors.gap, errors.link);
     let (Some(typical), Some(bound)) = (&errors.typical, &errors.bound) else {
-        return "the step breaks off, or nothing can be predicted".to_owned();
+        return errors.unmeasured.map_or("no error can be told", Unmeasured::in_words).to_owned();
     };
     let until = if errors.predictable_until_s < errors.duration_s {
         format!("; can be predicted for {:.3} of {:.3} s", errors.predictable_until_s, errors.duration_s)

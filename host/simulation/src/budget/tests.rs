@@ -72,6 +72,17 @@ fn a_rate_that_reaches_the_accuracy_is_offered_and_does() {
 }
 
 #[test]
+fn an_equivalent_gear_under_constant_torques_is_told_to_swing_not() {
+    let told = budget("c1", &Board::emulated(), 20_000);
+    assert!(told.verdicts.errors.steady.typical.is_none() && told.verdicts.errors.reversals.typical.is_some());
+    let page = layout(&told);
+    assert!(
+        page.contains("nothing swings: no motion to measure an error of") && !page.contains("breaks off"),
+        "{page}"
+    );
+}
+
+#[test]
 fn work_rises_from_holding_to_the_bound() {
     let effort = Effort::Within(Processor::STM32H743);
     for name in PRESETS {

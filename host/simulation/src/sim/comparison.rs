@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use model_core::gears::design::Substeps;
 use serde::Serialize;
 
-use super::errors::{DISTURBANCE, Errors, errors, predictable, spread};
+use super::errors::{DISTURBANCE, Errors, errors, is_still, predictable, spread};
 use super::scheme::SchemeName;
 use super::snapshot::Snapshot;
 use super::stepping::{self, RunEnd, SimulationSpec};
@@ -69,9 +69,9 @@ pub struct Row {
 pub fn compare(run: &SimulationSpec, every: u32, progress: &(dyn Fn(u32) + Sync)) -> Outcome<Comparison> {
     let done = AtomicU32::new(0);
     let tick = || progress(done.fetch_add(1, Ordering::Relaxed));
-    let jobs: [(SchemeName, f64); 6] = std::array::from_fn(|job| {
-        if job == 0 { (SchemeName::Reference, DISTURBANCE) } else { (SchemeName::ALL[job - 1], 0.0) }
-    });
+    let schemes = SchemeName::of_joint(&run.joint);
+    let exact = schemes.iter().map(|scheme| (*scheme, 0.0));
+    let jobs: Vec<(SchemeName, f64)> = std::iter::once((SchemeName::Reference, DISTURBANCE)).chain(exact).collect();
     let followed: Vec<Outcome<Track>> = std::thread::scope(|scope| {
         let threads: Vec<_> = jobs
             .iter()
@@ -86,7 +86,7 @@ pub fn compare(run: &SimulationSpec, every: u32, progress: &(dyn Fn(u32) + Sync)
     let disturbed = tracks.remove(0).columns;
     let costs = costs(run)?;
     let predictable = predictable(&tracks[0].columns, &disturbed);
-    let board = SchemeName::ALL.iter().position(|scheme| *scheme == SchemeName::Realtime);
+    let board = schemes.iter().position(|scheme| *scheme == SchemeName::Realtime);
     let board = board.map_or(1.0, |board| costs[board]);
     let rows = tracks
         .iter()
@@ -120,6 +120,11 @@ impl Comparison {
     /// Times of the reference's samples [s].
     pub fn times(&self) -> &[f64] {
         &self.tracks[0].times
+    }
+
+    /// Whether no compared quantity moves: an error is over the motion, and has none.
+    pub fn is_still(&self) -> bool {
+        self.tracks[0].columns.iter().all(|column| is_still(column))
     }
 
     /// Until when errors are compared [s].
@@ -172,12 +177,12 @@ fn record(
     Ok(Track { scheme, end, times, columns })
 }
 
-/// Least of several measurements of each scheme, in the order of [`SchemeName::ALL`].
+/// Least of several measurements of each scheme, in the order of [`SchemeName::of_joint`].
 fn costs(run: &SimulationSpec) -> Outcome<Vec<f64>> {
     let mut least: Vec<f64> = Vec::new();
     for round in 0..COST_ROUNDS {
-        for (place, scheme) in SchemeName::ALL.into_iter().enumerate() {
-            let cost = stepping::cost(run, scheme, COST_TICKS)?;
+        for (place, scheme) in SchemeName::of_joint(&run.joint).iter().enumerate() {
+            let cost = stepping::cost(run, *scheme, COST_TICKS)?;
             match least.get_mut(place) {
                 Some(best) if round > 0 => *best = best.min(cost),
                 _ => least.push(cost),

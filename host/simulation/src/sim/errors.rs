@@ -74,6 +74,15 @@ pub fn errors(exact: &[Vec<f64>], columns: &[Vec<f64>], predictable: usize) -> [
     [together, relative(meshes), relative(meshes + 1)]
 }
 
+/// Standard deviation over the greatest value below which a quantity counts as constant: rounding of f64 gathers less.
+const STILL: f64 = 1e-9;
+
+/// Whether a quantity stays where it is.
+pub fn is_still(values: &[f64]) -> bool {
+    let greatest = values.iter().fold(0.0, |greatest: f64, value| greatest.max(value.abs()));
+    spread(values) <= STILL * greatest
+}
+
 /// Standard deviation.
 pub fn spread(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len() as f64;

@@ -68,6 +68,7 @@ pub struct Simulated {
 pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
     arguments.motion.check_for(arguments.scheme.shown())?;
     let loaded = named::load_with(&arguments.file, &arguments.motion.set)?;
+    arguments.scheme.shown().check_joint(&loaded.file.parameters)?;
     warned::tell(&loaded);
     let plan = SimulationPlan::new(loaded, &arguments.motion)?;
     let every = every(&plan, arguments.every)?;
@@ -123,11 +124,11 @@ fn every(plan: &SimulationPlan, wanted: Option<u32>) -> Outcome<u32> {
 
 fn compare(plan: &SimulationPlan, every: u32, progress: &Progress) -> Outcome<Comparison> {
     // Every scheme and the disturbed reference go through all ticks.
-    const RUNS: u32 = 1 + SchemeName::ALL.len() as u32;
+    let runs = 1 + SchemeName::of_joint(plan.parameters()).len() as u32;
     progress.run("comparing schemes", plan.run.ticks);
     comparison::compare(&plan.run, every, &|done| {
-        if (done / RUNS).is_multiple_of(PROGRESS) {
-            progress.at(done / RUNS);
+        if (done / runs).is_multiple_of(PROGRESS) {
+            progress.at(done / runs);
         }
     })
 }

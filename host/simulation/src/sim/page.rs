@@ -244,7 +244,8 @@ fn schemes(result: &SimulationResult<'_>, figures: &SimulationSummary) -> Option
     let percent = |row: &SchemeRow, error: Option<f64>| match error {
         _ if row.scheme == SchemeName::Reference.name() => text("–"),
         Some(error) => number(1e2 * error) + " %",
-        None => text("diverged"),
+        None if row.diverged_at_s.is_some() => text("diverged"),
+        None => text("–"),
     };
     let whole = result.plan.duration();
     let predictable = if until < 0.99 * whole {
@@ -252,12 +253,19 @@ fn schemes(result: &SimulationResult<'_>, figures: &SimulationSummary) -> Option
     } else {
         ""
     };
+    let compared = if comparison.is_still() {
+        "Nothing swings under these torques: no motion to measure an error of; --profile reversals crosses the gap."
+            .to_owned()
+    } else {
+        format!(
+            "Root mean square error against the reference over the motion’s standard deviation, up to {} ms of {} \
+         ms{predictable}.",
+            PAGE.write(1e3 * until),
+            PAGE.write(1e3 * whole),
+        )
+    };
     let lead = format!(
-        "Root mean square error against the reference over the motion’s standard deviation, up to {} ms of {} \
-         ms{predictable}. Cost is processor time for a simulated second over that of {}, measured on this machine in one \
-         process.",
-        PAGE.write(1e3 * until),
-        PAGE.write(1e3 * whole),
+        "{compared} Cost is processor time for a simulated second over that of {}, measured on this machine in one process.",
         SchemeName::Realtime.name()
     );
     let heads = ["deflections", "gap", "link offset", "cost", "sub-steps a tick"].map(numbers);

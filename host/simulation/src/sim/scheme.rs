@@ -2,6 +2,8 @@
 
 use clap::ValueEnum;
 use model_core::gears::Scheme;
+use parameters::JointParameters;
+use report::failure::{Failure, Outcome};
 
 /// A scheme that moves a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -31,13 +33,36 @@ pub enum Choice {
     Rk4,
     /// Semi-implicit Euler
     Euler,
-    /// All of them, with the error of each against the reference and its cost
+    /// All that the joint has, with the error of each against the reference and its cost
     All,
 }
 
 impl SchemeName {
     /// All, the reference first.
-    pub const ALL: [Self; 5] = [Self::Reference, Self::Realtime, Self::Paper, Self::RungeKutta4, Self::Euler];
+    const ALL: [Self; 5] = [Self::Reference, Self::Realtime, Self::Paper, Self::RungeKutta4, Self::Euler];
+
+    /// Schemes that can move a joint, the reference first: an equivalent gear has no meshes for the others to step.
+    pub fn of_joint(joint: &JointParameters) -> &'static [Self] {
+        match joint.equivalent_gear() {
+            Some(_) => &[Self::Reference, Self::Realtime],
+            None => &Self::ALL,
+        }
+    }
+
+    /// Refuses a joint that this scheme cannot move.
+    pub fn check_joint(self, joint: &JointParameters) -> Outcome<()> {
+        let of_joint = Self::of_joint(joint);
+        if of_joint.contains(&self) {
+            return Ok(());
+        }
+        let names: Vec<String> = of_joint.iter().map(|scheme| format!("--scheme {}", scheme.name())).collect();
+        let message = format!(
+            "--scheme {} steps meshes of teeth, and joint `{}` has an equivalent gear",
+            self.name(),
+            joint.name
+        );
+        Err(Failure::new(message).with_help(format!("give {}", names.join(" or "))))
+    }
 
     /// The word for it.
     pub fn name(self) -> &'static str {

@@ -203,7 +203,6 @@ fn tables<T: Real, const N: usize>(run: &SimulationSpec, scheme: Scheme) -> Outc
         let failure = Failure::new(format!("joint `{name}` cannot be designed for {} Hz: {error}", run.tick_rate));
         match error {
             DesignError::RateTooLow { lowest, .. } => failure.with_help(format!("add --rate {lowest} or more")),
-            DesignError::OneSchemeOnly => failure.with_help("leave --scheme out, or give --scheme reference"),
             _ => failure,
         }
     })

@@ -23,13 +23,14 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// From `key=from:to:step` or `key=value,value,...`.
-    pub fn parse(vary: &str) -> Outcome<Self> {
+    /// From `key=from:to:step` or `key=value,value,...`; where the joint file's text is known, a short key is one of its keys.
+    pub fn parse(vary: &str, joint: Option<&str>) -> Outcome<Self> {
         let refused = |message: String| Failure::new(message).with_help(SHAPE);
         let Some((key, spec)) = vary.split_once('=') else {
             return Err(refused(format!("`{vary}` varies nothing: there is no `=` in it")));
         };
-        let key = joint_file::full_key(key)
+        let full = joint.map_or_else(|| joint_file::full_key(key), |text| joint_file::full_key_in(text, key));
+        let key = full
             .map_err(|refused| Failure::new(format!("--vary {vary}: {}", refused.message)).with_help(refused.help))?;
         let spec = spec.trim().to_owned();
         let parts: Vec<&str> = spec.split(':').map(str::trim).collect();
@@ -125,11 +126,11 @@ mod tests {
     use super::*;
 
     fn values(spec: &str) -> Vec<String> {
-        Axis::parse(&format!("mesh.half_backlash_um={spec}")).expect("a good axis").values
+        Axis::parse(&format!("mesh.half_backlash_um={spec}"), None).expect("a good axis").values
     }
 
     fn refused(spec: &str) -> Failure {
-        Axis::parse(&format!("mesh.half_backlash_um={spec}")).expect_err("a bad axis")
+        Axis::parse(&format!("mesh.half_backlash_um={spec}"), None).expect_err("a bad axis")
     }
 
     #[test]
@@ -145,7 +146,7 @@ mod tests {
 
     #[test]
     fn the_key_may_be_short_and_is_kept_whole() {
-        let axis = Axis::parse("sun_planet.half_backlash_um=1:2:1").expect("a good axis");
+        let axis = Axis::parse("sun_planet.half_backlash_um=1:2:1", None).expect("a good axis");
         assert_eq!(axis.text(), "mesh.sun_planet.half_backlash_um=1:2:1");
     }
 
@@ -181,7 +182,7 @@ mod tests {
 
     #[test]
     fn an_unknown_key_is_answered_with_the_nearest_one() {
-        let failure = Axis::parse("mesh.half_backlsh_um=1:2:1").expect_err("unknown");
+        let failure = Axis::parse("mesh.half_backlsh_um=1:2:1", None).expect_err("unknown");
         assert!(failure.help().is_some_and(|help| help.contains("mesh.half_backlash_um")), "{failure}");
     }
 }

@@ -31,9 +31,9 @@ pub struct Shard {
 }
 
 impl Grid {
-    /// From what stands behind every `--vary`.
-    pub fn parse(vary: &[String]) -> Outcome<Self> {
-        let axes = vary.iter().map(|vary| Axis::parse(vary)).collect::<Outcome<Vec<_>>>()?;
+    /// From what stands behind every `--vary`, and the joint file's text where it is known.
+    pub fn parse(vary: &[String], joint: Option<&str>) -> Outcome<Self> {
+        let axes = vary.iter().map(|vary| Axis::parse(vary, joint)).collect::<Outcome<Vec<_>>>()?;
         for (place, axis) in axes.iter().enumerate() {
             if axes[..place].iter().any(|other| other.key == axis.key) {
                 return Err(Failure::new(format!("`{}` is varied twice", axis.key))
@@ -149,7 +149,7 @@ mod tests {
     use super::*;
 
     fn grid(vary: &[&str]) -> Outcome<Grid> {
-        Grid::parse(&vary.iter().map(ToString::to_string).collect::<Vec<_>>())
+        Grid::parse(&vary.iter().map(ToString::to_string).collect::<Vec<_>>(), None)
     }
 
     #[test]

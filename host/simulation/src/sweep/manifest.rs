@@ -84,7 +84,7 @@ impl Manifest {
 
     /// The grid again.
     pub fn grid(&self) -> Outcome<Grid> {
-        Grid::parse(&self.vary)
+        Grid::parse(&self.vary, None)
     }
 
     /// What sets two sweeps apart, in words; none if they are the same.

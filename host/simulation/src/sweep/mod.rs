@@ -81,8 +81,9 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     let scheme = scheme(arguments.scheme)?;
     arguments.motion.check_for(scheme)?;
-    let grid = Grid::parse(&arguments.vary)?;
     let base = named::load_with(&arguments.file, &arguments.motion.set)?;
+    scheme.check_joint(&base.file.parameters)?;
+    let grid = Grid::parse(&arguments.vary, Some(&base.text))?;
     warned::tell(&base);
     grid.try_out(&base)?;
     let metrics = if arguments.metric.is_empty() { all_metrics() } else { arguments.metric.clone() };

@@ -110,7 +110,7 @@ mod tests {
     /// A sweep whose points are as told.
     fn page(vary: &[&str], result: impl Fn(u64) -> String) -> String {
         let vary: Vec<String> = vary.iter().map(ToString::to_string).collect();
-        let grid = Grid::parse(&vary).expect("a grid");
+        let grid = Grid::parse(&vary, None).expect("a grid");
         let manifest = Manifest {
             schema: String::new(),
             digest: String::new(),

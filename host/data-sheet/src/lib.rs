@@ -2,7 +2,8 @@
 //! from it, or assumed, and how far a wrong assumption moves the standard test.
 //!
 //! `arguments` is the command line, `questions` asks for what is missing, `teeth` finds gears that assemble, `sizes`
-//! derives sizes, masses and stiffnesses of a `material`, `lines` writes the file, `standard_test` measures the assumptions.
+//! derives sizes, masses and stiffnesses of a `material`, `swing` the link that the motor moves, `lines` writes the file,
+//! `standard_test` measures the assumptions.
 
 mod arguments;
 mod lines;
@@ -10,6 +11,7 @@ mod material;
 mod questions;
 mod sizes;
 mod standard_test;
+mod swing;
 mod teeth;
 
 use std::path::{Path, PathBuf};
@@ -28,6 +30,7 @@ use simulation::check;
 use arguments::DataSheet;
 use lines::{Figures, Line, Origin};
 use sizes::{Gears, Sizes};
+use swing::Swing;
 
 /// Steps a second at which the new joint is tried: what `joint check` and `joint sim` take.
 const RATE: u32 = 20_000;
@@ -37,23 +40,28 @@ pub fn run(arguments: &Arguments) -> Outcome<String> {
     let path = arguments.path();
     free(&path)?;
     let sheet = questions::complete(arguments)?;
-    Progress::during(|progress| make(&sheet, &path, !arguments.no_measure, progress))
+    let gears = Gears::of(&sheet).map_err(|failure| {
+        let help = failure.help().unwrap_or_default().to_owned();
+        failure.with_help(format!("{help}\n{}", arguments.equivalent_in_place()))
+    })?;
+    let seeds = (!arguments.no_measure).then_some(arguments.seeds);
+    Progress::during(|progress| make(&sheet, &gears, &path, seeds, progress))
 }
 
-/// The file, tried and measured; gives what is told of it.
-fn make(sheet: &DataSheet, path: &Path, measured: bool, progress: &Progress) -> Outcome<String> {
-    let gears = Gears::of(sheet)?;
-    let mut lines = lines::lines(sheet, &gears);
-    let unmeasured = lines::text(sheet, &gears, &lines, None);
+/// The file, tried and measured by so many seeds; gives what is told of it.
+fn make(sheet: &DataSheet, gears: &Gears, path: &Path, seeds: Option<u64>, progress: &Progress) -> Outcome<String> {
+    let mut lines = lines::lines(sheet, gears);
+    let unmeasured = lines::text(sheet, gears, &lines, None);
     tried(path, &unmeasured)?;
-    let figures = measured.then(|| standard_test::measure(&unmeasured, &mut lines, progress)).transpose()?;
-    let text = lines::text(sheet, &gears, &lines, figures.as_ref());
+    let measure = |seeds| standard_test::measure(&unmeasured, &mut lines, seeds, progress);
+    let figures = seeds.map(measure).transpose()?;
+    let text = lines::text(sheet, gears, &lines, figures.as_ref());
     let loaded = tried(path, &text)?;
     free(path)?;
     write_text(path, &text)?;
     progress.clear();
     warned::tell(&loaded);
-    let mut told = match &gears {
+    let mut told = match gears {
         Gears::Planetary(Sizes { teeth, module_mm, .. }) => format!(
             "{}: {} planets, teeth {}, {}, {}, module {module_mm} mm, ratio {:.4} ({:+.2} %)\n",
             path.display(),
@@ -69,7 +77,7 @@ fn make(sheet: &DataSheet, path: &Path, measured: bool, progress: &Progress) -> 
     if let Some(undercut) = gears.undercut() {
         told += &format!("{undercut}\n");
     }
-    if let Some(Figures { of_file, chance }) = figures {
+    if let Some(Figures { of_file, chance, .. }) = figures {
         let chance = lines::percent(chance);
         told += &format!(
             "standard test: {of_file:.4} mrad rms, which chance moves by {chance}; assumptions move it most by\n"
@@ -81,6 +89,17 @@ fn make(sheet: &DataSheet, path: &Path, measured: bool, progress: &Progress) -> 
     if let Some(bandwidth) = Bandwidth::of(&loaded.file.parameters, &loaded.file.surroundings) {
         let (usual, widest) = (bandwidth.usual_rad_per_s, bandwidth.widest_in_words());
         told += &format!("bandwidth: {usual} rad/s if none is asked for, at most {widest}\n");
+    }
+    let swing = Swing::new(sheet, gears);
+    let [limit, balancing] = [swing.limit, sheet.rated_torque / gears.ratio(sheet)];
+    if limit < balancing {
+        told += &format!(
+            "note: --motor-peak-torque-Nm {limit} acts before --rated-torque-Nm {}: that takes {balancing:.3} N m at the motor\n",
+            sheet.rated_torque
+        );
+    }
+    if let Some(warning) = swing.warning(loaded.file.parameters.link_inertia) {
+        told += &format!("note: {warning}\n");
     }
     // A board's time is no part of a data sheet: the joint is as it is.
     if let Err(failure) = OnBoard::plant(&loaded.file.parameters, &Board::load(board_file::DEFAULT)?).refuse(RATE) {
@@ -102,8 +121,11 @@ fn most(lines: &[Line]) -> Vec<(String, String)> {
 /// Reads the text as every command will, and designs the step of it.
 fn tried(path: &Path, text: &str) -> Outcome<Loaded> {
     let name = path.display().to_string();
-    let file =
-        joint_file::read(text).map_err(|problems| Failure::from_report(diagnostic::report(&name, text, &problems)))?;
+    let file = joint_file::read(text).map_err(|problems| {
+        let failure = Failure::from_report(diagnostic::report(&name, text, &problems));
+        let options = lines::options_in(failure.message());
+        failure.with_help(format!("{name} was not written{options}"))
+    })?;
     let loaded = Loaded { name, text: text.to_owned(), file };
     check::summary(&loaded, &Board::load(board_file::DEFAULT)?, RATE, None)?;
     Ok(loaded)

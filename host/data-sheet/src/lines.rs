@@ -1,9 +1,11 @@
 //! The joint file, line by line: each value with the source that stands behind it.
 
+use joint_file::DERIVED;
 use report::provenance;
 
 use crate::arguments::DataSheet;
 use crate::sizes::{Gears, PRESSURE_ANGLE_DEG, Sizes, rounded};
+use crate::swing::Swing;
 
 /// Where a value comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,7 +65,7 @@ impl Line {
     fn remark(&self) -> String {
         match (&self.origin, &self.moved) {
             (Origin::Sheet(what), _) => format!("data sheet: {what}"),
-            (Origin::Derived(from), _) => format!("derived from {from}"),
+            (Origin::Derived(from), _) => format!("{DERIVED} {from}"),
             (Origin::Assumed(why), None) => format!("assumed: {why}"),
             (Origin::Assumed(why), Some(Ok(moved))) => {
                 let wrong = if self.key == "bits" { "+-1 bit" } else { "+-50 %" };
@@ -72,6 +74,32 @@ impl Line {
             (Origin::Assumed(why), Some(Err(unknown))) => format!("assumed: {why}; {unknown}"),
         }
     }
+}
+
+/// Keys of the file with the options of the command that they come from.
+const OPTIONS: [(&str, &str); 16] = [
+    ("rated_output_torque_N_m", "--rated-torque-Nm"),
+    ("lost_motion_arcmin", "--lost-motion-arcmin"),
+    ("total_stiffness_N_m_per_arcmin", "--stiffness-Nm-per-arcmin"),
+    ("gear_inertia_at_input_kg_cm2", "--gear-inertia-kg-cm2"),
+    ("rotor_inertia_kg_m2", "--rotor-inertia-kg-cm2"),
+    ("link_inertia_kg_m2", "--link-inertia-kg-m2"),
+    ("motor_torque_limit_N_m", "--motor-peak-torque-Nm"),
+    ("no_load_torque_N_m", "--no-load-torque-Nm"),
+    ("motor_coulomb_friction_N_m", "--no-load-torque-Nm"),
+    ("load_coulomb_friction_N_m", "--no-load-torque-Nm"),
+    ("efficiency", "--efficiency"),
+    ("gravity_torque_N_m", "--gravity-torque-Nm"),
+    ("module_mm", "--outer-diameter-mm"),
+    ("ratio", "--ratio"),
+    ("planets", "--planets"),
+    ("bits", "--motor-bits or --output-bits"),
+];
+
+/// Options behind the keys that a message names, as the rest of a sentence.
+pub fn options_in(message: &str) -> String {
+    let named = OPTIONS.iter().filter(|(key, _)| message.contains(&format!("`{key}`")));
+    named.map(|(key, option)| format!("; `{key}` is {option}")).collect()
 }
 
 /// A share as percent, with two digits.
@@ -130,12 +158,12 @@ pub fn lines(sheet: &DataSheet, gears: &Gears) -> Vec<Line> {
     match gears {
         Gears::Planetary(sizes) => {
             teeth(&mut lines, sheet, sizes);
-            motor_and_link(&mut lines, sheet, ratio);
+            motor_and_link(&mut lines, sheet, gears);
             compliance_and_meshes(&mut lines, sheet, sizes);
         }
         Gears::Equivalent => {
             equivalent_gear(&mut lines, sheet);
-            motor_and_link(&mut lines, sheet, ratio);
+            motor_and_link(&mut lines, sheet, gears);
         }
     }
     surroundings(&mut lines, sheet, ratio);
@@ -151,7 +179,7 @@ fn equivalent_gear(lines: &mut Lines, sheet: &DataSheet) {
     lines.add(None, "damping_ratio", number(0.05), assumed("0.03 to 0.1 is usual of gears under oil or grease"));
     let (inertia, origin) = match sheet.gear_inertia {
         Some(inertia) => (number(inertia), data("moment of inertia of the gearbox at its input")),
-        None => (round(0.5 * sheet.rotor_inertia), assumed("half of the rotor's")),
+        None => (round(1e4 * Gears::Equivalent.inertia_at_input(sheet)), assumed("half of the rotor's")),
     };
     lines.add(Some("bodies"), "gear_inertia_at_input_kg_cm2", inertia, origin);
 }
@@ -227,14 +255,14 @@ fn teeth(lines: &mut Lines, sheet: &DataSheet, sizes: &Sizes) {
 }
 
 /// Inertias of rotor and link.
-fn motor_and_link(lines: &mut Lines, sheet: &DataSheet, ratio: f64) {
+fn motor_and_link(lines: &mut Lines, sheet: &DataSheet, gears: &Gears) {
     let rotor = format!("inertia of the rotor, {} kg cm^2", sheet.rotor_inertia);
     lines.add(None, "rotor_inertia_kg_m2", number(sheet.rotor_inertia / 1e4), Origin::Sheet(rotor));
     match sheet.link_inertia {
         Some(inertia) => lines.add(None, "link_inertia_kg_m2", number(inertia), data("inertia of the link")),
         None => {
-            let link = 10.0 * sheet.rotor_inertia / 1e4 * ratio * ratio;
-            lines.add(None, "link_inertia_kg_m2", round(link), assumed("ten times the rotor's, at the link"));
+            let (link, why) = Swing::new(sheet, gears).assumed_link();
+            lines.add(None, "link_inertia_kg_m2", round(link), assumed(why));
         }
     }
 }
@@ -264,7 +292,8 @@ fn compliance_and_meshes(lines: &mut Lines, sheet: &DataSheet, sizes: &Sizes) {
 
 /// The drive around the gears.
 fn surroundings(lines: &mut Lines, sheet: &DataSheet, ratio: f64) {
-    let (rated, drive) = (sheet.rated_torque, sheet.rated_torque / ratio);
+    let balancing = sheet.rated_torque / ratio;
+    let (rated, drive) = (sheet.rated_torque, sheet.motor_peak_torque.map_or(balancing, |peak| peak.min(balancing)));
     if let Some(peak) = sheet.motor_peak_torque {
         lines.add(Some("profile"), "motor_torque_limit_N_m", number(peak), data("peak torque of the motor"));
     }
@@ -324,6 +353,8 @@ pub struct Figures {
     pub of_file: f64,
     /// How far a thousandth of the link's inertia moves that [-].
     pub chance: f64,
+    /// Noises of which the figure is the median.
+    pub seeds: u64,
 }
 
 /// The file, with the figures of the standard test once they are known.
@@ -347,12 +378,12 @@ pub fn text(sheet: &DataSheet, gears: &Gears, lines: &[Line], figures: Option<&F
         sheet.name,
         provenance::VERSION,
     );
-    if let Some(Figures { of_file, chance }) = figures {
+    if let Some(Figures { of_file, chance, seeds }) = figures {
         text += &format!(
             "#\n\
              # The standard test is motion T2 of `joint hil`: the link swings by 0.5 rad at 1 Hz, reversed by its inertia, under\n\
              # observer and compensation with preview, on the core's own plant. Its figure is the link against the wanted position,\n\
-             # root mean square from 2 s to 6 s, the median over the noise of seeds 1 to 8: {of_file:.4} mrad for this file. Behind an\n\
+             # root mean square from 2 s to 6 s, the median over the noise of seeds 1 to {seeds}: {of_file:.4} mrad for this file. Behind an\n\
              # assumed value stands how far that figure moves when the joint has 0.5 and 1.5 times the value, the larger of both,\n\
              # and its controllers still believe this file: the median over the seeds. The rate and the bits of encoders are known\n\
              # to the controllers, and one bit fewer or more is tried. Chance moves the figure too: a thousandth more or less of\n\

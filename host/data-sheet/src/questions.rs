@@ -3,10 +3,11 @@
 
 use std::io::{self, BufRead, IsTerminal};
 
+use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
 use report::output;
 
-use crate::arguments::{Arguments, DataSheet};
+use crate::arguments::{Arguments, DEFAULT_SEEDS, DataSheet};
 
 /// A figure of the sheet.
 struct Figure {
@@ -38,7 +39,7 @@ const NEEDED: [Figure; 7] = [
 
 /// The ratio of an equivalent gear, which no teeth bound.
 const ANY_RATIO: Figure =
-    figure("--ratio", "gear ratio, motor turns for one turn of the link, such as 59", 1.000_001, 999.999);
+    figure("--ratio", "gear ratio, motor turns for one turn of the link, such as 59", 1.000_001, 99_999.0);
 
 /// What kinds of gears there are, by the words that a user types.
 const KINDS: [&str; 2] = ["planetary", "equivalent"];
@@ -88,7 +89,11 @@ pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
     }
     for (figure, value) in needed.iter().zip(given).chain(OPTIONAL.iter().zip(optional)) {
         if let Some(value) = value {
-            figure.check(value).map_err(|why| Failure::new(format!("{}: {why}", figure.option)).with_help(HELP))?;
+            figure.check(value).map_err(|why| {
+                let other_gears = figure.option == NEEDED[0].option && !equivalent && ANY_RATIO.check(value).is_ok();
+                let help = if other_gears { arguments.equivalent_in_place() } else { HELP.to_owned() };
+                Failure::new(format!("{}: {why}", figure.option)).with_help(help)
+            })?;
         }
     }
     let missing: Vec<&str> =
@@ -150,6 +155,35 @@ fn kind(answers: &mut impl BufRead) -> Outcome<&'static str> {
 }
 
 impl Arguments {
+    /// Help for gears that no single planetary stage is: the same command for an equivalent gear.
+    pub(crate) fn equivalent_in_place(&self) -> String {
+        let mut command = format!("joint new {} --equivalent", quoted(&self.name.display().to_string()));
+        let numbers = [
+            ("ratio", self.ratio),
+            ("lost-motion-arcmin", self.lost_motion_arcmin),
+            ("stiffness-Nm-per-arcmin", self.stiffness),
+            ("rated-torque-Nm", self.rated_torque),
+            ("rotor-inertia-kg-cm2", self.rotor_inertia),
+            ("no-load-torque-Nm", self.no_load_torque),
+            ("efficiency", self.efficiency),
+            ("gear-inertia-kg-cm2", self.gear_inertia),
+            ("link-inertia-kg-m2", self.link_inertia),
+            ("gravity-torque-Nm", self.gravity_torque),
+            ("motor-peak-torque-Nm", self.motor_peak_torque),
+            ("motor-bits", self.motor_bits.map(f64::from)),
+            ("output-bits", self.output_bits.map(f64::from)),
+        ];
+        for (option, value) in numbers {
+            command += &value.map_or_else(String::new, |value| format!(" --{option} {value}"));
+        }
+        if self.no_measure {
+            command += " --no-measure";
+        } else if self.seeds != DEFAULT_SEEDS {
+            command += &format!(" --seeds {}", self.seeds);
+        }
+        format!("gears of more stages, of other kinds or of unknown teeth are an equivalent gear: {command}")
+    }
+
     /// Whether something was said that only gears with teeth have.
     fn says_teeth(&self) -> bool {
         self.equivalent || self.planets.is_some() || self.material.is_some() || self.outer_diameter_mm.is_some()

@@ -65,6 +65,17 @@ impl Gears {
         }
     }
 
+    /// Inertia of the gears at their input: the sheet's, that of sizes and material, or half of the rotor's [kg m^2].
+    pub fn inertia_at_input(&self, sheet: &DataSheet) -> f64 {
+        match (sheet.gear_inertia, self) {
+            (Some(inertia), _) => 1e-4 * inertia,
+            (None, Self::Planetary(sizes)) => {
+                sheet::inertia_at_input(&sizes.bodies, &geometry(&sizes.teeth, sizes.module_mm))
+            }
+            (None, Self::Equivalent) => 0.5e-4 * sheet.rotor_inertia,
+        }
+    }
+
     /// What is to be said of teeth that are undercut.
     pub fn undercut(&self) -> Option<String> {
         match self {

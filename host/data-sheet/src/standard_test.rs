@@ -2,7 +2,8 @@
 //! has half the value, or half as much again, while its controllers believe the file.
 //!
 //! One run is no measure: where the teeth land is a matter of chance, and a link that is heavier by a thousandth moves the
-//! figure of a run by up to 10 %. The median of eight runs, each against its own noise, moves by some percent.
+//! figure of a run by up to 10 %. The median of a few runs, each against its own noise, moves by some percent. Controllers are
+//! designed once for all runs of a joint that they believe in: a design takes half as long as a run.
 
 use std::time::{Duration, Instant};
 
@@ -10,9 +11,9 @@ use rayon::prelude::*;
 use report::failure::{Failure, Outcome};
 use report::interruption;
 use report::progress::Progress;
-use scenario::case::Case;
+use scenario::case::{Case, Designed};
 use scenario::controller::ControllerName;
-use scenario::execution::{RunSpec, execute};
+use scenario::execution::{RunSpec, execute_designed};
 use scenario::file::{self, TestFile};
 use scenario::plant::PlantName;
 use scenario::rig::RunError;
@@ -24,7 +25,6 @@ use crate::lines::{Figures, Line};
 const TEST: &str = "profile = \"T2\"\n[controller]\nrivals = []\nwidth_guess_ratio = 1.0\n";
 /// The metric of it, in mrad.
 const METRIC: &str = "rms_mrad";
-const SEEDS: std::ops::RangeInclusive<u64> = 1..=8;
 /// What moves nothing but chance, and so tells how much that is.
 const CHANCE: &str = "bodies.link_inertia_kg_m2";
 const A_THOUSANDTH: [f64; 2] = [0.999, 1.001];
@@ -33,16 +33,24 @@ const LONGEST: Duration = Duration::from_secs(600);
 /// What a controller cannot do without knowing.
 const KNOWN: [&str; 2] = ["bits", "control_rate_Hz"];
 
-/// Measures every assumed line, and gives the figures of the file itself.
-pub fn measure(text: &str, lines: &mut [Line], progress: &Progress) -> Outcome<Figures> {
+/// Measures every assumed line by so many seeds, and gives the figures of the file itself.
+pub fn measure(text: &str, lines: &mut [Line], seeds: u64, progress: &Progress) -> Outcome<Figures> {
     let tried: Vec<&mut Line> = lines.iter_mut().filter(|line| line.is_assumed()).collect();
     progress.run("trying what is assumed", 3 + 2 * tried.len() as u64);
-    let of_file = figures(text, "").map_err(|why| {
+    let refused = |why: String| {
         Failure::new(format!("the standard test cannot be run on this joint: {why}"))
             .with_help("a figure of the data sheet may be in another unit; `joint new --help` says which is meant")
-    })?;
+    };
+    let test = StandardTest { text, seeds, designed: design(&test_file("").map_err(refused)?, text).map_err(refused)? };
+    let of_file = test.figures("").map_err(refused)?;
     progress.done(1);
-    let nothing = A_THOUSANDTH.map(|factor| figures(text, &format!("[plant]\n{CHANCE} = {{ times = {factor} }}\n")));
+    let nothing = A_THOUSANDTH.map(|factor| {
+        test.figures(&format!(
+            "[plant]
+{CHANCE} = {{ times = {factor} }}
+"
+        ))
+    });
     let mut chance = 0.0;
     for moved in nothing {
         chance = f64::max(chance, move_of(&moved.map_err(Failure::new)?, &of_file));
@@ -52,35 +60,82 @@ pub fn measure(text: &str, lines: &mut [Line], progress: &Progress) -> Outcome<F
         if interruption::requested() {
             return;
         }
-        line.moved = Some(moved(text, line, &of_file));
+        line.moved = Some(test.moved(line, &of_file));
         progress.done(2);
     });
     match interruption::requested() {
         true => Err(Failure::interrupted("stopped by the user")),
-        false => Ok(Figures { of_file: median(of_file.into_iter()), chance }),
+        false => Ok(Figures { of_file: median(of_file.into_iter()), chance, seeds }),
     }
 }
 
-/// The larger of both moves, over the figure.
-fn moved(text: &str, line: &Line, of_file: &[f64]) -> Result<f64, String> {
-    let values = line.wrong_values().ok_or("it is no number")?;
-    let section = if KNOWN.contains(&line.key) { "known" } else { "plant" };
-    let tried = values.map(|value| {
-        let changed = figures(text, &format!("[{section}]\n{} = {value}\n", line.path()));
-        changed.map(|changed| move_of(&changed, of_file))
-    });
-    match tried {
-        [Ok(less), Ok(more)] => Ok(less.max(more)),
-        [Err(why), _] => Err(format!("the smaller of two wrong values cannot be tried: {why}")),
-        [_, Err(why)] => Err(format!("the larger of two wrong values cannot be tried: {why}")),
+/// The test with the joint file that controllers believe.
+struct StandardTest<'t> {
+    text: &'t str,
+    seeds: u64,
+    /// Controllers for that file. No assumption changes the lost motion, which a design takes from the true joint.
+    designed: Designed,
+}
+
+impl StandardTest<'_> {
+    /// The larger of both moves, over the figure.
+    fn moved(&self, line: &Line, of_file: &[f64]) -> Result<f64, String> {
+        let values = line.wrong_values().ok_or("it is no number")?;
+        let tried = values.map(|value| {
+            let changed = match KNOWN.contains(&line.key) {
+                true => self.figures_of_known(&format!(
+                    "[known]
+{} = {value}
+",
+                    line.path()
+                )),
+                false => self.figures(&format!(
+                    "[plant]
+{} = {value}
+",
+                    line.path()
+                )),
+            };
+            changed.map(|changed| move_of(&changed, of_file))
+        });
+        match tried {
+            [Ok(less), Ok(more)] => Ok(less.max(more)),
+            [Err(why), _] => Err(format!("the smaller of two wrong values cannot be tried: {why}")),
+            [_, Err(why)] => Err(format!("the larger of two wrong values cannot be tried: {why}")),
+        }
+    }
+
+    /// The figures of all seeds with a changed joint [mrad], or why there are none, in one line.
+    fn figures(&self, changes: &str) -> Result<Vec<f64>, String> {
+        self.figures_under(&test_file(changes)?, &self.designed)
+    }
+
+    /// The same with controllers that know of the changes.
+    fn figures_of_known(&self, changes: &str) -> Result<Vec<f64>, String> {
+        let file = test_file(changes)?;
+        let designed = design(&file, self.text)?;
+        self.figures_under(&file, &designed)
+    }
+
+    fn figures_under(&self, file: &TestFile, designed: &Designed) -> Result<Vec<f64>, String> {
+        (1..=self.seeds).into_par_iter().map(|seed| figure_of_run(file, self.text, seed, designed)).collect()
     }
 }
 
-/// The figures of all seeds [mrad], or why there are none, in one line.
-fn figures(text: &str, changes: &str) -> Result<Vec<f64>, String> {
-    let file = file::read(&format!("{TEST}{changes}"))
-        .map_err(|problems| problems.first().map_or_else(String::new, ToString::to_string))?;
-    SEEDS.into_par_iter().map(|seed| figure_of_run(&file, text, seed)).collect()
+/// The test with changes to its joint, or what is wrong with them, in one line.
+fn test_file(changes: &str) -> Result<TestFile, String> {
+    file::read(&format!("{TEST}{changes}"))
+        .map_err(|problems| problems.first().map_or_else(String::new, ToString::to_string))
+}
+
+/// Observer and compensation for the joint that controllers believe in.
+fn design(file: &TestFile, text: &str) -> Result<Designed, String> {
+    Case::new(file, text, 1, None).and_then(|case| case.design(file)).map_err(|failure| told(&failure))
+}
+
+/// A failure in one line.
+fn told(failure: &Failure) -> String {
+    failure.message().lines().next().unwrap_or_default().to_owned()
 }
 
 /// How far figures have moved: the median over seeds, each against its own noise, so that a single run that went astray
@@ -101,12 +156,12 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// The figure of one run [mrad].
-fn figure_of_run(file: &TestFile, text: &str, seed: u64) -> Result<f64, String> {
-    let told = |failure: Failure| failure.message().lines().next().unwrap_or_default().to_owned();
-    let case = Case::new(file, text, seed, None).map_err(told)?;
+fn figure_of_run(file: &TestFile, text: &str, seed: u64, designed: &Designed) -> Result<f64, String> {
+    let case = Case::new(file, text, seed, None).map_err(|failure| told(&failure))?;
     let spec = RunSpec { controller: ControllerName::Preview, plant: PlantName::Core, without_gap: false };
-    let history = execute(file, &case, seed, spec, Instant::now() + LONGEST).map_err(|error| match error {
-        RunError::Refused(failure) => told(failure),
+    let deadline = Instant::now() + LONGEST;
+    let history = execute_designed(file, &case, seed, spec, deadline, designed).map_err(|error| match error {
+        RunError::Refused(failure) => told(&failure),
         other => other.to_string(),
     })?;
     let values = MetricValues::of(file, &case, &history, None);

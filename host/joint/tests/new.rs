@@ -124,7 +124,8 @@ fn options_of_the_sheet_stand_in_the_file_as_the_sheets() {
     let place = folder();
     let (knee, file) = made(place.path(), KNEE);
     assert!(knee.contains("link_inertia_kg_m2 = 0.4 # data sheet"), "{knee}");
-    assert_eq!((file.surroundings.motor_encoder.bits, file.surroundings.output_encoder.bits), (16, 19));
+    let encoders = [file.surroundings.motor_encoder, file.surroundings.output_encoder];
+    assert_eq!(encoders.map(|encoder| encoder.bits()), [Some(16), Some(19)]);
     let ring = file.parameters.geometry.sun_base_radius / file.parameters.geometry.working_pressure_angle.cos()
         * f64::from(file.parameters.geometry.ring_teeth)
         / f64::from(file.parameters.geometry.sun_teeth);
@@ -202,11 +203,101 @@ fn what_cannot_be_is_refused_before_anything_is_written() {
     with(&["--lost-motion-arcmin", "NaN"]).refused(&["--lost-motion-arcmin: NaN"]);
     with(&["--outer-diameter-mm", "20"]).refused(&["ring of 144 teeth does not fit 20 mm", "module 0.2"]);
     with(&["--stiffness-Nm-per-arcmin", "6188"]).refused(&["alone give", "N m/arcmin", "the sheet says 6188"]);
-    with(&["--no-load-torque-Nm", "50"]).refused(&["no_load_torque_N_m", "typed in mN m"]);
-    with(&["--motor-peak-torque-Nm", "0.1"]).refused(&["motor_torque_limit_N_m", "below the drive torque"]);
+    let of_option = "was not written; `no_load_torque_N_m` is --no-load-torque-Nm";
+    with(&["--no-load-torque-Nm", "50"]).refused(&["no_load_torque_N_m", "typed in mN m", of_option]);
     let bad = place.path().join("my \"elbow\"");
     joint(&words(&line(&bad, ELBOW, &["--no-measure"]))).refused(&["cannot be called", "letters, digits"]);
     assert_eq!(command::contents(place.path()), []);
+}
+
+/// The line of an option of the elbow's sheet exchanged or added.
+fn changed(name: &Path, changes: &[(&str, &str)]) -> Vec<String> {
+    let mut line = line(name, ELBOW, &["--no-measure"]);
+    for (option, value) in changes {
+        match line.iter().position(|word| word == option) {
+            Some(at) => line[at + 1] = (*value).to_owned(),
+            None => line.extend([option, value].map(ToString::to_string)),
+        }
+    }
+    line
+}
+
+#[test]
+fn a_gearhead_rated_above_its_motor_is_accepted_with_a_note() {
+    let place = folder();
+    let rated = [("--rated-torque-Nm", "40"), ("--stiffness-Nm-per-arcmin", "8"), ("--motor-peak-torque-Nm", "1.5")];
+    let made = joint(&words(&changed(&place.path().join("elbow"), &rated))).well();
+    assert!(made.out.contains("note: --motor-peak-torque-Nm 1.5 acts before --rated-torque-Nm 40"), "{}", made.out);
+    let file = read(&fs::read_to_string(place.path().join("elbow.toml")).expect("written")).expect("a joint");
+    assert_eq!((file.profile.drive_torque, file.profile.motor_torque_limit), (1.5, 1.5));
+    assert_eq!((file.parameters.rated_output_torque, file.warnings), (40.0, vec![]));
+}
+
+#[test]
+fn ratios_that_no_stage_has_name_the_command_for_an_equivalent_gear() {
+    let place = folder();
+    let name = place.path().join("elbow");
+    for (ratio, also) in [("27.5", None), ("30", None), ("13.77", Some(("--ratio-tolerance", "0.01")))] {
+        let changes: Vec<_> = [("--ratio", ratio)].into_iter().chain(also).collect();
+        let command = format!("joint new {} --equivalent --ratio {ratio} --lost-motion-arcmin 15", text(&name));
+        let refused = joint(&words(&changed(&name, &changes)));
+        refused.refused(&["--equivalent", &command]);
+        let typed = refused.err.split("joint new ").last().expect("a command").trim().to_owned();
+        // The command does what it says, typed as it stands.
+        let typed: Vec<&str> = ["new"].into_iter().chain(typed.split_whitespace()).collect();
+        joint(&typed).well();
+        fs::remove_file(place.path().join("elbow.toml")).expect("written");
+    }
+    let refused = joint(&words(&changed(&name, &[("--ratio", "-9")])));
+    refused.refused(&["--ratio"]);
+    assert!(!refused.err.contains("--equivalent"), "{}", refused.err);
+}
+
+/// A clamping hub on the motor's shaft is most of a gearhead's inertia at its input, and no disc of the sun's size.
+#[test]
+fn inertia_of_a_clamping_hub_is_not_warned_of() {
+    let place = folder();
+    let path = place.path().join("elbow.toml");
+    let made = joint(&words(&changed(&place.path().join("elbow"), &[("--gear-inertia-kg-cm2", "0.3")]))).well();
+    assert!(!made.err.contains("warning"), "{}", made.err);
+    assert_eq!(read(&fs::read_to_string(path).expect("written")).expect("a joint").warnings, []);
+}
+
+/// What the command derived from a diameter is no typing error of the user's.
+#[test]
+fn a_derived_stiffness_is_warned_of_by_what_it_was_derived_from() {
+    let place = folder();
+    let small = [("--rated-torque-Nm", "35"), ("--stiffness-Nm-per-arcmin", "2"), ("--outer-diameter-mm", "40")];
+    let made = joint(&words(&changed(&place.path().join("elbow"), &small))).well();
+    assert!(made.err.contains("`mean_stiffness_N_per_m`"), "{}", made.err);
+    assert!(made.err.contains("it was derived from face width and material: "), "{}", made.err);
+    let mut of_stiffness = made.err.lines().filter(|line| line.contains("mean_stiffness_N_per_m"));
+    assert!(!of_stiffness.any(|line| line.contains("typed in")), "{}", made.err);
+}
+
+/// A servo of 353.5:1, whose motor would not swing a link of ten times the rotor's inertia.
+#[test]
+fn an_assumed_link_is_one_that_the_motor_swings() {
+    const SERVO: Sheet =
+        ([353.5, 15.0, 0.05, 1.0, 0.004, 0.0005, 0.6], &["--equivalent", "--motor-peak-torque-Nm", "0.016"]);
+    let place = folder();
+    let (written, file) = made(place.path(), SERVO);
+    assert!(written.contains("assumed: what half of the motor's limit swings in the standard test"), "{written}");
+    let around = &file.surroundings;
+    let link = file.parameters.link_inertia;
+    let acceleration = 0.5 * std::f64::consts::TAU * std::f64::consts::TAU;
+    let at_motor = 353.5 * acceleration * 0.6e-6 + acceleration * link / (353.5 * 0.6) + 0.0005;
+    assert!((at_motor / (0.5 * around.torque_limit) - 1.0).abs() < 1e-3, "{at_motor}");
+    let heavy = [
+        &line(&place.path().join("heavy"), SERVO, &["--no-measure"])[..],
+        &["--link-inertia-kg-m2", "0.5"].map(String::from),
+    ]
+    .concat();
+    let told = joint(&words(&heavy)).well().out;
+    assert!(
+        told.contains("note: the standard test swings the link by 0.5 rad at 1 Hz, which takes 0.051 N m"),
+        "{told}"
+    );
 }
 
 #[test]

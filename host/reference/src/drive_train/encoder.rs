@@ -1,10 +1,10 @@
 //! An absolute encoder: the past of an angle, its errors, its counts.
 //!
-//! A reading of the shaft's angle theta is, with the amplitudes and phases of its errors, N periods of its scale in a turn, the standard
+//! A reading of the shaft's angle theta is, with the amplitudes and phases of its errors, C counts and N periods of its scale in a turn, the standard
 //! deviation sigma of its noise and a standard normal deviate n,
 //!
 //! ```text
-//! counts = floor(N / 2 pi (theta + e_1 sin(theta + p_1) + e_2 sin(2 theta + p_2)
+//! counts = floor(C / 2 pi (theta + e_1 sin(theta + p_1) + e_2 sin(2 theta + p_2)
 //!                               + s_1 sin(N theta + q_1) + s_2 sin(2 N theta + q_2)) + sigma n)   (E1)
 //! ```
 //!

@@ -50,9 +50,9 @@ mod tests {
         ] {
             let weights = Weights::new(motor_turn, output_turn, over, under).expect("they fit");
             // `over` motor turns are `under` output turns.
-            let motor = i64::from(over) * i64::from(motor_turn);
-            let output = i64::from(under) * i64::from(output_turn);
-            assert_eq!(motor * weights.motor - output * weights.output, 0);
+            let motor = i128::from(over) * i128::from(motor_turn);
+            let output = i128::from(under) * i128::from(output_turn);
+            assert_eq!(motor * i128::from(weights.motor) - output * i128::from(weights.output), 0);
             assert_eq!(i64::from(motor_turn) * weights.motor % weights.modulus, 0);
             assert_eq!(i64::from(output_turn) * weights.output % weights.modulus, 0);
         }

@@ -365,7 +365,7 @@ pub(crate) const KEYS: &[Key] = &[
         "drive_train",
         "efficiency",
         Number(Si, Between(0.1, 1.0)),
-        "of the gears, load-dependent losses only; 97 % is 0.97",
+        "of the gears, load-dependent losses only; 97 % is 0.97, and below 0.5 the load does not turn the motor",
     ),
     key(
         "drive_train",

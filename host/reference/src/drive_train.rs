@@ -17,7 +17,9 @@
 //! and u_k drawn evenly from 0 to 1; the first period begins at 0.
 //!
 //! Losses that grow with the load sit at the sun: dry friction of (1/efficiency - 1) times the torque that the
-//! sun-planet meshes carry while the motor drives, and (1 - efficiency) times it while the load drives.
+//! sun-planet meshes carry while the motor drives, and (1 - efficiency) times it while the load drives. A gear of an efficiency
+//! below 1/2 locks itself, as a worm does: of the load's torque 2 - 1/efficiency would arrive at the motor, which is nothing,
+//! and the loss while the load drives is 1/efficiency - 1 too, more than the torque that the meshes carry.
 
 mod bristles;
 mod current_loop;
@@ -328,7 +330,8 @@ impl<J: JointModel> DriveTrain<J> {
         let transmitted = joint.sun_force() * self.sun_radius;
         let driving = transmitted * joint.motor_speed >= 0.0;
         let efficiency = around.efficiency;
-        let loss = transmitted.abs() * if driving { 1.0 / efficiency - 1.0 } else { 1.0 - efficiency };
+        let rubs_both_ways = driving || efficiency < 0.5;
+        let loss = transmitted.abs() * if rubs_both_ways { 1.0 / efficiency - 1.0 } else { 1.0 - efficiency };
         let motor = Shaft {
             speed: joint.motor_speed,
             driving_torque: air_gap + cogging - transmitted,

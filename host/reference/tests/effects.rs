@@ -481,3 +481,26 @@ fn effects_out_of_range_are_refused_by_name() {
         assert!(refusal(change).starts_with(words), "{}", refusal(change));
     }
 }
+
+/// A gear of an efficiency below 1/2 locks itself: a pull at the link crosses the gap, and the motor stays where it is. Above it the
+/// pull turns the motor, which gets what the losses leave.
+#[test]
+fn a_self_locking_gear_holds_the_link_with_the_motor_off() {
+    let joint = q1();
+    let lost_motion = 4.0 * 40e-6 / (2.0 * joint.geometry.carrier_radius * joint.geometry.working_pressure_angle.cos());
+    let pull = 5.0;
+    for (efficiency, holds) in [(0.4, true), (0.49, true), (0.51, false), (0.9, false)] {
+        for torque in [pull, -pull] {
+            let around = Surroundings { efficiency, ..Surroundings::ideal() };
+            let mut train = train_of(&joint, 0.0, around, vec![Disturbance::Step { start: 0.0, torque }]);
+            for _ in 0..3000 {
+                train.advance(0.0).expect("a step");
+            }
+            let Observation { motor_angle, link_angle, .. } = *train.joint();
+            // Twice the wind-up, since the link swings into it, and half the gap on this side.
+            let wind_up = 2.0 * pull / joint.compliance.expect("Q1 is compliant").stiffness;
+            let held = link_angle.abs() < lost_motion + wind_up + 1e-3 && motor_angle.abs() < 0.05;
+            assert_eq!(held, holds, "{efficiency}, {torque} N m: motor {motor_angle} rad, link {link_angle} rad");
+        }
+    }
+}

@@ -1,5 +1,9 @@
 //! Load-dependent losses of gears, from their efficiency.
 
+/// Efficiency below which a gear locks itself [-]. With the friction angle phi at the flank and the lead angle lambda a worm has
+/// eta = tan(lambda) / tan(lambda + phi) forwards and tan(lambda - phi) / tan(lambda), which is about 2 - 1/eta, backwards.
+pub const SELF_LOCKING: f64 = 0.5;
+
 /// Loss over the torque that the teeth transmit, for gears of this efficiency: while the motor drives, and while the load
 /// drives back.
 ///
@@ -10,7 +14,11 @@
 /// assert!((0.97 * motor - 10.0_f64).abs() < 1e-12);
 /// // Of 10 N m that a load drives back, 97 % arrive at the motor.
 /// assert!((10.0 - 10.0 * driven - 9.7_f64).abs() < 1e-12);
+/// // Of a worm of 40 % nothing arrives: its friction can hold more than the load.
+/// let [_, driven] = model_core::gears::gear_losses(0.4);
+/// assert!((driven - 1.5_f64).abs() < 1e-12);
 /// ```
 pub fn gear_losses(efficiency: f64) -> [f64; 2] {
-    [1.0 / efficiency - 1.0, 1.0 - efficiency]
+    let driving = 1.0 / efficiency - 1.0;
+    [driving, if efficiency < SELF_LOCKING { driving } else { 1.0 - efficiency }]
 }

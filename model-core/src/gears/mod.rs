@@ -42,7 +42,7 @@ mod warm_start;
 
 pub use flank::{Flank, contact_state, sign};
 pub use kinematics::Kinematics;
-pub use losses::gear_losses;
+pub use losses::{SELF_LOCKING, gear_losses};
 pub use mechanics::Mechanics;
 pub use mesh_phases::MeshPhasing;
 pub use model::{Model, Outputs, Torques};

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use joint_file::{Severity, sheet};
 use model_core::gears::design::StepSize;
 use model_core::gears::design::modes::natural_frequencies;
-use model_core::gears::{Kinematics, Mechanics, MeshPhasing, Scales};
+use model_core::gears::{Kinematics, Mechanics, MeshPhasing, SELF_LOCKING, Scales};
 use parameters::{DampingLaw, EquivalentGear, JointParameters, MESH_KINDS, MeshKind};
 
 use super::step::step;
@@ -44,7 +44,7 @@ pub fn summary(loaded: &Loaded, board: &Board, rate: u32, wanted: Option<f64>) -
             DampingLaw::Contact => "contact",
             DampingLaw::Paper => "paper",
         },
-        output: output(parameters),
+        output: output(parameters, loaded.file.surroundings.efficiency),
         bandwidth: Bandwidth::of(&loaded.file.parameters, &loaded.file.surroundings),
         fixed_step: fixed_step(parameters, board, rate, wanted)?,
         numbers: numbers(loaded),
@@ -157,7 +157,7 @@ fn mesh(parameters: &JointParameters, kind: MeshKind) -> MeshFigures {
     }
 }
 
-fn output(parameters: &JointParameters) -> Output {
+fn output(parameters: &JointParameters, efficiency: f64) -> Output {
     let torque = parameters.rated_output_torque;
     let (force, gap) = (mesh_force(parameters), sheet::gap(parameters));
     let lost_motion = sheet::lost_motion(parameters);
@@ -176,6 +176,7 @@ fn output(parameters: &JointParameters) -> Output {
         wind_up_of_compliance_rad: of_compliance,
         wind_up_rad: of_teeth + of_compliance,
         wind_up_arcmin: arcmin(of_teeth + of_compliance),
+        self_locking: efficiency < SELF_LOCKING,
     }
 }
 

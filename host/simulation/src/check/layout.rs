@@ -130,6 +130,12 @@ fn output(page: &mut Sheet, summary: &CheckSummary) {
         let parts = [output.wind_up_of_teeth_rad, output.wind_up_of_compliance_rad].map(|part| 1e3 * part);
         page.row("  teeth, compliance", format!("{:.4}, {:.4} mrad", parts[0], parts[1]));
     }
+    if output.self_locking {
+        page.row(
+            "self-locking",
+            "the efficiency is below 0.5: torque at the link alone does not turn the motor",
+        );
+    }
 }
 
 fn step(page: &mut Sheet, summary: &CheckSummary) {

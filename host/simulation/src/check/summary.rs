@@ -173,6 +173,8 @@ pub struct Output {
     pub wind_up_rad: f64,
     /// Both together in minutes of arc.
     pub wind_up_arcmin: f64,
+    /// The efficiency is below 0.5: torque at the link alone does not turn the motor, as with a worm.
+    pub self_locking: bool,
 }
 
 /// The fixed step at the wanted rate.

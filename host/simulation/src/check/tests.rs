@@ -115,6 +115,17 @@ fn an_equivalent_gear_is_told_by_its_data_sheet_and_not_by_teeth() {
 }
 
 #[test]
+fn a_self_locking_gear_has_a_word() {
+    let worm = |efficiency: &str| {
+        let text = changed(&[("efficiency = 0.97", &format!("efficiency = {efficiency}"))]);
+        summary(&text, &Board::emulated(), RATE, None).expect("figures")
+    };
+    let words = "self-locking";
+    assert!(worm("0.45").output.self_locking && layout(&worm("0.45")).contains(words));
+    assert!(!worm("0.5").output.self_locking && !layout(&worm("0.5")).contains(words));
+}
+
+#[test]
 fn static_deflections_carry_the_rated_torque() {
     for name in PRESETS {
         let summary = preset(name);

@@ -109,9 +109,13 @@ pub fn make(
     let wanted = Wanted { plant, nominal: told, processor: board.chip().processor() };
     let words = design(&wanted).and_then(|words| Ok((words, told.bandwidth()?)));
     let (words, bandwidth) = words.map_err(|error| {
-        Failure::new(error.to_string()).with_help(
-            "`joint check` says what follows from the file; `--rate` and `--bandwidth` change what is asked for",
-        )
+        let of_plant = plant.is_some() && design(&Wanted { plant: None, ..wanted }).is_ok();
+        Failure::new(error.to_string()).with_help(match of_plant {
+            true => "`--without-plant` leaves out the plant, which firmware that drives a real joint has no use for",
+            false => {
+                "`joint check` says what follows from the file; `--rate` and `--bandwidth` change what is asked for"
+            }
+        })
     })?;
     let parts = match plant {
         Some(_) => {

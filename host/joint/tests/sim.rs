@@ -98,6 +98,24 @@ fn all_schemes_are_held_against_the_reference() {
     assert!(rows.iter().all(|row| number(&row["cost_s_per_s"]) > 0.0), "{rows:?}");
 }
 
+/// An equivalent gear has no meshes, so that two schemes move it. Under constant torques nothing swings: no scheme diverges.
+#[test]
+fn all_schemes_of_an_equivalent_gear_are_two() {
+    let figures = figures(&["c1", "--profile", "reversals", "--duration", "0.6", "--scheme", "all"]);
+    let rows = figures["schemes"].as_array().expect("a table");
+    let names: Vec<&str> = rows.iter().filter_map(|row| row["scheme"].as_str()).collect();
+    assert_eq!(names, ["reference", "realtime"]);
+    assert!(number(&rows[1]["errors"][0]) < 1e-4, "{rows:?}");
+    let folder = folder();
+    let out = ["--duration", "0.05", "--out", text(folder.path())];
+    let still = joint(&[&["sim", "c1", "--scheme", "all"], &out[..]].concat()).well().out;
+    assert!(still.contains("Nothing swings under these torques") && !still.contains("diverged"), "{still}");
+    for command in [&["sim", "c1"][..], &["sweep", "c1", "--vary", "lost_motion_arcmin=1,2"]] {
+        let refused = joint(&[command, &["--scheme", "paper"]].concat());
+        refused.refused(&["--scheme paper steps meshes", "equivalent gear", "--scheme reference or --scheme realtime"]);
+    }
+}
+
 #[test]
 fn a_prescribed_mesh_period_has_ticks_enough_and_a_board_s_rate_can_be_had() {
     let figures_at = |rate: &[&str]| figures(&[&["paper", "--duration", "0.01", "--no-energy"], rate].concat());
@@ -265,6 +283,79 @@ fn the_report_needs_neither_network_nor_script() {
         assert!(page.contains(part), "{part}");
     }
     assert!(page.len() < 4_000_000, "{} bytes", page.len());
+}
+
+/// Incremental encoders of 1000 and 1800 lines go through every command, and the joint follows. Hall sensors of 24 counts can be
+/// checked and simulated; an observer is refused.
+#[test]
+fn encoders_of_any_counts_go_through_all_commands() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    let c1 = fs::read_to_string("../../joints/c1.toml").expect("a preset");
+    let write = |name: &str, motor: u32| {
+        let counts = c1.replace("bits = 17", &format!("counts_per_turn = {motor}"));
+        fs::write(path(name), counts.replace("bits = 19", "counts_per_turn = 7200")).expect("room");
+        let test = format!(
+            "joint = \"{name}\"\nseeds = 1\nduration_s = 2\nsettle_s = 1\nprofile = \"T2\"\n[controller]\nrivals = []\n\
+             [assert]\nrms_mrad = \"<= 10\"\nfalse_alarms = \"== 0\"\n"
+        );
+        fs::write(path("test.toml"), test).expect("room");
+        joint(&["check", text(&path(name))]).well();
+        joint(&["sim", text(&path(name)), "--duration", "0.01", "--out", text(&path("sim"))]).well();
+        let log = path("log.csv");
+        let refused = joint(&["identify", text(&log), "--joint", text(&path(name))]);
+        refused.refused(&[&format!("the motor encoder has {motor} counts in a turn"), "--motor-bits 16"]);
+    };
+    let tables = |name: &str, more: &[&str]| {
+        joint(&[&["tables", text(&path(name)), "--out", text(&path("tables"))], more].concat())
+    };
+    let test = || joint(&["hil", text(&path("test.toml")), "--host", "--out", text(&path("hil"))]);
+    write("lines.toml", 4000);
+    test().well();
+    tables("lines.toml", &["--without-plant"]).well();
+    tables("lines.toml", &[]).refused(&["is 4000: it must be a power of two", "--without-plant"]);
+    write("hall.toml", 24);
+    for refused in [test(), tables("hall.toml", &["--without-plant"])] {
+        refused.refused(&["the number of counts in a turn of an encoder is 24: it must be from 64 to 2^24"]);
+    }
+}
+
+/// The worm of a telescope mount with the motor off and 10 N m at its link: gap and wind-up are 0.8 mrad.
+#[test]
+fn a_worm_s_link_holds_with_the_motor_off() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    let c1 = fs::read_to_string("../../joints/c1.toml").expect("a preset");
+    let worm = c1
+        .replace("efficiency = 0.85", "efficiency = 0.4")
+        .replace("gravity_torque_N_m = 15.0", "gravity_torque_N_m = 0.0");
+    fs::write(path("worm.toml"), worm).expect("room");
+    fs::write(path("still.csv"), "time_s,position_rad,load_torque_N_m\n0,0,0\n0.2,0,20\n2,0,20\n").expect("room");
+    let test = "joint = \"worm.toml\"\nseeds = 1\nduration_s = 2\nsettle_s = 0\n[profile]\nkind = \"csv\"\nfile = \"still.csv\"\n\
+                [controller]\nmode = \"off\"\nrivals = []\n[assert]\npeak_mrad = \"<= 3\"\n";
+    fs::write(path("worm-test.toml"), test).expect("room");
+    for plant in ["core", "reference"] {
+        joint(&["hil", text(&path("worm-test.toml")), "--host", "--plant", plant, "--out", text(&path(plant))]).well();
+    }
+    assert!(joint(&["check", text(&path("worm.toml"))]).well().out.contains("self-locking"));
+}
+
+#[test]
+fn a_short_key_is_the_one_of_the_joint_s_kind_of_gears() {
+    let folder = folder();
+    let set = ["sim", "c1", "--profile", "reversals", "--duration", "0.01", "--set", "lost_motion_arcmin=2"];
+    joint(&[&set[..], &["--out", text(folder.path())]].concat()).well();
+    let named =
+        ["is a key of gears with teeth, and this joint has an equivalent gear", "equivalent_gear.lost_motion_arcmin"];
+    for key in ["mesh.lost_motion_arcmin", "half_backlash_um"] {
+        joint(&["sim", "c1", "--set", &format!("{key}=2")]).refused(&named);
+    }
+    let named = ["is a key of an equivalent gear, and this joint has gears with teeth", "mesh.lost_motion_arcmin"];
+    joint(&["sim", "q1", "--set", "equivalent_gear.lost_motion_arcmin=2"]).refused(&named);
+    let test = folder.path().join("test.toml");
+    let narrow = "joint = \"c1\"\nseeds = 1\nduration_s = 0.5\nsettle_s = 0\nprofile = \"T2\"\n[plant]\nlost_motion_arcmin = 2\n";
+    fs::write(&test, narrow).expect("a file");
+    joint(&["hil", text(&test), "--host", "--out", text(&folder.path().join("hil"))]).well();
 }
 
 #[test]

@@ -136,6 +136,7 @@ mod tests {
 
     use super::*;
     use crate::gears::design::design;
+    use crate::virtual_joint::VirtualJoint;
 
     #[test]
     fn an_effect_that_a_virtual_joint_lacks_is_refused_by_its_key() {
@@ -151,5 +152,36 @@ mod tests {
         around.output_encoder.noise_counts = 1.0;
         let refused = design_surroundings::<f32, 3>(&file.parameters, &around, &tables).expect_err("refused");
         assert!(refused.to_string().contains("`noise_counts`"), "{refused}");
+    }
+
+    /// Motor and link [turns] after 0.5 s of a pull at the link of C1 with the motor off.
+    fn pulled(efficiency: f64, torque: f32) -> [f64; 2] {
+        let mut file = joint_file::read(joint_file::preset("c1").expect("a preset")).expect("a joint");
+        file.surroundings.efficiency = efficiency;
+        file.surroundings.gravity_torque = 0.0;
+        let gears: Tables<f32, 1> = design(&file.parameters, file.surroundings.control_rate).expect("tables");
+        let around = design_surroundings(&file.parameters, &file.surroundings, &gears).expect("tables");
+        let mut joint = VirtualJoint::new(&gears, &around);
+        (0..5000).for_each(|_| joint.advance(0.0, torque));
+        let samples = joint.samples();
+        let turns = |counts: u32, encoder: &EncoderErrorTable<f32>| {
+            f64::from((counts << encoder.shift).cast_signed()) / f64::powi(2.0, 32)
+        };
+        [
+            turns(samples.motor.counts, &around.encoders[0]),
+            turns(samples.output.expect("an output encoder").counts, &around.encoders[1]),
+        ]
+    }
+
+    #[test]
+    fn a_self_locking_gear_holds_the_link_with_the_motor_off() {
+        // The gap of 3 arcmin, twice the wind-up of 20 N m at 20 N m/arcmin since the link swings into it, and an encoder's error.
+        let most = (3.0 + 2.0 + 1.0) / (360.0 * 60.0);
+        for torque in [20.0, -20.0] {
+            let [motor, link] = pulled(0.4, torque);
+            assert!(motor.abs() < 0.01 && link.abs() < most, "{torque} N m: {motor}, {link} turns");
+            let [_, link] = pulled(0.9, torque);
+            assert!(link.abs() > 10.0 * most, "{torque} N m: {link} turns");
+        }
     }
 }

@@ -237,35 +237,3 @@ fn friction<T: Real>(table: &FrictionTable<T>, speed: T, driving: T, extra: T) -
     let viscous = table.viscous * speed;
     viscous + clamp(table.stop * speed + driving - viscous, -dry, dry)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::VirtualJoint;
-    use crate::gears::{Tables, design::design};
-    use crate::virtual_joint::design::design_surroundings;
-
-    /// Motor and link [turns] after 0.5 s of a pull at the link with the motor off.
-    fn pulled(preset: &str, efficiency: f64, torque: f32) -> [f64; 2] {
-        let mut file = joint_file::read(joint_file::preset(preset).expect("a preset")).expect("a joint");
-        file.surroundings.efficiency = efficiency;
-        file.surroundings.gravity_torque = 0.0;
-        let gears: Tables<f32, 1> = design(&file.parameters, file.surroundings.control_rate).expect("tables");
-        let around = design_surroundings(&file.parameters, &file.surroundings, &gears).expect("tables");
-        let mut joint = VirtualJoint::new(&gears, &around);
-        let turns = |angle: i64| angle as f64 / 4_294_967_296.0;
-        (0..5000).for_each(|_| joint.advance(0.0, torque));
-        [turns(i64::from(joint.shafts.motor as i32)), turns(joint.shafts.link)]
-    }
-
-    #[test]
-    fn a_self_locking_gear_holds_the_link_with_the_motor_off() {
-        // The gap of 3 arcmin, and wind-up of 20 N m at 20 N m/arcmin, twice since the link swings into it.
-        let most = (3.0 + 2.0) / (360.0 * 60.0);
-        for torque in [20.0, -20.0] {
-            let [motor, link] = pulled("c1", 0.4, torque);
-            assert!(motor.abs() < 0.01 && link.abs() < most, "{torque} N m: {motor}, {link} turns");
-            let [_, link] = pulled("c1", 0.9, torque);
-            assert!(link.abs() > 10.0 * most, "{torque} N m: {link} turns");
-        }
-    }
-}

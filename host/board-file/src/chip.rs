@@ -138,7 +138,7 @@ impl Part {
             })
         };
         let known = Self::names();
-        let line: Vec<&str> = known.iter().copied().filter(|variant| of_line(&variant)).collect();
+        let line: Vec<&str> = known.iter().copied().filter(of_line).collect();
         match line.iter().find(|variant| typed.starts_with(**variant)) {
             Some(variant) => format!(
                 "did you mean \"{variant}\"? it is written in capitals, up to the letter of the flash size or with those of \

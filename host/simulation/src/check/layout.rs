@@ -131,10 +131,7 @@ fn output(page: &mut Sheet, summary: &CheckSummary) {
         page.row("  teeth, compliance", format!("{:.4}, {:.4} mrad", parts[0], parts[1]));
     }
     if output.self_locking {
-        page.row(
-            "self-locking",
-            "the efficiency is below 0.5: torque at the link alone does not turn the motor",
-        );
+        page.row("self-locking", "the efficiency is below 0.5: torque at the link alone does not turn the motor");
     }
 }
 

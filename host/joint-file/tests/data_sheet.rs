@@ -278,7 +278,7 @@ fn a_motor_weaker_than_its_gearhead_drives_with_its_limit() {
 fn an_inertia_at_the_input_in_another_unit_is_blamed_by_its_own_key() {
     let said = |value: &str| {
         let text = c1("gear_inertia_at_input_kg_cm2 = 0.25", &format!("gear_inertia_at_input_kg_cm2 = {value}"));
-        read(&text).map_or_else(|problems| problems, |file| file.warnings)
+        read(&text).map_or_else(|problems| problems.0, |file| file.warnings)
     };
     let all = said("30600");
     let text: String = all.iter().map(ToString::to_string).collect();

@@ -7,10 +7,11 @@ pub const HEADER_HELP: &str = "the first line names the columns: time_s,motor_co
                            was measured, output_torque_N_m; --column motor_counts=NAME takes another name";
 
 /// The name of each column, and the names it may have in a log.
-pub const KNOWN: [(&str, &[&str]); 9] = [
+pub const KNOWN: [(&str, &[&str]); 10] = [
     ("time_s", &[]),
     ("time_ms", &[]),
     ("time_us", &[]),
+    (PERIOD, &[]),
     ("motor_counts", &[]),
     ("motor_angle_rad", &["motor_rad"]),
     ("output_counts", &["link_counts"]),
@@ -18,6 +19,18 @@ pub const KNOWN: [(&str, &[&str]); 9] = [
     ("motor_torque_N_m", &["motor_torque_Nm", "motor_torque_nm", "drive_torque_Nm", "drive_torque_nm"]),
     ("output_torque_N_m", &[]),
 ];
+
+/// Columns of time; the first one that is there is used.
+pub const TIMES: [&str; 3] = ["time_s", "time_ms", "time_us"];
+
+/// Columns of the motor's encoder, counts before angles.
+pub const MOTOR: [&str; 2] = ["motor_counts", "motor_angle_rad"];
+
+/// Columns of the output's encoder, likewise.
+pub const OUTPUT: [&str; 2] = ["output_counts", "output_angle_rad"];
+
+/// Column of the control period's number, which tells the times of rows whose stamps repeat.
+pub const PERIOD: &str = "period";
 
 /// Column of the output less the motor, which slow logs may have in place of the motor's.
 pub const DIFFERENCE: &str = "output_less_motor_counts";
@@ -32,12 +45,16 @@ pub struct Columns {
     places: Vec<usize>,
     /// What a row is called.
     row: &'static str,
+    /// What was done to the rows, a sentence each.
+    told: Vec<String>,
+    /// Columns whose unit was stated.
+    stated: Vec<String>,
 }
 
 impl Columns {
     /// Nothing yet, in rows that are called so.
     pub fn of(row: &'static str) -> Self {
-        Self { names: Vec::new(), values: Vec::new(), places: Vec::new(), row }
+        Self { names: Vec::new(), values: Vec::new(), places: Vec::new(), row, told: Vec::new(), stated: Vec::new() }
     }
 
     /// The same columns without their values.
@@ -84,7 +101,109 @@ impl Columns {
         if let Some(place) = self.names.iter().position(|known| known == name) {
             self.values[place].iter_mut().for_each(|value| *value *= by);
             new_name.clone_into(&mut self.names[place]);
+            self.stated.push(new_name.to_owned());
         }
+    }
+
+    /// Whether the unit of a column was stated.
+    pub fn is_stated(&self, name: &str) -> bool {
+        self.stated.iter().any(|stated| stated == name)
+    }
+
+    /// Notes what was done to the rows, for the report.
+    pub fn tell(&mut self, what: String) {
+        self.told.push(what);
+    }
+
+    /// Sentences on what was done to the rows.
+    pub fn told(&self) -> &[String] {
+        &self.told
+    }
+
+    /// A failure with what was done to the rows before, which may be its cause.
+    pub fn explain(&self, failure: Failure) -> Failure {
+        if self.told.is_empty() {
+            return failure;
+        }
+        let help = failure.full_help().map_or_else(String::new, |help| format!("{help}\n"));
+        failure.with_help(format!("{help}before that: {}", self.told.join(" ")))
+    }
+
+    /// Keeps some of the rows.
+    pub fn keep(&mut self, keep: &[bool]) {
+        let kept = |row: usize| keep.get(row).copied().unwrap_or_default();
+        for values in &mut self.values {
+            let mut row = 0;
+            values.retain(|_| {
+                row += 1;
+                kept(row - 1)
+            });
+        }
+        let mut row = 0;
+        self.places.retain(|_| {
+            row += 1;
+            kept(row - 1)
+        });
+    }
+
+    /// Puts values under a name, in place of those that have it.
+    pub fn put(&mut self, name: &str, values: Vec<f64>) {
+        match self.names.iter().position(|known| known == name) {
+            Some(place) => self.values[place] = values,
+            None => {
+                self.names.push(name.to_owned());
+                self.values.push(values);
+            }
+        }
+    }
+
+    /// Takes the name away from a column.
+    pub fn remove(&mut self, name: &str) {
+        self.names.iter_mut().filter(|known| *known == name).for_each(|known| known.insert(0, '~'));
+    }
+
+    /// Whether a row has all values of the row before.
+    pub fn is_repeated(&self, row: usize) -> bool {
+        let same =
+            |values: &Vec<f64>| values[row] == values[row - 1] || (values[row].is_nan() && values[row - 1].is_nan());
+        self.values.iter().all(same)
+    }
+
+    /// Leaves out rows in which a needed column is empty. Of each list of columns the first that is there is needed, if there is any.
+    pub fn leave_out_incomplete(&mut self, needed: &[&[&str]]) -> Outcome<()> {
+        let places: Vec<usize> =
+            needed.iter().filter_map(|columns| self.place_of(columns).map(|(_, place)| place)).collect();
+        // Text that is no number is no missing value.
+        for place in &places {
+            if let Some(row) = self.values[*place].iter().position(|value| value.is_infinite()) {
+                return Err(self.no_number(row, &self.names[*place]));
+            }
+        }
+        let is_empty = |place: usize, row: usize| self.values[place][row].is_nan();
+        let keep: Vec<bool> =
+            (0..self.places.len()).map(|row| places.iter().all(|place| !is_empty(*place, row))).collect();
+        let (rows, left) = (keep.len(), keep.iter().filter(|keep| **keep).count());
+        if left == rows {
+            return Ok(());
+        }
+        let empty = |place: &usize| {
+            let count = (0..rows).filter(|row| is_empty(*place, *row)).count();
+            (count > 0).then(|| format!("`{}` is empty in {count}", self.names[*place]))
+        };
+        let empty: Vec<String> = places.iter().filter_map(empty).collect();
+        if left == 0 {
+            return Err(Failure::new(format!("no row has all values: of {rows} rows {}", empty.join(", "))).with_help(
+                "each of them is logged at times of its own: log motor, output and torque in one message, or export them on common \
+                 times; values are not carried over from other times, which would feign lost motion",
+            ));
+        }
+        self.tell(format!(
+            "{} of {rows} rows were left out, since a value is missing: {}.",
+            rows - left,
+            empty.join(", ")
+        ));
+        self.keep(&keep);
+        Ok(())
     }
 
     /// Whether motor, output and torque are there.
@@ -99,8 +218,8 @@ impl Columns {
             all.flat_map(|(name, others)| others.iter().chain([name])).any(|name| self.names().any(|own| own == *name))
         };
         let bare = |name: &str| self.names().any(|own| own == name);
-        (has(&["motor_counts", "motor_angle_rad"]) || bare("motor_angle"))
-            && (!output || has(&["output_counts", "output_angle_rad"]) || bare("output_angle"))
+        (has(&MOTOR) || bare("motor_angle"))
+            && (!output || has(&OUTPUT) || bare("output_angle"))
             && (has(&["motor_torque_N_m"]) || bare("motor_torque"))
     }
 
@@ -121,7 +240,7 @@ impl Columns {
 
     /// Time in seconds, in whichever unit it stands.
     pub fn time(&self) -> Outcome<Vec<f64>> {
-        let (name, mut values) = self.named(&["time_s", "time_ms", "time_us"])?;
+        let (name, mut values) = self.named(&TIMES)?;
         let second = match name {
             "time_ms" => 1e-3,
             "time_us" => 1e-6,
@@ -138,15 +257,24 @@ impl Columns {
 
     /// The same; nothing if none of them is there.
     pub fn first_of<'n>(&self, columns: &[&'n str]) -> Outcome<Option<(&'n str, Vec<f64>)>> {
-        for &column in columns {
-            let others = KNOWN.iter().find(|(name, _)| *name == column).map_or(&[][..], |(_, others)| *others);
-            for name in std::iter::once(column).chain(others.iter().copied()) {
-                if let Some(values) = self.maybe(name)? {
-                    return Ok(Some((column, values)));
-                }
-            }
+        match self.place_of(columns) {
+            Some((column, place)) => Ok(self.maybe(&self.names[place])?.map(|values| (column, values))),
+            None => Ok(None),
         }
-        Ok(None)
+    }
+
+    /// The first of these columns that is there, by whichever of its names, and where it stands.
+    fn place_of<'n>(&self, columns: &[&'n str]) -> Option<(&'n str, usize)> {
+        columns.iter().find_map(|&column| {
+            let others = KNOWN.iter().find(|(name, _)| *name == column).map_or(&[][..], |(_, others)| *others);
+            let mut names = std::iter::once(column).chain(others.iter().copied());
+            names.find_map(|name| self.names.iter().position(|known| known == name)).map(|place| (column, place))
+        })
+    }
+
+    /// The name under which the first of these columns stands in the log.
+    pub fn name_of(&self, columns: &[&str]) -> Option<&str> {
+        self.place_of(columns).map(|(_, place)| self.names[place].as_str())
     }
 
     /// The refusal of a log with one encoder only, with what that one can tell.
@@ -191,9 +319,13 @@ impl Columns {
         let Some(place) = self.names.iter().position(|known| known == name) else { return Ok(None) };
         let values = &self.values[place];
         match values.iter().position(|value| !value.is_finite()) {
-            Some(row) => Err(Failure::new(format!("{} has no finite number for `{name}`", self.place(row)))
-                .with_help("write a number with a point in every row, or cut the log there")),
+            Some(row) => Err(self.no_number(row, name)),
             None => Ok(Some(values.clone())),
         }
+    }
+
+    fn no_number(&self, row: usize, name: &str) -> Failure {
+        Failure::new(format!("{} has no finite number for `{name}`", self.place(row)))
+            .with_help("write a number with a point in every row, or cut the log there")
     }
 }

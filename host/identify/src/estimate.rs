@@ -30,6 +30,12 @@ impl Estimate {
         Self { half: self.half.hypot(independent), ..self }
     }
 
+    /// With an interval whose half is no less than what readings resolve.
+    pub fn at_least(self, least: f64) -> Self {
+        // Without an interval there is none to widen.
+        Self { half: if self.half.is_finite() { self.half.max(least) } else { self.half }, ..self }
+    }
+
     /// In another unit.
     pub fn times(self, factor: f64) -> Self {
         Self { value: self.value * factor, half: self.half * factor.abs() }

@@ -2,14 +2,15 @@
 //! errors, each with its interval, and to a patched joint file.
 //!
 //! `log_file` reads a file into `columns`, text by `text_table`, an MCAP log by `mcap_file`, `mcap_log` and `ros_message`,
-//! message by message as `numbers`; `units` and `column_map` say what the columns are. `log` turns them into samples: angles by
-//! `readings`, at `even_times`, checked by `sampling`, whose scatter is `noise`. `prior` says what the joint file knows; `rows`
+//! message by message as `numbers`; `units` and `column_map` say what the columns are. `log` turns them into samples: rows with
+//! times of their own by `time_stamps`, without `bad_readings`, angles by `readings` out of a `register`, at `even_times`, checked by `sampling`, whose scatter is `noise`. `prior` says what the joint file knows; `rows`
 //! are the moments at which a flank carries, smoothed by `kernel`; `load_sharing` is what planets out of phase take of the gap; `twist` and `friction` are fitted to them by `regression`;
 //! `balances` hold torque against inertias, for `contradictions` and for `scales`. `findings` is what comes of it, with its
 //! `estimate`s; `page`, `pictures` and `patch` show it. `virtual_test` makes a log without hardware.
 //! `quasi_static` reads slow logs by itself.
 
 mod arguments;
+mod bad_readings;
 mod balances;
 pub mod column_map;
 pub mod columns;
@@ -35,6 +36,7 @@ mod prior;
 mod quasi_static;
 mod readings;
 mod refusal;
+mod register;
 mod regression;
 mod ros_message;
 mod rows;
@@ -43,6 +45,7 @@ mod scales;
 #[cfg(test)]
 mod schema;
 mod text_table;
+pub mod time_stamps;
 mod twist;
 pub mod units;
 pub mod virtual_test;
@@ -311,7 +314,7 @@ fn assumptions(identified: &Identified) -> Vec<String> {
             "Half-backlash is the mean over all meshes: a log cannot tell sun and ring apart.".to_owned()
         },
     ];
-    list.extend(log.times.told.clone());
+    list.extend(log.told.iter().cloned());
     list.extend(prior.higher.iter().enumerate().map(|(place, higher)| {
         let encoder = if higher.encoder == twist::MOTOR_MAP { "motor" } else { "output" };
         let size = ESTIMATE.write(twist.higher(place).to_degrees());

@@ -5,13 +5,14 @@ use std::f64::consts::TAU;
 
 use super::arguments::Arguments;
 use super::column_map::ColumnMap;
-use super::columns::Columns;
+use super::columns::{Columns, MOTOR, OUTPUT, TIMES};
 use super::even_times::EvenTimes;
 use super::log_file;
 use super::noise::Noise;
 use super::prior::PriorModel;
 use super::readings::{Kind, Readings, readings};
 use super::sampling::sampling;
+use super::{bad_readings, time_stamps};
 use board::profile::MAX_TORQUE;
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
@@ -48,6 +49,8 @@ pub struct Log {
     pub age: f64,
     /// What motor and output were read as.
     pub kinds: [Kind; 2],
+    /// What was done to the rows of the file, a sentence each.
+    pub told: Vec<String>,
     /// What is lost between samples.
     pub times: EvenTimes,
 }
@@ -57,17 +60,27 @@ impl Log {
     pub fn read(arguments: &Arguments, prior: &PriorModel) -> Outcome<Self> {
         let path = arguments.log.as_path();
         let map = ColumnMap::new(arguments.map.as_deref(), &arguments.column, &arguments.unit)?;
-        let columns = log_file::read(path, arguments.topic.as_deref(), &map, prior.ratio(), Columns::will_do)?;
-        Self::of(&columns, prior).map_err(|failure| failure.while_doing(path.display()))
+        let mut columns = log_file::read(path, arguments.topic.as_deref(), &map, prior.ratio(), Columns::will_do)?;
+        let log = Self::of(&mut columns, prior);
+        log.map_err(|failure| columns.explain(failure).while_doing(path.display()))
     }
 
-    fn of(columns: &Columns, prior: &PriorModel) -> Outcome<Self> {
+    fn of(columns: &mut Columns, prior: &PriorModel) -> Outcome<Self> {
+        columns.leave_out_incomplete(&[&TIMES, &MOTOR, &OUTPUT, &["motor_torque_N_m"], &["output_torque_N_m"]])?;
+        time_stamps::resolve(columns)?;
+        for (names, bits) in [(MOTOR, prior.motor_bits), (OUTPUT, prior.output_bits)] {
+            let Some(name) = columns.name_of(&names).map(str::to_owned) else { continue };
+            let turn = f64::from(bits).exp2();
+            let is_angle = columns.first_of(&names[..1])?.is_none();
+            let (count, turn) = if is_angle { (TAU / turn, TAU) } else { (1.0, turn) };
+            bad_readings::leave_out(columns, &name, count, Some(turn))?;
+        }
         let mut time = columns.time()?;
         let start = time.first().copied().unwrap_or_default();
         time.iter_mut().for_each(|time| *time -= start);
         let times = sampling(&time, columns, prior)?;
-        let motor = readings(columns, ["motor_counts", "motor_angle_rad"], prior.motor_bits, &times)?;
-        let output = readings(columns, ["output_counts", "output_angle_rad"], prior.output_bits, &times)?;
+        let motor = readings(columns, MOTOR, prior.motor_bits, &times)?;
+        let output = readings(columns, OUTPUT, prior.output_bits, &times)?;
         let (_, torque) = columns.named(&["motor_torque_N_m"])?;
         let output_torque = columns.maybe("output_torque_N_m")?;
         for (name, torques) in [("motor_torque_N_m", Some(&torque)), ("output_torque_N_m", output_torque.as_ref())] {
@@ -94,6 +107,7 @@ impl Log {
             twist,
             torque,
             output_torque: output_torque.map(|torque| times.bring(&torque)),
+            told: columns.told().iter().cloned().chain(times.told.clone()).collect(),
             times,
         };
         log.check(prior)?;

@@ -64,11 +64,13 @@ pub fn run(common: Common<'_>, options: &Options, progress: &Progress) -> Outcom
     let folder = Folder::choose(common.out, "identify", &format!("{name} slow"), &[REPORT, FINDINGS, PICTURES])?;
     progress.stage("reading");
     let ratio = options.gear_ratio.unwrap_or(1.0);
-    let columns = log_file::read(path, common.topic, common.map, ratio, has_both)?;
+    let mut columns = log_file::read(path, common.topic, common.map, ratio, has_both)?;
     let in_the_file = |failure: Failure| failure.while_doing(path.display());
-    let samples = Samples::of(&columns, options).map_err(in_the_file)?;
-    let results = Results::of(&samples, &options.halves).map_err(in_the_file)?;
-    check_ratio(options.gear_ratio, &results).map_err(in_the_file)?;
+    let samples = Samples::of(&mut columns, options);
+    let explained = |failure: Failure| in_the_file(columns.explain(failure));
+    let samples = samples.map_err(explained)?;
+    let results = Results::of(&samples, &options.halves).map_err(explained)?;
+    check_ratio(options.gear_ratio, &results).map_err(explained)?;
     folder.make()?;
     let pictures = pictures::all(&results);
     for (file, figure) in &pictures {

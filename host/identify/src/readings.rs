@@ -1,10 +1,12 @@
 //! What an encoder's readings say: whole counts or angles, made continuous over turns, and refused if no turning encoder gives
 //! them.
 
+use std::cmp::Ordering;
 use std::f64::consts::TAU;
 
 use super::columns::Columns;
 use super::even_times::EvenTimes;
+use super::register::Register;
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 
@@ -60,54 +62,59 @@ impl Readings {
     }
 }
 
+/// Which encoder readings are of, and what a turn of it is.
+struct Encoder<'a> {
+    /// `motor` or `output`.
+    what: &'a str,
+    /// Name of its column.
+    name: &'a str,
+    /// Its resolution as set: 2^bits counts a turn.
+    bits: u32,
+    /// A turn, and a step that is seen at all, in the column's unit.
+    turn: f64,
+    count: f64,
+}
+
 /// Counts, or else angles.
-pub fn readings(columns: &Columns, names: [&str; 2], bits: u32, times: &EvenTimes) -> Outcome<Readings> {
+pub fn readings(columns: &mut Columns, names: [&str; 2], bits: u32, times: &EvenTimes) -> Outcome<Readings> {
     let what = if names[0].starts_with("motor") { "motor" } else { "output" };
     let there = columns.first_of(&names)?;
-    let (name, values) = there.ok_or_else(|| columns.without_encoder(what))?;
+    let (name, mut values) = there.ok_or_else(|| columns.without_encoder(what))?;
     if name == names[0] {
-        let turn = 1_i64 << bits;
+        let turn = f64::from(bits).exp2();
         if let Some(line) = values.iter().position(|value| value.fract() != 0.0 || value.abs() > 9e15) {
             return Err(Failure::new(format!("{} of `{name}` is no whole number of counts", columns.place(line)))
                 .with_help("angles are understood in a column such as motor_angle_rad"));
         }
-        let mut whole: Vec<i64> = values.iter().map(|&value| value as i64).collect();
-        if whole.iter().all(|count| (0..turn).contains(count)) {
-            unwrap(&mut whole, turn, times);
+        if let Some(register) = Register::of(&values, Some(turn)) {
+            register.join(&mut values, |row| times.periods_before(row));
+            register.told(name, Some(turn)).into_iter().for_each(|told| columns.tell(told));
         }
-        let steps: Vec<f64> = whole.windows(2).map(|pair| (pair[1] - pair[0]) as f64).collect();
-        let steps = times.per_period(steps);
-        check_steps(&steps, turn as f64, 1.0, columns, name)?;
-        return Ok(Readings::Counts(whole));
+        let steps = times.per_period(values.windows(2).map(|pair| pair[1] - pair[0]).collect());
+        check_steps(&steps, &Encoder { what, name, bits, turn, count: 1.0 }, columns)?;
+        return Ok(Readings::Counts(values.into_iter().map(|value| value as i64).collect()));
     }
     let angles = unwrapped(values, times);
     let steps = times.per_period(angles.windows(2).map(|pair| pair[1] - pair[0]).collect());
-    check_steps(&steps, TAU, TAU / (1_i64 << bits) as f64, columns, name)?;
+    let count = TAU / f64::from(bits).exp2();
+    check_steps(&steps, &Encoder { what, name, bits, turn: TAU, count }, columns)?;
     Ok(Readings::Angles(angles))
 }
 
 /// Refuses readings that no turning encoder gives: single steps beside which all others are small, and readings that are
-/// the last ones again and again although the encoder turns. `count` is a step that is seen at all.
-fn check_steps(steps: &[f64], turn: f64, count: f64, columns: &Columns, name: &str) -> Outcome<()> {
+/// the last ones again and again although the encoder turns.
+fn check_steps(steps: &[f64], encoder: &Encoder<'_>, columns: &Columns) -> Outcome<()> {
+    let Encoder { name, turn, count, .. } = *encoder;
     let mut sizes: Vec<f64> = steps.iter().map(|step| step.abs()).collect();
     sizes.sort_by(f64::total_cmp);
     let usual = sizes.get(sizes.len() * USUAL.0 / USUAL.1).copied().unwrap_or_default().max(count);
     let jump = (JUMP_TURNS * turn).min((JUMP_STEPS * usual).max(JUMP_LEAST * turn));
+    let jumps: Vec<f64> = steps.iter().map(|step| step.abs()).filter(|step| *step >= jump).collect();
     if let Some(row) = steps.iter().position(|step| step.abs() >= jump) {
         let (size, place) = (steps[row].abs(), columns.place(row + 1));
         let message =
             format!("`{name}` jumps by {} in {place}, where a turn is {}", ESTIMATE.write(size), ESTIMATE.write(turn));
-        let whole = |turn: f64| (size / turn).ln().abs() < SAME_TURN;
-        let other = match (8..=30).find(|bits| whole(f64::from(*bits).exp2())) {
-            Some(bits) if count == 1.0 => Some(format!("an encoder of {bits} bits begins anew so")),
-            _ if count == 1.0 => None,
-            _ => [(1.0, "turns"), (360.0, "degrees"), (1e3 * TAU, "mrad")]
-                .iter()
-                .find(|(turn, _)| whole(*turn))
-                .map(|(_, unit)| format!("an angle in {unit} begins anew so")),
-        };
-        let lost = "a reading was lost or corrupted, or the encoder's unit or resolution is not as stated";
-        return Err(Failure::new(message).with_help(other.unwrap_or_else(|| lost.to_owned())));
+        return Err(Failure::new(message).with_help(encoder.cause(&jumps)));
     }
     // Windows in which every sample should have brought a count.
     let (mut moving, mut same) = (0, 0);
@@ -125,6 +132,39 @@ fn check_steps(steps: &[f64], turn: f64, count: f64, columns: &Columns, name: &s
         .with_help("keep the rows with new readings only, or log as often as the encoder is read"));
     }
     Ok(())
+}
+
+impl Encoder<'_> {
+    /// The likely cause of jumps, with what to state that is not stated yet.
+    fn cause(&self, jumps: &[f64]) -> String {
+        let Self { what, name, bits, .. } = *self;
+        let whole = |turn: f64| jumps.iter().all(|jump| (jump / turn).ln().abs() < SAME_TURN);
+        if self.count < 1.0 {
+            let units = [(1.0, "turns"), (360.0, "degrees"), (1e3 * TAU, "mrad")];
+            if let Some((_, unit)) = units.iter().find(|(turn, _)| whole(*turn)) {
+                return format!("an angle in {unit} begins anew so");
+            }
+        } else if let Some(found) = (8..=32).find(|bits| whole(f64::from(*bits).exp2())) {
+            return match found.cmp(&bits) {
+                Ordering::Less => format!(
+                    "an encoder of {found} bits begins anew so, and {bits} bits are set: if a turn has 2^{found} counts, state \
+                     --{what}-bits {found}"
+                ),
+                Ordering::Equal => {
+                    format!("a turn of the {bits} bits that are set was lost or counted twice: cut the log there")
+                }
+                Ordering::Greater => format!(
+                    "a register of {found} bits begins anew so, but it does not hold the other readings: take off what was added to \
+                     `{name}`, so that it goes from 0 to 2^{found} - 1 or from -2^{0} to 2^{0} - 1",
+                    found - 1
+                ),
+            };
+        }
+        format!(
+            "readings do not go on from where they were, so that it is none that was lost or corrupted alone: cut the log there, or \
+             check the unit of `{name}` and its resolution of {bits} bits"
+        )
+    }
 }
 
 /// Angles that begin anew every turn are taken for continuous ones.
@@ -146,34 +186,4 @@ fn unwrapped(mut angles: Vec<f64>, times: &EvenTimes) -> Vec<f64> {
         before = (angles[row] - angles[row - 1]) / times.periods_before(row);
     }
     angles
-}
-
-/// Counts that begin anew every turn are taken for continuous ones.
-fn unwrap(counts: &mut [i64], turn: i64, times: &EvenTimes) {
-    let mut turns = 0;
-    let mut before = 0.0;
-    for row in 1..counts.len() {
-        let last = counts[row - 1] - turns * turn;
-        // Over lost samples the encoder is expected to have gone on as it did.
-        let expected = (before * (times.periods_before(row) - 1.0)) as i64;
-        let step = counts[row] - last - expected;
-        turns -= step.signum() * ((step.abs() + turn / 2 - 1) / turn);
-        counts[row] += turns * turn;
-        before = (counts[row] - counts[row - 1]) as f64 / times.periods_before(row);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn counts_that_begin_anew_every_turn_become_continuous() {
-        let mut counts: Vec<i64> = (0..400).map(|step: i64| (step * 7).rem_euclid(256)).collect();
-        unwrap(&mut counts, 256, &EvenTimes::of_even(1e-4, 400));
-        assert_eq!(counts, (0..400).map(|step| step * 7).collect::<Vec<i64>>());
-        let mut back: Vec<i64> = (0..400).map(|step: i64| (-step * 7).rem_euclid(256)).collect();
-        unwrap(&mut back, 256, &EvenTimes::of_even(1e-4, 400));
-        assert_eq!(back, (0..400).map(|step| -step * 7).collect::<Vec<i64>>());
-    }
 }

@@ -1,6 +1,6 @@
 //! Whether a log was sampled evenly, fast and long enough for its joint, with the figures of what is needed.
 
-use super::columns::Columns;
+use super::columns::{Columns, TIMES};
 use super::even_times::EvenTimes;
 use super::prior::PriorModel;
 use report::failure::{Failure, Outcome};
@@ -26,12 +26,12 @@ pub fn sampling(time: &[f64], columns: &Columns, prior: &PriorModel) -> Outcome<
             .with_help(format!("record several reversals, for {LEAST_TIME} s at the very least")));
     }
     let times = EvenTimes::new(time, columns)?;
-    check_time(times.period, time.len(), prior)?;
+    check_time(times.period, time.len(), prior, columns)?;
     Ok(times)
 }
 
 /// Refuses a log that is too short, or sampled too slowly for the joint's swing.
-fn check_time(period: f64, samples: usize, prior: &PriorModel) -> Outcome<()> {
+fn check_time(period: f64, samples: usize, prior: &PriorModel, columns: &Columns) -> Outcome<()> {
     let (rate, time) = (1.0 / period, period * samples as f64);
     let needed = LEAST_RATE.max(LEAST_IN_A_SWING / prior.swing());
     if rate < 0.999 * needed {
@@ -40,8 +40,8 @@ fn check_time(period: f64, samples: usize, prior: &PriorModel) -> Outcome<()> {
             "the log is sampled too slowly: {rate:.0} Hz, at least {needed:.0} Hz are needed for a joint that swings at \
              {swing:.0} Hz"
         ))
-        .with_help(match [("ms", 1e3), ("us", 1e6)].iter().find(|(_, by)| (needed..LIKELY_RATE).contains(&(rate * by))) {
-            Some((unit, by)) => format!("if the time is in {unit}, which were {:.0} Hz, call its column time_{unit}", rate * by),
+        .with_help(match [1e3, 1e6].into_iter().find(|by| (needed..LIKELY_RATE).contains(&(rate * by))) {
+            Some(by) => finer_unit(columns, by, rate * by),
             None => format!(
                 "record every control period; {:.0} Hz also show the damping",
                 (SWING_SAMPLES * swing).max(needed)
@@ -59,4 +59,21 @@ fn check_time(period: f64, samples: usize, prior: &PriorModel) -> Outcome<()> {
             .with_help("record several reversals to both sides; docs/reference/identify.md tells a good test"));
     }
     Ok(())
+}
+
+/// The help for a log that is fast enough if its time is in a unit that is so many times less.
+fn finer_unit(columns: &Columns, by: f64, rate: f64) -> String {
+    let used = columns.name_of(&TIMES).and_then(|used| TIMES.iter().position(|name| *name == used)).unwrap_or_default();
+    let finer = TIMES.get(used + if by > 1e4 { 2 } else { 1 }).filter(|_| !columns.is_stated(TIMES[used]));
+    match finer {
+        Some(name) => {
+            format!(
+                "if the time is in {}, which were {rate:.0} Hz, call its column {name}",
+                name.trim_start_matches("time_")
+            )
+        }
+        None => format!(
+            "if the unit of the time is {by:.0} times less than stated, which were {rate:.0} Hz, state that one"
+        ),
+    }
 }

@@ -37,27 +37,54 @@ impl Separator {
     }
 }
 
-/// Columns by the names of the first line, or by their numbers from 1 on if that has none.
+/// Lines before the header are looked for among so many.
+const PREAMBLE: usize = 200;
+/// Lines in the middle of the text that tell how many cells a row has.
+const MIDDLE: usize = 9;
+
+/// Cells of a line of units; others stand in brackets.
+const UNITS: [&str; 20] = [
+    "", "-", "s", "ms", "us", "ns", "rad", "mrad", "deg", "turns", "counts", "Nm", "N m", "N_m", "mNm", "A", "V",
+    "rpm", "rad/s", "Hz",
+];
+
+/// A line with its number.
+type Line<'t> = (usize, &'t str);
+
+/// Columns by the names of the header, or by their numbers from 1 on if there is none. Lines before the header and a line of units
+/// below it are passed over and told. An empty cell is a missing value, not a number; a cell whose text is no number is infinite.
 pub fn columns(text: &str) -> Outcome<Columns> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let lines = (1..).zip(text.lines().map(str::trim));
-    let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#')).peekable();
-    let Some(&(_, first)) = lines.peek() else {
+    // A tab at an end may be an empty cell.
+    let trimmed = text.lines().map(|line| line.trim_matches(' ').trim_end_matches(['\r', ' ']));
+    let all = (1..).zip(trimmed).filter(|(_, line)| !line.trim().is_empty());
+    let lines: Vec<Line<'_>> = all.clone().filter(|(_, line)| !line.starts_with('#')).collect();
+    if lines.is_empty() {
         return Err(Failure::new("the log is empty").with_help(HEADER_HELP));
-    };
-    let separator = Separator::of(first);
+    }
+    let (head, separator) = header(&lines);
+    let (head_line, first) = (lines[head].0, lines[head].1.trim());
     let has_names = separator.cells(first).any(|cell| separator.number(cell).is_none());
     let names = separator
         .cells(first)
         .enumerate()
         .map(|(index, cell)| if has_names { cell.trim_matches('"').to_owned() } else { (index + 1).to_string() });
     let mut row: Vec<(String, f64)> = names.map(|name| (name, f64::NAN)).collect();
-    if has_names {
-        lines.next();
-    }
+    let mut body = if has_names { head + 1 } else { head };
     let mut columns = Columns::of("line");
+    let before: Vec<usize> = all.map(|(line, _)| line).take_while(|line| *line < head_line).collect();
+    if let [first, .., last] | [first @ last] = before[..] {
+        let lines = if first == last { format!("Line {first}") } else { format!("Lines {first} to {last}") };
+        columns.tell(format!("{lines} before the header passed over."));
+    }
+    let has_numbers = |line: &str| separator.cells(line).any(|cell| separator.number(cell).is_some());
+    let is_full = |line: &str| separator.cells(line).all(|cell| !cell.is_empty());
+    if has_names && lines.len() > body + 1 && !has_numbers(lines[body].1) && is_full(lines[body].1) {
+        columns.tell(format!("Line {} below the header has no number: passed over.", lines[body].0));
+        body += 1;
+    }
     let count = row.len();
-    for (line, text) in lines {
+    for (line, text) in &lines[body..] {
         let mut cells = separator.cells(text);
         for (index, (_, value)) in row.iter_mut().enumerate() {
             let Some(cell) = cells.next() else {
@@ -67,14 +94,53 @@ pub fn columns(text: &str) -> Outcome<Columns> {
                 ));
             };
             // A cell that is no number matters only in a column that is used.
-            *value = separator.number(cell).unwrap_or(f64::NAN);
+            let missing = if cell.is_empty() { f64::NAN } else { f64::INFINITY };
+            *value = separator.number(cell).unwrap_or(missing);
         }
-        columns.push(line, &row);
+        columns.push(*line, &row);
     }
     if columns.names().next().is_none() {
         return Err(Failure::new("the log has a header and no rows").with_help("a row for each sample"));
     }
     Ok(columns)
+}
+
+/// The line that names the columns, or the first row of a table without names, and what stands between its cells. A header has as many
+/// cells as the rows in the middle of the text, and no number; the last such line before the first row of numbers is taken.
+fn header(lines: &[Line<'_>]) -> (usize, Separator) {
+    let middle = &lines[lines.len() / 2..];
+    let fits = |line: &str| {
+        let separator = Separator::of(line.trim());
+        let count = separator.cells(line.trim()).count();
+        let as_many = |row: &&Line<'_>| {
+            let cells = separator.cells(row.1).count();
+            cells == count || (cells == count + 1 && separator.cells(row.1).last().is_some_and(str::is_empty))
+        };
+        count > 1 && middle.iter().take(MIDDLE).filter(as_many).count() * 2 > middle.len().min(MIDDLE)
+    };
+    let numbers = |line: &str| {
+        let separator = Separator::of(line);
+        separator.cells(line).filter(|cell| separator.number(cell).is_some()).count()
+    };
+    let all_numbers = |line: &str| {
+        let separator = Separator::of(line);
+        numbers(line) > 0 && separator.cells(line).all(|cell| cell.is_empty() || separator.number(cell).is_some())
+    };
+    let few = &lines[..lines.len().min(PREAMBLE)];
+    let fitting: Vec<usize> = (0..few.len()).filter(|line| fits(few[*line].1)).collect();
+    let first_row = fitting.iter().copied().find(|line| all_numbers(few[*line].1));
+    let named =
+        fitting.iter().copied().filter(|line| first_row.is_none_or(|row| *line < row) && numbers(few[*line].1) == 0);
+    let is_unit = |cell: &str| UNITS.contains(&cell) || cell.starts_with(['[', '(']);
+    let names = |line: &usize| !Separator::of(few[*line].1).cells(few[*line].1).all(is_unit);
+    let named: Vec<usize> = named.filter(names).collect();
+    // Without a row of numbers, such as with a column of words, the first line of names is the header.
+    let names = if first_row.is_some() { named.last() } else { named.first() };
+    let head = names.copied().or(first_row.filter(|row| fitting.first() == Some(row))).or(fitting.first().copied());
+    // Rows of numbers that are shorter or longer than the others are no lines before a header.
+    let is_row = |line: &Line<'_>| all_numbers(line.1) && numbers(line.1) > 1;
+    let head = head.filter(|head| !few[..*head].iter().any(is_row)).unwrap_or_default();
+    (head, Separator::of(lines[head].1.trim()))
 }
 
 #[cfg(test)]
@@ -107,7 +173,41 @@ mod tests {
         assert_eq!(columns(&text).expect_err("short rows").message(), "line 2 has 1 values, the first one has 40001");
         let more = columns("time_s,motor_counts\n0,1,\n1,,\n").expect("a comma at the end is no harm");
         assert_eq!(more.maybe("time_s").expect("numbers"), Some(vec![0.0, 1.0]));
-        assert!(more.maybe("motor_counts").is_err(), "an empty cell matters in a column that is used");
+        assert!(more.maybe("motor_counts").is_err(), "an empty cell is no number");
+    }
+
+    #[test]
+    fn lines_before_the_header_and_units_below_it_are_passed_over_and_told() {
+        let rows = "0.1,5,6\n0.2,,7\n0.3,8,9\n0.4,1,2\n";
+        for (before, units, told) in [
+            ("", "", &[][..]),
+            ("# made by a drive\n", "", &["Line 1 before"][..]),
+            ("Drive 7\nDate,2024-05-01\nRate,10000\n\n", "", &["Lines 1 to 3 before"]),
+            ("Drive,serial,firmware\n", "[s],[-],[-]\n", &["Line 1 before", "Line 3 below"]),
+        ] {
+            let columns = columns(&format!("{before}time_s,motor_counts,x\n{units}{rows}")).expect("a table");
+            assert_eq!(columns.names().collect::<Vec<_>>(), ["time_s", "motor_counts", "x"], "{before}");
+            assert_eq!(columns.maybe("time_s").expect("numbers"), Some(vec![0.1, 0.2, 0.3, 0.4]), "{before}");
+            assert_eq!(columns.told().len(), told.len(), "{:?}", columns.told());
+            assert!(columns.told().iter().zip(told).all(|(told, word)| told.starts_with(word)), "{:?}", columns.told());
+        }
+        let words = columns("Drive\ntime_s,mode,x\n0.1,idle,6\n0.2,run,7\n").expect("a table");
+        assert_eq!(words.maybe("x").expect("numbers"), Some(vec![6.0, 7.0]));
+        let tabs = columns("time_s\ta\tb\n0.1\t5\t\n0.2\t\t\n\t6\t7\n").expect("empty cells at both ends");
+        assert!(tabs.column("b").is_some_and(|b| b[0].is_nan() && b[1].is_nan() && b[2] == 7.0));
+    }
+
+    #[test]
+    fn rows_without_a_needed_value_are_left_out_and_text_in_a_cell_is_refused() {
+        let mut columns = columns("time_s,motor_counts,x\n0.1,5,\n0.2,,7\n0.3,8,none\n").expect("a table");
+        columns.leave_out_incomplete(&[&["time_s"], &["motor_counts"], &["output_counts"]]).expect("some are whole");
+        assert_eq!(columns.maybe("motor_counts").expect("numbers"), Some(vec![5.0, 8.0]));
+        assert!(
+            columns.told()[0].contains("1 of 3 rows") && columns.told()[0].contains("`motor_counts` is empty in 1")
+        );
+        let refused =
+            columns.leave_out_incomplete(&[&["x"]]).and_then(|()| columns.maybe("x").map(drop)).expect_err("a word");
+        assert!(refused.message().contains("line 4 has no finite number"), "{refused}");
     }
 
     #[test]

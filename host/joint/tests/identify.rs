@@ -364,9 +364,14 @@ fn logs_that_cannot_tell_are_refused_by_name() {
     log(&|row, cells| cells[3] = (if row < 1500 { "1" } else { "-1" }).into())
         .refused(&["too few crossings", "1 times"]);
     once(700, 0, "0.04").refused(&["the time does not rise", "line 702"]);
-    once(40, 3, "NaN").refused(&["line 42", "no finite number", "motor_torque_N_m"]);
-    once(40, 1, "90000").refused(&["motor_counts", "jumps", "line 42"]);
-    once(40, 2, "1.5").refused(&["output_counts", "no whole number", "line 42"]);
+    once(40, 3, "inf").refused(&["line 42", "no finite number", "motor_torque_N_m"]);
+    log(&|row, cells| {
+        if row >= 40 {
+            cells[1] = (90_000 + row * 12).to_string();
+        }
+    })
+    .refused(&["motor_counts", "jumps", "line 42", "do not go on from where they were"]);
+    once(40, 2, "640.5").refused(&["output_counts", "no whole number", "line 42"]);
     log(&|_, cells| cells[1] = "5".into()).refused(&["the motor does not move", "0.0 counts"]);
     log(&|row, cells| cells[2] = (row * 14).to_string()).refused(&["do not turn together", "--output-bits"]);
     log(&|row, cells| {

@@ -277,6 +277,69 @@ fn a_log_of_ten_hertz_tells_width_and_friction_by_direction() {
 }
 
 #[test]
+fn passes_that_repeat_exactly_have_intervals_as_wide_as_readings_resolve() {
+    let exact = Sweeps { scatter: [0.0; 2], rate: 50.0, loads: [0.0; 2], width: [9.4, 0.0], ..SWEEPS };
+    let mut log = "time_s,output_counts,motor_counts,motor_torque_N_m\n".to_owned();
+    for one in exact.record() {
+        let torque = (one.way * 0.333 * 20.0).round() / 20.0;
+        writeln!(log, "{},{},{},{torque}", one.time, (one.output / 4.0).round(), (one.motor / 4.0).round())
+            .expect("a string");
+    }
+    let record = findings(&log, &["--quasi-static"]);
+    let resolution = 2.0;
+    let (_, [low, high]) = found(&record, "width_by_direction_median");
+    assert!(high - low >= 2.0 * resolution && (low..=high).contains(&(9.4 / 4.0)), "{low} to {high}");
+    let (_, [low, high]) = found(&record, "motor_torque_dry_friction");
+    assert!((low..=high).contains(&0.333), "{low} to {high}");
+    let width = &record["width_over_place"];
+    let ends = width["low"].as_array().expect("a list").iter().zip(width["high"].as_array().expect("a list"));
+    for (low, high) in ends {
+        assert!(high.as_f64().expect("a number") - low.as_f64().expect("a number") >= 1.999 * resolution);
+    }
+}
+
+#[test]
+fn counts_in_a_register_of_several_turns_are_joined_and_a_lost_reading_left_out() {
+    let sweeps = Sweeps { loads: [0.0; 2], rate: 50.0, ..SWEEPS };
+    let log = |read: &dyn Fn(f64) -> f64, bad: usize| {
+        let mut log = "time_s,output_counts,motor_counts\n".to_owned();
+        for (row, one) in sweeps.record().iter().enumerate() {
+            let motor = if row == bad { 7.0 } else { read((60.0 * one.motor).round()) };
+            writeln!(log, "{},{},{motor}", one.time, (10.0 * one.output).round()).expect("a string");
+        }
+        log
+    };
+    let turns =
+        ["--quasi-static", "--gear-ratio", "6", "--output-units-per-turn", "16384", "--motor-units-per-turn", "16384"];
+    let plain = findings(&log(&|count| count, usize::MAX), &turns);
+    let register = findings(&log(&|count| count.rem_euclid(65536.0), usize::MAX), &turns);
+    assert_eq!(plain["quantities"], register["quantities"]);
+    assert!(register["assumptions"].to_string().contains("begins anew after 65536"), "{}", register["assumptions"]);
+    let spoiled = findings(&log(&|count| count.rem_euclid(65536.0), 700), &turns);
+    assert!(spoiled["assumptions"].to_string().contains("1 of 5100"), "{}", spoiled["assumptions"]);
+    near(&spoiled, "width_by_direction_median", found(&plain, "width_by_direction_median").0, 0.01);
+}
+
+#[test]
+fn no_option_that_is_stated_is_asked_for_again() {
+    let folder = folder();
+    let sweeps = Sweeps { loads: [0.0; 2], rate: 100.0, ..SWEEPS };
+    let wrapped: String = std::iter::once("time_s,output_counts,motor_counts\n".to_owned())
+        .chain(
+            sweeps.record().iter().map(|one| format!("{},{},{}\n", one.time, one.output.rem_euclid(700.0), one.motor)),
+        )
+        .collect();
+    let said = identify(folder.path(), &wrapped, &["--quasi-static", "--output-units-per-turn", "1500"]);
+    assert!(said.err.contains("another number than the 1500 that --output-units-per-turn states"), "{}", said.err);
+    let geared = with_torque(&sweeps, ",", |one| one.way);
+    let all =
+        ["--quasi-static", "--gear-ratio", "9", "--output-units-per-turn", "16384", "--motor-units-per-turn", "8192"];
+    let said = identify(folder.path(), &geared, &all);
+    assert!(said.err.contains("one of the options that are stated is wrong"), "{}", said.err);
+    assert!(!said.err.contains("state --"), "{}", said.err);
+}
+
+#[test]
 fn a_ratio_that_is_two_percent_off_is_refused_and_the_right_one_named() {
     let folder = folder();
     let straight = |one: Sample| Sample { motor: one.motor + map(one.output), ..one };

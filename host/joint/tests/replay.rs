@@ -169,6 +169,20 @@ fn any_log_is_shown_to_the_observer_of_a_joint() {
 }
 
 #[test]
+fn a_control_rate_that_no_observer_has_is_not_recommended() {
+    let folder = TempDir::new().expect("a folder");
+    let log = folder.path().join("log.csv");
+    let rows = (0..100).map(|row| format!("{},{row},{row},0\n", 2e-3 * f64::from(row)));
+    fs::write(&log, "time_s,motor_counts,output_counts,motor_torque_N_m\n".to_owned() + &rows.collect::<String>())
+        .expect("room");
+    let refused = joint(&["replay", text(&log), "q1"]);
+    assert_eq!(refused.code, Some(2));
+    assert!(refused.err.contains("its rows come at 500 Hz"), "{}", refused.err);
+    assert!(refused.err.contains("must be from 1000 to 100000 Hz"), "{}", refused.err);
+    assert!(!refused.err.contains("control_rate_Hz=500"), "{}", refused.err);
+}
+
+#[test]
 fn rows_that_are_no_control_periods_are_refused_with_the_key_of_the_rate() {
     let folder = TempDir::new().expect("a folder");
     let log = folder.path().join("log.csv");

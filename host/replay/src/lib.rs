@@ -76,13 +76,11 @@ pub fn run(arguments: &ReplayArguments, progress: &Progress) -> Outcome<String> 
     let origin = ObserverOrigin::of(&remarks).filter(|_| arguments.asks_for_the_run());
     let loaded = load(arguments, origin.as_ref(), remarks.get(samples::RUN))?;
     let settings = settings(&loaded, origin.as_ref(), arguments.motor_only);
-    let tables = design_observer::<f32>(&loaded.file.parameters, &settings).map_err(|error| {
-        Failure::new(format!("no observer can be designed for joint `{}`: {error}", loaded.file.parameters.name))
-    })?;
+    let tables = design(&loaded, &settings)?;
     let in_the_file = |failure: Failure| failure.while_doing(path.display());
     let start = Start { tables, memory: origin.as_ref().and_then(|origin| origin.memory) };
     let topic = origin.as_ref().map(|_| controller_log::TOPIC).or(arguments.topic.as_deref());
-    let samples = ReplaySamples::read(&file, topic, &map, &loaded, &settings)?;
+    let samples = ReplaySamples::read(&file, topic, &map, &loaded, &settings, &|rate| at_rate(arguments, rate).err())?;
     let recorded = match &origin {
         Some(_) => Some(Recorded::read(&file).map_err(in_the_file)?),
         None => None,
@@ -157,6 +155,20 @@ fn load(arguments: &ReplayArguments, origin: Option<&ObserverOrigin>, controller
     let loaded = named::load_with(joint, &arguments.set)?;
     warned::tell(&loaded);
     Ok(loaded)
+}
+
+fn design(loaded: &Loaded, settings: &ObserverSettings) -> Outcome<ObserverTables<f32>> {
+    let joint = &loaded.file.parameters;
+    design_observer::<f32>(joint, settings)
+        .map_err(|error| Failure::new(format!("no observer can be designed for joint `{}`: {error}", joint.name)))
+}
+
+/// Designs the observer of the joint file at another control rate.
+fn at_rate(arguments: &ReplayArguments, rate: f64) -> Outcome<ObserverTables<f32>> {
+    let joint = arguments.joint.as_deref().ok_or_else(|| Failure::new("the rate of a run is that of its log"))?;
+    let changes: Vec<String> = arguments.set.iter().cloned().chain([format!("control_rate_Hz={rate:.0}")]).collect();
+    let loaded = named::load_with(joint, &changes)?;
+    design(&loaded, &settings(&loaded, None, arguments.motor_only))
 }
 
 fn settings(loaded: &Loaded, origin: Option<&ObserverOrigin>, motor_only: bool) -> ObserverSettings {

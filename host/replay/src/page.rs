@@ -75,6 +75,7 @@ fn standing(record: &ReplayRecord) -> Vec<Block> {
     if record.counts_from_angles {
         rows.push(("counts".into(), "from angles, by the resolution of the joint file's encoders".into()));
     }
+    rows.extend(record.log_notes.iter().map(|note| ("log".into(), note.as_str().into())));
     for (notice, count) in &record.notices {
         rows.push((format!("control periods with {notice}").into(), number(*count as f64)));
     }

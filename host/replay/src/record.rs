@@ -33,6 +33,8 @@ pub struct ReplayRecord {
     pub duration_s: f64,
     /// Angles were taken for counts of the joint file's encoders.
     pub counts_from_angles: bool,
+    /// What was done to the rows of the log, a sentence each.
+    pub log_notes: Vec<String>,
     /// Whether the estimates are those of the run that wrote the log; absent for any other log.
     pub repeats: Option<Repeats>,
     /// Share of the time in which both encoders were trusted [%].
@@ -114,6 +116,7 @@ impl ReplayRecord {
             control_rate: 1.0 / samples.period,
             duration_s: samples.time.last().copied().unwrap_or_default(),
             counts_from_angles: samples.from_angles,
+            log_notes: samples.told.clone(),
             repeats,
             both_encoders_percent: percent(pass.both),
             gap_valid_percent: percent(pass.gap_valid),

@@ -9,8 +9,9 @@ use scenario::controller_log::{OUTPUT_READ, SAMPLES, SHOWN_TORQUE};
 
 use board::profile::MAX_TORQUE;
 use identify::column_map::ColumnMap;
-use identify::columns::Columns;
+use identify::columns::{Columns, MOTOR, OUTPUT, TIMES};
 use identify::log_file::LogFile;
+use identify::time_stamps;
 use joint_file::named::Loaded;
 use model_core::gears::Kinematics;
 use report::failure::{Failure, Outcome};
@@ -32,33 +33,36 @@ pub struct ReplaySamples {
     pub period: f64,
     /// Whether angles were taken for the counts of the joint file's encoders.
     pub from_angles: bool,
+    /// What was done to the rows of the file, a sentence each.
+    pub told: Vec<String>,
     /// Asked of the motor from each row on [N m].
     pub torque: Vec<f64>,
     samples: Vec<Samples<f32>>,
 }
 
 impl ReplaySamples {
-    /// Reads a log.
+    /// Reads a log; `refuses` says why there is no observer of the joint at another control rate.
     pub fn read(
         file: &LogFile,
         topic: Option<&str>,
         map: &ColumnMap,
         loaded: &Loaded,
         settings: &ObserverSettings,
+        refuses: &dyn Fn(f64) -> Option<Failure>,
     ) -> Outcome<Self> {
         let period = 1.0 / f64::from(settings.control_rate);
         let motor_only = settings.output_encoder.is_none();
         let will_do = |columns: &Columns| columns.will_do_with(!motor_only);
-        let columns = file.columns(topic, map, loaded.file.parameters.geometry.ratio_by_teeth(), will_do)?;
+        let mut columns = file.columns(topic, map, loaded.file.parameters.geometry.ratio_by_teeth(), will_do)?;
         let read = if columns.names().any(|name| name == SAMPLES[0]) {
             Self::of_run(&columns, period)
         } else if let Some(controller) = file.remarks().get(RUN) {
             Err(without_counts(controller))
         } else {
-            Self::of_any(&columns, settings, period)
+            Self::of_any(&mut columns, settings, period)
         };
-        let read = read.and_then(|read| read.at_the_control_rate(settings));
-        read.map_err(|failure| failure.while_doing(file.path().display()))
+        let read = read.and_then(|read| read.at_the_control_rate(settings, refuses));
+        read.map_err(|failure| columns.explain(failure).while_doing(file.path().display()))
     }
 
     /// Just what a controller got.
@@ -84,11 +88,22 @@ impl ReplaySamples {
             torque: shown[row] as f32,
         };
         let samples = (0..now.len()).map(sample);
-        Ok(Self { time: columns.time()?, period, from_angles: false, torque, samples: samples.collect() })
+        Ok(Self {
+            time: columns.time()?,
+            period,
+            from_angles: false,
+            torque,
+            samples: samples.collect(),
+            told: Vec::new(),
+        })
     }
 
     /// Rows of any log, each a control period.
-    fn of_any(columns: &Columns, settings: &ObserverSettings, period: f64) -> Outcome<Self> {
+    fn of_any(columns: &mut Columns, settings: &ObserverSettings, period: f64) -> Outcome<Self> {
+        let output: &[&str] = if settings.output_encoder.is_some() { &OUTPUT } else { &[] };
+        columns.leave_out_incomplete(&[&TIMES, &MOTOR, output, &["motor_torque_N_m"]])?;
+        time_stamps::resolve(columns)?;
+        let columns = &*columns;
         let mut time = columns.time()?;
         let start = time.first().copied().unwrap_or_default();
         time.iter_mut().for_each(|time| *time -= start);
@@ -115,7 +130,7 @@ impl ReplaySamples {
             }
         };
         let samples = (0..time.len()).map(sample).collect();
-        let read = Self { period, from_angles, samples, torque, time };
+        let read = Self { period, from_angles, samples, torque, time, told: columns.told().to_vec() };
         if let Some(row) = read.time.windows(2).position(|pair| pair[1] <= pair[0]) {
             return Err(Failure::new(format!("the time does not rise in {}", columns.place(row + 1)))
                 .with_help("samples must be in the order in which they were taken, each with its own time"));
@@ -124,7 +139,11 @@ impl ReplaySamples {
     }
 
     /// Refuses rows that are no control periods.
-    fn at_the_control_rate(self, settings: &ObserverSettings) -> Outcome<Self> {
+    fn at_the_control_rate(
+        self,
+        settings: &ObserverSettings,
+        refuses: &dyn Fn(f64) -> Option<Failure>,
+    ) -> Outcome<Self> {
         let mut steps: Vec<f64> = self.time.windows(2).map(|pair| pair[1] - pair[0]).collect();
         steps.sort_by(f64::total_cmp);
         let Some(usual) = steps.get(steps.len() / 2) else {
@@ -137,9 +156,16 @@ impl ReplaySamples {
                 "its rows come at {rate:.0} Hz, the control periods of this joint at {} Hz",
                 settings.control_rate
             );
-            return Err(Failure::new(message).with_help(format!(
-                "log every control period; if the controller runs at that rate, add --set control_rate_Hz={rate:.0}"
-            )));
+            return Err(Failure::new(message).with_help(match refuses(rate.round()) {
+                None => {
+                    format!("log every control period; if the controller runs at that rate, add --set control_rate_Hz={rate:.0}")
+                }
+                Some(why) => format!(
+                    "log every control period: an observer at the rate of these rows is refused ({}); of a slow log `joint identify \
+                     --quasi-static` finds lost motion and friction",
+                    why.message()
+                ),
+            }));
         }
         Ok(self)
     }

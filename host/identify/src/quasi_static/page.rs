@@ -97,7 +97,7 @@ fn assumptions(samples: &Samples, results: &Results) -> Vec<String> {
     let Results { scale, profiles, left_out, loading, .. } = results;
     let number = |value: f64| ESTIMATE.write(value);
     let (unit, count) = (scale.unit, profiles.all.len());
-    vec![
+    let mut all = vec![
         loading.in_words().to_owned(),
         match scale.per_turn {
             Some(turn) if unit == "units" => format!("A turn of the output is {} units, as told.", number(turn)),
@@ -123,7 +123,13 @@ fn assumptions(samples: &Samples, results: &Results) -> Vec<String> {
             number(1e3 * samples.gaps.1)
         ),
         "Intervals take passes for independent repeats; what all passes share is not in them.".to_owned(),
-    ]
+        format!(
+            "Readings of both encoders together resolve {} {unit}: half of an interval is no less.",
+            number(samples.resolution)
+        ),
+    ];
+    all.extend(samples.told.iter().cloned());
+    all
 }
 
 /// The page, with pictures in their order.

@@ -75,6 +75,8 @@ pub fn passes(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<(Vec<Pass>, f
         ))
         .with_help("sweep more slowly, or log more often")),
         Some(_) => Ok((passes, left_out)),
+        None if halves.is_empty() => Err(Failure::new("no pass is left between turning points and gaps")
+            .with_help("sweep over the whole way between two gaps of the log, or record without gaps")),
         None => Err(Failure::new("no pass is left between turning points, gaps and the ends of the halves")
             .with_help("let --half FROM..TO hold whole sweeps; times are counted from the first sample")),
     }

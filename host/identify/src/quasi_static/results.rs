@@ -8,7 +8,7 @@ use super::map::Map;
 use super::passes::passes;
 use super::prediction::Prediction;
 use super::profiles::{Profile, Profiles, check_count};
-use super::samples::{Samples, Scale};
+use super::samples::{Samples, Scale, resolution};
 use super::statistics::{mean, quantile_of, rms, student};
 use crate::estimate::Estimate;
 use report::failure::{Failure, Outcome};
@@ -52,9 +52,10 @@ pub struct Curve {
 }
 
 impl Curve {
-    fn of(estimates: Vec<Estimate>) -> Self {
+    /// Half of an interval is `least` or more.
+    fn of(estimates: Vec<Estimate>, least: f64) -> Self {
         let mut curve = Self::default();
-        for Estimate { value, half } in estimates {
+        for Estimate { value, half } in estimates.into_iter().map(|one| one.at_least(least)) {
             curve.value.push(value);
             curve.low.push(value - half);
             curve.high.push(value + half);
@@ -123,8 +124,9 @@ impl Results {
                 mean(&(0..places).map(|place| means[2 * load + 1][place] - means[2 * load][place]).collect::<Vec<_>>())
             })
         };
-        let shares = [0.5, 0.1, 0.9].map(share);
-        let loops: Vec<Estimate> = (0..loading.groups() / 2).map(hysteresis).collect();
+        let shares = [0.5, 0.1, 0.9].map(share).map(|one| one.at_least(samples.resolution));
+        let loops = (0..loading.groups() / 2).map(hysteresis).map(|one| one.at_least(samples.resolution));
+        let loops: Vec<Estimate> = loops.collect();
         let largest = loops.iter().map(|one| one.value.abs()).fold(shares[0].value.abs(), f64::max);
         let step = profiles.speed() * samples.period;
         if halves.is_empty() && loading.groups() == 2 {
@@ -141,7 +143,7 @@ impl Results {
                 "sweep more slowly, or log more often: encoders that are read at different moments would feign such a width",
             ));
         }
-        let mut found = Found { scale: samples.scale, all: Vec::new() };
+        let mut found = Found { scale: samples.scale, resolution: samples.resolution, all: Vec::new() };
         let heights = if sign < 0.0 { "first" } else { "second" };
         let ranges: Vec<[f64; 2]> = (0..loops.len())
             .map(|load| {
@@ -153,22 +155,23 @@ impl Results {
         found.widths(loading, &shares, (&loops, &ranges), 2.0 * step, heights);
         found.map(&curves, &profiles);
         let levels = found.repeatability(&curves, &profiles, &|one| loading.group(one), loading);
-        for (key, name, torque) in [
-            ("motor", "motor torque", of_groups(&|one| one.motor_torque.clone())),
-            ("output", "output torque", of_groups(&|one| one.output_torque.clone())),
+        for (key, name, torque, readings) in [
+            ("motor", "motor torque", of_groups(&|one| one.motor_torque.clone()), &samples.motor_torque),
+            ("output", "output torque", of_groups(&|one| one.output_torque.clone()), &samples.output_torque),
         ] {
-            if let Some(torque) = torque {
-                found.friction(key, name, &torque, loading);
+            if let Some((torque, readings)) = torque.zip(readings.as_deref()) {
+                found.friction(key, name, &torque, loading, resolution(readings));
             }
         }
         let hysteresis = (0..loading.groups() / 2).filter(|_| loading.groups() == 4).map(|load| {
-            Curve::of(curves.estimates(|means, place| means[2 * load + 1][place] - means[2 * load][place]))
+            let loops = curves.estimates(|means, place| means[2 * load + 1][place] - means[2 * load][place]);
+            Curve::of(loops, samples.resolution)
         });
         Ok(Self {
             loading,
             scale: samples.scale,
             left_out,
-            width: Curve::of(curves.estimates(|means, place| sign * apart(means, place))),
+            width: Curve::of(curves.estimates(|means, place| sign * apart(means, place)), samples.resolution),
             hysteresis: hysteresis.collect(),
             map: Map::of(&profiles.places, &groups),
             prediction: Prediction::of(&curves),
@@ -206,6 +209,8 @@ fn ends(Estimate { value, half }: Estimate) -> Option<[f64; 2]> {
 /// Figures as they come.
 struct Found {
     scale: Scale,
+    /// Least half of an interval of an angle [units of the output].
+    resolution: f64,
     all: Vec<Quantity>,
 }
 
@@ -213,7 +218,7 @@ impl Found {
     /// A figure in the unit of the output.
     fn angle(&mut self, key: impl Into<String>, name: impl Into<String>, estimate: Estimate, note: impl Into<String>) {
         let degrees = self.scale.degrees();
-        let interval = ends(estimate);
+        let interval = ends(estimate.at_least(self.resolution));
         self.all.push(Quantity {
             key: key.into(),
             name: name.into(),
@@ -312,7 +317,7 @@ impl Found {
             "output_per_motor".into(),
             "output for each 1 of the motor".into(),
             "",
-            scale,
+            scale.at_least(self.resolution / (profiles.width * places.len() as f64)),
             "slope of the error map; 1 as stated",
         );
         let long = curves.estimate(|means| of(means).long_wave_range());
@@ -405,11 +410,15 @@ impl Found {
         let half = student(freedom) * (left / freedom / square).sqrt();
         let unit = format!("{}/s", self.scale.unit);
         let note = "of the passes' means about their group's; a width between halves has it over the time between them";
-        self.other("drift".into(), "drift".into(), &unit, Estimate { value: slope, half }, note);
+        let times = levels.iter().map(|level| level.1);
+        let duration = times.clone().fold(f64::MIN, f64::max) - times.fold(f64::MAX, f64::min);
+        let drift = Estimate { value: slope, half }.at_least(self.resolution / duration);
+        self.other("drift".into(), "drift".into(), &unit, drift, note);
         levels.into_iter().map(|(_, time, level)| (time, level)).collect()
     }
 
-    fn friction(&mut self, key: &str, name: &str, torque: &Curves, loading: Loading) {
+    /// `least` is the least half of an interval [N m].
+    fn friction(&mut self, key: &str, name: &str, torque: &Curves, loading: Loading, least: f64) {
         let at = |means: &[Vec<f64>], group: usize| Profile::mean(&means[group]);
         for (load, which) in loading.names().iter().enumerate() {
             let which = if loading.groups() == 4 { format!(", {which}") } else { String::new() };
@@ -435,7 +444,7 @@ impl Found {
                     format!("{key}_torque_{own}{index}"),
                     format!("{name}, {label}{which}"),
                     "N m",
-                    estimate,
+                    estimate.at_least(least),
                     note,
                 );
             }

@@ -5,9 +5,11 @@ use std::f64::consts::TAU;
 
 use super::options::Options;
 use super::statistics::quantile;
-use crate::columns::{Columns, DIFFERENCE, KNOWN};
+use crate::bad_readings;
+use crate::columns::{Columns, DIFFERENCE, KNOWN, MOTOR, OUTPUT, TIMES};
+use crate::register::Register;
 use report::failure::{Failure, Outcome};
-use report::number::ESTIMATE;
+use report::number::{ESTIMATE, TYPED};
 
 /// Fewer samples hold no passes.
 const LEAST_SAMPLES: usize = 96;
@@ -17,6 +19,8 @@ pub const GAP: f64 = 10.0;
 const JUMP_SHARE: f64 = 0.2;
 /// Output for each 1 of the motor, both on one scale.
 const AS_STATED: std::ops::RangeInclusive<f64> = 0.9..=1.1;
+/// Differences that are less than this share of the range are rounding.
+const ROUNDING: f64 = 1e-9;
 /// Below this correlation the output does not follow the motor.
 const FOLLOWS: f64 = 0.8;
 
@@ -37,6 +41,10 @@ pub struct Samples {
     pub output_torque: Option<Vec<f64>>,
     /// What the output is read in.
     pub scale: Scale,
+    /// Least steps of both encoders' readings together, on the output's scale [units of the output].
+    pub resolution: f64,
+    /// What was done to the rows of the file, a sentence each.
+    pub told: Vec<String>,
     /// Usual time from one sample to the next [s].
     pub period: f64,
     /// From the 5 to the 95 % quantile of that time [s].
@@ -70,7 +78,18 @@ struct Angles {
 
 impl Samples {
     /// Out of columns with known names.
-    pub fn of(columns: &Columns, options: &Options) -> Outcome<Self> {
+    pub fn of(columns: &mut Columns, options: &Options) -> Outcome<Self> {
+        let motor_names: &[&str] = if columns.column(DIFFERENCE).is_some() { &[DIFFERENCE] } else { &MOTOR };
+        columns.leave_out_incomplete(&[&TIMES, motor_names, &OUTPUT, &["motor_torque_N_m"], &["output_torque_N_m"]])?;
+        let stated = [(motor_names, options.motor_units_per_turn), (&OUTPUT, options.output_units_per_turn)];
+        for (names, per_turn) in stated {
+            let Some(name) = columns.name_of(names).map(str::to_owned) else { continue };
+            let counts = names == [DIFFERENCE] || columns.first_of(&names[..1])?.is_some();
+            let per_turn = if names == [DIFFERENCE] { options.output_units_per_turn } else { per_turn };
+            let turn = if counts { per_turn } else { Some(TAU) };
+            let count = columns.column(&name).map_or(0.0, resolution);
+            bad_readings::leave_out(columns, &name, count, turn)?;
+        }
         let mut time = columns.time()?;
         if time.len() < LEAST_SAMPLES {
             return Err(Failure::new(format!("there are only {} samples, {LEAST_SAMPLES} are the least", time.len()))
@@ -92,17 +111,21 @@ impl Samples {
         }
         let gaps = steps.iter().filter(|step| **step > GAP * period).count();
         let longest = steps[steps.len() - 1];
-        let output = angles(columns, ["output_counts", "output_angle_rad"], options.output_units_per_turn, "output")?
+        let output = angles(columns, OUTPUT, options.output_units_per_turn, "output")?
             .ok_or_else(|| columns.without_encoder("output"))?;
         let Angles { values: mut output, scale } = output;
-        unwrap(&mut output, scale);
-        let motor = motor(columns, options, scale, &output)?;
+        let resolutions = [columns.name_of(&OUTPUT), columns.name_of(motor_names)]
+            .map(|name| name.and_then(|name| columns.column(name)).map_or(0.0, resolution));
+        unwrap(&mut output, scale, OUTPUT[0], columns);
+        let (motor, factor) = motor(columns, options, scale, &output)?;
         for (name, values) in [("output", &output), ("motor", &motor)] {
-            check_jumps(name, values, &time, period, columns)?;
+            check_jumps(name, values, &time, period, columns, options)?;
         }
         let difference = output.iter().zip(&motor).map(|(output, motor)| output - motor).collect();
         let samples = Self {
             difference,
+            resolution: resolutions[0] + factor.abs() * resolutions[1],
+            told: columns.told().to_vec(),
             motor_torque: torque(columns, "motor_torque_N_m", options.gear_ratio.unwrap_or(1.0).signum())?,
             output_torque: torque(columns, "output_torque_N_m", 1.0)?,
             scale,
@@ -113,7 +136,7 @@ impl Samples {
             output,
             motor,
         };
-        samples.check_scale(options)?;
+        samples.check_scale(options, columns)?;
         Ok(samples)
     }
 
@@ -123,7 +146,7 @@ impl Samples {
     }
 
     /// Refuses encoders that are not in one unit after gear ratio and units.
-    fn check_scale(&self, options: &Options) -> Outcome<()> {
+    fn check_scale(&self, options: &Options, columns: &Columns) -> Outcome<()> {
         let count = self.motor.len() as f64;
         let mean = |values: &[f64]| values.iter().sum::<f64>() / count;
         let [of_motor, of_output] = [mean(&self.motor), mean(&self.output)];
@@ -144,9 +167,10 @@ impl Samples {
             return Err(Failure::new(format!(
                 "the output does not follow the motor: their readings correlate by {correlation:.2}"
             ))
-            .with_help(
-                "check --column; counts that begin anew each turn need --output-units-per-turn and --motor-units-per-turn",
-            ));
+            .with_help(match open_options(options, columns, false)[..] {
+                [] => "check --column, and whether both encoders are of one joint".to_owned(),
+                ref open => format!("check --column; counts that begin anew each turn need {}", open.join(" and ")),
+            }));
         }
         if AS_STATED.contains(&slope) {
             return Ok(());
@@ -155,13 +179,34 @@ impl Samples {
             "output and motor are not in one unit: the output moves by {} for each 1 of the motor over its gear ratio",
             ESTIMATE.write(slope)
         );
-        let ratio = options.gear_ratio.unwrap_or(1.0) / slope;
-        Err(Failure::new(message).with_help(format!(
-            "state --gear-ratio, --output-units-per-turn and --motor-units-per-turn; with the units as they are, the gear \
-             ratio would have to be {}",
-            ESTIMATE.write(ratio)
-        )))
+        if columns.column(DIFFERENCE).is_some() {
+            return Err(Failure::new(message).with_help(format!(
+                "`{DIFFERENCE}` is in another unit than the output, or of a motor that is not on the output's scale: convert it"
+            )));
+        }
+        let ratio = ESTIMATE.write(options.gear_ratio.unwrap_or(1.0) / slope);
+        Err(Failure::new(message).with_help(match open_options(options, columns, true)[..] {
+            [] => format!("one of the options that are stated is wrong: with the units as stated, the gear ratio would have to be {ratio}"),
+            ref open => format!(
+                "state {}; with the units as they are, the gear ratio would have to be {ratio}",
+                open.join(" and ")
+            ),
+        }))
     }
+}
+
+/// Options on the scale of the encoders that are not stated and have an effect.
+fn open_options(options: &Options, columns: &Columns, ratio: bool) -> Vec<&'static str> {
+    let is_difference = columns.column(DIFFERENCE).is_some();
+    let counts = |names: [&str; 2]| is_there(columns, names[0]);
+    [
+        ("--gear-ratio", ratio && !is_difference && options.gear_ratio.is_none()),
+        ("--output-units-per-turn", counts(OUTPUT) && options.output_units_per_turn.is_none()),
+        ("--motor-units-per-turn", !is_difference && counts(MOTOR) && options.motor_units_per_turn.is_none()),
+    ]
+    .into_iter()
+    .filter_map(|(option, open)| open.then_some(option))
+    .collect()
 }
 
 /// A torque if it is there, positive when it drives the output forwards.
@@ -200,8 +245,8 @@ fn angles(columns: &Columns, names: [&str; 2], per_turn: Option<f64>, whose: &st
     Ok(Some(Angles { values, scale: Scale { unit: "rad", per_turn: Some(TAU) } }))
 }
 
-/// The motor on the output's scale, from its own column or from the difference.
-fn motor(columns: &Columns, options: &Options, scale: Scale, output: &[f64]) -> Outcome<Vec<f64>> {
+/// The motor on the output's scale, from its own column or from the difference, and what one unit of that column is on this scale.
+fn motor(columns: &mut Columns, options: &Options, scale: Scale, output: &[f64]) -> Outcome<(Vec<f64>, f64)> {
     if let Some(mut difference) = columns.maybe(DIFFERENCE)? {
         let stated = [("--gear-ratio", options.gear_ratio), ("--motor-units-per-turn", options.motor_units_per_turn)];
         if let Some((option, _)) = stated.iter().find(|(_, value)| value.is_some()) {
@@ -211,12 +256,12 @@ fn motor(columns: &Columns, options: &Options, scale: Scale, output: &[f64]) -> 
             .with_help("leave the option out, or give the motor's own column"));
         }
         step_over_turns(&mut difference, scale);
-        return Ok(output.iter().zip(&difference).map(|(output, difference)| output - difference).collect());
+        return Ok((output.iter().zip(&difference).map(|(output, difference)| output - difference).collect(), 1.0));
     }
-    let motor = angles(columns, ["motor_counts", "motor_angle_rad"], options.motor_units_per_turn, "motor")?;
+    let motor = angles(columns, MOTOR, options.motor_units_per_turn, "motor")?;
     let Angles { mut values, scale: own } = motor.ok_or_else(|| columns.without_encoder("motor"))?;
     let ratio = options.gear_ratio.unwrap_or(1.0);
-    unwrap(&mut values, own);
+    unwrap(&mut values, own, MOTOR[0], columns);
     let factor = match (scale.per_turn, own.per_turn) {
         (Some(output), Some(motor)) => output / motor,
         // Both in counts of one size.
@@ -228,17 +273,31 @@ fn motor(columns: &Columns, options: &Options, scale: Scale, output: &[f64]) -> 
         }
     };
     values.iter_mut().for_each(|value| *value *= factor / ratio);
-    Ok(values)
+    Ok((values, factor / ratio))
 }
 
-/// Counts that begin anew every turn are taken for continuous ones.
-fn unwrap(values: &mut [f64], scale: Scale) {
-    let Some(turn) = scale.per_turn else { return };
+/// Joins counts that begin anew every turn, or in a register that is wider.
+fn unwrap(values: &mut [f64], scale: Scale, name: &str, columns: &mut Columns) {
     let (least, most) =
         values.iter().fold((f64::MAX, f64::MIN), |(least, most), value| (least.min(*value), most.max(*value)));
-    if most - least <= turn * (1.0 + 1e-9) {
+    if scale.per_turn.is_some_and(|turn| most - least <= turn * (1.0 + 1e-9)) {
         step_over_turns(values, scale);
+    } else if let Some(register) = Register::of(values, scale.per_turn) {
+        register.join(values, |_| 1.0);
+        register.told(name, scale.per_turn).into_iter().for_each(|told| columns.tell(told));
     }
+}
+
+/// Least step of a column's values: 1 for whole numbers, else between different ones; zero for a column of one value.
+pub fn resolution(values: &[f64]) -> f64 {
+    if values.iter().all(|value| value.fract() == 0.0) {
+        return 1.0;
+    }
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let range = sorted.last().zip(sorted.first()).map_or(0.0, |(last, first)| last - first);
+    let steps = sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > ROUNDING * range);
+    steps.min_by(f64::total_cmp).unwrap_or_default()
 }
 
 fn step_over_turns(values: &mut [f64], scale: Scale) {
@@ -251,7 +310,14 @@ fn step_over_turns(values: &mut [f64], scale: Scale) {
     }
 }
 
-fn check_jumps(name: &str, values: &[f64], time: &[f64], period: f64, columns: &Columns) -> Outcome<()> {
+fn check_jumps(
+    name: &str,
+    values: &[f64],
+    time: &[f64],
+    period: f64,
+    columns: &Columns,
+    options: &Options,
+) -> Outcome<()> {
     let (least, most) =
         values.iter().fold((f64::MAX, f64::MIN), |(least, most), value| (least.min(*value), most.max(*value)));
     let limit = JUMP_SHARE * (most - least);
@@ -267,9 +333,29 @@ fn check_jumps(name: &str, values: &[f64], time: &[f64], period: f64, columns: &
         ESTIMATE.write(most - least)
     ))
     .with_help(format!(
-        "a reading was lost, the log is too slow for the motion, or counts begin anew each turn: then state \
-             --{name}-units-per-turn"
+        "a reading was lost, the log is too slow for the motion, or {}",
+        begins_anew(name, columns, options)
     )))
+}
+
+/// What else may be a jump, with the option that joins it where that is not stated.
+fn begins_anew(name: &str, columns: &Columns, options: &Options) -> String {
+    let of_output = name == "output" || columns.column(DIFFERENCE).is_some();
+    let (option, stated, names) = if of_output {
+        ("--output-units-per-turn", options.output_units_per_turn, OUTPUT)
+    } else {
+        ("--motor-units-per-turn", options.motor_units_per_turn, MOTOR)
+    };
+    match stated {
+        Some(turn) => {
+            format!("counts begin anew after another number than the {} that {option} states", TYPED.write(turn))
+        }
+        None if is_there(columns, names[0]) => format!("counts begin anew each turn: then state {option}"),
+        None => format!(
+            "an angle begins anew in another unit than rad: name it {} and state its unit by --unit",
+            names[1].trim_end_matches("_rad")
+        ),
+    }
 }
 
 #[cfg(test)]
@@ -281,10 +367,10 @@ mod tests {
         let scale = Scale { unit: "units", per_turn: Some(100.0) };
         let truth: Vec<f64> = (0..400).map(|step| 7.25 * f64::from(step)).collect();
         let mut read: Vec<f64> = truth.iter().map(|value| value.rem_euclid(100.0)).collect();
-        unwrap(&mut read, scale);
+        unwrap(&mut read, scale, "", &mut Columns::of("line"));
         assert!(read.iter().zip(&truth).all(|(read, truth)| (read - truth).abs() < 1e-9));
         let mut many_turns: Vec<f64> = truth.clone();
-        unwrap(&mut many_turns, scale);
+        unwrap(&mut many_turns, scale, "", &mut Columns::of("line"));
         assert_eq!(many_turns, truth);
     }
 }

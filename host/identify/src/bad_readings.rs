@@ -1,0 +1,150 @@
+//! Bad readings of an encoder: one or a few samples that jump away from the motion and come back to it, as a flipped bit or a
+//! frame that was lost gives them. No encoder moves so: the rows are left out, counted and told, and what is near them is not
+//! used, as with any lost sample. More than a share of the log is refused.
+
+use super::columns::Columns;
+use super::register::Register;
+use report::failure::{Failure, Outcome};
+
+/// Share of a log's rows that may be left out for bad readings of one encoder.
+pub const MOST: f64 = 0.01;
+/// Rows in a run that jumps away and comes back.
+const RUN: usize = 3;
+/// A reading jumps when it is off the motion by so many times the usual change of a step...
+const JUMP: f64 = 20.0;
+/// ... which this share of the changes stays below: each bad reading spoils three of them, so that up to 6 % are seen...
+const USUAL: f64 = 0.8;
+/// ... and by so many counts.
+const LEAST_COUNTS: f64 = 8.0;
+/// Rows that a refusal names.
+const NAMED: usize = 5;
+
+/// Leaves out rows with bad readings of the encoder in a column. `count` is its resolution, `turn` the size of a turn, if known.
+pub fn leave_out(columns: &mut Columns, name: &str, count: f64, turn: Option<f64>) -> Outcome<()> {
+    let Some(values) = columns.maybe(name)? else { return Ok(()) };
+    let bad = find(&values, Register::of(&values, turn).as_ref(), count);
+    if bad.is_empty() {
+        return Ok(());
+    }
+    let share = bad.len() as f64 / values.len() as f64;
+    let places: Vec<String> = bad.iter().take(NAMED).map(|row| columns.place(*row)).collect();
+    let more = if bad.len() > NAMED { ", ..." } else { "" };
+    let told = format!(
+        "{} of {} readings of `{name}` ({:.2} %) jump away from the motion and come back: {}{more}",
+        bad.len(),
+        values.len(),
+        100.0 * share,
+        places.join(", ")
+    );
+    if share > MOST {
+        return Err(Failure::new(told).with_help(format!(
+            "up to {:.0} % are left out; beyond, look for flipped bits or lost frames: the encoder's cable and supply, its parity \
+             or checksum, and whether the column is what `{name}` stands for",
+            100.0 * MOST
+        )));
+    }
+    let mut keep = vec![true; values.len()];
+    bad.iter().for_each(|row| keep[*row] = false);
+    columns.keep(&keep);
+    columns.tell(format!("{told}; left out."));
+    Ok(())
+}
+
+/// Rows whose readings jump away and come back.
+fn find(values: &[f64], register: Option<&Register>, count: f64) -> Vec<usize> {
+    let step = |from: usize, to: usize| {
+        let step = values[to] - values[from];
+        register.map_or(step, |register| register.shorter(step))
+    };
+    let change = |difference: f64| register.map_or(difference, |register| register.shorter(difference));
+    let mut changes: Vec<f64> =
+        (2..values.len()).map(|row| change(step(row - 1, row) - step(row - 2, row - 1)).abs()).collect();
+    changes.sort_by(f64::total_cmp);
+    let Some(usual) = changes.get((changes.len() as f64 * USUAL) as usize) else { return Vec::new() };
+    let jump = (JUMP * usual).max(LEAST_COUNTS * count);
+    let out = |row: usize| register.is_some_and(|register| !register.holds(values[row]));
+    // By how much a row is off what two rows before it make of it, and whether that is a jump.
+    let jumps = |[first, second]: [usize; 2], row: usize| {
+        let rate = step(first, second) / (second - first) as f64;
+        let ahead = (row - second) as f64;
+        out(row) || change(step(second, row) - rate * ahead).abs() > jump
+    };
+    // The first row that goes on evenly.
+    let even = |row: &usize| !out(*row) && !out(row + 1) && !jumps([*row, row + 1], row + 2);
+    let start = (0..=RUN.min(values.len() - 3)).find(even).unwrap_or_default();
+    let mut bad: Vec<usize> = (0..start).collect();
+    let mut good = [start, start + 1];
+    let mut row = start + 2;
+    while row < values.len() {
+        if !jumps(good, row) {
+            (good, row) = ([good[1], row], row + 1);
+            continue;
+        }
+        let back = |to: &usize| !jumps(good, *to) && (to + 1 == values.len() || !jumps([good[1], *to], to + 1));
+        match (row + 1..(row + RUN + 1).min(values.len())).find(back) {
+            Some(to) => {
+                bad.extend(row..to);
+                (good, row) = ([good[1], to], to + 1);
+            }
+            None if row + RUN >= values.len() => {
+                bad.extend(row..values.len());
+                break;
+            }
+            // It does not come back: the motion goes on from there, or the readings are refused as a whole.
+            None => (good, row) = ([row, (row + 1).min(values.len() - 1)], row + 2),
+        }
+    }
+    bad
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TURN: f64 = 16384.0;
+
+    /// A motion to and fro over turns, in a register of a turn or without one.
+    fn motion(wraps: bool) -> Vec<f64> {
+        let at = |row: i32| (30_000.0 * (f64::from(row) * 1e-2).sin()).round();
+        (0..3000).map(|row| if wraps { at(row).rem_euclid(TURN) } else { at(row) }).collect()
+    }
+
+    fn found(values: &[f64]) -> Vec<usize> {
+        find(values, Register::of(values, Some(TURN)).as_ref(), 1.0)
+    }
+
+    #[test]
+    fn readings_that_jump_and_come_back_are_found_wherever_they_stand() {
+        for wraps in [false, true] {
+            assert_eq!(found(&motion(wraps)), Vec::<usize>::new(), "{wraps}: nothing in a good log");
+            for (rows, by) in [
+                (&[500_usize][..], 8192.0),
+                (&[0], 4000.0),
+                (&[2999], 4000.0),
+                (&[700, 701, 702], -3000.0),
+                (&[100, 900, 901, 1800, 2998], 2048.0),
+            ] {
+                let mut values = motion(wraps);
+                rows.iter().for_each(|row| values[*row] += by);
+                assert_eq!(found(&values), rows, "{wraps}: {by}");
+            }
+            let mut zeros = motion(wraps);
+            (zeros[411], zeros[1200]) = (1e6, 1e6);
+            assert_eq!(found(&zeros), [411, 1200]);
+        }
+    }
+
+    #[test]
+    fn a_blow_a_slip_and_readings_that_are_repeated_are_no_bad_readings() {
+        for every in [2, 5, 10] {
+            let stale: Vec<f64> = (0..3000).map(|row| motion(false)[row / every * every]).collect();
+            assert_eq!(found(&stale), Vec::<usize>::new(), "{every}");
+        }
+        let blow: Vec<f64> =
+            (0..2000_i32).map(|row| f64::from(if row < 1000 { 90 * row } else { 180_000 - 90 * row })).collect();
+        assert_eq!(found(&blow), Vec::<usize>::new());
+        let mut slipped = motion(false);
+        slipped.iter_mut().skip(1500).for_each(|value| *value += 5000.0);
+        assert_eq!(found(&slipped), Vec::<usize>::new());
+    }
+}

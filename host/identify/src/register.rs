@@ -1,0 +1,129 @@
+//! Registers that an encoder counts in. A register of M counts begins anew after M: at a turn's end, or after several turns where it
+//! is wider than a turn. Its values are 0 to M - 1, or -M/2 to M/2 - 1 where they are signed. Steps between readings are known
+//! but for multiples of M: the shorter way round is taken.
+
+use std::ops::RangeInclusive;
+
+use report::number::{ESTIMATE, TYPED};
+
+/// Registers wider than a turn have a power of two of counts, from and up to these ones.
+const BITS: RangeInclusive<u32> = 10..=32;
+/// This share of a log's readings may lie outside of a register: as many bad readings are left out.
+const OUTSIDE: f64 = 0.01;
+/// Angles that are rounded may lie beyond a register's end by this share of it.
+const ROUNDED: f64 = 1e-6;
+/// A step of this share of a register that is wider than a turn is one across its end.
+const ACROSS: f64 = 0.75;
+
+/// Register of an encoder.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Register {
+    /// Counts after which it begins anew.
+    pub counts: f64,
+    /// Its least value is -counts/2 in place of 0.
+    pub signed: bool,
+}
+
+impl Register {
+    /// Finds the narrowest register that holds the readings and whose end they cross; nothing for readings that go on over turns.
+    /// A register has at least the counts of a turn, if a turn is known. Readings with fractions begin anew at a turn only.
+    pub fn of(values: &[f64], turn: Option<f64>) -> Option<Self> {
+        let whole = values.iter().all(|value| value.fract() == 0.0);
+        let powers = BITS.map(|bits| f64::from(bits).exp2());
+        let wider = powers.filter(|counts| whole && turn.is_none_or(|turn| *counts > turn));
+        let of_a_turn = turn.map(|turn| (turn, 0.5));
+        of_a_turn
+            .into_iter()
+            .chain(wider.map(|counts| (counts, ACROSS)))
+            .flat_map(|(counts, across)| [false, true].map(|signed| (Self { counts, signed }, across)))
+            .find(|(register, across)| register.holds_most(values) && register.is_crossed(values, *across))
+            .map(|(register, _)| register)
+    }
+
+    /// Whether it can have a value.
+    pub fn holds(&self, value: f64) -> bool {
+        let (least, rounded) = (if self.signed { -0.5 * self.counts } else { 0.0 }, ROUNDED * self.counts);
+        (least - rounded..least + self.counts + rounded).contains(&value)
+    }
+
+    fn holds_most(&self, values: &[f64]) -> bool {
+        let outside = values.iter().filter(|value| !self.holds(**value)).count();
+        outside as f64 <= OUTSIDE * values.len() as f64
+    }
+
+    /// Whether readings step across its end.
+    fn is_crossed(&self, values: &[f64], share: f64) -> bool {
+        values
+            .windows(2)
+            .any(|pair| self.holds(pair[0]) && self.holds(pair[1]) && (pair[1] - pair[0]).abs() > share * self.counts)
+    }
+
+    /// Shorter way round for a step.
+    pub fn shorter(&self, step: f64) -> f64 {
+        step - self.counts * (step / self.counts).round()
+    }
+
+    /// Says what it is taken for, unless it is a turn's from 0 on; `turn` is that of the encoder, if known.
+    pub fn told(&self, name: &str, turn: Option<f64>) -> Option<String> {
+        let Self { counts, signed } = *self;
+        if turn == Some(counts) && !signed {
+            return None;
+        }
+        let least = if signed { -0.5 * counts } else { 0.0 };
+        let turns =
+            turn.map_or_else(String::new, |turn| format!(", {} turns of the encoder", ESTIMATE.write(counts / turn)));
+        Some(format!(
+            "`{name}` is read as a register that begins anew after {} values{turns}: from {} on.",
+            TYPED.write(counts),
+            TYPED.write(least)
+        ))
+    }
+
+    /// Joins readings to continuous ones. Over lost samples, by the usual steps of time before each row, the encoder is expected to
+    /// have gone on as before.
+    pub fn join(&self, values: &mut [f64], periods_before: impl Fn(usize) -> f64) {
+        let (mut last, mut before) = (values.first().copied().unwrap_or_default(), 0.0);
+        for row in 1..values.len() {
+            let periods = periods_before(row);
+            let expected = (before * (periods - 1.0)).round();
+            let step = expected + self.shorter(values[row] - last - expected);
+            last = values[row];
+            values[row] = values[row - 1] + step;
+            before = step / periods;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Readings of a motion to and fro over several turns in a register.
+    fn readings(least: f64, counts: f64) -> (Vec<f64>, Vec<f64>) {
+        let truth: Vec<f64> = (0..4000).map(|row| (90_000.0 * (f64::from(row) * 2e-3).sin()).round() + 7.0).collect();
+        let read = truth.iter().map(|value| (value - least).rem_euclid(counts) + least).collect();
+        (truth, read)
+    }
+
+    #[test]
+    fn registers_of_a_turn_or_several_are_recognised_and_joined() {
+        for (least, counts, signed) in
+            [(0.0, 16384.0, false), (-8192.0, 16384.0, true), (0.0, 65536.0, false), (-32768.0, 65536.0, true)]
+        {
+            let (truth, mut read) = readings(least, counts);
+            let register = Register::of(&read, Some(16384.0)).expect("it begins anew");
+            assert_eq!(register, Register { counts, signed });
+            register.join(&mut read, |_| 1.0);
+            let apart: Vec<f64> = truth.iter().zip(&read).map(|(truth, read)| truth - read).collect();
+            assert!(apart.iter().all(|one| *one == apart[0]) && apart[0] % counts == 0.0, "{register:?}");
+        }
+    }
+
+    #[test]
+    fn readings_that_go_on_over_turns_have_no_register() {
+        let (truth, _) = readings(0.0, 16384.0);
+        assert_eq!(Register::of(&truth, Some(16384.0)), None);
+        let narrow: Vec<f64> = truth.iter().map(|value| (value / 40.0).round()).collect();
+        assert_eq!(Register::of(&narrow, Some(16384.0)), None);
+    }
+}

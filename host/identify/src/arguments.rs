@@ -25,6 +25,7 @@ Examples:
   joint identify virtual.csv --joint q1 --simulate --seed 7    makes a log on the f64 reference, without hardware
   joint identify virtual.csv --joint q1                        and what is found in it
   joint identify sweeps.csv --quasi-static --gear-ratio 6      slow sweeps to and fro, without a joint file
+  joint identify held.csv --joint my_joint.toml --output-locked    slow torque to and fro, the output clamped
 
 Exit code: 0 if something could be identified, 2 for bad input or a log that cannot tell, 130 after Ctrl-C."
 )]
@@ -78,6 +79,10 @@ pub struct Arguments {
     /// Writes the findings as JSON to this file too ("-" is standard output, and all else on standard error)
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
+    /// Reads a log of a joint whose output is held while the torque goes slowly to and fro: lost motion, stiffness, half-backlash and
+    /// friction from the motor's angle and torque
+    #[arg(long, conflicts_with_all = ["quasi_static", "simulate", "inertia_error"])]
+    pub output_locked: bool,
     /// Slow logs.
     #[command(flatten)]
     pub slow: Options,

@@ -5,10 +5,11 @@ pub(crate) mod angles;
 mod brakes;
 mod feigned;
 mod finding;
-mod gap;
+pub(crate) mod gap;
 mod inertias;
 
 pub use finding::Finding;
+pub(crate) use finding::{SHARE, finding};
 
 use serde::Serialize;
 

@@ -7,7 +7,7 @@
 //! are the moments at which a flank carries, smoothed by `kernel`; `load_sharing` is what planets out of phase take of the gap; `twist` and `friction` are fitted to them by `regression`;
 //! `balances` hold torque against inertias, for `contradictions` and for `scales`. `findings` is what comes of it, with its
 //! `estimate`s; `page`, `pictures` and `patch` show it. `virtual_test` makes a log without hardware.
-//! `quasi_static` reads slow logs by itself.
+//! `quasi_static` reads slow logs by itself, `output_locked` those of a joint whose output is held.
 
 mod arguments;
 mod bad_readings;
@@ -29,6 +29,7 @@ mod mcap_file;
 mod mcap_log;
 mod noise;
 mod numbers;
+mod output_locked;
 pub mod page;
 mod patch;
 mod pictures;
@@ -54,6 +55,7 @@ pub use arguments::Arguments;
 use column_map::ColumnMap;
 use findings::{Finding, Record};
 use log::Log;
+use page::{FINDINGS, JOINT, REPORT};
 use prior::{Losses, PriorModel};
 pub use quasi_static::Options;
 use rows::Rows;
@@ -87,11 +89,6 @@ const LEAST_RELIABLE: f64 = 0.5;
 /// Fits one after the other, each with the errors by angle of the last taken off the accelerations.
 const ROUNDS: usize = 4;
 
-/// The page, the joint file with what was found, and the figures.
-const REPORT: &str = "report.html";
-const JOINT: &str = "joint.toml";
-const FINDINGS: &str = "findings.json";
-
 /// What a log has shown.
 struct Identified {
     log: Log,
@@ -115,6 +112,9 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     warned::tell(&loaded);
     if arguments.simulate {
         return simulate(arguments, &loaded, progress);
+    }
+    if arguments.output_locked {
+        return output_locked::run(arguments, &loaded, progress);
     }
     let prior = PriorModel::new(&loaded, arguments)?;
     folder::check_files(&[("json", arguments.json.as_deref())], &[&arguments.log, &arguments.joint])?;

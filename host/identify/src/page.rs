@@ -10,6 +10,13 @@ use report::number::ESTIMATE;
 use report::plot::Figure;
 use report::provenance::VERSION;
 
+/// File of the page.
+pub const REPORT: &str = "report.html";
+/// File of the joint with the values that were found.
+pub const JOINT: &str = "joint.toml";
+/// File of the findings.
+pub const FINDINGS: &str = "findings.json";
+
 /// All of it: findings beside what a joint file says, whose text is given, and pictures, first the most telling.
 pub fn document(record: &Record<'_>, file: &str, figures: Vec<Figure>) -> Document {
     let Record { joint, log, duration_s, crossings, findings, .. } = record;

@@ -10,13 +10,13 @@ mod loading;
 mod map;
 mod options;
 mod page;
-mod passes;
+pub(crate) mod passes;
 mod pictures;
 mod prediction;
 mod profiles;
 mod results;
 mod samples;
-mod statistics;
+pub(crate) mod statistics;
 
 use std::path::{Path, PathBuf};
 

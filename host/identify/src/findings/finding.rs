@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::estimate::Estimate;
 
 /// A value counts as found if half of its interval is at most this share of it.
-pub(super) const SHARE: f64 = 0.5;
+pub(crate) const SHARE: f64 = 0.5;
 /// Why an unknown is not found that goes with others.
 pub(super) const TOGETHER: &str = "in this motion it goes with something else, as in a sine of one strength; reverse torques of \
                                    three or four different strengths, and swing slowly too";
@@ -36,7 +36,7 @@ pub struct Finding {
 }
 
 /// What an estimate in the unit of its key comes to.
-pub(super) fn finding(name: &str, unit: &str, key: &str, estimate: Estimate) -> Finding {
+pub(crate) fn finding(name: &str, unit: &str, key: &str, estimate: Estimate) -> Finding {
     let Estimate { value, half } = estimate;
     let half = half + MODEL_SHARE * value.abs();
     Finding {
@@ -52,7 +52,7 @@ pub(super) fn finding(name: &str, unit: &str, key: &str, estimate: Estimate) -> 
 
 impl Finding {
     /// Nothing, for a reason, unless it is so.
-    pub(super) fn if_so(self, so: bool, why: &str) -> Self {
+    pub(crate) fn if_so(self, so: bool, why: &str) -> Self {
         let finite = self.value.is_some_and(f64::is_finite)
             && self.interval.is_some_and(|ends| ends.iter().all(|end| end.is_finite()));
         // What is not found for another reason keeps it.
@@ -62,7 +62,7 @@ impl Finding {
         Self { value: None, interval: None, note: format!("not identifiable from this log: {why}"), ..self }
     }
 
-    pub(super) fn noted(self, note: impl Into<String>) -> Self {
+    pub(crate) fn noted(self, note: impl Into<String>) -> Self {
         if self.value.is_none() { self } else { Self { note: note.into(), ..self } }
     }
 
@@ -77,7 +77,7 @@ impl Finding {
     }
 
     /// What cannot be negative, and with it its interval; one that is surely below zero keeps what it is, for who judges the log.
-    pub(super) fn not_negative(mut self) -> Self {
+    pub(crate) fn not_negative(mut self) -> Self {
         if self.interval.is_some_and(|[_, high]| high < 0.0) {
             return self;
         }

@@ -39,36 +39,56 @@ pub(super) fn gap_and_compliance(
     let why_bends = "the torque on one flank must change by much, so that it bends the joint by several counts";
     let why_gap = or_together(twist::HALF_GAP, why_gap);
     let why_bends = or_together(twist::COMPLIANCE, why_bends);
+    let width = Shown { why: why_gap, is_shown: has_gap };
+    let bend = Shown { why: why_bends, is_shown: bends };
+    let mut findings = static_findings(prior, [half_gap, twist.half_lost_motion(prior), compliance], [width, bend]);
+    findings.push(damping(solution, prior, compliance, bends && prior.swing() > SWING_SAMPLES * log.period));
+    findings
+}
+
+/// Whether a log shows a parameter, and why not.
+#[derive(Clone, Copy)]
+pub(crate) struct Shown<'w> {
+    pub is_shown: bool,
+    pub why: &'w str,
+}
+
+/// Half-gap and half lost motion [rad], and compliance [rad/(N m)], at the output, by the keys of the joint file.
+pub(crate) fn static_findings(
+    prior: &PriorModel,
+    [half_gap, half_lost_motion, compliance]: [Estimate; 3],
+    [width, bend]: [Shown<'_>; 2],
+) -> Vec<Finding> {
     let mut findings = Vec::new();
     if !prior.equivalent {
         let half_backlash = half_gap.times(1e6 * prior.lever);
-        findings.push(finding("half-backlash b", "um", "mesh.half_backlash_um", half_backlash).if_so(has_gap, why_gap));
+        let found = finding("half-backlash b", "um", "mesh.half_backlash_um", half_backlash);
+        findings.push(found.if_so(width.is_shown, width.why));
     }
     let lost_motion_key = if prior.equivalent { "equivalent_gear.lost_motion_mrad" } else { "" };
     findings.extend([
-        finding("lost motion at the output", "mrad", lost_motion_key, twist.half_lost_motion(prior).times(2e3))
-            .if_so(has_gap, why_gap),
-        finding("compliance at the output", "urad/(N m)", "", compliance.times(1e6)).if_so(bends, why_bends),
+        finding("lost motion at the output", "mrad", lost_motion_key, half_lost_motion.times(2e3))
+            .if_so(width.is_shown, width.why),
+        finding("compliance at the output", "urad/(N m)", "", compliance.times(1e6)).if_so(bend.is_shown, bend.why),
     ]);
     // What the teeth give is known better from the joint file than from the small part that they have in it.
     let own = compliance.value - prior.mesh_compliance;
-    let stiffness = if prior.compliant {
+    let Shown { is_shown: bends, why } = bend;
+    findings.push(if prior.compliant {
         let stiffness = Estimate { value: 1.0 / own, half: compliance.half / (own * own) };
         let bends = bends && own > 0.0 && compliance.half < SHARE * own;
         finding("stiffness behind the carrier", "N m/rad", "compliance.stiffness_N_m_per_rad", stiffness)
-            .if_so(bends, why_bends)
+            .if_so(bends, why)
     } else if prior.equivalent {
         let stiffness = compliance.value.recip();
         let estimate = Estimate { value: stiffness, half: stiffness * compliance.half / compliance.value };
         finding("stiffness at the output", "N m/rad", "equivalent_gear.stiffness_N_m_per_rad", estimate)
-            .if_so(bends, why_bends)
+            .if_so(bends, why)
     } else {
         let stiffness = prior.mesh_stiffness * prior.mesh_compliance / compliance.value;
         let estimate = Estimate { value: stiffness, half: stiffness * compliance.half / compliance.value };
-        finding("mean stiffness of a mesh", "N/m", "mesh.mean_stiffness_N_per_m", estimate).if_so(bends, why_bends)
-    };
-    findings.push(stiffness);
-    findings.push(damping(solution, prior, compliance, bends && prior.swing() > SWING_SAMPLES * log.period));
+        finding("mean stiffness of a mesh", "N/m", "mesh.mean_stiffness_N_per_m", estimate).if_so(bends, why)
+    });
     findings
 }
 

@@ -124,7 +124,7 @@ fn read_together(samples: &Samples, turns: &[usize]) -> Outcome<()> {
 }
 
 /// Samples at which the motor turns, the first and the last of the log's motion among them.
-fn turning_points(motor: &[f64], threshold: f64) -> Vec<usize> {
+pub fn turning_points(motor: &[f64], threshold: f64) -> Vec<usize> {
     let (mut least, mut most) = (0, 0);
     let mut turns: Vec<usize> = Vec::new();
     // The way since the last turning point; nothing before the first.

@@ -270,6 +270,7 @@ fn arguments(log: &Path, folder: &Path) -> Arguments {
         simulate: false,
         seed: 1,
         with_output_torque: false,
+        output_locked: false,
         out: Some(folder.join("out")),
         json: None,
         slow: Options::default(),

@@ -1,0 +1,312 @@
+//! `joint identify --output-locked`: lost motion, stiffness, half-backlash and friction from the motor's angle and torque while the output
+//! is held fast. The torque goes slowly to and fro; on each flank the motor then turns by
+//!
+//!     theta = p_s + c T - c f d - c l d |T|                                                    (1)
+//!
+//! with the angle theta of the motor over the ratio [rad], the motor's torque times the ratio T [N m], the flank s, the direction d in
+//! which the torque goes, the compliance c [rad/(N m)], the dry friction f [N m] and the share l of the load that is lost. The lost
+//! motion is p_+ - p_-. It is fitted to each cycle by least squares; the interval is from how cycles repeat (Student), wider by
+//! what all cycles share: steps and errors of the encoder, cogging, flanks that are bent. `cycles` are the fits.
+
+mod cycles;
+
+use std::f64::consts::TAU;
+
+use super::arguments::Arguments;
+use super::bad_readings;
+use super::column_map::ColumnMap;
+use super::columns::{Columns, MOTOR, OUTPUT, TIMES};
+use super::estimate::Estimate;
+use super::findings::gap::{Shown, static_findings};
+use super::findings::{Finding, Record, SHARE, finding};
+use super::log_file;
+use super::page::{self, FINDINGS, JOINT, REPORT};
+use super::patch;
+use super::prior::PriorModel;
+use super::quasi_static::statistics::{mean, student};
+use super::register::Register;
+use super::time_stamps;
+use board::profile::MAX_TORQUE;
+use cycles::{Cycle, Cycles};
+use joint_file::named::Loaded;
+use parameters::StiffnessWave;
+use report::document::{html, terminal};
+use report::failure::{Failure, Outcome};
+use report::folder::{self, Folder};
+use report::number::{ESTIMATE, TYPED};
+use report::output;
+use report::plot::Figure;
+use report::plot::ink::Ink;
+use report::plot::mark::Mark;
+use report::plot::panel::Panel;
+use report::plot::unit::{TORQUE, Unit};
+use report::progress::Progress;
+
+/// An output that is held moves by less than this share of the motor's way over the ratio: the gear's own compliance is far above that of
+/// what holds it.
+const HELD: f64 = 0.2;
+/// Error by angle that any encoder may have [rad]; a joint file that states more is believed.
+const ENCODER_ERROR: f64 = 1e-3;
+/// Share of the largest torque by which a torque may be off by angle; a joint file that states more cogging is believed.
+const TORQUE_RIPPLE: f64 = 0.01;
+/// A torque may be late by this time, which looks like friction while it changes [s].
+const TORQUE_LATE: f64 = 1e-3;
+/// Half of a 95 % interval is so many standard deviations.
+const QUANTILE: f64 = 1.96;
+/// More points than this do not make a picture clearer.
+const POINTS: usize = 6000;
+
+/// A log of a joint whose output is held.
+struct HeldLog {
+    /// From the first sample on [s].
+    time: Vec<f64>,
+    /// Motor over the ratio, less the output where it was logged [rad].
+    twist: Vec<f64>,
+    /// Motor torque times the ratio [N m].
+    torque: Vec<f64>,
+    /// Step of the encoders on that scale [rad].
+    resolution: f64,
+    /// Whether the output was logged.
+    has_output: bool,
+    /// What was done to the rows, a sentence each.
+    told: Vec<String>,
+}
+
+/// Reads a log, writes what it shows and prints it.
+pub fn run(arguments: &Arguments, loaded: &Loaded, progress: &Progress) -> Outcome<String> {
+    let prior = PriorModel::new(loaded, arguments);
+    folder::check_files(&[("json", arguments.json.as_deref())], &[&arguments.log, &arguments.joint])?;
+    let folder = Folder::choose(arguments.out.as_deref(), "identify", &prior.name, &[REPORT, JOINT, FINDINGS])?;
+    progress.stage("fitting");
+    let path = arguments.log.as_path();
+    let in_the_file = |failure: Failure| failure.while_doing(path.display());
+    let log = HeldLog::read(arguments, &prior)?;
+    let cycles = Cycles::of(&log.time, &log.twist, &log.torque).map_err(in_the_file)?;
+    let findings = findings(&log, &cycles, loaded, &prior);
+    if !findings.iter().any(Finding::is_news) {
+        return Err(in_the_file(Failure::new("nothing is identifiable from this log").with_help(
+            "let the torque go to and fro more often, up to several times the friction, and log a finer encoder",
+        )));
+    }
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let patched = patch::patch(loaded, &prior, &findings, &name)?;
+    let assumptions = assumptions(&log, &cycles, &prior);
+    let record = Record {
+        schema: "joint-identify/1",
+        joint: &prior.name,
+        log: &name,
+        duration_s: log.time.last().copied().unwrap_or_default(),
+        crossings: cycles.crossings,
+        assumptions: &assumptions,
+        findings: &findings,
+    };
+    let document = page::document(&record, &loaded.text, vec![picture(&log, &cycles)]);
+    let json = output::json("findings", &record)?;
+    folder.make()?;
+    folder.write_text(REPORT, &html(&document))?;
+    folder.write_text(JOINT, &patched)?;
+    folder.write_text(FINDINGS, &json)?;
+    arguments.json.as_ref().map_or(Ok(()), |path| output::write_json(path, &json))?;
+    progress.clear();
+    let [report, joint] = [REPORT, JOINT].map(|name| folder.file(name));
+    Ok(format!("{}\nreport: {}\njoint file: {}\n", terminal(&document), report.display(), joint.display()))
+}
+
+impl HeldLog {
+    fn read(arguments: &Arguments, prior: &PriorModel) -> Outcome<Self> {
+        let path = arguments.log.as_path();
+        let map = ColumnMap::new(arguments.map.as_deref(), &arguments.column, &arguments.unit)?;
+        let will_do = |columns: &Columns| columns.will_do_with(false);
+        let mut columns = log_file::read(path, arguments.topic.as_deref(), &map, prior.ratio(), will_do)?;
+        let log = Self::of(&mut columns, prior);
+        log.map_err(|failure| columns.explain(failure).while_doing(path.display()))
+    }
+
+    fn of(columns: &mut Columns, prior: &PriorModel) -> Outcome<Self> {
+        columns.leave_out_incomplete(&[&TIMES, &MOTOR, &OUTPUT, &["motor_torque_N_m"]])?;
+        time_stamps::resolve(columns)?;
+        let (motor, motor_count) =
+            angle(columns, MOTOR, prior.motor_bits)?.ok_or_else(|| columns.without_encoder("motor"))?;
+        let output = angle(columns, OUTPUT, prior.output_bits)?;
+        let mut time = columns.time()?;
+        let start = time.first().copied().unwrap_or_default();
+        time.iter_mut().for_each(|time| *time -= start);
+        if let Some(row) = time.windows(2).position(|pair| pair[1] <= pair[0]) {
+            return Err(Failure::new(format!("the time does not rise in {}", columns.place(row + 1)))
+                .with_help("samples must be in the order in which they were taken, each with its own time"));
+        }
+        let (_, torque) = columns.named(&["motor_torque_N_m"])?;
+        if let Some(row) = torque.iter().position(|torque| torque.abs() > MAX_TORQUE) {
+            let message = format!("{}: `motor_torque_N_m` is {}", columns.place(row), TYPED.write(torque[row]));
+            return Err(Failure::new(message)
+                .with_help(format!("it may be from -{MAX_TORQUE} to {MAX_TORQUE} N m: check the unit")));
+        }
+        let mut twist: Vec<f64> = motor.iter().map(|angle| (angle - motor[0]) / prior.ratio()).collect();
+        let mut resolution = motor_count / prior.ratio();
+        if let Some((output, count)) = &output {
+            let [moved, way] = [output, &twist].map(|angles| travel(angles));
+            if moved > HELD * way + count {
+                return Err(Failure::new(format!(
+                    "the output is not held: it moves by {} rad, the motor over its ratio by {} rad",
+                    ESTIMATE.write(moved),
+                    ESTIMATE.write(way)
+                ))
+                .with_help("clamp the output, or leave --output-locked out"));
+            }
+            twist.iter_mut().zip(output).for_each(|(twist, angle)| *twist -= angle - output[0]);
+            resolution += count;
+        }
+        Ok(Self {
+            torque: torque.iter().map(|torque| prior.ratio() * torque).collect(),
+            told: columns.told().to_vec(),
+            has_output: output.is_some(),
+            time,
+            twist,
+            resolution,
+        })
+    }
+}
+
+/// Angles of an encoder, continuous over turns and without bad readings, and its step; nothing if it was not logged [rad].
+fn angle(columns: &mut Columns, names: [&'static str; 2], bits: u32) -> Outcome<Option<(Vec<f64>, f64)>> {
+    let Some(name) = columns.name_of(&names).map(str::to_owned) else { return Ok(None) };
+    let count = TAU / f64::from(bits).exp2();
+    let is_counts = columns.first_of(&names[..1])?.is_some();
+    let (step, turn) = if is_counts { (1.0, f64::from(bits).exp2()) } else { (count, TAU) };
+    bad_readings::leave_out(columns, &name, step, Some(turn))?;
+    let Some(mut values) = columns.maybe(&name)? else { return Ok(None) };
+    if let Some(register) = Register::of(&values, Some(turn)) {
+        register.join(&mut values, |_| 1.0);
+        register.told(&name, Some(turn)).into_iter().for_each(|told| columns.tell(told));
+    }
+    if is_counts {
+        values.iter_mut().for_each(|value| *value *= count);
+    }
+    Ok(Some((values, count)))
+}
+
+fn travel(values: &[f64]) -> f64 {
+    let (least, most) = values.iter().fold((f64::MAX, f64::MIN), |(a, b), value| (a.min(*value), b.max(*value)));
+    most - least
+}
+
+/// A parameter of the cycles: its mean, with the interval from how they repeat.
+fn of_cycles(cycles: &Cycles, parameter: impl Fn(&Cycle) -> f64) -> Estimate {
+    let values: Vec<f64> = cycles.all.iter().map(parameter).collect();
+    let (count, value) = (values.len() as f64, mean(&values));
+    let variance = values.iter().map(|one| (one - value).powi(2)).sum::<f64>() / (count - 1.0);
+    Estimate { value, half: student(count - 1.0) * (variance / count).sqrt() }
+}
+
+fn findings(log: &HeldLog, cycles: &Cycles, loaded: &Loaded, prior: &PriorModel) -> Vec<Finding> {
+    let around = &prior.surroundings;
+    let [least, most] = cycles.loads;
+    let compliance = of_cycles(cycles, |cycle| cycle.compliance);
+    let bent = mean(&cycles.all.iter().map(|cycle| cycle.bent).collect::<Vec<_>>()).abs();
+    let loss = mean(&cycles.all.iter().map(|cycle| cycle.loss).collect::<Vec<_>>());
+    // The slope of an encoder's error over the small way is at most its amplitude times how often it comes in a turn.
+    let encoder = &around.motor_encoder;
+    let by_encoder = (encoder.once_per_turn_error.abs() + 2.0 * encoder.twice_per_turn_error.abs()).max(ENCODER_ERROR);
+    let ripple = (prior.ratio() * around.cogging_torque.abs()).max(TORQUE_RIPPLE * most);
+    let turned = f64::from(around.cogging_periods_per_turn) * prior.ratio() * compliance.value.abs() * (most - least);
+    let by_ripple = ripple * turned.min(2.0) / (most - least);
+    let by_scale = QUANTILE * prior.torque_error;
+    let shared = compliance.value * (by_encoder + by_ripple + 0.5 * loss * loss) + 0.5 * bent;
+    let compliance = compliance.wider_by(shared).at_least(log.resolution / (most - least));
+    let lost_motion = of_cycles(cycles, |cycle| cycle.lost_motion);
+    let lost_motion = lost_motion
+        .wider_by(by_encoder * (lost_motion.value + compliance.value * most))
+        .wider_by(2.0 * compliance.value * ripple * turned.min(1.0) + bent * (least + most))
+        .at_least(log.resolution);
+    let compliance = compliance.beside(by_scale * compliance.value);
+    // At one place of the turn a mesh is stiffer or softer than its mean, and errors of its teeth take a part of the gap.
+    let joint = &loaded.file.parameters;
+    let (StiffnessWave::Harmonic { stiffness_ratio: wave } | StiffnessWave::Rectangular { stiffness_ratio: wave, .. }) =
+        joint.sun_planet.stiffness_wave;
+    let of_all_meshes = compliance.wider_by(prior.mesh_compliance * wave / (1.0 - wave));
+    let errors = [&joint.sun_planet, &joint.ring_planet].map(|mesh| &mesh.transmission_error);
+    let teeth = errors.into_iter().flatten().fold(0.0_f64, |most, error| most.max(error.abs())) / prior.lever;
+    let half_gap = lost_motion.times(0.5).wider_by(if prior.equivalent { 0.0 } else { teeth });
+    let shown = |estimate: Estimate| estimate.value > 0.0 && estimate.half < SHARE * estimate.value;
+    let width = Shown {
+        is_shown: shown(lost_motion),
+        why: "the gap must be wider than what the encoder tells, and the torque must reach several times the friction both ways",
+    };
+    let bend = Shown {
+        is_shown: shown(of_all_meshes),
+        why: "the torque must bend the joint by several counts of the encoder",
+    };
+    let mut findings = static_findings(prior, [half_gap, lost_motion.times(0.5), of_all_meshes], [width, bend]);
+    if prior.sharing.is_some() {
+        findings[0] = findings[0].clone().if_so(
+            false,
+            "planets mesh out of phase, so that errors of the teeth take a part of the gap that one place of the turn does not show",
+        );
+    }
+    let friction = of_cycles(cycles, |cycle| cycle.friction);
+    let late = TORQUE_LATE * cycles.torque_rate;
+    let friction = friction.beside(by_scale * friction.value).wider_by(ripple + late).times(1.0 / prior.ratio());
+    let known = friction.half < (SHARE * friction.value.abs()).max(0.02 * most / prior.ratio());
+    let key = "drive_train.motor_coulomb_friction_N_m";
+    findings.push(
+        finding("dry friction of the motor", "N m", key, friction)
+            .if_so(known, "the torque's ripple and its delay hide it: let the torque change more slowly")
+            .not_negative(),
+    );
+    findings
+}
+
+/// What the numbers take for granted.
+fn assumptions(log: &HeldLog, cycles: &Cycles, prior: &PriorModel) -> Vec<String> {
+    let mut list = vec![
+        format!(
+            "The output is held, as stated: {} cycles of torque, each up to {} N m at the output.",
+            cycles.all.len(),
+            ESTIMATE.write(cycles.loads[1])
+        ),
+        if log.has_output {
+            "What the output's encoder moves is taken off: the compliance is that of the gear.".to_owned()
+        } else {
+            "The output's encoder is not in the log: the compliance of what holds the output is in the compliance found.".to_owned()
+        },
+        "All values are of one place of the turn: lock the output at other places to see how they vary.".to_owned(),
+        format!(
+            "Flanks are straight from {} to {} N m; by how much they are bent is in the intervals.",
+            ESTIMATE.write(cycles.loads[0]),
+            ESTIMATE.write(cycles.loads[1])
+        ),
+        format!(
+            "Torque's scale expected to be right within {:.1} % (one standard deviation): that is in the intervals of compliance and \
+             friction.",
+            100.0 * prior.torque_error
+        ),
+        format!("Ratio {} / {}; motor encoder of {} bits.", prior.teeth[1], prior.teeth[0], prior.motor_bits),
+    ];
+    list.extend(log.told.iter().cloned());
+    list
+}
+
+/// Twist over torque with the flanks that were found.
+fn picture(log: &HeldLog, cycles: &Cycles) -> Figure {
+    let every = log.time.len().div_ceil(POINTS).max(1);
+    let points = log.torque.iter().copied().zip(log.twist.iter().copied()).step_by(every).collect();
+    let parts: [fn(&Cycle) -> f64; 3] = [|cycle| cycle.compliance, |cycle| cycle.ends[0], |cycle| cycle.ends[1]];
+    let [compliance, upper, lower] = parts.map(|part| of_cycles(cycles, part).value);
+    let reach = cycles.loads[1];
+    let flank = |end: f64, side: f64, label: &str| Mark::Line {
+        points: vec![(0.0, end), (side * reach, end + side * reach * compliance)],
+        ink: Ink::Text,
+        label: label.into(),
+        width: 2.0,
+    };
+    let marks = vec![
+        Mark::Points { points, ink: Ink::First, label: "samples".into(), size: 2.0 },
+        flank(upper, 1.0, "fit"),
+        flank(lower, -1.0, ""),
+    ];
+    let unit = Unit::of_angle(travel(&log.twist));
+    let panel = Panel { height: 420, ..Panel::lines("Motor over ratio, output held", unit, marks) };
+    let note = "The step between the flanks at no torque is the lost motion; friction makes the loop.".into();
+    let range = (-1.05 * reach, 1.05 * reach);
+    Figure { note, ..Figure::new("Twist over torque", "motor torque times ratio", TORQUE, range, vec![panel]) }
+}

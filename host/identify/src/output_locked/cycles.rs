@@ -1,0 +1,272 @@
+//! Cycles of the torque, to one side and back, each with its fit of equation (1). A sample is used where the motor moves on a flank for
+//! sure: beyond the torques that cross the gap, and after a reversal not before friction has changed its sign.
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::quasi_static::passes::turning_points;
+use crate::quasi_static::statistics::{mean, quantile_of};
+use report::failure::{Failure, Outcome};
+use report::number::ESTIMATE;
+
+/// The torque turns when it then goes back by this share of its range.
+const TURNED: f64 = 0.5;
+/// A way of the torque begins and ends at this share of the peak at least.
+const WHOLE_WAY: f64 = 0.7;
+/// From fewer cycles there is no interval.
+const LEAST_CYCLES: usize = 3;
+/// Both sides' peaks are alike within this ratio.
+const PEAKS: f64 = 2.0;
+/// Loads below this share of the peak are not used, nor those below so many frictions.
+const LEAST_LOAD: f64 = 0.3;
+const FRICTIONS: f64 = 3.0;
+/// More than this share of the peak leaves too little to fit a flank.
+const MOST_LEAST_LOAD: f64 = 0.6;
+/// After a reversal so many times the change that friction makes is passed over, and this share of the peak.
+const STUCK: f64 = 1.3;
+const STUCK_SHARE: f64 = 0.05;
+/// What the first fit takes for that change, as a share of the peak.
+const FIRST_STUCK: f64 = 0.35;
+/// Fits one after the other, each by the friction that the one before found.
+const ROUNDS: usize = 4;
+/// Samples of a cycle that are needed on each flank and in each direction.
+const LEAST_SAMPLES: usize = 6;
+/// What a fit leaves over is less than this share of the whole way, or the flanks are no lines.
+const LEFT_OVER: f64 = 0.1;
+/// Unknowns: ends of both flanks at no torque, compliance, and what friction and losses put into the angle.
+const UNKNOWNS: usize = 5;
+
+/// What one cycle shows, at the output.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cycle {
+    /// Where both flanks end at no torque: the upper and the lower [rad].
+    pub ends: [f64; 2],
+    /// Between the two [rad].
+    pub lost_motion: f64,
+    /// [rad/(N m)].
+    pub compliance: f64,
+    /// By how much the compliance above the middle of the loads is more than below it [rad/(N m)].
+    pub bent: f64,
+    /// Dry friction of the motor times the ratio [N m].
+    pub friction: f64,
+    /// Share of the load that is lost.
+    pub loss: f64,
+    /// What the fit leaves over, root mean square [rad].
+    left_over: f64,
+}
+
+/// All cycles of a log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cycles {
+    /// Each one.
+    pub all: Vec<Cycle>,
+    /// Least and largest torque that is used [N m].
+    pub loads: [f64; 2],
+    /// How fast the torque changes [N m/s].
+    pub torque_rate: f64,
+    /// Changes of the flank.
+    pub crossings: usize,
+}
+
+/// A sample that is used: angle, torque, direction of the torque.
+#[derive(Clone, Copy)]
+struct Moment {
+    twist: f64,
+    torque: f64,
+    way: f64,
+}
+
+impl Cycles {
+    /// Finds and fits them.
+    pub fn of(time: &[f64], twist: &[f64], torque: &[f64]) -> Outcome<Self> {
+        let [low, high] = [0.005, 0.995].map(|share| quantile_of(torque, share));
+        if !(low < 0.0 && high > 0.0) {
+            return Err(Failure::new(format!(
+                "there is no reversal in this log: the torque at the output stays between {} and {} N m",
+                ESTIMATE.write(low),
+                ESTIMATE.write(high)
+            ))
+            .with_help("let the torque go slowly to and fro, so that both flanks of the teeth carry"));
+        }
+        let peak = high.min(-low);
+        if high.max(-low) > PEAKS * peak {
+            return Err(Failure::new(format!(
+                "the torque goes to {} N m one way and to {} N m the other way",
+                ESTIMATE.write(high),
+                ESTIMATE.write(low)
+            ))
+            .with_help("let the torque reach as much both ways: each flank is fitted on as wide a range"));
+        }
+        // A log may begin and end anywhere: only whole ways from peak to peak are used.
+        let mut turns = turning_points(torque, TURNED * (high - low));
+        turns.retain(|turn| torque[*turn].abs() >= WHOLE_WAY * peak);
+        let cycles: Vec<[usize; 3]> = turns.windows(3).step_by(2).map(|turns| [turns[0], turns[1], turns[2]]).collect();
+        if cycles.len() < LEAST_CYCLES {
+            return Err(Failure::new(format!(
+                "too few cycles: the torque goes to and fro {} times, {LEAST_CYCLES} are the least",
+                cycles.len()
+            ))
+            .with_help("repeat the cycle: an interval is taken from how cycles repeat"));
+        }
+        let (mut stuck, mut least) = (FIRST_STUCK * peak, LEAST_LOAD * peak);
+        let mut all = Vec::new();
+        for _ in 0..ROUNDS {
+            let fit = |turns: &[usize; 3]| Cycle::of(&moments(twist, torque, turns, stuck, least), [least, peak]);
+            all = cycles.iter().map(fit).collect::<Option<Vec<Cycle>>>().ok_or_else(too_coarse)?;
+            let of = |part: fn(&Cycle) -> f64| mean(&all.iter().map(part).collect::<Vec<_>>());
+            let (friction, loss) = (of(|cycle| cycle.friction).max(0.0), of(|cycle| cycle.loss).max(0.0));
+            stuck = STUCK * 2.0 * (friction + loss * peak) + STUCK_SHARE * peak;
+            least = (LEAST_LOAD * peak).max(FRICTIONS * friction);
+            if least > MOST_LEAST_LOAD * peak || stuck > (1.0 - LEAST_LOAD) * peak {
+                return Err(Failure::new(format!(
+                    "the torque is too small against the friction: {} N m at the output, of which friction is {} N m",
+                    ESTIMATE.write(peak),
+                    ESTIMATE.write(friction + loss * peak)
+                ))
+                .with_help("let the torque reach ten times the motor's friction, or a self-locking gear's output be driven instead"));
+            }
+        }
+        let way = twist.iter().copied().fold(f64::MIN, f64::max) - twist.iter().copied().fold(f64::MAX, f64::min);
+        let left_over = quantile_of(&all.iter().map(|cycle| cycle.left_over).collect::<Vec<_>>(), 0.5);
+        if left_over > LEFT_OVER * way || mean(&all.iter().map(|cycle| cycle.compliance).collect::<Vec<_>>()) <= 0.0 {
+            return Err(Failure::new(format!(
+                "the angle does not follow the torque along two straight flanks: {} rad are left over, of {} rad in all",
+                ESTIMATE.write(left_over),
+                ESTIMATE.write(way)
+            ))
+            .with_help(
+                "let the torque change evenly and slowly, one cycle in a second or more; check the signs of motor and torque, and that \
+                 the output is held",
+            ));
+        }
+        let whole =
+            turns.windows(2).map(|pair| (torque[pair[1]] - torque[pair[0]]).abs() / (time[pair[1]] - time[pair[0]]));
+        let torque_rate = quantile_of(&whole.collect::<Vec<_>>(), 0.5);
+        Ok(Self { all, loads: [least, peak], torque_rate, crossings: turns.len() - 1 })
+    }
+}
+
+fn too_coarse() -> Failure {
+    Failure::new("a cycle has too few samples on a flank, or its torques do not determine a fit")
+        .with_help("let the torque change evenly and slowly, and log more often")
+}
+
+/// Samples of a cycle that are used.
+fn moments(twist: &[f64], torque: &[f64], turns: &[usize; 3], stuck: f64, least: f64) -> Vec<Moment> {
+    let half = |from: usize, to: usize| {
+        let way = (torque[to] - torque[from]).signum();
+        (from..to).filter_map(move |sample| {
+            let moment = Moment { twist: twist[sample], torque: torque[sample], way };
+            let is_used = moment.torque.abs() >= least && way * (moment.torque - torque[from]) >= stuck;
+            is_used.then_some(moment)
+        })
+    };
+    half(turns[0], turns[1]).chain(half(turns[1], turns[2])).collect()
+}
+
+impl Cycle {
+    fn of(moments: &[Moment], [least, peak]: [f64; 2]) -> Option<Self> {
+        for (side, way) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+            let own = moments.iter().filter(|moment| moment.torque * side > 0.0 && moment.way == way);
+            if own.count() < LEAST_SAMPLES {
+                return None;
+            }
+        }
+        let solved = fit(moments)?;
+        let middle = 0.5 * (least + peak);
+        let part = |upper: bool| -> Option<f64> {
+            let own: Vec<Moment> =
+                moments.iter().copied().filter(|moment| (moment.torque.abs() > middle) == upper).collect();
+            fit(&own).map(|solved| solved[2])
+        };
+        let bent = part(true).zip(part(false)).map_or(0.0, |(upper, lower)| upper - lower);
+        let left = |moment: &Moment| (moment.twist - row(moment).dot(&solved)).powi(2);
+        let compliance = solved[2];
+        Some(Self {
+            ends: [solved[0], solved[1]],
+            lost_motion: solved[0] - solved[1],
+            compliance,
+            bent,
+            friction: -solved[3] / compliance,
+            loss: -solved[4] / compliance,
+            left_over: (moments.iter().map(left).sum::<f64>() / moments.len() as f64).sqrt(),
+        })
+    }
+}
+
+fn row(moment: &Moment) -> SVector<f64, UNKNOWNS> {
+    let Moment { torque, way, .. } = *moment;
+    let upper = f64::from(u8::from(torque > 0.0));
+    SVector::from([upper, 1.0 - upper, torque, way, way * torque.abs()])
+}
+
+/// Least squares of (1), each unknown in its own scale.
+fn fit(moments: &[Moment]) -> Option<SVector<f64, UNKNOWNS>> {
+    let greatest = moments.iter().map(|moment| moment.torque.abs()).fold(0.0, f64::max);
+    let scale = SVector::<f64, UNKNOWNS>::from([1.0, 1.0, greatest, 1.0, greatest]);
+    let (mut square, mut right) = (SMatrix::<f64, UNKNOWNS, UNKNOWNS>::zeros(), SVector::<f64, UNKNOWNS>::zeros());
+    for moment in moments {
+        let row = row(moment).component_div(&scale);
+        square += row * row.transpose();
+        right += row * moment.twist;
+    }
+    let solved = square.cholesky()?.solve(&right).component_div(&scale);
+    solved.iter().all(|value| value.is_finite()).then_some(solved)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A gear whose output is held, with friction and losses: angle and torque over four cycles.
+    fn held(friction: f64, loss: f64) -> [Vec<f64>; 3] {
+        let (compliance, lost_motion, peak) = (1e-4, 4e-3, 12.0);
+        let mut spring = -peak;
+        let wave = |row: i32| peak * (std::f64::consts::TAU * f64::from(row) / 2000.0).cos();
+        let torque: Vec<f64> = (0..8500).map(wave).collect();
+        let twist = torque
+            .iter()
+            .map(|torque| {
+                // The spring's torque moves only when the motor's is beyond what friction holds.
+                let upper =
+                    if *torque > 0.0 { (torque - friction) * (1.0 - loss) } else { (torque - friction) / (1.0 - loss) };
+                let lower =
+                    if *torque < 0.0 { (torque + friction) * (1.0 - loss) } else { (torque + friction) / (1.0 - loss) };
+                spring = f64::clamp(spring, upper.min(lower), upper.max(lower));
+                compliance * spring + 0.5 * lost_motion * spring.signum()
+            })
+            .collect();
+        [(0..8500).map(|row| f64::from(row) * 1e-3).collect(), twist, torque]
+    }
+
+    #[test]
+    fn flanks_are_found_beside_friction_and_losses() {
+        for (friction, loss) in [(0.0, 0.0), (0.5, 0.0), (0.2, 0.04)] {
+            let [time, twist, torque] = held(friction, loss);
+            let cycles = Cycles::of(&time, &twist, &torque).expect("cycles");
+            assert_eq!(cycles.all.len(), 4);
+            for cycle in &cycles.all {
+                assert!((cycle.lost_motion / 4e-3 - 1.0).abs() < 5e-3, "{cycle:?}");
+                assert!((cycle.compliance / 1e-4 - 1.0).abs() < 5e-3, "{cycle:?}");
+                assert!((cycle.friction - friction).abs() < 0.02 && (cycle.loss - loss).abs() < 5e-3, "{cycle:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_torque_of_one_sign_or_of_two_cycles_or_within_friction_is_refused() {
+        let [time, twist, torque] = held(0.2, 0.0);
+        let shifted: Vec<f64> = torque.iter().map(|torque| torque + 13.0).collect();
+        let refused = |torque: &[f64], count: usize| {
+            Cycles::of(&time[..count], &twist[..count], &torque[..count]).expect_err("refused").message().to_owned()
+        };
+        assert!(refused(&shifted, 8500).contains("no reversal"));
+        assert!(refused(&torque, 4600).contains("too few cycles: the torque goes to and fro 2 times"));
+        let [time, twist, torque] = held(5.0, 0.0);
+        assert!(
+            Cycles::of(&time, &twist, &torque)
+                .expect_err("refused")
+                .message()
+                .contains("too small against the friction")
+        );
+    }
+}

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use super::column_map::renaming;
 use super::quasi_static::Options;
-use super::units::{self, Unit};
+use log_reader::column_map::renaming;
+use log_reader::units::{self, Unit};
 
 /// How wrong an inertia of a joint file is expected to be, as a ratio: one standard deviation, of what drawings give.
 pub const INERTIA_ERROR: f64 = 0.015;

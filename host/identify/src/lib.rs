@@ -1,8 +1,7 @@
 //! `joint identify`: from a recorded reversal test to a joint's backlash, compliance, damping, friction and encoder
 //! errors, each with its interval, and to a patched joint file.
 //!
-//! `log_file` reads a file into `columns`, text by `text_table`, an MCAP log by `mcap_file`, `mcap_log` and `ros_message`,
-//! message by message as `numbers`; `units` and `column_map` say what the columns are. `log` turns them into samples: rows with
+//! Logs are read into columns by the crate `log-reader`. `log` turns them into samples: rows with
 //! times of their own by `time_stamps`, without `bad_readings`, angles by `readings` out of a `register`, at `even_times`, checked by `sampling`, whose scatter is `noise`. `prior` says what the joint file knows; `rows`
 //! are the moments at which a flank carries, smoothed by `kernel`; `load_sharing` is what planets out of phase take of the gap; `twist` and `friction` are fitted to them by `regression`;
 //! `balances` hold torque against inertias, for `contradictions` and for `scales`. `findings` is what comes of it, with its
@@ -10,10 +9,7 @@
 //! `quasi_static` reads slow logs by itself, `output_locked` those of a joint whose output is held.
 
 mod arguments;
-mod bad_readings;
 mod balances;
-pub mod column_map;
-pub mod columns;
 mod contradictions;
 mod estimate;
 mod even_times;
@@ -24,11 +20,7 @@ mod kernel;
 pub mod learnt;
 mod load_sharing;
 mod log;
-pub mod log_file;
-mod mcap_file;
-mod mcap_log;
 mod noise;
-mod numbers;
 mod output_locked;
 pub mod page;
 mod patch;
@@ -37,22 +29,16 @@ mod prior;
 mod quasi_static;
 mod readings;
 mod refusal;
-mod register;
 mod regression;
-mod ros_message;
 mod rows;
 mod sampling;
 mod scales;
 #[cfg(test)]
 mod schema;
-mod text_table;
-pub mod time_stamps;
 mod twist;
-pub mod units;
 pub mod virtual_test;
 
 pub use arguments::Arguments;
-use column_map::ColumnMap;
 use findings::{Finding, Record};
 use log::Log;
 use page::{FINDINGS, JOINT, REPORT};
@@ -64,6 +50,8 @@ use twist::Twist;
 
 use joint_file::named::{self, Loaded};
 use joint_file::warned;
+use log_reader::column_map::ColumnMap;
+use log_reader::columns;
 use parameters::AbsoluteEncoder;
 use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};

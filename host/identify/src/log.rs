@@ -4,16 +4,16 @@
 use std::f64::consts::TAU;
 
 use super::arguments::Arguments;
-use super::column_map::ColumnMap;
-use super::columns::{Columns, MOTOR, OUTPUT, TIMES};
 use super::even_times::EvenTimes;
-use super::log_file;
 use super::noise::Noise;
 use super::prior::PriorModel;
 use super::readings::{Kind, Readings, readings};
 use super::sampling::sampling;
-use super::{bad_readings, time_stamps};
 use board::profile::MAX_TORQUE;
+use log_reader::column_map::ColumnMap;
+use log_reader::columns::{Columns, MOTOR, OUTPUT, TIMES};
+use log_reader::log_file;
+use log_reader::{bad_readings, time_stamps};
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 

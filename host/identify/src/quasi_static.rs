@@ -22,9 +22,9 @@ use std::path::{Path, PathBuf};
 
 pub use options::Options;
 
-use crate::column_map::ColumnMap;
-use crate::columns::{Columns, DIFFERENCE};
-use crate::log_file;
+use log_reader::column_map::ColumnMap;
+use log_reader::columns::{Columns, DIFFERENCE};
+use log_reader::log_file;
 pub use page::Record as SlowRecord;
 use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};

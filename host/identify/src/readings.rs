@@ -4,9 +4,9 @@
 use std::cmp::Ordering;
 use std::f64::consts::TAU;
 
-use super::columns::Columns;
 use super::even_times::EvenTimes;
-use super::register::Register;
+use log_reader::columns::Columns;
+use log_reader::register::Register;
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 

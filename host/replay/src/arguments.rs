@@ -3,8 +3,8 @@
 use std::num::NonZeroU16;
 use std::path::PathBuf;
 
-use identify::column_map::renaming;
-use identify::units::{self, Unit};
+use log_reader::column_map::renaming;
+use log_reader::units::{self, Unit};
 
 /// Arguments of `joint replay`.
 #[derive(Debug, Clone, clap::Args)]

@@ -31,11 +31,11 @@ use recorded::Recorded;
 use samples::ReplaySamples;
 use scenario::controller_log::{self, ObserverOrigin};
 
-use identify::column_map::ColumnMap;
 use identify::learnt::Content;
-use identify::log_file::LogFile;
 use joint_file::named::{self, Loaded};
 use joint_file::warned;
+use log_reader::column_map::ColumnMap;
+use log_reader::log_file::LogFile;
 use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};
 use report::folder::{self, Folder};

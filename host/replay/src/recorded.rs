@@ -9,8 +9,8 @@ use scenario::estimate_fields::{digest_of, fields};
 use scenario::log_file;
 
 use crate::record::{Difference, Repeats, ValueDifference};
-use identify::columns::Columns;
-use identify::log_file::LogFile;
+use log_reader::columns::Columns;
+use log_reader::log_file::LogFile;
 use report::failure::{Failure, Outcome};
 
 /// What a run has logged of its estimates.

@@ -8,11 +8,11 @@ use model_core::observer::{Reading, Samples};
 use scenario::controller_log::{OUTPUT_READ, SAMPLES, SHOWN_TORQUE};
 
 use board::profile::MAX_TORQUE;
-use identify::column_map::ColumnMap;
-use identify::columns::{Columns, MOTOR, OUTPUT, TIMES};
-use identify::log_file::LogFile;
-use identify::time_stamps;
 use joint_file::named::Loaded;
+use log_reader::column_map::ColumnMap;
+use log_reader::columns::{Columns, MOTOR, OUTPUT, TIMES};
+use log_reader::log_file::LogFile;
+use log_reader::time_stamps;
 use model_core::gears::Kinematics;
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;

@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 
 use super::options::Options;
 use super::statistics::quantile;
-use crate::bad_readings;
-use crate::columns::{Columns, DIFFERENCE, KNOWN, MOTOR, OUTPUT, TIMES};
-use crate::register::Register;
+use log_reader::bad_readings;
+use log_reader::columns::{Columns, DIFFERENCE, KNOWN, MOTOR, OUTPUT, TIMES};
+use log_reader::register::Register;
 use report::failure::{Failure, Outcome};
 use report::number::{ESTIMATE, TYPED};
 

@@ -46,6 +46,9 @@ pub struct Arguments {
     /// Names and units of a maker's columns: a file, or ros2-joint-states, moteus, odrive, vesc-tool, feetech
     #[arg(long, value_name = "MAP")]
     pub map: Option<PathBuf>,
+    /// Joint of a map that has several [default: each of them, a report each]
+    #[arg(long, value_name = "NAME", requires = "map")]
+    pub map_joint: Option<String>,
     /// Joint file (TOML) or preset that gives teeth, levers and inertias, and that is patched
     #[arg(long, value_name = "FILE", default_value = "q1")]
     pub joint: PathBuf,
@@ -65,7 +68,7 @@ pub struct Arguments {
     #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * INERTIA_ERROR, value_parser = percent)]
     pub inertia_error: f64,
     /// Writes LOG instead of reading it: the recommended test, done by the f64 reference of the joint file
-    #[arg(long, conflicts_with_all = ["topic", "column", "unit", "map", "torque_error", "inertia_error", "out", "json"])]
+    #[arg(long, conflicts_with_all = ["topic", "column", "unit", "map", "map_joint", "torque_error", "inertia_error", "out", "json"])]
     pub simulate: bool,
     /// Seed of a simulated test's noise and encoder phases
     #[arg(long, value_name = "N", default_value_t = 1, requires = "simulate")]

@@ -50,11 +50,13 @@ use twist::Twist;
 
 use joint_file::named::{self, Loaded};
 use joint_file::warned;
-use log_reader::column_map::ColumnMap;
+use std::path::Path;
+
+use log_reader::column_map::{self, ColumnMap, MappedJoint};
 use log_reader::columns;
 use parameters::AbsoluteEncoder;
 use report::document::{html, terminal};
-use report::failure::{Failure, Outcome};
+use report::failure::{EXIT_INTERRUPTED, Failure, Outcome};
 use report::folder::{self, Folder};
 use report::number::ESTIMATE;
 use report::output;
@@ -87,8 +89,44 @@ struct Identified {
     findings: Vec<Finding>,
 }
 
-/// Identifies a joint, or makes a log of one, and prints the result.
+/// Folder of the results of several joints, each in a folder of its own below that of the log.
+const SEVERAL: &str = "joint-out/identify";
+
+/// Identifies the joint of a log, or each of several by a map, or makes a log of one, and prints the result.
 pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
+    let joints = column_map::joints(arguments.map.as_deref())?;
+    if joints.is_empty() || arguments.map_joint.is_some() {
+        return run_one(arguments, progress);
+    }
+    if arguments.json.is_some() {
+        return Err(Failure::new("--json takes the findings of one joint, and the map has several").with_help(
+            "leave it out, each joint's folder has findings.json; or choose a joint with --map-joint NAME",
+        ));
+    }
+    let log = arguments.log.file_stem().unwrap_or_default();
+    let out = arguments.out.clone().unwrap_or_else(|| Path::new(SEVERAL).join(log));
+    let (mut text, mut refused): (String, Vec<(String, Failure)>) = (String::new(), Vec::new());
+    for MappedJoint { name, file } in joints {
+        let joint = file.unwrap_or_else(|| arguments.joint.clone());
+        let own = Arguments { joint, out: Some(out.join(&name)), map_joint: Some(name.clone()), ..arguments.clone() };
+        match run_one(&own, progress) {
+            Ok(found) => text += &format!("{name}\n{found}\n"),
+            Err(failure) if failure.exit_code() == EXIT_INTERRUPTED => return Err(failure),
+            Err(failure) => refused.push((name, failure)),
+        }
+    }
+    if refused.is_empty() {
+        return Ok(text);
+    }
+    // What was found of the others is not lost.
+    output::print(&text)?;
+    let messages: Vec<String> =
+        refused.iter().map(|(name, failure)| format!("{name}: {}", failure.message())).collect();
+    let helps = refused.iter().filter_map(|(name, failure)| Some(format!("{name}: {}", failure.full_help()?)));
+    Err(Failure::new(messages.join("; ")).with_help(helps.collect::<Vec<_>>().join("\n")))
+}
+
+fn run_one(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     if arguments.slow.quasi_static {
         return slow_log(arguments, progress);
     }
@@ -136,8 +174,8 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
 }
 
 fn slow_log(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
-    let Arguments { log, topic, column, unit, map, out, json, slow, .. } = arguments;
-    let map = ColumnMap::new(map.as_deref(), column, unit)?;
+    let Arguments { log, topic, column, unit, map, map_joint, out, json, slow, .. } = arguments;
+    let map = ColumnMap::new(map.as_deref(), map_joint.as_deref(), column, unit)?;
     let common =
         quasi_static::Common { log, topic: topic.as_deref(), map: &map, out: out.as_deref(), json: json.as_ref() };
     quasi_static::run(common, slow, progress)

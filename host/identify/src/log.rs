@@ -59,7 +59,12 @@ impl Log {
     /// Reads a file.
     pub fn read(arguments: &Arguments, prior: &PriorModel) -> Outcome<Self> {
         let path = arguments.log.as_path();
-        let map = ColumnMap::new(arguments.map.as_deref(), &arguments.column, &arguments.unit)?;
+        let map = ColumnMap::new(
+            arguments.map.as_deref(),
+            arguments.map_joint.as_deref(),
+            &arguments.column,
+            &arguments.unit,
+        )?;
         let mut columns = log_file::read(path, arguments.topic.as_deref(), &map, prior.ratio(), Columns::will_do)?;
         let log = Self::of(&mut columns, prior);
         log.map_err(|failure| columns.explain(failure).while_doing(path.display()))

@@ -115,7 +115,12 @@ pub fn run(arguments: &Arguments, loaded: &Loaded, progress: &Progress) -> Outco
 impl HeldLog {
     fn read(arguments: &Arguments, prior: &PriorModel) -> Outcome<Self> {
         let path = arguments.log.as_path();
-        let map = ColumnMap::new(arguments.map.as_deref(), &arguments.column, &arguments.unit)?;
+        let map = ColumnMap::new(
+            arguments.map.as_deref(),
+            arguments.map_joint.as_deref(),
+            &arguments.column,
+            &arguments.unit,
+        )?;
         let will_do = |columns: &Columns| columns.will_do_with(false);
         let mut columns = log_file::read(path, arguments.topic.as_deref(), &map, prior.ratio(), will_do)?;
         let log = Self::of(&mut columns, prior);

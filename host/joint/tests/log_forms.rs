@@ -186,3 +186,31 @@ fn lines_before_the_header_and_rows_without_a_value_are_passed_over_and_told() {
     fs::write(folder.join("log.csv"), apart).expect("written");
     identify(folder, &[]).refused(&["no row has all values", "`motor_counts` is empty in", "in one message"]);
 }
+
+#[test]
+fn several_joints_of_one_log_have_a_report_each() {
+    let folder = folder();
+    let folder = folder.path();
+    let mut log = "t,knee_motor,knee_output,knee_torque,hip_motor,hip_output,hip_torque\n".to_owned();
+    for [time, motor, output, torque] in &rows(folder) {
+        writeln!(log, "{time},{motor},{output},{torque},{motor},{output},0").expect("a string");
+    }
+    fs::write(folder.join("log.csv"), log).expect("written");
+    let of = |name: &str| {
+        format!(
+            "[joints.{name}]\njoint = \"q1\"\n[joints.{name}.columns]\nmotor_counts = \"{name}_motor\"\noutput_counts = \
+             \"{name}_output\"\nmotor_torque_N_m = \"{name}_torque\"\n"
+        )
+    };
+    let map = folder.join("map.toml");
+    fs::write(&map, format!("[columns]\ntime_s = \"t\"\n{}{}", of("knee"), of("hip"))).expect("written");
+    // The hip stood still: it is named, and what was found of the knee is not lost.
+    let ended = identify(folder, &["--map", text(&map)]);
+    assert!(ended.out.contains("knee") && ended.out.contains("half-backlash"), "{}", ended.out);
+    ended.refused(&["hip: ", "there is no reversal in this log"]);
+    let found = json(&folder.join("out/knee/findings.json"));
+    holds_the_truth(&found["findings"]);
+    assert!(!folder.join("out/hip").exists());
+    identify(folder, &["--map", text(&map), "--map-joint", "knee"]).well();
+    identify(folder, &["--map", text(&map), "--map-joint", "toe"]).refused(&["no joint `toe`", "hip, knee"]);
+}

@@ -2,7 +2,7 @@
 //! once for all logs of a kind; what is said on the command line goes before it.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
@@ -25,10 +25,36 @@ const PRESETS: [(&str, &str); 5] = [
 #[serde(deny_unknown_fields)]
 struct MapFile {
     /// Name in the log by name here.
+    #[serde(default)]
     columns: BTreeMap<String, String>,
     /// Unit by quantity.
     #[serde(default)]
     units: BTreeMap<String, String>,
+    /// Several joints in one log, by name; the columns above are of all of them.
+    #[serde(default)]
+    joints: BTreeMap<String, JointColumns>,
+}
+
+/// One of several joints in a log.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct JointColumns {
+    /// Its joint file or preset.
+    joint: Option<PathBuf>,
+    /// Name in the log by name here.
+    columns: BTreeMap<String, String>,
+    /// Unit by quantity.
+    #[serde(default)]
+    units: BTreeMap<String, String>,
+}
+
+/// A joint of a map with several.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MappedJoint {
+    /// Its name in the map.
+    pub name: String,
+    /// Its joint file or preset, if the map says it.
+    pub file: Option<PathBuf>,
 }
 
 /// Columns with their names in a log, and units.
@@ -41,11 +67,11 @@ pub struct ColumnMap {
 }
 
 impl ColumnMap {
-    /// What is said on the command line, and of all else what a map says, if there is one.
-    pub fn new(map: Option<&Path>, columns: &[(String, String)], units: &[Unit]) -> Outcome<Self> {
+    /// What is said on the command line, and of all else what a map says, if there is one; `joint` names one of its joints.
+    pub fn new(map: Option<&Path>, joint: Option<&str>, columns: &[(String, String)], units: &[Unit]) -> Outcome<Self> {
         let mut all = Self { columns: columns.to_vec(), units: units.to_vec() };
         let Some(path) = map else { return Ok(all) };
-        let map = read(path)?;
+        let map = of(&text(path)?, joint).map_err(|failure| failure.while_doing(path.display()))?;
         let said = |own: &str| columns.iter().any(|(name, _)| units::quantity_of(name) == units::quantity_of(own));
         all.columns.extend(map.columns.into_iter().filter(|(own, _)| !said(own)));
         // A column that is named with a unit of its own needs none of the map.
@@ -67,27 +93,72 @@ pub fn renaming(text: &str) -> Result<(String, String), String> {
     Err(format!("`{own}` is none of {}", names.join(", ")))
 }
 
-fn read(path: &Path) -> Outcome<ColumnMap> {
+/// The joints of a map, in the order of their names; none of a map of one joint.
+pub fn joints(map: Option<&Path>) -> Outcome<Vec<MappedJoint>> {
+    let Some(path) = map else { return Ok(Vec::new()) };
+    let file = parse(&text(path)?).map_err(|failure| failure.while_doing(path.display()))?;
+    Ok(file.joints.into_iter().map(|(name, own)| MappedJoint { name, file: own.joint }).collect())
+}
+
+fn text(path: &Path) -> Outcome<String> {
     let name = path.to_string_lossy();
-    let preset = PRESETS.iter().find(|(known, _)| *known == name).filter(|_| !path.exists());
-    let text = match preset {
-        Some((_, text)) => (*text).to_owned(),
+    match PRESETS.iter().find(|(known, _)| *known == name).filter(|_| !path.exists()) {
+        Some((_, text)) => Ok((*text).to_owned()),
         None => input::text(path, input::LARGEST_TYPED).map_err(|why| {
             let known: Vec<&str> = PRESETS.iter().map(|(name, _)| *name).collect();
             Failure::new(format!("cannot read the map {name}: {why}"))
                 .with_help(format!("give the path of a TOML file, or one of {}", known.join(", ")))
-        })?,
-    };
-    of(&text).map_err(|failure| failure.while_doing(name))
+        }),
+    }
 }
 
-fn of(text: &str) -> Outcome<ColumnMap> {
-    let help = "[columns] has lines such as motor_angle = \"pos\", [units] such as motor_angle = \"turns\"";
-    let refused = |why: &str| Failure::new(why.to_owned()).with_help(help);
+fn refused(why: &str) -> Failure {
+    Failure::new(why.to_owned()).with_help(
+        "[columns] has lines such as motor_angle = \"pos\", [units] such as motor_angle = \"turns\"; [joints.NAME.columns] and \
+         [joints.NAME.units] those of one of several joints",
+    )
+}
+
+fn parse(text: &str) -> Outcome<MapFile> {
     let file: MapFile = toml::from_str(text).map_err(|error| {
         let line = error.span().map_or(0, |span| text[..span.start].lines().count().max(1));
         refused(&format!("line {line}: {}", error.message()))
     })?;
+    if file.columns.is_empty() && file.joints.is_empty() {
+        return Err(refused("it has neither [columns] nor [joints.NAME.columns]"));
+    }
+    // A name becomes that of a folder.
+    let is_name = |name: &str| {
+        !name.is_empty() && name.chars().all(|letter| letter.is_ascii_alphanumeric() || "_-".contains(letter))
+    };
+    match file.joints.keys().find(|name| !is_name(name)) {
+        Some(name) => Err(refused(&format!("[joints]: the name `{name}` may have letters, digits, `_` and `-`"))),
+        None => Ok(file),
+    }
+}
+
+/// A map out of its text, of one of its joints if it has several: what is said of that one goes before what is said of all.
+fn of(text: &str, joint: Option<&str>) -> Outcome<ColumnMap> {
+    let mut file = parse(text)?;
+    let names: Vec<&str> = file.joints.keys().map(String::as_str).collect();
+    let names = names.join(", ");
+    let own = match joint {
+        None if file.joints.is_empty() => JointColumns::default(),
+        None => {
+            return Err(Failure::new(format!("the map has several joints: {names}"))
+                .with_help("choose one of them with --map-joint NAME"));
+        }
+        Some(name) => file.joints.remove(name).ok_or_else(|| {
+            let help = if names.is_empty() {
+                "it has none: leave --map-joint out".to_owned()
+            } else {
+                format!("it has {names}")
+            };
+            Failure::new(format!("the map has no joint `{name}`")).with_help(help)
+        })?,
+    };
+    file.columns.extend(own.columns);
+    file.units.extend(own.units);
     let columns = file.columns.iter().map(|(own, theirs)| renaming(&format!("{own}={theirs}")));
     let units = file.units.iter().map(|(quantity, unit)| units::parse(&format!("{quantity}={unit}")));
     Ok(ColumnMap {
@@ -104,7 +175,7 @@ mod tests {
     fn every_map_that_comes_along_can_be_read_and_is_documented() {
         let page = include_str!("../../../docs/reference/identify.md");
         for (name, text) in PRESETS {
-            let map = of(text).unwrap_or_else(|failure| panic!("{name}: {failure}"));
+            let map = of(text, None).unwrap_or_else(|failure| panic!("{name}: {failure}"));
             assert!(map.columns.iter().any(|(own, _)| own == "motor_angle"), "{name}");
             assert!(text.contains("# Source: "), "{name}");
             assert!(page.contains(&format!("`{name}`")), "{name}");
@@ -115,7 +186,7 @@ mod tests {
     fn the_command_line_goes_before_a_map() {
         let columns = [("output_counts".to_owned(), "raw".to_owned())];
         let units = [units::parse("motor_angle=deg").expect("a unit")];
-        let map = ColumnMap::new(Some(Path::new("moteus")), &columns, &units).expect("a preset");
+        let map = ColumnMap::new(Some(Path::new("moteus")), None, &columns, &units).expect("a preset");
         assert_eq!(map.columns.iter().filter(|(own, _)| own.starts_with("output")).count(), 1);
         assert_eq!(map.units.iter().filter(|unit| unit.name() == "motor_angle").count(), 1);
         assert!(map.units.iter().all(|unit| unit.name() != "output_angle"));
@@ -130,8 +201,21 @@ mod tests {
             ("[column]\n", "line 1"),
             ("", "columns"),
         ] {
-            let refused = of(text).expect_err(text);
+            let refused = of(text, None).expect_err(text);
             assert!(refused.message().contains(why), "{text}: {refused}");
         }
+    }
+
+    #[test]
+    fn a_joint_of_several_has_its_own_columns_and_those_of_all() {
+        let text = "[columns]\ntime_s = \"t\"\n[joints.knee.columns]\nmotor_counts = \"position[0]\"\n[joints.hip.columns]\nmotor_counts \
+                    = \"position[2]\"\n";
+        let map = of(text, Some("hip")).expect("a joint");
+        let pair = |own: &str, theirs: &str| (own.to_owned(), theirs.to_owned());
+        assert_eq!(map.columns, [pair("motor_counts", "position[2]"), pair("time_s", "t")]);
+        assert!(of(text, None).expect_err("two joints").message().contains("several joints: hip, knee"));
+        assert!(of(text, Some("toe")).expect_err("no toe").help().is_some_and(|help| help.contains("hip, knee")));
+        let outside = of("[joints.\"../x\".columns]\nmotor_counts = \"a\"\n", Some("../x"));
+        assert!(outside.expect_err("a folder elsewhere").message().contains("may have letters"));
     }
 }

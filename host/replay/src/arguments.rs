@@ -45,6 +45,9 @@ pub struct ReplayArguments {
     /// Names and units of a maker's columns: a file, or ros2-joint-states, moteus, odrive, vesc-tool, feetech
     #[arg(long, value_name = "MAP", requires = "joint")]
     pub map: Option<PathBuf>,
+    /// Joint of a map that has several
+    #[arg(long, value_name = "NAME", requires = "map")]
+    pub map_joint: Option<String>,
     /// Writes one of N control periods to estimates.csv and estimates.mcap [default: about a thousand a second]
     #[arg(long, value_name = "N")]
     pub every: Option<NonZeroU16>,

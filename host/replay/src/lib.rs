@@ -67,7 +67,8 @@ impl Start {
 /// Replays a log, writes what comes of it and prints it; fails if a run is not repeated.
 pub fn run(arguments: &ReplayArguments, progress: &Progress) -> Outcome<String> {
     let path = arguments.log.as_path();
-    let map = ColumnMap::new(arguments.map.as_deref(), &arguments.column, &arguments.unit)?;
+    let map =
+        ColumnMap::new(arguments.map.as_deref(), arguments.map_joint.as_deref(), &arguments.column, &arguments.unit)?;
     let read: Vec<&Path> = [Some(path), arguments.joint.as_deref()].into_iter().flatten().collect();
     folder::check_files(&[("json", arguments.json.as_deref())], &read)?;
     progress.stage("reading");

@@ -74,7 +74,7 @@ struct HeldLog {
 
 /// Reads a log, writes what it shows and prints it.
 pub fn run(arguments: &Arguments, loaded: &Loaded, progress: &Progress) -> Outcome<String> {
-    let prior = PriorModel::new(loaded, arguments);
+    let prior = PriorModel::new(loaded, arguments)?;
     folder::check_files(&[("json", arguments.json.as_deref())], &[&arguments.log, &arguments.joint])?;
     let folder = Folder::choose(arguments.out.as_deref(), "identify", &prior.name, &[REPORT, JOINT, FINDINGS])?;
     progress.stage("fitting");

@@ -8,6 +8,7 @@ use std::fmt;
 use crate::notes::MOST_PROBLEMS;
 use crate::{Problem, Severity};
 use miette::{Diagnostic, LabeledSpan, NamedSource, Report};
+use report::escape::{escaped, place_in_escaped};
 
 /// A file with all its problems.
 #[derive(Debug)]
@@ -43,12 +44,24 @@ pub fn report(name: &str, text: &str, problems: &[Problem]) -> Report {
         let before = text.as_bytes().iter().take(problem.span.start);
         1 + before.filter(|byte| **byte == b'\n').count()
     };
-    let place = |problem: &Problem| Place(problem.clone(), (!drawn).then(|| line(problem)));
+    let place = |problem: &Problem| Place(shown(problem, text), (!drawn).then(|| line(problem)));
+    let name = escaped(name);
     Report::new(Rejected {
-        name: name.to_owned(),
-        source: drawn.then(|| NamedSource::new(name, text.to_owned())),
+        name: name.clone().into_owned(),
+        source: drawn.then(|| NamedSource::new(name, escaped(text).into_owned())),
         places: problems.iter().map(place).collect(),
     })
+}
+
+/// Returns a problem in words that may be shown, at its place in the text that is drawn.
+fn shown(problem: &Problem, text: &str) -> Problem {
+    let [start, end] = [problem.span.start, problem.span.end].map(|place| place_in_escaped(text, place));
+    Problem {
+        span: start..end,
+        message: escaped(&problem.message).into_owned(),
+        help: escaped(&problem.help).into_owned(),
+        ..problem.clone()
+    }
 }
 
 impl fmt::Display for Rejected {

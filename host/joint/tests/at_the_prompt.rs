@@ -113,3 +113,50 @@ fn results_go_below_the_folder_that_the_user_works_in() {
         .refused(&["report.html has been changed", "--out DIR"]);
     assert_eq!(fs::read_to_string(mine).expect("still there"), "my notes");
 }
+
+/// Seen to fail: title, file name and argument reached the terminal as they were.
+#[test]
+fn text_of_files_and_arguments_is_shown_escaped() {
+    let place = folder();
+    let q1 = joint_file::preset("q1").expect("a preset");
+    let evil = "\u{1b}]0;x\u{7}\u{1b}[2J\u{202e}";
+    let hidden = "\\u001b[31mQ1\\u009b2J\\u202e";
+    let named = q1.replacen("name = \"Q1\"", &format!("name = \"{hidden}\""), 1);
+    let described = q1.replacen("description = \"", &format!("description = \"{hidden}"), 1);
+    assert!(named != q1 && described != q1);
+    fs::write(place.path().join("named.toml"), &named).expect("room");
+    fs::write(place.path().join("described.toml"), &described).expect("room");
+    fs::write(place.path().join("broken.toml"), format!("# \u{202e}\nnonsense = \"\u{202e}\"\n")).expect("room");
+    fs::write(place.path().join(format!("{evil}.toml")), "nonsense = 1\n").expect("room");
+    let title =
+        "title = \"\\u001b[31mtitle\"\nduration_s = 0.2\nsettle_s = 0.1\nprofile = \"T2\"\n[controller]\nrivals = []\n";
+    fs::write(place.path().join("test.toml"), title).expect("room");
+    let evil_file = format!("{evil}.toml");
+    let no_such = format!("{evil}missing");
+    let lines: [(&[&str], i32); 9] = [
+        (&["check", "named.toml"], 2),
+        (&["check", "described.toml"], 0),
+        (&["check", "described.toml", "--json", "-"], 0),
+        (&["check", "broken.toml"], 2),
+        (&["check", &evil_file], 2),
+        (&["check", &no_such], 2),
+        (&["image", "--board", &no_such], 2),
+        (&["check", &format!("--{no_such}")], 2),
+        (&["hil", "test.toml", "--host", "--out", "tests"], 0),
+    ];
+    for (line, code) in lines {
+        let ended = joint_in(place.path(), line);
+        assert_eq!(ended.code, Some(code), "{line:?}: {ended:?}");
+        for said in [&ended.out, &ended.err] {
+            assert!(report::escape::is_plain(said), "{line:?}: {ended:?}");
+        }
+        if code == 2 {
+            assert!(ended.err.contains("\\u{202e}"), "{line:?} does not show what is there: {ended:?}");
+        }
+    }
+    for file in ["tests/report.html", "tests/results.json", "tests/junit.xml"] {
+        let path = place.path().join(file);
+        let text = fs::read_to_string(&path).unwrap_or_default();
+        assert!(!text.contains('\u{1b}'), "{file}");
+    }
+}

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::io::{self, Write};
 
+use crate::escape::escaped;
+
 /// Exit code of a run whose checks did not all hold.
 pub const EXIT_CHECK_FAILED: u8 = 1;
 /// Exit code of bad input or of an environment that cannot be worked with.
@@ -91,10 +93,10 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.report {
             Some(report) => write!(f, "{report:?}")?,
-            None => write!(f, "error: {}", self.message)?,
+            None => write!(f, "error: {}", escaped(&self.message))?,
         }
         match &self.help {
-            Some(help) => write!(f, "\n  help: {}", help.replace('\n', "\n        ")),
+            Some(help) => write!(f, "\n  help: {}", escaped(help).replace('\n', "\n        ")),
             None => Ok(()),
         }
     }

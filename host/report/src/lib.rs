@@ -5,6 +5,7 @@ pub mod checks;
 pub mod command_line;
 pub mod contacts;
 pub mod document;
+pub mod escape;
 pub mod failure;
 pub mod folder;
 pub mod input;

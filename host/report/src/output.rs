@@ -10,6 +10,7 @@ use anstream::stream::RawStream;
 use anstream::{AutoStream, ColorChoice};
 use serde::Serialize;
 
+use crate::escape::{escaped, escaped_json};
 use crate::failure::{Failure, Outcome};
 use crate::folder;
 use crate::write::{is_standard_output, record_into, write_record, write_text};
@@ -41,11 +42,13 @@ pub fn print(text: &str) -> Outcome<()> {
     print_out(&on(&io::stdout(), text))
 }
 
-/// A text as a stream wants it: with colours on a terminal that has them, unless NO_COLOR or its like say otherwise.
+/// Returns a text as a stream wants it: escaped, then with colours on a terminal that has them, unless NO_COLOR or its like
+/// say otherwise.
 pub fn on<'t>(stream: &impl RawStream, text: &'t str) -> Cow<'t, str> {
+    let text = escaped(text);
     match AutoStream::choice(stream) {
-        ColorChoice::Never => Cow::Borrowed(text),
-        _ => Cow::Owned(with_failures_in_red(text)),
+        ColorChoice::Never => text,
+        _ => Cow::Owned(with_failures_in_red(&text)),
     }
 }
 
@@ -60,7 +63,7 @@ fn with_failures_in_red(text: &str) -> String {
 
 /// Writes JSON to the file that is asked for; "-" is standard output.
 pub fn write_json(file: &Path, json: &str) -> Outcome<()> {
-    if is_standard_output(file) { print_out(json) } else { write_text(file, json) }
+    if is_standard_output(file) { print_out(&escaped_json(json)) } else { write_text(file, json) }
 }
 
 /// The same for a record that is written in one line.
@@ -71,7 +74,7 @@ pub fn write_json_record(file: &Path, record: &impl Serialize) -> Outcome<()> {
     let mut line = Vec::new();
     record_into(&mut line, record)
         .map_err(|error| Failure::new(format!("cannot write the record as JSON: {error}")))?;
-    print_out(&String::from_utf8_lossy(&line))
+    print_out(&escaped_json(&String::from_utf8_lossy(&line)))
 }
 
 fn print_out(text: &str) -> Outcome<()> {
@@ -106,7 +109,7 @@ pub fn deliver(figures: &impl Serialize, text: &str, wanted: Option<&Path>, read
 
 /// Prints a remark on standard error, as far as anyone listens.
 pub fn remark(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{text}");
+    let _ = writeln!(io::stderr().lock(), "{}", escaped(text));
 }
 
 #[cfg(test)]

@@ -1,13 +1,38 @@
 //! Progress for the user: one line with the current stage and how far it is. When standard error is not a terminal,
 //! only stages that change the machine are printed.
 
+use std::io::{self, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::escape::escaped;
 use crate::failure::Outcome;
 use crate::interruption;
+
+/// The line that is shown now: a question is asked above it.
+static SHOWN: Mutex<Option<ProgressBar>> = Mutex::new(None);
+
+/// Asks the user for a line of text on the terminal, without a moving line in its way. `None` where the input has ended.
+pub fn ask(question: &str) -> Option<String> {
+    let ask = || {
+        let mut stderr = io::stderr().lock();
+        let _ = write!(stderr, "{}", escaped(question)).and_then(|()| stderr.flush());
+        let mut line = String::new();
+        let read = io::stdin().read_line(&mut line).unwrap_or_default();
+        (read > 0).then_some(line)
+    };
+    match shown().clone() {
+        Some(bar) => bar.suspend(ask),
+        None => ask(),
+    }
+}
+
+/// A thread that panicked has left it as it was.
+fn shown() -> MutexGuard<'static, Option<ProgressBar>> {
+    SHOWN.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// The progress line; any thread may update it.
 pub struct Progress {
@@ -71,6 +96,7 @@ impl Progress {
 
     /// A word from a stage. Output of other programs passes by; what this program says itself stays.
     pub fn say(&self, line: &str) {
+        let line = &*escaped(line);
         let own = line.starts_with(|first: char| first.is_ascii_lowercase()) && !line.starts_with("warning");
         match &*self.bar() {
             Some(bar) if !bar.is_hidden() && own => bar.println(line),
@@ -84,6 +110,7 @@ impl Progress {
     pub fn clear(&self) {
         if let Some(bar) = self.bar().take() {
             bar.finish_and_clear();
+            shown().take();
         }
     }
 
@@ -94,7 +121,8 @@ impl Progress {
 
     fn show(&self, bar: ProgressBar, what: &str) {
         self.clear();
-        bar.set_prefix(what.to_owned());
+        bar.set_prefix(escaped(what).into_owned());
+        *shown() = Some(bar.clone());
         *self.bar() = Some(bar);
     }
 }

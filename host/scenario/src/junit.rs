@@ -6,6 +6,7 @@ use std::fmt::Write;
 
 use super::record::{NotRun, TestRecord, TestsRecord};
 use report::checks::{Bound, Verdict};
+use report::escape;
 
 /// The whole document.
 pub fn render(record: &TestsRecord) -> String {
@@ -89,6 +90,6 @@ fn left_out(xml: &mut String, not_run: &NotRun, date: &str) {
 }
 
 fn escaped(text: &str) -> String {
-    let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;");
-    text.chars().filter(|letter| !letter.is_control() || *letter == '\n').collect()
+    let text = escape::escaped(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    text.replace('"', "&quot;").replace(['\t', '\r'], " ")
 }

@@ -6,6 +6,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 use super::blocks::{Align, Block, Checks, Document, Medium, Notice, Picture, Section, Table};
 use super::text::{Span, Text, Tone};
 use crate::checks::{Check, Source, Verdict};
+use crate::escape::escaped;
 use crate::number::PAGE;
 use crate::plot::ink;
 
@@ -17,7 +18,7 @@ const NARROW: usize = 6;
 /// How a page says who wrote it.
 const GENERATOR: &str = "joint";
 
-/// The whole page.
+/// Returns the whole page, without characters that reorder or hide what is read.
 pub fn html(document: &Document) -> String {
     let page = markup! {
         (DOCTYPE)
@@ -44,7 +45,7 @@ pub fn html(document: &Document) -> String {
             } }
         }
     };
-    page.into_string()
+    escaped(&page.into_string()).into_owned()
 }
 
 fn class(tone: Tone) -> &'static str {

@@ -3,6 +3,7 @@
 use super::blocks::{Align, Block, Document, Medium, Notice, Table};
 use super::terminal::checks;
 use super::text::{Span, Text};
+use crate::escape::escaped;
 
 /// The blocks of a document, ending with a newline: its heading is the file's. On a terminal there are no pictures.
 pub fn markdown(document: &Document, medium: Medium) -> String {
@@ -10,7 +11,7 @@ pub fn markdown(document: &Document, medium: Medium) -> String {
     blocks(&document.blocks, medium, &mut text);
     text.truncate(text.trim_end().len());
     text.push('\n');
-    text
+    escaped(&text).into_owned()
 }
 
 fn inline(text: &Text) -> String {

@@ -2,8 +2,9 @@
 //! the tables that the image carries. The board file is named by `BOARD_FILE` (default: the preset of the chip whose feature is
 //! chosen), the joint file by `JOINT_FILE` (default: `joints/q1.toml` of the workspace), the tick rate by `JOINT_TICK_RATE` in Hz
 //! (default: 20000); what can be wrong with either is said as a build error. Roles that control are made for one control
-//! period a tick, for the bandwidth `JOINT_BANDWIDTH` in rad/s (default: 60, or as much as the joint allows), without an output encoder where
-//! `JOINT_MOTOR_ONLY` is 1, and from the joint file `JOINT_TOLD` if a controller is to be told another joint than the true
+//! period a tick, for the bandwidth `JOINT_BANDWIDTH` in rad/s (default: 60, or as much as the joint allows), for the
+//! torque `JOINT_PEAK_TORQUE` in N m that the teeth shall pass on at most (default: as the joint allows), without an output encoder
+//! where `JOINT_MOTOR_ONLY` is 1, and from the joint file `JOINT_TOLD` if a controller is to be told another joint than the true
 //! one. `JOINT_FORCED` is 1 where the joint command builds what the board has no time for; the hello says so. Measuring binaries carry the joints that
 //! `MEASURED_JOINTS` lists, in the manner of a search path, one module of tables for each.
 
@@ -104,14 +105,13 @@ fn write_tables(chip: Chip) -> Result<(), String> {
 
 /// Tables of the roles that control. A joint that cannot be controlled can still be simulated: only their binaries fail.
 fn control(file: &Path, told: &Path, chip: Chip) -> Result<String, String> {
-    println!("cargo::rerun-if-env-changed=JOINT_BANDWIDTH");
     println!("cargo::rerun-if-env-changed=JOINT_MOTOR_ONLY");
-    let bandwidth = match variable("JOINT_BANDWIDTH").filter(|typed| !typed.is_empty()) {
-        Some(typed) => Some(typed.parse().map_err(|_| format!("JOINT_BANDWIDTH={typed}: want a number of rad/s"))?),
-        None => None,
-    };
     let tick_rate = tick_rate()?;
-    let request = ControlRequest { bandwidth, output_encoder: variable("JOINT_MOTOR_ONLY") != Some("1".into()) };
+    let request = ControlRequest {
+        bandwidth: number("JOINT_BANDWIDTH", "rad/s")?,
+        peak_torque: number("JOINT_PEAK_TORQUE", "N m")?,
+        output_encoder: variable("JOINT_MOTOR_ONLY") != Some("1".into()),
+    };
     let (mut joint, mut nominal_joint) = (read(file)?, read(told)?);
     [&mut joint, &mut nominal_joint].into_iter().for_each(|joint| joint.surroundings.control_rate = tick_rate);
     let nominal = NominalPlant { joint: &nominal_joint.parameters, surroundings: &nominal_joint.surroundings, request };
@@ -161,6 +161,13 @@ fn chip() -> Result<Chip, String> {
     let chosen = |chip: &Chip| variable(&format!("CARGO_FEATURE_{}", chip.name().to_uppercase())).is_some();
     let names = Chip::ALL.map(Chip::name);
     Chip::ALL.into_iter().find(chosen).ok_or_else(|| format!("no chip: want a feature of {names:?}"))
+}
+
+/// A number from the environment; `None` where the variable is absent or empty.
+fn number(name: &str, unit: &str) -> Result<Option<f64>, String> {
+    println!("cargo::rerun-if-env-changed={name}");
+    let Some(typed) = variable(name).filter(|typed| !typed.is_empty()) else { return Ok(None) };
+    typed.parse().map(Some).map_err(|_| format!("{name}={typed}: want a number of {unit}"))
 }
 
 fn tick_rate() -> Result<u32, String> {

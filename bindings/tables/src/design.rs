@@ -30,7 +30,7 @@ pub struct Wanted<'a> {
 /// use table_blob::{Blob, Wanted, design};
 ///
 /// let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
-/// let request = ControlRequest { bandwidth: None, output_encoder: true };
+/// let request = ControlRequest::USUAL;
 /// let nominal = NominalPlant { joint: &q1.parameters, surroundings: &q1.surroundings, request };
 /// let words = design(&Wanted { plant: None, nominal, processor: Processor::STM32F405 })?;
 /// let blob = Blob::open(&words).unwrap();

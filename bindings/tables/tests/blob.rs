@@ -8,7 +8,7 @@ use model_core::numbers::digest;
 use model_core::virtual_joint::design::design_surroundings;
 use table_blob::{Blob, BlobError, Gears, VERSION, Wanted, design};
 
-const REQUEST: ControlRequest = ControlRequest { bandwidth: None, output_encoder: true };
+const REQUEST: ControlRequest = ControlRequest::USUAL;
 /// Words of version with length, and of the digest.
 const VERSION_AT: usize = 1;
 const DIGEST_AT: usize = 2;

@@ -11,7 +11,7 @@ use report::folder::{Folder, file_part};
 use table_blob::{VERSION, Wanted, design};
 
 /// What a controller is asked for unless something else is said.
-pub const USUAL: ControlRequest = ControlRequest { bandwidth: None, output_encoder: true };
+pub const USUAL: ControlRequest = ControlRequest::USUAL;
 
 /// What is written.
 const FILES: [&str; 3] = ["*_tables.h", "*_tables.c", "*_tables.bin"];
@@ -79,7 +79,11 @@ pub fn run(arguments: &Arguments) -> Outcome<String> {
         [&loaded.file, told.as_ref().map_or(&loaded.file, |told| &told.file)].map(Clone::clone);
     let rate = arguments.rate.unwrap_or(joint.surroundings.control_rate);
     [&mut joint, &mut nominal].into_iter().for_each(|it| it.surroundings.control_rate = rate);
-    let request = ControlRequest { bandwidth: arguments.bandwidth, output_encoder: !arguments.motor_only };
+    let request = ControlRequest {
+        bandwidth: arguments.bandwidth,
+        output_encoder: !arguments.motor_only,
+        ..ControlRequest::USUAL
+    };
     let tables = make(&joint, &nominal, request, !arguments.without_plant, &arguments.board)
         .map_err(|failure| failure.while_doing(format_args!("tables of {}", loaded.name)))?;
     let folder = Folder::prepare(arguments.out.as_deref(), "tables", &joint.parameters.name, &FILES)?;

@@ -5,7 +5,7 @@ use std::format;
 use std::string::String;
 
 use crate::compensation::CompensationTables;
-use crate::compensation::design::{compensation_settings, design_compensation, good_bandwidth};
+use crate::compensation::design::{CompensationSettings, compensation_settings, design_compensation, good_bandwidth};
 use crate::gears::design::{DesignError, Effort, Processor, design_scheme};
 use crate::gears::{Scheme, Tables};
 use crate::numbers::digest;
@@ -24,8 +24,16 @@ use parameters::{JointParameters, ParameterError, Surroundings};
 pub struct ControlRequest {
     /// Bandwidth of the loop [rad/s]; [`good_bandwidth`] if none is asked for.
     pub bandwidth: Option<f64>,
+    /// Most that the teeth shall pass on in position mode, referred to the link [N m]; if left out, as
+    /// [`CompensationSettings::peak_torque`] says.
+    pub peak_torque: Option<f64>,
     /// Whether the observer is shown the output encoder.
     pub output_encoder: bool,
+}
+
+impl ControlRequest {
+    /// Requirements of a controller with all its sensors and no limits of its own.
+    pub const USUAL: Self = Self { bandwidth: None, peak_torque: None, output_encoder: true };
 }
 
 /// The nominal plant that a controller is designed for, and the requirements on it.
@@ -46,6 +54,12 @@ impl NominalPlant<'_> {
             Some(asked) => Ok(asked),
             None => good_bandwidth(self.joint, self.surroundings),
         }
+    }
+
+    /// Settings that the compensation is designed from.
+    pub fn compensation_settings(&self) -> Result<CompensationSettings, DesignError> {
+        let usual = compensation_settings(self.surroundings, self.bandwidth()?);
+        Ok(CompensationSettings { peak_torque: self.request.peak_torque, ..usual })
     }
 }
 
@@ -72,11 +86,10 @@ pub struct ControlTables {
 /// Tables of a controller for the nominal plant.
 pub fn control_tables(nominal: &NominalPlant<'_>) -> Result<ControlTables, DesignError> {
     let settings = settings(nominal);
-    let bandwidth = nominal.bandwidth()?;
     Ok(ControlTables {
         observer: design_observer(nominal.joint, &settings)?,
         probe: design_usual_probe(nominal.joint, &settings)?,
-        compensation: design_compensation(nominal.joint, &compensation_settings(nominal.surroundings, bandwidth))?,
+        compensation: design_compensation(nominal.joint, &nominal.compensation_settings()?)?,
     })
 }
 

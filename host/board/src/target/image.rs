@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use joint_file::named;
 use link::messages::Role;
+use model_core::controller::design::ControlRequest;
 use object::{Object, ObjectSegment};
 use sha2::{Digest, Sha256};
 
@@ -90,6 +91,9 @@ pub struct Control {
     pub rate: u32,
     /// Bandwidth of the loop [rad/s]; what is good for the joint that the controller is told if none is asked for.
     pub bandwidth: Option<f64>,
+    /// Most that the teeth shall pass on in position mode, referred to the link [N m]; by the firmware's default if none is
+    /// asked for.
+    pub peak_torque: Option<f64>,
     /// Whether the observer is shown the output encoder.
     pub output_encoder: bool,
     /// Built although the board has no time for it.
@@ -99,7 +103,14 @@ pub struct Control {
 impl Control {
     /// At a rate, with the defaults of the firmware's build.
     pub fn usual(rate: u32) -> Self {
-        Self { rate, bandwidth: None, output_encoder: true, forced: false }
+        let ControlRequest { bandwidth, peak_torque, output_encoder } = ControlRequest::USUAL;
+        Self { rate, bandwidth, peak_torque, output_encoder, forced: false }
+    }
+
+    /// Returns the requirements that the firmware's build designs the controller to.
+    pub fn request(&self) -> ControlRequest {
+        let Self { bandwidth, peak_torque, output_encoder, .. } = *self;
+        ControlRequest { bandwidth, peak_torque, output_encoder }
     }
 }
 
@@ -166,19 +177,22 @@ fn finish(
     name: &str,
     say: Say<'_>,
 ) -> Outcome<Image> {
-    let (rate, bandwidth) =
-        (control.rate.to_string(), control.bandwidth.map_or_else(String::new, |asked| asked.to_string()));
-    let [motor_only, forced] = [!control.output_encoder, control.forced].map(|yes| if yes { "1" } else { "0" });
+    let ControlRequest { bandwidth, peak_torque, output_encoder } = control.request();
+    let rate = control.rate.to_string();
+    let [bandwidth, peak_torque] =
+        [bandwidth, peak_torque].map(|asked| asked.map_or_else(String::new, |asked| asked.to_string()));
+    let [motor_only, forced] = [!output_encoder, control.forced].map(|yes| if yes { "1" } else { "0" });
     let own_flags = if has_room_for_all(board) { "" } else { LESS_INLINED };
     let mut target_flags = toolchain.target_flags();
     target_flags.push(own_flags);
-    let environment: [(&str, &OsStr); 8] = [
+    let environment: [(&str, &OsStr); 9] = [
         (TARGET_FLAGS, &target_flags),
         ("BOARD_FILE", board.file.as_os_str()),
         ("JOINT_FILE", truth.as_os_str()),
         ("JOINT_TOLD", told.as_os_str()),
         ("JOINT_TICK_RATE", rate.as_ref()),
         ("JOINT_BANDWIDTH", bandwidth.as_ref()),
+        ("JOINT_PEAK_TORQUE", peak_torque.as_ref()),
         ("JOINT_MOTOR_ONLY", motor_only.as_ref()),
         ("JOINT_FORCED", forced.as_ref()),
     ];

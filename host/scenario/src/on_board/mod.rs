@@ -16,12 +16,13 @@ mod twin;
 
 use joint_file::JointFile;
 use link::messages::{Role, RunMode, RunSettings, Statistics};
-use model_core::controller::design::{ControlRequest, NominalPlant, control_source};
+use model_core::controller::design::{NominalPlant, control_source};
 pub use request::BoardRequest;
 use request::{check_request, check_test};
 
 use super::case::{Case, read_told};
 use super::execution::RunSpec;
+use super::file::TestFile;
 use super::plant::PlantName;
 use super::record::BoardRun;
 use super::rig::RunError;
@@ -56,6 +57,16 @@ struct Pair {
     nominal: JointFile,
     truth: JointFile,
     control: Control,
+}
+
+/// Returns what the image of a test's controller is designed to, as its file asks for it.
+fn control(file: &TestFile, case: &Case) -> Outcome<Control> {
+    Ok(Control {
+        bandwidth: Some(case.bandwidth(file)?),
+        peak_torque: file.peak_torque,
+        output_encoder: file.output_encoder,
+        ..Control::usual(case.nominal_surroundings.control_rate)
+    })
 }
 
 impl<'w> Boards<'w> {
@@ -139,12 +150,7 @@ impl<'w> Boards<'w> {
         let rate = case.nominal_surroundings.control_rate;
         let (mut nominal, mut truth) = (read_told(&nominal_text)?, read_told(&truth_text)?);
         [&mut nominal, &mut truth].into_iter().for_each(|joint| joint.surroundings.control_rate = rate);
-        let control = Control {
-            rate,
-            bandwidth: Some(case.bandwidth(&test.file)?),
-            output_encoder: test.file.output_encoder,
-            forced: self.request.force,
-        };
+        let control = Control { forced: self.request.force, ..control(&test.file, case)? };
         Ok(Pair { texts: [truth_text, nominal_text], nominal, truth, control })
     }
 
@@ -178,7 +184,7 @@ impl<'w> Boards<'w> {
 
     fn expected(&self, pair: &Pair, image: Option<&Image>) -> Outcome<Expected> {
         let Pair { nominal, truth, control, .. } = pair;
-        let request = ControlRequest { bandwidth: control.bandwidth, output_encoder: control.output_encoder };
+        let request = control.request();
         let board = self.request.board;
         let nominal = NominalPlant { joint: &nominal.parameters, surroundings: &nominal.surroundings, request };
         let source = control_source(&truth.parameters, &truth.surroundings, &nominal, &board.processor())
@@ -225,6 +231,39 @@ impl<'w> Boards<'w> {
             period_counts: figure(&|statistics| statistics.period),
             overruns: figure(&|statistics| statistics.overruns),
             stack_bytes: figure(&|statistics| statistics.stack_used),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use model_core::controller::design::control_tables;
+
+    use super::*;
+    use crate::file;
+
+    /// Seen to fail for `peak_torque_N_m` while the image did not get it.
+    #[test]
+    fn image_and_twin_have_the_tables_of_every_controller_key() {
+        let text = joint_file::preset("q1").expect("a preset");
+        let tables = |keys: &str| {
+            let test = file::read(&format!("profile = \"T2\"\n[controller]\n{keys}")).expect("a good file");
+            let mut case = Case::new(&test, text, 1, None).expect("a case");
+            case.round_nominal().expect("a joint file");
+            let designed = case.design(&test).expect("a controller");
+            let nominal = NominalPlant {
+                joint: &case.nominal,
+                surroundings: &case.nominal_surroundings,
+                request: control(&test, &case).expect("a bandwidth").request(),
+            };
+            let image = control_tables(&nominal).expect("a controller");
+            assert_eq!(format!("{:?}", image.compensation), format!("{:?}", designed.compensation), "{keys}");
+            assert_eq!(format!("{:?}", image.observer), format!("{:?}", designed.observer), "{keys}");
+            format!("{:?}{:?}", image.compensation, image.observer)
+        };
+        let usual = tables("");
+        for keys in ["peak_torque_N_m = 3.0", "bandwidth_rad_per_s = 40", "output_encoder = false"] {
+            assert_ne!(tables(keys), usual, "{keys} does nothing");
         }
     }
 }

@@ -160,7 +160,12 @@ fn read(file: &Path) -> Result<joint_file::JointFile, String> {
 fn chip() -> Result<Chip, String> {
     let chosen = |chip: &Chip| variable(&format!("CARGO_FEATURE_{}", chip.name().to_uppercase())).is_some();
     let names = Chip::ALL.map(Chip::name);
-    Chip::ALL.into_iter().find(chosen).ok_or_else(|| format!("no chip: want a feature of {names:?}"))
+    let mut all = Chip::ALL.into_iter().filter(chosen);
+    let first = all.next();
+    if all.next().is_some() {
+        return Err("one chip at a time: build with --no-default-features --features <chip>".to_owned());
+    }
+    first.ok_or_else(|| format!("no chip: want a feature of {names:?}; {}", board_file::OTHER_CHIPS))
 }
 
 /// A number from the environment; `None` where the variable is absent or empty.

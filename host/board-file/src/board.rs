@@ -7,6 +7,8 @@ use crate::chip::{Chip, Slot};
 use crate::pin::{Alternate, Pin};
 use crate::pll::Plls;
 
+/// RAM that is left for the stack at least [byte].
+const STACK: u32 = 8 << 10;
 /// Where the flash begins.
 pub const FLASH_START: u32 = 0x0800_0000;
 /// Where the RAM begins.
@@ -200,6 +202,11 @@ impl Board {
     /// What an image may take of the flash, from its start to the first slot.
     pub fn image_bytes(&self) -> u32 {
         self.slots()[0].address - FLASH_START
+    }
+
+    /// Returns the RAM that the statics of an image may take: the stack has the rest [byte].
+    pub fn static_bytes(&self) -> u32 {
+        self.ram_bytes - STACK
     }
 
     /// Its core clock [Hz].

@@ -1,12 +1,8 @@
 //! The chips that images can be built for, and what each of them is.
 
-mod f405;
 mod facts;
-mod g431;
-mod g474;
-mod h743;
 
-pub use facts::Slot;
+pub use facts::{ImageSize, Slot};
 
 use model_core::gears::design::Processor;
 
@@ -16,35 +12,54 @@ use facts::{Facts, Package, Variant};
 
 pub(crate) use facts::{CanUnit, SerialUnit, SpiUnit, TimerUnit};
 
-/// A chip.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Chip {
+/// Help where a chip is refused: the library is built for a core, not for a chip.
+pub const OTHER_CHIPS: &str = "the C library serves any chip with a Cortex-M4F, M7 or M33 beside the firmware that it has: \
+                               docs/in-your-firmware.md; a new chip for the firmware: docs/add-a-chip.md";
+
+/// Declares the chips: a line each with its name and the file of its facts.
+macro_rules! chips {
+    ($($(#[$what:meta])* $name:ident => $file:ident,)+) => {
+        $(mod $file;)+
+
+        /// A chip.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum Chip {
+            $($(#[$what])* $name,)+
+        }
+
+        impl Chip {
+            /// Every chip.
+            pub const ALL: [Self; [$(stringify!($name)),+].len()] = [$(Self::$name),+];
+
+            pub(crate) fn facts(self) -> &'static Facts {
+                match self {
+                    $(Self::$name => &$file::FACTS,)+
+                }
+            }
+        }
+    };
+}
+
+chips! {
     /// STM32F405: Cortex-M4F at 168 MHz.
-    Stm32f405,
+    Stm32f405 => f405,
     /// STM32G474: Cortex-M4F at 170 MHz.
-    Stm32g474,
+    Stm32g474 => g474,
     /// STM32G431: the same with less memory.
-    Stm32g431,
+    Stm32g431 => g431,
     /// STM32H743: Cortex-M7 at 400 MHz.
-    Stm32h743,
+    Stm32h743 => h743,
 }
 
 impl Chip {
-    /// Every chip.
-    pub const ALL: [Self; 4] = [Self::Stm32f405, Self::Stm32g474, Self::Stm32g431, Self::Stm32h743];
-
-    pub(crate) fn facts(self) -> &'static Facts {
-        match self {
-            Self::Stm32f405 => &f405::FACTS,
-            Self::Stm32g474 => &g474::FACTS,
-            Self::Stm32g431 => &g431::FACTS,
-            Self::Stm32h743 => &h743::FACTS,
-        }
-    }
-
     /// Its name: the firmware's feature.
     pub fn name(self) -> &'static str {
         self.facts().name
+    }
+
+    /// Returns the family whose registers it has: the firmware's files of a chip are for a family.
+    pub fn family(self) -> &'static str {
+        self.facts().family
     }
 
     /// The chip of a name.
@@ -65,6 +80,11 @@ impl Chip {
     /// Its internal oscillator [Hz], which drives it from a reset on.
     pub fn internal_oscillator(self) -> u32 {
         self.facts().internal_oscillator
+    }
+
+    /// Returns what the image of joint Q1 in a role takes, as it was linked; the role as `--role` names it.
+    pub fn image_size(self, role: &str) -> Option<ImageSize> {
+        self.facts().images.iter().copied().find(|image| image.role == role)
     }
 
     /// Whether it can be the slave of a motor controller on SPI.

@@ -7,9 +7,6 @@ use crate::chip::Chip;
 use crate::pin::Alternate;
 use crate::pll::Pll;
 
-/// What is left of the RAM for the stack at least.
-const STACK: u32 = 8 << 10;
-
 /// The board as a module of constants, to be included in one.
 ///
 /// ```
@@ -98,7 +95,7 @@ pub fn linker_script(board: &Board) -> String {
     let end = RAM_START + board.ram_bytes;
     let [first, _] = board.slots();
     let (flash, image, ram) = (board.flash_bytes >> 10, board.image_bytes() >> 10, board.ram_bytes >> 10);
-    let (stack, least) = (STACK >> 10, end - STACK);
+    let (stack, least) = ((board.ram_bytes - board.static_bytes()) >> 10, RAM_START + board.static_bytes());
     format!(
         "/* Memory of the board {name}, {chip}. */
 _stack_start = {end:#010x};
@@ -118,10 +115,14 @@ ASSERT(__ebss <= {least:#010x} && __euninit <= {least:#010x},
 /// ```
 /// let board = board_file::read(board_file::preset("olimex-h405").unwrap()).unwrap();
 /// let cfgs = board_file::cfgs(&board);
-/// assert_eq!(cfgs[0], ("serial", "usart1".to_owned()));
+/// assert!(cfgs.contains(&("serial", "usart1".to_owned())));
 /// ```
 pub fn cfgs(board: &Board) -> Vec<(&'static str, String)> {
-    let mut cfgs = vec![("serial", board.serial.unit.to_lowercase())];
+    let mut cfgs = vec![
+        ("chip", board.chip.name().to_owned()),
+        ("family", board.chip.family().to_owned()),
+        ("serial", board.serial.unit.to_lowercase()),
+    ];
     if let Some(slave) = &board.spi_slave {
         cfgs.push(("spi_slave", slave.unit.to_lowercase()));
         // The interrupt lines of pins are numbered as the pins are, whatever their port.
@@ -139,6 +140,8 @@ pub fn all_cfgs() -> Vec<(&'static str, Vec<String>)> {
         names
     };
     vec![
+        ("chip", names(|chip| vec![chip.name()])),
+        ("family", names(|chip| vec![chip.family()])),
         ("serial", names(|chip| chip.facts().serial.iter().map(|unit| unit.name).collect())),
         ("spi_slave", names(|chip| chip.facts().spi.unwrap_or_default().iter().map(|unit| unit.name).collect())),
         ("select_line", (0..16).map(|line| line.to_string()).collect()),

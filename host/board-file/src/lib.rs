@@ -25,7 +25,7 @@ mod section;
 pub use board::{
     Board, Can, Encoder, EncoderPins, ExternalClock, FLASH_START, Level, Output, RAM_START, Serial, SpiSlave,
 };
-pub use chip::{Chip, Slot};
+pub use chip::{Chip, ImageSize, OTHER_CHIPS, Slot};
 pub use generated::{all_cfgs, cfgs, linker_script, rust_source};
 pub use joint_file::{Problem, Problems, Severity, Source};
 pub use pin::{Alternate, NoPin, Pin};

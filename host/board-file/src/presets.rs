@@ -1,9 +1,18 @@
 //! The board files that come with the program. Each carries the source of what it says.
 
-use crate::chip::{Chip, Part};
+use crate::chip::{Chip, OTHER_CHIPS, Part};
 
-/// Names of the presets, the default first.
-pub const PRESETS: [&str; 9] = [
+/// Declares the presets: a name each, with the text of its file in `boards`.
+macro_rules! presets {
+    ($($name:literal),+ $(,)?) => {
+        /// Names of the presets, the default first.
+        pub const PRESETS: [&str; [$($name),+].len()] = [$($name),+];
+        /// Their texts, in the same order.
+        const TEXTS: [&str; PRESETS.len()] = [$(include_str!(concat!("../../../boards/", $name, ".toml"))),+];
+    };
+}
+
+presets![
     "olimex-h405",
     "nucleo-g474re",
     "nucleo-h743zi",
@@ -13,6 +22,8 @@ pub const PRESETS: [&str; 9] = [
     "b-g431b-esc1",
     "moteus-r4",
     "vesc-6",
+    "nucleo-g431rb",
+    "weact-g431",
 ];
 
 /// The board that is meant where none is named.
@@ -20,18 +31,7 @@ pub const DEFAULT: &str = PRESETS[0];
 
 /// The text of a preset, by its name.
 pub fn preset(name: &str) -> Option<&'static str> {
-    Some(match name {
-        "olimex-h405" => include_str!("../../../boards/olimex-h405.toml"),
-        "nucleo-g474re" => include_str!("../../../boards/nucleo-g474re.toml"),
-        "nucleo-h743zi" => include_str!("../../../boards/nucleo-h743zi.toml"),
-        "odrive-3.6" => include_str!("../../../boards/odrive-3.6.toml"),
-        "feather-f405" => include_str!("../../../boards/feather-f405.toml"),
-        "weact-f405" => include_str!("../../../boards/weact-f405.toml"),
-        "b-g431b-esc1" => include_str!("../../../boards/b-g431b-esc1.toml"),
-        "moteus-r4" => include_str!("../../../boards/moteus-r4.toml"),
-        "vesc-6" => include_str!("../../../boards/vesc-6.toml"),
-        _ => return None,
-    })
+    PRESETS.into_iter().position(|known| known == name).map(|place| TEXTS[place])
 }
 
 /// The presets with a chip.
@@ -43,7 +43,15 @@ pub fn boards_with(chip: Chip) -> Vec<&'static str> {
 /// What is wrong with a chip's name, or its order name, where a board is wanted, and the help; `None` if it is none.
 pub fn chip_in_place_of_board(name: &str) -> Option<(String, String)> {
     let part = || Part::of(&name.to_uppercase()).map(|part| part.chip);
-    let chip = Chip::of_name(&name.to_lowercase()).or_else(part)?;
+    let Some(chip) = Chip::of_name(&name.to_lowercase()).or_else(part) else {
+        let is_order_name = |rest: &str| !rest.is_empty() && rest.chars().all(|letter| letter.is_ascii_alphanumeric());
+        return name.to_lowercase().strip_prefix("stm32").filter(|rest| is_order_name(rest)).map(|_| {
+            (
+                format!("there is no firmware for the chip {name}"),
+                format!("known: {}; {OTHER_CHIPS}", Part::names().join(", ")),
+            )
+        });
+    };
     let boards = boards_with(chip);
     Some((
         format!("{name} is a chip, not a board: pins differ from board to board"),

@@ -5,7 +5,7 @@ use joint_file::{Notes, Problems};
 use toml::de::DeTable;
 
 use crate::board::{Board, ExternalClock, Level, Output, Serial, SpiSlave};
-use crate::chip::{Chip, Part, SerialUnit, SpiUnit};
+use crate::chip::{Chip, OTHER_CHIPS, Part, SerialUnit, SpiUnit};
 use crate::lines;
 use crate::pins::{Pins, no_unit};
 use crate::pll::Plls;
@@ -122,7 +122,7 @@ fn read_name(top: &Section<'_>) -> Option<heapless::String<16>> {
 fn read_part(top: &Section<'_>, name: &str) -> Option<Part> {
     let part = Part::of(name);
     if part.is_none() {
-        let help = Part::help(name);
+        let help = format!("{}; {OTHER_CHIPS}", Part::help(name));
         top.notes.error(top.place("chip"), format!("there is no firmware for the chip \"{name}\""), help);
     }
     part
@@ -244,7 +244,7 @@ fn read_spi_slave(section: &Section<'_>, part: Option<Part>, pins: &Pins) -> Opt
         section.notes.error(
             section.header.clone(),
             format!("no board with this chip is a slave: {why}"),
-            "leave [spi_slave] out",
+            format!("leave [spi_slave] out; {OTHER_CHIPS}"),
         );
         return None;
     }

@@ -144,6 +144,7 @@ fn a_chip_that_is_not_known_is_refused() {
         let text = spoilt("\"STM32F405RG\"", &format!("\"{name}\""));
         let message = format!("there is no firmware for the chip \"{name}\"");
         refused(&text, &message, &format!("\"{name}\""), help);
+        refused(&text, &message, &format!("\"{name}\""), "C library serves any chip with a Cortex-M4F, M7 or M33");
     }
 }
 

@@ -37,6 +37,16 @@ fn a_chip_is_told_the_boards_that_have_it() {
 }
 
 #[test]
+fn chip_without_firmware_is_told_the_c_library() {
+    for name in ["stm32f446", "STM32F446RE", "stm32f446ret6"] {
+        let failure = load(Path::new(name)).expect_err("a chip");
+        assert_eq!(failure.message(), format!("there is no firmware for the chip {name}"));
+        let help = failure.help().unwrap_or_default();
+        assert!(help.contains("Cortex-M4F, M7 or M33") && help.contains("STM32F405RG"), "{help}");
+    }
+}
+
+#[test]
 fn what_is_neither_is_told_the_presets() {
     let failure = load(Path::new("no-such-board")).expect_err("nothing");
     assert!(failure.message().contains("cannot read the board file no-such-board"), "{failure:?}");

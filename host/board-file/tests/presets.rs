@@ -195,9 +195,15 @@ fn what_is_compiled_for_a_board_is_announced() {
     let of = |name: &str| cfgs(&board(name));
     assert_eq!(
         of("nucleo-g474re"),
-        [("serial", "usart2".to_owned()), ("spi_slave", "spi2".to_owned()), ("select_line", "12".to_owned())]
+        [
+            ("chip", "stm32g474".to_owned()),
+            ("family", "stm32g4".to_owned()),
+            ("serial", "usart2".to_owned()),
+            ("spi_slave", "spi2".to_owned()),
+            ("select_line", "12".to_owned())
+        ]
     );
-    assert_eq!(of("moteus-r4"), [("serial", "usart3".to_owned())]);
+    assert_eq!(of("moteus-r4")[2..], [("serial", "usart3".to_owned())]);
 }
 
 #[test]
@@ -207,14 +213,17 @@ fn a_chip_in_place_of_a_board_is_told_its_boards() {
     assert!(help.contains("boards with it: olimex-h405, odrive-3.6, feather-f405, weact-f405, vesc-6"), "{help}");
     for name in ["STM32G431", "STM32G431CBU6", "stm32g431cb"] {
         let (message, help) = chip_in_place_of_board(name).expect("a chip");
-        assert!(message.starts_with(name) && help.contains("boards with it: b-g431b-esc1;"), "{message}: {help}");
+        assert!(
+            message.starts_with(name) && help.contains("boards with it: b-g431b-esc1, nucleo-g431rb, weact-g431;"),
+            "{message}: {help}"
+        );
     }
     for name in ["olimex-h405", "stm32f405.toml", "boards/stm32f405", "stm32"] {
         assert_eq!(chip_in_place_of_board(name), None, "{name}");
     }
     for chip in Chip::ALL {
         assert!(!boards_with(chip).is_empty(), "{chip:?}");
-        assert_eq!(model_core::gears::design::Processor::of_chip(chip.name()), Some(chip.processor()));
+        assert_eq!(chip.processor().clock, chip.core_rate(), "{chip:?}");
     }
 }
 

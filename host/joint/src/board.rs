@@ -2,10 +2,16 @@
 
 use std::path::PathBuf;
 
+use board::target::board::Board as OnTarget;
+use board::target::prediction::ORIGIN;
 use board_file::{Board, ExternalClock, Level, Output, PRESETS, Pin, SpiSlave, named};
+use clap::ValueEnum;
+use parameters::JointParameters;
 use report::document::{Sheet, terminal};
 use report::failure::Outcome;
 use report::output;
+
+use crate::image::ImageRole;
 
 /// Arguments of `joint board`.
 #[derive(Debug, clap::Args)]
@@ -27,21 +33,29 @@ enum Action {
 #[command(after_help = "Examples:
   joint board check my_board.toml
   joint board check odrive-3.6
+  joint board check nucleo-g474re --joint joints/l1.toml    which roles fit for another joint
 
 Exit code 2 if an image cannot be built for the board; what is wrong is shown at its place.")]
 struct CheckArguments {
     /// Board file (TOML), or the name of one in boards/
     #[arg(value_name = "FILE")]
     file: PathBuf,
+    /// Joint that the roles are predicted for: a joint file (TOML), or the name of a preset
+    #[arg(long, value_name = "FILE", default_value = "q1")]
+    joint: PathBuf,
 }
 
 /// Checks a board file, or lists those that there are.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     match &arguments.action {
         Action::Check(check) => {
-            let loaded = named::load(&check.file)?;
-            let shown = terminal(&layout(&loaded.board).document());
-            let warnings = loaded.board.warnings.iter().map(|warning| format!("warning: {warning}\n"));
+            let described = named::load(&check.file)?.board;
+            let joint = joint_file::named::load(&check.joint)?.file.parameters;
+            let board = OnTarget { named: check.file.display().to_string(), file: check.file.clone(), described };
+            let mut page = layout(&board.described);
+            roles(&mut page, &board, &joint);
+            let shown = terminal(&page.document());
+            let warnings = board.described.warnings.iter().map(|warning| format!("warning: {warning}\n"));
             output::print(&(shown + &warnings.collect::<String>()))
         }
         Action::List => {
@@ -54,6 +68,22 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
             output::print(&terminal(&page.document()))
         }
     }
+}
+
+/// Adds which roles fit, by size and by time.
+fn roles(page: &mut Sheet, board: &OnTarget, joint: &JointParameters) {
+    page.heading(&format!("Roles for {}, predicted: no image is built", joint.name));
+    for role in ImageRole::value_variants() {
+        let Some(value) = role.to_possible_value() else { continue };
+        let verdict = match role {
+            ImageRole::SpiObserver if !board.has_spi_slave() => {
+                "not on this board: its file has no [spi_slave]".to_owned()
+            }
+            _ => role.predicted(joint, board, role.usual_rate(joint, board)).to_string(),
+        };
+        page.row(value.get_name(), verdict);
+    }
+    page.row("predicted from", ORIGIN);
 }
 
 fn layout(board: &Board) -> Sheet {

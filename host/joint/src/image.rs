@@ -7,9 +7,11 @@ use link::messages::Role;
 
 use board::target::board::Board;
 use board::target::image;
+use board::target::prediction::{ORIGIN, Prediction};
 use board::target::tick_time;
 use board::target::toolchain::Toolchain;
 use joint_file::{named, warned};
+use parameters::JointParameters;
 use report::failure::Outcome;
 use report::progress::Progress;
 use report::{interruption, output};
@@ -71,6 +73,21 @@ impl ImageRole {
             Self::Loop => Role::Loop,
         }
     }
+
+    /// Returns the rate that an image is built for unless another one is asked for [Hz].
+    pub fn usual_rate(self, joint: &JointParameters, board: &Board) -> u32 {
+        match self {
+            Self::Plant => image::DEFAULT_TICK_RATE,
+            Self::Observer | Self::Loop => tick_time::usual_rate(joint, board, self.role()),
+            Self::SpiObserver => image::SPI_RATE,
+        }
+    }
+
+    /// Predicts whether its image fits a board at a rate.
+    pub fn predicted(self, joint: &JointParameters, board: &Board, rate: u32) -> Prediction {
+        let word = self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
+        Prediction::new(board, joint, &word, self.role(), rate)
+    }
 }
 
 /// Builds an image.
@@ -85,22 +102,20 @@ pub fn build(arguments: &Image, board: &Board) -> Outcome<image::Image> {
     let loaded = named::load(&arguments.file)?;
     warned::tell(&loaded);
     let file = image::joint_file(&arguments.file, &loaded.name);
-    let control_rate = |role| tick_time::usual_rate(&loaded.file.parameters, board, role);
-    let (role, usual) = match arguments.role {
-        ImageRole::Plant => (Some(Role::Plant), image::DEFAULT_TICK_RATE),
-        ImageRole::Observer => (Some(Role::Observer), control_rate(Role::Observer)),
-        ImageRole::Loop => (Some(Role::Loop), control_rate(Role::Loop)),
-        ImageRole::SpiObserver => (None, image::SPI_RATE),
-    };
-    let rate = arguments.rate.unwrap_or(usual);
+    let (parameters, role) = (&loaded.file.parameters, arguments.role);
+    let rate = arguments.rate.unwrap_or_else(|| role.usual_rate(parameters, board));
     let progress = Progress::new();
     let say = |line: &str| progress.say(line);
+    let predicted = role.predicted(parameters, board, rate);
+    if !predicted.has_room() {
+        say(&format!("predicted for {}, from {ORIGIN}: {predicted}; it is built all the same", board.name()));
+    }
     progress.stage("preparing the toolchain");
     let built = Toolchain::prepare(&say).and_then(|toolchain| {
         progress.stage("building the firmware");
         match role {
-            Some(role) => image::build_image(&toolchain, &file, board, role, rate, arguments.force, &say),
-            None => image::build_spi_slave(&toolchain, &file, board, rate, arguments.force, &say),
+            ImageRole::SpiObserver => image::build_spi_slave(&toolchain, &file, board, rate, arguments.force, &say),
+            _ => image::build_image(&toolchain, &file, board, role.role(), rate, arguments.force, &say),
         }
     });
     progress.clear();

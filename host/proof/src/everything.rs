@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use link::messages::Role;
 
 use crate::roles;
-use crate::{board_model, bound, costs, same_bits, tick, worst_case};
+use crate::{board_model, bound, costs, same_bits, sizes, tick, worst_case};
 use board::target::board::{Board, Chip};
 use board::target::image;
 use board::target::lint;
@@ -45,6 +45,7 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
             let reach = tick::reach(&image.elf)?;
             tick::judge(&reach).map_err(|failure| failure.while_doing(format_args!("image of {what}")))?;
             let (functions, stack) = (reach.functions, tick::stack(&reach));
+            sizes::judge(board.chip(), image::word(role), &image)?;
             progress.clear();
             output::print(&format!(
                 "ok       image of {what}: {flash} B of flash, {ram} B of RAM; its tick: {functions} functions, none can \
@@ -54,7 +55,9 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
         if is_first && board.has_spi_slave() {
             progress.stage("building the image of a slave on SPI");
             let joint = image::preset_file("q1");
-            let bytes = image::build_spi_slave(&toolchain, &joint, board, image::SPI_RATE, false, &say)?.flash_bytes;
+            let built = image::build_spi_slave(&toolchain, &joint, board, image::SPI_RATE, false, &say)?;
+            sizes::judge(board.chip(), "spi-observer", &built)?;
+            let bytes = built.flash_bytes;
             progress.clear();
             output::print(&format!("ok       image of a slave on SPI for {}: {bytes} B of flash\n", board.name()))?;
         }

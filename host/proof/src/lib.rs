@@ -8,6 +8,7 @@ pub mod everything;
 pub mod joints;
 pub mod roles;
 pub mod same_bits;
+mod sizes;
 pub mod tick;
 pub mod worst_case;
 

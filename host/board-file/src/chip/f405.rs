@@ -2,7 +2,7 @@
 
 use model_core::gears::design::Processor;
 
-use super::facts::{ALL, CanUnit, Facts, Package, SerialUnit, Slot, SpiUnit, TimerUnit, Variant, at, pin};
+use super::facts::{ALL, CanUnit, Facts, ImageSize, Package, SerialUnit, Slot, SpiUnit, TimerUnit, Variant, at, pin};
 use crate::pll::PllLimits;
 
 const APB1: u32 = 42_000_000;
@@ -10,6 +10,7 @@ const APB2: u32 = 84_000_000;
 
 pub(super) const FACTS: Facts = Facts {
     name: "stm32f405",
+    family: "stm32f4",
     core_rate: 168_000_000,
     processor: Processor::STM32F405,
     internal_oscillator: 16_000_000,
@@ -33,6 +34,12 @@ pub(super) const FACTS: Facts = Facts {
     // SRAM1 and SRAM2; the 64 KiB of CCM lie elsewhere.
     ram_kib: 128,
     slots,
+    images: &[
+        ImageSize { role: "plant", flash: 127_112, ram: 10_780 },
+        ImageSize { role: "observer", flash: 173_072, ram: 26_412 },
+        ImageSize { role: "loop", flash: 216_532, ram: 24_596 },
+        ImageSize { role: "spi-observer", flash: 110_436, ram: 3_300 },
+    ],
     variants: &[
         Variant { name: "STM32F405RG", flash_kib: &[512, 1024], packages: &[Package { letter: 'T', pins: LQFP64 }] },
         Variant { name: "STM32F405VG", flash_kib: &[512, 1024], packages: &[Package { letter: 'T', pins: LQFP100 }] },

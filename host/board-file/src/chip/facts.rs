@@ -10,6 +10,8 @@ use crate::pll::PllLimits;
 pub(crate) struct Facts {
     /// Its name: the firmware's feature.
     pub name: &'static str,
+    /// Chips with the same registers: what the firmware is compiled for.
+    pub family: &'static str,
     /// Core clock [Hz].
     pub core_rate: u32,
     /// What it gives the step.
@@ -41,6 +43,9 @@ pub(crate) struct Facts {
     /// Two places at the end of the flash that are erased without touching an image, by the flash that the board uses
     /// [bytes].
     pub slots: fn(u32) -> [Slot; 2],
+    /// Images of joint Q1 as they were linked; one that was never linked is left out. `joint hil --check` holds them against
+    /// the images that it builds.
+    pub images: &'static [ImageSize],
     /// By what it is ordered.
     pub variants: &'static [Variant],
 }
@@ -52,6 +57,17 @@ pub struct Slot {
     pub address: u32,
     /// What may be used of it: no more than is erased at once.
     pub bytes: u32,
+}
+
+/// Memory that an image takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ImageSize {
+    /// Role, as `--role` names it.
+    pub role: &'static str,
+    /// Flash: code, constants and initial values [byte].
+    pub flash: u32,
+    /// RAM of its statics [byte].
+    pub ram: u32,
 }
 
 /// A unit that sends and receives bytes.

@@ -3,13 +3,14 @@
 
 use model_core::gears::design::Processor;
 
-use super::facts::{ALL, Facts, Package, Slot, Variant, pin};
+use super::facts::{ALL, Facts, ImageSize, Package, Slot, Variant, pin};
 use super::g474;
 
 pub(super) const FACTS: Facts = Facts {
     name: "stm32g431",
+    family: "stm32g4",
     core_rate: 170_000_000,
-    processor: Processor::STM32G431,
+    processor: Processor::STM32G474,
     internal_oscillator: 16_000_000,
     crystal: (4_000_000, 48_000_000),
     signal: (4_000_000, 48_000_000),
@@ -24,6 +25,13 @@ pub(super) const FACTS: Facts = Facts {
     // SRAM1 and SRAM2; the 10 KiB of CCM that follow are for code.
     ram_kib: 22,
     slots,
+    // The plant is linked with less inlined. The others were linked for the STM32G474 only: less inlined they take less flash.
+    images: &[
+        ImageSize { role: "plant", flash: 123_636, ram: 10_532 },
+        g474::IMAGES[1],
+        g474::IMAGES[2],
+        g474::IMAGES[3],
+    ],
     variants: &[
         Variant {
             name: "STM32G431KB",

@@ -3,7 +3,7 @@
 
 use model_core::gears::design::Processor;
 
-use super::facts::{ALL, CanUnit, Facts, Package, SerialUnit, Slot, SpiUnit, TimerUnit, Variant, at, pin};
+use super::facts::{ALL, CanUnit, Facts, ImageSize, Package, SerialUnit, Slot, SpiUnit, TimerUnit, Variant, at, pin};
 use crate::pll::PllLimits;
 
 /// All buses run at the core's rate.
@@ -11,6 +11,7 @@ pub(super) const BUSES: u32 = 170_000_000;
 
 pub(super) const FACTS: Facts = Facts {
     name: "stm32g474",
+    family: "stm32g4",
     core_rate: 170_000_000,
     processor: Processor::STM32G474,
     internal_oscillator: 16_000_000,
@@ -27,6 +28,7 @@ pub(super) const FACTS: Facts = Facts {
     // SRAM1 and SRAM2; the 32 KiB of CCM that follow are for code.
     ram_kib: 96,
     slots,
+    images: &IMAGES,
     variants: &[
         Variant { name: "STM32G474RE", flash_kib: &[512], packages: &[Package { letter: 'T', pins: PINS_64 }] },
         Variant {
@@ -57,6 +59,13 @@ pub(super) const PLL: PllLimits = PllLimits {
     factor: (8, 127),
     ranges: &[],
 };
+
+pub(super) const IMAGES: [ImageSize; 4] = [
+    ImageSize { role: "plant", flash: 127_180, ram: 10_532 },
+    ImageSize { role: "observer", flash: 173_192, ram: 26_164 },
+    ImageSize { role: "loop", flash: 216_292, ram: 24_348 },
+    ImageSize { role: "spi-observer", flash: 111_464, ram: 3_300 },
+];
 
 /// The last two pages of 4 KiB, as they are with one bank. With two banks each is two pages of 2 KiB, of which the first is
 /// used: so the places are the same whatever the option bytes say.

@@ -3,7 +3,7 @@
 
 use model_core::gears::design::Processor;
 
-use super::facts::{ALL, CanUnit, Facts, Package, SerialUnit, Slot, TimerUnit, Variant, at, pin};
+use super::facts::{ALL, CanUnit, Facts, ImageSize, Package, SerialUnit, Slot, TimerUnit, Variant, at, pin};
 use crate::pll::PllLimits;
 
 /// Of both buses that have USARTs: a quarter of the core's rate.
@@ -11,6 +11,7 @@ const APB: u32 = 100_000_000;
 
 pub(super) const FACTS: Facts = Facts {
     name: "stm32h743",
+    family: "stm32h7",
     core_rate: 400_000_000,
     processor: Processor::STM32H743,
     internal_oscillator: 64_000_000,
@@ -35,6 +36,11 @@ pub(super) const FACTS: Facts = Facts {
     // DTCM.
     ram_kib: 128,
     slots,
+    images: &[
+        ImageSize { role: "plant", flash: 132_064, ram: 10_508 },
+        ImageSize { role: "observer", flash: 177_952, ram: 26_140 },
+        ImageSize { role: "loop", flash: 221_304, ram: 24_324 },
+    ],
     variants: &[
         Variant { name: "STM32H743ZI", flash_kib: &[2048], packages: &[Package { letter: 'T', pins: LQFP144 }] },
         Variant {

@@ -150,8 +150,9 @@ pub fn build_spi_slave(
         let presets = Board::presets()?;
         let able: Vec<&str> = presets.iter().filter(|board| board.has_spi_slave()).map(Board::name).collect();
         return Err(Failure::new(message).with_help(format!(
-            "take one of {}; beside a motor controller on the same chip or on a serial line, --role observer is for every board",
-            able.join(", ")
+            "take one of {}; beside a motor controller on the same chip or on a serial line, --role observer is for every board; {}",
+            able.join(", "),
+            board_file::OTHER_CHIPS
         )));
     }
     let joint_file = readable(joint_file)?;
@@ -232,8 +233,9 @@ fn too_large(failure: &Failure, board: &Board) -> Option<Failure> {
     let what = line.rsplit("error: ").next().unwrap_or(line).trim();
     Some(Failure::new(what).with_help(format!(
         "take a role that needs less (`--role plant` is the smallest), or a board with more: `joint board check {}` says what \
-         this one has",
-        board.named
+         this one has; {}",
+        board.named,
+        board_file::OTHER_CHIPS
     )))
 }
 

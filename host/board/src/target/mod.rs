@@ -13,6 +13,7 @@ pub mod image;
 pub mod lint;
 pub mod measuring;
 pub mod packages;
+pub mod prediction;
 mod role;
 mod sources;
 pub mod sysroot;

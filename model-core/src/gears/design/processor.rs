@@ -19,25 +19,12 @@ impl Processor {
     /// the step. No waiting: its data sheet promises that of the flash accelerator; the trace says nothing of it.
     pub const STM32F405: Self =
         Self { clock: 168_000_000, cycles_per_instruction: 1.4, flash_wait: 0.0, share: USUAL_SHARE };
-    /// STM32G474: the same core at 170 MHz. Its flash gives two instructions every five cycles and its accelerator
+    /// STM32G474 and STM32G431: the same core at 170 MHz. Its flash gives two instructions every five cycles and its accelerator
     /// holds a quarter of the step, so half a cycle is reckoned for waiting.
     pub const STM32G474: Self = Self { clock: 170_000_000, flash_wait: 0.5, ..Self::STM32F405 };
-    /// STM32G431: the STM32G474's core, flash and accelerator, with less memory.
-    pub const STM32G431: Self = Self::STM32G474;
     /// STM32H743: Cortex-M7 at 400 MHz. One cycle: it can issue two instructions at once, but those of the step wait
     /// for one another. Its instruction cache holds the whole step.
     pub const STM32H743: Self = Self { clock: 400_000_000, cycles_per_instruction: 1.0, ..Self::STM32F405 };
-
-    /// A chip by the name of its firmware's feature.
-    pub fn of_chip(name: &str) -> Option<Self> {
-        match name {
-            "stm32f405" => Some(Self::STM32F405),
-            "stm32g474" => Some(Self::STM32G474),
-            "stm32g431" => Some(Self::STM32G431),
-            "stm32h743" => Some(Self::STM32H743),
-            _ => None,
-        }
-    }
 
     /// Instructions a second.
     pub fn instructions_per_second(&self) -> f64 {

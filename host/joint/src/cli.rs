@@ -4,18 +4,23 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
+use board::target::packages::{self, Install};
 use report::failure::Outcome;
 use report::{command_line, output};
 
 use crate::{
-    board, budget, check, completions, flash, hil, identify, image, library, memory, merge, new, replay, research, sim,
-    sweep, tables,
+    board as board_files, budget, check, completions, flash, hil, identify, image, library, memory, merge, new, replay,
+    research, sim, sweep, tables,
 };
 
 /// Simulates a planetary robot joint with backlash on a microcontroller, drives it and checks it
 #[derive(Debug, Parser)]
 #[command(name = "joint", version = env!("JOINT_VERSION"), disable_help_subcommand = true)]
 struct Cli {
+    /// Decides whether missing packages are installed: by apt-get, as root, for compiler, emulator and C toolchain
+    /// [default: JOINT_INSTALL of the environment, else ask]
+    #[arg(long, value_enum, value_name = "DECISION", global = true)]
+    install: Option<Install>,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -47,7 +52,7 @@ enum Command {
     /// Read what a board has learnt, show it, write it to a board, erase it
     Memory(memory::Arguments),
     /// Check a board file: pins, clock, memory; or list the boards that come with the program
-    Board(board::Arguments),
+    Board(board_files::Arguments),
     /// Build the firmware image of a joint and say where it is
     Image(image::Arguments),
     /// Build the firmware image of a joint and write it to a real board by probe-rs or over USB
@@ -66,6 +71,7 @@ pub fn main() -> ExitCode {
 }
 
 fn run(cli: &Cli) -> Outcome<()> {
+    packages::decide(cli.install);
     match &cli.command {
         None => show_help(),
         Some(Command::Hil(arguments)) => hil::run(arguments),
@@ -80,7 +86,7 @@ fn run(cli: &Cli) -> Outcome<()> {
         Some(Command::Identify(arguments)) => identify::run(arguments),
         Some(Command::Replay(arguments)) => replay::run(arguments),
         Some(Command::Memory(arguments)) => memory::run(arguments),
-        Some(Command::Board(arguments)) => board::run(arguments),
+        Some(Command::Board(arguments)) => board_files::run(arguments),
         Some(Command::Image(arguments)) => image::run(arguments),
         Some(Command::Flash(arguments)) => flash::run(arguments),
         Some(Command::Tables(arguments)) => tables::run(arguments),

@@ -4,6 +4,7 @@
 use std::ffi::OsString;
 use std::process::Command;
 
+use board::target::packages::{self, Install};
 use board::target::tool;
 use report::failure::{Failure, Outcome};
 use report::interruption;
@@ -32,6 +33,7 @@ pub fn run(package: &str, rest: &[OsString]) -> Outcome<()> {
     let status = cargo("run", package)
         .args(["--quiet", "--"])
         .args(rest)
+        .env(packages::VARIABLE, Install::in_force()?.word())
         .status()
         .map_err(|error| Failure::new(format!("cannot start `{package}` through cargo: {error}")))?;
     match status.code() {

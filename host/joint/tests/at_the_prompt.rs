@@ -2,10 +2,11 @@
 //! go.
 
 mod command;
+mod pseudo_terminal;
 
 use std::fs;
 
-use command::{folder, joint, joint_in, send, start, text, until, wait};
+use command::{folder, joint, joint_in, joint_with, send, start, text, until, wait};
 
 #[test]
 fn a_file_with_the_name_of_a_preset_is_told_apart_from_it() {
@@ -158,5 +159,84 @@ fn text_of_files_and_arguments_is_shown_escaped() {
         let path = place.path().join(file);
         let text = fs::read_to_string(&path).unwrap_or_default();
         assert!(!text.contains('\u{1b}'), "{file}");
+    }
+}
+
+/// Folder with programs that stand for Debian's: nothing is installed, and what is asked of `apt-get` is kept.
+fn debian(place: &std::path::Path) -> String {
+    use std::os::unix::fs::PermissionsExt;
+    let asked = place.join("asked");
+    for (name, script) in
+        [("dpkg-query", "exit 1".to_owned()), ("apt-get", format!("echo \"$@\" >> {}", asked.display()))]
+    {
+        let path = place.join(name);
+        fs::write(&path, format!("#!/bin/sh\n{script}\n")).expect("room");
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("ours");
+    }
+    text(place).to_owned()
+}
+
+/// Whether packages can be installed here: what cannot is named, whatever was decided.
+fn is_root() -> bool {
+    use std::os::unix::fs::MetadataExt;
+    fs::metadata("/proc/self").is_ok_and(|data| data.uid() == 0)
+}
+
+#[test]
+fn packages_are_not_installed_against_the_decision() {
+    let place = folder();
+    let path = debian(place.path());
+    let words =
+        ["not installed, but needed to run the emulated board: qemu-system-arm", "apt-get install qemu-system-arm"];
+    let hil = |arguments: &[&str], variable: &str| {
+        let variables = [("PATH", path.as_str()), ("JOINT_INSTALL", variable)];
+        joint_with(&[&["hil", "q1"], arguments].concat(), &variables)
+    };
+    hil(&[], "no").refused(&words);
+    hil(&["--install", "no"], "yes").refused(&words);
+    hil(&[], "never").refused(&["JOINT_INSTALL=never", "yes, no or ask"]);
+    assert!(!place.path().join("asked").exists());
+    if !is_root() {
+        return;
+    }
+    let without_terminal = hil(&[], "");
+    assert!(without_terminal.err.contains("`--install no` or JOINT_INSTALL=no forbids that"), "{without_terminal:?}");
+    let asked = fs::read_to_string(place.path().join("asked")).expect("`apt-get` was started");
+    assert!(asked.contains("install --yes --no-install-recommends qemu-system-arm"), "{asked}");
+}
+
+#[test]
+fn packages_are_installed_on_a_terminal_after_a_yes_only() {
+    use std::io::{Read, Write};
+    if !is_root() {
+        return;
+    }
+    for (answer, installs) in [("n\n", false), ("y\n", true)] {
+        let place = folder();
+        let path = debian(place.path());
+        let (mut master, slave, _) = pseudo_terminal::pair();
+        let end = |file: &fs::File| std::process::Stdio::from(file.try_clone().expect("a terminal"));
+        let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_joint"))
+            .args(["hil", "q1"])
+            .env("PATH", &path)
+            .env_remove("JOINT_INSTALL")
+            .stdin(end(&slave))
+            .stdout(std::process::Stdio::null())
+            .stderr(end(&slave))
+            .spawn()
+            .expect("the command can be started");
+        let mut said = String::new();
+        until("the question comes", || {
+            let mut bytes = [0; 1024];
+            if let Ok(read) = master.read(&mut bytes) {
+                said += &String::from_utf8_lossy(&bytes[..read]);
+            }
+            said.contains("[y/N]")
+        });
+        assert!(said.contains("qemu-system-arm must be installed to run the emulated board"), "{said}");
+        assert!(!place.path().join("asked").exists(), "nothing is installed before the answer");
+        master.write_all(answer.as_bytes()).expect("a terminal");
+        assert_eq!(child.wait().expect("it ends").code(), Some(2));
+        assert_eq!(place.path().join("asked").exists(), installs, "{answer:?}");
     }
 }

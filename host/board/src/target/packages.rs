@@ -1,14 +1,74 @@
-//! Installs missing packages on Debian-like systems if the user is root; otherwise shows the command to run. On other
-//! systems the missing packages are named.
+//! Installs missing packages on Debian-like systems if the user is root and wants that; otherwise shows the command to run. On
+//! other systems the missing packages are named.
 
+use std::env;
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, IsTerminal};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::OnceLock;
+
+use clap::ValueEnum;
+use report::failure::{Failure, Outcome};
+use report::progress;
 
 use super::{Say, tool};
-use report::failure::{Failure, Outcome};
+
+/// Variable of the environment that decides where `--install` does not.
+pub const VARIABLE: &str = "JOINT_INSTALL";
+
+/// Decision about packages that are missing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Install {
+    /// Installs them without a question
+    Yes,
+    /// Names them and the command that installs them, and ends
+    No,
+    /// Asks on a terminal; installs them where there is none
+    Ask,
+}
+
+/// Decision of `--install`, for the whole process.
+static WANTED: OnceLock<Install> = OnceLock::new();
+/// Answer of the user, who is asked once.
+static ANSWER: OnceLock<bool> = OnceLock::new();
+
+/// Takes the decision of `--install` for the whole process; only the first one counts.
+pub fn decide(wanted: Option<Install>) {
+    if let Some(wanted) = wanted {
+        let _ = WANTED.set(wanted);
+    }
+}
+
+impl Install {
+    /// Returns the decision of `--install`, else that of the environment.
+    pub fn in_force() -> Outcome<Self> {
+        match WANTED.get() {
+            Some(wanted) => Ok(*wanted),
+            None => {
+                Self::of_variable(env::var_os(VARIABLE).map(|typed| typed.to_string_lossy().into_owned()).as_deref())
+            }
+        }
+    }
+
+    fn of_variable(typed: Option<&str>) -> Outcome<Self> {
+        let Some(typed) = typed.filter(|typed| !typed.is_empty()) else { return Ok(Self::Ask) };
+        Self::from_str(typed, true).map_err(|_| {
+            Failure::new(format!("{VARIABLE}={typed} is no decision about packages"))
+                .with_help(format!("set {VARIABLE} to yes, no or ask, or leave it out"))
+        })
+    }
+
+    /// Returns the word that `--install` and the environment have for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Yes => "yes",
+            Self::No => "no",
+            Self::Ask => "ask",
+        }
+    }
+}
 
 /// How packages can be got here.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,9 +94,13 @@ pub fn ensure(packages: &[&str], purpose: &str, say: Say<'_>) -> Outcome<()> {
     if before.is_empty() {
         return Ok(());
     }
+    let install = Install::in_force()?;
     let PackageSource::Install(apt_get_file) = &source else {
         return Err(absent(&source, &before.join(" "), purpose));
     };
+    if install == Install::No {
+        return Err(forbidden(&before.join(" "), purpose));
+    }
     let _alone = alone(apt_get_file, say).map_err(|error| cannot_wait(&error))?;
     // Who waited may find that the packages have come meanwhile.
     let missing = missing();
@@ -44,7 +108,19 @@ pub fn ensure(packages: &[&str], purpose: &str, say: Say<'_>) -> Outcome<()> {
         return Ok(());
     }
     let list = missing.join(" ");
-    say(&format!("installing {list} with apt-get, needed {purpose}"));
+    let is_terminal = io::stdin().is_terminal() && io::stderr().is_terminal();
+    match install {
+        Install::Ask if is_terminal => {
+            if !*ANSWER.get_or_init(|| agrees(&list, purpose)) {
+                return Err(forbidden(&list, purpose));
+            }
+            say(&format!("installing {list} with apt-get, needed {purpose}"));
+        }
+        Install::Ask => say(&format!(
+            "installing {list} with apt-get, needed {purpose}; `--install no` or {VARIABLE}=no forbids that"
+        )),
+        _ => say(&format!("installing {list} with apt-get, needed {purpose}")),
+    }
     tool::follow(apt_get().arg("update"), "apt-get update", say).map_err(|failure| with_line(failure, &list))?;
     let mut install = apt_get();
     install.args(["install", "--yes", "--no-install-recommends"]).args(&missing);
@@ -65,6 +141,26 @@ fn cannot_wait(error: &io::Error) -> Failure {
 
 fn with_line(failure: Failure, list: &str) -> Failure {
     failure.with_help(format!("mend what apt-get complains about, then run: apt-get install {list}"))
+}
+
+/// Asks the user whether packages may be installed; no answer is no.
+fn agrees(list: &str, purpose: &str) -> bool {
+    let question = format!(
+        "{list} must be installed {purpose}: by apt-get, as root, for the whole system (`--install` and {VARIABLE} decide \
+         without a question).\ninstall now? [y/N] "
+    );
+    progress::ask(&question).is_some_and(|answer| is_yes(&answer))
+}
+
+fn is_yes(answer: &str) -> bool {
+    ["y", "yes"].contains(&answer.trim().to_lowercase().as_str())
+}
+
+/// What the user has not allowed to be installed.
+fn forbidden(list: &str, purpose: &str) -> Failure {
+    Failure::new(format!("not installed, but needed {purpose}: {list}")).with_help(format!(
+        "run: apt-get update && apt-get install {list}\nor allow it by `--install yes` or {VARIABLE}=yes"
+    ))
 }
 
 fn absent(package_source: &PackageSource, list: &str, purpose: &str) -> Failure {
@@ -140,6 +236,34 @@ mod tests {
         is_over.store(true, Ordering::SeqCst);
         drop(first);
         assert!(other.join().unwrap());
+    }
+
+    #[test]
+    fn variable_says_yes_no_or_ask_and_nothing_else() {
+        for (typed, wanted) in [(None, Install::Ask), (Some(""), Install::Ask), (Some("No"), Install::No)] {
+            assert_eq!(Install::of_variable(typed).unwrap(), wanted, "{typed:?}");
+        }
+        for install in Install::value_variants() {
+            assert_eq!(Install::of_variable(Some(install.word())).unwrap(), *install);
+        }
+        let failure = Install::of_variable(Some("never")).unwrap_err();
+        assert!(failure.message().contains("JOINT_INSTALL=never"), "{failure}");
+        assert!(failure.help().unwrap().contains("yes, no or ask"), "{failure}");
+        assert_eq!(failure.exit_code(), 2);
+    }
+
+    #[test]
+    fn only_a_yes_is_a_yes() {
+        assert!(["y\n", "Yes\n", " YES "].into_iter().all(is_yes));
+        assert!(!["", "\n", "n\n", "yess\n", "no"].into_iter().any(is_yes));
+    }
+
+    #[test]
+    fn what_is_forbidden_names_package_and_command() {
+        let failure = forbidden("lld qemu-system-arm", "to run the emulated board");
+        assert!(failure.message().contains("to run the emulated board: lld qemu-system-arm"), "{failure}");
+        assert!(failure.help().unwrap().contains("apt-get install lld qemu-system-arm"), "{failure}");
+        assert_eq!(failure.exit_code(), 2);
     }
 
     #[test]

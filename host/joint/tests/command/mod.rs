@@ -39,6 +39,11 @@ pub fn joint_in(folder: &Path, arguments: &[&str]) -> Ended {
     ended(command(arguments).current_dir(folder).output().expect("the command can be started"))
 }
 
+/// Runs it with variables of the environment.
+pub fn joint_with(arguments: &[&str], variables: &[(&str, &str)]) -> Ended {
+    ended(command(arguments).envs(variables.iter().copied()).output().expect("the command can be started"))
+}
+
 /// Runs it with a limit on the size of every file, as if the disk were full.
 pub fn joint_on_a_full_disk(blocks: u32, arguments: &[&str]) -> Ended {
     joint_on_a_full_disk_with(blocks, arguments, &[])

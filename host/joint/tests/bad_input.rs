@@ -5,6 +5,7 @@ mod command;
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use command::{folder, joint, text};
 
@@ -18,10 +19,15 @@ fn nothing(folder: &Path) -> Vec<PathBuf> {
         fs::write(&path, content).expect("a file");
         path
     };
+    // Nobody writes to it: a command that opens it waits for ever.
+    let pipe = folder.join("pipe");
+    assert!(Command::new("mkfifo").arg(&pipe).status().expect("`mkfifo` is there").success());
     let all_bytes: Vec<u8> = (0..=255).cycle().take(2048).collect();
     vec![
         folder.join("missing"),
         folder.to_owned(),
+        pipe,
+        "/dev/zero".into(),
         write("empty", b""),
         write("garbage", &all_bytes),
         write("no-utf8", b"name = \"\xff\"\n"),
@@ -35,8 +41,11 @@ fn every_command_refuses_a_file_that_is_nothing_by_its_name() {
     let inputs = folder();
     let out = place.path().join("out");
     let out = text(&out);
-    let commands: [&[&str]; 15] = [
+    let commands: [&[&str]; 18] = [
         &["check", "@"],
+        &["board", "check", "@"],
+        &["board", "check", "olimex-h405", "--joint", "@"],
+        &["replay", "@", "--out", out],
         &["budget", "@"],
         &["image", "@"],
         &["flash", "@", "--board", "nucleo-g474re"],
@@ -143,7 +152,15 @@ fn boards_are_named_and_not_taken_for_their_chips() {
 #[test]
 fn a_board_that_is_well_is_shown_with_its_pins() {
     let shown = joint(&["board", "check", "nucleo-g474re"]).well().out;
-    for words in ["STM32G474RE", "crystal of 24 MHz", "USART2: PA2 out, PA3 in, 460800 baud", "PA13"] {
+    for words in [
+        "loop  ",
+        "fits: 42 % of flash",
+        "predicted from",
+        "STM32G474RE",
+        "crystal of 24 MHz",
+        "USART2: PA2 out, PA3 in, 460800 baud",
+        "PA13",
+    ] {
         assert!(shown.contains(words), "{shown}");
     }
     assert!(joint(&["board", "list"]).well().out.contains("moteus-r4"));

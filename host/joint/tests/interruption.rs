@@ -2,53 +2,45 @@
 
 mod command;
 
-use std::fs::{File, OpenOptions};
-use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use command::{TIMEOUT, folder, send, start, text, wait};
+use command::{folder, send, start, text, until, wait};
+use report::workspace::workspace;
 
-/// It is 0.2 s; a busy machine is given more.
-const AT_ONCE: Duration = Duration::from_secs(5);
+/// A user does not notice a delay of 0.2 s.
+const AT_ONCE: Duration = Duration::from_millis(200);
+/// Tries of each command and signal, at other moments: on a busy machine most of them must be in time.
+const TRIES: u32 = 5;
 
-/// A pipe that nobody writes to: whoever reads it waits for ever, in the system.
-fn pipe(path: &Path) {
-    assert!(Command::new("mkfifo").arg(path).status().expect("`mkfifo` is there").success());
-}
-
-/// The end of a pipe that is written to: it can be opened once somebody reads, and the pipe does not end while it is open.
-fn read_by_somebody(path: PathBuf) -> File {
-    let (opened, open) = mpsc::channel();
-    // Opening it waits in the system, for ever if nobody reads.
-    std::thread::spawn(move || opened.send(OpenOptions::new().write(true).open(path)));
-    open.recv_timeout(TIMEOUT).expect("the command reads the pipe").expect("a pipe")
-}
-
+/// Seen to fail with a pause that was counted instead of measured, and with logs that were written to their end: 0.2 to 0.45 s.
 #[test]
-fn a_command_that_waits_for_its_input_hears_that_it_is_to_end() {
-    let folder = folder();
-    let path = folder.path().join("pipe");
-    pipe(&path);
-    let pipe = text(&path);
+fn a_command_that_works_ends_at_once() {
+    let place = folder();
+    let out = place.path().join("out");
+    let tests = ["real-any", "random-plants"].map(|name| workspace().join("hil").join(name).with_extension("toml"));
+    let [real, random] = tests.each_ref().map(text);
     for arguments in [
-        &["identify", pipe][..],
-        &["sim", pipe],
-        &["sim", "q1", "--profile", pipe],
-        &["sweep", pipe, "--vary", "half_backlash_um=1,2"],
-        &["hil", pipe, "--host"],
-        &["memory", "show", pipe],
+        &["sim", "q1", "--duration", "3600", "--every", "2000"][..],
+        &["sweep", "q1", "--vary", "half_backlash_um=1:100:1", "--duration", "10"],
+        &["hil", real, "--host", "--plant", "reference", "--seed", "1-100"],
+        &["hil", random, "--host", "--seed", "1-100"],
     ] {
         for signal in ["-INT", "-TERM"] {
-            let child = start(arguments);
-            let _open = read_by_somebody(path.clone());
-            let start = Instant::now();
-            send(signal, &child);
-            let ended = wait(child);
-            assert_eq!(ended.code, Some(130), "{arguments:?}: {ended:?}");
-            assert!(ended.err.contains("stopped by the user"), "{arguments:?}: {ended:?}");
-            assert!(start.elapsed() < AT_ONCE, "{arguments:?}, {signal}: after {:?}", start.elapsed());
+            let end = |attempt: u32| {
+                let _ = std::fs::remove_dir_all(&out);
+                let child = start(&[arguments, &["--out", text(&out)]].concat());
+                until("it writes to its folder", || out.exists());
+                std::thread::sleep(Duration::from_millis(70) * attempt);
+                let begin = Instant::now();
+                send(signal, &child);
+                let ended = wait(child);
+                assert_eq!(ended.code, Some(130), "{arguments:?}: {ended:?}");
+                assert!(ended.err.contains("stopped by the user"), "{arguments:?}: {ended:?}");
+                begin.elapsed()
+            };
+            let took: Vec<Duration> = (1..=TRIES).map(end).collect();
+            let most = took.iter().filter(|took| **took < AT_ONCE).count();
+            assert!(most > took.len() / 2, "{arguments:?}, {signal}: after {took:?}");
         }
     }
 }

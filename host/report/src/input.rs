@@ -1,8 +1,9 @@
-//! Files that users name, read whole into memory, but no more of them than a stated size: a device or a pipe may have no end.
-//! A file goes before what comes with the program under the same name.
+//! Files that users name, read whole into memory, but no more of them than a stated size. What is not a regular file is
+//! refused before it is opened: a pipe that nobody writes to would be waited for without end. A file goes before what comes
+//! with the program under the same name.
 
 use std::collections::BTreeSet;
-use std::fs::File;
+use std::fs::{self, File, FileType};
 use std::io::Read;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -45,12 +46,12 @@ fn say_once(remark: String) {
 /// The bytes of a file, or why they cannot be had.
 pub fn bytes(path: &Path, largest: u64) -> Result<Vec<u8>, String> {
     let read = || {
+        if let Some(kind) = not_a_file(fs::metadata(path)?.file_type()) {
+            return Ok(Err(kind.to_owned()));
+        }
         let file = File::open(path)?;
         let known = file.metadata()?;
-        if known.is_dir() {
-            return Ok(Err("it is a folder".to_owned()));
-        }
-        // What the system says beforehand may be nothing, as of a pipe, or may have grown meanwhile.
+        // What the system says beforehand may be nothing, as of a file in /proc, or may have grown meanwhile.
         let mut bytes = Vec::new();
         if known.len() <= largest {
             file.take(largest + 1).read_to_end(&mut bytes)?;
@@ -59,6 +60,28 @@ pub fn bytes(path: &Path, largest: u64) -> Result<Vec<u8>, String> {
         Ok(if fits { Ok(bytes) } else { Err(format!("it is larger than {}", in_words(largest))) })
     };
     read().unwrap_or_else(|error: std::io::Error| Err(error.to_string()))
+}
+
+/// Returns what a path leads to in place of a regular file, and the help.
+fn not_a_file(kind: FileType) -> Option<&'static str> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        if kind.is_fifo() {
+            return Some("it is a pipe, which may never end: save what it carries to a file, and name that file");
+        }
+        if kind.is_char_device() || kind.is_block_device() {
+            return Some("it is a device, which may never end: save what it gives to a file, and name that file");
+        }
+        if kind.is_socket() {
+            return Some("it is a socket: name a file");
+        }
+    }
+    match (kind.is_file(), kind.is_dir()) {
+        (true, _) => None,
+        (false, true) => Some("it is a folder"),
+        (false, false) => Some("it is not a regular file: name a file"),
+    }
 }
 
 /// The text of a file, or why it cannot be had.
@@ -92,8 +115,17 @@ mod tests {
     }
 
     #[test]
-    #[cfg(target_os = "linux")]
-    fn a_file_without_an_end_is_refused() {
-        assert_eq!(bytes(Path::new("/dev/zero"), LARGEST_TYPED), Err("it is larger than 1 MB".to_owned()));
+    #[cfg(unix)]
+    fn what_is_not_a_regular_file_is_refused_before_it_is_opened() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let pipe = folder.path().join("pipe");
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status().expect("`mkfifo` is there");
+        assert!(made.success());
+        let link = folder.path().join("link");
+        std::os::unix::fs::symlink(&pipe, &link).expect("room");
+        for (path, what) in [(&*pipe, "a pipe"), (&link, "a pipe"), (Path::new("/dev/null"), "a device")] {
+            let why = bytes(path, LARGEST_TYPED).expect_err("no file");
+            assert!(why.contains(what) && why.contains("name that file"), "{why}");
+        }
     }
 }

@@ -34,7 +34,7 @@ pub struct RunSpec {
 /// Share of the runs that start on a flank; the others start in the open gap.
 const ON_FLANK: f64 = 0.33;
 
-/// Periods between checks of the clock and of Ctrl-C.
+/// Periods between checks of the clock.
 const PERIODS_BETWEEN_CHECKS: u64 = 500;
 
 /// Makes the port to observer and compensation of a run.
@@ -155,9 +155,9 @@ impl RunContext<'_> {
                 if Instant::now() > deadline {
                     return Err(RunError::TimedOut);
                 }
-                if interruption::requested() {
-                    return Err(RunError::Interrupted);
-                }
+            }
+            if interruption::requested() {
+                return Err(RunError::Interrupted);
             }
             history.note(period, &mut translator);
             Ok(())

@@ -11,6 +11,7 @@ use super::file::{Fault, fault_is_on, fault_word};
 use super::run_history::RunHistory;
 use report::failure::Outcome;
 use report::folder::Folder;
+use report::interruption;
 use report::log::{Log, Message, field};
 
 /// Folder of all logs, in that of the results.
@@ -76,6 +77,10 @@ fn fill(out: &mut impl Write, run: LoggedRun<'_>) -> io::Result<()> {
     let (every, mut messages) = (history.every(RATE), ControllerMessages::default());
     let mut thinned = history.thinned(RATE);
     for (period, of) in history.controller.iter().enumerate() {
+        if interruption::requested() {
+            // A log takes longer than a user waits. What is there of it is removed.
+            return Err(io::ErrorKind::Interrupted.into());
+        }
         let began = period as f64 * history.run.period;
         if every_period {
             log.write(&mut controller, began, &messages.next(began, period, of))?;

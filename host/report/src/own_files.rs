@@ -1,6 +1,7 @@
 //! Which files of a folder are ours. A list in the folder has a line for every file that a command has put there, with
 //! its SHA-256: a file is ours if it is still what such a line says, so what a user has put there or changed is not. A
-//! line is in the list before its file has its name, so that a kill between the two leaves nothing that nobody owns.
+//! line is in the list before its file has its name, so that a kill between the two leaves nothing that nobody owns. The
+//! list begins with its first line: a run that is killed before it has written anything leaves none.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
@@ -11,7 +12,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use sha2::{Digest, Sha256};
 
 use crate::failure::{Failure, Outcome};
-use crate::write::{locked, unwritten};
+use crate::write::{locked, try_to_write, unwritten};
 
 /// The list, hidden since it is no result.
 pub const LIST: &str = ".written-by-joint";
@@ -35,8 +36,10 @@ struct List {
     growing: BTreeSet<String>,
     /// Names that this run has given.
     given: BTreeSet<String>,
-    /// Where lines are added, once the folder is written to.
-    file: Option<File>,
+    /// Whether lines are added on disk: the folder is written to.
+    is_open: bool,
+    /// The folder, locked for as long as this run writes to it alone.
+    _lock: Option<File>,
 }
 
 /// Who may write to a folder at a time.
@@ -62,49 +65,38 @@ pub enum Owner {
 impl OwnFiles {
     /// Reads the list of a folder, if there is one; writes nothing.
     pub fn read(folder: &Path) -> Outcome<Self> {
-        let text = match fs::read(folder.join(LIST)) {
-            Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
-            Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => String::new(),
-            Err(error) => return Err(no_list(folder, &error)),
-        };
+        let text = text_of(&folder.join(LIST)).map_err(|error| no_list(folder, &error))?;
         if !is_begun(&text) && !is_whole(&text) {
             return Err(no_list(folder, &"it is of somebody else"));
         }
         Ok(Self { folder: folder.to_owned(), list: Mutex::new(List::of(&text)) })
     }
 
-    /// Begins or goes on with the list on disk, as it is by now. Where not even this can be written, nothing else can. The
-    /// list is locked until this goes away, or the process does, however it ends.
+    /// Reads the list on disk as it is by now, and makes the folder ready to be written to. Where nothing can be written to
+    /// it, that is told before the work. The folder is locked until this goes away, or the process does, however it ends.
     pub fn open(&self, writers: Writers) -> Outcome<()> {
         let path = self.folder.join(LIST);
         let open = || {
-            let mut file = File::options().append(true).create(true).open(&path)?;
-            let alone = writers == Writers::Several || locked(&file);
-            if !alone {
+            // What cannot be opened or locked, as on some file systems, is no reason not to write.
+            let lock = File::open(&self.folder).ok().filter(|_| writers == Writers::One);
+            if lock.as_ref().is_some_and(|folder| !locked(folder)) {
                 return Ok(None);
             }
-            let text = fs::read_to_string(&path)?;
-            if is_begun(&text) {
-                if !text.is_empty() {
-                    // A disk that was full has cut it short.
-                    file.set_len(0)?;
-                }
-                file.write_all(HEAD.as_bytes())?;
+            try_to_write(&path, HEAD.as_bytes())?;
+            let text = text_of(&path)?;
+            let is_empty = is_begun(&text) || text == HEAD;
+            if writers == Writers::One && is_empty && path.exists() {
+                // What a killed run has left of a list before it wrote anything.
+                fs::remove_file(&path)?;
             }
-            Ok(Some((file, text)))
+            Ok(Some((lock, text)))
         };
-        let opened = open().map_err(|error: io::Error| {
-            if fs::metadata(&path).is_ok_and(|data| data.len() == 0) {
-                // It was ours, and it was empty: nothing is lost if it stays.
-                let _ = fs::remove_file(&path);
-            }
-            unwritten(&path, &error)
-        })?;
-        let Some((file, text)) = opened else {
+        let opened = open().map_err(|error: io::Error| unwritten(&path, &error))?;
+        let Some((lock, text)) = opened else {
             return Err(Failure::new(format!("another run is writing to {}", self.folder.display()))
                 .with_help("let it finish, or name another folder by --out DIR"));
         };
-        *self.list() = List { file: Some(file), ..List::of(&text) };
+        *self.list() = List { is_open: true, _lock: lock, ..List::of(&text) };
         Ok(())
     }
 
@@ -152,8 +144,7 @@ impl OwnFiles {
         if !list.take(&line) {
             return Ok(());
         }
-        // In one piece, behind the end of a line: one that was cut short spoils no other.
-        list.file.as_mut().map_or(Ok(()), |file| file.write_all(format!("\n{line}").as_bytes()))
+        if list.is_open { append(&self.folder.join(LIST), &line) } else { Ok(()) }
     }
 
     fn list(&self) -> MutexGuard<'_, List> {
@@ -186,6 +177,31 @@ impl List {
 /// A name as it stands in a line.
 fn key(name: &str) -> String {
     name.replace('\n', "\\n")
+}
+
+/// Adds a line to a list on disk, and its head where that is not there yet.
+fn append(path: &Path, line: &str) -> io::Result<()> {
+    let mut file = File::options().append(true).create(true).open(path)?;
+    // Of several writers one begins the list. A file system without locks is no reason not to write.
+    let _ = file.lock();
+    let text = text_of(path)?;
+    let is_begun = is_begun(&text);
+    if is_begun && !text.is_empty() {
+        // A disk that was full has cut it short.
+        file.set_len(0)?;
+    }
+    // In one piece, behind the end of a line: one that was cut short spoils no other.
+    let head = if is_begun { HEAD } else { "" };
+    file.write_all(format!("{head}\n{line}").as_bytes())
+}
+
+/// Text of a list; nothing where there is none.
+fn text_of(path: &Path) -> io::Result<String> {
+    match fs::metadata(path) {
+        Ok(data) if !data.is_file() => Err(io::Error::other("it is not a regular file")),
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => Ok(String::new()),
+        _ => Ok(String::from_utf8_lossy(&fs::read(path)?).into_owned()),
+    }
 }
 
 fn is_whole(text: &str) -> bool {
@@ -262,6 +278,19 @@ mod tests {
             claim("c");
             let ours = names.map(|name| owner(folder.path(), name) == Owner::Ours);
             assert_eq!(ours, [cut >= kept, cut == whole.len(), true], "cut at {cut}");
+        }
+    }
+
+    #[test]
+    fn list_is_not_there_before_its_first_line() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let left = || fs::read_dir(folder.path()).expect("a folder").count();
+        drop(written(folder.path()));
+        assert_eq!(left(), 0, "a run that wrote nothing leaves nothing");
+        for killed in [HEAD, &HEAD[..20], ""] {
+            fs::write(folder.path().join(LIST), killed).expect("room");
+            drop(written(folder.path()));
+            assert_eq!(left(), 0, "what was left behind is cleared away");
         }
     }
 

@@ -85,6 +85,15 @@ fn fill_whole(file: File, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<
     buffered.into_inner().map_err(io::IntoInnerError::into_error)
 }
 
+/// Tries whether a file could be written beside a target, and leaves nothing.
+pub(crate) fn try_to_write(target: &Path, bytes: &[u8]) -> io::Result<()> {
+    remove_left_behind(target);
+    let temporary = temporary_beside(target);
+    let tried = File::create(&temporary).and_then(|mut file| file.write_all(bytes));
+    let removed = fs::remove_file(&temporary);
+    tried.and(removed)
+}
+
 /// A file that another process holds is asked for so many times, so far apart.
 const LOCK_ATTEMPTS: u32 = 20;
 const LOCK_PAUSE: Duration = Duration::from_millis(50);

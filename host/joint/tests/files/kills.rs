@@ -86,7 +86,12 @@ fn is_killed_at_any_moment(writer: Writer) {
             true => amidst += 1,
             false => long = long.mul_f64(0.8),
         }
-        assert_none_is_half_written(writer, &tree(&out), &whole, &when);
+        let left = tree(&out);
+        assert_none_is_half_written(writer, &left, &whole, &when);
+        assert!(
+            left.len() != 1 || !left.contains_key(LIST),
+            "{when}: nothing is left but the list of what was written"
+        );
         if !writer.writes_once().is_some_and(|file| out.join(file).exists()) {
             let ended = writer.run(&out);
             assert_eq!(ended.code, Some(0), "{when}: {ended:?}");

@@ -127,7 +127,7 @@ fn text_of_files_and_arguments_is_shown_escaped() {
     assert!(named != q1 && described != q1);
     fs::write(place.path().join("named.toml"), &named).expect("room");
     fs::write(place.path().join("described.toml"), &described).expect("room");
-    fs::write(place.path().join("broken.toml"), format!("# \u{202e}\nnonsense = \"\u{202e}\"\n")).expect("room");
+    fs::write(place.path().join("broken.toml"), "# \u{202e}\nnonsense = \"\u{202e}\"\n").expect("room");
     fs::write(place.path().join(format!("{evil}.toml")), "nonsense = 1\n").expect("room");
     let title =
         "title = \"\\u001b[31mtitle\"\nduration_s = 0.2\nsettle_s = 0.1\nprofile = \"T2\"\n[controller]\nrivals = []\n";

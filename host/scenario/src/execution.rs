@@ -151,10 +151,8 @@ impl RunContext<'_> {
         // The same that a compensation has of its own, so that readings are logged as they come.
         let mut translator = translator(case);
         rig.run(controller, &mut set_points, &mut |period| {
-            if period.index % PERIODS_BETWEEN_CHECKS == 0 {
-                if Instant::now() > deadline {
-                    return Err(RunError::TimedOut);
-                }
+            if period.index % PERIODS_BETWEEN_CHECKS == 0 && Instant::now() > deadline {
+                return Err(RunError::TimedOut);
             }
             if interruption::requested() {
                 return Err(RunError::Interrupted);

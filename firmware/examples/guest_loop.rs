@@ -16,11 +16,11 @@ mod guest {
     use model_core::observer::{MAPPED, Observer, Samples};
     use model_core::virtual_joint::VirtualJoint;
     use parameters::ContactState;
-    #[cfg(feature = "stm32f405")]
+    #[cfg(family = "stm32f4")]
     use stm32f4 as _;
-    #[cfg(feature = "stm32g474")]
+    #[cfg(family = "stm32g4")]
     use stm32g4 as _;
-    #[cfg(feature = "stm32h743")]
+    #[cfg(family = "stm32h7")]
     use stm32h7 as _;
 
     #[allow(dead_code, clippy::all, reason = "generated numbers; the name of the joint is of no use here")]

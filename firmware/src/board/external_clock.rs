@@ -7,10 +7,10 @@ use super::bounded_wait::wait_until;
 use super::pac;
 
 /// Measures the external clock.
-#[cfg(feature = "stm32f405")]
+#[cfg(family = "stm32f4")]
 pub type CaptureTimer = pac::TIM11;
 /// Measures the external clock.
-#[cfg(not(feature = "stm32f405"))]
+#[cfg(not(family = "stm32f4"))]
 pub type CaptureTimer = pac::TIM17;
 
 /// The chip's own oscillator.

@@ -8,15 +8,15 @@
 type Master = [u32; 2];
 
 /// DMA1, DMA2, USB OTG HS: RM0090 7.3, RCC_AHB1RSTR.
-#[cfg(feature = "stm32f405")]
+#[cfg(family = "stm32f4")]
 static MASTERS: [Master; 1] = [[0x4002_3810, 1 << 21 | 1 << 22 | 1 << 29]];
 
 /// DMA1, DMA2, and what routes requests to them: RM0440 7.4, RCC_AHB1RSTR.
-#[cfg(any(feature = "stm32g474", feature = "stm32g431"))]
+#[cfg(family = "stm32g4")]
 static MASTERS: [Master; 1] = [[0x4002_1028, 1 | 1 << 1 | 1 << 2]];
 
 /// DMA1, DMA2, Ethernet, USB OTG 1 and 2; MDMA, DMA2D, SDMMC1; SDMMC2; BDMA: RM0433 8.7, RCC_AHB1RSTR, 3, 2 and 4.
-#[cfg(feature = "stm32h743")]
+#[cfg(family = "stm32h7")]
 static MASTERS: [Master; 4] = [
     [0x5802_4480, 1 | 1 << 1 | 1 << 15 | 1 << 25 | 1 << 27],
     [0x5802_447c, 1 | 1 << 4 | 1 << 16],

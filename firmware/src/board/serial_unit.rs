@@ -28,7 +28,7 @@ macro_rules! units {
     )+};
 }
 
-#[cfg(feature = "stm32f405")]
+#[cfg(family = "stm32f4")]
 units! {
     "usart1" => USART1, apb2enr, usart1en, apb2rstr, usart1rst;
     "usart2" => USART2, apb1enr, usart2en, apb1rstr, usart2rst;
@@ -38,7 +38,7 @@ units! {
     "usart6" => USART6, apb2enr, usart6en, apb2rstr, usart6rst;
 }
 
-#[cfg(any(feature = "stm32g474", feature = "stm32g431"))]
+#[cfg(family = "stm32g4")]
 units! {
     "usart1" => USART1, apb2enr, usart1en, apb2rstr, usart1rst;
     "usart2" => USART2, apb1enr1, usart2en, apb1rstr1, usart2rst;
@@ -47,7 +47,7 @@ units! {
     "uart5" => UART5, apb1enr1, uart5en, apb1rstr1, uart5rst;
 }
 
-#[cfg(feature = "stm32h743")]
+#[cfg(family = "stm32h7")]
 units! {
     "usart1" => USART1, apb2enr, usart1en, apb2rstr, usart1rst;
     "usart2" => USART2, apb1lenr, usart2en, apb1lrstr, usart2rst;

@@ -5,9 +5,9 @@
 //!
 //! The images run on a model of the chip's registers (`board-model`); they have not been run on silicon.
 
-#[cfg(feature = "stm32g431")]
+#[cfg(chip = "stm32g431")]
 pub use stm32g4::stm32g431 as pac;
-#[cfg(feature = "stm32g474")]
+#[cfg(chip = "stm32g474")]
 pub use stm32g4::stm32g474 as pac;
 
 use core::sync::atomic::AtomicBool;
@@ -87,8 +87,8 @@ impl Pages {
     /// STM32G474: two banks with pages of 2 KiB, or one with pages of 4 KiB. STM32G431 has one, with pages of 2 KiB.
     fn look(flash: &pac::FLASH) -> Self {
         const DBANK: u32 = 1 << 22;
-        let has_two_banks = cfg!(feature = "stm32g474") && flash.optr().read().bits() & DBANK != 0;
-        let bytes = if has_two_banks || cfg!(feature = "stm32g431") { 2 << 10 } else { 4 << 10 };
+        let has_two_banks = cfg!(chip = "stm32g474") && flash.optr().read().bits() & DBANK != 0;
+        let bytes = if has_two_banks || cfg!(chip = "stm32g431") { 2 << 10 } else { 4 << 10 };
         Self { bytes, of_first_bank: has_two_banks.then_some(FLASH_BYTES / 2 / bytes) }
     }
 }

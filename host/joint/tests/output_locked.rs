@@ -59,11 +59,14 @@ fn interval(record: &Value, key: &str) -> [f64; 2] {
     [0, 1].map(|end| one["interval"][end].as_f64().unwrap_or_else(|| panic!("{one}")))
 }
 
+/// Changed keys of the joint; its half-gap [um], stiffness [N m/rad] and motor friction [N m]; seed, and of how many samples one is kept.
+type Case<'a> = (&'a [(&'a str, &'a str)], [f64; 3], u64, usize);
+
 #[test]
 fn a_held_output_tells_gap_stiffness_and_friction_within_their_intervals() {
     let folder = folder();
     let folder = folder.path();
-    let cases: [(&[(&str, &str)], [f64; 3], u64, usize); 4] = [
+    let cases: [Case<'_>; 4] = [
         (&[], [40.0, 10.3e3, 0.03], 1, 1),
         (&[], [40.0, 10.3e3, 0.03], 2, 10),
         (&[("half_backlash_um", "25"), ("stiffness_N_m_per_rad", "8000")], [25.0, 8000.0, 0.03], 3, 1),

@@ -154,10 +154,20 @@ fn costs_in_the_docs_are_those_of_the_archives() {
         std::fs::write(&path, format!("{head}{BEGIN}{costs}\n{END}{tail}")).expect("a page that can be written");
         return;
     }
-    assert!(
-        written.trim() == costs.trim(),
-        "docs/reference/c-library.md: {WRITE}=1 cargo test -p c-library --test emulated_board costs_in -- --ignored"
-    );
+    let command = format!("{WRITE}=1 cargo test -p c-library --test emulated_board costs_in -- --ignored");
+    let [written, counted] = [written, &costs].map(|text| text.split_whitespace().collect::<Vec<_>>());
+    assert_eq!(written.len(), counted.len(), "docs/reference/c-library.md has other rows: {command}");
+    for (written, counted) in written.iter().zip(&counted) {
+        assert!(is_near(written, counted), "docs/reference/c-library.md: {written}, counted {counted}: {command}");
+    }
+}
+
+/// The same words; numbers within 2 %, since compilers of other versions lay out code otherwise, or within 16.
+fn is_near(written: &str, counted: &str) -> bool {
+    match (written.parse::<f64>(), counted.parse::<f64>()) {
+        (Ok(written), Ok(counted)) => (written - counted).abs() <= (0.02 * counted).max(16.0),
+        _ => written == counted,
+    }
 }
 
 /// Functions of a C library and of the Arm run-time ABI that the header names.

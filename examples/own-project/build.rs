@@ -12,7 +12,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-changed=my_joint.toml");
     let joint = joint_file::read(&fs::read_to_string("my_joint.toml")?)?;
     let (parameters, surroundings) = (&joint.parameters, &joint.surroundings);
-    let request = ControlRequest { bandwidth: None, output_encoder: true };
+    let request = ControlRequest::USUAL;
     let words = design(&Wanted {
         plant: Some((parameters, surroundings)), // `None` on a board with a real joint
         nominal: NominalPlant { joint: parameters, surroundings, request },

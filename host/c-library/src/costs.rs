@@ -130,30 +130,51 @@ pub fn stacks(bench: &Workbench, machine: Machine) -> Outcome<Vec<Stack>> {
         .collect()
 }
 
+/// Costs of a library.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Costs {
+    /// Memory by use.
+    pub memory: Vec<Memory>,
+    /// Instructions of each call that was counted.
+    pub calls: Vec<Calls>,
+    /// Stack of each call.
+    pub stacks: Vec<Stack>,
+}
+
+impl Costs {
+    /// Counts them on the machine that stands for the library's target.
+    pub fn of(library: &Library, joint: &JointFile, machine: Machine) -> Outcome<Self> {
+        let tables = tables::for_tests(joint, true, &Board::emulated())?;
+        let bench = Workbench::new(library, &tables)?;
+        Ok(Self {
+            memory: memory(library, joint, machine)?,
+            calls: calls(&bench, machine, false)?,
+            stacks: stacks(&bench, machine)?,
+        })
+    }
+}
+
 /// Costs of a library as text: the archive and the docs have the same.
-pub fn section(library: &Library, joint: &JointFile, machine: Machine) -> Outcome<String> {
+pub fn section(costs: &Costs, joint: &JointFile, machine: Machine) -> String {
     let mut text = format!(
         "\nMemory that a program takes beyond one without the library: tables of joint {} are in flash, objects, samples and results\n\
          in RAM. Linked with `-Wl,--gc-sections`.\n\n| use | flash [B] | RAM [B] |\n|---|---|---|\n",
         joint.parameters.name
     );
-    for use_of in memory(library, joint, machine)? {
+    for use_of in &costs.memory {
         text += &format!("| {} | {} | {} |\n", use_of.what, use_of.flash, use_of.ram);
     }
-    let tables = tables::for_tests(joint, true, &Board::emulated())?;
-    let bench = Workbench::new(library, &tables)?;
-    let (calls, stacks) = (calls(&bench, machine, false)?, stacks(&bench, machine)?);
     text += &format!(
         "\nInstructions of a call over three seconds of a closed loop at {} Hz, and the most stack below its caller. EMULATED:\n\
          counted on `{}` of the emulator, never on silicon.\n\n\
          | function | instructions, mean | most | stack [B] |\n|---|---|---|---|\n",
         joint.surroundings.control_rate, machine.name
     );
-    for stack in stacks {
-        let counted = calls.iter().find(|call| call.name == stack.name);
+    for stack in &costs.stacks {
+        let counted = costs.calls.iter().find(|call| call.name == stack.name);
         let [mean, most] =
             counted.map_or(["".to_owned(), "".to_owned()], |it| [it.mean, it.most].map(|it| it.to_string()));
         text += &format!("| `{}` | {mean} | {most} | {} |\n", stack.name, stack.bytes);
     }
-    Ok(text)
+    text
 }

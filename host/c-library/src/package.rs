@@ -218,7 +218,7 @@ fn costs_page(library: &Library, joint: &joint_file::JointFile, say: Say<'_>) ->
         None => "\nNothing is counted on a host: its compiler and processor decide.\n".to_owned(),
         Some(machine) => {
             emulator::ensure(say)?;
-            costs::section(library, joint, machine)?
+            costs::section(&costs::Costs::of(library, joint, machine)?, joint, machine)
         }
     };
     Ok(page)

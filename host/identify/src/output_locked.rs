@@ -1,7 +1,9 @@
 //! `joint identify --output-locked`: lost motion, stiffness, half-backlash and friction from the motor's angle and torque while the output
 //! is held fast. The torque goes slowly to and fro; on each flank the motor then turns by
 //!
-//!     theta = p_s + c T - c f d - c l d |T|                                                    (1)
+//! ```text
+//! theta = p_s + c T - c f d - c l d |T|                                                    (1)
+//! ```
 //!
 //! with the angle theta of the motor over the ratio [rad], the motor's torque times the ratio T [N m], the flank s, the direction d in
 //! which the torque goes, the compliance c [rad/(N m)], the dry friction f [N m] and the share l of the load that is lost. The lost

@@ -124,7 +124,8 @@ fn parse(text: &str) -> Outcome<MapFile> {
         let line = error.span().map_or(0, |span| text[..span.start].lines().count().max(1));
         refused(&format!("line {line}: {}", error.message()))
     })?;
-    if file.columns.is_empty() && file.joints.is_empty() {
+    // Columns may stand on the command line.
+    if file.columns.is_empty() && file.units.is_empty() && file.joints.is_empty() {
         return Err(refused("it has neither [columns] nor [joints.NAME.columns]"));
     }
     // A name becomes that of a folder.

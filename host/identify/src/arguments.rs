@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use super::quasi_static::Options;
-use log_reader::column_map::renaming;
+use log_reader::column_map::{ColumnMap, renaming};
 use log_reader::units::{self, Unit};
+use report::failure::Outcome;
 
 /// How wrong an inertia of a joint file is expected to be, as a ratio: one standard deviation, of what drawings give.
 pub const INERTIA_ERROR: f64 = 0.015;
@@ -89,6 +90,13 @@ pub struct Arguments {
     /// Slow logs.
     #[command(flatten)]
     pub slow: Options,
+}
+
+impl Arguments {
+    /// Columns and units of the log, as the map and the command line name them.
+    pub fn column_map(&self) -> Outcome<ColumnMap> {
+        ColumnMap::new(self.map.as_deref(), self.map_joint.as_deref(), &self.column, &self.unit)
+    }
 }
 
 fn percent(text: &str) -> Result<f64, String> {

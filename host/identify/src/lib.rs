@@ -52,7 +52,7 @@ use joint_file::named::{self, Loaded};
 use joint_file::warned;
 use std::path::Path;
 
-use log_reader::column_map::{self, ColumnMap, MappedJoint};
+use log_reader::column_map::{self, MappedJoint};
 use log_reader::columns;
 use parameters::AbsoluteEncoder;
 use report::document::{html, terminal};
@@ -60,6 +60,7 @@ use report::failure::{EXIT_INTERRUPTED, Failure, Outcome};
 use report::folder::{self, Folder};
 use report::number::ESTIMATE;
 use report::output;
+use report::plot::Figure;
 use report::progress::Progress;
 use report::write::write_text;
 
@@ -87,6 +88,31 @@ struct Identified {
     rows: Rows,
     twist: Twist,
     findings: Vec<Finding>,
+}
+
+impl Identified {
+    fn into_results(self) -> Results {
+        let assumptions = assumptions(&self);
+        let Self { log, prior, rows, twist, findings } = self;
+        Results {
+            duration: log.time.last().copied().unwrap_or_default(),
+            crossings: rows.crossings,
+            figures: vec![pictures::loop_of(&log, &rows, &twist, &prior), pictures::time_history(&log, &twist)],
+            findings,
+            assumptions,
+        }
+    }
+}
+
+/// Results of a log, however it was recorded: what report, joint file and JSON are made of.
+struct Results {
+    /// Length of the log [s].
+    duration: f64,
+    /// Crossings of the gap.
+    crossings: usize,
+    assumptions: Vec<String>,
+    findings: Vec<Finding>,
+    figures: Vec<Figure>,
 }
 
 /// Folder of the results of several joints, each in a folder of its own below that of the log.
@@ -139,31 +165,29 @@ fn run_one(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     if arguments.simulate {
         return simulate(arguments, &loaded, progress);
     }
-    if arguments.output_locked {
-        return output_locked::run(arguments, &loaded, progress);
-    }
     let prior = PriorModel::new(&loaded, arguments)?;
     folder::check_files(&[("json", arguments.json.as_deref())], &[&arguments.log, &arguments.joint])?;
     let folder = Folder::choose(arguments.out.as_deref(), "identify", &prior.name, &[REPORT, JOINT, FINDINGS])?;
     progress.stage("fitting");
-    let identified = identify(arguments, &prior)?;
-    folder.make()?;
+    let results = if arguments.output_locked {
+        output_locked::identify(arguments, &loaded, &prior)?
+    } else {
+        identify(arguments, &prior)?.into_results()
+    };
     let name = arguments.log.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let patched = patch::patch(&loaded, &prior, &identified.findings, &name)?;
-    let assumptions = assumptions(&identified);
-    let Identified { log, prior, rows, twist, findings } = &identified;
+    let patched = patch::patch(&loaded, &prior, &results.findings, &name)?;
     let record = Record {
         schema: "joint-identify/1",
         joint: &prior.name,
         log: &name,
-        duration_s: log.time.last().copied().unwrap_or_default(),
-        crossings: rows.crossings,
-        assumptions: &assumptions,
-        findings,
+        duration_s: results.duration,
+        crossings: results.crossings,
+        assumptions: &results.assumptions,
+        findings: &results.findings,
     };
-    let figures = vec![pictures::loop_of(log, rows, twist, prior), pictures::time_history(log, twist)];
-    let document = page::document(&record, &loaded.text, figures);
+    let document = page::document(&record, &loaded.text, results.figures);
     let json = output::json("findings", &record)?;
+    folder.make()?;
     folder.write_text(REPORT, &html(&document))?;
     folder.write_text(JOINT, &patched)?;
     folder.write_text(FINDINGS, &json)?;
@@ -174,8 +198,8 @@ fn run_one(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
 }
 
 fn slow_log(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
-    let Arguments { log, topic, column, unit, map, map_joint, out, json, slow, .. } = arguments;
-    let map = ColumnMap::new(map.as_deref(), map_joint.as_deref(), column, unit)?;
+    let Arguments { log, topic, out, json, slow, .. } = arguments;
+    let map = arguments.column_map()?;
     let common =
         quasi_static::Common { log, topic: topic.as_deref(), map: &map, out: out.as_deref(), json: json.as_ref() };
     quasi_static::run(common, slow, progress)

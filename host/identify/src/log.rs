@@ -10,7 +10,6 @@ use super::prior::PriorModel;
 use super::readings::{Kind, Readings, readings};
 use super::sampling::sampling;
 use board::profile::MAX_TORQUE;
-use log_reader::column_map::ColumnMap;
 use log_reader::columns::{Columns, MOTOR, OUTPUT, TIMES};
 use log_reader::log_file;
 use log_reader::{bad_readings, time_stamps};
@@ -59,12 +58,7 @@ impl Log {
     /// Reads a file.
     pub fn read(arguments: &Arguments, prior: &PriorModel) -> Outcome<Self> {
         let path = arguments.log.as_path();
-        let map = ColumnMap::new(
-            arguments.map.as_deref(),
-            arguments.map_joint.as_deref(),
-            &arguments.column,
-            &arguments.unit,
-        )?;
+        let map = arguments.column_map()?;
         let mut columns = log_file::read(path, arguments.topic.as_deref(), &map, prior.ratio(), Columns::will_do)?;
         let log = Self::of(&mut columns, prior);
         log.map_err(|failure| columns.explain(failure).while_doing(path.display()))
@@ -80,9 +74,7 @@ impl Log {
             let (count, turn) = if is_angle { (TAU / turn, TAU) } else { (1.0, turn) };
             bad_readings::leave_out(columns, &name, count, Some(turn))?;
         }
-        let mut time = columns.time()?;
-        let start = time.first().copied().unwrap_or_default();
-        time.iter_mut().for_each(|time| *time -= start);
+        let time = columns.time_from_start()?;
         let times = sampling(&time, columns, prior)?;
         let motor = readings(columns, MOTOR, prior.motor_bits, &times)?;
         let output = readings(columns, OUTPUT, prior.output_bits, &times)?;

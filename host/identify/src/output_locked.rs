@@ -14,35 +14,29 @@ mod cycles;
 
 use std::f64::consts::TAU;
 
+use super::Results;
 use super::arguments::Arguments;
 use super::estimate::Estimate;
 use super::findings::gap::{Shown, static_findings};
-use super::findings::{Finding, Record, SHARE, finding};
-use super::page::{self, FINDINGS, JOINT, REPORT};
-use super::patch;
+use super::findings::{Finding, SHARE, finding};
 use super::prior::PriorModel;
 use super::quasi_static::statistics::{mean, student};
 use board::profile::MAX_TORQUE;
 use cycles::{Cycle, Cycles};
 use joint_file::named::Loaded;
 use log_reader::bad_readings;
-use log_reader::column_map::ColumnMap;
 use log_reader::columns::{Columns, MOTOR, OUTPUT, TIMES};
 use log_reader::log_file;
 use log_reader::register::Register;
 use log_reader::time_stamps;
 use parameters::StiffnessWave;
-use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};
-use report::folder::{self, Folder};
 use report::number::{ESTIMATE, TYPED};
-use report::output;
 use report::plot::Figure;
 use report::plot::ink::Ink;
 use report::plot::mark::Mark;
 use report::plot::panel::Panel;
 use report::plot::unit::{TORQUE, Unit};
-use report::progress::Progress;
 
 /// An output that is held moves by less than this share of the motor's way over the ratio: the gear's own compliance is far above that of
 /// what holds it.
@@ -74,55 +68,30 @@ struct HeldLog {
     told: Vec<String>,
 }
 
-/// Reads a log, writes what it shows and prints it.
-pub fn run(arguments: &Arguments, loaded: &Loaded, progress: &Progress) -> Outcome<String> {
-    let prior = PriorModel::new(loaded, arguments)?;
-    folder::check_files(&[("json", arguments.json.as_deref())], &[&arguments.log, &arguments.joint])?;
-    let folder = Folder::choose(arguments.out.as_deref(), "identify", &prior.name, &[REPORT, JOINT, FINDINGS])?;
-    progress.stage("fitting");
-    let path = arguments.log.as_path();
-    let in_the_file = |failure: Failure| failure.while_doing(path.display());
-    let log = HeldLog::read(arguments, &prior)?;
+/// Identifies a joint from a log of its held output.
+pub fn identify(arguments: &Arguments, loaded: &Loaded, prior: &PriorModel) -> Outcome<Results> {
+    let in_the_file = |failure: Failure| failure.while_doing(arguments.log.display());
+    let log = HeldLog::read(arguments, prior)?;
     let cycles = Cycles::of(&log.time, &log.twist, &log.torque).map_err(in_the_file)?;
-    let findings = findings(&log, &cycles, loaded, &prior);
+    let findings = findings(&log, &cycles, loaded, prior);
     if !findings.iter().any(Finding::is_news) {
         return Err(in_the_file(Failure::new("nothing is identifiable from this log").with_help(
             "let the torque go to and fro more often, up to several times the friction, and log a finer encoder",
         )));
     }
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let patched = patch::patch(loaded, &prior, &findings, &name)?;
-    let assumptions = assumptions(&log, &cycles, &prior);
-    let record = Record {
-        schema: "joint-identify/1",
-        joint: &prior.name,
-        log: &name,
-        duration_s: log.time.last().copied().unwrap_or_default(),
+    Ok(Results {
+        duration: log.time.last().copied().unwrap_or_default(),
         crossings: cycles.crossings,
-        assumptions: &assumptions,
-        findings: &findings,
-    };
-    let document = page::document(&record, &loaded.text, vec![picture(&log, &cycles)]);
-    let json = output::json("findings", &record)?;
-    folder.make()?;
-    folder.write_text(REPORT, &html(&document))?;
-    folder.write_text(JOINT, &patched)?;
-    folder.write_text(FINDINGS, &json)?;
-    arguments.json.as_ref().map_or(Ok(()), |path| output::write_json(path, &json))?;
-    progress.clear();
-    let [report, joint] = [REPORT, JOINT].map(|name| folder.file(name));
-    Ok(format!("{}\nreport: {}\njoint file: {}\n", terminal(&document), report.display(), joint.display()))
+        assumptions: assumptions(&log, &cycles, prior),
+        figures: vec![picture(&log, &cycles)],
+        findings,
+    })
 }
 
 impl HeldLog {
     fn read(arguments: &Arguments, prior: &PriorModel) -> Outcome<Self> {
         let path = arguments.log.as_path();
-        let map = ColumnMap::new(
-            arguments.map.as_deref(),
-            arguments.map_joint.as_deref(),
-            &arguments.column,
-            &arguments.unit,
-        )?;
+        let map = arguments.column_map()?;
         let will_do = |columns: &Columns| columns.will_do_with(false);
         let mut columns = log_file::read(path, arguments.topic.as_deref(), &map, prior.ratio(), will_do)?;
         let log = Self::of(&mut columns, prior);
@@ -135,9 +104,7 @@ impl HeldLog {
         let (motor, motor_count) =
             angle(columns, MOTOR, prior.motor_bits)?.ok_or_else(|| columns.without_encoder("motor"))?;
         let output = angle(columns, OUTPUT, prior.output_bits)?;
-        let mut time = columns.time()?;
-        let start = time.first().copied().unwrap_or_default();
-        time.iter_mut().for_each(|time| *time -= start);
+        let time = columns.time_from_start()?;
         if let Some(row) = time.windows(2).position(|pair| pair[1] <= pair[0]) {
             return Err(Failure::new(format!("the time does not rise in {}", columns.place(row + 1)))
                 .with_help("samples must be in the order in which they were taken, each with its own time"));

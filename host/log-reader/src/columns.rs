@@ -250,6 +250,14 @@ impl Columns {
         Ok(values)
     }
 
+    /// Time from the first row on [s].
+    pub fn time_from_start(&self) -> Outcome<Vec<f64>> {
+        let mut time = self.time()?;
+        let start = time.first().copied().unwrap_or_default();
+        time.iter_mut().for_each(|time| *time -= start);
+        Ok(time)
+    }
+
     /// The values of the first of these columns that is there, by whichever of its names, and which one it is.
     pub fn named<'n>(&self, columns: &[&'n str]) -> Outcome<(&'n str, Vec<f64>)> {
         self.first_of(columns)?.ok_or_else(|| self.missing(columns.first().copied().unwrap_or_default()))

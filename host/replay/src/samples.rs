@@ -104,9 +104,7 @@ impl ReplaySamples {
         columns.leave_out_incomplete(&[&TIMES, &MOTOR, output, &["motor_torque_N_m"]])?;
         time_stamps::resolve(columns)?;
         let columns = &*columns;
-        let mut time = columns.time()?;
-        let start = time.first().copied().unwrap_or_default();
-        time.iter_mut().for_each(|time| *time -= start);
+        let time = columns.time_from_start()?;
         let (motor, motor_angle) = counts(columns, "motor", settings.motor_encoder)?;
         let output = settings.output_encoder.map(|encoder| counts(columns, "output", encoder)).transpose()?;
         let from_angles = motor_angle || output.as_ref().is_some_and(|(_, angle)| *angle);

@@ -92,7 +92,6 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
     /// An observer that has seen nothing yet and knows what was designed.
     pub fn new(tables: &'tables ObserverTables<T>) -> Self {
         let mut observer = Self::unbegun(tables);
-        observer.learnt.begin(tables);
         observer.begin();
         observer
     }
@@ -103,7 +102,6 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         tables: &'tables ObserverTables<T>,
     ) -> &'place mut Self {
         let observer = Self::put(place, tables);
-        observer.learnt.begin(tables);
         observer.begin();
         observer
     }
@@ -129,20 +127,21 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         }
     }
 
-    /// Back to what was designed, part by part: a whole new observer would need as much stack again.
+    /// Back to what was designed, in its place.
     pub fn restart(&mut self) {
-        let has_output = self.tables.counts.has_output;
-        self.sensors = Sensors::new(has_output);
-        self.filters = Filters::default();
-        self.contact = Contact::default();
-        self.learnt.restart(self.tables);
-        self.health = Health::new(has_output);
-        self.estimates = Estimates::default();
+        self.clear();
         self.begin();
     }
 
-    /// What follows from what was designed.
+    /// Its stack is free again when the parts begin.
+    #[inline(never)]
+    fn clear(&mut self) {
+        *self = Self::unbegun(self.tables);
+    }
+
+    /// Hands the tables to the parts that have not taken them yet; what follows from them is published.
     fn begin(&mut self) {
+        self.learnt.begin(self.tables);
         self.find_errors();
         self.say_learnt();
     }

@@ -171,43 +171,6 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         self.uncertainty.restart(tables, &self.learner);
     }
 
-    /// Back to what was designed, part by part: a whole new one would need as much stack again.
-    #[inline(never)]
-    pub fn restart(&mut self, tables: &ObserverTables<T>) {
-        let Self {
-            learner,
-            bias,
-            inertia,
-            cogging,
-            errors,
-            uncertainty,
-            interval,
-            travel,
-            block,
-            last_rest,
-            consistency,
-            places,
-            probation,
-            trusted,
-            weighed,
-        } = self;
-        learner.restart(&tables.learner);
-        *bias = Bias::new(&tables.contact);
-        *inertia = Inertia::new(&tables.inertia);
-        *cogging = Cogging::new(&tables.cogging);
-        *errors = PositionErrors::new();
-        uncertainty.restart(tables, learner);
-        *interval = Interval::new();
-        *travel = TravelDetector::new();
-        *block = Block::new();
-        *last_rest = LastRest::new();
-        *consistency = Consistency::default();
-        *places = Places::new();
-        *probation = 0;
-        *trusted = None;
-        *weighed = None;
-    }
-
     /// Half-gap [m] and compliance [m/N] as learnt so far.
     pub fn shape(&self) -> [T; 2] {
         [self.learner.value(HALF_GAP), self.learner.value(COMPLIANCE)]

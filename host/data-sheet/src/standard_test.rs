@@ -44,13 +44,7 @@ pub fn measure(text: &str, lines: &mut [Line], seeds: u64, progress: &Progress) 
     let test = StandardTest { text, seeds, designed: design(&test_file("").map_err(refused)?, text).map_err(refused)? };
     let of_file = test.figures("").map_err(refused)?;
     progress.done(1);
-    let nothing = A_THOUSANDTH.map(|factor| {
-        test.figures(&format!(
-            "[plant]
-{CHANCE} = {{ times = {factor} }}
-"
-        ))
-    });
+    let nothing = A_THOUSANDTH.map(|factor| test.figures(&format!("[plant]\n{CHANCE} = {{ times = {factor} }}\n")));
     let mut chance = 0.0;
     for moved in nothing {
         chance = f64::max(chance, move_of(&moved.map_err(Failure::new)?, &of_file));
@@ -81,21 +75,11 @@ impl StandardTest<'_> {
     /// The larger of both moves, over the figure.
     fn moved(&self, line: &Line, of_file: &[f64]) -> Result<f64, String> {
         let values = line.wrong_values().ok_or("it is no number")?;
+        let is_known = KNOWN.contains(&line.key);
+        let section = if is_known { "known" } else { "plant" };
         let tried = values.map(|value| {
-            let changed = match KNOWN.contains(&line.key) {
-                true => self.figures_of_known(&format!(
-                    "[known]
-{} = {value}
-",
-                    line.path()
-                )),
-                false => self.figures(&format!(
-                    "[plant]
-{} = {value}
-",
-                    line.path()
-                )),
-            };
+            let changes = format!("[{section}]\n{} = {value}\n", line.path());
+            let changed = if is_known { self.figures_of_known(&changes) } else { self.figures(&changes) };
             changed.map(|changed| move_of(&changed, of_file))
         });
         match tried {

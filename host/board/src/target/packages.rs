@@ -109,18 +109,13 @@ pub fn ensure(packages: &[&str], purpose: &str, say: Say<'_>) -> Outcome<()> {
     }
     let list = missing.join(" ");
     let is_terminal = io::stdin().is_terminal() && io::stderr().is_terminal();
-    match install {
-        Install::Ask if is_terminal => {
-            if !*ANSWER.get_or_init(|| agrees(&list, purpose)) {
-                return Err(forbidden(&list, purpose));
-            }
-            say(&format!("installing {list} with apt-get, needed {purpose}"));
-        }
-        Install::Ask => say(&format!(
-            "installing {list} with apt-get, needed {purpose}; `--install no` or {VARIABLE}=no forbids that"
-        )),
-        _ => say(&format!("installing {list} with apt-get, needed {purpose}")),
+    let asks = install == Install::Ask;
+    if asks && is_terminal && !*ANSWER.get_or_init(|| agrees(&list, purpose)) {
+        return Err(forbidden(&list, purpose));
     }
+    let hint =
+        if asks && !is_terminal { format!("; `--install no` or {VARIABLE}=no forbids that") } else { String::new() };
+    say(&format!("installing {list} with apt-get, needed {purpose}{hint}"));
     tool::follow(apt_get().arg("update"), "apt-get update", say).map_err(|failure| with_line(failure, &list))?;
     let mut install = apt_get();
     install.args(["install", "--yes", "--no-install-recommends"]).args(&missing);

@@ -108,7 +108,7 @@ pub unsafe fn look<'a, K: Kind>(storage: *const K::Storage) -> Result<&'a Object
 /// Storage of an object, as a caller hands it over to have an object started in it.
 #[derive(Debug, Clone, Copy)]
 pub struct Storage<S> {
-    /// Where it is.
+    /// Pointer to the storage.
     pub at: *mut S,
     /// Its size, by the caller's word [B].
     pub bytes: usize,

@@ -150,7 +150,7 @@ fn costs_are_those_of_docs_and_header() {
     }
 }
 
-/// The same words; numbers within 2 %, since compilers of other versions lay out code otherwise, or within 16.
+/// Compares words: texts exactly, numbers within 2 %, since compilers of other versions lay out code otherwise, or within 16.
 fn is_near(written: &str, counted: &str) -> bool {
     match (written.parse::<f64>(), counted.parse::<f64>()) {
         (Ok(written), Ok(counted)) => (written - counted).abs() <= (0.02 * counted).max(16.0),

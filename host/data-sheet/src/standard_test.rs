@@ -94,7 +94,7 @@ impl StandardTest<'_> {
         self.figures_under(&test_file(changes)?, &self.designed)
     }
 
-    /// The same with controllers that know of the changes.
+    /// The figures of all seeds with a changed joint, and controllers that know of the changes [mrad].
     fn figures_of_known(&self, changes: &str) -> Result<Vec<f64>, String> {
         let file = test_file(changes)?;
         let designed = design(&file, self.text)?;

@@ -22,7 +22,7 @@ const TIMES_ROTOR: f64 = 10.0;
 /// It has at least so many times the rotor's: a joint without a link is no joint.
 const LEAST_TIMES_ROTOR: f64 = 0.1;
 
-/// What the standard test asks of a motor.
+/// Torque that the standard test asks of a motor.
 pub struct Swing {
     /// Motor turns for one turn of the link.
     ratio: f64,

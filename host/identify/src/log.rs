@@ -48,7 +48,7 @@ pub struct Log {
     pub age: f64,
     /// What motor and output were read as.
     pub kinds: [Kind; 2],
-    /// What was done to the rows of the file, a sentence each.
+    /// Changes to the rows of the file, a sentence each.
     pub told: Vec<String>,
     /// What is lost between samples.
     pub times: EvenTimes,

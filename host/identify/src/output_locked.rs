@@ -62,9 +62,9 @@ struct HeldLog {
     torque: Vec<f64>,
     /// Step of the encoders on that scale [rad].
     resolution: f64,
-    /// Whether the output was logged.
+    /// True if the output was logged.
     has_output: bool,
-    /// What was done to the rows, a sentence each.
+    /// Changes to the rows, a sentence each.
     told: Vec<String>,
 }
 
@@ -230,7 +230,7 @@ fn findings(log: &HeldLog, cycles: &Cycles, loaded: &Loaded, prior: &PriorModel)
     findings
 }
 
-/// What the numbers take for granted.
+/// Assumptions that the numbers rest on.
 fn assumptions(log: &HeldLog, cycles: &Cycles, prior: &PriorModel) -> Vec<String> {
     let mut list = vec![
         format!(

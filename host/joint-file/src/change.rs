@@ -161,7 +161,7 @@ impl Gears {
         }
     }
 
-    /// Whether a joint with these gears may state a key.
+    /// Returns whether a joint with these gears may state a key.
     fn have(self, path: &str) -> bool {
         let top = path.split('.').next().unwrap_or(path);
         match self {

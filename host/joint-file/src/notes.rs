@@ -89,7 +89,7 @@ impl<'t> Notes<'t> {
         held.unwrap_or((keys.first().copied().unwrap_or_default(), self.top()))
     }
 
-    /// Whether the file states a key, once it has been read.
+    /// Returns whether the file states a key, once it has been read.
     pub(crate) fn holds(&self, key: &str) -> bool {
         self.places.borrow().contains_key(key)
     }

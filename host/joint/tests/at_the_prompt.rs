@@ -176,7 +176,7 @@ fn debian(place: &std::path::Path) -> String {
     text(place).to_owned()
 }
 
-/// Whether packages can be installed here: what cannot is named, whatever was decided.
+/// Returns whether packages can be installed here; those that cannot are named, whatever was decided.
 fn is_root() -> bool {
     use std::os::unix::fs::MetadataExt;
     fs::metadata("/proc/self").is_ok_and(|data| data.uid() == 0)

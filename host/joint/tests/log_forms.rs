@@ -35,13 +35,13 @@ fn identify(folder: &Path, options: &[&str]) -> Ended {
     joint(&[&["identify", text(&log), "--joint", "q1", "--out", text(&out)], options].concat())
 }
 
-/// What was found, and what was told of the log.
+/// Findings, and remarks on the log.
 fn findings(folder: &Path) -> (Value, String) {
     let record = json(&folder.join("out/findings.json"));
     (record["findings"].clone(), record["assumptions"].to_string())
 }
 
-/// Whether the half-backlash that Q1 truly has is in its interval.
+/// Checks that the true half-backlash of Q1 is in its interval.
 fn holds_the_truth(findings: &Value) {
     for (key, truth) in [("mesh.half_backlash_um", 40.0), ("compliance.stiffness_N_m_per_rad", 10.3e3)] {
         let all = findings.as_array().expect("a list");
@@ -51,7 +51,7 @@ fn holds_the_truth(findings: &Value) {
     }
 }
 
-/// Whether the same is found, but for the rounding of angles that begin elsewhere.
+/// Checks that two logs have the same findings, but for the rounding of angles that begin elsewhere.
 fn alike(found: &Value, truth: &Value) {
     let [found, truth] = [found, truth].map(|findings| findings.as_array().expect("a list"));
     assert_eq!(found.len(), truth.len());

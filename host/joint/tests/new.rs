@@ -263,7 +263,7 @@ fn inertia_of_a_clamping_hub_is_not_warned_of() {
     assert_eq!(read(&fs::read_to_string(path).expect("written")).expect("a joint").warnings, []);
 }
 
-/// What the command derived from a diameter is no typing error of the user's.
+/// A value that the command derived from a diameter is no typing error of the user's.
 #[test]
 fn a_derived_stiffness_is_warned_of_by_what_it_was_derived_from() {
     let place = folder();

@@ -67,7 +67,7 @@ pub struct ColumnMap {
 }
 
 impl ColumnMap {
-    /// What is said on the command line, and of all else what a map says, if there is one; `joint` names one of its joints.
+    /// Columns and units of the command line, and of a map where the command line has none; `joint` names one of its joints.
     pub fn new(map: Option<&Path>, joint: Option<&str>, columns: &[(String, String)], units: &[Unit]) -> Outcome<Self> {
         let mut all = Self { columns: columns.to_vec(), units: units.to_vec() };
         let Some(path) = map else { return Ok(all) };

@@ -2,7 +2,7 @@
 
 use report::failure::{Failure, Outcome};
 
-/// What to write in the first line.
+/// Names to write in the first line.
 pub const HEADER_HELP: &str = "the first line names the columns: time_s,motor_counts,output_counts,motor_torque_N_m and, if it \
                            was measured, output_torque_N_m; --column motor_counts=NAME takes another name";
 
@@ -43,9 +43,9 @@ pub struct Columns {
     values: Vec<Vec<f64>>,
     /// Number of each row's line or message.
     places: Vec<usize>,
-    /// What a row is called.
+    /// Word for a row.
     row: &'static str,
-    /// What was done to the rows, a sentence each.
+    /// Changes to the rows, a sentence each.
     told: Vec<String>,
     /// Columns whose unit was stated.
     stated: Vec<String>,
@@ -162,7 +162,7 @@ impl Columns {
         self.names.iter_mut().filter(|known| *known == name).for_each(|known| known.insert(0, '~'));
     }
 
-    /// Whether a row has all values of the row before.
+    /// Returns whether a row has all values of the row before.
     pub fn is_repeated(&self, row: usize) -> bool {
         let same =
             |values: &Vec<f64>| values[row] == values[row - 1] || (values[row].is_nan() && values[row - 1].is_nan());
@@ -233,7 +233,7 @@ impl Columns {
         self.names.iter().map(String::as_str)
     }
 
-    /// Where a row stands.
+    /// Place of a row in its file.
     pub fn place(&self, row: usize) -> String {
         format!("{} {}", self.row, self.places.get(row).copied().unwrap_or_default())
     }

@@ -40,7 +40,7 @@ impl Register {
             .map(|(register, _)| register)
     }
 
-    /// Whether it can have a value.
+    /// Returns whether the register can hold a value.
     pub fn holds(&self, value: f64) -> bool {
         let (least, rounded) = (if self.signed { -0.5 * self.counts } else { 0.0 }, ROUNDED * self.counts);
         (least - rounded..least + self.counts + rounded).contains(&value)
@@ -51,7 +51,7 @@ impl Register {
         outside as f64 <= OUTSIDE * values.len() as f64
     }
 
-    /// Whether readings step across its end.
+    /// Returns whether readings step across the end of the register.
     fn is_crossed(&self, values: &[f64], share: f64) -> bool {
         values
             .windows(2)

@@ -33,7 +33,7 @@ pub struct ReplayRecord {
     pub duration_s: f64,
     /// Angles were taken for counts of the joint file's encoders.
     pub counts_from_angles: bool,
-    /// What was done to the rows of the log, a sentence each.
+    /// Changes to the rows of the log, a sentence each.
     pub log_notes: Vec<String>,
     /// Whether the estimates are those of the run that wrote the log; absent for any other log.
     pub repeats: Option<Repeats>,

@@ -33,7 +33,7 @@ pub struct ReplaySamples {
     pub period: f64,
     /// Whether angles were taken for the counts of the joint file's encoders.
     pub from_angles: bool,
-    /// What was done to the rows of the file, a sentence each.
+    /// Changes to the rows of the file, a sentence each.
     pub told: Vec<String>,
     /// Asked of the motor from each row on [N m].
     pub torque: Vec<f64>,

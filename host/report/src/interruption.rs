@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use crate::failure::{EXIT_INTERRUPTED, Failure, Outcome};
 
-/// What a user does not notice as a delay is 0.2 s: work that need not end in order has this much of it to end by itself, and a
-/// busy machine has the rest to let this process run.
+/// Time in which work that need not end in order ends by itself. A command is to end within 0.2 s, which users do not notice; a busy
+/// machine has the rest to let this process run.
 const PATIENCE: Duration = Duration::from_millis(80);
 /// Time between two looks at whether work must still end in order.
 const LOOK: Duration = Duration::from_millis(5);

@@ -36,7 +36,7 @@ struct List {
     growing: BTreeSet<String>,
     /// Names that this run has given.
     given: BTreeSet<String>,
-    /// Whether lines are added on disk: the folder is written to.
+    /// True while lines are added on disk: the folder is written to.
     is_open: bool,
     /// The folder, locked for as long as this run writes to it alone.
     _lock: Option<File>,

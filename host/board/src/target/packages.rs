@@ -151,7 +151,7 @@ fn is_yes(answer: &str) -> bool {
     ["y", "yes"].contains(&answer.trim().to_lowercase().as_str())
 }
 
-/// What the user has not allowed to be installed.
+/// Failure for packages that the user has not allowed to be installed.
 fn forbidden(list: &str, purpose: &str) -> Failure {
     Failure::new(format!("not installed, but needed {purpose}: {list}")).with_help(format!(
         "run: apt-get update && apt-get install {list}\nor allow it by `--install yes` or {VARIABLE}=yes"

@@ -46,7 +46,7 @@ pub(super) fn gap_and_compliance(
     findings
 }
 
-/// Whether a log shows a parameter, and why not.
+/// Answer whether a log shows a parameter, and why not.
 #[derive(Clone, Copy)]
 pub(crate) struct Shown<'w> {
     pub is_shown: bool,

@@ -24,21 +24,21 @@ const MOST_LEAST_LOAD: f64 = 0.6;
 /// After a reversal so many times the change that friction makes is passed over, and this share of the peak.
 const STUCK: f64 = 1.3;
 const STUCK_SHARE: f64 = 0.05;
-/// What the first fit takes for that change, as a share of the peak.
+/// First guess of that change, as a share of the peak.
 const FIRST_STUCK: f64 = 0.35;
 /// Fits one after the other, each by the friction that the one before found.
 const ROUNDS: usize = 4;
 /// Samples of a cycle that are needed on each flank and in each direction.
 const LEAST_SAMPLES: usize = 6;
-/// What a fit leaves over is less than this share of the whole way, or the flanks are no lines.
+/// Residual of a fit over the whole way, above which the flanks are no straight lines.
 const LEFT_OVER: f64 = 0.1;
 /// Unknowns: ends of both flanks at no torque, compliance, and what friction and losses put into the angle.
 const UNKNOWNS: usize = 5;
 
-/// What one cycle shows, at the output.
+/// Parameters of one cycle, at the output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cycle {
-    /// Where both flanks end at no torque: the upper and the lower [rad].
+    /// Ends of both flanks at no torque, the upper and the lower [rad].
     pub ends: [f64; 2],
     /// Between the two [rad].
     pub lost_motion: f64,
@@ -50,7 +50,7 @@ pub struct Cycle {
     pub friction: f64,
     /// Share of the load that is lost.
     pub loss: f64,
-    /// What the fit leaves over, root mean square [rad].
+    /// Residual of the fit, root mean square [rad].
     left_over: f64,
 }
 
@@ -61,7 +61,7 @@ pub struct Cycles {
     pub all: Vec<Cycle>,
     /// Least and largest torque that is used [N m].
     pub loads: [f64; 2],
-    /// How fast the torque changes [N m/s].
+    /// Rate of the torque [N m/s].
     pub torque_rate: f64,
     /// Changes of the flank.
     pub crossings: usize,

@@ -43,7 +43,7 @@ pub struct Samples {
     pub scale: Scale,
     /// Least steps of both encoders' readings together, on the output's scale [units of the output].
     pub resolution: f64,
-    /// What was done to the rows of the file, a sentence each.
+    /// Changes to the rows of the file, a sentence each.
     pub told: Vec<String>,
     /// Usual time from one sample to the next [s].
     pub period: f64,
@@ -338,7 +338,7 @@ fn check_jumps(
     )))
 }
 
-/// What else may be a jump, with the option that joins it where that is not stated.
+/// Other causes of a jump, with the option that joins it where that is not stated.
 fn begins_anew(name: &str, columns: &Columns, options: &Options) -> String {
     let of_output = name == "output" || columns.column(DIFFERENCE).is_some();
     let (option, stated, names) = if of_output {

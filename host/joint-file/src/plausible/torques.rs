@@ -21,7 +21,8 @@ const LOAD_FRICTION: Limits = Limits::above(0.5, 10.0);
 const TOP_SPEED: Limits = Limits { odd: (3.0, ANY), possible: (0.03, ANY) };
 /// Drive torque, through the ratio, over the rated torque.
 const DRIVE: Limits = Limits { odd: (0.4, 2.5), possible: (0.02, 50.0) };
-/// The same where the drive torque is the motor's limit: gearheads that are rated for 20 times their motor are sold.
+/// Drive torque, through the ratio, over the rated torque, where the motor's limit is below what the rated torque takes: gearheads
+/// that are rated for 20 times their motor are sold.
 const LIMITED_DRIVE: Limits = Limits { odd: (0.02, 2.5), possible: (5e-4, 50.0) };
 /// The motor's limit over its drive torque.
 const LIMIT: Limits = Limits::above(20.0, 500.0);

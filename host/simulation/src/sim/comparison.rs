@@ -122,7 +122,7 @@ impl Comparison {
         &self.tracks[0].times
     }
 
-    /// Whether no compared quantity moves: an error is over the motion, and has none.
+    /// Returns whether no compared quantity moves: an error is over the motion, and has none.
     pub fn is_still(&self) -> bool {
         self.tracks[0].columns.iter().all(|column| is_still(column))
     }

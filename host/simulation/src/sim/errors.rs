@@ -78,7 +78,7 @@ pub fn errors(exact: &[Vec<f64>], columns: &[Vec<f64>], predictable: usize) -> [
 /// of f32, which is 6e-8 of a value, and the steps of the reference move a constant by less.
 const STILL: f64 = 1e-6;
 
-/// Whether a quantity stays where it is.
+/// Returns whether a quantity stays where it is.
 pub fn is_still(values: &[f64]) -> bool {
     let greatest = values.iter().fold(0.0, |greatest: f64, value| greatest.max(value.abs()));
     spread(values) <= STILL * greatest

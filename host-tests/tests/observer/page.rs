@@ -32,7 +32,7 @@ fn rows<'a>(lines: impl Iterator<Item = &'a str>) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// The test that a row ends with, as its file and its function: "`program module::function`".
+/// The test at the end of a row of a source, as its file and its function: "`program module::function`".
 fn test_of(row: &[String]) -> (String, String) {
     let name = row.last().expect("a row has cells").trim_matches('`');
     let (program, path) = name.split_once(' ').expect("a program and a path");

@@ -26,23 +26,13 @@ impl Event {
     /// The same as a sentence, for the documentation.
     pub const fn meaning(self) -> &'static str {
         match self {
-            Self::DemandTurned => {
-                "The torque that the teeth will have to pass on changes its sign, by more than switching hysteresis and noise."
-            }
-            Self::SpringUndecided => {
-                "In impedance mode, the demand now and ahead asks for the other flank, by less than that."
-            }
-            Self::FlankLost => {
-                "Nothing shows contact any more, and the flank is open by more than half of the half-gap."
-            }
-            Self::FlankOpening => {
-                "Nothing shows contact any more, and the flank is open by more than the estimates' errors."
-            }
-            Self::FlankMet => {
-                "The flank is felt, is seen or stops the motor; on a path the motor has been braked as well."
-            }
+            Self::DemandTurned => "The demand changes sign by more than the hysteresis.",
+            Self::SpringUndecided => "Impedance mode: the demand changes sign by less than the hysteresis.",
+            Self::FlankLost => "No contact; the opening exceeds half of the half-gap.",
+            Self::FlankOpening => "No contact; the opening exceeds the estimation error.",
+            Self::FlankMet => "The flank is felt, seen or stops the motor; on a path the motor is also braked.",
             Self::PathEnded => "The time of the path is over.",
-            Self::Underway => "None of the above: the path goes on.",
+            Self::Underway => "No other event.",
         }
     }
 }
@@ -131,13 +121,11 @@ impl Action {
     pub const fn meaning(self) -> &'static str {
         match self {
             Self::CrossOver => "Lay a path to the other flank.",
-            Self::CrossBack => "Lay a path back to the same flank.",
-            Self::Land => "Close on the flank at a small speed, wherever it is.",
-            Self::Carry => "The flank carries; the law's torque rises from nothing.",
-            Self::LetSpringFind => {
-                "The law's torque finds the flank; the other one is taken once it is felt beyond the middle of the gap."
-            }
-            Self::Shorten => "Lay the path anew, if a new one would be over clearly sooner.",
+            Self::CrossBack => "Lay a path to the same flank.",
+            Self::Land => "Close at the landing speed.",
+            Self::Carry => "The flank carries; the torque rises from zero.",
+            Self::LetSpringFind => "The torque finds the flank; a flank felt beyond the middle of the gap is taken.",
+            Self::Shorten => "Lay a new path if it ends clearly sooner.",
         }
     }
 

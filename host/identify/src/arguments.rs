@@ -27,6 +27,7 @@ Examples:
   joint identify virtual.csv --joint q1                        and what is found in it
   joint identify sweeps.csv --quasi-static --gear-ratio 6      slow sweeps to and fro, without a joint file
   joint identify held.csv --joint my_joint.toml --output-locked    slow torque to and fro, the output clamped
+  joint identify servo.csv --joint my_joint.toml --output-only     torque steps to and fro, no encoder at the motor
 
 Exit code: 0 if something could be identified, 2 for bad input or a log that cannot tell, 130 after Ctrl-C."
 )]
@@ -87,6 +88,10 @@ pub struct Arguments {
     /// friction from the motor's angle and torque
     #[arg(long, conflicts_with_all = ["quasi_static", "simulate", "inertia_error"])]
     pub output_locked: bool,
+    /// Reads a log of a joint without an encoder at the motor, whose torque steps to and fro: inertia, friction, weight of the link and an
+    /// upper bound of the lost motion from the output's angle and the motor's torque
+    #[arg(long, conflicts_with_all = ["quasi_static", "simulate", "output_locked"])]
+    pub output_only: bool,
     /// Slow logs.
     #[command(flatten)]
     pub slow: Options,

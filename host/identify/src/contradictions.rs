@@ -8,10 +8,10 @@ use super::balances::{self, Factor, SURE};
 use super::findings::Finding;
 use super::log::{Log, SMOOTH};
 use super::prior::PriorModel;
-use super::readings::Kind;
 use super::regression::{Equations, Solution};
 use super::rows::Rows;
 use super::twist::{self, BLOCK_LENGTH, Twist};
+use log_reader::readings::Kind;
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 

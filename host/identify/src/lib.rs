@@ -1,18 +1,18 @@
 //! `joint identify`: from a recorded reversal test to a joint's backlash, compliance, damping, friction and encoder
 //! errors, each with its interval, and to a patched joint file.
 //!
-//! Logs are read into columns by the crate `log-reader`. `log` turns them into samples: rows with
-//! times of their own by `time_stamps`, without `bad_readings`, angles by `readings` out of a `register`, at `even_times`, checked by `sampling`, whose scatter is `noise`. `prior` says what the joint file knows; `rows`
+//! Logs are read into columns and angles at even times by the crate `log-reader`. `log` turns them into samples, checked by `sampling`.
+//! `prior` says what the joint file knows; `rows`
 //! are the moments at which a flank carries, smoothed by `kernel`; `load_sharing` is what planets out of phase take of the gap; `twist` and `friction` are fitted to them by `regression`;
 //! `balances` hold torque against inertias, for `contradictions` and for `scales`. `findings` is what comes of it, with its
 //! `estimate`s; `page`, `pictures` and `patch` show it. `virtual_test` makes a log without hardware.
-//! `quasi_static` reads slow logs by itself, `output_locked` those of a joint whose output is held.
+//! `quasi_static` reads slow logs by itself, `output_locked` those of a joint whose output is held, `output_only` those
+//! without the motor's angle; the latter two read their columns by `one_encoder`.
 
 mod arguments;
 mod balances;
 mod contradictions;
 mod estimate;
-mod even_times;
 pub mod findings;
 mod friction;
 mod higher;
@@ -20,16 +20,17 @@ mod kernel;
 pub mod learnt;
 mod load_sharing;
 mod log;
-mod noise;
+mod one_encoder;
 mod output_locked;
+mod output_only;
 pub mod page;
 mod patch;
 mod pictures;
 mod prior;
 mod quasi_static;
-mod readings;
 mod refusal;
 mod regression;
+mod results;
 mod rows;
 mod sampling;
 mod scales;
@@ -44,6 +45,7 @@ use log::Log;
 use page::{FINDINGS, JOINT, REPORT};
 use prior::{Losses, PriorModel};
 pub use quasi_static::Options;
+use results::Results;
 use rows::Rows;
 use scales::{Doubt, Scales};
 use twist::Twist;
@@ -60,7 +62,6 @@ use report::failure::{EXIT_INTERRUPTED, Failure, Outcome};
 use report::folder::{self, Folder};
 use report::number::ESTIMATE;
 use report::output;
-use report::plot::Figure;
 use report::progress::Progress;
 use report::write::write_text;
 
@@ -102,17 +103,6 @@ impl Identified {
             assumptions,
         }
     }
-}
-
-/// Results of a log, however it was recorded: what report, joint file and JSON are made of.
-struct Results {
-    /// Length of the log [s].
-    duration: f64,
-    /// Crossings of the gap.
-    crossings: usize,
-    assumptions: Vec<String>,
-    findings: Vec<Finding>,
-    figures: Vec<Figure>,
 }
 
 /// Folder of the results of several joints, each in a folder of its own below that of the log.
@@ -171,6 +161,8 @@ fn run_one(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     progress.stage("fitting");
     let results = if arguments.output_locked {
         output_locked::identify(arguments, &loaded, &prior)?
+    } else if arguments.output_only {
+        output_only::identify(arguments, &loaded, &prior)?
     } else {
         identify(arguments, &prior)?.into_results()
     };

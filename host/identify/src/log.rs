@@ -4,14 +4,14 @@
 use std::f64::consts::TAU;
 
 use super::arguments::Arguments;
-use super::even_times::EvenTimes;
-use super::noise::Noise;
 use super::prior::PriorModel;
-use super::readings::{Kind, Readings, readings};
 use super::sampling::sampling;
 use board::profile::MAX_TORQUE;
 use log_reader::columns::{Columns, MOTOR, OUTPUT, TIMES};
+use log_reader::even_times::EvenTimes;
 use log_reader::log_file;
+use log_reader::noise::Noise;
+use log_reader::readings::{Kind, Readings, readings, without_encoder};
 use log_reader::{bad_readings, time_stamps};
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
@@ -68,7 +68,7 @@ impl Log {
         columns.leave_out_incomplete(&[&TIMES, &MOTOR, &OUTPUT, &["motor_torque_N_m"], &["output_torque_N_m"]])?;
         time_stamps::resolve(columns)?;
         for (names, bits) in [(MOTOR, prior.motor_bits), (OUTPUT, prior.output_bits)] {
-            let Some(name) = columns.name_of(&names).map(str::to_owned) else { continue };
+            let name = columns.name_of(&names).map(str::to_owned).ok_or_else(|| without_encoder(columns, names))?;
             let turn = f64::from(bits).exp2();
             let is_angle = columns.first_of(&names[..1])?.is_none();
             let (count, turn) = if is_angle { (TAU / turn, TAU) } else { (1.0, turn) };

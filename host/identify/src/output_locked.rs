@@ -12,26 +12,22 @@
 
 mod cycles;
 
-use std::f64::consts::TAU;
-
-use super::Results;
 use super::arguments::Arguments;
 use super::estimate::Estimate;
 use super::findings::gap::{Shown, static_findings};
 use super::findings::{Finding, SHARE, finding};
+use super::one_encoder;
 use super::prior::PriorModel;
 use super::quasi_static::statistics::{mean, student};
-use board::profile::MAX_TORQUE;
+use super::results::Results;
 use cycles::{Cycle, Cycles};
 use joint_file::named::Loaded;
-use log_reader::bad_readings;
 use log_reader::columns::{Columns, MOTOR, OUTPUT, TIMES};
 use log_reader::log_file;
-use log_reader::register::Register;
 use log_reader::time_stamps;
 use parameters::StiffnessWave;
 use report::failure::{Failure, Outcome};
-use report::number::{ESTIMATE, TYPED};
+use report::number::ESTIMATE;
 use report::plot::Figure;
 use report::plot::ink::Ink;
 use report::plot::mark::Mark;
@@ -92,7 +88,7 @@ impl HeldLog {
     fn read(arguments: &Arguments, prior: &PriorModel) -> Outcome<Self> {
         let path = arguments.log.as_path();
         let map = arguments.column_map()?;
-        let will_do = |columns: &Columns| columns.will_do_with(false);
+        let will_do = |columns: &Columns| columns.will_do_with([true, false]);
         let mut columns = log_file::read(path, arguments.topic.as_deref(), &map, prior.ratio(), will_do)?;
         let log = Self::of(&mut columns, prior);
         log.map_err(|failure| columns.explain(failure).while_doing(path.display()))
@@ -102,19 +98,10 @@ impl HeldLog {
         columns.leave_out_incomplete(&[&TIMES, &MOTOR, &OUTPUT, &["motor_torque_N_m"]])?;
         time_stamps::resolve(columns)?;
         let (motor, motor_count) =
-            angle(columns, MOTOR, prior.motor_bits)?.ok_or_else(|| columns.without_encoder("motor"))?;
-        let output = angle(columns, OUTPUT, prior.output_bits)?;
-        let time = columns.time_from_start()?;
-        if let Some(row) = time.windows(2).position(|pair| pair[1] <= pair[0]) {
-            return Err(Failure::new(format!("the time does not rise in {}", columns.place(row + 1)))
-                .with_help("samples must be in the order in which they were taken, each with its own time"));
-        }
-        let (_, torque) = columns.named(&["motor_torque_N_m"])?;
-        if let Some(row) = torque.iter().position(|torque| torque.abs() > MAX_TORQUE) {
-            let message = format!("{}: `motor_torque_N_m` is {}", columns.place(row), TYPED.write(torque[row]));
-            return Err(Failure::new(message)
-                .with_help(format!("it may be from -{MAX_TORQUE} to {MAX_TORQUE} N m: check the unit")));
-        }
+            one_encoder::angle(columns, MOTOR, prior.motor_bits)?.ok_or_else(|| columns.without_encoder("motor"))?;
+        let output = one_encoder::angle(columns, OUTPUT, prior.output_bits)?;
+        let time = one_encoder::rising_time(columns)?;
+        let torque = one_encoder::torque_at_output(columns, prior.ratio())?;
         let mut twist: Vec<f64> = motor.iter().map(|angle| (angle - motor[0]) / prior.ratio()).collect();
         let mut resolution = motor_count / prior.ratio();
         if let Some((output, count)) = &output {
@@ -130,33 +117,8 @@ impl HeldLog {
             twist.iter_mut().zip(output).for_each(|(twist, angle)| *twist -= angle - output[0]);
             resolution += count;
         }
-        Ok(Self {
-            torque: torque.iter().map(|torque| prior.ratio() * torque).collect(),
-            told: columns.told().to_vec(),
-            has_output: output.is_some(),
-            time,
-            twist,
-            resolution,
-        })
+        Ok(Self { torque, told: columns.told().to_vec(), has_output: output.is_some(), time, twist, resolution })
     }
-}
-
-/// Angles of an encoder, continuous over turns and without bad readings, and its step; nothing if it was not logged [rad].
-fn angle(columns: &mut Columns, names: [&'static str; 2], bits: u32) -> Outcome<Option<(Vec<f64>, f64)>> {
-    let Some(name) = columns.name_of(&names).map(str::to_owned) else { return Ok(None) };
-    let count = TAU / f64::from(bits).exp2();
-    let is_counts = columns.first_of(&names[..1])?.is_some();
-    let (step, turn) = if is_counts { (1.0, f64::from(bits).exp2()) } else { (count, TAU) };
-    bad_readings::leave_out(columns, &name, step, Some(turn))?;
-    let Some(mut values) = columns.maybe(&name)? else { return Ok(None) };
-    if let Some(register) = Register::of(&values, Some(turn)) {
-        register.join(&mut values, |_| 1.0);
-        register.told(&name, Some(turn)).into_iter().for_each(|told| columns.tell(told));
-    }
-    if is_counts {
-        values.iter_mut().for_each(|value| *value *= count);
-    }
-    Ok(Some((values, count)))
 }
 
 fn travel(values: &[f64]) -> f64 {

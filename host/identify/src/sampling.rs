@@ -1,8 +1,8 @@
 //! Whether a log was sampled evenly, fast and long enough for its joint, with the figures of what is needed.
 
-use super::even_times::EvenTimes;
 use super::prior::PriorModel;
 use log_reader::columns::{Columns, TIMES};
+use log_reader::even_times::EvenTimes;
 use report::failure::{Failure, Outcome};
 
 /// A shorter log cannot hold reversals and what surrounds them [s].

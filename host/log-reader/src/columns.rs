@@ -208,17 +208,17 @@ impl Columns {
 
     /// Whether motor, output and torque are there.
     pub fn will_do(&self) -> bool {
-        self.will_do_with(true)
+        self.will_do_with([true; 2])
     }
 
-    /// The same; the output may be missing.
-    pub fn will_do_with(&self, output: bool) -> bool {
+    /// The same, with motor and output as far as each is needed.
+    pub fn will_do_with(&self, [motor, output]: [bool; 2]) -> bool {
         let has = |wanted: &[&str]| {
             let all = KNOWN.iter().filter(|(name, _)| wanted.contains(name));
             all.flat_map(|(name, others)| others.iter().chain([name])).any(|name| self.names().any(|own| own == *name))
         };
         let bare = |name: &str| self.names().any(|own| own == name);
-        (has(&MOTOR) || bare("motor_angle"))
+        (!motor || has(&MOTOR) || bare("motor_angle"))
             && (!output || has(&OUTPUT) || bare("output_angle"))
             && (has(&["motor_torque_N_m"]) || bare("motor_torque"))
     }
@@ -297,7 +297,9 @@ impl Columns {
         let there: Vec<&str> = self.names().take(12).collect();
         let there = there.join(", ");
         let tells = match what {
-            "motor" => "an output alone shows neither lost motion, nor stiffness, nor an error map",
+            "motor" => {
+                "an output alone shows neither stiffness nor an error map, and lost motion by its reversals only"
+            }
             _ => {
                 "a motor alone shows no lost motion, stiffness or error map: where the output stands while the motor \
                  crosses the gap is not in it"

@@ -52,7 +52,7 @@ impl ReplaySamples {
     ) -> Outcome<Self> {
         let period = 1.0 / f64::from(settings.control_rate);
         let motor_only = settings.output_encoder.is_none();
-        let will_do = |columns: &Columns| columns.will_do_with(!motor_only);
+        let will_do = |columns: &Columns| columns.will_do_with([true, !motor_only]);
         let mut columns = file.columns(topic, map, loaded.file.parameters.geometry.ratio_by_teeth(), will_do)?;
         let read = if columns.names().any(|name| name == SAMPLES[0]) {
             Self::of_run(&columns, period)

@@ -1,6 +1,7 @@
 //! One identified parameter with its interval and its key in the joint file, or the reason why it could not be
 //! identified.
 
+use report::number::ESTIMATE;
 use serde::Serialize;
 
 use crate::estimate::Estimate;
@@ -26,7 +27,7 @@ pub struct Finding {
     pub key: Option<String>,
     /// Best value; absent if the log does not show it.
     pub value: Option<f64>,
-    /// Lower and upper end of the 95 % interval.
+    /// Lower and upper end of the 95 % interval; without a value zero and what it is at most, if the log shows that.
     pub interval: Option<[f64; 2]>,
     /// Why the log does not show it, or what to know about the value.
     pub note: String,
@@ -60,6 +61,15 @@ impl Finding {
             return self;
         }
         Self { value: None, interval: None, note: format!("not identifiable from this log: {why}"), ..self }
+    }
+
+    /// With an upper bound of what is not found.
+    pub(crate) fn at_most(self, bound: f64) -> Self {
+        if self.value.is_some() || !bound.is_finite() {
+            return self;
+        }
+        let note = format!("at most {} {}; {}", ESTIMATE.write(bound), self.unit, self.note);
+        Self { interval: Some([0.0, bound]), note, ..self }
     }
 
     pub(crate) fn noted(self, note: impl Into<String>) -> Self {

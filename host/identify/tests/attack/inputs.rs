@@ -273,6 +273,7 @@ fn arguments(log: &Path, folder: &Path) -> Arguments {
         seed: 1,
         with_output_torque: false,
         output_locked: false,
+        output_only: false,
         out: Some(folder.join("out")),
         json: None,
         slow: Options::default(),

@@ -5,8 +5,8 @@
 //! evenly and it is the stamps that vary, as those of a host that receives them do. The motor tells which: its motion is the
 //! smoother in the right one.
 
+use super::columns::Columns;
 use super::noise::Noise;
-use log_reader::columns::Columns;
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 

@@ -4,9 +4,9 @@
 use std::cmp::Ordering;
 use std::f64::consts::TAU;
 
+use super::columns::{Columns, MOTOR};
 use super::even_times::EvenTimes;
-use log_reader::columns::Columns;
-use log_reader::register::Register;
+use super::register::Register;
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 
@@ -79,7 +79,7 @@ struct Encoder<'a> {
 pub fn readings(columns: &mut Columns, names: [&str; 2], bits: u32, times: &EvenTimes) -> Outcome<Readings> {
     let what = if names[0].starts_with("motor") { "motor" } else { "output" };
     let there = columns.first_of(&names)?;
-    let (name, mut values) = there.ok_or_else(|| columns.without_encoder(what))?;
+    let (name, mut values) = there.ok_or_else(|| without_encoder(columns, names))?;
     if name == names[0] {
         let turn = f64::from(bits).exp2();
         if let Some(line) = values.iter().position(|value| value.fract() != 0.0 || value.abs() > 9e15) {
@@ -99,6 +99,18 @@ pub fn readings(columns: &mut Columns, names: [&str; 2], bits: u32, times: &Even
     let count = TAU / f64::from(bits).exp2();
     check_steps(&steps, &Encoder { what, name, bits, turn: TAU, count }, columns)?;
     Ok(Readings::Angles(angles))
+}
+
+/// The refusal of a log with one encoder only, with how to read it.
+pub fn without_encoder(columns: &Columns, names: [&str; 2]) -> Failure {
+    let (what, option, of) = if names == MOTOR {
+        ("motor", "--output-only", "a joint without an encoder at the motor")
+    } else {
+        ("output", "--output-locked", "a joint whose output is held")
+    };
+    let failure = columns.without_encoder(what);
+    let help = failure.full_help().unwrap_or_default();
+    failure.with_help(format!("{help}; {option} reads a log of {of}"))
 }
 
 /// Refuses readings that no turning encoder gives: single steps beside which all others are small, and readings that are

@@ -1,0 +1,305 @@
+//! `joint identify --output-only`: inertia, friction, weight and a bound of the lost motion from the output's angle and the motor's torque,
+//! of a joint whose motor has no encoder. `swings` are the ways of the output from one turning point to the next on which the torque
+//! reverses; `balance` fits all of them. The output alone shows the lost motion only by how far it goes on while the motor crosses the gap,
+//! of which `crossing` makes an upper bound.
+
+mod balance;
+mod crossing;
+mod swings;
+
+use super::arguments::Arguments;
+use super::estimate::Estimate;
+use super::findings::gap::{Shown, static_findings};
+use super::findings::{Finding, SHARE, finding};
+use super::one_encoder;
+use super::prior::PriorModel;
+use super::results::Results;
+use balance::{Balance, Expected, Integrals, SHARED, Samples};
+use joint_file::named::Loaded;
+use log_reader::columns::{Columns, OUTPUT, TIMES};
+use log_reader::log_file;
+use log_reader::time_stamps;
+use report::failure::{Failure, Outcome};
+use report::number::ESTIMATE;
+use report::plot::Figure;
+use report::plot::ink::Ink;
+use report::plot::mark::Mark;
+use report::plot::panel::Panel;
+use report::plot::unit::{MILLISECONDS, Unit};
+use swings::{Swing, swings};
+
+/// Fewest swings: as many as leave four for the scatter beside the shared unknowns.
+const LEAST_SWINGS: usize = SHARED + 4;
+/// Share of the largest torque that a balance of torques may feign as friction or weight: twice what logs of both encoders need.
+const BALANCE_SHARE: f64 = 0.003;
+/// Half of a 95 % interval is so many standard deviations.
+const QUANTILE: f64 = 1.96;
+/// More points than this do not make a picture clearer.
+const POINTS: usize = 6000;
+
+/// A log without the motor's angle.
+struct OutputLog {
+    /// From the first sample on [s].
+    time: Vec<f64>,
+    /// Output angle [rad].
+    angle: Vec<f64>,
+    /// Motor torque times the ratio [N m].
+    torque: Vec<f64>,
+    /// Step of the encoder [rad].
+    resolution: f64,
+    /// Changes to the rows, a sentence each.
+    told: Vec<String>,
+}
+
+/// Identifies a joint from a log of its output and the motor's torque.
+pub fn identify(arguments: &Arguments, loaded: &Loaded, prior: &PriorModel) -> Outcome<Results> {
+    let in_the_file = |failure: Failure| failure.while_doing(arguments.log.display());
+    let log = OutputLog::read(arguments, prior)?;
+    let swings = log.swings().map_err(in_the_file)?;
+    let motor = prior.motor_inertia * prior.ratio() * prior.ratio();
+    let expected = Expected {
+        step_by_torque: prior.motor_share() * (1.0 - prior.motor_share()) * prior.compliance,
+        inertia: motor + prior.link_inertia,
+    };
+    let integrals = Integrals::new(Samples { time: &log.time, angle: &log.angle, torque: &log.torque });
+    let balance = Balance::of(&integrals, &swings, expected).ok_or_else(|| {
+        in_the_file(
+            Failure::new("the swings of this log do not determine a balance of torques")
+                .with_help("let the torque step to and fro with three strengths, and log more samples a swing"),
+        )
+    })?;
+    check(&balance, motor).map_err(in_the_file)?;
+    Ok(Results {
+        duration: log.time.last().copied().unwrap_or_default(),
+        crossings: swings.len(),
+        assumptions: assumptions(&log, &swings, &balance, prior),
+        figures: vec![picture(&balance)],
+        findings: findings(&integrals, &swings, &balance, loaded, prior),
+    })
+}
+
+impl OutputLog {
+    fn read(arguments: &Arguments, prior: &PriorModel) -> Outcome<Self> {
+        let path = arguments.log.as_path();
+        let map = arguments.column_map()?;
+        let will_do = |columns: &Columns| columns.will_do_with([false, true]);
+        let mut columns = log_file::read(path, arguments.topic.as_deref(), &map, prior.ratio(), will_do)?;
+        let log = Self::of(&mut columns, prior);
+        log.map_err(|failure| columns.explain(failure).while_doing(path.display()))
+    }
+
+    fn of(columns: &mut Columns, prior: &PriorModel) -> Outcome<Self> {
+        columns.leave_out_incomplete(&[&TIMES, &OUTPUT, &["motor_torque_N_m"]])?;
+        time_stamps::resolve(columns)?;
+        let (angle, resolution) =
+            one_encoder::angle(columns, OUTPUT, prior.output_bits)?.ok_or_else(|| columns.without_encoder("output"))?;
+        let time = one_encoder::rising_time(columns)?;
+        let torque = one_encoder::torque_at_output(columns, prior.ratio())?;
+        Ok(Self { time, angle, torque, resolution, told: columns.told().to_vec() })
+    }
+
+    fn swings(&self) -> Outcome<Vec<Swing>> {
+        let found = swings(&self.angle, &self.torque, self.resolution);
+        if found.len() >= LEAST_SWINGS {
+            return Ok(found);
+        }
+        let turned: Vec<f64> = self.torque.iter().map(|torque| -torque).collect();
+        if swings(&self.angle, &turned, self.resolution).len() >= LEAST_SWINGS {
+            return Err(Failure::new(
+                "the torque brakes where it should drive: torque and output have different signs",
+            )
+            .with_help("turn one of them round, so that the output counts up under positive torque"));
+        }
+        Err(Failure::new(format!(
+            "too few reversals: in {} swings of the output the torque steps from driving it to braking it, {LEAST_SWINGS} are the least",
+            found.len()
+        ))
+        .with_help(
+            "step the motor's torque to and fro, three strengths, eight times each, so long that the output swings by 20 counts and \
+             more before and after each step",
+        ))
+    }
+}
+
+/// Refuses what no joint does.
+fn check(balance: &Balance, motor: f64) -> Outcome<()> {
+    let Estimate { value, half } = balance.estimate(balance::TORQUE);
+    if value <= half {
+        return Err(Failure::new("the output does not follow the torque in this log")
+            .with_help("check which columns output and torque are, and that the torque is well above the friction"));
+    }
+    let inertia = 1.0 / (value - half);
+    if inertia < 0.8 * motor {
+        return Err(Failure::new(format!(
+            "torque over acceleration of the output is {} kg m^2, and the motor alone has {} kg m^2 at the output by the joint file",
+            ESTIMATE.write(inertia),
+            ESTIMATE.write(motor)
+        ))
+        .with_help("check the unit of the torque, rotor_inertia_kg_m2 and the ratio of the joint file"));
+    }
+    Ok(())
+}
+
+fn findings(
+    integrals: &Integrals<'_>,
+    swings: &[Swing],
+    balance: &Balance,
+    loaded: &Loaded,
+    prior: &PriorModel,
+) -> Vec<Finding> {
+    let inverse = balance.estimate(balance::TORQUE);
+    let loss = balance.torque_of(balance::LOSS).value;
+    let largest = swings.iter().flat_map(|swing| swing.torque).fold(0.0, f64::max);
+    // Gears lose another part of the load while it drives: that is in the scale. Friction and weight change what the teeth carry, and
+    // with it what is lost.
+    let scale = (QUANTILE * prior.torque_error).hypot(inverse.half / inverse.value) + 2.0 * loss * loss;
+    let scaled = |estimate: Estimate| estimate.beside(scale * estimate.value);
+    let inertia = scaled(Estimate { value: 1.0 / inverse.value, half: 0.0 });
+    let motor = prior.motor_inertia * prior.ratio() * prior.ratio();
+    let joint = &loaded.file.parameters;
+    let beside = motor + prior.link_inertia - joint.link_inertia;
+    let link = Estimate { value: inertia.value - beside, ..inertia }.beside(QUANTILE * prior.inertia_error * beside);
+    let of_balance = BALANCE_SHARE * largest;
+    let dry = balance.torque_of(balance::DRY);
+    let dry = scaled(dry).wider_by(loss * dry.value).wider_by(of_balance);
+    let fastest = balance.fastest;
+    let viscous = scaled(balance.torque_of(balance::VISCOUS));
+    let viscous = viscous.wider_by(loss * viscous.value).wider_by(of_balance / fastest);
+    let found = |estimate: Estimate, least: f64| estimate.half < (SHARE * estimate.value.abs()).max(least);
+    let why = "the output must swing with torques of three strengths that are well above the friction";
+    let mut findings = gap(integrals, swings, balance, prior, inertia);
+    findings.push(
+        finding("inertia of motor and link at the output", "kg m^2", "", inertia).if_so(found(inertia, 0.0), why),
+    );
+    findings.push(
+        finding("inertia of the link", "kg m^2", "bodies.link_inertia_kg_m2", link)
+            .if_so(link.value > 0.0 && found(link, 0.0), "the motor's inertia is most of what turns")
+            .noted("with the rotor's as stated"),
+    );
+    let small = 4.0 * of_balance;
+    findings.push(
+        finding("dry friction of motor and link at the output", "N m", "", dry)
+            .if_so(found(dry, small), why)
+            .not_negative(),
+    );
+    let around = &prior.surroundings;
+    let ratio = prior.ratio();
+    let note = "if the motor's is as stated";
+    let dry_of_link = Estimate { value: dry.value - ratio * around.motor_friction.coulomb, ..dry };
+    let of_link = |estimate: Estimate, least: f64| estimate.value + estimate.half > 0.0 && found(estimate, least);
+    let why_link = "the motor's friction as the joint file states it is most of what is found, or more";
+    findings.push(
+        finding("dry friction of the link", "N m", "drive_train.load_coulomb_friction_N_m", dry_of_link)
+            .if_so(of_link(dry_of_link, small), why_link)
+            .not_negative()
+            .noted(note),
+    );
+    let why_viscous = "the output must move for a while, in both directions and at different speeds";
+    let small = small / fastest;
+    findings.push(
+        finding("viscous friction of motor and link at the output", "N m s/rad", "", viscous)
+            .if_so(found(viscous, small), why_viscous)
+            .not_negative(),
+    );
+    let viscous_of_link = Estimate { value: viscous.value - ratio * ratio * around.motor_friction.viscous, ..viscous };
+    let key = "drive_train.load_viscous_friction_N_m_s_per_rad";
+    findings.push(
+        finding("viscous friction of the link", "N m s/rad", key, viscous_of_link)
+            .if_so(of_link(viscous_of_link, small), why_link)
+            .not_negative()
+            .noted(note),
+    );
+    let [sine, cosine] = [balance::SINE, balance::COSINE].map(|unknown| balance.torque_of(unknown).value);
+    let weight = sine.hypot(cosine);
+    let slopes = [(balance::SINE, sine / weight), (balance::COSINE, cosine / weight)];
+    let half = balance.half(&slopes.map(|(unknown, slope)| (unknown, slope / inverse.value)));
+    let weight = scaled(Estimate { value: weight, half }).wider_by(loss * weight).wider_by(of_balance);
+    let hangs = (-cosine).atan2(sine).to_degrees();
+    findings.push(
+        finding("weight of the link", "N m", "drive_train.gravity_torque_N_m", weight)
+            .if_so(
+                weight.half < SHARE * weight.value,
+                "the link must turn far, with its weight well above the friction",
+            )
+            .noted(format!("the link hangs down at {hangs:.0} deg of the log's angle")),
+    );
+    findings
+}
+
+/// Half-backlash and lost motion, which have an upper bound only, and the compliance, which an output alone does not show.
+fn gap(
+    integrals: &Integrals<'_>,
+    swings: &[Swing],
+    balance: &Balance,
+    prior: &PriorModel,
+    inertia: Estimate,
+) -> Vec<Finding> {
+    // What stands before the gap is the sun's side at least, and all that turns with the motor at most.
+    let wrong = QUANTILE * prior.inertia_error;
+    let at_output = prior.ratio() * prior.ratio();
+    let least = (prior.sun_inertia * at_output * (1.0 - wrong) / (inertia.value + inertia.half)).min(1.0);
+    let most = (prior.motor_inertia * at_output * (1.0 + wrong) / (inertia.value - inertia.half)).min(1.0);
+    let bound = crossing::bound(integrals, swings, balance, [least, most]);
+    let why = match bound {
+        Ok(_) => format!(
+            "the output goes on by the motor's share of the inertia ({:.0} % at least) times the lost motion, less what the teeth bounce; \
+             an encoder at the motor or a held output (--output-locked) shows the lost motion itself",
+            100.0 * least
+        ),
+        Err(why) => format!("not even an upper bound: {why}"),
+    };
+    let unknown = Estimate { value: f64::NAN, half: f64::NAN };
+    let bend = Shown { is_shown: false, why: "the output alone does not show the twist" };
+    let found = static_findings(prior, [unknown; 3], [Shown { is_shown: false, why: &why }, bend]);
+    let bounded = |one: Finding| match (bound, one.unit.as_str()) {
+        (Ok(most), "um") => one.at_most(1e6 * prior.lever * 0.5 * most),
+        (Ok(most), "mrad") => one.at_most(1e3 * most),
+        _ => one,
+    };
+    found.into_iter().map(bounded).collect()
+}
+
+/// Assumptions that the numbers rest on.
+fn assumptions(log: &OutputLog, swings: &[Swing], balance: &Balance, prior: &PriorModel) -> Vec<String> {
+    let torques = swings.iter().flat_map(|swing| swing.torque);
+    let (least, most) =
+        torques.fold((f64::MAX, 0.0_f64), |(least, most), torque| (least.min(torque), most.max(torque)));
+    let mut list = vec![
+        format!(
+            "The motor's angle is not read, as stated: {} swings of the output on which the torque reverses, {} to {} N m at the output.",
+            swings.len(),
+            ESTIMATE.write(least),
+            ESTIMATE.write(most)
+        ),
+        format!(
+            "Torque's scale expected to be right within {:.1} % and the rotor's inertia within {:.1} % (one standard deviation): that is in \
+             all intervals.",
+            100.0 * prior.torque_error,
+            100.0 * prior.inertia_error
+        ),
+        format!(
+            "Frictions of motor and link are told together; the link's part is what the motor's, as the joint file states it, leaves. Gears \
+             lose {} % of the torque beside.",
+            ESTIMATE.write(100.0 * balance.torque_of(balance::LOSS).value)
+        ),
+        format!("Torque and reading are {} ms late together; that is taken out.", ESTIMATE.write(1e3 * balance.delay)),
+        format!("Ratio {} / {}; output encoder of {} bits.", prior.teeth[1], prior.teeth[0], prior.output_bits),
+    ];
+    list.extend(log.told.iter().cloned());
+    list
+}
+
+/// Residuals of the balance over the time from the reversal on.
+fn picture(balance: &Balance) -> Figure {
+    let every = balance.left_over.len().div_ceil(POINTS).max(1);
+    let points: Vec<(f64, f64)> = balance.left_over.iter().copied().step_by(every).collect();
+    let range = points.iter().fold((0.0_f64, 0.0_f64), |(from, to), (time, _)| (from.min(*time), to.max(*time)));
+    let marks = vec![Mark::Points { points, ink: Ink::First, label: "samples".into(), size: 2.0 }];
+    let unit = Unit::of_angle(6.0 * balance.residual);
+    let panel = Panel { height: 420, ..Panel::lines("Output less the fit", unit, marks) };
+    let note = "Scatter within the encoder's step is what the fit should leave; a wave after the reversal is the joint's ringing.".into();
+    Figure {
+        note,
+        ..Figure::new("Residuals around the reversals", "time after the reversal", MILLISECONDS, range, vec![panel])
+    }
+}

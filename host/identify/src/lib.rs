@@ -42,7 +42,7 @@ pub use arguments::Arguments;
 use findings::{Finding, Record};
 use log::Log;
 use page::{FINDINGS, JOINT, REPORT};
-use prior::{Losses, PriorModel};
+use prior::{Losses, PriorModel, resolution};
 pub use quasi_static::Options;
 use rows::Rows;
 use scales::{Doubt, Scales};
@@ -356,7 +356,7 @@ fn assumptions(identified: &Identified) -> Vec<String> {
             prior.teeth[0],
             if prior.equivalent { "turns" } else { "teeth" }
         ),
-        format!("Encoders of {} bits (motor) and {} bits (output).", prior.motor_bits, prior.output_bits),
+        format!("Encoders of {} (motor) and {} (output).", resolution(prior.motor_turn), resolution(prior.output_turn)),
         "Readings of motor and torque at the same time within 2 us: that is in the intervals.".to_owned(),
         if prior.equivalent {
             "An equivalent gear: errors of teeth, preload and hysteresis are not looked for.".to_owned()

@@ -19,7 +19,7 @@ use super::arguments::Arguments;
 use super::estimate::Estimate;
 use super::findings::gap::{Shown, static_findings};
 use super::findings::{Finding, SHARE, finding};
-use super::prior::PriorModel;
+use super::prior::{PriorModel, count_angle, resolution};
 use super::quasi_static::statistics::{mean, student};
 use board::profile::MAX_TORQUE;
 use cycles::{Cycle, Cycles};
@@ -102,8 +102,8 @@ impl HeldLog {
         columns.leave_out_incomplete(&[&TIMES, &MOTOR, &OUTPUT, &["motor_torque_N_m"]])?;
         time_stamps::resolve(columns)?;
         let (motor, motor_count) =
-            angle(columns, MOTOR, prior.motor_bits)?.ok_or_else(|| columns.without_encoder("motor"))?;
-        let output = angle(columns, OUTPUT, prior.output_bits)?;
+            angle(columns, MOTOR, prior.motor_turn)?.ok_or_else(|| columns.without_encoder("motor"))?;
+        let output = angle(columns, OUTPUT, prior.output_turn)?;
         let time = columns.time_from_start()?;
         if let Some(row) = time.windows(2).position(|pair| pair[1] <= pair[0]) {
             return Err(Failure::new(format!("the time does not rise in {}", columns.place(row + 1)))
@@ -142,11 +142,11 @@ impl HeldLog {
 }
 
 /// Angles of an encoder, continuous over turns and without bad readings, and its step; nothing if it was not logged [rad].
-fn angle(columns: &mut Columns, names: [&'static str; 2], bits: u32) -> Outcome<Option<(Vec<f64>, f64)>> {
+fn angle(columns: &mut Columns, names: [&'static str; 2], turn: u64) -> Outcome<Option<(Vec<f64>, f64)>> {
     let Some(name) = columns.name_of(&names).map(str::to_owned) else { return Ok(None) };
-    let count = TAU / f64::from(bits).exp2();
+    let count = count_angle(turn);
     let is_counts = columns.first_of(&names[..1])?.is_some();
-    let (step, turn) = if is_counts { (1.0, f64::from(bits).exp2()) } else { (count, TAU) };
+    let (step, turn) = if is_counts { (1.0, turn as f64) } else { (count, TAU) };
     bad_readings::leave_out(columns, &name, step, Some(turn))?;
     let Some(mut values) = columns.maybe(&name)? else { return Ok(None) };
     if let Some(register) = Register::of(&values, Some(turn)) {
@@ -254,7 +254,7 @@ fn assumptions(log: &HeldLog, cycles: &Cycles, prior: &PriorModel) -> Vec<String
              friction.",
             100.0 * prior.torque_error
         ),
-        format!("Ratio {} / {}; motor encoder of {} bits.", prior.teeth[1], prior.teeth[0], prior.motor_bits),
+        format!("Ratio {} / {}; motor encoder of {}.", prior.teeth[1], prior.teeth[0], resolution(prior.motor_turn)),
     ];
     list.extend(log.told.iter().cloned());
     list

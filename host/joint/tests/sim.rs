@@ -302,9 +302,6 @@ fn encoders_of_any_counts_go_through_all_commands() {
         fs::write(path("test.toml"), test).expect("room");
         joint(&["check", text(&path(name))]).well();
         joint(&["sim", text(&path(name)), "--duration", "0.01", "--out", text(&path("sim"))]).well();
-        let log = path("log.csv");
-        let refused = joint(&["identify", text(&log), "--joint", text(&path(name))]);
-        refused.refused(&[&format!("the motor encoder has {motor} counts in a turn"), "--motor-bits 16"]);
     };
     let tables = |name: &str, more: &[&str]| {
         joint(&[&["tables", text(&path(name)), "--out", text(&path("tables"))], more].concat())

@@ -10,7 +10,7 @@ use crate::version::has_abi;
 /// Bytes of a joint's name, with the zero at its end.
 pub const JOINT_NAME_BYTES: usize = 32;
 /// Version of tables that this library reads.
-pub const JOINT_TABLES_VERSION: u32 = 4;
+pub const JOINT_TABLES_VERSION: u32 = 5;
 const _: () = assert!(JOINT_NAME_BYTES == table_blob::NAME_BYTES && JOINT_TABLES_VERSION == table_blob::VERSION);
 
 /// What tables were made for.

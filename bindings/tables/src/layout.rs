@@ -152,7 +152,7 @@ structs! {
     }
     virtual_joint::tables::CurrentLoopTable<f32> { delay, rise, lacking, gain, limit }
     virtual_joint::tables::FrictionTable<f32> { coulomb, viscous, rise, per_speed, stop }
-    virtual_joint::tables::EncoderErrorTable<f32> { shift, errors, lag }
+    virtual_joint::tables::EncoderErrorTable<f32> { turn, errors, lag, phase }
 }
 
 macro_rules! gears {

@@ -25,7 +25,7 @@ use model_core::virtual_joint::SurroundingsTable;
 use model_core::wiring::WiringTable;
 
 /// Version of the layout: the next one as soon as a struct of a table changes (the test `layout` tells).
-pub const VERSION: u32 = 4;
+pub const VERSION: u32 = 5;
 /// How a blob begins.
 const MARK: [u8; 8] = *b"JOINTTAB";
 /// Bytes of a joint's name, zeros after its end.

@@ -12,6 +12,7 @@ use super::regression::{Equations, Solution};
 use super::rows::Rows;
 use super::twist::{self, BLOCK_LENGTH, Twist};
 use log_reader::readings::Kind;
+use log_reader::resolution::{count_angle, resolution};
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 
@@ -148,23 +149,23 @@ fn angle_by_angle(log: &Log, prior: &PriorModel) -> Option<Factor> {
 fn angle_causes(log: &Log, prior: &PriorModel, factor: Factor) -> Causes {
     let ratio = prior.ratio();
     let [motor, output] = log.kinds;
-    let bits = |bits: u32| i32::try_from(bits).unwrap_or_default();
-    let [motor_bits, output_bits] = [prior.motor_bits, prior.output_bits].map(bits);
+    let [motor_turn, output_turn] = [prior.motor_turn, prior.output_turn];
     let mut causes = Causes::of(factor);
     causes.consider(1.0 / ratio, "the motor's angle is taken behind the gears");
     causes.consider(ratio, "the output's angle is the motor's");
-    let counts = if log.kinds == [Kind::Counts; 2] { 2 * (output_bits - motor_bits) } else { 0 };
-    causes.consider(f64::from(counts).exp2() / (ratio * ratio), "motor and output are exchanged");
+    let counts = if log.kinds == [Kind::Counts; 2] { output_turn as f64 / motor_turn as f64 } else { 1.0 };
+    causes.consider(counts * counts / (ratio * ratio), "motor and output are exchanged");
     causes.consider(-1.0, "one encoder counts down when the joint turns forwards");
-    for (kind, name, sign, told) in [(motor, "motor", 1, motor_bits), (output, "output", -1, output_bits)] {
+    for (kind, name, sign, told) in [(motor, "motor", 1, motor_turn), (output, "output", -1, output_turn)] {
         if kind == Kind::Angle {
             for (unit, by) in ANGLES {
                 causes.consider(by.powi(sign), format!("the {name}'s angle is in {unit}"));
             }
-            causes.consider((f64::from(told).exp2() / TAU).powi(sign), format!("the {name}'s angle is in counts"));
+            causes.consider((told as f64 / TAU).powi(sign), format!("the {name}'s angle is in counts"));
         } else {
-            for more in (-16..=16).filter(|more| *more != 0 && (8..=30).contains(&(told + more))) {
-                let text = format!("the {name} encoder has {} bits", told + more);
+            for more in (-16..=16).filter(|more| *more != 0) {
+                let Some(turn) = doubled(told, more).filter(|turn| (1 << 8..=1 << 30).contains(turn)) else { continue };
+                let text = format!("the {name} encoder has {}", resolution(turn));
                 causes.consider(f64::from(-more).exp2().powi(-sign), text);
             }
         }
@@ -234,8 +235,13 @@ pub fn offsets(log: &Log, rows: &Rows, prior: &PriorModel) -> Outcome<()> {
 
 /// One count of either encoder, at the output [rad].
 fn counts(prior: &PriorModel) -> f64 {
-    let count = |bits: u32| TAU / f64::from(bits).exp2();
-    count(prior.motor_bits) / prior.ratio() + count(prior.output_bits)
+    count_angle(prior.motor_turn) / prior.ratio() + count_angle(prior.output_turn)
+}
+
+/// Counts in a turn, doubled so many times, or halved; nothing where they are not whole.
+fn doubled(turn: u64, times: i32) -> Option<u64> {
+    let factor = 1_u64.checked_shl(times.unsigned_abs())?;
+    if times < 0 { turn.is_multiple_of(factor).then(|| turn / factor) } else { turn.checked_mul(factor) }
 }
 
 /// Refuses a log whose output is read so much later or earlier than the motor that the swing turns meanwhile.
@@ -274,9 +280,10 @@ pub fn filter(log: &Log, twist: &Twist, prior: &PriorModel) -> Outcome<()> {
     }
     let [motor, output] = shares.map(|share| ESTIMATE.write(share.sqrt()));
     Err(Failure::new(format!(
-        "the angles are smoother than encoders of {} bits (motor) and {} bits (output) give them: they scatter {motor} and {output} times \
+        "the angles are smoother than encoders of {} (motor) and {} (output) give them: they scatter {motor} and {output} times \
          as much",
-        prior.motor_bits, prior.output_bits,
+        resolution(prior.motor_turn),
+        resolution(prior.output_turn),
     ))
     .with_help("perhaps a filter or an observer smoothed them: log raw readings, or say --motor-bits and --output-bits as they are"))
 }
@@ -431,12 +438,10 @@ fn contradiction(log: &Log, prior: &PriorModel, factor: Factor, what: &str, iner
     }
     if log.kinds == [Kind::Counts; 2] {
         for more in (-BITS..=BITS).filter(|more| *more != 0) {
-            let told = |bits: u32| i64::from(bits) - i64::from(more);
-            let (motor, output) = (told(prior.motor_bits), told(prior.output_bits));
-            causes.consider(
-                f64::from(more).exp2(),
-                format!("the encoders have {motor} bits (motor) and {output} bits (output)"),
-            );
+            let [motor, output] = [prior.motor_turn, prior.output_turn].map(|turn| doubled(turn, -more));
+            let (Some(motor), Some(output)) = (motor, output) else { continue };
+            let text = format!("the encoders have {} (motor) and {} (output)", resolution(motor), resolution(output));
+            causes.consider(f64::from(more).exp2(), text);
         }
     }
     for (unit, by) in TORQUES {

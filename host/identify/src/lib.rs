@@ -56,6 +56,7 @@ use std::path::Path;
 
 use log_reader::column_map::{self, MappedJoint};
 use log_reader::columns;
+use log_reader::resolution::resolution;
 use parameters::AbsoluteEncoder;
 use report::document::{html, terminal};
 use report::failure::{EXIT_INTERRUPTED, Failure, Outcome};
@@ -348,7 +349,7 @@ fn assumptions(identified: &Identified) -> Vec<String> {
             prior.teeth[0],
             if prior.equivalent { "turns" } else { "teeth" }
         ),
-        format!("Encoders of {} bits (motor) and {} bits (output).", prior.motor_bits, prior.output_bits),
+        format!("Encoders of {} (motor) and {} (output).", resolution(prior.motor_turn), resolution(prior.output_turn)),
         "Readings of motor and torque at the same time within 2 us: that is in the intervals.".to_owned(),
         if prior.equivalent {
             "An equivalent gear: errors of teeth, preload and hysteresis are not looked for.".to_owned()

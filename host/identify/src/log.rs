@@ -12,6 +12,7 @@ use log_reader::even_times::EvenTimes;
 use log_reader::log_file;
 use log_reader::noise::Noise;
 use log_reader::readings::{Kind, Readings, readings, without_encoder};
+use log_reader::resolution::count_angle;
 use log_reader::{bad_readings, time_stamps};
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
@@ -67,17 +68,16 @@ impl Log {
     fn of(columns: &mut Columns, prior: &PriorModel) -> Outcome<Self> {
         columns.leave_out_incomplete(&[&TIMES, &MOTOR, &OUTPUT, &["motor_torque_N_m"], &["output_torque_N_m"]])?;
         time_stamps::resolve(columns)?;
-        for (names, bits) in [(MOTOR, prior.motor_bits), (OUTPUT, prior.output_bits)] {
+        for (names, turn) in [(MOTOR, prior.motor_turn), (OUTPUT, prior.output_turn)] {
             let name = columns.name_of(&names).map(str::to_owned).ok_or_else(|| without_encoder(columns, names))?;
-            let turn = f64::from(bits).exp2();
             let is_angle = columns.first_of(&names[..1])?.is_none();
-            let (count, turn) = if is_angle { (TAU / turn, TAU) } else { (1.0, turn) };
+            let (count, turn) = if is_angle { (count_angle(turn), TAU) } else { (1.0, turn as f64) };
             bad_readings::leave_out(columns, &name, count, Some(turn))?;
         }
         let time = columns.time_from_start()?;
         let times = sampling(&time, columns, prior)?;
-        let motor = readings(columns, MOTOR, prior.motor_bits, &times)?;
-        let output = readings(columns, OUTPUT, prior.output_bits, &times)?;
+        let motor = readings(columns, MOTOR, prior.motor_turn, &times)?;
+        let output = readings(columns, OUTPUT, prior.output_turn, &times)?;
         let (_, torque) = columns.named(&["motor_torque_N_m"])?;
         let output_torque = columns.maybe("output_torque_N_m")?;
         for (name, torques) in [("motor_torque_N_m", Some(&torque)), ("output_torque_N_m", output_torque.as_ref())] {
@@ -89,7 +89,7 @@ impl Log {
         }
         let twist = twist(&motor, &output, prior);
         let kinds = [motor.kind(), output.kind()];
-        let (motor, output) = (motor.angles(prior.motor_bits), output.angles(prior.output_bits));
+        let (motor, output) = (motor.angles(prior.motor_turn), output.angles(prior.output_turn));
         let times = times.smoother(&time, &motor);
         let [motor, output, twist, torque] = [motor, output, twist, torque].map(|values| times.bring(&values));
         let log = Self {
@@ -142,11 +142,11 @@ impl Log {
     /// By which share of what their encoders do angles scatter: motor and output; nothing where none is smoother than its encoder can
     /// read it.
     pub fn smoothness(&self, prior: &PriorModel) -> Option<[f64; 2]> {
-        let share = |place: usize, bits: u32| {
-            let count = TAU / f64::from(bits).exp2();
+        let share = |place: usize, turn: u64| {
+            let count = count_angle(turn);
             if self.kinds[place] == Kind::Angle { 12.0 * self.noise[place].mean() / (count * count) } else { 1.0 }
         };
-        let shares = [share(0, prior.motor_bits), share(1, prior.output_bits)];
+        let shares = [share(0, prior.motor_turn), share(1, prior.output_turn)];
         shares.iter().any(|share| *share < SMOOTH).then_some(shares)
     }
 
@@ -155,7 +155,7 @@ impl Log {
             let (least, most) = angles.iter().fold((f64::MAX, f64::MIN), |(a, b), &angle| (a.min(angle), b.max(angle)));
             most - least
         };
-        let counts = travel(&self.motor) * f64::from(1_u32 << prior.motor_bits) / TAU;
+        let counts = travel(&self.motor) * prior.motor_turn as f64 / TAU;
         if counts < LEAST_TRAVEL {
             return Err(Failure::new(format!(
                 "the motor does not move in this log: by {counts:.1} counts of its encoder, {LEAST_TRAVEL} are the least"
@@ -170,16 +170,16 @@ impl Log {
 fn twist(motor: &Readings, output: &Readings, prior: &PriorModel) -> Vec<f64> {
     if let (Readings::Counts(motor), Readings::Counts(output)) = (motor, output) {
         let [sun, both] = prior.teeth.map(i128::from);
-        let turn = (both << (prior.motor_bits + prior.output_bits)) as f64;
+        let [motor_turn, output_turn] = [prior.motor_turn, prior.output_turn].map(i128::from);
+        let turn = (both * motor_turn * output_turn) as f64;
         let pair = motor.iter().zip(output);
         return pair
             .map(|(&motor, &output)| {
-                let apart = ((i128::from(motor) * sun) << prior.output_bits)
-                    - ((i128::from(output) * both) << prior.motor_bits);
+                let apart = i128::from(motor) * sun * output_turn - i128::from(output) * both * motor_turn;
                 apart as f64 / turn * TAU
             })
             .collect();
     }
-    let (motor, output) = (motor.angles(prior.motor_bits), output.angles(prior.output_bits));
+    let (motor, output) = (motor.angles(prior.motor_turn), output.angles(prior.output_turn));
     motor.iter().zip(&output).map(|(motor, output)| motor / prior.ratio() - output).collect()
 }

@@ -6,15 +6,16 @@ use board::profile::MAX_TORQUE;
 use log_reader::bad_readings;
 use log_reader::columns::Columns;
 use log_reader::register::Register;
+use log_reader::resolution::count_angle;
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 
 /// Angles of an encoder, continuous over turns and without bad readings, and its step; nothing if it was not logged [rad].
-pub fn angle(columns: &mut Columns, names: [&'static str; 2], bits: u32) -> Outcome<Option<(Vec<f64>, f64)>> {
+pub fn angle(columns: &mut Columns, names: [&'static str; 2], turn: u64) -> Outcome<Option<(Vec<f64>, f64)>> {
     let Some(name) = columns.name_of(&names).map(str::to_owned) else { return Ok(None) };
-    let count = TAU / f64::from(bits).exp2();
+    let count = count_angle(turn);
     let is_counts = columns.first_of(&names[..1])?.is_some();
-    let (step, turn) = if is_counts { (1.0, f64::from(bits).exp2()) } else { (count, TAU) };
+    let (step, turn) = if is_counts { (1.0, turn as f64) } else { (count, TAU) };
     bad_readings::leave_out(columns, &name, step, Some(turn))?;
     let Some(mut values) = columns.maybe(&name)? else { return Ok(None) };
     if let Some(register) = Register::of(&values, Some(turn)) {

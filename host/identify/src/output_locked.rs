@@ -24,6 +24,7 @@ use cycles::{Cycle, Cycles};
 use joint_file::named::Loaded;
 use log_reader::columns::{Columns, MOTOR, OUTPUT, TIMES};
 use log_reader::log_file;
+use log_reader::resolution::resolution;
 use log_reader::time_stamps;
 use parameters::StiffnessWave;
 use report::failure::{Failure, Outcome};
@@ -98,8 +99,8 @@ impl HeldLog {
         columns.leave_out_incomplete(&[&TIMES, &MOTOR, &OUTPUT, &["motor_torque_N_m"]])?;
         time_stamps::resolve(columns)?;
         let (motor, motor_count) =
-            one_encoder::angle(columns, MOTOR, prior.motor_bits)?.ok_or_else(|| columns.without_encoder("motor"))?;
-        let output = one_encoder::angle(columns, OUTPUT, prior.output_bits)?;
+            one_encoder::angle(columns, MOTOR, prior.motor_turn)?.ok_or_else(|| columns.without_encoder("motor"))?;
+        let output = one_encoder::angle(columns, OUTPUT, prior.output_turn)?;
         let time = one_encoder::rising_time(columns)?;
         let torque = one_encoder::torque_at_output(columns, prior.ratio())?;
         let mut twist: Vec<f64> = motor.iter().map(|angle| (angle - motor[0]) / prior.ratio()).collect();
@@ -216,7 +217,7 @@ fn assumptions(log: &HeldLog, cycles: &Cycles, prior: &PriorModel) -> Vec<String
              friction.",
             100.0 * prior.torque_error
         ),
-        format!("Ratio {} / {}; motor encoder of {} bits.", prior.teeth[1], prior.teeth[0], prior.motor_bits),
+        format!("Ratio {} / {}; motor encoder of {}.", prior.teeth[1], prior.teeth[0], resolution(prior.motor_turn)),
     ];
     list.extend(log.told.iter().cloned());
     list

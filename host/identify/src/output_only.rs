@@ -18,6 +18,7 @@ use balance::{Balance, Expected, Integrals, SHARED, Samples};
 use joint_file::named::Loaded;
 use log_reader::columns::{Columns, OUTPUT, TIMES};
 use log_reader::log_file;
+use log_reader::resolution::resolution;
 use log_reader::time_stamps;
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
@@ -92,7 +93,7 @@ impl OutputLog {
         columns.leave_out_incomplete(&[&TIMES, &OUTPUT, &["motor_torque_N_m"]])?;
         time_stamps::resolve(columns)?;
         let (angle, resolution) =
-            one_encoder::angle(columns, OUTPUT, prior.output_bits)?.ok_or_else(|| columns.without_encoder("output"))?;
+            one_encoder::angle(columns, OUTPUT, prior.output_turn)?.ok_or_else(|| columns.without_encoder("output"))?;
         let time = one_encoder::rising_time(columns)?;
         let torque = one_encoder::torque_at_output(columns, prior.ratio())?;
         Ok(Self { time, angle, torque, resolution, told: columns.told().to_vec() })
@@ -283,7 +284,7 @@ fn assumptions(log: &OutputLog, swings: &[Swing], balance: &Balance, prior: &Pri
             ESTIMATE.write(100.0 * balance.torque_of(balance::LOSS).value)
         ),
         format!("Torque and reading are {} ms late together; that is taken out.", ESTIMATE.write(1e3 * balance.delay)),
-        format!("Ratio {} / {}; output encoder of {} bits.", prior.teeth[1], prior.teeth[0], prior.output_bits),
+        format!("Ratio {} / {}; output encoder of {}.", prior.teeth[1], prior.teeth[0], resolution(prior.output_turn)),
     ];
     list.extend(log.told.iter().cloned());
     list

@@ -23,12 +23,14 @@ pub fn patch(loaded: &Loaded, prior: &PriorModel, findings: &[Finding], log: &st
         }
         let value = if SIGNED.contains(&key.as_str()) { value } else { value.max(0.0) };
         let remark = format!("identified from {log}: {} to {} (95 %)", ESTIMATE.write(low), ESTIMATE.write(high));
-        for (encoder, bits) in [("motor", prior.motor_bits), ("output", prior.output_bits)] {
+        for (encoder, turn) in [("motor", prior.motor_turn), ("output", prior.output_turn)] {
             // An encoder that the file does not speak of yet begins with its resolution.
             let section = format!("drive_train.{encoder}_encoder.");
-            let resolution = format!("{section}bits");
-            if key.starts_with(&section) && matches!(joint_file::value(&text, &resolution), Ok(None)) {
-                text = set(&text, &resolution, &bits.to_string(), &format!("as told for {log}"))?;
+            let [bits, counts] = ["bits", "counts_per_turn"].map(|name| format!("{section}{name}"));
+            let is_missing = |key: &str| matches!(joint_file::value(&text, key), Ok(None));
+            if key.starts_with(&section) && is_missing(&bits) && is_missing(&counts) {
+                let (key, value) = if turn.is_power_of_two() { (bits, turn.ilog2().into()) } else { (counts, turn) };
+                text = set(&text, &key, &value.to_string(), &format!("as told for {log}"))?;
             }
         }
         text = set(&text, key, &format!("{value:.6e}"), &remark)?;

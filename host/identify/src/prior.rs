@@ -1,10 +1,12 @@
 //! What is known of the joint before a log is read, from its joint file: ratio in whole teeth, lever arms, inertias on
 //! either side of the gap, the expected compliance.
 
+use std::f64::consts::TAU;
+
 use joint_file::{JointFile, sheet};
 use model_core::gears::{Kinematics, Mechanics};
 use parameters::{AbsoluteEncoder, Mesh, MeshKind, StiffnessWave, Surroundings};
-use report::failure::{Failure, Outcome};
+use report::failure::Outcome;
 
 use super::arguments::{Arguments, INERTIA_ERROR};
 use super::higher::Higher;
@@ -38,10 +40,10 @@ pub struct PriorModel {
     pub teeth: [u32; 2],
     /// Ring's teeth: mesh periods in a turn of the output.
     pub ring_teeth: u32,
-    /// 2^bits counts of the motor encoder a turn.
-    pub motor_bits: u32,
-    /// 2^bits counts of the output encoder a turn.
-    pub output_bits: u32,
+    /// Counts of the motor encoder in a turn.
+    pub motor_turn: u64,
+    /// Counts of the output encoder in a turn.
+    pub output_turn: u64,
     /// r_c cos(alpha) [m].
     pub lever: f64,
     /// Rotor and sun [kg m^2].
@@ -81,34 +83,12 @@ pub struct PriorModel {
     pub inertia_error: f64,
 }
 
-/// Bits of an encoder; the next lower number of bits where its counts in a turn are no power of two.
-fn bits(encoder: &AbsoluteEncoder) -> u32 {
-    encoder.counts_per_turn.checked_ilog2().unwrap_or(0)
-}
-
 impl PriorModel {
-    /// Of a joint file and the command line. Encoders whose counts in a turn are no power of two are refused.
+    /// Of a joint file and the command line.
     pub fn new(loaded: &Loaded, arguments: &Arguments) -> Outcome<Self> {
-        let around = &loaded.file.surroundings;
-        let told = [arguments.motor_bits, arguments.output_bits];
-        for ((encoder, name), told) in
-            [(&around.motor_encoder, "motor"), (&around.output_encoder, "output")].into_iter().zip(told)
-        {
-            if encoder.bits().is_none() && told.is_none() {
-                let turn = encoder.counts_per_turn;
-                let message = format!(
-                    "{}: the {name} encoder has {turn} counts in a turn, which is no power of two",
-                    loaded.name
-                );
-                return Err(Failure::new(message).with_help(format!(
-                    "`joint identify` reads encoders of 2^n counts: scale the column to such counts, count x 65536 / {turn} rounded \
-                     down, and give --{name}-bits 16"
-                )));
-            }
-        }
         let mut prior = Self::of(&loaded.file);
-        prior.motor_bits = arguments.motor_bits.unwrap_or(prior.motor_bits);
-        prior.output_bits = arguments.output_bits.unwrap_or(prior.output_bits);
+        prior.motor_turn = arguments.motor_bits.map_or(prior.motor_turn, AbsoluteEncoder::counts_of_bits);
+        prior.output_turn = arguments.output_bits.map_or(prior.output_turn, AbsoluteEncoder::counts_of_bits);
         prior.torque_error = arguments.torque_error.map_or(prior.torque_error, |percent| percent / 100.0);
         prior.inertia_error = arguments.inertia_error / 100.0;
         Ok(prior)
@@ -151,8 +131,8 @@ impl PriorModel {
             name: joint.name.as_str().to_owned(),
             teeth: [geometry.sun_teeth, geometry.sun_teeth + geometry.ring_teeth],
             ring_teeth: geometry.ring_teeth,
-            motor_bits: bits(&around.motor_encoder),
-            output_bits: bits(&around.output_encoder),
+            motor_turn: around.motor_encoder.counts_per_turn,
+            output_turn: around.output_encoder.counts_per_turn,
             lever,
             sun_inertia: sun * lever * lever / (ratio * ratio),
             carrier_inertia: (before - sun) * lever * lever / (ratio * ratio)

@@ -4,6 +4,7 @@
 use super::kernel::Kernel;
 use super::log::Log;
 use super::prior::PriorModel;
+use log_reader::resolution::count_angle;
 
 /// Strengths of torque that are told apart, for what may be wrong with each both ways.
 const LEVELS: f64 = 20.0;
@@ -254,7 +255,7 @@ fn row(log: &Log, prior: &PriorModel, kernel: &Kernel, sample: usize) -> Row {
 /// The way that the motor turns all the time: over the kernel's length in steps that no swing hides in, or over a longer
 /// time if it is too slow for those.
 fn direction(log: &Log, prior: &PriorModel, kernel: &Kernel, sample: usize) -> f64 {
-    let count = std::f64::consts::TAU / f64::from(1_u32 << prior.motor_bits);
+    let count = count_angle(prior.motor_turn);
     let turns = |half: usize, step: usize, way: f64, least: f64| {
         let places = (sample.saturating_sub(half)..=(sample + half).min(log.motor.len() - 1)).step_by(step.max(1));
         let mut pairs = places.clone().zip(places.skip(1));

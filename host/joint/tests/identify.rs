@@ -529,6 +529,28 @@ fn what_a_log_does_not_show_is_said_instead_of_guessed() {
     assert!(backlash.contains("identified from log.csv"), "{backlash}");
 }
 
+/// Encoders of 5000 and 25,000 lines that are read at every edge, and a motor encoder whose edges were taken for its lines.
+#[test]
+fn encoders_of_any_counts_in_a_turn_are_identified() {
+    let folder = folder();
+    let [log, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
+    let identify = |motor: u32, more: &[&str]| {
+        let motor = format!("drive_train.motor_encoder.counts_per_turn={motor}");
+        let sets = ["--set", &motor, "--set", "drive_train.output_encoder.counts_per_turn=100000"];
+        joint(&[&["identify", text(&log), "--joint", "q1"], &sets[..], more].concat())
+    };
+    identify(20_000, &["--simulate", "--seed", "31"]).well();
+    identify(20_000, &["--out", text(&out)]).well();
+    let page = fs::read_to_string(out.join("report.html")).expect("written");
+    assert!(page.contains("Encoders of 20000 counts (motor) and 100000 counts (output)."));
+    let (value, [low, high]) = found(&json(&out.join("findings.json")), BACKLASH).expect("found");
+    assert!((low..=high).contains(&40.0) && high - low < 3.0, "{value} um, {low} to {high}");
+    let patched = fs::read_to_string(out.join("joint.toml")).expect("written");
+    let around = joint_file::read(&patched).expect("the patched file is a joint file").surroundings;
+    assert_eq!([around.motor_encoder, around.output_encoder].map(|it| it.counts_per_turn), [20_000, 100_000]);
+    identify(5000, &[]).refused(&["the motor encoder has 20000 counts"]);
+}
+
 #[test]
 fn a_simulated_log_has_the_documented_columns() {
     let folder = folder();

@@ -16,6 +16,7 @@ pub mod noise;
 mod numbers;
 pub mod readings;
 pub mod register;
+pub mod resolution;
 mod ros_message;
 mod text_table;
 pub mod time_stamps;

@@ -1,12 +1,12 @@
 //! What an encoder's readings say: whole counts or angles, made continuous over turns, and refused if no turning encoder gives
 //! them.
 
-use std::cmp::Ordering;
 use std::f64::consts::TAU;
 
 use super::columns::{Columns, MOTOR};
 use super::even_times::EvenTimes;
 use super::register::Register;
+use super::resolution::{count_angle, resolution};
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 
@@ -53,10 +53,10 @@ impl Readings {
         }
     }
 
-    /// As angles [rad].
-    pub fn angles(&self, bits: u32) -> Vec<f64> {
+    /// As angles, of an encoder with so many counts in a turn [rad].
+    pub fn angles(&self, turn: u64) -> Vec<f64> {
         match self {
-            Self::Counts(counts) => counts.iter().map(|&count| count as f64 * TAU / (1_u64 << bits) as f64).collect(),
+            Self::Counts(counts) => counts.iter().map(|&count| count as f64 * TAU / turn as f64).collect(),
             Self::Angles(angles) => angles.clone(),
         }
     }
@@ -68,20 +68,20 @@ struct Encoder<'a> {
     what: &'a str,
     /// Name of its column.
     name: &'a str,
-    /// Its resolution as set: 2^bits counts a turn.
-    bits: u32,
+    /// Its resolution as set: counts in a turn.
+    counts_per_turn: u64,
     /// A turn, and a step that is seen at all, in the column's unit.
     turn: f64,
     count: f64,
 }
 
 /// Counts, or else angles.
-pub fn readings(columns: &mut Columns, names: [&str; 2], bits: u32, times: &EvenTimes) -> Outcome<Readings> {
+pub fn readings(columns: &mut Columns, names: [&str; 2], counts_per_turn: u64, times: &EvenTimes) -> Outcome<Readings> {
     let what = if names[0].starts_with("motor") { "motor" } else { "output" };
     let there = columns.first_of(&names)?;
     let (name, mut values) = there.ok_or_else(|| without_encoder(columns, names))?;
     if name == names[0] {
-        let turn = f64::from(bits).exp2();
+        let turn = counts_per_turn as f64;
         if let Some(line) = values.iter().position(|value| value.fract() != 0.0 || value.abs() > 9e15) {
             return Err(Failure::new(format!("{} of `{name}` is no whole number of counts", columns.place(line)))
                 .with_help("angles are understood in a column such as motor_angle_rad"));
@@ -91,13 +91,13 @@ pub fn readings(columns: &mut Columns, names: [&str; 2], bits: u32, times: &Even
             register.told(name, Some(turn)).into_iter().for_each(|told| columns.tell(told));
         }
         let steps = times.per_period(values.windows(2).map(|pair| pair[1] - pair[0]).collect());
-        check_steps(&steps, &Encoder { what, name, bits, turn, count: 1.0 }, columns)?;
+        check_steps(&steps, &Encoder { what, name, counts_per_turn, turn, count: 1.0 }, columns)?;
         return Ok(Readings::Counts(values.into_iter().map(|value| value as i64).collect()));
     }
     let angles = unwrapped(values, times);
     let steps = times.per_period(angles.windows(2).map(|pair| pair[1] - pair[0]).collect());
-    let count = TAU / f64::from(bits).exp2();
-    check_steps(&steps, &Encoder { what, name, bits, turn: TAU, count }, columns)?;
+    let count = count_angle(counts_per_turn);
+    check_steps(&steps, &Encoder { what, name, counts_per_turn, turn: TAU, count }, columns)?;
     Ok(Readings::Angles(angles))
 }
 
@@ -149,32 +149,33 @@ fn check_steps(steps: &[f64], encoder: &Encoder<'_>, columns: &Columns) -> Outco
 impl Encoder<'_> {
     /// The likely cause of jumps, with what to state that is not stated yet.
     fn cause(&self, jumps: &[f64]) -> String {
-        let Self { what, name, bits, .. } = *self;
+        let Self { what, name, counts_per_turn, turn: set, .. } = *self;
+        let resolution = resolution(counts_per_turn);
         let whole = |turn: f64| jumps.iter().all(|jump| (jump / turn).ln().abs() < SAME_TURN);
         if self.count < 1.0 {
             let units = [(1.0, "turns"), (360.0, "degrees"), (1e3 * TAU, "mrad")];
             if let Some((_, unit)) = units.iter().find(|(turn, _)| whole(*turn)) {
                 return format!("an angle in {unit} begins anew so");
             }
+        } else if whole(set) {
+            return format!("a turn of the {resolution} that are set was lost or counted twice: cut the log there");
         } else if let Some(found) = (8..=32).find(|bits| whole(f64::from(*bits).exp2())) {
-            return match found.cmp(&bits) {
-                Ordering::Less => format!(
-                    "an encoder of {found} bits begins anew so, and {bits} bits are set: if a turn has 2^{found} counts, state \
+            return if f64::from(found).exp2() < set {
+                format!(
+                    "an encoder of {found} bits begins anew so, and {resolution} are set: if a turn has 2^{found} counts, state \
                      --{what}-bits {found}"
-                ),
-                Ordering::Equal => {
-                    format!("a turn of the {bits} bits that are set was lost or counted twice: cut the log there")
-                }
-                Ordering::Greater => format!(
+                )
+            } else {
+                format!(
                     "a register of {found} bits begins anew so, but it does not hold the other readings: take off what was added to \
                      `{name}`, so that it goes from 0 to 2^{found} - 1 or from -2^{0} to 2^{0} - 1",
                     found - 1
-                ),
+                )
             };
         }
         format!(
             "readings do not go on from where they were, so that it is none that was lost or corrupted alone: cut the log there, or \
-             check the unit of `{name}` and its resolution of {bits} bits"
+             check the unit of `{name}` and its resolution of {resolution}"
         )
     }
 }

@@ -81,14 +81,13 @@ impl<T: Real> Faults<T> {
         }
         let [of_motor, of_link] = &table.encoders;
         let output = samples.output;
-        let mut seen =
-            [(samples.motor, of_motor.shift, true), (output.unwrap_or_default(), of_link.shift, output.is_some())];
+        let mut seen = [(samples.motor, of_motor, true), (output.unwrap_or_default(), of_link, output.is_some())];
         for active in all.iter_mut().flatten() {
             let on = *period >= active.fault.start && *period < active.fault.end;
-            for (shaft, (reading, shift, comes)) in [Shaft::Motor, Shaft::Link].into_iter().zip(&mut seen) {
+            for (shaft, (reading, encoder, comes)) in [Shaft::Motor, Shaft::Link].into_iter().zip(&mut seen) {
                 // Whole turns are 2^32, so that everything wraps by itself.
-                let angle = reading.counts.checked_shl(*shift).unwrap_or(0);
-                reading.counts = active.read(shaft, angle, on).checked_shr(*shift).unwrap_or(0);
+                let angle = encoder.angle(reading.counts);
+                reading.counts = encoder.counts(active.read(shaft, angle, on));
                 *comes &= !active.loses(shaft, on);
             }
         }

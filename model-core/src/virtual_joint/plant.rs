@@ -218,7 +218,7 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
 
 /// Counts within a turn that an encoder reads.
 fn counts<T: Real>(table: &EncoderErrorTable<T>, angle: i64, speed: T) -> u32 {
-    (reading(table, angle, speed) as u32).checked_shr(table.shift).unwrap_or(0)
+    table.counts(reading(table, angle, speed) as u32)
 }
 
 /// Angle that an encoder reads, with its errors [2^-32 turns].

@@ -86,10 +86,62 @@ pub struct FrictionTable<T: Real> {
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct EncoderErrorTable<T: Real> {
-    /// 32 less its bits.
-    pub shift: u32,
+    /// Counts in a turn.
+    pub turn: u32,
     /// Amplitudes of the errors that come once and twice a turn [2^-32 turns].
     pub errors: [T; 2],
     /// How far a reading lags behind at a unit of speed [2^-32 turns s/rad].
     pub lag: T,
+    /// 2^64 over the counts in a turn, rounded up.
+    pub phase: u64,
+}
+
+impl<T: Real> EncoderErrorTable<T> {
+    /// Counts that the encoder reads at an angle within its turn [2^-32 turns].
+    #[inline]
+    pub fn counts(&self, angle: u32) -> u32 {
+        (u64::from(angle).wrapping_mul(self.turn.into()) >> 32) as u32
+    }
+
+    /// Least angle at which the encoder reads so many counts, or the unit above it [2^-32 turns]. Two units are less than a count,
+    /// so that `counts` gives the counts back.
+    #[inline]
+    pub fn angle(&self, counts: u32) -> u32 {
+        (u64::from(counts).wrapping_mul(self.phase).wrapping_add(0xffff_ffff) >> 32) as u32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Encoder of so many counts in a turn, as `virtual_joint::design` makes it, without errors.
+    fn encoder(turn: u32) -> EncoderErrorTable<f32> {
+        EncoderErrorTable { turn, errors: [0.0; 2], lag: 0.0, phase: (1_u128 << 64).div_ceil(turn.into()) as u64 }
+    }
+
+    #[test]
+    fn counts_of_any_number_in_a_turn_survive_the_way_to_an_angle_and_back() {
+        for turn in [24, 1000, 4000, 7200, 12_345, 20_000, 1_000_003, 10_000_000, (1 << 24) - 1] {
+            let encoder = encoder(turn);
+            for counts in (0..turn).step_by(turn as usize / 1000 + 1).chain([1, turn / 2, turn - 2, turn - 1]) {
+                let angle = encoder.angle(counts);
+                assert_eq!(encoder.counts(angle), counts, "{turn} counts in a turn");
+                let least = (u64::from(counts) << 32).div_ceil(turn.into());
+                assert!(u64::from(angle) - least <= 1, "{counts} of {turn} counts: {angle}, not {least}");
+            }
+            assert_eq!(encoder.counts(u32::MAX), turn - 1);
+        }
+    }
+
+    #[test]
+    fn counts_of_a_power_of_two_are_the_upper_bits_of_the_angle() {
+        for bits in 6..=24 {
+            let encoder = encoder(1 << bits);
+            for angle in (0..u32::MAX).step_by(999_983) {
+                assert_eq!(encoder.counts(angle), angle >> (32 - bits));
+                assert_eq!(encoder.angle(angle >> (32 - bits)), angle >> (32 - bits) << (32 - bits));
+            }
+        }
+    }
 }

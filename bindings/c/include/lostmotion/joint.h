@@ -84,7 +84,7 @@
 #define JOINT_NAME_BYTES 32
 
 // Version of tables that this library reads.
-#define JOINT_TABLES_VERSION 4
+#define JOINT_TABLES_VERSION 5
 
 // In `notices`: the torque was more than twice what the motor can give; none was assumed.
 #define JOINT_NOTICE_TORQUE_UNKNOWN 1

@@ -29,15 +29,15 @@ pub(crate) fn names(encoder: &str, word: &str) -> (String, String) {
 pub(super) fn maps(twist: &Twist, prior: &PriorModel) -> Vec<Finding> {
     let solution = &twist.solution;
     let mut findings = Vec::new();
-    let encoders = [("motor", twist::MOTOR_MAP, prior.motor_bits), ("output", twist::OUTPUT_MAP, prior.output_bits)];
-    for (encoder, first, bits) in encoders {
+    let encoders = [("motor", twist::MOTOR_MAP, prior.motor_turn), ("output", twist::OUTPUT_MAP, prior.output_turn)];
+    for (encoder, first, turn) in encoders {
         for (order, word) in [(0, "once"), (1, "twice")] {
             let [sine, cosine] = [first + 2 * order, first + 2 * order + 1];
             let (along, across) = (solution.values[sine], solution.values[cosine]);
             let amplitude = along.hypot(across);
             let [by_sine, by_cosine] = [along / amplitude, across / amplitude];
             let estimate = Estimate::from(solution, amplitude, &[(sine, by_sine), (cosine, by_cosine)]);
-            let estimate = estimate.wider_by(feigned::angle(bits));
+            let estimate = estimate.wider_by(feigned::angle(turn));
             // An amplitude of two parts that scatter is never zero: one that does not stand out of both may well be.
             let both = Estimate { half: OF_BOTH * estimate.half, ..estimate };
             let estimate = if amplitude < both.half { both } else { estimate };

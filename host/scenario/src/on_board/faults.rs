@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use model_core::virtual_joint::fault::{Fault, FaultKind, FixedPoint, Shaft};
 use model_core::virtual_joint::faults::MOST_FAULTS;
-use parameters::{AbsoluteEncoder, Surroundings};
+use parameters::Surroundings;
 
 use crate::encoder_zeros::EncoderZeros;
 use crate::file;
@@ -18,29 +18,40 @@ const WHOLE: f64 = 4_294_967_296.0;
 /// Most faults of a test: two places are taken by the zeros of the encoders.
 const MOST_OF_A_TEST: usize = MOST_FAULTS - 2;
 
-/// Bits of both encoders of a board's virtual joint, motor first.
-pub fn bits_of_encoders(around: &Surroundings) -> Outcome<[u32; 2]> {
-    let bits = |encoder: &AbsoluteEncoder, name: &str| {
-        encoder.bits().ok_or_else(|| {
-            let message = format!("the {name} encoder has {} counts in a turn", encoder.counts_per_turn);
-            Failure::new(format!("{message}, and a board's virtual joint has powers of two only"))
-                .with_help("run it with --role observer, or with --host")
-        })
-    };
-    Ok([bits(&around.motor_encoder, "motor")?, bits(&around.output_encoder, "output")?])
+/// Counts in a turn of both encoders of a joint, motor first.
+pub fn turns_of_encoders(around: &Surroundings) -> [i64; 2] {
+    [around.motor_encoder, around.output_encoder].map(|encoder| encoder.counts_per_turn.cast_signed())
+}
+
+/// Least angle in whole 2^-32 turns at which an encoder has gone on by so many counts: with another one added to it, the encoder
+/// reads the sum of both counts, since a count is 2^8 units at least.
+fn angle_of_counts(counts: i64, turn: i64) -> i64 {
+    let (counts, turn) = (i128::from(counts), i128::from(turn));
+    -((-counts << 32).div_euclid(turn)) as i64
+}
+
+/// Angles at which both encoders of a joint read zero, motor first [2^-32 turns].
+pub fn mounting_angles(zeros: &EncoderZeros, turns: [i64; 2]) -> [u32; 2] {
+    let counts = zeros.counts(turns);
+    [0, 1].map(|encoder| angle_of_counts(counts[encoder], turns[encoder]) as u32)
 }
 
 /// The zeros of both encoders as faults that last for the whole run: a board's virtual joint reads zero at angle zero.
-pub fn mounting(zeros: &EncoderZeros, bits: [u32; 2]) -> [Fault<FixedPoint<f32>>; 2] {
-    let counts = zeros.counts(bits.map(|bits| 1 << bits));
+pub fn mounting(zeros: &EncoderZeros, turns: [i64; 2]) -> [Fault<FixedPoint<f32>>; 2] {
+    let angles = mounting_angles(zeros, turns);
     [(Shaft::Motor, 0), (Shaft::Link, 1)].map(|(shaft, encoder)| {
-        let offset = (counts[encoder] << (32 - bits[encoder])) as u32 as i32;
-        Fault { start: 0, end: u32::MAX, seed: 0, kind: FaultKind::Offset(shaft, offset) }
+        let kind = FaultKind::Offset(shaft, angles[encoder].cast_signed());
+        Fault { start: 0, end: u32::MAX, seed: 0, kind }
     })
 }
 
-/// The faults of a test file as whole numbers, for a seed and encoders of so many bits: motor, link.
-pub fn quantised(faults: &[file::Fault], rate: f64, bits: [u32; 2], seed: u64) -> Outcome<Vec<Fault<FixedPoint<f32>>>> {
+/// The faults of a test file as whole numbers, for a seed and encoders of so many counts in a turn: motor, link.
+pub fn quantised(
+    faults: &[file::Fault],
+    rate: f64,
+    turns: [i64; 2],
+    seed: u64,
+) -> Outcome<Vec<Fault<FixedPoint<f32>>>> {
     if faults.len() > MOST_OF_A_TEST {
         let message = format!("a board that runs the whole loop takes {MOST_OF_A_TEST} faults, not {}", faults.len());
         return Err(Failure::new(message).with_help("run it with --role observer, or with --host"));
@@ -51,23 +62,26 @@ pub fn quantised(faults: &[file::Fault], rate: f64, bits: [u32; 2], seed: u64) -
             start: periods(fault.start),
             end: periods(fault.end),
             seed: fault_stream(fault, index, seed).word(),
-            kind: kind(fault, bits)?,
+            kind: kind(fault, turns)?,
         })
     };
     faults.iter().enumerate().map(one).collect()
 }
 
-fn kind(fault: &file::Fault, bits: [u32; 2]) -> Outcome<FaultKind<FixedPoint<f32>>> {
-    let count = |of: Shaft| WHOLE / (1_u64 << bits[usize::from(of == Shaft::Link)]) as f64;
+fn kind(fault: &file::Fault, turns: [i64; 2]) -> Outcome<FaultKind<FixedPoint<f32>>> {
+    let turn = |of: Shaft| turns[usize::from(of == Shaft::Link)];
     // A whole turn more or less is none.
-    let angle = |parts: f64| (parts.round() as i64) as u32;
+    let angle = |parts: f64| parts.round() as i64;
     let share = |share: f64| (share * WHOLE).min(WHOLE - 1.0) as u32;
     Ok(match fault.kind {
         FaultKind::Frozen(of) => FaultKind::Frozen(of),
         FaultKind::Offset(of, Offset { counts, angle: offset }) => {
-            FaultKind::Offset(of, angle(counts.round() * count(of) + offset / TAU * WHOLE) as i32)
+            let counts = angle_of_counts(counts.round() as i64, turn(of));
+            FaultKind::Offset(of, counts.wrapping_add(angle(offset / TAU * WHOLE)) as u32 as i32)
         }
-        FaultKind::Noise(of, counts) => FaultKind::Noise(of, (counts * count(of)).min(WHOLE - 1.0) as u32),
+        FaultKind::Noise(of, counts) => {
+            FaultKind::Noise(of, (counts * WHOLE / turn(of) as f64).min(WHOLE - 1.0) as u32)
+        }
         FaultKind::MissingCounts(of, part) => FaultKind::MissingCounts(of, share(part)),
         FaultKind::Eccentric(of, error) => FaultKind::Eccentric(of, (error / TAU * WHOLE) as f32),
         FaultKind::LostReadings(of, part) => FaultKind::LostReadings(of, share(part)),
@@ -101,6 +115,7 @@ mod tests {
     use crate::file::Si;
 
     const RATE: f64 = 10e3;
+    const TURNS: [i64; 2] = [1 << 14, 1 << 17];
 
     fn table() -> SurroundingsTable<f32> {
         let file = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
@@ -112,7 +127,7 @@ mod tests {
     fn run(kind: FaultKind<Si>, periods: u32, step: u32) -> Vec<(Samples<f32>, f32)> {
         let fault = Fault { start: 0.01, end: 0.5, seed: (), kind };
         let mut faults = Faults::default();
-        assert!(quantised(&[fault], RATE, [14, 17], 5).expect("possible").iter().all(|fault| faults.add(*fault)));
+        assert!(quantised(&[fault], RATE, TURNS, 5).expect("possible").iter().all(|fault| faults.add(*fault)));
         let table = table();
         let one = |period: u32| {
             let reading = |bits: u32| Reading { counts: (period * step) % (1 << bits), time: period };
@@ -183,11 +198,11 @@ mod tests {
         ] {
             let fault = Fault { start: 0.0, end: 1.0, seed: (), kind: FaultKind::Other(kind) };
             let name = format!("`{}` cannot be in a whole loop", fault_word(&fault));
-            let failure = quantised(&[fault], RATE, [14, 17], 1).unwrap_err();
+            let failure = quantised(&[fault], RATE, TURNS, 1).unwrap_err();
             assert!(failure.message().contains(&name) && failure.help().is_some(), "{failure}");
         }
         let kind = FaultKind::Frozen(Shaft::Motor);
         let many = vec![Fault { start: 0.0, end: 1.0, seed: (), kind }; MOST_OF_A_TEST + 1];
-        assert!(quantised(&many, RATE, [14, 17], 1).is_err());
+        assert!(quantised(&many, RATE, TURNS, 1).is_err());
     }
 }

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-use super::faults::{bits_of_encoders, mounting, quantised};
+use super::faults::{mounting, quantised, turns_of_encoders};
 use super::port::BoardPort;
 use super::twin::{Twin, TwinResult};
 use super::{Boards, Pair};
@@ -57,9 +57,9 @@ impl Boards<'_> {
     ) -> Result<(RunHistory, BoardRun), RunError> {
         let designed = case.design(&test.file)?;
         let around = &case.truth.surroundings;
-        let bits = bits_of_encoders(around)?;
-        let mut faults = mounting(&case.zeros, bits).to_vec();
-        faults.extend(quantised(&test.file.faults, f64::from(case.nominal_surroundings.control_rate), bits, seed)?);
+        let turns = turns_of_encoders(around);
+        let mut faults = mounting(&case.zeros, turns).to_vec();
+        faults.extend(quantised(&test.file.faults, f64::from(case.nominal_surroundings.control_rate), turns, seed)?);
         let (truth, board) = (&pair.truth, self.request.board);
         let twin = Twin { file: &test.file, case, designed: &designed, truth, board, faults: &faults };
         let TwinResult { knots, history, digests } = twin.run()?;

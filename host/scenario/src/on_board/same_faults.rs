@@ -17,7 +17,7 @@ use model_core::virtual_joint::fault::{Fault, FaultKind, Shaft};
 use model_core::virtual_joint::faults::Faults;
 use reference::drive_train::Measurement;
 
-use super::faults::{bits_of_encoders, quantised};
+use super::faults::{quantised, turns_of_encoders};
 use crate::case::Case;
 use crate::faults::HostFaults;
 use crate::file;
@@ -49,17 +49,27 @@ struct Period {
 struct Both {
     case: Case,
     table: SurroundingsTable<f32>,
-    bits: [u32; 2],
+    turns: [i64; 2],
 }
 
 impl Both {
-    fn new() -> Self {
+    fn of(joint: &str) -> Self {
         let test = file::read("profile = \"T2\"").expect("a good file");
-        let case = Case::new(&test, joint_file::preset("q1").expect("a preset"), 1, None).expect("a case");
+        let case = Case::new(&test, joint, 1, None).expect("a case");
         let around = case.truth.surroundings;
         let tables: Tables<f32, 3> = design(&case.truth.parameters, around.control_rate).expect("tables");
         let table = design_surroundings(&case.truth.parameters, &around, &tables).expect("surroundings");
-        Self { case, table, bits: bits_of_encoders(&around).expect("powers of two") }
+        Self { case, table, turns: turns_of_encoders(&around) }
+    }
+
+    /// Joints with encoders of 2^14 and 2^17 counts, and with encoders whose counts are no power of two.
+    fn all() -> [Self; 2] {
+        let q1 = joint_file::preset("q1").expect("a preset");
+        let lines =
+            ["motor", "output"].into_iter().zip(["20000", "100003"]).fold(q1.to_owned(), |text, (side, turn)| {
+                joint_file::change(&text, &format!("{side}_encoder.counts_per_turn"), turn).expect("a known key")
+            });
+        [Self::of(q1), Self::of(&lines)]
     }
 
     /// Both encoders go over more than a turn, forth and back, and the motor is asked for all that it has, both ways.
@@ -68,11 +78,11 @@ impl Both {
         let rate = f64::from(self.case.truth.surroundings.control_rate);
         let mut host = HostFaults::new(&faults, 1, &self.case.truth.parameters, &self.case.train);
         let mut board = Faults::default();
-        let quantised = quantised(&faults, rate, self.bits, 1).expect("a board can do it");
+        let quantised = quantised(&faults, rate, self.turns, 1).expect("a board can do it");
         assert!(quantised.iter().all(|fault| board.add(*fault)), "there is room");
         let one = |period: u32| {
             let wave = (TAU * f64::from(period) / 3700.0).sin();
-            let turn = self.bits.map(|bits| 1_i64 << bits);
+            let turn = self.turns;
             let counts = [2.3 * wave * turn[0] as f64, 1.7 * wave * turn[1] as f64].map(|counts| counts.round() as i64);
             let [motor_counts, output_counts] = counts;
             let seen = host.sense(&Measurement { period: period.into(), motor_counts, output_counts });
@@ -95,7 +105,7 @@ impl Both {
     /// Counts of an encoder on the host and on the board beyond the true ones, in every period; the reading came in all.
     fn beside(&self, run: &[Period], shaft: Shaft) -> Vec<[i64; 2]> {
         let of = usize::from(shaft == Shaft::Link);
-        let turn = 1_i64 << self.bits[of];
+        let turn = self.turns[of];
         // Within half a turn to either side.
         let near = |counts: i64| (counts + turn / 2).rem_euclid(turn) - turn / 2;
         let one = |period: &Period| {
@@ -115,8 +125,8 @@ fn other(shaft: Shaft) -> Shaft {
 
 #[test]
 fn encoders_freeze_slip_lose_counts_and_run_out_of_true_alike_to_one_count() {
-    let both = Both::new();
-    for shaft in SHAFTS {
+    let all = Both::all();
+    for (both, shaft) in all.iter().flat_map(|both| SHAFTS.map(|shaft| (both, shaft))) {
         let of_counts = FaultKind::Offset(shaft, Offset { counts: -7.0, angle: 0.0 });
         let of_angle = FaultKind::Offset(shaft, Offset { counts: 3.0, angle: 20.3e-3 });
         let eccentric = FaultKind::Eccentric(shaft, 0.3_f64.to_radians());
@@ -148,8 +158,8 @@ fn encoders_freeze_slip_lose_counts_and_run_out_of_true_alike_to_one_count() {
 
 #[test]
 fn encoders_scatter_alike_in_their_deviation() {
-    let both = Both::new();
-    for shaft in SHAFTS {
+    let all = Both::all();
+    for (both, shaft) in all.iter().flat_map(|both| SHAFTS.map(|shaft| (both, shaft))) {
         let beside = both.beside(&both.run(&[FaultKind::Noise(shaft, 6.0)]), shaft);
         let statistics = |side: usize| {
             let count = ON.len() as f64;
@@ -169,9 +179,10 @@ fn encoders_scatter_alike_in_their_deviation() {
 
 #[test]
 fn readings_are_lost_alike_and_the_motor_s_last_one_stands() {
-    let both = Both::new();
-    for (shaft, of) in SHAFTS.into_iter().zip([0, 1]) {
-        let turn = 1_i64 << both.bits[of];
+    let all = Both::all();
+    for (both, shaft) in all.iter().flat_map(|both| SHAFTS.map(|shaft| (both, shaft))) {
+        let of = usize::from(shaft == Shaft::Link);
+        let turn = both.turns[of];
         let came = |reading: Option<(i64, u64)>, period: usize| reading.is_some_and(|(_, time)| time == period as u64);
         for share in [0.2, 1.0] {
             let run = both.run(&[FaultKind::LostReadings(shaft, share)]);
@@ -199,7 +210,7 @@ fn readings_are_lost_alike_and_the_motor_s_last_one_stands() {
 
 #[test]
 fn motors_give_the_same_wrong_torque() {
-    let both = Both::new();
+    let [both, _] = Both::all();
     let (bias, limit) = (FaultKind::TorqueBias(0.05, -0.2), FaultKind::Saturation(1.5));
     for kinds in [vec![bias], vec![limit], vec![bias, limit], vec![limit, bias]] {
         let run = both.run(&kinds);

@@ -18,6 +18,7 @@ use model_core::virtual_joint::faults::Faults;
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 use reference::closed_loop::{Motion, Sample};
 
+use super::faults::{mounting_angles, turns_of_encoders};
 use super::trajectory;
 use crate::case::{Case, Designed};
 use crate::file::TestFile;
@@ -97,10 +98,8 @@ impl Twin<'_> {
         let mut faults = Faults::default();
         let all_taken = self.faults.iter().all(|fault| faults.add(*fault));
         debug_assert!(all_taken, "more than fit were refused before");
-        let around = &self.truth.surroundings;
-        let turns = [around.motor_encoder, around.output_encoder].map(|encoder| encoder.counts_per_turn.cast_signed());
-        let mounted = self.case.zeros.counts(turns)[1] << table.encoders[1].shift;
-        let zero = mounted as f64 / 2.0_f64.powi(32) - f64::from(virtual_joint.output_turn(mounted as u32));
+        let [_, mounted] = mounting_angles(&self.case.zeros, turns_of_encoders(&self.truth.surroundings));
+        let zero = f64::from(mounted) / 2.0_f64.powi(32) - f64::from(virtual_joint.output_turn(mounted));
         let knots = trajectory::knots(self.file, self.case, self.designed, zero);
         let joint = &self.truth.parameters;
         let reader = Reader::new(joint, tables);

@@ -49,6 +49,11 @@ impl Body {
         }
     }
 
+    /// Lost motion at the motor [rad].
+    pub fn gap_at_motor(&self) -> f64 {
+        4.0 * self.half_backlash / self.sun_lever
+    }
+
     /// The two inertias against the compliance [rad/s].
     pub fn contact_frequency(&self) -> f64 {
         let motor = self.motor_inertia / (self.sun_lever * self.sun_lever);

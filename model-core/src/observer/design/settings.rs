@@ -1,6 +1,8 @@
 //! What the observer is designed from besides the joint, and whether it can be: data-sheet figures and how sure they
 //! are.
 
+use core::f64::consts::TAU;
+
 use super::learning::LEARNING_INTERVAL;
 use crate::gears::design::DesignError;
 use crate::observer::tables::MOST_DELAY;
@@ -11,6 +13,13 @@ pub const CLOCK_TICKS: u32 = 1000;
 
 /// Torque limits beyond this are none [N m].
 pub(crate) const NO_LIMIT: f64 = 1e3;
+
+/// Fewest counts in a turn of a motor encoder: three Hall sensors on four pole pairs have 24. With 12 the gap is never valid, on a
+/// gear whose lost motion is 2 of them or 4 (measured: C1 with 60 and 120 arcmin, motion T2).
+const FEWEST_COUNTS: u32 = 24;
+
+/// Fewest counts in a turn of an encoder that is accepted whatever the backlash.
+const COUNTS_OF_ANY_GAP: u32 = 64;
 
 /// An encoder as its data sheet has it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,21 +76,21 @@ pub struct ObserverSettings {
 }
 
 impl ObserverSettings {
-    pub(super) fn check(&self) -> Result<(), DesignError> {
+    /// Rejects settings out of range; `gap` is the lost motion at the motor [rad].
+    pub(super) fn check(&self, gap: f64) -> Result<(), DesignError> {
         let within = |what, given: f64, least: f64, most: f64, must_be| {
             if given >= least && given <= most { Ok(()) } else { Err(DesignError::OutOfRange { what, given, must_be }) }
         };
         // An interval that is learnt from holds one period at least.
         within("the control rate", self.control_rate.into(), 1.0 / LEARNING_INTERVAL, 1e5, "from 1000 to 100000 Hz")?;
         within("the clock rate of the observer's samples", self.clock_rate.into(), 1e4, 4e9, "10 kHz or more")?;
+        self.check_counts(gap)?;
         for encoder in [Some(self.motor_encoder), self.output_encoder].into_iter().flatten() {
-            let turn = f64::from(encoder.counts_per_turn);
-            within("the number of counts in a turn of an encoder", turn, 64.0, 16_777_216.0, "from 64 to 2^24")?;
             within("the harmonic error of an encoder", encoder.harmonic_error, 0.0, 0.1, "from 0 to 0.1 rad")?;
             let wraps_at = if encoder.wraps_at == 0 { 4_294_967_296.0 } else { f64::from(encoder.wraps_at) };
             let must_be = "a whole number of turns, or 0 for 2^32";
             let whole = encoder.wraps_at == 0 || encoder.wraps_at % encoder.counts_per_turn == 0;
-            within("where an encoder's counts wrap", if whole { wraps_at } else { -1.0 }, 64.0, 4.3e9, must_be)?;
+            within("where an encoder's counts wrap", if whole { wraps_at } else { -1.0 }, 1.0, 4.3e9, must_be)?;
         }
         within("the motor's fastest speed", self.fastest_motor, 0.1, 1e5, "positive, in rad/s")?;
         within("the torque delay", self.torque_delay, 0.0, MOST_DELAY as f64 - 1.0, "from 0 to 3 control periods")?;
@@ -96,6 +105,24 @@ impl ObserverSettings {
         within("the uncertainty of the compliance", self.compliance_uncertainty, 1e-6, 10.0, "from 1e-6 to 10")?;
         within("the skew", self.skew, -0.1, 0.1, "from -0.1 to 0.1 s")?;
         within("the uncertainty of the skew", self.skew_uncertainty, 0.0, 0.1, "from 0 to 0.1 s")
+    }
+
+    /// Rejects encoders of too few counts or too many. A motor encoder of few counts sees the flanks as long as a count is less than
+    /// the lost motion at the motor: Hall sensors of 24 counts need 15 deg of it.
+    fn check_counts(&self, gap: f64) -> Result<(), DesignError> {
+        let within = |what, counts: u32, least, must_be| {
+            let is_in_range = (least..=1 << 24).contains(&counts);
+            if is_in_range { Ok(()) } else { Err(DesignError::OutOfRange { what, given: counts.into(), must_be }) }
+        };
+        let motor = self.motor_encoder.counts_per_turn;
+        let least = if TAU < gap * f64::from(motor) { FEWEST_COUNTS } else { COUNTS_OF_ANY_GAP };
+        let must_be = "from 64 to 2^24, or from 24 on where a count is less than the lost motion at the motor: \
+                       take an encoder of more counts, or state a larger backlash if the gear has it";
+        within("the number of counts in a turn of the motor encoder", motor, least, must_be)?;
+        self.output_encoder.map_or(Ok(()), |encoder| {
+            let what = "the number of counts in a turn of the output encoder";
+            within(what, encoder.counts_per_turn, COUNTS_OF_ANY_GAP, "from 64 to 2^24")
+        })
     }
 }
 

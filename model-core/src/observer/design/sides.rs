@@ -31,7 +31,7 @@ const LATE_POLES: f64 = 1000.0;
 
 /// State: angle, speed, taken torque. The taken torque wanders so that it may change by the largest torque in half a
 /// swing of motor against load; the torque noise acts on the speed.
-pub(super) fn drive_filter(body: &Body, settings: &ObserverSettings, count: f64, step: f64) -> Filter {
+pub(super) fn drive_filter(body: &Body, settings: &ObserverSettings, measurement_noise: f64, step: f64) -> Filter {
     let per_inertia = 1.0 / body.motor_inertia;
     // Faster swings than this are not followed: what they would cost in noise is worth more.
     let half_swing = (core::f64::consts::PI / body.contact_frequency()).max(FASTEST_SWING * step);
@@ -44,7 +44,7 @@ pub(super) fn drive_filter(body: &Body, settings: &ObserverSettings, count: f64,
             (torque_noise * per_inertia).powi(2) * step,
             (MESH_CHANGE * settings.torque_limit).powi(2) / half_swing,
         ]),
-        measurement_noise: count * count / 12.0,
+        measurement_noise,
     }
     .filter(step)
 }
@@ -177,7 +177,7 @@ mod tests {
         };
         let step = 1e-4;
         let count = core::f64::consts::TAU / f64::from(encoder.counts_per_turn);
-        let filter = drive_filter(&body, &settings, count, step);
+        let filter = drive_filter(&body, &settings, count * count / 12.0, step);
         let (inertia, gain) = (body.motor_inertia, &filter.gain);
         let [mut angle, mut speed, mut taken] = [0.0; 3];
         let mut time = 0.0;

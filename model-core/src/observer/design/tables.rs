@@ -95,7 +95,7 @@ const FEW_INTERVALS: f64 = 1.5;
 
 /// Speed of the link at which a reading's rounding is taken for noise of its own [rad/s]. At a slower one, or with a coarser
 /// encoder, counts last longer than a period, and readings within one are rounded alike. Chosen: that of a robot's joint at
-/// work, so that with 10 kHz it makes a difference below 15 bits.
+/// work, so that with 10 kHz it makes a difference below 15 bits at the link, and at the motor below 2^15 counts over the ratio.
 const LINK_AT_WORK: f64 = 2.0;
 
 /// Motor counts by which the largest torque changes the angle turned in a block, from one to the next, at least [counts]: noise of a
@@ -127,16 +127,15 @@ pub fn design_observer<T: Real>(
     settings: &ObserverSettings,
 ) -> Result<ObserverTables<T>, DesignError> {
     validate(joint)?;
-    settings.check()?;
+    let body = Body::new(joint);
+    settings.check(body.gap_at_motor())?;
     let real = T::from_f64;
     let step = 1.0 / f64::from(settings.control_rate);
-    let body = Body::new(joint);
     let counts = counts::<T>(joint, settings, step)?;
     let motor_count = TAU / f64::from(settings.motor_encoder.counts_per_turn);
     let output_count = TAU / f64::from(settings.output_encoder.unwrap_or(settings.motor_encoder).counts_per_turn);
-    let drive = drive_filter(&body, settings, motor_count, step);
-    let rounded_alike = (output_count / (LINK_AT_WORK * step)).max(1.0);
-    let load = load_filter(&body, settings, output_count * output_count / 12.0 * rounded_alike, step);
+    let drive = drive_filter(&body, settings, rounding(motor_count, body.ratio * LINK_AT_WORK, step), step);
+    let load = load_filter(&body, settings, rounding(output_count, LINK_AT_WORK, step), step);
 
     let largest_force = settings.torque_limit / body.sun_lever;
     let force_variance = drive.quiet[2] / (body.sun_lever * body.sun_lever);
@@ -277,11 +276,16 @@ pub fn design_observer<T: Real>(
     Ok(tables)
 }
 
+/// Variance of a reading's rounding to a count of so many radians, as many times as a shaft at this speed takes periods for a
+/// count [rad^2].
+fn rounding(count: f64, speed: f64, step: f64) -> f64 {
+    count * count / 12.0 * (count / (speed * step)).max(1.0)
+}
+
 /// Whether the motor goes where the torque drives it.
 fn response<T: Real>(body: &Body, settings: &ObserverSettings, motor_count: f64, step: f64) -> ResponseTable<T> {
     let inertia = body.motor_inertia + body.load_inertia / (body.ratio * body.ratio);
-    let gap = 4.0 * body.half_backlash / body.sun_lever;
-    let unsure = (BLOCK_COUNTS * motor_count).max(BLOCK_GAPS * gap);
+    let unsure = (BLOCK_COUNTS * motor_count).max(BLOCK_GAPS * body.gap_at_motor());
     let length =
         libm::sqrt(unsure * inertia / settings.torque_limit).max(BLOCK_SWINGS * TAU / body.contact_frequency());
     let block = libm::round(length.clamp(RESPONSE_BLOCK[0], RESPONSE_BLOCK[1]) / step).max(BLOCK_PERIODS);

@@ -208,7 +208,7 @@ fn what_is_no_pin_is_refused() {
     for name in ["A9", "PA16", "pa9", "PA09", "GPIOA9"] {
         let text = spoilt("send = \"PA9\"", &format!("send = \"{name}\""));
         let message = format!("`send` must be a pin such as \"PA9\", not \"{name}\"");
-        refused(&text, &message, &format!("\"{name}\""), "the pin on which the board sends");
+        refused(&text, &message, &format!("\"{name}\""), "transmit pin of the board");
     }
     let text = spoilt("send = \"PA9\"", "send = 9");
     refused(&text, "`send` must be a pin as a string, not a whole number", "9", "sends");

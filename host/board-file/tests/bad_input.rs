@@ -115,7 +115,7 @@ fn a_name_that_no_board_can_have_is_refused() {
             &spoilt("\"bench.2-a\"", &format!("\"{name}\"")),
             &format!("`name` cannot be \"{name}\""),
             &format!("\"{name}\""),
-            "at most 16 lower case letters",
+            "up to 16 lower case letters",
         );
     }
     let long = "seventeen-letters";

@@ -115,12 +115,12 @@ fn a_name_that_no_board_can_have_is_refused() {
             &spoilt("\"bench.2-a\"", &format!("\"{name}\"")),
             &format!("`name` cannot be \"{name}\""),
             &format!("\"{name}\""),
-            "at most 16 lower case letters",
+            "up to 16 lower case letters",
         );
     }
     let long = "seventeen-letters";
     let message = "`name` has 17 letters";
-    refused(&spoilt("bench.2-a", long), message, &format!("\"{long}\""), "at most 16");
+    refused(&spoilt("bench.2-a", long), message, &format!("\"{long}\""), "up to 16");
     refused(
         &spoilt("bench.2-a", "stm32f405"),
         "`name` is a chip's: stm32f405",
@@ -167,7 +167,7 @@ fn flash_without_a_place_for_what_is_learnt_is_refused() {
     let message = "700 KiB of flash leave no place for what the observer has learnt";
     refused(&text, message, "700", "flash_KiB = 512 or 1024");
     let text = spoilt("ram_KiB = 128", "ram_KiB = 8");
-    refused(&text, "`ram_KiB` must be between 16 and 4096, not 8", "8", "without a gap");
+    refused(&text, "`ram_KiB` must be between 16 and 4096, not 8", "8", "contiguous RAM");
 }
 
 #[test]
@@ -208,10 +208,10 @@ fn what_is_no_pin_is_refused() {
     for name in ["A9", "PA16", "pa9", "PA09", "GPIOA9"] {
         let text = spoilt("send = \"PA9\"", &format!("send = \"{name}\""));
         let message = format!("`send` must be a pin such as \"PA9\", not \"{name}\"");
-        refused(&text, &message, &format!("\"{name}\""), "the pin on which the board sends");
+        refused(&text, &message, &format!("\"{name}\""), "transmit pin of the board");
     }
     let text = spoilt("send = \"PA9\"", "send = 9");
-    refused(&text, "`send` must be a pin as a string, not a whole number", "9", "sends");
+    refused(&text, "`send` must be a pin as a string, not a whole number", "9", "transmit pin");
 }
 
 #[test]
@@ -365,9 +365,9 @@ fn sections_and_keys_that_are_missing_are_named() {
         assert!(problems.iter().any(|it| it.message == format!("unknown key `other_{section}` in a board file")));
     }
     let text = spoilt("baud = 230_400 # chosen\n", "");
-    refused(&text, "`baud` is missing from [serial]", "[serial]", "the speed that the host opens its port with");
+    refused(&text, "`baud` is missing from [serial]", "[serial]", "baud rate");
     let text = spoilt("on = \"low\"\n", "");
-    refused(&text, "`on` is missing from [light]", "[light]", "while the light shines");
+    refused(&text, "`on` is missing from [light]", "[light]", "while the light is on");
     let text = spoilt("name = \"bench.2-a\"\n", "");
     refused(&text, "`name` is missing from the top of the file", "description = \"on the bench\"", "16");
 }

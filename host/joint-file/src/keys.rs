@@ -1,5 +1,5 @@
 //! Every key of a joint file: its section, its unit, its bound, and a hint for who got it wrong. The page
-//! docs/reference/joint-file.md says the same in more words.
+//! docs/reference/joint-file.md lists every key in its tables.
 
 use crate::bound::{Bound, Unit};
 use crate::table::{self, Keys};
@@ -56,31 +56,36 @@ const INERTIA: Bound = Between(1e-12, 1e6);
 const TORQUE: Bound = Between(1e-6, 1e9);
 const MAY_BE_ABSENT: Bound = Between(0.0, 1e6);
 const RADIUS: Kind = Number(Milli, Between(0.5, 5000.0));
-const RADIUS_HINT: &str = "a radius in mm (40 mm is 40, not 0.04); or give `module_mm` and leave all radii out";
-const MASS_HINT: &str = "I / r^2 in kg, felt along the line of action: the \"Inertia\" of the paper's Table 1";
-const INERTIA_HINT: &str = "a moment of inertia in kg m^2, about the gear's own axis";
+const RADIUS_HINT: &str = "base radius in mm (40 mm is 40, not 0.04); or give `module_mm` and leave all radii out";
+const MASS_HINT: &str = "equivalent mass I / r^2 in kg along the line of action: \"Inertia\" in the paper's Table 1";
+const INERTIA_HINT: &str = "moment of inertia in kg m^2 about the gear's own axis";
 const ANGLE: Kind = Number(Degrees, Between(5.0, 45.0));
 const TEETH: Kind = Whole(5, 1000);
 const PHASE: Kind = PerPlanet(Si, Between(-6.3, 6.3));
-const PHASE_HINT: &str = "in rad, within a turn: one number is the phase of planet 0 and the others follow from the teeth; a list states every planet's";
+const PHASE_HINT: &str = "phase in rad, within a turn: a single number is for planet 0, and the teeth give the other phases; a list has a number for each planet";
 const TURNS_HINT: &str =
-    "whole turns of motor and link after which both are back where they were: 29 and 3 are a ratio of 29/3";
-const FRICTION_HINT: &str = "a torque in N m, 0 if there is none";
-const PRESLIDING_HINT: &str = "displacement in mrad at which the dry friction is reached; 0 sticks at once";
+    "whole turns of motor and link after which both are back at their start: 29 and 3 for a ratio of 29/3";
+const FRICTION_HINT: &str = "dry friction in N m; 0 for none";
+const PRESLIDING_HINT: &str = "displacement in mrad at which dry friction is reached; 0 sticks at once";
 const DRIFT_HINT: &str = "change a second over the value at time 0: 30 % in 60 s are 0.005";
 
 /// All keys, in the order of the documentation.
 pub(crate) const KEYS: &[Key] = &[
-    key("", "name", Text, "a short name of letters, digits, spaces and -_.+(), at most 32 of them: name = \"Q1\""),
-    key("", "description", Text, "a sentence for reports"),
-    key("", "coherence", Choice(&["required", "warn"]), "\"warn\" uses gears that do not fit together as they stand"),
+    key("", "name", Text, "name of up to 32 letters, digits, spaces and -_.+(): name = \"Q1\""),
+    key("", "description", Text, "description for reports"),
+    key(
+        "",
+        "coherence",
+        Choice(&["required", "warn"]),
+        "\"warn\" accepts gears that do not fit together, with a warning",
+    ),
     key(
         "",
         "rated_output_torque_N_m",
         Number(Si, TORQUE),
-        "the torque at the link that profiles and reports scale with",
+        "rated torque at the link; profiles and reports scale with it",
     ),
-    key("", "characteristic_length_um", Number(Micro, Between(1e-3, 1e4)), "b_c of eq. 16; 10 if left out"),
+    key("", "characteristic_length_um", Number(Micro, Between(1e-3, 1e4)), "b_c of eq. 16; default 10"),
     section(
         "",
         "geometry",
@@ -91,7 +96,7 @@ pub(crate) const KEYS: &[Key] = &[
     section(
         "",
         "equivalent_gear",
-        "in place of all sections on teeth: ratio, lost_motion_arcmin, total_stiffness_N_m_per_arcmin, damping_ratio",
+        "replaces all sections on teeth: ratio, lost_motion_arcmin, total_stiffness_N_m_per_arcmin, damping_ratio",
     ),
     section(
         "",
@@ -107,7 +112,7 @@ pub(crate) const KEYS: &[Key] = &[
         "equivalent_gear",
         "ratio",
         Number(Si, Inside(1.0, 1e5)),
-        "motor turns over link turns as a decimal number, such as 50 or 12.5; 29/3 is motor_turns = 29 and link_turns = 3",
+        "motor turns over link turns as a decimal number, for example 50 or 12.5; for 29/3 write motor_turns = 29 and link_turns = 3",
     ),
     key("equivalent_gear", "motor_turns", Whole(1, 100_000), TURNS_HINT),
     key("equivalent_gear", "link_turns", Whole(1, 100_000), TURNS_HINT),
@@ -115,63 +120,58 @@ pub(crate) const KEYS: &[Key] = &[
         "equivalent_gear",
         "lost_motion_arcmin",
         Number(Arcmin, ZeroOr(0.01, 600.0)),
-        "a data sheet's lost motion or backlash at the output in arcmin, from flank to flank",
+        "lost motion or backlash at the output in arcmin, flank to flank, from the data sheet",
     ),
     key(
         "equivalent_gear",
         "lost_motion_mrad",
         Number(Milli, ZeroOr(0.003, 175.0)),
-        "the same in mrad: 1 arcmin is 0.291 mrad",
+        "lost motion at the output in mrad, flank to flank: 1 arcmin is 0.291 mrad",
     ),
     key(
         "equivalent_gear",
         "total_stiffness_N_m_per_arcmin",
         Number(PerArcmin, Between(1e-4, 1e6)),
-        "a data sheet's torsional stiffness at the output in N m/arcmin, all parts together",
+        "torsional stiffness at the output in N m/arcmin, all parts together, from the data sheet",
     ),
     key(
         "equivalent_gear",
         "stiffness_N_m_per_rad",
         Number(Si, Between(1.0, 1e9)),
-        "the same in N m/rad: 3 N m/arcmin are 10.3e3 N m/rad",
+        "torsional stiffness at the output in N m/rad, all parts together: 3 N m/arcmin are 10.3e3 N m/rad",
     ),
     key(
         "equivalent_gear",
         "damping_ratio",
         Number(Si, FromToBelow(0.0, 1.0)),
-        "of the motor's side swinging against the link in contact; 5 % is 0.05",
+        "damping ratio of motor side against link while a flank is in contact; 5 % is 0.05",
     ),
     // Geometry
-    key("geometry", "planets", Whole(3, 5), "the model has 3, 4 or 5 equally spaced planets"),
-    key("geometry", "sun_teeth", TEETH, "the number of teeth of the sun"),
-    key("geometry", "planet_teeth", TEETH, "the number of teeth of one planet"),
-    key("geometry", "ring_teeth", TEETH, "the number of teeth of the fixed ring: sun_teeth + 2 planet_teeth"),
-    key("geometry", "working_pressure_angle_deg", ANGLE, "in degrees, commonly 20; not in rad"),
+    key("geometry", "planets", Whole(3, 5), "number of equally spaced planets: 3, 4 or 5"),
+    key("geometry", "sun_teeth", TEETH, "teeth of the sun"),
+    key("geometry", "planet_teeth", TEETH, "teeth of one planet"),
+    key("geometry", "ring_teeth", TEETH, "teeth of the fixed ring: sun_teeth + 2 planet_teeth"),
+    key("geometry", "working_pressure_angle_deg", ANGLE, "working pressure angle in degrees, commonly 20; not in rad"),
     key(
         "geometry",
         "reference_pressure_angle_deg",
         ANGLE,
-        "in degrees, used with `module_mm`; the working angle if left out",
+        "reference pressure angle in degrees, used with `module_mm`; default: the working angle",
     ),
-    key(
-        "geometry",
-        "module_mm",
-        Number(Milli, Between(0.05, 50.0)),
-        "the module in mm; all radii follow from it and the teeth",
-    ),
+    key("geometry", "module_mm", Number(Milli, Between(0.05, 50.0)), "module in mm; module and teeth give all radii"),
     key("geometry", "sun_base_radius_mm", RADIUS, RADIUS_HINT),
     key("geometry", "planet_base_radius_mm", RADIUS, RADIUS_HINT),
     key(
         "geometry",
         "carrier_radius_mm",
         RADIUS,
-        "r_c, from the joint's axis to a planet's axis, in mm; never r_c cos(alpha)",
+        "r_c, distance from the joint's axis to a planet's axis in mm; not r_c cos(alpha)",
     ),
     key(
         "geometry",
         "carrier_base_radius_mm",
         RADIUS,
-        "r_c cos(alpha), the carrier's lever on the line of action, in mm",
+        "r_c cos(alpha), lever of the carrier on the line of action in mm",
     ),
     // Bodies
     key("bodies", "sun_equivalent_mass_kg", Number(Si, MASS), MASS_HINT),
@@ -182,7 +182,7 @@ pub(crate) const KEYS: &[Key] = &[
         "bodies",
         "planet_mass_kg",
         Number(Si, MAY_BE_ABSENT),
-        "the mass of one planet in kg, carried round by the carrier",
+        "mass of one planet in kg, which orbits with the carrier",
     ),
     key(
         "bodies",
@@ -206,48 +206,53 @@ pub(crate) const KEYS: &[Key] = &[
         "bodies",
         "gear_inertia_at_input_kg_cm2",
         Number(SquareCentimetres, Between(1e-9, 1e10)),
-        "a data sheet's moment of inertia of the gearbox at its input in kg cm^2, in place of all masses but rotor and link",
+        "moment of inertia of the gearbox at its input in kg cm^2, from the data sheet; replaces all masses but rotor and link",
     ),
     key(
         "bodies",
         "rotor_inertia_kg_m2",
         Number(Si, MAY_BE_ABSENT),
-        "motor rotor on the sun shaft in kg m^2; 0 if left out",
+        "inertia of the motor rotor on the sun shaft in kg m^2; default 0",
     ),
-    key("bodies", "link_inertia_kg_m2", Number(Si, MAY_BE_ABSENT), "link on the carrier in kg m^2; 0 if left out"),
+    key(
+        "bodies",
+        "link_inertia_kg_m2",
+        Number(Si, MAY_BE_ABSENT),
+        "inertia of the link on the carrier in kg m^2; default 0",
+    ),
     // Compliance
     key(
         "compliance",
         "stiffness_N_m_per_rad",
         Number(Si, Between(1.0, 1e9)),
-        "in N m/rad: 3 N m/arcmin are 10.3e3 N m/rad",
+        "torsional stiffness between carrier and link in N m/rad: 3 N m/arcmin are 10.3e3 N m/rad",
     ),
     key(
         "compliance",
         "total_stiffness_N_m_per_arcmin",
         Number(PerArcmin, Between(1e-4, 1e6)),
-        "a data sheet's torsional stiffness at the output in N m/arcmin, teeth and shafts together",
+        "torsional stiffness at the output in N m/arcmin, teeth and shafts together, from the data sheet",
     ),
     key(
         "compliance",
         "damping_ratio",
         Number(Si, FromToBelow(0.0, 1.0)),
-        "of the carrier-link oscillator; 2 % is 0.02",
+        "damping ratio of the carrier-link oscillator; 2 % is 0.02",
     ),
     // Meshes
-    section("mesh", "sun_planet", "what differs for the sun-planet meshes"),
-    section("mesh", "ring_planet", "what differs for the ring-planet meshes"),
+    section("mesh", "sun_planet", "values of the sun-planet meshes that differ from [mesh]"),
+    section("mesh", "ring_planet", "values of the ring-planet meshes that differ from [mesh]"),
     key(
         "mesh",
         "mean_stiffness_N_per_m",
         Number(Si, Between(1e4, 1e12)),
-        "K_m in N/m, about 1e8 for steel teeth; 100 N/um are 1e8 N/m",
+        "mean mesh stiffness K_m in N/m, about 1e8 for steel teeth; 100 N/um are 1e8 N/m",
     ),
     key(
         "mesh",
         "stiffness_wave",
         Choice(&["harmonic", "rectangular"]),
-        "\"harmonic\" (eq. 7) or \"rectangular\" (Fig. 3)",
+        "waveform of the mesh stiffness: \"harmonic\" (eq. 7) or \"rectangular\" (Fig. 3)",
     ),
     key(
         "mesh",
@@ -255,37 +260,42 @@ pub(crate) const KEYS: &[Key] = &[
         Number(Si, FromToBelow(0.0, 1.0)),
         "K_a / K_m: half the stiffness range over its mean; 10 % is 0.1",
     ),
-    key("mesh", "contact_ratio", Number(Si, Inside(1.0, 2.0)), "of the pair, for the rectangular wave; 1.6 is common"),
-    key("mesh", "order", Whole(1, 8), "the highest Fourier harmonic of the rectangular wave that is kept"),
+    key(
+        "mesh",
+        "contact_ratio",
+        Number(Si, Inside(1.0, 2.0)),
+        "contact ratio of the pair, for the rectangular wave; 1.6 is common",
+    ),
+    key("mesh", "order", Whole(1, 8), "highest Fourier harmonic kept of the rectangular wave"),
     key(
         "mesh",
         "damping_ratio",
         Number(Si, FromToBelow(0.0, 1.0)),
-        "zeta of eqs 8-10, commonly 0.03 to 0.1; 5 % is 0.05",
+        "damping ratio zeta of eqs 8-10, commonly 0.03 to 0.1; 5 % is 0.05",
     ),
     key(
         "mesh",
         "half_backlash_um",
         PerPlanet(Micro, ZeroOr(0.5, 1000.0)),
-        "the half-backlash b in um, the teeth are free over 2b: 0.06 mm are 60 um, 6e-5 m are 60 um",
+        "half-backlash b in um; a mesh is free over 2b: 0.06 mm are 60 um, 6e-5 m are 60 um",
     ),
     key(
         "mesh",
         "backlash_um",
         PerPlanet(Micro, ZeroOr(1.0, 2000.0)),
-        "the whole backlash 2b along the line of action in um: 0.12 mm are 120 um",
+        "backlash 2b along the line of action in um: 0.12 mm are 120 um",
     ),
     key(
         "mesh",
         "lost_motion_arcmin",
         Number(Arcmin, ZeroOr(0.01, 600.0)),
-        "a data sheet's lost motion at the output in arcmin, over all meshes: 2b / (r_c cos(alpha)); in [mesh] only",
+        "lost motion at the output in arcmin over all meshes, from the data sheet: 2b / (r_c cos(alpha)); in [mesh] only",
     ),
     key(
         "mesh",
         "transmission_error_um",
         PerPlanet(Micro, Between(0.0, 1000.0)),
-        "the amplitude E of eq. 11 in um (half of peak to peak); 0 if there is none",
+        "amplitude E of eq. 11 in um (half of peak to peak); 0 for none",
     ),
     key("mesh", "stiffness_phase_rad", PHASE, PHASE_HINT),
     key("mesh", "error_phase_rad", PHASE, PHASE_HINT),
@@ -296,7 +306,7 @@ pub(crate) const KEYS: &[Key] = &[
         Choice(&["contact", "paper"]),
         "\"contact\": teeth only push; \"paper\": C d' acts in the gap too",
     ),
-    key("contact", "dead_zone", Choice(&["sharp", "tanh"]), "\"sharp\" (eq. 12) or \"tanh\" (eq. 13)"),
+    key("contact", "dead_zone", Choice(&["sharp", "tanh"]), "law of the gap: \"sharp\" (eq. 12) or \"tanh\" (eq. 13)"),
     key(
         "contact",
         "sharpness",
@@ -308,28 +318,28 @@ pub(crate) const KEYS: &[Key] = &[
         "excitation",
         "mode",
         Choice(&["angle", "time"]),
-        "\"angle\" follows the joint; \"time\" runs at a stated frequency",
+        "\"angle\": the mesh phase follows the joint; \"time\": it runs at a stated frequency",
     ),
-    key("excitation", "mesh_frequency_rad_per_s", Number(Si, Between(1e-3, 1e9)), "omega in rad/s"),
-    key("excitation", "mesh_frequency_Hz", Number(Si, Between(1e-3, 1e8)), "omega / 2 pi in Hz"),
+    key("excitation", "mesh_frequency_rad_per_s", Number(Si, Between(1e-3, 1e9)), "mesh frequency omega in rad/s"),
+    key("excitation", "mesh_frequency_Hz", Number(Si, Between(1e-3, 1e8)), "mesh frequency omega / 2 pi in Hz"),
     key(
         "excitation",
         "mesh_frequency_over_omega_n",
         Number(Si, Between(1e-6, 1e3)),
-        "Omega = omega / omega_n with omega_n of eq. 18",
+        "mesh frequency Omega = omega / omega_n, with omega_n of eq. 18",
     ),
     // Profile
     key(
         "profile",
         "drive_torque_N_m",
         Number(Si, TORQUE),
-        "the rated motor torque; if left out, what balances the rated output torque, or the motor's limit where that is less",
+        "rated motor torque; default: the torque that balances the rated output torque, at most the motor's limit",
     ),
     key(
         "profile",
         "motor_torque_limit_N_m",
         Number(Si, TORQUE),
-        "the motor's limit; twice the drive torque if left out",
+        "torque limit of the motor; default: twice the drive torque",
     ),
     // Drive train
     key("drive_train", "motor_coulomb_friction_N_m", Number(Si, MAY_BE_ABSENT), FRICTION_HINT),
@@ -337,92 +347,112 @@ pub(crate) const KEYS: &[Key] = &[
         "drive_train",
         "no_load_torque_N_m",
         Number(Si, MAY_BE_ABSENT),
-        "a data sheet's torque at the input that turns the joint without a load, all dry friction together",
+        "torque at the input that turns the joint without a load, all dry friction together, from the data sheet",
     ),
     key(
         "drive_train",
         "motor_viscous_friction_N_m_s_per_rad",
         Number(Si, MAY_BE_ABSENT),
-        "in N m s/rad of motor speed",
+        "viscous friction in N m s/rad of motor speed",
     ),
-    key("drive_train", "cogging_torque_N_m", Number(Si, MAY_BE_ABSENT), "the amplitude of the cogging torque"),
-    key("drive_train", "cogging_periods_per_turn", Whole(1, 10_000), "the least common multiple of slots and poles"),
+    key("drive_train", "cogging_torque_N_m", Number(Si, MAY_BE_ABSENT), "amplitude of the cogging torque"),
+    key(
+        "drive_train",
+        "cogging_periods_per_turn",
+        Whole(1, 10_000),
+        "cogging periods in a turn: least common multiple of slots and poles",
+    ),
     key("drive_train", "load_coulomb_friction_N_m", Number(Si, MAY_BE_ABSENT), FRICTION_HINT),
     key(
         "drive_train",
         "load_stribeck_rise_ratio",
         Number(Si, Between(0.0, 10.0)),
-        "how much more friction there is at rest than in motion; 20 % is 0.2",
+        "excess of friction at rest over friction in motion; 20 % is 0.2",
     ),
     key(
         "drive_train",
         "load_stribeck_speed_rad_per_s",
         Number(Si, Between(1e-6, 1e3)),
-        "the speed at which the rise has decayed",
+        "speed at which the excess of friction at rest has decayed",
     ),
-    key("drive_train", "load_viscous_friction_N_m_s_per_rad", Number(Si, MAY_BE_ABSENT), "in N m s/rad of link speed"),
+    key(
+        "drive_train",
+        "load_viscous_friction_N_m_s_per_rad",
+        Number(Si, MAY_BE_ABSENT),
+        "viscous friction in N m s/rad of link speed",
+    ),
     key(
         "drive_train",
         "efficiency",
         Number(Si, Between(0.1, 1.0)),
-        "of the gears, load-dependent losses only; 97 % is 0.97, and below 0.5 the load does not turn the motor",
+        "efficiency of the gears, load-dependent losses only; 97 % is 0.97; below 0.5 the load cannot turn the motor",
     ),
     key(
         "drive_train",
         "gravity_torque_N_m",
         Number(Si, Between(-1e6, 1e6)),
-        "the torque of the link's weight, times sin(link angle)",
+        "amplitude of the torque of the link's weight, which acts times sin(link angle)",
     ),
     key(
         "drive_train",
         "motor_speed_limit_rad_per_s",
         Number(Si, Between(1.0, 1e5)),
-        "the motor's top speed; counts that turn faster are taken for a fault of its encoder",
+        "top speed of the motor; faster counts are treated as a fault of the motor encoder",
     ),
+    key("drive_train", "current_lag_ms", Number(Milli, Between(0.0, 100.0)), "time constant of the current loop in ms"),
     key(
         "drive_train",
-        "current_lag_ms",
-        Number(Milli, Between(0.0, 100.0)),
-        "the time constant of the current loop in ms",
+        "torque_noise_ratio",
+        Number(Si, Between(0.0, 1.0)),
+        "RMS torque noise over the torque; 1.5 % is 0.015",
     ),
-    key("drive_train", "torque_noise_ratio", Number(Si, Between(0.0, 1.0)), "rms over the torque; 1.5 % is 0.015"),
     key(
         "drive_train",
         "torque_constant_error_ratio",
         Number(Si, Between(-0.5, 0.5)),
         "true over nominal torque constant, less 1; 3 % is 0.03",
     ),
-    key("drive_train", "control_rate_Hz", Number(Si, Between(1.0, 1e6)), "the rate of the controller around the joint"),
+    key(
+        "drive_train",
+        "control_rate_Hz",
+        Number(Si, Between(1.0, 1e6)),
+        "rate of the controller around the joint in Hz",
+    ),
     key(
         "drive_train",
         "control_delay_periods",
         Number(Si, Between(0.0, 100.0)),
-        "from measuring to acting, in control periods",
+        "delay from measurement to torque, in control periods",
     ),
     key(
         "drive_train",
         "payload_inertia_share",
         Number(Si, FromToBelow(0.0, 1.0)),
-        "the part of the link's inertia that hangs on a spring; 40 % is 0.4",
+        "share of the link's inertia that hangs on a spring; 40 % is 0.4",
     ),
     key(
         "drive_train",
         "payload_frequency_Hz",
         Number(Si, Between(0.1, 1000.0)),
-        "the frequency of that part while the link is held, undamped",
+        "undamped frequency of the sprung inertia while the link is held",
     ),
     key(
         "drive_train",
         "payload_damping_ratio",
         Number(Si, FromToBelow(0.0, 1.0)),
-        "of that part while the link is held",
+        "damping ratio of the sprung inertia while the link is held",
     ),
-    key("drive_train", "payload_step_time_s", Number(Si, Between(0.0, 1e5)), "when the link's inertia changes"),
+    key(
+        "drive_train",
+        "payload_step_time_s",
+        Number(Si, Between(0.0, 1e5)),
+        "time at which the link's inertia changes",
+    ),
     key(
         "drive_train",
         "payload_step_ratio",
         Number(Si, Between(0.01, 100.0)),
-        "inertia and weight of the link after the change over those before: 3 has gripped, 0.33 has let go",
+        "link inertia and weight after the change, over their values before: 3 has gripped, 0.33 has released",
     ),
     key("drive_train", "motor_presliding_mrad", Number(Milli, ZeroOr(1e-3, 1000.0)), PRESLIDING_HINT),
     key("drive_train", "load_presliding_mrad", Number(Milli, ZeroOr(1e-3, 1000.0)), PRESLIDING_HINT),
@@ -430,20 +460,25 @@ pub(crate) const KEYS: &[Key] = &[
         "drive_train",
         "hysteresis_stiffness_share",
         Number(Si, FromToBelow(0.0, 1.0)),
-        "the part of the stiffness between carrier and link that slips; 20 % is 0.2",
+        "share of the stiffness between carrier and link that slips; 20 % is 0.2",
     ),
-    key("drive_train", "hysteresis_torque_N_m", Number(Si, TORQUE), "the torque at which that part slips, at the link"),
+    key(
+        "drive_train",
+        "hysteresis_torque_N_m",
+        Number(Si, TORQUE),
+        "torque at the link at which the slipping share slips",
+    ),
     key(
         "drive_train",
         "width_once_per_link_turn_ratio",
         Number(Si, FromToBelow(0.0, 1.0)),
-        "amplitude over the half-backlash, once a turn of the link; 30 % is 0.3",
+        "variation of the half-backlash once a turn of the link: amplitude over half-backlash; 30 % is 0.3",
     ),
     key(
         "drive_train",
         "width_once_per_motor_turn_ratio",
         Number(Si, FromToBelow(0.0, 1.0)),
-        "amplitude over the half-backlash, once a turn of the motor; both amplitudes together stay below 1",
+        "variation of the half-backlash once a turn of the motor: amplitude over half-backlash; both variations together stay below 1",
     ),
     key("drive_train", "friction_drift_ratio_per_s", Number(Si, Between(-0.1, 0.1)), DRIFT_HINT),
     key("drive_train", "width_drift_ratio_per_s", Number(Si, Between(-0.1, 0.1)), DRIFT_HINT),
@@ -451,13 +486,13 @@ pub(crate) const KEYS: &[Key] = &[
         "drive_train",
         "torque_ripple_ratio",
         Number(Si, FromToBelow(0.0, 1.0)),
-        "amplitude of the ripple over the torque; 2 % is 0.02",
+        "amplitude of the torque ripple over the torque; 2 % is 0.02",
     ),
     key(
         "drive_train",
         "torque_ripple_periods_per_turn",
         Whole(1, 10_000),
-        "six times the pole pairs for a motor with sinusoidal currents",
+        "ripple periods in a turn: six times the pole pairs for a motor with sinusoidal currents",
     ),
     key(
         "drive_train",
@@ -469,7 +504,7 @@ pub(crate) const KEYS: &[Key] = &[
         "drive_train",
         "torque_saturation_ratio",
         Number(Si, FromToBelow(0.0, 1.0)),
-        "torque that is lost at the motor's limit, over that limit; 10 % is 0.1",
+        "torque lost at the motor's limit, over the limit; 10 % is 0.1",
     ),
     key(
         "drive_train",
@@ -487,23 +522,38 @@ pub(crate) const KEYS: &[Key] = &[
         "output_encoder",
         "bits or counts_per_turn, once_per_turn_error_deg, twice_per_turn_error_deg, skew_us",
     ),
-    key("encoder", "bits", Whole(8, 32), "the resolution: 14 bits are 16384 counts a turn"),
+    key("encoder", "bits", Whole(8, 32), "resolution: 14 bits are 16384 counts in a turn"),
     key(
         "encoder",
         "counts_per_turn",
         Whole(12, 16_777_216),
-        "counts in a turn where they are no power of two, in place of bits: an encoder of 1000 lines read at every edge has 4000",
+        "counts in a turn that are no power of two, in place of bits: 1000 lines read at every edge are 4000",
     ),
-    key("encoder", "once_per_turn_error_deg", Number(Degrees, Between(0.0, 10.0)), "an amplitude in degrees"),
-    key("encoder", "twice_per_turn_error_deg", Number(Degrees, Between(0.0, 10.0)), "an amplitude in degrees"),
-    key("encoder", "skew_us", Number(Micro, Between(0.0, 1e5)), "how late the reading is, in us"),
+    key(
+        "encoder",
+        "once_per_turn_error_deg",
+        Number(Degrees, Between(0.0, 10.0)),
+        "amplitude in degrees of the error that comes once a turn",
+    ),
+    key(
+        "encoder",
+        "twice_per_turn_error_deg",
+        Number(Degrees, Between(0.0, 10.0)),
+        "amplitude in degrees of the error that comes twice a turn",
+    ),
+    key("encoder", "skew_us", Number(Micro, Between(0.0, 1e5)), "delay of the reading in us"),
     key(
         "encoder",
         "age_jitter_us",
         Number(Micro, Between(0.0, 1e5)),
-        "further age of a reading, from 0 to this, which its time does not say",
+        "additional age of a reading in us, from 0 to this value, which its time stamp does not show",
     ),
-    key("encoder", "noise_counts", Number(Si, Between(0.0, 1e6)), "standard deviation in counts, before rounding"),
+    key(
+        "encoder",
+        "noise_counts",
+        Number(Si, Between(0.0, 1e6)),
+        "standard deviation of the noise in counts, before rounding",
+    ),
     key(
         "encoder",
         "subdivisional_error_deg",
@@ -521,7 +571,7 @@ pub(crate) const KEYS: &[Key] = &[
         "encoder",
         "missing_frames_share",
         Number(Si, Between(0.0, 1.0)),
-        "the part of the control periods in which no reading comes; 1 % is 0.01",
+        "share of the control periods without a reading; 1 % is 0.01",
     ),
 ];
 

@@ -19,7 +19,7 @@ pub struct TestsRecord {
     pub schema: String,
     /// Everything that was asked for ran and passed.
     pub passed: bool,
-    /// With the full lists of seeds.
+    /// `true` if all seeds of `full_seeds` ran.
     pub full: bool,
     /// Version of the host command.
     pub host_version: String,
@@ -43,9 +43,9 @@ pub struct TestsRecord {
 pub struct NotRun {
     /// Path as the user named it.
     pub file: String,
-    /// Why it could not.
+    /// Reason why the file could not run.
     pub why: String,
-    /// What to do about it.
+    /// Remedy.
     pub mend: Option<String>,
 }
 
@@ -66,7 +66,7 @@ pub struct TestRecord {
     pub file: String,
     /// SHA-256 of the file's text.
     pub file_sha256: String,
-    /// What is tested.
+    /// Title of the test.
     pub title: String,
     /// Name of the joint.
     pub joint: String,
@@ -74,29 +74,29 @@ pub struct TestRecord {
     pub joint_sha256: String,
     /// Where the tested controller ran: `host`, or role and board; rivals always on the host.
     pub on: String,
-    /// What it controlled: `reference` or `core`.
+    /// Plant: `reference` or `core`.
     pub plant: String,
-    /// The motion's word.
+    /// Kind of the motion.
     pub profile: String,
-    /// The controller's word.
+    /// Name of the controller.
     pub controller: String,
     /// Bandwidth of the tested compensation; absent where another controller is tested.
     pub bandwidth: Option<BandwidthRecord>,
     /// Length of a run [s].
     pub duration_s: f64,
-    /// Figures are taken from here on [s].
+    /// Start of the figures [s].
     pub settle_s: f64,
     /// Faults by their words.
     pub faults: Vec<String>,
     /// Seeds that ran.
     pub seeds: Vec<u64>,
-    /// Whether it passed.
+    /// `true` if every assertion held.
     pub passed: bool,
-    /// Why it was broken off, if it was.
+    /// Reason why the test broke off, if it did.
     pub broken: Option<String>,
-    /// What was asserted.
+    /// Assertions with their verdicts.
     pub assertions: Vec<AssertionRecord>,
-    /// What ran.
+    /// Runs of every seed and controller.
     pub runs: Vec<TestRun>,
     /// The seed that the report shows.
     pub shown_seed: u64,
@@ -116,7 +116,7 @@ pub struct BandwidthRecord {
     pub asked: bool,
     /// Widest bandwidth that the joint allows [rad/s].
     pub widest_rad_per_s: f64,
-    /// Reason for the widest.
+    /// Reason for the widest bandwidth.
     pub limited_by: String,
 }
 
@@ -134,19 +134,19 @@ impl BandwidthRecord {
 pub struct AssertionRecord {
     /// Name of the figure.
     pub name: String,
-    /// What was made of the seeds' figures: `worst`, `median`, `mean`, or the worst of `all but` a part of them.
+    /// Aggregate over the seeds: `worst`, `median`, `mean`, or the worst of `all but` a share of them.
     pub aggregate: String,
-    /// The figure; absent if it could not be had.
+    /// Value of the figure; absent if not available.
     pub figure: Option<f64>,
     /// Unit of figure and bound.
     pub unit: String,
-    /// What it must keep to.
+    /// Bound of the figure.
     pub bound: Bound,
-    /// What came of it.
+    /// Verdict of the assertion.
     pub verdict: Verdict,
-    /// The seed that is farthest on the wrong side.
+    /// Seed that is farthest on the wrong side of the bound.
     pub seed: Option<u64>,
-    /// What to know about it.
+    /// Meaning of the figure, range over the seeds, and seeds beyond the bound.
     pub note: String,
 }
 
@@ -156,24 +156,24 @@ pub struct AssertionRecord {
 pub struct TestRun {
     /// The seed.
     pub seed: u64,
-    /// The controller's word.
+    /// Name of the controller.
     pub controller: String,
     /// Digest over every bit of the run, 16 hexadecimal digits.
     pub digest: String,
-    /// What the seed drew, by the names of the keys; empty if nothing was.
+    /// Values that the seed drew, by key; empty if the file draws none.
     #[serde(default)]
     pub drawn: BTreeMap<String, f64>,
     /// The MCAP log, beside the report.
     pub log: Option<String>,
-    /// What the observer had learnt at the end, beside the log, if it was to be kept.
+    /// Memory file with the estimated parameters at the end, beside the log, if `--memory` was given.
     pub memory: Option<String>,
-    /// Why it ended early, if it did.
+    /// Reason of an early end, if any.
     pub broken: Option<String>,
-    /// Why the width probe refused to say a width, if it did.
+    /// Reason why the width probe refused to publish a width, if it did.
     pub refusal: Option<String>,
-    /// Its figures by their names.
+    /// Figures by name.
     pub figures: BTreeMap<String, f64>,
-    /// The board that it ran on, if it did.
+    /// Board of the run, if it ran on a board.
     pub board: Option<BoardRun>,
 }
 
@@ -183,13 +183,13 @@ pub struct TestRun {
 pub struct BoardRun {
     /// `observer` or `loop`.
     pub role: String,
-    /// SHA-256 of its image.
+    /// SHA-256 of the board's image.
     pub elf_sha256: String,
-    /// Control periods that were the same in every bit on the board and on the host.
+    /// Control periods that are equal in every bit on board and host.
     pub same_periods: u32,
-    /// Timer counts of the tick's work, mean.
+    /// Computation of a tick in timer counts, mean.
     pub computation_mean: u32,
-    /// The same, most.
+    /// Computation of a tick in timer counts, largest.
     pub computation_most: u32,
     /// Timer counts in a control period.
     pub period_counts: u32,

@@ -42,7 +42,7 @@ pub const ABOUT: &str =
   joint bench --case A,Q --html bench.html    two of them, with pictures
   joint bench joints/l1.toml --json -         a joint from a file, figures as JSON
   joint bench --random 1-30                   random joints by seed: 3 to 5 planets, light and heavy
-  joint bench --document docs/reference/budget.md
+  joint bench --document docs/reference/error-against-cost.md
                                               rewrites the comparison in that file
 
 Error is that of the mesh deflections (RMS over their standard deviation), the worst over 8 phases of the

@@ -51,7 +51,7 @@ fn a_radius_in_metres_is_refused() {
 #[test]
 fn a_missing_carrier_radius_names_both_forms() {
     let message = "[geometry] needs one of `carrier_radius_mm` and `carrier_base_radius_mm`";
-    refused(&by_radii(""), message, "[geometry]", "never r_c cos(alpha)");
+    refused(&by_radii(""), message, "[geometry]", "not r_c cos(alpha)");
 }
 
 #[test]

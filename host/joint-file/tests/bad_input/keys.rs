@@ -105,7 +105,7 @@ fn mass_and_inertia_exclude_each_other_and_one_is_needed() {
 fn names_that_a_board_cannot_say_are_refused() {
     let long = "a joint with a name that is much too long";
     let text = spoilt("name = \"Q1\"", &format!("name = \"{long}\""));
-    refused(&text, "`name` has 41 letters", &format!("\"{long}\""), "at most 32");
+    refused(&text, "`name` has 41 letters", &format!("\"{long}\""), "up to 32");
     let text = spoilt("name = \"Q1\"", "name = \"Q\\u0007\"");
     assert!(only(&text).0.starts_with("`name` cannot be"));
     let text = spoilt("name = \"Q1\"", "name = \"  \"");

@@ -48,7 +48,7 @@ fn two_planets_and_six_are_refused() {
             &text,
             &format!("`planets` must be between 3 and 5, not {planets}"),
             planets,
-            "3, 4 or 5 equally spaced",
+            "equally spaced planets: 3, 4 or 5",
         );
     }
 }
@@ -58,7 +58,7 @@ fn a_backlash_in_millimetres_or_metres_is_refused() {
     for value in ["0.04", "4e-5", "40000.0", "-40.0"] {
         let text = spoilt("half_backlash_um = 40.0", &format!("half_backlash_um = {value}"));
         let message = format!("`half_backlash_um` must be 0, or between 0.5 and 1000, not {value}");
-        refused(&text, &message, value, "the teeth are free over 2b: 0.06 mm are 60 um, 6e-5 m are 60 um");
+        refused(&text, &message, value, "a mesh is free over 2b: 0.06 mm are 60 um, 6e-5 m are 60 um");
     }
 }
 

@@ -296,7 +296,7 @@ Error:
     ·           ─
  11 │ sun_teeth = 15 # chosen for the ratio 1 + 75/15 = 6
     ╰────
-  help: the model has 3, 4 or 5 equally spaced planets
+  help: number of equally spaced planets: 3, 4 or 5
 
 Error:
   × `mean_stiffness_N_per_m` must be between 1e4 and 1e12, not -1e8
@@ -306,7 +306,7 @@ Error:
     ·                          ────
  31 │ stiffness_ratio = 0.15 # assumed: spur gears of contact ratio 1.6
     ╰────
-  help: K_m in N/m, about 1e8 for steel teeth; 100 N/um are 1e8 N/m
+  help: mean mesh stiffness K_m in N/m, about 1e8 for steel teeth; 100 N/um are 1e8 N/m
 ";
     assert_eq!(drawn(&text), expected);
 }

@@ -195,6 +195,6 @@ impl PriorModel {
 
     /// Period of the swing that the joint file promises [s].
     pub fn swing(&self) -> f64 {
-        std::f64::consts::TAU * (self.swinging_inertia() * self.compliance).sqrt()
+        TAU * (self.swinging_inertia() * self.compliance).sqrt()
     }
 }

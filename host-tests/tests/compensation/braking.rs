@@ -9,7 +9,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use host_tests::tolerance::compensation::{
-    SHORT_LATE, SHORT_PEAK, SHORT_PEAK_UNFORESEEN, SHORT_RMS, SHORT_RMS_UNFORESEEN,
+    NEAR_LIMIT_PEAK, NEAR_LIMIT_RMS, SHORT_LATE, SHORT_PEAK, SHORT_PEAK_UNFORESEEN, SHORT_RMS, SHORT_RMS_UNFORESEEN,
 };
 use model_core::gears::{Kinematics, Mechanics};
 use rayon::prelude::*;
@@ -308,6 +308,52 @@ fn moves_that_ask_for_up_to_three_times_the_torque_end_in_time_and_go_no_farther
         peak.check(course.peak());
         rms.check(course.rms);
         SHORT_LATE.check(course.beyond_best());
+    }
+}
+
+/// A sine about as hard as the motor's torque allows, on links whose inertia is known to 30 %.
+const NEAR_LIMIT: &str = r#"
+title = "A sine near the torque limit"
+duration_s = 4.0
+
+[profile]
+kind = "sine"
+amplitude_rad = 0.9
+frequency_Hz = 2.0
+
+[plant]
+half_backlash_um = [10, 100]
+link_inertia_kg_m2 = { times = [0.7, 1.3] }
+rotor_inertia_kg_m2 = { times = [0.7, 1.3] }
+
+[controller]
+rivals = ["motor_pid"]
+width_guess_ratio = [0.5, 1.5]
+
+[assert]
+rms_gain_over_pid = ">= 1"
+"#;
+
+/// Braking that is planned with too high an inertia begins too early at each reversal of a sine: the link then stays behind by several
+/// times PID's error although the torque suffices.
+#[test]
+fn sine_near_the_torque_limit_follows() {
+    let test = from_text("near-limit.toml", NEAR_LIMIT, Path::new("."), PlantName::Core).expect("a good test");
+    let ratios: Vec<_> = (1..9)
+        .into_par_iter()
+        .map(|seed| {
+            let case = test.case(seed).expect("a case of the test");
+            let [ours, pid] = [NoPreview, MotorPid].map(|controller| {
+                let spec = RunSpec { controller, plant: PlantName::Core, without_gap: false };
+                Figures::between(&run_in(&test, &case, seed, spec).run, BEGINS, f64::INFINITY)
+            });
+            (seed, ours.peak / pid.peak, ours.rms / pid.rms)
+        })
+        .collect();
+    for (seed, peak, rms) in ratios {
+        println!("seed {seed}: peak {peak:.3}, RMS {rms:.3} of PID's");
+        NEAR_LIMIT_PEAK.check(peak);
+        NEAR_LIMIT_RMS.check(rms);
     }
 }
 

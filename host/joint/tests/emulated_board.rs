@@ -243,7 +243,7 @@ fn a_memory_is_judged_by_the_firmware_of_the_emulated_board() {
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
 fn the_tutorial_prints_what_it_says_on_the_emulated_board() {
-    tutorial::follow_the_tutorial(tutorial::Tier::EmulatedBoard);
+    tutorial::follow_page("tutorial.md", tutorial::Tier::EmulatedBoard);
 }
 
 /// The long form: `PROXY_SEEDS=200`.

@@ -423,7 +423,12 @@ fn the_example_of_the_documentation_passes() {
 
 #[test]
 fn the_tutorial_prints_what_it_says() {
-    tutorial::follow_the_tutorial(tutorial::Tier::Host);
+    tutorial::follow_page("tutorial.md", tutorial::Tier::Host);
+}
+
+#[test]
+fn quick_start_prints_what_it_says() {
+    tutorial::follow_page("quick-start.md", tutorial::Tier::Host);
 }
 
 #[test]

@@ -10,6 +10,7 @@
 //! - a command that ends with another code than 0 is followed by `$ echo $?`.
 
 use std::fs;
+use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
@@ -44,27 +45,28 @@ impl Tier {
     }
 }
 
-/// Follows docs/tutorial.md and fails with what is no longer so; with `UPDATE_TUTORIAL` set it mends the page.
-pub fn follow_the_tutorial(tier: Tier) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/tutorial.md");
+/// Follows a page of the folder docs and fails with each difference; with `UPDATE_TUTORIAL` set it updates the page.
+pub fn follow_page(name: &str, tier: Tier) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(name);
     let page = fs::read_to_string(&path).expect("the page");
     let followed = follow(&page, tier);
-    assert!(followed.commands > 0, "no command of docs/tutorial.md is run here");
+    assert!(followed.commands > 0, "no command of docs/{name} is run here");
     if std::env::var_os("UPDATE_TUTORIAL").is_some() && followed.page != page {
         fs::write(&path, &followed.page).expect("the page can be written");
-        println!("docs/tutorial.md is written anew; read what changed:\n\n{}", followed.differences.join("\n"));
+        println!("docs/{name} is updated; review the change:\n\n{}", followed.differences.join("\n"));
         return;
     }
     assert!(
         followed.differences.is_empty(),
-        "docs/tutorial.md says what is not so. If the page is to follow, set UPDATE_TUTORIAL=1 for this test.\n\n{}",
+        "docs/{name} differs from what the commands print. To update the page, set UPDATE_TUTORIAL=1 for this test.\n\n{}",
         followed.differences.join("\n")
     );
 }
 
-/// Follows a page in a folder of its own.
+/// Follows a page in a folder of its own, which has the project's test files.
 pub fn follow(page: &str, tier: Tier) -> Followed {
     let place = folder();
+    symlink(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../hil"), place.path().join("hil")).expect("a link");
     let lines: Vec<&str> = page.lines().collect();
     let mut followed = Followed { commands: 0, differences: vec![], page: String::new() };
     let mut written: Vec<String> = vec![];

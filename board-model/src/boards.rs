@@ -1,6 +1,6 @@
 //! The boards: chip, what drives its clock, and the speed of its line, as the firmware's page on boards states them.
 
-use board::target::board::{Board as Described, Chip};
+use board::device::board::{Board as Described, Chip};
 use board_file::ExternalClock;
 
 use crate::chips;

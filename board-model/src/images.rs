@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use board::target::board::Board;
-use board::target::image::{self, CONTROL_RATE, DEFAULT_TICK_RATE, SPI_RATE};
-use board::target::tick_time;
-use board::target::toolchain::Toolchain;
+use board::device::board::Board;
+use board::device::image::{self, CONTROL_RATE, DEFAULT_TICK_RATE, SPI_RATE};
+use board::device::tick_time;
+use board::device::toolchain::Toolchain;
 use link::messages::Role;
 
 use crate::image::Image;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use board::target::board::Board;
+use board::device::board::Board;
 use board_model::boards::{Subject, USUAL_COST, usual_surroundings};
 use board_model::checks::Named;
 use board_model::image::Image;

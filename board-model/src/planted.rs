@@ -1,8 +1,8 @@
 //! Thirty and more mistakes that a port to these chips can make, planted one by one into the writes of the images that ship.
 //! Each must make its check fail: this is the model's own test.
 
-use board::target::board::Chip;
-use board::target::board::Chip::{Stm32f405, Stm32g431, Stm32g474, Stm32h743};
+use board::device::board::Chip;
+use board::device::board::Chip::{Stm32f405, Stm32g431, Stm32g474, Stm32h743};
 
 use crate::checks::{Check, boot, bootloader, load, memory, outputs, pins, spi};
 use crate::images::Work;

@@ -5,11 +5,11 @@ use std::io::{ErrorKind, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
 
-use board::target::board::Board;
-use board::target::emulator;
-use board::target::emulator::Emulator;
-use board::target::image::{build_image, preset_file};
-use board::target::toolchain::Toolchain;
+use board::device::board::Board;
+use board::device::emulator;
+use board::device::emulator::Emulator;
+use board::device::image::{build_image, preset_file};
+use board::device::toolchain::Toolchain;
 use link::PROTOCOL_VERSION;
 use link::framing::{Receiver, encode};
 use link::messages::{

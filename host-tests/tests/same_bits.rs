@@ -5,8 +5,8 @@
 use std::fs;
 use std::path::Path;
 
-use board::target::emulator;
-use board::target::toolchain::Toolchain;
+use board::device::emulator;
+use board::device::toolchain::Toolchain;
 use proof::joints::TEST_JOINTS;
 use proof::same_bits::{InMode, compare, on_board, on_host};
 

@@ -1,10 +1,10 @@
 //! The linked image of every role: its tick cannot reach a panic, and its stack is bounded; an image in which that is not
 //! so is refused.
 
-use board::target::board::Board;
-use board::target::image::{build_image, preset_file};
-use board::target::measuring::build_measuring;
-use board::target::toolchain::Toolchain;
+use board::device::board::Board;
+use board::device::image::{build_image, preset_file};
+use board::device::measuring::build_measuring;
+use board::device::toolchain::Toolchain;
 use link::messages::Role;
 use proof::tick;
 

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use board::profile::TorqueProfile;
 use board::session::{BoardHelp, Session};
-use board::target::image::DEFAULT_TICK_RATE;
+use board::device::image::DEFAULT_TICK_RATE;
 use board::twin;
 use link::messages::{RunMode, RunSettings};
 

@@ -1,6 +1,6 @@
 //! After a bootloader: an image begins with whatever that left, not with what a reset leaves.
 
-use board::target::board::Chip;
+use board::device::board::Chip;
 use board_file::{ExternalClock, Pll};
 
 use super::boot::ticks;

@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use board::target::board::Chip;
+use board::device::board::Chip;
 use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 use firmware::encoder::{As5047p, CountSource, EncoderFault};
 

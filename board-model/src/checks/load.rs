@@ -1,7 +1,7 @@
 //! A run with ticks of the length that the counted instructions give, while the host talks: the tick must end within its
 //! period, and the line must not lose a byte.
 
-use board::target::board::Chip;
+use board::device::board::Chip;
 use link::messages::{Command, FromBoard, RunMode, RunSettings, Schedule, Statistics, ToBoard};
 use link::virtual_joint::{KNOTS_PER_SCHEDULE, Knot, WireTrajectory};
 

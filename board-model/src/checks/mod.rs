@@ -12,7 +12,7 @@ pub mod pins;
 pub mod sources;
 pub mod spi;
 
-use board::target::board::{Board as Described, Chip};
+use board::device::board::{Board as Described, Chip};
 
 use crate::boards::Subject;
 use crate::cpu::Board;

@@ -4,8 +4,8 @@
 //! The long form, 50 joints on whole motions: `cargo test --release -p host-tests --test design -- --ignored --nocapture`;
 //! `CERTIFICATE_JOINTS` and `CERTIFICATE_SEED` choose others, `CERTIFICATE_MS` cuts the motions off.
 
-use board::target::board::Board;
-use board::target::tick_time::OnBoard;
+use board::device::board::Board;
+use board::device::tick_time::OnBoard;
 use host_tests::tolerance::certificate::{ABOVE_OTHER, ABOVE_STANDARD, TYPICAL, TYPICAL_USUAL};
 use parameters::JointParameters;
 use rayon::prelude::*;

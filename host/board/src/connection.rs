@@ -5,9 +5,9 @@ use std::time::{Duration, Instant};
 
 use super::session::{ANSWER_TIMEOUT, Supervisor};
 use super::transport::{Line, Port, Socket};
-use crate::target::board::Board;
-use crate::target::emulator::{self, Emulator};
-use crate::target::image::Image;
+use crate::device::board::Board;
+use crate::device::emulator::{self, Emulator};
+use crate::device::image::Image;
 use report::failure::{Failure, Outcome};
 use report::interruption;
 use report::progress::Progress;

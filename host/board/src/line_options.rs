@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use link::messages::{Role, RunMode};
 use report::command_line::quoted;
 
-use crate::target::board::Board;
+use crate::device::board::Board;
 
 /// Which board, and how it is reached.
 #[derive(Debug, clap::Args)]

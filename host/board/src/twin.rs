@@ -9,7 +9,7 @@ use model_core::numbers::digest;
 use model_core::gears::{Model, Scheme, Tables, Torques};
 use parameters::{ContactState, JointParameters};
 
-use crate::target::board::Chip;
+use crate::device::board::Chip;
 use report::failure::{Failure, Outcome};
 
 /// What the comparison found.

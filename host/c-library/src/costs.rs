@@ -3,8 +3,8 @@
 
 use std::process::Command;
 
-use board::target::board::Board;
-use board::target::tool;
+use board::device::board::Board;
+use board::device::tool;
 use joint_file::JointFile;
 use report::failure::{Failure, Outcome};
 

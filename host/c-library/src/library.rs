@@ -6,9 +6,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use board::target::compile::{compile_library, compile_library_for_host};
-use board::target::toolchain::{Toolchain, target_directory};
-use board::target::{Say, packages, tool};
+use board::device::compile::{compile_library, compile_library_for_host};
+use board::device::toolchain::{Toolchain, target_directory};
+use board::device::{Say, packages, tool};
 use clap::ValueEnum;
 use object::read::archive::ArchiveFile;
 use report::failure::{Failure, Outcome};

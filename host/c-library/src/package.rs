@@ -4,9 +4,9 @@ use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use board::target::Say;
-use board::target::board::Board;
-use board::target::emulator;
+use board::device::Say;
+use board::device::board::Board;
+use board::device::emulator;
 use report::failure::{Failure, Outcome};
 use report::folder::Folder;
 use report::progress::Progress;

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use board::target::{measuring, tool};
+use board::device::{measuring, tool};
 use report::failure::{Failure, Outcome};
 use report::workspace::workspace;
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use board::target::board::Board;
+use board::device::board::Board;
 use joint_file::JointFile;
 use joint_file::{named, warned};
 use model_core::controller::design::{ControlRequest, NominalPlant};

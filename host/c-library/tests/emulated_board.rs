@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use board::target::board::Board;
-use board::target::{emulator, packages};
+use board::device::board::Board;
+use board::device::{emulator, packages};
 use c_library::controller::{self, Mode};
 use c_library::costs::{self, Costs};
 use c_library::library::{self, Target};

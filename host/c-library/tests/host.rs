@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
-use board::target::board::Board;
+use board::device::board::Board;
 use c_library::library::{self, Library, Target};
 use c_library::programs::{self, Workbench, said};
 use c_library::run;

@@ -17,8 +17,8 @@ mod teeth;
 use std::path::{Path, PathBuf};
 
 pub use arguments::Arguments;
-use board::target::board::Board;
-use board::target::tick_time::OnBoard;
+use board::device::board::Board;
+use board::device::tick_time::OnBoard;
 use joint_file::named::Loaded;
 use joint_file::{diagnostic, warned};
 use report::failure::{Failure, Outcome};

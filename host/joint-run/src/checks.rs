@@ -5,9 +5,9 @@ use crate::origin::clock_in_words;
 use link::messages::{ClockSource, RunMode, Statistics};
 
 use super::comparison::Comparison;
+use board::device::image::Image;
 use board::logs::Log;
 use board::recording::Recording;
-use board::target::image::Image;
 use board::twin::Agreement;
 use report::checks::{Bound, Check, Source};
 

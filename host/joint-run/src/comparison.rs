@@ -157,8 +157,8 @@ fn motion_sample(tick: u32, observation: &Observation) -> MotionSample {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use board::device::board::Chip;
     use board::profile::TorqueProfile;
-    use board::target::board::Chip;
     use board::twin;
     use model_core::gears::Kinematics;
 

@@ -9,10 +9,10 @@ use super::origin;
 use super::plan::RunPlan;
 use crate::page;
 use crate::record::{CloseUp, Completeness, MotionSample, RunRecord, Samples, TimingFigures, TorqueCommand};
+use board::device::image::Image;
 use board::logs;
 use board::logs::Log;
 use board::recording::Recording;
-use board::target::image::Image;
 use board::{trip, twin};
 use report::failure::Outcome;
 

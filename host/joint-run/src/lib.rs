@@ -17,11 +17,11 @@ pub mod record;
 use std::path::Path;
 
 use board::connection::Connection;
+use board::device::board::Board;
+use board::device::image::{self, Image};
+use board::device::toolchain::Toolchain;
 use board::recording::Recording;
 use board::session::Session;
-use board::target::board::Board;
-use board::target::image::{self, Image};
-use board::target::toolchain::Toolchain;
 use evaluation::FinishedRun;
 use link::messages::Role;
 use plan::{RunPlan, RunRequest};

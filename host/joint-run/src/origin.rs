@@ -6,7 +6,7 @@ use model_core::gears::Kinematics;
 
 use crate::plan::{RunPlan, RunRequest};
 use crate::record::{Identity, Image, JointFigures, RunRecord, Settings};
-use board::target::image;
+use board::device::image;
 use report::provenance;
 
 /// A record in which nothing has happened yet.

@@ -3,12 +3,12 @@
 
 use std::path::{Path, PathBuf};
 
+use board::device::board::Board;
+use board::device::image;
+use board::device::tick_time::OnBoard;
 use board::line_options::{LineOptions, Mode};
 use board::profile::TorqueProfile;
 use board::session::{BoardHelp, Expected, command_timeout};
-use board::target::board::Board;
-use board::target::image;
-use board::target::tick_time::OnBoard;
 use board::twin;
 use clap::ValueEnum;
 use joint_file::JointFile;

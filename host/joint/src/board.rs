@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use board::target::board::Board as OnTarget;
-use board::target::prediction::ORIGIN;
+use board::device::board::Board as OnTarget;
+use board::device::prediction::ORIGIN;
 use board_file::{Board, ExternalClock, Level, Output, PRESETS, Pin, SpiSlave, named};
 use clap::ValueEnum;
 use parameters::JointParameters;

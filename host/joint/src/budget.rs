@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use board::target::board::Board;
-use board::target::image;
-use board::target::tick_time::OnBoard;
+use board::device::board::Board;
+use board::device::image;
+use board::device::tick_time::OnBoard;
 use joint_file::{named, warned};
 use report::failure::{Failure, Outcome};
 use report::output;

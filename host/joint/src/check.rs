@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use board::target::board::Board;
+use board::device::board::Board;
 use joint_file::named;
 use report::failure::Outcome;
 use report::output;

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
-use board::target::packages::{self, Install};
+use board::device::packages::{self, Install};
 use report::failure::Outcome;
 use report::{command_line, output};
 

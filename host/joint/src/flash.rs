@@ -1,7 +1,7 @@
 //! `joint flash`: builds the firmware of a joint and writes it to a real board by probe-rs, or over USB by the chip's own loader.
 
-use board::target::board::Board;
-use board::target::flash;
+use board::device::board::Board;
+use board::device::flash;
 use report::failure::{Failure, Outcome};
 
 use crate::image;

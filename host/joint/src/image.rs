@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use link::messages::Role;
 
-use board::target::board::Board;
-use board::target::image;
-use board::target::prediction::{ORIGIN, Prediction};
-use board::target::tick_time;
-use board::target::toolchain::Toolchain;
+use board::device::board::Board;
+use board::device::image;
+use board::device::prediction::{ORIGIN, Prediction};
+use board::device::tick_time;
+use board::device::toolchain::Toolchain;
 use joint_file::{named, warned};
 use parameters::JointParameters;
 use report::failure::Outcome;

@@ -4,8 +4,8 @@
 use std::ffi::OsString;
 use std::process::Command;
 
-use board::target::packages::{self, Install};
-use board::target::tool;
+use board::device::packages::{self, Install};
+use board::device::tool;
 use report::failure::{Failure, Outcome};
 use report::interruption;
 use report::progress::Progress;

@@ -14,10 +14,10 @@ use std::process::{Child, Command};
 use std::time::Duration;
 
 use bad_line::trial::{Trial, seeds};
-use board::target::board::Board;
-use board::target::emulator::{self, Emulator};
-use board::target::image::{build_image, preset_file};
-use board::target::toolchain::Toolchain;
+use board::device::board::Board;
+use board::device::emulator::{self, Emulator};
+use board::device::image::{build_image, preset_file};
+use board::device::toolchain::Toolchain;
 use command::{Ended, folder, interrupt, joint, json, start, text, wait, within};
 use link::messages::Role;
 use serde_json::Value;

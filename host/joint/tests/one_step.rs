@@ -5,9 +5,9 @@
 use std::fs;
 use std::path::Path;
 
+use board::device::board::Board;
+use board::device::tick_time::OnBoard;
 use board::line_options::LineOptions;
-use board::target::board::Board;
-use board::target::tick_time::OnBoard;
 use clap::Parser;
 use joint_file::{change, named, preset};
 use joint_run::plan::{RunPlan, RunRequest};

@@ -8,10 +8,10 @@ use std::io::{Read, Write};
 use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
 
+use board::device::board::Chip;
 use board::profile::TorqueProfile;
 use board::recording::Recording;
 use board::session::{BoardHelp, Expected, Session, Supervisor};
-use board::target::board::Chip;
 use board::transport::Socket;
 use board::twin::{self, Agreement};
 use link::framing::{Receiver, encode};

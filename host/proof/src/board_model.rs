@@ -3,7 +3,7 @@
 
 use std::process::{Command, Stdio};
 
-use board::target::packages;
+use board::device::packages;
 use report::failure::{Failure, Outcome};
 use report::output;
 use report::progress::Progress;

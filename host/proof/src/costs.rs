@@ -8,9 +8,9 @@ use parameters::{Excitation, JointParameters};
 use super::bound::Bound;
 use super::joints::{TEST_JOINTS, write_files};
 use super::worst_case::Search;
-use board::target::image::DEFAULT_TICK_RATE;
-use board::target::toolchain::Toolchain;
-use board::target::{Say, measuring};
+use board::device::image::DEFAULT_TICK_RATE;
+use board::device::toolchain::Toolchain;
+use board::device::{Say, measuring};
 use report::failure::{Failure, Outcome};
 
 /// How far a prediction may be off the count: fits over joints leave 5 %.

@@ -8,11 +8,11 @@ use link::messages::Role;
 
 use crate::roles;
 use crate::{board_model, bound, costs, same_bits, sizes, tick, worst_case};
-use board::target::board::{Board, Chip};
-use board::target::image;
-use board::target::lint;
-use board::target::tick_time;
-use board::target::toolchain::Toolchain;
+use board::device::board::{Board, Chip};
+use board::device::image;
+use board::device::lint;
+use board::device::tick_time;
+use board::device::toolchain::Toolchain;
 use joint_file::named;
 use report::failure::{Failure, Outcome};
 use report::output;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use joint_file::JointFile;
 
-use board::target::cross_build::cannot_write;
+use board::device::cross_build::cannot_write;
 use report::failure::{Failure, Outcome};
 
 /// A joint that the step is tried on.

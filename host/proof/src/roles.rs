@@ -9,11 +9,11 @@ use joint_file::named;
 use link::messages::Role;
 
 use super::worst_case::CYCLES_AN_INSTRUCTION;
-use board::target::board::{Board, Chip};
-use board::target::image::CONTROL_RATE;
-use board::target::tick_time::OnBoard;
-use board::target::toolchain::Toolchain;
-use board::target::{Say, measuring};
+use board::device::board::{Board, Chip};
+use board::device::image::CONTROL_RATE;
+use board::device::tick_time::OnBoard;
+use board::device::toolchain::Toolchain;
+use board::device::{Say, measuring};
 use report::failure::{Failure, Outcome};
 
 /// Instructions of a role's tick.
@@ -85,7 +85,7 @@ pub fn judge(costs: &[RoleCost]) -> Outcome<()> {
         return Ok(());
     }
     let help = format!(
-        "an observer may take {observer:.0} instructions, a whole loop {whole_loop:.0} (host/board/src/target/tick_time.rs): make \
+        "an observer may take {observer:.0} instructions, a whole loop {whole_loop:.0} (host/board/src/device/tick_time.rs): make \
          that tick cheaper"
     );
     Err(Failure::check_failed(format!("too many instructions:\n{}", over.join("\n"))).with_help(help))
@@ -93,7 +93,7 @@ pub fn judge(costs: &[RoleCost]) -> Outcome<()> {
 
 #[cfg(test)]
 mod tests {
-    use board::target::tick_time::OBSERVER;
+    use board::device::tick_time::OBSERVER;
 
     use super::*;
 

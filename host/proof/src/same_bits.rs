@@ -9,9 +9,9 @@ use parameters::JointParameters;
 use trials::motion;
 
 use super::joints::{TEST_JOINTS, TestJoint, write_files};
-use board::target::image::DEFAULT_TICK_RATE;
-use board::target::toolchain::Toolchain;
-use board::target::{Say, measuring};
+use board::device::image::DEFAULT_TICK_RATE;
+use board::device::toolchain::Toolchain;
+use board::device::{Say, measuring};
 use report::failure::{Failure, Outcome};
 
 /// Digests of a joint's tables and trial motions.

@@ -1,7 +1,7 @@
 //! Sizes of images against those that `joint board check` predicts from, `images` of `host/board-file/src/chip`.
 
-use board::target::board::Chip;
-use board::target::image::Image;
+use board::device::board::Chip;
+use board::device::image::Image;
 use report::failure::{Failure, Outcome};
 
 /// Part by which an image may differ: boards and compilers differ by 2 % at most (measured on the presets).

@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 use super::joints::write_files;
 use model_core::gears::certificate::Substeps;
 
-use board::target::board::Chip;
-use board::target::image::DEFAULT_TICK_RATE;
-use board::target::toolchain::Toolchain;
-use board::target::{Say, measuring};
+use board::device::board::Chip;
+use board::device::image::DEFAULT_TICK_RATE;
+use board::device::toolchain::Toolchain;
+use board::device::{Say, measuring};
 use report::failure::{Failure, Outcome};
 
 /// Part of a period that the worst step may take: one and a half times the half of the processor that a step may have

@@ -8,7 +8,7 @@ use parameters::{ContactState, Effect, JointParameters, Surroundings};
 use reference::drive_train::{Disturbance, DriveTrain, DriveTrainParameters, JointModel, Stepping};
 use reference::joint::{Observation, Reference, ReferenceError, RelativeState, Start, Work};
 
-use board::target::image::DEFAULT_TICK_RATE;
+use board::device::image::DEFAULT_TICK_RATE;
 use report::failure::{Failure, Outcome};
 use simulation::sim::snapshot::Reader;
 

@@ -1,9 +1,9 @@
 //! What `joint check` and `joint budget` say of a joint's step on a board at a rate, in the same words and figures: its sub-steps,
 //! whether the board has time for it, and whether its error is small enough; each verdict with the rate that would reach it.
 
-use board::target::board::Board;
-use board::target::image::word;
-use board::target::tick_time::{Obstacle, OnBoard, TickTime};
+use board::device::board::Board;
+use board::device::image::word;
+use board::device::tick_time::{Obstacle, OnBoard, TickTime};
 use link::messages::Role;
 use model_core::gears::design::DesignError;
 use parameters::JointParameters;

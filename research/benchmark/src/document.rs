@@ -5,9 +5,9 @@ use std::fs;
 use std::path::Path;
 
 use super::{BenchmarkRecord, Origin, page, pictures};
-use board::target::compile::PROFILE;
-use board::target::emulator::MACHINE;
-use board::target::toolchain::Toolchain;
+use board::device::compile::PROFILE;
+use board::device::emulator::MACHINE;
+use board::device::toolchain::Toolchain;
 use report::document::{Document, Medium, markdown};
 use report::failure::{Failure, Outcome};
 use report::provenance;

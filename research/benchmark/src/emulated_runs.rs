@@ -13,9 +13,9 @@ use contest::start::Deflected;
 use contest::trajectory::Restart;
 use peers::two_mass::{Contact, TwoMass};
 
-use board::target::cross_build::cannot_write;
-use board::target::toolchain::Toolchain;
-use board::target::{Say, measuring};
+use board::device::cross_build::cannot_write;
+use board::device::toolchain::Toolchain;
+use board::device::{Say, measuring};
 use report::failure::{Failure, Outcome};
 
 /// A case moved by a method at a rate.

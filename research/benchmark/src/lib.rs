@@ -21,8 +21,8 @@ use std::path::{Path, PathBuf};
 use contest::case::Case;
 use contest::catalogue;
 
-use board::target::emulator;
-use board::target::toolchain::Toolchain;
+use board::device::emulator;
+use board::device::toolchain::Toolchain;
 use joint_file::{named, warned};
 use report::document::{Medium, html, markdown};
 use report::failure::{Failure, Outcome};

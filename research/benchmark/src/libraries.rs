@@ -5,7 +5,7 @@ use std::process::Command;
 
 use serde::{Deserialize, Serialize};
 
-use board::target::{Say, packages, tool};
+use board::device::{Say, packages, tool};
 use report::failure::{Failure, Outcome};
 use report::workspace::workspace;
 

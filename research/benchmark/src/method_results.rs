@@ -8,8 +8,8 @@ use contest::trajectory::Errors;
 use serde::Serialize;
 
 use super::emulated_runs::{self, Count, Job};
-use board::target::Say;
-use board::target::toolchain::Toolchain;
+use board::device::Say;
+use board::device::toolchain::Toolchain;
 use report::failure::{Failure, Outcome};
 use report::progress::Progress;
 

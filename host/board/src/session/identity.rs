@@ -8,7 +8,7 @@ use link::messages::{Hello, Role};
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 
 use super::BoardHelp;
-use crate::target::image::word;
+use crate::device::image::word;
 use report::failure::{Failure, Outcome};
 
 /// What the board must be.

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use board::device::image;
 use board::line_options::{LineOptions, Mode, RoleName};
 use board::profile::BUILTIN;
-use board::target::image;
 use joint_run::plan::RunRequest;
 use report::seeds::Seeds;
 use scenario::plant::PlantName;

@@ -4,11 +4,11 @@ use link::messages::{Hello, MemoryOutcome, MemoryState, Role};
 
 use super::arguments::BoardArguments;
 use board::connection::Connection;
+use board::device::image;
+use board::device::image::CONTROL_RATE;
+use board::device::image::word;
+use board::device::toolchain::Toolchain;
 use board::session::{BoardHelp, Session};
-use board::target::image;
-use board::target::image::CONTROL_RATE;
-use board::target::image::word;
-use board::target::toolchain::Toolchain;
 use joint_file::named::Loaded;
 use report::failure::{Failure, Outcome};
 use report::progress::Progress;

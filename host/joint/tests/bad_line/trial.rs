@@ -8,10 +8,10 @@ use std::ops::Range;
 use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
 
+use board::device::board::Chip;
 use board::profile::TorqueProfile;
 use board::recording::Recording;
 use board::session::{BoardHelp, Expected, Session, Supervisor};
-use board::target::board::Chip;
 use board::transport::{Line, Socket};
 use board::twin;
 use joint_run::checks::{Evidence, checks};

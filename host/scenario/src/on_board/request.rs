@@ -6,7 +6,7 @@ use super::faults::quantised;
 use crate::controller::ControllerName;
 use crate::plant::PlantName;
 use crate::suite::Test;
-use board::target::board::Board;
+use board::device::board::Board;
 use report::failure::{Failure, Outcome};
 
 /// Which boards tests are to run on.

@@ -24,7 +24,7 @@ use crate::case::{Case, Designed};
 use crate::file::TestFile;
 use crate::port::remember;
 use crate::run_history::{Asked, RunHistory, TrueValues};
-use board::target::board::Board;
+use board::device::board::Board;
 use report::failure::{Failure, Outcome};
 use simulation::sim::snapshot::Reader;
 

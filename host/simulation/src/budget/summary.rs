@@ -1,7 +1,7 @@
 //! The result of `joint budget` as data: figures in SI with their units in their names, as JSON in the schema
 //! `joint-budget/2`.
 
-use board::target::board::Board;
+use board::device::board::Board;
 use joint_file::JointFile;
 use link::messages::Role;
 use model_core::gears::design::{DesignError, Effort, Processor, certificate};

@@ -10,8 +10,8 @@ use parameters::JointParameters;
 
 use super::{BudgetSummary, layout, summary};
 use crate::verdicts::ACCURACY;
-use board::target::board::Board;
-use board::target::tick_time::OnBoard;
+use board::device::board::Board;
+use board::device::tick_time::OnBoard;
 use report::output;
 
 fn file(name: &str) -> JointFile {

@@ -15,8 +15,8 @@ use super::summary::{
 };
 use crate::bandwidth::Bandwidth;
 use crate::verdicts::verdicts;
-use board::target::board::Board;
-use board::target::tick_time::OnBoard;
+use board::device::board::Board;
+use board::device::tick_time::OnBoard;
 use joint_file::named::Loaded;
 use link::messages::Role;
 use report::failure::{Failure, Outcome};

@@ -9,7 +9,7 @@ use model_core::gears::design::{Effort, Processor, StepSize};
 use parameters::JointParameters;
 
 use super::derive::arcmin;
-use board::target::board::Board;
+use board::device::board::Board;
 
 use super::{CheckSummary, layout, step, summary};
 use joint_file::diagnostic;

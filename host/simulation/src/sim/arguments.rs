@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::scheme::{Choice, SchemeName};
 use super::start::StartName;
-use board::target::board::Board;
+use board::device::board::Board;
 use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
 

@@ -1,4 +1,4 @@
-//! The target's side of the host: the compiler for it, images, the emulator, flashing.
+//! Everything about the device under test on the host: its compiler, images, the emulator, flashing.
 //!
 //! The order of use: [`toolchain::Toolchain::prepare`], [`image::build_image`], then [`emulator::Emulator::start`] or
 //! [`flash::flash`]; or [`measuring::build_measuring`] and [`measuring::run`]. An image is built once for its `sources`. Each says

@@ -9,7 +9,7 @@ mod measurement {
     use cortex_m_rt::entry;
     use firmware::measuring::{self, Visitor, measured};
     use model_core::gears::Tables;
-    use trials::motion;
+    use stimuli::motion;
 
     /// Bits of FPSCR: tiny results and operands are taken for zero; every NaN is the default one.
     const FLUSH_TO_ZERO: u32 = 1 << 24;

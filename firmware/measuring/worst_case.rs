@@ -1,6 +1,6 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 //! Counts the instructions of one step from a great many states, random and adversarial, for every joint of this
-//! image. The states are those of the crate `trials`.
+//! image. The states are those of the crate `stimuli`.
 
 #[cfg(target_os = "none")]
 mod measurement {
@@ -9,8 +9,8 @@ mod measurement {
     use cortex_m_rt::entry;
     use firmware::measuring::{self, InstructionCounter, Visitor, measured};
     use model_core::gears::{Model, Tables, Torques};
-    use trials::outcome::Class;
-    use trials::states::{Kind, Trial, Trials};
+    use stimuli::outcome::Class;
+    use stimuli::states::{Kind, Trial, Trials};
 
     const SEED: u64 = 1;
 

@@ -7,8 +7,8 @@ use std::path::Path;
 
 use board::device::emulator;
 use board::device::toolchain::Toolchain;
-use proof::joints::TEST_JOINTS;
-use proof::same_bits::{InMode, compare, on_board, on_host};
+use image_proof::joints::TEST_JOINTS;
+use image_proof::same_bits::{InMode, compare, on_board, on_host};
 
 /// Digests that were found before, on whatever machine.
 const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/step_digests.csv");

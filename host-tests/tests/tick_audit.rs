@@ -5,8 +5,8 @@ use board::device::board::Board;
 use board::device::image::{build_image, preset_file};
 use board::device::measuring::build_measuring;
 use board::device::toolchain::Toolchain;
+use image_proof::tick;
 use link::messages::Role;
-use proof::tick;
 
 #[test]
 #[ignore = "needs the compiler for the board: run by `cargo joint hil --check`"]

@@ -6,7 +6,7 @@ mod tests;
 
 pub use arguments::Arguments;
 use board::line_options::LineOptions;
-use proof::everything;
+use image_proof::everything;
 use report::failure::{Failure, Outcome};
 use report::output;
 use report::progress::Progress;

@@ -6,12 +6,12 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use contest::case::Case;
-use contest::method::Method;
-use contest::run;
-use contest::start::Deflected;
-use contest::trajectory::Restart;
-use peers::two_mass::{Contact, TwoMass};
+use baselines::two_mass::{Contact, TwoMass};
+use comparison::case::Case;
+use comparison::method::Method;
+use comparison::run;
+use comparison::start::Deflected;
+use comparison::trajectory::Restart;
 
 use board::device::cross_build::cannot_write;
 use board::device::toolchain::Toolchain;
@@ -81,7 +81,7 @@ fn bytes(job: &Job<'_>) -> usize {
 fn image_of(jobs: &[Job<'_>], toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<Count>> {
     let source = source(jobs)?;
     let file = write(toolchain.target_directory(), &source)?;
-    let elf = measuring::build_other(toolchain, "board-contest", &[("CONTEST_JOBS", file.as_os_str())], say)?;
+    let elf = measuring::build_other(toolchain, "board-comparison", &[("COMPARISON_JOBS", file.as_os_str())], say)?;
     say(&format!("running {} jobs on the emulated core", jobs.len()));
     let lines = measuring::run(&elf)?;
     let mut found: BTreeMap<usize, (Count, u64)> = lines.iter().filter_map(|line| parse(line)).collect();
@@ -112,23 +112,23 @@ fn parse(line: &str) -> Option<(usize, (Count, u64))> {
 }
 
 fn write(folder: &Path, source: &str) -> Outcome<PathBuf> {
-    let place = folder.join("contest-jobs.rs");
+    let place = folder.join("comparison-jobs.rs");
     let written = fs::create_dir_all(folder).and_then(|()| fs::write(&place, source));
     written.map_err(|error| cannot_write(&place, &error))?;
     place.canonicalize().map_err(|error| Failure::new(format!("{}: {error}", place.display())))
 }
 
-/// The jobs as the firmware's `contest` takes them.
+/// The jobs as the firmware's `comparison` takes them.
 fn source(jobs: &[Job<'_>]) -> Outcome<String> {
     let mut text = String::from(
         "use core::option::Option::*;\n\
          use parameters::DampingLaw::*;\n\
          use model_core::gears::{Relative, RigidBody, State};\n\
          use model_core::gears::tables::{Scheme::*, *};\n\
-         use peers::etd1::Etd1;\nuse peers::euler::SemiImplicitEuler;\nuse peers::motion::Coordinates;\nuse peers::peer::Start;\n\
-         use peers::plant::{Flow as PlantFlow, Gains, Law::*, Mesh, Phase, Plant};\nuse peers::trapezoid::Trapezoid;\n\
-         use peers::two_mass::{Contact::*, TwoMass};\nuse super::{Change, JobRunner, StepSchedule};\n\n\
-         type RungeKutta<const N: usize> = peers::runge_kutta::RungeKutta4<f32, N>;\n\n",
+         use baselines::etd1::Etd1;\nuse baselines::euler::SemiImplicitEuler;\nuse baselines::motion::Coordinates;\nuse baselines::peer::Start;\n\
+         use baselines::plant::{Flow as PlantFlow, Gains, Law::*, Mesh, Phase, Plant};\nuse baselines::trapezoid::Trapezoid;\n\
+         use baselines::two_mass::{Contact::*, TwoMass};\nuse super::{Change, JobRunner, StepSchedule};\n\n\
+         type RungeKutta<const N: usize> = baselines::runge_kutta::RungeKutta4<f32, N>;\n\n",
     );
     let mut calls = String::new();
     let mut torques: Vec<&str> = Vec::new();

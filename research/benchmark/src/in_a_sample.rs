@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use contest::method::Method;
+use comparison::method::Method;
 
 use super::method_results::{CaseRecord, MethodResult, StepResult};
 use super::verdicts::least_cost_at;

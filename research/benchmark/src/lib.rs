@@ -18,8 +18,8 @@ mod verdicts;
 pub use record::{BenchmarkRecord, Origin};
 use std::path::{Path, PathBuf};
 
-use contest::case::Case;
-use contest::catalogue;
+use comparison::case::Case;
+use comparison::catalogue;
 
 use board::device::emulator;
 use board::device::toolchain::Toolchain;

@@ -61,7 +61,7 @@ fn time(cases: &[String], feature: &str, say: Say<'_>) -> Outcome<Vec<Time>> {
             subcommand,
             "--release",
             "--package",
-            "contest",
+            "comparison",
             "--bin",
             "library_times",
             "--features",

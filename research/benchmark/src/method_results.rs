@@ -1,10 +1,10 @@
 //! Every method on every case over a range of step sizes: error from the host, instructions from the emulated core.
 
-use contest::case::{Case, Measure};
-use contest::curve::{PHASES, PhaseEnvelope, Point, Scalar};
-use contest::method::Method;
-use contest::run::AS_DESIGNED;
-use contest::trajectory::Errors;
+use comparison::case::{Case, Measure};
+use comparison::curve::{PHASES, PhaseEnvelope, Point, Scalar};
+use comparison::method::Method;
+use comparison::run::AS_DESIGNED;
+use comparison::trajectory::Errors;
 use serde::Serialize;
 
 use super::emulated_runs::{self, Count, Job};

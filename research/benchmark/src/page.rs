@@ -1,8 +1,8 @@
 //! The comparison as a document: for a page, for a Markdown file, and, with every method at every step, for a terminal.
 //! Nothing is computed here but units.
 
-use contest::method::Method;
-use contest::run::AS_DESIGNED;
+use comparison::method::Method;
+use comparison::run::AS_DESIGNED;
 
 use super::BenchmarkRecord;
 use super::in_a_sample::{ASKED, Best, INSTRUCTIONS, InASample, SAMPLE_RATE};

@@ -1,7 +1,7 @@
 //! Pictures of error against cost, case by case: instructions of the fixed-step methods on the board, processor time of
 //! the host's contestants. Both axes run by powers of ten.
 
-use contest::method::Method;
+use comparison::method::Method;
 
 use super::libraries::Time;
 use super::method_results::{CaseRecord, MethodResult};

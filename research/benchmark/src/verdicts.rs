@@ -1,6 +1,6 @@
 //! Conclusions from the figures: instructions at equal error, error within a board's budget, rounding, host times.
 
-use contest::method::Method;
+use comparison::method::Method;
 use serde::Serialize;
 
 use super::libraries::Time;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use same_records::{Options, compare};
+use report_diff::{Options, compare};
 
 use crate::writers::Writer;
 

@@ -1,0 +1,267 @@
+//! Differences planted into a small tree of records: each is found at its place, and nothing is where nothing was planted.
+//! What a tree holds is written here as the host command writes it, with a figure or two.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use mcap::records::{MessageHeader, Metadata};
+use mcap::{Compression, WriteOptions, Writer};
+use report_diff::{Difference, Findings, Options, compare};
+use tempfile::TempDir;
+
+const RECORD: &str = r#"{"date":"2026-11-22T09:57:43Z","git_commit":"b1f3478181d7","seconds":3.5,
+    "runs":[{"seed":1,"figures":{"rms_mrad":3.487969661470408,"crossings":8}},{"seed":2,"figures":{"rms_mrad":0.1}}]}"#;
+const HISTORY: &str = "time_s,gap_m,contact\n0.0,8.18e-5,1\n5e-5,8.19e-5,1\n1e-4,8.21e-5,0\n";
+const TERMINAL: &str = "ok    rms_mrad   3.488 mrad <= 5\nreport: /home/one/target/hil/report.html\n";
+const PAGE: &str = "<h1>Q1</h1><p>2026-11-22T09:57:43Z</p><table><tr><th>figure</th><td>3.488 mrad</td></tr></table>";
+const JUNIT: &str = "<testsuites tests=\"1\" time=\"3.500\"><testsuite name=\"hil/t2.toml\" timestamp=\"2026-11-22T09:57:43Z\">\
+    <testcase name=\"rms_mrad &lt;= 5\"/></testsuite></testsuites>\n";
+const PICTURE: &str = "<svg><path d=\"M 1.5 2.5\"/></svg>\n";
+
+const SCHEMA: &str = "float64 time_s  # [s]\nfloat64 gap_um  # [um]\n";
+const ROWS: [[f64; 2]; 3] = [[0.0, 81.8], [5e-5, 81.9], [1e-4, 82.1]];
+
+/// Motion as an MCAP log of messages with two numbers.
+fn motion(rows: &[[f64; 2]], date: &str, compression: Option<Compression>) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let options = WriteOptions::new().compression(compression).library("joint 0.1.0");
+    let mut writer = Writer::with_options(std::io::Cursor::new(&mut bytes), options).expect("a log");
+    let schema = writer.add_schema("joint_msgs/msg/Motion", "ros2msg", SCHEMA.as_bytes()).expect("a schema");
+    let channel = writer.add_channel(schema, "/joint/motion", "cdr", &BTreeMap::new()).expect("a topic");
+    let remarks = BTreeMap::from([("date".to_owned(), date.to_owned()), ("joint".to_owned(), "Q1".to_owned())]);
+    writer.write_metadata(&Metadata { name: "joint".into(), metadata: remarks }).expect("remarks");
+    for (row, sequence) in rows.iter().zip(0_u32..) {
+        let time = u64::from(sequence) * 50_000;
+        let header = MessageHeader { channel_id: channel, sequence, log_time: time, publish_time: time };
+        let mut message = vec![0, 1, 0, 0];
+        row.iter().for_each(|number| message.extend(number.to_le_bytes()));
+        writer.write_to_known_channel(&header, &message).expect("a message");
+    }
+    writer.finish().expect("its end");
+    drop(writer);
+    bytes
+}
+
+/// A tree of records.
+struct Tree(TempDir);
+
+impl Tree {
+    fn new() -> Self {
+        let tree = Self(tempfile::tempdir().expect("a folder"));
+        tree.write("hil/record.json", RECORD);
+        tree.write("hil/terminal.stdout", TERMINAL);
+        tree.write("hil/report.html", PAGE);
+        tree.write("hil/junit.xml", JUNIT);
+        tree.write("sim/history.csv", HISTORY);
+        tree.write("sim/picture.svg", PICTURE);
+        tree.write("sim/history.mcap", motion(&ROWS, "2026-11-22T09:57:43Z", None));
+        tree
+    }
+
+    fn write(&self, name: &str, content: impl AsRef<[u8]>) {
+        let path = self.path(name);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+        fs::write(path, content).expect("written");
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// Changes a part of a file's text.
+    fn change(&self, name: &str, from: &str, to: &str) {
+        let text = fs::read_to_string(self.path(name)).expect("a text");
+        assert!(text.contains(from), "{name} has no {from}");
+        self.write(name, text.replacen(from, to, 1));
+    }
+}
+
+fn found(old: &Tree, new: &Tree) -> Findings {
+    compare(old.0.path(), new.0.path(), Options::default()).expect("two trees")
+}
+
+/// The only difference after something was planted.
+fn only(plant: impl FnOnce(&Tree)) -> Difference {
+    let (old, new) = (Tree::new(), Tree::new());
+    plant(&new);
+    let mut differences = found(&old, &new).differences;
+    assert_eq!(differences.len(), 1, "{differences:?}");
+    differences.remove(0)
+}
+
+fn difference(file: &str, place: &str, old: Option<&str>, new: Option<&str>) -> Difference {
+    let [old, new] = [old, new].map(|value| value.map(ToOwned::to_owned));
+    Difference { file: file.into(), place: place.into(), old, new }
+}
+
+#[test]
+fn two_trees_with_the_same_records_are_the_same() {
+    let found = found(&Tree::new(), &Tree::new());
+    assert!(found.all_same(), "{:?}", found.differences);
+    assert_eq!(found.files, 7);
+    assert!(found.values > 40, "{}", found.values);
+}
+
+#[test]
+fn the_last_digit_of_a_figure_in_json_is_found() {
+    let digit = only(|tree| tree.change("hil/record.json", "3.487969661470408", "3.487969661470409"));
+    let place = "runs[0].figures.rms_mrad";
+    assert_eq!(digit, difference("hil/record.json", place, Some("3.487969661470408"), Some("3.487969661470409")));
+    let sign = only(|tree| tree.change("hil/record.json", "\"crossings\":8", "\"crossings\":-8"));
+    assert_eq!(sign.place, "runs[0].figures.crossings");
+}
+
+#[test]
+fn another_form_of_the_same_number_and_another_order_of_keys_are_no_difference() {
+    let (old, new) = (Tree::new(), Tree::new());
+    new.change("hil/record.json", "{\"rms_mrad\":0.1}", "{ \"rms_mrad\": 1e-1 }");
+    let (figures, turned) =
+        ("\"rms_mrad\":3.487969661470408,\"crossings\":8", "\"crossings\":8,\"rms_mrad\":3.487969661470408");
+    new.change("hil/record.json", figures, turned);
+    assert!(found(&old, &new).all_same());
+}
+
+#[test]
+fn a_key_that_is_gone_and_one_that_has_come_are_found() {
+    let gone = only(|tree| tree.change("hil/record.json", ",\"crossings\":8", ""));
+    assert_eq!(gone, difference("hil/record.json", "runs[0].figures.crossings", Some("8"), None));
+    let come = only(|tree| tree.change("hil/record.json", "\"seed\":2", "\"seed\":2,\"broken\":null"));
+    assert_eq!(come, difference("hil/record.json", "runs[1].broken", None, Some("null")));
+}
+
+#[test]
+fn a_changed_cell_a_missing_row_and_a_missing_column_of_a_table_are_found() {
+    let cell = only(|tree| tree.change("sim/history.csv", "8.19e-5", "8.20e-5"));
+    assert_eq!(cell, difference("sim/history.csv", "line 3, gap_m", Some("8.19e-5"), Some("8.20e-5")));
+    let row = only(|tree| tree.change("sim/history.csv", "5e-5,8.19e-5,1\n", ""));
+    assert_eq!(row, difference("sim/history.csv", "line 3", Some("5e-5,8.19e-5,1"), None));
+    let column = only(|tree| tree.write("sim/history.csv", "time_s,gap_m\n0.0,8.18e-5\n5e-5,8.19e-5\n1e-4,8.21e-5\n"));
+    assert_eq!(column, difference("sim/history.csv", "columns, contact", Some("contact"), None));
+}
+
+#[test]
+fn files_on_one_side_only_are_found() {
+    let gone = only(|tree| fs::remove_file(tree.path("hil/junit.xml")).expect("removed"));
+    assert_eq!(gone, difference("hil/junit.xml", "", Some("a file"), None));
+    let come = only(|tree| tree.write("hil/deep/er/more.txt", "more"));
+    assert_eq!(come, difference("hil/deep/er/more.txt", "", None, Some("a file")));
+}
+
+#[test]
+fn a_changed_message_of_a_log_is_found_with_its_field() {
+    let log = |rows: &[[f64; 2]]| motion(rows, "2026-11-22T09:57:43Z", None);
+    let field = only(|tree| tree.write("sim/history.mcap", log(&[ROWS[0], [5e-5, 81.9_f64.next_up()], ROWS[2]])));
+    assert_eq!((&*field.file, &*field.place), ("sim/history.mcap", "/joint/motion message 1, gap_um"));
+    assert_eq!(field.old.as_deref(), Some("[81.9]"));
+    let lost = only(|tree| tree.write("sim/history.mcap", log(&ROWS[..2])));
+    let whole = "/joint/motion,100000,100000,2,[0.0001],[82.1]";
+    assert_eq!(lost, difference("sim/history.mcap", "/joint/motion message 2", Some(whole), None));
+}
+
+#[test]
+fn one_changed_byte_of_a_log_is_found_even_where_the_log_is_cut_off() {
+    let change = |tree: &Tree, length: Option<usize>| {
+        let mut bytes = fs::read(tree.path("sim/history.mcap")).expect("a log");
+        let wanted = 81.9_f64.to_le_bytes();
+        let place = bytes.windows(8).position(|window| window == wanted).expect("not compressed");
+        bytes[place] ^= 1;
+        bytes.truncate(length.map_or(bytes.len(), |length| place + length));
+        tree.write("sim/history.mcap", &bytes);
+        (place, bytes.len())
+    };
+    let changed = only(|tree| {
+        change(tree, None);
+    });
+    assert_eq!(changed.place, "/joint/motion message 1, gap_um");
+    let (old, new) = (Tree::new(), Tree::new());
+    let (place, length) = change(&new, Some(12));
+    let whole = fs::read(old.path("sim/history.mcap")).expect("a log");
+    old.write("sim/history.mcap", &whole[..length]);
+    let differences = found(&old, &new).differences;
+    assert_eq!(differences.len(), 1, "{differences:?}");
+    assert!(differences[0].place.ends_with(&format!("byte {place}")), "{differences:?}");
+    new.write("sim/history.mcap", &whole[..length]);
+    assert!(found(&old, &new).all_same());
+}
+
+#[test]
+fn how_a_log_is_compressed_and_when_it_was_written_are_no_difference() {
+    let (old, new) = (Tree::new(), Tree::new());
+    new.write("sim/history.mcap", motion(&ROWS, "2027-01-01T00:00:00Z", Some(Compression::Lz4)));
+    assert_ne!(fs::read(old.path("sim/history.mcap")).ok(), fs::read(new.path("sim/history.mcap")).ok());
+    let found = found(&old, &new);
+    assert!(found.all_same(), "{:?}", found.differences);
+    assert_eq!(found.left_out["date"].different, 1);
+}
+
+#[test]
+fn only_another_date_commit_folder_and_duration_are_no_difference_and_are_counted() {
+    let (old, new) = (Tree::new(), Tree::new());
+    new.change("hil/record.json", "2026-11-22T09:57:43Z", "2027-01-01T00:00:00Z");
+    new.change("hil/record.json", "b1f3478181d7", "0000000000aa");
+    new.change("hil/record.json", "\"seconds\":3.5", "\"seconds\":4.25");
+    new.change("hil/report.html", "2026-11-22T09:57:43Z", "2027-01-01T00:00:00Z");
+    new.change("hil/junit.xml", "time=\"3.500\"", "time=\"4.250\"");
+    new.change("hil/terminal.stdout", "/home/one/target/hil/", "/elsewhere/");
+    let found = found(&old, &new);
+    assert!(found.all_same(), "{:?}", found.differences);
+    let different = |rule: &str| found.left_out[rule].different;
+    assert_eq!((different("date"), different("commit"), different("folder"), different("host time")), (2, 1, 1, 2));
+    let name = only(|tree| tree.change("hil/terminal.stdout", "report.html", "page.html"));
+    assert_eq!(name.place, "line 2");
+}
+
+#[test]
+fn a_changed_line_verdict_figure_and_picture_are_found() {
+    let line = only(|tree| tree.change("hil/terminal.stdout", "ok ", "FAILED "));
+    assert_eq!((&*line.file, &*line.place), ("hil/terminal.stdout", "line 1"));
+    let case = only(|tree| tree.change("hil/junit.xml", "tests=\"1\"", "tests=\"2\""));
+    assert_eq!(case, difference("hil/junit.xml", "testsuites @tests", Some("1"), Some("2")));
+    let path = only(|tree| tree.change("sim/picture.svg", "2.5", "2.6"));
+    assert_eq!((&*path.file, &*path.place), ("sim/picture.svg", "byte 22"));
+    let (old, new) = (Tree::new(), Tree::new());
+    new.change("hil/report.html", "3.488", "3.489");
+    let places: Vec<String> = found(&old, &new).differences.into_iter().map(|found| found.place).collect();
+    let wanted = ["figure `3.488`", "figure `3.489`", "cell `3.488 mrad`", "cell `3.489 mrad`"];
+    assert_eq!(places, wanted);
+}
+
+#[test]
+fn what_the_line_to_the_emulator_was_slow_with_is_left_out_by_its_name_and_nothing_beside_it_is() {
+    let (old, new) = (Tree::new(), Tree::new());
+    let checks = |idle: &str, most: &str| {
+        format!(
+            "{{\"timing\":{{\"idle_percent\":{idle},\"max_s\":{most}}},\"checks\":[{{\"name\":\"idle time\",\"figure\":{idle}}},\
+             {{\"name\":\"longest tick\",\"figure\":{most}}}]}}"
+        )
+    };
+    let page = |idle: &str, most: &str| {
+        format!(
+            "<div>{idle}<span> %</span></div><div>Idle <b>EMULATED</b></div><table><tr><td>idle time <b>EMULATED</b></td>\
+             <td>{idle} %</td></tr><tr><td>longest</td><td>{most} us</td></tr></table>"
+        )
+    };
+    for (tree, idle) in [(&old, "61.1"), (&new, "60.9")] {
+        tree.write("board/record.json", checks(idle, "25.8"));
+        tree.write("board/report.html", page(idle, "25.8"));
+        tree.write("board/terminal.stdout", format!("-   idle time   {idle} %   EMULATED\n"));
+    }
+    let differences = found(&old, &new).differences;
+    assert!(differences.is_empty(), "{differences:?}");
+    new.write("board/record.json", checks("60.9", "25.9"));
+    new.write("board/report.html", page("60.9", "25.9"));
+    let places: Vec<String> = found(&old, &new).differences.into_iter().map(|found| found.place).collect();
+    let figures = ["figure `25.8`", "figure `25.9`", "cell `25.8 us`", "cell `25.9 us`"];
+    assert_eq!(places[..2], ["checks[1].figure", "timing.max_s"]);
+    assert_eq!(places[2..], figures);
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    let (tree, empty) = (Tree::new(), tempfile::tempdir().expect("a folder"));
+    let refused = |old: &Path, new: &Path| compare(old, new, Options::default()).expect_err("refused");
+    assert!(refused(empty.path(), tree.0.path()).contains("no file"));
+    assert!(refused(tree.0.path(), &tree.path("hil/record.json")).contains("one is a folder"));
+    assert!(refused(&tree.path("missing"), &tree.path("missing")).contains("missing"));
+}

@@ -1,0 +1,169 @@
+//! A bound on the instructions and cycles of a step, from the linked image alone: what the search for the worst case
+//! (`worst_case`) cannot exceed, whatever state it has not tried.
+//!
+//! From a step's entry on every way through the machine code is followed that the known values leave open (`longest`). Known
+//! are constants, the tables of the joint, which lie in the image and are never written, and what follows from them; torques
+//! and state are not. So counters of loops are known in every round, and branches by what only the tables say go one way.
+//! A loop whose rounds do not follow from that has no bound, and is an error with its place in the source.
+//!
+//! `operation` decodes, `machine` carries values through an instruction, `live` tells which of them are still looked at, `graph`
+//! is the control flow of a function, `cycles` the table of the Cortex-M4, `source` the debug information.
+//!
+//! Taken for granted: pointers of safe code stay within their objects, and a caller's arguments are the joint's model and its
+//! torques, the model aligned as its type asks.
+
+mod cycles;
+mod graph;
+mod live;
+mod longest;
+mod machine;
+mod operation;
+mod source;
+
+use std::fmt;
+use std::fs;
+use std::path::Path;
+
+use longest::{Longest, Refused, Search};
+use machine::Machine;
+use source::Source;
+
+use crate::tick::functions::{Function, Functions};
+use crate::worst_case;
+use report::failure::{Failure, Outcome};
+
+/// The step that the search calls, by its path and by its name in the debug information but for the number of planets.
+const STEP: (&str, &str) = ("worst_case::measurement::step", "step");
+/// A bound beyond this many times the worst state that was found says too little.
+const WIDEST: f64 = 1.3;
+/// Where stack and model are taken to lie, well apart: nothing depends on it but their alignment, that of their types.
+const STACK: u32 = 0x2001_0000;
+const LOWEST_STACK: u32 = STACK - 0x4000;
+const MODEL: u32 = STACK - 0x8000;
+
+/// The bound of a joint's step.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Bound {
+    /// The joint.
+    pub name: String,
+    /// Instructions.
+    pub instructions: u32,
+    /// Cycles of a Cortex-M4 whose memory has no wait states; not of the same way as the instructions.
+    pub cycles: u32,
+    /// Functions that the step can reach.
+    pub functions: usize,
+    /// Loops in them, with the most rounds, by their place in the source.
+    pub loops: Vec<(String, u32)>,
+}
+
+/// Bounds of the steps of all joints in the image that searches for the worst case, in the order of `searched`.
+pub fn of_steps(elf: &Path, searched: &[worst_case::Search]) -> Outcome<Vec<Bound>> {
+    let failed = |why: String| Failure::new(format!("{}: {why}", elf.display()));
+    let bytes = fs::read(elf).map_err(|error| failed(error.to_string()))?;
+    let functions = Functions::read(&bytes).map_err(failed)?;
+    let source = Source::read(&bytes).map_err(failed)?;
+    let of_joint = |(index, joint): (usize, &worst_case::Search)| {
+        let missing = |what: String| {
+            failed(format!("{what} of joint {} is not to be found", joint.name))
+                .with_help("the image must keep its symbols and its debug information")
+        };
+        let step = step(&functions, &source, joint.planets).ok_or_else(|| missing("the step".into()))?;
+        let place = format!("joint_{index}::TABLES");
+        let tables = functions.objects().find(|(name, _)| name.ends_with(&place));
+        let (_, tables) = tables.ok_or_else(|| missing(format!("the data {place}")))?;
+        let model = format!("Model<f32, {}>", joint.planets);
+        let member = source.offset(&model, "tables").ok_or_else(|| missing(format!("member tables of {model}")))?;
+        let mut machine = Machine::with_stack(STACK);
+        machine.set(0, Some(MODEL));
+        machine.write(Some(MODEL + member), 4, Some(tables));
+        let longest = Search::new(&functions, LOWEST_STACK).run(step.address, machine);
+        let longest = longest.map_err(|refused| refusal(&joint.name, &functions, &source, refused))?;
+        Ok(Bound::new(&joint.name, longest, &source))
+    };
+    searched.iter().enumerate().map(of_joint).collect()
+}
+
+/// The step of a joint with so many planets.
+fn step<'a>(functions: &'a Functions, source: &Source<'_>, planets: u32) -> Option<&'a Function> {
+    let (path, name) = STEP;
+    let symbols = source.symbols(&format!("{name}<{planets}>"));
+    functions.all().find(|function| function.name == path && symbols.contains(&function.symbol))
+}
+
+fn refusal(joint: &str, functions: &Functions, source: &Source<'_>, refused: Refused) -> Failure {
+    let at = refused.at();
+    let function = functions.all().find(|function| (function.address..function.end).contains(&at));
+    let function = function.map_or("no function", |function| function.name.as_str());
+    let line = source.line(at).unwrap_or_else(|| "no line".into());
+    let (what, help) = match refused {
+        Refused::Unbounded(_) => (
+            "a loop may go round without end",
+            "let it count up to a literal or to a number of the joint's tables, and index by that count",
+        ),
+        Refused::Irreducible(_) => ("a loop has more than one way in", "write it as one loop with one head"),
+        Refused::Lost(_) => ("where control goes is not known", "call by a generic in place of a pointer"),
+        Refused::Instruction(_) => ("an instruction is not known", "add it to host/image-proof/src/bound/operation.rs"),
+        Refused::Recursion(_) => ("a function comes to call itself", "make a bounded loop of the recursion"),
+        Refused::Stops(_) => ("a panic or a trap can be reached", "take `get`, `checked_` and `match` instead"),
+    };
+    Failure::check_failed(format!("joint {joint}: the step has no bound: {what} at {at:#010x}, in {function}, {line}"))
+        .with_help(help)
+}
+
+/// Fails if a state was found that takes more than its bound, or if a bound says too little. Returns a line for each joint.
+pub fn judge(bounds: &[Bound], searched: &[worst_case::Search]) -> Outcome<Vec<String>> {
+    bounds
+        .iter()
+        .zip(searched)
+        .map(|(bound, search)| {
+            let Bound { name, instructions, .. } = bound;
+            let most = search.most();
+            if most > *instructions {
+                return Err(Failure::check_failed(format!(
+                    "joint {name}: a step was found to take {most} instructions, and its bound is {instructions}:\n{}",
+                    search.state
+                ))
+                .with_help("host/image-proof/src/bound follows an instruction wrongly: it must leave open what the step did"));
+            }
+            let times = f64::from(*instructions) / f64::from(most.max(1));
+            if times > WIDEST {
+                return Err(Failure::check_failed(format!(
+                    "joint {name}: the bound of a step is {instructions} instructions, {times:.2} times the worst that was found"
+                ))
+                .with_help(format!(
+                    "want at most {WIDEST} times: search for worse states, or make ways that exclude each other one branch"
+                )));
+            }
+            Ok(format!("{bound}; {times:.2} times the worst found, {most}"))
+        })
+        .collect()
+}
+
+impl Bound {
+    fn new(name: &str, longest: Longest, source: &Source<'_>) -> Self {
+        let line = |head: u32| source.line(head).unwrap_or_else(|| format!("{head:#010x}"));
+        Self {
+            name: name.to_owned(),
+            instructions: longest.cost.instructions,
+            cycles: longest.cost.cycles,
+            functions: longest.functions.len(),
+            loops: longest.loops.into_iter().map(|(head, rounds)| (line(head), rounds)).collect(),
+        }
+    }
+}
+
+impl fmt::Display for Bound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, instructions, cycles, functions, loops } = self;
+        let rounds = loops.iter().map(|(_, rounds)| *rounds).max().unwrap_or(0);
+        write!(
+            f,
+            "{name}: a step takes at most {instructions} instructions, {cycles} cycles of a Cortex-M4 without wait states \
+             ({functions} functions, {} loops of at most {rounds} rounds)",
+            loops.len()
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,155 @@
+//! Is every result the same in every bit, on the emulated board and here? Also when the caller has set the board's
+//! floating-point unit to flush subnormals to zero or to return default NaNs. The motions are those of the crate
+//! `stimuli`; host-tests hold other builds of the host to the same digests.
+
+use std::fmt;
+
+use model_core::gears::design::design;
+use parameters::JointParameters;
+use stimuli::motion;
+
+use super::joints::{TEST_JOINTS, TestJoint, write_files};
+use board::device::image::DEFAULT_TICK_RATE;
+use board::device::toolchain::Toolchain;
+use board::device::{Say, measuring};
+use report::failure::{Failure, Outcome};
+
+/// Digests of a joint's tables and trial motions.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Digests {
+    /// The joint.
+    pub name: String,
+    /// Of its tables.
+    pub tables: u64,
+    /// Of its motions.
+    pub motions: motion::Digests,
+}
+
+/// Digests by the board, and how its floating-point unit was set.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OnBoard {
+    /// The digests.
+    pub digests: Digests,
+    /// Tiny numbers were flushed to zero.
+    pub flush_to_zero: bool,
+    /// Every NaN was the default one.
+    pub default_nan: bool,
+}
+
+impl fmt::Display for Digests {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, tables, motions: motion::Digests { long, unbounded, tiny, changes } } = self;
+        write!(f, "{name},{tables:016x},{long:016x},{unbounded:016x},{tiny:016x},{changes}")
+    }
+}
+
+/// Runs work in a floating-point mode.
+pub type InMode<'a> = &'a dyn Fn(&mut dyn FnMut());
+
+/// The digests of a joint, computed here. The step runs in the given floating-point mode; design, which only ever runs
+/// in the usual one, does not.
+pub fn on_host(joint: &TestJoint, in_mode: InMode<'_>) -> Outcome<Digests> {
+    let parameters = joint.read()?.parameters;
+    match parameters.geometry.planets {
+        1 => with_planets::<1>(joint.name, &parameters, in_mode),
+        3 => with_planets::<3>(joint.name, &parameters, in_mode),
+        4 => with_planets::<4>(joint.name, &parameters, in_mode),
+        _ => with_planets::<5>(joint.name, &parameters, in_mode),
+    }
+}
+
+fn with_planets<const N: usize>(name: &str, parameters: &JointParameters, in_mode: InMode<'_>) -> Outcome<Digests> {
+    let tables = design::<f32, N>(parameters, DEFAULT_TICK_RATE)
+        .map_err(|error| Failure::new(error.to_string()).while_doing(format_args!("joint {name}")))?;
+    let mut motions = motion::Digests::default();
+    in_mode(&mut || motions = motion::digests(&tables));
+    Ok(Digests { name: name.to_owned(), tables: tables.digest, motions })
+}
+
+/// The digests of all joints by the emulated board, in every setting.
+pub fn on_board(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<OnBoard>> {
+    let files = write_files(toolchain.target_directory())?;
+    let elf = measuring::build_measuring(toolchain, "same_bits", &files, DEFAULT_TICK_RATE, say)?;
+    measuring::read(&elf, parse)
+}
+
+/// name,flush,nan,tables,long,unbounded,changes: names may hold commas.
+fn parse(line: &str) -> Option<OnBoard> {
+    let mut fields = line.rsplitn(8, ',');
+    let changes = fields.next()?.parse().ok()?;
+    let mut digest = || u64::from_str_radix(fields.next()?, 16).ok();
+    let (tiny, unbounded, long, tables) = (digest()?, digest()?, digest()?, digest()?);
+    let (default_nan, flush_to_zero) = (fields.next()?.parse().ok()?, fields.next()?.parse().ok()?);
+    let name = fields.next()?.to_owned();
+    let motions = motion::Digests { long, unbounded, tiny, changes };
+    Some(OnBoard { digests: Digests { name, tables, motions }, flush_to_zero, default_nan })
+}
+
+/// Every joint on the board in every setting against the host: the first difference ends it. Returns how many runs were
+/// compared.
+pub fn compare(board: &[OnBoard]) -> Outcome<usize> {
+    for joint in &TEST_JOINTS {
+        let host = on_host(joint, &|work| work())?;
+        let runs: Vec<_> = board.iter().filter(|run| run.digests.name == joint.name).collect();
+        if runs.len() != 4 {
+            return Err(Failure::check_failed(format!("{}: {} runs on the board, not 4", joint.name, runs.len())));
+        }
+        if let Some(run) = runs.iter().find(|run| run.digests != host) {
+            return Err(difference(run, &host));
+        }
+    }
+    Ok(board.len())
+}
+
+fn difference(run: &OnBoard, host: &Digests) -> Failure {
+    let on = |set: bool| if set { "on" } else { "off" };
+    let (flush, nan) = (on(run.flush_to_zero), on(run.default_nan));
+    let what = if run.digests.tables != host.tables {
+        "the tables"
+    } else if run.digests.motions.long != host.motions.long {
+        "the long motion"
+    } else if run.digests.motions.tiny != host.motions.tiny {
+        "the motions from tiny numbers"
+    } else {
+        "the motion under infinite torques"
+    };
+    let message = format!(
+        "{what} of joint {} differs in bits between board (flush-to-zero {flush}, default NaN {nan}) and host:\n\
+         board {}\nhost  {host}",
+        host.name, run.digests
+    );
+    Failure::check_failed(message).with_help(
+        "the step must use no operation that rounds otherwise on one of them (a fused multiply-add, a library's sine),\n\
+         and must leave no number in its state that a caller's floating-point mode would change",
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn on_board(name: &str, long: u64) -> OnBoard {
+        let motions = motion::Digests { long, unbounded: 3, tiny: 4, changes: 5 };
+        let digests = Digests { name: name.into(), tables: 1, motions };
+        OnBoard { digests, flush_to_zero: true, default_nan: false }
+    }
+
+    #[test]
+    fn a_line_of_the_board_is_read() {
+        let line = "S1 no backlash,true,false,0000000000000001,0000000000000002,0000000000000003,0000000000000004,5";
+        assert_eq!(parse(line), Some(on_board("S1 no backlash", 2)));
+        assert_eq!(parse("panicked at x.rs:1:1"), None);
+    }
+
+    #[test]
+    fn a_difference_names_joint_setting_and_motion() {
+        let failure = difference(&on_board("Q1", 7), &on_board("Q1", 2).digests);
+        assert!(failure.message().contains("the long motion of joint Q1"), "{failure}");
+        assert!(failure.message().contains("flush-to-zero on"), "{failure}");
+    }
+
+    #[test]
+    fn a_board_that_left_a_joint_out_does_not_pass() {
+        assert!(compare(&[]).is_err());
+    }
+}

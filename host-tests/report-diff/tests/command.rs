@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 fn run(words: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_same-records")).args(words).output().expect("it can be started")
+    Command::new(env!("CARGO_BIN_EXE_report-diff")).args(words).output().expect("it can be started")
 }
 
 fn text(path: &Path) -> &str {

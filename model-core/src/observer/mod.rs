@@ -5,10 +5,10 @@
 //!
 //! | part | input | output |
 //! |---|---|---|
-//! | `sensors` | raw counts and times | counts exact over any number of turns and over wrap-around (O1), ages, notices |
-//! | `filters` | counts, commanded torque | torque of the motor side into the meshes (O2, O3); angle, speed and load torque of the link (O4) |
+//! | `sensors` | raw counts and times | counts, exact over turns and wrap-around (O1), ages, notices |
+//! | `filters` | counts, commanded torque | torque taken from the motor (O2, O3); angle, speed, load torque of the link (O4) |
 //! | `contact` | mesh force, deflection | flank in contact (O8, O10) |
-//! | `learnt` | outputs of `sensors`, `filters`, at rest and in the open gap | half-gap, offset, compliance, skew, error maps, bias, inertia, and their variances (O6 to O20) |
+//! | `learnt` | outputs of the rows above | parameters of joint, encoders and motor, with their variances (O6 to O20) |
 //! | `health` | counts, deflection | encoders in use (O21 to O25); link state without output encoder (O26, O27) |
 //!
 //! [`Estimates`] are the published result. `docs/theory/observer.md` lists equations and limits.
@@ -106,7 +106,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         observer
     }
 
-    /// Separate function: its stack frame is released before the parts are initialised.
+    /// Not inlined, so that its stack is free again when the parts are initialised.
     #[inline(never)]
     fn put<'place>(place: &'place mut MaybeUninit<Self>, tables: &'tables ObserverTables<T>) -> &'place mut Self {
         place.write(Self::unbegun(tables))
@@ -133,7 +133,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         self.begin();
     }
 
-    /// Separate function: its stack frame is released before the parts are initialised.
+    /// Not inlined, so that its stack is free again when the parts are initialised.
     #[inline(never)]
     fn clear(&mut self) {
         *self = Self::unbegun(self.tables);
@@ -326,8 +326,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         &self.estimates
     }
 
-    /// Continues without the output encoder, which was excluded in this period: the link keeps its last motion if that
-    /// motion is known.
+    /// Continues without the output encoder, which was excluded in this period. The link keeps its last motion, if known.
     #[cold]
     fn rely_on_motor(&mut self, last: Option<LastMotion<T>>) {
         let tables = self.tables;

@@ -33,8 +33,8 @@ impl<T: Real> ByPosition<T> {
     }
 
     /// Returns contact and mesh force for a controller. Teeth at rest within noise of a flank are reported as touching,
-    /// however light the force, unless the force pulls the teeth off: a controller could not act otherwise; parameters
-    /// are not estimated from such contacts. Teeth that have crossed the gap and have not settled are reported as
+    /// however light the force, unless the force pulls the teeth off: a controller could not act otherwise, and no
+    /// parameter is estimated from this contact. Teeth that have crossed the gap and have not settled are reported as
     /// touching within `near` of the flank, also when bouncing, unless the motor side's force, with the standard
     /// deviation `alone`, pulls the teeth off.
     pub fn reported(

@@ -1,6 +1,6 @@
 //! Disturbance observer of the motor side (O2; late readings O3): estimates the torque that meshes and friction take
-//! from the motor. `learnt::bias` separates the two. Symbols: a = `ahead`, w_m = `speed`, t = `taken`, u = `air_gap`, G
-//! = `gain`.
+//! from the motor. `learnt::bias` separates the two. Symbols: a = `ahead`, w_m = `speed`, t = `taken`, u = `air_gap`,
+//! G = `gain`.
 //!
 //! Each period the state follows the linear flow of the tables, current loop included. `gain` times the innovation, the
 //! measured less the predicted angle, then corrects angle, speed and taken torque; the air-gap torque is not corrected.

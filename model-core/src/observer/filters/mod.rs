@@ -15,7 +15,7 @@ use super::sensors::{Sensed, seconds};
 use crate::numbers::Real;
 use crate::observer::tables::{LoadTable, ObserverTables};
 
-/// Both filters and the torque that couples the filters.
+/// Filters of both sides and the torque that couples them.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Filters<T: Real> {
     pub drive: DriveSide<T>,

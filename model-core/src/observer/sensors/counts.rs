@@ -244,8 +244,8 @@ impl Counts {
         Taken { motor, output, apart, motor_apart, turned }
     }
 
-    /// Advances implied output and doubt while an encoder is excluded, by the motor's travel in units of the difference
-    /// and the output's in counts. Returns the travel of the output in use [counts].
+    /// Advances an implied output, and the travel of an excluded motor encoder. `by` is the motor's travel in units of
+    /// the difference, `turned` the measured output's in counts. Returns the travel of the output in use [counts].
     #[cold]
     fn go_on<T: Real>(&mut self, table: &CountTable<T>, motor: Advance, by: i64, turned: i32) -> i32 {
         if let Some(doubt) = &mut self.doubt {
@@ -302,7 +302,7 @@ impl Counts {
 
     /// Handles a jump of the output, which excludes its encoder: the implied output continues from the last position.
     /// Among the positions that whole raw ranges leave open, the measured output takes the position nearest to the
-    /// implied output. Returns its travel [counts].
+    /// implied output. Returns the travel of the measured output [counts].
     #[cold]
     fn jump<T: Real>(&mut self, table: &CountTable<T>, by: i32) -> i32 {
         self.output.advance(&table.output, by.wrapping_neg());

@@ -1,50 +1,51 @@
-//! What the observer gives out once a control period: each value with its variance and with whether it may be used.
+//! Published estimates of the observer, once per control period: value, variance and validity of each quantity.
 
 use crate::numbers::Real;
 use parameters::ContactState;
 
-/// A value, how uncertain it is, and whether the observer stands by it.
+/// Estimated quantity with its variance and validity flag.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Estimate<T: Real> {
-    /// Best guess; always finite.
+    /// Estimated value; always finite.
     pub value: T,
-    /// Variance, in the square of the value's unit; always finite.
+    /// Variance in the square of the value's unit; always finite.
     pub variance: T,
-    /// False where the observer refuses: the value is then the last or the designed one, and only a guess.
+    /// False if the estimate must not be used: the value is then the last valid or the designed value.
     pub valid: bool,
 }
 
-/// A shaft: where it is and how fast it turns.
+/// Position and speed of a shaft.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Shaft<T: Real> {
-    /// Whole turns since the observer began, wrapping.
+    /// Whole turns since the first reading, wrapping.
     pub turns: i32,
-    /// What is left, from 0 to 1 [turns].
+    /// Position within the turn, from 0 to 1 [turns].
     pub fraction: T,
-    /// [rad/s].
+    /// Speed [rad/s].
     pub speed: T,
 }
 
-/// Which encoders the estimates rest on.
+/// Encoders on which the estimates are based.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
-    /// Motor and output encoder.
+    /// Motor encoder and output encoder.
     Both,
-    /// The motor encoder alone, and why. The load cannot be seen while the gap is open.
+    /// Motor encoder alone, with the fault of the output encoder. The load is not observable while the gap is open.
     MotorOnly(OutputFault),
-    /// No motor encoder either, and why: nothing is valid, and what is not heard of is held.
+    /// Neither encoder, with the fault of the motor encoder: no estimate is valid, every value is held.
     Nothing(MotorFault),
 }
 
 impl Default for Source {
-    /// Nothing has been heard yet.
+    /// Source before the first sample.
     fn default() -> Self {
         Self::Nothing(MotorFault::Silent)
     }
 }
 
 impl Source {
-    /// Returns whether the motor may be driven: the motor's place is known, and so is the link's on the scale of the set-points.
+    /// Returns whether the motor may be driven: the motor's position and the link's position on the scale of the
+    /// set-points are known.
     pub fn allows_control(self) -> bool {
         match self {
             Self::MotorOnly(OutputFault::Unheard) => false,
@@ -54,126 +55,127 @@ impl Source {
     }
 }
 
-/// Why the motor encoder is not used.
+/// Reason for which the motor encoder is excluded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MotorFault {
-    /// Nothing is heard of it, or its last reading is more than ten control periods old.
+    /// No reading, or the last reading is more than ten control periods old.
     Silent,
-    /// Its readings are late time after time: it is known where the motor was, which serves for control without compensation.
+    /// Readings are late repeatedly. The delayed position suffices for control without compensation.
     Late,
-    /// Its counts stood still at once while it turned, or while the output went on by more than teeth let it.
+    /// Counts froze while the motor turned, or while the output moved beyond gap and wind-up.
     Frozen,
-    /// Its counts are where no motor could go from where they were: jumped, slipped, or anything.
+    /// Counts moved farther than the motor can turn: a jump, a slip or random readings.
     Jumped,
 }
 
-/// Why the output encoder is not used.
+/// Reason for which the output encoder is excluded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OutputFault {
-    /// There is none by design.
+    /// The joint has no output encoder by design.
     Absent,
-    /// It has given no reading since the observer began: the link's place on the scale of the set-points is not known yet, and the
+    /// No reading since the observer started: the link's position on the scale of the set-points is unknown, and the
     /// compensation gives no torque.
     Unheard,
-    /// It has given no fresh reading for 10 ms.
+    /// No fresh reading for 10 ms.
     Silent,
-    /// Its counts stand still while the motor turns.
+    /// Counts froze while the link or the motor moved.
     Frozen,
-    /// It puts the gap coordinate where it cannot be: jumped, offset, slipping or failing.
+    /// Counts imply an impossible deflection: jump, offset, slip or defect.
     OutOfRange,
 }
 
-/// What is known of the signs of torque and motor encoder.
+/// Result of the sign check of torque and motor encoder (O25).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum TorqueResponse {
-    /// Large torques have not shown it yet.
+    /// Large torques have not revealed the signs yet.
     #[default]
     Unknown,
-    /// Likewise, and the motor runs against its torque, faster and faster: that may be a load. A moment without torque
-    /// tells: the compensation gives none.
+    /// Signs not revealed yet; the motor accelerates against its torque, possibly driven by a load. The compensation
+    /// gives no torque for a moment to decide.
     Tested,
-    /// A positive torque drives the motor the way in which its counts go up.
+    /// A positive torque increases the motor's counts.
     Right,
-    /// A positive torque drives the motor the way in which its counts go down: torque or motor encoder has the wrong sign. The observer
-    /// says so until it is started anew, and the compensation gives no torque.
+    /// A positive torque decreases the motor's counts: torque or motor encoder has the wrong sign. Published until the
+    /// observer restarts; the compensation gives no torque.
     Reversed,
 }
 
-/// What was wrong with the last samples. The observer goes on, with what it had.
+/// Defects of the last samples. The observer continues with its previous state.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Notices {
-    /// The torque was not a number, or more than twice what the motor can give; none was assumed. Until 20 ms after it nothing
-    /// is learnt, and gap and torques are not valid.
+    /// The torque was not a number or exceeded twice the motor's limit; the observer used zero. For the next 20 ms no
+    /// parameter is updated, and gap, contact and torques are invalid.
     pub torque_unknown: bool,
-    /// The period was too short or too long, or time went backwards.
+    /// The period was too short or too long, or time ran backwards.
     pub out_of_time: bool,
-    /// The motor's counts were further away than it can turn, and were not believed.
+    /// The motor's counts moved farther than the motor can turn; the reading was rejected.
     pub motor_implausible: bool,
-    /// The motor's counts are elsewhere time after time: they are not used until they agree with the output's again. Where
-    /// they do not, the encoder has slipped, and the offset is learnt anew.
+    /// Four motor readings in a row were too far away. The encoder is excluded until its readings agree with the output
+    /// encoder. Without agreement the encoder has slipped, and the offset is estimated anew.
     pub motor_jumped: bool,
 }
 
-/// All estimates of one control period. A positive gap coordinate, force or torque drives the load forwards.
+/// Estimates of one control period. A positive gap coordinate, force or torque drives the load forwards.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Estimates<T: Real> {
-    /// What the rest stands on.
+    /// Encoders in use.
     pub source: Source,
-    /// What was wrong with the samples.
+    /// Defects of the samples.
     pub notices: Notices,
-    /// What is known of the signs of torque and motor encoder. Messages to a host carry whether it is `Reversed`.
+    /// Result of the sign check. Messages to a host carry only whether the result is `Reversed`.
     pub torque_response: TorqueResponse,
     /// Gap coordinate X = u_s - 2 u_c: from -2b to 2b while every mesh is free [m].
     pub gap: Estimate<T>,
-    /// Its rate [m/s].
+    /// Rate of the gap coordinate; zero in contact [m/s].
     pub gap_rate: T,
-    /// By how much the gears' transmission error, as far as it is learnt, shifts both flanks along the gap coordinate now
-    /// [m].
+    /// Shift of both flanks along the gap coordinate by the estimated transmission error [m].
     pub flank_shift: T,
-    /// By how much that grows for each radian of the link [m/rad].
+    /// Change of the flank shift per radian of the link [m/rad].
     pub flank_shift_slope: T,
-    /// Contact by the mesh force alone, with hysteresis and persistence: late, but needs no width. `Separated` also
-    /// stands for unknown when `contact_valid` is false.
+    /// Contact by the mesh force alone, with hysteresis and persistence: late, but independent of the half-gap.
+    /// `Separated` also stands for unknown when `contact_valid` is false.
     pub contact: ContactState,
-    /// Contact by force and gap coordinate: what a controller should use.
+    /// Contact by force and gap coordinate, for use by a controller.
     pub reported_contact: ContactState,
-    /// Whether the reported contact may be used: not where it is unknown, nor on teeth whose transmission error shifts a
-    /// flank over the middle of the gap.
+    /// Validity of the reported contact: false if the contact is unknown, or if the transmission error shifts a flank
+    /// over the middle of the gap.
     pub contact_valid: bool,
-    /// Contact has held for long enough, with enough force, that the observer learns from it.
+    /// The last learning interval was in settled contact, from which the observer estimates parameters.
     pub settled: bool,
-    /// Torque that the meshes pass on, referred to the carrier [N m].
+    /// Torque through the meshes, referred to the carrier [N m].
     pub mesh_torque: Estimate<T>,
-    /// Everything that brakes the link: friction, weight, what it touches [N m].
+    /// Load torque on the link: friction, weight and external forces, positive if it brakes [N m].
     pub load_torque: Estimate<T>,
-    /// Half-backlash b of each mesh, all meshes alike [m].
+    /// Half-backlash b of each mesh, equal in all meshes [m].
     pub half_backlash: Estimate<T>,
-    /// Whether a controller may use the half-backlash: it is known where it was learnt. `half_backlash.valid` also requires that the
-    /// half-backlash can hardly differ where the link is now. Messages to a host leave this field out.
+    /// Permission for a controller to use the half-backlash: its variance is small at the angle where it was estimated.
+    /// `half_backlash.valid` also requires a small variance at the link's present angle. Messages to a host leave this
+    /// field out.
     pub half_backlash_usable: bool,
-    /// By how much the motor encoder leads the output encoder with every tooth centred, beyond where they were at the
+    /// Lead of the motor encoder over the output encoder with every tooth centred, relative to the positions at the
     /// start; at the output [rad].
     pub encoder_offset: Estimate<T>,
     /// Torsional compliance from sun to link, meshes included, referred to the output [rad/(N m)].
     pub compliance: Estimate<T>,
-    /// How old output readings are beyond what their time says, less the same of the motor's [s].
+    /// Age of output readings beyond their time stamps, less the same excess of the motor's readings [s].
     pub skew: Estimate<T>,
-    /// Torque that the motor loses whatever its direction: what was commanded less what it gives [N m].
+    /// Torque bias of the motor: commanded less delivered torque, independent of the direction [N m].
     pub torque_bias: Estimate<T>,
-    /// Dry friction of the motor, as far as it does not grow with the load [N m].
+    /// Dry friction of the motor, without the part that grows with the load [N m].
     pub motor_friction: Estimate<T>,
-    /// Cogging of the motor as far as it is learnt, referred to the link: a and b of the driving torque a sin(n theta) + b cos(n
-    /// theta), with theta the motor's angle and n the joint file's `cogging_periods_per_turn` [N m]. Messages to a host leave it out.
+    /// Estimated cogging of the motor, referred to the link: a and b of the driving torque a sin(n theta) + b cos(n
+    /// theta), with the motor angle theta and n the joint file's `cogging_periods_per_turn` [N m]. Messages to a host
+    /// leave this field out.
     pub cogging: [T; 2],
-    /// Inertia of link and carrier over what the joint file has; the motor's torque constant is in it, as it is in the
-    /// torques [-].
+    /// Inertia of link and carrier over the joint file's value. An error of the motor's torque constant scales this
+    /// ratio, as it scales the torques [-].
     pub link_inertia_ratio: Estimate<T>,
-    /// Angle by which the motor leads the link, referred to the output, counted from where both stood at the first reading of the
-    /// output encoder; encoder errors that were learnt are taken out [rad]. `encoder_offset` is its value with every tooth centred.
-    /// Where the zeros of the two encoders lie does not enter. Messages to a host leave it out.
+    /// Lead of the motor over the link since the first reading of the output encoder, at the output, without the
+    /// estimated encoder errors [rad]. With every tooth centred, `motor_lead` equals `encoder_offset`. The zeros of the
+    /// encoders have no influence. Messages to a host leave this field out.
     pub motor_lead: T,
-    /// Motor shaft; encoder errors that were learnt are taken out.
+    /// Motor shaft, without the estimated encoder errors.
     pub motor: Shaft<T>,
-    /// Link; likewise. Motor only, this is what the motor implies.
+    /// Link, without the estimated encoder errors. Without an output encoder the link is inferred from the motor.
     pub link: Shaft<T>,
 }

@@ -1,9 +1,9 @@
-//! What an observer has learnt as bytes that outlive it: saved and loaded outside the tick, refused when they are
-//! damaged, of another version or of another joint.
+//! Saved parameters of an observer, as bytes. Saving and loading happen outside the tick; loading rejects memories that
+//! are damaged, of another version or of another joint.
 //!
-//! Layout, little-endian: mark, version, number of parameters, identity of joint and encoders, where the encoders'
-//! zeros were, parameters, factors of their covariance, bias with its covariance, the link's mobility with its variance,
-//! digest over all of it.
+//! Layout, little-endian: mark, version, number of parameters, identity of joint and encoders, encoder zeros at the
+//! start, parameters, factors of their covariance, bias and friction with their covariance, mobility of the link with
+//! its variance, digest of all bytes before.
 
 use core::fmt;
 
@@ -11,10 +11,10 @@ use super::learnt::Learnt;
 use super::tables::ObserverTables;
 use crate::numbers::{Real, digest};
 
-/// Bytes of a memory.
+/// Size of a memory [bytes].
 pub const MEMORY_BYTES: usize = 544;
 
-/// A memory.
+/// Serialized parameters.
 pub type Memory = [u8; MEMORY_BYTES];
 
 const MARK: u32 = u32::from_le_bytes(*b"JOBS");
@@ -23,18 +23,18 @@ const DIGEST_AT: usize = MEMORY_BYTES - 8;
 /// Bytes before the parameters.
 const HEAD: usize = 24;
 
-/// Why a memory is not taken.
+/// Reason for rejecting a memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MemoryError {
-    /// It is no memory of an observer, or not a whole one.
+    /// Not a memory of an observer, or incomplete.
     NotAMemory,
-    /// It is of another version of this program.
+    /// Written by another version.
     WrongVersion,
-    /// Its digest does not fit: some of it was lost.
+    /// Digest mismatch: bytes were lost or changed.
     Damaged,
-    /// It belongs to another joint, other encoders or an observer with another number of parameters.
+    /// Belongs to another joint, other encoders or an observer with another number of parameters.
     OtherJoint,
-    /// It holds a number that is none, or that no joint of this design can have.
+    /// Contains NaN, or a number that no joint of this design can have.
     OutOfRange,
 }
 
@@ -55,7 +55,7 @@ impl fmt::Display for MemoryError {
 
 impl core::error::Error for MemoryError {}
 
-/// What has been learnt so far; `start` is where the encoders' zeros are, in units of their difference.
+/// Serializes the estimated parameters; `start` is the position of the encoders' zeros in units of their difference.
 pub(super) fn save<T: Real, const P: usize>(tables: &ObserverTables<T>, start: i64, learnt: &Learnt<T, P>) -> Memory {
     let mut memory = [0; MEMORY_BYTES];
     let mut writer = Writer { bytes: memory.iter_mut() };
@@ -73,7 +73,7 @@ pub(super) fn save<T: Real, const P: usize>(tables: &ObserverTables<T>, start: i
     memory
 }
 
-/// Goes on from what was saved; where the encoders' zeros were. Refused memories change nothing.
+/// Restores saved parameters and returns the position of the encoders' zeros. A rejected memory changes nothing.
 pub(super) fn load<T: Real, const P: usize>(
     memory: &[u8],
     tables: &ObserverTables<T>,
@@ -102,11 +102,11 @@ pub(super) fn load<T: Real, const P: usize>(
     learner.set_numbers(&mut next);
     bias.set_numbers(&mut next);
     inertia.set_numbers(&mut next);
-    // What is not a number is in no range.
+    // NaN fails every range check.
     if !(learner.is_possible(tables) && bias.is_possible(&tables.contact) && inertia.is_possible(&tables.inertia)) {
         return Err(MemoryError::OutOfRange);
     }
-    // What was weighed against other numbers is not learnt by these.
+    // Pending samples were evaluated with the old parameters and are discarded.
     learnt.interrupt();
     learnt.learner = learner;
     learnt.bias = bias;
@@ -114,9 +114,9 @@ pub(super) fn load<T: Real, const P: usize>(
     Ok(start)
 }
 
-/// The numbers in a memory, in their order: parameters, factors of their covariance, column by column down to the diagonal,
-/// bias and friction with their variances and covariance, mobility and its variance. [`Observer::load`](super::Observer::load) says
-/// whether they are sound.
+/// Numbers of a memory in order: parameters, covariance factors column by column down to the diagonal, bias and
+/// friction with variances and covariance, mobility and its variance. [`Observer::load`](super::Observer::load) checks
+/// their ranges.
 ///
 /// ```
 /// use model_core::observer::design::{design_observer, observer_settings};
@@ -135,7 +135,7 @@ pub fn memory_numbers(memory: &Memory) -> impl Iterator<Item = f32> {
     numbers.iter().map(|bytes| f32::from_le_bytes(*bytes))
 }
 
-/// Digest over all bytes but the digest's own.
+/// Digest of all bytes before the digest.
 fn digest_of(memory: &[u8]) -> u64 {
     memory.iter().take(DIGEST_AT).fold(digest::START, |running, byte| digest::chain(running, (*byte).into()))
 }
@@ -149,7 +149,7 @@ impl Writer<'_> {
         bytes.iter().zip(self.bytes.by_ref()).for_each(|(byte, place)| *place = *byte);
     }
 
-    /// Not inlined, as the reader's is not: there are more than a hundred calls, and time enough.
+    /// Not inlined, like the reader's counterpart: more than a hundred calls, outside the tick.
     #[inline(never)]
     fn number<T: Real>(&mut self, number: T) {
         self.put(&(number.to_f64() as f32).to_le_bytes());

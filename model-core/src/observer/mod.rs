@@ -1,17 +1,17 @@
-//! Where the gap is: from encoder counts and motor torque to gap coordinate, contact, torques and everything about the
-//! joint that they depend on, once a control period. [`crate::compensation`] makes use of it.
+//! Observer: estimates gap coordinate, contact, torques and joint parameters from encoder counts and motor torque, once
+//! per control period. [`crate::compensation`] uses the estimates.
 //!
-//! Five parts with a state of their own, each initialised in one place and stepped from one place, [`Observer::step`]:
+//! [`Observer::step`] steps five parts, each with its own state:
 //!
-//! | part | from | to |
+//! | part | input | output |
 //! |---|---|---|
-//! | `sensors` | raw counts and times | counts that are exact over any number of turns and over wrap-around, ages, notices |
-//! | `filters` | counts, commanded torque | the motor side's torque into the meshes; the link's angle, speed and load torque |
-//! | `contact` | mesh force, deflection | which flank touches |
-//! | `learnt` | all of these, in rest and in the open gap | half-gap, offset, compliance, skew, error maps, bias, inertia, and how uncertain they are |
-//! | `health` | counts, deflection | whether the output encoder is used, and what is known of the link without it |
+//! | `sensors` | raw counts and times | counts, exact over turns and wrap-around (O1), ages, notices |
+//! | `filters` | counts, commanded torque | torque taken from the motor (O2, O3); angle, speed, load torque of the link (O4) |
+//! | `contact` | mesh force, deflection | flank in contact (O8, O10) |
+//! | `learnt` | outputs of the rows above | parameters of joint, encoders and motor, with their variances (O6 to O20) |
+//! | `health` | counts, deflection | encoders in use (O21 to O25); link state without output encoder (O26, O27) |
 //!
-//! [`Estimates`] are what comes out. `docs/theory/observer.md` derives all of it and says what it cannot know.
+//! [`Estimates`] are the published result. `docs/theory/observer.md` lists equations and limits.
 
 mod contact;
 #[cfg(feature = "design")]
@@ -49,9 +49,9 @@ pub use probe::{Probe, Progress, Refusal};
 pub use samples::{Reading, Samples};
 pub use tables::{ObserverTables, ProbeTable};
 
-/// The observer of one joint. `P` is [`PLAIN`] or [`MAPPED`].
+/// Observer of one joint. `P` is [`PLAIN`] or [`MAPPED`].
 ///
-/// A joint whose gap is narrower than its designer was told is swung to and fro twice a second:
+/// The joint of this example has a narrower gap than its design states; a torque swings it to and fro twice a second:
 ///
 /// ```
 /// use model_core::gears::{Tables, design::design};
@@ -89,14 +89,14 @@ pub struct Observer<'tables, T: Real, const P: usize> {
 }
 
 impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
-    /// An observer that has seen nothing yet and knows what was designed.
+    /// Builds an observer with the designed parameters.
     pub fn new(tables: &'tables ObserverTables<T>) -> Self {
         let mut observer = Self::unbegun(tables);
         observer.begin();
         observer
     }
 
-    /// Builds a new observer where it stays, on a stack that has no room for a second one.
+    /// Builds an observer in place, for stacks without room for a second one.
     pub fn new_in<'place>(
         place: &'place mut MaybeUninit<Self>,
         tables: &'tables ObserverTables<T>,
@@ -106,13 +106,13 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         observer
     }
 
-    /// Its stack is free again when the parts begin.
+    /// Not inlined, so that its stack is free again when the parts are initialised.
     #[inline(never)]
     fn put<'place>(place: &'place mut MaybeUninit<Self>, tables: &'tables ObserverTables<T>) -> &'place mut Self {
         place.write(Self::unbegun(tables))
     }
 
-    /// An observer whose published estimates do not follow from the tables yet.
+    /// Builds an observer whose parts are not initialised from the tables yet.
     #[inline(always)]
     fn unbegun(tables: &'tables ObserverTables<T>) -> Self {
         let has_output = tables.counts.has_output;
@@ -127,31 +127,31 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         }
     }
 
-    /// Back to what was designed, in its place.
+    /// Resets the observer in place to the designed parameters.
     pub fn restart(&mut self) {
         self.clear();
         self.begin();
     }
 
-    /// Its stack is free again when the parts begin.
+    /// Not inlined, so that its stack is free again when the parts are initialised.
     #[inline(never)]
     fn clear(&mut self) {
         *self = Self::unbegun(self.tables);
     }
 
-    /// Hands the tables to the parts that have not taken them yet; what follows from them is published.
+    /// Initialises the parts from the tables and publishes the initial parameters.
     fn begin(&mut self) {
         self.learnt.begin(self.tables);
         self.find_errors();
         self.say_learnt();
     }
 
-    /// The estimates of the last step.
+    /// Estimates of the last step.
     pub fn estimates(&self) -> &Estimates<T> {
         &self.estimates
     }
 
-    /// Takes the samples of one control period; the estimates that follow.
+    /// Processes the samples of one control period and returns the updated estimates.
     pub fn step(&mut self, samples: &Samples<T>) -> &Estimates<T> {
         let tables = self.tables;
         let sensed = self.sensors.step(tables, samples);
@@ -202,7 +202,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         &self.estimates
     }
 
-    /// Whether the motor goes where the torque drives it.
+    /// Checks the signs of torque and motor encoder (O25).
     #[inline(always)]
     fn check_response(&mut self, sensed: &Sensed<T>) {
         let response = &mut self.health.response;
@@ -214,7 +214,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         self.estimates.torque_response = response.response();
     }
 
-    /// What has been learnt so far, as bytes.
+    /// Serializes the estimated parameters.
     ///
     /// ```
     /// use model_core::observer::design::{design_observer, observer_settings};
@@ -236,7 +236,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         memory::save(self.tables, self.sensors.counts.start, &self.learnt)
     }
 
-    /// Goes on from what was saved. Refused memories change nothing.
+    /// Restores saved parameters. A rejected memory changes nothing.
     pub fn load(&mut self, memory: &[u8]) -> Result<(), MemoryError> {
         let start = memory::load(memory, self.tables, &mut self.learnt)?;
         self.find_errors();
@@ -248,13 +248,13 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         Ok(())
     }
 
-    /// Both sides put together.
+    /// Combines motor side and link side into deflection and force (O7, O9).
     #[inline]
     fn fuse(&self) -> Fused<T> {
         self.learnt.fuse(self.tables, &self.sensors, &self.filters, self.health.both_encoders())
     }
 
-    /// Which flank touches, and what the meshes pass on.
+    /// Detects the contact (O8, O10) and sets the mesh torque.
     #[inline]
     fn tell_contact(&mut self, fused: &Fused<T>) {
         let tables = self.tables;
@@ -272,7 +272,8 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         } else {
             self.contact.reported = by_force;
         }
-        // Where a light contact cannot be told from none, what the motor side says of the force is the best guess.
+        // Before the half-gap is known, a light contact cannot be distinguished from an open gap: the motor side's
+        // force is used.
         let unsure = both && !known.half_gap_serves;
         let open = self.contact.reported.is_none() && !unsure;
         let lever = if open { T::ZERO } else { tables.levers.output };
@@ -280,7 +281,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         self.estimates.mesh_torque.value = lever * force;
     }
 
-    /// Nothing can be said without the motor encoder, which was given up in this period.
+    /// Holds the estimates after the motor encoder was excluded in this period.
     #[cold]
     fn lose_motor(&mut self, last: Advance) -> &Estimates<T> {
         self.sensors.counts.doubt_motor(&self.tables.counts, last);
@@ -289,7 +290,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         self.say_nothing()
     }
 
-    /// The motor encoder that was given up is used again if its readings make sense and agree with the output's.
+    /// Readmits the motor encoder once its readings are plausible and agree with the output encoder.
     #[cold]
     fn look_for_motor(&mut self, outlook: Outlook) -> &Estimates<T> {
         let tables = self.tables;
@@ -301,7 +302,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         self.find_errors();
         let deflection = self.fuse().of_teeth();
         if let Some(back) = self.health.finds_motor(outlook, &self.learnt, deflection) {
-            // Where it has slipped nobody knows how far: teeth in the middle of the gap are the best guess.
+            // The distance of a slip is unknown: assume teeth in the middle of the gap.
             let slipped = back == Return::Otherwise;
             let by = if slipped { deflection.over(tables.counts.length).to_i64() } else { 0 };
             self.sensors.counts.trust_motor(&tables.counts, by);
@@ -311,13 +312,13 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
                 self.say_learnt();
             }
             self.filters.find_motor(tables, self.health.motor_counts(), self.health.both_encoders());
-            // What its first period says is the first that is given out.
+            // The next period publishes the first estimates after readmission.
             return &self.estimates;
         }
         self.say_nothing()
     }
 
-    /// Holds the estimates while the motor encoder is not used. Without torque the teeth pass on nothing.
+    /// Holds the estimates while the motor encoder is excluded; the mesh torque is set to zero.
     fn say_nothing(&mut self) -> &Estimates<T> {
         self.filters.drive.hold();
         self.filters.mesh_torque = T::ZERO;
@@ -325,7 +326,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         &self.estimates
     }
 
-    /// Goes on without the output encoder, which was given up: it is where it was going, if that is known.
+    /// Continues without the output encoder, which was excluded in this period. The link keeps its last motion, if known.
     #[cold]
     fn rely_on_motor(&mut self, last: Option<LastMotion<T>>) {
         let tables = self.tables;
@@ -338,7 +339,8 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         self.sensors.counts.imply();
         load.speed = self.filters.drive.speed * tables.levers.per_ratio;
         load.torque = self.health.load_torque_before();
-        // The link is where the teeth allow it to be; where exactly, the next contact shows.
+        // The link is placed on the flank in contact, or in the middle of the gap; the next contact corrects the
+        // position.
         let side: T = sign(self.contact.by_force.flank);
         let [half_gap, _] = self.learnt.shape();
         let implied = self.fuse();
@@ -352,12 +354,12 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         }
     }
 
-    /// Learns from a period.
+    /// Adds a period to the learning interval and does due estimation work.
     fn learn(&mut self, fused: &Fused<T>) {
         let tables = self.tables;
         self.learnt.add(fused);
         if self.learnt.in_the_middle(&tables.learner) {
-            // Where few periods make an interval, the rest of the last one's work is due now.
+            // With few periods per interval, the remaining work of the last interval is due now.
             while self.learnt.has_work() {
                 self.work();
             }
@@ -371,7 +373,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         }
     }
 
-    /// Does a task of learning.
+    /// Does one task of the parameter estimation.
     fn work(&mut self) {
         let both = self.health.both_encoders();
         let outcome = self.learnt.work(self.tables, &mut self.filters.load, both);
@@ -393,7 +395,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         self.heed(outcome);
     }
 
-    /// The output encoder turns with the motor again; by how much it has slipped, as a deflection [m].
+    /// Readmits the output encoder; `slip` is its slip as a deflection [m].
     #[cold]
     fn trust_output(&mut self, (back, slip): (Return, T)) {
         let table = &self.tables.counts;
@@ -406,7 +408,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         }
     }
 
-    /// What others have to know of a period's learning.
+    /// Applies the outcome of the parameter estimation to health and outputs.
     fn heed(&mut self, outcome: Outcome) {
         match outcome {
             Outcome::Nothing => {}
@@ -423,20 +425,20 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         }
     }
 
-    /// Learns the motor's cogging from what was said in this period.
+    /// Updates the cogging estimate (O17) from the estimates of this period.
     fn learn_cogging(&mut self) {
         let said = &self.estimates;
         let seen = [said.motor.fraction, said.motor.speed, said.load_torque.value];
         self.estimates.cogging = self.learnt.learn_cogging(self.tables, seen);
     }
 
-    /// Finds exactly what the deflection depends on by where the shafts are.
+    /// Recomputes the position-dependent errors (maps and transmission error) from the shaft positions.
     fn find_errors(&mut self) {
         let both = self.health.both_encoders();
         self.learnt.find_errors(self.tables, &self.sensors, &self.filters, both);
     }
 
-    /// Gives the estimates of a period out.
+    /// Publishes the estimates of a period.
     #[inline]
     fn say(&mut self, fused: &Fused<T>) {
         let state = outputs::State {
@@ -450,7 +452,7 @@ impl<'tables, T: Real, const P: usize> Observer<'tables, T, P> {
         state.say(fused, &mut self.estimates);
     }
 
-    /// Gives the estimates out that change once a learning interval.
+    /// Publishes the estimates that change once per learning interval.
     fn say_learnt(&mut self) {
         let both = self.health.both_encoders();
         outputs::say_learnt(self.tables, &self.learnt, both, &mut self.estimates);

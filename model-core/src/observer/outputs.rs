@@ -1,5 +1,5 @@
-//! From what the observer holds to its estimates: values in the user's units, their variances, and whether they are valid.
-//! Nothing is decided or learnt here.
+//! Conversion of the observer's state to published estimates: values in the user's units, variances (O18, O19, O20) and
+//! validity flags.
 
 use super::contact::Contact;
 use super::estimates::{Estimate, Estimates, MotorFault, Shaft, Source};
@@ -14,20 +14,20 @@ use super::tables::{EncoderTable, ObserverTables};
 use crate::gears::contact_state;
 use crate::numbers::Real;
 
-/// When what was learnt is valid.
+/// Limits of the variances of valid parameters.
 trait Validity: Real {
-    /// Largest standard deviation of a valid half-backlash, and of a valid encoder offset, as a part of the half-gap [-]: at
-    /// two of them a flank is a quarter of the half-gap off.
+    /// Largest standard deviation of a valid half-backlash and of a valid encoder offset, over the half-gap [-]: two
+    /// standard deviations move a flank by a quarter of the half-gap.
     const HALF_GAP: Self = Self::EIGHTH;
-    /// Largest variance of a valid compliance, as a part of its square [-]: a standard deviation of 22 %.
+    /// Largest variance of a valid compliance over the squared compliance [-]: a standard deviation of 22 %.
     const COMPLIANCE: Self = Self::TWENTIETH;
-    /// Largest variance of valid bias and friction, as a part of that before anything was learnt [-].
+    /// Largest variance of valid bias and friction over their initial variance [-].
     const BIAS: Self = Self::HALF;
 }
 
 impl<T: Real> Validity for T {}
 
-/// Everything that the estimates of a period are made of.
+/// Parts of the observer from which the estimates of a period are computed.
 #[derive(Clone, Copy)]
 pub(super) struct State<'now, T: Real, const P: usize> {
     pub tables: &'now ObserverTables<T>,
@@ -39,7 +39,7 @@ pub(super) struct State<'now, T: Real, const P: usize> {
 }
 
 impl<T: Real, const P: usize> State<'_, T, P> {
-    /// The estimates of a period.
+    /// Publishes the estimates of a period.
     #[inline]
     pub fn say(&self, fused: &Fused<T>, estimates: &mut Estimates<T>) {
         let tables = self.tables;
@@ -57,9 +57,9 @@ impl<T: Real, const P: usize> State<'_, T, P> {
         estimates.flank_shift_slope = slope;
         estimates.contact = contact_state(self.contact.by_force.flank);
         estimates.reported_contact = contact_state(self.contact.reported);
-        // Without a half-gap, force alone decides, and what it says is sure; so it is without an output encoder. Flanks that
-        // the transmission error shifts over the middle of the gap hammer at every tooth: what touches now is over before
-        // anyone could act on it.
+        // A reported flank needs no valid gap coordinate: without a half-gap or an output encoder, force alone decides.
+        // Flanks that the transmission error shifts over the middle of the gap hammer at every tooth: each contact ends
+        // before a controller could react.
         estimates.contact_valid = (touching || gap.valid) && !self.learnt.uncertainty.flanks_swap;
         estimates.mesh_torque.valid = estimates.contact_valid;
         estimates.load_torque.value = self.filters.load.torque * estimates.link_inertia_ratio.value;
@@ -69,7 +69,7 @@ impl<T: Real, const P: usize> State<'_, T, P> {
         estimates.link = link;
     }
 
-    /// Gap coordinate with its variance.
+    /// Computes the gap coordinate (O8) with its variance (O18, O19).
     #[inline]
     fn gap(&self, fused: &Fused<T>, both: bool, touching: bool) -> Estimate<T> {
         let tables = self.tables;
@@ -78,12 +78,12 @@ impl<T: Real, const P: usize> State<'_, T, P> {
             self.gap_unseen(fused, touching)
         } else if known.half_gap_serves {
             let [touches, open] = known.gap_variance;
-            // The estimate must last until the next period: teeth on their way do not stand still.
+            // The estimate must last until the next period, during which teeth in the open gap move on.
             let goes_on = fused.rate * tables.period;
             let variance = if touching { touches } else { open + goes_on * goes_on };
             (fused.flank_shift + self.learnt.position(fused.of_teeth(), T::ZERO).gap(known.mesh_share), variance)
         } else {
-            // Without a half-gap: less the wind-up of the force.
+            // Without a half-gap the wind-up of the force is subtracted.
             let [_, compliance] = self.learnt.shape();
             let wind_up = compliance - tables.learner.mesh_compliance;
             let of_wind_up = wind_up * known.force_deviation;
@@ -95,7 +95,7 @@ impl<T: Real, const P: usize> State<'_, T, P> {
         Estimate { value, variance, valid }
     }
 
-    /// The same without an output encoder.
+    /// Computes gap coordinate and variance (O26) without an output encoder.
     #[cold]
     fn gap_unseen(&self, fused: &Fused<T>, touching: bool) -> (T, T) {
         let [half_gap, _] = self.learnt.shape();
@@ -114,7 +114,7 @@ impl<T: Real, const P: usize> State<'_, T, P> {
         (value, variance.unwrap_or(half_gap * half_gap))
     }
 
-    /// Both shafts, less the encoder errors that were learnt.
+    /// Computes both shafts, without the estimated encoder errors.
     #[inline]
     fn shafts(&self, both: bool) -> (Shaft<T>, Shaft<T>) {
         let (tables, counts) = (self.tables, &self.sensors.counts);
@@ -134,14 +134,14 @@ impl<T: Real, const P: usize> State<'_, T, P> {
     }
 }
 
-/// Without a usable reading of the motor every estimate is held, and none is valid.
+/// Holds the estimates and marks them invalid, without a usable motor reading.
 #[cold]
 pub(super) fn hold<T: Real>(estimates: &mut Estimates<T>, fault: MotorFault) {
     estimates.source = Source::Nothing(fault);
     invalidate(estimates);
 }
 
-/// The estimates stay, but may be wrong.
+/// Keeps the values and marks gap, contact and torques invalid.
 #[cold]
 pub(super) fn invalidate<T: Real>(estimates: &mut Estimates<T>) {
     estimates.contact_valid = false;
@@ -151,7 +151,7 @@ pub(super) fn invalidate<T: Real>(estimates: &mut Estimates<T>) {
     }
 }
 
-/// What is learnt slowly, once a learning interval.
+/// Publishes the parameters that change once per learning interval.
 pub(super) fn say_learnt<T: Real, const P: usize>(
     tables: &ObserverTables<T>,
     learnt: &Learnt<T, P>,
@@ -210,16 +210,16 @@ pub(super) fn say_learnt<T: Real, const P: usize>(
     };
 }
 
-/// A shaft from its counts and the angle beyond them [rad].
+/// Builds a shaft from its counts and the angle beyond the counts [rad].
 fn shaft<T: Real>(table: &EncoderTable<T>, counter: &Counter, beyond: T, speed: T) -> Shaft<T> {
     let fraction = T::from_i32(counter.place() as i32) * table.fraction + beyond * table.turns;
-    // Both ends of the turn at once: a comparison of numbers takes three instructions.
+    // One comparison checks both ends of the turn: a floating-point comparison costs three instructions.
     let within = (fraction - T::HALF).abs() < T::HALF;
     let (turns, fraction) = if within { (counter.turns(), fraction) } else { into_turn(counter.turns(), fraction) };
     Shaft { turns, fraction, speed }
 }
 
-/// A place that may lie in the turn before or after.
+/// Normalises a position that lies in the previous or the next turn.
 #[cold]
 fn into_turn<T: Real>(turns: i32, fraction: T) -> (i32, T) {
     if fraction < T::ZERO {

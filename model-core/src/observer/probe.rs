@@ -1,9 +1,9 @@
-//! The width probe: a motor that wiggles gently against a held load and reads the half-backlash off where it comes to
-//! rest. For joints without an output encoder, or before anything has moved. The user has to hold the load; the probe
-//! refuses when it is not held.
+//! Width probe: the motor pushes gently against a held load, and its rest angles give the half-backlash. For joints
+//! without an output encoder, or before any motion. The user must hold the load; the probe refuses if the load is not
+//! held.
 //!
-//! On either flank the motor comes to rest under one torque and under twice that torque. Twice the first angle less the
-//! second is where it would rest under none: the wind-up, whatever the compliance, is gone. A damping torque keeps
+//! On each flank the motor comes to rest under one torque and under twice that torque. Twice the first angle less the
+//! second is the rest angle without torque (O28): the wind-up cancels for any compliance. A damping torque keeps
 //! landings soft.
 
 use core::fmt;
@@ -12,21 +12,21 @@ use super::estimates::{Estimate, Estimates, Shaft, TorqueResponse};
 use crate::numbers::Real;
 use crate::observer::tables::ProbeTable;
 
-/// Rests that a probe consists of: part of the double torque under which each is taken.
+/// Rests of a probe: sign and multiple of the single torque.
 const RESTS: [(i32, i32); 6] = [(1, 1), (1, 2), (-1, 1), (-1, 2), (1, 1), (1, 2)];
 
-/// Why a probe gives no width.
+/// Reason for which a probe gives no width.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Refusal {
-    /// The motor was turning when the probe began: let it come to rest.
+    /// The motor turned when the probe began; let the motor come to rest.
     NotAtRest,
-    /// The load pushes the teeth against a flank with more than the probe may use: take the load off.
+    /// The load presses the teeth with more torque than the probe may use; remove the load.
     Loaded,
-    /// The motor did not come to rest, or went further than the teeth allow: hold the load.
+    /// The motor did not come to rest, or moved farther than the teeth allow; hold the load.
     NotHeld,
-    /// The motor hardly moved: friction is more than the probe may use, or the joint is blocked.
+    /// The motor hardly moved: friction exceeds the torque of the probe, or the joint is blocked.
     Stuck,
-    /// The first and the last pass do not agree: something moved.
+    /// The first and the last pass disagree: the load moved.
     Unsteady,
     /// Samples were missing or wrong, or torque or motor encoder has the wrong sign.
     BadSamples,
@@ -45,20 +45,20 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// Where a probe stands.
+/// State of a probe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Progress<T: Real> {
-    /// Go on: command the torque and give the estimates of the next period.
+    /// Continue: command the torque and pass the estimates of the next period.
     Running,
-    /// The half-backlash [m].
+    /// Finished: half-backlash [m].
     Done(Estimate<T>),
-    /// No width, and why.
+    /// Refused: no width, with the reason.
     Refused(Refusal),
 }
 
-/// A probe under way.
+/// Running width probe.
 ///
-/// A link that somebody holds, and a motor of which no more than 0.5 N m are used:
+/// In this example somebody holds the link, and the probe uses at most 0.5 N m of the motor:
 ///
 /// ```
 /// use model_core::gears::{Tables, design::design};
@@ -92,22 +92,23 @@ pub struct Probe<'tables, T: Real> {
     table: &'tables ProbeTable<T>,
     begin: Option<Shaft<T>>,
     rest: usize,
-    /// Periods in this rest, and how many of them still.
+    /// Periods of this rest, then periods without motion.
     periods: u32,
     still: u32,
     total: u32,
     torque: T,
-    /// Mean angle beyond the beginning while still [rad].
+    /// Sum of the angles from the start position while at rest [rad].
     sum: T,
     angles: [T; RESTS.len()],
     progress: Progress<T>,
 }
 
 impl<'tables, T: Real> Probe<'tables, T> {
-    /// Part of the gap by which the first and the last pass may differ [-]: beyond it the load has moved.
+    /// Largest difference between the first and the last pass, over the gap [-]: a larger difference means that the
+    /// load moved.
     const UNSTEADY: T = T::EIGHTH;
 
-    /// A probe that has not begun.
+    /// Builds a probe that has not begun.
     pub fn new(table: &'tables ProbeTable<T>) -> Self {
         Self {
             table,
@@ -123,7 +124,8 @@ impl<'tables, T: Real> Probe<'tables, T> {
         }
     }
 
-    /// One control period: the torque to command next [N m], zero once the probe has ended, and where it stands.
+    /// Advances by one control period. Returns the next torque to command [N m], zero once the probe has ended, and the
+    /// state.
     pub fn step(&mut self, estimates: &Estimates<T>) -> (T, Progress<T>) {
         if self.progress == Progress::Running {
             self.progress = self.advance(estimates);
@@ -196,7 +198,8 @@ impl<'tables, T: Real> Probe<'tables, T> {
             return Progress::Refused(Refusal::Unsteady);
         }
         let quarter = T::HALF * T::HALF;
-        // Friction may have kept either rest from its place; what the two passes disagree by may be wrong too.
+        // Friction may have held either rest off its position; the difference of the two passes is added to the
+        // variance.
         let variance = (table.variance + apart * apart) * quarter * quarter;
         Progress::Done(Estimate { value: between * quarter, variance, valid: true })
     }

@@ -1,5 +1,5 @@
-//! What the observer needs as plain numbers, made by `observer::design`: flows over one control period, gains, priors
-//! and thresholds. SI, lengths along the line of action.
+//! Tables of the observer, computed offline by `observer::design`: flows over one control period, gains, priors and
+//! thresholds. SI units; lengths along the line of action.
 
 mod cogging;
 mod inertia;
@@ -10,58 +10,58 @@ pub use cogging::CoggingTable;
 pub use inertia::InertiaTable;
 pub use probe::ProbeTable;
 
-/// The most parameters that the learner may have.
+/// Largest number of estimated parameters.
 pub const MOST_PARAMETERS: usize = 14;
 
-/// Commands that may be on their way to the motor.
+/// Length of the command delay line [control periods].
 pub const MOST_DELAY: usize = 4;
 const _: () = assert!(MOST_DELAY.is_power_of_two());
 
-/// Tables of the observer of one joint with its encoders at one control rate.
+/// Tables of one joint's observer for its encoders and control rate.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct ObserverTables<T: Real> {
-    /// Digest of what a learnt memory must agree with: gears, encoders and joint.
+    /// Digest of name, gears, encoders and priors; a saved memory must have an equal digest.
     pub identity: u64,
-    /// Control periods a second [Hz].
+    /// Control rate [Hz].
     pub control_rate: u32,
     /// Control period [s].
     pub period: T,
-    /// The clock that says when samples were taken.
+    /// Clock of the samples.
     pub clock: ClockTable<T>,
-    /// From counts to one whole number and to angles.
+    /// Conversion of counts to an integer difference and to angles.
     pub counts: CountTable<T>,
     /// Levers.
     pub levers: LeverTable<T>,
-    /// From commanded torque to torque.
+    /// Conversion of commanded torque to air-gap torque.
     pub current: CurrentTable<T>,
-    /// The motor side.
+    /// Filter of the motor side.
     pub drive: DriveTable<T>,
-    /// The load side.
+    /// Filter of the load side.
     pub load: LoadTable<T>,
-    /// The link's inertia.
+    /// Estimation of the link's inertia.
     pub inertia: InertiaTable<T>,
-    /// The motor's cogging.
+    /// Estimation of the motor's cogging.
     pub cogging: CoggingTable<T>,
     /// Contact and torque bias.
     pub contact: ContactTable<T>,
-    /// What is learnt.
+    /// Estimation of the joint's parameters.
     pub learner: LearnerTable<T>,
-    /// When the output encoder is given up and taken back.
+    /// Exclusion and readmission of the encoders.
     pub supervisor: SupervisorTable<T>,
-    /// Whether the motor goes where the torque drives it.
+    /// Check of the signs of torque and motor encoder.
     pub response: ResponseTable<T>,
 }
 
 impl<T: Real> ObserverTables<T> {
-    /// By what the deflection of shafts that stand still may be off at most [m]: half a count of the output, beside which the
-    /// motor's is small. No mean takes that away, nor has it a place among the variances, which are those of shafts that turn.
+    /// Largest rounding error of the deflection at rest [m]: half an output count; the motor's rounding is small beside
+    /// it. Averaging does not reduce this error, and the variances, which hold for turning shafts, do not contain it.
     pub fn rounding(&self) -> T {
         T::HALF * self.counts.output.angle * self.levers.output
     }
 }
 
-/// The clock that says when samples were taken, and what its ticks mean.
+/// Clock of the samples, and limits of intervals in its ticks.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct ClockTable<T: Real> {
@@ -69,59 +69,60 @@ pub struct ClockTable<T: Real> {
     pub tick: T,
     /// Control period [ticks].
     pub period: u32,
-    /// Shortest one that is expected [ticks].
+    /// Shortest accepted control period [ticks].
     pub shortest: u32,
-    /// By how much longer than that one may last [ticks].
+    /// Longest less shortest accepted control period [ticks].
     pub longer: u32,
-    /// Age beyond which a reading counts as lost [ticks].
+    /// Age above which a reading counts as lost [ticks].
     pub oldest: u32,
 }
 
-/// One encoder.
+/// Resolution and limits of one encoder.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct EncoderTable<T: Real> {
-    /// Counts in a turn.
+    /// Counts per turn.
     pub turn: u32,
-    /// Raw counts are modulo this; 0 stands for 2^32.
+    /// Modulus of the raw counts; 0 stands for 2^32.
     pub wraps_at: u32,
-    /// The largest raw count.
+    /// Largest raw count.
     pub last: u32,
-    /// 2^64 over the counts in a turn, from which a place in the turn becomes a phase.
+    /// 2^64 over the counts per turn; converts a position in the turn to a phase.
     pub phase: u64,
-    /// Counts in a control period beyond which a reading is not believed.
+    /// Travel per control period above which a reading is rejected [counts].
     pub fastest: u32,
-    /// [rad/count].
+    /// Angle per count [rad/count].
     pub angle: T,
-    /// [turns/count].
+    /// Turns per count [turns/count].
     pub fraction: T,
-    /// [turns/rad].
+    /// Turns per radian [turns/rad].
     pub turns: T,
 }
 
-/// Motor less ratio times output as a whole number.
+/// Integer difference of motor less ratio times output (O1).
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct CountTable<T: Real> {
-    /// On the motor.
+    /// Motor encoder.
     pub motor: EncoderTable<T>,
-    /// On the link; a copy of the motor's when there is none.
+    /// Output encoder; a copy of the motor encoder on joints without an output encoder.
     pub output: EncoderTable<T>,
-    /// Whether there is an output encoder.
+    /// True on joints with an output encoder.
     pub has_output: bool,
-    /// Whether both encoders know their place in the turn when they begin.
+    /// True if both encoders are absolute within a turn.
     pub absolute: bool,
-    /// Units of the difference in a motor count.
+    /// Units of the difference per motor count.
     pub motor_weight: i64,
-    /// Units of the difference in an output count.
+    /// Units of the difference per output count.
     pub output_weight: i64,
-    /// Whole turns of either shaft change the difference by a multiple of this.
+    /// Modulus of the difference [units]: whole turns of either shaft change the difference by a multiple of the
+    /// modulus.
     pub modulus: i64,
-    /// Mesh periods in a turn of the output: teeth of the ring.
+    /// Mesh periods per output turn: teeth of the ring.
     pub meshes: u32,
-    /// The same as a number.
+    /// Mesh periods per output turn, as a real number.
     pub mesh_periods: T,
-    /// Deflection along the line of action in a unit of the difference [m].
+    /// Deflection along the line of action per unit of the difference [m].
     pub length: T,
 }
 
@@ -131,204 +132,207 @@ pub struct CountTable<T: Real> {
 pub struct LeverTable<T: Real> {
     /// Base radius of the sun [m].
     pub sun: T,
-    /// 1 over it [1/m].
+    /// 1 over the sun's base radius [1/m].
     pub per_sun: T,
-    /// Ratio by teeth times the sun's base radius: torque at the carrier over mesh force, and deflection over output angle
-    /// [m].
+    /// Ratio by teeth times the sun's base radius: carrier torque per mesh force, and deflection per output angle [m].
     pub output: T,
-    /// 1 over it [1/m].
+    /// 1 over `output` [1/m].
     pub per_output: T,
-    /// Motor turns in an output turn, by teeth.
+    /// Motor turns per output turn, by teeth.
     pub ratio: T,
-    /// 1 over it.
+    /// 1 over `ratio`.
     pub per_ratio: T,
 }
 
-/// From commanded torque to torque in the air gap.
+/// Conversion of commanded torque to air-gap torque.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct CurrentTable<T: Real> {
-    /// Whole control periods of delay.
+    /// Whole control periods of the torque delay.
     pub whole_delay: u32,
-    /// What is left of it, as a part of a period.
+    /// Remainder of the torque delay [control periods].
     pub part_delay: T,
-    /// Part of the lacking torque that the current loop makes good in a period.
+    /// Share of the torque error that the current loop removes per period [-].
     pub rise: T,
-    /// Torque beyond which a sample is none [N m].
+    /// Torque above which a sample is rejected [N m].
     pub believed: T,
-    /// Periods after a sample that was none for which what it has left in the filters is not learnt from.
+    /// Periods without parameter updates after a rejected torque sample, whose effect on the filters must fade.
     pub unsure_for: u16,
 }
 
-/// The motor side: state angle, speed, torque taken by the meshes (and friction); air-gap torque known.
+/// Filter of the motor side (O2, O3). State: angle, speed, torque taken by meshes and friction. Input: air-gap torque.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct DriveTable<T: Real> {
-    /// Change of angle over a period for each unit of: speed, taken torque, air-gap torque at the start, wanted torque.
+    /// Change of angle over a period per unit of speed, taken torque, air-gap torque at the start, wanted torque.
     pub angle: [T; 4],
-    /// Change of speed for each unit of: taken torque, air-gap torque at the start, wanted torque.
+    /// Change of speed over a period per unit of taken torque, air-gap torque at the start, wanted torque.
     pub speed: [T; 3],
-    /// Corrections of angle, speed and taken torque for a radian of innovation.
+    /// Gains of angle, speed and taken torque per radian of innovation.
     pub gain: [T; 3],
-    /// The same for readings that are older than a period.
+    /// Gains for readings older than a period.
     pub late_gain: [T; 3],
-    /// Variances of angle and taken torque once settled.
+    /// Steady-state variances of angle and taken torque.
     pub variance: [T; 2],
 }
 
-/// The load side: state angle, speed, load torque; torque from the meshes known.
+/// Filter of the load side (O4). State: angle, speed, load torque. Input: mesh torque.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct LoadTable<T: Real> {
-    /// Change of angle over a period for each unit of: speed, torque from the meshes less load torque.
+    /// Change of angle over a period per unit of speed, and of mesh torque less load torque.
     pub angle: [T; 2],
-    /// Change of speed for each N m of torque from the meshes less load torque.
+    /// Change of speed over a period per newton metre of mesh torque less load torque.
     pub speed: T,
-    /// Corrections of angle, speed and load torque for a radian of innovation.
+    /// Gains of angle, speed and load torque per radian of innovation.
     pub gain: [T; 3],
-    /// Variances of angle and load torque once settled.
+    /// Steady-state variances of angle and load torque.
     pub variance: [T; 2],
-    /// The same with the motor encoder only, where the wind-up of the mesh force tells where the link is.
+    /// Gains without output encoder, where the wind-up of the mesh force measures the link.
     pub motor_only_gain: [T; 3],
-    /// Variances of speed and load torque then, once settled.
+    /// Steady-state variances of speed and load torque without output encoder.
     pub motor_only_variance: [T; 2],
-    /// Deflection along the line of action in a second from rest under one newton metre [m/(N m)].
+    /// Deflection along the line of action per newton metre of load torque, one second after rest [m/(N m)].
     pub deflection_per_torque: T,
 }
 
-/// Contact and torque bias.
+/// Contact detection and torque bias.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct ContactTable<T: Real> {
-    /// Variance of the mesh force from the motor side while it holds still: what noise leaves [N^2].
+    /// Noise variance of the motor side's mesh force, at constant force [N^2].
     pub force_variance: T,
-    /// Variance of cogging and torque ripple as force [N^2].
+    /// Variance of cogging and torque ripple, as mesh force [N^2].
     pub ripple_variance: T,
-    /// Variance of the deflection while torques hold still [m^2].
+    /// Noise variance of the deflection, at constant torques [m^2].
     pub deflection_variance: T,
-    /// Variance of one millisecond's bias reading [N^2].
+    /// Variance of one bias measurement of a millisecond, correlation included [N^2].
     pub bias_noise: T,
-    /// Variance with which bias and dry friction begin [N^2].
+    /// Initial variance of bias and of dry friction [N^2].
     pub bias_prior: T,
-    /// Growth of that variance in one learning interval [N^2].
+    /// Growth of these variances per learning interval [N^2].
     pub bias_drift: T,
-    /// Neither bias nor dry friction goes beyond this [N].
+    /// Largest bias and largest dry friction [N].
     pub bias_limit: T,
-    /// Standard deviation of the rate of the deflection [m/s].
+    /// Standard deviation of the deflection rate [m/s].
     pub rate_deviation: T,
-    /// By how much what is measured lags behind: the output's sampling and filtering [s].
+    /// Lag of the measured deflection: sampling and filtering of the output [s].
     pub lag: T,
-    /// Part of its change in a period by which a mean over a few learning intervals follows [-].
+    /// Smoothing factor per period of a mean over a few learning intervals [-].
     pub smoothing: T,
-    /// Deflection in a learning interval that noise alone can show [m].
+    /// Change of the deflection per learning interval that noise alone can cause [m].
     pub still: T,
-    /// Likewise for each radian that the motor turns while the error maps are unknown [m/rad].
+    /// Change of the deflection per radian of the motor that unknown error maps can cause [m/rad].
     pub still_per_speed: T,
-    /// 1 over the motor speed above which dry friction has its full size [s/rad].
+    /// 1 over the motor speed above which dry friction acts fully [s/rad].
     pub per_turning: T,
-    /// Positions decide about contact once an edge is known to this part of the half-gap [-].
+    /// Standard deviation of an edge, over the half-gap, below which positions decide on contact [-].
     pub known_part: T,
-    /// Part of the torque that the gears add while the motor drives: efficiency less one [-].
+    /// Loss factor while the motor drives: efficiency less 1 [-].
     pub loss_driving: T,
-    /// The same while it is driven [-].
+    /// Loss factor while the motor is driven: 1 over the efficiency, less 1 [-].
     pub loss_driven: T,
 }
 
-/// What is learnt: deflection = side * half-gap + offset + compliance * force + skew * speed + error maps.
+/// Parameter estimation (O11): deflection = side * half-gap + offset + compliance * force + skew * speed + error maps.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct LearnerTable<T: Real> {
-    /// Control periods between updates.
+    /// Length of a learning interval [control periods].
     pub periods: u16,
-    /// 1 over them.
+    /// 1 over `periods`.
     pub per_periods: T,
-    /// The period in their middle, from 1.
+    /// Middle period of an interval, counted from 1.
     pub middle: u16,
-    /// Intervals that make up one deflection to learn from.
+    /// Learning intervals per block; a block gives one deflection for the estimation.
     pub block: u32,
-    /// 1 over them.
+    /// 1 over `block`.
     pub per_block: T,
-    /// How long an interval of so many periods lasts [s].
+    /// Length of a learning interval [s].
     pub span: T,
-    /// Mean of each parameter beforehand.
+    /// Prior mean of each parameter.
     pub mean: [T; MOST_PARAMETERS],
-    /// Standard deviation of each parameter beforehand.
+    /// Prior standard deviation of each parameter.
     pub deviation: [T; MOST_PARAMETERS],
-    /// 1 over the standard deviation of one update's deflection, all that repeats from update to update included [1/m].
+    /// 1 over `noise` [1/m].
     pub weight: T,
-    /// Standard deviation of one update's deflection by itself [m].
+    /// Standard deviation of the deflection of one update: encoder noise, force noise and ripple as wind-up, unmodelled
+    /// encoder errors [m].
     pub noise: T,
-    /// Variance of one update's force [N^2].
+    /// Variance of the force of one update [N^2].
     pub force_noise: T,
-    /// By how much the motor side's force lags behind a force that changes steadily, over the span of an interval [-].
+    /// Lag of the motor side's force behind a steadily changing force, over the length of an interval [-].
     pub force_lag: T,
-    /// Growth of variances in one update, for what wears and warms [-].
+    /// Growth of the variances per learning interval, for wear and temperature [-].
     pub forgetting: T,
-    /// Deflection under one newton in the meshes alone [m/N].
+    /// Compliance of the meshes alone [m/N].
     pub mesh_compliance: T,
 }
 
-/// How soon a shaft can stop.
+/// Stopping time of a shaft.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct StopTable<T: Real> {
-    /// Periods in which whatever the shaft runs into may stop it.
+    /// Shortest time in which an obstacle stops the shaft [control periods].
     pub stop: u8,
-    /// Periods after which readings that stay the same are judged by the deflection alone.
+    /// Time after which unchanged readings are judged by the deflection alone [control periods].
     pub forgotten: u8,
-    /// Half of 1 over the periods in which it may be stopped.
+    /// 1 over twice `stop`.
     pub per_stops: T,
 }
 
-/// When encoders are given up and taken back.
+/// Exclusion and readmission of encoders (O21 to O24).
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct SupervisorTable<T: Real> {
-    /// How soon the link stops.
+    /// Stopping time of the link.
     pub output: StopTable<T>,
-    /// How soon the motor stops.
+    /// Stopping time of the motor.
     pub motor: StopTable<T>,
-    /// Half of the counts by which the largest torque may slow the link down in a period, for each period.
+    /// Half of the link's deceleration by twice the motor's largest torque [counts/period^2].
     pub output_brake: T,
-    /// Half of the counts by which each N m of its torque slows the motor down in a period, for each period.
+    /// Half of the motor's deceleration per newton metre [counts/(period^2 N m)].
     pub motor_brake: T,
-    /// Torque that may brake the motor beside what it gives itself [N m].
+    /// Braking torque on the motor besides its own torque: bias and dry friction [N m].
     pub motor_drag: T,
-    /// Motor counts in one of the output.
+    /// Motor counts per output count.
     pub motor_counts: T,
-    /// Periods in which the motor's counts stand still before that is more than chance.
+    /// Time of unchanged motor counts above which chance is excluded [control periods].
     pub motor_unmoved_after: u16,
-    /// Periods for which readings of the motor must be such as a motor can give, and agree with the output's, before they are
-    /// used again.
+    /// Time for which the readings of an excluded motor encoder must be plausible, and agree with the output encoder,
+    /// before readmission [control periods].
     pub motor_trusted_after: u16,
-    /// The same for readings that stand still, or do not agree.
+    /// Time of plausible readings before readmission if the counts stand still or disagree with the output encoder
+    /// [control periods].
     pub motor_slipped_after: u16,
-    /// Periods without a fresh reading after which it is silent.
+    /// Time without a fresh reading after which the output encoder is silent [control periods].
     pub silent_after: u16,
-    /// Periods in a row outside the possible range after which it has failed.
+    /// Time of the deflection outside its possible range after which a fault of the output encoder is declared [control
+    /// periods].
     pub failed_after: u16,
-    /// Learning intervals in a row in settled contact within the range after which it is taken back.
+    /// Consecutive learning intervals of settled contact within the range before the output encoder is readmitted.
     pub trusted_after: u16,
-    /// Angle by which an output has turned for sure [2^-32 turns].
+    /// Least travel of an output encoder that proves motion [2^-32 turns].
     pub moved: u32,
-    /// Distance beyond the possible range that dynamics alone can bring [m].
+    /// Margin beyond the possible range, for dynamics and estimation errors [m].
     pub margin: T,
-    /// Estimates of the gap are given out up to this standard deviation, as a part of the gap 4b [-].
+    /// Largest standard deviation of a valid gap coordinate, over the gap 4b [-].
     pub widest_part: T,
 }
 
-/// Whether the motor goes where the torque drives it.
+/// Check of the signs of torque and motor encoder (O25).
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct ResponseTable<T: Real> {
-    /// Control periods of a block.
+    /// Length of a block [control periods].
     pub block: u16,
-    /// 1 over them.
+    /// 1 over `block`.
     pub per_block: T,
-    /// Inertia of motor and link at the motor, over the square of a block's length [N m/rad].
+    /// Inertia of motor and link, at the motor, over the squared length of a block [N m/rad].
     pub inertia: T,
-    /// Torque, and change of torque, that shows [N m].
+    /// Torque, and change of torque, that suffices for a vote [N m].
     pub large: T,
-    /// The most that a change of torque can be felt as, over itself: by the motor alone, twice [-].
+    /// Largest acceleration torque of a block over its torque [-]: twice the response of the motor alone. Teeth cause
+    /// larger accelerations.
     pub alone: T,
 }

@@ -1,23 +1,25 @@
-//! Contact by the mesh force alone, with hysteresis and persistence: it needs no half-gap, so it is what there is first.
+//! Contact detection by the mesh force alone, with hysteresis and persistence. Needs no half-gap and is therefore
+//! available first.
 
 use crate::gears::Flank;
 use crate::numbers::Real;
 
-/// Control periods for which the force must say the same before contact by force follows it: noise of one period, and
-/// of the next that the filter carries it into, makes no contact.
+/// Control periods for which the force must indicate a changed contact before the change is accepted. Force noise of
+/// one period, which the filter carries into the next period, then makes no contact.
 const PERSISTENCE: u8 = 3;
 
 /// Contact by force alone.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ByForce {
-    /// The flank that touches.
+    /// Flank in contact.
     pub flank: Option<Flank>,
     wanted: Option<Flank>,
     held: u8,
 }
 
 impl ByForce {
-    /// `deviation` is the standard deviation of the force [N]; it takes two of it to make contact and one to keep it.
+    /// Updates the contact. A contact begins above two `deviation`s, the standard deviation of the force [N], and is
+    /// kept above one.
     pub fn step<T: Real>(&mut self, force: T, deviation: T) -> Option<Flank> {
         let wanted = with_hysteresis(self.flank, force, T::TWO * deviation, deviation);
         if wanted != self.flank {
@@ -31,7 +33,7 @@ impl ByForce {
     }
 }
 
-/// The flank that a force presses: a contact is made by more than `on` and kept by more than `off` [N].
+/// Returns the flank that a force presses: a contact begins above `on` and is kept above `off` [N].
 pub fn with_hysteresis<T: Real>(before: Option<Flank>, force: T, on: T, off: T) -> Option<Flank> {
     let flank = if force > T::ZERO { Flank::Drive } else { Flank::Back };
     let least = if before == Some(flank) { off } else { on };

@@ -1,40 +1,42 @@
-//! Contact by deflection and mesh force together, once the half-gap is known well enough.
+//! Contact detection by deflection and mesh force (O10), once the half-gap is known well enough, and the gap coordinate
+//! (O8). Symbols: d_t = `deflection`, c = `half_gap`, 1/κ = `stiffness`, g = `weight`, y = `beyond`, F_b = `both`.
 
 use super::by_force::with_hysteresis;
 use crate::gears::Flank;
 use crate::numbers::Real;
 
-/// Where the deflection is in the gap, and what weighs it against the force.
+/// Deflection within the gap and its thresholds.
 #[derive(Debug, Clone, Copy)]
 pub struct ByPosition<T: Real> {
-    /// Deflection less the transmission error, with the wind-up still in it [m].
+    /// Deflection d_t without the transmission error, wind-up included [m].
     pub deflection: T,
-    /// How far it goes on while what is measured lags behind; zero where that is within noise [m].
+    /// Travel of the deflection within the measurement lag; zero if the rate is within noise [m].
     pub travel: T,
-    /// Half-gap [m].
+    /// Half-gap c [m].
     pub half_gap: T,
-    /// Distance from an edge of the gap that noise and what is not learnt yet can make [m].
+    /// Deviation of the deflection from an edge by noise and parameter errors: two standard deviations [m].
     pub blur: T,
-    /// Distance from an edge within which light contact is taken for granted [m].
+    /// Distance from an edge within which a light contact is assumed [m].
     pub near: T,
-    /// 1 over the compliance [N/m].
+    /// Stiffness, 1 over the compliance [N/m].
     pub stiffness: T,
-    /// Weight of the deflection in the mesh force, beside the motor side's force [-].
+    /// Weight of the deflection in the combined mesh force; the motor side's force has the rest [-].
     pub weight: T,
 }
 
 impl<T: Real> ByPosition<T> {
-    /// The flank that touches and the mesh force [N], from the motor side's force and the standard deviation of both
-    /// together [N].
+    /// Returns flank in contact and combined mesh force [N], from the motor side's force and the standard deviation of
+    /// the combined force [N].
     pub fn contact(&self, before: Option<Flank>, force: T, deviation: T) -> (Option<Flank>, T) {
         let (contact, both, _) = self.all(before, force, deviation);
         (contact, both)
     }
 
-    /// The same for a controller: teeth that rest within noise of a flank are reported as touching it, however light
-    /// their force, unless it pulls them off. Nothing can be learnt from that, but nothing would be done otherwise. Teeth
-    /// that come across the gap and have not settled yet may touch as soon as they are `near`, and again when they bounce:
-    /// then it takes a force of the motor side's, whose standard deviation is `alone`, to say that they do not.
+    /// Returns contact and mesh force for a controller. Teeth at rest within noise of a flank are reported as touching,
+    /// however light the force, unless the force pulls the teeth off: a controller could not act otherwise, and no
+    /// parameter is estimated from this contact. Teeth that have crossed the gap and have not settled are reported as
+    /// touching within `near` of the flank, also when bouncing, unless the motor side's force, with the standard
+    /// deviation `alone`, pulls the teeth off.
     pub fn reported(
         &self,
         before: Option<Flank>,
@@ -51,38 +53,38 @@ impl<T: Real> ByPosition<T> {
         let rests = if settled {
             beyond > -self.blur && off(both) < deviation
         } else {
-            // Fast ones are there in a moment: that is seen as soon as it happens.
+            // Fast teeth (`travel` not zero) are excluded: `travel` predicts their landing.
             self.travel == T::ZERO && beyond > -self.near && off(force) < alone
         };
         (rests.then_some(nearer), both)
     }
 
-    /// Contact, force, and deflection beyond the nearer edge.
+    /// Returns contact, combined force, and deflection beyond the nearer edge.
     fn all(&self, before: Option<Flank>, force: T, deviation: T) -> (Option<Flank>, T, T) {
         let beyond = self.deflection.abs() - self.half_gap;
         let nearer = self.nearer();
         let (bent, travel) = if nearer == Flank::Drive { (beyond, self.travel) } else { (-beyond, -self.travel) };
         let both = force + self.weight * (bent * self.stiffness - force);
-        // Teeth about to meet count as met: what is measured lags behind them by that much.
+        // Teeth that reach an edge within the measurement lag count as touching.
         let lands = travel > T::ZERO && beyond + travel > T::ZERO;
         let contact = if lands && before.is_none_or(|before| before == nearer) {
             Some(nearer)
         } else if beyond < -self.blur {
             None
         } else {
-            // Whatever the force: teeth at one flank do not touch the other.
+            // Teeth at one flank cannot touch the other, whatever the sign of the force.
             with_hysteresis(before, both, T::TWO * deviation, deviation).filter(|felt| *felt == nearer)
         };
         (contact, both, beyond)
     }
 
-    /// The nearer flank; the back flank in the very middle.
+    /// Returns the nearer flank; the back flank at exactly zero deflection.
     fn nearer(&self) -> Flank {
         if self.deflection > T::ZERO { Flank::Drive } else { Flank::Back }
     }
 
-    /// Gap coordinate less the transmission error, with the wind-up taken out: beyond an edge only the part of the
-    /// compliance is left that the meshes have [m]. Needs no force.
+    /// Gap coordinate without the transmission error (O8): beyond an edge only the meshes' share of the compliance
+    /// remains [m]. Independent of the force.
     pub fn gap(&self, mesh_share: T) -> T {
         let beyond = self.deflection.abs() - self.half_gap;
         if beyond < T::ZERO {

@@ -1,5 +1,6 @@
-//! Which flank touches now, for a controller: by the mesh force alone, by force and deflection together, or, without an
-//! output encoder, by what the motor feels. On which flank teeth rest, for learning, `learnt::flank` tells.
+//! Contact detection for a controller: by the mesh force alone, by force and deflection (O8, O10), or, without an
+//! output encoder, by `health::motor_only`. `learnt::flank` decides separately on which flank a rest is used for
+//! estimation.
 
 pub mod by_force;
 pub mod by_position;
@@ -10,21 +11,21 @@ use by_position::ByPosition;
 use crate::gears::Flank;
 use crate::numbers::Real;
 
-/// The contact that is reported, and what it depends on from period to period.
+/// Reported contact and its state from period to period.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Contact {
     /// Contact by force alone.
     pub by_force: ByForce,
-    /// The flank that is reported as touching.
+    /// Flank reported as touching.
     pub reported: Option<Flank>,
-    /// The teeth have settled since they came across the gap.
+    /// True once the teeth have settled after crossing the gap.
     settled: bool,
 }
 
 impl Contact {
-    /// Contact by force and deflection together, which is reported, and the mesh force that follows from both [N]. The
-    /// standard deviations are of the force alone and of both together [N]; the last learning interval may have been in
-    /// settled contact.
+    /// Updates the reported contact by force and deflection and returns the mesh force of both sensors [N].
+    /// `deviations` are the standard deviations of the motor side's force and of the combined force [N]; `settled`
+    /// states that the last learning interval was in settled contact.
     #[inline]
     pub fn step_by_position<T: Real>(
         &mut self,

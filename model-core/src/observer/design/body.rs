@@ -1,9 +1,9 @@
-//! What the observer needs of a joint, referred to the line of action.
+//! Parameters of a joint, referred to the line of action.
 
 use crate::gears::{Kinematics, Mechanics};
 use parameters::{JointParameters, MeshKind};
 
-/// What the observer needs of the joint, referred to the line of action.
+/// Parameters of the joint, referred to the line of action.
 pub(crate) struct Body {
     pub sun_lever: f64,
     /// Ratio by teeth times the sun's base radius.
@@ -12,10 +12,10 @@ pub(crate) struct Body {
     pub motor_inertia: f64,
     pub load_inertia: f64,
     pub half_backlash: f64,
-    /// Way of the sun under a unit force, link held: meshes and wind-up.
+    /// Compliance from sun to link: meshes and wind-up.
     pub compliance: f64,
     pub mesh_compliance: f64,
-    /// Amplitude of the transmission error of sun to carrier, at most.
+    /// Largest amplitude of the transmission error from sun to carrier.
     pub transmission_error: f64,
 }
 
@@ -41,7 +41,7 @@ impl Body {
                 + (joint.carrier_equivalent_mass() + planets * joint.bodies.planet_equivalent_mass)
                     * carrier_lever
                     * carrier_lever,
-            // The planet with the least backlash takes the force.
+            // The planet with the least backlash carries the force.
             half_backlash: 0.5 * (smallest(&sun_planet.half_backlash) + smallest(&ring_planet.half_backlash)),
             compliance: mesh_compliance + wind_up,
             mesh_compliance,
@@ -54,7 +54,7 @@ impl Body {
         4.0 * self.half_backlash / self.sun_lever
     }
 
-    /// The two inertias against the compliance [rad/s].
+    /// Frequency of both inertias against the compliance [rad/s].
     pub fn contact_frequency(&self) -> f64 {
         let motor = self.motor_inertia / (self.sun_lever * self.sun_lever);
         let load = self.load_inertia / (self.output_lever * self.output_lever);

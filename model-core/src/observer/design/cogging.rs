@@ -1,4 +1,5 @@
-//! What learning the motor's cogging needs: how the load side answers a torque that the motor side does not know.
+//! Design of the cogging estimation (O17): response of the load side to a motor torque that the motor side does not
+//! model.
 
 use core::f64::consts::TAU;
 
@@ -8,33 +9,35 @@ use super::settings::ObserverSettings;
 use crate::numbers::Real;
 use crate::observer::tables::CoggingTable;
 
-/// Load torques that change slower than this may be the load's own [s]: the time constant with which they are taken out, twice.
+/// Time constant t_s of the high-pass filter, applied twice, that removes slow changes of the load's own torque [s].
 /// Chosen.
 const SLOW: f64 = 20e-3;
 
-/// Least angle by which the cogging phase goes on in that time [rad]: of slower cogging too little is left.
+/// Least advance of the cogging phase within that time [rad]: the high-pass filter removes slower cogging.
 const LEAST: f64 = 0.6;
 
-/// Most by which it goes on in a learning interval, and from one count of the motor to the next [rad].
+/// Largest advance of the cogging phase in a learning interval, and from one motor count to the next [rad].
 const MOST: f64 = 1.0;
 
-/// Time over which the motor shall be steady [s], and by how much of its speed it may change in it [-]: the response is that of a
-/// cogging of one frequency, and what changes faster repeats from motion to motion with the cogging. Chosen.
+/// Averaging time of the motor speed [s], and largest deviation from the averaged speed, over the speed [-]. The
+/// response holds for a constant cogging frequency, and torques of faster speed changes repeat from motion to motion as
+/// cogging does. Chosen.
 const STEADY: (f64, f64) = (50e-3, 0.3);
 
-/// Time on one flank after which the load torque has forgotten the landing [s]. Chosen: as long as impacts ring.
+/// Time on one flank after which the load torque has settled from the landing [s]. Chosen: as long as impacts ring.
 const SETTLED: f64 = 20e-3;
 
-/// Learning intervals over which noise of the load torque, less its slow part, says the same [-]. Chosen.
+/// Correlation length of the load torque's noise after the high-pass filter [learning intervals]. Chosen.
 const REPEATS: f64 = 5.0;
 
-/// Largest sine or cosine that is believed, over what the joint file has [-]: beyond three standard deviations.
+/// Largest accepted sine or cosine amplitude, over the joint file's ripple [-]: three standard deviations.
 const LARGEST: f64 = 3.0;
 
-/// Time over which that noise is watched [s]. Chosen.
+/// Averaging time of the noise variance [s]. Chosen.
 const WATCHED: f64 = 0.1;
 
-/// Table of the motor's cogging; a learning interval takes a while [s], and the motor side is late by another [s].
+/// Computes the table of the motor's cogging; `span` is the length of a learning interval and `late` the lag of the
+/// motor side [s].
 pub(super) fn table<T: Real>(
     load: &Filter,
     settings: &ObserverSettings,
@@ -45,11 +48,11 @@ pub(super) fn table<T: Real>(
     let real = T::from_f64;
     let part = |time: f64| real(-libm::expm1(-span / time));
     let periods = f64::from(settings.cogging_periods);
-    // The load side in continuous time is s^3 + angle s^2 + speed s + torque.
+    // The characteristic polynomial of the load side in continuous time is s^3 + angle s^2 + speed s + torque.
     let angle = load.gain[0] / step;
     let speed = load.gain[1] / step;
     let torque = -load.gain[2] * load.response[(1, 0)] / (step * step);
-    // A count tells where in a period the motor is.
+    // The cogging is estimated only if a motor count resolves its phase.
     let told = periods * TAU / f64::from(settings.motor_encoder.counts_per_turn) <= MOST;
     let ripple = settings.torque_ripple * body.ratio;
     CoggingTable {

@@ -1,40 +1,40 @@
 //! Steady-state Kalman filter of a small linear system: flow over a step, gain and covariance, by precise integration
-//! and the Riccati recursion. It knows no gears.
+//! and the Riccati recursion. Independent of gears. The gains G of (O2) and of (O4) come from here.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::gears::design::exponential::{exponential_minus_identity, flow};
 
-/// Steps after which the recursion has settled for any filter whose slowest pole is within a thousandth of the rate.
+/// Steps of the recursion: settled for every filter whose slowest pole is faster than a thousandth of the step rate.
 const STEPS: usize = 20_000;
 
-/// x' = A x + B u + w, measured y = x_0 + v at every step.
+/// System x' = A x + B u + w with the measurement y = x_0 + v at every step.
 #[derive(Clone)]
 pub(super) struct System {
     /// A.
     pub dynamics: DMatrix<f64>,
     /// B.
     pub inputs: DMatrix<f64>,
-    /// Spectral density of w, one for each state.
+    /// Spectral density of w per state.
     pub process_noise: DVector<f64>,
     /// Variance of v.
     pub measurement_noise: f64,
 }
 
-/// The filter.
+/// Filter for one step length.
 pub(super) struct Filter {
-    /// Response to an input held over the step.
+    /// State response to an input held over the step.
     pub response: DMatrix<f64>,
-    /// Correction of each state for a unit of innovation, after the step.
+    /// Gain of each state per unit of innovation, after the step.
     pub gain: DVector<f64>,
     /// Variance of each state after the correction.
     pub variance: DVector<f64>,
-    /// What of that is left while the last state holds still: noise, without the lag behind changes.
+    /// Noise variance of each state while the last state is constant, without the lag behind changes.
     pub quiet: DVector<f64>,
 }
 
 impl System {
-    /// Filter for a step.
+    /// Computes the filter for a step.
     pub fn filter(&self, step: f64) -> Filter {
         let n = self.dynamics.nrows();
         let over_step = flow(&self.dynamics, &self.inputs, step, 1);
@@ -46,7 +46,7 @@ impl System {
             let ahead = &transition * &covariance * transition.transpose() + &noise;
             gain = ahead.column(0) / (ahead[(0, 0)] + self.measurement_noise);
             let next = &ahead - &gain * ahead.row(0);
-            // Rounding must not let it grow lopsided.
+            // Keep the covariance symmetric under rounding.
             covariance = (&next + next.transpose()) * 0.5;
         }
         let mut still = self.process_noise.clone();
@@ -63,7 +63,7 @@ impl System {
         Filter { response, gain, variance: covariance.diagonal(), quiet: quiet.diagonal() }
     }
 
-    /// Covariance that the noise adds over a step: the exponential of the doubled system (Van Loan's arrangement).
+    /// Covariance added by the process noise over a step: exponential of the doubled system (Van Loan).
     fn noise_over(&self, step: f64, transition: &DMatrix<f64>) -> DMatrix<f64> {
         let n = self.dynamics.nrows();
         let mut doubled = DMatrix::zeros(2 * n, 2 * n);

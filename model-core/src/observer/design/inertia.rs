@@ -1,4 +1,5 @@
-//! What learning the link's inertia needs: the load side's flow on a link that stands still, and what counts as fast.
+//! Design of the inertia estimation (O6): response of the load side on a stationary link, and thresholds of fast
+//! torques.
 
 use super::body::Body;
 use super::filter::Filter;
@@ -7,29 +8,30 @@ use super::settings::ObserverSettings;
 use crate::numbers::Real;
 use crate::observer::tables::InertiaTable;
 
-/// How far the link's inertia may be from what the joint file has, standard deviation of its inverse [-].
+/// Prior standard deviation of the mobility, the designed inertia over the link's inertia [-].
 const UNCERTAINTY: f64 = 0.3;
 
-/// Torques that change slower than this may be a weight's [s]: a swing of the teeth after a landing takes less, a link's
-/// turn through a tenth of a circle more.
+/// Time constant of the high-pass filter that removes torques of a weight [s]: longer than a swing of the teeth after a
+/// landing, shorter than the link's turn through a tenth of a circle.
 const SLOW: f64 = 20e-3;
 
-/// Part of the motor's largest torque that a force must change by fast to show more of the link than of noise.
+/// Least fast torque for an update, over the motor's largest torque [-]: smaller torques show more noise than inertia.
 const LEAST: f64 = 0.05;
 
-/// Part of the motor's largest torque by which load torques change as fast as that by themselves.
+/// Standard deviation of fast changes of the load torque itself, over the motor's largest torque [-].
 const RESTLESS: f64 = 0.01;
 
-/// Time over which it is watched whether something pushes the link [s].
+/// Averaging time of the detection of external pushes [s].
 const RESTLESS_FOR: f64 = 0.5;
 
-/// Part of such noise that is left where slow parts are taken out: where there is more, something pushes the link.
+/// Largest share of the noise variance that may remain after the high-pass filter [-]: a larger remainder means an
+/// external push.
 const LEFT: f64 = 0.5;
 
-/// Intervals over which noise says the same.
+/// Correlation length of the noise [learning intervals].
 const REPEATS: f64 = 10.0;
 
-/// Table of the link's inertia, with learning intervals of so many periods.
+/// Computes the table of the link's inertia; `periods` is the length of a learning interval.
 pub(super) fn table<T: Real>(
     load: &Filter,
     settings: &ObserverSettings,
@@ -39,7 +41,7 @@ pub(super) fn table<T: Real>(
 ) -> InertiaTable<T> {
     let real = T::from_f64;
     let span = f64::from(periods) * step;
-    // Angle, speed and torque after an interval from so much of each, and of the meshes' torque.
+    // Angle, speed and torque after an interval, from their initial values and the mesh torque.
     let after = |start: [f64; 3], given: f64| {
         (0..periods).fold(start, |[angle, speed, taken], _| {
             let net = given - taken;

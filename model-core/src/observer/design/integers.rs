@@ -1,21 +1,21 @@
-//! The gear ratio on counts, in whole numbers. Angles come later.
+//! Gear ratio on counts, in integers (O1).
 
-/// Motor less ratio times output, as motor * `motor` - output * `output` of the two counts.
+/// Integer weights of motor less ratio times output: motor count * `motor` - output count * `output`.
 pub(super) struct Weights {
-    /// Units in a motor count.
+    /// Units per motor count.
     pub motor: i64,
-    /// Units in an output count.
+    /// Units per output count.
     pub output: i64,
-    /// A whole turn of the motor adds a multiple of this, and so does one of the output.
+    /// Greatest common divisor of the units per motor turn and per output turn.
     pub modulus: i64,
 }
 
 impl Weights {
-    /// For counts in a turn of each, and the ratio `over / under` of motor to output turns.
+    /// Computes the weights from the counts per turn and the ratio `over / under` of motor to output turns.
     ///
-    /// With n counts of C each, motor less ratio times output is n_m / C_m - (over / under) n_o / C_o turns; times
-    /// C_m C_o under and over what all weights share, it is whole.
-    /// `None` where a turn has too many units for 64 bits, with some room: whole numbers without a common divisor.
+    /// With counts n and counts per turn C, motor less ratio times output is n_m / C_m - (over / under) n_o / C_o
+    /// turns. Multiplied by C_m C_o under, and divided by the common divisor, both weights are integers. Returns `None`
+    /// if the units of a turn exceed `MOST_UNITS`.
     pub fn new(motor_turn: u32, output_turn: u32, over: u32, under: u32) -> Option<Self> {
         let shared = divisor(over.into(), under.into());
         let (over, under) = (u128::from(over) / shared, u128::from(under) / shared);
@@ -29,7 +29,7 @@ impl Weights {
     }
 }
 
-/// Units of a turn: the difference of two turns of each encoder stays within 64 bits with sign.
+/// Largest number of units per turn: leaves room for the difference of two encoders in 64 bits with sign.
 const MOST_UNITS: u128 = 1 << 60;
 
 fn divisor(a: u128, b: u128) -> u128 {

@@ -1,4 +1,4 @@
-//! The offline half of the observer: settings, and from them and a joint the tables.
+//! Offline design of the observer: settings, and tables computed from settings and joint.
 
 pub(crate) mod body;
 mod cogging;

@@ -1,4 +1,4 @@
-//! The half-gap in another place of the turn than where it was learnt.
+//! Tests of the half-gap's uncertainty at an angle other than where it was estimated.
 
 use super::{design_observer, observer_settings};
 use crate::gears::Flank;
@@ -13,18 +13,18 @@ fn counts() -> CountTable<f32> {
     design_observer(&q1.parameters, &observer_settings(&q1.surroundings)).expect("tables").counts
 }
 
-/// The place of a link [2^-32 turns] that has turned by an angle [rad].
+/// Phase of a link [2^-32 turns] at an angle [rad].
 fn phase(angle: f64) -> u32 {
     (angle / core::f64::consts::TAU * 4_294_967_296.0) as i64 as u32
 }
 
-/// Standard deviation of the half-gap over it, at an angle.
+/// Standard deviation of the half-gap at an angle, over the half-gap.
 fn deviation(places: &mut Places<f32>, table: &CountTable<f32>, angle: f64) -> f32 {
     places.go_to(phase(angle));
     places.variance(table, HALF_GAP).square_root() / HALF_GAP
 }
 
-/// Both flanks at an angle, each off by a part of the half-gap.
+/// Reports rests on both flanks at an angle, each with an error `off` over the half-gap.
 fn see(places: &mut Places<f32>, table: &CountTable<f32>, angle: f64, off: f32) {
     places.go_to(phase(angle));
     for flank in [Flank::Drive, Flank::Back] {

@@ -1,4 +1,4 @@
-//! The table of the width probe: how hard it may push, how long it waits and what its figure is worth.
+//! Design of the width probe: torque, waiting times and variance of the result.
 
 use core::f64::consts::TAU;
 
@@ -10,28 +10,28 @@ use crate::numbers::Real;
 use crate::observer::tables::{ObserverTables, ProbeTable};
 use parameters::JointParameters;
 
-/// A probe ends within this, one way or the other [s].
+/// Longest duration of a probe [s].
 const LONGEST: f64 = 0.5;
 
-/// Time that a torque is given to settle: the gap is crossed and the wind-up has swung [s].
+/// Settling time of a torque: the gap is crossed and the wind-up has stopped swinging [s].
 const SETTLE: f64 = 50e-3;
 
-/// Time over which an angle is taken [s].
+/// Averaging time of a rest angle [s].
 const STILL: f64 = 10e-3;
 
-/// Time constant with which the torque comes up: slow against a crossing, so that landings are soft [s].
+/// Time constant of the torque's rise: slow against a crossing, for soft landings [s].
 const RISE: f64 = 12e-3;
 
-/// Rate at which the damping torque takes the motor's speed out: slow against any current loop [rad/s].
+/// Rate at which the damping torque removes the motor's speed: slow against any current loop [rad/s].
 const DAMPING: f64 = TAU * 50.0;
 
-/// Part of the motor's limit that a probe uses where nothing else is said: firm beside friction, and no hard landing.
+/// Torque of the usual probe over the motor's limit [-]: well above friction, without hard landings.
 const USUAL_SHARE: f64 = 0.2;
 
-/// Torque uncertainties that it uses at least: twice what a probe cannot do without.
+/// Least torque of the usual probe, over the torque uncertainty [-]: twice the least torque of any probe.
 const USUAL_UNCERTAINTIES: f64 = 8.0;
 
-/// Table of the probe that a controller carries; none where friction leaves no torque to probe with.
+/// Computes the table of the usual probe, which a controller carries; `None` if friction leaves no torque for probing.
 pub fn design_usual_probe<T: Real>(
     joint: &JointParameters,
     settings: &ObserverSettings,
@@ -46,17 +46,17 @@ pub fn design_usual_probe<T: Real>(
     }
 }
 
-/// What is out of range where a probe cannot be.
+/// Name of the out-of-range quantity if no probe is possible.
 const TORQUE: &str = "the torque of the width probe";
 
-/// Table of a probe that pushes with no more than `torque` at the motor [N m].
+/// Computes the table of a probe that pushes with at most `torque` at the motor [N m].
 pub fn design_probe<T: Real>(
     joint: &JointParameters,
     settings: &ObserverSettings,
     torque: f64,
 ) -> Result<ProbeTable<T>, DesignError> {
     let tables: ObserverTables<f64> = design_observer(joint, settings)?;
-    // Twice the friction that is to be expected under the single torque.
+    // The single torque is at least twice the expected friction.
     let least = 4.0 * settings.torque_uncertainty;
     if !(torque >= least && torque <= settings.torque_limit) {
         let must_be = "at least four times the torque uncertainty and at most the torque limit";
@@ -66,7 +66,7 @@ pub fn design_probe<T: Real>(
     let real = T::from_f64;
     let step = tables.period;
     let periods = |time: f64| (time / step) as u32;
-    // The gap may be three times as wide as it is thought to be.
+    // The gap may be three times as wide as designed.
     let widest = 3.0 * 4.0 * body.half_backlash;
     let wind_up = body.compliance * torque / body.sun_lever;
     let count = TAU / f64::from(settings.motor_encoder.counts_per_turn) * body.sun_lever;

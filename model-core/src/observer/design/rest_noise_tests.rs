@@ -1,4 +1,4 @@
-//! The noise of a rest, as far as innovations show it.
+//! Tests of the noise of a rest, estimated from innovations (O13).
 
 use super::{design_observer, observer_settings};
 use crate::gears::Flank;
@@ -17,8 +17,8 @@ fn uncertainty() -> Uncertainty<f64> {
     uncertainty
 }
 
-/// Takes rests on alternate flanks whose deflections are off by a number of deviations of the encoders' noise. The sign changes with each
-/// `period` of rests.
+/// Takes rests on alternate flanks with a deflection error of `deviations` standard deviations of the encoder noise.
+/// The sign changes after every `period` rests.
 fn take(uncertainty: &mut Uncertainty<f64>, rests: usize, deviations: f64, period: usize) {
     for rest in 0..rests {
         let flank = if rest.is_multiple_of(2) { Flank::Drive } else { Flank::Back };

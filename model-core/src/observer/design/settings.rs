@@ -1,5 +1,4 @@
-//! What the observer is designed from besides the joint, and whether it can be: data-sheet figures and how sure they
-//! are.
+//! Settings of the observer besides the joint: data-sheet figures with their uncertainties, and checks of their ranges.
 
 use core::f64::consts::TAU;
 
@@ -8,70 +7,70 @@ use crate::gears::design::DesignError;
 use crate::observer::tables::MOST_DELAY;
 use parameters::{AbsoluteEncoder, Surroundings};
 
-/// Ticks of the samples' clock in a control period.
+/// Ticks of the samples' clock per control period.
 pub const CLOCK_TICKS: u32 = 1000;
 
-/// Torque limits beyond this are none [N m].
+/// Torque limit above which a motor counts as unlimited [N m].
 pub(crate) const NO_LIMIT: f64 = 1e3;
 
-/// Fewest counts in a turn of a motor encoder: three Hall sensors on four pole pairs have 24. With 12 the gap is never valid, on a
-/// gear whose lost motion is 2 of them or 4 (measured: C1 with 60 and 120 arcmin, motion T2).
+/// Fewest counts per turn of a motor encoder: three Hall sensors on four pole pairs have 24. With 12 counts the gap is
+/// never valid, on a gear whose lost motion spans 2 or 4 counts (measured: C1 with 60 and 120 arcmin, motion T2).
 const FEWEST_COUNTS: u32 = 24;
 
-/// Fewest counts in a turn of an encoder that is accepted whatever the backlash.
+/// Fewest counts per turn that are accepted for any backlash.
 const COUNTS_OF_ANY_GAP: u32 = 64;
 
-/// An encoder as its data sheet has it.
+/// Data-sheet figures of an encoder.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EncoderSettings {
-    /// Counts in one turn of its shaft; any number.
+    /// Counts per turn of its shaft; any number.
     pub counts_per_turn: u32,
-    /// Raw counts run from 0 to this less 1 and start again; 0 stands for 2^32. The number of counts in a turn for a
-    /// single-turn absolute encoder.
+    /// Modulus of the raw counts, which run from 0 to `wraps_at` - 1; 0 stands for 2^32. Equals the counts per turn for
+    /// a single-turn absolute encoder.
     pub wraps_at: u32,
-    /// Whether it knows its place in the turn when it begins. If not, offset and error maps are learnt anew every time.
+    /// True if the encoder knows its position in the turn at power-up. Otherwise offset and error maps are estimated
+    /// anew after every start.
     pub absolute: bool,
-    /// Standard deviation to expect of its once- and of its twice-per-turn error; zero if there is none [rad].
+    /// Expected standard deviation of the once- and of the twice-per-turn error; zero without such errors [rad].
     pub harmonic_error: f64,
 }
 
-/// What the observer is designed from besides the joint. The joint's own half-backlash and compliance are guesses to
-/// start from.
+/// Settings of the observer besides the joint. The joint's half-backlash and compliance are initial guesses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObserverSettings {
-    /// Control periods a second [Hz].
+    /// Control rate [Hz].
     pub control_rate: u32,
-    /// Ticks a second of the clock of all moments [Hz].
+    /// Rate of the clock of all time stamps [Hz].
     pub clock_rate: u32,
     /// Encoder on the motor.
     pub motor_encoder: EncoderSettings,
-    /// Encoder on the link, if there is one.
+    /// Encoder on the link; `None` on joints without an output encoder.
     pub output_encoder: Option<EncoderSettings>,
-    /// Fastest that the motor can turn [rad/s].
+    /// Largest speed of the motor [rad/s].
     pub fastest_motor: f64,
-    /// From commanding a torque to its first effect [control periods].
+    /// Delay from a torque command to its first effect [control periods].
     pub torque_delay: f64,
-    /// Time constant of the current loop after that [s].
+    /// Time constant of the current loop after the delay [s].
     pub torque_lag: f64,
     /// Largest torque of the motor [N m].
     pub torque_limit: f64,
-    /// Torque noise over the torque, standard deviation [-].
+    /// Standard deviation of the torque noise, over the torque [-].
     pub torque_noise_ratio: f64,
-    /// Standard deviation of the motor's bias and dry friction, each, beforehand [N m].
+    /// Prior standard deviation of the motor's bias, and of its dry friction [N m].
     pub torque_uncertainty: f64,
-    /// Standard deviation of what the motor's torque does beside bias and dry friction: cogging, ripple [N m].
+    /// Standard deviation of cogging and torque ripple of the motor [N m].
     pub torque_ripple: f64,
-    /// Periods of the cogging in a turn of the motor.
+    /// Cogging periods per motor turn.
     pub cogging_periods: u32,
-    /// Efficiency of the gears while the motor drives, losses in proportion to the torque [-].
+    /// Efficiency of the gears while the motor drives; losses are proportional to the torque [-].
     pub efficiency: f64,
-    /// Standard deviation of the half-backlash guess, relative to it [-].
+    /// Prior standard deviation of the half-backlash, over its guess [-].
     pub backlash_uncertainty: f64,
-    /// Standard deviation of the compliance guess, relative to it [-].
+    /// Prior standard deviation of the compliance, over its guess [-].
     pub compliance_uncertainty: f64,
-    /// How much older an output reading is expected to be than its time says, less the same of the motor's [s].
+    /// Expected age of output readings beyond their time stamps, less the same excess of the motor's readings [s].
     pub skew: f64,
-    /// Standard deviation of the skew between the encoders' readings [s].
+    /// Prior standard deviation of the skew [s].
     pub skew_uncertainty: f64,
 }
 
@@ -81,7 +80,7 @@ impl ObserverSettings {
         let within = |what, given: f64, least: f64, most: f64, must_be| {
             if given >= least && given <= most { Ok(()) } else { Err(DesignError::OutOfRange { what, given, must_be }) }
         };
-        // An interval that is learnt from holds one period at least.
+        // A learning interval contains at least one period.
         within("the control rate", self.control_rate.into(), 1.0 / LEARNING_INTERVAL, 1e5, "from 1000 to 100000 Hz")?;
         within("the clock rate of the observer's samples", self.clock_rate.into(), 1e4, 4e9, "10 kHz or more")?;
         self.check_counts(gap)?;
@@ -107,8 +106,8 @@ impl ObserverSettings {
         within("the uncertainty of the skew", self.skew_uncertainty, 0.0, 0.1, "from 0 to 0.1 s")
     }
 
-    /// Rejects encoders of too few counts or too many. A motor encoder of few counts sees the flanks as long as a count is less than
-    /// the lost motion at the motor: Hall sensors of 24 counts need 15 deg of it.
+    /// Rejects encoders with too few or too many counts. A motor encoder with few counts detects the flanks as long as
+    /// a count is less than the lost motion at the motor: Hall sensors with 24 counts need 15 deg of lost motion.
     fn check_counts(&self, gap: f64) -> Result<(), DesignError> {
         let within = |what, counts: u32, least, must_be| {
             let is_in_range = (least..=1 << 24).contains(&counts);
@@ -126,9 +125,9 @@ impl ObserverSettings {
     }
 }
 
-/// Settings of an observer for these surroundings.
+/// Derives the observer's settings from the joint's surroundings.
 pub fn observer_settings(of: &Surroundings) -> ObserverSettings {
-    // More counts than fit are refused by the check of the settings.
+    // The check of the settings rejects counts that do not fit.
     let counts = |encoder: &AbsoluteEncoder| u32::try_from(encoder.counts_per_turn).unwrap_or(u32::MAX);
     let encoder = |encoder: &AbsoluteEncoder| EncoderSettings {
         counts_per_turn: counts(encoder),
@@ -143,7 +142,7 @@ pub fn observer_settings(of: &Surroundings) -> ObserverSettings {
         motor_encoder: encoder(&of.motor_encoder),
         output_encoder: Some(encoder(&of.output_encoder)),
         fastest_motor: of.speed_limit,
-        // The observer is shown the torque of the period before.
+        // The observer receives the torque of the previous period.
         torque_delay: (of.delay - 1.0).max(0.0),
         torque_lag: of.current_lag,
         torque_limit: limit,

@@ -1,4 +1,4 @@
-//! Flows and gains of the motor side and the load side: how fast torques may change decides how fast the filters are.
+//! Flows and gains of motor side (O2, O3) and load side (O4). The assumed rates of torque changes set the bandwidths.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,31 +9,32 @@ use crate::gears::design::exponential::flow;
 use crate::numbers::Real;
 use crate::observer::tables::{CurrentTable, DriveTable};
 
-/// Time in which the load torque may change by as much as the motor can hold [s]. Friction that turns round and
-/// collisions are faster, gravity slower; a filter for this follows the first with a lag of a few milliseconds.
+/// Time in which the load torque changes by the motor's largest torque at the output, one standard deviation [s].
+/// Friction at a reversal and collisions are faster, gravity is slower; the filter follows friction and collisions with
+/// a lag of a few milliseconds.
 const LOAD_CHANGE: f64 = 3.0;
 
-/// Shortest half swing that the motor side follows [control periods].
+/// Shortest half swing of motor against load that the motor side follows [control periods].
 const FASTEST_SWING: f64 = 20.0;
 
-/// Part of the motor's largest torque by which the mesh force changes in half a swing of motor against load.
+/// Change of the mesh force in half a swing of motor against load, over the motor's largest torque [-].
 const MESH_CHANGE: f64 = 0.2;
 
-/// Part of the motor's largest torque by which the mesh force is wrong for about a millisecond after an impact.
+/// Error of the mesh force for about a millisecond after an impact, over the motor's largest torque [-].
 const IMPACT_ERROR: f64 = 0.05;
 
-/// How long an impact's error lasts [s].
+/// Duration of the error after an impact [s].
 const IMPACT: f64 = 1e-3;
 
-/// Where all three poles of the motor side are while its readings are late [rad/s]: the teeth's own swings, which nobody
-/// could foresee until now, must not be carried on.
+/// Rate of all three poles of the motor side while its readings are late [rad/s]: swings of the teeth, which the
+/// prediction cannot foresee, must not be extrapolated.
 const LATE_POLES: f64 = 1000.0;
 
-/// State: angle, speed, taken torque. The taken torque wanders so that it may change by the largest torque in half a
-/// swing of motor against load; the torque noise acts on the speed.
+/// Motor-side filter with the states angle, speed and taken torque. The taken torque is a random walk that changes by
+/// `MESH_CHANGE` of the largest torque in half a swing of motor against load; the torque noise acts on the speed.
 pub(super) fn drive_filter(body: &Body, settings: &ObserverSettings, measurement_noise: f64, step: f64) -> Filter {
     let per_inertia = 1.0 / body.motor_inertia;
-    // Faster swings than this are not followed: what they would cost in noise is worth more.
+    // Faster swings are not followed: the noise would cost more than the bandwidth gains.
     let half_swing = (core::f64::consts::PI / body.contact_frequency()).max(FASTEST_SWING * step);
     let torque_noise = settings.torque_noise_ratio * settings.torque_limit;
     System {
@@ -49,20 +50,20 @@ pub(super) fn drive_filter(body: &Body, settings: &ObserverSettings, measurement
     .filter(step)
 }
 
-/// Gains with which readings are taken in that are older than a period: all poles in one place.
+/// Gains for readings older than a period (O3): all poles at `LATE_POLES`.
 fn late_gain(body: &Body, step: f64) -> [f64; 3] {
     let left = libm::exp(-LATE_POLES * step);
     let gone = 1.0 - left;
     [1.0 - left.powi(3), 1.5 * gone * gone * (1.0 + left) / step, -body.motor_inertia * gone.powi(3) / (step * step)]
 }
 
-/// By how much the taken torque lags behind one that rises steadily [s]: the innovation in the angle is then such that it
-/// makes good the rise of a period, and what it adds to the speed makes good the torque that is lacking on the mean of it.
+/// Lag of the taken torque behind a steadily rising torque [s]. In steady state the innovation times the torque gain
+/// equals the rise per period, and the innovation times the speed gain compensates the mean torque error.
 pub(super) fn drive_lag(body: &Body, filter: &Filter, step: f64) -> f64 {
     -body.motor_inertia * filter.gain[1] / filter.gain[2] - 0.5 * step
 }
 
-/// State: angle, speed, load torque.
+/// Load-side filter with the states angle, speed and load torque.
 pub(super) fn load_filter(body: &Body, settings: &ObserverSettings, measurement_noise: f64, step: f64) -> Filter {
     let per_inertia = 1.0 / body.load_inertia;
     let impact = IMPACT_ERROR * settings.torque_limit * body.ratio * per_inertia;
@@ -80,7 +81,7 @@ fn load_change(body: &Body, settings: &ObserverSettings) -> f64 {
     (settings.torque_limit * body.ratio).powi(2) / LOAD_CHANGE
 }
 
-/// Flow of the motor with its current loop: the torque in the air gap rises towards the wanted one.
+/// Flow of the motor with its current loop: the air-gap torque approaches the wanted torque.
 pub(super) fn drive_table<T: Real>(
     body: &Body,
     settings: &ObserverSettings,
@@ -91,7 +92,7 @@ pub(super) fn drive_table<T: Real>(
     let per_inertia = 1.0 / body.motor_inertia;
     let flow = if settings.torque_lag > 0.0 {
         let rate = 1.0 / settings.torque_lag;
-        // Angle, speed, taken torque, air-gap torque; the wanted torque is the input.
+        // States: angle, speed, taken torque, air-gap torque. Input: wanted torque.
         let dynamics = DMatrix::from_row_slice(
             4,
             4,
@@ -116,12 +117,11 @@ pub(super) fn drive_table<T: Real>(
     }
 }
 
-/// Torque over the motor's largest beyond which a sample is none: a controller that overshoots its limit, and noise, stay
-/// below it [-].
+/// Torque above which a sample is rejected, over the motor's limit [-]: above noise and a controller's overshoot.
 const BELIEVED: f64 = 2.0;
 
-/// Time after a torque that was none in which the filters may still be wrong for it [s]. Chosen: several times the slowest of
-/// their poles.
+/// Time after a rejected torque sample in which the filters may still be wrong [s]. Chosen: several times the slowest
+/// time constant of the filters.
 const UNSURE_FOR: f64 = 20e-3;
 
 pub(super) fn current<T: Real>(settings: &ObserverSettings, step: f64) -> CurrentTable<T> {
@@ -182,7 +182,7 @@ mod tests {
         let [mut angle, mut speed, mut taken] = [0.0; 3];
         let mut time = 0.0;
         for _ in 0..2000 {
-            // Nothing drives; a torque that is the time takes.
+            // No torque drives; the taken torque equals the time.
             time += step;
             angle += step * speed - 0.5 * step * step / inertia * taken;
             speed -= step / inertia * taken;

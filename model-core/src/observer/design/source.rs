@@ -1,5 +1,5 @@
-//! The tables of observer and width probe as Rust source, for a build script: what a board links into its flash. Numbers are printed so
-//! that they read back to the same bits.
+//! Tables of observer and width probe as Rust source for a build script, to be linked into a board's flash. Printed
+//! numbers read back to equal bits.
 
 use std::format;
 use std::string::String;
@@ -11,14 +11,14 @@ use crate::gears::design::DesignError;
 use crate::observer::tables::{ObserverTables, ProbeTable};
 use parameters::JointParameters;
 
-/// The statics `OBSERVER` and `PROBE` of a joint, as a module's text.
+/// Returns the source text of a module with the statics `OBSERVER` and `PROBE` of a joint.
 pub fn observer_source(joint: &JointParameters, settings: &ObserverSettings) -> Result<String, DesignError> {
     let tables: ObserverTables<f32> = design_observer(joint, settings)?;
     let probe: Option<ProbeTable<f32>> = design_usual_probe(joint, settings)?;
     Ok(observer_text(&tables, probe.as_ref()))
 }
 
-/// The same of tables that are there already.
+/// Returns the source text for given tables.
 pub(crate) fn observer_text(tables: &ObserverTables<f32>, probe: Option<&ProbeTable<f32>>) -> String {
     format!(
         "/// Tables of the observer.\n\

@@ -1,8 +1,8 @@
-//! Tables of the observer: from joint, encoders and how much is known beforehand to flows and gains.
+//! Tables of the observer, computed from joint, encoders and prior uncertainties.
 //!
-//! No gain is typed in. Both filters are steady-state Kalman filters from the encoders' quantisation and from how fast
-//! torques may change; the learner starts from the stated uncertainties; thresholds are multiples of the noise that
-//! these leave, or the times and parts that stand here by name.
+//! No gain is set by hand. Both filters are steady-state Kalman filters for the encoders' quantisation (O5) and the
+//! rates of torque changes; the parameter estimation starts from the stated uncertainties; thresholds are multiples of
+//! the resulting noise, or the times and fractions named below.
 
 use core::f64::consts::TAU;
 
@@ -20,113 +20,118 @@ use crate::observer::tables::{
 };
 use parameters::JointParameters;
 
-/// Length of a control period on the clock of the samples, at least and at most, that is no loss of any [control periods].
+/// Shortest and longest control period on the samples' clock without a lost period [control periods].
 const PERIOD_TO_PERIOD: [f64; 2] = [0.5, 1.5];
 
-/// Time up to which torques that are known now serve for the time since a reading: an older one counts as lost
-/// [control periods].
+/// Age above which a reading counts as lost [control periods]: up to this age the torques since the reading are known
+/// well enough.
 const OLDEST: f64 = 10.0;
 
-/// Lag of what is measured of a landing, output filter included [control periods].
+/// Lag of the measured deflection at a landing, output filter included [control periods].
 const LAG: f64 = 3.0;
 
-/// Time outside the possible range after which the output encoder has failed [s]: longer than impacts ring.
+/// Time outside the possible range after which a fault of the output encoder is declared [s]: longer than impacts ring.
 const FAILED_AFTER: f64 = 4e-3;
 
-/// Shortest time in which a link is stopped by what it runs into, whatever its speed [s]: a quarter of a swing of 250
-/// Hz. One that is stopped harder, as by steel on steel, is taken for a frozen encoder: counts alone cannot tell the
-/// two (`docs/theory/observer.md`, limits of the output encoder).
+/// Shortest time in which an obstacle stops a link, independent of the speed [s]: a quarter of a swing of 250 Hz. A
+/// link that is stopped faster, as by steel on steel, is mistaken for a frozen encoder: counts alone cannot distinguish
+/// the two (`docs/theory/observer.md`, Limits).
 const STOP: f64 = 1e-3;
 
-/// Largest torque of teeth and load against the link beside that, over the motor's largest at the output.
+/// Largest braking torque of teeth and load on the link besides obstacles, over the motor's largest torque at the
+/// output [-].
 const BRAKE: f64 = 2.0;
 
-/// Time for which a motor that stands still is judged by the speed that it had [s]. Chosen: longer, and noise adds up.
+/// Time for which a stationary motor is judged by its last speed [s]. Chosen: noise accumulates over longer times.
 const MOTOR_REMEMBERED: f64 = 3e-3;
 
-/// Time for which the motor's counts stand still before the deflection may blame them [s]: longer than noise that says the same
-/// by chance, or a motor that turns round.
+/// Time of unchanged motor counts after which the deflection may exclude the motor encoder [s]: longer than repeated
+/// counts by noise, or the reversal of a motor.
 const MOTOR_UNMOVED: f64 = 1e-3;
 
-/// Time for which a motor encoder that was given up must make sense, and agree with the output's, before it is used again [s]:
-/// random counts do not for three readings. Chosen.
+/// Time for which the readings of an excluded motor encoder must be plausible and agree with the output encoder before
+/// readmission [s]. Random counts are not plausible for three readings. Chosen.
 const MOTOR_TRUSTED: f64 = 20e-3;
 
-/// Time after which it is used though it stands still, or has slipped [s]. Chosen.
+/// Time before readmission if the motor's counts stand still or have slipped [s]. Chosen.
 const MOTOR_SLIPPED: f64 = 100e-3;
 
-/// Counts by which an output encoder has turned for sure: noise flickers by less.
+/// Travel that proves motion of an output encoder [counts]: above the flicker by noise.
 const MOVED_COUNTS: f64 = 4.0;
 
-/// Time without a fresh reading after which the output encoder counts as silent [s]. Chosen, between readings that are
-/// lost by chance and a line that is broken.
+/// Time without a fresh reading after which the output encoder is silent [s]. Chosen: longer than readings are
+/// lost by chance.
 const SILENT_AFTER: f64 = 10e-3;
 
-/// Time for which an output encoder that was given up must agree with the motor before it is used again [s]. Chosen,
-/// longer than what a link swings about after a fault.
+/// Time for which an excluded output encoder must agree with the motor before readmission [s]. Chosen: longer than the
+/// link's swings after a fault.
 const TRUSTED_AFTER: f64 = 0.3;
 
-/// How far beyond its range a deflection may be before that is a fault: this part of the half-gap, and of the wind-up under
-/// the largest torque, for what neither the maps nor the compliance have learnt [-]. Chosen.
+/// Margin of the deflection's possible range, over the half-gap and over the wind-up under the largest torque, for
+/// errors of maps and compliance [-]. Chosen.
 const MARGIN: f64 = 0.1;
 
-/// Largest standard deviation of a gap coordinate that is valid, over the gap [-]. Chosen.
+/// Largest standard deviation of a valid gap coordinate, over the gap [-]. Chosen.
 const WIDEST_PART: f64 = 0.1;
 
-/// Largest standard deviation of a flank's place, over the half-gap, from which on places decide on contact [-]: six of
-/// them are half of it.
+/// Standard deviation of a flank's position, over the half-gap, below which positions decide on contact [-]: six
+/// standard deviations are half of the half-gap.
 const KNOWN_PART: f64 = 0.08;
 
-/// What error maps leave of the motor encoder's errors, over those [-].
+/// Share of the motor encoder's errors that remains after the error maps [-].
 const UNMODELLED: f64 = 0.1;
 
-/// Learning intervals over which cogging and noise are alike, so that as many readings of the bias count as one [-]. Chosen.
+/// Correlation length of cogging and noise [learning intervals]; inflates the variance of a bias measurement by 5.
+/// Chosen.
 const ALIKE: f64 = 5.0;
 
-/// Time in which bias and friction may become something else altogether [s]. Chosen: a motor warms up more slowly.
+/// Time in which bias and friction may change by their prior standard deviation [s]. Chosen: a motor warms up more
+/// slowly.
 const BIAS_KEPT: f64 = 10.0;
 
-/// Standard deviations beyond which what noise makes is left out of account: of bias and friction, of a deflection at rest,
-/// of a speed [-].
+/// Standard deviations treated as noise: of bias and friction, of a deflection at rest, of a speed [-].
 const BEYOND_NOISE: f64 = 3.0;
 
 /// Time constant of a mean over a few learning intervals [learning intervals]. Chosen.
 const FEW_INTERVALS: f64 = 1.5;
 
-/// Speed of the link at which a reading's rounding is taken for noise of its own [rad/s]. At a slower one, or with a coarser
-/// encoder, counts last longer than a period, and readings within one are rounded alike. Chosen: that of a robot's joint at
-/// work, so that with 10 kHz it makes a difference below 15 bits.
+/// Link speed v_w at which the rounding of an output reading counts as independent noise [rad/s]. At lower speed or
+/// with coarser encoders a count lasts longer than a period, and readings within one count share their rounding error.
+/// Chosen: a robot joint at work; at 10 kHz the variance grows below 15 bits.
 const LINK_AT_WORK: f64 = 2.0;
 
-/// Speed of the link, times the ratio, at which the rounding of a motor reading counts as independent noise [rad/s]. Tuned on
-/// hil/never-worse.toml: with 2 rad/s the RMS error with motor encoders of 12 bits on Q1 is 4 % larger in the mean of 250 seeds; with
-/// 3 rad/s the variance grows below 2^14.4 counts over the ratio at 10 kHz, so that 12 bits keep theirs.
+/// Motor-side speed v_w, a link speed times the ratio, at which the rounding of a motor reading counts as independent
+/// noise [rad/s]. Tuned on hil/never-worse.toml: with 2 rad/s the RMS error with motor encoders of 12 bits on Q1 is 4 %
+/// larger in the mean of 250 seeds; with 3 rad/s the variance grows below 2^14.4/ratio counts at 10 kHz, so that 12
+/// bits keep their variance.
 const MOTOR_AT_WORK: f64 = 3.0;
 
-/// Motor counts by which the largest torque changes the angle turned in a block, from one to the next, at least [counts]: noise of a
-/// count makes 3 of them.
+/// Least change of the angle per block, from block to block, by the largest torque [motor counts]: noise of a count
+/// causes a change of 3.
 const BLOCK_COUNTS: f64 = 24.0;
 
-/// The same over the gap at the motor [-]: a motor that rattles between the flanks makes one of them.
+/// Least change of the angle per block by the largest torque, over the gap at the motor [-]: rattling between
+/// the flanks causes a change of 1.
 const BLOCK_GAPS: f64 = 4.0;
 
-/// Periods of the swing of motor against link in a block, at least [-]: what it does shall be over.
+/// Least length of a block, in periods of the swing of motor against link [-]: a swing must be over within a block.
 const BLOCK_SWINGS: f64 = 0.5;
 
-/// Shortest and longest block in which torque and acceleration are compared [s]: teeth ring for a shorter time, and a joint that runs
-/// away shall be found soon.
+/// Shortest and longest block in which torque and acceleration are compared [s]: longer than the ringing of teeth,
+/// short enough to detect a runaway joint soon.
 const RESPONSE_BLOCK: [f64; 2] = [2e-3, 30e-3];
 
-/// Control periods of such a block, at least [-]: a torque takes one to three until it acts.
+/// Least length of a block [control periods]: a torque acts after one to three periods.
 const BLOCK_PERIODS: f64 = 8.0;
 
-/// Torque, and change of torque, that tells the signs of torque and encoder, over the motor's largest [-]: friction and bias are smaller.
+/// Torque, and change of torque, that suffices for a vote, over the motor's largest torque [-]: above friction and
+/// bias.
 const LARGE_TORQUE: f64 = 0.25;
 
-/// Slope of a motor encoder's once- and twice-per-turn errors of one size together, over that size: sqrt(1 + 2^2).
+/// Slope of a once- and a twice-per-turn error of equal size together, over that size: sqrt(1 + 2^2).
 const HARMONIC_SLOPE: f64 = 2.2;
 
-/// Tables of the observer.
+/// Computes the tables of the observer.
 pub fn design_observer<T: Real>(
     joint: &JointParameters,
     settings: &ObserverSettings,
@@ -259,7 +264,7 @@ pub fn design_observer<T: Real>(
             silent_after: (SILENT_AFTER / step) as u16,
             failed_after: (FAILED_AFTER / step) as u16,
             output: stops(stop(STOP), stop(STOP)),
-            // Teeth stop it as a spring does, in no less than a quarter of a swing.
+            // Teeth stop the motor like a spring, in at least a quarter of a swing.
             motor: stops(
                 libm::floor(0.25 * TAU / body.contact_frequency() / step).clamp(1.0, 250.0),
                 stop(MOTOR_REMEMBERED),
@@ -281,13 +286,13 @@ pub fn design_observer<T: Real>(
     Ok(tables)
 }
 
-/// Variance of a reading's rounding to a count of so many radians, as many times as a shaft at this speed takes periods for a
+/// Variance R of a reading's rounding (O5), for a count [rad] and a shaft speed [rad/s]: grows with the periods per
 /// count [rad^2].
 fn rounding(count: f64, speed: f64, step: f64) -> f64 {
     count * count / 12.0 * (count / (speed * step)).max(1.0)
 }
 
-/// Whether the motor goes where the torque drives it.
+/// Computes the table of the sign check (O25).
 fn response<T: Real>(body: &Body, settings: &ObserverSettings, motor_count: f64, step: f64) -> ResponseTable<T> {
     let inertia = body.motor_inertia + body.load_inertia / (body.ratio * body.ratio);
     let unsure = (BLOCK_COUNTS * motor_count).max(BLOCK_GAPS * body.gap_at_motor());
@@ -328,7 +333,7 @@ fn counts<T: Real>(
         wraps_at: encoder.wraps_at,
         last: encoder.wraps_at.wrapping_sub(1),
         phase: (libm::ldexp(1.0, 64) / f64::from(encoder.counts_per_turn)) as u64,
-        // Twice what the speed allows, and never more than what could not be told from the other way round.
+        // Twice the largest speed, limited to half a turn, beyond which the direction is ambiguous.
         fastest: (libm::ceil(2.0 * fastest * step / TAU * f64::from(encoder.counts_per_turn)) as u32 + 2)
             .min(encoder.counts_per_turn / 2),
         angle: T::from_f64(TAU / f64::from(encoder.counts_per_turn)),
@@ -350,7 +355,7 @@ fn counts<T: Real>(
     })
 }
 
-/// The clock of moments beside control periods so long [s].
+/// Computes the table of the samples' clock; `period` is the control period [s].
 fn clock<T: Real>(period: f64, rate: u32) -> ClockTable<T> {
     let ticks = |periods: f64| libm::round(periods * period * f64::from(rate)) as u32;
     let [shortest, longest] = PERIOD_TO_PERIOD.map(ticks);
@@ -363,7 +368,7 @@ fn clock<T: Real>(period: f64, rate: u32) -> ClockTable<T> {
     }
 }
 
-/// Digest of what a learnt memory belongs to.
+/// Digest of joint and encoders to which a saved memory belongs.
 fn identity(joint: &JointParameters, settings: &ObserverSettings) -> u64 {
     let geometry = &joint.geometry;
     let output = settings.output_encoder.map_or(0, |encoder| encoder.counts_per_turn);

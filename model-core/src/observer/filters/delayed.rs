@@ -1,31 +1,31 @@
-//! Readings that are older than a control period, by their own time: the prediction of then is compared with them, and
-//! the correction of then is carried on to now.
+//! Correction by a reading older than a control period (O3): the innovation compares the reading with the prediction
+//! for its time, and the gain carries the correction to now.
 //!
-//! A filter that took the innovation of then for one of now would answer its own answers, and swing up as soon as readings
-//! are about as old as it is fast.
+//! Treating a delayed reading as current closes a second feedback path: with an 18-bit encoder the filter is unstable
+//! from 2 periods of delay on.
 
 use crate::numbers::Real;
 
-/// One side between a reading and now.
+/// State change of one side between a reading and now.
 #[derive(Debug, Clone, Copy)]
 pub struct Delayed<T: Real> {
-    /// How old the reading is, in periods.
+    /// Age n of the reading [control periods].
     pub periods: T,
-    /// Length of one [s].
+    /// Control period T [s].
     pub period: T,
-    /// Change of speed in a period [rad/s].
+    /// Change of speed per period [rad/s].
     pub speed_change: T,
-    /// The same for each newton metre of the torque that is estimated [rad/(s N m)].
+    /// Change of speed per period and per newton metre of the estimated torque [rad/(s N m)].
     pub speed_per_torque: T,
 }
 
 impl<T: Real> Delayed<T> {
-    /// Angle by which the shaft is beyond the reading, at its present speed [rad/s]; in rad.
+    /// Angle from the reading to now, with the present speed [rad/s]; in rad.
     pub fn travel(&self, speed: T) -> T {
         self.periods * self.period * (speed - T::HALF * self.periods * self.speed_change)
     }
 
-    /// Gains of then as they are now: of angle, speed and torque.
+    /// Carries the gains of angle, speed and torque from the time of the reading to now.
     pub fn gain_now(&self, gain: &[T; 3]) -> [T; 3] {
         let [angle, speed, torque] = *gain;
         let faster = self.periods * self.speed_per_torque * torque;

@@ -1,9 +1,9 @@
-//! The motor side: a disturbance observer that says what torque meshes and friction take from the motor. `learnt::bias`
-//! tells the two apart.
+//! Disturbance observer of the motor side (O2; late readings O3): estimates the torque that meshes and friction take
+//! from the motor. `learnt::bias` separates the two. Symbols: a = `ahead`, w_m = `speed`, t = `taken`, u = `air_gap`,
+//! G = `gain`.
 //!
-//! State: angle beyond the counts, speed, taken torque, air-gap torque. Over a period the state follows the linear flow
-//! of the tables (current loop included), then each is corrected by its gain times the innovation, the measured less the
-//! predicted angle.
+//! Each period the state follows the linear flow of the tables, current loop included. `gain` times the innovation, the
+//! measured less the predicted angle, then corrects angle, speed and taken torque; the air-gap torque is not corrected.
 
 use super::delayed::Delayed;
 use crate::numbers::Real;
@@ -14,22 +14,22 @@ use crate::observer::tables::{CurrentTable, DriveTable, MOST_DELAY};
 pub struct DriveSide<T: Real> {
     /// Angle beyond the counts [rad].
     pub ahead: T,
-    /// [rad/s].
+    /// Motor speed [rad/s].
     pub speed: T,
     /// Torque taken from the motor by meshes and friction [N m].
     pub taken: T,
     air_gap: T,
-    /// The strongest torque lately [N m].
+    /// Decaying maximum of the air-gap torque's magnitude [N m].
     strongest: T,
-    /// Commands on their way to the motor, the newest first.
+    /// Commands within the delay, newest first.
     commands: [T; MOST_DELAY],
 }
 
 impl<T: Real> DriveSide<T> {
-    /// Part of the strongest torque that is forgotten in a period [-]: a speed by counts lags by a few of them.
+    /// Decay of `strongest` per period [-]: a speed computed from counts lags by a few periods.
     const FADES: T = T::TWENTIETH;
 
-    /// Over one period, under the command in force during it; `turned` is by how much the counts moved [rad].
+    /// Predicts the state over one period under the command in force; `turned` is the travel of the counts [rad].
     pub fn predict(&mut self, table: &DriveTable<T>, current: &CurrentTable<T>, command: T, turned: T) {
         self.commands.rotate_right(1);
         self.commands[0] = command;
@@ -47,12 +47,12 @@ impl<T: Real> DriveSide<T> {
         self.strongest = if torque > self.strongest { torque } else { self.strongest - Self::FADES * self.strongest };
     }
 
-    /// Corrects by a reading of this period, `age` old [s].
+    /// Corrects by a reading of this period, with its age [s].
     pub fn correct(&mut self, table: &DriveTable<T>, age: T) {
         self.apply(&table.gain, self.speed * age - self.ahead);
     }
 
-    /// Corrects by an older reading, where the change of speed since then matters.
+    /// Corrects by an older reading, including the change of speed since then.
     #[cold]
     pub fn correct_late(&mut self, table: &DriveTable<T>, age: T) {
         let [period, ..] = table.angle;
@@ -70,17 +70,17 @@ impl<T: Real> DriveSide<T> {
         self.taken += taken * innovation;
     }
 
-    /// Torque in the air gap [N m].
+    /// Returns the air-gap torque [N m].
     pub fn air_gap(&self) -> T {
         self.air_gap
     }
 
-    /// The strongest torque that has acted lately [N m].
+    /// Returns the decaying maximum of the air-gap torque's magnitude [N m].
     pub fn strongest(&self) -> T {
         self.strongest
     }
 
-    /// Without any usable reading the motor is taken to stand where its counts were.
+    /// Sets the motor at rest at its last counts, without a usable reading.
     pub fn hold(&mut self) {
         self.ahead = T::ZERO;
         self.speed = T::ZERO;

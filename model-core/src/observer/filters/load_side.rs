@@ -1,8 +1,8 @@
-//! The load side: a disturbance observer on the link that says where it is, how fast it turns and what torque brakes it.
-//! The torque that the meshes pass on is its input.
+//! Disturbance observer of the load side (O4): estimates angle, speed and load torque of the link. Input is the mesh
+//! torque. Symbols: a = `ahead`, w_l = `speed`, t_l = `torque`.
 //!
-//! The state's angle is relative to a reference: the output counts or, with the motor encoder only, the motor's counts
-//! over the ratio.
+//! The angle is relative to a reference: the output counts or, without an output encoder, the motor counts over the
+//! ratio.
 
 use super::delayed::Delayed;
 use crate::numbers::Real;
@@ -13,14 +13,14 @@ use crate::observer::tables::LoadTable;
 pub struct LoadSide<T: Real> {
     /// Angle beyond the reference [rad].
     pub ahead: T,
-    /// [rad/s].
+    /// Link speed [rad/s].
     pub speed: T,
-    /// What brakes the link [N m].
+    /// Load torque, positive if it brakes [N m].
     pub torque: T,
 }
 
 impl<T: Real> LoadSide<T> {
-    /// Over one period, under a torque from the meshes; `turned` is by how much the reference moved [rad].
+    /// Predicts the state over one period under a mesh torque; `turned` is the travel of the reference [rad].
     pub fn predict(&mut self, table: &LoadTable<T>, from_meshes: T, turned: T) {
         let net = from_meshes - self.torque;
         let [from_speed, from_net] = table.angle;
@@ -28,7 +28,7 @@ impl<T: Real> LoadSide<T> {
         self.speed += table.speed * net;
     }
 
-    /// Corrects by a reading that is where the reference is, `age` old [s], under a torque from the meshes.
+    /// Corrects by a reading at the reference, with its age [s], under a mesh torque.
     pub fn correct(&mut self, table: &LoadTable<T>, age: T, from_meshes: T) {
         let [period, _] = table.angle;
         if age < period {
@@ -37,7 +37,7 @@ impl<T: Real> LoadSide<T> {
         self.correct_late(table, age, from_meshes);
     }
 
-    /// The same where the change of speed since the reading matters.
+    /// Corrects by a reading older than a period, including the change of speed since then.
     #[cold]
     fn correct_late(&mut self, table: &LoadTable<T>, age: T, from_meshes: T) {
         let [period, _] = table.angle;

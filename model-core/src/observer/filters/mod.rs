@@ -1,5 +1,6 @@
-//! The filters: two disturbance observers that share nothing but the torque between them. The motor side says what torque
-//! meshes and friction take from the motor, the load side where the link is, how fast it turns and what brakes it.
+//! Filters of motor side and load side: two disturbance observers, coupled by the mesh torque alone. The motor side
+//! (O2, O3) estimates the torque taken by meshes and friction; the load side (O4) estimates angle, speed and load
+//! torque of the link.
 
 mod delayed;
 pub mod drive_side;
@@ -14,28 +15,28 @@ use super::sensors::{Sensed, seconds};
 use crate::numbers::Real;
 use crate::observer::tables::{LoadTable, ObserverTables};
 
-/// Both sides, and what joins them.
+/// Filters of both sides and the torque that couples them.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Filters<T: Real> {
     pub drive: DriveSide<T>,
     pub load: LoadSide<T>,
-    /// Torque that the meshes put on the load side, as the motor side says [N m].
+    /// Mesh torque acting on the load side, estimated by the motor side [N m].
     pub mesh_torque: T,
 }
 
-/// What is known of the link's place without its encoder.
+/// Correction of the link's state without its encoder.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LoadCorrection<T: Real> {
-    /// Nothing.
+    /// No correction.
     None,
-    /// It is further by so much [rad], and turns with the motor.
+    /// Adds an angle to the link [rad] and sets the link to the motor's speed.
     TurnsWithMotor(T),
-    /// It is further by so much, in loaded contact [rad].
+    /// Corrects by an innovation in loaded contact [rad].
     InContact(T),
 }
 
 impl<T: Real> Filters<T> {
-    /// Both sides over one period, and the motor side's correction by its reading.
+    /// Predicts both sides over one period and corrects the motor side by its reading.
     #[inline(always)]
     pub fn step(&mut self, tables: &ObserverTables<T>, sensed: &Sensed<T>, motor_used: bool) {
         self.drive.predict(&tables.drive, &tables.current, sensed.command, sensed.motor_turned);
@@ -54,8 +55,8 @@ impl<T: Real> Filters<T> {
         self.load.predict(&tables.load, self.mesh_torque, sensed.output_turned);
     }
 
-    /// The motor side after its encoder was not used: it goes on by so many counts in a period. A link that nobody sees goes with
-    /// it.
+    /// Restarts the motor side when its encoder is readmitted; `counts` is the motor's travel in a period. Without an
+    /// output encoder the link gets the motor's speed.
     #[cold]
     pub fn find_motor(&mut self, tables: &ObserverTables<T>, counts: T, both_encoders: bool) {
         self.drive.speed = (counts * tables.counts.motor.angle).over(tables.period);
@@ -65,13 +66,13 @@ impl<T: Real> Filters<T> {
         }
     }
 
-    /// The load side's correction by the output's reading of this period.
+    /// Corrects the load side by the output reading of this period.
     #[inline]
     pub fn correct_load(&mut self, tables: &ObserverTables<T>, sensed: &Sensed<T>) {
         self.load.correct(&tables.load, seconds(&tables.clock, sensed.output_age), self.mesh_torque);
     }
 
-    /// The load side's correction without the output encoder.
+    /// Corrects the load side without an output encoder.
     pub fn correct_unseen_load(&mut self, table: &LoadTable<T>, correction: LoadCorrection<T>, per_ratio: T) {
         match correction {
             LoadCorrection::None => {}

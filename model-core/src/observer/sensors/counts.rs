@@ -1,14 +1,15 @@
-//! From raw counts to whole numbers that are exact over any number of turns and over wrap-around: where each shaft is,
-//! and motor less ratio times output. Angles beyond a turn never become floating point here.
+//! Integer counts of both shafts, exact over any number of turns and over wrap-around, and their difference (O1): motor
+//! less ratio times output. D = `difference`, n_m C_o q = motor counts times `motor_weight`, n_o C_m p = output counts
+//! times `output_weight`, both without common divisors. Angles beyond a turn never become floating point here.
 
 use crate::numbers::Real;
 use crate::observer::samples::Reading;
 use crate::observer::tables::{CountTable, EncoderTable};
 
-/// Readings in a row that are too far away to be believed, after which the encoder is taken to have jumped.
+/// Consecutive readings rejected as too far away; the next such reading counts as a jump of the encoder.
 const BELIEVED_AFTER: u8 = 3;
 
-/// Where one shaft is.
+/// Position of one shaft.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Counter {
     raw: u32,
@@ -18,23 +19,23 @@ pub struct Counter {
     began: bool,
 }
 
-/// What a reading came to.
+/// Result of a reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Advance {
-    /// The first reading ever.
+    /// First reading.
     Began,
-    /// Counts since the last one.
+    /// Counts since the last accepted reading.
     By(i32),
-    /// Too far away: not believed, the shaft is taken to have gone on as it went.
+    /// Too far away: rejected, the motion is extrapolated.
     Implausible,
-    /// Too far away time after time: the encoder has jumped by this much.
+    /// Too far away repeatedly: the encoder has jumped by these counts.
     Jumped(i32),
 }
 
 impl Counter {
     #[inline]
     pub fn take<T: Real>(&mut self, table: &EncoderTable<T>, raw: u32) -> Advance {
-        // Raw counts outside their range are brought into it.
+        // Bring raw counts outside their range into it.
         let raw = if raw > table.last { raw.checked_rem(table.wraps_at).unwrap_or(raw) } else { raw };
         let by = difference(raw, self.raw, table);
         if !self.began || by.unsigned_abs() > table.fastest {
@@ -44,7 +45,7 @@ impl Counter {
         Advance::By(by)
     }
 
-    /// The first reading, or one that is far away.
+    /// Handles the first reading or a distant reading.
     #[cold]
     fn take_odd<T: Real>(&mut self, table: &EncoderTable<T>, raw: u32, by: i32) -> Advance {
         if !self.began {
@@ -68,10 +69,10 @@ impl Counter {
         self.advance(table, by);
     }
 
-    /// Goes on by so many counts.
+    /// Advances by counts.
     fn advance<T: Real>(&mut self, table: &EncoderTable<T>, by: i32) {
         let place = self.place.wrapping_add(by as u32);
-        // Places before the turn's beginning are huge here.
+        // A position before the start of the turn wraps to a huge value.
         if place < table.turn {
             self.place = place;
         } else {
@@ -79,7 +80,7 @@ impl Counter {
         }
     }
 
-    /// Goes on by so many counts into another turn.
+    /// Advances by counts into another turn.
     #[cold]
     fn turn<T: Real>(&mut self, table: &EncoderTable<T>, by: i64) {
         let turn = i64::from(table.turn);
@@ -89,24 +90,24 @@ impl Counter {
         self.turns = self.turns.wrapping_add(turns as i32);
     }
 
-    /// Place within the turn in 2^-32 turns.
+    /// Position within the turn [2^-32 turns].
     pub fn phase<T: Real>(&self, table: &EncoderTable<T>) -> u32 {
         (u64::from(self.place).wrapping_mul(table.phase) >> 32) as u32
     }
 
-    /// Place within the turn, in counts.
+    /// Position within the turn [counts].
     pub fn place(&self) -> u32 {
         self.place
     }
 
-    /// Whole turns since the first reading's own turn.
+    /// Whole turns since the turn of the first reading.
     pub fn turns(&self) -> i32 {
         self.turns
     }
 }
 
-/// The quotient of two whole numbers, towards zero; none where there is no part. A division of 64 bits is a library call of
-/// 700 bytes: what fits into 32 the hardware divides, and other quotients here have few digits.
+/// Quotient rounded towards zero; `None` for a divisor of zero. A 64-bit division is a library call of 700 bytes:
+/// operands that fit 32 bits are divided in hardware, other quotients have few digits here.
 #[inline(never)]
 fn quotient(units: i64, part: i64) -> Option<i64> {
     let (left, size) = (units.unsigned_abs(), part.unsigned_abs());
@@ -118,7 +119,7 @@ fn quotient(units: i64, part: i64) -> Option<i64> {
     Some(if (units < 0) == (part < 0) { quotient } else { quotient.wrapping_neg() })
 }
 
-/// Digit by digit.
+/// Long division, one binary digit per step.
 #[cold]
 fn quotient_of_large(mut left: u64, size: u64) -> Option<u64> {
     if size == 0 {
@@ -137,81 +138,81 @@ fn quotient_of_large(mut left: u64, size: u64) -> Option<u64> {
     Some(quotient)
 }
 
-/// Half of a whole number, towards zero.
+/// Half of an integer, rounded towards zero.
 fn half(units: i64) -> i64 {
     units.wrapping_add(i64::from(units < 0)) >> 1
 }
 
-/// How often a part goes into units, downwards, so that what is left of them is not below zero. No part at all goes into none.
+/// Quotient rounded down, so that the remainder is not negative; zero for a divisor of zero.
 fn whole(units: i64, part: i64) -> i64 {
     let Some(towards_zero) = quotient(units, part) else { return 0 };
     if towards_zero.wrapping_mul(part) > units { towards_zero.wrapping_sub(1) } else { towards_zero }
 }
 
-/// What is left of them.
+/// Remainder of the division rounded down.
 fn rest(units: i64, part: i64) -> i64 {
     units.wrapping_sub(whole(units, part).wrapping_mul(part))
 }
 
-/// Counts of the whole ranges of raw counts that come nearest to so many units of the difference, a count being so many.
+/// Multiple of the raw range, in counts, nearest to `units` of the difference; `weight` is the units per count.
 fn whole_ranges<T: Real>(units: i64, table: &EncoderTable<T>, weight: i64) -> i64 {
     let range = i64::from(table.last).wrapping_add(1);
     let of_range = range.wrapping_mul(weight);
     whole(units.wrapping_add(half(of_range)), of_range).wrapping_mul(range)
 }
 
-/// From `before` to `now` the shorter way round; both within their range.
+/// Counts from `before` to `now` the shorter way round; both lie within their range.
 pub fn difference<T: Real>(now: u32, before: u32, table: &EncoderTable<T>) -> i32 {
     let up = now.wrapping_sub(before);
     let up = if now < before { up.wrapping_add(table.wraps_at) } else { up };
     (if up > table.last / 2 { up.wrapping_sub(table.wraps_at) } else { up }) as i32
 }
 
-/// Both shafts, and the output as the motor implies it while its encoder is not trusted.
+/// Positions of both shafts, and the output implied by the motor while the output encoder is excluded.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Counts {
     pub motor: Counter,
-    /// As measured.
+    /// Measured output.
     pub output: Counter,
-    /// Motor less ratio times output as measured, since the start, in the table's units, wrapping.
+    /// Difference D since the start, as measured, in the table's units, wrapping.
     pub difference: i64,
-    /// What the difference was at the start, modulo whole turns: where the encoders' zeros are.
+    /// Difference at the start, modulo whole turns: position of the encoders' zeros.
     pub start: i64,
-    /// The start is a saved one.
+    /// The start was restored from memory.
     referred: bool,
-    /// As implied: an output that follows the motor by whole counts, and what is left of the difference.
+    /// Implied output, which follows the motor by whole counts, and the remaining difference.
     implied: Option<(Counter, i64)>,
     fresh_time: u32,
     motor_time: u32,
-    /// The motor encoder is not trusted.
+    /// State while the motor encoder is excluded.
     doubt: Option<Doubt>,
 }
 
-/// What is remembered of a motor encoder that is not trusted.
+/// Memory of an excluded motor encoder.
 #[derive(Debug, Clone, Copy)]
 struct Doubt {
-    /// The difference before.
+    /// Difference before the exclusion.
     difference: i64,
-    /// Units of the difference by which the motor's counts have gone on since, as far as raw counts tell.
+    /// Travel of the motor counts since then, as far as raw counts show [units of the difference].
     went: i64,
 }
 
-/// What one period's readings came to.
+/// Result of the readings of one period.
 #[derive(Debug, Clone, Copy)]
 pub struct Taken {
     pub motor: Advance,
-    /// `None` when there was no fresh reading.
+    /// `None` without a fresh reading.
     pub output: Option<Advance>,
-    /// Ticks since the fresh reading before, by their own times.
+    /// Time from the previous fresh output reading, by time stamps [ticks].
     pub apart: u32,
-    /// The same of the motor's reading; 0 if it is the one before again.
+    /// Time from the previous motor reading; 0 for a repeated reading [ticks].
     pub motor_apart: u32,
-    /// By how many counts the output went on that is in use.
+    /// Travel of the output in use, measured or implied [counts].
     pub turned: i32,
 }
 
 impl Counts {
-    // A call and what it hands over cost some hundredths of the instructions of a period.
+    // Inlined: the call with its arguments would cost some hundredths of the instructions of a period.
     #[inline(always)]
     pub fn take<T: Real>(&mut self, table: &CountTable<T>, motor: Reading, output: Option<Reading>) -> Taken {
         let begins = !self.output.began;
@@ -243,8 +244,8 @@ impl Counts {
         Taken { motor, output, apart, motor_apart, turned }
     }
 
-    /// The motor went on by units of the difference while one of the encoders is not trusted, the output by counts; by how
-    /// many counts the output went on that is in use.
+    /// Advances an implied output, and the travel of an excluded motor encoder. `by` is the motor's travel in units of
+    /// the difference, `turned` the measured output's in counts. Returns the travel of the output in use [counts].
     #[cold]
     fn go_on<T: Real>(&mut self, table: &CountTable<T>, motor: Advance, by: i64, turned: i32) -> i32 {
         if let Some(doubt) = &mut self.doubt {
@@ -258,8 +259,7 @@ impl Counts {
         }
     }
 
-    /// From now on the motor encoder is not trusted; `last` is by how many counts it went on in this period, before that
-    /// was known.
+    /// Excludes the motor encoder; `last` is its advance in this period, which preceded the exclusion.
     pub fn doubt_motor<T: Real>(&mut self, table: &CountTable<T>, last: Advance) {
         if self.doubt.is_none() {
             let by = if let Advance::Jumped(by) = last { i64::from(by).wrapping_mul(table.motor_weight) } else { 0 };
@@ -267,8 +267,8 @@ impl Counts {
         }
     }
 
-    /// Raw counts of a motor encoder that was not trusted leave whole ranges open: of the places that they can mean it takes the
-    /// one nearest to where the output says, or, without one, to where the motor was.
+    /// Resolves the ambiguity of whole raw ranges of an excluded motor encoder: chooses the position nearest to the
+    /// position implied by the output or, without an output encoder, to the motor's last position.
     pub fn find_motor<T: Real>(&mut self, table: &CountTable<T>) {
         let Some(Doubt { difference, went }) = self.doubt else { return };
         let beyond = if self.implied.is_some() { went } else { self.difference.wrapping_sub(difference) };
@@ -279,8 +279,8 @@ impl Counts {
         self.doubt = Some(Doubt { difference, went: went.wrapping_add(back) });
     }
 
-    /// The motor encoder is trusted again, as it is found; one that has slipped, by so many units of the difference, goes on from
-    /// where the motor is.
+    /// Readmits the motor encoder at its found position. An encoder that slipped by `slipped` units of the difference
+    /// continues from the motor's position.
     pub fn trust_motor<T: Real>(&mut self, table: &CountTable<T>, slipped: i64) {
         let Some(Doubt { went, .. }) = self.doubt.take() else { return };
         let counts = quotient(slipped, table.motor_weight).unwrap_or(0);
@@ -294,15 +294,15 @@ impl Counts {
         }
     }
 
-    /// Counts the difference from so many units further on: an encoder has slipped by as much.
+    /// Shifts the origin of the difference by the units of an encoder slip.
     fn count_from<T: Real>(&mut self, table: &CountTable<T>, by: i64) {
         self.start = rest(self.start.wrapping_add(by), table.modulus);
         self.difference = self.difference.wrapping_sub(by);
     }
 
-    /// The output has jumped by so many counts, which gives it up: what the motor implies goes on from where it was. Raw
-    /// counts leave whole ranges open; of the places that they can mean it is the one nearest to what is implied. By how many
-    /// counts it has gone on to there.
+    /// Handles a jump of the output, which excludes its encoder: the implied output continues from the last position.
+    /// Among the positions that whole raw ranges leave open, the measured output takes the position nearest to the
+    /// implied output. Returns the travel of the measured output [counts].
     #[cold]
     fn jump<T: Real>(&mut self, table: &CountTable<T>, by: i32) -> i32 {
         self.output.advance(&table.output, by.wrapping_neg());
@@ -314,7 +314,7 @@ impl Counts {
         went
     }
 
-    /// Both encoders are there for the first time.
+    /// Sets the start when both encoders have given a first reading.
     #[cold]
     fn begin<T: Real>(&mut self, table: &CountTable<T>) {
         let absolute = i64::from(self.motor.place)
@@ -327,7 +327,7 @@ impl Counts {
         }
     }
 
-    /// Lets the implied output follow the motor; by how many counts it did.
+    /// Advances the implied output with the motor and returns its travel [counts].
     fn follow<T: Real>(&mut self, table: &CountTable<T>, by: i64) -> i32 {
         let Some((implied, rest)) = &mut self.implied else { return 0 };
         let sum = rest.wrapping_add(by);
@@ -337,7 +337,7 @@ impl Counts {
         counts as i32
     }
 
-    /// Counts the difference from where the encoders' zeros were before, as far as whole turns leave that open.
+    /// Refers the difference to saved zeros of the encoders, as far as whole turns leave the zeros open.
     pub fn refer_to<T: Real>(&mut self, reference: i64, table: &CountTable<T>) {
         self.referred = true;
         if self.output.began {
@@ -348,15 +348,15 @@ impl Counts {
         self.start = reference;
     }
 
-    /// From now on the output is what the motor implies, beginning where it is measured now.
+    /// Replaces the output by the output implied by the motor, starting at the measured position.
     pub fn imply(&mut self) {
         if self.implied.is_none() {
             self.implied = Some((self.output, self.difference));
         }
     }
 
-    /// From now on the output is what is measured; an encoder that has slipped, by so many units of the difference, goes on
-    /// from where the link is.
+    /// Returns to the measured output. An encoder that slipped by `slipped` units of the difference continues from the
+    /// link's position.
     pub fn trust<T: Real>(&mut self, table: &CountTable<T>, slipped: i64) {
         self.implied = None;
         let counts = quotient(slipped, table.output_weight).unwrap_or(0);
@@ -367,7 +367,7 @@ impl Counts {
         }
     }
 
-    /// The output that is in use, and its difference.
+    /// Returns the output in use and its difference.
     pub fn used(&self) -> (&Counter, i64) {
         match &self.implied {
             Some((implied, rest)) => (implied, *rest),

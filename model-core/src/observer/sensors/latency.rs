@@ -1,52 +1,53 @@
-//! How old the motor's readings are, by their own time stamps: whether each is of this period, a late one, or the same
-//! as before because a new one was lost.
+//! Freshness of the motor readings by time stamp: reading of this period, late reading, or repeated reading after a
+//! lost one.
 
-/// Control periods without a new reading over which the motor is taken to go on as it went: the force that acts
-/// meanwhile is a guess, and after two periods a landing could have gone by unseen.
+/// Control periods without a new reading over which the motor state is extrapolated. The force during this time is a
+/// guess; after more than two periods a landing could pass unnoticed.
 const EXTRAPOLATED: u32 = 2;
 
-/// By how many late periods may outnumber those on time before the line counts as late for good: one lost frame or two
-/// must not stop learning.
+/// Excess of late periods over punctual ones up to which late readings are tolerated: a few lost frames must not stop
+/// the estimation.
 const LATE_FOR_GOOD: u8 = 4;
 
-/// Control periods in which readings must be on time again until that is over: the motor side's estimates of what was
-/// late have faded by then.
+/// Punctual control periods that end the state "late for good": the errors of the motor side by late readings have
+/// decayed by then.
 const RECOVERED_AFTER: u8 = 32;
 
-/// Ages are counted in this many parts of a control period.
+/// Resolution of ages [parts of a control period].
 const PARTS: u32 = 16;
 
-/// Parts of a control period by which the same reading, given again, is older than before: a whole period less what the
-/// clock of a sampling line may jitter.
+/// Least increase of age by which a reading counts as repeated [parts of a control period]: one period less the clock
+/// jitter of a sampling line.
 const GIVEN_AGAIN: u32 = 12;
 
-/// How fresh the motor's reading is.
+/// Freshness of the motor reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Freshness {
     /// Taken in this period.
     Fresh,
-    /// The same as before: one or two were lost. The motor goes on as it went.
+    /// Repeated: one or two readings were lost. The motor state is extrapolated.
     Lost,
-    /// The same as before for longer: the force since is a guess, so estimates that depend on it are not valid, and
-    /// nothing is learnt from them.
+    /// Repeated for longer. The force since then is a guess: estimates that depend on the force are invalid, and no
+    /// parameter is updated.
     LostForLong,
-    /// A new one, older than a period: likewise.
+    /// New, but older than a period: estimates are invalid and no parameter is updated, as for `LostForLong`.
     Late,
-    /// None, or one that is too old to be used.
+    /// Missing, or too old to be used.
     Unusable,
 }
 
-/// Age of the motor's readings over time.
+/// Age of the motor readings over time.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Latency {
-    /// Age of the last reading, in [`PARTS`] of a period.
+    /// Age of the last reading in [`PARTS`] of a period; zero for a fresh reading.
     age: u8,
-    /// By how many late periods outnumber those on time; beyond [`LATE_FOR_GOOD`], periods on time until that is over.
+    /// Excess of late periods over punctual ones; above [`LATE_FOR_GOOD`], punctual periods left until recovery plus
+    /// `LATE_FOR_GOOD`.
     late: u8,
 }
 
 impl Latency {
-    /// Takes a reading's age, `None` for one that is too old, and the length of a period; both in ticks.
+    /// Classifies a reading by its age, `None` if too old, and the control period; both in ticks.
     #[inline]
     pub fn step(&mut self, age: Option<u32>, period: u32) -> Freshness {
         match age {
@@ -81,7 +82,7 @@ impl Latency {
         freshness
     }
 
-    /// Whether the line has been late for long.
+    /// Returns whether readings have been late for long.
     pub fn is_late_for_good(&self) -> bool {
         self.late > LATE_FOR_GOOD
     }

@@ -1,5 +1,5 @@
-//! The sensors: raw samples of one control period become counts that are exact over any number of turns, ages, and what
-//! was wrong with them. Nothing is filtered here.
+//! Sensors: convert the raw samples of a control period to counts exact over any number of turns (O1), ages and
+//! notices. No filtering.
 
 pub mod counts;
 pub mod latency;
@@ -12,48 +12,48 @@ use crate::observer::estimates::Notices;
 use crate::observer::samples::{Reading, Samples};
 use crate::observer::tables::{ClockTable, ObserverTables};
 
-/// Both encoders, the clock of their readings, and how late the motor's come.
+/// Counts of both encoders, time of the last samples, and latency of the motor readings.
 #[derive(Debug, Clone)]
 pub struct Sensors {
     pub counts: Counts,
     pub latency: Latency,
-    /// When the last samples were taken [ticks].
+    /// Time of the last samples [ticks].
     time: u32,
-    /// Periods for which a torque that was none may still be felt in the filters.
+    /// Periods for which a rejected torque sample may still affect the filters.
     unsure_for: u16,
 }
 
-/// What the samples of one period came to.
+/// Evaluated samples of one period.
 #[derive(Debug, Clone, Copy)]
 pub struct Sensed<T: Real> {
-    /// Torque that was commanded; zero where it was none [N m].
+    /// Commanded torque; zero if the sample was rejected [N m].
     pub command: T,
-    /// What the motor's reading came to.
+    /// Result of the motor reading.
     pub motor: Advance,
-    /// Angle by which the motor's counts moved [rad].
+    /// Travel of the motor counts [rad].
     pub motor_turned: T,
-    /// Time between the motor's reading and the one before; 0 if it is the same again [ticks].
+    /// Time from the previous motor reading to this reading; 0 for a repeated reading [ticks].
     pub motor_interval: u32,
-    /// Age of the motor's reading [ticks].
+    /// Age of the motor reading [ticks].
     pub motor_age: u32,
-    /// How fresh it is.
+    /// Freshness of the motor reading.
     pub freshness: Freshness,
-    /// What the output's reading came to; `None` when there was no fresh one.
+    /// Result of the output reading; `None` without a fresh reading.
     pub output: Option<Advance>,
-    /// Angle by which the output moved that is in use [rad].
+    /// Travel of the output counts in use, measured or implied [rad].
     pub output_turned: T,
-    /// Age of the output's reading [ticks].
+    /// Age of the output reading [ticks].
     pub output_age: u32,
-    /// Time between that reading and the fresh one before [ticks].
+    /// Time from the previous fresh output reading to this fresh reading [ticks].
     pub output_interval: u32,
-    /// The torque was one that the motor can give.
+    /// The torque sample was within twice the motor's limit.
     pub torque_known: bool,
-    /// The period was too short or too long, or time went backwards.
+    /// The period was too short or too long, or time ran backwards.
     pub out_of_time: bool,
 }
 
 impl Sensors {
-    /// Sensors that have seen nothing yet.
+    /// Builds sensors without any reading.
     pub fn new(has_output: bool) -> Self {
         let mut counts = Counts::default();
         if !has_output {
@@ -62,15 +62,15 @@ impl Sensors {
         Self { counts, latency: Latency::default(), time: 0, unsure_for: 0 }
     }
 
-    /// Whether a torque that was none may still be felt in the filters.
+    /// Returns whether a rejected torque sample may still affect the filters.
     pub fn is_unsure(&self) -> bool {
         self.unsure_for > 0
     }
 
-    /// Takes the samples of one period.
+    /// Evaluates the samples of one period.
     #[inline(always)]
     pub fn step<T: Real>(&mut self, tables: &ObserverTables<T>, samples: &Samples<T>) -> Sensed<T> {
-        // False for what is not a number, too.
+        // False for NaN, too.
         let known = samples.torque.abs() <= tables.current.believed;
         self.unsure_for = if known { self.unsure_for.saturating_sub(1) } else { tables.current.unsure_for };
         let command = if known { samples.torque } else { T::ZERO };
@@ -102,7 +102,7 @@ impl Sensors {
 }
 
 impl<T: Real> Sensed<T> {
-    /// What was wrong with the samples.
+    /// Returns the defects of the samples.
     #[inline(always)]
     pub fn notices(&self) -> Notices {
         if self.torque_known && !self.out_of_time && matches!(self.motor, Advance::By(_)) {
@@ -117,12 +117,12 @@ impl<T: Real> Sensed<T> {
     }
 }
 
-/// Age of a reading [ticks]. One from the future is of now.
+/// Age of a reading [ticks]; zero for a time stamp in the future.
 fn age(now: u32, reading: &Reading) -> u32 {
     (now.wrapping_sub(reading.time) as i32).max(0).unsigned_abs()
 }
 
-/// Ticks as seconds.
+/// Converts ticks to seconds.
 pub fn seconds<T: Real>(table: &ClockTable<T>, ticks: u32) -> T {
     T::from_i32(ticks as i32) * table.tick
 }

@@ -146,7 +146,7 @@ impl<T: Real> Active<T> {
         }
     }
 
-    /// True if a reading is lost.
+    /// Returns true if a reading is lost.
     fn loses(&mut self, shaft: Shaft, on: bool) -> bool {
         match self.fault.kind {
             FaultKind::LostReadings(of, share) if of == shaft && on => self.uniform() < share,

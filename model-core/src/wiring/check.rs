@@ -218,9 +218,9 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
         }
     }
 
-    /// True if the joint has moved by a limit. Wrong counts per turn overstate or understate a travel, so that the
-    /// geometric mean of both travels decides; it is right even for exchanged encoders. A motor without an output, or
-    /// beside a stationary output, has its own limit.
+    /// Returns true if the joint has moved by a limit. Wrong counts per turn overstate or understate a travel, so that
+    /// the geometric mean of both travels decides; it is right even for exchanged encoders. A motor without an output,
+    /// or beside a stationary output, has its own limit.
     fn is_far(&self, moved: [i64; 2], limit: [u32; 2]) -> bool {
         let [motor, output] = moved.map(|by| by.unsigned_abs().min(MOST_COUNTS));
         let [motor_limit, output_limit] = limit.map(u64::from);

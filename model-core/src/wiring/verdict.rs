@@ -76,7 +76,7 @@ impl WiringItem {
         }
     }
 
-    /// True if only a joint with an output encoder shows the item.
+    /// Returns true if only a joint with an output encoder shows the item.
     pub const fn needs_output(self) -> bool {
         matches!(self, Self::OutputCounts | Self::MotorCounts | Self::Places | Self::Ratio | Self::OutputDirection)
     }
@@ -137,7 +137,7 @@ pub enum Verdict<T: Real> {
 }
 
 impl<T: Real> Verdict<T> {
-    /// True if the item is wrong or suspect.
+    /// Returns true if the item is wrong or suspect.
     pub fn is_bad(self) -> bool {
         matches!(self, Self::Wrong(_) | Self::Suspect(_))
     }
@@ -161,12 +161,12 @@ impl<T: Real> Wiring<T> {
         WiringItem::ALL.into_iter().zip(self.verdicts)
     }
 
-    /// True if every item was seen and is right. Without an output encoder the items that need one are ignored.
+    /// Returns true if every item was seen and is right. Without an output encoder the items that need one are ignored.
     pub fn is_all_right(&self) -> bool {
         self.iter().all(|(item, verdict)| verdict == Verdict::Right || (!self.has_output && item.needs_output()))
     }
 
-    /// True if no item is wrong or suspect.
+    /// Returns true if no item is wrong or suspect.
     pub fn is_right(&self) -> bool {
         !self.verdicts.iter().any(|verdict| verdict.is_bad())
     }

@@ -134,13 +134,13 @@ impl<T: Real> Health<T> {
         Some(back)
     }
 
-    /// True while both encoders are in use.
+    /// Returns true while both encoders are in use.
     pub fn both_encoders(&self) -> bool {
         matches!(self.source, Source::Both)
     }
 
-    /// True once the deflection has been out of range for 4 ms, longer than impacts ring: teeth are worn, or an encoder
-    /// fails.
+    /// Returns true once the deflection has been out of range for 4 ms, longer than impacts ring: teeth are worn, or an
+    /// encoder fails.
     pub fn is_at_odds(&self, tables: &ObserverTables<T>) -> bool {
         self.faults.is_at_odds(&tables.supervisor)
     }

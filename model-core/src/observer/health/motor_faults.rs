@@ -172,7 +172,7 @@ impl<T: Real> MotorFaultDetector<T> {
         self.plausibility.speed().unwrap_or(T::ZERO)
     }
 
-    /// True once the counts have stood still for longer than chance explains.
+    /// Returns true once the counts have stood still for longer than chance explains.
     pub fn is_unmoved(&self, table: &SupervisorTable<T>) -> bool {
         self.unmoved_for >= table.motor_unmoved_after
     }
@@ -292,8 +292,8 @@ impl<T: Real> MotorFaultDetector<T> {
         self.give_up(if frozen { MotorFault::Frozen } else { MotorFault::Jumped })
     }
 
-    /// True if the link has moved by more than gap and wind-up allow while the motor's counts stood still: teeth would
-    /// have moved the motor. `unwound` is the deflection less wind-up [m], under a force [N].
+    /// Returns true if the link has moved by more than gap and wind-up allow while the motor's counts stood still:
+    /// teeth would have moved the motor. `unwound` is the deflection less wind-up [m], under a force [N].
     pub fn is_outrun<const P: usize>(
         &mut self,
         tables: &ObserverTables<T>,
@@ -317,8 +317,8 @@ impl<T: Real> MotorFaultDetector<T> {
         went_on > half_gap && self.is_unmoved(&tables.supervisor) && outruns(tables, learnt, went_on, force)
     }
 
-    /// True if the readings have moved. Without agreement a moving encoder has slipped; a stationary one may still be
-    /// frozen.
+    /// Returns true if the readings have moved. Without agreement a moving encoder has slipped; a stationary one may
+    /// still be frozen.
     pub fn has_moved(&self) -> bool {
         self.moved
     }

@@ -123,7 +123,7 @@ impl<T: Real> OutputFaultDetector<T> {
         self.found = true;
     }
 
-    /// True once the deflection has been out of range for 4 ms, longer than impacts ring.
+    /// Returns true once the deflection has been out of range for 4 ms, longer than impacts ring.
     pub fn is_at_odds(&self, table: &SupervisorTable<T>) -> bool {
         self.outside_for >= table.failed_after
     }
@@ -133,7 +133,7 @@ impl<T: Real> OutputFaultDetector<T> {
         self.plausibility.rate()
     }
 
-    /// True if the last period had no reading.
+    /// Returns true if the last period had no reading.
     pub fn is_silent(&self) -> bool {
         self.silent_for > 0
     }
@@ -249,8 +249,8 @@ impl<T: Real> OutputFaultDetector<T> {
     }
 }
 
-/// True if one shaft has moved by more than gap and wind-up allow while the other's counts stood still (O24). The test
-/// needs no knowledge of the flank.
+/// Returns true if one shaft has moved by more than gap and wind-up allow while the other's counts stood still (O24).
+/// The test needs no knowledge of the flank.
 #[cold]
 pub fn outruns<T: Real, const P: usize>(
     tables: &ObserverTables<T>,
@@ -272,13 +272,13 @@ pub fn slack<T: Real, const P: usize>(tables: &ObserverTables<T>, learnt: &Learn
     count + T::TWO * (tables.supervisor.margin + learnt.uncertainty.softness * force.abs())
 }
 
-/// True if a deflection of the teeth [m] lies between the flanks or beyond a flank by at most the wind-up of a force
-/// [N].
+/// Returns true if a deflection of the teeth [m] lies between the flanks or beyond a flank by at most the wind-up of a
+/// force [N].
 pub fn is_possible<T: Real, const P: usize>(learnt: &Learnt<T, P>, deflection: T, force: T) -> bool {
     far_range(learnt, deflection, force) == Range::Possible
 }
 
-/// True if a deflection of the teeth [m] lies in its range, or beyond it by no more than wear or wind-up.
+/// Returns true if a deflection of the teeth [m] lies in its range, or beyond it by no more than wear or wind-up.
 pub fn is_near<T: Real, const P: usize>(learnt: &Learnt<T, P>, deflection: T) -> bool {
     far_range(learnt, deflection, T::ZERO) != Range::Impossible
 }

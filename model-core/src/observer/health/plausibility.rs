@@ -35,14 +35,14 @@ const AVERAGED: u32 = 5;
 /// Value of `jumped_for` while the speed is unknown.
 const UNKNOWN: u8 = u8::MAX;
 
-/// Verdict on a reading: can the shaft have moved so?
+/// Plausibility of a reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// The shaft can have moved so.
+    /// The shaft can reach the reading.
     Plausible,
-    /// The shaft cannot have moved so, unless the next readings return: this reading is not used.
+    /// The shaft cannot reach the reading unless the next readings return; this reading is not used.
     Suspect,
-    /// The shaft cannot have moved so.
+    /// The shaft cannot reach the reading.
     Implausible,
 }
 
@@ -115,7 +115,7 @@ impl Plausibility {
         }
     }
 
-    /// True if the readings stand still, false if they jumped.
+    /// Returns true if the readings stand still, false if they jumped.
     pub fn stands_still(&self) -> bool {
         self.jumped_for == 0
     }
@@ -169,7 +169,7 @@ impl Plausibility {
         by.checked_div(readings).unwrap_or(by) - self.rate
     }
 
-    /// True if a reading jumps by more than the shaft can be thrown.
+    /// Returns true if a reading jumps by more than the shaft can be thrown.
     #[cold]
     fn leaps<T: Real>(&self, surroundings: &impl Surroundings<T>, beyond: i32, jump: i32) -> bool {
         beyond.wrapping_abs() > jump.saturating_add(surroundings.throw(self.rate))

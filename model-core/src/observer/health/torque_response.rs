@@ -96,7 +96,7 @@ impl<T: Real> ResponseCheck<T> {
         *self = Self { response, votes: self.votes, ..Self::new() };
     }
 
-    /// True once the check has ended.
+    /// Returns true once the check has ended.
     fn is_decided(&self) -> bool {
         matches!(self.response, TorqueResponse::Right | TorqueResponse::Reversed)
     }
@@ -151,8 +151,8 @@ impl<T: Real> ResponseCheck<T> {
         };
     }
 
-    /// True if the next block carries no torque. A test starts once the motor runs against its torque and lasts until
-    /// it no longer does.
+    /// Returns true if the next block carries no torque. A test starts once the motor runs against its torque and lasts
+    /// until it no longer does.
     fn tests(&mut self) -> bool {
         let goes_on = self.against >= AGAINST || self.tested > 0 && self.against > 0;
         // A load that sets in drives the motor against a growing torque: only votes during a test count for the wrong

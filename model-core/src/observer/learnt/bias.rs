@@ -22,7 +22,7 @@ impl<T: Real> Bias<T> {
         Self { bias: T::ZERO, friction: T::ZERO, variance: [table.bias_prior, table.bias_prior, T::ZERO] }
     }
 
-    /// True if bias and friction are within their limits and no variance exceeds the initial one.
+    /// Returns true if bias and friction are within their limits and no variance exceeds the initial one.
     pub fn is_possible(&self, table: &ContactTable<T>) -> bool {
         let [bias, friction, both] = self.variance;
         let most = table.bias_prior + table.bias_drift;

@@ -77,7 +77,7 @@ impl<T: Real> CoMotion<T> {
         (self.drifted, self.strayed) = (T::ZERO, T::ZERO);
     }
 
-    /// True if the link has departed by `ASTRAY` gaps: the teeth touch, on either flank.
+    /// Returns true if the link has departed by `ASTRAY` gaps: the teeth touch, on either flank.
     pub fn lasts(&self, half_gap: T) -> bool {
         self.strayed.abs() > T::from_i32(ASTRAY) * T::TWO * half_gap
     }

@@ -82,7 +82,7 @@ impl Consistency {
         if off != Off::Far && self.forgives() { Verdict::LoosenHalfGap } else { Verdict::EncoderFails }
     }
 
-    /// True if the error may once more be attributed to the variation around the turn.
+    /// Returns true if the error may once more be attributed to the variation around the turn.
     fn forgives(&mut self) -> bool {
         self.sound = 0;
         let forgives = self.forgiven < FORGIVEN;
@@ -124,7 +124,7 @@ impl Consistency {
         if trusted { Verdict::RelearnHalfGap } else { Verdict::RelearnAll }
     }
 
-    /// True once the half-gap has been confirmed on both flanks.
+    /// Returns true once the half-gap has been confirmed on both flanks.
     pub fn is_trusted(&self) -> bool {
         let [back, drive] = self.trusted;
         back.min(drive) >= TRUSTED

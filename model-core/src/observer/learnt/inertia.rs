@@ -57,7 +57,7 @@ impl<T: Real> Inertia<T> {
         self.variance = next();
     }
 
-    /// True if the mobility is within its limits and its variance does not exceed the initial one.
+    /// Returns true if the mobility is within its limits and its variance does not exceed the initial one.
     pub fn is_possible(&self, table: &InertiaTable<T>) -> bool {
         self.mobility == believed(table, self.mobility)
             && self.variance >= T::ZERO

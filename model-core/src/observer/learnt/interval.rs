@@ -115,7 +115,7 @@ pub enum Task {
     Conclude,
 }
 
-/// True once the teeth have been at rest long enough.
+/// Returns true once the teeth have been at rest long enough.
 pub fn rests<T: Real>(travel: Travel<T>) -> bool {
     matches!(travel, Travel::AtRest(intervals) if intervals >= SETTLED_AFTER)
 }

@@ -58,7 +58,7 @@ impl<T: Real, const P: usize> LastRest<T, P> {
         &mut self.co_motion
     }
 
-    /// True if the last rest was on this flank; `None` stands for an unknown flank.
+    /// Returns true if the last rest was on this flank; `None` stands for an unknown flank.
     pub fn was_on(&self, flank: Option<Flank>) -> bool {
         self.flank == flank
     }

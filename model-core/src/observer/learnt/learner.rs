@@ -44,7 +44,7 @@ pub struct Innovation<T: Real, const P: usize> {
 }
 
 impl<T: Real, const P: usize> Innovation<T, P> {
-    /// True if the normalised innovation is within `deviations` standard deviations.
+    /// Returns true if the normalised innovation is within `deviations` standard deviations.
     pub fn is_within(&self, deviations: i32) -> bool {
         self.value * self.value < T::from_i32(deviations * deviations) * self.variance
     }
@@ -130,8 +130,8 @@ impl<T: Real, const P: usize> Learner<T, P> {
         }
     }
 
-    /// True if a joint of this design can have the restored numbers: parameters within their limits, an offset within
-    /// the ambiguity of whole turns, and a covariance no larger than the initial one.
+    /// Returns true if a joint of this design can have the restored numbers: parameters within their limits, an offset
+    /// within the ambiguity of whole turns, and a covariance no larger than the initial one.
     pub fn is_possible(&self, tables: &ObserverTables<T>) -> bool {
         let table = &tables.learner;
         let turns = T::from_i64(tables.counts.modulus) * tables.counts.length;

@@ -304,17 +304,17 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         self.interval.add(fused);
     }
 
-    /// True in the middle period of the interval.
+    /// Returns true in the middle period of the interval.
     pub fn in_the_middle(&self, table: &LearnerTable<T>) -> bool {
         self.interval.periods == table.middle
     }
 
-    /// True in the last period of the interval.
+    /// Returns true in the last period of the interval.
     pub fn at_the_end(&self, table: &LearnerTable<T>) -> bool {
         self.interval.periods >= table.periods
     }
 
-    /// True while tasks of the last interval are left.
+    /// Returns true while tasks of the last interval are left.
     pub fn has_work(&self) -> bool {
         self.interval.task != Task::Done
     }

@@ -107,7 +107,7 @@ impl<T: Real> TravelDetector<T> {
         if at >= intervals { at - intervals } else { at + WINDOW + 1 - intervals }
     }
 
-    /// True if rest differs from a slow crossing: noise hides only a small part of the half-gap in a window.
+    /// Returns true if rest differs from a slow crossing: noise hides only a small part of the half-gap in a window.
     pub fn tells_rest(&self, half_gap: T) -> bool {
         self.limit < half_gap * Self::HIDDEN
     }

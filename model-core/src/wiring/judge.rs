@@ -328,7 +328,7 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
             wiring.set(WiringItem::OutputCounts, Verdict::Wrong(T::ZERO));
         }
         if has_output && spans[0] <= FLICKER && output_travel > table.play {
-            // A motor that crosses its gap, with its counts read as the output's, looks alike.
+            // Exchanged encoders with a motor that only crosses its gap look like this, too.
             let exchanged = table.counts.motor.angle * table.per_ratio * T::from_i64(spans[1]) < table.play;
             let stands = if exchanged { Verdict::Suspect(T::ZERO) } else { Verdict::Wrong(T::ZERO) };
             wiring.set(WiringItem::MotorCounts, stands);

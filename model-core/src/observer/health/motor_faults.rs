@@ -26,7 +26,7 @@ use crate::observer::sensors::latency::Freshness;
 use crate::observer::tables::{ObserverTables, StopTable, SupervisorTable};
 
 /// Counts by which the commanded torque would have moved a free motor before a stationary motor counts as blocked [-]:
-/// four times the travel that a free motor loses while it reverses under a torque. Tuned.
+/// four times the travel that a free motor loses while it reverses under a torque. Tuned on `hil/motor-faults.toml`.
 const HELD: i32 = 16;
 
 /// Periods until the estimated speed follows a torque.

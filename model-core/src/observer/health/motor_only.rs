@@ -19,15 +19,16 @@ use crate::observer::tables::ObserverTables;
 /// Control periods by which contact may have ended before the smoothed force shows it.
 const GONE_BEFORE: i32 = 30;
 
-/// Standard deviations of the smoothed force above which contact is certain: no bias explains such a force.
+/// Standard deviations of the smoothed force above which contact is certain: no bias explains the force.
 const MAKES_CONTACT: i32 = 4;
 
 /// Standard deviations of the smoothed force that keep certain contact.
 const KEEPS_CONTACT: i32 = 3;
 
-/// Standard deviations of the smoothed force above which contact is likelier than an open gap (O27). Equality is at F^2
-/// = 2 s^2 ln(F_max / (sqrt(2 pi) s)), with s the standard deviation without contact and, in contact, any force up to
-/// F_max: 2 deviations for a bias known to 5 % of the motor's largest torque, 2.5 for 2 %. One deviation keeps contact.
+/// Standard deviations of the smoothed force above which contact is likelier than an open gap (O27). Both are equally
+/// likely at F^2 = 2 s^2 ln(F_max / (sqrt(2 pi) s)), with s the standard deviation without contact and, in contact, any
+/// force up to F_max: 2 deviations for a bias known to 5 % of the motor's largest torque, 2.5 for 2 %. One deviation
+/// keeps contact.
 const LIKELY_CONTACT: i32 = 2;
 
 /// Control periods for which the last flank is kept without a force: the force estimate lags.

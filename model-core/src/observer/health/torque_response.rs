@@ -13,8 +13,8 @@
 //! joint with a wrong sign has y = -x. A constant load is in A but cancels in y. Every pair with a large x votes.
 //!
 //! A loop that runs away soon saturates, and x becomes zero. While the motor accelerates against a large torque, the
-//! compensation is therefore asked for no torque in half of the blocks. A load stronger than the motor looks alike
-//! until this test; the test then votes for the right sign.
+//! compensation is therefore asked for no torque in half of the blocks. A load stronger than the motor looks like a
+//! wrong sign until this test; the test then votes for the right sign.
 
 use crate::numbers::Real;
 use crate::observer::estimates::TorqueResponse;

@@ -64,8 +64,8 @@ impl<T: Real> Forces<T> {
 }
 
 impl<T: Real, const P: usize> Block<T, P> {
-    /// Weight of a touch that ended early while the half-gap is unknown [-]: sixteen such touches count as one rest, as
-    /// the teeth may not have touched.
+    /// Weight of a touch that ended early while the half-gap is unknown [-]: the teeth may not have touched, so that
+    /// sixteen of these touches count as one rest.
     const UNSURE_TOUCH: T = T::QUARTER;
 
     /// A constant: the compiler writes it in place instead of copying from the stack.

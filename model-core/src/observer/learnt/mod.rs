@@ -407,7 +407,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         let wide = self.last_rest.co_motion().half_gap_at_least(half_gap);
         let rests_somewhere =
             rests(reading.travel) && !known && (reading.unlearnt > wide * Self::HIDDEN || self.travel.tells_rest(wide));
-        // A stationary motor repeats one rounded reading under a force hidden by friction: such a rest is used once on
+        // A stationary motor repeats one rounded reading under a force hidden by friction: this rest is used once on
         // either flank.
         let turns = reading.mean.direction.abs() > T::HALF;
         let signs = self.signs(reading.deflection - reading.flank_shift, reading.mean.force);

@@ -1,5 +1,5 @@
-//! Tables of observer, compensation and a virtual joint's surroundings as Rust source, for a build script: what the roles
-//! that control link into their flash. Numbers are printed so that they read back to the same bits.
+//! Tables of observer, compensation and a virtual joint's surroundings as Rust source for a build script; control roles
+//! link these tables into flash. Numbers are printed so that they read back to the same bits.
 
 use std::format;
 use std::string::String;
@@ -22,33 +22,33 @@ use parameters::{JointParameters, ParameterError, Surroundings};
 /// Requirements on a controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ControlRequest {
-    /// Bandwidth of the loop [rad/s]; [`good_bandwidth`] if none is asked for.
+    /// Bandwidth of the loop [rad/s]; [`good_bandwidth`] if left out.
     pub bandwidth: Option<f64>,
-    /// Most that the teeth shall pass on in position mode, referred to the link [N m]; if left out, as
-    /// [`CompensationSettings::peak_torque`] says.
+    /// Largest torque through the teeth in position mode, referred to the link [N m]; if left out,
+    /// [`CompensationSettings::peak_torque`] applies.
     pub peak_torque: Option<f64>,
-    /// Whether the observer is shown the output encoder.
+    /// True if the observer reads the output encoder.
     pub output_encoder: bool,
 }
 
 impl ControlRequest {
-    /// Requirements of a controller with all its sensors and no limits of its own.
+    /// Requirements of a controller with all sensors and no additional limits.
     pub const USUAL: Self = Self { bandwidth: None, peak_torque: None, output_encoder: true };
 }
 
-/// The nominal plant that a controller is designed for, and the requirements on it.
+/// Nominal plant of the design, and the requirements on the controller.
 #[derive(Debug, Clone, Copy)]
 pub struct NominalPlant<'t> {
-    /// The joint; its backlash may be a guess.
+    /// Joint; its backlash may be a guess.
     pub joint: &'t JointParameters,
-    /// What surrounds it.
+    /// Surroundings of the joint.
     pub surroundings: &'t Surroundings,
-    /// Requirements.
+    /// Requirements on the controller.
     pub request: ControlRequest,
 }
 
 impl NominalPlant<'_> {
-    /// Bandwidth of the loop [rad/s]: the one that is asked for, or what is good for the plant.
+    /// Bandwidth of the loop [rad/s]: as requested, otherwise [`good_bandwidth`] of the plant.
     pub fn bandwidth(&self) -> Result<f64, DesignError> {
         match self.request.bandwidth {
             Some(asked) => Ok(asked),
@@ -56,7 +56,7 @@ impl NominalPlant<'_> {
         }
     }
 
-    /// Settings that the compensation is designed from.
+    /// Settings of the compensation's design.
     pub fn compensation_settings(&self) -> Result<CompensationSettings, DesignError> {
         let usual = compensation_settings(self.surroundings, self.bandwidth()?);
         Ok(CompensationSettings { peak_torque: self.request.peak_torque, ..usual })
@@ -66,20 +66,21 @@ impl NominalPlant<'_> {
 /// Tables as Rust source.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ControlSource {
-    /// The statics `OBSERVER`, `PROBE`, `COMPENSATION` and `SURROUNDINGS` and the constant `CONTROL_DIGEST`, as a module's text.
+    /// Text of a module: the statics `OBSERVER`, `PROBE`, `COMPENSATION` and `SURROUNDINGS` and the constant
+    /// `CONTROL_DIGEST`.
     pub text: String,
-    /// The constant: a digest over the numbers of the statics.
+    /// Value of `CONTROL_DIGEST`: a digest over the numbers of the statics.
     pub digest: u64,
 }
 
 /// Tables of a controller.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ControlTables {
-    /// Of its observer.
+    /// Table of the observer.
     pub observer: ObserverTables<f32>,
-    /// Of the width probe, where one can be.
+    /// Table of the width probe, if it can be designed.
     pub probe: Option<ProbeTable<f32>>,
-    /// Of the compensation.
+    /// Table of the compensation.
     pub compensation: CompensationTables<f32>,
 }
 
@@ -107,7 +108,7 @@ fn settings(nominal: &NominalPlant<'_>) -> ObserverSettings {
     settings
 }
 
-/// Tables of a controller for the nominal plant, and of the true surroundings of the joint, as source.
+/// Source of the controller's tables for the nominal plant and of the joint's true surroundings.
 pub fn control_source(
     joint: &JointParameters,
     around: &Surroundings,
@@ -140,8 +141,8 @@ pub fn control_source(
     Ok(ControlSource { text, digest })
 }
 
-/// Digest over all values in the statics, numbers in their order, `true`, `false` and `None`, and over no name: every field
-/// counts, whatever it is called.
+/// Digest over all values in the statics: numbers in their order, `true`, `false` and `None`, but no names. Every field
+/// counts under any name.
 fn digest_of(statics: &str) -> u64 {
     let words = statics.split(|character: char| character.is_whitespace() || "{}()[],:;=".contains(character));
     let is_value = |word: &&str| {

@@ -1,4 +1,4 @@
-//! Observer and compensation as one controller, the trajectories that it follows, and the design of its tables.
+//! Controller of one joint (observer and compensation), its trajectories, and the design of its tables.
 
 #[cfg(feature = "design")]
 pub mod design;

@@ -1,5 +1,5 @@
-//! Observer and compensation as one: samples and a set-point in, estimates and the shaped set-point out, once a control
-//! period; or the width probe in place of the compensation.
+//! Observer and compensation combined: once per control period samples and a set-point yield estimates and the
+//! compensated torque. The width probe can replace the compensation.
 
 use crate::compensation::CompensationTables;
 use crate::compensation::{Command, Compensation, Shaped};
@@ -15,12 +15,12 @@ pub struct Answer<T: Real> {
     pub estimates: Estimates<T>,
     /// Outputs of the compensation.
     pub shaped: Shaped<T>,
-    /// Progress of the width probe, in a period of one.
+    /// Progress of the width probe, in a period of the probe.
     pub probed: Option<Progress<T>>,
 }
 
 impl<T: Real> Answer<T> {
-    /// Extends a digest by the main outputs: torque, gap, half-backlash, load, trust, the half-backlash that was probed.
+    /// Extends a digest by the main outputs: torque, gap, half-backlash, load, trust, and the probed half-backlash.
     pub fn digest(&self, running: u64) -> u64 {
         let Self { estimates, shaped, probed } = self;
         let running = match probed {
@@ -33,9 +33,9 @@ impl<T: Real> Answer<T> {
     }
 }
 
-/// Observer, with error maps, and compensation of one joint.
+/// Controller of one joint: observer with error maps, and compensation.
 ///
-/// A link is held at angle zero; after a second somebody pulls at it with 3 N m:
+/// The controller holds a link at angle zero; after a second 3 N m pull at the link:
 ///
 /// ```
 /// use model_core::compensation::design::{compensation_settings, design_compensation};
@@ -71,7 +71,7 @@ pub struct Controller<'tables, T: Real> {
     probing: Option<Probing<'tables, T>>,
 }
 
-/// A probe, and for how many periods it waits until the observer has settled.
+/// Width probe, and the periods until the observer has settled.
 #[derive(Debug, Clone)]
 struct Probing<'tables, T: Real> {
     probe: Probe<'tables, T>,
@@ -79,7 +79,7 @@ struct Probing<'tables, T: Real> {
 }
 
 impl<'tables, T: Real> Controller<'tables, T> {
-    /// Both in their initial state.
+    /// Creates a controller in its initial state.
     pub fn new(observer: &'tables ObserverTables<T>, compensation: &'tables CompensationTables<T>) -> Self {
         Self {
             observer: Observer::new(observer),
@@ -89,29 +89,30 @@ impl<'tables, T: Real> Controller<'tables, T> {
         }
     }
 
-    /// The same with a width probe, where one could be designed.
+    /// Adds a width probe, if its table could be designed.
     pub fn with_probe(self, table: Option<&'tables ProbeTable<T>>) -> Self {
         Self { probe_table: table, ..self }
     }
 
-    /// Back to the initial state: all that was learnt is discarded.
+    /// Returns to the initial state and discards all estimated parameters.
     pub fn reset(&mut self) {
         self.observer.restart();
         self.compensation.restart();
         self.probing = None;
     }
 
-    /// What the observer has learnt so far.
+    /// Estimated parameters of the observer.
     pub fn save(&self) -> Memory {
         self.observer.save()
     }
 
-    /// Continues from what was saved. A memory that is refused changes nothing.
+    /// Restores saved parameters. A refused memory changes nothing.
     pub fn load(&mut self, memory: &[u8]) -> Result<(), MemoryError> {
         self.observer.load(memory)
     }
 
-    /// One control period. Not inlined: beside a plant that is stepped on the same chip its values would lie on the stack.
+    /// Runs one control period. Not inlined: beside a plant on the same processor the values would need stack at the
+    /// same time.
     #[inline(never)]
     pub fn step(&mut self, samples: &Samples<T>, command: &Command<T>) -> Answer<T> {
         let estimates = *self.observer.step(samples);
@@ -120,8 +121,8 @@ impl<'tables, T: Real> Controller<'tables, T> {
         Answer { estimates, shaped, probed: None }
     }
 
-    /// One control period of a width probe, which begins with the first of them in a row and keeps its result until
-    /// [`step`](Self::step) is called again. Without a probe table the torque is zero and there is no progress.
+    /// Runs one control period of a width probe. The probe begins with the first of consecutive calls and keeps its
+    /// result until [`step`](Self::step) is called. Without a probe table the torque is zero and `probed` is `None`.
     #[inline(never)]
     pub fn probe(&mut self, samples: &Samples<T>) -> Answer<T> {
         let estimates = *self.observer.step(samples);

@@ -1,5 +1,5 @@
-//! Trajectories as segments of time: a polynomial of fifth degree for each motion, evaluated every control period, so
-//! that a slow line can carry any smooth motion.
+//! Trajectories in time segments: a polynomial of fifth degree per motion, evaluated every control period, so that a
+//! slow link can carry any smooth motion.
 
 use crate::compensation::{Command, ImpedancePoint, Motion, Position};
 use crate::numbers::Real;
@@ -7,7 +7,7 @@ use crate::numbers::Real;
 /// Coefficients of a segment.
 pub const POWERS: usize = 6;
 
-/// A motion over a segment of time.
+/// Motion over a time segment.
 ///
 /// ```
 /// use model_core::controller::trajectory::Segment;
@@ -22,12 +22,13 @@ pub const POWERS: usize = 6;
 pub struct Segment<T: Real> {
     /// Whole turns, on the scale of the observer's link shaft.
     pub turns: i32,
-    /// The rest: by powers of the time since the segment began [turns, turns/s, turns/s^2, ...].
+    /// Remaining angle as coefficients of the powers of the time since the segment began [turns, turns/s, turns/s^2,
+    /// ...].
     pub powers: [T; POWERS],
 }
 
 impl<T: Real> Segment<T> {
-    /// The motion so long after the segment began [s]; `turn` is a whole turn [rad].
+    /// Motion at the time `elapsed` after the segment began [s]; `turn` is a whole turn [rad].
     pub fn at(&self, elapsed: T, turn: T) -> Motion<T> {
         // Horner's scheme for value, derivative and half the second derivative at once.
         let (mut value, mut rate, mut half) = (T::ZERO, T::ZERO, T::ZERO);
@@ -44,25 +45,25 @@ impl<T: Real> Segment<T> {
     }
 }
 
-/// Set-points over a segment of time.
+/// Set-points over a time segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Trajectory<T: Real> {
-    /// Follow a motion.
+    /// Follows a motion.
     Position {
-        /// The motion.
+        /// Motion at the present time.
         now: Segment<T>,
-        /// The same motion ahead by the compensation's lead, if it is known.
+        /// Motion ahead by the compensation's lead, if known.
         ahead: Option<Segment<T>>,
     },
-    /// Act as a spring and damper.
+    /// Acts as a spring and damper.
     Impedance(ImpedancePoint<T>),
 }
 
 impl<T: Real> Trajectory<T> {
-    /// Hold angle zero of the observer's link shaft.
+    /// Holds angle zero of the observer's link shaft.
     pub const HOLD: Self = Self::Position { now: Segment { turns: 0, powers: [T::ZERO; POWERS] }, ahead: None };
 
-    /// The set-point so long after the segment began [s].
+    /// Set-point at the time `elapsed` after the segment began [s].
     pub fn at(&self, elapsed: T, turn: T) -> Command<T> {
         match self {
             Self::Position { now, ahead } => Command::Position {

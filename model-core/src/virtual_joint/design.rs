@@ -1,5 +1,5 @@
-//! Tables of a virtual joint's surroundings: sizes of errors as data sheets give them, never their signs or phases. `gears::design`
-//! makes the tables of the gears.
+//! Tables of a virtual joint's surroundings: magnitudes of errors from data sheets, without signs and phases.
+//! `gears::design` makes the tables of the gears.
 
 use core::f64::consts::TAU;
 
@@ -12,7 +12,8 @@ use crate::virtual_joint::tables::{
 };
 use parameters::{Friction, JointParameters, Surroundings};
 
-/// Tables of a virtual joint's surroundings; `tables` are the gears', made for a tick of one control period.
+/// Designs the tables of a virtual joint's surroundings; `tables` are the gears' tables for a tick of one control
+/// period.
 pub fn design_surroundings<T: Real, const N: usize>(
     joint: &JointParameters,
     of: &Surroundings,
@@ -76,7 +77,7 @@ pub fn design_surroundings<T: Real, const N: usize>(
         to_link: to_link.map(real),
         weight: real(of.gravity_torque),
         encoders: [&of.motor_encoder, &of.output_encoder].map(|encoder| EncoderErrorTable {
-            // The check has bounded it.
+            // `check` has limited the counts.
             turn: encoder.counts_per_turn as u32,
             errors: [encoder.once_per_turn_error, encoder.twice_per_turn_error].map(|error| real(error * units)),
             lag: real(encoder.skew * units),
@@ -87,7 +88,7 @@ pub fn design_surroundings<T: Real, const N: usize>(
 
 fn friction<T: Real>(of: &Friction, stop: f64) -> FrictionTable<T> {
     let real = T::from_f64;
-    // The rise falls by a rational law in place of an exponential: half of it is left where that has 1/2.
+    // A rational law replaces the exponential fall of the rise: both have half of the rise left at the same speed.
     let half = of.stribeck_speed * core::f64::consts::LN_2;
     FrictionTable {
         coulomb: real(of.coulomb),
@@ -154,7 +155,7 @@ mod tests {
         assert!(refused.to_string().contains("`noise_counts`"), "{refused}");
     }
 
-    /// Motor and link [turns] after 0.5 s of a pull at the link of C1 with the motor off.
+    /// Angles of motor and link [turns] after 0.5 s of a pull at the link of C1 with the motor off.
     fn pulled(efficiency: f64, torque: f32) -> [f64; 2] {
         let mut file = joint_file::read(joint_file::preset("c1").expect("a preset")).expect("a joint");
         file.surroundings.efficiency = efficiency;
@@ -175,7 +176,8 @@ mod tests {
 
     #[test]
     fn a_self_locking_gear_holds_the_link_with_the_motor_off() {
-        // The gap of 3 arcmin, twice the wind-up of 20 N m at 20 N m/arcmin since the link swings into it, and an encoder's error.
+        // Gap of 3 arcmin, twice the wind-up of 20 N m at 20 N m/arcmin as the link swings into the teeth, and an
+        // encoder error.
         let most = (3.0 + 2.0 + 1.0) / (360.0 * 60.0);
         for torque in [20.0, -20.0] {
             let [motor, link] = pulled(0.4, torque);

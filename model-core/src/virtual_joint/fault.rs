@@ -1,30 +1,30 @@
-//! Description of the faults between a joint and its controller: encoders that freeze, slip or scatter, readings that are
-//! lost, a motor with a torque bias or a limit.
+//! Description of the faults between a joint and its controller: encoders that freeze, slip or scatter, lost readings,
+//! and a motor with a torque bias or a limit.
 
 use core::fmt::Debug;
 use core::marker::PhantomData;
 
 use crate::numbers::Real;
 
-/// Units that faults are described in, and further faults that not every user can apply.
+/// Units of the fault descriptions, and further faults that only some users can apply.
 pub trait Units: Copy + Debug + PartialEq {
-    /// When a fault begins and ends.
+    /// Time at which a fault begins or ends.
     type Time: Copy + Debug + PartialEq;
     /// Seed of a fault's random numbers.
     type Seed: Copy + Debug + PartialEq;
-    /// How far an encoder is off.
+    /// Offset of an encoder.
     type Offset: Copy + Debug + PartialEq;
     /// Standard deviation of an encoder.
     type Deviation: Copy + Debug + PartialEq;
-    /// A part of a whole.
+    /// Part of a whole.
     type Share: Copy + Debug + PartialEq;
     /// Amplitudes of angles, ratios, torques.
     type Real: Copy + Debug + PartialEq;
-    /// Further faults, besides the kinds that every user can apply.
+    /// Further faults besides the kinds that every user can apply.
     type Other: Copy + Debug + PartialEq;
 }
 
-/// What a board counts in: control periods, 2^-32 turns, shares of 2^32, torques in N m. It can apply no other faults.
+/// Units of a board: control periods, 2^-32 turns, shares of 2^32, torques in N m. A board has no further faults.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FixedPoint<T>(PhantomData<T>);
 
@@ -38,12 +38,12 @@ impl<T: Real> Units for FixedPoint<T> {
     type Other = NoOther;
 }
 
-/// There is no other fault.
+/// Empty type: no further faults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum NoOther {}
 
-/// One fault.
+/// Fault with its duration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -55,27 +55,27 @@ pub enum NoOther {}
     ))
 )]
 pub struct Fault<U: Units> {
-    /// It acts from here on.
+    /// First time at which the fault acts.
     pub start: U::Time,
-    /// It acts up to here.
+    /// Time from which the fault no longer acts.
     pub end: U::Time,
-    /// Seed of its random numbers.
+    /// Seed of the fault's random numbers.
     pub seed: U::Seed,
-    /// What goes wrong.
+    /// Kind of fault.
     pub kind: FaultKind<U>,
 }
 
-/// Which encoder.
+/// Shaft of an encoder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Shaft {
-    /// The motor's.
+    /// Motor shaft.
     Motor,
-    /// The link's.
+    /// Link shaft.
     Link,
 }
 
-/// What goes wrong.
+/// Kind of fault.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FaultKind<U: Units> {
@@ -83,18 +83,18 @@ pub enum FaultKind<U: Units> {
     Frozen(Shaft),
     /// Counts are offset.
     Offset(Shaft, U::Offset),
-    /// Counts scatter by a standard deviation.
+    /// Counts scatter with a standard deviation.
     Noise(Shaft, U::Deviation),
-    /// A share of the motion is not counted, and stays uncounted afterwards.
+    /// A share of the motion is not counted; the missing counts remain missing afterwards.
     MissingCounts(Shaft, U::Share),
-    /// An error that comes once a turn: the sine of the angle that is read, times an amplitude.
+    /// Error once per turn: the sine of the read angle times an amplitude.
     Eccentric(Shaft, U::Real),
-    /// A share of the readings is lost; the motor's last one is repeated in their place.
+    /// A share of the readings is lost; the motor's last reading is repeated instead.
     LostReadings(Shaft, U::Share),
-    /// The motor gives so much beyond the command: a ratio of it, and a torque [N m].
+    /// Torque in excess of the command: a ratio of the command, and a torque [N m].
     TorqueBias(U::Real, U::Real),
-    /// The motor gives no more than this, to either side [N m].
+    /// Torque limit of the motor in both directions [N m].
     Saturation(U::Real),
-    /// A fault that only this user can apply.
+    /// Further fault that only this user can apply.
     Other(U::Other),
 }

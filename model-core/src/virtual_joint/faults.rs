@@ -1,5 +1,5 @@
-//! Application of faults between a virtual joint and its controller, on a board and in its twin on the host, in whole numbers.
-//! `fault` describes them; faults of teeth and late readings are not supported.
+//! Application of faults between a virtual joint and its controller, on a board and in its twin on the host, in integer
+//! arithmetic. `fault` describes the faults; faults of teeth and late readings are not supported.
 
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
@@ -9,24 +9,24 @@ use crate::observer::{Reading, Samples};
 use crate::virtual_joint::fault::{Fault, FaultKind, FixedPoint, Shaft};
 use crate::virtual_joint::tables::SurroundingsTable;
 
-/// Most faults of a run on a board: eight of the user's, and the zeros of both encoders.
+/// Largest number of faults in a run on a board: eight of the user's, and the zeros of both encoders.
 pub const MOST_FAULTS: usize = 10;
 
-/// A fault with its state.
+/// Fault with its state.
 #[derive(Debug, Clone, Copy)]
 struct Active<T: Real> {
     fault: Fault<FixedPoint<T>>,
     random: u64,
-    /// Angle when the encoder froze, and in the period before.
+    /// `held`: angle at which the encoder froze. `before`: angle in the last period, for missing counts [2^-32 turns].
     held: Option<u32>,
     before: Option<u32>,
-    /// Motion that was not counted, in 2^-32 of 2^-32 turns.
+    /// Uncounted motion, in 2^-32 of 2^-32 turns.
     lost: i64,
 }
 
-/// The faults of a run on a board, or of its twin on the host; none to begin with.
+/// Faults of a run on a board, or of its twin on the host; initially empty.
 ///
-/// The link's encoder freezes from the hundredth period on, and the motor gives no more than 0.2 N m all the time:
+/// Encoder of the link that freezes in the hundredth period, and a motor limited to 0.2 N m all the time:
 ///
 /// ```
 /// use model_core::gears::{Tables, design::design};
@@ -53,9 +53,9 @@ struct Active<T: Real> {
 pub struct Faults<T: Real> {
     all: [Option<Active<T>>; MOST_FAULTS],
     period: u32,
-    /// Torque that was commanded last: a motor that gives another torque does not report it.
+    /// Last commanded torque: a motor with another torque does not report it.
     asked: T,
-    /// Last word of the motor's encoder.
+    /// Last reading of the motor encoder.
     motor: Option<Reading>,
 }
 
@@ -66,14 +66,14 @@ impl<T: Real> Default for Faults<T> {
 }
 
 impl<T: Real> Faults<T> {
-    /// One more fault; `false` if there is no room.
+    /// Adds a fault. Returns `false` if there is no room.
     pub fn add(&mut self, fault: Fault<FixedPoint<T>>) -> bool {
         let Some(place) = self.all.iter_mut().find(|place| place.is_none()) else { return false };
         *place = Some(Active { fault, random: fault.seed, held: None, before: None, lost: 0 });
         true
     }
 
-    /// Samples as the controller receives them; begins the period.
+    /// Applies the faults to the samples, which the controller receives; begins the period.
     pub fn sense(&mut self, samples: Samples<T>, table: &SurroundingsTable<T>) -> Samples<T> {
         let Self { all, period, asked, motor } = self;
         if all.iter().all(Option::is_none) {
@@ -85,7 +85,7 @@ impl<T: Real> Faults<T> {
         for active in all.iter_mut().flatten() {
             let on = *period >= active.fault.start && *period < active.fault.end;
             for (shaft, (reading, encoder, comes)) in [Shaft::Motor, Shaft::Link].into_iter().zip(&mut seen) {
-                // Whole turns are 2^32, so that everything wraps by itself.
+                // Whole turns are 2^32, so that angles wrap without further code.
                 let angle = encoder.angle(reading.counts);
                 reading.counts = encoder.counts(active.read(shaft, angle, on));
                 *comes &= !active.loses(shaft, on);
@@ -100,7 +100,7 @@ impl<T: Real> Faults<T> {
         Samples { motor, output: output_comes.then_some(output), torque: clamp(*asked, -limit, limit), ..samples }
     }
 
-    /// Torque that the motor gives for a command; ends the period.
+    /// Torque of the motor for a command; ends the period.
     pub fn torque(&mut self, command: T) -> T {
         let period = self.period;
         self.period = period.saturating_add(1);
@@ -116,7 +116,7 @@ impl<T: Real> Faults<T> {
 }
 
 impl<T: Real> Active<T> {
-    /// What an encoder reads in place of its angle [2^-32 turns].
+    /// Angle that an encoder reads with this fault [2^-32 turns].
     fn read(&mut self, shaft: Shaft, angle: u32, on: bool) -> u32 {
         match self.fault.kind {
             FaultKind::Frozen(of) if of == shaft => {
@@ -125,7 +125,8 @@ impl<T: Real> Active<T> {
             }
             FaultKind::Offset(of, offset) if of == shaft && on => angle.wrapping_add(offset as u32),
             FaultKind::Noise(of, deviation) if of == shaft && on => {
-                // Twelve even numbers from -1/2 to 1/2 have a variance of one: the quarters of three words, in 2^-16.
+                // The sum of twelve uniform numbers from -1/2 to 1/2 has a variance of one: the quarters of three
+                // words, in 2^-16.
                 let quarters = |word: u64| (0..4).map(move |place| i64::from((word >> (16 * place)) as i16));
                 let sum: i64 = (0..3).flat_map(|_| quarters(splitmix64(&mut self.random))).sum();
                 angle.wrapping_add((sum.wrapping_mul(deviation.into()) >> 16) as u32)
@@ -145,7 +146,7 @@ impl<T: Real> Active<T> {
         }
     }
 
-    /// Whether a reading is lost.
+    /// Returns true if a reading is lost.
     fn loses(&mut self, shaft: Shaft, on: bool) -> bool {
         match self.fault.kind {
             FaultKind::LostReadings(of, share) if of == shaft && on => self.uniform() < share,
@@ -153,7 +154,7 @@ impl<T: Real> Active<T> {
         }
     }
 
-    /// The upper half of a random word.
+    /// Upper half of a random word.
     fn uniform(&mut self) -> u32 {
         (splitmix64(&mut self.random) >> 32) as u32
     }

@@ -1,5 +1,5 @@
-//! A simulated joint in real time for tests of a controller: the gears' fixed step with motor, frictions and encoders, and
-//! faults between joint and controller.
+//! Real-time simulation of a joint for tests of a controller: the fixed step of the gears with motor, frictions and
+//! encoders, and faults between joint and controller.
 
 #[cfg(feature = "design")]
 pub mod design;

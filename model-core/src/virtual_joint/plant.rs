@@ -1,6 +1,6 @@
-//! A whole joint in real time: the gears' fixed step with motor, current loop, frictions, weight and encoders around it,
-//! one control period at a time. Torques are held over a period, friction so that it sticks; noise is left out, so that
-//! the same commands give the same bits everywhere.
+//! Real-time plant: the fixed step of the gears with motor, current loop, frictions, weight and encoders, one control
+//! period at a time. Torques are constant over a period; friction can stick. There is no noise, so that equal commands
+//! give equal bits everywhere.
 
 use crate::gears::Tables;
 use crate::gears::{Model, Outputs, Torques};
@@ -13,15 +13,15 @@ use crate::virtual_joint::tables::{COMMANDS_IN_FLIGHT, EncoderErrorTable, Fricti
 /// Torques of the last period [N m].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ActingTorques<T: Real> {
-    /// In the motor's air gap.
+    /// Torque in the motor's air gap.
     pub air_gap: T,
-    /// On the sun, friction and cogging included.
+    /// Torque on the sun, friction and cogging included.
     pub drive: T,
-    /// What brakes the link: friction, weight, disturbance.
+    /// Torque that brakes the link: friction, weight, disturbance.
     pub load: T,
 }
 
-/// A joint and what surrounds it.
+/// Joint with its surroundings.
 ///
 /// ```
 /// use model_core::gears::{Tables, design::design};
@@ -44,12 +44,12 @@ pub struct ActingTorques<T: Real> {
 pub struct VirtualJoint<'tables, T: Real, const N: usize> {
     model: Model<'tables, T, N>,
     table: &'tables SurroundingsTable<T>,
-    /// Commands on their way, the newest first.
+    /// Delayed commands, the newest first.
     commands: [T; COMMANDS_IN_FLIGHT],
     current: T,
     periods: u32,
     acting: ActingTorques<T>,
-    /// Outputs of the gears, and the shafts that follow from them.
+    /// Outputs of the gears, and the resulting motion of the shafts.
     outputs: Outputs<T, N>,
     shafts: Shafts<T>,
 }
@@ -57,15 +57,15 @@ pub struct VirtualJoint<'tables, T: Real, const N: usize> {
 /// Angles and speeds of both shafts.
 #[derive(Debug, Clone, Copy, Default)]
 struct Shafts<T: Real> {
-    /// [2^-32 turns]: the motor's within its turn, the link's with its turns.
+    /// Angles [2^-32 turns]: the motor's within its turn, the link's with its turns.
     motor: u32,
     link: i64,
-    /// [rad/s].
+    /// Speeds [rad/s].
     speeds: [T; 2],
 }
 
 impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
-    /// At rest at angle zero, teeth in the middle of their gap.
+    /// Creates a joint at rest at angle zero, with the teeth in the middle of their gap.
     pub fn new(tables: &'tables Tables<T, N>, table: &'tables SurroundingsTable<T>) -> Self {
         let model = Model::new(tables);
         let mut joint = Self {
@@ -89,7 +89,7 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         self.shafts = self.shafts();
     }
 
-    /// Back to rest.
+    /// Returns to rest at angle zero.
     pub fn reset(&mut self) {
         self.model.reset();
         self.commands = [T::ZERO; COMMANDS_IN_FLIGHT];
@@ -99,12 +99,12 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         self.update();
     }
 
-    /// The gears.
+    /// Model of the gears.
     pub fn model(&self) -> &Model<'tables, T, N> {
         &self.model
     }
 
-    /// The gears' motion now.
+    /// Present motion of the gears.
     pub fn outputs(&self) -> &Outputs<T, N> {
         &self.outputs
     }
@@ -114,7 +114,7 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         self.acting
     }
 
-    /// Measurements now: counts within the encoders' turns, and the torque that was commanded last.
+    /// Present measurements: counts within the encoders' turns, and the last commanded torque.
     pub fn samples(&self) -> Samples<T> {
         let (table, shafts) = (self.table, self.shafts);
         let time = self.periods.wrapping_mul(table.clock_ticks);
@@ -127,15 +127,15 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         }
     }
 
-    /// Whole turns of the output encoder's reading now, mounted so that it reads `zero` at angle zero [2^-32 turns]: the observer
-    /// counts the link's turns from the turn of its first reading.
+    /// Whole turns in the output encoder's present reading, if the encoder reads `zero` at angle zero [2^-32 turns]:
+    /// the observer counts the link's turns from the turn of its first reading.
     pub fn output_turn(&self, zero: u32) -> i32 {
         let reading = reading(&self.table.encoders[1], self.shafts.link, self.shafts.speeds[1]);
         (reading.wrapping_add(zero.into()) >> 32) as i32
     }
 
-    /// Moves on by one period under a torque command and a torque that brakes the link [N m]. Its parts are not inlined: each
-    /// needs much stack, and they do not run at the same time.
+    /// Advances by one period under a torque command and a torque that brakes the link [N m]. The parts of the work are
+    /// not inlined: each needs much stack, but not at the same time.
     #[inline(never)]
     pub fn advance(&mut self, command: T, disturbance: T) {
         self.find_torques(command, disturbance);
@@ -144,7 +144,7 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         self.update();
     }
 
-    /// Finds the torques that act over the period.
+    /// Computes the torques that act over the period.
     #[inline(never)]
     fn find_torques(&mut self, command: T, disturbance: T) {
         let table = self.table;
@@ -178,7 +178,7 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         (wanted - missing * table.lacking) * table.gain
     }
 
-    /// Torque that the sun transmits to the planets, by mesh stiffness alone.
+    /// Torque from the sun to the planets, by mesh stiffness alone.
     fn mesh_torque(&self) -> T {
         let table = self.table;
         let meshes = self.outputs.deflections[0].iter().zip(&table.half_backlash);
@@ -191,7 +191,7 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
         let (table, outputs) = (self.table, &self.outputs);
         let state = self.model.state();
         let [turns_of_motor, turns_of_link] = table.ratio;
-        // Turns and their rest apart, so that neither overflows.
+        // Whole turns and remainder are computed separately to avoid overflow.
         let rest = u64::from(outputs.carrier_fraction).wrapping_mul(turns_of_motor.into());
         let rigid = if turns_of_link == 1 {
             rest
@@ -216,12 +216,12 @@ impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {
     }
 }
 
-/// Counts within a turn that an encoder reads.
+/// Counts of an encoder within a turn.
 fn counts<T: Real>(table: &EncoderErrorTable<T>, angle: i64, speed: T) -> u32 {
     table.counts(reading(table, angle, speed) as u32)
 }
 
-/// Angle that an encoder reads, with its errors [2^-32 turns].
+/// Angle read by an encoder with its errors [2^-32 turns].
 fn reading<T: Real>(table: &EncoderErrorTable<T>, angle: i64, speed: T) -> i64 {
     let then = angle.wrapping_sub((table.lag * speed).to_i64());
     let phase = then as u32;
@@ -230,7 +230,8 @@ fn reading<T: Real>(table: &EncoderErrorTable<T>, angle: i64, speed: T) -> i64 {
     then.wrapping_add((table.errors[0] * once + table.errors[1] * twice).to_i64())
 }
 
-/// Torque against a shaft's motion: dry friction is at most what would stop it within the period, so that it sticks.
+/// Friction torque against a shaft's motion. Dry friction is at most the torque that stops the shaft within the period,
+/// so that the shaft sticks.
 fn friction<T: Real>(table: &FrictionTable<T>, speed: T, driving: T, extra: T) -> T {
     let part = speed * table.per_speed;
     let dry = table.coulomb + table.rise.over(T::ONE + part * part) + extra;

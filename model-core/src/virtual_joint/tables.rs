@@ -1,9 +1,10 @@
-//! Tables of a virtual joint's surroundings, made by `virtual_joint::design`: current loop, frictions, weight, encoders. SI; angles that wrap are whole numbers of 2^-32 turns.
+//! Tables of a virtual joint's surroundings, made by `virtual_joint::design`: current loop, frictions, weight,
+//! encoders. SI units; angles that wrap are integers in 2^-32 turns.
 
 use crate::numbers::Real;
 use crate::observer::tables::MOST_DELAY;
 
-/// Places for delayed commands to the motor.
+/// Capacity for delayed motor commands.
 pub const COMMANDS_IN_FLIGHT: usize = MOST_DELAY + 1;
 
 /// Surroundings of one joint at one tick rate; a tick is a control period.
@@ -12,57 +13,57 @@ pub const COMMANDS_IN_FLIGHT: usize = MOST_DELAY + 1;
 pub struct SurroundingsTable<T: Real> {
     /// Control period [s].
     pub period: T,
-    /// Ticks of the samples' clock in a control period.
+    /// Ticks of the samples' clock per control period.
     pub clock_ticks: u32,
     /// A whole turn [rad].
     pub turn: T,
-    /// Motor turns over link turns as a fraction of whole numbers.
+    /// Motor turns over link turns as a fraction of integers.
     pub ratio: [u32; 2],
-    /// The same as a number.
+    /// Motor turns over link turns [-].
     pub gear: T,
-    /// 2^-32 turns in a radian.
+    /// Units of 2^-32 turns per radian.
     pub units_per_radian: T,
-    /// Motor speed beyond the rigid body's, for each unit of rate of: any planet, gap, wind-up [rad/s].
+    /// Motor speed relative to the rigid body, per unit of the rate of: any planet, gap, wind-up [rad/s].
     pub motor_rate: [T; 3],
-    /// Link speed likewise [rad/s].
+    /// Link speed relative to the rigid body, per unit of the rate of: any planet, gap, wind-up [rad/s].
     pub link_rate: [T; 3],
-    /// From command to air gap.
+    /// Current loop: from command to air gap.
     pub current: CurrentLoopTable<T>,
-    /// Cogging: amplitude [N m].
+    /// Cogging amplitude [N m].
     pub cogging_torque: T,
-    /// Its periods in a turn of the motor.
+    /// Cogging periods per motor turn.
     pub cogging_periods: u32,
-    /// At the motor.
+    /// Friction of the motor.
     pub motor_friction: FrictionTable<T>,
-    /// At the link.
+    /// Friction of the link.
     pub load_friction: FrictionTable<T>,
-    /// Dry friction in proportion to the torque that the sun transmits, while the motor drives and while it is driven.
+    /// Dry friction over the torque that the sun transmits, while the motor drives and while the motor is driven [-].
     pub losses: [T; 2],
     /// Half-backlash of the sun's meshes, one for each planet [m].
     pub half_backlash: [T; 5],
-    /// Torque of a sun's mesh at the sun for each metre beyond its flank [N m/m].
+    /// Torque of a sun's mesh at the sun per metre beyond its flank [N m/m].
     pub sun_torque: T,
-    /// Torque of the gears on the link, for each unit of: sun's torque, wind-up, rate of wind-up [N m].
+    /// Torque of the gears on the link, per unit of: sun's torque, wind-up, rate of wind-up [N m].
     pub to_link: [T; 3],
-    /// Weight [N m].
+    /// Torque of the weight, times the sine of the link's angle [N m].
     pub weight: T,
-    /// Motor's and link's.
+    /// Encoder errors of motor and link.
     pub encoders: [EncoderErrorTable<T>; 2],
 }
 
-/// From commanded torque to torque in the air gap.
+/// Current loop: from commanded torque to torque in the air gap.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct CurrentLoopTable<T: Real> {
     /// Whole periods of delay, less than [`COMMANDS_IN_FLIGHT`].
     pub delay: u32,
-    /// Share of the missing torque that is made up in a period.
+    /// Share of the missing torque that is added in a period.
     pub rise: T,
     /// Share of the missing torque that is missing on average over a period.
     pub lacking: T,
     /// True over nominal torque constant.
     pub gain: T,
-    /// Largest torque [N m].
+    /// Torque limit [N m].
     pub limit: T,
 }
 
@@ -74,11 +75,11 @@ pub struct FrictionTable<T: Real> {
     pub coulomb: T,
     /// Viscous friction [N m s/rad].
     pub viscous: T,
-    /// Rise of dry friction at rest, as a torque [N m].
+    /// Additional dry friction at rest [N m].
     pub rise: T,
-    /// Inverse of the speed at which half of that rise is left [s/rad].
+    /// Inverse of the speed at which half of this additional friction is left [s/rad].
     pub per_speed: T,
-    /// Torque that stops the shaft from a unit of speed within a period [N m s/rad].
+    /// Torque that stops the shaft within a period, per unit of speed [N m s/rad].
     pub stop: T,
 }
 
@@ -86,13 +87,13 @@ pub struct FrictionTable<T: Real> {
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct EncoderErrorTable<T: Real> {
-    /// Counts in a turn.
+    /// Counts per turn.
     pub turn: u32,
-    /// Amplitudes of the errors that come once and twice a turn [2^-32 turns].
+    /// Amplitudes of the errors once and twice per turn [2^-32 turns].
     pub errors: [T; 2],
-    /// How far a reading lags behind at a unit of speed [2^-32 turns s/rad].
+    /// Lag of a reading per unit of speed [2^-32 turns s/rad].
     pub lag: T,
-    /// 2^64 over the counts in a turn, rounded up.
+    /// 2^64 over the counts per turn, rounded up.
     pub phase: u64,
 }
 
@@ -103,8 +104,8 @@ impl<T: Real> EncoderErrorTable<T> {
         (u64::from(angle).wrapping_mul(self.turn.into()) >> 32) as u32
     }
 
-    /// Least angle at which the encoder reads so many counts, or the unit above it [2^-32 turns]. Two units are less than a count,
-    /// so that `counts` gives the counts back.
+    /// Least angle at which the encoder reads the counts given, or the unit above this angle [2^-32 turns]. Two units
+    /// are less than a count, so that `counts` returns the counts given.
     #[inline]
     pub fn angle(&self, counts: u32) -> u32 {
         (u64::from(counts).wrapping_mul(self.phase).wrapping_add(0xffff_ffff) >> 32) as u32
@@ -115,7 +116,7 @@ impl<T: Real> EncoderErrorTable<T> {
 mod tests {
     use super::*;
 
-    /// Encoder of so many counts in a turn, as `virtual_joint::design` makes it, without errors.
+    /// Encoder with the counts per turn given, as `virtual_joint::design` makes it, without errors.
     fn encoder(turn: u32) -> EncoderErrorTable<f32> {
         EncoderErrorTable { turn, errors: [0.0; 2], lag: 0.0, phase: (1_u128 << 64).div_ceil(turn.into()) as u64 }
     }

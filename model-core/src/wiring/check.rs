@@ -1,14 +1,14 @@
-//! Wiring check with a driven motor: a few gentle legs to and fro, whatever is wired the wrong way.
+//! Wiring check with a driven motor: a few gentle legs in alternating directions, safe with any wiring fault.
 //!
-//! The sign of the torque's effect is not known beforehand, so each leg measures it: the torque rises until the motor or the
-//! output has turned by half of a small travel, then the opposite torque brakes what moves. Friction, ratio and signs need not
-//! be known for that; the travel is bounded by the design (`wiring::design`).
+//! The sign of the torque's effect is unknown, so that each leg measures it: the torque rises until motor or output has
+//! turned by half of a small travel; then the opposite torque brakes the motion. Friction, ratio and signs need not be
+//! known; the design bounds the travel (`wiring::design`).
 //!
 //! | state | torque | ends when | then |
 //! |---|---|---|---|
-//! | rest | 0 | the time of a rest is over: nothing moves | push |
-//! | | | it is over and something moves, at first | refused |
-//! | | | it is over and something moves, later | brake, with a quarter of the torque, three times at most |
+//! | rest | 0 | the rest time is over: nothing moves | push |
+//! | | | the rest time is over and a shaft moves, before the first leg | refused |
+//! | | | the rest time is over and a shaft moves, later | brake, with a quarter of the torque, four times at most |
 //! | push | rises to the allowed torque | motor or output has turned by half of the travel | brake |
 //! | | | the time at the allowed torque is over | rest; the next leg |
 //! | brake | against the motion | the motion is over | rest; the next leg |
@@ -22,36 +22,36 @@ use super::verdict::Wiring;
 use crate::numbers::Real;
 use crate::observer::Samples;
 
-/// Legs of a check: two each way, so that dry friction and lost motion are told from torque and ratio.
+/// Legs of a check: two in each direction, to separate dry friction from torque and lost motion from ratio.
 const LEGS: u8 = 4;
 
-/// Brakings after a leg.
+/// Additional brakings after a leg.
 const BRAKINGS: u8 = 4;
 
-/// Counts by which a shaft that rests may flicker over a rest.
+/// Largest flicker of a shaft at rest during a rest [counts].
 const RESTS: i64 = 4;
 
-/// Part of a leg by which a shaft that rests may creep over a rest, as a power of two.
+/// Largest creep of a shaft at rest during a rest, over a leg, as a negative power of two.
 const CREEPS: u32 = 5;
 
-/// Part of the speed at which braking began at which it ends, as a power of two.
+/// Speed at which braking ends, over the speed at its beginning, as a negative power of two.
 const STOPS: u32 = 4;
 
-/// Counts beyond which a travel is cut off: their products fit.
+/// Limit of a travel [counts], so that products of travels fit.
 const MOST_COUNTS: u64 = u32::MAX as u64;
 
-/// Times of its limit that the motor may go while the output lags behind what the ratio says.
+/// Largest motor travel, over its limit, while the output lags behind the ratio.
 const MOST_TIMES: u64 = 3;
 
-/// Counts by which a shaft has moved for sure.
+/// Travel above which a shaft has certainly moved [counts].
 const MOVED: i64 = 8;
 
-/// Why a check ended before its last leg.
+/// Reason for a check that ended before its last leg.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WiringRefusal {
-    /// The joint moved before any torque was given: let it come to rest.
+    /// The joint moved before the first torque: let it come to rest.
     NotAtRest,
-    /// The joint moved further than the check may: something else drives it.
+    /// The joint moved farther than the check may: an external force drives it.
     TooFar,
     /// The check took too long.
     TooLong,
@@ -70,11 +70,11 @@ impl fmt::Display for WiringRefusal {
 /// Progress of a check.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum WiringProgress<T: Real> {
-    /// Command the torque and give the samples of the next period.
+    /// Command the torque and pass the samples of the next period.
     Running,
     /// The last leg is over.
     Done(Wiring<T>),
-    /// The check ended early; what was seen until then is in [`WiringCheck::wiring`].
+    /// The check ended early; [`WiringCheck::wiring`] has the verdicts so far.
     Refused(WiringRefusal),
 }
 
@@ -87,7 +87,7 @@ enum State {
     Refused(WiringRefusal),
 }
 
-/// A wiring check of one joint.
+/// Wiring check of one joint.
 ///
 /// ```
 /// use model_core::gears::{Tables, design::design};
@@ -125,14 +125,14 @@ pub struct WiringCheck<'tables, T: Real> {
     periods: u32,
     held: u32,
     window: u32,
-    /// Size of the torque, and its direction: 1 or -1.
+    /// Magnitude of the torque, and its direction: 1 or -1.
     size: T,
     direction: i32,
     /// Positions at the beginning of the leg or rest, and of the window.
     from: [i64; 2],
     mark: [i64; 2],
-    /// The output is watched while it is braked, rather than the motor; the direction that is braked; its counts in the last
-    /// window of the push.
+    /// `watches_output`: braking watches the output, otherwise the motor. `sense`: direction of the braked motion.
+    /// `fast`: counts of the watched shaft in the last window of the push.
     watches_output: bool,
     sense: i64,
     fast: i64,
@@ -140,7 +140,7 @@ pub struct WiringCheck<'tables, T: Real> {
 }
 
 impl<'tables, T: Real> WiringCheck<'tables, T> {
-    /// A check that has not begun. The joint shall be at rest, and free to move by a few degrees.
+    /// Creates a check. The joint must be at rest and free to move by a few degrees.
     pub fn new(table: &'tables WiringTable<T>) -> Self {
         Self {
             table,
@@ -163,12 +163,12 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
         }
     }
 
-    /// Verdicts on what was seen so far.
+    /// Verdicts so far.
     pub fn wiring(&self) -> Wiring<T> {
         self.judge.wiring()
     }
 
-    /// One control period: returns the torque to command next, never larger than `allowed` [N m], and the progress. The
+    /// Runs one control period. Returns the torque to command next, at most `allowed` [N m], and the progress. The
     /// torque is zero once the check has ended.
     pub fn step(&mut self, samples: &Samples<T>, allowed: T) -> (T, WiringProgress<T>) {
         let is_new = self.judge.step(samples);
@@ -177,7 +177,7 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
             self.state = State::Refused(WiringRefusal::TooLong);
         }
         let least = |one: T, other: T| if one < other { one } else { other };
-        // Zero for what is not a number, too.
+        // The comparison also turns NaN into zero.
         let allowed = if allowed > T::ZERO { least(allowed, self.table.torque_limit) } else { T::ZERO };
         if is_new && self.is_running() {
             self.advance(allowed);
@@ -218,9 +218,9 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
         }
     }
 
-    /// Whether the joint has moved as far as a limit. An encoder with other counts than the tables' overstates or understates
-    /// the travel, so the geometric mean of both travels decides, which is right even for encoders that are exchanged. A
-    /// motor alone, or beside an output that stands, is held to its own limit.
+    /// Returns true if the joint has moved by a limit. Wrong counts per turn overstate or understate a travel, so that
+    /// the geometric mean of both travels decides; it is right even for exchanged encoders. A motor without an output,
+    /// or beside a stationary output, has its own limit.
     fn is_far(&self, moved: [i64; 2], limit: [u32; 2]) -> bool {
         let [motor, output] = moved.map(|by| by.unsigned_abs().min(MOST_COUNTS));
         let [motor_limit, output_limit] = limit.map(u64::from);
@@ -252,7 +252,7 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
                 return;
             }
         } else if creeps(watched) && self.brakings > 0 {
-            // Something still moves: brake it, by what the leg has shown of the torque's effect.
+            // A shaft still moves: brake it, with the torque direction that the leg has shown.
             self.brakings -= 1;
             let goes = at(moved, watched).signum();
             if goes != self.sense {
@@ -315,7 +315,7 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
         }
     }
 
-    /// Counts a period of the window; whether it is its last one.
+    /// Counts a period of the window. Returns true in its last period.
     fn window_over(&mut self) -> bool {
         self.window += 1;
         let over = self.window >= self.table.window;

@@ -1,15 +1,15 @@
-//! Design of the wiring check: how far the joint is moved, how fast the torque rises, and what counts as wrong.
+//! Design of the wiring check: travel of the joint, rise of the torque, and tolerances.
 //!
-//! With the ratio `r`, the lost motion `l`, the encoders' errors `e` and an output travel `x`, motor over `r` and output agree
-//! within `(l/2 + e)/x` of the travel. The check moves the output by
+//! With the ratio `r`, the lost motion `l`, the encoders' errors `e` and an output travel `x`, motor over `r` and
+//! output agree within `(l/2 + e)/x` of the travel. The travel of the output is
 //!
 //! `x = TRAVEL (l/2 + e)` (1)
 //!
-//! so that the ratio is measured within `1/TRAVEL`. The torque rises by `U/RISE` per second up to the allowed torque, `U` being a
-//! fifth of the motor's limit. A joint of the inertia `J` at the motor that breaks away at the time 0 has after the time `t` the
-//! acceleration `a = (U/RISE) t/J`, the speed `a t/2` and the travel `a t^2/6`. The same torque against the motion stops the motor
-//! after a further travel of `a t^2/8`, three quarters of the travel before. Braking at half of `x` therefore ends before `x`,
-//! friction or not.
+//! so that the ratio is measured within `1/TRAVEL`. The torque rises by `U/RISE` per second up to the allowed torque;
+//! `U` is a fifth of the motor's limit. A joint with the inertia `J` at the motor breaks away at the time 0. At the
+//! time `t` its acceleration is `a = (U/RISE) t/J`, its speed `a t/2` and its travel `a t^2/6`. The opposite torque
+//! stops the motor after a further travel of `a t^2/8`, three quarters of the travel before. Braking from half of `x`
+//! therefore ends before `x`, with or without friction.
 
 use crate::gears::design::DesignError;
 use crate::numbers::Real;
@@ -23,10 +23,10 @@ use parameters::JointParameters;
 /// neighbouring ratios are 7 % apart (5 and 14/3).
 const TRAVEL: f64 = 25.0;
 
-/// Counts of either encoder that the travel has at least: a travel is measured within 2 %.
+/// Least travel [counts of either encoder]: a travel is measured within 2 %.
 const COUNTS: f64 = 200.0;
 
-/// Counts of a shaft that leads, and of the other one, had it followed [counts].
+/// Least travel of a leading shaft, and of the other shaft if it had followed [counts].
 const LEADS: f64 = 8.0;
 
 /// Largest travel of the output [rad]: 14 degrees. Chosen.
@@ -35,25 +35,27 @@ const FURTHEST: f64 = 0.25;
 /// Part of the travel at which the motor is braked [-].
 const BRAKED: f64 = 0.5;
 
-/// An encoder with four times too few counts doubles the travel; beyond that is this limit.
+/// Travel of the output from the start at which the check ends, over the travel of a leg [-]: legs alternate, and
+/// friction of unequal size makes the legs drift.
 ///
-/// Travel of the output from the start at which the check ends, over the travel of a leg [-]: legs alternate, and friction of
-/// unequal size makes them drift.
+/// An encoder with four times too few counts doubles the travel; this limit is larger.
 const LIMIT: f64 = 2.5;
 
-/// Part of the motor's limit that the check uses, as the width probe does [-].
+/// Part of the motor's limit that the check uses [-], as in the width probe.
 const USUAL_SHARE: f64 = 0.2;
 
-/// Torque uncertainties that the check uses at least, as the width probe does [-].
+/// Least torque of the check [torque uncertainties], as in the width probe.
 const USUAL_UNCERTAINTIES: f64 = 8.0;
 
-/// Time in which the torque rises to its largest value [s]: slow beside a crossing of the gap, so that landings are soft.
+/// Time in which the torque rises to its largest value [s]: long compared with a crossing of the gap, so that landings
+/// are soft.
 const RISE: f64 = 1.0;
 
-/// Torque uncertainties that set a joint in motion: bias and dry friction of motor and link, two standard deviations [-].
+/// Torque that sets a joint in motion [torque uncertainties]: bias and dry friction of motor and link, two standard
+/// deviations.
 const FRICTION: f64 = 4.0;
 
-/// Counts that a block's change of speed has under the torque uncertainty [counts].
+/// Change of speed over a block under the torque uncertainty [counts].
 const BLOCK_COUNTS: f64 = 8.0;
 
 /// Shortest and longest block [s].
@@ -71,11 +73,11 @@ const HOLD: f64 = 0.5;
 /// Time after which the check ends [s].
 const LONGEST: f64 = 20.0;
 
-/// Part by which the ratio may be off beside slack over travel [-]: backlash and compliance of the joint file are guesses.
+/// Tolerance of the ratio beside slack over travel [-]: backlash and compliance of the joint file are guesses.
 const RATIO_TOLERANCE: f64 = 0.02;
 
-/// Factor by which the torque may be off [-]: between 1 and the factor 2.5 of units that are mistaken for one another, as
-/// `identify` holds the inertia.
+/// Tolerance of the torque as a factor [-]: between 1 and 2.5, the factor between units that are mistaken for one
+/// another, as `identify` limits the inertia.
 const TORQUE_FACTOR: f64 = 1.6;
 
 /// Table of the wiring check.
@@ -91,7 +93,7 @@ pub fn design_wiring<T: Real>(
     let motor = settings.motor_encoder;
     let output = settings.output_encoder.unwrap_or(motor);
     let lost_motion = 4.0 * body.half_backlash / body.output_lever;
-    // Once and twice a turn, from peak to peak over less than a turn.
+    // Errors once and twice per turn, from peak to peak over less than a turn.
     let errors = 2.0 * (motor.harmonic_error / body.ratio + output.harmonic_error)
         + 2.0 * body.transmission_error / body.output_lever
         + counts.output.angle

@@ -1,20 +1,21 @@
-//! Judge of the wiring: raw counts, times and torques of any motion in, verdicts out.
+//! Judge of the wiring: derives verdicts from raw counts, times and torques of any motion.
 //!
 //! **Important terms**
 //!
-//! - `F`, the angle factor: motor angle over the ratio, divided by the output angle, both as the tables count them. Rightly
-//!   wired it is 1. It is the slope of motor over output angle, with the direction of motion as second regressor; the step of
-//!   that is half of the lost motion, by which the motor leads (`line.rs`).
-//! - `A_m`, `A_o`: change of speed of motor and output for a unit of torque, the slopes of second differences of their
-//!   angles over torque, with the direction (dry friction) as second regressor. Over two neighbouring blocks of the length `L`
+//! - `F`, the angle factor: motor angle over the ratio, divided by the output angle, with the tables' counts. `F` is 1
+//!   for correct wiring. `F` is the slope of motor over output angle, with the direction of motion as second regressor;
+//!   the step of this regressor is half of the lost motion, by which the motor leads (`line.rs`).
+//! - `A_m`, `A_o`: change of speed of motor and output per unit of torque, the slopes of second differences of their
+//!   angles over torque, with the direction (dry friction) as second regressor. Over two neighbouring blocks of the
+//!   length `L`
 //!
 //!   `x(k+1) - 2 x(k) + x(k-1) = integral of w(t) a(t) dt` (2)
 //!
-//!   where `w` rises over the first block from 0 to `L` and falls over the second: torque is weighted alike.
-//! - `G = J_m A_m + (J_l/r) A_o`, the torque factor: momentum that a unit of torque makes, whether teeth touch or not. Rightly
-//!   wired it is 1.
+//! where `w` rises over the first block from 0 to `L` and falls over the second; torque is weighted alike.
+//! - `G = J_m A_m + (J_l/r) A_o`, the torque factor: momentum per unit of torque, with or without contact of the teeth.
+//!   `G` is 1 for correct wiring.
 //!
-//! Signs of `A_m` and `F` tell three reversals apart, if one thing is reversed and not two:
+//! The signs of `A_m` and `F` distinguish three reversals if only one of the three is reversed:
 //!
 //! | `A_m` | `F` | reversed |
 //! |---|---|---|
@@ -23,7 +24,8 @@
 //! | - | + | torque |
 //! | - | - | motor encoder |
 //!
-//! `F` of 2^k is an encoder with other bits than the tables'. The encoder with which `G` comes out nearer to 1 is blamed.
+//! An `F` of 2^k means an encoder with other bits than the tables. The encoder whose correction brings `G` nearer to 1
+//! is blamed.
 
 use super::line::{Fit, Line};
 use super::tables::WiringTable;
@@ -32,43 +34,43 @@ use super::verdict::{Verdict, Wiring, WiringItem};
 use crate::numbers::Real;
 use crate::observer::Samples;
 
-/// Counts that are motion: noise flickers by less.
+/// Travel that counts as motion [counts]: noise is smaller.
 const MOVED: i64 = 8;
 
-/// Counts in a block that have a direction.
+/// Least travel in a block that has a direction [counts].
 const DIRECTED: i64 = 3;
 
-/// Counts that an encoder flickers by while it stands.
+/// Largest flicker of a stationary encoder [counts].
 const FLICKER: i64 = 4;
 
-/// Bits by which an encoder may be told wrong.
+/// Largest detectable error of an encoder [bits].
 const BITS: usize = 5;
 
-/// Blocks in a row with a torque of one sign after which torque is compared with motion: after a change of sign the motor
+/// Consecutive blocks with a torque of one sign before torque is compared with motion: after a change of sign the motor
 /// crosses the gap.
 const ROW: u8 = 3;
 
-/// Calls after which times are judged.
+/// Calls before times are judged.
 const CALLS: u32 = 32;
 
-/// What a block leaves to the next one.
+/// State that a block passes to the next block.
 #[derive(Debug, Clone, Copy, Default)]
 struct Block<T: Real> {
-    /// Positions at its end.
+    /// Positions at the end of the block.
     ends: [i64; 2],
-    /// Counts turned in it.
+    /// Travel in the block [counts].
     turned: [i64; 2],
-    /// Torque, weighted from 0 at its beginning to 1 at its end, times its periods [N m].
+    /// Torque, weighted from 0 at the beginning to 1 at the end of the block, times its periods [N m].
     rise: T,
     direction: i32,
-    /// Sign of the torque, if it was the same all over it, and blocks in a row with that sign.
+    /// `sign`: sign of the torque if constant over the block, otherwise 0. `row`: consecutive blocks with this sign.
     sign: i32,
     row: u8,
 }
 
 /// Judge of the wiring of one joint.
 ///
-/// A log of a joint whose output encoder counts the wrong way:
+/// Log of a joint whose output encoder counts in the wrong direction:
 ///
 /// ```
 /// use model_core::gears::{Tables, design::design};
@@ -100,40 +102,41 @@ pub struct WiringJudge<'tables, T: Real> {
     began: bool,
     time: u32,
     motor_time: u32,
-    /// Calls, those with the samples of the call before, those a period apart, those with a motor reading that is not new.
+    /// Calls; calls that repeat the last samples; calls a period apart; calls with an old motor reading.
     calls: u32,
     repeats: u32,
     on_time: u32,
     stale: u32,
-    /// Calls that are not far apart, and the ticks between them.
+    /// Calls after a short interval, and the ticks of these intervals.
     near: u32,
     ticks: u64,
     pub(super) motor: Track,
     pub(super) output: Track,
     strongest: T,
-    /// Periods in this block, torque in it, and the same weighted from 0 at its beginning to 1 at its end.
+    /// Periods in this block, sum of the torque, and sum of the torque weighted from 0 at the beginning to 1 at the
+    /// end.
     periods: u32,
     torque: T,
     rise: T,
     sign: i32,
     block: Block<T>,
-    /// Blocks behind.
+    /// Closed blocks.
     blocks: u8,
     angles: Line<T>,
     /// Second differences of both angles over torque.
     responses: Line<T>,
-    /// The same, where the torque has had one sign for some blocks.
+    /// Second differences over torque in blocks after `ROW` blocks with a torque of one sign.
     steady: Line<T>,
-    /// Positions of the last standstill, until one shaft has moved from there.
+    /// Positions of the last standstill, until a shaft has moved.
     standstill: Option<[i64; 2]>,
-    /// Times that motor or output moved first.
+    /// Number of starts with the motor, and with the output, moving first.
     leads: [u16; 2],
     /// Starts of the motor with and against the torque.
     starts: [u16; 2],
 }
 
 impl<'tables, T: Real> WiringJudge<'tables, T> {
-    /// A judge that has seen nothing.
+    /// Creates a judge without samples.
     pub fn new(table: &'tables WiringTable<T>) -> Self {
         Self {
             table,
@@ -164,7 +167,7 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         }
     }
 
-    /// Takes the samples of one control period. Returns whether they are new.
+    /// Adds the samples of one control period. Returns true if they are new.
     pub fn step(&mut self, samples: &Samples<T>) -> bool {
         if !self.note_times(samples) {
             return false;
@@ -173,7 +176,7 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         if let Some(output) = samples.output.filter(|_| self.table.counts.has_output) {
             self.output.read(&self.table.counts.output, output.counts);
         }
-        // False for what is not a number, too.
+        // The comparison is also false for NaN.
         let believed = samples.torque.abs() <= T::TWO * self.table.torque_limit;
         let torque = if believed { samples.torque } else { T::ZERO };
         if torque.abs() > self.strongest {
@@ -197,7 +200,7 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         true
     }
 
-    /// Notes the times of a call; whether its samples are new.
+    /// Notes the times of a call. Returns true if its samples are new.
     fn note_times(&mut self, samples: &Samples<T>) -> bool {
         let clock = &self.table.clock;
         let elapsed = samples.time.wrapping_sub(core::mem::replace(&mut self.time, samples.time));
@@ -226,8 +229,8 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         true
     }
 
-    /// Notes which shaft moves first from a standstill: the one whose motion, if the other had followed it, would have moved
-    /// the other, too.
+    /// Notes which shaft moves first from a standstill: its travel would have moved the other shaft if the other had
+    /// followed.
     fn note_lead(&mut self) {
         let Some([motor_from, output_from]) = self.standstill else { return };
         let motor = self.motor.position.saturating_sub(motor_from).saturating_abs();
@@ -282,7 +285,7 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
                 *starts = starts.saturating_add(1);
             }
         }
-        // A motor that moves alone winds up or crosses the gap: what torque does to the joint does not show.
+        // A motor that moves alone winds up or crosses the gap: the effect of torque on the joint is not visible.
         let alone = table.counts.has_output && (motor == 0 || output == 0);
         if alone || direction == 0 || direction != before.direction {
             return;
@@ -305,7 +308,7 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         }
     }
 
-    /// Verdicts on all that was seen.
+    /// Verdicts on all samples so far.
     pub fn wiring(&self) -> Wiring<T> {
         let table = self.table;
         let mut wiring = Wiring { has_output: table.counts.has_output, ..Wiring::default() };
@@ -325,7 +328,7 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
             wiring.set(WiringItem::OutputCounts, Verdict::Wrong(T::ZERO));
         }
         if has_output && spans[0] <= FLICKER && output_travel > table.play {
-            // Counts of a motor that only crosses its gap, read as the output's, look like that, too.
+            // Exchanged encoders with a motor that only crosses its gap look like this, too.
             let exchanged = table.counts.motor.angle * table.per_ratio * T::from_i64(spans[1]) < table.play;
             let stands = if exchanged { Verdict::Suspect(T::ZERO) } else { Verdict::Wrong(T::ZERO) };
             wiring.set(WiringItem::MotorCounts, stands);
@@ -334,7 +337,7 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         let fit = self.angles.fit([T::ONE, T::ZERO]).filter(|_| motor_moved && output_moved && has_output);
         let goes = fit.map_or(0, |fit| fit.sign());
         judge_directions(&mut wiring, self.drive_sign(goes), goes, has_output);
-        // As in the check: an encoder with other counts overstates or understates its travel.
+        // As in the check, wrong counts per turn overstate or understate a travel.
         let travel = (motor_travel * output_travel).square_root();
         let tolerance = table.ratio_tolerance + table.slack.over(positive(travel));
         let fits = motor_moved && output_moved && has_output && {
@@ -379,7 +382,7 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         ticks.over(positive(periods))
     }
 
-    /// Raw counts beyond the range of the tables: the encoder has more of them, a power of two.
+    /// Judges raw counts beyond the range of the tables: the encoder's true counts per turn are a larger power of two.
     fn judge_ranges(&self, wiring: &mut Wiring<T>) {
         let counts = &self.table.counts;
         for (item, track, table) in [
@@ -394,10 +397,11 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         }
     }
 
-    /// Direction of the motor under a positive torque; 0 while it is not known. `goes` is that of the output beside the motor.
+    /// Direction of the motor under a positive torque; 0 if unknown. `goes` is the direction of the output relative to
+    /// the motor.
     fn drive_sign(&self, goes: i32) -> i32 {
         let [motor, output] = [[T::ONE, T::ZERO], [T::ZERO, T::ONE]].map(|weights| self.responses.fit(weights));
-        // The output's response is the steadier one: the motor crosses the gap in between.
+        // The output's response is more regular: the motor also crosses the gap.
         let by_output = output.map_or(0, |fit| goes * fit.sign());
         if by_output != 0 {
             return by_output;
@@ -413,7 +417,7 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         }
     }
 
-    /// Judges ratio, counts and places by the angle factor; whether the angles go together as they shall.
+    /// Judges ratio, counts and places by the angle factor. Returns true if the angles agree with the tables.
     fn judge_factor(&self, wiring: &mut Wiring<T>, fit: &Fit<T>, tolerance: T, travels: [T; 2]) -> bool {
         let [motor_travel, output_travel] = travels;
         let crude = motor_travel.over(positive(output_travel));
@@ -423,7 +427,7 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         let is_sure = fit.sign() != 0 && tolerance < T::QUARTER;
         let is = |expected: T| is_sure && (size - expected).abs() <= tolerance * expected;
         let [motor_turn, output_turn] = [&counts.motor, &counts.output].map(|encoder| T::from_i64(encoder.turn.into()));
-        // Exchanged encoders: the motor's place reads output turns times output counts, and the other way round.
+        // With exchanged encoders, the motor's place reads output turns times output counts, and vice versa.
         let exchange = output_turn.over(positive(motor_turn)) * table.per_ratio;
         let exchanged = exchange * exchange;
         let lags = fit.step < -T::EIGHTH * exchange * table.lost_motion && -fit.step > T::FOUR * fit.step_deviation;
@@ -431,20 +435,20 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         let output_leads = by_output >= 2 && by_output > by_motor;
         let near = off_by(crude.over(positive(exchanged))) < T::THREE;
         let bad = [WiringItem::MotorCounts, WiringItem::OutputCounts].map(|item| wiring.of(item).is_bad());
-        // The travel may be half of what it seems, and counts beyond their range leave only bits.
+        // The true travel may be half of the apparent one, and counts beyond their range can only mean wrong bits.
         let wide = if bad == [false; 2] && tolerance < T::EIGHTH { tolerance + tolerance } else { T::QUARTER };
         let bits = if is_sure { bits_off(size, wide) } else { None };
         let blamed = bits.and_then(|power| self.blame(power, fit.sign(), bad));
         let least = if size < T::ONE { size } else { T::ONE };
         let ahead = fit.step > T::EIGHTH * least * table.lost_motion && fit.step > T::FOUR * fit.step_deviation;
         let no_other = is(exchanged) && !is(T::ONE) && bits.is_none() && by_output >= by_motor;
-        // Leads decide where no bits explain the angles, or explain them less well, or neither encoder is to blame.
+        // Leads decide if bits do not explain the angles, explain them less well, or point to neither encoder.
         let explains = bits.is_some_and(|power| {
             blamed.is_some() && off_by(size.over(power)) <= off_by(size.over(positive(exchanged)))
         });
         if near && !ahead && (lags || (output_leads && !explains) || no_other) {
             wiring.set(WiringItem::Places, Verdict::Wrong(T::ZERO));
-            // Counts of the other encoder are beyond no range of their own.
+            // Counts of the other encoder are no evidence on an encoder's own range.
             wiring.set(WiringItem::MotorCounts, Verdict::NotSeen);
             wiring.set(WiringItem::OutputCounts, Verdict::NotSeen);
             return false;
@@ -477,7 +481,7 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         false
     }
 
-    /// Travels that do not go together at all, where no line is to be had: counts are wrong, or encoders exchanged.
+    /// Judges travels that do not match at all and have no fitted line: counts are wrong, or encoders are exchanged.
     fn suspect_counts(&self, wiring: &mut Wiring<T>, crude: T, near: bool, motor_travel: T, output_travel: T) {
         let counts = &self.table.counts;
         let further = if motor_travel > output_travel { motor_travel } else { output_travel };
@@ -493,7 +497,7 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         }
     }
 
-    /// Whether the motor encoder is to blame for an angle factor of a power of two, rather than the output's.
+    /// Finds the encoder to blame for an angle factor of a power of two: true for the motor's, false for the output's.
     fn blame(&self, power: T, goes: i32, [motor_beyond, output_beyond]: [bool; 2]) -> Option<bool> {
         if motor_beyond != output_beyond {
             return Some(motor_beyond);
@@ -507,8 +511,8 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         (least < self.table.torque_factor).then_some(motor < output)
     }
 
-    /// Momentum that a unit of torque makes, if angles of motor and output are off by such factors and the output goes in such a
-    /// direction beside the motor; none while it is not known within a quarter.
+    /// Momentum per unit of torque, if the angles of motor and output are wrong by the factors given and the output
+    /// moves in the direction `goes` relative to the motor; `None` if known no better than within a quarter.
     fn momentum(&self, line: &Line<T>, [motor, output]: [T; 2], goes: i32) -> Option<T> {
         let table = self.table;
         let [of_motor, of_output] = table.impulse;
@@ -521,13 +525,13 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         (fit.deviation < T::QUARTER * fit.slope.abs()).then_some(fit.slope.abs())
     }
 
-    /// Judges the torque, or, where times are wrong, which of rate and clock is.
+    /// Judges the torque or, with wrong times, decides between rate and clock.
     fn judge_torque(&self, wiring: &mut Wiring<T>, goes: i32) {
         let known = [&self.responses, &self.steady].map(|line| self.momentum(line, [T::ONE; 2], goes));
         if known == [None; 2] {
             return;
         }
-        // Friction, weight and the gap disturb either line in a way of its own: what is wrong is wrong by both.
+        // Friction, weight and the gap disturb the two lines differently: only an error of both lines counts.
         let nearest = |expected: T| {
             let off = |factor: T| off_by(factor.over(positive(expected)));
             let nearer = |one: T, other: T| if off(one) <= off(other) { one } else { other };
@@ -544,7 +548,7 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
             }
             return;
         };
-        // Calls that are `period` apart in truth see accelerations times its square; a clock alone changes nothing.
+        // Calls in truth `period` apart see accelerations times its square; a wrong clock alone changes nothing.
         let square = period * period;
         let by_clock = off_by(nearest(T::ONE));
         let by_rate = off_by(nearest(square).over(positive(square)));
@@ -558,7 +562,8 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
     }
 }
 
-/// Judges the three directions by the sign of the motor's response to torque and of the output's motion beside the motor's.
+/// Judges the three directions by the signs of the motor's response to torque and of the output's motion relative to
+/// the motor.
 fn judge_directions<T: Real>(wiring: &mut Wiring<T>, drives: i32, goes: i32, has_output: bool) {
     let (motor, output, torque) =
         (WiringItem::MotorDirection, WiringItem::OutputDirection, WiringItem::TorqueDirection);
@@ -579,17 +584,17 @@ fn judge_directions<T: Real>(wiring: &mut Wiring<T>, drives: i32, goes: i32, has
     wiring.set(torque, of_torque);
 }
 
-/// A number that may be divided by.
+/// Limits a number to positive values for division.
 fn positive<T: Real>(value: T) -> T {
     if value > T::LEAST { value } else { T::LEAST }
 }
 
-/// Factor by which a positive number is off 1, whichever way.
+/// Deviation of a positive number from 1 as a factor of at least 1.
 fn off_by<T: Real>(value: T) -> T {
     if value > T::ONE { value } else { T::ONE.over(positive(value)) }
 }
 
-/// Power of two, other than 1, that the angle factor is.
+/// Power of two other than 1 that matches the angle factor within the tolerance.
 fn bits_off<T: Real>(size: T, tolerance: T) -> Option<T> {
     let (mut up, mut down) = (T::ONE, T::ONE);
     for _ in 0..BITS {

@@ -1,15 +1,15 @@
-//! Straight lines through points that come one by one: `y = slope x + step s + constant`, by least squares, for two `y` and
-//! every weighted sum of them.
+//! Recursive straight-line fits `y = slope x + step s + constant` by least squares, for two `y` and all their weighted
+//! sums.
 
 use crate::numbers::Real;
 
-/// Points that count as much as the latest ones: older points fade, so that sums stay within their precision.
+/// Number of points after which older points fade, so that sums keep their precision.
 const MOST: u16 = 4096;
 
-/// Points below which there is no line.
+/// Least number of points of a line.
 const LEAST: u16 = 8;
 
-/// Sums over points (x, s, y1, y2), less their means.
+/// Moments of the points (x, s, y1, y2) about their means.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Line<T: Real> {
     points: u16,
@@ -22,11 +22,11 @@ pub struct Line<T: Real> {
     own: [T; 3],
 }
 
-/// A line.
+/// Fitted line.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Fit<T: Real> {
     pub slope: T,
-    /// Change of y for a unit of s.
+    /// Change of y per unit of s.
     pub step: T,
     /// Standard deviation of the slope.
     pub deviation: T,
@@ -35,7 +35,7 @@ pub struct Fit<T: Real> {
 }
 
 impl<T: Real> Fit<T> {
-    /// Direction of the line; 0 for a slope that noise could make.
+    /// Sign of the slope; 0 for a slope that noise explains.
     pub fn sign(&self) -> i32 {
         match self.slope.abs() > T::FOUR * self.deviation {
             true if self.slope > T::ZERO => 1,
@@ -62,11 +62,11 @@ impl<T: Real> Line<T> {
         moments.zip(products).for_each(|(moment, product)| fold(moment, product));
     }
 
-    /// The line of `y = weights . (y1, y2)`, if the points have one.
+    /// Line of `y = weights . (y1, y2)`, if the points determine a line.
     pub fn fit(&self, weights: [T; 2]) -> Option<Fit<T>> {
         let [xx, xs, ss] = self.moment;
         let tiny = T::TWENTIETH * T::TWENTIETH;
-        // An x that stays where it is varies by its rounding.
+        // A constant x varies by its rounding.
         let rounded = tiny * self.mean[0];
         if self.points < LEAST || xx <= rounded * rounded {
             return None;
@@ -75,7 +75,7 @@ impl<T: Real> Line<T> {
         let [xy, sy] = self.with.map(|[with_1, with_2]| w1 * with_1 + w2 * with_2);
         let [of_1, of_both, of_2] = self.own;
         let yy = w1 * w1 * of_1 + T::TWO * w1 * w2 * of_both + w2 * w2 * of_2;
-        // Points of one direction alone, or of an x that goes with the direction, tell no step.
+        // Points of one direction, or with x proportional to the direction, do not determine the step.
         let left = if ss > tiny { xx - (xs * xs).over(ss) } else { T::ZERO };
         let (slope, step, spread) = if left > tiny * xx {
             let slope = (xy - (xs * sy).over(ss)).over(left);
@@ -84,7 +84,7 @@ impl<T: Real> Line<T> {
             (xy.over(xx), T::ZERO, xx)
         };
         let residual = (yy - slope * xy - step * sy).abs();
-        // Half of the points count: neighbours share a block, and their errors are alike.
+        // Only half of the points count: neighbouring points share a block and its error.
         let count = T::HALF * T::from_i32(self.points.into());
         let deviation = residual.over(count * spread).square_root();
         let step_deviation = if ss > tiny { residual.over(count * ss).square_root() } else { T::ZERO };

@@ -1,18 +1,18 @@
-//! Wiring check: whether signs, counts, ratio, torque scale, rate and clock of a joint are those of its tables, before
-//! anything is controlled. `joint replay` feeds [`WiringJudge`] with a log; [`WiringCheck`] drives the motor gently and feeds
-//! it with that motion.
+//! Wiring check: compares signs, counts, ratio, torque scale, rate and clock of a joint with its tables before control
+//! starts. `joint replay` feeds [`WiringJudge`] with a log; [`WiringCheck`] drives the motor gently and feeds the judge
+//! with that motion.
 //!
-//! It does not use the observer: only raw counts, times and torques count.
+//! The check does not use the observer, only raw counts, times and torques.
 //!
-//! What no check of this kind can tell apart:
+//! Indistinguishable for any check of this kind:
 //!
-//! - motor encoder, output encoder and torque reversed all three: that is a joint whose positive direction is the other one;
-//! - two of them reversed, which looks like the third one reversed;
-//! - without an output encoder: motor encoder and torque reversed, another ratio, other counts of the motor encoder beside
-//!   another torque scale;
-//! - a ratio that is off by a power of two, and an encoder with other bits;
-//! - both encoders with as many bits too many, and a torque scale that is off by a power of two;
-//! - a torque scale, and a link of another inertia, as far as the link's inertia counts.
+//! - motor encoder, output encoder and torque all reversed: a joint with the opposite positive direction;
+//! - two of the three reversed, and the third reversed;
+//! - without an output encoder: motor encoder and torque reversed; another ratio; other counts of the motor encoder,
+//!   and another torque scale;
+//! - a ratio wrong by a power of two, and an encoder with another number of bits;
+//! - both encoders with equally many excess bits, and a torque scale wrong by a power of two;
+//! - a wrong torque scale, and a link of another inertia, as far as the link's inertia matters.
 
 mod check;
 #[cfg(feature = "design")]

@@ -1,5 +1,4 @@
-//! Table of the wiring check: what a rightly wired joint shows, and how far the check may move it. Made by
-//! `wiring::design`.
+//! Table of the wiring check, made by `wiring::design`: behaviour of a correctly wired joint, and limits of its motion.
 
 use crate::numbers::Real;
 use crate::observer::tables::{ClockTable, CountTable};
@@ -12,9 +11,9 @@ pub struct WiringTable<T: Real> {
     pub clock: ClockTable<T>,
     /// Both encoders.
     pub counts: CountTable<T>,
-    /// Motor turns in an output turn.
+    /// Motor turns per output turn.
     pub ratio: T,
-    /// Output turns in a motor turn.
+    /// Output turns per motor turn.
     pub per_ratio: T,
     /// Control periods of a block, over which motion is compared with torque.
     pub block: u32,
@@ -22,18 +21,19 @@ pub struct WiringTable<T: Real> {
     pub per_block: T,
     /// Inertias of motor and link over the square of a block, for angles of motor and output [N m/rad].
     pub impulse: [T; 2],
-    /// Output angle by which motor and output may be apart without a fault: half of the lost motion, encoder errors, counts
-    /// [rad].
+    /// Largest difference between motor and output without a fault, as output angle: half of the lost motion, encoder
+    /// errors, counts [rad].
     pub slack: T,
     /// Lost motion at the output [rad].
     pub lost_motion: T,
-    /// Output angle that the motor may turn while the output stands: lost motion, wind-up, slack [rad].
+    /// Largest motor travel with a stationary output, as output angle: lost motion, wind-up, slack [rad].
     pub play: T,
-    /// Part by which the measured ratio may be off, beside slack over travel [-].
+    /// Tolerance of the measured ratio beside slack over travel [-].
     pub ratio_tolerance: T,
-    /// Factor by which the torque may be off [-].
+    /// Tolerance of the torque as a factor [-].
     pub torque_factor: T,
-    /// Travel of motor and output from a standstill at which the other shaft, had it followed, would have moved [counts].
+    /// Travel of motor and output from a standstill at which the other shaft would have moved if it had followed
+    /// [counts].
     pub leads: [u32; 2],
     /// Travel of motor and output, from the start of a leg, at which the motor is braked [counts].
     pub leg: [u32; 2],
@@ -41,11 +41,11 @@ pub struct WiringTable<T: Real> {
     pub limit: [u32; 2],
     /// Growth of the torque [N m/period].
     pub rise: T,
-    /// Torque that is used at most [N m].
+    /// Largest torque of the check [N m].
     pub torque: T,
-    /// Largest torque of the motor [N m].
+    /// Torque limit of the motor [N m].
     pub torque_limit: T,
-    /// Torque that is expected to set the joint in motion [N m].
+    /// Torque expected to set the joint in motion [N m].
     pub friction: T,
     /// Periods without torque before each leg.
     pub rest: u32,

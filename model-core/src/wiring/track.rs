@@ -1,10 +1,10 @@
-//! Counts of one encoder as the wiring check sees them: a position, how far it went, and signs of a wrong resolution.
+//! Counts of one encoder in the wiring check: position, travel, and signs of a wrong resolution.
 
 use crate::numbers::Real;
 use crate::observer::sensors::counts::difference;
 use crate::observer::tables::EncoderTable;
 
-/// One encoder.
+/// Counts of one encoder.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Track {
     began: bool,
@@ -13,14 +13,14 @@ pub struct Track {
     pub position: i64,
     least: i64,
     most: i64,
-    /// Largest raw count beyond the range of the tables; 0 if there was none.
+    /// Largest raw count beyond the range of the tables; 0 if all are in range.
     pub beyond: u32,
-    /// Power of two at which the raw counts were seen to wrap, short of the range of the tables; 0 if they were not.
+    /// Power of two below the range of the tables at which the raw counts wrapped; 0 without such a wrap.
     pub wrap: u32,
 }
 
 impl Track {
-    /// Reads a raw count.
+    /// Adds a raw count.
     pub fn read<T: Real>(&mut self, table: &EncoderTable<T>, raw: u32) {
         let within = if raw > table.last {
             self.beyond = self.beyond.max(raw);
@@ -44,7 +44,7 @@ impl Track {
         }
     }
 
-    /// Raw counts that jump by nearly a power of two have wrapped there.
+    /// Detects a wrap: raw counts that jump by nearly a power of two have wrapped there.
     #[cold]
     fn jump<T: Real>(&mut self, size: u32, table: &EncoderTable<T>) {
         let Some(upper) = size.checked_next_power_of_two() else { return };

@@ -1,38 +1,38 @@
-//! Verdicts of the wiring check: one for each item, with its name and with what to do.
+//! Verdicts of the wiring check for each item, with the item's name and the remedy.
 
 use core::fmt;
 
 use crate::numbers::Real;
 
-/// An item of a joint's wiring.
+/// Item of a joint's wiring.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum WiringItem {
-    /// Each control period gives its samples once. Found: calls for each sample.
+    /// Each control period gives its samples once. Found: calls per sample.
     Calls = 0,
-    /// The control rate is that of the tables. Found: control period over that of the tables.
+    /// The control rate equals the tables' rate. Found: control period over the tables' period.
     Period = 1,
-    /// The clock of the samples has the tick rate of the tables. Found: tick rate over that of the tables.
+    /// The clock of the samples ticks at the tables' rate. Found: tick rate over the tables' rate.
     Clock = 2,
     /// The motor's readings carry times of the samples' clock. Found: 0.
     MotorTime = 3,
-    /// The motor did move. Found: torque that is expected to move it [N m].
+    /// The motor moved. Found: torque expected to move the motor [N m].
     Motion = 4,
-    /// Counts in a turn of the motor encoder. Found: their number; 0 for counts that stand still.
+    /// Counts per turn of the motor encoder. Found: their number; 0 for counts that stand still.
     MotorCounts = 5,
-    /// Counts in a turn of the output encoder. Found: their number; 0 for counts that stand still.
+    /// Counts per turn of the output encoder. Found: their number; 0 for counts that stand still.
     OutputCounts = 6,
-    /// Each encoder is read as itself. Found: 0.
+    /// Motor and output encoder are not exchanged. Found: 0.
     Places = 7,
-    /// Gear ratio. Found: motor turns in an output turn.
+    /// Gear ratio. Found: motor turns per output turn.
     Ratio = 8,
     /// The motor encoder counts up in the direction of a positive torque. Found: -1.
     MotorDirection = 9,
-    /// The output encoder counts up where the motor encoder does. Found: -1.
+    /// The output encoder counts up while the motor encoder counts up. Found: -1.
     OutputDirection = 10,
     /// A positive torque drives in the direction in which both encoders count up. Found: -1.
     TorqueDirection = 11,
-    /// Acting torque over commanded torque. Found: that factor.
+    /// Acting torque over commanded torque. Found: this factor.
     TorqueScale = 12,
 }
 
@@ -40,7 +40,7 @@ pub enum WiringItem {
 pub const WIRING_ITEMS: usize = 13;
 
 impl WiringItem {
-    /// All of them, each at the place of its number.
+    /// All items, each at the index of its number.
     pub const ALL: [Self; WIRING_ITEMS] = [
         Self::Calls,
         Self::Period,
@@ -57,7 +57,7 @@ impl WiringItem {
         Self::TorqueScale,
     ];
 
-    /// Name, such as `output_direction`.
+    /// Name of the item, for example `output_direction`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Calls => "calls",
@@ -76,12 +76,12 @@ impl WiringItem {
         }
     }
 
-    /// Whether only a joint with an output encoder shows it.
+    /// Returns true if only a joint with an output encoder shows the item.
     pub const fn needs_output(self) -> bool {
         matches!(self, Self::OutputCounts | Self::MotorCounts | Self::Places | Self::Ratio | Self::OutputDirection)
     }
 
-    /// What is wrong and what to do, in one sentence.
+    /// Fault and remedy in one sentence.
     pub const fn help(self) -> &'static str {
         match self {
             Self::Calls => "samples come more than once: call the step once a control period",
@@ -124,19 +124,20 @@ impl WiringItem {
 /// Verdict on one item.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Verdict<T: Real> {
-    /// The samples do not show it.
+    /// The samples do not show the item.
     #[default]
     NotSeen,
-    /// As in the tables.
+    /// The item agrees with the tables.
     Right,
-    /// Not as in the tables; what was found instead.
+    /// The item differs from the tables; the value found.
     Wrong(T),
-    /// This item or another suspect is wrong, and the samples do not tell which; what it would be.
+    /// Either this item or another suspect is wrong, and the samples do not show which; the value found if it is this
+    /// item.
     Suspect(T),
 }
 
 impl<T: Real> Verdict<T> {
-    /// Whether the item is wrong or may be.
+    /// Returns true if the item is wrong or suspect.
     pub fn is_bad(self) -> bool {
         matches!(self, Self::Wrong(_) | Self::Suspect(_))
     }
@@ -160,13 +161,12 @@ impl<T: Real> Wiring<T> {
         WiringItem::ALL.into_iter().zip(self.verdicts)
     }
 
-    /// Whether every item was seen and is right. Without an output encoder nothing is seen of places, ratio, and of counts and
-    /// direction of the output.
+    /// Returns true if every item was seen and is right. Without an output encoder the items that need one are ignored.
     pub fn is_all_right(&self) -> bool {
         self.iter().all(|(item, verdict)| verdict == Verdict::Right || (!self.has_output && item.needs_output()))
     }
 
-    /// Whether nothing is wrong or suspect.
+    /// Returns true if no item is wrong or suspect.
     pub fn is_right(&self) -> bool {
         !self.verdicts.iter().any(|verdict| verdict.is_bad())
     }
@@ -179,7 +179,7 @@ impl<T: Real> Wiring<T> {
 }
 
 impl<T: Real> fmt::Display for Wiring<T> {
-    /// A line an item: name, verdict, what was found, and what to do.
+    /// Prints one line per item: name, verdict, value found, and remedy.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (item, verdict) in self.iter() {
             let name = item.name();

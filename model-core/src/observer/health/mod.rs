@@ -1,5 +1,5 @@
-//! The health of both encoders: when each is given up, why, when it is taken back, and what is known of the link without its
-//! own. Without the motor's nothing is.
+//! Health of both encoders: fault declaration, readmission, and the link's position while its encoder is excluded.
+//! Without the motor encoder no estimate is valid.
 
 pub mod motor_faults;
 pub mod motor_only;
@@ -26,40 +26,40 @@ use crate::observer::tables::ObserverTables;
 pub use output_faults::{LastMotion, Screened};
 pub use recovery::Return;
 
-/// Learning intervals between two looks at the load torque: what is used is 16 to 32 ms old, and most faults are found
-/// sooner than that. An output encoder that freezes in slow motion takes 8 to 22 ms, so a look may be from after it
-/// froze.
+/// Learning intervals between two stored load torques: the restored torque is 16 to 32 ms old, and most faults are
+/// declared sooner. A freeze in slow motion is declared after 8 to 22 ms, so that a torque may be stored after the
+/// output encoder froze.
 const LOOK: u16 = 16;
 
-/// Which encoders are used, and what that is decided by.
+/// Encoders in use, and the state of the fault checks.
 #[derive(Debug, Clone, Copy)]
 pub struct Health<T: Real> {
     source: Source,
     motor: MotorFaultDetector<T>,
     faults: OutputFaultDetector<T>,
     recovery: Recovery<T>,
-    /// Whether the motor goes where the torque drives it.
+    /// Check of the sign of torque and motor encoder.
     pub response: ResponseCheck<T>,
-    /// What is known of the link without its encoder.
+    /// Estimate of the link's motion without its encoder.
     pub motor_only: MotorOnly<T>,
-    /// Load torque of the last and of the last but one look, before a failing encoder could spoil it [N m].
+    /// Last and last but one stored load torque, from before a failing encoder could corrupt the estimate [N m].
     load_torques: [T; 2],
     looked: u16,
 }
 
-/// What the deflection says of the encoders.
+/// Verdict on the encoders by the deflection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Judged {
-    /// It is one that teeth allow.
+    /// Teeth allow the deflection.
     Sound,
-    /// The output's is given up.
+    /// The output encoder is excluded.
     OutputFails,
-    /// The motor's is given up.
+    /// The motor encoder is excluded.
     MotorFails,
 }
 
 impl<T: Real> Health<T> {
-    /// Until the output encoder gives its first reading there is the motor's only.
+    /// Starts with the motor encoder alone, until the output encoder gives its first reading.
     #[inline(always)]
     pub fn new(has_output: bool) -> Self {
         Self {
@@ -74,22 +74,22 @@ impl<T: Real> Health<T> {
         }
     }
 
-    /// Which encoders are used, as long as the motor's is.
+    /// Encoders in use while the motor encoder is in use.
     pub fn source(&self) -> Source {
         self.source
     }
 
-    /// Why the motor encoder is not used.
+    /// Reason for the exclusion of the motor encoder.
     pub fn motor_fault(&self) -> Option<MotorFault> {
         self.motor.fault()
     }
 
-    /// Counts by which the motor goes on in a period.
+    /// Motor speed [counts per period].
     pub fn motor_counts(&self) -> T {
         self.motor.counts()
     }
 
-    /// Judges the motor's reading by itself. Where that gives the encoder up, nothing of it is used until
+    /// Judges the motor's reading by itself. After an exclusion no reading is used until
     /// [`finds_motor`](Self::finds_motor).
     #[inline(always)]
     pub fn screen_motor(
@@ -100,22 +100,23 @@ impl<T: Real> Health<T> {
         filters: &Filters<T>,
     ) -> MotorScreened {
         let link_rate = self.both_encoders().then(|| self.faults.rate());
-        // Where the torque was none that is known, it may have been any.
+        // While the torque is unknown, the largest plausible torque may brake the motor.
         let unsure = sensors.is_unsure();
         let drag = if unsure { tables.current.believed } else { tables.supervisor.motor_drag };
         let surroundings = MotorSurroundings { table: &tables.supervisor, drive: &filters.drive, drag, link_rate };
         self.motor.screen(tables, sensed, &surroundings)
     }
 
-    /// Whether a motor encoder that was given up is used again, by what its readings have come to and a deflection of the teeth
-    /// [m]: that of the place which agrees best with the output's.
+    /// Decides on the readmission of the motor encoder from its outlook and a deflection of the teeth [m]. Of all
+    /// possible motor positions the caller passes the deflection that agrees best with the output encoder.
     pub fn finds_motor<const P: usize>(
         &mut self,
         outlook: Outlook,
         learnt: &Learnt<T, P>,
         deflection: T,
     ) -> Option<Return> {
-        // Without torque shafts are hardly wound up; what is a little beyond waits.
+        // At rest without torque the shafts are hardly wound up, so that a deflection slightly out of range is accepted
+        // only once the outlook has settled.
         let agrees = if outlook == Outlook::Settled {
             output_faults::is_near(learnt, deflection)
         } else {
@@ -133,18 +134,18 @@ impl<T: Real> Health<T> {
         Some(back)
     }
 
-    /// Whether both encoders are used.
+    /// Returns true while both encoders are in use.
     pub fn both_encoders(&self) -> bool {
         matches!(self.source, Source::Both)
     }
 
-    /// Whether the deflection has been beyond its range for 4 ms, longer than impacts ring: teeth have worn, or the
+    /// Returns true once the deflection has been out of range for 4 ms, longer than impacts ring: teeth are worn, or an
     /// encoder fails.
     pub fn is_at_odds(&self, tables: &ObserverTables<T>) -> bool {
         self.faults.is_at_odds(&tables.supervisor)
     }
 
-    /// Judges the output's reading by itself. Where that gives the encoder up, the caller goes on without it.
+    /// Judges the output's reading by itself. After an exclusion the caller continues without the output encoder.
     #[inline(always)]
     pub fn screen(&mut self, tables: &ObserverTables<T>, sensed: &Sensed<T>) -> Screened<T> {
         let screened = self.faults.screen(tables, sensed, self.both_encoders());
@@ -156,8 +157,8 @@ impl<T: Real> Health<T> {
         screened
     }
 
-    /// Judges both encoders by the deflection. Where that gives one up, the caller goes on without it. Who stands still while the
-    /// other goes on is to blame.
+    /// Judges both encoders by the deflection. After an exclusion the caller continues without that encoder. The
+    /// encoder whose counts stand still while the other's advance is excluded.
     pub fn judge<const P: usize>(
         &mut self,
         tables: &ObserverTables<T>,
@@ -179,14 +180,14 @@ impl<T: Real> Health<T> {
         }
     }
 
-    /// The motor's counts stand still while the link goes on.
+    /// Excludes the motor encoder: its counts stand still while the link moves.
     #[cold]
     fn blame_motor(&mut self) -> Judged {
         self.motor.give_up(MotorFault::Frozen);
         Judged::MotorFails
     }
 
-    /// The output encoder is not used from now on.
+    /// Excludes the output encoder.
     pub fn give_up(&mut self, fault: OutputFault) {
         self.source = Source::MotorOnly(fault);
         self.faults.begin();
@@ -194,13 +195,13 @@ impl<T: Real> Health<T> {
         self.motor_only = MotorOnly::default();
     }
 
-    /// Load torque as it was before the last possible fault began [N m].
+    /// Stored load torque from before the last possible fault began [N m].
     pub fn load_torque_before(&self) -> T {
         let [_, before] = self.load_torques;
         before
     }
 
-    /// Once a learning interval, with both encoders in use: remembers the load torque [N m].
+    /// Stores the load torque [N m]; called once per learning interval while both encoders are in use.
     pub fn remember(&mut self, load_torque: T) {
         self.looked += 1;
         if self.looked >= LOOK {
@@ -209,8 +210,9 @@ impl<T: Real> Health<T> {
         }
     }
 
-    /// Once a learning interval without the output encoder: says when and how it is taken back, and by how much it has slipped,
-    /// as a deflection [m]: a place that no teeth allow is the encoder's, not the link's.
+    /// Decides on the readmission of the output encoder; called once per learning interval without it. Returns the kind
+    /// of return and the encoder's slip as a deflection [m]: a deflection that no teeth allow is attributed to the
+    /// encoder, not to the link.
     pub fn reconsider<const P: usize>(
         &mut self,
         tables: &ObserverTables<T>,
@@ -230,7 +232,7 @@ impl<T: Real> Health<T> {
             let touch = Touch { flank: Some(flank), force, mesh: reading.mesh };
             (flank, measured - learnt.learner.deflection(&touch.on(&free)))
         });
-        // A link that turns with the motor between the flanks is seen as it was, whether or not teeth are felt.
+        // Between the flanks no contact is needed: the encoder agrees while the deflection lies within the gap.
         let deflection = measured - learnt.learner.deflection(&free) - learnt.transmission_error(&reading.mesh);
         let between = output_faults::is_possible(learnt, deflection, force);
         let silent = self.faults.is_silent();

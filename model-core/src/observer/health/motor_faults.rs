@@ -1,16 +1,17 @@
-//! How a fault of the motor encoder is found, and when it is used again. In the order in which they are looked for:
+//! Faults of the motor encoder (O22), in the order of the checks, and its readmission:
 //!
-//! | # | found by | what it takes | why it is there | needed by |
+//! | # | found by | condition | purpose | needed by |
 //! |---|---|---|---|---|
-//! | 1 | counts that jumped ([`Advance::Jumped`]) | four readings further apart than any motor turns | counts that are anything, a slipped coupling | `wild motor_encoder::counts_of_the_motor_that_are_anything_are_told_at_once_and_leave_nothing_behind` |
-//! | 2 | [`Plausibility`]: counts that jump | a few readings further on than motor and link throw it | small jumps | `wild motor_encoder::counts_of_the_motor_that_jump_a_little_are_told_and_leave_nothing_behind` |
-//! | 3 | [`Plausibility`]: counts that stand still at once | fewer counts than torque and teeth explain | a frozen encoder in motion, in a few periods | `wild motor_encoder::a_motor_encoder_that_freezes_at_speed_is_found_in_a_few_periods` |
+//! | 1 | counts that jumped ([`Advance::Jumped`]) | four readings farther apart than any motor turns | random counts, a slipped coupling | `wild motor_encoder::counts_of_the_motor_that_are_anything_are_told_at_once_and_leave_nothing_behind` |
+//! | 2 | [`Plausibility`]: counts that jump | a few readings farther on than motor and link can throw the motor | small jumps | `wild motor_encoder::counts_of_the_motor_that_jump_a_little_are_told_and_leave_nothing_behind` |
+//! | 3 | [`Plausibility`]: counts that stand still at once | fewer counts than torque and teeth explain | a frozen encoder in motion, within a few periods | `wild motor_encoder::a_motor_encoder_that_freezes_at_speed_is_found_in_a_few_periods` |
 //! | 4 | the output outruns counts that stand still under a torque | more than wind-up, while a free motor would have moved | a frozen encoder in slow motion | `wild motor_encoder::a_motor_encoder_that_freezes_in_slow_motion_is_found_before_the_link_has_crossed_the_gap` |
-//! | 5 | the output outruns counts that stand still | more than gap and wind-up, while they have not moved for 1 ms | the same without a torque | `wild motor_encoder::a_motor_encoder_that_freezes_at_rest_is_found_by_how_far_the_link_goes` |
+//! | 5 | the output outruns counts that stand still | more than gap and wind-up, while the counts stand still for 1 ms | a frozen encoder in slow motion without torque | `wild motor_encoder::a_motor_encoder_that_freezes_at_rest_is_found_by_how_far_the_link_goes` |
 //!
-//! From then on nothing of the motor's readings is used and nothing is valid. They are used again once they make sense for
-//! 20 ms, move, and agree with the output's; for 100 ms where they stand still. Those that move and make sense but do not agree
-//! belong to an encoder that has slipped: after 100 ms they are taken as they are, and the offset is learnt anew.
+//! After an exclusion no reading of the motor is used and no estimate is valid. The encoder is readmitted once its
+//! readings have been plausible for 20 ms, move, and agree with the output encoder, or after 100 ms at rest. Readings
+//! that move plausibly for 100 ms without agreement mean that the encoder has slipped: the encoder is readmitted and
+//! the offset is estimated anew.
 
 use super::output_faults::{outruns, slack};
 use super::plausibility::{COUNT, FEWEST, Plausibility, Surroundings, Verdict, counts};
@@ -24,63 +25,64 @@ use crate::observer::sensors::counts::Advance;
 use crate::observer::sensors::latency::Freshness;
 use crate::observer::tables::{ObserverTables, StopTable, SupervisorTable};
 
-/// Counts by which a torque would have moved a free motor before one that stands still counts as held [-]: while one turns
-/// round under a torque it is within a quarter of the way for as long. Chosen.
+/// Counts by which the commanded torque would have moved a free motor before a stationary motor counts as blocked [-]:
+/// four times the travel that a free motor loses while it reverses under a torque. Tuned on `hil/motor-faults.toml`.
 const HELD: i32 = 16;
 
-/// Periods in which a torque acts before the speed that is judged by follows it.
+/// Periods until the estimated speed follows a torque.
 const LAG: i32 = 6;
 
-/// What watches the motor encoder.
+/// Fault checks of the motor encoder.
 #[derive(Debug, Clone, Copy)]
 pub struct MotorFaultDetector<T: Real> {
     plausibility: Plausibility,
-    /// Why it is not used.
+    /// Reason for the exclusion.
     fault: Option<MotorFault>,
-    /// Periods for which its counts have stood still.
+    /// Periods since the counts last changed.
     unmoved_for: u16,
-    /// Counts in a period, and counts, by which torque alone would have moved a free motor since then.
+    /// Speed [counts per period] and travel [counts] that the torque alone would have given a free motor since then.
     free_rate: T,
     free_way: T,
-    /// The deflection less wind-up when they moved last [m], and the mesh force [N].
+    /// Deflection less wind-up [m] and mesh force [N] when the counts last changed.
     stood_at: T,
     stood_under: T,
-    /// Periods for which its readings have made sense since it was given up, and whether they have moved.
+    /// Periods of plausible readings since the exclusion, and whether the counts have moved.
     sensible_for: u16,
     moved: bool,
 }
 
-/// What a reading of the motor came to.
+/// Result of screening a motor reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MotorScreened {
-    /// It is used.
+    /// The reading is used.
     Used,
-    /// It is not, unless the next ones bear it out: the motor is taken to go on as it went.
+    /// The reading is rejected unless the next readings confirm it; the motor is assumed to keep its speed.
     NotUsed,
-    /// The encoder is given up from now on.
+    /// The reading excludes the encoder.
     GivenUp,
-    /// It was given up before.
+    /// The encoder was excluded before.
     Doubted(Outlook),
 }
 
-/// What readings of an encoder that was given up have come to.
+/// State of the readings of an excluded encoder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outlook {
-    /// They make no sense yet.
+    /// The readings are not plausible yet.
     Bad,
-    /// They make sense: if they agree with the output's they are used.
+    /// The readings are plausible: the encoder is readmitted if it agrees with the output encoder.
     Fair,
-    /// They have made sense for so long that they are used in any case: if they do not agree, the encoder has slipped.
+    /// The readings have been plausible for so long that the encoder is readmitted in any case; without agreement it
+    /// has slipped.
     Settled,
 }
 
-/// What may change the motor's speed from one reading to the next.
+/// Influences that change the motor's speed between two readings.
 pub struct MotorSurroundings<'now, T: Real> {
     pub table: &'now SupervisorTable<T>,
     pub drive: &'now DriveSide<T>,
-    /// Torque that may brake the motor beside what it was told to give [N m].
+    /// Largest unknown braking torque beside the commanded torque [N m].
     pub drag: T,
-    /// Parts of an output count by which the link goes on in a period; `None` where that is not known.
+    /// Speed of the link [parts of an output count per period]; `None` if unknown.
     pub link_rate: Option<i32>,
 }
 
@@ -93,21 +95,21 @@ impl<T: Real> Surroundings<T> for MotorSurroundings<'_, T> {
         self.table.motor_brake * (self.drive.strongest() + self.drag)
     }
 
-    /// Teeth throw it back as fast as it was, or to twice the link's speed; its torque moves it on while the speed that it is
-    /// judged by follows.
+    /// Teeth throw the motor back at its own speed, or to twice the link's speed; the torque also changes the speed
+    /// before the estimate follows.
     fn throw(&self, rate: i32) -> i32 {
         let Some(link) = self.link() else { return i32::MAX };
         let fastest = rate.saturating_abs().max(link.saturating_abs());
         fastest.saturating_mul(2).saturating_add(whole(T::from_i32(COUNT) * self.unfollowed()))
     }
 
-    /// Teeth bring it no further from the link's speed than it was.
+    /// Teeth move the motor no farther from the link's speed than it was.
     fn carried(&self, rate: i32) -> i32 {
         let Some(link) = self.link() else { return 0 };
         link.saturating_abs().saturating_sub(rate.saturating_sub(link).saturating_abs()).max(0)
     }
 
-    /// What is said lags behind by a few periods in which the torque brakes; of less than a count in a period by too many.
+    /// The estimated speed lags behind by a few periods of braking. Speeds below a count per period are not certain.
     fn sure(&self, rate: i32) -> T {
         let braked = counts::<T>(rate) - self.unfollowed();
         if rate >= COUNT && braked > T::ZERO { braked } else { T::ZERO }
@@ -115,18 +117,18 @@ impl<T: Real> Surroundings<T> for MotorSurroundings<'_, T> {
 }
 
 impl<T: Real> MotorSurroundings<'_, T> {
-    /// Parts of a motor count by which a motor that turns with the link goes on in a period.
+    /// Speed of a motor that turns with the link [parts of a motor count per period].
     fn link(&self) -> Option<i32> {
         self.link_rate.map(|rate| whole(T::from_i32(rate) * self.table.motor_counts))
     }
 
-    /// Counts in a period by which its torques may have changed the speed that the one that is judged by does not show yet.
+    /// Change of speed that the torques may have caused and the estimate does not show yet [counts per period].
     fn unfollowed(&self) -> T {
         T::from_i32(2 * LAG) * self.brake()
     }
 }
 
-/// The next whole number towards zero, as far as it fits.
+/// Truncates towards zero and saturates.
 fn whole<T: Real>(size: T) -> i32 {
     size.to_i64().clamp(i32::MIN.into(), i32::MAX.into()) as i32
 }
@@ -146,12 +148,12 @@ impl<T: Real> MotorFaultDetector<T> {
         }
     }
 
-    /// Why the encoder is not used.
+    /// Reason for the exclusion of the encoder.
     pub fn fault(&self) -> Option<MotorFault> {
         self.fault
     }
 
-    /// The encoder is not used from now on.
+    /// Excludes the encoder.
     pub fn give_up(&mut self, fault: MotorFault) -> MotorScreened {
         self.fault = Some(fault);
         self.plausibility.lose();
@@ -160,22 +162,22 @@ impl<T: Real> MotorFaultDetector<T> {
         MotorScreened::GivenUp
     }
 
-    /// The encoder is used again.
+    /// Readmits the encoder.
     pub fn trust(&mut self) {
         *self = Self { plausibility: self.plausibility, ..Self::new() };
     }
 
-    /// Counts by which the motor goes on in a period.
+    /// Speed of the motor, 0 if unknown [counts per period].
     pub fn counts(&self) -> T {
         self.plausibility.speed().unwrap_or(T::ZERO)
     }
 
-    /// Whether the counts have stood still for longer than by chance.
+    /// Returns true once the counts have stood still for longer than chance explains.
     pub fn is_unmoved(&self, table: &SupervisorTable<T>) -> bool {
         self.unmoved_for >= table.motor_unmoved_after
     }
 
-    /// Judges the reading of one period by those before.
+    /// Judges the reading of one period by the readings before.
     #[inline(always)]
     pub fn screen(
         &mut self,
@@ -202,7 +204,8 @@ impl<T: Real> MotorFaultDetector<T> {
         }
     }
 
-    /// The counts stand still in one more period: so far would torque have moved the motor if nothing but friction held it.
+    /// Counts one more period at a standstill and integrates the travel that the torque would have given a motor held
+    /// by friction alone.
     fn stand(&mut self, table: &SupervisorTable<T>, drive: &DriveSide<T>) {
         if self.unmoved_for == 0 {
             (self.free_rate, self.free_way) = (T::ZERO, T::ZERO);
@@ -212,7 +215,7 @@ impl<T: Real> MotorFaultDetector<T> {
         let per_torque = T::TWO * table.motor_brake;
         let left = beyond(torque, table.motor_drag);
         if left == T::ZERO {
-            // What friction has left over stops it, and does not turn it round.
+            // Friction in excess of the torque stops the motor without reversing it.
             self.free_rate = beyond(self.free_rate, per_torque * (table.motor_drag - torque.abs()));
         } else {
             self.free_rate += per_torque * left;
@@ -220,7 +223,7 @@ impl<T: Real> MotorFaultDetector<T> {
         self.free_way += self.free_rate;
     }
 
-    /// The first reading, or one that is far from those before.
+    /// Handles the first reading, and a reading far from the last one.
     #[cold]
     fn screen_odd(&mut self, sensed: &Sensed<T>) -> MotorScreened {
         let jumped = matches!(sensed.motor, Advance::Jumped(_));
@@ -242,7 +245,7 @@ impl<T: Real> MotorFaultDetector<T> {
         }
     }
 
-    /// A reading that is not a period after the one before, that is too old, or of an encoder that was given up.
+    /// Handles a reading after an irregular interval, a reading that is too old, and a reading of an excluded encoder.
     #[cold]
     fn screen_irregular(
         &mut self,
@@ -260,7 +263,7 @@ impl<T: Real> MotorFaultDetector<T> {
                 self.plausibility.lose();
             }
         } else if sensed.motor_interval > 0 {
-            // Where readings were left out the motor may have gone any way.
+            // The motor may have moved any way during missing readings.
             self.plausibility.lose();
         }
         if self.fault.is_none() {
@@ -282,15 +285,15 @@ impl<T: Real> MotorFaultDetector<T> {
         })
     }
 
-    /// Readings that no motor could follow.
+    /// Excludes the encoder after readings that no motor can follow.
     #[cold]
     fn implausible(&mut self) -> MotorScreened {
         let frozen = self.plausibility.stands_still();
         self.give_up(if frozen { MotorFault::Frozen } else { MotorFault::Jumped })
     }
 
-    /// Whether the link has gone on by more than gap and shafts let it while the motor's counts stood still: teeth take the
-    /// motor with them. `unwound` is the deflection less wind-up [m], under a force [N].
+    /// Returns true if the link has moved by more than gap and wind-up allow while the motor's counts stood still:
+    /// teeth would have moved the motor. `unwound` is the deflection less wind-up [m], under a force [N].
     pub fn is_outrun<const P: usize>(
         &mut self,
         tables: &ObserverTables<T>,
@@ -304,8 +307,8 @@ impl<T: Real> MotorFaultDetector<T> {
         }
         let [half_gap, compliance] = learnt.shape();
         let went_on = (unwound - self.stood_at).abs();
-        // A motor that moves by no torque is held by teeth: the link may go on by what they wind up, and, while nobody knows how
-        // much that is, a little further.
+        // A motor that no torque moves is held by teeth: the link can move by the wind-up of those teeth, and by a
+        // little more while the half-gap is a guess.
         if self.unmoved_for > FEWEST && self.free_way.abs() > T::from_i32(HELD) {
             let wound_up = compliance * (force - self.stood_under).abs();
             let unknown = T::QUARTER * learnt.uncertainty.guessed_half_gap;
@@ -314,8 +317,8 @@ impl<T: Real> MotorFaultDetector<T> {
         went_on > half_gap && self.is_unmoved(&tables.supervisor) && outruns(tables, learnt, went_on, force)
     }
 
-    /// Whether readings that do not agree with the output's belong to an encoder that has slipped, rather than to one that
-    /// still stands still.
+    /// Returns true if the readings have moved. Without agreement a moving encoder has slipped; a stationary one may
+    /// still be frozen.
     pub fn has_moved(&self) -> bool {
         self.moved
     }

@@ -1,11 +1,11 @@
-//! The link without an output encoder: it is seen through the teeth while they touch and cannot be seen while they do not.
+//! Link without an output encoder (O26, O27): observed through touching teeth, unobservable in the open gap.
 //!
-//! In contact the deflection is the half-gap and the wind-up of the mesh force, which the motor side gives; the load side is
-//! corrected towards that. In the open gap it runs on under the load torque that it had, and the variance of the gap
-//! coordinate grows with the square of time for the speed and with the fourth power for the torque.
+//! In contact the deflection is the half-gap plus the wind-up of the mesh force, which the motor side gives; the load
+//! side is corrected towards this deflection. In the open gap the load side runs on under the last load torque: the
+//! variance of the gap coordinate grows with the square of time for the speed and with the fourth power for the torque.
 //!
-//! The smoothed force tells contact twice: what touches more likely than not is what is said, and only what no bias can be
-//! corrects the load side.
+//! The smoothed force has two contact thresholds: the reported contact needs a force that is likelier with contact than
+//! without; the correction of the load side needs a force that no bias explains.
 
 use crate::gears::{Flank, sign};
 use crate::numbers::Real;
@@ -16,51 +16,52 @@ use crate::observer::learnt::Learnt;
 use crate::observer::learnt::fusion::Fused;
 use crate::observer::tables::ObserverTables;
 
-/// Control periods by which contact may have gone before the smoothed force says so.
+/// Control periods by which contact may have ended before the smoothed force shows it.
 const GONE_BEFORE: i32 = 30;
 
-/// Standard deviations of the smoothed force that make contact for sure: only what no bias can be.
+/// Standard deviations of the smoothed force above which contact is certain: no bias explains the force.
 const MAKES_CONTACT: i32 = 4;
 
-/// Standard deviations of the smoothed force that keep it.
+/// Standard deviations of the smoothed force that keep certain contact.
 const KEEPS_CONTACT: i32 = 3;
 
-/// Standard deviations of the smoothed force from which on contact is likelier than an open gap. A force F is as likely under
-/// either where F^2 = 2 s^2 ln(F_max / (sqrt(2 pi) s)), with s its standard deviation without contact, and in contact any up to
-/// F_max: at two of them for a motor whose bias is known to 5 % of its largest torque, at 2.5 for 2 %. One keeps it.
+/// Standard deviations of the smoothed force above which contact is likelier than an open gap (O27). Both are equally
+/// likely at F^2 = 2 s^2 ln(F_max / (sqrt(2 pi) s)), with s the standard deviation without contact and, in contact, any
+/// force up to F_max: 2 deviations for a bias known to 5 % of the motor's largest torque, 2.5 for 2 %. One deviation
+/// keeps contact.
 const LIKELY_CONTACT: i32 = 2;
 
-/// Control periods for which the flank before is kept when the force shows it no more: its estimate lags behind.
+/// Control periods for which the last flank is kept without a force: the force estimate lags.
 const SHOWN_LATE: u16 = 10;
 
-/// What is known of the link without its encoder.
+/// Estimate of the link's motion without its encoder.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct MotorOnly<T: Real> {
-    /// Contact that is felt for sure now.
+    /// Flank of certain contact.
     pub felt: Option<Flank>,
-    /// Contact that the force makes likelier than an open gap.
+    /// Flank of likely contact (O27).
     likely: Option<Flank>,
-    /// Periods since contact was last felt for sure, as far as they count.
+    /// Periods since certain contact, saturated.
     open_for: u16,
-    /// Contact has been felt since the output encoder was given up, or the link's speed was known then.
+    /// True if contact was certain since the exclusion of the output encoder, or if the link's speed was known then.
     place_known: bool,
-    /// Mesh force, smoothed [N].
+    /// Smoothed mesh force [N].
     force: T,
-    /// Speed at which the teeth landed last, dying away as bounces do [m/s].
+    /// Sum of landing speeds, decaying as bounces do [m/s].
     bounce: T,
 }
 
 impl<T: Real> MotorOnly<T> {
-    /// Part of the bounce's decay in that of the smoothed force [-]: bounces last eight times as long.
+    /// Decay rate of the bounce over that of the smoothed force [-]: bounces last eight times as long.
     const BOUNCE_DECAY: T = T::EIGHTH;
 
-    /// The link's place and speed were known when its encoder was given up.
+    /// Keeps place and speed of the link, which were known when its encoder was excluded.
     pub fn keep_place(&mut self) {
         self.place_known = true;
     }
 
-    /// The flank that touches: by force where there is enough of it, otherwise a flank beyond which the motor has turned, however
-    /// light the contact.
+    /// Touching flank: by force if it suffices, otherwise by a motor position beyond a flank, however light the
+    /// contact.
     #[cold]
     pub fn contact<const P: usize>(
         &self,
@@ -78,7 +79,7 @@ impl<T: Real> MotorOnly<T> {
         Flank::towards(beyond(fused.of_teeth(), half_gap))
     }
 
-    /// Feels for contact in one period; how that corrects the load side.
+    /// Detects contact in one period and returns the correction of the load side.
     pub fn step<const P: usize>(
         &mut self,
         tables: &ObserverTables<T>,
@@ -97,7 +98,7 @@ impl<T: Real> MotorOnly<T> {
         let innovation = (fused.of_teeth() - side * half_gap - compliance * fused.force) * levers.per_output;
         if self.felt.is_none() {
             self.open_for = self.open_for.saturating_add(1);
-            // Beyond an edge there is contact, however light: the link goes with the motor.
+            // Beyond an edge the teeth touch, however lightly: the link turns with the motor.
             let past = beyond(fused.of_teeth(), half_gap);
             if past == T::ZERO {
                 return LoadCorrection::None;
@@ -109,19 +110,19 @@ impl<T: Real> MotorOnly<T> {
             self.bounce -= self.bounce * tables.contact.smoothing * Self::BOUNCE_DECAY;
             return LoadCorrection::InContact(innovation);
         }
-        // A landing says where the link is, and that it goes with the motor; of its torque it says nothing.
+        // A landing gives the link's position and speed, but not its torque.
         self.bounce += fused.rate.abs();
         self.place_known = true;
         LoadCorrection::TurnsWithMotor(innovation)
     }
 
-    /// Variance of the gap coordinate [m^2]; `None` where nothing is known of it.
+    /// Variance of the gap coordinate (O26) [m^2]; `None` if the link's place is unknown.
     pub fn gap_variance<const P: usize>(&self, tables: &ObserverTables<T>, learnt: &Learnt<T, P>) -> Option<T> {
         let edge = learnt.uncertainty.edge_deviation;
         self.place_known.then(|| edge * edge + tables.contact.deflection_variance + self.drift_variance(tables))
     }
 
-    /// What has been added since contact was last felt [m^2].
+    /// Variance added since certain contact [m^2].
     fn drift_variance(&self, tables: &ObserverTables<T>) -> T {
         let load = &tables.load;
         let open_for = if self.open_for > 0 { i32::from(self.open_for) + GONE_BEFORE } else { 0 };

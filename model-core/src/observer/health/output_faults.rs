@@ -1,14 +1,14 @@
-//! How a fault of the output encoder is found. In the order in which they are looked for; the first that is found gives the
-//! encoder up:
+//! Faults of the output encoder (O23, O24), in the order of the checks. The first check that fails excludes the
+//! encoder:
 //!
-//! | # | found by | what it takes | why it is there | needed by |
+//! | # | found by | condition | purpose | needed by |
 //! |---|---|---|---|---|
-//! | 1 | counts that jumped for good ([`Advance::Jumped`]) | readings further apart than any motor turns | a lost reference, a wrong absolute word | `observer faults::an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond` |
-//! | 2 | [`Plausibility`]: counts that jump | a few readings that say the same | a slipped coupling, an offset; before the deflection is spoilt | `observer faults::an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond` |
-//! | 3 | [`Plausibility`]: counts that stand still at once | fewer counts than any stop explains | a frozen encoder in motion, in a few periods | `observer faults::an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond` |
+//! | 1 | counts that jumped for good ([`Advance::Jumped`]) | readings farther apart than any motor turns | a lost reference, a wrong absolute word | `observer faults::an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond` |
+//! | 2 | [`Plausibility`]: counts that jump | a few readings that confirm the jump | a slipped coupling, an offset; acts before the deflection is corrupted | `observer faults::an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond` |
+//! | 3 | [`Plausibility`]: counts that stand still at once | fewer counts than any stop explains | a frozen encoder in motion, within a few periods | `observer faults::an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond` |
 //! | 4 | silence ([`OutputFault::Silent`]) | no fresh reading for 10 ms | a broken line | `observer faults::a_silent_output_encoder_is_said_and_waited_for` |
-//! | 5 | the motor outruns counts that stand still | more than gap and wind-up, for 4 ms | a frozen encoder that was slow, or at rest, when it froze | `observer faults::an_encoder_that_freezes_before_the_gap_is_known_is_found_by_how_far_the_motor_goes` |
-//! | 6 | a deflection that no teeth allow | outside for 4 ms, longer than impacts ring | everything else: slow slip, missing counts | `observer faults::an_output_encoder_that_loses_counts_never_makes_a_width_less_than_none` |
+//! | 5 | the motor outruns counts that stand still | more than gap and wind-up, for 4 ms | an encoder that froze in slow motion or at rest | `observer faults::an_encoder_that_freezes_before_the_gap_is_known_is_found_by_how_far_the_motor_goes` |
+//! | 6 | a deflection that no teeth allow | out of range for 4 ms, longer than impacts ring | all other faults: slow slip, missing counts | `observer faults::an_output_encoder_that_loses_counts_never_makes_a_width_less_than_none` |
 //! | 7 | teeth that seem to have grown, or shafts to have turned against each other ([`learnt::Outcome::EncoderFails`]) | a half-gap trusted on both flanks | missing counts that stay within the gap | `observer faults::an_output_encoder_that_makes_the_gap_narrower_is_given_up_for_teeth_do_not_grow` |
 //!
 //! [`learnt::Outcome::EncoderFails`]: crate::observer::learnt::Outcome::EncoderFails
@@ -22,27 +22,27 @@ use crate::observer::sensors::Sensed;
 use crate::observer::sensors::counts::Advance;
 use crate::observer::tables::{ObserverTables, StopTable, SupervisorTable};
 
-/// Control periods between two readings over which a link is taken to keep its speed.
+/// Longest interval between two readings over which the link's speed is kept [control periods].
 const SPEED_KEPT: u32 = 6;
 
-/// What watches the output encoder while it is used.
+/// Fault checks of the output encoder.
 #[derive(Debug, Clone, Copy)]
 pub struct OutputFaultDetector<T: Real> {
     plausibility: Plausibility,
     silent_for: u16,
     unmoved_for: u16,
     outside_for: u16,
-    /// The deflection of the teeth at the last period [m], and whether it jumped to where it is, close to the end of its range or
-    /// beyond.
+    /// Deflection of the teeth in the last period [m]. `jumped`: the deflection jumped to its present place, beyond its
+    /// range or within the margin of its end.
     deflection: T,
     jumped: bool,
-    /// The deflection less wind-up when the counts moved last [m].
+    /// Deflection less wind-up when the counts last changed [m].
     stood_at: T,
-    /// The deflection was not known in the last period.
+    /// True if the deflection was unknown in the last period.
     found: bool,
 }
 
-/// Nothing throws a link: what it runs into stops it.
+/// An obstacle stops a link; nothing throws a link.
 impl<T: Real> Surroundings<T> for SupervisorTable<T> {
     fn stops(&self) -> &StopTable<T> {
         &self.output
@@ -65,36 +65,36 @@ impl<T: Real> Surroundings<T> for SupervisorTable<T> {
     }
 }
 
-/// What a reading came to.
+/// Result of screening a reading.
 #[derive(Debug, Clone, Copy)]
 pub enum Screened<T: Real> {
-    /// It is the first ever.
+    /// First reading of the run; accepted.
     First,
-    /// It is used.
+    /// The reading is used.
     Used,
-    /// There is none, or it is not used.
+    /// The reading is missing or rejected.
     NotUsed,
-    /// It gives the encoder up; where the link was going before, if that is known.
+    /// The reading excludes the encoder. The last motion of the link is given if known.
     GivenUp(OutputFault, Option<LastMotion<T>>),
 }
 
-/// Where the link was going when its readings broke off.
+/// Motion of the link when its readings broke off.
 #[derive(Debug, Clone, Copy)]
 pub struct LastMotion<T: Real> {
-    /// Counts by which it is ahead of them.
+    /// Lead of the link over its last reading [counts].
     pub ahead: T,
-    /// Counts in a period.
+    /// Speed [counts per period].
     pub speed: T,
 }
 
-/// Where a deflection lies.
+/// Range of a deflection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Range {
-    /// Between the flanks, or as far beyond as forces wind up.
+    /// Between the flanks, or beyond a flank by at most the wind-up.
     Possible,
-    /// Beyond that, by no more than teeth can have worn.
+    /// Farther beyond a flank, by no more than wear.
     Worn,
-    /// Where no teeth could let it be.
+    /// Beyond wear: no teeth allow the deflection.
     Impossible,
 }
 
@@ -112,34 +112,34 @@ impl<T: Real> OutputFaultDetector<T> {
         }
     }
 
-    /// The encoder was given up now.
+    /// Starts the time out of range anew after an exclusion.
     pub fn begin(&mut self) {
         self.outside_for = 0;
     }
 
-    /// Nothing was known of the deflection until now: what stood still did so somewhere else.
+    /// Starts anew after an unknown deflection: counts that stood still did so at another deflection.
     pub fn find_deflection(&mut self) {
         self.outside_for = 0;
         self.found = true;
     }
 
-    /// Whether the deflection has been beyond its range for 4 ms, longer than impacts ring.
+    /// Returns true once the deflection has been out of range for 4 ms, longer than impacts ring.
     pub fn is_at_odds(&self, table: &SupervisorTable<T>) -> bool {
         self.outside_for >= table.failed_after
     }
 
-    /// Parts of an output count by which the link goes on in a period.
+    /// Speed of the link [parts of an output count per period].
     pub fn rate(&self) -> i32 {
         self.plausibility.rate()
     }
 
-    /// Whether there was no reading in the last period.
+    /// Returns true if the last period had no reading.
     pub fn is_silent(&self) -> bool {
         self.silent_for > 0
     }
 
-    /// Judges the reading of one period by those before.
-    // A call and what it hands back cost more than what it does in most periods.
+    /// Judges the reading of one period by the readings before.
+    // Inlined: a call and its result cost more than the work of most periods.
     #[inline(always)]
     pub fn screen(&mut self, tables: &ObserverTables<T>, sensed: &Sensed<T>, both_encoders: bool) -> Screened<T> {
         let by = match sensed.output {
@@ -166,7 +166,7 @@ impl<T: Real> OutputFaultDetector<T> {
         }
     }
 
-    /// The first reading, or one that is far from those before.
+    /// Handles the first reading, and a reading far from the last one.
     #[cold]
     fn screen_odd(&mut self, advance: Advance, both_encoders: bool) -> Screened<T> {
         self.silent_for = 0;
@@ -181,7 +181,7 @@ impl<T: Real> OutputFaultDetector<T> {
         }
     }
 
-    /// Readings that no link could follow.
+    /// Excludes the encoder after readings that no link can follow.
     #[cold]
     fn implausible(&mut self, both_encoders: bool) -> Screened<T> {
         let last = self.plausibility.speed().map(|speed| LastMotion { ahead: self.plausibility.ahead(), speed });
@@ -194,9 +194,9 @@ impl<T: Real> OutputFaultDetector<T> {
         }
     }
 
-    /// Whether the deflection is one that teeth allow. Teeth that have worn let it go on beyond where it could be, step by
-    /// step; an encoder that slips jumps there. A link that sticks beyond a half-gap that is too small looks like a frozen
-    /// encoder, until the deflection goes further than teeth can be worn. `unwound` is the deflection less wind-up [m].
+    /// Judges the deflection. Worn teeth extend its range step by step; a slipping encoder makes the deflection jump. A
+    /// link that sticks beyond a half-gap estimated too small looks like a frozen encoder until the deflection exceeds
+    /// possible wear. `unwound` is the deflection less wind-up [m].
     pub fn judge<const P: usize>(
         &mut self,
         tables: &ObserverTables<T>,
@@ -223,7 +223,7 @@ impl<T: Real> OutputFaultDetector<T> {
         } else {
             far_range(learnt, deflection, fused.force)
         };
-        // What jumps to just within its range may go on beyond it.
+        // A deflection that jumps to the end of its range may continue beyond it.
         let near = deflection.abs() + table.margin > learnt.uncertainty.reach;
         self.jumped = near && (self.jumped || by.abs() > table.margin);
         let beyond = if range == Range::Possible {
@@ -235,7 +235,7 @@ impl<T: Real> OutputFaultDetector<T> {
         if self.silent_for > table.silent_after { Some(OutputFault::Silent) } else { beyond }
     }
 
-    /// One more period in which the deflection is beyond its range.
+    /// Counts one more period with the deflection out of range.
     #[cold]
     fn beyond(&mut self, table: &SupervisorTable<T>, range: Range) -> Option<OutputFault> {
         self.outside_for = self.outside_for.saturating_add(1);
@@ -249,8 +249,8 @@ impl<T: Real> OutputFaultDetector<T> {
     }
 }
 
-/// Whether one shaft has gone on by more than gap and shafts let it while the other's counts stood still: one that sticks does
-/// not let it, wherever the teeth are, which may not be known yet.
+/// Returns true if one shaft has moved by more than gap and wind-up allow while the other's counts stood still (O24).
+/// The test needs no knowledge of the flank.
 #[cold]
 pub fn outruns<T: Real, const P: usize>(
     tables: &ObserverTables<T>,
@@ -266,23 +266,24 @@ pub fn outruns<T: Real, const P: usize>(
     went_on > T::TWO * widest + slack(tables, learnt, force)
 }
 
-/// By what a deflection may differ from itself beside gap and wind-up [m].
+/// Tolerance of a change of the deflection beside gap and wind-up [m].
 pub fn slack<T: Real, const P: usize>(tables: &ObserverTables<T>, learnt: &Learnt<T, P>, force: T) -> T {
     let count = tables.counts.output.angle * tables.levers.output;
     count + T::TWO * (tables.supervisor.margin + learnt.uncertainty.softness * force.abs())
 }
 
-/// Whether a deflection of the teeth [m] is between the flanks, or as far beyond as a force [N] winds up.
+/// Returns true if a deflection of the teeth [m] lies between the flanks or beyond a flank by at most the wind-up of a
+/// force [N].
 pub fn is_possible<T: Real, const P: usize>(learnt: &Learnt<T, P>, deflection: T, force: T) -> bool {
     far_range(learnt, deflection, force) == Range::Possible
 }
 
-/// Whether a deflection of the teeth [m] is one that they allow, or nearly: what wears or winds up may be beyond.
+/// Returns true if a deflection of the teeth [m] lies in its range, or beyond it by no more than wear or wind-up.
 pub fn is_near<T: Real, const P: usize>(learnt: &Learnt<T, P>, deflection: T) -> bool {
     far_range(learnt, deflection, T::ZERO) != Range::Impossible
 }
 
-/// What a deflection beyond the flanks is.
+/// Range of a deflection beyond the flanks.
 #[cold]
 fn far_range<T: Real, const P: usize>(learnt: &Learnt<T, P>, deflection: T, force: T) -> Range {
     let [half_gap, compliance] = learnt.shape();

@@ -1,78 +1,77 @@
-//! Whether a shaft could follow its encoder's readings from one to the next: counts that stand still at once, or jump, are no
-//! shaft's.
+//! Plausibility of successive readings (O21, O22): no shaft can follow counts that stand still at once or jump.
 //!
-//! A link is stopped by its teeth, its load, and by what it runs into: the first two brake it by no more than a torque,
-//! the last takes a time that does not depend on the speed, as a spring does. So a link that has gone on by so many counts
-//! a period goes on by at least so many in the next few periods. So it is with a motor, which its own torque brakes and its
-//! teeth stop as a spring does; but they throw it back as well, so that it may jump by as much as it was fast, or the link. A
-//! motor that turns with the link is not stopped by teeth at all: those of one flank pull away, those of the other push it on.
+//! A link is braked by load and teeth with at most their torque, and by an obstacle over a time that does not depend on
+//! the speed (a spring). From the speed follows the least travel of the next few periods. A motor is braked by its own
+//! torque and by teeth, which act as a spring and also throw the motor back: its speed may jump by its own speed or by
+//! twice the link's. A motor that turns with the link is not stopped by teeth: one flank pulls away, the other drives
+//! the motor on.
 
 use crate::numbers::Real;
 use crate::observer::tables::StopTable;
 
-/// Parts of a count, as a power of two.
+/// Base-2 logarithm of the parts of a count.
 const PART: u32 = 6;
 pub const COUNT: i32 = 1 << PART;
 
-/// Standing still is no fault until so many readings say the same, and one more for each count of noise: two may be a
-/// reading given twice.
+/// Fewest equal readings before standing still is a fault, plus one per count of noise: two may be one reading given
+/// twice.
 pub const FEWEST: u16 = 3;
 
-/// Readings that must say what one that jumped said: a wrong bit in one or two of them goes by.
+/// Readings that must confirm a jump: wrong bits in one or two readings are ignored.
 const CONFIRMED: u8 = 3;
 
-/// Counts that must be missing, noise aside, before an encoder counts as frozen: rounding, and one more.
+/// Missing counts beyond noise that make an encoder frozen: rounding, and one more count.
 const MISSING: i32 = 2 * COUNT;
 
-/// Counts by which a reading must jump, noise aside, before it is suspect.
+/// Jump of a reading beyond noise that makes the reading suspect.
 const JUMP: i32 = 8 * COUNT;
 
-/// Mean deviations of the readings by which those grow: five standard deviations of normal noise.
+/// Mean deviations of the readings added to both limits above: five standard deviations of normal noise.
 const NOISY: i32 = 4;
 
-/// Readings over which the noise is taken, as a power of two.
+/// Base-2 logarithm of the readings over which the noise is averaged.
 const AVERAGED: u32 = 5;
 
-/// Stands for readings since one that jumped while the speed is not known.
+/// Value of `jumped_for` while the speed is unknown.
 const UNKNOWN: u8 = u8::MAX;
 
-/// Whether a link could have gone as a reading says.
+/// Plausibility of a reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// It could.
+    /// The shaft can reach the reading.
     Plausible,
-    /// It could not, unless the next readings go back: this one is not used.
+    /// The shaft cannot reach the reading unless the next readings return; this reading is not used.
     Suspect,
-    /// It could not.
+    /// The shaft cannot reach the reading.
     Implausible,
 }
 
-/// What may change a shaft's speed from one reading to the next.
+/// Influences that change a shaft's speed between two readings.
 pub trait Surroundings<T: Real> {
-    /// How soon the shaft stops.
+    /// Table of the stopping times of the shaft.
     fn stops(&self) -> &StopTable<T>;
-    /// Half of the counts by which torques may slow it down in a period, for each period.
+    /// Half of the deceleration by torques [counts per period^2].
     fn brake(&self) -> T;
-    /// Parts of a count in a period by which it may be thrown at once, while it goes on by so many.
+    /// Largest sudden change of speed at the speed `rate` [parts of a count per period].
     fn throw(&self, rate: i32) -> i32;
-    /// Parts of a count in a period by which it is carried on whatever it runs into, while it goes on by so many.
+    /// Speed that the shaft keeps whatever it meets, at a speed of `rate` [parts of a count per period].
     fn carried(&self, rate: i32) -> i32;
-    /// Counts in a period that are known for sure where so many parts of them are said.
+    /// Lower bound of the true speed [counts per period] at the estimate `rate` [parts of a count per period].
     fn sure(&self, rate: i32) -> T;
 }
 
-/// Speed of a shaft's counts, and how readings follow it.
+/// Estimated speed of a shaft's counts, and the deviation of readings from it.
 #[derive(Debug, Clone, Copy)]
 pub struct Plausibility {
-    /// Parts of a count in a period.
+    /// Speed [parts of a count per period].
     rate: i32,
-    /// Mean deviation from that, times the readings that it is taken over.
+    /// Mean deviation of readings from the speed, times the number of averaged readings.
     noise: u16,
-    /// Parts of a count by which readings are away since one jumped, as far as they fit.
+    /// Distance of the readings from the predicted position since a jump, saturated [parts of a count].
     away: i16,
-    /// Readings since then; 0 if none has jumped.
+    /// Readings since the jump; 0 without a jump.
     jumped_for: u8,
-    /// Readings in a row that said the same.
+    /// Equal readings in a row.
     still: u8,
 }
 
@@ -81,7 +80,8 @@ impl Plausibility {
         Self { rate: 0, noise: 0, away: 0, jumped_for: UNKNOWN, still: 0 }
     }
 
-    /// A reading that is not a period after the one before says nothing of the speed but that the link turns.
+    /// Handles a reading after an irregular interval: motion ends a standstill; a long interval (`far`) resets the
+    /// speed.
     #[cold]
     pub fn miss(&mut self, by: i32, far: bool) {
         if far {
@@ -91,22 +91,22 @@ impl Plausibility {
         }
     }
 
-    /// Forgets the speed.
+    /// Resets the speed and keeps the noise.
     pub fn lose(&mut self) {
         *self = Self { noise: self.noise, ..Self::new() };
     }
 
-    /// Parts of a count by which the shaft goes on in a period.
+    /// Speed of the shaft [parts of a count per period].
     pub fn rate(&self) -> i32 {
         self.rate
     }
 
-    /// Counts in a period before the readings broke off, if they were known.
+    /// Speed before the readings broke off, if known [counts per period].
     pub fn speed<T: Real>(&self) -> Option<T> {
         (self.jumped_for != UNKNOWN).then(|| counts(self.rate))
     }
 
-    /// Counts by which the link is ahead of readings that broke off.
+    /// Lead of the link over readings that broke off [counts].
     pub fn ahead<T: Real>(&self) -> T {
         if self.jumped_for == 0 {
             counts::<T>(self.rate) * T::from_i32(self.still.into())
@@ -115,12 +115,12 @@ impl Plausibility {
         }
     }
 
-    /// Whether readings stand still, rather than being away.
+    /// Returns true if the readings stand still, false if they jumped.
     pub fn stands_still(&self) -> bool {
         self.jumped_for == 0
     }
 
-    /// Takes in by how many counts the shaft went on in a period.
+    /// Judges the counts `by` which the shaft moved in a period.
     #[inline]
     pub fn take<T: Real>(&mut self, surroundings: &impl Surroundings<T>, by: i32) -> Verdict {
         let by = by.wrapping_shl(PART);
@@ -133,18 +133,18 @@ impl Plausibility {
         if by == 0 {
             return self.stand_still(surroundings, noise);
         }
-        // What a reading goes on by after others that stood still is spread over all of them.
+        // The travel after a standstill is spread over all readings of the standstill.
         let beyond = if self.still == 0 { beyond } else { self.spread(by) };
         self.rate += beyond >> 2;
         self.noise = (i32::from(self.noise) + beyond.wrapping_abs() - noise).min(u16::MAX.into()) as u16;
         Verdict::Plausible
     }
 
-    /// The first reading, one that jumps, or those after it.
+    /// Handles the first reading, a reading that jumps, and the readings after it.
     #[cold]
     fn take_odd(&mut self, by: i32, beyond: i32) -> Verdict {
         if self.jumped_for == UNKNOWN {
-            // One reading is rounded by up to a count: no faster than it must be.
+            // A single reading is rounded by up to a count: the slowest speed that explains it is used.
             let rate = by - by.clamp(-COUNT, COUNT);
             *self = Self { rate, noise: self.noise, jumped_for: 0, ..Self::new() };
             return Verdict::Plausible;
@@ -162,20 +162,20 @@ impl Plausibility {
         }
     }
 
-    /// By what a reading goes on beyond the speed, less so for the readings before it that stood still.
+    /// Returns the mean travel since the last change of counts less the speed, and ends the standstill.
     #[cold]
     fn spread(&mut self, by: i32) -> i32 {
         let readings = i32::from(core::mem::take(&mut self.still)) + 1;
         by.checked_div(readings).unwrap_or(by) - self.rate
     }
 
-    /// Whether a reading jumps by more than what may throw the shaft.
+    /// Returns true if a reading jumps by more than the shaft can be thrown.
     #[cold]
     fn leaps<T: Real>(&self, surroundings: &impl Surroundings<T>, beyond: i32, jump: i32) -> bool {
         beyond.wrapping_abs() > jump.saturating_add(surroundings.throw(self.rate))
     }
 
-    /// One more reading that says the same.
+    /// Judges one more reading with unchanged counts.
     #[cold]
     fn stand_still<T: Real>(&mut self, surroundings: &impl Surroundings<T>, noise: i32) -> Verdict {
         let table = surroundings.stops();
@@ -183,7 +183,7 @@ impl Plausibility {
         if self.still > table.forgotten {
             self.rate = 0;
         }
-        // Noise may say the same by chance, again and again.
+        // Noise can leave the counts unchanged by chance.
         if self.rate == 0 || i32::from(self.still) < i32::from(FEWEST) + (noise >> PART) {
             return Verdict::Plausible;
         }
@@ -196,7 +196,7 @@ impl Plausibility {
     }
 }
 
-/// Parts of a count as counts.
+/// Converts parts of a count to counts.
 pub fn counts<T: Real>(parts: i32) -> T {
     T::from_i32(parts).over(T::from_i32(COUNT))
 }

@@ -1,31 +1,31 @@
-//! When an output encoder that was given up is taken back: when it turns with the motor again.
+//! Readmission of an excluded output encoder, once it turns with the motor again.
 
 use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::observer::tables::SupervisorTable;
 
-/// An encoder that turns with the motor must do so this many times longer if it says anything else than what was learnt.
+/// Factor on the time of agreement for an encoder that turns with the motor at another constant offset [-].
 const OTHERWISE: u16 = 3;
 
-/// How the encoder comes back.
+/// Kind of return of an encoder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Return {
-    /// It says what was learnt.
+    /// The encoder agrees with the estimated parameters.
     AsLearnt,
-    /// It turns with the motor, but something else was learnt.
+    /// The encoder turns with the motor at another offset than the estimated one.
     Otherwise,
 }
 
-/// What speaks for an encoder that is not used.
+/// Evidence for an excluded encoder.
 #[derive(Debug, Clone, Copy)]
 pub struct Recovery<T: Real> {
-    /// Learning intervals in motion in which it said what was learnt.
+    /// Learning intervals in motion with agreement.
     agreed_for: u16,
-    /// Learning intervals in motion in which it said the same as before.
+    /// Learning intervals in motion at a constant offset.
     steady_for: u16,
-    /// And what: the deflection beyond what was learnt, on the back flank and on the drive flank [m].
+    /// Constant offset: deflection less the predicted deflection, on the back flank and on the drive flank [m].
     steady: [T; 2],
-    /// Where the output was when it moved last [2^-32 turns].
+    /// Position of the output when it last moved [2^-32 turns].
     place: u32,
 }
 
@@ -34,14 +34,14 @@ impl<T: Real> Recovery<T> {
         Self { agreed_for: 0, steady_for: 0, steady: [T::ZERO; 2], place: 0 }
     }
 
-    /// The encoder was given up now.
+    /// Starts anew after an exclusion.
     pub fn begin(&mut self) {
         *self = Self { place: self.place, ..Self::new() };
     }
 
-    /// Once a learning interval: in settled contact the flank, and by how much the deflection that the encoder would give
-    /// is beyond what was learnt there [m]; `room` is what may be between deflections that agree [m]. Elsewhere, whether
-    /// that deflection is between the flanks. Besides, where the output is [2^-32 turns], if it is heard of at all.
+    /// Judges one learning interval. `settled`: in settled contact the flank and the encoder's deflection less the
+    /// predicted deflection [m]. `room`: tolerance of agreement [m]. `between`: outside settled contact, true if the
+    /// deflection lies between the flanks. `place`: position of the output, if it is read [2^-32 turns].
     pub fn step(
         &mut self,
         table: &SupervisorTable<T>,
@@ -64,7 +64,7 @@ impl<T: Real> Recovery<T> {
         if !agrees {
             self.agreed_for = 0;
         }
-        // An encoder that stands still and flickers does not turn.
+        // A stationary encoder that flickers does not turn.
         if let Some(place) = place
             && (place.wrapping_sub(self.place) as i32).unsigned_abs() >= table.moved
         {

@@ -1,71 +1,72 @@
-//! Whether the motor goes where the torque drives it. With a motor encoder or a torque of the wrong sign every loop runs away,
-//! and no other check of the encoders sees it: counts and motion fit each other.
+//! Sign check of torque and motor encoder (O25). With a wrong sign every loop runs away, and no other check of the
+//! encoders detects it: counts and motion are consistent.
 //!
-//! Symbols: U mean torque of a block, p angle that the motor turns in it, T its length, J inertia of motor and link at the motor.
-//! Over two neighbouring blocks, with the torque weighted as the second difference of the angle weights the acceleration,
+//! Symbols: U mean torque of a block, p angle turned by the motor in a block, T length of a block, J inertia of motor
+//! and link at the motor. Over two neighbouring blocks, torque and acceleration are weighted alike:
 //!
 //! ```text
 //! X_k = (U_k + U_(k-1)) / 2        A_k = J (p_k - p_(k-1)) / T^2      (1)
 //! x   = X_k - X_(k-2)              y   = A_k - A_(k-2)                (2)
 //! ```
 //!
-//! Of a joint that is rightly wired y = x, more of it while the motor swings or turns alone, less with a heavier link; of one that is
-//! not y = -x. A load is in A, and hardly in y: it does not change with the torque. Each pair whose x is large votes.
+//! A correctly wired joint has y = x: y is larger while the motor swings or turns alone, smaller with a heavier link. A
+//! joint with a wrong sign has y = -x. A constant load is in A but cancels in y. Every pair with a large x votes.
 //!
-//! A loop that runs away soon gives all its torque, and then nothing changes any more. So while the motor is faster with each block
-//! against a large torque, the compensation is asked to give none in half of the blocks. A load that is stronger than the motor
-//! looks the same until then; and what then votes right is that load.
+//! A loop that runs away soon saturates, and x becomes zero. While the motor accelerates against a large torque, the
+//! compensation is therefore asked for no torque in half of the blocks. A load stronger than the motor looks like a
+//! wrong sign until this test; the test then votes for the right sign.
 
 use crate::numbers::Real;
 use crate::observer::estimates::TorqueResponse;
 use crate::observer::tables::ResponseTable;
 
-/// Votes for the right sign, less those for the wrong one, after which it is not asked again.
+/// Net votes for the right sign after which the check ends.
 const RIGHT: i8 = 6;
 
-/// Votes for the wrong sign, less those for the right one, from which on a motor that runs against its torque has the wrong one.
+/// Net votes for the wrong sign from which a motor that runs against its torque is declared reversed.
 const WRONG: i8 = 4;
 
-/// Blocks with the motor faster and faster against the torque, less others, from which on it is said to run against it.
+/// Net blocks with the motor accelerating against the torque from which the motor runs against its torque.
 const AGAINST: u8 = 2;
 
-/// Blocks after which torques are compared.
+/// Blocks between two compared torques.
 const APART: usize = 2;
 
-/// Blocks of a test without torque, the first lowest, and their number: in turns of different lengths, so that nothing swings with them.
+/// Blocks of a test without torque as bits, lowest first, and their number. Pulses of unequal length excite no
+/// oscillation.
 const PATTERN: u32 = 0b00_0011_0001_1110_0111;
 const PATTERN_BLOCKS: u8 = 18;
 
-/// Blocks in a row without a gap in the readings, and without a throw, that a comparison takes.
+/// Consecutive blocks without missing readings and without a tooth impact that a comparison needs.
 const WHOLE: u8 = 4;
 
-/// Votes and what they come from.
+/// Votes and their evidence.
 #[derive(Debug, Clone, Copy)]
 pub struct ResponseCheck<T: Real> {
     response: TorqueResponse,
-    /// Votes for the right sign less those for the wrong one.
+    /// Votes for the right sign less votes for the wrong sign.
     votes: i8,
-    /// Blocks in which the motor ran against the torque, and was faster with each, less those in which it did not.
+    /// Blocks in which the motor accelerated against the torque, less all other blocks with a large torque.
     against: u8,
-    /// Blocks since it was said to.
+    /// Place in the test pattern, from 1; 0 without a test.
     tested: u8,
     /// Periods in this block.
     periods: u16,
-    /// Sum of the torque in it [N m].
+    /// Sum of the torque in this block [N m].
     torque: T,
-    /// Angle turned in it [rad].
+    /// Angle turned in this block [rad].
     turned: T,
-    /// Sum of the torque and angle of the block before.
+    /// Sum of the torque and angle turned of the last block.
     before: [T; 2],
     /// X and A of the last two blocks, the latest first [N m].
     pairs: [[T; 2]; APART],
-    /// Blocks in a row in which teeth have thrown nothing, as far as that matters.
+    /// Consecutive blocks without a tooth impact, saturated.
     whole: u8,
 }
 
 impl<T: Real> ResponseCheck<T> {
-    /// Part of a change of torque that the change of acceleration is at least, to vote [-]: that of a link six times as heavy as the
-    /// joint file says.
+    /// Least change of acceleration that votes, over the change of torque [-]: a link six times as heavy as the joint
+    /// file states.
     const LEAST: T = T::SIXTH;
 
     pub fn new() -> Self {
@@ -83,24 +84,24 @@ impl<T: Real> ResponseCheck<T> {
         }
     }
 
-    /// What is known so far.
+    /// Result so far.
     pub fn response(&self) -> TorqueResponse {
         self.response
     }
 
-    /// Begins a block anew, after a reading or a torque that cannot be used. What was voted stays.
+    /// Starts a new block after an unusable reading or torque. The votes are kept.
     #[cold]
     pub fn interrupt(&mut self) {
         let response = if self.is_decided() { self.response } else { TorqueResponse::Unknown };
         *self = Self { response, votes: self.votes, ..Self::new() };
     }
 
-    /// Whether nothing is asked any more.
+    /// Returns true once the check has ended.
     fn is_decided(&self) -> bool {
         matches!(self.response, TorqueResponse::Right | TorqueResponse::Reversed)
     }
 
-    /// Takes the torque [N m] and the angle that the motor has turned [rad] in a control period.
+    /// Adds the torque [N m] and the angle turned by the motor [rad] of a control period.
     #[inline(always)]
     pub fn step(&mut self, table: &ResponseTable<T>, torque: T, turned: T) {
         if self.is_decided() {
@@ -125,7 +126,7 @@ impl<T: Real> ResponseCheck<T> {
         let acceleration = table.inertia * (now[1] - turned_before);
         let [last, [mean_then, acceleration_then]] = self.pairs;
         self.pairs = [[mean, acceleration], last];
-        // What teeth throw is faster than what a torque can do to the motor alone.
+        // A tooth impact accelerates the motor more than the torque can.
         let most = table.alone * if mean.abs() > table.large { mean.abs() } else { table.large };
         self.whole = if acceleration.abs() > most { 0 } else { self.whole.saturating_add(1).min(WHOLE) };
         if self.whole < WHOLE {
@@ -133,7 +134,7 @@ impl<T: Real> ResponseCheck<T> {
             return;
         }
         if now[1] * turned_before < T::ZERO {
-            // A motor that turns round does not run away.
+            // A motor that reverses does not run away.
             (self.against, self.tested) = (0, 0);
         } else if mean.abs() > table.large {
             let is_against = now[1] * mean < T::ZERO && acceleration * mean < -Self::LEAST * mean * mean;
@@ -150,11 +151,12 @@ impl<T: Real> ResponseCheck<T> {
         };
     }
 
-    /// Whether the next block is one without torque: some of them are from when the motor is said to run against its torque until it no
-    /// longer does at all.
+    /// Returns true if the next block carries no torque. A test starts once the motor runs against its torque and lasts
+    /// until it no longer does.
     fn tests(&mut self) -> bool {
         let goes_on = self.against >= AGAINST || self.tested > 0 && self.against > 0;
-        // A load that sets in makes the motor go against a torque that grows: only what a test shows counts for the wrong sign.
+        // A load that sets in drives the motor against a growing torque: only votes during a test count for the wrong
+        // sign.
         if self.tested == 0 {
             self.votes = self.votes.max(0);
         }
@@ -162,7 +164,7 @@ impl<T: Real> ResponseCheck<T> {
         goes_on && PATTERN >> (self.tested - 1) & 1 == 1
     }
 
-    /// Takes a change of torque and the change of acceleration that it came with, as torque [N m].
+    /// Votes on a change of torque and the resulting change of acceleration, as a torque [N m].
     fn vote(&mut self, table: &ResponseTable<T>, torque: T, acceleration: T) {
         if torque.abs() <= table.large {
             return;

@@ -1,4 +1,4 @@
-//! Learning intervals of settled contact averaged into one deflection to learn from.
+//! Averages of learning intervals in settled contact (O15), each a measurement of the deflection.
 
 use super::interval::Rest;
 use super::regressors::{Regressors, Touch};
@@ -6,27 +6,27 @@ use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::observer::tables::LearnerTable;
 
-/// What an interval adds.
+/// Contribution of an interval.
 #[derive(Debug, Clone, Copy)]
 pub struct Settled<'mean, T: Real, const P: usize> {
-    /// What the deflection depends on, teeth left out.
+    /// Regressors of an open gap.
     pub free: &'mean Regressors<T, P>,
     /// Sine and cosine of the mesh phase.
     pub mesh: &'mean [T; 2],
-    /// Deflection as measured [m].
+    /// Measured deflection [m].
     pub measured: T,
     /// Mesh force [N].
     pub force: T,
 }
 
-/// Intervals of settled contact in a row, averaged into one deflection to learn from: noise of the mesh force that is left
-/// in a regressor would make the compliance look smaller than it is.
+/// Consecutive intervals of settled contact, averaged into one measurement of the deflection. Noise of the mesh force
+/// in the regressor would bias the compliance low.
 #[derive(Debug, Clone, Copy)]
 pub struct Block<T: Real, const P: usize> {
     intervals: u8,
-    /// Intervals of which the means are, where a touch ended early; else 0.
+    /// Averaged intervals of a touch that ended early, otherwise 0.
     brief: u8,
-    /// Blocks on the drive flank and on the back flank that their forces are averaged over.
+    /// Blocks in the mean force on the drive flank and on the back flank.
     averaged: [u8; 2],
     touch: Touch<T>,
     free: Regressors<T, P>,
@@ -35,23 +35,24 @@ pub struct Block<T: Real, const P: usize> {
     forces: [Forces<T>; 2],
 }
 
-/// Blocks over which the mean of a force is taken: about half a second of contact.
+/// Blocks over which the mean force is taken: about half a second of contact.
 const FORCES: u8 = 64;
 
 /// Forces of the last blocks on one flank.
 #[derive(Debug, Clone, Copy)]
 struct Forces<T: Real> {
-    /// [N].
+    /// Mean [N].
     mean: T,
-    /// [N^2].
+    /// Variance [N^2].
     variance: T,
 }
 
 impl<T: Real> Forces<T> {
     const NONE: Self = Self { mean: T::ZERO, variance: T::ZERO };
 
-    /// Takes in a block's force; gives what it most likely was. Its noise would pass for force that the deflection does
-    /// not follow, hence for a stiffer joint: what varies no more than noise does is taken for constant.
+    /// Updates mean and variance with a block's force and returns the likeliest force (O15). Noise would count as force
+    /// that the deflection does not follow, hence as stiffness: a variation no larger than the noise is treated as
+    /// constant force.
     fn calibrated(&mut self, blocks: u8, force: T, noise: T) -> T {
         let share = T::ONE.over(T::from_i32(blocks.into()));
         let by = force - self.mean;
@@ -63,11 +64,11 @@ impl<T: Real> Forces<T> {
 }
 
 impl<T: Real, const P: usize> Block<T, P> {
-    /// Weight of a touch that ended early while the half-gap is not known [-]: it may have been no touch at all, and sixteen
-    /// of them count as one rest.
+    /// Weight of a touch that ended early while the half-gap is unknown [-]: the teeth may not have touched, so that
+    /// sixteen of these touches count as one rest.
     const UNSURE_TOUCH: T = T::QUARTER;
 
-    /// A constant, so that the compiler writes it to its place instead of copying one from the stack.
+    /// A constant: the compiler writes it in place instead of copying from the stack.
     const NEW: Self = Self {
         intervals: 0,
         brief: 0,
@@ -83,19 +84,20 @@ impl<T: Real, const P: usize> Block<T, P> {
         Self::NEW
     }
 
-    /// Begins anew on a flank.
+    /// Begins a new block on a flank.
     fn clear(&mut self, flank: Option<Flank>) {
         let touch = Touch { flank, ..Touch::NONE };
         *self = Self { averaged: self.averaged, forces: self.forces, touch, ..Self::new() };
     }
 
-    /// Sums of fewer intervals become means.
+    /// Multiplies all sums by a factor, which turns sums of fewer intervals into means.
     fn scale(&mut self, by: T) {
         let free = self.free.iter_mut().chain(&mut self.touch.mesh);
         free.chain([&mut self.deflection, &mut self.touch.force]).for_each(|sum| *sum *= by);
     }
 
-    /// Adds an interval; true when enough have passed on one flank, or at least so many and the touch has ended.
+    /// Adds an interval. Returns true once a block is full, or once a touch on a known flank has ended after at least
+    /// `least` intervals.
     pub fn add(&mut self, mean: &Settled<'_, T, P>, rest: Rest, least: u8, table: &LearnerTable<T>) -> bool {
         let full = table.block as u8;
         let Rest::On(flank) = rest else {
@@ -108,7 +110,7 @@ impl<T: Real, const P: usize> Block<T, P> {
             self.clear(None);
             return false;
         };
-        // One rest is on one flank, even while no force tells which.
+        // A rest stays on one flank, even while no force shows the flank.
         let told = flank.or(self.touch.flank);
         let other = told != self.touch.flank && self.touch.flank.is_some();
         if other || self.intervals >= full {
@@ -134,13 +136,13 @@ impl<T: Real, const P: usize> Block<T, P> {
         true
     }
 
-    /// Regressors and deflection [m] of a full one.
+    /// Regressors and deflection [m] of a full block.
     pub fn full(&self) -> (Regressors<T, P>, T) {
         (self.touch.on(&self.free), self.deflection)
     }
 
-    /// Part of a deflection's usual weight that a full one has [-]. The means of a touch that ended early are noisier, and teeth that
-    /// leave or land are not at rest; while the `half_gap_is_known` not, it may have been no touch at all.
+    /// Weight of a full block relative to a usual deflection [-]. A touch that ended early is averaged less, and teeth
+    /// that leave or land are not at rest; while the half-gap is unknown, the teeth may not have touched.
     pub fn worth(&self, table: &LearnerTable<T>, half_gap_is_known: bool) -> T {
         if self.brief == 0 {
             T::ONE
@@ -151,12 +153,12 @@ impl<T: Real, const P: usize> Block<T, P> {
         }
     }
 
-    /// Flank of a full one; `None` if it is not known.
+    /// Flank of a full block; `None` if unknown.
     pub fn flank(&self) -> Option<Flank> {
         self.touch.flank
     }
 
-    /// Tells the flank of a full one.
+    /// Sets the flank of a full block.
     pub fn tell(&mut self, flank: Option<Flank>) {
         self.touch.flank = flank;
     }

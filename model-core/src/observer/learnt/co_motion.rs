@@ -1,54 +1,54 @@
-//! Whether teeth at rest are on a flank, without any force: motor and link stay together with open teeth only if the load
-//! happens to move the link just as the motor goes. How far the link has gone from where it would be at the speed that
-//! it had says how much of a chance that would be.
+//! Detection of contact without force: with open teeth, motor and link move together only if the load happens to move
+//! the link as the motor moves. The farther the link departs from a motion at constant speed, the less likely this
+//! coincidence is.
 
 use crate::gears::Flank;
 use crate::numbers::Real;
 
-/// Spans by which a link must have left its course for its teeth to be on a flank: with open teeth the load would have
-/// moved it as the motor goes to within one part in 64, for in all that time the deflection may change by an eighth of
-/// the gap.
+/// Departure of the link from constant speed that proves contact [spans]. With open teeth the load would have
+/// reproduced the motor's motion to one part in 64, as the deflection may change by an eighth of the gap meanwhile.
 const ASTRAY: i32 = 8;
 
-/// One rest in which motor and link move together.
+/// Rest in which motor and link move together.
 #[derive(Debug, Clone, Copy)]
 pub struct CoMotion<T: Real> {
-    /// Deflection from the rest on the other flank to the beginning of this one, upwards positive; 0 where that is not
-    /// known [m].
+    /// Change of the deflection from the rest on the other flank to the beginning of this rest, upwards positive; 0 if
+    /// unknown [m].
     span: T,
-    /// How far the deflection has gone since, upwards positive [m].
+    /// Change of the deflection since the beginning of this rest, upwards positive [m].
     drifted: T,
-    /// What the link went in a block when it began [m].
+    /// Travel of the link per block at the beginning of this rest [m].
     began: T,
-    /// How much further it has gone since than it would have at that speed [m].
+    /// Travel of the link since then in excess of a motion at that speed [m].
     strayed: T,
 }
 
-/// How a rest follows the one before.
+/// Relation of a rest to the last one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Change {
-    /// Too far for the same flank.
+    /// The flank has changed: the deflection moved too far for one flank.
     Crossed,
-    /// Neither for sure.
+    /// Neither a crossing nor the same flank is certain.
     Unsure,
-    /// As far as the same flank allows, but a crossing would not be seen.
+    /// The deflection fits the same flank, but noise could hide a crossing.
     Hidden,
-    /// On the same flank.
+    /// The flank is unchanged.
     Stays,
 }
 
 impl<T: Real> CoMotion<T> {
     pub const NONE: Self = Self { span: T::ZERO, drifted: T::ZERO, began: T::ZERO, strayed: T::ZERO };
 
-    /// Smallest half-gap that a crossing proves, over the span that was seen [-]: a crossing is told by four standard
-    /// deviations, so one of them is a quarter of the span at most. What is left is two half-gaps: 3/8 each.
+    /// Smallest half-gap proven by a crossing, over the observed span [-]: a crossing needs four standard deviations,
+    /// so that one deviation is at most a quarter of the span. The remainder is two half-gaps of 3/8 each.
     const CERTAIN: T = T::THREE_EIGHTHS;
 
-    /// Part of the gap by which the deflection may change in a rest on one flank [-].
+    /// Largest change of the deflection during a rest on one flank, over the gap [-].
     const DRIFT: T = T::EIGHTH;
 
-    /// Takes in a block: how its deflection follows the one before and by how much, what the link went in it, and whether
-    /// there was nothing but rest since. While the link hardly moves, friction may hold it.
+    /// Updates the state with a block: its relation to the last block, the change of the deflection, the travel of the
+    /// link, and `goes_on` if the rest was not interrupted. Without `moves` the travel is not counted: friction may
+    /// hold the link.
     pub fn step(&mut self, change: Change, moved: T, went: T, goes_on: bool, moves: bool) {
         self.drifted += moved;
         match change {
@@ -63,13 +63,13 @@ impl<T: Real> CoMotion<T> {
         }
     }
 
-    /// The half-gap as it was learnt, or what the teeth were seen to cross if that is more: a gap is no narrower.
+    /// Estimated half-gap, or the half-gap proven by a crossing if larger.
     pub fn half_gap_at_least(&self, learnt: T) -> T {
         let seen = Self::CERTAIN * self.span.abs();
         if seen > learnt { seen } else { learnt }
     }
 
-    /// The force has told on which flank this rest is.
+    /// Takes the flank of this rest from the force.
     pub fn told(&mut self, flank: Flank) {
         if flank.sign::<T>() * self.span < T::ZERO {
             self.span = T::ZERO;
@@ -77,12 +77,12 @@ impl<T: Real> CoMotion<T> {
         (self.drifted, self.strayed) = (T::ZERO, T::ZERO);
     }
 
-    /// Whether the link has gone that far while the half-gap was not known: it was on a flank, whichever it is.
+    /// Returns true if the link has departed by `ASTRAY` gaps: the teeth touch, on either flank.
     pub fn lasts(&self, half_gap: T) -> bool {
         self.strayed.abs() > T::from_i32(ASTRAY) * T::TWO * half_gap
     }
 
-    /// The flank, if the link has gone that far since the teeth came across the gap.
+    /// Flank of this rest, if the link has departed by `ASTRAY` spans since the crossing.
     pub fn flank(&self) -> Option<Flank> {
         let span = self.span.abs();
         let astray = self.strayed.abs() > T::from_i32(ASTRAY) * span;

@@ -1,15 +1,15 @@
-//! The motor's cogging: a torque that repeats a known number of times in a turn of the motor, of unknown size and phase.
+//! Cogging of the motor (O17): a torque with a known number of periods per motor turn, and unknown amplitude and phase.
 //!
-//! The motor side does not know of it, so that the load torque has it in reverse while a flank carries and the motor turns. With
-//! theta the cogging phase, w its rate, F the response of the load side, and H that of taking the slow part out, twice over
-//! (H = j w t / (1 + j w t)):
+//! The motor side does not model cogging, so that the load torque contains its negative while a flank carries and the
+//! motor turns. With theta the cogging phase, w its rate, F the response of the load side, and H = j w t / (1 + j w t)
+//! a high-pass filter, applied twice:
 //!
 //! ```text
 //! load torque, less slow parts = - F(j w) H(j w)^2 applied to (a sin theta + b cos theta) + noise
 //! ```
 //!
-//! a and b are learnt by a Kalman filter for two numbers, while the motor's speed is steady. Noise says the same for a few
-//! intervals, and its size is measured on the way.
+//! A Kalman filter with two states estimates a and b while the motor's speed is steady. The noise is correlated over a
+//! few intervals; its variance is estimated as well.
 
 use crate::gears::Flank;
 use crate::numbers::Real;
@@ -17,23 +17,23 @@ use crate::numbers::arithmetic::clamp;
 use crate::numbers::phase::sine_cosine;
 use crate::observer::tables::CoggingTable;
 
-/// Normalised innovation beyond which it is something else than noise [standard deviations].
+/// Normalised innovation of an outlier [standard deviations].
 const GATE: i32 = 5;
 
-/// Sine and cosine of the cogging, and what they are learnt with.
+/// Estimate of the cogging.
 #[derive(Debug, Clone, Copy)]
 pub struct Cogging<T: Real> {
-    /// What drives, referred to the link [N m].
+    /// Sine and cosine of the driving torque, referred to the link [N m].
     torque: [T; 2],
-    /// Variances of both, then their covariance [N^2 m^2].
+    /// Variances of sine and cosine, then their covariance [N^2 m^2].
     variance: [T; 3],
-    /// Mean square of what is left [N^2 m^2].
+    /// Mean square of the innovation [N^2 m^2].
     noise: T,
-    /// Slow part of the load torque, then of the rest [N m].
+    /// Slow part of the load torque, then of the remainder [N m].
     slow: [T; 2],
     /// Slow part of the motor's speed [rad/s].
     speed: T,
-    /// The flank that carries, and for how many intervals it has.
+    /// Carrying flank, and the intervals since it began to carry.
     flank: Option<Flank>,
     carried_for: u32,
 }
@@ -51,13 +51,13 @@ impl<T: Real> Cogging<T> {
         }
     }
 
-    /// Sine and cosine of the torque that drives, referred to the link, as far as they are learnt [N m].
+    /// Estimated sine and cosine of the driving torque, referred to the link [N m].
     pub fn torque(&self) -> [T; 2] {
         self.torque
     }
 
-    /// Once a learning interval: where the motor is in its turn [turns], how fast it turns [rad/s], what brakes the link [N m],
-    /// and on which flank contact has settled.
+    /// Updates the estimate once per learning interval from the motor's place in its turn [turns], its speed [rad/s],
+    /// the load torque [N m] and the flank of settled contact.
     pub fn learn(&mut self, table: &CoggingTable<T>, [place, speed, load]: [T; 3], flank: Option<Flank>) {
         if flank.is_none() || flank != self.flank {
             (self.flank, self.carried_for, self.slow, self.speed) = (flank, 0, [load, T::ZERO], speed);
@@ -77,7 +77,7 @@ impl<T: Real> Cogging<T> {
         }
     }
 
-    /// The Kalman filter's step: a torque [N m] that shows so much of sine and of cosine.
+    /// Updates the Kalman filter with a torque [N m] and its regressors for sine and cosine.
     fn update(&mut self, table: &CoggingTable<T>, driving: T, [sine, cosine]: [T; 2]) {
         let [a, b] = self.torque;
         let [of_a, of_b, of_both] = self.variance;
@@ -98,7 +98,7 @@ impl<T: Real> Cogging<T> {
     }
 }
 
-/// What a load torque less its slow parts shows of sine and of cosine [-].
+/// Regressors of a high-pass filtered load torque for sine and cosine [-].
 fn seen<T: Real>(table: &CoggingTable<T>, place: T, speed: T) -> [T; 2] {
     let phase = place.over(T::PHASE_UNIT).to_phase().wrapping_mul(table.periods);
     let (sine, cosine) = sine_cosine::<T>(phase.wrapping_sub((table.late * speed).to_phase()));
@@ -106,7 +106,7 @@ fn seen<T: Real>(table: &CoggingTable<T>, place: T, speed: T) -> [T; 2] {
     let of_load = [T::ONE - square * second, speed * (first - square * third)];
     let tangent = speed * table.slow_time;
     let of_slow = [T::ONE - tangent * tangent, T::TWO * tangent];
-    // 1 / F times (1 + j w t)^2, which is 0 at no speed: neither has a pole on the imaginary axis.
+    // 1/F times (1 + j w t)^2 is nonzero at every speed: F and H have no pole on the imaginary axis.
     let real = of_load[0] * of_slow[0] - of_load[1] * of_slow[1];
     let imaginary = of_load[0] * of_slow[1] + of_load[1] * of_slow[0];
     let part = -(tangent * tangent).over(real * real + imaginary * imaginary);

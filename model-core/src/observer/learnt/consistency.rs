@@ -1,88 +1,88 @@
-//! Whether what teeth at rest show belongs to what was learnt: it is learnt, left out, or the half-gap is doubted, for
-//! teeth wear, and in the end everything else too.
+//! Consistency of rests with the estimated parameters: a rest is accepted or rejected; repeated rejections reset the
+//! half-gap, as teeth wear, and finally all parameters.
 
 use crate::gears::Flank;
 
-/// Normalised innovation that does not belong to the model [standard deviations].
+/// Normalised innovation of an outlier [standard deviations].
 pub const GATE: i32 = 5;
 
-/// Outliers in a row after which the half-gap counts as wrong: one may be a blow.
+/// Consecutive outliers after which the half-gap counts as wrong: a single outlier may be an impact.
 const FEW: u8 = 2;
 
-/// Outliers in a row after which everything that was learnt counts as wrong.
+/// Consecutive outliers after which all parameters count as wrong.
 const TOO_MANY: u8 = 12;
 
 /// Learning intervals with force between the flanks after which the half-gap counts as wrong: three blocks.
 const CONTRADICTED: u8 = 24;
 
-/// Times that a trusted half-gap may be put down to another place in the turn before something else is to blame.
+/// Errors of a trusted half-gap attributed to its variation around the turn before another cause is assumed.
 const FORGIVEN: u8 = 3;
 
-/// Rests without an outlier after which that is forgotten: a quarter of a second of contact on both flanks.
+/// Accepted rests after which this count is cleared: a quarter of a second of contact on both flanks.
 const FORGOTTEN: u8 = 64;
 
-/// Rests without an outlier on each flank after which a half-gap counts as learnt: a quarter of a second of contact.
+/// Accepted rests on each flank after which a half-gap is trusted: a quarter of a second of contact.
 const TRUSTED: u8 = 32;
 
-/// What speaks against what was learnt.
+/// Evidence against the estimated parameters.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Consistency {
-    /// Intervals in a row with force between the flanks.
+    /// Consecutive intervals with force between the flanks.
     contradicted: u8,
-    /// Rests in a row that did not belong to the model.
+    /// Consecutive outliers.
     outliers: u8,
-    /// Rests without an outlier on the back flank and on the drive flank since the half-gap was doubted.
+    /// Accepted rests on the back flank and on the drive flank since the half-gap was last in doubt.
     trusted: [u8; 2],
-    /// Times of late that the half-gap was another one in another place.
+    /// Recent errors that were attributed to the variation of the half-gap around the turn.
     forgiven: u8,
-    /// Rests without an outlier since.
+    /// Accepted rests since the last of these errors.
     sound: u8,
 }
 
-/// By how much a rest, or force between the flanks, is off what was learnt.
+/// Deviation of a rest, or of a force between the flanks, from the estimated parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Off {
-    /// By less than a known half-gap may be wrong.
+    /// Less than the tolerance of a known half-gap.
     Little,
-    /// By as much as the half-gap of a gear may vary around the turn.
+    /// Within the variation of a half-gap around the turn.
     AsInAnotherPlace,
-    /// By more.
+    /// More than this variation.
     Far,
 }
 
-/// What is to be done about what was learnt.
+/// Consequence for the estimated parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// Nothing.
+    /// No change.
     Keep,
-    /// The half-gap may be another one here, as in worn gears: it is known less well.
+    /// The variance of the half-gap grows: the half-gap may differ at this place of the turn, as in worn gears.
     LoosenHalfGap,
-    /// The half-gap is learnt anew: it is only how sure it is that is forgotten.
+    /// The variance of the half-gap is reset; its value is kept.
     RelearnHalfGap,
-    /// Everything is learnt anew.
+    /// The variances of all parameters are reset.
     RelearnAll,
-    /// The gap seems narrower than was seen on both flanks for long, or nothing is as it was: teeth do not grow, nor do shafts
-    /// turn against each other. The output encoder fails.
+    /// The output encoder fails: the gap seems narrower than the half-gap trusted on both flanks, or no parameter
+    /// agrees any more. Teeth do not grow, and shafts do not turn against each other.
     EncoderFails,
 }
 
 impl Consistency {
-    /// Once an interval: whether there was force at rest between the flanks, bias and stiction aside, which says that they
-    /// are not where they were learnt to be, and by how much not.
+    /// Judges an interval: force at rest between the flanks, beyond bias and stiction, contradicts the estimated flanks
+    /// by `Off`.
     pub fn step(&mut self, force_between_flanks: Option<Off>) -> Verdict {
         self.contradicted = if force_between_flanks.is_some() { self.contradicted + 1 } else { 0 };
         let Some(off) = force_between_flanks.filter(|_| self.contradicted >= CONTRADICTED) else {
             return Verdict::Keep;
         };
         self.contradicted = 0;
-        // The gap is narrower than was learnt.
+        // The gap is narrower than estimated.
         if !self.is_trusted() {
             return self.other_half_gap();
         }
         if off != Off::Far && self.forgives() { Verdict::LoosenHalfGap } else { Verdict::EncoderFails }
     }
 
-    /// Whether a trusted half-gap may be another one in this place once more.
+    /// Returns true if the error may once more be attributed to the variation around the turn.
     fn forgives(&mut self) -> bool {
         self.sound = 0;
         let forgives = self.forgiven < FORGIVEN;
@@ -90,7 +90,7 @@ impl Consistency {
         forgives
     }
 
-    /// A rest that does not belong to the model, and by how much not; whether anything was ever learnt for sure.
+    /// Judges an outlier by its deviation; `was_sure` is true once a half-gap was trusted.
     pub fn outlier(&mut self, off: Off, was_sure: bool) -> Verdict {
         self.outliers += 1;
         if self.outliers >= TOO_MANY {
@@ -105,7 +105,7 @@ impl Consistency {
         }
     }
 
-    /// A rest that belongs to the model.
+    /// Counts an accepted rest.
     pub fn fits(&mut self, flank: Option<Flank>) {
         self.outliers = 0;
         self.sound = self.sound.saturating_add(1);
@@ -117,14 +117,14 @@ impl Consistency {
         *trusted = trusted.saturating_add(1);
     }
 
-    /// The half-gap is not what was learnt. If it had not been seen on both flanks for long, nothing else is sure either.
+    /// Discards the half-gap. If the half-gap was not trusted, all other parameters are in doubt too.
     fn other_half_gap(&mut self) -> Verdict {
         let trusted = self.is_trusted();
         self.trusted = [0; 2];
         if trusted { Verdict::RelearnHalfGap } else { Verdict::RelearnAll }
     }
 
-    /// Whether the half-gap has been seen on both flanks for long.
+    /// Returns true once the half-gap has been confirmed on both flanks.
     pub fn is_trusted(&self) -> bool {
         let [back, drive] = self.trusted;
         back.min(drive) >= TRUSTED
@@ -135,7 +135,7 @@ impl Consistency {
 mod tests {
     use super::*;
 
-    /// One whose half-gap was seen on both flanks for long.
+    /// Consistency with a trusted half-gap.
     fn trusted() -> Consistency {
         let mut consistency = Consistency::default();
         for _ in 0..TRUSTED {
@@ -146,7 +146,7 @@ mod tests {
         consistency
     }
 
-    /// What force between the flanks comes to that lasts for as long as it takes.
+    /// Verdict on force between the flanks that lasts for `CONTRADICTED` intervals.
     fn lasting_force(consistency: &mut Consistency, off: Off) -> Verdict {
         for _ in 1..CONTRADICTED {
             assert_eq!(consistency.step(Some(off)), Verdict::Keep);
@@ -154,7 +154,7 @@ mod tests {
         consistency.step(Some(off))
     }
 
-    /// What two rests in a row that do not belong to the model come to.
+    /// Verdict on two consecutive outliers.
     fn outliers(consistency: &mut Consistency, off: Off) -> Verdict {
         assert_eq!(consistency.outlier(off, true), Verdict::Keep);
         let verdict = consistency.outlier(off, true);

@@ -1,23 +1,23 @@
-//! What both sides put together come to in one control period, before anything is decided. [`Learnt::fuse`] makes it.
+//! Motor and load side combined in one control period (O7, O9), before any decision. [`Learnt::fuse`] makes it.
 //!
 //! [`Learnt::fuse`]: super::Learnt::fuse
 
 use crate::numbers::Real;
 
-/// What one period comes to before anything is decided.
+/// Combined measurement of one period.
 #[derive(Debug, Clone, Copy)]
 pub struct Fused<T: Real> {
-    /// By how much the transmission error shifts both flanks now [m].
+    /// Shift of both flanks by the transmission error now [m].
     pub flank_shift: T,
     /// Motor less ratio times link along the line of action, as measured [m].
     pub measured: T,
-    /// The same with everything taken out that was learnt, wind-up left in [m].
+    /// Measured deflection less offset, skew and error maps; wind-up is included [m].
     pub deflection: T,
-    /// Rate of either [m/s].
+    /// Rate of the deflection [m/s].
     pub rate: T,
-    /// How far the deflection goes on while what is measured lags behind, where that is more than noise [m].
+    /// Travel of the deflection during the lag of the measurement, where it exceeds noise [m].
     pub travel: T,
-    /// Force that the motor loses, friction and bias included [N].
+    /// Force lost at the motor, friction and bias included [N].
     pub lost: T,
     /// Direction of the motor's dry friction, from -1 to 1.
     pub direction: T,
@@ -26,13 +26,14 @@ pub struct Fused<T: Real> {
 }
 
 impl<T: Real> Fused<T> {
-    /// Deflection of the teeth, wind-up left in: zero in the middle of the gap [m].
+    /// Deflection of the teeth including wind-up; zero in the middle of the gap [m].
     pub fn of_teeth(&self) -> T {
         self.deflection - self.flank_shift
     }
 }
 
-/// A difference of counts, which teeth keep small, as a number: wide whole numbers take a chip without them long to turn.
+/// Converts a difference of counts, which teeth keep small, and saturates: conversion of wide integers is slow without
+/// hardware.
 pub fn small<T: Real>(difference: i64) -> T {
     let narrow = difference as i32;
     T::from_i32(if i64::from(narrow) == difference {

@@ -1,35 +1,35 @@
-//! The link's inertia, from how it answers mesh forces that change faster than any weight does: a landing, a swing of the
-//! teeth, a push. What a motion as slow as a weight's says of it is left out, for the two look the same there.
+//! Inertia of the link (O6), from its response to mesh forces that change faster than a weight's torque: a landing, an
+//! oscillation of the teeth, a push. Slow responses are not used: weight and inertia are not separable there.
 //!
-//! The load side is linear: what it says is what it would say of the same force on a link that stands still, times
-//! mobility (1 over the inertia, designed inertia 1), less what it says of the motion alone. The first of these runs along
-//! here, an interval at a time. So the answer of the link is known behind the very filter that the force has passed, and
-//! a new mobility can be put into the load side as if it had always been known.
+//! The load filter is linear. Its torque is mobility (designed inertia over inertia) times its response to the mesh
+//! torque on a stationary link, less its response to the motion alone. The first response is computed here, once per
+//! interval. Force and response of the link thus pass one filter, and a changed mobility can be applied to the load
+//! side in retrospect.
 
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 use crate::observer::filters::load_side::LoadSide;
 use crate::observer::tables::InertiaTable;
 
-/// Normalised innovation beyond which something else has moved the link [standard deviations].
+/// Normalised innovation of an outlier, caused by another force on the link [standard deviations].
 const GATE: i32 = 4;
 
-/// The link's mobility, and what it is learnt with.
+/// Estimate of the link's mobility.
 #[derive(Debug, Clone, Copy)]
 pub struct Inertia<T: Real> {
-    /// Sum of the meshes' torque over the periods of the interval [N m].
+    /// Sum of the mesh torque over the periods of the interval [N m].
     sum: T,
-    /// What the load side would say of the same torque on a link that stands still.
+    /// Response of the load filter to the mesh torque on a stationary link.
     still: LoadSide<T>,
-    /// Slow parts of that torque and of the link's answer, each twice smoothed [N m].
+    /// Slow parts of this torque and of the link's response, two stages each [N m].
     slow: [[T; 2]; 2],
-    /// Designed inertia over the link's.
+    /// Designed inertia over the link's inertia (m) [-].
     mobility: T,
-    /// Variance of that.
+    /// Variance of the mobility [-].
     variance: T,
-    /// Mean square of what pushes the link as fast without any force of the meshes [N^2 m^2].
+    /// Mean square of equally fast torques on the link from other sources than the meshes [N^2 m^2].
     restless: T,
-    /// Intervals for which the link has gone one way: its dry friction has stayed the same; negative while it goes back.
+    /// Intervals of motion in one direction, with constant dry friction; negative for backward motion.
     gone_for: i32,
 }
 
@@ -46,38 +46,38 @@ impl<T: Real> Inertia<T> {
         }
     }
 
-    /// What is learnt.
+    /// Saved numbers.
     pub fn numbers(&self) -> impl Iterator<Item = T> {
         [self.mobility, self.variance].into_iter()
     }
 
-    /// Takes the same back.
+    /// Restores the saved numbers.
     pub fn set_numbers(&mut self, next: &mut impl FnMut() -> T) {
         self.mobility = next();
         self.variance = next();
     }
 
-    /// Whether the mobility is one that is believed of a link, and no less sure than beforehand.
+    /// Returns true if the mobility is within its limits and its variance does not exceed the initial one.
     pub fn is_possible(&self, table: &InertiaTable<T>) -> bool {
         self.mobility == believed(table, self.mobility)
             && self.variance >= T::ZERO
             && self.variance <= table.prior + table.drift
     }
 
-    /// What the meshes pass on, as the load side takes it; once a period.
+    /// Scales the mesh torque of a period by the mobility for the load side.
     pub fn pass(&mut self, from_meshes: T) -> T {
         self.sum += from_meshes;
         self.mobility * from_meshes
     }
 
-    /// Inertia over the designed one, and its variance.
+    /// Inertia over the designed inertia, and its variance [-].
     pub fn ratio(&self) -> [T; 2] {
         let ratio = T::ONE.over(self.mobility);
         let squared = ratio * ratio;
         [ratio, self.variance * squared * squared]
     }
 
-    /// Once an interval: what the link answered.
+    /// Updates the mobility once per interval with the link's response.
     pub fn learn(&mut self, table: &InertiaTable<T>, load: &mut LoadSide<T>, seen: bool) {
         let torque = core::mem::replace(&mut self.sum, T::ZERO) * table.per_periods;
         let before = [self.still.ahead, self.still.speed, self.still.torque];
@@ -107,7 +107,8 @@ impl<T: Real> Inertia<T> {
             return;
         }
         let innovation = answer - self.mobility * force;
-        // Where something pushes the link time after time, forces answer it, and not the link the forces.
+        // If external forces push the link repeatedly, mesh forces respond to the link instead of the link to mesh
+        // forces.
         let ignorance = self.variance * force * force;
         let beyond = innovation * innovation - ignorance;
         self.restless += ((if beyond > T::ZERO { beyond } else { T::ZERO }) - self.restless) * table.memory;
@@ -129,12 +130,12 @@ impl<T: Real> Inertia<T> {
     }
 }
 
-/// A mobility within what is believed of a link.
+/// Limits a mobility to its range.
 fn believed<T: Real>(table: &InertiaTable<T>, mobility: T) -> T {
     T::ONE + clamp(mobility - T::ONE, -table.limit, table.limit)
 }
 
-/// What of a value is faster than a weight's changes; its slow parts follow.
+/// Removes the slow parts of a value, and updates them.
 fn fast<T: Real>(slow: &mut [T; 2], part: T, value: T) -> T {
     slow.iter_mut().fold(value, |value, slow| {
         *slow += (value - *slow) * part;

@@ -1,15 +1,15 @@
-//! A learning interval: means over a few control periods, what they show, and what of the work that follows is next.
+//! Learning interval: means over a few control periods, and the next task of the work after the interval.
 
 use super::fusion::Fused;
 use super::travel::Travel;
 use crate::gears::Flank;
 use crate::numbers::Real;
 
-/// Intervals of rest on a flank after which contact counts as settled: the window of the speed has passed, and the
-/// swing of an impact with it.
+/// Intervals of rest on a flank after which contact counts as settled: the window of the speed is over, and the
+/// oscillation after an impact has decayed.
 const SETTLED_AFTER: u8 = 3;
 
-/// Sums over the periods of an interval, and what lasts longer.
+/// Sums over the periods of an interval, and values that outlast the interval.
 #[derive(Debug, Clone, Copy)]
 pub struct Interval<T: Real> {
     pub periods: u16,
@@ -17,25 +17,25 @@ pub struct Interval<T: Real> {
     pub task: Task,
     /// Direction of the motor's dry friction, mean over the last interval.
     pub direction: T,
-    /// Nearer side of the gap then.
+    /// Nearer flank in the last interval.
     pub nearer: Flank,
-    /// Flank of the last rest that was learnt from.
+    /// Flank of the last rest that updated the parameters.
     pub learnt_on: Option<Flank>,
-    /// Flank on which contact settled last, unless the teeth have left it since.
+    /// Flank of the last settled contact, until the teeth leave it.
     pub flank: Option<Flank>,
-    /// Mesh force over the last interval [N].
+    /// Mean mesh force in the last interval [N].
     pub force: T,
-    /// Flank of loaded contact then.
+    /// Flank of loaded contact in the last interval.
     pub loaded: Option<Flank>,
-    /// Mesh force over a few intervals [N].
+    /// Mesh force averaged over a few intervals [N].
     pub steady: T,
-    /// Mesh force over the whole rest, landing included [N].
+    /// Mesh force averaged over the whole rest, landing included [N].
     pub rested: T,
-    /// Intervals in a row well inside the gap.
+    /// Consecutive intervals well inside the gap.
     pub open_for: u8,
 }
 
-/// What is averaged.
+/// Averaged quantities.
 #[derive(Debug, Clone, Copy)]
 pub struct Mean<T: Real> {
     pub measured: T,
@@ -74,7 +74,7 @@ impl<T: Real> Interval<T> {
         self.periods += 1;
     }
 
-    /// Sums become means.
+    /// Returns the means and clears the sums.
     pub fn close(&mut self, per_periods: T) -> Mean<T> {
         let Mean { measured, lost, force, direction } = core::mem::replace(&mut self.sums, Mean::NONE);
         self.periods = 0;
@@ -87,35 +87,35 @@ impl<T: Real> Interval<T> {
     }
 }
 
-/// Whether teeth rest in an interval that may be learnt from, and on which flank.
+/// Rest of the teeth in an interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rest {
-    /// They do not, as far as is known.
+    /// No rest is known.
     No,
-    /// They do; `None` if it is not known on which flank.
+    /// Rest on a flank; `None` for an unknown flank.
     On(Option<Flank>),
 }
 
-/// What of an interval's work is next: each period does one task, so that none has to do them all.
+/// Next task after an interval: each period does one task, so that the load is spread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Task {
-    /// Nothing is left.
+    /// No task is left.
     Done,
-    /// What the link answered to the force; whether there is a rest to learn from besides.
+    /// Updates the inertia from the link's response to the force; true if a rest follows.
     Inertia(bool),
-    /// On which flank the teeth came to rest.
+    /// Determines the flank of the rest.
     Flank,
-    /// Whether a rest on a flank belongs to what was learnt.
+    /// Accepts or rejects a rest on a flank.
     Weigh,
-    /// Learning from it.
+    /// Updates the parameters with the rest.
     Learn,
-    /// How uncertain everything is now.
+    /// Updates the variances.
     Uncertainty,
-    /// What follows from it until the next interval.
+    /// Updates the values that hold until the next interval.
     Conclude,
 }
 
-/// Whether the teeth have been at rest for long enough.
+/// Returns true once the teeth have been at rest long enough.
 pub fn rests<T: Real>(travel: Travel<T>) -> bool {
     matches!(travel, Travel::AtRest(intervals) if intervals >= SETTLED_AFTER)
 }

@@ -1,5 +1,5 @@
-//! On which flank teeth came to rest, by how the deflection has changed since they rested last: upwards is the drive
-//! flank, whatever force and bias are.
+//! Flank of a rest from the change of the deflection since the last rest: an upward change means the drive flank,
+//! regardless of force and bias.
 
 use core::array;
 
@@ -10,25 +10,25 @@ use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::observer::tables::LearnerTable;
 
-/// Standard deviations by which a deflection must have changed for teeth to have crossed the gap: one rest in 16,000 shows
-/// that by noise.
+/// Change of the deflection that proves a crossing [standard deviations]: noise causes one in 16,000 rests to exceed
+/// this limit.
 const SURE: i32 = 4;
 
-/// Where the teeth rested last.
+/// Last rest of the teeth.
 #[derive(Debug, Clone, Copy)]
 pub struct LastRest<T: Real, const P: usize> {
-    /// What the deflection depended on, but the flank.
+    /// Regressors of the last rest.
     then: Regressors<T, P>,
     flank: Option<Flank>,
     deflection: T,
     co_motion: CoMotion<T>,
     held: bool,
-    /// Nothing has interrupted the rest since.
+    /// True until the rest is interrupted.
     goes_on: bool,
 }
 
 impl<T: Real, const P: usize> LastRest<T, P> {
-    /// A constant, so that the compiler writes it to its place instead of copying one from the stack.
+    /// A constant: the compiler writes it in place instead of copying from the stack.
     const NEW: Self = Self {
         then: [T::ZERO; P],
         flank: None,
@@ -43,28 +43,28 @@ impl<T: Real, const P: usize> LastRest<T, P> {
         Self::NEW
     }
 
-    /// Remembers a rest.
+    /// Stores a rest.
     pub fn put(&mut self, regressors: &Regressors<T, P>, deflection: T, flank: Option<Flank>) {
         *self = Self { then: *regressors, flank, deflection, co_motion: self.co_motion, held: true, goes_on: true };
     }
 
-    /// The teeth are not at rest.
+    /// Notes that the teeth are not at rest.
     pub fn interrupt(&mut self) {
         self.goes_on = false;
     }
 
-    /// What is known of the rest without a force.
+    /// Evidence on the flank without a force.
     pub fn co_motion(&mut self) -> &mut CoMotion<T> {
         &mut self.co_motion
     }
 
-    /// Whether the teeth rested on a flank last; with `None`, on one that was not known.
+    /// Returns true if the last rest was on this flank; `None` stands for an unknown flank.
     pub fn was_on(&self, flank: Option<Flank>) -> bool {
         self.flank == flank
     }
 
-    /// The innovation of another rest, whose prediction is the last one's deflection; `None` if there was none. Teeth that
-    /// stay on a flank, whichever it is, show by that what the deflection depends on besides.
+    /// Innovation of a rest predicted from the last rest's deflection; `None` without a last rest. Teeth that stay on
+    /// one flank, even an unknown one, show the parameters that do not depend on the flank.
     pub fn innovation(
         &self,
         table: &LearnerTable<T>,
@@ -76,13 +76,13 @@ impl<T: Real, const P: usize> LastRest<T, P> {
             (Some(now), Some(before)) if i != HALF_GAP => *now - *before,
             _ => T::ZERO,
         });
-        // Both deflections have their noise.
+        // Both deflections carry noise.
         let weight = table.weight * T::HALF.square_root();
         self.held.then(|| learner.innovation(table, &between, deflection - self.deflection, weight))
     }
 
-    /// The flank of that rest; `None` if the change is neither more than everything else could make of it, nor so little
-    /// that it is the same flank. While the link hardly moves, nothing is said: motor and link may rest with open teeth.
+    /// Flank of the new rest; `None` if the change is neither larger than all other influences nor small enough for the
+    /// same flank. While the link hardly moves, the flank stays unknown: motor and link may rest with open teeth.
     pub fn flank(
         &mut self,
         table: &LearnerTable<T>,

@@ -1,9 +1,9 @@
-//! One small recursive least squares for everything about joint and encoders that contact shows: half-gap, offset,
-//! compliance, skew, transmission error and, with `P` = [`MAPPED`](super::regressors::MAPPED), the error maps.
+//! Recursive least squares (O12) for all parameters that contact shows: half-gap, offset, compliance, skew,
+//! transmission error and, with `P` = [`MAPPED`](super::regressors::MAPPED), the error maps.
 //!
-//! Deflection = side * half-gap + offset + compliance * force + skew * speed + maps. The covariance is kept in units of the
-//! parameters' standard deviations beforehand and as U D U^T (Bierman), so that it stays positive in single precision
-//! whatever happens.
+//! Model (O11): deflection = side * half-gap + offset + compliance * force + skew * speed + maps. The covariance is
+//! kept in units of the initial standard deviations and as U D U^T (Bierman), so that it stays positive in single
+//! precision.
 
 #[cfg(test)]
 mod tests;
@@ -15,52 +15,52 @@ use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 use crate::observer::tables::{LearnerTable, ObserverTables};
 
-/// Standard deviations beforehand beyond which nothing is believed of a parameter, whatever a failing encoder shows: four
-/// times what a joint that fits its file can reach. An offset may be any.
+/// Limit of a parameter's deviation from its mean [initial standard deviations], against failing encoders: four times
+/// the deviation of a joint that fits its file. The offset has no limit.
 const FURTHEST: i32 = 16;
 
-/// The most that a factor above the diagonal can be, in which parameters stand in units of their standard deviations
-/// beforehand: by how much more one parameter moves than another that it is told apart from.
+/// Limit of a factor above the diagonal, in units of the initial standard deviations: ratio of the motions of two
+/// parameters that are told apart.
 const LARGEST_FACTOR: i32 = 1000;
 
 /// Parameters with their covariance.
 #[derive(Debug, Clone, Copy)]
 pub struct Learner<T: Real, const P: usize> {
-    /// U above the diagonal, D on it; the row of a column's entries is contiguous.
+    /// U above the diagonal, D on the diagonal; the entries of a column are contiguous.
     factors: [[T; P]; P],
-    /// Parameters, in SI.
+    /// Parameters [SI].
     pub values: [T; P],
 }
 
-/// What a deflection is beyond the predicted one, in standard deviations of one deflection's noise.
+/// Innovation of a deflection, in standard deviations of one deflection's noise.
 #[derive(Debug, Clone, Copy)]
 pub struct Innovation<T: Real, const P: usize> {
     /// Regressors in the factors' coordinates, U^T h.
     projected: [T; P],
     /// Measured less predicted deflection.
     pub value: T,
-    /// Variance of that.
+    /// Variance of `value`.
     pub variance: T,
 }
 
 impl<T: Real, const P: usize> Innovation<T, P> {
-    /// Whether the deflection belongs to what was learnt: its normalised innovation is within so many standard deviations.
+    /// Returns true if the normalised innovation is within `deviations` standard deviations.
     pub fn is_within(&self, deviations: i32) -> bool {
         self.value * self.value < T::from_i32(deviations * deviations) * self.variance
     }
 }
 
 impl<T: Real, const P: usize> Learner<T, P> {
-    /// A constant, so that the compiler clears its place instead of copying one from the stack.
+    /// A constant: the compiler clears the destination instead of copying from the stack.
     const UNBEGUN: Self = Self { factors: [[T::ZERO; P]; P], values: [T::ZERO; P] };
 
-    /// A learner that has not taken its table yet.
+    /// Returns a learner without its table.
     #[inline(always)]
     pub fn unbegun() -> Self {
         Self::UNBEGUN
     }
 
-    /// Back to what was designed.
+    /// Resets parameters and covariance to the design.
     pub fn restart(&mut self, table: &LearnerTable<T>) {
         for (parameter, value) in self.values.iter_mut().enumerate() {
             *value = table.mean.get(parameter).copied().unwrap_or(T::ZERO);
@@ -68,17 +68,17 @@ impl<T: Real, const P: usize> Learner<T, P> {
         self.reopen();
     }
 
-    /// A parameter, in SI.
+    /// Value of a parameter [SI].
     pub fn value(&self, parameter: usize) -> T {
         self.values.get(parameter).copied().unwrap_or(T::ZERO)
     }
 
-    /// Deflection that a set of regressors has [m].
+    /// Deflection predicted from regressors [m].
     pub fn deflection(&self, regressors: &Regressors<T, P>) -> T {
         self.values.iter().zip(regressors).fold(T::ZERO, |sum, (value, regressor)| sum + *value * *regressor)
     }
 
-    /// Variance of that deflection as far as the parameters are uncertain [m^2].
+    /// Variance of the predicted deflection by the parameters [m^2].
     pub fn variance(&self, table: &LearnerTable<T>, regressors: &Regressors<T, P>) -> T {
         let scaled = Self::scaled(table, regressors, T::ONE);
         let mut sum = T::ZERO;
@@ -89,13 +89,13 @@ impl<T: Real, const P: usize> Learner<T, P> {
         sum
     }
 
-    /// Variance of one parameter, in SI.
+    /// Variance of a parameter [SI].
     pub fn variance_of(&self, table: &LearnerTable<T>, parameter: usize) -> T {
         let deviation = table.deviation.get(parameter).copied().unwrap_or(T::ZERO);
         self.relative_variance(parameter) * deviation * deviation
     }
 
-    /// Variance of one parameter over that beforehand [-].
+    /// Variance of a parameter over its initial variance [-].
     pub fn relative_variance(&self, parameter: usize) -> T {
         let mut sum = T::ZERO;
         for j in parameter..P {
@@ -107,7 +107,7 @@ impl<T: Real, const P: usize> Learner<T, P> {
         sum
     }
 
-    /// Standard deviation that the transmission error has, and by how much less that is than beforehand [m].
+    /// Standard deviation of the transmission error, and its reduction since the start [m].
     pub fn error_deviation(&self, table: &LearnerTable<T>) -> (T, T) {
         let [sine, cosine] = [ERROR, ERROR + 1].map(|parameter| self.variance_of(table, parameter));
         let before = [ERROR, ERROR + 1].map(|parameter| table.deviation.get(parameter).copied().unwrap_or(T::ZERO));
@@ -116,13 +116,13 @@ impl<T: Real, const P: usize> Learner<T, P> {
         (now, if now < before { before - now } else { T::ZERO })
     }
 
-    /// Everything that is learnt: parameters, then each column of the factors down to its diagonal.
+    /// Saved numbers: parameters, then each column of the factors down to its diagonal.
     pub fn numbers(&self) -> impl Iterator<Item = T> {
         let columns = self.factors.iter().enumerate().flat_map(|(index, column)| column.iter().take(index + 1));
         self.values.iter().chain(columns).copied()
     }
 
-    /// Takes the same back.
+    /// Restores the saved numbers.
     pub fn set_numbers(&mut self, next: &mut impl FnMut() -> T) {
         self.values.iter_mut().for_each(|value| *value = next());
         for (index, column) in self.factors.iter_mut().enumerate() {
@@ -130,8 +130,8 @@ impl<T: Real, const P: usize> Learner<T, P> {
         }
     }
 
-    /// Whether all of it is what a joint of this design can show: parameters as far from their mean as learning goes, an
-    /// offset within what whole turns leave open, factors of a covariance that is no larger than beforehand.
+    /// Returns true if a joint of this design can have the restored numbers: parameters within their limits, an offset
+    /// within the ambiguity of whole turns, and a covariance no larger than the initial one.
     pub fn is_possible(&self, tables: &ObserverTables<T>) -> bool {
         let table = &tables.learner;
         let turns = T::from_i64(tables.counts.modulus) * tables.counts.length;
@@ -148,8 +148,8 @@ impl<T: Real, const P: usize> Learner<T, P> {
         self.value(HALF_GAP) >= T::ZERO && values.chain(factors).all(|possible| possible)
     }
 
-    /// Forgets how sure everything is that depends on where the encoders' zeros are. Half-gap, compliance and skew keep the variances
-    /// that they have with everything else unknown.
+    /// Resets the variances of all parameters that depend on the encoders' zeros. Half-gap, compliance and skew keep
+    /// the variances that they have with all other parameters unknown.
     #[cold]
     pub fn forget_places(&mut self) {
         let kept = [HALF_GAP, COMPLIANCE, SKEW].map(|parameter| (parameter, self.relative_variance(parameter)));
@@ -159,7 +159,7 @@ impl<T: Real, const P: usize> Learner<T, P> {
         }
     }
 
-    /// The innovation of a deflection [m] whose noise has a standard deviation of 1 over `weight` [1/m].
+    /// Innovation of a deflection [m] whose noise has the standard deviation 1/`weight` [m].
     pub fn innovation(
         &self,
         table: &LearnerTable<T>,
@@ -178,7 +178,7 @@ impl<T: Real, const P: usize> Learner<T, P> {
         innovation
     }
 
-    /// Learns from an innovation.
+    /// Updates parameters and covariance with an innovation (O12).
     pub fn learn(&mut self, table: &LearnerTable<T>, innovation: &Innovation<T, P>) {
         let mut gain = [T::ZERO; P];
         let mut alpha = T::ONE;
@@ -210,7 +210,7 @@ impl<T: Real, const P: usize> Learner<T, P> {
         self.keep_half_gap();
     }
 
-    /// Teeth do not overlap, whatever a failing encoder shows.
+    /// Keeps the half-gap non-negative, whatever a failing encoder shows: teeth do not overlap.
     fn keep_half_gap(&mut self) {
         if let Some(half_gap) = self.values.get_mut(HALF_GAP)
             && *half_gap < T::ZERO
@@ -219,7 +219,7 @@ impl<T: Real, const P: usize> Learner<T, P> {
         }
     }
 
-    /// Lets what was learnt grow uncertain, up to what was known beforehand.
+    /// Increases the variances by the share `by`, up to the initial variances.
     pub fn forget(&mut self, by: T) {
         for (index, column) in self.factors.iter_mut().enumerate() {
             if let Some(d) = column.get_mut(index) {
@@ -231,11 +231,11 @@ impl<T: Real, const P: usize> Learner<T, P> {
         }
     }
 
-    /// Keeps the parameters and adds a variance to the half-gap: the square of a part of it [-], up to what was known beforehand.
+    /// Keeps the parameters and adds the variance (`by` times half-gap)^2 to the half-gap, up to the initial variance.
     pub fn loosen_half_gap(&mut self, table: &LearnerTable<T>, by: T) {
         let [half_gap, deviation] = [self.value(HALF_GAP), table.deviation[HALF_GAP]];
         if let Some(width) = self.factors.first_mut().and_then(|column| column.first_mut()) {
-            // A joint that is designed without a gap has no deviation to divide by.
+            // A joint designed without a gap has a deviation of zero.
             let grown = if by * half_gap < deviation {
                 *width + (by * by * half_gap * half_gap).over(deviation * deviation)
             } else {
@@ -245,18 +245,19 @@ impl<T: Real, const P: usize> Learner<T, P> {
         }
     }
 
-    /// Keeps the parameters and forgets how sure the half-gap is, and nothing else: it is the first of them, so its
-    /// entry on the diagonal is its own.
+    /// Keeps the parameters and resets the variance of the half-gap alone: its entry on the diagonal belongs to no
+    /// other parameter, as the half-gap is the first.
     pub fn doubt_half_gap(&mut self) {
         if let Some(width) = self.factors.first_mut().and_then(|column| column.first_mut()) {
             *width = T::ONE;
         }
     }
 
-    /// Forgets how sure offset and the motor's error map are: its encoder has slipped, teeth and shafts are as they were.
+    /// Resets the variances of offset and motor map after a slip of the motor encoder; teeth and shafts are unchanged.
     pub fn doubt_motor(&mut self) {
         let [width, offset, rest @ ..] = self.factors.as_mut_slice() else { return };
-        // What the half-gap owes to the offset becomes its own uncertainty; nothing is related to the new offset.
+        // The half-gap keeps its total variance, including the part correlated with the offset; the new offset is
+        // correlated with no parameter.
         let ([half_gap, ..], [owed, known, ..]) = (width.as_mut_slice(), offset.as_mut_slice()) else { return };
         *half_gap += *known * *owed * *owed;
         (*owed, *known) = (T::ZERO, T::ONE);
@@ -273,7 +274,7 @@ impl<T: Real, const P: usize> Learner<T, P> {
         }
     }
 
-    /// Keeps the parameters and forgets how sure they are.
+    /// Keeps the parameters and resets the covariance.
     pub fn reopen(&mut self) {
         for (index, column) in self.factors.iter_mut().enumerate() {
             *column = [T::ZERO; P];
@@ -283,7 +284,7 @@ impl<T: Real, const P: usize> Learner<T, P> {
         }
     }
 
-    /// Sets how sure a parameter is that depends on no other.
+    /// Sets the relative variance of a parameter without correlations.
     pub fn set_relative_variance(&mut self, parameter: usize, variance: T) {
         if let Some(d) = self.factors.get_mut(parameter).and_then(|column| column.get_mut(parameter)) {
             *d = variance;

@@ -1,10 +1,12 @@
-//! What is learnt of joint, encoders and motor while they move: half-gap, offset, compliance, skew, transmission error and
-//! error maps by one recursive least squares (`learner`), bias and friction of the motor (`bias`) and its cogging (`cogging`),
-//! inertia of the link (`inertia`), and how uncertain all of it is (`uncertainty`).
+//! Estimation of joint, encoder and motor parameters during motion: half-gap, offset, compliance, skew, transmission
+//! error and error maps by one recursive least squares (`learner`); bias and friction of the motor (`bias`); cogging
+//! (`cogging`); inertia of the link (`inertia`); variances of all parameters (`uncertainty`). Implements (O7), (O9) and
+//! (O14).
 //!
-//! Learning goes in intervals of a few control periods (`interval`). `travel` says from each whether the teeth rest or cross
-//! the gap, and `flank` on which flank they rest. Intervals of rest are averaged (`block`), and `consistency` says whether
-//! their mean belongs to what was learnt; `trusted` keeps what did for long. What can wait is done a task a period.
+//! Estimation proceeds in learning intervals of a few control periods (`interval`). For each interval `travel` decides
+//! between rest and crossing, and `flank` determines the flank of a rest. Intervals of rest are averaged (`block`);
+//! `consistency` accepts or rejects their mean; `trusted` keeps the parameters of long agreement. Work that can wait is
+//! done one task per period.
 
 pub mod bias;
 mod block;
@@ -50,18 +52,18 @@ use crate::observer::filters::load_side::LoadSide;
 use crate::observer::sensors::Sensors;
 use crate::observer::tables::{LearnerTable, ObserverTables};
 
-/// Intervals over which the force of a rest is averaged at most.
+/// Longest time over which the force of a rest is averaged [intervals].
 const LONG_REST: u8 = 16;
 
-/// Intervals well inside the gap after which the mesh force counts as gone from the motor side's estimate.
+/// Intervals well inside the gap after which the motor side's force estimate has decayed to zero.
 const OPEN_AFTER: u8 = 3;
 
-/// Intervals after the loss of an encoder, from its return on, in which torque bias, friction, inertia and cogging are not
-/// estimated: 0.5 s. The loop takes up to 0.15 s to bring the link back at full torque (measured, presets Q1, L1, C1 and D2, motor encoder
-/// frozen or random for half a second), and the filters carry what they took in before the fault was declared.
+/// Intervals after the readmission of an encoder during which bias, friction, inertia and cogging are not estimated:
+/// 0.5 s. The loop takes up to 0.15 s to bring the link back at full torque (measured, presets Q1, L1, C1 and D2, motor
+/// encoder frozen or random for half a second), and the filters carry readings from before the fault declaration.
 const PROBATION: u16 = 500;
 
-/// Everything that is learnt, and what it is learnt from. `P` is the number of parameters.
+/// Parameter estimator with its evidence. `P` is the number of parameters.
 #[derive(Debug, Clone)]
 pub struct Learnt<T: Real, const P: usize> {
     pub learner: Learner<T, P>,
@@ -76,28 +78,28 @@ pub struct Learnt<T: Real, const P: usize> {
     last_rest: LastRest<T, P>,
     consistency: Consistency,
     places: Places<T>,
-    /// Intervals until forces are learnt from again.
+    /// Intervals until forces update the estimates again.
     probation: u16,
-    /// Kept until something else is trusted.
+    /// Parameters of the last trusted half-gap.
     trusted: Option<Trusted<T, P>>,
-    /// What is learnt from in the next period.
+    /// Innovation that updates the parameters in the next period.
     weighed: Option<Innovation<T, P>>,
 }
 
-/// What an interval showed, before anything is learnt from it.
+/// Result of a learning interval, before it updates an estimate.
 #[derive(Debug, Clone, Copy)]
 pub struct Reading<T: Real> {
     mean: Mean<T>,
-    /// Sine and cosine of the mesh phase in its middle.
+    /// Sine and cosine of the mesh phase in the middle of the interval.
     pub mesh: [T; 2],
-    /// Mean deflection with everything taken out that was learnt [m].
+    /// Mean deflection less offset, skew and error maps [m].
     deflection: T,
-    /// Transmission error in its middle [m].
+    /// Transmission error in the middle of the interval [m].
     flank_shift: T,
     travel: Travel<T>,
-    /// The flank on which contact has settled.
+    /// Flank of settled contact.
     pub flank: Option<Flank>,
-    /// Transmission error that is not learnt yet, while the half-gap is not known [m].
+    /// Standard deviation of the transmission error while the half-gap is unknown; 0 afterwards [m].
     unlearnt: T,
 }
 
@@ -108,42 +110,41 @@ impl<T: Real> Reading<T> {
     }
 }
 
-/// What came of a period's learning.
+/// Outcome of a period's estimation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
-    /// Nothing that anyone else has to know.
+    /// Nothing that concerns other parts of the observer.
     Nothing,
-    /// What is known until the next interval has changed.
+    /// The values that hold until the next interval have changed.
     Concluded,
-    /// The teeth seem to have grown, or shafts to have turned against each other: the output encoder fails.
+    /// The teeth seem to have grown, or the shafts to have turned against each other: the output encoder fails.
     EncoderFails,
 }
 
 impl<T: Real, const P: usize> Learnt<T, P> {
-    /// Part of its change by which the mesh force over a few intervals follows an interval's [-]: a quarter, so that its
-    /// noise is that of seven of them.
+    /// Gain per interval of the filter for the steady mesh force [-]; its noise variance is that of a mean of seven
+    /// intervals.
     const STEADY: T = T::QUARTER;
 
-    /// Beyond this, a transmission error that is not learnt yet is learnt first, from rests whose flank nobody knows,
-    /// as a part of the half-gap [-]: it could hide a crossing; see [`TravelDetector::tells_rest`].
+    /// Deviation of the transmission error, over the half-gap, above which rests on an unknown flank update the
+    /// transmission error first [-]: the error could hide a crossing; see [`TravelDetector::tells_rest`].
     const HIDDEN: T = T::QUARTER;
 
-    /// Part that is left of the error maps' blur once they and the half-gap are known [-].
+    /// Remaining part of the error maps' blur once maps and half-gap are known [-].
     const BLUR_LEFT: T = T::EIGHTH;
 
-    /// Distance from a flank within which the gap may not be open any more, as a part of the half-gap [-]: teeth of a motor
-    /// that crosses in a moment land before the deflection says so.
+    /// Distance from a flank within which the gap may no longer be open, over the half-gap [-]: teeth of a fast
+    /// crossing land before the deflection shows it.
     const NEAR_FLANK: T = T::EIGHTH;
 
-    /// Part of the half-gap by which that of another place in the turn may differ [-]: worn gears vary by 30 %.
+    /// Largest variation of the half-gap around the turn, over the half-gap [-]: worn gears vary by 30 %.
     const VARIES: T = T::THREE_EIGHTHS;
 
-    /// Standard deviation of a half-gap that is another one here, over it [-]: with it the half-gap is not valid until a rest has shown
-    /// it, and the gap coordinate is.
+    /// Standard deviation added to a half-gap that differs at this place of the turn, over the half-gap [-]: the
+    /// half-gap becomes invalid until a rest has shown it, and the gap coordinate stays valid.
     const LOOSENED: T = T::EIGHTH;
 
-    /// What was designed.
-    /// An estimator whose largest parts have not taken their tables yet: a copy of them would not fit on a small stack.
+    /// Estimator whose largest parts have no tables yet: a copy of those parts would not fit on a small stack.
     #[inline(always)]
     pub fn unbegun(tables: &ObserverTables<T>) -> Self {
         Self {
@@ -165,29 +166,28 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         }
     }
 
-    /// Hands their tables to the parts that have not taken them yet.
+    /// Initialises the parts without tables.
     pub fn begin(&mut self, tables: &ObserverTables<T>) {
         self.learner.restart(&tables.learner);
         self.uncertainty.restart(tables, &self.learner);
     }
 
-    /// Half-gap [m] and compliance [m/N] as learnt so far.
+    /// Estimated half-gap [m] and compliance [m/N].
     pub fn shape(&self) -> [T; 2] {
         [self.learner.value(HALF_GAP), self.learner.value(COMPLIANCE)]
     }
 
-    /// Variance of the half-gap here, by how much it varies around the turn [m^2].
+    /// Variance of the half-gap at this place of the turn by its variation around the turn (O20) [m^2].
     pub fn variation(&self, tables: &ObserverTables<T>) -> T {
         self.places.variance(&tables.counts, self.learner.value(HALF_GAP))
     }
 
-    /// Transmission error at a mesh phase, given by sine and cosine [m].
+    /// Transmission error at a mesh phase given by sine and cosine [m].
     pub fn transmission_error(&self, mesh: &[T; 2]) -> T {
         mesh[0] * self.learner.value(ERROR) + mesh[1] * self.learner.value(ERROR + 1)
     }
 
-    /// Puts the two sides together: the deflection between motor and link with everything taken out that was learnt, and the
-    /// mesh force.
+    /// Combines motor and load side: deflection less offset, skew and maps (O7), and mesh force (O9).
     #[inline]
     pub fn fuse(
         &self,
@@ -204,7 +204,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         let lost = drive.taken * levers.per_sun;
         let direction = Bias::direction(&tables.contact, drive.speed);
         let net = lost - self.bias.at(direction);
-        // Losses in proportion to the load are friction too: they take from what drives and add to what holds back.
+        // Load-dependent losses are friction: they reduce the driving and increase the holding force.
         let loss = if net * direction > T::ZERO { tables.contact.loss_driving } else { tables.contact.loss_driven };
         let force = net + net * direction.abs() * loss;
         let rate = levers.sun * drive.speed - levers.output * load.speed;
@@ -214,13 +214,13 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         Fused { flank_shift, measured, deflection, rate, travel, lost, direction, force }
     }
 
-    /// Deflection that everything but the teeth makes now [m].
+    /// Deflection by offset, skew and error maps now [m].
     fn deflection_beside_teeth(&self, link_speed: T) -> T {
         let plain = self.learner.value(OFFSET) + self.learner.value(SKEW) * link_speed;
         if P == MAPPED { plain + self.errors.errors[0] + self.errors.errors[1] } else { plain }
     }
 
-    /// Where a deflection of the teeth is in the gap, and how far it goes on [m].
+    /// Position of a deflection in the gap, with the deflection's travel [m].
     pub fn position(&self, deflection: T, travel: T) -> ByPosition<T> {
         let [half_gap, _] = self.shape();
         let known = &self.uncertainty;
@@ -235,7 +235,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         }
     }
 
-    /// The output encoder has come back elsewhere: everything may be wrong, the rest that was remembered too.
+    /// Resets all variances and the last rest: the output encoder has returned at another offset.
     pub fn reopen(&mut self, tables: &ObserverTables<T>) {
         self.learner.reopen();
         self.weighed = None;
@@ -243,7 +243,8 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         self.find_uncertainty(tables, true);
     }
 
-    /// The output encoder was given up: back to what was trusted last, if that has been doubted since. Whether it was.
+    /// Restores the trusted parameters after an exclusion of the output encoder, if the half-gap has been doubted
+    /// since. Returns true if it restored them.
     pub fn return_to_trusted(&mut self, tables: &ObserverTables<T>) -> bool {
         let Some(trusted) = self.trusted.filter(|_| !self.consistency.is_trusted()) else { return false };
         trusted.restore(&mut self.learner);
@@ -253,7 +254,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         true
     }
 
-    /// The motor encoder has come back elsewhere.
+    /// Resets cogging, offset and motor map: the motor encoder has returned at another offset.
     pub fn doubt_motor(&mut self, tables: &ObserverTables<T>) {
         self.trusted = None;
         self.weighed = None;
@@ -262,12 +263,12 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         self.find_uncertainty(tables, true);
     }
 
-    /// An encoder was given up. After its return, forces are not learnt from until the loop has settled.
+    /// Pauses the estimation from forces after an exclusion, until the loop has settled after the return.
     pub fn lose_encoder(&mut self) {
         self.probation = PROBATION;
     }
 
-    /// Readings have broken off: what was being learnt from is discarded.
+    /// Discards the open interval and the last rest: readings have broken off.
     pub fn interrupt(&mut self) {
         self.interval = Interval::new();
         self.travel = TravelDetector::new();
@@ -276,8 +277,8 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         self.weighed = None;
     }
 
-    /// Finds exactly what the deflection depends on by where the shafts are: regressors of teeth that do not touch, and
-    /// sine and cosine of the mesh phase.
+    /// Computes exactly all position-dependent parts of the deflection: regressors of an open gap, and sine and cosine
+    /// of the mesh phase.
     pub fn find_errors(
         &mut self,
         tables: &ObserverTables<T>,
@@ -303,22 +304,22 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         self.interval.add(fused);
     }
 
-    /// Whether this period is the middle of the interval.
+    /// Returns true in the middle period of the interval.
     pub fn in_the_middle(&self, table: &LearnerTable<T>) -> bool {
         self.interval.periods == table.middle
     }
 
-    /// Whether this period is the last of the interval.
+    /// Returns true in the last period of the interval.
     pub fn at_the_end(&self, table: &LearnerTable<T>) -> bool {
         self.interval.periods >= table.periods
     }
 
-    /// Whether the last interval has left work to do.
+    /// Returns true while tasks of the last interval are left.
     pub fn has_work(&self) -> bool {
         self.interval.task != Task::Done
     }
 
-    /// The same in the middle of an interval: what is learnt from it was there.
+    /// Stores the position-dependent parts of the interval's middle, where its mean is valid.
     pub fn keep_errors(
         &mut self,
         tables: &ObserverTables<T>,
@@ -330,14 +331,15 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         (self.errors.free, self.errors.mesh_then) = self.find_errors(tables, sensors, filters, both_encoders);
     }
 
-    /// What the interval that ends now showed, at a motor speed [rad/s].
+    /// Evaluates the interval that ends now, at a motor speed [rad/s].
     pub fn read(&mut self, tables: &ObserverTables<T>, motor_speed: T, both_encoders: bool) -> Reading<T> {
         let mean = self.interval.close(tables.learner.per_periods);
         let mesh = self.errors.mesh_then;
         let deflection = mean.measured - self.learner.deflection(&self.errors.free);
         let [_, compliance] = self.shape();
         let turned = motor_speed.abs() * tables.learner.span;
-        // Until the half-gap is known, what is learnt of the transmission error hides no crossing; it is left in afterwards.
+        // Until the half-gap is known, the estimated transmission error is subtracted, so that it hides no crossing;
+        // afterwards it is left in.
         let (unlearnt, blur, known_shift) = if self.uncertainty.half_gap_is_known {
             (T::ZERO, tables.contact.still_per_speed * Self::BLUR_LEFT, T::ZERO)
         } else {
@@ -358,13 +360,13 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         Reading { mean, mesh, deflection, flank_shift, travel, flank, unlearnt }
     }
 
-    /// What an interval has to tell the flank by: a deflection of the teeth [m] and a force [N].
+    /// Evidence of an interval on the flank: a deflection of the teeth [m] and a force [N].
     fn signs(&self, deflection: T, force: T) -> Signs<'_, T> {
         let [_, compliance] = self.shape();
         Signs { uncertainty: &self.uncertainty, position: self.position(deflection, T::ZERO), force, compliance }
     }
 
-    /// Takes in an interval that was read, and begins the next.
+    /// Updates the estimates with an evaluated interval, and begins the next one.
     pub fn close(&mut self, tables: &ObserverTables<T>, reading: &Reading<T>, both_encoders: bool) -> Outcome {
         let Reading { mean, travel, .. } = reading;
         let deflection = reading.deflection - reading.flank_shift;
@@ -396,21 +398,21 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         if encoder_fails { Outcome::EncoderFails } else { Outcome::Nothing }
     }
 
-    /// Whether teeth rest in an interval so that it may be learnt from, and on which flank; the force rises by `rise` [N].
+    /// Decides if an interval is a rest that updates the parameters, and on which flank; the force rises by `rise` [N].
     fn rest(&mut self, tables: &ObserverTables<T>, reading: &Reading<T>, rise: T, both_encoders: bool) -> Rest {
         let [half_gap, _] = self.shape();
         let known = self.uncertainty.half_gap_is_known;
-        // Teeth at rest are on a flank while the motor turns, even if no force says on which. Where the transmission error
-        // could hide a crossing, it has to be learnt before that can be said of any rest.
+        // Teeth at rest while the motor turns are on a flank, even if no force shows which. While the transmission
+        // error could hide a crossing, this is not certain of any rest: the transmission error is estimated first.
         let wide = self.last_rest.co_motion().half_gap_at_least(half_gap);
         let rests_somewhere =
             rests(reading.travel) && !known && (reading.unlearnt > wide * Self::HIDDEN || self.travel.tells_rest(wide));
-        // A motor that stands still says the same again and again, rounded by its encoder, under a force that its friction
-        // hides: that is worth learning once on either flank.
+        // A stationary motor repeats one rounded reading under a force hidden by friction: this rest is used once on
+        // either flank.
         let turns = reading.mean.direction.abs() > T::HALF;
         let signs = self.signs(reading.deflection - reading.flank_shift, reading.mean.force);
         let loaded = flank::loaded(&signs, &self.interval, &tables.learner, rise);
-        // The first millisecond of a landing is not learnt from.
+        // The first millisecond of a landing is not used.
         let twice = loaded.filter(|_| loaded == self.interval.loaded);
         let told = reading.flank.or(twice);
         self.interval.loaded = loaded;
@@ -418,7 +420,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         if both_encoders && new && (told.is_some() || rests_somewhere) { Rest::On(told) } else { Rest::No }
     }
 
-    /// Whether there is force at rest between the flanks, bias and stiction aside, and how far from them.
+    /// Detects force at rest between the flanks beyond bias and stiction, and grades the distance from the flanks.
     fn force_between_flanks(&self, tables: &ObserverTables<T>, deflection: T, travel: Travel<T>) -> Option<Off> {
         let known = &self.uncertainty;
         let [half_gap, _] = self.shape();
@@ -429,7 +431,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         (between && rests(travel) && self.interval.steady.abs() > thrice).then_some(off)
     }
 
-    /// Reads the torque bias where the gap is open for sure.
+    /// Updates the torque bias (O16) while the gap is certainly open.
     fn learn_bias(&mut self, tables: &ObserverTables<T>, reading: &Reading<T>, deflection: T, both_encoders: bool) {
         let [half_gap, _] = self.shape();
         let known = self.uncertainty.half_gap_is_known;
@@ -448,15 +450,15 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         }
     }
 
-    /// Learns the motor's cogging, once an interval, from where the motor is in its turn [turns], how fast it turns [rad/s] and what
-    /// brakes the link [N m]; sine and cosine of the torque that drives, referred to the link [N m].
+    /// Updates the motor's cogging once per interval, from the motor's place in its turn [turns], its speed [rad/s] and
+    /// the load torque [N m]. Returns sine and cosine of the driving torque, referred to the link [N m].
     pub fn learn_cogging(&mut self, tables: &ObserverTables<T>, seen: [T; 3]) -> [T; 2] {
         let settled = self.interval.flank.filter(|_| self.uncertainty.settled && self.probation == 0);
         self.cogging.learn(&tables.cogging, seen, settled);
         self.cogging.torque()
     }
 
-    /// Does the next task that the last interval has left.
+    /// Does the next task of the last interval.
     pub fn work(&mut self, tables: &ObserverTables<T>, load: &mut LoadSide<T>, both_encoders: bool) -> Outcome {
         let mut outcome = Outcome::Nothing;
         self.interval.task = match self.interval.task {
@@ -494,7 +496,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         outcome
     }
 
-    /// On which flank teeth came to rest: by force, or by how they came there.
+    /// Determines the flank of a rest, by force or by the change of the deflection.
     fn tell_flank(&mut self, tables: &ObserverTables<T>) {
         let (regressors, deflection) = self.block.full();
         let mut flank = self.block.flank();
@@ -507,8 +509,8 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         self.block.tell(flank);
     }
 
-    /// On which flank teeth came to rest, by the deflection. Where that is not known, what the deflection depends on beside
-    /// the flank is to be learnt, if it is known at least that it is one.
+    /// Determines the flank of a rest by the deflection. If the flank stays unknown but the teeth certainly are on a
+    /// flank, the rest updates the parameters that do not depend on the flank.
     fn flank_without_force(
         &mut self,
         tables: &ObserverTables<T>,
@@ -519,8 +521,8 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         let innovation = self.last_rest.innovation(&tables.learner, &self.learner, regressors, deflection)?;
         let flank = self.last_rest.flank(&tables.learner, &innovation, regressors, half_gap, tables.levers.output);
         if self.travel.tells_rest(self.last_rest.co_motion().half_gap_at_least(half_gap)) {
-            // Teeth also turn round inside the gap, for a moment at rest: then nothing has stopped them; and they leave a
-            // flank slowly, at rest for a while: then they carry nothing any more.
+            // Teeth also reverse inside the gap, for a moment at rest: then the force of the whole rest shows no stop.
+            // Teeth also leave a flank slowly, at rest for a while: then the steady force has decayed.
             let force = if self.last_rest.was_on(flank) { self.interval.steady } else { self.interval.rested };
             let felt = sign::<T>(flank) * force > self.uncertainty.steady_force_deviation;
             let flank = if felt { flank } else { self.last_rest.co_motion().flank() };
@@ -534,7 +536,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         None
     }
 
-    /// Whether a rest on a flank belongs to the model: then it is to be learnt from.
+    /// Accepts a rest on a flank as a measurement, or rejects it as an outlier.
     fn weigh_rest(&mut self, tables: &ObserverTables<T>) -> Verdict {
         let table = &tables.learner;
         let [half_gap, _] = self.shape();
@@ -566,7 +568,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         Verdict::Keep
     }
 
-    /// Learns from the rest that was weighed last, if there is one.
+    /// Updates the parameters with the accepted rest, if any.
     fn learn_rest(&mut self, tables: &ObserverTables<T>) {
         let Some(innovation) = self.weighed.take() else { return };
         self.errors.relearn(&mut self.learner, |learner| learner.learn(&tables.learner, &innovation));
@@ -580,7 +582,7 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         }
     }
 
-    /// Forgets what a verdict says is wrong.
+    /// Applies a verdict: resets the variances of the parameters in doubt.
     fn obey(&mut self, tables: &ObserverTables<T>, verdict: Verdict) {
         match verdict {
             Verdict::Keep | Verdict::EncoderFails => {}
@@ -590,11 +592,11 @@ impl<T: Real, const P: usize> Learnt<T, P> {
         }
     }
 
-    /// How uncertain everything is after an interval.
+    /// Updates the variances after an interval.
     fn find_uncertainty(&mut self, tables: &ObserverTables<T>, both_encoders: bool) {
         let mut seen = self.errors.free;
         if let (Some(offset), false) = (seen.get_mut(OFFSET), both_encoders) {
-            // Without an output encoder there is no offset to be wrong.
+            // Without an output encoder the offset has no error.
             *offset = T::ZERO;
         }
         let touch = Touch { flank: Some(self.interval.nearer), force: T::ZERO, mesh: self.errors.mesh_then };

@@ -1,8 +1,8 @@
-//! How much the half-gap may be another one than where it was learnt. Gears vary around the turn, worn ones by 30 %, and a link that goes
-//! on while one flank carries shows nothing of that: what it sees it puts down to encoder errors and offset.
+//! Variation of the half-gap around the turn (O20): worn gears vary by 30 %. A link that turns while one flank carries
+//! does not reveal this variation, which is attributed to encoder errors and offset.
 //!
-//! Symbols: c half-gap, D angle of the link from where a flank was seen last, e what the first rest on that flank is off by when the teeth
-//! come back to it, less what noise and ignorance make of that.
+//! Symbols: c half-gap, D angle of the link since a flank was last seen, e^2 the squared innovation of the first rest
+//! after the return to that flank, less its variance.
 //!
 //! ```text
 //! v^2 = (V0^2 N0 + sum of (e/c)^2) / (N0 + sum of D^2)       variation of the half-gap for a radian (1)
@@ -13,34 +13,34 @@ use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::observer::tables::CountTable;
 
-/// Where each flank was seen last, and how much the half-gap has varied so far.
+/// Place of the last rest on each flank, and the observed variation of the half-gap.
 #[derive(Debug, Clone, Copy)]
 pub struct Places<T: Real> {
-    /// The link's place in its turn now [2^-32 turns].
+    /// Present place of the link in its turn [2^-32 turns].
     now: u32,
-    /// The same at the last rest on the drive flank and on the back flank.
+    /// Place of the last accepted rest on the drive flank and on the back flank [2^-32 turns].
     seen: [Option<u32>; 2],
-    /// The flank of the last rest.
+    /// Flank of the last rest.
     last: Option<Flank>,
-    /// Sums of (1): squares of variations [-], and of angles [rad^2].
+    /// Sums of (1): squared relative variations [-], and squared angles [rad^2].
     sums: [T; 2],
 }
 
 impl<T: Real> Places<T> {
-    /// Variation of the half-gap for a radian before any flank was seen again, over the half-gap [-]. A variation of 25 % once a turn changes by
-    /// that at its steepest. Tuned on `hil/real-any.toml`.
+    /// Initial relative variation of the half-gap per radian [-]: the steepest change of a variation of 25 % once per
+    /// turn. Tuned on `hil/real-any.toml`.
     const VARIATION: T = T::QUARTER;
 
-    /// Weight of that [rad^2].
+    /// Weight of the initial variation [rad^2].
     const WEIGHT: T = T::QUARTER;
 
-    /// Weight up to which is summed [rad^2]: gears wear.
+    /// Largest weight of the sums, which are halved beyond, as gears wear [rad^2].
     const MOST: T = T::SIX;
 
-    /// Angle from which on a rest tells of another place [rad].
+    /// Least angle after which a rest shows the variation [rad].
     const ELSEWHERE: T = T::QUARTER;
 
-    /// An angle beyond which places are alike far away [rad].
+    /// Angle beyond which the variance grows no further [rad].
     const FURTHEST: T = T::TWO;
 
     pub fn new() -> Self {
@@ -52,13 +52,13 @@ impl<T: Real> Places<T> {
         }
     }
 
-    /// The link's place in its turn [2^-32 turns].
+    /// Sets the link's place in its turn [2^-32 turns].
     pub fn go_to(&mut self, phase: u32) {
         self.now = phase;
     }
 
-    /// Takes a rest on a flank, the square of what it is off by with its variance [m^2], the half-gap [m], and whether it belongs to what was
-    /// learnt.
+    /// Updates the variation with a rest on a flank: its squared deviation with the variance expected [m^2], the
+    /// half-gap [m], and whether the rest was accepted.
     pub fn take(
         &mut self,
         table: &CountTable<T>,
@@ -87,7 +87,7 @@ impl<T: Real> Places<T> {
         }
     }
 
-    /// Variance of the half-gap here by how much it varies around the turn [m^2].
+    /// Variance of the half-gap at this place by its variation around the turn (2) [m^2].
     pub fn variance(&self, table: &CountTable<T>, half_gap: T) -> T {
         let [drive, back] = [Flank::Drive, Flank::Back].map(|flank| self.angle(table, flank));
         let angle = if drive > back { drive } else { back };
@@ -96,7 +96,7 @@ impl<T: Real> Places<T> {
         squares.over(angles) * deviation * deviation
     }
 
-    /// Angle of the link from where a flank was seen last; none where it was not [rad].
+    /// Angle of the link since a flank was last seen; 0 for a flank never seen [rad].
     fn angle(&self, table: &CountTable<T>, flank: Flank) -> T {
         let [drive, back] = self.seen;
         let Some(seen) = (if flank == Flank::Drive { drive } else { back }) else { return T::ZERO };

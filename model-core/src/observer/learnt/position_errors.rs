@@ -1,33 +1,33 @@
-//! What the deflection depends on by where the shafts are: the encoders' error maps and the gears' transmission error.
-//! Found exactly once an interval, and by slopes in between, for sines are too dear for every period.
+//! Position-dependent parts of the deflection: the encoders' error maps and the transmission error. Computed exactly
+//! once per interval and by slopes in between, as sines cost too much for every period.
 
 use super::learner::Learner;
 use super::regressors::{MAP, MAPPED, PLAIN, Regressors};
 use crate::numbers::Real;
 
-/// What depends on where the shafts are.
+/// Position-dependent parts of the deflection.
 #[derive(Debug, Clone, Copy)]
 pub struct PositionErrors<T: Real, const P: usize> {
-    /// Regressors of teeth that do not touch, in the middle of the interval.
+    /// Regressors of an open gap, in the middle of the interval.
     pub free: Regressors<T, P>,
-    /// Sine and cosine of the mesh phase then.
+    /// Sine and cosine of the mesh phase in the middle of the interval.
     pub mesh_then: [T; 2],
-    /// The same now.
+    /// Sine and cosine of the mesh phase now.
     pub mesh: [T; 2],
-    /// What the errors of motor and output encoder add to the deflection now [m].
+    /// Deflection by the errors of motor and output encoder now [m].
     pub errors: [T; 2],
-    /// What a radian of motor and output adds to that [m/rad].
+    /// Change of these errors per radian of motor and output [m/rad].
     slopes: [T; 2],
-    /// How far motor and mesh phase have turned since they were found exactly [rad].
+    /// Turn of motor and mesh phase since the last exact computation [rad].
     turned: T,
 }
 
 impl<T: Real, const P: usize> PositionErrors<T, P> {
-    /// Turn of motor and mesh phase beyond which slopes are too far off [rad]: at a quarter of a radian the error maps'
-    /// second harmonic, at twice the angle, is off by an eighth of itself.
+    /// Turn of motor and mesh phase up to which slopes are used [rad]: at a quarter of a radian the error maps' second
+    /// harmonic, at twice the angle, is off by an eighth of itself.
     const FAR: T = T::QUARTER;
 
-    /// A constant, so that the compiler writes it to its place instead of copying one from the stack.
+    /// A constant: the compiler writes it in place instead of copying from the stack.
     const NEW: Self = Self {
         free: [T::ZERO; P],
         mesh_then: [T::ZERO, T::ONE],
@@ -42,15 +42,15 @@ impl<T: Real, const P: usize> PositionErrors<T, P> {
         Self::NEW
     }
 
-    /// Both shafts have turned by so much [rad], with so many mesh periods in a turn of the output. True when that was too
-    /// far for slopes.
+    /// Advances the errors by the turn of both shafts [rad]; `meshes` is the number of mesh periods per output turn.
+    /// Returns true once the turn is too far for slopes.
     pub fn go_on(&mut self, motor: T, output: T, meshes: T) -> bool {
         if P == MAPPED {
             let [of_motor, of_output] = &mut self.errors;
             *of_motor += self.slopes[0] * motor;
             *of_output += self.slopes[1] * output;
         }
-        // Turned in two halves, each by the newest of the other: the amplitude stays.
+        // Each half of the rotation uses the newest value of the other component, which keeps the amplitude.
         let angle = meshes * output;
         let [sine, cosine] = &mut self.mesh;
         *sine += *cosine * angle;
@@ -59,7 +59,7 @@ impl<T: Real, const P: usize> PositionErrors<T, P> {
         self.turned > Self::FAR
     }
 
-    /// What the encoders' errors add to the deflection, at the regressors.
+    /// Deflection by the encoders' errors at given regressors [m].
     fn errors_of(learner: &Learner<T, P>, free: &Regressors<T, P>) -> [T; 2] {
         [PLAIN, PLAIN + MAP].map(|from| {
             let values = learner.values.iter().skip(from).take(MAP);
@@ -67,7 +67,7 @@ impl<T: Real, const P: usize> PositionErrors<T, P> {
         })
     }
 
-    /// Does something to the learner, and follows it.
+    /// Changes the learner and adjusts the errors to its new parameters.
     pub fn relearn(&mut self, learner: &mut Learner<T, P>, work: impl FnOnce(&mut Learner<T, P>)) {
         if P != MAPPED {
             return work(learner);
@@ -80,7 +80,7 @@ impl<T: Real, const P: usize> PositionErrors<T, P> {
         }
     }
 
-    /// Takes errors that were found exactly.
+    /// Takes over an exact computation.
     pub fn put(&mut self, learner: &Learner<T, P>, free: &Regressors<T, P>, mesh: [T; 2]) {
         self.mesh = mesh;
         self.turned = T::ZERO;

@@ -1,35 +1,35 @@
-//! What the deflection between motor and link depends on: teeth that touch, offset, skew and the encoders' errors once
-//! and twice a turn. The learner estimates how much of each there is.
+//! Regressors of the deflection (O11): touching teeth, offset, skew, and encoder errors once and twice per turn. The
+//! learner estimates their coefficients.
 
 use crate::gears::{Flank, sign};
 use crate::numbers::Real;
 use crate::numbers::phase::sine_cosine;
 
-/// Parameters learnt when the encoders count as free of harmonics: half-gap, offset, compliance, skew, and sine and cosine
-/// of the gears' transmission error.
+/// Number of parameters without error maps: half-gap, offset, compliance, skew, and sine and cosine of the transmission
+/// error.
 pub const PLAIN: usize = 6;
 
-/// Parameters learnt with the error maps: the plain ones, then sine and cosine once and twice a turn of the motor, once
-/// and twice a turn of the output.
+/// Number of parameters with error maps: those of `PLAIN`, then sine and cosine once and twice per turn of the motor,
+/// then of the output.
 pub const MAPPED: usize = PLAIN + 8;
 
-/// What the deflection depends on, one for each parameter.
+/// Regressors, one for each parameter.
 pub type Regressors<T, const P: usize> = [T; P];
 
-/// Where the half-gap stands among the parameters.
+/// Index of the half-gap.
 pub const HALF_GAP: usize = 0;
-/// The offset.
+/// Index of the offset.
 pub const OFFSET: usize = 1;
-/// The compliance.
+/// Index of the compliance.
 pub const COMPLIANCE: usize = 2;
-/// The skew.
+/// Index of the skew.
 pub const SKEW: usize = 3;
-/// Sine and cosine of the transmission error.
+/// Index of the transmission error's sine; the cosine follows.
 pub const ERROR: usize = 4;
-/// Entries that an encoder has in the map.
+/// Parameters of an encoder's error map.
 pub const MAP: usize = 4;
 
-/// Regressors of teeth that do not touch; phases in 2^-32 turns. Without an output encoder its own are zero.
+/// Regressors of an open gap; phases in 2^-32 turns. Without an output encoder the regressors of its map are zero.
 pub fn free<T: Real, const P: usize>(link_speed: T, motor: u32, output: Option<u32>) -> Regressors<T, P> {
     let mut regressors = [T::ZERO; P];
     if let [_, offset, _, skew, ..] = regressors.as_mut_slice() {
@@ -47,10 +47,10 @@ pub fn free<T: Real, const P: usize>(link_speed: T, motor: u32, output: Option<u
     regressors
 }
 
-/// What touching teeth add: flank, force, sine and cosine of the mesh phase.
+/// Regressors of touching teeth: flank, force, sine and cosine of the mesh phase.
 #[derive(Debug, Clone, Copy)]
 pub struct Touch<T: Real> {
-    /// The flank, if it is known.
+    /// Flank, if known.
     pub flank: Option<Flank>,
     /// Mesh force [N].
     pub force: T,
@@ -59,10 +59,10 @@ pub struct Touch<T: Real> {
 }
 
 impl<T: Real> Touch<T> {
-    /// Teeth that do not touch.
+    /// Open gap.
     pub const NONE: Self = Self { flank: None, force: T::ZERO, mesh: [T::ZERO; 2] };
 
-    /// Regressors with this added.
+    /// Adds touching teeth to the regressors of an open gap.
     pub fn on<const P: usize>(&self, free: &Regressors<T, P>) -> Regressors<T, P> {
         let mut regressors = *free;
         if let [half_gap, _, compliance, _, sine, cosine, ..] = regressors.as_mut_slice() {

@@ -1,46 +1,46 @@
-//! Whether the teeth are on their way through the gap or at rest on a flank, from how the deflection less the wind-up
-//! moves: needs neither half-gap nor error map, so it is what learning begins with. Which flank it is, the force says.
+//! Detection of rest on a flank and of crossings, from the change of the deflection less wind-up. The detection needs
+//! neither half-gap nor error map and is therefore the first step of the estimation. The flank follows from the force.
 
 use crate::numbers::Real;
 use crate::observer::tables::ContactTable;
 
-/// Learning intervals over which the speed is taken.
+/// Learning intervals over which the speed is measured.
 const WINDOW: usize = 8;
 
-/// Parts into which a direction from -1 to 1 is rounded: far finer than noise leaves it.
+/// Resolution of a direction from -1 to 1: far finer than its noise.
 const FINE: i32 = 64;
 
-/// A few intervals of deflection less wind-up, and of force with direction.
+/// Deflection less wind-up, force and direction of the last few intervals.
 #[derive(Debug, Clone, Copy)]
 pub struct TravelDetector<T: Real> {
     deflections: [T; WINDOW + 1],
     forces: [T; WINDOW + 1],
     /// Directions of the motor's dry friction, in parts of [`FINE`].
     directions: [i8; WINDOW + 1],
-    /// Where the newest of them is.
+    /// Index of the newest entry.
     at: u8,
     known: u8,
     still_for: u8,
-    /// Deflection over the window below which nothing was seen to move [m].
+    /// Change of the deflection over the window below which no motion is detected [m].
     limit: T,
 }
 
-/// What an interval showed.
+/// Travel of the teeth in an interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Travel<T: Real> {
-    /// At rest for so many intervals.
+    /// At rest for this number of intervals.
     AtRest(u8),
-    /// Through the gap half a window ago; force [N] and direction of friction then.
+    /// Crossing of the gap half a window ago; force [N] and direction of friction at that time.
     Crossing(T, T),
-    /// Neither for sure.
+    /// Neither rest nor crossing is certain.
     Undecided,
 }
 
 impl<T: Real> TravelDetector<T> {
-    /// Part of the half-gap that noise may hide in a window of rest [-].
+    /// Largest motion hidden by noise in a window of rest, over the half-gap [-].
     const HIDDEN: T = T::QUARTER;
 
-    /// A constant, so that the compiler writes it to its place instead of copying one from the stack.
+    /// A constant: the compiler writes it in place instead of copying from the stack.
     const NEW: Self = Self {
         deflections: [T::ZERO; WINDOW + 1],
         forces: [T::ZERO; WINDOW + 1],
@@ -56,9 +56,9 @@ impl<T: Real> TravelDetector<T> {
         Self::NEW
     }
 
-    /// Takes in one interval: deflection less wind-up [m], and force [N] with direction. `blur` is what error maps that
-    /// are unknown can make of the motor's turning in an interval [m], and `softness` by how much the compliance may be
-    /// wrong [m/N].
+    /// Judges an interval by deflection less wind-up [m], and force [N] with direction. `blur` is the deflection that
+    /// unknown error maps can cause as the motor turns in an interval [m], `softness` the uncertainty of the compliance
+    /// [m/N].
     pub fn step(
         &mut self,
         table: &ContactTable<T>,
@@ -101,13 +101,13 @@ impl<T: Real> TravelDetector<T> {
         }
     }
 
-    /// Where that of some intervals ago is.
+    /// Index of the entry some intervals ago.
     fn ago(&self, intervals: usize) -> usize {
         let at = usize::from(self.at);
         if at >= intervals { at - intervals } else { at + WINDOW + 1 - intervals }
     }
 
-    /// Whether standing still tells rest from a slow crossing of a gap: what noise hides is a small part of the half-gap, so nothing as wide could have gone by in a window.
+    /// Returns true if rest differs from a slow crossing: noise hides only a small part of the half-gap in a window.
     pub fn tells_rest(&self, half_gap: T) -> bool {
         self.limit < half_gap * Self::HIDDEN
     }

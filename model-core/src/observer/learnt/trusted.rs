@@ -1,29 +1,30 @@
-//! What was learnt for sure: where everything goes back to when the output encoder is given up after it has spoilt what was
-//! learnt. Without that, a link that nobody sees would be led by a half-gap and an offset that a failing encoder made up.
+//! Last trusted parameters, restored if the output encoder is excluded after it has corrupted the estimates. Otherwise
+//! half-gap and offset from a failing encoder would determine the unobserved link's position.
 
 use super::learner::Learner;
 use super::regressors::{HALF_GAP, OFFSET};
 use crate::numbers::Real;
 
-/// What leads a link that is not seen.
+/// Parameters that determine the position of an unobserved link.
 const LEADS: [usize; 2] = [HALF_GAP, OFFSET];
 
-/// What was learnt when the half-gap was trusted last.
+/// Parameters when the half-gap was last trusted.
 #[derive(Debug, Clone, Copy)]
 pub struct Trusted<T: Real, const P: usize> {
-    /// Parameters, in SI.
+    /// Values [SI].
     values: [T; P],
-    /// Variances of half-gap and offset over those beforehand [-].
+    /// Variances of half-gap and offset over their initial variances [-].
     variances: [T; 2],
 }
 
 impl<T: Real, const P: usize> Trusted<T, P> {
-    /// What is learnt now.
+    /// Copies the present parameters.
     pub fn of(learner: &Learner<T, P>) -> Self {
         Self { values: learner.values, variances: LEADS.map(|parameter| learner.relative_variance(parameter)) }
     }
 
-    /// Back to it: how sure everything else was nobody remembers.
+    /// Restores the parameters. The variances of all parameters but half-gap and offset are reset, as no copy of them
+    /// exists.
     pub fn restore(&self, learner: &mut Learner<T, P>) {
         learner.values = self.values;
         learner.reopen();

@@ -1,5 +1,5 @@
-//! How uncertain everything is that was learnt: variances and what follows from them, brought up to date a part an
-//! interval, so that no period has to do it all.
+//! Variances of all estimates and the thresholds that follow from them (O13, O18, O19), updated in parts, one per
+//! interval, so that no period has to do all the work.
 
 use super::bias::Bias;
 use super::learner::Learner;
@@ -8,83 +8,85 @@ use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::observer::tables::ObserverTables;
 
-/// Parts in which variances are brought up to date.
+/// Parts of an update.
 const PARTS: u8 = 4;
 
-/// What holds from the end of an interval until the next.
+/// Variances and thresholds that hold from the end of an interval until the next.
 #[derive(Debug, Clone, Copy)]
 pub struct Uncertainty<T: Real> {
     /// Standard deviation of the mesh force from the motor side [N].
     pub force_deviation: T,
-    /// The same over an interval.
+    /// Standard deviation of the mesh force averaged over an interval [N].
     pub mean_force_deviation: T,
-    /// The same over the few intervals that contact takes to settle.
+    /// Standard deviation of the mesh force averaged over the few intervals in which contact settles [N].
     pub steady_force_deviation: T,
-    /// The same with the deflection's help.
+    /// Standard deviation of the mesh force from motor side and deflection [N].
     pub both_deviation: T,
-    /// Variance of the deflection with everything taken out that was learnt [m^2].
+    /// Variance of the deflection less offset, skew and maps [m^2].
     pub deflection_variance: T,
     /// Standard deviation of the deflection less the nearer edge [m].
     pub edge_deviation: T,
-    /// Variance of everything that was learnt from forces, by what stays wrong of them, bias and ripple as wind-up: of the
-    /// deflection, and of a flank, whose distance from the other is free of bias [m^2].
+    /// Variance by the errors of force that no mean removes, as wind-up, from bias, friction and ripple: of the
+    /// deflection, and of a flank, whose distance from the other flank is free of bias [m^2].
     pub wind_up_variance: [T; 2],
     /// Variances of half-gap [m^2], offset [m^2], compliance [m^2/N^2] and skew [m^2 s^2].
     pub variances: [T; 4],
-    /// Distance from an edge that noise and ignorance can make [m].
+    /// Two standard deviations of a deflection's distance from an edge [m].
     pub blur: T,
     /// Distance from an edge within which teeth that come across the gap count as touching [m].
     pub near: T,
-    /// Weight of the deflection beside the motor side in the mesh force [-].
+    /// Weight of the deflection against the motor side in the mesh force [-].
     pub position_weight: T,
-    /// Whether positions decide about contact that is learnt from.
+    /// True if positions decide about contact that updates the parameters.
     pub half_gap_is_known: bool,
-    /// Whether they decide about contact that is reported.
+    /// True if positions decide about reported contact.
     pub half_gap_serves: bool,
     /// 1 over the compliance [N/m].
     pub stiffness: T,
-    /// Part of the compliance that the meshes have.
+    /// Share of the meshes in the compliance [-].
     pub mesh_share: T,
-    /// By how much the compliance may be wrong: two standard deviations [m/N].
+    /// Two standard deviations of the compliance [m/N].
     pub softness: T,
-    /// As wide as the guess lets the half-gap be, until it has been seen on both flanks for long: what was learnt of a gap by one
-    /// flank, or by counts wider than the gap, may be sure and wrong. Zero from then on [m].
+    /// Guess of the half-gap plus three standard deviations; zero once the half-gap has been trusted on both flanks
+    /// [m]. A half-gap estimated on one flank, or with counts wider than the gap, may be wrong in spite of a small
+    /// variance.
     pub guessed_half_gap: T,
-    /// Furthest from the middle of the gap that the deflection can be without wind-up [m].
+    /// Largest distance of the deflection from the middle of the gap without wind-up [m].
     pub reach: T,
-    /// Variance of the gap coordinate while teeth touch, and while they do not [m^2].
+    /// Variance of the gap coordinate while teeth touch (O19), and in the open gap (O18) [m^2].
     pub gap_variance: [T; 2],
-    /// The largest with which it is valid; zero without a half-gap, and in a gap narrower than a count [m^2].
+    /// Largest variance of a valid gap coordinate; zero without a half-gap, and in a gap narrower than a count [m^2].
     pub widest_variance: T,
-    /// Whether the transmission error shifts a flank over the middle of the gap.
+    /// True if the transmission error shifts a flank over the middle of the gap.
     pub flanks_swap: bool,
-    /// The last interval was in settled contact.
+    /// True if the last interval was in settled contact.
     pub settled: bool,
-    /// Standard deviation of a rest's noise over that of the encoders' noise, at least 1 [-]. Effects that the model lacks count as noise.
+    /// Standard deviation of a rest's noise over the standard deviation of the encoders' noise, at least 1 (O13) [-].
+    /// Effects outside the model count as noise.
     pub rest_deviation: T,
-    /// Mean of the normalised innovations of rests, positive where the rests show a wider gap [-].
+    /// Mean normalised innovation of rests, positive if the rests show a wider gap [-].
     half_gap_error: T,
-    /// What comes next.
+    /// Part that is updated next.
     turn: u8,
 }
 
 impl<T: Real> Uncertainty<T> {
-    /// Part of an interval's noise that the steady force has, as a variance [-]: an average that follows by a quarter has
-    /// 1/7, less what intervals next to each other share.
+    /// Variance of the steady force's noise over the variance of an interval's noise [-]: a filter with a gain of a
+    /// quarter has 1/7, reduced by the correlation of neighbouring intervals.
     const STEADY_NOISE: T = T::EIGHTH;
 
-    /// Largest distance from a flank within which teeth count as touching, as a part of the half-gap [-]: what the gap
-    /// coordinate may be off by and still be worth compensating.
+    /// Largest distance from a flank within which teeth count as touching, over the half-gap [-]: an error of the gap
+    /// coordinate that still permits compensation.
     const NEAREST: T = T::TWENTIETH;
 
-    /// Share of a rest in the mean over rests [-].
+    /// Weight of a rest in the mean over rests [-].
     const OF_A_REST: T = T::TWENTIETH;
 
-    /// Mean normalised innovation beyond which the half-gap has changed [-]. Derived: the mean over rests of independent noise has a standard
-    /// deviation of sqrt(share / (2 - share)) = 0.16, so that 1 is six of them.
+    /// Mean normalised innovation above which the half-gap has changed [-]. Derived: the mean over rests of independent
+    /// noise has a standard deviation of sqrt(share / (2 - share)) = 0.16, so that 1 is six of them.
     const HALF_GAP_CHANGED: T = T::ONE;
 
-    /// An uncertainty that has not taken its tables yet.
+    /// Returns an uncertainty without its tables.
     #[inline(always)]
     pub fn unbegun() -> Self {
         Self {
@@ -116,7 +118,7 @@ impl<T: Real> Uncertainty<T> {
         }
     }
 
-    /// Back to what holds before anything is learnt.
+    /// Resets to the state before any estimation.
     pub fn restart<const P: usize>(&mut self, tables: &ObserverTables<T>, learner: &Learner<T, P>) {
         *self = Self::unbegun();
         let free = regressors::free(T::ZERO, 0, Some(0));
@@ -128,13 +130,13 @@ impl<T: Real> Uncertainty<T> {
         self.of_learnt(tables, learner, false);
     }
 
-    /// How well the motor side knows the mesh force.
+    /// Updates the variances of the mesh force from the motor side.
     pub fn of_force(&mut self, tables: &ObserverTables<T>, bias: &Bias<T>, compliance: T, direction: T) {
         let contact = &tables.contact;
         let known = bias.variance_at(direction) + contact.ripple_variance;
         let ripple = T::HALF * contact.ripple_variance;
         let [_, friction, _] = bias.variance;
-        // What of the force's variance no mean takes away, with bias and without.
+        // Variance of the force that no mean removes, with and without bias.
         let lasting = [bias.variance_at(direction) + ripple, direction * direction * friction * T::HALF + ripple];
         self.wind_up_variance = lasting.map(|force| force * compliance * compliance);
         self.force_deviation = (known + contact.force_variance).square_root();
@@ -143,11 +145,13 @@ impl<T: Real> Uncertainty<T> {
         self.mean_force_deviation = (known + contact.force_variance * tables.learner.per_periods).square_root();
     }
 
-    /// Updates the noise of rests and the half-gap's error by a rest on a flank that was learnt from: its innovation v and the variance of v.
+    /// Updates the noise of rests and the error of the half-gap with an accepted rest on a flank: its innovation v and
+    /// the variance of v.
     ///
-    /// With n = v^2 / variance, the standard deviation r of a rest's noise follows r' = max(1, r (1 + share (n - 1) / 2)), so that n is 1 in the
-    /// mean (covariance matching: R. K. Mehra, *On the identification of variances and adaptive Kalman filtering*, IEEE Transactions on
-    /// Automatic Control 15(2), 1970). Outliers are not learnt from and leave r as it is: the joint has changed, or its encoder fails.
+    /// With n = v^2 / variance, the standard deviation r of a rest's noise follows r' = max(1, r (1 + share (n - 1) /
+    /// 2)) (O13), so that n is 1 in the mean (covariance matching: R. K. Mehra, *On the identification of variances and
+    /// adaptive Kalman filtering*, IEEE Transactions on Automatic Control 15(2), 1970). Outliers leave r unchanged: the
+    /// joint has changed, or its encoder fails.
     pub fn take_innovation(&mut self, innovation: T, variance: T, flank: Flank) {
         let square = (innovation * innovation).over(variance);
         let grown = self.rest_deviation * (T::ONE + T::HALF * Self::OF_A_REST * (square - T::ONE));
@@ -157,7 +161,8 @@ impl<T: Real> Uncertainty<T> {
         self.half_gap_error += Self::OF_A_REST * (wider - self.half_gap_error);
     }
 
-    /// Returns true once rests on both flanks have shown that the half-gap has changed; the mean of their innovations then begins anew.
+    /// Returns true once the mean innovation of rests shows a changed half-gap; the mean then begins anew. Offset
+    /// errors cancel between the flanks.
     pub fn detect_half_gap_change(&mut self) -> bool {
         let changed = self.half_gap_error.abs() > Self::HALF_GAP_CHANGED;
         if changed {
@@ -166,7 +171,7 @@ impl<T: Real> Uncertainty<T> {
         changed
     }
 
-    /// The next part of what the learner knows.
+    /// Updates the next part of the variances.
     pub fn next<const P: usize>(
         &mut self,
         tables: &ObserverTables<T>,
@@ -193,7 +198,7 @@ impl<T: Real> Uncertainty<T> {
         self.turn = if self.turn + 1 < PARTS { self.turn + 1 } else { 0 };
     }
 
-    /// What follows from how well the nearer edge is known.
+    /// Updates the thresholds that depend on the variance of the nearer edge.
     fn of_edge<const P: usize>(&mut self, tables: &ObserverTables<T>, learner: &Learner<T, P>, variance: T) {
         self.edge_deviation = variance.square_root();
         let edge = variance + tables.contact.deflection_variance;
@@ -207,13 +212,15 @@ impl<T: Real> Uncertainty<T> {
         let half_gap = learner.value(HALF_GAP);
         let part = half_gap * tables.contact.known_part;
         self.half_gap_is_known = half_gap > T::ZERO && variance < part * part;
-        // Once known it serves as long as it can: a place in the turn that the maps have not seen yet is no new joint.
+        // A known half-gap serves up to three times the deviation: a place in the turn outside the known maps is no new
+        // joint.
         let thrice = T::THREE * part;
         self.half_gap_serves =
             self.half_gap_is_known || self.half_gap_serves && half_gap > T::ZERO && variance < thrice * thrice;
     }
 
-    /// What follows for every period until the next interval; `trusted` is whether a half-gap was ever seen on both flanks for long.
+    /// Updates the values that hold in every period until the next interval; `trusted` is true once a half-gap was
+    /// trusted on both flanks.
     pub fn of_learnt<const P: usize>(&mut self, tables: &ObserverTables<T>, learner: &Learner<T, P>, trusted: bool) {
         let (half_gap, compliance) = (learner.value(HALF_GAP), learner.value(COMPLIANCE));
         let [_, _, compliance_variance, _] = self.variances;
@@ -222,19 +229,20 @@ impl<T: Real> Uncertainty<T> {
         self.softness = T::TWO * compliance_variance.square_root();
         let [guess, deviation] = [tables.learner.mean[HALF_GAP], tables.learner.deviation[HALF_GAP]];
         self.guessed_half_gap = if trusted { T::ZERO } else { guess + T::THREE * deviation };
-        // What is rounded is off by anything up to that alike.
+        // A rounding error is uniform within plus or minus `rounding`.
         let rounding = tables.rounding();
         let edge = self.edge_deviation * self.edge_deviation + T::THIRD * rounding * rounding;
         let [by_learnt, by_guess] =
             [half_gap + T::THREE * edge.square_root(), self.guessed_half_gap + T::TWO * rounding];
         self.reach = tables.supervisor.margin + if by_guess > by_learnt { by_guess } else { by_learnt };
         let widest = T::TWO * half_gap * tables.supervisor.widest_part;
-        // In a gap narrower than a count of the output encoder nobody can tell where the teeth are.
+        // In a gap narrower than an output count the position of the teeth cannot be observed.
         self.widest_variance = if half_gap > rounding { widest * widest } else { T::ZERO };
         let [sine, cosine] = [learner.value(ERROR), learner.value(ERROR + 1)];
         let error = (sine * sine + cosine * cosine).square_root();
         self.flanks_swap = error > half_gap;
-        // The planets' errors differ: some teeth meet before the others, by half of it on the mean, and noise hides when.
+        // The planets' errors differ: some teeth meet earlier by half of the error on average, and noise hides the
+        // moment.
         let (first, most) = (self.blur + T::HALF * error, Self::NEAREST * half_gap);
         self.near = if first < most { first } else { most };
     }

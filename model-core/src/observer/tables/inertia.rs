@@ -1,36 +1,36 @@
-//! What learning the link's inertia needs as plain numbers.
+//! Constants of the estimation of the link's inertia (O6).
 
 use crate::numbers::Real;
 
-/// The link's inertia. A learning interval is a few control periods.
+/// Link inertia. A learning interval is a few control periods.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct InertiaTable<T: Real> {
     /// 1 over the control periods of an interval.
     pub per_periods: T,
-    /// The load side over an interval, while the link stands still: angle, speed and torque then, each from the three
-    /// before and from the torque of the meshes.
+    /// Load filter over an interval with a stationary link: each row gives angle, speed and torque at the end from
+    /// angle, speed and torque at the beginning and from the mesh torque.
     pub still: [[T; 4]; 3],
-    /// Part of its change in an interval by which the slow part of a torque follows [-].
+    /// Gain per interval of the filter for the slow part of a torque [-].
     pub slow: T,
-    /// Speed beyond which the link turns for sure [rad/s].
+    /// Speed above which the link certainly turns [rad/s].
     pub moving: T,
-    /// Intervals after which everything slow has forgotten that the link turned round.
+    /// Intervals after a reversal until all slow parts have settled.
     pub settled_after: u32,
-    /// Fast torque below which nothing is learnt [N m].
+    /// Least fast torque that updates the estimate [N m].
     pub least: T,
-    /// Variance of the answer that one interval shows, all that repeats from interval to interval included [N^2 m^2].
+    /// Variance of the response in one interval, inflated for correlation between intervals [N^2 m^2].
     pub noise: T,
-    /// Mean square of the answer without a force, beyond which nothing is learnt [N^2 m^2].
+    /// Mean square of the response without a force above which the estimate is not updated [N^2 m^2].
     pub most_restless: T,
-    /// Part of its change in an interval by which that mean follows [-].
+    /// Gain per interval of the filter for this mean square [-].
     pub memory: T,
-    /// Variance of the mobility beforehand [-].
+    /// Initial variance of the mobility [-].
     pub prior: T,
-    /// The mobility is never further from 1 than this [-].
+    /// Largest deviation of the mobility from 1 [-].
     pub limit: T,
-    /// Part of its square below which the ratio's variance counts as known [-].
+    /// Variance of the ratio over its square below which the ratio counts as known [-].
     pub known: T,
-    /// Growth of the variance in an interval.
+    /// Growth of the variance in an interval [-].
     pub drift: T,
 }

@@ -1,37 +1,37 @@
-//! What the width probe needs as plain numbers, made by `observer::design`. The observer's own are next door.
+//! Constants of the width probe (O28), made by `observer::design`.
 
 use crate::numbers::Real;
 
-/// The width probe.
+/// Width probe.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct ProbeTable<T: Real> {
-    /// Single torque; the probe goes up to twice that [N m].
+    /// Single torque; the probe also commands twice this torque [N m].
     pub torque: T,
-    /// Part of the lacking torque that is made good in a period [-].
+    /// Part of the missing torque that is added in a period [-].
     pub rise: T,
-    /// Torque for each rad/s of the motor that softens landings [N m s/rad].
+    /// Damping that softens landings: torque per motor speed [N m s/rad].
     pub damping: T,
-    /// Motor speed above which it is not at rest [rad/s].
+    /// Motor speed above which the motor is not at rest [rad/s].
     pub moving: T,
-    /// Mesh torque at the carrier above which the load is not off [N m].
+    /// Mesh torque at the carrier above which the link is loaded [N m].
     pub loaded: T,
-    /// Motor angle that teeth and wind-up cannot allow [rad].
+    /// Motor angle beyond teeth and wind-up, at which the probe ends [rad].
     pub furthest: T,
-    /// Periods after which the probe gives up.
+    /// Periods after which the probe ends without a result.
     pub longest: u32,
-    /// Periods that a torque is given to settle.
+    /// Settling time of a torque [periods].
     pub settle: u32,
-    /// Periods at rest over which an angle is taken.
+    /// Periods at rest over which an angle is averaged.
     pub still: u32,
-    /// 1 over them.
+    /// 1 over `still`.
     pub per_still: T,
     /// A turn [rad].
     pub turn: T,
-    /// Way along the line of action in a radian of the motor [m].
+    /// Deflection along the line of action per radian of the motor [m].
     pub deflection: T,
-    /// Way between the flanks below which nothing has moved [m].
+    /// Distance between the flanks below which nothing has moved [m].
     pub least: T,
-    /// Variance of the deflection between the flanks [m^2].
+    /// Variance of the measured distance between the flanks [m^2].
     pub variance: T,
 }

@@ -1,4 +1,4 @@
-//! What is believed of a parameter, and what is not.
+//! Limits of the estimated parameters, and variances after a reset.
 
 use super::super::regressors::{COMPLIANCE, HALF_GAP, OFFSET, PLAIN};
 use super::{FURTHEST, Learner};
@@ -59,7 +59,7 @@ fn what_can_be_is_believed() {
 
 #[test]
 fn half_gap_keeps_its_variance_without_places() {
-    // One flank alone shows the sum of half-gap and offset: each of them stays half unknown.
+    // A single flank shows the sum of half-gap and offset: half of either variance remains.
     let table = table();
     let mut learner = Learner::<f32, PLAIN>::unbegun();
     learner.restart(&table);

@@ -1,4 +1,4 @@
-//! From which control rate on, and up to which bandwidth, a joint can be controlled.
+//! Limits of bandwidth and control rate of a joint (K25).
 //!
 //! While the gap is open, plain control holds the motor alone by gains that are made for motor and link together. With
 //! the motor's inertia J_m, that of both J, the bandwidth w, the damper D on the motor ([`damping_on_motor`]), the current

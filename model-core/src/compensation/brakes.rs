@@ -1,8 +1,9 @@
-//! Kalman filter with two states, (K6) and (K19): splits the torque that brakes a link into an even load (weight, a push), which does not
-//! depend on the direction of motion, and dry friction, which does. Only motion in both directions separates the two.
+//! Kalman filter with two states, (K6) and (K19): splits the torque that brakes a link into an even load (weight, a
+//! push), which does not depend on the direction of motion, and dry friction, which does. Only motion in both
+//! directions separates the two.
 //!
-//! Symbols: g even load and f friction [N m], s direction from -1 to 1, h = (1, s), P covariance of (g, f), r variance of a measurement.
-//! A measurement z of g + s f gives K = P h / (h P h + r), (g, f) += K (z - g - s f), P -= K h P.
+//! Symbols: g even load and f friction [N m], s direction from -1 to 1, h = (1, s), P covariance of (g, f), r variance
+//! of a measurement. A measurement z of g + s f gives K = P h / (h P h + r), (g, f) += K (z - g - s f), P -= K h P.
 
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;

@@ -1,8 +1,8 @@
-//! Flank in use, time of its change and way through the gap: (K5), (K9), (K10), (K13), (K14), (K16). Assumption: without a flank the
-//! link moves freely.
+//! Flank in use, time of its change and way through the gap: (K5), (K9), (K10), (K13), (K14), (K16). Assumption:
+//! without a flank the link moves freely.
 //!
-//! [`transitions`](super::transitions) maps the events of a period to an action. This file detects the events, executes the actions and
-//! computes the torque of each stage.
+//! [`transitions`](super::transitions) maps the events of a period to an action. This file detects the events, executes
+//! the actions and computes the torque of each stage.
 
 use super::crossing::Crossing;
 use super::intent::Intent;

@@ -1,5 +1,5 @@
-//! Load model (K6): splits the observer's load torque into even load and dry friction (`brakes`), which predicts the torque after a
-//! reversal. A load that may swing (`load_swing`) is followed more slowly than it swings.
+//! Load model (K6): splits the observer's load torque into even load and dry friction (`brakes`), which predicts the
+//! torque after a reversal. A load that may swing (`load_swing`) is followed more slowly than it swings.
 
 use super::brakes::Brakes;
 use super::load_swing::LoadSwing;

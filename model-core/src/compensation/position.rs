@@ -1,5 +1,5 @@
-//! Control law of position mode, (K1), (K4), (K15): spring and damper on the link, damper on the motor, feed-forward of acceleration and
-//! load. The load estimate replaces an integral.
+//! Control law of position mode, (K1), (K4), (K15): spring and damper on the link, damper on the motor, feed-forward of
+//! acceleration and load. The load estimate replaces an integral.
 
 use super::braking::{Braking, Course, Lag};
 use super::easing::Easing;

@@ -1,5 +1,5 @@
-//! State of the joint in a control period, referred to the link: input of the rest of the compensation. The state is computed anew every
-//! period from the estimates.
+//! State of the joint in a control period, referred to the link: input of the rest of the compensation. The state is
+//! computed anew every period from the estimates.
 
 use super::set_point::{CommandRef, Position};
 use crate::compensation::tables::CompensationTables;

@@ -1,5 +1,6 @@
-//! Tables of the compensation as plain numbers, made by `compensation::design`, with a struct for each subject. Angles, torques and
-//! inertias are referred to the link. Symbols and equation numbers (K1) to (K25): `docs/theory/compensation.md`.
+//! Tables of the compensation as plain numbers, made by `compensation::design`, with a struct for each subject. Angles,
+//! torques and inertias are referred to the link. Symbols and equation numbers (K1) to (K25):
+//! `docs/theory/compensation.md`.
 
 use crate::numbers::Real;
 

@@ -1,22 +1,23 @@
-//! Monitor of the compensated loop, (K22) to (K24): detects a loop that hunts, independently of the observer's validity flags, leaves the
-//! joint to plain control, and lets the compensation retry later.
+//! Monitor of the compensated loop, (K22) to (K24): detects a loop that hunts, independently of the observer's validity
+//! flags, leaves the joint to plain control, and lets the compensation retry later.
 //!
-//! Symbols: e error of the link, h half the lost motion, p demand of the set-point's own motion (inertia, friction), d the sum of p and the
-//! slow load, P spring of the loop, dwell = time between two flank changes, s side of the flank in use.
+//! Symbols: e error of the link, h half the lost motion, p demand of the set-point's own motion (inertia, friction), d
+//! the sum of p and the slow load, P spring of the loop, dwell = time between two flank changes, s side of the flank in
+//! use.
 //!
-//! 1. Unexplained flank changes. A flank s that is left adds 0 to a count if s p > d_min at some time of its dwell, 1/8 if s d > d_min or
-//!    g > (c h)^2 at some time, otherwise 1. The count decays at a rate that is large while the error is small, m < (c h)^2, and the link
-//!    is not pushed hard. The loop hunts if the count exceeds `most`.
-//! 2. Mean error beyond that of plain control. The mean square m follows m' = (e^2 - m) / t; the loop hunts if m > (a h + b |d| / P)^2 + g.
-//!    The grant g excludes errors that the compensation did not cause: position and speed errors at takeover, and jumps of the set-point.
-//!    It is a squared error and decays like m.
-//! 3. After a trip, an error beyond the largest recent error w of plain control: e^2 > (a h + b |p| / P)^2 + g and |e| > w. While plain
-//!    control acts, w decays within 2 s.
+//! 1. Unexplained flank changes. A flank s that is left adds 0 to a count if s p > d_min at some time of its dwell, 1/8
+//!    if s d > d_min or g > (c h)^2 at some time, otherwise 1. The count decays at a rate that is large while the error
+//!    is small, m < (c h)^2, and the link is not pushed hard. The loop hunts if the count exceeds `most`.
+//! 2. Mean error beyond that of plain control. The mean square m follows m' = (e^2 - m) / t; the loop hunts if m > (a h
+//!    + b |d| / P)^2 + g. The grant g excludes errors that the compensation did not cause: position and speed errors at
+//!    takeover, and jumps of the set-point. It is a squared error and decays like m.
+//! 3. After a trip, an error beyond the largest recent error w of plain control: e^2 > (a h + b |p| / P)^2 + g and |e|
+//!    > w. While plain control acts, w decays with a time constant of 2 s.
 //!
 //! Impedance mode has no position error: only the count decides, with the large decay rate.
 //!
-//! A hunting loop is left to plain control (`inverse`; in impedance mode `plain`) for a time that grows by the factor `longer` with each
-//! trip. The time returns to its first value once the compensation has acted for as long.
+//! A hunting loop is left to plain control (`inverse`; in impedance mode `plain`) for a time that grows by the factor
+//! `longer` with each trip. The time returns to its first value once the compensation has acted for as long.
 
 use super::situation::Situation;
 use super::turn::Turn;

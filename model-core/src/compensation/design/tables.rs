@@ -1,7 +1,8 @@
 //! Tables of the compensation: gains, times and thresholds from joint, bandwidth and limits.
 //!
-//! Gains follow from inertias and bandwidth; times from the motor's torque, the delays of the loop and the permitted landing force. The
-//! remaining shares are the constants of this file, each with its reason. Equations: `docs/theory/compensation.md`.
+//! Gains follow from inertias and bandwidth; times from the motor's torque, the delays of the loop and the permitted
+//! landing force. The remaining shares are the constants of this file, each with its reason. Equations:
+//! `docs/theory/compensation.md`.
 
 use core::f64::consts::TAU;
 

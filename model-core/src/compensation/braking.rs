@@ -1,16 +1,16 @@
 //! Closing speed at which the motor can still brake the link (K12).
 //!
-//! The linear law closes an error e at the speed w e (w = spring over damper), which takes a deceleration of w^2 e.
+//! The linear law closes an error e = `error` at the speed w e (w = `rate`), which takes a deceleration of w^2 e.
 //! Beyond some milliradians the motor cannot brake that hard. With the deceleration A that torque, load and inertia
-//! allow, the link approaches a place no faster than
+//! allow (`most`), the link approaches a place no faster than
 //!
 //! ```text
 //! v(A, e) = w e                      up to e0 = A / w^2
 //!           sqrt(2 A (e - e0 / 2))   beyond
 //! ```
 //!
-//! Value and slope of both parts agree at e0. Up to e0, the linear law applies. A set-point that moves at the speed u
-//! and brakes at the rate a is approached in one of two ways:
+//! Value and slope of both parts agree at e0. Up to e0, the linear law applies. A set-point that moves at the speed
+//! u = `speed` and brakes at the rate a = `braked` is approached in one of two ways:
 //!
 //! - at v(A - a, e), if the link can brake beside the set-point;
 //! - at v(A, e + u^2 / (2 a)) - u towards the place where the set-point will stop, if the set-point stops before the link

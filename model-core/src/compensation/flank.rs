@@ -178,7 +178,8 @@ impl<T: Real> FlankControl<T> {
         let turned = turned && later < -(switching.measured * switching.least + grown);
         // A flank just met carries first: no change while it is felt and the torque still rises.
         let turned = turned && (self.stage != Stage::Touching || carries || !felt);
-        // A spring needs only the flank that it presses: below the hysteresis its own torque finds that flank.
+        // In impedance mode only the flank that the spring presses is needed: below the hysteresis the spring's own
+        // torque finds it.
         let against = intent.spring && now < T::ZERO && ahead < T::ZERO;
         let opens = !touching && carries && opened > landing.opening * situation.half;
         let lost = opens && opened > T::HALF * situation.half;

@@ -1,6 +1,6 @@
 //! Limit of the torque through the teeth (K11), including the swing of motor against link.
 //!
-//! Under constant torque the torque through the teeth swings about its static value T, while motor and link close at
+//! Under constant torque the torque through the teeth swings about its static value T = `passed`, while motor and link close at
 //! the speed v. With the stiffness S, the reduced inertia I and the present torque F, the peak is
 //! T + sqrt((T - F)^2 + S I v^2). The peak stays within P if T <= (P + F)/2 - S I v^2 / (2 (P - F)). Teeth that have
 //! just met thus get half of P at once, and all of P a quarter of a swing later, without overshoot.

@@ -141,7 +141,7 @@ impl<T: Real> LoadModel<T> {
         acts: bool,
     ) {
         self.follow(tables, situation);
-        // A weight changes only while the link turns.
+        // The torque of a weight changes only while the link turns.
         if self.creeps() {
             self.rate = T::ZERO;
         }

@@ -120,12 +120,12 @@ impl<T: Real> Command<T> {
 /// State of the compensation.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Stage {
-    /// A flank carries, or the joint needs none and the motor rests in the middle of the gap.
+    /// Contact: a flank carries, or the joint needs no flank and the motor rests in the middle of the gap.
     #[default]
     Touching,
-    /// The motor follows a path through the gap.
+    /// Path of the motor through the gap.
     Crossing,
-    /// The motor closes on a flank at the landing speed, because the path has ended or the flank was lost.
+    /// Approach to a flank at the landing speed, because the path has ended or the flank was lost.
     Landing,
     /// Control without compensation: the estimates of the gap are not valid, or the compensation has stepped back.
     Plain,
@@ -152,9 +152,9 @@ pub struct Shaped<T: Real> {
     pub stage: Stage,
     /// Flank that carries or is approached; `None` in the stages `Off` and `Reversed`.
     pub flank: Option<Flank>,
-    /// The loop hunted: plain control has taken over for a while.
+    /// True while plain control acts because the loop hunted.
     pub stepped_back: bool,
-    /// The torque was cut off at the motor's limit, or the link is braked early because of that limit: the link does
-    /// not follow its set-point.
+    /// True if the torque was cut off at the motor's limit, or if the link is braked early because of that limit: the
+    /// link does not follow its set-point.
     pub short_of_torque: bool,
 }

@@ -134,7 +134,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
             self.offset = estimates.encoder_offset.value;
         }
         let mut situation = Situation::new(tables, estimates, self.offset, command);
-        // A motor that waits early on a flank feels contact now and then, but the flank carries no load.
+        // A motor that has arrived early touches its flank now and then, but the flank carries no load.
         situation.open |= self.flank.waits();
         let leans = self.flank.stage() == Stage::Touching && situation.open && situation.sees;
         if leans && matches!(command, CommandRef::Position { .. }) {
@@ -226,7 +226,8 @@ impl<'tables, T: Real> Compensation<'tables, T> {
                     is_thrown: load.throws(tables),
                 }
             }
-            // The commanded torque, spring included, explains the flank that it presses.
+            // In impedance mode the commanded torque, spring included, is the demand: it explains the flank that it
+            // presses.
             CommandRef::Impedance(point) => Watched {
                 planned: point.torque + point.stiffness * situation.error,
                 load: T::ZERO,

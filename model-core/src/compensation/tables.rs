@@ -50,7 +50,7 @@ pub struct GearTable<T: Real> {
     pub motor_per_link: T,
     /// Inverse of `motor_per_link` [-].
     pub link_per_motor: T,
-    /// A whole turn [rad].
+    /// Full turn, 2 pi [rad].
     pub turn: T,
     /// 1 / (r_c cos alpha): from half-backlash to half the lost motion [1/m].
     pub inverse_lever: T,

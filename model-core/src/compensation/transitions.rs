@@ -6,17 +6,17 @@ use super::set_point::Stage;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Event {
-    /// The demand changes sign by more than hysteresis and noise.
+    /// Demand of the opposite sign, beyond hysteresis and noise.
     DemandTurned = 1,
-    /// Impedance mode: the demand changes sign by less than the hysteresis.
+    /// Demand of the opposite sign in impedance mode, within the hysteresis.
     SpringUndecided = 2,
     /// No contact; the opening exceeds half of the half-gap.
     FlankLost = 4,
     /// No contact; the opening exceeds the estimation error.
     FlankOpening = 8,
-    /// The flank touches; on a path the motor has also been braked.
+    /// Flank touches; on a path the motor has also been braked.
     FlankMet = 16,
-    /// The time of the path is over.
+    /// End of the path's time.
     PathEnded = 32,
     /// No other event.
     Underway = 64,
@@ -46,9 +46,9 @@ pub enum Action {
     CrossBack,
     /// Closes on the flank at the landing speed.
     Land,
-    /// The flank carries; the torque of the law rises from zero.
+    /// Lets the flank carry; the torque of the law rises from zero.
     Carry,
-    /// The torque of the law finds the flank by itself; a flank felt beyond the middle of the gap is taken.
+    /// Lets the torque of the law find the flank; a flank felt beyond the middle of the gap is taken.
     LetSpringFind,
     /// Lays a new path if it ends clearly sooner.
     Shorten,
@@ -67,7 +67,7 @@ const fn on(when: Event, action: Action) -> Transition {
     Transition { when, action }
 }
 
-/// A flank carries.
+/// Rows while a flank carries.
 const TOUCHING: &[Transition] = &[
     on(Event::DemandTurned, Action::CrossOver),
     on(Event::SpringUndecided, Action::LetSpringFind),
@@ -75,7 +75,7 @@ const TOUCHING: &[Transition] = &[
     on(Event::FlankOpening, Action::Land),
 ];
 
-/// The motor follows a path through the gap.
+/// Rows while the motor follows a path through the gap.
 const CROSSING: &[Transition] = &[
     on(Event::DemandTurned, Action::CrossOver),
     on(Event::FlankMet, Action::Carry),
@@ -83,7 +83,7 @@ const CROSSING: &[Transition] = &[
     on(Event::Underway, Action::Shorten),
 ];
 
-/// The motor closes on a flank at the landing speed.
+/// Rows while the motor closes on a flank at the landing speed.
 const LANDING: &[Transition] = &[
     on(Event::DemandTurned, Action::CrossOver),
     on(Event::SpringUndecided, Action::LetSpringFind),

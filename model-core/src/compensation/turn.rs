@@ -5,11 +5,11 @@ use crate::numbers::Real;
 /// Task of a control period besides the torque.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Turn {
-    /// The monitor of the loop judges.
+    /// Judgement by the monitor of the loop.
     Judges,
-    /// The inverse of the backlash updates its edges.
+    /// Update of edges and target of the inverse of the backlash.
     Observes,
-    /// The inverse of the backlash updates inertia, friction and load.
+    /// Update of inertia, friction and load in the inverse of the backlash.
     Learns,
 }
 

@@ -1,20 +1,21 @@
 //! Monitor of the compensated loop, (K22) to (K24): detects a loop that hunts, independently of the observer's validity
 //! flags, leaves the joint to plain control, and lets the compensation retry later.
 //!
-//! Symbols: e error of the link, h half the lost motion, p demand of the set-point's own motion (inertia, friction), d
-//! the sum of p and the slow load, P spring of the loop, dwell = time between two flank changes, s side of the flank in
-//! use.
+//! Symbols: e = `error` of the link, h = `half` the lost motion, p = `planned` demand of the set-point's own motion
+//! (inertia, friction), d = `demand`, p plus the slow load, s side of the flank in use, n = `unexplained`, m = `square`,
+//! g = `granted`, w = `worst`, a = `error_per_half`, b = `error_per_demand`, c = `calm_per_half`, t = period/`memory`,
+//! d_min = `least_demand`.
 //!
-//! 1. Unexplained flank changes. A flank s that is left adds 0 to a count if s p > d_min at some time of its dwell, 1/8
-//!    if s d > d_min or g > (c h)^2 at some time, otherwise 1. The count decays at a rate that is large while the error
-//!    is small, m < (c h)^2, and the link is not pushed hard. The loop hunts if the count exceeds `most`.
-//! 2. Mean error beyond that of plain control. The mean square m follows m' = (e^2 - m) / t; the loop hunts if m > (a h
-//!    + b |d| / P)^2 + g. The grant g excludes errors that the compensation did not cause: position and speed errors at
-//!    takeover, and jumps of the set-point. It is a squared error and decays like m.
-//! 3. After a trip, an error beyond the largest recent error w of plain control: e^2 > (a h + b |p| / P)^2 + g and |e|
-//!    > w. While plain control acts, w decays with a time constant of 2 s.
+//! 1. Unexplained flank changes. A flank that is left adds 0 to the count n if s p > d_min at some time while it was in
+//!    use, 1/8 if s d > d_min or g > (c h)^2 at some time, otherwise 1. n decays, fast while the error is small,
+//!    m < (c h)^2, and the link is not pushed hard. The loop hunts if n > `most`.
+//! 2. Mean error beyond the error of plain control. With m' = (e^2 - m)/t the loop hunts if m > (a h + b |d|)^2 + g.
+//!    g is the squared error that the compensation did not cause, by the state at takeover or by jumps of the set-point;
+//!    g decays like m.
+//! 3. After a trip, an error beyond the largest recent error w of plain control: e^2 > (a h + b |p|)^2 + g and |e| > w.
+//!    While plain control acts, w decays with a time constant of 2 s.
 //!
-//! Impedance mode has no position error: only the count decides, with the large decay rate.
+//! Impedance mode has no position error: only n decides, with the fast decay.
 //!
 //! A hunting loop is left to plain control (`inverse`; in impedance mode `plain`) for a time that grows by the factor
 //! `longer` with each trip. The time returns to its first value once the compensation has acted for as long.
@@ -135,7 +136,7 @@ impl<T: Real> Watch<T> {
             return;
         }
         if acting.is_none() || !watched.has_error {
-            // The error left by another law counts as found at takeover.
+            // The error at takeover was left by another law.
             (self.square, self.before, self.judged) = (T::ZERO, None, T::ZERO);
         } else if watched.is_thrown {
             self.before = None;

@@ -9,9 +9,8 @@
 //! ```
 //!
 //! Longer delays permit only a smaller D, until D has no phase lead left. Then the motor swings from flank to flank
-//! without end, the observer cannot estimate the gap from such a swing, and plain control stays. Small phase margins
-//! have the same effect if the real delays exceed the data sheet by a fifth. `docs/decisions/control-rate.md` has the
-//! measurements.
+//! without end, the observer cannot estimate the gap, and plain control stays. Small phase margins have the same effect
+//! if the real delays exceed the data sheet by a fifth. `docs/decisions/control-rate.md` has the measurements.
 //!
 //! In contact the loop feeds back the link's angle through the compliance of the joint. With the stiffness K between
 //! motor and link, the link inertia J_l and the motor's largest torque T at the link, the joint alone sets two more

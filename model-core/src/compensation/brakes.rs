@@ -1,9 +1,12 @@
-//! Kalman filter with two states, (K6) and (K19): splits the torque that brakes a link into an even load (weight, a
-//! push), which does not depend on the direction of motion, and dry friction, which does. Only motion in both
-//! directions separates the two.
+//! Kalman filter with two states, (K6) and (K19): splits the torque that brakes a link into an even load (weight, a push), which does not
+//! depend on the direction of motion, and dry friction, which does. Only motion in both directions separates the two.
 //!
-//! Symbols: g even load and f friction [N m], s direction from -1 to 1, h = (1, s), P covariance of (g, f), r variance
-//! of a measurement. A measurement z of g + s f gives K = P h / (h P h + r), (g, f) += K (z - g - s f), P -= K h P.
+//! ```text
+//! K = P h / (h P h + r),   (L, f) += K (z - L - f dir),   P -= K h P,   h = (1, dir)
+//! ```
+//!
+//! Symbols: L = `even` load and f = `friction` [N m], dir = `direction` from -1 to 1, P = `variance` of (L, f), z = measured `torque`,
+//! r = `noise`, the variance of z.
 
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;

@@ -1,15 +1,14 @@
-//! Demand of a motion on the teeth, (K19) and (K20), estimated from the motor's torque alone: free of payload modes and
-//! observer errors.
+//! Demand of a motion on the teeth, estimated from the motor's torque alone: free of payload modes and observer errors.
 //!
-//! Symbols, all referred to the link: r set-point, u torque, J total inertia as designed, Jm the motor's, k ratio of
-//! the inertia to J, fm dry friction of the motor as designed, f total dry friction, g even load.
+//! ```text
+//! (K19)  y = u - k_J J a - f sign(v) - L_0;   k_J' = 4/s y J a/max (J a)^2;   f, L_0 by a Kalman filter (`brakes`)
+//! (K20)  d = (k_J J - J_m) a + (f - f_m) sign(v) + L_0
+//! ```
 //!
-//! 1. Feed-forward by feedback-error learning (Kawato 1990): k, f and g follow the torque u beyond k J r'' + f sign(r')
-//!    + g; k by normalised least mean squares, f and g by a Kalman filter that begins with the friction of the joint
-//!    file (`brakes`).
-//! 2. Demand on the teeth: d = (k J - Jm) r'' + (f - fm) sign(r') + g. The demand presses a flank beyond a threshold:
-//!    the friction that the motor may hold at rest, plus the standard deviation of the filter, plus the smallest demand
-//!    of the monitor.
+//! Symbols, referred to the link: k_J = `inertia`, f, L_0 = `brakes`, J a, J_m a = `accelerates`, sign(v) = `direction`,
+//! max (J a)^2 = `largest`, f_m = `frictions[0]`, d = `torque`. (K19) is feedback-error learning (Kawato 1990); the filter begins with the
+//! friction of the joint file. d presses a flank beyond a threshold (K21): the friction that the motor may hold at rest, plus the standard
+//! deviation of the filter, plus the smallest demand of the monitor.
 
 use super::brakes::Brakes;
 use super::set_point::Motion;

@@ -1,8 +1,16 @@
-//! Flank in use, time of its change and way through the gap: (K5), (K9), (K10), (K13), (K14), (K16). Assumption:
-//! without a flank the link moves freely.
+//! Selects the flank in use and the time of its change, and moves the motor through the gap. Assumption: without a flank the link
+//! moves freely. [`transitions`](super::transitions) maps the events of a period to an action; this file detects the events (`signs`),
+//! executes the actions (`act`) and computes the torque of each stage (`step`).
 //!
-//! [`transitions`](super::transitions) maps the events of a period to an action. This file detects the events, executes
-//! the actions and computes the torque of each stage.
+//! ```text
+//! (K5)   side (now + ahead) < 0,   side ahead < 0                               `signs`
+//! (K9)   torque = J_m a_path(time + T_r) + stiffness (path - motor)
+//!                 + D_m (path speed - w_m) + losses                             `step`
+//! (K10)  landing speed = max(0.03 rated, 0.4 |demand|)/sqrt(S J_m)              `landing_speed`
+//! (K13)  0.3 M + min((g - 1) M, 0.3 K h) < -side (2 ahead - now)                `signs`, g = `hysteresis`
+//! (K14)  torque = stiffness (shift - gap) + D_m (w_l - w_m) + losses            `centring`
+//! (K16)  torque += owed/(1.15 T_c)                                              `step`, `owe`
+//! ```
 
 use super::crossing::Crossing;
 use super::intent::Intent;

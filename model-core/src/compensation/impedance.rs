@@ -1,5 +1,11 @@
-//! Control law of impedance mode (K3): commanded spring on the link, commanded damper on the motor, commanded torque.
-//! Without a preview the demand is extrapolated from its own course (K4).
+//! Control law of impedance mode: commanded spring on the link, commanded damper on the motor, commanded torque. Without a preview the
+//! demand is extrapolated from its own course (K4).
+//!
+//! ```text
+//! (K3)  torque = t + k_p e + k_d (v - w_m) + 0.1 D_m (w_l + v_e - w_m) - cog(theta_m) + cog(theta_l)
+//! ```
+//!
+//! Symbols: t, k_p, k_d, v = `point`; cog(theta_m) - cog(theta_l) = `cogging_by_gap()`.
 
 use super::intent::Intent;
 use super::limit::passed;

@@ -1,4 +1,4 @@
-//! Integral of a PID on the motor position, with back-calculation, `u_i` in (K18).
+//! Integral of a PID on the motor position, with back-calculation: u_i in (K18).
 
 use super::swing::Swing;
 use crate::compensation::tables::CompensationTables;

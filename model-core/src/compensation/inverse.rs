@@ -1,20 +1,21 @@
-//! Control of the motor with an adaptive inverse of the backlash, (K18) and (K21): while both shafts are seen but the
-//! gap is unknown, and after a loop has hunted. Of the link only a slow mean is used, so that no mode of a payload is
-//! fed back. Only if the motor swings against the delays of the loop, the link is damped. The observer's half-gap and
-//! offset replace an edge that the demand has not pressed yet; the observer's compliance gives the wind-up.
+//! Control of the motor with an adaptive inverse of the backlash (Tao, Kokotovic 1996): while both shafts are seen but the gap is unknown,
+//! and after a loop has hunted. Of the link only a slow mean is used, so that no mode of a payload is fed back. The link is damped only if
+//! the motor swings against the delays of the loop. The observer's half-gap and offset replace an edge that the demand has not pressed yet;
+//! the observer's compliance gives the wind-up.
 //!
-//! Symbols, all referred to the link: r set-point, m motor, s shift of the set-point, J total inertia, Jm the motor's,
-//! b bandwidth, u torque, d demand on the teeth, p share of the half-gap from -1 (back flank) to 1 (drive flank).
+//! ```text
+//! (K18)  u = k_J J a + J_m s'' + K (r + s - theta_m) + D (v + s' - w_m) + f sign(v) + u_i,   u_i' = J w^3 (r + s - theta_m)
+//! (K21)  p follows d/(pressing demand) through a play of +-1, within [-1, 1]
+//!        s -> (drive + back)/2 + 0.75 p (drive - back)/2 + d/S,   double pole at 3 w
+//! ```
 //!
-//! 1. PID on the motor position with three poles at b: u = Jm s'' + 3 J b^2 (r + s - m) + 3 J b (r' + s' - m') + F + I.
-//!    `demand` estimates the feed-forward F and the demand d from the torque.
-//! 2. Inverse of the backlash (Tao, Kokotovic 1996): p follows d, over the torque that surely presses a flank, through
-//!    a play of +-1, so that noise about zero demand moves nothing. s covers three quarters of the way to the edge
-//!    selected by p (all of it while only one edge is known), plus the wind-up under d, on a path with a double pole.
-//! 3. Each edge is the mean of motor less link, less wind-up, while the demand presses that flank and the torque
-//!    reaches the teeth.
-//! 4. A link that leaves the pressed flank and lags on the other side moves to the other flank: p jumps there, and the
-//!    load is estimated anew.
+//! Symbols, referred to the link: u = `torque`, s, s' = `shift`, its target = `goal`, p = `share` from -1 (back flank) to 1 (drive flank),
+//! drive, back = `edges`, u_i = `integral`; `demand` estimates k_J, f and d from the torque.
+//!
+//! - The play keeps noise about zero demand from moving the motor. While only one edge is known, 1 replaces 0.75.
+//! - Each edge is the mean of motor less link, less wind-up, while the demand presses that flank and the torque reaches the teeth.
+//! - A link that leaves the pressed flank and lags on the other side moves to the other flank: p jumps there, and the load is estimated
+//!   anew.
 
 use super::demand::Demand;
 use super::integral::Integral;

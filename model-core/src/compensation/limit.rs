@@ -1,9 +1,12 @@
-//! Limit of the torque through the teeth (K11), including the swing of motor against link.
+//! Limit of the torque through the teeth, including the swing of motor against link.
 //!
-//! Under constant torque the torque through the teeth swings about its static value T = `passed`, while motor and link close at
-//! the speed v. With the stiffness S, the reduced inertia I and the present torque F, the peak is
-//! T + sqrt((T - F)^2 + S I v^2). The peak stays within P if T <= (P + F)/2 - S I v^2 / (2 (P - F)). Teeth that have
-//! just met thus get half of P at once, and all of P a quarter of a swing later, without overshoot.
+//! ```text
+//! (K11)  T_s + sqrt((T_s - F)^2 + S I v_c^2) <= P,   hence  T_s <= (P + F)/2 - S I v_c^2/(2 (P - F)),   T_s >= P/2
+//! ```
+//!
+//! Under constant torque the torque through the teeth swings about its static value T_s = `passed()`, while motor and link close at
+//! v_c = `closing`. S = `stiffness`, I = `reduced_inertia`, F = `force` at present, P = `most`. Teeth that have just met get half of P at
+//! once, and all of P a quarter of a swing later, without overshoot.
 
 use super::load::LoadModel;
 use super::situation::Situation;

@@ -1,5 +1,11 @@
-//! Load model (K6): splits the observer's load torque into even load and dry friction (`brakes`), which predicts the
-//! torque after a reversal. A load that may swing (`load_swing`) is followed more slowly than it swings.
+//! Load model: splits the observer's load torque into even load and dry friction (`brakes`), which predicts the torque after a reversal.
+//! A load that may swing (`load_swing`) is followed more slowly than it swings.
+//!
+//! ```text
+//! (K6)  load torque = L + f dir,   L' = rate
+//! ```
+//!
+//! Symbols: L = `even`, f = `friction`, dir = `direction()`.
 
 use super::brakes::Brakes;
 use super::load_swing::LoadSwing;

@@ -1,5 +1,9 @@
-//! Plain control: a PID on the motor position with all poles at the bandwidth and known load fed forward, while the
-//! link is not seen; in impedance mode the commanded law (K17), while the compensation does not act.
+//! Plain control: a PID on the motor position with all poles at the bandwidth and known load fed forward, while the link is not seen; in
+//! impedance mode the commanded law, while the compensation does not act.
+//!
+//! ```text
+//! (K17)  torque = t + k_p (r - theta_l) + k_d (v - w_m);   theta_m replaces theta_l if the link is not seen
+//! ```
 
 use super::integral::Integral;
 use super::load::LoadModel;

@@ -1,5 +1,14 @@
-//! Control law of position mode, (K1), (K4), (K15): spring and damper on the link, damper on the motor, feed-forward of
-//! acceleration and load. The load estimate replaces an integral.
+//! Control law of position mode: spring and damper on the link, damper on the motor, feed-forward of acceleration and load. The load
+//! estimate replaces an integral.
+//!
+//! ```text
+//! (K1)  torque = J a + L + f dir + losses + K e + D (v - w_l) + D_m (w_l + v_e - w_m)
+//! (K4)  demand(time) = J_l a + L + f dir + K e + D (v - w_l), extrapolated by time
+//! ```
+//!
+//! Symbols: v, a = `now.speed`, `now.acceleration`; L = `load.even()`; f dir = `load.planned_drag()`; losses = `situation.lost()`;
+//! K e = `spring`; D = `law.damping`; v - w_l = `situation.error_rate`; D_m term = `situation.damping_torque()`; measured part of the
+//! demand = `level`. (K15) is `find_deadband`.
 
 use super::braking::{Braking, Course, Lag};
 use super::easing::Easing;

@@ -309,7 +309,7 @@ impl<T: Real> FlankControl<T> {
         ];
         self.path = Path::new(start, end, crossing);
         self.origin = situation.origin;
-        // Time of the path is zero one reaction time after this period; `step` adds the period.
+        // The time of the path is zero one reaction time after this period; `step` adds the period.
         self.elapsed = -tables.crossing.reaction - tables.clock.period;
     }
 }

@@ -43,7 +43,7 @@ pub(super) struct LoadModel<T: Real> {
 #[derive(Debug, Clone, Copy)]
 struct Creep<T: Real> {
     even: T,
-    /// Growth of the even load's variance since.
+    /// Growth of the even load's variance while the link creeps.
     variance: T,
 }
 

@@ -25,8 +25,8 @@ pub(super) struct Plain<T: Real> {
 }
 
 impl<T: Real> Plain<T> {
-    /// Speed of the link against the set-point beyond which the link counts as pushed hard, as travel in a time
-    /// constant of the loop over the half-gap [-].
+    /// Speed of the link against the set-point beyond which the flank in use gives no distance of motor and link, as
+    /// travel in a time constant of the loop over the half-gap [-].
     const THROWN: T = T::QUARTER;
 
     /// Smoothing rate of motor less link, over the rate of the loop [-].
@@ -92,7 +92,7 @@ impl<T: Real> Plain<T> {
         let (towards, part) = if situation.feels {
             self.foreseen = None;
             self.integral.approach(tables, T::ZERO);
-            // Teeth that may be open, and a link that is pushed hard, give no distance.
+            // Teeth that may be open, and a link that moves fast against its set-point, give no distance.
             let thrown = tables.clock.period * situation.error_rate.abs()
                 > Self::THROWN * tables.law.back_calculation * situation.half;
             let says_nothing = situation.contact.is_none() || thrown;

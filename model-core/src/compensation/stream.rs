@@ -51,7 +51,7 @@ impl<T: Real> Stream<T> {
         self.torque_rate
     }
 
-    /// Speed of the set-point or, if zero, its last travel: only the sign matters.
+    /// Speed of the set-point or, if zero, the last travel of the point: only the sign is used.
     pub fn direction(&self) -> T {
         match self.last {
             Some(last) if last.speed != T::ZERO => last.speed,

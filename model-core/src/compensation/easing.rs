@@ -13,7 +13,7 @@ use crate::numbers::arithmetic::{beyond, clamp};
 pub(super) struct Easing<T: Real> {
     /// Load at the beginning of the steady time [N m].
     load: T,
-    /// Time for which the load has been steady, up to the time that matters [s].
+    /// Time for which the load has been steady, saturating [s].
     steady: T,
     /// Set-point less link at the beginning of the easing; `None` while the load is held [rad].
     place: Option<T>,

@@ -54,7 +54,7 @@ pub(super) struct FlankControl<T: Real> {
     hysteresis: T,
     /// True once the demand has asked for the flank in use since the motor set out for it, or the joint rests.
     asked: bool,
-    /// Time for which no flank has been needed, up to the time that matters [s].
+    /// Time for which no flank has been needed, saturating [s].
     unneeded: T,
     /// True if the motor rested in the middle of the gap in the previous period.
     centred: bool,

@@ -20,7 +20,7 @@ pub(super) struct LoadSwing<T: Real> {
     means: [T; 2],
     /// Side of the slow mean on which the fast mean last was beyond m: 1, -1, or 0 at first.
     side: T,
-    /// Time since the last change of the side, up to the time that matters [s].
+    /// Time since the last change of the side, saturating [s].
     since: T,
     /// Changes of the side, each soon after the last [-].
     changes: T,

@@ -37,7 +37,7 @@ pub(super) struct PositionLaw<T: Real> {
     deadband: T,
     /// Flank that the demand asked for last during this rest.
     asked: Option<Flank>,
-    /// Time since `asked` last changed, up to the time that matters [s].
+    /// Time since `asked` last changed, saturating [s].
     since: T,
     /// Smoothed measured part of the demand [N m].
     level: T,

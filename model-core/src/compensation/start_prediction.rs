@@ -17,7 +17,7 @@ pub(super) struct StartPrediction<T: Real> {
     goes_on: Option<bool>,
     /// True if the joint was asked to rest since its last motion.
     rests: bool,
-    /// Time for which the link has stood still, up to the time that matters [s].
+    /// Time for which the link has stood still, saturating [s].
     stood: T,
     /// Position less set-point at which the link stands [rad].
     place: T,

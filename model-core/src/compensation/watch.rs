@@ -44,7 +44,7 @@ pub(super) struct Watch<T: Real> {
     granted: T,
     /// Error at the previous judgement, if judged [rad].
     before: Option<T>,
-    /// Time for which errors have been judged, up to the time that matters [time constants of the loop].
+    /// Time for which errors have been judged, saturating [time constants of the loop].
     judged: T,
     /// Largest recent error while the compensation does not act, decaying [rad].
     worst: T,
@@ -52,7 +52,7 @@ pub(super) struct Watch<T: Real> {
     away: T,
     /// Time of plain control after the next trip [s].
     next_away: T,
-    /// Time for which the compensation has acted since the last trip, up to the time that matters [s].
+    /// Time for which the compensation has acted since the last trip, saturating [s].
     served: T,
 }
 

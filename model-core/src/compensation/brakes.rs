@@ -1,53 +1,57 @@
-//! What brakes a link, split into a part that does not care for the direction of motion (weight, a push) and dry friction, which
-//! changes its sign with it: a Kalman filter with two states. Which of both a link is braked by shows only once it has moved both ways.
+//! Kalman filter with two states, (K6) and (K19): splits the torque that brakes a link into an even load (weight, a push), which does not
+//! depend on the direction of motion, and dry friction, which does. Only motion in both directions separates the two.
 //!
-//! Symbols: g even part and f friction [N m], s direction from -1 to 1, h = (1, s), P covariance of (g, f), r variance of a reading.
-//! A reading z of g + s f gives K = P h / (h P h + r), (g, f) += K (z - g - s f), P -= K h P.
+//! ```text
+//! K = P h / (h P h + r),   (L, f) += K (z - L - f dir),   P -= K h P,   h = (1, dir)
+//! ```
+//!
+//! Symbols: L = `even` load and f = `friction` [N m], dir = `direction` from -1 to 1, P = `variance` of (L, f), z = measured `torque`,
+//! r = `noise`, the variance of z.
 
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 
-/// Even part and dry friction, and how well they are known.
+/// Even load and dry friction with their covariance.
 #[derive(Debug, Clone)]
 pub(super) struct Brakes<T: Real> {
-    /// [N m].
+    /// Even load [N m].
     pub even: T,
-    /// [N m].
+    /// Dry friction [N m].
     pub friction: T,
-    /// Variances of both and their covariance, in the unit of the readings' variance.
+    /// Variances of even load and friction and their covariance, in the unit of the measurement's variance.
     variance: [T; 3],
 }
 
 impl<T: Real> Brakes<T> {
-    /// What is known beforehand: friction, and the variances of even part and friction.
+    /// Starts from a known friction, and the variances of even load and friction.
     pub fn new(friction: T, [of_even, of_friction]: [T; 2]) -> Self {
         Self { even: T::ZERO, friction, variance: [of_even, of_friction, T::ZERO] }
     }
 
-    /// Torque that brakes a link which moves in a direction.
+    /// Torque that brakes a link moving in a direction [N m].
     pub fn torque(&self, direction: T) -> T {
         self.even + self.friction * direction
     }
 
-    /// Variance of that torque.
+    /// Variance of [`Self::torque`].
     pub fn variance(&self, direction: T) -> T {
         let [even, friction, both] = self.variance;
         even + (T::TWO * both + friction * direction) * direction
     }
 
-    /// Time has passed: even part and friction may be others by now.
+    /// Adds the growth of the variances per period: even load and friction may change.
     pub fn grow(&mut self, [of_even, of_friction]: [T; 2]) {
         self.variance[0] += of_even;
         self.variance[1] += of_friction;
     }
 
-    /// What was known of the even part holds no longer.
+    /// Resets the variance of the even load, whose value no longer holds.
     pub fn doubt_even(&mut self, variance: T) {
         self.variance = [variance, self.variance[1], T::ZERO];
     }
 
-    /// Takes a reading of the torque of a link that moves in a direction. Friction stays within a limit. Returns by how much the even part
-    /// has changed.
+    /// Corrects the state by a measured torque of a link moving in a direction; friction stays within 0 and
+    /// `most_friction`. Returns the correction of the even load.
     pub fn take(&mut self, torque: T, direction: T, noise: T, most_friction: T) -> T {
         let [even, friction, both] = self.variance;
         let (to_even, to_friction) = (even + both * direction, both + friction * direction);

@@ -1,84 +1,85 @@
-//! How fast the link may close on its set-point so that the motor can still brake it.
+//! Closing speed at which the motor can still brake the link (K12).
 //!
-//! The linear law asks for the speed w e towards a set-point that is e away, w being its spring over its damper. That takes a
-//! braking of w^2 e: more than there is from some milliradians on. With the braking A that torque, load and inertia leave,
-//! the link closes on a place no faster than
+//! The linear law closes an error e = `error` at the speed w e (w = `rate`), which takes a deceleration of w^2 e.
+//! Beyond some milliradians the motor cannot brake that hard. With the deceleration A that torque, load and inertia
+//! allow (`most`), the link approaches a place no faster than
 //!
 //! ```text
 //! v(A, e) = w e                      up to e0 = A / w^2
 //!           sqrt(2 A (e - e0 / 2))   beyond
 //! ```
 //!
-//! Both parts have one value and one slope at e0; up to e0, so wherever the torque suffices, it is the linear law. Against a
-//! set-point that moves on at the speed u and is braked at the rate a, the link
+//! Value and slope of both parts agree at e0. Up to e0, the linear law applies. A set-point that moves at the speed
+//! u = `speed` and brakes at the rate a = `braked` is approached in one of two ways:
 //!
-//! - comes up to it at v(A - a, e), for it is braked beside it;
-//! - makes for where it will stand, at v(A, e + u^2 / (2 a)) - u, if it will stand before it could be met, or if nobody can
-//!   brake beside it: a >= A or e > (A - a) (u / a)^2 / 2.
+//! - at v(A - a, e), if the link can brake beside the set-point;
+//! - at v(A, e + u^2 / (2 a)) - u towards the place where the set-point will stop, if the set-point stops before the link
+//!   reaches it, e > (A - a) (u / a)^2 / 2, or if it brakes harder than the link can, a >= A, unless w e is slower.
 //!
-//! Up to e0 / 4 the linear law stays in force, whatever the set-point does. A set-point that is braked about as hard as the link can be
-//! would otherwise leave no error to close on: a link whose inertia is known to 30 % would be braked too early at every reversal of a
-//! sine, and stay behind though the torque suffices.
+//! Up to e0 / 4 the linear law applies for every set-point. Otherwise a set-point that brakes about as hard as the link
+//! can would permit no error: with an inertia known to 30 %, the link would be braked too early at every reversal of a
+//! sine, and lag although the torque suffices.
 
 use super::load::LoadModel;
 use super::situation::Situation;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 
-/// Part of the largest torque that is left to brake a link which a load drives [-]: a weight that the motor cannot hold is
-/// approached as if it could.
+/// Smallest braking torque assumed for a link that a load drives: a weight that the motor cannot hold is approached
+/// with this torque [N m].
 fn least<T: Real>(tables: &CompensationTables<T>) -> T {
     T::EIGHTH * tables.limits.motor
 }
 
-/// How a set-point moves, against which the link closes.
+/// Motion of the set-point that the link closes on.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Course<T: Real> {
-    /// [rad/s].
+    /// Speed [rad/s].
     pub speed: T,
-    /// [rad/s^2].
+    /// Acceleration [rad/s^2].
     pub acceleration: T,
-    /// The same when a crossing that began now ends [rad/s^2].
+    /// Acceleration at the end of a crossing that begins now [rad/s^2].
     pub ahead: T,
 }
 
-/// Where the link is against its set-point.
+/// Difference of set-point and link.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lag<T: Real> {
     /// Set-point less link [rad].
     pub error: T,
-    /// [rad/s].
+    /// Rate of the error [rad/s].
     pub rate: T,
-    /// [rad/s^2].
+    /// Acceleration of the error [rad/s^2].
     pub acceleration: T,
 }
 
-/// How the link closes on its set-point.
+/// Approach of the link to its set-point.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Approach<T: Real> {
     /// Speed against the set-point [rad/s].
     pub closing: T,
-    /// Acceleration that belongs to it [rad/s^2].
+    /// Acceleration fed forward during the approach [rad/s^2].
     pub acceleration: T,
 }
 
-/// What can brake the link.
+/// Braking torque and inertia of the link.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Braking<T: Real> {
     /// Inertia of link and motor [kg m^2].
     inertia: T,
-    /// Torque against a link that goes back, and against one that goes on [N m].
+    /// Torque that brakes a link moving backwards, forwards [N m].
     torques: [T; 2],
     /// Spring of the linear law over its damper [1/s].
     rate: T,
 }
 
 impl<T: Real> Braking<T> {
-    /// Error over e0 up to which the linear law stays in force [-]. Tuned on sines, moves and random motions that ask for 0.5 to 3 times
-    /// the torque; 1/8 gives the same figures to a tenth, 1 makes the peaks of short moves up to 1.5 times larger.
+    /// Error over e0 up to which the linear law always applies [-]. Tuned on sines, moves and random motions that ask
+    /// for 0.5 to 3 times the torque: 1/8 changes the figures by less than a tenth, 1 makes the peaks of short moves up
+    /// to 1.5 times larger.
     const LINEAR: T = T::QUARTER;
 
-    /// With motor, load and inertia as they are known.
+    /// Computes braking torques and inertia from the estimates.
     pub fn new(tables: &CompensationTables<T>, load: &LoadModel<T>, situation: &Situation<T>) -> Self {
         let [bias, motor_friction] = situation.losses;
         let [driven, still] = [load.even() + bias, tables.limits.motor + load.friction() + motor_friction];
@@ -86,7 +87,7 @@ impl<T: Real> Braking<T> {
         Self { inertia: situation.inertia, torques: [of(still - driven), of(still + driven)], rate: tables.law.rate }
     }
 
-    /// Acceleration of a link on which the motor's torque acts, or that no flank carries [rad/s^2].
+    /// Acceleration of a link under the motor's torque or, in the open gap, under its load alone [rad/s^2].
     pub fn acceleration(
         &self,
         tables: &CompensationTables<T>,
@@ -101,7 +102,8 @@ impl<T: Real> Braking<T> {
         }
     }
 
-    /// How the link closes on a set-point, if that is not the linear law's to say. `error` is the set-point less the link [rad].
+    /// Returns the approach that replaces the linear law; `None` while the linear law applies. `error` is the set-point
+    /// less the link [rad].
     pub fn approach(&self, error: T, course: &Course<T>) -> Option<Approach<T>> {
         let goes_on = if course.speed == T::ZERO { error > T::ZERO } else { course.speed > T::ZERO };
         let [back, on] = self.torques;
@@ -110,7 +112,7 @@ impl<T: Real> Braking<T> {
             [error, course.speed, course.acceleration, course.ahead].map(|way| side * way);
         let hardest = if ahead < acceleration { ahead } else { acceleration };
         let braked = if speed > T::ZERO && hardest < T::ZERO { -hardest } else { T::ZERO };
-        // Nobody goes beside a set-point that is braked harder than the link can be.
+        // The link cannot brake beside a set-point that brakes harder.
         let unmatched = self.inertia * braked >= against;
         let needed = self.inertia * self.rate * self.rate * error;
         let (needed, against_error, left) = if error < T::ZERO {
@@ -133,8 +135,8 @@ impl<T: Real> Braking<T> {
         Some(Approach { closing: side * approach.closing, acceleration: side * approach.acceleration })
     }
 
-    /// What the teeth will have to pass on after a time [N m]. Where braking begins the law changes at once, which no rate of
-    /// today's demand tells: it is asked what it will be.
+    /// Torque through the teeth after a time [N m]. The demand jumps where braking begins, which its present rate does
+    /// not show: the law is evaluated at the future time.
     pub fn demand(
         &self,
         tables: &CompensationTables<T>,
@@ -160,8 +162,8 @@ impl<T: Real> Braking<T> {
             + time * load.rate()
     }
 
-    /// The approach to a set-point that goes on at a speed and is braked: to where it will stand, if the link is to be there first,
-    /// or if it can come beside it no more.
+    /// Approach to a set-point that moves and brakes: towards the place where the set-point will stop, if it stops
+    /// first or brakes harder than the link can; otherwise `beside`.
     fn or_to_rest(&self, beside: Approach<T>, most: T, error: T, speed: T, braked: T) -> Approach<T> {
         let stands_in = speed.over(braked);
         let to_rest = self.towards(most, error + T::HALF * speed * stands_in, T::ZERO);
@@ -174,8 +176,8 @@ impl<T: Real> Braking<T> {
         if stands_first { to_rest } else { beside }
     }
 
-    /// How a place is approached that is so far away, itself accelerated, with a braking. Near the knee the linear law takes over,
-    /// which feeds forward what the place does.
+    /// Approach to an accelerated place at the distance `way`. Near the knee the linear law takes over, which feeds
+    /// forward the acceleration of the place.
     fn towards(&self, braking: T, way: T, acceleration: T) -> Approach<T> {
         let knee = braking.over(self.rate * self.rate);
         let size = way.abs();

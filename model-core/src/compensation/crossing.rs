@@ -1,4 +1,11 @@
-//! How long a crossing takes.
+//! Duration of a crossing.
+//!
+//! ```text
+//! (K8)  T_c = max(2 h/v_x + ramp, 2 ramp),   v_x = M_x/Z
+//!       ramp = max(q v_x, 4 T_r), or max(sqrt(2 h q), 4 T_r) if v_x is not reached
+//! ```
+//!
+//! Symbols: T_c = `duration`, M_x = `force`, 1/Z = `strike_speed_per_torque`, q = `ramp_per_speed`, 4 T_r = `shortest_ramp`.
 
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
@@ -7,16 +14,16 @@ use crate::numbers::arithmetic::clamp;
 /// Times of a crossing.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Crossing<T: Real> {
-    /// From setting out to arriving [s].
+    /// Duration of the path [s].
     pub duration: T,
-    /// In which the motor comes to its steady speed, and from it [s]; at most half of the duration.
+    /// Duration of each of the two ramps, to and from the steady speed [s]; at most half of `duration`.
     pub ramp: T,
 }
 
 impl<T: Real> Crossing<T> {
-    /// The crossing of a gap of twice `half`. Planets that are struck on the way are struck no harder than a set share
-    /// of the rated force or than what will be passed on anyway (`demand`), up to a set share of the peak torque; ramps
-    /// are as steep as the motor's torque and the loop's delays allow.
+    /// Crossing of a gap of twice `half`. The force on planets struck on the way is at most a share of the rated force
+    /// or, if larger, `demand`, up to a share of the peak torque. Ramps are as steep as the motor's torque and the
+    /// delays of the loop permit.
     pub fn new(tables: &CompensationTables<T>, half: T, demand: T) -> Self {
         let force = clamp(demand.abs(), tables.crossing.strike_torque, tables.crossing.hardest_strike);
         let speed = force * tables.crossing.strike_speed_per_torque;
@@ -29,12 +36,12 @@ impl<T: Real> Crossing<T> {
         Self { duration: clamp(duration, T::ZERO, longest), ramp: clamp(ramp, T::ZERO, T::HALF * longest) }
     }
 
-    /// The crossing of a way at a speed, however long it takes. `ramp_per_speed` is the time that torque needs on the ramp
-    /// for each unit of speed.
+    /// Crossing of a distance at a speed, without a bound of the duration. `ramp_per_speed` is the duration of a ramp
+    /// per unit of speed.
     pub fn at(speed: T, way: T, ramp_per_speed: T, shortest_ramp: T) -> Self {
         let along = way.over(speed);
         let steepest = ramp_per_speed * speed;
-        // A gap that is crossed before that speed is reached has no more than two ramps.
+        // If the gap ends before the speed is reached, the path consists of two ramps.
         let ramp = if steepest > along { (ramp_per_speed * way).square_root() } else { steepest };
         let ramp = if ramp < shortest_ramp { shortest_ramp } else { ramp };
         let (flat, twice) = (ramp + along, ramp + ramp);

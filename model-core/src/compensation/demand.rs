@@ -1,13 +1,14 @@
-//! What a motion will ask of the teeth, learnt from the motor's torque alone, so that no mode of a payload and no error of the observer is
-//! in it.
+//! Demand of a motion on the teeth, estimated from the motor's torque alone: free of payload modes and observer errors.
 //!
-//! Symbols, all referred to the link: r set-point, u torque, J all inertia as designed, Jm the motor's, k ratio of the inertia to J,
-//! fm the motor's dry friction as designed, f all dry friction, g even load.
+//! ```text
+//! (K19)  y = u - k_J J a - f sign(v) - L_0;   k_J' = 4/s y J a/max (J a)^2;   f, L_0 by a Kalman filter (`brakes`)
+//! (K20)  d = (k_J J - J_m) a + (f - f_m) sign(v) + L_0
+//! ```
 //!
-//! 1. Feed-forward by feedback-error learning (Kawato 1990): k, f and g follow what u is beyond k J r'' + f sign(r') + g; k by normalised
-//!    least mean squares, f and g by a Kalman filter that begins with what the joint's file says of friction (`brakes`).
-//! 2. Demand on the teeth: d = (k J - Jm) r'' + (f - fm) sign(r') + g. It presses a flank when it is beyond what the motor's friction may
-//!    hold of it at rest, plus the standard deviation that the filter gives.
+//! Symbols, referred to the link: k_J = `inertia`, f, L_0 = `brakes`, J a, J_m a = `accelerates`, sign(v) = `direction`,
+//! max (J a)^2 = `largest`, f_m = `frictions[0]`, d = `torque`. (K19) is feedback-error learning (Kawato 1990); the filter begins with the
+//! friction of the joint file. d presses a flank beyond a threshold (K21): the friction that the motor may hold at rest, plus the standard
+//! deviation of the filter, plus the smallest demand of the monitor.
 
 use super::brakes::Brakes;
 use super::set_point::Motion;
@@ -17,55 +18,57 @@ use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 
-/// What a motion will ask of the teeth, and what that is known from.
+/// Demand of a motion on the teeth, with the estimates that it follows from.
 #[derive(Debug, Clone)]
 pub(super) struct Demand<T: Real> {
-    /// All inertia over the designed [-].
+    /// Estimated inertia over the designed inertia [-].
     inertia: T,
-    /// Dry friction of motor and link, and the load that does not depend on the motion.
+    /// Dry friction of motor and link, and even load.
     brakes: Brakes<T>,
-    /// Square of the largest torque of late that the designed inertia was accelerated with [N^2 m^2].
+    /// Square of the largest recent torque that accelerates the designed inertia, decaying [N^2 m^2].
     largest: T,
-    /// Torque of late beyond what the motor's own inertia takes [N m].
+    /// Recent torque beyond the torque that accelerates the motor alone, smoothed [N m].
     passed: T,
-    /// Planned demand on the teeth, and what friction takes of the motor's torque [N m].
+    /// Planned demand on the teeth; `rubs`: friction in the planned motor torque [N m].
     torque: T,
     rubs: T,
-    /// What the set-point asked for when the demand was planned last, until it is learnt from.
+    /// Set-point torque of the last planned demand, until it is used for estimation.
     asked: Option<Asked<T>>,
 }
 
-/// What a set-point asks for.
+/// Torque that a set-point asks for.
 #[derive(Debug, Clone, Copy)]
 struct Asked<T: Real> {
-    /// Torque for the designed inertia, and for that of the motor alone [N m].
+    /// Torque that accelerates the designed inertia, and the motor alone [N m].
     accelerates: [T; 2],
-    /// -1 to 1.
+    /// Share and sign of dry friction at the planned speed, -1 to 1.
     direction: T,
 }
 
 impl<T: Real> Demand<T> {
-    /// Rate at which the inertia follows [1/s]: a few swings of a motion.
+    /// Rate at which the inertia estimate follows [1/s]: a few swings of a motion.
     const INERTIA_FOLLOWS: T = T::TWO;
 
-    /// Rates at which the even load and the friction follow once they are known [1/s]. A load that is followed at 8 follows a loop that
-    /// swings at 5 Hz, and its sign keeps that swinging.
+    /// Rates at which the even load and the friction follow once they are known [1/s]. At 8 the even load follows a
+    /// loop that swings at 5 Hz, and its sign sustains the swing.
     const FOLLOW: [T; 2] = [T::THREE, T::HALF];
 
-    /// Torque for acceleration over the motor's limit below which no inertia is learnt [-]: what friction hides.
+    /// Smallest accelerating torque for estimating the inertia, over the motor's limit [-]: friction hides smaller
+    /// torques.
     const LEAST: T = T::TWENTIETH;
 
-    /// What nothing explains of a torque, as a standard deviation over the motor's limit [-].
+    /// Standard deviation of unexplained torque, over the motor's limit [-].
     const NOISE: T = T::TWENTIETH;
 
-    /// Standard deviation of a load of which nothing is known, over the motor's limit [-]. Of ten torques the first ones count for most.
+    /// Standard deviation of an unknown load, over the motor's limit [-]. Of ten measurements the first then weigh
+    /// most.
     const UNKNOWN: T = T::EIGHTH;
 
-    /// Nothing but what was designed is known.
+    /// Starts from the designed values.
     pub fn new(tables: &CompensationTables<T>) -> Self {
         let [motor, link] = tables.load.frictions;
         let friction = motor + link;
-        // A data sheet may be wrong by a third, or say nothing of a little.
+        // Friction on a data sheet may be wrong by a third, and a small friction may be missing.
         let deviation = T::THIRD * friction + T::QUARTER * Self::NOISE * tables.limits.motor;
         Self {
             inertia: T::ONE,
@@ -78,45 +81,45 @@ impl<T: Real> Demand<T> {
         }
     }
 
-    /// Variance of a load of which nothing is known [N^2 m^2].
+    /// Variance of an unknown load [N^2 m^2].
     fn unknown(tables: &CompensationTables<T>) -> T {
         let deviation = Self::UNKNOWN * tables.limits.motor;
         deviation * deviation
     }
 
-    /// Forgets what was planned; what was learnt stays.
+    /// Resets the planned demand; estimates stay.
     pub fn forget_plan(&mut self) {
         (self.passed, self.torque, self.rubs, self.asked) = (T::ZERO, T::ZERO, T::ZERO, None);
     }
 
-    /// [N m].
+    /// Planned demand on the teeth [N m].
     pub fn torque(&self) -> T {
         self.torque
     }
 
-    /// Load that does not depend on the motion [N m].
+    /// Even load [N m].
     pub fn even(&self) -> T {
         self.brakes.even
     }
 
-    /// Torque that the motor has to give for a motion without a load [N m].
+    /// Torque of the motor for a motion without a load [N m].
     pub fn feed_forward(&self, tables: &CompensationTables<T>, now: &Motion<T>) -> T {
         self.inertia * (tables.body.motor_inertia + tables.body.load_inertia) * now.acceleration + self.rubs
     }
 
-    /// Whether the torque of late has passed half of the demand to the teeth, and no other flank was pressed.
+    /// True if the recent torque has passed more than half of the demand to the teeth, with the sign of the demand.
     pub fn is_passed(&self) -> bool {
         let passed = if self.torque < T::ZERO { -self.passed } else { self.passed };
         passed > T::HALF * self.torque.abs()
     }
 
-    /// The even load is another than before.
+    /// Resets the variance of the even load, which has changed.
     pub fn doubt_load(&mut self, tables: &CompensationTables<T>) {
         self.brakes.doubt_even(Self::unknown(tables));
     }
 
-    /// Plans the demand of a motion; how far it presses a flank, over what it takes to press one: beyond 1 the drive flank, below -1 the
-    /// back flank. `None` where the motion is no number.
+    /// Plans the demand of a motion. Returns the demand over the torque that surely presses a flank: above 1 it presses
+    /// the drive flank, below -1 the back flank. `None` if the motion is not finite.
     pub fn plan(&mut self, tables: &CompensationTables<T>, now: &Motion<T>) -> Option<T> {
         let [of_motor, _] = tables.load.frictions;
         let alone = tables.body.motor_inertia * now.acceleration;
@@ -129,7 +132,8 @@ impl<T: Real> Demand<T> {
             return None;
         }
         self.rubs = self.brakes.friction * direction;
-        // A set-point may ask for anything; the motor gives no more than its limit, and no more than twice that passes the teeth.
+        // A set-point may ask for any torque; the motor is bound to its limit, and the teeth pass at most twice that
+        // limit.
         let most = T::TWO * tables.limits.motor;
         self.torque = clamp(demand, -most, most);
         self.asked = (designed.abs() <= most).then_some(Asked { accelerates: [designed, alone], direction });
@@ -138,8 +142,8 @@ impl<T: Real> Demand<T> {
         Some(self.torque.over(tables.watch.least_demand + held + deviation))
     }
 
-    /// Learns from the torque of one of [`Turn::periods`] periods [N m].
-    // A function of its own leaves the registers to the law that controls instead: fewer instructions a tick on a Cortex-M4F.
+    /// Updates the estimates by the torque of one of [`Turn::periods`] periods [N m].
+    // Not inlined: fewer instructions per tick on a Cortex-M4F, because the controlling law keeps its registers.
     #[inline(never)]
     pub fn learn(&mut self, tables: &CompensationTables<T>, torque: T) {
         let Some(Asked { accelerates: [designed, alone], direction }) = self.asked.take() else { return };
@@ -157,13 +161,13 @@ impl<T: Real> Demand<T> {
         let least = Self::LEAST * limit;
         if self.largest > least * least {
             let excess = brakes - self.brakes.torque(direction);
-            // Of the link a quarter to four times what was designed, as everywhere.
+            // The link inertia stays within a quarter to four times the designed value, as everywhere.
             let by = T::TWO * share * (excess * designed).over(self.largest);
             let link = tables.body.load_share;
             let [lightest, heaviest] = [T::QUARTER, T::FOUR].map(|ratio| T::ONE + link * (ratio - T::ONE));
             self.inertia = clamp(self.inertia + by, lightest, heaviest);
         }
-        // At rest friction may hold any part of it.
+        // At rest friction may hold any part of the torque.
         let (unexplained, held) = (Self::NOISE * limit, self.brakes.friction * (T::ONE - direction.abs()));
         let noise = unexplained * unexplained + held * held;
         self.brakes.grow(Self::FOLLOW.map(|rate| rate * time * (rate * time) * noise));

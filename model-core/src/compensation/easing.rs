@@ -1,5 +1,6 @@
-//! A load at rest that may be nothing but friction is let go of: a link that friction holds wound up against its flank keeps
-//! the motor there for nothing, on what may be the wrong flank for what comes next.
+//! Easing of a load at rest that may be friction alone: a link that friction holds wound up keeps the motor on a flank
+//! for no use, and perhaps on the wrong flank for the next motion. The load is reduced until friction holds the link or
+//! the link gives way.
 
 use super::load::LoadModel;
 use super::situation::Situation;
@@ -7,31 +8,30 @@ use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::{beyond, clamp};
 
-/// Whether the load is let go of, and what came of it.
+/// State of the easing.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Easing<T: Real> {
-    /// The load that has been steady [N m].
+    /// Load at the beginning of the steady time [N m].
     load: T,
-    /// For how long, as far as that matters [s].
+    /// Time for which the load has been steady, saturating [s].
     steady: T,
-    /// Where the link was when its load was let go of, from the set-point, while it is [rad].
+    /// Set-point less link at the beginning of the easing; `None` while the load is held [rad].
     place: Option<T>,
-    /// Whether the link gave way: what loads it is more than friction, and is held until the joint has moved.
+    /// True if the link gave way: the load is more than friction, and is held until the joint has moved.
     gave_way: bool,
 }
 
 impl<T: Real> Easing<T> {
-    /// Error that is let be while the load is let go of, and travel by which the link gives way, over the first deadband [-]:
-    /// two counts of a good encoder.
+    /// Largest error of a steady load, and travel by which the link gives way, over the first dead band [-]: two counts
+    /// of a good encoder.
     const SLIGHT: T = T::HALF;
 
     pub fn new() -> Self {
         Self { load: T::ZERO, steady: T::ZERO, place: None, gave_way: false }
     }
 
-    /// Takes in whether the joint is asked to rest and whether its link stands still. The part of the load that is to be held
-    /// [-]: half of it while it is let go of, so that it fades as fast as it is followed, for friction takes over what the
-    /// teeth do not pass on.
+    /// Updates the easing by a period. Returns the share of the load to be held [-]: a half while eased, so that the
+    /// load fades as fast as it is followed, because friction takes over the part that the teeth no longer pass.
     pub fn step(
         &mut self,
         tables: &CompensationTables<T>,

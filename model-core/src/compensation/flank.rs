@@ -1,7 +1,16 @@
-//! Which flank carries, when to leave it, and the way across. The load is taken to move freely in between.
+//! Selects the flank in use and the time of its change, and moves the motor through the gap. Assumption: without a flank the link
+//! moves freely. [`transitions`](super::transitions) maps the events of a period to an action; this file detects the events (`signs`),
+//! executes the actions (`act`) and computes the torque of each stage (`step`).
 //!
-//! [`transitions`](super::transitions) says what follows from the signs of a period; here are the signs, what is done, and
-//! the torque of each stage.
+//! ```text
+//! (K5)   side (now + ahead) < 0,   side ahead < 0                               `signs`
+//! (K9)   torque = J_m a_path(time + T_r) + stiffness (path - motor)
+//!                 + D_m (path speed - w_m) + losses                             `step`
+//! (K10)  landing speed = max(0.03 rated, 0.4 |demand|)/sqrt(S J_m)              `landing_speed`
+//! (K13)  0.3 M + min((g - 1) M, 0.3 K h) < -side (2 ahead - now)                `signs`, g = `hysteresis`
+//! (K14)  torque = stiffness (shift - gap) + D_m (w_l - w_m) + losses            `centring`
+//! (K16)  torque += owed/(1.15 T_c)                                              `step`, `owe`
+//! ```
 
 use super::crossing::Crossing;
 use super::intent::Intent;
@@ -14,46 +23,46 @@ use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 
-/// Landing speeds up to which a motor that meets a flank on a path counts as braked: blows go with the speed, and four times
-/// what a landing makes is what planets that are struck on the way make.
+/// Closing speed, in landing speeds, below which a motor on a path counts as braked: the force of a blow is
+/// proportional to the speed, and planets struck on the way cause four times the force of a landing.
 const BRAKED: i32 = 4;
 
-/// What a period shows.
+/// Events of a period.
 struct Signs {
     events: Events,
-    /// A spring asks for the other flank, if not by enough to change for it.
+    /// Impedance mode: now and after a crossing, the demand is on the other flank, without regard to the hysteresis.
     against: bool,
 }
 
-/// The flank in use and the way to the next.
+/// Flank in use and path to it.
 #[derive(Debug, Clone)]
 pub(super) struct FlankControl<T: Real> {
-    /// The flank that carries or is being gone to.
+    /// Flank that carries or is approached.
     flank: Flank,
     stage: Stage,
     path: Path<T>,
-    /// Position of the set-point when the path was laid.
+    /// Position of the set-point at the time the path was laid.
     origin: Position<T>,
     elapsed: T,
-    /// How far the flank was when the landing began [rad].
+    /// Opening at the beginning of the landing [rad].
     opened: T,
-    /// How much of the law's torque is let through after a landing.
+    /// Share of the law's torque applied after a landing, 0 to 1 [-].
     rise: T,
-    /// Impulse that the load has missed while no flank carried [N m s].
+    /// Impulse that the link has missed while no flank carried, `owed` in (K16) [N m s].
     owed: T,
-    /// How much more than usual feedback has to ask for before the flank is changed for it: grows with every change.
+    /// Factor g of the switching hysteresis (K13); grows with every change of the flank [-].
     hysteresis: T,
-    /// Whether the flank in use has been asked for since the motor set out for it, or the joint to rest.
+    /// True once the demand has asked for the flank in use since the motor set out for it, or the joint rests.
     asked: bool,
-    /// For how long no flank has been needed, as far as that matters [s].
+    /// Time for which no flank has been needed, saturating [s].
     unneeded: T,
-    /// Whether the motor rested in the middle of the gap one period ago.
+    /// True if the motor rested in the middle of the gap in the previous period.
     centred: bool,
 }
 
 impl<T: Real> FlankControl<T> {
-    /// How long no flank must have been needed before the motor leaves for the middle of the gap, as a part of the time of
-    /// hunting [-]: a load that passes through zero is gone for less.
+    /// Time without need of a flank after which the motor moves to the middle of the gap, over `rest.hunting` [-]: a
+    /// load that passes through zero is absent for a shorter time.
     const UNNEEDED: T = T::HALF;
 
     pub fn new() -> Self {
@@ -77,17 +86,17 @@ impl<T: Real> FlankControl<T> {
         self.stage
     }
 
-    /// Whether a flank has been met that is not asked for yet: the motor is early there.
+    /// True while the motor has arrived early: it touches a flank that the demand does not ask for yet.
     pub fn waits(&self) -> bool {
         self.stage == Stage::Touching && !self.asked
     }
 
-    /// The flank that carries or is being gone to.
+    /// Flank that carries or is approached.
     pub fn flank(&self) -> Flank {
         self.flank
     }
 
-    /// Nothing is known: whatever flank touches is the one.
+    /// Resets the state while the estimates are invalid; a flank in contact becomes the flank in use.
     pub fn forget(&mut self, situation: &Situation<T>) {
         self.stage = Stage::Touching;
         self.asked = true;
@@ -97,9 +106,9 @@ impl<T: Real> FlankControl<T> {
         self.flank = situation.contact.unwrap_or(self.flank);
     }
 
-    /// Torque of this period, limits aside [N m].
+    /// Computes the torque of this period before the motor's limit [N m].
     pub fn step(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>) -> T {
-        // Of a joint that idles nothing but a flank puts the error right.
+        // Without a load only a flank corrects an error, so the hysteresis decays twice as fast.
         let left = tables.switching.transient_left;
         let left = if intent.idles { left * left } else { left };
         self.hysteresis = T::ONE + left * (self.hysteresis - T::ONE);
@@ -128,7 +137,8 @@ impl<T: Real> FlankControl<T> {
             self.owe(tables, (T::ONE - self.rise) * intent.demand_now - repaid, intent);
             let torque = self.rise * intent.law + repaid;
             self.asked |= intent.rests || side * intent.demand_now > T::ZERO;
-            // What only the flank that was left could give takes an early motor nowhere but off the one that will be needed.
+            // If the motor arrives early, torque of the old sign is not applied: it would push the motor off the new
+            // flank.
             let along = along(tables, situation, intent, situation.transmission_error_speed);
             let stays = self.waits() && !signs.against || side * intent.expects > T::ZERO;
             return if stays && side * (torque - along) < T::ZERO { along } else { torque };
@@ -136,12 +146,13 @@ impl<T: Real> FlankControl<T> {
         self.elapsed += tables.clock.period;
         self.owe(tables, intent.demand_now, intent);
         if self.stage == Stage::Landing {
-            // Where the flank is does not enter, so that a wrong width costs time only; nor can it be chased for ever.
+            // The landing uses speed only, not the position of the flank: a wrong width costs time, not force. The
+            // speed grows, so that a receding flank is reached.
             let speed = landing_speed(tables, intent.demand_now) + tables.landing.acceleration * self.elapsed;
             let closing = side * clamp(speed, T::ZERO, tables.landing.fastest);
             return along(tables, situation, intent, closing);
         }
-        // Torque acts one reaction time after it is asked for.
+        // Torque acts one reaction time after its command.
         let [target, rate, _] = self.path.at(self.elapsed);
         let [_, _, acceleration] = self.path.at(self.elapsed + tables.crossing.reaction);
         tables.body.motor_inertia * acceleration
@@ -150,15 +161,16 @@ impl<T: Real> FlankControl<T> {
             + situation.lost(tables, rate, T::ZERO)
     }
 
-    /// What a period shows.
+    /// Detects the events of a period.
     fn signs(&self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>, opened: T) -> Signs {
         let (landing, switching) = (&tables.landing, &tables.switching);
         let side: T = self.flank.sign();
-        // A force that seems to come from the far flank while the teeth are just leaving the near one does not.
+        // Contact reported beyond the middle of the gap is ignored: teeth that just leave the near flank seem to touch
+        // the far one.
         let felt = situation.contact == Some(self.flank) && opened < situation.half;
-        // A flank that is met softly is seen before it is felt.
+        // A soft landing shows in the position before it shows in the force.
         let seen = opened < landing.landed * situation.half;
-        // One that stops the motor's approach is there, wherever it was thought to be.
+        // A flank that stops the approach is met, wherever the estimates place it.
         let stopped = self.stage == Stage::Landing
             && self.elapsed > tables.crossing.shortest_ramp + tables.crossing.shortest_ramp
             && opened < landing.opening * situation.half
@@ -167,19 +179,20 @@ impl<T: Real> FlankControl<T> {
         let carries = self.rise >= T::ONE;
         let [now, ahead] = [intent.demand_now, intent.demand_ahead].map(|demand| side * (demand + intent.expects));
         let turned = now + ahead < -switching.planned && ahead < -switching.planned;
-        // What is only as large as its noise has to grow, and more so soon after a change of flank.
+        // Measured demand must exceed its noise, by more soon after a flank change (K13).
         let later = ahead + ahead - now;
         let most = switching.most_growth * situation.half;
         let grown = clamp(switching.measured * (self.hysteresis - T::ONE), T::ZERO, most);
         let turned = turned && later < -(switching.measured * switching.least + grown);
-        // What has just been met is let carry first.
+        // A flank just met carries first: no change while it is felt and the torque still rises.
         let turned = turned && (self.stage != Stage::Touching || carries || !felt);
-        // A spring needs no flank but the one that it asks for: while that is in doubt, its own torque finds it.
+        // In impedance mode only the flank that the spring presses is needed: below the hysteresis the spring's own
+        // torque finds it.
         let against = intent.spring && now < T::ZERO && ahead < T::ZERO;
         let opens = !touching && carries && opened > landing.opening * situation.half;
         let lost = opens && opened > T::HALF * situation.half;
-        // Teeth that meet before the motor has been braked are about to be struck: braking comes first, unless the blow is
-        // no harder than what is to be carried, or the link is thrown: then every moment counts.
+        // A motor that is not braked would strike the flank: braking comes first, unless the blow is no harder than the
+        // torque to be carried, or the link is pushed harder than the teeth's limit and every moment counts.
         let met =
             touching && (self.stage != Stage::Crossing || intent.thrown || self.is_braked(tables, situation, intent));
         let ended = self.elapsed >= self.path.duration();
@@ -193,13 +206,13 @@ impl<T: Real> FlankControl<T> {
         Signs { events, against }
     }
 
-    /// Whether the motor closes on the flank no faster than a landing that strikes as hard as what is to be carried.
+    /// True if the motor closes on the flank so slowly that the blow is no harder than the torque to be carried.
     fn is_braked(&self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>) -> bool {
         let closing = self.flank.sign::<T>() * (situation.motor_speed - situation.link_speed);
         closing < T::from_i32(BRAKED) * landing_speed(tables, intent.demand_now)
     }
 
-    /// Does what follows from the signs.
+    /// Executes an action.
     fn act(
         &mut self,
         tables: &CompensationTables<T>,
@@ -236,23 +249,23 @@ impl<T: Real> FlankControl<T> {
         }
     }
 
-    /// How far the flank in use is from the teeth, referred to the link [rad].
+    /// Opening x of the flank in use, referred to the link [rad].
     fn opened_to(&self, situation: &Situation<T>) -> T {
         situation.half - self.flank.sign::<T>() * (situation.gap - situation.shift)
     }
 
-    /// How far the set-point has moved since the path was laid [rad].
+    /// Travel of the set-point since the path was laid [rad].
     fn drift(&self, tables: &CompensationTables<T>, situation: &Situation<T>) -> T {
         tables.gear.turn * situation.origin.less(self.origin.turns, self.origin.fraction)
     }
 
-    /// Torque that the load does not get now is owed to it.
+    /// Adds the torque that the link misses in this period to the owed impulse; zero in position mode (K16).
     fn owe(&mut self, tables: &CompensationTables<T>, torque: T, intent: &Intent<T>) {
         let most = tables.limits.motor * tables.crossing.longest;
         self.owed = if intent.spring { clamp(self.owed + tables.clock.period * torque, -most, most) } else { T::ZERO };
     }
 
-    /// Leaves for the flank, from a stage.
+    /// Lays a path to the flank in use; `from` is the stage that ends.
     fn set_out(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>, from: Stage) {
         let crossing = if from == Stage::Touching && !self.centred {
             Crossing::new(tables, situation.half, intent.far_demand)
@@ -265,8 +278,8 @@ impl<T: Real> FlankControl<T> {
         self.lay(tables, situation, intent, crossing, start);
     }
 
-    /// The crossing of what is left of the gap on the way to the flank: one that turns round on its way has less
-    /// of it before it, and what it still goes the other way.
+    /// Crossing of the rest of the gap on the way to the flank. A motor that turns round within the gap has less of the
+    /// gap before it, but still travels the other way while it brakes.
     fn rest_of_way(&self, tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>) -> Crossing<T> {
         let opened = self.opened_to(situation);
         let opening = self.flank.sign::<T>() * (situation.link_speed - situation.motor_speed);
@@ -275,8 +288,8 @@ impl<T: Real> FlankControl<T> {
         Crossing::new(tables, half, intent.far_demand)
     }
 
-    /// Lays a path to the flank where the load will be, left to itself, meeting it at a small speed. It begins when
-    /// torque asked for now acts, at a place less the set-point and a speed.
+    /// Lays a path to the place where the flank will be if the link moves freely; the path ends at the landing speed.
+    /// `start` is motor position less set-point and motor speed at the time when torque commanded now acts.
     fn lay(
         &mut self,
         tables: &CompensationTables<T>,
@@ -296,12 +309,12 @@ impl<T: Real> FlankControl<T> {
         ];
         self.path = Path::new(start, end, crossing);
         self.origin = situation.origin;
-        // What is measured in this period is the path's start.
+        // The time of the path is zero one reaction time after this period; `step` adds the period.
         self.elapsed = -tables.crossing.reaction - tables.clock.period;
     }
 }
 
-/// Torque that takes the motor to the middle of the gap and keeps it there, beside a link that stands still [N m].
+/// Torque that moves the motor to the middle of the gap and holds it there, beside a link at rest (K14) [N m].
 fn centring<T: Real>(tables: &CompensationTables<T>, situation: &Situation<T>) -> T {
     let rate = situation.link_speed - situation.motor_speed;
     tables.crossing.stiffness * (situation.shift - situation.gap)
@@ -309,14 +322,14 @@ fn centring<T: Real>(tables: &CompensationTables<T>, situation: &Situation<T>) -
         + situation.lost(tables, rate, T::ZERO)
 }
 
-/// Torque of a motor that goes along with the free link, and by so much faster [N m].
+/// Torque of a motor that follows the free link, faster than the link by `faster` [N m].
 fn along<T: Real>(tables: &CompensationTables<T>, situation: &Situation<T>, intent: &Intent<T>, faster: T) -> T {
     tables.body.motor_inertia * intent.free_acceleration
         + tables.law.motor_damping * (situation.link_speed + faster - situation.motor_speed)
         + situation.lost(tables, situation.link_speed, T::ZERO)
 }
 
-/// Speed against the load at which a flank is met: hard enough for what it shall carry, and no harder.
+/// Landing speed against the link (K10) [rad/s]: as hard as the torque to be carried allows, not harder.
 fn landing_speed<T: Real>(tables: &CompensationTables<T>, demand: T) -> T {
     clamp(tables.landing.speed_per_torque * demand.abs(), tables.landing.speed, tables.landing.fastest)
 }

@@ -1,5 +1,11 @@
-//! The control law of impedance mode: the commanded spring on the link, the commanded damper on the motor, the
-//! commanded torque on top. It comes without a preview, so what will be asked is extrapolated from its own course.
+//! Control law of impedance mode: commanded spring on the link, commanded damper on the motor, commanded torque. Without a preview the
+//! demand is extrapolated from its own course (K4).
+//!
+//! ```text
+//! (K3)  torque = t + k_p e + k_d (v - w_m) + 0.1 D_m (w_l + v_e - w_m) - cog(theta_m) + cog(theta_l)
+//! ```
+//!
+//! Symbols: t, k_p, k_d, v = `point`; cog(theta_m) - cog(theta_l) = `cogging_by_gap()`.
 
 use super::intent::Intent;
 use super::limit::passed;
@@ -13,11 +19,11 @@ use crate::gears::sign;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 
-/// What impedance mode remembers.
+/// State of impedance mode.
 #[derive(Debug, Clone)]
 pub(super) struct ImpedanceLaw<T: Real> {
     stream: Stream<T>,
-    /// How the point usually starts.
+    /// Prediction of the next start of the set-point.
     start: StartPrediction<T>,
 }
 
@@ -38,9 +44,9 @@ impl<T: Real> ImpedanceLaw<T> {
         point: &ImpedancePoint<T>,
     ) -> Intent<T> {
         let spring = point.torque + point.stiffness * situation.error;
-        // Friction and cogging of the motor stay: the law is that of a joint without a gap, not of one without losses. So does
-        // the swing of motor against link, but for what the loop's delays would add to it. But a motor that stands beside
-        // where it would without a gap has another cogging there.
+        // Friction and cogging of the motor are not compensated: the law is that of a joint without a gap, not without
+        // losses. The swing of motor against link stays as well, except the part caused by the loop's delays. Only the
+        // cogging's difference to a joint without a gap is removed, because the motor stands elsewhere.
         let law = clamp(spring, -tables.limits.motor, tables.limits.motor)
             + point.damping * (point.speed - situation.motor_speed)
             + tables.law.impedance_damping * situation.damping_torque(tables)

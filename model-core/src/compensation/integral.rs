@@ -1,14 +1,14 @@
-//! The integral of a PID on the motor's place, with back-calculation.
+//! Integral of a PID on the motor position, with back-calculation: u_i in (K18).
 
 use super::swing::Swing;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 
-/// The integral of a PID on the motor's place, and whether its torque swings.
+/// Integral of a PID on the motor position, and detector of a swinging torque.
 #[derive(Debug, Clone)]
 pub(super) struct Integral<T: Real> {
-    /// [N m].
+    /// Torque of the integral [N m].
     torque: T,
     swing: Swing<T>,
 }
@@ -18,22 +18,22 @@ impl<T: Real> Integral<T> {
         Self { torque: T::ZERO, swing: Swing::new() }
     }
 
-    /// [N m].
+    /// Torque of the integral [N m].
     pub fn torque(&self) -> T {
         self.torque
     }
 
-    /// Takes the torque that the PID gives before its limit, in one of so many periods [N m].
+    /// Checks the torque of the PID before its limit for a swing, once in `periods` periods [N m].
     pub fn watch(&mut self, tables: &CompensationTables<T>, torque: T, periods: T) {
         self.swing.watch(tables, torque, periods);
     }
 
-    /// Whether that has swung from side to side.
+    /// True if the torque has swung from side to side.
     pub fn swings(&self) -> bool {
         self.swing.swings()
     }
 
-    /// Adds a torque of a period, within the motor's limit; what is no number is left out [N m].
+    /// Adds a torque [N m], within the motor's limit; a sum that is not finite is ignored.
     pub fn add(&mut self, tables: &CompensationTables<T>, torque: T) {
         let next = self.torque + torque;
         if next.is_finite() {
@@ -41,9 +41,10 @@ impl<T: Real> Integral<T> {
         }
     }
 
-    /// Integrates over a period in which the motor stands beyond its place by an angle [rad] and the limit took `cut` off
-    /// [N m]. What the limit cuts off a torque that swings from side to side does not say that the integral is too large; but with an
-    /// integral that goes on under the limit, a loop of a heavier link than designed would swing from limit to limit for good.
+    /// Updates the integral by the motor's position error `beyond` [rad] and the torque `cut` that the limit cut off [N
+    /// m]. While the torque swings from side to side, a cut torque does not show that the integral is too large, so it
+    /// is held. Integrating further under the limit would make a loop with a heavier link than designed swing from
+    /// limit to limit without end.
     pub fn integrate(&mut self, tables: &CompensationTables<T>, beyond: T, cut: T) {
         if self.swings() && cut != T::ZERO {
             return;
@@ -51,7 +52,7 @@ impl<T: Real> Integral<T> {
         self.add(tables, tables.law.back_calculation * cut - tables.law.integral * beyond);
     }
 
-    /// Lets it follow another torque with the time constant of the loop [N m].
+    /// Follows another torque with the time constant of the loop [N m].
     pub fn approach(&mut self, tables: &CompensationTables<T>, torque: T) {
         self.add(tables, tables.law.back_calculation * (torque - self.torque));
     }

@@ -1,4 +1,5 @@
-//! What the control law wants, referred to the link. It is made anew every control period and carries no state.
+//! Demand of the control law on motor and teeth, referred to the link, (K4) and (K5). The intent is computed anew every
+//! control period.
 
 use super::crossing::Crossing;
 use super::load::LoadModel;
@@ -6,42 +7,41 @@ use super::situation::Situation;
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 
-/// What the control law wants.
+/// Torque, demand and conditions that the control law gives to the flank control.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Intent<T: Real> {
     /// Torque while a flank carries [N m].
     pub law: T,
-    /// What the teeth have to pass on now [N m].
+    /// Torque through the teeth now [N m].
     pub demand_now: T,
-    /// What they will have to pass on when a crossing that began now ends [N m].
+    /// Torque through the teeth at the end of a crossing that begins now [N m].
     pub demand_ahead: T,
-    /// Acceleration of the load left to itself [rad/s^2].
+    /// Acceleration of the link moving freely under its load [rad/s^2].
     pub free_acceleration: T,
-    /// Its rate [rad/s^3].
+    /// Rate of `free_acceleration` [rad/s^3].
     pub free_jerk: T,
-    /// How hard the far flank will be needed, which says how fast to go there [N m].
+    /// Torque that the far flank will carry; sets the speed of the crossing [N m].
     pub far_demand: T,
-    /// Whether the law is a spring that was asked for: an impulse that the load missed on the way is made good afterwards,
-    /// which a law stiff enough does itself, and a flank that is in doubt is left to it.
+    /// True in impedance mode: an impulse that the link missed during a crossing is returned afterwards (position mode
+    /// corrects it by its own stiffness), and the spring decides on a flank in doubt.
     pub spring: bool,
-    /// Whether the joint is asked to rest and feels no load.
+    /// True if the joint is asked to rest and carries no load.
     pub idles: bool,
-    /// Whether the joint is asked to rest.
+    /// True if the joint is asked to rest.
     pub rests: bool,
-    /// Whether a joint that idles needs no flank: friction holds its link where it shall be, and nothing tells which flank it
-    /// will need.
+    /// True if an idle joint needs no flank: friction holds the link at its set-point, and no next start is predicted.
     pub needs_no_flank: bool,
-    /// Whether the link was pushed of late with more than the teeth shall pass on.
+    /// True if the link was recently pushed harder than the limit of the teeth.
     pub thrown: bool,
-    /// Whether the link is braked early, for the motor has no more torque.
+    /// True if the link is braked early because the motor's torque is limited.
     pub brakes_early: bool,
-    /// What a joint that friction holds is likely to be asked for first; it decides on the flank to wait on [N m].
+    /// Predicted torque of the next start of a joint that friction holds; selects the flank to wait on [N m].
     pub expects: T,
 }
 
 impl<T: Real> Intent<T> {
-    /// An intent from the law's torque and from what the teeth will have to pass on after a time. How hard the far flank will
-    /// be needed says how fast to go there, and that again when to start.
+    /// Creates an intent from the torque of the law and the demand after a time. The demand at the far flank sets the
+    /// speed of the crossing, whose duration sets the time of `demand_ahead`.
     pub fn new(
         tables: &CompensationTables<T>,
         load: &LoadModel<T>,

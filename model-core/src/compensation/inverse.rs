@@ -1,19 +1,21 @@
-//! Control on the motor alone with an adaptive inverse of the backlash: what controls while both shafts are seen and the gap is not, and
-//! what takes over from a loop that hunts. Of the link it uses no more than a slow mean, so that no mode of a payload is fed back; only
-//! where the motor swings against the loop's delays is the link damped. The observer's half-gap and offset stand in for an edge that the
-//! demand has not pressed yet, and its compliance gives the wind-up.
+//! Control of the motor with an adaptive inverse of the backlash (Tao, Kokotovic 1996): while both shafts are seen but the gap is unknown,
+//! and after a loop has hunted. Of the link only a slow mean is used, so that no mode of a payload is fed back. The link is damped only if
+//! the motor swings against the delays of the loop. The observer's half-gap and offset replace an edge that the demand has not pressed yet;
+//! the observer's compliance gives the wind-up.
 //!
-//! Symbols, all referred to the link: r set-point, m motor, s shift of the set-point, J all inertia, Jm the motor's, b bandwidth,
-//! u torque, d demand on the teeth, p share of the half-gap from -1 (back flank) to 1 (drive flank).
+//! ```text
+//! (K18)  u = k_J J a + J_m s'' + K (r + s - theta_m) + D (v + s' - w_m) + f sign(v) + u_i,   u_i' = J w^3 (r + s - theta_m)
+//! (K21)  p follows d/(pressing demand) through a play of +-1, within [-1, 1]
+//!        s -> (drive + back)/2 + 0.75 p (drive - back)/2 + d/S,   double pole at 3 w
+//! ```
 //!
-//! 1. PID with all three poles at b on the motor's place: u = Jm s'' + 3 J b^2 (r + s - m) + 3 J b (r' + s' - m') + F + I, with the
-//!    feed-forward F and the demand d that are learnt from the torque (`demand`).
-//! 2. Inverse of the backlash (Tao, Kokotovic 1996): p follows d, over what it takes to press a flank, through a play of one on either side:
-//!    noise about no demand moves nothing. s goes three quarters of the way to the edge that p says, all the way while one edge is known,
-//!    and by d as far as torque winds the joint up, on a path with a double pole.
-//! 3. Each edge is the mean by which the motor leads the link, less wind-up, while the demand presses that flank and the torque passes it.
-//! 4. A link that is seen to leave the flank which the demand presses, and is left behind on the other side, is on its way to the other
-//!    flank: p goes there at once, and the load has to be learnt anew.
+//! Symbols, referred to the link: u = `torque`, s, s' = `shift`, its target = `goal`, p = `share` from -1 (back flank) to 1 (drive flank),
+//! drive, back = `edges`, u_i = `integral`; `demand` estimates k_J, f and d from the torque.
+//!
+//! - The play keeps noise about zero demand from moving the motor. While only one edge is known, 1 replaces 0.75.
+//! - Each edge is the mean of motor less link, less wind-up, while the demand presses that flank and the torque reaches the teeth.
+//! - A link that leaves the pressed flank and lags on the other side moves to the other flank: p jumps there, and the load is estimated
+//!   anew.
 
 use super::demand::Demand;
 use super::integral::Integral;
@@ -26,45 +28,47 @@ use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 
-/// State of the PID with its feed-forward and the inverse of the backlash.
+/// State of the PID, its feed-forward and the inverse of the backlash.
 #[derive(Debug, Clone)]
 pub(super) struct BacklashInverse<T: Real> {
     integral: Integral<T>,
     /// Shift of the set-point [rad] and its rate [rad/s].
     shift: [T; 2],
-    /// From -1 on the back flank to 1 on the drive flank [-].
+    /// Share p, -1 on the back flank to 1 on the drive flank [-].
     share: T,
-    /// Motor beyond the link on the drive flank and on the back flank without wind-up, once it was seen [rad].
+    /// Motor less link on drive and back flank, without wind-up and transmission error, once measured [rad].
     edges: [Option<T>; 2],
-    /// Where the motor was beyond the link when another law controlled it last, or at first, less the transmission error [rad].
+    /// Motor less link, without transmission error, when this law began to control [rad].
     anchor: Option<T>,
-    /// Where it shall be beyond the link [rad].
+    /// Target of motor less link [rad].
     goal: T,
-    /// Torque of the last period that this law was asked in, before the limit; zero while it has no share in the torque [N m].
+    /// Torque of this law in the last period, before the limit; zero while it has no share in the torque [N m].
     torque: T,
-    /// For how long the demand has pressed a flank, in time constants of the loop [-].
+    /// Time for which the demand has pressed a flank [time constants of the loop].
     pressed: T,
-    /// Whether a flank was pressed for long enough since the link was seen to leave one.
+    /// True if a flank was pressed long enough since the link last left a flank.
     has_settled: bool,
     demand: Demand<T>,
 }
 
 impl<T: Real> BacklashInverse<T> {
-    /// Part of the lost motion that is not inverted [-]. Where a link goes to the other flank unforeseen, it is wrong by half the
-    /// lost motion without an inverse, by all of it with a whole one.
+    /// Part of the lost motion that is not inverted [-]. An unforeseen change of the flank causes an error of half the
+    /// lost motion without an inverse, of all of it with a full inverse.
     const LEFT: T = T::QUARTER;
 
-    /// Double pole of the shift's path over the bandwidth [-]: a crossing takes little more than a time constant of the loop, and less
-    /// torque than the limit of the bandwidth leaves for it.
+    /// Double pole of the path of the shift, over the bandwidth [-]: a crossing takes little more than a time constant
+    /// of the loop, and less torque than the limit of the bandwidth leaves.
     const PATH: T = T::THREE;
 
-    /// Rate at which an edge follows, over the bandwidth [-]: as slow as no payload swings.
+    /// Rate at which an edge is followed, over the bandwidth [-]: slower than any payload swings.
     const EDGE: T = T::EIGHTH;
 
-    /// Time constants of the loop for which a flank is pressed before its edge is learnt [-]: a crossing and what it leaves.
+    /// Time for which a flank is pressed before its edge is measured [time constants of the loop]: a crossing and its
+    /// transient.
     const SETTLES: T = T::TWO;
 
-    /// Part of the half-gap by which the teeth have to open, and the link to be behind, before it counts as on its way to the other flank [-].
+    /// Opening of the teeth, and lag of the link, beyond which the link counts as moving to the other flank, over the
+    /// half-gap [-].
     const LEAVES: T = T::HALF;
 
     pub fn new(tables: &CompensationTables<T>) -> Self {
@@ -82,7 +86,8 @@ impl<T: Real> BacklashInverse<T> {
         }
     }
 
-    /// Forgets where the flanks are: the encoders may come back elsewhere. What the motor has to move stays as it is.
+    /// Resets the edges, because the encoders may return with another offset; estimates of inertia, friction and load
+    /// stay.
     pub fn forget_places(&mut self) {
         (self.integral, self.shift, self.share) = (Integral::new(), [T::ZERO; 2], T::ZERO);
         (self.edges, self.anchor, self.pressed, self.has_settled) = ([None; 2], None, T::ZERO, false);
@@ -90,14 +95,14 @@ impl<T: Real> BacklashInverse<T> {
         self.demand.forget_plan();
     }
 
-    /// Motor beyond where it shall be [rad].
+    /// Motor less its target position [rad].
     fn place(&self, situation: &Situation<T>) -> T {
         situation.lead - situation.error - self.shift[0]
     }
 
-    /// Observes one of [`Turn::periods`] periods in which both shafts are seen, whoever controls. What would press a flank is
-    /// known from it.
-    // A function of its own leaves the registers to the law that controls instead: fewer instructions a tick on a Cortex-M4F.
+    /// Updates share, edges and target in one of [`Turn::periods`] periods in which both shafts are seen, whichever law
+    /// controls.
+    // Not inlined: fewer instructions per tick on a Cortex-M4F, because the controlling law keeps its registers.
     #[inline(never)]
     pub fn observe(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, now: &Motion<T>) {
         self.integral.watch(tables, self.torque, Turn::periods());
@@ -124,9 +129,10 @@ impl<T: Real> BacklashInverse<T> {
         }
     }
 
-    /// The flank, 1 or -1, that the link is on its way to though the demand presses the other one, or though nobody has seen it yet.
+    /// Returns the flank, 1 or -1, to which the link moves although the demand presses the other flank or the edge was
+    /// never measured.
     fn leaves(&self, situation: &Situation<T>) -> Option<T> {
-        // What swings to and fro is not chased.
+        // A link that swings to and fro is not followed.
         if !self.has_settled {
             return None;
         }
@@ -141,10 +147,10 @@ impl<T: Real> BacklashInverse<T> {
         (side * (situation.lead - situation.shift - edge) > least && side * situation.error > least).then_some(side)
     }
 
-    /// Where the motor shall be beyond the link under the demand [rad].
+    /// Target of motor less link under the demand [rad].
     fn goal(&self, situation: &Situation<T>, anchor: T) -> T {
-        // Where an edge was not seen, the gap says where it lies, or the other edge and the guess of the lost motion. Where none was, the
-        // motor stays as it stands, wound up or not.
+        // An edge that was not measured follows from the gap, or from the other edge and the guessed lost motion.
+        // Without any edge the motor stays where it stands, wound up or not.
         let [drive, back] = self.edges;
         let wind_up = self.demand.torque().over(situation.stiffness);
         let place = |seen: Option<T>, other: Option<T>, flank: Flank| {
@@ -154,13 +160,13 @@ impl<T: Real> BacklashInverse<T> {
         };
         let (drive, back) = (place(drive, back, Flank::Drive), place(back, drive, Flank::Back));
         let back = if back < drive { back } else { drive };
-        // A flank that the link has never left is inverted as a whole.
+        // While only one edge is known, the inverse is full.
         let both = situation.half_is_known || self.edges.iter().all(Option::is_some);
         let inverted = if both { T::ONE - Self::LEFT } else { T::ONE };
         T::HALF * (drive + back + inverted * self.share * (drive - back)) + situation.shift
     }
 
-    /// Stays where the motor stands, if this law begins to control it now.
+    /// Starts at the present motor position, if this law begins to control.
     fn stand(&mut self, situation: &Situation<T>) {
         if self.anchor.is_none() {
             self.anchor = Some(situation.lead - situation.shift);
@@ -168,8 +174,8 @@ impl<T: Real> BacklashInverse<T> {
         }
     }
 
-    /// Torque of a period [N m].
-    // A function of its own leaves the registers to the law that controls instead: fewer instructions a tick on a Cortex-M4F.
+    /// Computes the torque of a period [N m].
+    // Not inlined: fewer instructions per tick on a Cortex-M4F, because the controlling law keeps its registers.
     #[inline(never)]
     pub fn follow(
         &mut self,
@@ -187,8 +193,9 @@ impl<T: Real> BacklashInverse<T> {
         if shift.is_finite() && rate.is_finite() {
             self.shift = [shift, rate];
         }
-        // All of the damping on the motor, as long as that does not swing against the loop's delays; then the link takes over what
-        // the motor does not bear, while the teeth may carry. Where a payload swings, that is the reason, and damping on the link drives it.
+        // The motor gets all damping until it swings against the delays of the loop; then the link gets the part that
+        // the motor does not bear, while the teeth may carry. If a payload swings, the payload is the cause, and
+        // damping on the link would drive it.
         let on_motor = if self.integral.swings() && !payload_swings {
             damping_on_motor(tables.law.motor_damping)
         } else {
@@ -204,8 +211,8 @@ impl<T: Real> BacklashInverse<T> {
         torque
     }
 
-    /// Integrates; `cut` is what the limit took off if this law has a share in the torque. While it has none, it keeps itself ready to
-    /// take over where the motor is.
+    /// Updates the integral; `cut` is the torque that the limit cut off. `None`: this law has no share in the torque,
+    /// and stays ready to take over at the present motor position.
     pub fn take(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>, cut: Option<T>) {
         if let Some(cut) = cut {
             self.integral.integrate(tables, self.place(situation), cut);
@@ -216,7 +223,7 @@ impl<T: Real> BacklashInverse<T> {
         }
     }
 
-    /// Learns what the motor has to move from the torque of one of [`Turn::periods`] periods [N m].
+    /// Updates inertia, friction and load by the torque of one of [`Turn::periods`] periods [N m].
     pub fn learn(&mut self, tables: &CompensationTables<T>, torque: T) {
         self.demand.learn(tables, torque);
     }

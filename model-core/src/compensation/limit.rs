@@ -1,11 +1,12 @@
-//! How much torque may be asked for so that the teeth do not pass on more than they should, with what motor and link swing
-//! against each other counted in.
+//! Limit of the torque through the teeth, including the swing of motor against link.
 //!
-//! While torque stays as it is, the torque in the teeth swings about what they will pass on at rest, T, and motor and link
-//! close at a speed v: with the stiffness S between them and their reduced inertia I it comes to
-//! T + sqrt((T - F)^2 + S I v^2), F being what is passed on now. That is no more than P if
-//! T <= (P + F)/2 - S I v^2 / (2 (P - F)). So teeth that have just met get half of it at once and all of it a quarter of a
-//! swing later, without overshoot and without waiting.
+//! ```text
+//! (K11)  T_s + sqrt((T_s - F)^2 + S I v_c^2) <= P,   hence  T_s <= (P + F)/2 - S I v_c^2/(2 (P - F)),   T_s >= P/2
+//! ```
+//!
+//! Under constant torque the torque through the teeth swings about its static value T_s = `passed()`, while motor and link close at
+//! v_c = `closing`. S = `stiffness`, I = `reduced_inertia`, F = `force` at present, P = `most`. Teeth that have just met get half of P at
+//! once, and all of P a quarter of a swing later, without overshoot.
 
 use super::load::LoadModel;
 use super::situation::Situation;
@@ -13,14 +14,14 @@ use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::{beyond, clamp};
 
-/// What the teeth pass on at rest under a torque that is not lost on the way, with what brakes the link if left to itself:
-/// law and load accelerate motor and load together, and the motor's share stays behind [N m].
+/// Static torque through the teeth, T, under a torque after losses: law and load accelerate motor and link together,
+/// and the motor's inertia takes its share [N m].
 pub(super) fn passed<T: Real>(tables: &CompensationTables<T>, free: T, useful: T) -> T {
     free + tables.body.load_share * (useful - free)
 }
 
-/// The most that teeth shall pass on while the law asks for a useful torque [N m]. What is kept back for swings is given to a
-/// link that asks for more than the motor has: it lags anyway, and by more with every bit that is kept from it.
+/// Largest torque through the teeth, P, while the law asks for a torque after losses [N m]. The reserve for swings is
+/// released where the law asks for more than the motor has: the link lags anyway, and more with a reserve.
 pub(super) fn spared<T: Real>(tables: &CompensationTables<T>, useful: T) -> T {
     let limits = &tables.limits;
     let short = beyond(useful, limits.motor).abs();
@@ -30,7 +31,7 @@ pub(super) fn spared<T: Real>(tables: &CompensationTables<T>, useful: T) -> T {
     limits.teeth + clamp(short.over(limits.motor), T::ZERO, T::ONE) * (limits.teeth_at_most - limits.teeth)
 }
 
-/// A useful torque without what would carry the teeth beyond the most that they shall pass on [N m].
+/// Torque after losses, limited so that the torque through the teeth stays within `most` [N m].
 pub(super) fn limited<T: Real>(
     tables: &CompensationTables<T>,
     load: &LoadModel<T>,
@@ -48,13 +49,13 @@ pub(super) fn limited<T: Real>(
     if asked > allowed { useful - side * tables.body.inverse_load_share * (asked - allowed) } else { useful }
 }
 
-/// What the flank of a side may be asked to pass on at rest: between half of the most and the most. Less than
-/// half would brake the motor, with delays that are a third of a swing on stiff joints.
+/// Static torque that the law may ask of a flank, between half of `most` and `most`. Less than half would brake the
+/// motor, with delays of a third of a swing on stiff joints.
 fn allowed<T: Real>(tables: &CompensationTables<T>, situation: &Situation<T>, side: T, most: T) -> T {
     let closing = side * (situation.motor_speed - situation.link_speed);
     let wound = side * (situation.motor + situation.error - situation.shift) - situation.half;
-    // Seen by places without delay, but by as much wrong as a stiff joint makes of their errors; taken for too large it
-    // costs a third of what it costs if taken for too small.
+    // Force by positions: without delay, but on a stiff joint the position errors become large forces. An overestimated
+    // force costs a third of an underestimated one.
     let seen = situation.stiffness * (wound + tables.crossing.reaction * closing);
     let felt = side * situation.mesh_torque;
     let force = clamp(if felt > seen { felt } else { seen }, T::ZERO, most + most);

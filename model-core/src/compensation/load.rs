@@ -1,5 +1,11 @@
-//! What brakes the link, by the observer's load torque, split into an even part and dry friction (`brakes`). The split is what makes the
-//! torque after a reversal predictable. A load that may swing (`load_swing`) is followed more slowly than it swings.
+//! Load model: splits the observer's load torque into even load and dry friction (`brakes`), which predicts the torque after a reversal.
+//! A load that may swing (`load_swing`) is followed more slowly than it swings.
+//!
+//! ```text
+//! (K6)  load torque = L + f dir,   L' = rate
+//! ```
+//!
+//! Symbols: L = `even`, f = `friction`, dir = `direction()`.
 
 use super::brakes::Brakes;
 use super::load_swing::LoadSwing;
@@ -9,44 +15,45 @@ use crate::numbers::Real;
 use crate::numbers::arithmetic::{beyond, clamp};
 use crate::observer::Estimates;
 
-/// Even part and dry friction of the load torque.
+/// Even load and dry friction of the load torque.
 #[derive(Debug, Clone)]
 pub(super) struct LoadModel<T: Real> {
     brakes: Brakes<T>,
-    /// By how much the link is slower than asked, smoothed [rad/s].
+    /// Speed of the set-point less speed of the link, smoothed [rad/s].
     slip: T,
-    /// Its speed over that at which dry friction has its full size.
+    /// Speed of the link over the speed at which dry friction reaches its full size [-].
     speed: T,
-    /// Rate of the even part [N m/s].
+    /// Rate of the even load [N m/s].
     rate: T,
-    /// What brakes a link that no flank carries, smoothed [N m].
+    /// Load torque of a link that no flank carries, smoothed [N m].
     alone: Option<T>,
-    /// The hardest that the link was pushed of late, fading [N m].
+    /// Largest recent load torque on the link, decaying [N m].
     hardest: T,
-    /// 1 or -1: where the link last moved to, 0 before it has.
+    /// Direction of the link's last motion: 1, -1, or 0 before the first motion.
     moved: T,
-    /// How it began to creep, while it does.
+    /// State at the beginning of creeping, while the link creeps.
     creep: Option<Creep<T>>,
-    /// 1 while the motor's limit cuts torque off, fading over the loop's transient [-].
+    /// 1 while the motor's limit cuts torque off, then decaying over the loop's transient [-].
     cut: T,
-    /// Whether it is a payload that swings.
+    /// Detector of a swinging payload.
     swing: LoadSwing<T>,
 }
 
-/// What was known before the link began to creep.
+/// Even load before the link began to creep.
 #[derive(Debug, Clone, Copy)]
 struct Creep<T: Real> {
     even: T,
-    /// By how much the even part's variance has grown since.
+    /// Growth of the even load's variance while the link creeps.
     variance: T,
 }
 
 impl<T: Real> LoadModel<T> {
-    /// A link that creeps moves again only at a speed of which this part [-] is no creeping: noise makes up to three times
-    /// the speed of creeping.
+    /// Share of the speed of a creeping link that must exceed the creeping speed before the link counts as moving [-]:
+    /// noise reaches three times the creeping speed.
     const STILL_CREEPS: T = T::THIRD;
 
-    /// How fast a load is followed that may swing, over how fast another one is [-]: in 25 ms, half the period of 20 Hz.
+    /// Gain for a load that may swing, over the gain for other loads [-]: time constant of 25 ms, half the period of 20
+    /// Hz.
     const SLOWLY: T = T::EIGHTH;
 
     pub fn new() -> Self {
@@ -64,22 +71,22 @@ impl<T: Real> LoadModel<T> {
         }
     }
 
-    /// Whether the motor's limit has cut torque off in this period.
+    /// Records whether the motor's limit has cut torque off in this period.
     pub fn take_cut(&mut self, tables: &CompensationTables<T>, is_cut: bool) {
         self.cut = if is_cut { T::ONE } else { self.cut * tables.switching.transient_left };
     }
 
-    /// Whether the load swings as a payload on a flexible arm does.
+    /// True while the load swings like a payload on a flexible arm.
     pub fn swings(&self) -> bool {
         self.swing.swings()
     }
 
-    /// How fast the load is followed, over how fast a load is that does not swing [-].
+    /// Gain over the gain for a load that does not swing [-].
     fn pace(&self) -> T {
         if self.swing.may_swing() { Self::SLOWLY } else { T::ONE }
     }
 
-    /// -1 to 1: what share of the dry friction brakes the link.
+    /// Share and sign of the dry friction at the speed of the link, -1 to 1.
     fn direction(&self) -> T {
         clamp(self.speed, -T::ONE, T::ONE)
     }
@@ -88,7 +95,7 @@ impl<T: Real> LoadModel<T> {
         self.brakes.even
     }
 
-    /// Rate of the even part: weight turns with the link [N m/s].
+    /// Rate of the even load, as of a weight that turns with the link [N m/s].
     pub fn rate(&self) -> T {
         self.rate
     }
@@ -97,40 +104,41 @@ impl<T: Real> LoadModel<T> {
         self.brakes.friction
     }
 
-    /// Whether the link was pushed of late with more than the teeth shall pass on. Then the teeth are not spared: whoever pushes presses them.
+    /// True if the link was recently pushed harder than the limit of the teeth. The limit is then suspended: the push
+    /// loads the teeth anyway.
     pub fn throws(&self, tables: &CompensationTables<T>) -> bool {
         self.hardest > tables.limits.teeth
     }
 
-    /// What would brake the link now if no flank carried it.
+    /// Load torque on the link if no flank carried it [N m].
     pub fn free(&self) -> T {
         self.alone.unwrap_or(self.brakes.even + self.drag())
     }
 
-    /// What the start of a link at rest will ask for at least [N m]; 0 for a link that a flank has to hold. Under a
-    /// load within its friction the link stays where it is without a flank, but a start must overcome that friction.
+    /// Smallest torque that the start of a link at rest needs [N m]; 0 for a link that a flank must hold. A load within
+    /// friction does not move a link without a flank, but a start must overcome that friction.
     pub fn start(&self, tables: &CompensationTables<T>) -> T {
         let held = beyond(self.brakes.even, tables.switching.measured + self.brakes.friction) == T::ZERO;
         if held { T::TWO * tables.switching.measured + self.brakes.friction } else { T::ZERO }
     }
 
-    /// Friction at a speed that is planned.
+    /// Dry friction at a planned speed [N m].
     pub fn planned_drag(&self, tables: &CompensationTables<T>, speed: T) -> T {
         self.brakes.friction * planned_direction(tables, speed)
     }
 
-    /// Friction at the speed that the link has.
+    /// Dry friction at the speed of the link [N m].
     pub fn drag(&self) -> T {
         self.brakes.friction * self.direction()
     }
 
-    /// Whether the link is so slow that it may rub with any part of its friction.
+    /// True if the link is so slow that any part of its friction may act.
     fn creeps(&self) -> bool {
         creeps(self.speed)
     }
 
-    /// Takes the estimate of the load torque, unless the teeth are known to be open. `acts` is whether it is fed forward: only then is a
-    /// swing the loop's own affair.
+    /// Updates the model by the estimated load torque, unless the teeth are known to be open. `acts`: the load is fed
+    /// forward; only then does its swing concern the loop.
     pub fn observe(
         &mut self,
         tables: &CompensationTables<T>,
@@ -139,19 +147,19 @@ impl<T: Real> LoadModel<T> {
         acts: bool,
     ) {
         self.follow(tables, situation);
-        // A weight turns with the link.
+        // The torque of a weight changes only while the link turns.
         if self.creeps() {
             self.rate = T::ZERO;
         }
         self.brakes.even =
             clamp(self.brakes.even + tables.clock.period * self.rate, -tables.limits.motor, tables.limits.motor);
-        // Without a link to be seen the integral of plain control takes over.
+        // Without the link's position, the integral of plain control takes over.
         if !situation.feels {
             self.brakes.even -= tables.law.back_calculation * self.brakes.even;
         }
         let torque = estimates.load_torque;
         let known = torque.valid && torque.value.is_finite() && situation.feels;
-        // More than the motor can hold is no load that it carries.
+        // A load beyond the motor's limit cannot be carried.
         let held = clamp(torque.value, -tables.limits.motor, tables.limits.motor);
         self.hardest *= tables.switching.transient_left;
         let push = clamp(torque.value.abs(), T::ZERO, tables.limits.motor + tables.limits.motor);
@@ -160,8 +168,8 @@ impl<T: Real> LoadModel<T> {
         }
         let carried = known && !situation.open;
         self.swing.take(tables, (carried && acts).then_some(held - self.drag()));
-        // What brakes a link that is jerked from limit to limit is known with a lag: it is followed as one, for shared out it
-        // would make friction of the lag.
+        // While the torque alternates between the limits the load is known with a lag. Friction is then not estimated,
+        // because it would absorb the lag.
         if carried && self.cut > T::HALF {
             self.brakes.even += self.pace() * tables.load.gain * (held - self.brakes.even - self.drag());
         } else if carried {
@@ -171,7 +179,7 @@ impl<T: Real> LoadModel<T> {
         }
         let before = self.free();
         self.alone = (known && !carried).then(|| before + tables.switching.smoothing * (held - before));
-        // What holds a link that rests alone is its friction.
+        // Friction alone holds a link at rest without a flank.
         if let Some(alone) = self.alone
             && self.creeps()
         {
@@ -179,7 +187,8 @@ impl<T: Real> LoadModel<T> {
         }
     }
 
-    /// Integrates an error instead, where a flank should carry and no estimate says with what force.
+    /// Integrates an error into the even load, where a flank should carry but the teeth are open and the force is
+    /// unknown.
     pub fn lean(&mut self, tables: &CompensationTables<T>, error: T) {
         let next = self.brakes.even + tables.law.integral * error;
         if next.is_finite() {
@@ -187,7 +196,7 @@ impl<T: Real> LoadModel<T> {
         }
     }
 
-    /// Follows the link's speed: what is asked for has no noise, and a link that is controlled keeps to it.
+    /// Estimates the speed of the link from the set-point, which has no noise, and the smoothed slip.
     fn follow(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>) {
         let asked = situation.link_speed + situation.error_rate;
         let slip = self.slip + tables.switching.smoothing * (situation.error_rate - self.slip);
@@ -197,13 +206,13 @@ impl<T: Real> LoadModel<T> {
         }
     }
 
-    /// Learns from a reading while a flank carries. A link that creeps may rub with any part of its friction: what brakes
-    /// it is followed then without asking which part it is, until it moves again.
+    /// Updates even load and friction by a measurement while a flank carries. On a creeping link any part of the
+    /// friction may act: the sum is followed in the even load until the link moves again.
     fn learn(&mut self, tables: &CompensationTables<T>, torque: T) {
         let [growth_even, growth_friction, noise] = tables.load.variances;
         let pace = self.pace();
         let [growth_even, growth_friction] = [growth_even, growth_friction].map(|growth| pace * pace * growth);
-        // Once it creeps, a speed that noise may have made does not say that it moves.
+        // While the link creeps, a speed within the noise does not count as motion.
         if creeps(if self.creep.is_some() { Self::STILL_CREEPS * self.speed } else { self.speed }) {
             let even = self.brakes.even;
             let creep = self.creep.get_or_insert(Creep { even, variance: T::ZERO });
@@ -227,7 +236,7 @@ impl<T: Real> LoadModel<T> {
     }
 }
 
-/// Whether a link of this speed is so slow that it may rub with any part of its friction.
+/// True if a link at this speed is so slow that any part of its friction may act.
 fn creeps<T: Real>(speed: T) -> bool {
     speed < T::ONE && speed > -T::ONE
 }

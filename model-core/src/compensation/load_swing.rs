@@ -1,54 +1,60 @@
-//! Whether the load swings faster than anything that people, weights and motions put on a link: a payload on a flexible arm. Its reaction
-//! must not be fed forward as it is felt, for what is fed forward late drives the swing.
+//! Detector of a load that swings faster than loads by people, weights and motions: a payload on a flexible arm. The reaction of such
+//! a payload must not be fed forward as measured, because a delayed feed-forward drives the swing.
 //!
-//! Symbols: z load without friction, f and g its fast and slow mean, d = f - g, m the torque that measured ones are uncertain by. The load
-//! changes sides when d < -m after d > m, or the other way round. Three changes, each within an eighth of a second of the one before, are a
-//! swing.
+//! ```text
+//! (K7)  c' = (z - c)/(15 T_r),   m' = 25/s (c - m)
+//! ```
+//!
+//! Symbols: z = `reading`, the load without friction; c, m = `means`, its fast and slow mean; M = `switching.measured`, the uncertainty of
+//! measured torques. The load changes sides when c - m < -M after c - m > M, or the reverse. Three changes, each within an eighth of a
+//! second of the last, are a swing.
 
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::{beyond, clamp};
 
-/// Notices a swing of the load.
+/// Detector of a swing of the load.
 #[derive(Debug, Clone)]
 pub(super) struct LoadSwing<T: Real> {
     /// Fast and slow mean of the load [N m].
     means: [T; 2],
-    /// 1 or -1: to which side of the slow mean the fast one last was far off.
+    /// Side of the slow mean on which the fast mean last was beyond m: 1, -1, or 0 at first.
     side: T,
-    /// Time since that was another side, as far as it matters [s].
+    /// Time since the last change of the side, saturating [s].
     since: T,
-    /// Changes of the side, each soon after the one before [-].
+    /// Changes of the side, each soon after the last [-].
     changes: T,
-    /// Time for which the load still counts as one that swings [s].
+    /// Remaining time for which the load counts as swinging [s].
     left: T,
 }
 
 impl<T: Real> LoadSwing<T> {
-    /// Changes of the side that are a swing [-]: a step and what follows it are one or two.
+    /// Changes of the side that make a swing [-]: a step with its transient makes one or two.
     const SWING: T = T::THREE;
 
-    /// Half the period of the slowest swing [s]: a payload's mode is at 8 Hz at least, motions and what people do below 4 Hz.
+    /// Half the period of the slowest swing [s]: modes of payloads are above 8 Hz, motions and loads by people below 4
+    /// Hz.
     const HALF_PERIOD: T = T::EIGHTH;
 
-    /// Time without a swing after which there is none [s], and with which a link begins about which nothing is known.
+    /// Time without a swing after which the load no longer counts as swinging; also the time at the start during which
+    /// it may swing [s].
     const KEPT: T = T::ONE;
 
     pub fn new() -> Self {
         Self { means: [T::ZERO; 2], side: T::ZERO, since: T::ZERO, changes: T::ZERO, left: Self::KEPT }
     }
 
-    /// Whether the load swings, or might: nothing has shown yet that it does not.
+    /// True if the load swings, or if it is not yet shown that it does not.
     pub fn may_swing(&self) -> bool {
         self.left > T::ZERO
     }
 
-    /// Whether the load swings for sure.
+    /// True if a swing was detected.
     pub fn swings(&self) -> bool {
         self.may_swing() && self.changes >= Self::SWING
     }
 
-    /// Takes a period with a reading of the load, if there is one [N m].
+    /// Updates the detector by the load of a period [N m]; `None` without a measurement.
     pub fn take(&mut self, tables: &CompensationTables<T>, reading: Option<T>) {
         let period = tables.clock.period;
         self.since = clamp(self.since + period, T::ZERO, T::ONE);

@@ -1,21 +1,24 @@
-//! Takes the lost motion out: from estimates and a set-point to a motor torque, once a control period.
+//! Backlash compensation: computes the motor torque from the observer's estimates and a set-point, once per control
+//! period.
 //!
 //! The structure, front to back:
-//! 1. `position` and `impedance` turn a set-point into an `Intent`: the torque that the control law
-//!    gives while a flank carries, and the torque that the teeth will have to pass on, now and one crossing later.
-//! 2. `flank` decides from that which flank shall carry, and when to leave for it, by the table in [`transitions`].
-//! 3. `crossing` and `path` take the motor through the gap to where the load will be, and softly onto the flank.
-//! 4. `limit` keeps what the teeth pass on within bounds, `braking` the link's speed within what the motor can brake.
-//! 5. `load` knows what brakes the link and how that changes when the motion turns round, `load_swing` whether it is a payload that
-//!    swings, `start_prediction` how
-//!    motions start, `easing` what friction holds at rest.
-//! 6. `plain` is control without compensation of a link that is not seen: a PID on the motor's place with part of the feed-forward and no
-//!    limit of the teeth; or the commanded impedance law. Where the estimates are not valid it or `inverse` takes over in one control
-//!    period; only the way back is blended.
-//! 7. `inverse` controls the motor alone until the gap is known, and where `watch` notices a loop that hunts: with an inverse of the
-//!    backlash that it learns itself, for the `demand` that it learns from the torque. `brakes` tells weight from friction, for `load` as well.
+//! 1. `position` and `impedance` turn a set-point into an `Intent`: the torque of the control law while a flank
+//!    carries, and the torque through the teeth (the demand), now and at the end of a crossing that begins now.
+//! 2. `flank` selects the flank that carries the demand and the time to leave for it, by the table in [`transitions`].
+//! 3. `crossing` and `path` move the motor through the gap to the place where the link will be, and land it softly on
+//!    the flank.
+//! 4. `limit` bounds the torque through the teeth. `braking` bounds the link's speed by the motor's braking torque.
+//! 5. `load` splits the load torque into an even load and dry friction, which predicts the torque after a reversal.
+//!    `load_swing` detects a swinging payload, `start_prediction` predicts the direction of the next start, `easing`
+//!    leaves a load at rest to friction.
+//! 6. `plain` controls without compensation: a PID on the motor position without a limit of the teeth while the link is
+//!    not seen, or the commanded impedance law. `plain` or `inverse` takes over within one control period when the
+//!    estimates become invalid; the way back is blended.
+//! 7. `inverse` controls the motor until the gap is known, and after `watch` has detected a hunting loop: a PID with an
+//!    adaptive inverse of the backlash. `demand` estimates the demand of `inverse` from the torque. `brakes` separates
+//!    even load from friction for `demand` and `load`.
 //!
-//! `docs/theory/compensation.md` derives all of it and says where its limits are.
+//! `docs/theory/compensation.md` derives the equations and states the limits.
 
 mod brakes;
 mod braking;

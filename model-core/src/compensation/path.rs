@@ -1,23 +1,23 @@
-//! The path of a crossing: up to a steady speed, along, and down to the speed of arrival. Planets hang loose in the gap
-//! and are struck somewhere on the way, so that the steady speed is what a crossing's force depends on, and a path
-//! that rises above it anywhere would be slower for the same blow.
+//! Path of a crossing (K8): a ramp to a steady speed, steady speed, a ramp to the landing speed. Loose planets are
+//! struck anywhere on the way, so that the highest speed determines the force: a path with a higher peak speed would
+//! strike harder without being faster.
 
 use super::crossing::Crossing;
 use crate::numbers::Real;
 
-/// A path over time.
+/// Path over time.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Path<T: Real> {
     start: [T; 2],
     end: [T; 2],
-    /// Speed between the ramps.
+    /// Steady speed between the ramps [rad/s].
     steady: T,
     crossing: Crossing<T>,
     inverse_ramp: T,
 }
 
 impl<T: Real> Path<T> {
-    /// From position and rate to position and rate.
+    /// Creates a path from position and rate to position and rate.
     pub fn new(start: [T; 2], end: [T; 2], crossing: Crossing<T>) -> Self {
         let Crossing { duration, ramp } = crossing;
         let long = duration - ramp;
@@ -27,13 +27,13 @@ impl<T: Real> Path<T> {
         Self { start, end, steady, crossing, inverse_ramp }
     }
 
-    /// How long it takes [s].
+    /// Duration of the path [s].
     pub fn duration(&self) -> T {
         self.crossing.duration
     }
 
-    /// Position, rate and acceleration at a time since the start; before and past its ends it goes on at
-    /// their rates.
+    /// Position, rate and acceleration at a time since the start; outside the path, extrapolated at the rate of its
+    /// ends.
     pub fn at(&self, time: T) -> [T; 3] {
         let Crossing { duration, ramp } = self.crossing;
         let left = duration - time;
@@ -54,7 +54,8 @@ impl<T: Real> Path<T> {
         }
     }
 
-    /// Way, rate and acceleration on the ramp from a rate to the steady one, with no acceleration at either end.
+    /// Travel, rate and acceleration on the ramp from a rate to the steady speed; the acceleration is zero at both
+    /// ends.
     fn rise(&self, time: T, from: T) -> [T; 3] {
         let s = time * self.inverse_ramp;
         let by = self.steady - from;

@@ -1,5 +1,14 @@
-//! The control law of position mode: spring on the link, damper on the motor, acceleration and load fed forward. The
-//! load estimate takes the place of an integral.
+//! Control law of position mode: spring and damper on the link, damper on the motor, feed-forward of acceleration and load. The load
+//! estimate replaces an integral.
+//!
+//! ```text
+//! (K1)  torque = J a + L + f dir + losses + K e + D (v - w_l) + D_m (w_l + v_e - w_m)
+//! (K4)  demand(time) = J_l a + L + f dir + K e + D (v - w_l), extrapolated by time
+//! ```
+//!
+//! Symbols: v, a = `now.speed`, `now.acceleration`; L = `load.even()`; f dir = `load.planned_drag()`; losses = `situation.lost()`;
+//! K e = `spring`; D = `law.damping`; v - w_l = `situation.error_rate`; D_m term = `situation.damping_torque()`; measured part of the
+//! demand = `level`. (K15) is `find_deadband`.
 
 use super::braking::{Braking, Course, Lag};
 use super::easing::Easing;
@@ -14,40 +23,43 @@ use crate::gears::{Flank, sign};
 use crate::numbers::Real;
 use crate::numbers::arithmetic::{beyond, clamp};
 
-/// How much faster the growth of what is asked for is smoothed than torque that is measured: planners' steps are coarse, but
-/// without noise.
+/// Smoothing rate of the set-point's jerk over the smoothing rate of measured torque: planners send coarse steps, but
+/// no noise.
 const SOONER: i32 = 8;
 
-/// What position mode remembers.
+/// State of position mode.
 #[derive(Debug, Clone)]
 pub(super) struct PositionLaw<T: Real> {
-    /// Acceleration asked for one period ago.
+    /// Acceleration of the set-point in the previous period [rad/s^2].
     before: Option<T>,
-    /// Error that is let be while the joint rests without a load, grown by crossings that feedback alone has caused [rad].
+    /// Dead band of the error while the joint rests without a load; grows with flank changes that feedback alone has
+    /// caused [rad].
     deadband: T,
-    /// The flank that the demand ahead asked for last, at this rest.
+    /// Flank that the demand asked for last during this rest.
     asked: Option<Flank>,
-    /// How long ago it last changed, as far as that matters [s].
+    /// Time since `asked` last changed, saturating [s].
     since: T,
-    /// Demand as far as it is measured and not planned, smoothed [N m].
+    /// Smoothed measured part of the demand [N m].
     level: T,
-    /// How the motion usually starts.
+    /// Prediction of the next start.
     start: StartPrediction<T>,
-    /// Whether the load is left to friction.
+    /// Transfer of a load at rest to friction.
     easing: Easing<T>,
-    /// By how much the acceleration asked for grows in a period, smoothed: planners send it in coarser steps [rad/s^2].
+    /// Growth of the set-point's acceleration per period, smoothed because planners send coarse steps [rad/s^2].
     growth: T,
-    /// The hardest acceleration asked for since the motion rested: few planners brake harder than they accelerate [rad/s^2].
+    /// Largest acceleration of the set-point since the last rest: few planners brake harder than they accelerate
+    /// [rad/s^2].
     hardest: T,
 }
 
 impl<T: Real> PositionLaw<T> {
-    /// How fast the first deadband opens, over itself [1/s]: slowly against a load that passes through zero, and fast against
-    /// an integral that winds up until the motor breaks loose from its friction.
+    /// Rate at which the first dead band opens, over its size [1/s]: slow against a load that passes through zero, fast
+    /// against an integral that winds up until the motor breaks loose from its friction.
     const OPENS: T = T::ONE;
 
-    /// By how much what is asked for may be beyond the motor's limit while the link is thrown, over that limit [-]: it drowns
-    /// some of the damper between motor and link, so that a thrown link is pushed back sooner and the teeth are not spared.
+    /// Torque of the law beyond the motor's limit while the link is pushed hard, over that limit [-]: the excess
+    /// outweighs part of the damper between motor and link, so that the link is pushed back sooner at the cost of the
+    /// teeth.
     const HURRIES: T = T::QUARTER;
 
     pub fn new() -> Self {
@@ -68,7 +80,7 @@ impl<T: Real> PositionLaw<T> {
         *self = Self::new();
     }
 
-    /// The error, less what is let be.
+    /// Error beyond the dead band [rad].
     pub fn heeded(&self, situation: &Situation<T>) -> T {
         beyond(situation.error, self.deadband)
     }
@@ -102,7 +114,7 @@ impl<T: Real> PositionLaw<T> {
             + load.planned_drag(tables, now.speed)
             + spring
             + tables.law.damping * situation.error_rate;
-        // What is beyond the limits must not drown the damper.
+        // Torque beyond the limits must not outweigh the damper.
         let all = passed(tables, load.free(), useful);
         let allowed = spared(tables, useful);
         let thrown = load.throws(tables);
@@ -118,12 +130,13 @@ impl<T: Real> PositionLaw<T> {
             + (load.drag() - load.planned_drag(tables, now.speed))
             + spring
             + tables.law.damping * situation.error_rate;
-        // Changes that are large against the noise are taken up faster.
+        // Changes that are large against the noise are followed faster.
         self.level += tables.clock.period * load.rate();
         let change = level - self.level;
         let weight = tables.switching.inverse_step * change;
-        // What is planned comes ahead with a preview, so that what is measured has time: teeth that swing about little torque
-        // at the mesh frequency must not make the motor leave at a crest, for it would be called back.
+        // With a preview the planned demand is known early, so the measured demand is smoothed longer: teeth that
+        // oscillate about a small torque at the mesh frequency must not make the motor leave at a peak and return at
+        // once.
         let smoothing =
             if ahead.is_some() { (T::ONE - T::THIRD) * tables.switching.smoothing } else { tables.switching.smoothing };
         self.level += clamp(smoothing * clamp(weight * weight, T::ONE, tables.clock.rate), T::ZERO, T::HALF) * change;
@@ -144,7 +157,7 @@ impl<T: Real> PositionLaw<T> {
             None => planned(time) + level + time * rate,
             Some(lag) => braking.demand(tables, load, lag, &course, time),
         };
-        // A load that is felt has its reasons, and a flank that carries it rests.
+        // A joint that carries a load is not idle: the loaded flank is kept.
         let idles = rests && beyond(load.even(), tables.switching.measured) == T::ZERO;
         let direction = if now.speed == T::ZERO { now.acceleration } else { now.speed };
         let likely = self.start.step(tables, situation, direction, rests);
@@ -165,8 +178,8 @@ impl<T: Real> PositionLaw<T> {
         intent
     }
 
-    /// By how much speed and acceleration asked for will have changed after a time that is never zero: as the preview
-    /// says or, without one, as the jerk does.
+    /// Changes of the set-point's speed and acceleration within a time, and that time, which is never zero. The preview
+    /// gives the changes; without a preview, the jerk.
     fn trajectory(
         &mut self,
         tables: &CompensationTables<T>,
@@ -184,9 +197,10 @@ impl<T: Real> PositionLaw<T> {
         }
     }
 
-    /// Opens the first deadband while a joint rests without a load: what it lets be friction holds for seconds, and then it
-    /// costs a crossing to put it right. Doubles it whenever such a joint asks for the other flank soon after it asked for this
-    /// one, which no load does but a loop that hunts; forgives that slowly, and all at once when the joint is to move.
+    /// Opens the first dead band while a joint rests without a load (K15): an error treated as friction lasts for
+    /// seconds, and correcting it later costs a crossing. A request for the opposite flank soon after the last request
+    /// widens the dead band, because only a hunting loop causes such requests, no load. The dead band decays slowly,
+    /// and closes at once when the joint is to move.
     fn find_deadband(&mut self, tables: &CompensationTables<T>, rests: bool, idles: bool, demand: T, half: T) {
         self.since = clamp(self.since + tables.clock.period, T::ZERO, tables.rest.hunting);
         if !rests {

@@ -1,41 +1,41 @@
-//! What the compensation is asked for and what it answers.
+//! Input and output of the compensation: set-points, commands, stages and the resulting torque.
 
 use crate::gears::Flank;
 use crate::numbers::Real;
 
-/// An angle over any number of turns.
+/// Angle over any number of turns.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
 pub struct Position<T: Real> {
     /// Whole turns.
     pub turns: i32,
-    /// What is left [turns].
+    /// Remaining part of a turn [turns].
     pub fraction: T,
 }
 
 impl<T: Real> Position<T> {
-    /// This less another angle [turns].
+    /// Difference to another angle, `self` minus the other [turns].
     pub fn less(&self, turns: i32, fraction: T) -> T {
         T::from_i64(i64::from(self.turns) - i64::from(turns)) + (self.fraction - fraction)
     }
 }
 
-/// Where the link shall be at one moment. It lies in memory as a C program has it, which is read from where it is.
+/// Set-point of the link at one moment. `repr(C)`: a C caller's struct is read in place.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
 pub struct Motion<T: Real> {
-    /// On the scale of the observer's link shaft.
+    /// Position on the scale of the observer's link shaft.
     pub position: Position<T>,
-    /// [rad/s].
+    /// Speed [rad/s].
     pub speed: T,
-    /// [rad/s^2].
+    /// Acceleration [rad/s^2].
     pub acceleration: T,
 }
 
-/// A spring and damper about a moving point.
+/// Set-point of impedance mode: a spring and a damper about a moving point.
 ///
-/// A spring of 100 N m/rad, and somebody who leans on the link with 2 N m: it gives way by 20 mrad, less what friction
-/// holds.
+/// In this example 2 N m push against a spring of 100 N m/rad: the link gives way by 20 mrad, less the part that
+/// friction holds.
 ///
 /// ```
 /// use model_core::compensation::design::{compensation_settings, design_compensation};
@@ -66,48 +66,48 @@ pub struct Motion<T: Real> {
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
 pub struct ImpedancePoint<T: Real> {
-    /// On the scale of the observer's link shaft.
+    /// Position on the scale of the observer's link shaft.
     pub position: Position<T>,
-    /// [rad/s].
+    /// Speed [rad/s].
     pub speed: T,
-    /// On top of spring and damper [N m].
+    /// Torque added to spring and damper [N m].
     pub torque: T,
-    /// [N m/rad].
+    /// Stiffness of the spring [N m/rad].
     pub stiffness: T,
-    /// [N m s/rad].
+    /// Damping [N m s/rad].
     pub damping: T,
 }
 
-/// What the compensation is asked for in one control period.
+/// Command of one control period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Command<T: Real> {
-    /// Follow a motion.
+    /// Position mode: the link follows a motion.
     Position {
-        /// The motion now.
+        /// Present motion.
         now: Motion<T>,
-        /// The motion at the tables' lead from now, if it is known.
+        /// Motion after [`CrossingTable::lead`](super::tables::CrossingTable::lead), if known.
         ahead: Option<Motion<T>>,
     },
-    /// Be a spring and damper.
+    /// Impedance mode: the link behaves as a spring and damper.
     Impedance(ImpedancePoint<T>),
 }
 
-/// The same where it is.
+/// Borrowed [`Command`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CommandRef<'given, T: Real> {
-    /// Follow a motion.
+    /// Position mode: the link follows a motion.
     Position {
-        /// The motion now.
+        /// Present motion.
         now: &'given Motion<T>,
-        /// The motion at the tables' lead from now, if it is known.
+        /// Motion after [`CrossingTable::lead`](super::tables::CrossingTable::lead), if known.
         ahead: Option<&'given Motion<T>>,
     },
-    /// Be a spring and damper.
+    /// Impedance mode: the link behaves as a spring and damper.
     Impedance(&'given ImpedancePoint<T>),
 }
 
 impl<T: Real> Command<T> {
-    /// What it is, without a copy.
+    /// Borrows the command instead of copying the set-points.
     #[inline]
     pub fn by_reference(&self) -> CommandRef<'_, T> {
         match self {
@@ -117,44 +117,44 @@ impl<T: Real> Command<T> {
     }
 }
 
-/// What the compensation is about.
+/// State of the compensation.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Stage {
-    /// A flank carries, or the joint needs none and the motor rests in the middle of the gap.
+    /// Contact: a flank carries, or the joint needs no flank and the motor rests in the middle of the gap.
     #[default]
     Touching,
-    /// On the way through the gap.
+    /// Path of the motor through the gap.
     Crossing,
-    /// Closing on a flank at a small speed: past the end of the way, or because the flank was lost.
+    /// Approach to a flank at the landing speed, because the path has ended or the flank was lost.
     Landing,
-    /// Control without compensation: the gap cannot be seen.
+    /// Control without compensation: the estimates of the gap are not valid, or the compensation has stepped back.
     Plain,
-    /// No torque: it is not known where the motor is.
+    /// No torque: the motor position is unknown.
     Off,
-    /// No torque until observer and compensation are started anew: the motor ran against its torque, so torque or motor encoder has
-    /// the wrong sign.
+    /// No torque until observer and compensation are restarted: the motor accelerated against its torque, so that
+    /// torque or motor encoder has the wrong sign.
     Reversed,
 }
 
-/// What the compensation answers. The numbers lie first, so that they are copied in one go.
+/// Output of the compensation in one control period. The numbers come first, so that they are copied in one block.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
 pub struct Shaped<T: Real> {
-    /// Torque for the motor [N m].
+    /// Torque command of the motor [N m].
     pub torque: T,
-    /// Torque that the teeth will have to pass on after a crossing that began now [N m].
+    /// Torque through the teeth at the end of a crossing that begins now; zero under plain control [N m].
     pub demand: T,
-    /// What brakes the link besides dry friction, and the dry friction, as learnt [N m].
+    /// Estimated load torque: even load, dry friction [N m].
     pub load: [T; 2],
-    /// Share of the compensation in the torque, the rest being plain control: 0 to 1.
+    /// Share of the compensation in the torque, 0 to 1; plain control has the rest.
     pub trust: T,
-    /// What it is about.
+    /// State of the compensation.
     pub stage: Stage,
-    /// The flank that carries or is being gone to; `None` without a compensation.
+    /// Flank that carries or is approached; `None` in the stages `Off` and `Reversed`.
     pub flank: Option<Flank>,
-    /// The loop hunted: the motor alone is controlled for a while.
+    /// True while plain control acts because the loop hunted.
     pub stepped_back: bool,
-    /// The law asked for more torque than the motor has, or brakes early because of that: the link does not keep to what it
-    /// is asked for.
+    /// True if the torque was cut off at the motor's limit, or if the link is braked early because of that limit: the
+    /// link does not follow its set-point.
     pub short_of_torque: bool,
 }

@@ -1,5 +1,5 @@
-//! Where everything is, referred to the link, as the estimates have it: what the rest of the compensation works on. It
-//! is made anew every control period and carries no state.
+//! State of the joint in a control period, referred to the link: input of the rest of the compensation. The state is
+//! computed anew every period from the estimates.
 
 use super::set_point::{CommandRef, Position};
 use crate::compensation::tables::CompensationTables;
@@ -9,59 +9,59 @@ use crate::numbers::arithmetic::clamp;
 use crate::numbers::phase::sine_cosine;
 use crate::observer::{Estimates, Source};
 
-/// Where everything is; angles are less the set-point's position, so that they stay small at any number of turns.
+/// State of the joint; angles are relative to the set-point, so that they stay small at any number of turns.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Situation<T: Real> {
     /// Set-point less link [rad].
     pub error: T,
     /// Set-point's speed less the link's [rad/s].
     pub error_rate: T,
-    /// Motor, referred to the link with every tooth centred, less set-point [rad].
+    /// Motor, referred to the link with all teeth centred, less set-point [rad].
     pub motor: T,
-    /// Motor beyond the link since the first readings, wherever the encoders' zeros lie [rad].
+    /// Motor less link, counted from the first readings, whatever the zeros of the encoders [rad].
     pub lead: T,
-    /// Of that with every tooth centred, as last known [rad].
+    /// Value of `lead` with all teeth centred, as last known [rad].
     pub offset: T,
-    /// `motor` as far as the link's place bears it out: what is more than the guess of the gap allows is wind-up [rad].
+    /// `motor`, bounded to twice the half-gap around the link: a larger distance is wind-up [rad].
     pub confirmed_motor: T,
-    /// [rad/s].
+    /// Speed of the motor, referred to the link [rad/s].
     pub motor_speed: T,
-    /// [rad/s].
+    /// Speed of the link [rad/s].
     pub link_speed: T,
-    /// Motor within its turn [turns].
+    /// Angle of the motor within its turn [turns].
     pub motor_place: T,
-    /// Sine and cosine of the motor's cogging, referred to the link, driving [N m].
+    /// Sine and cosine part of the motor's cogging torque, referred to the link; positive drives [N m].
     pub cogging: [T; 2],
-    /// Position of the set-point.
+    /// Position of the set-point: origin of the angles.
     pub origin: Position<T>,
-    /// Speed that the motor has by the gears' transmission error alone, referred to the link [rad/s].
+    /// Speed of the motor caused by the transmission error, v_e, referred to the link [rad/s].
     pub transmission_error_speed: T,
-    /// Torque that the motor loses whatever its direction, and its dry friction [N m]: as the observer has it, sure or
-    /// not, for it leaves out of the load torque what it puts down to them.
+    /// Torque bias and dry friction of the motor, valid or not: the observer has subtracted both from the load torque
+    /// [N m].
     pub losses: [T; 2],
     /// Half of the lost motion [rad].
     pub half: T,
-    /// Whether that was learnt or came with the joint, rather than being guessed.
+    /// True if `half` is estimated or given, not guessed.
     pub half_is_known: bool,
-    /// Torque in the teeth [N m].
+    /// Torque through the teeth [N m].
     pub mesh_torque: T,
-    /// Between motor and link [N m/rad].
+    /// Stiffness between motor and link [N m/rad].
     pub stiffness: T,
-    /// Inertia of link and motor, the link's as learnt [kg m^2].
+    /// Inertia of motor and link, with the estimated link inertia [kg m^2].
     pub inertia: T,
-    /// By how much the transmission error shifts both flanks, referred to the link [rad].
+    /// Shift of both flanks by the transmission error, referred to the link [rad].
     pub shift: T,
-    /// By how much that grows for each radian of the link.
+    /// Growth of `shift` per radian of the link [-].
     pub shift_slope: T,
-    /// Gap coordinate, referred to the link: from -half to half about the shift while every mesh is free [rad].
+    /// Gap coordinate, referred to the link: -half to half about `shift` while every mesh is free [rad].
     pub gap: T,
-    /// The flank that touches.
+    /// Flank in contact.
     pub contact: Option<Flank>,
-    /// Whether the teeth are known to pass on nothing.
+    /// True if the teeth are known to pass no torque.
     pub open: bool,
-    /// Whether both shafts are seen.
+    /// True if both encoders are used and all estimates are finite.
     pub feels: bool,
-    /// Whether the motor's place in the gap is known as well; for an impedance, the flanks' places too.
+    /// True if gap and contact are valid as well; in impedance mode also the half-gap.
     pub sees: bool,
 }
 
@@ -79,7 +79,7 @@ impl<T: Real> Situation<T> {
         let ratio = if learnt.valid { clamp(learnt.value, T::QUARTER, T::FOUR) } else { T::ONE };
         let at_link = T::HALF * tables.gear.inverse_lever;
         let error = tables.gear.turn * origin.less(estimates.link.turns, estimates.link.fraction);
-        // The shafts' own angles are counted from their encoders' zeros, which may lie anywhere against each other.
+        // Motor and link angle count from the zeros of their encoders, which differ by an offset.
         let motor = estimates.motor_lead - offset - error;
         let confirmed_motor = if estimates.source == Source::Both && error.is_finite() {
             clamp(motor, -error - half - half, half + half - error)
@@ -119,7 +119,7 @@ impl<T: Real> Situation<T> {
             sum + situation.shift + situation.transmission_error_speed + situation.losses[0] + situation.losses[1];
         let sum = sum + situation.mesh_torque + situation.stiffness + situation.inertia;
         situation.feels = estimates.source == Source::Both && sum.is_finite();
-        // A position law corrects the link's error after a crossing to a flank that lies elsewhere; an impedance law does not.
+        // Position mode corrects the error of the link after a crossing to a misplaced flank; impedance mode does not.
         let flanks_known = matches!(command, CommandRef::Position { .. }) || estimates.half_backlash.valid;
         let gap_known = estimates.gap.valid && estimates.half_backlash.value.is_finite();
         let knows = estimates.contact_valid && gap_known && flanks_known;
@@ -127,18 +127,18 @@ impl<T: Real> Situation<T> {
         situation
     }
 
-    /// The shift of the flanks when the link will have turned by an angle [rad].
+    /// Shift of the flanks after a further angle of the link [rad].
     pub fn shift_after(&self, tables: &CompensationTables<T>, angle: T) -> T {
         let (sine, cosine) = sine_cosine((tables.gear.mesh_phase_per_radian * angle).to_phase());
         self.shift * cosine + self.shift_slope * tables.gear.radians_per_mesh * sine
     }
 
-    /// Motor beyond the link, with every tooth centred, as far as the link's place bears it out [rad].
+    /// Motor less link with all teeth centred, bounded to twice the half-gap [rad].
     pub fn beyond_link(&self) -> T {
         self.confirmed_motor + self.error
     }
 
-    /// By how much the motor's cogging drives more than that of a motor would which stood where it stands without a gap [N m].
+    /// Cogging torque of the motor less the cogging torque in a joint without a gap [N m].
     pub fn cogging_by_gap(&self, tables: &CompensationTables<T>) -> T {
         let phase = self.motor_place.over(T::PHASE_UNIT).to_phase().wrapping_mul(tables.gear.cogging_periods);
         let without_gap = phase.wrapping_sub((tables.gear.cogging_phase_per_radian * self.beyond_link()).to_phase());
@@ -149,7 +149,7 @@ impl<T: Real> Situation<T> {
         here - there
     }
 
-    /// Torque that is lost between motor and load at a speed, while the teeth pass on a torque [N m].
+    /// Torque lost between motor and load at a speed, while the teeth pass a torque [N m].
     pub fn lost(&self, tables: &CompensationTables<T>, speed: T, passed: T) -> T {
         let direction = planned_direction(tables, speed);
         let [driving, driven] = tables.gear.losses;
@@ -157,14 +157,13 @@ impl<T: Real> Situation<T> {
         self.losses[0] + (self.losses[1] + ratio * passed.abs()) * direction
     }
 
-    /// Torque of the damper on the motor against the link; it leaves alone what the transmission error makes the motor do
-    /// [N m].
+    /// Torque of the damper on the motor against the link, without the motion caused by the transmission error [N m].
     pub fn damping_torque(&self, tables: &CompensationTables<T>) -> T {
         tables.law.motor_damping * (self.link_speed + self.transmission_error_speed - self.motor_speed)
     }
 }
 
-/// -1 to 1: what share of the dry friction brakes the link at a speed that is planned: no noise hides its sign.
+/// Share and sign of the dry friction at a planned speed, -1 to 1: a planned speed has no noise.
 pub(super) fn planned_direction<T: Real>(tables: &CompensationTables<T>, speed: T) -> T {
     clamp(tables.load.planned_friction_slope * speed, -T::ONE, T::ONE)
 }

@@ -1,5 +1,5 @@
-//! Which way a joint at rest is likely to start: on or back, as it did the last time. Most motions that nobody foresees go
-//! to and fro or on and on, and which of them it is the last start tells.
+//! Prediction of the next start of a joint at rest, without a preview: the start continues or reverses as the last
+//! start did, because most unforeseen motions go to and fro or on and on.
 
 use super::situation::Situation;
 use crate::compensation::tables::CompensationTables;
@@ -7,45 +7,47 @@ use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 
-/// What the last rests and starts were like.
+/// Record of the last rest and start.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StartPrediction<T: Real> {
-    /// The flank that the motion went towards last; `None` before it has gone.
+    /// Flank of the last motion; `None` before the first motion.
     came: Option<Flank>,
-    /// Whether it went on from its last rest, rather than back; `None` before it has done either.
+    /// True if the last start continued the motion before the rest, false if it reversed; `None` before the first such
+    /// start.
     goes_on: Option<bool>,
-    /// Whether it has been asked to rest since it went.
+    /// True if the joint was asked to rest since its last motion.
     rests: bool,
-    /// For how long the link has stood still, as far as that matters [s].
+    /// Time for which the link has stood still, saturating [s].
     stood: T,
-    /// Where, from the set-point [rad].
+    /// Position less set-point at which the link stands [rad].
     place: T,
 }
 
 impl<T: Real> StartPrediction<T> {
-    /// How long a link has to stand still for it to be held by friction, as a part of the time of hunting [-].
+    /// Time of standing still after which friction holds the link, over `rest.hunting` [-].
     const STANDS: T = T::QUARTER;
 
-    /// Travel of a link that stands still, as a part of the half-gap [-]: its speed is too rough, it flickers with the last
-    /// count of the encoder.
+    /// Travel below which the link stands still, over the half-gap [-]; the speed is too coarse, because it flickers
+    /// with the last count of the encoder.
     const STILL: T = T::EIGHTH;
 
     pub fn new() -> Self {
         Self { came: None, goes_on: None, rests: false, stood: T::ZERO, place: T::ZERO }
     }
 
-    /// How long it has to stand still [s].
+    /// Time of standing still after which friction holds the link [s].
     fn enough(tables: &CompensationTables<T>) -> T {
         Self::STANDS * tables.rest.hunting
     }
 
-    /// Whether friction holds the link of a joint that is asked to rest.
+    /// True if friction holds the link of a joint that is asked to rest.
     pub fn stands(&self, tables: &CompensationTables<T>) -> bool {
         self.stood >= Self::enough(tables)
     }
 
-    /// Takes in a period and which way it is asked to go. The flank towards which a joint at rest is likely to start; `None`
-    /// if nothing tells or if its link does not stand still: one that no friction holds needs its flank for itself.
+    /// Updates the record by the direction asked for in a period. Returns the flank of the next start of a joint at
+    /// rest; `None` without a record, or if the link does not stand still: a link that friction does not hold needs its
+    /// present flank.
     pub fn step(
         &mut self,
         tables: &CompensationTables<T>,

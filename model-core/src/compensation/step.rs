@@ -1,4 +1,4 @@
-//! One control period of the compensation: the law that the command asks for, which flank carries it, and the torque.
+//! One control period of the compensation: selects the control law, blends compensation with plain control, limits the torque.
 
 use super::flank::FlankControl;
 use super::impedance::ImpedanceLaw;
@@ -15,10 +15,10 @@ use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 use crate::observer::{Estimates, TorqueResponse};
 
-/// The compensation of one joint.
+/// Backlash compensation of one joint.
 ///
-/// The link goes to 0.1 turns in half a second and stays there. Where it will have to be after a crossing of the gap is
-/// known beforehand, so that the motor can leave its flank in time:
+/// This example moves the link by 0.1 turns in half a second. The motion after a crossing of the gap is given as well,
+/// so that the motor can leave its flank in time:
 ///
 /// ```
 /// use model_core::compensation::design::{compensation_settings, design_compensation};
@@ -60,17 +60,17 @@ pub struct Compensation<'tables, T: Real> {
     impedance: ImpedanceLaw<T>,
     plain: Plain<T>,
     inverse: BacklashInverse<T>,
-    /// By how much the motor's encoder leads the output's, as last valid alone or as part of the gap coordinate; at
-    /// the output [rad].
+    /// Offset of the motor encoder against the output encoder at the link, as last valid alone or as part of the gap
+    /// coordinate [rad].
     offset: T,
-    /// 0: control without compensation; 1: compensation.
+    /// Share of the compensation in the torque: 0 plain control, 1 compensation [-].
     trust: T,
     watch: Watch<T>,
     turn: Turn,
 }
 
 impl<'tables, T: Real> Compensation<'tables, T> {
-    /// A compensation that knows what was designed.
+    /// Creates a compensation in its designed state.
     pub fn new(tables: &'tables CompensationTables<T>) -> Self {
         Self {
             tables,
@@ -87,7 +87,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         }
     }
 
-    /// Back to what was designed, part by part: a whole new compensation would need as much stack again.
+    /// Restores the designed state part by part: assigning a new compensation would need as much stack again.
     pub fn restart(&mut self) {
         self.load = LoadModel::new();
         self.offset = T::ZERO;
@@ -96,7 +96,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         self.let_go();
     }
 
-    /// Forgets what was on its way; what was learnt of load and offset stays.
+    /// Resets flank, control laws and trust; estimates of load and offset stay.
     fn let_go(&mut self) {
         self.flank = FlankControl::new();
         self.position.forget();
@@ -106,20 +106,21 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         self.trust = T::ZERO;
     }
 
-    /// No torque while it is not known where motor and link are, or which way a torque drives the motor.
+    /// Returns zero torque while the motor position is unknown, or the sign of torque or motor encoder is wrong.
     #[cold]
     fn stay_off(&mut self, stage: Stage) -> Shaped<T> {
         self.let_go();
         Shaped { stage, load: [self.load.even(), self.load.friction()], ..Shaped::default() }
     }
 
-    /// Takes the estimates and the command of one control period. The torque is always finite and within its limit.
+    /// Computes the torque of one control period from estimates and command. The torque is always finite and within the
+    /// motor's limit.
     #[inline]
     pub fn step(&mut self, estimates: &Estimates<T>, command: &Command<T>) -> Shaped<T> {
         self.step_by_reference(estimates, command.by_reference())
     }
 
-    /// The same with a command that lies elsewhere.
+    /// Computes the torque of one control period from a borrowed command.
     pub fn step_by_reference(&mut self, estimates: &Estimates<T>, command: CommandRef<T>) -> Shaped<T> {
         let tables = self.tables;
         if estimates.torque_response == TorqueResponse::Reversed {
@@ -133,7 +134,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
             self.offset = estimates.encoder_offset.value;
         }
         let mut situation = Situation::new(tables, estimates, self.offset, command);
-        // Teeth that lie by a flank too early are felt now and then, but carry nothing of the load.
+        // A motor that has arrived early touches its flank now and then, but the flank carries no load.
         situation.open |= self.flank.waits();
         let leans = self.flank.stage() == Stage::Touching && situation.open && situation.sees;
         if leans && matches!(command, CommandRef::Position { .. }) {
@@ -151,7 +152,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         };
         if self.turn == Turn::Judges {
             let watched = self.watched(&situation, &command);
-            // A set-point that makes no sense changes the flank as it likes.
+            // Flank changes count as hunting only while the set-point is plausible.
             let makes_sense = watched.has_error || matches!(command, CommandRef::Impedance(_));
             let acting = (self.trust > T::ZERO && situation.sees && makes_sense).then(|| self.flank.flank());
             self.watch.step(tables, &situation, &watched, acting);
@@ -160,7 +161,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         let sees = situation.sees && intent.is_finite() && !stepped_back;
         let change = if sees { tables.law.trust_step } else { -tables.law.trust_step };
         self.trust = clamp(self.trust + change, T::ZERO, T::ONE);
-        // The law that controls without compensation is asked while it has a share in the torque.
+        // Plain control is computed only while it has a share in the torque.
         let shares = !sees || self.trust < T::ONE;
         let alone = if shares { self.alone(&situation, &command) } else { T::ZERO };
         let compensated = if sees {
@@ -196,7 +197,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         }
     }
 
-    /// Torque of the law that controls without compensation [N m].
+    /// Torque of plain control [N m].
     fn alone(&mut self, situation: &Situation<T>, command: &CommandRef<T>) -> T {
         match command {
             CommandRef::Position { now, .. } if situation.feels => {
@@ -207,7 +208,7 @@ impl<'tables, T: Real> Compensation<'tables, T> {
         }
     }
 
-    /// Quantities of a period that the monitor judges.
+    /// Returns the quantities of a period that the monitor judges.
     fn watched(&self, situation: &Situation<T>, command: &CommandRef<T>) -> Watched<T> {
         let (tables, load) = (self.tables, &self.load);
         match command {
@@ -219,13 +220,14 @@ impl<'tables, T: Real> Compensation<'tables, T> {
                 Watched {
                     planned,
                     load: load.even(),
-                    // The error of a motion beyond the motor's torque is the motion's, and one of a radian is a set-point or a reading
-                    // that makes no sense: a loop that runs away has shown it long before.
+                    // The error is not judged while the motion needs more torque than the motor has, nor above 1 rad:
+                    // then set-point or reading is implausible. A loop that runs away is detected long before.
                     has_error: situation.feels && !is_asked_too_much && situation.error.abs() < T::ONE,
                     is_thrown: load.throws(tables),
                 }
             }
-            // The spring's own torque is what is asked for: it explains the flank that it presses.
+            // In impedance mode the commanded torque, spring included, is the demand: it explains the flank that it
+            // presses.
             CommandRef::Impedance(point) => Watched {
                 planned: point.torque + point.stiffness * situation.error,
                 load: T::ZERO,

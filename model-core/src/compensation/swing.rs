@@ -1,35 +1,36 @@
-//! Whether a torque swings from side to side: the loop has more delay than it was designed for, and its motor bears less damping.
+//! Detector of a torque that swings from side to side: then the delays of the loop exceed the designed ones, and the
+//! motor bears less damping.
 
 use crate::compensation::tables::CompensationTables;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::beyond;
 
-/// Notices a swing of the torque of one law.
+/// Detector of a swing of the torque of one law.
 #[derive(Debug, Clone)]
 pub(super) struct Swing<T: Real> {
-    /// 1 or -1: to which side the torque last was large, fading to 0.
+    /// Side on which the torque last was large, 1 or -1, decaying to 0.
     large: T,
     swings: bool,
 }
 
 impl<T: Real> Swing<T> {
-    /// A torque is large beyond this part of the motor's limit [-].
+    /// Torque beyond which it counts as large, over the motor's limit [-].
     const LARGE: T = T::HALF;
 
-    /// Time constants of the loop over that within which the torque goes from side to side where it swings [-]. No motion
-    /// that the loop can follow does.
+    /// Time constant of the loop over the time within which a swinging torque changes from side to side [-]: faster
+    /// than any motion that the loop can follow.
     const SWINGS: T = T::FOUR;
 
     pub fn new() -> Self {
         Self { large: T::ZERO, swings: false }
     }
 
-    /// Whether the torque has gone from large to large of the other side within that time since the start.
+    /// True if, since the start, the torque has changed from large on one side to large on the other within that time.
     pub fn swings(&self) -> bool {
         self.swings
     }
 
-    /// Takes the torque of one of so many periods [N m].
+    /// Checks the torque of one of `periods` periods [N m].
     pub fn watch(&mut self, tables: &CompensationTables<T>, torque: T, periods: T) {
         let excess = beyond(torque, Self::LARGE * tables.limits.motor);
         if excess == T::ZERO {

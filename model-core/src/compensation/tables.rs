@@ -1,5 +1,6 @@
-//! What the compensation needs as plain numbers, made by `compensation::design`, a struct for each of its subjects. Angles,
-//! torques and inertias are referred to the link.
+//! Tables of the compensation as plain numbers, made by `compensation::design`, with a struct for each subject. Angles,
+//! torques and inertias are referred to the link. Symbols and equation numbers (K1) to (K25):
+//! `docs/theory/compensation.md`.
 
 use crate::numbers::Real;
 
@@ -7,9 +8,9 @@ use crate::numbers::Real;
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct CompensationTables<T: Real> {
-    /// The control clock.
+    /// Control clock.
     pub clock: ClockTable<T>,
-    /// From motor to link, and from lengths along the line of action to angles.
+    /// Conversions from motor to link, and from lengths along the line of action to angles.
     pub gear: GearTable<T>,
     /// Inertias and compliance of the joint.
     pub body: BodyTable<T>,
@@ -17,51 +18,51 @@ pub struct CompensationTables<T: Real> {
     pub limits: LimitTable<T>,
     /// Gains of the control laws.
     pub law: LawTable<T>,
-    /// The way through the gap.
+    /// Path through the gap.
     pub crossing: CrossingTable<T>,
-    /// Meeting a flank, and losing it.
+    /// Landing on a flank, and loss of a flank.
     pub landing: LandingTable<T>,
-    /// When the flank is changed.
+    /// Conditions of a flank change.
     pub switching: SwitchingTable<T>,
-    /// A joint at rest whose flank hunts.
+    /// Hunting and dead band of a joint at rest.
     pub rest: RestTable<T>,
-    /// Learner of the load.
+    /// Load model (K6).
     pub load: LoadTable<T>,
-    /// Monitor of the loop.
+    /// Monitor of the compensated loop.
     pub watch: WatchTable<T>,
 }
 
-/// The control clock.
+/// Control clock.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct ClockTable<T: Real> {
-    /// Control periods a second [Hz].
+    /// Control periods per second [Hz].
     pub rate: T,
     /// Control period [s].
     pub period: T,
 }
 
-/// From motor to link, and from lengths along the line of action to angles.
+/// Conversions from motor to link, and from lengths along the line of action to angles.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct GearTable<T: Real> {
-    /// Motor turns over link turns.
+    /// Ratio of motor turns to link turns [-].
     pub motor_per_link: T,
-    /// Its inverse.
+    /// Inverse of `motor_per_link` [-].
     pub link_per_motor: T,
-    /// A whole turn [rad].
+    /// Full turn, 2 pi [rad].
     pub turn: T,
     /// 1 / (r_c cos alpha): from half-backlash to half the lost motion [1/m].
     pub inverse_lever: T,
-    /// Mesh phase for each radian of the link [2^-32 periods].
+    /// Mesh phase per radian of the link [2^-32 periods].
     pub mesh_phase_per_radian: T,
-    /// Radians of the link for each radian of the mesh phase.
+    /// Angle of the link per radian of the mesh phase [-].
     pub radians_per_mesh: T,
-    /// Periods of the motor's cogging in a turn of the motor.
+    /// Periods of the motor's cogging per motor turn [-].
     pub cogging_periods: u32,
-    /// Cogging phase for each radian of the link [2^-32 periods].
+    /// Cogging phase per radian of the link [2^-32 periods].
     pub cogging_phase_per_radian: T,
-    /// What the gears lose over what the teeth pass on, while the motor drives and while the load does.
+    /// Gear loss over the torque passed on, while the motor drives and while the load drives [-].
     pub losses: [T; 2],
 }
 
@@ -69,21 +70,21 @@ pub struct GearTable<T: Real> {
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct BodyTable<T: Real> {
-    /// What turns with the motor while the gap is open [kg m^2].
+    /// Inertia that turns with the motor in the open gap, J_m [kg m^2].
     pub motor_inertia: T,
-    /// The rest [kg m^2].
+    /// Remaining inertia, J_l [kg m^2].
     pub load_inertia: T,
-    /// Its inverse.
+    /// Inverse of `load_inertia` [1/(kg m^2)].
     pub inverse_load_inertia: T,
-    /// Load inertia over all inertia.
+    /// Share of the load in the inertia, J_l/J [-].
     pub load_share: T,
-    /// Its inverse.
+    /// Inverse of `load_share` [-].
     pub inverse_load_share: T,
-    /// Of motor against load [kg m^2].
+    /// Reduced inertia J_m J_l/J, I [kg m^2].
     pub reduced_inertia: T,
-    /// Largest and smallest compliance that is believed [rad/(N m)].
+    /// Bounds of the estimated compliance: largest, smallest [rad/(N m)].
     pub compliances: [T; 2],
-    /// Half the lost motion is never taken for more than this [rad].
+    /// Upper bound of the estimated half of the lost motion [rad].
     pub widest_half: T,
 }
 
@@ -91,15 +92,15 @@ pub struct BodyTable<T: Real> {
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct LimitTable<T: Real> {
-    /// Largest torque [N m].
+    /// Largest torque of the motor, M_max [N m].
     pub motor: T,
-    /// Most that the teeth shall pass on in position mode [N m].
+    /// Largest torque through the teeth in position mode, P in (K11) [N m].
     pub teeth: T,
-    /// What is left to that, at least, as far as a swing is divided by it [N m].
+    /// Lower bound of P - F, the divisor of the swing's term in (K11) [N m].
     pub least_room: T,
-    /// The most that they may be asked to pass on where the motion asks for twice the motor's torque [N m].
+    /// Value of P while the law asks for 2 M_max or more [N m].
     pub teeth_at_most: T,
-    /// Part of the torque at hand that braking is planned with [-].
+    /// Share of the available torque that braking is planned with (K12) [-].
     pub braking: T,
 }
 
@@ -107,108 +108,107 @@ pub struct LimitTable<T: Real> {
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct LawTable<T: Real> {
-    /// Spring of the loop [N m/rad].
+    /// Spring of the loop, K [N m/rad].
     pub position: T,
-    /// Damper of the loop, on the link [N m s/rad].
+    /// Damper of the loop, on the link, D [N m s/rad].
     pub damping: T,
-    /// Spring over damper [1/s].
+    /// Spring over damper, equal to the bandwidth w [1/s].
     pub rate: T,
-    /// Damper on the motor against the link, and on the way through the gap [N m s/rad].
+    /// Damper on the motor, D_m, against the link and against the path through the gap [N m s/rad].
     pub motor_damping: T,
-    /// Share of that damper in impedance mode.
+    /// Share of `motor_damping` used in impedance mode (K3) [-].
     pub impedance_damping: T,
-    /// Integral of the plain loop over one period [N m/rad].
+    /// Integral gain of plain control times the control period [N m/rad].
     pub integral: T,
-    /// Share of what the limit cut off that the integral gives back each period.
+    /// Share of the torque cut off by the limit that the integral gives back per period, w T [-].
     pub back_calculation: T,
-    /// Change of the trust in the estimates in one period.
+    /// Change of the compensation's share in the torque per period [-].
     pub trust_step: T,
-    /// How long an impedance set-point may be held before it counts as standing still [s].
+    /// Time after which an unchanged impedance set-point counts as standing still [s].
     pub longest_hold: T,
 }
 
-/// The way through the gap.
+/// Path through the gap.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct CrossingTable<T: Real> {
-    /// How far ahead set-points are wanted [s].
+    /// Preview time: set-points are wanted this far ahead [s].
     pub lead: T,
-    /// From deciding to the torque's effect [s].
+    /// Reaction time from a decision to the effect of its torque, T_r [s].
     pub reaction: T,
-    /// Spring on the way through the gap [N m/rad].
+    /// Spring on the path through the gap (K9) [N m/rad].
     pub stiffness: T,
-    /// Speed against the link at which planets that are struck stand for a torque, for each N m of it [rad/s/(N m)].
+    /// Speed at which loose planets may be struck per torque of the blow, 1/Z in (K8) [rad/s/(N m)].
     pub strike_speed_per_torque: T,
-    /// That torque at little demand [N m].
+    /// Torque of the blow at small demand, lower bound of M_x in (K8) [N m].
     pub strike_torque: T,
-    /// The same however much is demanded [N m].
+    /// Upper bound of M_x in (K8) at any demand [N m].
     pub hardest_strike: T,
-    /// Shortest ramp of a crossing's speed that delays allow [s].
+    /// Shortest ramp of a path that the delays allow [s].
     pub shortest_ramp: T,
-    /// Time that torque needs on the ramp for each rad/s [s^2/rad].
+    /// Duration of a ramp per speed, q in (K8) [s^2/rad].
     pub ramp_per_speed: T,
     /// Longest crossing [s].
     pub longest: T,
-    /// A way through the gap is laid anew when less than this share of what is left of it would do.
+    /// Share of the remaining time of a path below which a new path replaces it [-].
     pub shorten: T,
 }
 
-/// Meeting a flank, and losing it.
+/// Landing on a flank, and loss of a flank.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct LandingTable<T: Real> {
-    /// Speed against the load at which a flank is met [rad/s].
+    /// Smallest landing speed against the link [rad/s].
     pub speed: T,
-    /// The same for each N m that the flank will carry, if that is more [rad/s/(N m)].
+    /// Landing speed per torque that the flank will carry, if larger than `speed` [rad/s/(N m)].
     pub speed_per_torque: T,
-    /// By how much a landing quickens while it finds nothing [rad/s^2].
+    /// Acceleration of a landing until the flank is met [rad/s^2].
     pub acceleration: T,
-    /// Its highest speed [rad/s].
+    /// Largest landing speed [rad/s].
     pub fastest: T,
-    /// Rise of the law's torque after a landing, in one period.
+    /// Rise of the law's torque after a landing per period [-].
     pub rise: T,
-    /// Rate at which a missed impulse is made good [1/s].
+    /// Rate at which a missed impulse is returned (K16) [1/s].
     pub repayment: T,
-    /// Share of the half-gap that has to open before the loss of a flank is believed.
+    /// Opening over the half-gap beyond which a flank counts as lost [-].
     pub opening: T,
-    /// Share of the half-gap within which a flank is as good as touched.
+    /// Opening over the half-gap below which a flank counts as touched [-].
     pub landed: T,
 }
 
-/// When the flank is changed.
+/// Conditions of a flank change.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct SwitchingTable<T: Real> {
     /// Demand beyond which a change of its sign counts [N m].
     pub planned: T,
-    /// Measured torque below which no flank is changed for it soon after a change, for each unit of switching hysteresis [N m].
+    /// Uncertainty of a measured torque, M in (K13): unit of the switching hysteresis [N m].
     pub measured: T,
-    /// How much of it is left when nothing has changed for long.
+    /// Hysteresis long after the last flank change, over `measured` [-].
     pub least: T,
-    /// The most that switching hysteresis grows by, for each radian of half the lost motion [N m/rad].
+    /// Largest growth of the switching hysteresis per radian of half the lost motion [N m/rad].
     pub most_growth: T,
-    /// What is left after one period of what a transient of the loop leaves behind: grown hysteresis, the hardest push,
-    /// a torque that was cut off.
+    /// Share of a transient that is left after one period: grown hysteresis, hardest push, torque cut off [-].
     pub transient_left: T,
-    /// The most switching hysteresis, in units of `measured` [-].
+    /// Largest factor g of the switching hysteresis (K13) [-].
     pub most_factor: T,
-    /// Share of news that the measured torque takes up in one period.
+    /// Share of a change that the smoothed measured torque follows per period [-].
     pub smoothing: T,
-    /// Inverse of the news from which on they are taken up faster [1/(N m)].
+    /// Inverse of the change beyond which the smoothing is faster [1/(N m)].
     pub inverse_step: T,
 }
 
-/// A joint at rest whose flank hunts.
+/// Hunting and dead band of a joint at rest.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct RestTable<T: Real> {
-    /// A joint at rest that asks for the other flank within this time hunts [s].
+    /// Time between two requests for opposite flanks below which a joint at rest hunts [s].
     pub hunting: T,
-    /// Error let be while nothing hunts, over half the lost motion.
+    /// First dead band of a joint at rest, over half the lost motion (K15) [-].
     pub first_deadband: T,
-    /// The most that is let be, over half the lost motion.
+    /// Largest dead band, over half the lost motion [-].
     pub largest_deadband: T,
-    /// What is left of it after one period.
+    /// Share of a grown dead band that is left after one period [-].
     pub deadband_left: T,
 }
 
@@ -216,48 +216,48 @@ pub struct RestTable<T: Real> {
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct WatchTable<T: Real> {
-    /// Share of the load that the slow load takes up in one period, twice [-].
+    /// Gain per period of the two smoothing stages that yield the slow load [-].
     pub smoothing: T,
-    /// Demand that explains a flank, at least [N m].
+    /// Smallest demand that explains a flank [N m].
     pub least_demand: T,
-    /// Unexplained flank changes that are forgotten in a second, and while the error is small [1/s].
+    /// Decay of the count of unexplained flank changes: in general, and while the error is small [1/s].
     pub leaks: [T; 2],
     /// Unexplained flank changes beyond which the loop hunts [-].
     pub most: T,
-    /// Root of the mean squared error that is small, over half the lost motion [-].
+    /// RMS error below which the error is small, over half the lost motion [-].
     pub calm_per_half: T,
-    /// Share of the squared error that its mean takes up in one period [-].
+    /// Gain per period of the mean squared error [-].
     pub memory: T,
-    /// Root of the mean squared error beyond which the loop hunts, over half the lost motion [-].
+    /// RMS error beyond which the loop hunts, over half the lost motion [-].
     pub error_per_half: T,
-    /// Part of that bound for each N m of the demand [rad/(N m)].
+    /// Growth of the bound of the RMS error per demand [rad/(N m)].
     pub error_per_demand: T,
-    /// Time for which plain control takes over at the first trip [s].
+    /// Time of plain control after the first trip [s].
     pub first_away: T,
-    /// The longest such time [s].
+    /// Longest time of plain control after a trip [s].
     pub longest_away: T,
-    /// Growth of that time with each trip [-].
+    /// Factor by which the time of plain control grows with each trip [-].
     pub longer: T,
 }
 
-/// Learner of the load.
+/// Load model (K6).
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct LoadTable<T: Real> {
-    /// Learner of the load: growth of variances in one period (even part, friction), variance of a reading.
+    /// Growth of the variances of even load and friction per period, variance of a measurement [-].
     pub variances: [T; 3],
-    /// Share of a reading that the even part takes up in the long run.
+    /// Steady gain of the even load [-].
     pub gain: T,
-    /// Rate of the load for each N m by which its even part is moved [1/s].
+    /// Gain from a correction of the even load to its rate [1/s].
     pub rate_gain: T,
-    /// What is left of the load's rate after one period.
+    /// Share of the load's rate that is left after one period in which no flank carries [-].
     pub rate_left: T,
-    /// The load's greatest rate [N m/s].
+    /// Largest rate of the load [N m/s].
     pub fastest: T,
-    /// Inverse of the speed at which friction has its full size [s/rad].
+    /// Inverse of the speed at which friction reaches its full size [s/rad].
     pub friction_slope: T,
-    /// The same for a speed that is planned [s/rad].
+    /// Inverse of the planned speed at which friction reaches its full size [s/rad].
     pub planned_friction_slope: T,
-    /// Dry friction of the motor and of the link, as far as they are known beforehand [N m].
+    /// Dry friction of motor and link from the settings [N m].
     pub frictions: [T; 2],
 }

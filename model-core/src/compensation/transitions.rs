@@ -1,29 +1,29 @@
-//! When the compensation changes its stage or its flank: one table, which the control runs and the documentation prints.
+//! Transition table of stages and flanks: the control runs the table, and `docs/theory/compensation.md` prints it.
 
 use super::set_point::Stage;
 
-/// What a period can show.
+/// Event of a control period.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Event {
-    /// The teeth will have to pass on torque of the other sign, by more than hysteresis and noise.
+    /// Demand of the opposite sign, beyond hysteresis and noise.
     DemandTurned = 1,
-    /// An impedance's own spring asks for the other flank, by less than that.
+    /// Demand of the opposite sign in impedance mode, within the hysteresis.
     SpringUndecided = 2,
-    /// Nothing shows contact, and the flank is open by more than half of the half-gap.
+    /// No contact; the opening exceeds half of the half-gap.
     FlankLost = 4,
-    /// Nothing shows contact, and the flank is open by more than the estimates' errors.
+    /// No contact; the opening exceeds the estimation error.
     FlankOpening = 8,
-    /// The flank touches and, on a path, the motor has been braked.
+    /// Flank touches; on a path the motor has also been braked.
     FlankMet = 16,
-    /// The path is at its end.
+    /// End of the path's time.
     PathEnded = 32,
-    /// None of these.
+    /// No other event.
     Underway = 64,
 }
 
 impl Event {
-    /// The same as a sentence, for the documentation.
+    /// Sentence for the documentation.
     pub const fn meaning(self) -> &'static str {
         match self {
             Self::DemandTurned => "The demand changes sign by more than the hysteresis.",
@@ -37,29 +37,29 @@ impl Event {
     }
 }
 
-/// What follows from it.
+/// Action that follows from an event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Action {
-    /// A path to the other flank.
+    /// Lays a path to the other flank.
     CrossOver,
-    /// A path to the same flank.
+    /// Lays a path to the same flank.
     CrossBack,
-    /// On towards the flank at a small speed.
+    /// Closes on the flank at the landing speed.
     Land,
-    /// The flank carries; the law's torque rises from nothing.
+    /// Lets the flank carry; the torque of the law rises from zero.
     Carry,
-    /// The law's torque finds the flank by itself; the one that is felt is taken.
+    /// Lets the torque of the law find the flank; a flank felt beyond the middle of the gap is taken.
     LetSpringFind,
-    /// A shorter path, if what is left takes that much less now.
+    /// Lays a new path if it ends clearly sooner.
     Shorten,
 }
 
-/// A line of the table: an event and what follows.
+/// Row of the table: an event and its action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Transition {
-    /// What has to be so.
+    /// Event that fires the row.
     pub when: Event,
-    /// What follows.
+    /// Action of the row.
     pub action: Action,
 }
 
@@ -67,7 +67,7 @@ const fn on(when: Event, action: Action) -> Transition {
     Transition { when, action }
 }
 
-/// A flank carries.
+/// Rows while a flank carries.
 const TOUCHING: &[Transition] = &[
     on(Event::DemandTurned, Action::CrossOver),
     on(Event::SpringUndecided, Action::LetSpringFind),
@@ -75,7 +75,7 @@ const TOUCHING: &[Transition] = &[
     on(Event::FlankOpening, Action::Land),
 ];
 
-/// On a path through the gap.
+/// Rows while the motor follows a path through the gap.
 const CROSSING: &[Transition] = &[
     on(Event::DemandTurned, Action::CrossOver),
     on(Event::FlankMet, Action::Carry),
@@ -83,14 +83,15 @@ const CROSSING: &[Transition] = &[
     on(Event::Underway, Action::Shorten),
 ];
 
-/// Closing on a flank at a small speed.
+/// Rows while the motor closes on a flank at the landing speed.
 const LANDING: &[Transition] = &[
     on(Event::DemandTurned, Action::CrossOver),
     on(Event::SpringUndecided, Action::LetSpringFind),
     on(Event::FlankMet, Action::Carry),
 ];
 
-/// What may follow in a stage: of its lines the first whose event is there. Where none is, the stage goes on.
+/// Returns the rows of a stage. The first row whose event is present fires; without a matching row the stage does not
+/// change.
 ///
 /// ```
 /// use model_core::compensation::Stage;
@@ -117,7 +118,7 @@ pub const fn transitions(stage: Stage) -> &'static [Transition] {
 }
 
 impl Action {
-    /// The same as a sentence, for the documentation.
+    /// Sentence for the documentation.
     pub const fn meaning(self) -> &'static str {
         match self {
             Self::CrossOver => "Lay a path to the other flank.",
@@ -129,7 +130,7 @@ impl Action {
         }
     }
 
-    /// The stage that follows.
+    /// Next stage.
     pub const fn stage(self) -> Stage {
         match self {
             Self::CrossOver | Self::CrossBack | Self::Shorten => Stage::Crossing,
@@ -139,7 +140,7 @@ impl Action {
     }
 }
 
-/// The events that a stage answers, each a bit.
+/// Bit mask of the events that have a row in a stage.
 const fn answered(stage: Stage) -> u8 {
     match stage {
         Stage::Touching => const { bits(TOUCHING) },
@@ -149,7 +150,7 @@ const fn answered(stage: Stage) -> u8 {
     }
 }
 
-/// The events of some lines, each a bit.
+/// Bit mask of the events of some rows.
 const fn bits(mut lines: &[Transition]) -> u8 {
     let mut bits = 0;
     while let [line, rest @ ..] = lines {
@@ -164,18 +165,18 @@ const fn bits(mut lines: &[Transition]) -> u8 {
 pub(super) struct Events(u8);
 
 impl Events {
-    /// None but that time goes by.
+    /// No event but `Underway`.
     pub const UNDERWAY: Self = Self(Event::Underway as u8);
 
-    /// These, and an event if it is there.
+    /// Adds an event if it is present.
     pub fn with(self, event: Event, there: bool) -> Self {
         Self(self.0 | if there { event as u8 } else { 0 })
     }
 
-    /// What follows in a stage.
+    /// Returns the action of the first matching row of a stage.
     #[inline]
     pub fn action(self, stage: Stage) -> Option<Action> {
-        // In most periods there is nothing that the stage would answer.
+        // In most periods no row of the stage matches.
         if self.0 & answered(stage) == 0 {
             return None;
         }

@@ -1,25 +1,25 @@
-//! Whose turn it is: what is as slow as the loop is done in one of three control periods, so that no tick bears all of it.
+//! Distribution of the slow tasks over three control periods, so that no tick bears all of them.
 
 use crate::numbers::Real;
 
-/// What one control period has time for beside the torque.
+/// Task of a control period besides the torque.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Turn {
-    /// The monitor judges.
+    /// Judgement by the monitor of the loop.
     Judges,
-    /// The inverse of the backlash observes where the motor is on the flanks.
+    /// Update of edges and target of the inverse of the backlash.
     Observes,
-    /// It learns what the motor has to move.
+    /// Update of inertia, friction and load in the inverse of the backlash.
     Learns,
 }
 
 impl Turn {
-    /// Control periods from a turn to its next.
+    /// Control periods between two turns of a task.
     pub fn periods<T: Real>() -> T {
         T::THREE
     }
 
-    /// That of the next control period.
+    /// Task of the next control period.
     pub fn next(self) -> Self {
         match self {
             Self::Judges => Self::Observes,

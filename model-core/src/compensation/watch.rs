@@ -1,22 +1,24 @@
-//! Monitor of the compensated loop: steps back to control on the motor alone where the loop hunts, whatever the observer
-//! believes, and lets the compensation try again later.
+//! Monitor of the compensated loop, (K22) to (K24): detects a loop that hunts, independently of the observer's validity
+//! flags, leaves the joint to plain control, and lets the compensation retry later.
 //!
-//! Three effects tell that a loop hunts. Symbols: e error of the link, h half the lost motion, d planned demand (inertia, friction
-//! and slow load), p that of the set-point's own motion, P spring of the loop, dwell = time between two flank changes.
+//! Symbols: e = `error` of the link, h = `half` the lost motion, p = `planned` demand of the set-point's own motion
+//! (inertia, friction), d = `demand`, p plus the slow load, s side of the flank in use, n = `unexplained`, m = `square`,
+//! g = `granted`, w = `worst`, a = `error_per_half`, b = `error_per_demand`, c = `calm_per_half`, t = period/`memory`,
+//! d_min = `least_demand`.
 //!
-//! 1. Flank changes that the demand does not explain. Leaving a flank s adds nothing to a count if s p > d_min at some time on it, 1/8 if
-//!    s d > d_min or g > (c h)^2 at some time, else 1. The count falls by a leak, which is large while the error is small, m < (c h)^2,
-//!    and the link is not thrown. The loop hunts when the count exceeds `most`.
-//! 2. A mean error larger than that of control without compensation. The mean square m of e follows m' = (e^2 - m) / t; the loop
-//!    hunts when m > (a h + b |d| / P)^2 + g. The error that the compensation finds when it takes over, as a place and a speed, and
-//!    jumps of the set-point are not its own: their square g fades as m does.
-//! 3. After a trip: an error beyond the largest one, w, that the law which took over has left of late, e^2 > (a h + b |p| / P)^2 + g
-//!    and |e| > w. It fades in two seconds, as long as that law controls.
+//! 1. Unexplained flank changes. A flank that is left adds 0 to the count n if s p > d_min at some time while it was in
+//!    use, 1/8 if s d > d_min or g > (c h)^2 at some time, otherwise 1. n decays, fast while the error is small,
+//!    m < (c h)^2, and the link is not pushed hard. The loop hunts if n > `most`.
+//! 2. Mean error beyond the error of plain control. With m' = (e^2 - m)/t the loop hunts if m > (a h + b |d|)^2 + g.
+//!    g is the squared error that the compensation did not cause, by the state at takeover or by jumps of the set-point;
+//!    g decays like m.
+//! 3. After a trip, an error beyond the largest recent error w of plain control: e^2 > (a h + b |p|)^2 + g and |e| > w.
+//!    While plain control acts, w decays with a time constant of 2 s.
 //!
-//! An impedance has no error of its own: there only the count decides, with the large leak.
+//! Impedance mode has no position error: only n decides, with the fast decay.
 //!
-//! A loop that hunts is left to control on the motor alone (`inverse`; an impedance to `plain`) for a time that grows by `longer` with each trip, and is
-//! forgiven when the compensation has served for as long.
+//! A hunting loop is left to plain control (`inverse`; in impedance mode `plain`) for a time that grows by the factor
+//! `longer` with each trip. The time returns to its first value once the compensation has acted for as long.
 
 use super::situation::Situation;
 use super::turn::Turn;
@@ -28,57 +30,59 @@ use crate::numbers::arithmetic::clamp;
 /// Monitor of the compensated loop.
 #[derive(Debug, Clone)]
 pub(super) struct Watch<T: Real> {
-    /// Flank that was in use last.
+    /// Flank in use at the last judgement.
     flank: Option<Flank>,
-    /// What leaving that flank will count for, by what has asked for it since [-].
+    /// Amount that leaving the flank will add to the count: 0, 1/8 or 1 [-].
     counts: T,
-    /// Unexplained flank changes, leaking [-].
+    /// Decaying count of unexplained flank changes [-].
     unexplained: T,
     /// Slow part of the load, smoothed twice [N m].
     load: [T; 2],
     /// Mean square of the error [rad^2].
     square: T,
-    /// Square of the error that is not the compensation's own, as far as it has not faded [rad^2].
+    /// Squared error not caused by the compensation, g, decaying [rad^2].
     granted: T,
-    /// Error of the period before, if it was judged [rad].
+    /// Error at the previous judgement, if judged [rad].
     before: Option<T>,
-    /// For how long errors have been judged, in time constants of the loop, as far as that matters [-].
+    /// Time for which errors have been judged, saturating [time constants of the loop].
     judged: T,
-    /// Largest error of late while the motor alone is controlled [rad].
+    /// Largest recent error while the compensation does not act, decaying [rad].
     worst: T,
-    /// Time left to control on the motor alone; zero while the compensation may act [s].
+    /// Remaining time of plain control after a trip; zero while the compensation may act [s].
     away: T,
-    /// Length of the next time away [s].
+    /// Time of plain control after the next trip [s].
     next_away: T,
-    /// Time for which the compensation has acted since it was away last, as far as that matters [s].
+    /// Time for which the compensation has acted since the last trip, saturating [s].
     served: T,
 }
 
-/// Quantities of one period that the monitor judges.
+/// Quantities of a period that the monitor judges.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Watched<T: Real> {
-    /// Torque that the set-point's own motion asks for: inertia and friction [N m].
+    /// Torque of the set-point's own motion: inertia and friction [N m].
     pub planned: T,
-    /// Load as the observer has it [N m].
+    /// Even load of the load model [N m].
     pub load: T,
-    /// Whether the link's error says how well the loop serves.
+    /// True if the error of the link is a measure of the loop's quality.
     pub has_error: bool,
-    /// Whether the link is thrown: its error is the push's then, unless the loop hunts, which throws it as well.
+    /// True while the link is pushed hard: the error is then the push's, unless hunting itself throws the link.
     pub is_thrown: bool,
 }
 
 impl<T: Real> Watch<T> {
-    /// Change of the error in a period beyond what its rate says, over half the lost motion, from which on the set-point has
-    /// jumped [-].
+    /// Change of the error between two judgements beyond the change by its rate, over half the lost motion, that counts
+    /// as a jump of the set-point [-].
     const JUMP: T = T::QUARTER;
 
-    /// Time constants of the loop within which it finds what it has taken over [-]: the observer has to learn the link's speed first.
+    /// Time after takeover in which the error is granted [time constants of the loop]: the observer first has to
+    /// estimate the link's speed.
     const FOUND: T = T::SIX;
 
-    /// What a flank change counts for that a load explains [-]. With the leak of 1/s a load may change flanks eight times a second.
+    /// Amount that a flank change explained by the load adds to the count [-]. With the decay of 1/s a load may change
+    /// flanks eight times per second.
     const BY_LOAD: T = T::EIGHTH;
 
-    /// Rate at which the largest error fades [1/s].
+    /// Decay rate of the largest error [1/s].
     const FADES: T = T::HALF;
 
     pub fn new(tables: &CompensationTables<T>) -> Self {
@@ -98,13 +102,13 @@ impl<T: Real> Watch<T> {
         }
     }
 
-    /// Whether the compensation has stepped back.
+    /// True while a tripped loop is left to plain control.
     pub fn is_away(&self) -> bool {
         self.away > T::ZERO
     }
 
-    /// Judges one of [`Turn::periods`] periods in which the compensation acts on a flank with some share of the torque; without one it
-    /// takes in what control without compensation leaves, and lets the time away pass.
+    /// Judges one of [`Turn::periods`] periods in which the compensation acts on a flank (`acting`). If it does not
+    /// act, records the error of plain control and counts down the time of plain control.
     pub fn step(
         &mut self,
         tables: &CompensationTables<T>,
@@ -132,7 +136,7 @@ impl<T: Real> Watch<T> {
             return;
         }
         if acting.is_none() || !watched.has_error {
-            // What another law leaves behind is found.
+            // The error at takeover was left by another law.
             (self.square, self.before, self.judged) = (T::ZERO, None, T::ZERO);
         } else if watched.is_thrown {
             self.before = None;
@@ -141,7 +145,7 @@ impl<T: Real> Watch<T> {
         }
         let calm = table.calm_per_half * situation.half;
         let [leak, calm_leak] = table.leaks;
-        // A loop that hunts throws the link as a push does: then nothing is calm.
+        // A hunting loop also pushes the link hard, so a pushed link is never calm.
         let is_calm = !watched.has_error || !watched.is_thrown && self.square < calm * calm;
         let leak = if is_calm { calm_leak } else { leak };
         self.unexplained = less(self.unexplained, period * leak);
@@ -160,8 +164,8 @@ impl<T: Real> Watch<T> {
             }
             (self.flank, self.counts) = (Some(flank), T::ONE);
         }
-        // What catches a link that something else has moved changes flanks as it must, and so does a load. But hunting is felt as a
-        // load as well.
+        // Catching a link that was moved from outside changes flanks rightly, and so does a load. But hunting also
+        // looks like a load.
         let asks = |demand: T| flank.sign::<T>() * demand > table.least_demand;
         if asks(watched.planned) {
             self.counts = T::ZERO;
@@ -173,7 +177,7 @@ impl<T: Real> Watch<T> {
             bound * bound + self.granted
         };
         let error = situation.error * situation.error;
-        // After a trip the compensation has to be better than the law that took over.
+        // After a trip the compensation must be better than plain control.
         let is_worse = self.next_away > table.first_away
             && watched.has_error
             && error > bound(watched.planned)
@@ -183,7 +187,7 @@ impl<T: Real> Watch<T> {
         }
     }
 
-    /// Takes the error into its mean square, and into what is granted if something else has made it.
+    /// Updates the mean square of the error, and the grant if the error has another cause.
     fn judge_error(&mut self, tables: &CompensationTables<T>, situation: &Situation<T>) {
         let memory = Turn::periods::<T>() * tables.watch.memory;
         let period = Turn::periods::<T>() * tables.clock.period;
@@ -204,7 +208,7 @@ impl<T: Real> Watch<T> {
         }
     }
 
-    /// Steps back.
+    /// Leaves the joint to plain control and resets the monitor.
     #[cold]
     fn trip(&mut self, tables: &CompensationTables<T>) {
         let table = &tables.watch;
@@ -216,7 +220,7 @@ impl<T: Real> Watch<T> {
     }
 }
 
-/// What is left of a value, not below zero.
+/// Subtracts `by`; not below zero.
 fn less<T: Real>(value: T, by: T) -> T {
     let left = value - by;
     if left > T::ZERO { left } else { T::ZERO }

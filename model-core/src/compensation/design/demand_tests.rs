@@ -1,19 +1,19 @@
-//! What a motion asks of the teeth, learnt from the torque that moves a joint of which the data sheet says the friction.
+//! Tests of the demand estimated from the torque of a joint whose data sheet states the friction.
 
 use super::watch_tests::tables;
 use crate::compensation::demand::Demand;
 use crate::compensation::set_point::Motion;
 use crate::compensation::tables::CompensationTables;
 
-/// Tables with a dry friction of motor and link on their data sheet [N m at the link].
+/// Returns tables with a dry friction of motor and link on the data sheet [N m at the link].
 fn with_friction(motor: f32, link: f32) -> CompensationTables<f32> {
     let mut tables = tables();
     tables.load.frictions = [motor, link];
     tables
 }
 
-/// How far a set-point presses a flank after a way of 2 s in positive direction, once as it goes on and once as it turns round, where
-/// torque moves a joint with a friction and a load.
+/// Returns the demand over the pressing torque after 2 s of motion in positive direction, as the motion continues and
+/// as it reverses; the torque moves a joint with a friction and a load.
 fn pressing(tables: &CompensationTables<f32>, friction: f32, load: f32) -> [f32; 2] {
     let mut demand = Demand::new(tables);
     let at = |speed: f32| Motion { speed, ..Motion::default() };
@@ -27,7 +27,7 @@ fn pressing(tables: &CompensationTables<f32>, friction: f32, load: f32) -> [f32;
 
 #[test]
 fn friction_turns_the_demand_round_with_the_motion_though_it_was_seen_one_way_only() {
-    // In truth a third more than on the sheet.
+    // The real friction is a third above the data sheet.
     let [on, back] = pressing(&with_friction(0.3, 1.0), 1.7, 0.2);
     assert!(on > 1.0 && back < 0.0, "{on} on the way, {back} after it");
 }
@@ -40,7 +40,7 @@ fn a_weight_beyond_the_friction_keeps_its_flank() {
 
 #[test]
 fn a_load_that_may_be_friction_alone_presses_nothing_for_sure() {
-    // The sheet says nothing of friction.
+    // The data sheet states no friction.
     let [on, back] = pressing(&with_friction(0.0, 0.0), 0.2, 0.2);
     assert!(on > 1.0 && back.abs() < 1.0, "{on} on the way, {back} after it");
 }
@@ -55,7 +55,7 @@ fn torque_that_the_motor_alone_takes_passes_no_demand() {
             demand.plan(&tables, &now).expect("a number");
             demand.learn(&tables, (tables.body.motor_inertia + load) * now.acceleration);
         }
-        // The inertia is learnt as well: what is asked for is what was designed.
+        // The inertia is estimated as well: a fresh instance gives the demand of the designed inertia.
         let mut fresh = Demand::new(&tables);
         fresh.plan(&tables, &now).expect("a number");
         (demand.is_passed(), fresh.torque())

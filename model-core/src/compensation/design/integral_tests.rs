@@ -1,10 +1,10 @@
-//! The integral under the motor's limit.
+//! Tests of the integral under the motor's limit.
 
 use super::watch_tests::tables;
 use crate::compensation::integral::Integral;
 use crate::compensation::tables::CompensationTables;
 
-/// An integral whose torque has gone from limit to limit.
+/// Returns an integral whose torque has swung from limit to limit.
 fn swinging(tables: &CompensationTables<f32>) -> Integral<f32> {
     let mut integral = Integral::new();
     integral.watch(tables, tables.limits.motor, 1.0);

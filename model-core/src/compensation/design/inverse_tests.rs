@@ -1,4 +1,4 @@
-//! The adaptive inverse of the backlash, on tables as they are designed, in control of a motor and a link with play between them.
+//! Tests of the adaptive inverse of the backlash with designed tables, in control of a motor and a link with play.
 
 use super::watch_tests::tables;
 use crate::compensation::inverse::BacklashInverse;
@@ -10,29 +10,29 @@ use crate::observer::{Estimates, Source};
 /// Half of the play [rad].
 const HALF: f64 = 2e-3;
 
-/// Motor and link without compliance, teeth that meet without a rebound, referred to the link.
+/// Motor and link without compliance; teeth meet without a rebound. Referred to the link.
 struct Rig {
     tables: CompensationTables<f32>,
     inverse: BacklashInverse<f32>,
-    /// Link's inertia over the designed.
+    /// Inertia of the link over the designed inertia [-].
     ratio: f64,
     friction: f64,
-    /// Torque on the link from outside [N m].
+    /// External torque on the link [N m].
     push: f64,
-    /// Half of the play as it is guessed [rad].
+    /// Guess of half the play [rad].
     guess: f64,
-    /// Motor beyond the link in the middle of the play without a transmission error [rad].
+    /// Motor less link in the middle of the play, without transmission error [rad].
     middle: f64,
-    /// Amplitude of a transmission error that moves both flanks 72 times a turn [rad].
+    /// Amplitude of a transmission error that shifts both flanks 72 times per turn [rad].
     error: f64,
-    /// Motor and link: place [rad] and speed [rad/s].
+    /// Motor and `link`: position [rad] and speed [rad/s].
     motor: [f64; 2],
     link: [f64; 2],
     period: u32,
 }
 
 impl Rig {
-    /// At rest in the middle of the play.
+    /// Starts at rest in the middle of the play.
     fn new(ratio: f64, friction: f64) -> Self {
         let (tables, middle) = (tables(), 0.05);
         Self {
@@ -50,12 +50,12 @@ impl Rig {
         }
     }
 
-    /// By how much the transmission error moves both flanks [rad].
+    /// Shift of both flanks by the transmission error [rad].
     fn moved(&self) -> f64 {
         self.error * libm::sin(72.0 * self.link[0])
     }
 
-    /// Where the situation is for a set-point.
+    /// Returns the situation for a set-point.
     fn situation(&self, now: &Motion<f32>) -> Situation<f32> {
         let turns = |radians: f64| (radians / core::f64::consts::TAU) as f32;
         let mut estimates = Estimates {
@@ -71,7 +71,7 @@ impl Rig {
         Situation::new(&self.tables, &estimates, 0.0, CommandRef::Position { now, ahead: None })
     }
 
-    /// A period; returns the link's error [rad] and the torque [N m].
+    /// Simulates a period; returns the error of the link [rad] and the torque [N m].
     fn step(&mut self, now: &Motion<f32>) -> (f64, f64) {
         let situation = self.situation(now);
         if self.period.is_multiple_of(3) {
@@ -111,7 +111,7 @@ impl Rig {
         }
     }
 
-    /// RMS error of the link [rad] over a time [s] of a sine that begins at rest.
+    /// Returns the RMS error of the link [rad] over a time [s] of a sine that begins at rest.
     fn sine(&mut self, amplitude: f64, frequency: f64, time: f64) -> f64 {
         let rate = core::f64::consts::TAU * frequency;
         let periods = (time * f64::from(self.tables.clock.rate)) as u32;
@@ -135,7 +135,8 @@ impl Rig {
 
 #[test]
 fn edges_that_the_torque_has_pressed_take_most_of_the_lost_motion_out() {
-    // A link that friction brakes is carried by the flank of its direction: without an inverse it is half the play behind.
+    // The flank in the direction of motion carries a link with friction: without an inverse the link lags by half the
+    // play.
     let mut rig = Rig { guess: 0.4 * HALF, ..Rig::new(1.0, 2.0) };
     let [first, last] = [(); 2].map(|()| rig.sine(0.3, 0.5, 2.0));
     assert!(last < 0.3 * HALF && last < first, "{first} rad at first, {last} rad then");
@@ -147,7 +148,7 @@ fn an_inertia_that_nobody_told_is_learnt_from_the_torque() {
     let total = rig.tables.body.motor_inertia + rig.tables.body.load_inertia;
     for ratio in [0.7, 1.6] {
         let mut inverse = BacklashInverse::new(&rig.tables);
-        // The other law gives what the joint asks for.
+        // The other law gives the torque that the joint needs.
         for period in 0..60_000_u32 {
             let phase = core::f32::consts::TAU * 3.0 * rig.tables.clock.period * period as f32;
             let now = Motion { acceleration: 20.0 * libm::sinf(phase), ..Motion::default() };
@@ -178,7 +179,7 @@ fn a_joint_at_rest_whose_gap_nobody_knows_stays_as_it_stands() {
 #[test]
 fn it_takes_over_from_another_law_where_the_motor_stands_with_the_torque_that_holds_the_load() {
     let mut rig = Rig::new(1.0, 0.5);
-    // The other law pushes with 3 N m, and something holds the link.
+    // The other law pushes with 3 N m against a held link.
     for _ in 0..30_000 {
         let situation = rig.situation(&Motion::default());
         rig.inverse.observe(&rig.tables, &situation, &Motion::default());
@@ -197,7 +198,7 @@ fn a_link_that_a_push_sends_to_the_other_flank_is_met_on_its_way() {
         rig.push = push;
         (0..10_000).map(|_| rig.step(&Motion::default()).0.abs()).fold(0.0, f64::max)
     };
-    // Nobody has seen the second flank yet when the push turns round; by then the link rests at its set-point.
+    // The second edge is not measured yet when the push first reverses; by then the link rests at its set-point.
     let [_, first, second] = [1.5, -1.5, 1.5].map(&mut peak);
     let lost_motion = 2.0 * HALF;
     assert!(first < 0.8 * lost_motion, "{first} rad as the push turns round first");

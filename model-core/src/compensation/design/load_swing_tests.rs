@@ -1,11 +1,12 @@
-//! Which loads count as swinging, on tables as they are designed.
+//! Tests of the detector of a swinging load, with designed tables.
 
 use core::f32::consts::TAU;
 
 use super::watch_tests::tables;
 use crate::compensation::load_swing::LoadSwing;
 
-/// Whether a load that depends on time and on the torque that measured ones are uncertain by swings or may swing after 3 s.
+/// Returns true if a load, a function of time and of the uncertainty of measured torques, swings or may swing after 3
+/// s.
 fn may_swing(load: impl Fn(f32, f32) -> f32) -> bool {
     let tables = tables();
     let mut swing = LoadSwing::new();
@@ -13,7 +14,7 @@ fn may_swing(load: impl Fn(f32, f32) -> f32) -> bool {
         let time = period as f32 * tables.clock.period;
         swing.take(&tables, Some(load(time, tables.switching.measured)));
     }
-    // What only might swing has shown within that time whether it does.
+    // Within that time it is certain whether the load swings.
     assert_eq!(swing.may_swing(), swing.swings());
     swing.may_swing()
 }

@@ -1,4 +1,4 @@
-//! The offline half of the compensation: settings, and from them and a joint the tables.
+//! Offline part of the compensation: computes the tables from settings and a joint.
 
 mod body;
 mod damping;

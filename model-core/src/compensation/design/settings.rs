@@ -1,37 +1,37 @@
-//! What a compensation is designed from besides the joint, and which settings are refused.
+//! Settings from which a compensation is designed, and their checks.
 
 use crate::gears::design::DesignError;
 use crate::observer::design::NO_LIMIT;
 use parameters::Surroundings;
 
-/// What the compensation is designed from besides the joint. The joint's own half-backlash is a guess to start from.
+/// Settings of a compensation besides the joint. The joint's own half-backlash is a first guess.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompensationSettings {
-    /// Control periods a second [Hz].
+    /// Control periods per second [Hz].
     pub control_rate: u32,
-    /// Bandwidth of the motor controller: its three poles [rad/s].
+    /// Bandwidth of the control loop: place of its three poles [rad/s].
     pub bandwidth: f64,
     /// Largest torque of the motor [N m].
     pub torque_limit: f64,
-    /// Most that the teeth shall pass on in position mode, referred to the link [N m]; if left out, what the motor
-    /// gives at its limit, but no more than twice the rated torque.
+    /// Largest torque through the teeth in position mode, at the link [N m]; `None`: the motor's torque at its limit,
+    /// at most twice the rated torque.
     pub peak_torque: Option<f64>,
     /// Efficiency of the gears as far as losses grow with the torque passed on: output over input power while the motor
-    /// drives.
+    /// drives [-].
     pub efficiency: f64,
-    /// Periods of the motor's cogging in a turn of the motor.
+    /// Periods of the motor's cogging per motor turn.
     pub cogging_periods: u32,
-    /// From commanding a torque to its first effect [control periods].
+    /// Delay from a torque command to its first effect [control periods].
     pub torque_delay: f64,
-    /// Time constant of the current loop after that [s].
+    /// Time constant of the current loop after the delay [s].
     pub torque_lag: f64,
-    /// Dry friction of the motor, as far as it is known, at the motor [N m].
+    /// Dry friction of the motor at the motor, as far as known [N m].
     pub motor_friction: f64,
-    /// That of the link [N m].
+    /// Dry friction of the link [N m].
     pub load_friction: f64,
 }
 
-/// Refuses settings that no gain can be made from.
+/// Rejects settings from which no gains follow.
 pub(super) fn check(settings: &CompensationSettings) -> Result<(), DesignError> {
     let must = |what: &'static str, given: f64, holds: bool, must_be: &'static str| {
         if holds && given.is_finite() { Ok(()) } else { Err(DesignError::OutOfRange { what, given, must_be }) }
@@ -58,7 +58,7 @@ pub(super) fn check(settings: &CompensationSettings) -> Result<(), DesignError> 
     Ok(())
 }
 
-/// Settings of a compensation for these surroundings, at a bandwidth [rad/s].
+/// Settings of a compensation for a joint's surroundings, at a bandwidth [rad/s].
 pub fn compensation_settings(of: &Surroundings, bandwidth: f64) -> CompensationSettings {
     CompensationSettings {
         control_rate: of.control_rate,

@@ -1,19 +1,20 @@
-//! From which control rate on, and up to which bandwidth, a joint can be controlled.
+//! Limits of bandwidth and control rate of a joint (K25).
 //!
-//! While the gap is open, plain control holds the motor alone by gains that are made for motor and link together. With
-//! the motor's inertia J_m, that of both J, the bandwidth w, the damper D on the motor ([`damping_on_motor`]), the current
-//! loop's lag t, and a dead time of half a period more than the torque's delay, the loop is
+//! In the open gap, plain control moves the motor alone, with gains made for motor and link together. With the motor's
+//! inertia J_m, the total inertia J, the bandwidth w, the damper D on the motor ([`damping_on_motor`]), the lag t of
+//! the current loop, and a dead time of the torque's delay plus half a period, the loop is
 //!
 //! ```text
 //! L(s) = (D s + 3 J w^2 + J w^3 / s) / (J_m s^2 (1 + t s)) e^(-s dead time)
 //! ```
 //!
-//! D may be no larger the longer the delays are, so that with them its phase lead is lost, and the motor swings from flank to
-//! flank for good: of such a swing the observer learns no gap, and plain control stays. Where phase margins are small, delays
-//! that the data sheet says a fifth too short do the same. `docs/decisions/control-rate.md` has the measurements.
+//! Longer delays permit only a smaller D, until D has no phase lead left. Then the motor swings from flank to flank
+//! without end, the observer cannot estimate the gap, and plain control stays. Small phase margins have the same effect
+//! if the real delays exceed the data sheet by a fifth. `docs/decisions/control-rate.md` has the measurements.
 //!
-//! In contact the loop feeds the link's angle back through the joint's compliance. With the stiffness K between motor and link, link
-//! inertia J_l and the motor's largest torque T at the link, two more limits follow from the joint alone:
+//! In contact the loop feeds back the link's angle through the compliance of the joint. With the stiffness K between
+//! motor and link, the link inertia J_l and the motor's largest torque T at the link, the joint alone sets two more
+//! limits:
 //!
 //! ```text
 //! first swing    w <= sqrt(K (1/J_m + 1/J_l)) / SWING
@@ -29,33 +30,34 @@ use crate::compensation::plain::damping_on_motor;
 use crate::gears::design::{BandwidthLimit, DesignError, validate};
 use parameters::{JointParameters, Surroundings};
 
-/// Smallest phase margin of the motor alone in the open gap [rad]: three degrees. Down to 4.7 the gap was learnt by as many
-/// joints, whose lag was up to a fifth longer than the sheet says, as at any rate; below zero a third to nearly all did not learn it.
+/// Smallest phase margin of the motor alone in the open gap [rad]: three degrees. Measured on joints with up to a fifth
+/// more lag than on the data sheet: down to 4.7 degrees the gap was estimated on as many joints as at any rate; below
+/// zero it was not estimated on a third to nearly all of them.
 const LEAST_MARGIN: f64 = 3.0 * PI / 180.0;
 
-/// Control periods in a time constant of the loop, 1/w: from 33 on the gap was learnt by as many joints as at any rate, with 28
-/// and less not by all.
+/// Smallest number of control periods per time constant 1/w. Measured: from 33 on the gap was estimated on as many
+/// joints as at any rate; at 28 and below, not on all of them.
 const PERIODS: f64 = 33.0;
 
-/// First swing of motor against link over the bandwidth, at least [-]. Tuned on one strain wave gear in motion T2: it hunts at 3.9 and
-/// not at 5; inertias 30 % off move the swing by 15 %. No test holds it yet.
+/// Smallest frequency of the first swing of motor against link, over the bandwidth [-]. Tuned on one strain wave gear
+/// in motion T2: hunting at 3.9, none at 5; inertias 30 % off move the swing by 15 %. No test holds it yet.
 const SWING: f64 = 5.0;
 
-/// Crossing time from rest to rest at the largest torque, over the time constant of the loop, at most [-]. Tuned on one joint with
-/// 80 mrad of play in a sine of 1 Hz: it throws its link from flank to flank at 0.56 and not at 0.42; the guess of the gap may be
-/// half of the gap. No test holds it yet.
+/// Largest crossing time from rest to rest at the largest torque, over the time constant of the loop [-]. Tuned on one
+/// joint with 80 mrad of play in a sine of 1 Hz: the link is thrown from flank to flank at 0.56, not at 0.42; the guess
+/// of the gap may be half of the gap. No test holds it yet.
 const CROSSING: f64 = 0.3;
 
-/// Bandwidth of a controller whose user asks for none, where the joint lets it [rad/s].
+/// Default bandwidth, where the joint permits it [rad/s].
 const USUAL: f64 = 60.0;
 
-/// The fastest control that is thought of [Hz].
+/// Highest control rate considered [Hz].
 const FASTEST: f64 = 1e5;
 
-/// Halvings that find a frequency, a rate or a bandwidth to a millionth.
+/// Bisection steps for a frequency, a rate or a bandwidth: to a millionth.
 const HALVINGS: usize = 60;
 
-/// Refuses a bandwidth that the joint does not bear, and a control rate that is too slow for the bandwidth.
+/// Rejects a bandwidth that is too wide for the joint, and a control rate that is too slow for the bandwidth.
 pub(super) fn check(body: &Body, settings: &CompensationSettings) -> Result<(), DesignError> {
     let (widest, limit) = of_joint(body, settings);
     if settings.bandwidth > widest {
@@ -64,12 +66,12 @@ pub(super) fn check(body: &Body, settings: &CompensationSettings) -> Result<(), 
     check_rate(body, settings)
 }
 
-/// The widest bandwidth that the joint itself bears [rad/s], to three digits, and the property that limits it.
+/// Widest bandwidth that the joint permits [rad/s], rounded down to three digits, and the property that limits it.
 fn of_joint(body: &Body, settings: &CompensationSettings) -> (f64, BandwidthLimit) {
     let swing = libm::sqrt(body.stiffness * (1.0 / body.motor + 1.0 / body.load));
     let gap = 2.0 * body.half_backlash / body.lever;
     let crossing = 2.0 * libm::sqrt(gap * body.motor / (body.gear * settings.torque_limit));
-    // Without a gap there is nothing to cross.
+    // A joint without a gap has no crossing.
     let by_crossing = if crossing > 0.0 { CROSSING / crossing } else { f64::INFINITY };
     let by_swing = swing / SWING;
     if by_swing < by_crossing {
@@ -79,18 +81,19 @@ fn of_joint(body: &Body, settings: &CompensationSettings) -> (f64, BandwidthLimi
     }
 }
 
-/// Up to which bandwidth a joint can be controlled.
+/// Bandwidths at which a joint can be controlled.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BandwidthRange {
-    /// Of a compensation whose user asks for none: 60 rad/s, or the widest if that is less [rad/s].
+    /// Default bandwidth: 60 rad/s, or `widest` if that is less [rad/s].
     pub usual: f64,
-    /// The widest that joint, control rate and delays allow, to three digits [rad/s].
+    /// Widest bandwidth that joint, control rate and delays permit, rounded down to three digits [rad/s].
     pub widest: f64,
-    /// Property of the joint that sets the widest; none where control rate and delays set it.
+    /// Property of the joint that limits `widest`; `None` if control rate and delays do.
     pub limit: Option<BandwidthLimit>,
 }
 
-/// Up to which bandwidth a joint can be controlled at the control rate of its surroundings, with their delays of torque and current loop.
+/// Computes the bandwidths at which a joint can be controlled at the control rate of its surroundings, with their
+/// delays of torque and current loop.
 ///
 /// ```
 /// use model_core::compensation::design::bandwidth_range;
@@ -104,14 +107,14 @@ pub struct BandwidthRange {
 ///
 /// # Errors
 ///
-/// A joint that is none, or settings out of their range.
+/// Returns an error if the joint is invalid or a setting is out of range.
 pub fn bandwidth_range(joint: &JointParameters, of: &Surroundings) -> Result<BandwidthRange, DesignError> {
     validate(joint)?;
     let mut settings = compensation_settings(of, USUAL);
     settings::check(&settings)?;
     let body = Body::new(joint);
     let (of_joint, limit) = of_joint(&body, &settings);
-    // A joint without limits of its own is asked for a bandwidth that no control rate bears.
+    // Without a limit by the joint, a bandwidth beyond every control rate is requested.
     settings.bandwidth = of_joint.min(f64::from(of.control_rate));
     let (widest, limit) = match check_rate(&body, &settings) {
         Ok(()) => (of_joint, Some(limit)),
@@ -121,16 +124,16 @@ pub fn bandwidth_range(joint: &JointParameters, of: &Surroundings) -> Result<Ban
     Ok(BandwidthRange { usual: USUAL.min(widest), widest, limit })
 }
 
-/// Bandwidth of a compensation whose user asks for none: 60 rad/s, or as much as joint, control rate and delays allow [rad/s].
+/// Default bandwidth: 60 rad/s, or the widest that joint, control rate and delays permit, if that is less [rad/s].
 ///
 /// # Errors
 ///
-/// A joint that is none, or settings out of their range.
+/// Returns an error if the joint is invalid or a setting is out of range.
 pub fn good_bandwidth(joint: &JointParameters, of: &Surroundings) -> Result<f64, DesignError> {
     bandwidth_range(joint, of).map(|range| range.usual)
 }
 
-/// Refuses a control rate that is too slow for the bandwidth.
+/// Rejects a control rate that is too slow for the bandwidth.
 fn check_rate(body: &Body, settings: &CompensationSettings) -> Result<(), DesignError> {
     let rate = f64::from(settings.control_rate);
     let bears = |rate: f64, bandwidth: f64| {
@@ -146,7 +149,7 @@ fn check_rate(body: &Body, settings: &CompensationSettings) -> Result<(), Design
     Err(DesignError::ControlTooSlow { given: settings.control_rate, bandwidth: settings.bandwidth, lowest, widest })
 }
 
-/// The place nearest to `bad` that `holds`, as far as it holds from there to `good`.
+/// Finds by bisection the value nearest to `bad` for which `holds` is true, as it is at `good`.
 fn between(bad: f64, good: f64, holds: impl Fn(f64) -> bool) -> f64 {
     let (mut bad, mut good) = (bad, good);
     for _ in 0..HALVINGS {
@@ -156,7 +159,7 @@ fn between(bad: f64, good: f64, holds: impl Fn(f64) -> bool) -> f64 {
     good
 }
 
-/// To three digits, no larger than it is; infinite as it is.
+/// Rounds down to three digits; infinity is unchanged.
 fn rounded_down(value: f64) -> f64 {
     if value.is_infinite() {
         return value;
@@ -172,13 +175,13 @@ fn phase_margin(body: &Body, settings: &CompensationSettings, rate: f64, bandwid
     let both = of_both(body, bandwidth);
     let damper = damping_on_motor(on_motor_alone(body, both, reaction(settings, period)));
     let (spring, integral) = (both * bandwidth, both * bandwidth * bandwidth / 3.0);
-    // Of the numerator, in phase with the place and ahead of it.
+    // Numerator: `spring` is in phase with the position, this part leads it.
     let ahead = |frequency: f64| damper * frequency - integral / frequency;
     let gain = |frequency: f64| {
         libm::hypot(spring, ahead(frequency))
             / (body.motor * frequency * frequency * libm::hypot(1.0, torque_lag * frequency))
     };
-    // The gain falls with the frequency.
+    // The gain falls with the frequency, so that the crossover is unique.
     let below_one = |log: f64| gain(libm::exp(log)) < 1.0;
     let crossover = libm::exp(between(libm::log(1e-3 * bandwidth), libm::log(1e3 * rate), below_one));
     let lost = libm::atan(torque_lag * crossover) + crossover * period * (0.5 + torque_delay);

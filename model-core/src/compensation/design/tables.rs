@@ -1,7 +1,8 @@
-//! Tables of the compensation: from joint, bandwidth and limits to gains, times and thresholds.
+//! Tables of the compensation: gains, times and thresholds from joint, bandwidth and limits.
 //!
-//! Gains follow from inertias and bandwidth, times from the motor's torque, the loop's delays and the force that a
-//! landing may cause. What is left are shares, each a constant here with its reason.
+//! Gains follow from inertias and bandwidth; times from the motor's torque, the delays of the loop and the permitted
+//! landing force. The remaining shares are the constants of this file, each with its reason. Equations:
+//! `docs/theory/compensation.md`.
 
 use core::f64::consts::TAU;
 
@@ -19,159 +20,159 @@ use crate::gears::gear_losses;
 use crate::numbers::Real;
 use parameters::JointParameters;
 
-/// Planets struck on the way through the gap may be struck with this share of the rated force: struck again as they fly
-/// to and fro they take up to one and a half times what the first blow is estimated at, which leaves three fifths.
+/// Force on planets struck in the gap, over the rated force: planets struck repeatedly take up to one and a half times
+/// the estimated first blow, which leaves three fifths.
 const STRIKE: f64 = 0.4;
 
-/// The same over the peak torque, however hard the flank will be needed: a planet caught between sun and flank is struck
-/// harder each time.
+/// Largest force on planets struck in the gap, over the peak torque, at any demand: a planet caught between sun and
+/// flank is struck harder each time.
 const HARDEST_STRIKE: f64 = 0.56;
 
-/// Share of the peak torque that the law may ask the teeth to pass on: torque constant, efficiency and what a swing does
-/// in the loop's delays each take a few hundredths.
+/// Torque through the teeth that the law may ask for, over the peak torque: torque constant, efficiency and the swing
+/// within the loop's delays each take a few hundredths.
 const MOST_PASSED: f64 = 0.88;
 
-/// Part of the torque at hand that braking is planned with: torque constant, inertia and the crossing to the flank that
-/// brakes take a few hundredths each.
+/// Share of the available torque that braking is planned with (K12): torque constant, inertia and the crossing to the
+/// braking flank take a few hundredths each.
 const BRAKING: f64 = 0.9;
 
-/// What is left to that, over itself, as far as a swing is divided by it: less than what the torques are known to.
+/// Lower bound of the room P - F over P in (K11): smaller than the uncertainty of the torques.
 const LEAST_ROOM: f64 = 0.1;
 
-/// Peak torque over the rated torque if neither settings nor motor say less: what catalogues of gears allow at least.
+/// Peak torque over rated torque if neither settings nor motor give less: the least that gear catalogues allow.
 const PEAK: f64 = 2.0;
 
-/// A compliance that comes out so many times smaller or larger than the joint file's is not believed.
+/// Largest factor between estimated compliance and the joint file's; estimates beyond are clamped.
 const COMPLIANCE: f64 = 4.0;
 
-/// Share of the largest torque that a crossing may take; the rest is for the feedback along it.
+/// Share of the largest torque for the path of a crossing; feedback along the path has the rest.
 const CROSSING_TORQUE: f64 = 0.8;
 
-/// Share of that damper in impedance mode: what a commanded damper loses by the loop's delays.
+/// Share of D_m in impedance mode (K3): the part of a commanded damper that the loop's delays take.
 const IMPEDANCE_DAMPING: f64 = 0.1;
 
-/// A crossing shorter than so many reaction times would be over before feedback has had a say.
+/// Shortest crossing [reaction times]: feedback has no effect in a shorter crossing.
 const REACTIONS_IN_A_CROSSING: f64 = 8.0;
 
-/// A gap that turns out wider than guessed may be crossed in so many times the guess's time.
+/// Longest crossing, over the crossing of the guessed gap: allows for a wider gap.
 const LONGEST: f64 = 3.0;
 
-/// Share of what is left of a crossing that has to do before its path is laid anew: demand that grows a little does not
-/// matter.
+/// Share of the remaining time of a path below which a new path replaces it: small increases of the demand do not.
 const SHORTEN: f64 = 0.8;
 
-/// Landing at the end of a path may cause this share of the rated torque.
+/// Force of a landing at the end of a path, over the rated torque.
 const LANDING: f64 = 0.03;
 
-/// The same over the torque that the flank will carry, where that allows for more.
+/// Force of a landing over the torque that the flank will carry, where that is more.
 const LANDING_UNDER_LOAD: f64 = 0.4;
 
-/// Reaction times in which the law's torque rises after a landing; how far it rises is the limit's to say.
+/// Rise time of the law's torque after a landing [reaction times]; the limit (K11) bounds the torque reached.
 const RISE: f64 = 1.0;
 
-/// Reaction times over which measured torque is smoothed before it decides: the observer's torques are wrong for a few
+/// Smoothing time of measured torque before decisions [reaction times]: the observer's torques are wrong for a few
 /// milliseconds after every impact.
 const SETTLING: f64 = 15.0;
 
-/// Share of the half-gap that opens before the loss of a flank is believed: several times the observer's error.
+/// Opening over the half-gap beyond which a flank counts as lost: several times the observer's error.
 const OPENING: f64 = 0.3;
 
-/// Share of the half-gap within which a flank is as good as touched: what the observer's errors leave.
+/// Opening over the half-gap below which a flank counts as touched: the residual of the observer's errors.
 const LANDED: f64 = 0.03;
 
-/// Planned torque over the largest, beyond which its change of sign counts.
+/// Planned torque beyond which a change of its sign counts, over the largest torque.
 const PLANNED: f64 = 0.005;
 
-/// Measured torque over the largest, as uncertain as it is after an impact.
+/// Uncertainty of a measured torque after an impact, over the largest torque.
 const MEASURED: f64 = 0.02;
 
-/// Share of that which is left when no flank has changed for long.
+/// Hysteresis long after the last flank change, over `MEASURED`.
 const LEAST_MEASURED: f64 = 0.3;
 
-/// Largest hysteresis after several changes, over the first.
+/// Largest factor g of the hysteresis after several changes (K13).
 const MOST_FACTOR: f64 = 6.0;
 
-/// The most that the hysteresis grows by, over what half the lost motion asks for as an error: a flank that is waited for any
-/// longer costs more than one changed in vain.
+/// Largest growth of the hysteresis, over the torque that an error of half the lost motion asks for: waiting longer for
+/// a flank costs more than a change in vain.
 const MOST_GROWTH: f64 = 0.3;
 
-/// Time in which a transient of the loop is over, times the bandwidth. Grown hysteresis is lost again over it, for by then an
-/// error that a crossing too early has left was put right by the flank that it led to; and so long a push is remembered for
-/// which the teeth are not spared.
+/// Time constant of a transient of the loop, times the bandwidth. Grown hysteresis decays over it, because by then the
+/// new flank has corrected the error of an early crossing. The memory of a push that suspends the limit (K11) decays
+/// over the same time.
 const TRANSIENT: f64 = 6.0;
 
-/// Changes of the wanted flank within this time, times the bandwidth, are hunting.
+/// Time between requests for opposite flanks below which a joint at rest hunts, times the bandwidth.
 const HUNTING: f64 = 15.0;
 
-/// Change of a torque over the largest that is taken up faster.
+/// Change of a torque beyond which its smoothing is faster, over the largest torque.
 const LARGE_STEP: f64 = 0.05;
 
-/// Error let be at rest without a load, while nothing hunts and at most, over half the lost motion: with the most, the joint
-/// rests within half of its lost motion.
+/// Dead band at rest without a load over half the lost motion: without hunting, largest (K15). With the largest the
+/// joint rests within half of its lost motion.
 const DEADBAND: [f64; 2] = [0.05, 0.5];
 
-/// Time in which a grown deadband is lost again [s]: long against the hunt that it ends.
+/// Time constant with which a grown dead band decays [s]: long against the hunting that it ends.
 const DEADBAND_KEPT: f64 = 30.0;
 
-/// Speed at which dry friction has its full size [rad/s], for want of a better number: what encoders resolve.
+/// Speed at which dry friction reaches its full size [rad/s]: the resolution of encoders, for want of a better number.
 const FRICTION_SPEED: f64 = 0.01;
 
-/// The same for a planned speed [rad/s]: what a motion passes in a few control periods.
+/// Planned speed at which dry friction reaches its full size [rad/s]: a motion passes it in a few control periods.
 const PLANNED_FRICTION_SPEED: f64 = 1e-3;
 
-/// Square of the time in which the load is followed [s^2]: a few milliseconds.
+/// Square of the time constant of the load estimate [s^2]: a few milliseconds.
 const LOAD_FOLLOWED: f64 = 1e-5;
 
-/// Time in which the load's rate is learnt [s]: a weight swings in a second.
+/// Time constant of the estimated rate of the load [s]: a weight swings in a second.
 const LOAD_RATE: f64 = 0.03;
 
-/// Time in which a rate that is not seen again is forgotten [s].
+/// Time constant with which the rate of the load decays while no flank carries [s].
 const LOAD_RATE_KEPT: f64 = 0.1;
 
-/// The same as for the load for its dry friction [s^2]: known within a few reversals, then kept for seconds.
+/// Square of the time constant of the friction estimate [s^2]: friction is found within a few reversals, then kept for
+/// seconds.
 const FRICTION_FOLLOWED: f64 = 1e-2;
 
-/// Time in which a missed impulse is made good, over a crossing's time.
+/// Time in which a missed impulse is returned, over the time of a crossing (K16).
 const REPAYMENT: f64 = 1.15;
 
-/// Impedance set-points come 200 times a second at least, or are at rest [s].
+/// Longest time between impedance set-points of a moving stream [s]: streams send at least 200 per second.
 const LONGEST_HOLD: f64 = 5e-3;
 
-/// Time in which control is blended from plain to compensated, times the bandwidth; the other way it goes in one
-/// period.
+/// Time of blending from plain to compensated control, times the bandwidth; the other way takes one period.
 const TRUST: f64 = 1.2;
 
-/// Corner of the slow load that explains a flank [rad/s]: below the modes of flexible payloads from 8 Hz on, above loads that people
-/// and steps put on a link.
+/// Corner of the slow load that explains a flank [rad/s]: below the modes of flexible payloads (8 Hz and more), above
+/// loads by people and steps.
 const SLOW_LOAD: f64 = 25.0;
 
-/// Unexplained flank changes that are forgotten in a second, and while the error is small [1/s]: a link without friction drifts from flank to
-/// flank fifteen times a second, at a tenth of the error that plain control leaves.
+/// Decay of the count of unexplained flank changes: in general, while the error is small [1/s]. A link without friction
+/// drifts from flank to flank fifteen times per second, at a tenth of the error of plain control.
 const HUNTING_LEAK: [f64; 2] = [1.0, 20.0];
 
-/// Unexplained flank changes beyond which the loop hunts [-]. Tuned on `hil/never-worse.toml`: a joint that follows a load to and fro leaves a
-/// flank as often as some that hunt.
+/// Unexplained flank changes beyond which the loop hunts [-]. Tuned on `hil/never-worse.toml`: a joint that follows an
+/// alternating load leaves a flank as often as some joints that hunt.
 const HUNTING_CHANGES: f64 = 4.0;
 
-/// Root of the mean squared error that is small, over half the lost motion [-]: a third of what control without compensation leaves.
+/// RMS error that is small, over half the lost motion [-]: a third of the error without compensation.
 const HUNTING_CALM: f64 = 0.35;
 
-/// Time over which the squared error is averaged [s]; the root of that mean over half the lost motion beyond which the loop hunts [-]:
-/// control that ignores the gap leaves the link on either flank, at half the lost motion.
+/// Averaging time of the squared error [s]. `HUNTING_ERROR`: RMS error beyond which the loop hunts, over half the lost
+/// motion [-]; control that ignores the gap leaves the link on either flank, at half the lost motion.
 const HUNTING_ERROR_TIME: f64 = 0.15;
 const HUNTING_ERROR: f64 = 1.5;
 
-/// Error that is granted on top, over what the demand would move the loop's spring by [-]: inertia and load that are 30 % off.
+/// Additional permitted error, over the deflection of the loop's spring by the demand [-]: inertia and load that are 30
+/// % wrong.
 const HUNTING_ERROR_BY_DEMAND: f64 = 0.3;
 
-/// Times for which a loop that hunts is controlled without compensation: at first, and at most [s]; growth with each trip [-].
+/// Time of plain control after a trip: first, longest [s]. `AWAY_GROWTH`: growth with each trip [-].
 const AWAY: [f64; 2] = [10.0, 120.0];
 const AWAY_GROWTH: f64 = 4.0;
 
-/// Half the lost motion is never taken for more than so many times the guess.
+/// Largest estimate of half the lost motion, over the guess.
 const WIDEST: f64 = 5.0;
 
-/// Tables of the compensation.
+/// Computes the tables of the compensation from joint and settings.
 pub fn design_compensation<T: Real>(
     joint: &JointParameters,
     settings: &CompensationSettings,
@@ -184,14 +185,14 @@ pub fn design_compensation<T: Real>(
     let body = Body::new(joint);
     stability::check(&body, settings)?;
     let inertia = body.motor + body.load;
-    // Growth of a variance in one period over that of a reading.
+    // Growth of a variance per period, over the variance of a measurement.
     let [load_growth, friction_growth] = [LOAD_FOLLOWED, FRICTION_FOLLOWED].map(|square| period * period / square);
     let limit = body.gear * settings.torque_limit;
     let half = body.half_backlash / body.lever;
     let reaction = reaction(settings, period);
     let damping = of_both(&body, pole);
 
-    // A ramp without a jump in its acceleration has one and a half times its mean.
+    // The peak acceleration of a ramp without a jump is one and a half times its mean.
     let ramp_per_speed = 1.5 * body.motor / (CROSSING_TORQUE * limit);
     let shortest_ramp = 0.5 * REACTIONS_IN_A_CROSSING * reaction;
     let rated = joint.rated_output_torque;
@@ -202,7 +203,7 @@ pub fn design_compensation<T: Real>(
     let crossing =
         Crossing::at(strike_torque / body.strike_impedance, 2.0 * half, ramp_per_speed, shortest_ramp).duration;
     let motor_damping = on_motor_alone(&body, damping, reaction);
-    // The motor's mass against the joint's spring: torque of a blow for each rad/s.
+    // Impedance of a blow: motor inertia against the stiffness of the joint [N m s/rad].
     let blow = libm::sqrt(body.stiffness * body.motor);
     let landing_speed = LANDING * rated / blow;
     Ok(CompensationTables {
@@ -249,7 +250,7 @@ pub fn design_compensation<T: Real>(
         crossing: CrossingTable {
             lead: real(crossing + reaction),
             reaction: real(reaction),
-            // Both poles of the motor alone in one place.
+            // Double pole of the motor alone.
             stiffness: real(motor_damping * motor_damping / (4.0 * body.motor)),
             strike_speed_per_torque: real(1.0 / body.strike_impedance),
             strike_torque: real(strike_torque),
@@ -287,7 +288,7 @@ pub fn design_compensation<T: Real>(
         },
         load: LoadTable {
             variances: [real(load_growth), real(friction_growth), T::ONE],
-            // Of a random walk in noise, as far as it grows much more slowly than it is read.
+            // Steady gain for a random walk that grows slowly against the measurement noise.
             gain: real(libm::sqrt(load_growth)),
             rate_gain: real(1.0 / LOAD_RATE),
             rate_left: real(libm::exp(-period / LOAD_RATE_KEPT)),

@@ -1,4 +1,4 @@
-//! The loop monitor on tables as they are designed.
+//! Tests of the loop monitor with designed tables.
 
 use crate::compensation::design::{compensation_settings, design_compensation};
 use crate::compensation::set_point::{CommandRef, Motion};
@@ -8,13 +8,13 @@ use crate::compensation::watch::{Watch, Watched};
 use crate::gears::Flank;
 use crate::observer::Estimates;
 
-/// Those of Q1 at 60 rad/s.
+/// Returns the tables of Q1 at 60 rad/s.
 pub(super) fn tables() -> CompensationTables<f32> {
     let q1 = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
     design_compensation(&q1.parameters, &compensation_settings(&q1.surroundings, 60.0)).expect("tables")
 }
 
-/// A link beside its set-point by a part of half the lost motion.
+/// Returns a situation with an error of a part of half the lost motion.
 fn situation(tables: &CompensationTables<f32>, part: f32) -> Situation<f32> {
     let mut estimates = Estimates::default();
     estimates.half_backlash.value = 40e-6;
@@ -24,13 +24,13 @@ fn situation(tables: &CompensationTables<f32>, part: f32) -> Situation<f32> {
     situation
 }
 
-/// Control periods from one judgement to the next.
+/// Control periods between two judgements.
 const TURN: usize = 3;
 
-/// Periods in which an error grows to its size: as slowly as no jump of a set-point.
+/// Periods in which an error grows to its size: too slow for a jump of the set-point.
 const GROWS: u32 = 500;
 
-/// A monitor that has seen a good loop for a second, so that it owes nothing to what the loop found.
+/// Returns a monitor after a second of a good loop: nothing is granted for the takeover.
 fn settled(tables: &CompensationTables<f32>) -> Watch<f32> {
     let (good, mut watch) = (situation(tables, 0.0), Watch::new(tables));
     let watched = Watched { planned: 1.0, load: 0.0, has_error: true, is_thrown: false };
@@ -38,8 +38,8 @@ fn settled(tables: &CompensationTables<f32>) -> Watch<f32> {
     watch
 }
 
-/// Periods after which the monitor steps back while the error grows to a part of half the lost motion and flanks change every `dwell`
-/// periods under a demand; at most 10 s.
+/// Returns the periods after which the monitor trips while the error grows to a part of half the lost motion and the
+/// flank changes every `dwell` periods under a demand; `None` after 10 s.
 fn trips_after(part: f32, dwell: u32, planned: impl Fn(Flank) -> f32) -> Option<u32> {
     let tables = tables();
     let mut watch = settled(&tables);
@@ -59,20 +59,20 @@ fn explained_changes_never_trip() {
 
 #[test]
 fn unexplained_changes_trip_in_half_a_second() {
-    // A payload's mode of 20 Hz: forty changes a second.
+    // A payload mode of 20 Hz: forty changes per second.
     let tripped = trips_after(0.9, 250, |_| 0.0).expect("hunting");
     assert!(tripped < 5000, "{tripped}");
 }
 
 #[test]
 fn a_load_changes_flanks_eight_times_a_second_at_most() {
-    // Twice in 0.2 s, as a gait does, and forty times a second, as a payload's mode that is felt as a load.
+    // Two changes in 0.2 s, like a gait, and forty per second, like a payload mode that is measured as a load.
     let [gait, mode] = [1000, 250].map(|dwell| {
         let (tables, good) = (tables(), situation(&tables(), 0.9));
         let mut watch = settled(&tables);
         (0..100_000).step_by(TURN).find(|&period: &u32| {
             let flank = if (period / dwell).is_multiple_of(2) { Flank::Drive } else { Flank::Back };
-            // Slowly enough to pass the smoothing of the load.
+            // Large enough to pass the smoothing of the load.
             let watched =
                 Watched { planned: 0.0, load: 100.0 * flank.sign::<f32>(), has_error: true, is_thrown: false };
             watch.step(&tables, &good, &watched, Some(flank));
@@ -84,7 +84,7 @@ fn a_load_changes_flanks_eight_times_a_second_at_most() {
 
 #[test]
 fn small_error_bears_a_drift_from_flank_to_flank() {
-    // Fifteen changes a second.
+    // Fifteen changes per second.
     let [calm, rough] = [0.1, 0.9].map(|part| trips_after(part, 667, |_| 0.0));
     assert!(calm.is_none() && rough.is_some_and(|periods| periods < 6000), "{calm:?} {rough:?}");
 }
@@ -101,7 +101,7 @@ fn error_that_the_loop_has_found_does_not_trip() {
         let tables = tables();
         let watched = Watched { planned: 1.0, load: 0.0, has_error: true, is_thrown: false };
         (0..10_000).step_by(TURN).any(|period| {
-            // Ten times half the lost motion, which plain control takes back in a few time constants.
+            // Ten times half the lost motion, which plain control reduces in a few time constants.
             let situation = situation(&tables, 10.0 * (-0.006 * period as f32).exp());
             watch.step(&tables, &situation, &watched, Some(Flank::Drive));
             watch.is_away()
@@ -144,7 +144,8 @@ fn time_away_grows_and_is_forgiven() {
 fn after_a_trip_an_error_beyond_that_of_the_law_that_took_over_trips_at_once() {
     let tables = tables();
     let watched = Watched { planned: 0.0, load: 0.0, has_error: true, is_thrown: false };
-    // Of a law that has left the link by twice half the lost motion of late, nothing less trips; of one that has not, half of it does.
+    // If plain control recently left an error of twice half the lost motion, no smaller error trips; if not, a smaller
+    // error does.
     let trips_at = |left: f32, part: f32| {
         let acts = |watch: &mut Watch<f32>, part: f32| {
             watch.step(&tables, &situation(&tables, part), &watched, Some(Flank::Drive));
@@ -159,9 +160,9 @@ fn after_a_trip_an_error_beyond_that_of_the_law_that_took_over_trips_at_once() {
         while watch.is_away() {
             watch.step(&tables, &situation(&tables, left), &watched, None);
         }
-        // The error is found first, and that fades.
+        // The error found at takeover is granted first; the grant decays.
         assert!((0..4000).step_by(TURN).all(|_| !acts(&mut watch, 0.0)));
-        // Grows over 50 ms, which is no jump of the set-point, and is long enough for no mean.
+        // Grows over 50 ms: too slow for a jump of the set-point, too fast for the mean.
         (0..GROWS).step_by(TURN).any(|period| acts(&mut watch, part * period as f32 / GROWS as f32))
     };
     assert!(!trips_at(0.0, 1.4) && trips_at(0.0, 1.7), "of a law that serves well");
@@ -181,7 +182,7 @@ fn numbers_that_are_none_pass_through_nothing() {
     let watched = Watched { planned: 1.0, load: 0.0, has_error: true, is_thrown: false };
     (0..1000).step_by(TURN).for_each(|_| watch.step(&tables, &situation, &watched, Some(Flank::Drive)));
     assert!(!watch.is_away());
-    // It judges on.
+    // The monitor still judges.
     let bad = self::situation(&tables, 9.0);
     assert!((0..100_000).step_by(TURN).any(|_| {
         watch.step(&tables, &bad, &watched, Some(Flank::Drive));

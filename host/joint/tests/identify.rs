@@ -499,7 +499,7 @@ fn files_that_are_no_logs_are_refused() {
     };
     refused("", &["log.csv", "empty", "motor_counts"]);
     refused("0,1,2,3\n", &["the log has no header"]);
-    refused("time_s,motor_count,output_counts,motor_torque_N_m\n0,1,2,3\n", &["only 1 samples", "0.5 s"]);
+    refused("time_s,motor_counts,output_counts,motor_torque_N_m\n0,1,2,3\n", &["only 1 samples", "0.5 s"]);
     let rows: String = (0..3000).map(|row| format!("{:.4},1,2,3\n", f64::from(row) * 2e-4)).collect();
     let header = "time_s,motor_count,output_counts,motor_torque_N_m\n";
     refused(&format!("{header}{rows}"), &["no column `motor_counts`", "`motor_count`"]);

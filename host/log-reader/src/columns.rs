@@ -298,7 +298,7 @@ impl Columns {
         let there = there.join(", ");
         let tells = match what {
             "motor" => {
-                "an output alone shows neither stiffness nor an error map, and lost motion by its reversals only"
+                "an output alone shows neither lost motion (an upper bound at most), nor stiffness, nor an error map"
             }
             _ => {
                 "a motor alone shows no lost motion, stiffness or error map: where the output stands while the motor \

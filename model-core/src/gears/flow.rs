@@ -237,7 +237,7 @@ impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
         Self { in_phase, deviations }
     }
 
-    /// Plus the response to pseudo-forces, each under its time weight.
+    /// Adds the response to pseudo-forces, each with its weight function of time.
     #[inline]
     fn with<const M: usize>(mut self, terms: [(&Inputs<T>, &PseudoForce<T, N>); M]) -> Self {
         for (inputs, force) in terms {
@@ -269,7 +269,7 @@ impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
 }
 
 impl<T: Real, const N: usize> ModalPositions<T, N> {
-    /// Plus the response to pseudo-forces, each under its time weight.
+    /// Adds the response to pseudo-forces, each with its weight function of time.
     #[inline]
     fn with<const M: usize>(mut self, terms: [(&Inputs<T>, &PseudoForce<T, N>); M]) -> MeshPositions<T, N> {
         for (inputs, force) in terms {

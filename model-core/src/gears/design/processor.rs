@@ -1,16 +1,16 @@
-//! What a processor gives the step: clock, cycles an instruction, waiting for flash, its part of the period. None of
-//! the cycles was measured on silicon. Work of a board besides the step is not counted.
+//! Time of a processor for the step: clock, cycles per instruction, flash wait, and share of the period. No cycle count
+//! was measured on silicon. A board's work in addition to the step is not counted.
 
-/// A processor and what it leaves to the step.
+/// Processor and its share of time for the step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Processor {
     /// Core clock [Hz].
     pub clock: u32,
-    /// Cycles an instruction of the step, from memory that never waits.
+    /// Cycles per instruction of the step from memory without wait states.
     pub cycles_per_instruction: f64,
-    /// Cycles that an instruction waits for flash on the average, beyond that.
+    /// Additional mean cycles per instruction spent waiting for flash.
     pub flash_wait: f64,
-    /// Part of the period that a step may take at worst; the rest is the tick handler's own work.
+    /// Share of the period for the worst-case step; the tick handler needs the rest.
     pub share: f64,
 }
 
@@ -26,17 +26,17 @@ impl Processor {
     /// for one another. Its instruction cache holds the whole step.
     pub const STM32H743: Self = Self { clock: 400_000_000, cycles_per_instruction: 1.0, ..Self::STM32F405 };
 
-    /// Instructions a second.
+    /// Returns the instructions per second.
     pub fn instructions_per_second(&self) -> f64 {
         f64::from(self.clock) / (self.cycles_per_instruction + self.flash_wait)
     }
 
-    /// Instructions that a step may take at worst.
+    /// Returns the limit of the instructions of a worst-case step.
     pub fn affordable(&self, tick_rate: u32) -> f64 {
         self.share * self.instructions_per_second() / f64::from(tick_rate)
     }
 
-    /// Part of the period that so many instructions take.
+    /// Returns the share of the period that `instructions` take.
     pub fn part(&self, instructions: f64, tick_rate: u32) -> f64 {
         instructions * f64::from(tick_rate) / self.instructions_per_second()
     }

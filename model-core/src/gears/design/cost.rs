@@ -15,7 +15,7 @@ struct Counted {
     /// Additional instructions of `hold` with compliance.
     hold_compliant: f64,
     given_up: f64,
-    /// Where no tick is taken whole, and where some are.
+    /// Cold start of a joint without exponential ticks, and with exponential ticks.
     anew: [f64; 2],
     fixed: f64,
     substep: f64,
@@ -47,10 +47,9 @@ const VERLET: [VerletCost; 3] = [
 const TOUCH: f64 = 50.0;
 const NOT_A_NUMBER: f64 = 23.0;
 
-/// 3, 4 and 5 planets. Counted to the instruction at 2 and 8 sub-steps, but for `given_up`: what is done of a whole tick up to
-/// its second node, for three planets by function, in proportion to `hold` for others; `anew` at 2 sub-steps of four test joints, under
-/// both laws. `fixed` is with torques that change; without
-/// it is 34 to 42 less.
+/// Costs for 3, 4 and 5 planets, counted to the instruction at 2 and 8 sub-steps. `given_up`: the part of an exponential
+/// tick up to its second node, counted by function for three planets, in proportion to `hold` for others. `anew`: counted at
+/// 2 sub-steps of four test joints under both laws. `fixed`: with changing torques; constant torques take 34 to 42 less.
 const COUNTED: [Counted; 3] = [
     Counted {
         hold: 1799.0,
@@ -103,12 +102,12 @@ const CROSSING_OVERTONE: f64 = 19.0;
 /// exponential ticks; in a sub-step.
 const EVALUATIONS: [f64; 3] = [3.8, 3.0, 2.0];
 
-/// Instructions of a joint's tick.
+/// Instructions of a tick of one joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cost {
     hold: f64,
     given_up: f64,
-    /// Where no tick is taken whole, and where some are.
+    /// Cold start of a joint without exponential ticks, and with exponential ticks.
     anew: [f64; 2],
     fixed: f64,
     substep: f64,
@@ -116,7 +115,7 @@ pub struct Cost {
     crossing: f64,
     meshes: f64,
     verlet: &'static VerletCost,
-    /// 0 for law `paper`, 1 for `contact`.
+    /// Index of the damping law: 0 for `paper`, 1 for `contact`.
     law: usize,
 }
 

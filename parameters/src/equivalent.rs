@@ -18,7 +18,7 @@ const LEVER: f64 = 1.0;
 ///
 /// Motor and link turn on a spring with a gap: with the deflection delta = theta_m / ratio - theta_l and half the lost
 /// motion b, the torque at the link is max(0, K (delta - b) + C delta') for delta > b, min(0, K (delta + b) + C delta')
-/// for delta < -b, and 0 between. Signs are those of [`JointParameters`].
+/// for delta < -b, and 0 between. Signs as in [`JointParameters`].
 ///
 /// ```
 /// use heapless::String;

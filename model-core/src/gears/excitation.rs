@@ -16,7 +16,7 @@ pub struct MeshExcitations<T, const N: usize> {
     pub stiffness: PerMesh<T, N>,
     /// Imposed error e.
     pub error: PerMesh<T, N>,
-    /// Its rate.
+    /// Rate of the imposed error.
     pub error_rate: PerMesh<T, N>,
 }
 
@@ -132,7 +132,7 @@ pub struct MeshExcitation<T> {
     pub stiffness: T,
     /// Imposed error e.
     pub error: T,
-    /// Its rate.
+    /// Rate of the imposed error.
     pub error_rate: T,
 }
 

@@ -4,7 +4,7 @@ use parameters::ContactState;
 
 use crate::numbers::Real;
 
-/// Flank of the teeth. `Option<Flank>` is `None` if no flank touches or the flank is unknown. The discriminants are those
+/// Flank of the teeth. `Option<Flank>` is `None` if no flank touches or the flank is unknown. The discriminants equal those
 /// of [`ContactState`], so that a conversion needs no branch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flank {

@@ -67,7 +67,7 @@ impl<T: Real, const N: usize> Relative<T, N> {
 pub struct Motion<T, const N: usize> {
     /// Relative coordinates.
     pub position: Relative<T, N>,
-    /// Their rates.
+    /// Rates of the relative coordinates.
     pub rate: Relative<T, N>,
 }
 
@@ -76,7 +76,7 @@ pub struct Motion<T, const N: usize> {
 pub struct MotionInPlace<'a, T, const N: usize> {
     /// Relative coordinates.
     pub position: &'a mut Relative<T, N>,
-    /// Their rates.
+    /// Rates of the relative coordinates.
     pub rate: &'a mut Relative<T, N>,
 }
 
@@ -93,7 +93,7 @@ pub struct RigidBody {
 }
 
 impl RigidBody {
-    /// At rest at angle zero.
+    /// Rigid body at rest at angle zero.
     pub const REST: Self = Self { turns: 0, fraction: 0, speed: 0 };
 
     /// Advances by one tick under constant torques, exactly (S5); returns the travel in 2^-64 turns.
@@ -119,7 +119,7 @@ impl RigidBody {
 pub struct State<T, const N: usize> {
     /// Relative coordinates.
     pub position: Relative<T, N>,
-    /// Their rates, in b_c omega_n.
+    /// Rates of the relative coordinates, in b_c omega_n.
     pub rate: Relative<T, N>,
     /// Rigid motion.
     pub rigid: RigidBody,
@@ -128,7 +128,7 @@ pub struct State<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> State<T, N> {
-    /// At rest, undeformed, at angle and phase zero.
+    /// State at rest, undeformed, at angle and phase zero.
     pub const REST: Self = Self { position: Relative::ZERO, rate: Relative::ZERO, rigid: RigidBody::REST, phase: 0 };
 
     /// Creates a state from sun-planet deflections, gap u_s - 2 u_c and wind-up, their rates (in units of b_c and b_c omega_n)

@@ -15,15 +15,15 @@ pub struct Processor {
 }
 
 impl Processor {
-    /// STM32F405: Cortex-M4F at 168 MHz. 1.4 cycles: the timing tables of the core's manual, weighted by a trace of
-    /// the step. No waiting: its data sheet promises that of the flash accelerator; the trace says nothing of it.
+    /// STM32F405: Cortex-M4F at 168 MHz. 1.4 cycles per instruction: timing tables of the core's manual, weighted by a
+    /// trace of the step. No flash wait: from the data sheet of the flash accelerator; the trace does not show it.
     pub const STM32F405: Self =
         Self { clock: 168_000_000, cycles_per_instruction: 1.4, flash_wait: 0.0, share: USUAL_SHARE };
-    /// STM32G474 and STM32G431: the same core at 170 MHz. Its flash gives two instructions every five cycles and its accelerator
-    /// holds a quarter of the step, so half a cycle is reckoned for waiting.
+    /// STM32G474 and STM32G431: Cortex-M4F at 170 MHz. The flash delivers two instructions every five cycles and the
+    /// accelerator holds a quarter of the step; assumed flash wait: half a cycle.
     pub const STM32G474: Self = Self { clock: 170_000_000, flash_wait: 0.5, ..Self::STM32F405 };
-    /// STM32H743: Cortex-M7 at 400 MHz. One cycle: it can issue two instructions at once, but those of the step wait
-    /// for one another. Its instruction cache holds the whole step.
+    /// STM32H743: Cortex-M7 at 400 MHz. One cycle per instruction: the core can issue two at once, but the instructions of
+    /// the step depend on one another. The instruction cache holds the whole step.
     pub const STM32H743: Self = Self { clock: 400_000_000, cycles_per_instruction: 1.0, ..Self::STM32F405 };
 
     /// Returns the instructions per second.
@@ -42,6 +42,6 @@ impl Processor {
     }
 }
 
-/// The tick handler of the plant's firmware takes some 240 of 6,000 instructions beside the step (emulated
-/// Cortex-M4F, 20 kHz).
+/// Default share: the tick handler of the plant's firmware takes about 240 of 6,000 instructions in addition to the step
+/// (EMULATED, Cortex-M4F, 20 kHz).
 const USUAL_SHARE: f64 = 0.96;

@@ -1,20 +1,20 @@
 #![no_std]
-//! What runs beside a motor controller of a planetary gear joint with backlash, a folder a subject:
+//! Model, observer and compensation of a planetary gear joint with backlash, to run beside a motor controller:
 //!
-//! - [`numbers`]: arithmetic that gives the same bits everywhere;
+//! - [`numbers`]: arithmetic with equal bits on every host and board;
 //! - [`gears`]: the joint's fixed step ([`gears::Model`]; f32, no_std, no allocation, no panic);
-//! - [`observer`]: where the gap is, from encoder counts and motor torque;
-//! - [`wiring`]: whether signs, counts, ratio, torque, rate and clock are those of the tables, before anything is controlled;
-//! - [`compensation`]: takes the lost motion out, from estimates and a set-point to a torque;
-//! - [`virtual_joint`]: gears with motor, frictions and encoders around them, for a controller to be tried on;
-//! - [`controller`]: observer and compensation as one.
+//! - [`observer`]: estimates the gap coordinate, contact and torques from encoder counts and motor torque;
+//! - [`wiring`]: checks signs, counts, ratio, torque, rate and clock against the tables before control starts;
+//! - [`compensation`]: computes a motor torque that removes the lost motion, from the estimates and a set-point;
+//! - [`virtual_joint`]: simulates gears with motor, friction and encoders, to test a controller;
+//! - [`controller`]: combines observer and compensation.
 //!
-//! Each imports those above it only. What a joint is stands in the crate `parameters`. In each folder `design` (offline,
-//! f64, behind the feature of that name) turns parameters into `tables`, and the files beside them run on the tables;
-//! they never import `design`.
+//! A module imports only modules above it in this list. The crate `parameters` describes a joint. In each module `design`
+//! (offline, f64, behind the feature `design`) computes `tables` from the parameters; the other files run on the tables and
+//! never import `design`.
 //!
 //! Source of the model: He, Jia, Chen, Sun, "Modeling and Dynamic Analysis of Planetary Gear Transmission Joints with
-//! Backlash" (2015), with its misprints corrected; equation numbers are that paper's.
+//! Backlash" (2015), misprints corrected. "Eq." and a plain number refer to this paper, (S1) to docs/theory/step.md.
 
 #![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets")]
 

@@ -1,8 +1,8 @@
-//! List of the effects of real joints, with the keys that state them, and which of them surroundings have.
+//! List of the effects of real joints, their keys in joint files, and the effects present in given surroundings.
 
 use crate::surroundings::{AbsoluteEncoder, Surroundings};
 
-/// One effect of real joints, for models that do not have it and refuse it by name.
+/// Effect of real joints; a model without the effect refuses the effect by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effect {
     /// [`Payload`](crate::Payload).
@@ -37,7 +37,7 @@ pub enum Effect {
     SubdivisionFirst,
     /// [`SubdivisionalError`](crate::SubdivisionalError), second harmonic.
     SubdivisionSecond,
-    /// Readings of an encoder that are missing.
+    /// Missing readings of an encoder.
     MissingFrames,
     /// Jitter of the age of an encoder's readings.
     AgeJitter,
@@ -66,7 +66,7 @@ impl Effect {
         Self::AgeJitter,
     ];
 
-    /// Key of a joint file that states the effect's size.
+    /// Returns the key of the effect in a joint file.
     pub const fn key(self) -> &'static str {
         match self {
             Self::Payload => "payload_inertia_share",
@@ -92,7 +92,7 @@ impl Effect {
 }
 
 impl Surroundings {
-    /// Size of an effect in SI; 0 where it is absent.
+    /// Returns the size of an effect in SI; 0 if the effect is absent.
     pub fn size(&self, effect: Effect) -> f64 {
         let encoders = [&self.motor_encoder, &self.output_encoder];
         let either = |of: fn(&AbsoluteEncoder) -> f64| encoders.map(of).into_iter().fold(0.0, f64::max);
@@ -118,7 +118,7 @@ impl Surroundings {
         }
     }
 
-    /// Effects that are present.
+    /// Iterates over the effects that are present.
     pub fn effects(&self) -> impl Iterator<Item = Effect> + '_ {
         Effect::ALL.into_iter().filter(|effect| self.size(*effect) != 0.0)
     }

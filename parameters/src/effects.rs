@@ -1,7 +1,7 @@
-//! Effects of real joints beyond friction, cogging, lag and skew, as plain data in SI. Each is absent by default. The laws are the
-//! reference's: `host/reference/src/drive_train` and docs/theory/real-joints.md.
+//! Effects of real joints beyond friction, cogging, lag and skew, as plain data in SI, absent by default. Equations:
+//! docs/theory/real-joints.md, implemented in the reference (`host/reference/src/drive_train`).
 
-/// Part of the link's inertia that hangs on a spring, such as a payload in a soft gripper.
+/// Part of the link's inertia on a spring, such as a payload in a soft gripper.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Payload {
     /// Inertia on the spring over the link's inertia; 0 is a rigid link [-].
@@ -12,12 +12,12 @@ pub struct Payload {
     pub damping_ratio: f64,
 }
 
-/// Change of the link's inertia and weight at one moment: a payload that is gripped or let go.
+/// Sudden change of the link's inertia and weight: a payload is gripped or released.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PayloadStep {
     /// Time of the change [s].
     pub time: f64,
-    /// Inertia and weight after the change over those before; 1 is no change [-].
+    /// Ratio of inertia and weight after the change to inertia and weight before; 1 for no change [-].
     pub ratio: f64,
 }
 
@@ -27,7 +27,8 @@ impl Default for PayloadStep {
     }
 }
 
-/// Presliding of dry friction: how far a shaft creeps before its dry friction is reached. 0 is a friction that sticks at once.
+/// Presliding of dry friction: displacement of a shaft before the full dry friction acts. 0 for none: friction sticks at
+/// once.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Presliding {
     /// Displacement of the motor at which its bristles carry the dry friction at speed [rad].
@@ -36,16 +37,16 @@ pub struct Presliding {
     pub load: f64,
 }
 
-/// Part of the stiffness between carrier and link that slips, as bolted flanges, bearings and harmonic drives do.
+/// Part of the stiffness between carrier and link that slips, as in bolted flanges, bearings and harmonic drives.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Hysteresis {
     /// Stiffness that slips over the stiffness between carrier and link; 0 is a spring without loss [-].
     pub stiffness_share: f64,
-    /// Torque at which that part slips [N m].
+    /// Torque at which the slipping part slips [N m].
     pub torque: f64,
 }
 
-/// Backlash that varies around the turn, as eccentric gears have it.
+/// Variation of the backlash around a turn, as in eccentric gears.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct WidthVariation {
     /// Amplitude once a turn of the link over the half-backlash [-].
@@ -54,7 +55,7 @@ pub struct WidthVariation {
     pub per_motor_turn: f64,
 }
 
-/// Linear change over time, by warming up or by wear.
+/// Linear change over time by warming up or wear.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Drift {
     /// Change of the dry frictions of motor and link over their values at time zero [1/s].
@@ -63,7 +64,7 @@ pub struct Drift {
     pub width: f64,
 }
 
-/// Errors of the motor's torque that follow from the torque itself.
+/// Errors of the motor torque that depend on the torque.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TorqueErrors {
     /// Amplitude of the ripple over the torque [-].
@@ -72,7 +73,7 @@ pub struct TorqueErrors {
     pub ripple_periods_per_turn: u32,
     /// Step of the torque command over the torque limit; 0 is a command without steps [-].
     pub resolution_ratio: f64,
-    /// Loss of torque at the torque limit over that torque, growing with the square of the torque [-].
+    /// Relative loss of torque at the torque limit; the relative loss grows with the square of the torque [-].
     pub saturation_ratio: f64,
 }
 
@@ -82,7 +83,7 @@ impl Default for TorqueErrors {
     }
 }
 
-/// Error of an encoder within one period of its scale, as interpolation leaves it.
+/// Error of an encoder within one period of the scale, caused by interpolation.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SubdivisionalError {
     /// Periods of the first harmonic in a turn; the second harmonic has twice as many.

@@ -1,5 +1,5 @@
-//! An equivalent gear: what is known of a spur train, a cycloid or a belt whose teeth nobody knows, and how it is written
-//! as joint parameters. Preload and hysteresis, as harmonic drives have them, are not in it.
+//! Equivalent gear: a spur train, cycloid or belt with unknown teeth, described by its data sheet, and its conversion to
+//! joint parameters. Preload and hysteresis, as in harmonic drives, are not modelled.
 
 use heapless::String;
 
@@ -7,18 +7,18 @@ use crate::joint::{Bodies, Coherence, Excitation, Geometry, JointParameters};
 use crate::mesh::{DampingLaw, DeadZone, Mesh, MeshPhases, StiffnessWave};
 use crate::planets::PerPlanet;
 
-/// Planets of an equivalent gear's parameters: one without mass, which stands for whatever is between both shafts.
+/// Number of planets in the parameters of an equivalent gear: one massless planet represents the transmission.
 pub const EQUIVALENT: usize = 1;
 
-/// Lever at the link on which lengths of an equivalent gear are counted, since it has no line of action: 1 um stands for
+/// Lever at the link that converts angles to lengths, because an equivalent gear has no line of action: 1 um represents
 /// 1 urad at the link [m].
 const LEVER: f64 = 1.0;
 
-/// A gear of which ratio, lost motion, stiffness, damping and inertia are known, and no teeth.
+/// Gear described by ratio, lost motion, stiffness, damping and inertia, without teeth.
 ///
 /// Motor and link turn on a spring with a gap: with the deflection delta = theta_m / ratio - theta_l and half the lost
 /// motion b, the torque at the link is max(0, K (delta - b) + C delta') for delta > b, min(0, K (delta + b) + C delta')
-/// for delta < -b, and 0 between. Signs are those of [`JointParameters`].
+/// for delta < -b, and 0 between. Signs as in [`JointParameters`].
 ///
 /// ```
 /// use heapless::String;
@@ -39,24 +39,24 @@ const LEVER: f64 = 1.0;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EquivalentGear {
-    /// Motor turns over link turns as a fraction of whole numbers, above 1.
+    /// Motor turns over link turns as a fraction of integers, greater than 1.
     pub ratio: [u32; 2],
-    /// With the motor held, the link turns so far without resistance [rad].
+    /// Lost motion: travel of the link from flank to flank with the motor held [rad].
     pub lost_motion: f64,
-    /// Between motor and link, at the link [N m/rad].
+    /// Torsional stiffness K between motor and link, at the link [N m/rad].
     pub stiffness: f64,
-    /// Of the motor's side swinging against the link in contact: C = 2 zeta sqrt(K J), J of both sides, referred to the
-    /// link, in series [-].
+    /// Damping ratio zeta of motor side against link in contact: C = 2 zeta sqrt(K J), with J the reduced inertia
+    /// J_1 J_2 / (J_1 + J_2) of both sides at the link [-].
     pub damping_ratio: f64,
     /// Inertia of the gear at its input, without the rotor [kg m^2].
     pub inertia_at_input: f64,
 }
 
 impl EquivalentGear {
-    /// A joint with this gear: rotor inertia [kg m^2], link inertia [kg m^2], rated torque at the link [N m].
+    /// Converts to a joint with a rotor inertia [kg m^2], link inertia [kg m^2] and rated torque at the link [N m].
     ///
-    /// One planet without mass has the same force in both of its meshes, which are then two springs in series: each takes
-    /// half of what motor and link are apart, on the lever of the link.
+    /// A massless planet has equal forces in both meshes. The meshes are two springs in series; each deflects by half the
+    /// distance between motor and link on the lever of the link.
     pub fn joint(
         &self,
         name: String<32>,
@@ -79,7 +79,7 @@ impl EquivalentGear {
             name,
             geometry: Geometry {
                 planets: EQUIVALENT,
-                // No teeth: the ratio's whole numbers, (ring + sun) / sun.
+                // Tooth counts that give the ratio, (ring + sun) / sun.
                 sun_teeth: under,
                 planet_teeth: 0,
                 ring_teeth: over.saturating_sub(under),
@@ -103,7 +103,7 @@ impl EquivalentGear {
             damping_law: DampingLaw::Contact,
             dead_zone: DeadZone::Sharp,
             excitation: Excitation::Angle,
-            // What the rated torque winds up: deflections in contact are of that size.
+            // Wind-up at rated torque: the order of magnitude of deflections in contact.
             characteristic_length: LEVER * rated_output_torque / self.stiffness,
             rated_output_torque,
         }
@@ -111,7 +111,7 @@ impl EquivalentGear {
 }
 
 impl JointParameters {
-    /// The equivalent gear that these parameters stand for, if they do.
+    /// Returns the equivalent gear represented by the parameters; `None` for a planetary gear.
     pub fn equivalent_gear(&self) -> Option<EquivalentGear> {
         let (geometry, mesh) = (&self.geometry, &self.sun_planet);
         (geometry.planets == EQUIVALENT).then(|| EquivalentGear {

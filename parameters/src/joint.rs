@@ -1,17 +1,17 @@
-//! What a planetary joint is, in SI units: every quantity of He, Jia, Chen and Sun (2015), plus the motor rotor, the
-//! link and the compliance between carrier and link that a real joint has. Nothing here is read by the fixed step.
+//! Parameters of a planetary joint in SI: all quantities of He, Jia, Chen and Sun (2015), plus the motor rotor, the link
+//! and the compliance between carrier and link of a real joint. The fixed step reads tables, not these parameters.
 
 use heapless::String;
 
 use crate::mesh::{DampingLaw, DeadZone, Mesh, MeshKind};
 
-/// A planetary joint with a fixed ring: sun driven, carrier loaded (2K-H); or a joint with an
-/// [equivalent gear](crate::EquivalentGear), which is written as one planet without mass.
+/// Planetary joint with a fixed ring, driven sun and loaded carrier (2K-H); or a joint with an
+/// [equivalent gear](crate::EquivalentGear), represented by one planet without mass.
 ///
 /// Sign convention: a positive sun angle turns the carrier the same way; positive drive torque accelerates the sun,
 /// positive load torque brakes the link. A positive deflection of either mesh carries drive torque towards the load.
 ///
-/// A joint by hand; joint files are the usual way:
+/// Example: a joint from numbers; usually a joint file is read:
 ///
 /// ```
 /// use heapless::String;
@@ -63,27 +63,27 @@ use crate::mesh::{DampingLaw, DeadZone, Mesh, MeshKind};
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointParameters {
-    /// A short name, for reports and for the board's hello.
+    /// Short name, for reports and the board's identity.
     pub name: String<32>,
     /// Teeth, radii and angles.
     pub geometry: Geometry,
     /// Masses of gears and carrier.
     pub bodies: Bodies,
-    /// Inertia of everything rigidly on the sun shaft besides the sun: the motor rotor [kg m^2].
+    /// Inertia of the motor rotor and all other rigid parts on the sun shaft, without the sun [kg m^2].
     pub rotor_inertia: f64,
-    /// Inertia of the link that the carrier turns [kg m^2].
+    /// Inertia of the link on the carrier [kg m^2].
     pub link_inertia: f64,
     /// Torsional compliance between carrier and link; `None` joins them rigidly.
     pub compliance: Option<Compliance>,
-    /// The sun-planet meshes (external).
+    /// Sun-planet meshes (external).
     pub sun_planet: Mesh,
-    /// The ring-planet meshes (internal).
+    /// Ring-planet meshes (internal).
     pub ring_planet: Mesh,
-    /// How the mesh damping acts once teeth part.
+    /// Damping law of the meshes in contact and in the gap.
     pub damping_law: DampingLaw,
     /// Sharp (eq. 12) or smoothed (eq. 13) dead zone.
     pub dead_zone: DeadZone,
-    /// What drives the mesh phase.
+    /// Source of the mesh phase.
     pub excitation: Excitation,
     /// Characteristic length b_c that makes deflections dimensionless (eq. 16) [m].
     pub characteristic_length: f64,
@@ -94,7 +94,7 @@ pub struct JointParameters {
 /// Teeth and radii. Only radii enter the equations of motion; teeth give mesh phases and the exact ratio.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Geometry {
-    /// Number of planets n; one stands for an equivalent gear.
+    /// Number of planets n; 1 for an equivalent gear.
     pub planets: usize,
     /// Teeth of the sun.
     pub sun_teeth: u32,
@@ -110,16 +110,16 @@ pub struct Geometry {
     pub planet_base_radius: f64,
     /// Carrier radius r_c: from the joint's axis to a planet's axis [m]. Never r_c cos(alpha).
     pub carrier_radius: f64,
-    /// Radii that do not fit together are an error for a new joint; the paper's own Table 1 is kept with a warning.
+    /// Treatment of radii and teeth that do not fit together; Table 1 of the paper needs `Warned`.
     pub coherence: Coherence,
 }
 
-/// What an incoherent geometry means.
+/// Treatment of an incoherent geometry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Coherence {
     /// Incoherent geometry is an error.
     Required,
-    /// Incoherent geometry is reported and used as printed.
+    /// Incoherent geometry gives a warning and is used as written.
     Warned,
 }
 
@@ -146,20 +146,20 @@ pub struct Compliance {
     pub damping_ratio: f64,
 }
 
-/// What drives the mesh phase of stiffness ripple and transmission error.
+/// Source of the mesh phase of stiffness ripple and transmission error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Excitation {
-    /// Phase is omega t, prescribed, as in the paper. Mesh frequency omega [rad/s].
+    /// Prescribed phase omega t, as in the paper.
     Time {
-        /// omega [rad/s].
+        /// Mesh frequency omega [rad/s].
         mesh_frequency: f64,
     },
-    /// Phase is ring teeth times the rigid-body carrier angle; it runs backwards when the joint does.
+    /// Phase equal to ring teeth times the rigid-body carrier angle; runs backwards with the joint.
     Angle,
 }
 
 impl JointParameters {
-    /// The meshes of one kind.
+    /// Returns the meshes of one kind.
     pub fn mesh(&self, kind: MeshKind) -> &Mesh {
         match kind {
             MeshKind::SunPlanet => &self.sun_planet,

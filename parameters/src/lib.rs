@@ -1,10 +1,10 @@
 #![no_std]
-//! What a planetary joint and its surroundings are, as plain data in SI: every number that a data sheet or a
-//! measurement gives and the limits of each, and nothing that follows from them.
+//! Parameters of a planetary joint and its surroundings, as plain data in SI: the numbers given by a data sheet or a
+//! measurement, and their limits, without derived quantities.
 //!
-//! The core and the reference that judges it are both built from this data, each by its own laws: coefficients of the
-//! stiffness wave, phases from teeth, equivalent masses, damping, dead zones and gear losses stand on either side, so
-//! that a mistake in one shows against the other.
+//! The core and the reference simulator both start from this data and derive coefficients of the stiffness wave, phases
+//! from teeth, equivalent masses, damping, dead zones and gear losses independently, so that a bug in one shows as a
+//! difference.
 
 #![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets")]
 

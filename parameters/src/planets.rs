@@ -1,12 +1,12 @@
-//! How many planets a joint may have, and a value for each of them.
+//! Limits of the number of planets, and lists with a value for each planet.
 
 use heapless::Vec;
 
-/// The largest number of planets that the model is made for.
+/// Largest number of planets.
 pub const MAX_PLANETS: usize = 5;
 
-/// The smallest number of planets that the model is made for.
+/// Smallest number of planets, except for the one planet of an equivalent gear.
 pub const MIN_PLANETS: usize = 3;
 
-/// One value for each planet.
+/// List with one value for each planet.
 pub type PerPlanet = Vec<f64, MAX_PLANETS>;

@@ -1,66 +1,67 @@
-//! What surrounds the gears of a joint, as plain data in SI: motor with its current loop, frictions, weight, encoders,
-//! and the controller's rate.
+//! Surroundings of the gears of a joint, as plain data in SI: motor with current loop, friction, weight, encoders, and
+//! rate of the controller.
 
 use crate::effects::{
     Drift, Hysteresis, Payload, PayloadStep, Presliding, SubdivisionalError, TorqueErrors, WidthVariation,
 };
 
-/// Largest speed of a motor whose data sheet is silent [rad/s]: 11,500 revolutions a minute, which few servo motors exceed.
+/// Default of the largest motor speed [rad/s]: 11,500 revolutions per minute, which few servo motors exceed.
 pub const DEFAULT_SPEED_LIMIT: f64 = 1200.0;
 
-/// Everything around the gears.
+/// Surroundings of the gears.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Surroundings {
-    /// Periods of the controller a second [Hz].
+    /// Control periods per second [Hz].
     pub control_rate: u32,
-    /// From commanding a torque to its first effect [control periods].
+    /// Delay from measurement to torque [control periods].
     pub delay: f64,
-    /// Time constant of the current loop after that [s].
+    /// Time constant of the current loop, which follows the delay [s].
     pub current_lag: f64,
     /// Largest torque of the motor [N m].
     pub torque_limit: f64,
     /// Largest speed of the motor [rad/s].
     pub speed_limit: f64,
-    /// Torque noise over the torque, standard deviation [-].
+    /// Standard deviation of the torque noise over the torque [-].
     pub torque_noise_ratio: f64,
-    /// True over nominal torque constant, less 1 [-].
+    /// Ratio of true to nominal torque constant, minus 1 [-].
     pub torque_constant_error_ratio: f64,
     /// Amplitude of the cogging torque [N m].
     pub cogging_torque: f64,
-    /// Its periods in a turn of the motor.
+    /// Periods of the cogging torque in a turn of the motor.
     pub cogging_periods_per_turn: u32,
-    /// At the motor.
+    /// Friction at the motor.
     pub motor_friction: Friction,
-    /// At the link.
+    /// Friction at the link.
     pub load_friction: Friction,
-    /// Efficiency of the gears while the motor drives, losses in proportion to the load [-].
+    /// Efficiency of the gears while the motor drives, load-dependent losses only [-].
     pub efficiency: f64,
-    /// Weight times lever of the link: it brakes by this times the sine of the link's angle [N m].
+    /// Amplitude of the link's gravity torque, which brakes by the amplitude times sin(link angle) [N m].
     pub gravity_torque: f64,
-    /// On the motor.
+    /// Encoder on the motor.
     pub motor_encoder: AbsoluteEncoder,
-    /// On the link.
+    /// Encoder on the link.
     pub output_encoder: AbsoluteEncoder,
-    /// Part of the link that swings on a spring.
+    /// Part of the link's inertia on a spring.
     pub payload: Payload,
     /// Change of the link's inertia and weight.
     pub payload_step: PayloadStep,
-    /// Creep of the shafts below their dry friction.
+    /// Displacement of the shafts before the full dry friction acts.
     pub presliding: Presliding,
     /// Slip of the stiffness between carrier and link.
     pub hysteresis: Hysteresis,
-    /// Backlash around the turn.
+    /// Variation of the backlash around a turn.
     pub width: WidthVariation,
-    /// Friction and backlash over time.
+    /// Drift of friction and backlash over time.
     pub drift: Drift,
     /// Ripple, steps and saturation of the motor's torque.
     pub torque_errors: TorqueErrors,
-    /// Longest delay of a control period's start over the period; every period draws its own [-].
+    /// Largest random delay of the start of a control period, over the period [-].
     pub control_jitter_ratio: f64,
 }
 
 impl Surroundings {
-    /// No friction, lag, noise, gravity, delay or sensor error, and a motor without a limit; 10 kHz, encoders of 18 bits.
+    /// Creates ideal surroundings: no friction, lag, noise, gravity, delay or sensor error, no torque limit, no loss;
+    /// 10 kHz, encoders of 18 bits.
     pub fn ideal() -> Self {
         Self {
             control_rate: 10_000,
@@ -97,40 +98,40 @@ pub struct Friction {
     pub coulomb: f64,
     /// Viscous friction [N m s/rad].
     pub viscous: f64,
-    /// Dry friction at rest over the one at speed, less 1 [-].
+    /// Ratio of dry friction at rest to dry friction at speed, minus 1 [-].
     pub stribeck_rise_ratio: f64,
-    /// Speed at which that rise has fallen to 1/e [rad/s].
+    /// Speed at which the rise has fallen to 1/e [rad/s].
     pub stribeck_speed: f64,
 }
 
-/// An absolute encoder of one turn.
+/// Absolute single-turn encoder.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct AbsoluteEncoder {
     /// Counts in a turn.
     pub counts_per_turn: u64,
-    /// Amplitude of the error that comes once a turn [rad].
+    /// Amplitude of the error once per turn [rad].
     pub once_per_turn_error: f64,
-    /// Amplitude of the error that comes twice a turn [rad].
+    /// Amplitude of the error twice per turn [rad].
     pub twice_per_turn_error: f64,
-    /// How old a reading is beyond what its time says [s].
+    /// Age of a reading beyond its time stamp [s].
     pub skew: f64,
-    /// Further age of a reading, from 0 to this; every reading draws its own [s].
+    /// Largest additional random age of a reading [s].
     pub age_jitter: f64,
-    /// Standard deviation of a reading's noise, before it is rounded to a count [counts].
+    /// Standard deviation of a reading's noise before rounding [counts].
     pub noise_counts: f64,
-    /// Error within a period of the scale.
+    /// Error within one period of the scale.
     pub subdivision: SubdivisionalError,
-    /// Share of the control periods without a reading [-].
+    /// Fraction of control periods without a reading [-].
     pub missing_share: f64,
 }
 
 impl AbsoluteEncoder {
-    /// Right up to its resolution of 2^bits counts a turn.
+    /// Creates an encoder of 2^bits counts per turn, without errors other than rounding.
     pub fn ideal(bits: u32) -> Self {
         Self { counts_per_turn: Self::counts_of_bits(bits), ..Self::default() }
     }
 
-    /// Counts in a turn of an encoder of so many bits.
+    /// Returns the counts per turn of an encoder of `bits` bits.
     ///
     /// ```
     /// use parameters::AbsoluteEncoder;
@@ -143,7 +144,7 @@ impl AbsoluteEncoder {
         1_u64.checked_shl(bits).unwrap_or(u64::MAX)
     }
 
-    /// Resolution in bits; `None` where the counts in a turn are no power of two.
+    /// Returns the resolution in bits; `None` if the counts per turn are not a power of two.
     pub fn bits(&self) -> Option<u32> {
         self.counts_per_turn.is_power_of_two().then(|| self.counts_per_turn.trailing_zeros())
     }

@@ -1,5 +1,5 @@
-//! Validity of parameters: lists of the right length, physical signs, finite numbers. Coherence of the geometry is checked
-//! where joint files are read, limits that follow from the gears' laws where these are.
+//! Validity of parameters: lists of the right length, physical signs, finite numbers. The reader of joint files checks the
+//! coherence of the geometry; the design of the tables checks limits that follow from the laws of the gears.
 
 use core::fmt;
 
@@ -8,33 +8,33 @@ use crate::joint::{Excitation, JointParameters};
 use crate::mesh::{DampingLaw, DeadZone, MAX_HARMONICS, MESH_KINDS, MeshPhases, StiffnessWave};
 use crate::planets::{MAX_PLANETS, MIN_PLANETS};
 
-/// What is wrong with parameters.
+/// Error of joint parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ParameterError {
-    /// The model is made for 3 to 5 planets.
+    /// Number of planets outside 3 to 5.
     PlanetCount {
-        /// What was given.
+        /// Number of planets given.
         given: usize,
     },
-    /// A list does not hold one value for each planet.
+    /// List without exactly one value for each planet.
     ListLength {
-        /// Which list.
+        /// Name of the list.
         what: &'static str,
-        /// Its length.
+        /// Length of the list.
         given: usize,
         /// Number of planets.
         planets: usize,
     },
-    /// A quantity that must be positive (or not negative) is not, or is not a number.
+    /// Quantity outside its range, or not a number.
     OutOfRange {
-        /// Which quantity.
+        /// Name of the quantity.
         what: &'static str,
-        /// Its value in SI.
+        /// Value of the quantity in SI.
         given: f64,
-        /// What it must be.
+        /// Condition on the quantity.
         must_be: &'static str,
     },
-    /// An equivalent gear with what only gears with teeth have.
+    /// Equivalent gear with properties that only gears with teeth have.
     NotEquivalent,
 }
 
@@ -56,7 +56,7 @@ impl fmt::Display for ParameterError {
 
 impl core::error::Error for ParameterError {}
 
-/// Physical quantities in SI stay within these for any joint; what is outside would not fit an f32 table.
+/// Range of physical quantities in SI, which every joint meets; values outside would not fit into f32 tables.
 const SMALLEST: f64 = 1e-12;
 const LARGEST: f64 = 1e12;
 
@@ -76,7 +76,7 @@ fn finite(what: &'static str, given: f64) -> Result<(), ParameterError> {
 }
 
 impl JointParameters {
-    /// Whether every number can be one of a joint, and every list has a value for each planet.
+    /// Checks that every number is in the range of a joint and that every list has one value for each planet.
     pub fn validate(&self) -> Result<(), ParameterError> {
         if let Some(gear) = self.equivalent_gear() {
             return self.validate_equivalent(&gear);
@@ -155,7 +155,7 @@ impl JointParameters {
         Ok(())
     }
 
-    /// The same of an equivalent gear: its own quantities, and nothing in the parameters that it has not.
+    /// Checks the quantities of an equivalent gear, and that the parameters contain no property that only teeth have.
     fn validate_equivalent(&self, gear: &EquivalentGear) -> Result<(), ParameterError> {
         let [over, under] = gear.ratio;
         if under == 0 || over <= under {
@@ -181,8 +181,8 @@ impl JointParameters {
         positive("the inertia of rotor and equivalent gear", gear.inertia_at_input + self.rotor_inertia)?;
         positive("the link inertia behind an equivalent gear", self.link_inertia)?;
         positive("the characteristic length", self.characteristic_length)?;
-        // Whatever else the parameters of planetary gears may say must be nothing here, or one side would read it and
-        // another would not.
+        // All other parameters of planetary gears must be zero or default; otherwise the core and the reference could treat
+        // them differently.
         let same = [&self.sun_planet, &self.ring_planet]
             .into_iter()
             .all(|mesh| mesh.transmission_error[0] == 0.0 && mesh.stiffness_wave == NO_RIPPLE);

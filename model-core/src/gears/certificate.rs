@@ -1,14 +1,14 @@
-//! The certificate of a fixed step, known before it runs: instructions, memory, stability limits. Plain numbers that accompany
-//! the tables; `gears::design` computes them. The error is measured, by `joint check` and `joint budget`.
+//! Certificate of a fixed step: instructions, memory and stability limits, known before the step runs. `gears::design`
+//! computes the certificate together with the tables. `joint check` and `joint budget` measure the error.
 
 use core::fmt;
 
-/// The sub-steps of a tick in which contacts change: by which method, and how many.
+/// Method and number of the sub-steps of a tick in which contacts change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Substeps {
     /// Runge-Kutta sub-steps with corrected crossings.
     Corrected(u32),
-    /// Position-Verlet (leapfrog) sub-steps, for light planets, and where there is no time for corrected ones.
+    /// Position-Verlet (leapfrog) sub-steps, for light planets, or if the processor has no time for corrected sub-steps.
     Verlet(u32),
 }
 
@@ -22,13 +22,13 @@ impl fmt::Display for Substeps {
 }
 
 impl Substeps {
-    /// How many.
+    /// Returns the number of sub-steps.
     pub fn count(self) -> u32 {
         let (Self::Corrected(count) | Self::Verlet(count)) = self;
         count
     }
 
-    /// The method in one word.
+    /// Returns the name of the method.
     pub fn method(self) -> &'static str {
         match self {
             Self::Corrected(_) => "corrected",
@@ -37,49 +37,50 @@ impl Substeps {
     }
 }
 
-/// The certificate of one joint at one tick rate.
+/// Certificate of one joint at one tick rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Certificate {
-    /// Fixed steps a second [Hz].
+    /// Ticks per second [Hz].
     pub tick_rate: u32,
     /// Sub-steps of a tick while contacts change.
     pub substeps: Substeps,
-    /// Of a tick.
+    /// Instructions of a tick.
     pub instructions: Instructions,
-    /// Flash that the tables take [byte].
+    /// Size of the tables in flash [byte].
     pub table_bytes: u32,
-    /// RAM that the model takes between ticks [byte].
+    /// Size of the model in RAM, without stack [byte].
     pub model_bytes: u32,
     /// Phase of the fastest mode in a sub-step [rad].
     pub phase: f64,
-    /// Phase from which on sub-steps would be unstable [rad].
+    /// Stability limit of `phase` [rad].
     pub largest_phase: f64,
-    /// Contact changes that may go unnoticed.
+    /// Contact changes that may not be detected.
     pub unseen: Unseen,
     /// Lowest tick rate that is stable [Hz].
     pub lowest_rate: u32,
 }
 
-/// Instructions of a tick, of a Cortex-M4F.
+/// Instructions of a tick on a Cortex-M4F.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Instructions {
-    /// While every mesh stays on its flank and excitation is slow: by the exponential flow.
+    /// Tick in which every mesh stays on its flank and the excitation is slow: exponential tick, or sub-steps if cheaper.
     pub contact_holds: u32,
-    /// In sub-steps, none of which has a crossing.
+    /// Tick in sub-steps without a crossing.
     pub contact_changes: u32,
-    /// Every mesh crosses in two sub-steps, or in one after an exponential tick was given up; or touches in every
-    /// Verlet sub-step.
+    /// Tick in which every mesh crosses in two sub-steps, or in one sub-step after an abandoned exponential tick; or
+    /// touches its flank in every Verlet sub-step.
     pub all_crossing: u32,
-    /// Every mesh crosses its gap in every sub-step: an upper bound on every state of a search through a million.
+    /// Tick in which every mesh crosses its gap in every sub-step: an upper bound on all states of a search through a
+    /// million states.
     pub bound: u32,
 }
 
 /// Contact changes that begin and end between two checks of the meshes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unseen {
-    /// A mesh that leaves its flank and returns within this time may go unseen [s].
+    /// Time between two checks of the meshes: a mesh that leaves its flank and returns within it may not be detected [s].
     pub duration: f64,
-    /// So far beyond its flank it may go in that time, over the deflection that its load gives it; `None` where checks are
-    /// half a period of the fastest mode apart or more: then there is no limit.
+    /// Largest undetected distance of a mesh from its flank, over the deflection by the load; `None` (no limit) if checks
+    /// are half a period of the fastest mode apart or more.
     pub departure: Option<f64>,
 }

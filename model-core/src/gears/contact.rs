@@ -1,4 +1,4 @@
-//! The contact law of each mesh, and the accelerations that mesh forces cause. A law is affine in deflection and rate, so
+//! Contact law of a mesh (S2) and the accelerations caused by mesh forces (S4). A law is affine in deflection and rate, so
 //! the joint is linear while the contact set is fixed (`fixed_contact_set`).
 
 use crate::gears::excitation::PerMesh;
@@ -7,27 +7,27 @@ use crate::gears::tables::{Mobility, Tables};
 use crate::numbers::Real;
 use parameters::{ContactState, DampingLaw};
 
-/// Accelerations of the bodies by the applied torques alone, without mesh forces, in units of b_c omega_n^2.
+/// Accelerations of the bodies caused by the applied torques alone, in units of b_c omega_n^2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AppliedAcceleration<T> {
-    /// Of the sun, by the drive torque.
+    /// Acceleration of the sun by the drive torque.
     pub sun: T,
-    /// Of the carrier, by the load torque when there is no compliance (negative for a positive load).
+    /// Acceleration of the carrier by the load torque in a joint without compliance (negative for a positive load).
     pub carrier: T,
-    /// Of the link, by the load torque when there is compliance.
+    /// Acceleration of the link by the load torque in a joint with compliance (negative for a positive load).
     pub link: T,
 }
 
 impl<T: Real> AppliedAcceleration<T> {
-    /// No torque: what remains is the response to mesh forces.
+    /// Zero torques.
     pub const NONE: Self = Self { sun: T::ZERO, carrier: T::ZERO, link: T::ZERO };
 
-    /// The difference to another.
+    /// Returns `self - other`.
     pub fn minus(&self, other: &Self) -> Self {
         Self { sun: self.sun - other.sun, carrier: self.carrier - other.carrier, link: self.link - other.link }
     }
 
-    /// Relative accelerations where planets feel no force.
+    /// Converts body accelerations to relative accelerations; planets have no acceleration of their own.
     #[inline(always)]
     pub fn relative<const N: usize>(&self, mobility: &Mobility<T>) -> Relative<T, N> {
         let apart = self.sun - self.carrier;
@@ -38,14 +38,14 @@ impl<T: Real> AppliedAcceleration<T> {
         }
     }
 
-    /// All of them times a factor.
+    /// Returns all accelerations times a factor.
     pub fn times(&self, scale: T) -> Self {
         Self { sun: scale * self.sun, carrier: scale * self.carrier, link: scale * self.link }
     }
 }
 
-/// Contact state by geometry alone: d against b. At d = b the teeth touch without force and count as in contact, so
-/// that a mesh without backlash is never separated.
+/// Returns the contact state from the deflection d and half-backlash b alone. At d = b the teeth touch without force and
+/// count as in contact, so that a mesh without backlash is never separated.
 #[inline]
 pub fn contact<T: Real>(deflection: T, half_backlash: T) -> ContactState {
     if deflection >= half_backlash {
@@ -57,7 +57,7 @@ pub fn contact<T: Real>(deflection: T, half_backlash: T) -> ContactState {
     }
 }
 
-/// Mesh coordinates of eq. 4 without imposed error: the planet's own (sun-planet), the gap less that (ring-planet).
+/// Returns the mesh coordinates of eq. 4 without imposed error: p_i for sun-planet, g - p_i for ring-planet.
 #[inline]
 pub fn mesh_coordinates<T: Real, const N: usize>(motion: &Relative<T, N>) -> PerMesh<T, N> {
     let mut meshes = [motion.planets; 2];
@@ -67,28 +67,28 @@ pub fn mesh_coordinates<T: Real, const N: usize>(motion: &Relative<T, N>) -> Per
     meshes
 }
 
-/// Force of one mesh while its contact does not change: closed * stiffness * (deflection - offset) + damping * rate.
+/// Force law of one mesh in one contact state: closed * stiffness * (deflection - offset) + damping * rate (S2).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Law<T> {
-    /// Where teeth press; separated also where overlapping teeth would have to pull.
+    /// Flank on which the teeth press; `Separated` also if overlapping teeth would have to pull.
     pub contact: ContactState,
-    /// One where teeth press, zero where they do not.
+    /// 1 if the teeth press, else 0.
     pub closed: T,
-    /// +b on the drive side, -b on the back side, 0 where open.
+    /// +b on the drive side, -b on the back side, 0 if open.
     pub offset: T,
-    /// Damping that acts in this contact state, over h.
+    /// Damping in this contact state, over h.
     pub damping: T,
-    /// +1 on the drive side, -1 on the back side, 0 where open.
+    /// +1 on the drive side, -1 on the back side, 0 if open.
     pub side: T,
     /// 1 - closed.
     pub open: T,
 }
 
-/// The law of every mesh.
+/// Laws of all meshes.
 pub type Laws<T, const N: usize> = PerMesh<Law<T>, N>;
 
 impl<T: Real> Law<T> {
-    /// All zeros: no law yet.
+    /// Placeholder before the first law is found.
     pub const ZERO: Self = Self {
         contact: ContactState::DriveSide,
         closed: T::ZERO,
@@ -98,11 +98,11 @@ impl<T: Real> Law<T> {
         open: T::ZERO,
     };
 
-    /// No force at all.
+    /// Law of an open mesh without damping: no force.
     pub const OPEN: Self = Self { contact: ContactState::Separated, open: T::ONE, ..Self::ZERO };
 
-    /// The law that holds at a deflection and rate (eq. 12 with the damping of the joint's law); the rate counts a
-    /// sub-step as the unit of time.
+    /// Finds the law at a deflection and speed: sharp dead zone (eq. 12) with the joint's damping law. The unit of time of
+    /// `speed` is a sub-step.
     #[inline]
     pub fn of<const N: usize>(
         tables: &Tables<T, N>,
@@ -118,7 +118,7 @@ impl<T: Real> Law<T> {
         let offset = if drive_side { half_backlash } else { -half_backlash };
         let mut closed = drive_side || deflection <= -half_backlash;
         if contact_law {
-            // Teeth only push: a force against the side of contact is no force.
+            // Teeth only push: a force that would pull opens the mesh.
             let force = stiffness * (deflection - offset) + damping * speed;
             closed &= if drive_side { force > T::ZERO } else { force < T::ZERO };
         }
@@ -132,20 +132,20 @@ impl<T: Real> Law<T> {
     }
 }
 
-/// Mesh forces summed up as the bodies feel them.
+/// Sums of mesh forces that act on the bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NetForces<T, const N: usize> {
     sun_planet: T,
     ring_planet: T,
-    /// Sun-planet force less ring-planet force of every planet.
+    /// Sun-planet force minus ring-planet force of every planet.
     differences: [T; N],
 }
 
 impl<T: Real, const N: usize> NetForces<T, N> {
-    /// No force.
+    /// Zero force.
     pub const NONE: Self = Self { sun_planet: T::ZERO, ring_planet: T::ZERO, differences: [T::ZERO; N] };
 
-    /// All mesh forces.
+    /// Sums the forces of all meshes.
     #[inline(always)]
     pub fn of<M>(meshes: &PerMesh<M, N>, force: impl Fn(&M) -> T) -> Self {
         let mut net = Self::NONE;
@@ -155,7 +155,7 @@ impl<T: Real, const N: usize> NetForces<T, N> {
         net
     }
 
-    /// Both forces on a planet that had none.
+    /// Adds both forces of planet `i`; the planet must not have a force yet.
     #[inline(always)]
     pub fn add(&mut self, i: usize, sun_planet: T, ring_planet: T) {
         self.sun_planet += sun_planet;
@@ -163,25 +163,25 @@ impl<T: Real, const N: usize> NetForces<T, N> {
         self.differences[i] = sun_planet - ring_planet;
     }
 
-    /// Sums over planets: sun-planet, ring-planet.
+    /// Returns the sums over planets: sun-planet, ring-planet.
     #[inline(always)]
     pub fn sums(&self) -> [T; 2] {
         [self.sun_planet, self.ring_planet]
     }
 
-    /// Sum over planets of sun-planet less ring-planet.
+    /// Returns the sun-planet sum minus the ring-planet sum.
     #[inline(always)]
     pub fn difference(&self) -> T {
         self.sun_planet - self.ring_planet
     }
 
-    /// Sun-planet less ring-planet force of one planet.
+    /// Returns the sun-planet force minus the ring-planet force of one planet.
     #[inline(always)]
     pub fn difference_of(&self, i: usize) -> T {
         self.differences[i]
     }
 
-    /// The force of one more mesh.
+    /// Adds the force of one mesh.
     #[inline(always)]
     pub fn add_one(&mut self, (kind, i): (usize, usize), force: T) {
         if kind == 0 {
@@ -193,7 +193,7 @@ impl<T: Real, const N: usize> NetForces<T, N> {
         }
     }
 
-    /// Relative accelerations (eqs 1-3 in the coordinates of eqs 16 and 17).
+    /// Returns the relative accelerations by mesh forces and applied torques (S4).
     #[inline(always)]
     pub fn accelerations(
         &self,
@@ -210,13 +210,13 @@ impl<T: Real, const N: usize> NetForces<T, N> {
         self.relative(mobility, &all)
     }
 
-    /// What these forces alone cause.
+    /// Returns the relative accelerations by the mesh forces and the wind-up force alone.
     #[inline(always)]
     pub fn response(&self, mobility: &Mobility<T>, wind_up_force: T) -> Relative<T, N> {
         self.relative(mobility, &self.body_accelerations(mobility, wind_up_force))
     }
 
-    /// Accelerations of all bodies but the planets.
+    /// Returns the accelerations of sun, carrier and link by the mesh forces and the wind-up force.
     #[inline(always)]
     fn body_accelerations(&self, mobility: &Mobility<T>, wind_up_force: T) -> AppliedAcceleration<T> {
         AppliedAcceleration {
@@ -236,7 +236,7 @@ impl<T: Real, const N: usize> NetForces<T, N> {
     }
 }
 
-/// Relative accelerations under mesh forces and the force between carrier and link.
+/// Returns the relative accelerations under torques, mesh forces and the force between carrier and link.
 #[inline(always)]
 pub fn acceleration<T: Real, const N: usize>(
     tables: &Tables<T, N>,
@@ -247,7 +247,7 @@ pub fn acceleration<T: Real, const N: usize>(
     NetForces::of(mesh_forces, |force| *force).accelerations(&tables.mobility, applied, wind_up_force)
 }
 
-/// Force between carrier and link.
+/// Returns the force between carrier and link.
 #[inline(always)]
 pub fn wind_up_force<T: Real, const N: usize>(
     tables: &Tables<T, N>,

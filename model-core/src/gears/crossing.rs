@@ -1,10 +1,10 @@
-//! Correction of a sub-step for meshes that parted or met inside it, from the state at its end alone: in-step correction
-//! of a switched right-hand side, as real-time simulation knows it (R. M. Howe, Dynamics of Real-Time Simulation, ch. 11).
-//! A mesh that leaves its flank and returns within the sub-step is not noticed.
+//! Crossing correction (S10): corrects a sub-step in which meshes parted or met, from the state at the end of the sub-step
+//! alone (in-step correction of a switched right-hand side: R. M. Howe, Dynamics of Real-Time Simulation, ch. 11). A mesh
+//! that leaves its flank and returns within the sub-step is not detected.
 //!
-//! After the crossing, s before the end, the fixed contact law misses a force m. Near the end m(t) is known to second order,
-//! so its first three integrals over [t - s, t] are closed forms; they correct rate, position and the integral of the
-//! position. These corrections deform the other meshes too: one linear pass adds the forces that this causes.
+//! From the crossing on, a time s (`since`) before the end, the fixed contact law misses a force m (`Missed::path`). Near
+//! the end m(t) is known to second order, so the integrals of m over s are closed forms; they correct rate and position.
+//! The corrections also deform the other meshes: one linear pass adds the forces of this deformation.
 
 use crate::gears::contact::{Law, Laws, NetForces};
 use crate::gears::excitation::{PerMesh, PhaseHarmonics};
@@ -13,21 +13,21 @@ use crate::gears::planets::each_planet;
 use crate::gears::stages::SubstepState;
 use crate::numbers::Real;
 
-/// The end of a step that was taken with one contact set throughout.
+/// End of a sub-step with a fixed contact set.
 pub struct StepEnd<'a, T: Real, const N: usize, const OVERTONES: usize> {
     /// The joint.
     pub fixed: &'a FixedContactSet<'a, T, N, OVERTONES>,
-    /// Advance of the mesh phase in the sub-step [rad].
+    /// Advance of the mesh phase per sub-step [rad].
     pub rate: T,
-    /// The excitation.
+    /// Harmonics of the mesh phase at the end of the sub-step.
     pub harmonics_now: &'a PhaseHarmonics<T, OVERTONES>,
-    /// How far each mesh violates its law: positive where the law no longer holds.
+    /// Violation of each mesh's law: positive if the law no longer holds.
     pub violations: &'a PerMesh<T, N>,
 }
 
 impl<T: Real, const N: usize, const OVERTONES: usize> StepEnd<'_, T, N, OVERTONES> {
-    /// Corrects the motion for every law that does not hold, and the accelerations now and half a step before, which
-    /// become those that the new laws would have caused on the same path.
+    /// Corrects the motion for every violated law. The accelerations `now` and `before` become the accelerations by the new
+    /// laws on the unchanged path.
     #[inline(never)]
     pub fn correct(&self, laws: &mut Laws<T, N>, state: &mut SubstepState<T, N>) {
         let tables = self.fixed.tables;
@@ -53,9 +53,9 @@ impl<T: Real, const N: usize, const OVERTONES: usize> StepEnd<'_, T, N, OVERTONE
         });
         let mobility = &tables.stage.mobility;
         let (rate, position) = (impulse.response(mobility, T::ZERO), shift.response(mobility, T::ZERO));
-        // What the corrections bend: it acts from now on, and has acted since the crossing, where damping saw the
-        // integral of the rate, which is the position, and springs about s/4 of the position: it grew with the third
-        // power of time. Ripple is left out of it.
+        // Forces by the corrections in all meshes. They act from now on (`jump`) and have acted since the crossing (`later`):
+        // the damping force integrates to damping times the shift, the spring force to about s/4 times stiffness times the
+        // shift, because the shift grew with the third power of time. Ripple is neglected.
         let quarter = T::QUARTER * longest;
         let mut later = NetForces::NONE;
         for i in 0..N {
@@ -78,7 +78,7 @@ impl<T: Real, const N: usize, const OVERTONES: usize> StepEnd<'_, T, N, OVERTONE
         state.for_each(&past.response(mobility, T::ZERO), |coordinate, past| coordinate.before += past);
     }
 
-    /// Puts one mesh under the law that holds; returns the force that the law before it missed.
+    /// Replaces the law of one mesh by the law that holds; returns the force that the old law missed.
     #[inline(never)]
     fn cross(&self, (kind, i): (usize, usize), laws: &mut Laws<T, N>, state: &SubstepState<T, N>) -> Missed<T> {
         let tables = self.fixed.tables;
@@ -92,21 +92,21 @@ impl<T: Real, const N: usize, const OVERTONES: usize> StepEnd<'_, T, N, OVERTONE
             self.fixed.mesh(&Law::OPEN, (kind, i), self.harmonics_now, at);
         let is = Law::of(tables, (kind, i), deflection, speed, stiffness);
         laws[kind][i] = is;
-        // Without backlash both flanks are one.
+        // Without backlash both flanks have the same law.
         if was.closed == is.closed && was.offset == is.offset {
             return Missed::NOTHING;
         }
         let stiffness_rate = tables.meshes[kind][i].stiffness_rate(self.harmonics_now, tables.excitation.harmonics);
         // e'' = -rate^2 e for the sine of eq. 11.
         let acceleration = T::SIX * acceleration + self.rate * self.rate * error;
-        // Damping that acts whatever the contact is not missed.
+        // Damping that acts in every contact state (law `paper`) is not missed.
         let base = self.fixed.paper_law * tables.stage.damping[kind];
         let mesh = Crossing { deflection, speed, acceleration, stiffness, stiffness_rate, base };
         mesh.missed(&was, &is)
     }
 }
 
-/// One mesh at the end of a sub-step, on the path that the fixed laws gave.
+/// One mesh at the end of a sub-step, on the path under the fixed laws.
 struct Crossing<T> {
     deflection: T,
     speed: T,
@@ -116,19 +116,19 @@ struct Crossing<T> {
     base: T,
 }
 
-/// The force that a fixed law missed, and its integrals.
+/// Force that a fixed law missed, and its integrals.
 struct Missed<T> {
     /// Six times the integral of the force since the crossing.
     impulse: T,
-    /// Six times the integral of that integral.
+    /// Six times the double integral of the force since the crossing.
     shift: T,
-    /// The force itself along the path that was taken, as if it had always acted.
+    /// Missed force along the path, as if the force had always acted.
     path: Path<T>,
-    /// How long ago the crossing was.
+    /// Time s since the crossing, in sub-steps.
     since: T,
 }
 
-/// A quantity near the end of a sub-step: value, rate, acceleration there.
+/// Quantity near the end of a sub-step: value, rate and acceleration at the end.
 #[derive(Clone, Copy)]
 struct Path<T> {
     value: T,
@@ -148,7 +148,7 @@ impl<T: Real> Crossing<T> {
         }
         if is_closed {
             let force = self.force(after);
-            // Contact began when the surfaces met, or, between surfaces already overlapping, when the force turned.
+            // Contact began when the surfaces met; if the surfaces overlapped already, when the force changed its sign.
             let met = self.overlap(after).since_zero();
             missed.add(force, if met < T::ONE { met } else { force.since_zero() });
         }
@@ -159,7 +159,7 @@ impl<T: Real> Crossing<T> {
         Path { value: self.deflection - law.offset, rate: self.speed, acceleration: self.acceleration }
     }
 
-    /// Contact force under a law less the damping that acts anyway; the jerk that damping would see is left out.
+    /// Contact force under a law minus the damping of every contact state; the damping force of the jerk is neglected.
     fn force(&self, law: &Law<T>) -> Path<T> {
         let damping = law.damping - self.base;
         let overlap = self.overlap(law);
@@ -172,23 +172,23 @@ impl<T: Real> Crossing<T> {
 }
 
 impl<T: Real> Path<T> {
-    /// Its value some time before the end.
+    /// Returns the value at a time before the end.
     fn at(&self, earlier: T) -> T {
         self.value - earlier * (self.rate - T::HALF * earlier * self.acceleration)
     }
 
-    /// How long before the end the path was zero: a secant and one Newton step, within the sub-step. Paths that give
-    /// no answer (they do not point away from zero) are given the whole sub-step, where they are small.
+    /// Returns the time between the zero of the path and the end, by a secant and one Newton step, limited to the sub-step. A
+    /// path that does not point away from zero returns the whole sub-step, over which it is small.
     fn since_zero(&self) -> T {
         let sign = if self.value < T::ZERO { -T::ONE } else { T::ONE };
         let (value, rate, acceleration) = (sign * self.value, sign * self.rate, sign * self.acceleration);
         if rate <= T::ZERO {
             return T::ONE;
         }
-        // Where rate > value >= 0 the quotient is within the sub-step.
+        // With rate > value >= 0 the quotient is within the sub-step.
         let guess = if value < rate { value.over(rate) } else { T::ONE };
         let slope = rate - guess * acceleration;
-        // Below half the secant's slope the parabola turns inside the step, and the guess is the better answer.
+        // Below half the secant's slope the parabola turns within the sub-step, and the secant is more accurate.
         if slope + slope < rate {
             return guess;
         }
@@ -212,7 +212,7 @@ impl<T: Real> Missed<T> {
         since: T::ZERO,
     };
 
-    /// Adds a force that has acted for the last `since`.
+    /// Adds a force that has acted for the time `since`.
     fn add(&mut self, path: Path<T>, since: T) {
         let Path { value, rate, acceleration } = path;
         let s = since;

@@ -1,8 +1,8 @@
-//! The dead zone of a gear mesh: sharp (eq. 12) and smoothed by tanh (eq. 13 with the factor that its print lost).
+//! Dead zone of a gear mesh: sharp (eq. 12), and smoothed by tanh (eq. 13, with the factor missing in print).
 
 use crate::numbers::Real;
 
-/// Eq. 12: x - b above b, x + b below -b, exactly zero between. `half_backlash` must not be negative.
+/// Sharp dead zone, eq. 12: x - b above b, x + b below -b, exactly zero between. `half_backlash` must not be negative.
 ///
 /// ```
 /// use model_core::gears::dead_zone::{sharp, smoothed};
@@ -22,10 +22,10 @@ pub fn sharp<T: Real>(deflection: T, half_backlash: T) -> T {
     }
 }
 
-/// Eq. 13, corrected: x + (x/2)(t1 - t2) - (b/2)(t1 + t2), t1 = tanh(s (x - b)), t2 = tanh(s (x + b)).
+/// Smoothed dead zone, eq. 13 corrected: x + (x/2)(t1 - t2) - (b/2)(t1 + t2), t1 = tanh(s (x - b)), t2 = tanh(s (x + b)).
 ///
-/// The print lacks the factor x of the first bracket, which would leave x - 1 inside the gap. The largest distance
-/// from eq. 12 is about 0.14 / s, at the corners.
+/// In print the factor x of the first bracket is missing, which gives x - 1 inside the gap. The largest difference from
+/// eq. 12 is about 0.14 / s, at the corners.
 pub fn smoothed<T: Real>(deflection: T, half_backlash: T, sharpness: T) -> T {
     let above = (sharpness * (deflection - half_backlash)).tanh();
     let below = (sharpness * (deflection + half_backlash)).tanh();

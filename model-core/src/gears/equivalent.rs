@@ -1,24 +1,24 @@
-//! A tick of an equivalent gear: two masses and one contact, whose motion is linear while the contact stays as it is. A
-//! tick in which it does is taken whole, by the exponential flow or as free flight. Where it changes, the moment is found
-//! and the rest of the tick goes on from there: once for a flank that is met, and for one that is left also for the next
-//! that is met. A change beyond these waits for the next tick.
+//! Tick of an equivalent gear: two masses and one contact. The motion is linear while the contact state holds: one
+//! exponential flow in contact, free flight in the gap. If the contact state changes, the time of the change is found and
+//! the rest of the tick starts there. A tick that starts in the gap follows one change (a flank is met); a tick that starts
+//! in contact follows two (the flank is left, the next is met). A further change waits for the next tick.
 //!
-//! In dimensionless time the contact's stiffness is one: y'' = a - y - c y' for the overlap y and the acceleration a by
-//! the torques. The contact presses while y > 0 and y + c y' > 0, so that it never pulls.
+//! In dimensionless time the contact has stiffness one: y'' = a - y - c y' for the overlap y and the acceleration a by
+//! the torques (`pull`). The contact presses while y > 0 and y + c y' > 0, so that it never pulls.
 
 use crate::gears::tables::Tables;
 use crate::numbers::Real;
 
-/// Rows and columns of the gap and of its rate in the in-phase flow.
+/// Row and column of the gap, and of the gap's rate, in the in-phase flow.
 const GAP: usize = 1;
 const RATE: usize = 4;
 
-/// How far motor and link are apart, or an overlap on a flank; and its rate.
+/// Distance between motor and link, or overlap on a flank, and the rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point<T> {
-    /// Motor less link on the line of action.
+    /// Motor minus link on the line of action, or overlap.
     pub position: T,
-    /// Its rate.
+    /// Rate of `position`.
     pub rate: T,
 }
 
@@ -27,21 +27,21 @@ impl<T: Real> Point<T> {
         Self { position: self.position + change.position, rate: self.rate + change.rate }
     }
 
-    /// The same seen from the other side, `way` from there.
+    /// Converts an overlap on one flank to the overlap on the opposite flank at the distance `way`.
     fn mirrored(self, way: T) -> Self {
         Self { position: -(self.position + way), rate: -self.rate }
     }
 }
 
-/// One flank under torques that hold over the tick: overlap, rate and acceleration are positive into it.
+/// One flank under constant torques; overlap, rate and acceleration are positive into the flank.
 #[derive(Clone, Copy)]
 struct Flank<T> {
     damping: T,
-    /// Acceleration by the torques: the overlap in which the contact would rest.
+    /// Acceleration by the torques, which equals the overlap at rest.
     pull: T,
 }
 
-/// One tick, with the acceleration of the gap by the torques.
+/// Returns gap and rate after one tick; `acceleration` is the acceleration of the gap by the torques.
 #[inline]
 pub fn tick<T: Real, const N: usize>(tables: &Tables<T, N>, acceleration: T, start: Point<T>) -> Point<T> {
     let half = tables.meshes[0].first().map_or(T::ZERO, |mesh| T::TWO * mesh.half_backlash);
@@ -61,7 +61,7 @@ pub fn tick<T: Real, const N: usize>(tables: &Tables<T, N>, acceleration: T, sta
 }
 
 impl<T: Real> Flank<T> {
-    /// Force of a contact that may also pull.
+    /// Returns the contact force without the condition that the contact never pulls.
     #[inline(always)]
     fn line(&self, at: Point<T>) -> T {
         at.position + self.damping * at.rate
@@ -72,14 +72,14 @@ impl<T: Real> Flank<T> {
         at.position > T::ZERO && self.line(at) > T::ZERO
     }
 
-    /// Way and gain of speed in free flight.
+    /// Returns the changes of position and rate in free flight.
     #[inline(always)]
     fn free(&self, at: Point<T>, time: T) -> Point<T> {
         let gained = self.pull * time;
         Point { position: time * (at.rate + T::HALF * gained), rate: gained }
     }
 
-    /// A tick that begins in contact, with `gap` between this flank and the other.
+    /// Returns the changes over a tick that begins in contact; `gap` is the distance to the opposite flank.
     #[inline(always)]
     fn pressed<const N: usize>(&self, tables: &Tables<T, N>, at: Point<T>, gap: T) -> Point<T> {
         let flow = &tables.flow.whole.in_phase.0;
@@ -90,8 +90,8 @@ impl<T: Real> Flank<T> {
         if line + change >= T::ZERO {
             return moved;
         }
-        // It parts where the force line, as a parabola, falls through zero. There the force is zero, so that a moment that is a
-        // little wrong matters in its square only.
+        // The contact ends where the force, approximated by a parabola, falls through zero. Near this time the force is
+        // small, so an error of the time acts only with its square.
         let whole = tables.flow.step;
         let slope = whole * (at.rate + self.damping * (self.pull - line));
         let part = whole * first_rise(-line, -change, slope - change);
@@ -100,7 +100,8 @@ impl<T: Real> Flank<T> {
         held.plus(self.meeting(parted, self.free(parted, left), left, gap))
     }
 
-    /// Free flight that would move by `moved` in the time left, with whatever flank it meets.
+    /// Returns the changes over the time `left` in free flight, and in contact once a flank is met. `moved` is the change
+    /// without contact.
     #[inline(always)]
     fn meeting(&self, at: Point<T>, moved: Point<T>, left: T, gap: T) -> Point<T> {
         let end = at.plus(moved);
@@ -116,8 +117,8 @@ impl<T: Real> Flank<T> {
         moved
     }
 
-    /// Free flight up to the flank and contact from there on; without contact it would move by `moved` to `end`. It is met by
-    /// the overlap, or where there is some already, by the force line.
+    /// Returns the changes in free flight up to this flank and in contact afterwards. Without contact the motion would change
+    /// by `moved` to `end`. Contact begins where the overlap becomes positive; if it already is, where the force does.
     #[inline(always)]
     fn landing(&self, at: Point<T>, end: Point<T>, moved: Point<T>, left: T) -> Point<T> {
         let curve = T::HALF * moved.rate * left;
@@ -132,9 +133,9 @@ impl<T: Real> Flank<T> {
         way.plus(self.held(at.plus(way), left - time))
     }
 
-    /// Way and gain of speed of a part of a tick in contact. With A the matrix of the motion, exp(A t) - I is t A over
-    /// 1 - A t / 2 + (A t)^2 / 12 up to the fifth order (Pade's approximation of orders two and two); A^2 = -1 - c A makes that
-    /// two products. Its divisor is above 1/2 for every part of a tick that design allows.
+    /// Returns the changes of position and rate over a part of a tick in contact. With the matrix A of the motion, exp(A t) - I
+    /// is t A over 1 - A t / 2 + (A t)^2 / 12, with an error of fifth order (Pade approximation [2/2]). A^2 = -1 - c A reduces
+    /// the quotient to two products. The divisor exceeds 1/2 for every part of a tick that the design allows.
     #[inline(always)]
     fn held(&self, at: Point<T>, time: T) -> Point<T> {
         let beyond = at.position - self.pull;
@@ -150,8 +151,8 @@ impl<T: Real> Flank<T> {
     }
 }
 
-/// Share of the way at which start + rise s + curve s (s - 1), below zero at s = 0 and above it at s = 1, passes through
-/// zero: where the chord does, and two of Newton's steps from there. Where the curve hardly rises they are held short.
+/// Returns the s at which start + rise s + curve s (s - 1), negative at s = 0 and positive at s = 1, passes through zero:
+/// the zero of the chord, refined by two Newton steps. A lower bound on the slope limits the steps.
 #[inline(always)]
 fn first_rise<T: Real>(start: T, rise: T, curve: T) -> T {
     if rise <= T::ZERO {

@@ -1,12 +1,12 @@
-//! Stiffness and imposed error of every mesh at one instant (eqs 7 and 11), from one sine and one cosine: phases of
-//! the meshes are folded into the tables. Fig. 3's wave is a few harmonics of the same pair.
+//! Stiffness and imposed error of every mesh at one instant (S3; eqs 7 and 11), from sine and cosine of the mesh phase. The
+//! tables include the phases of the meshes. The wave of Fig. 3 uses a few harmonics of sine and cosine.
 
 use crate::gears::tables::{Excitation, MeshTable, Tables};
 use crate::numbers::Real;
 use crate::numbers::phase::sine_cosine;
 use parameters::MAX_HARMONICS;
 
-/// One value for each mesh: sun-planet of every planet, then ring-planet.
+/// Values of all meshes: sun-planet of every planet, then ring-planet.
 pub type PerMesh<T, const N: usize> = [[T; N]; 2];
 
 /// Excitation of all meshes at one instant, dimensionless.
@@ -16,7 +16,7 @@ pub struct MeshExcitations<T, const N: usize> {
     pub stiffness: PerMesh<T, N>,
     /// Imposed error e.
     pub error: PerMesh<T, N>,
-    /// Its rate.
+    /// Rate of the imposed error.
     pub error_rate: PerMesh<T, N>,
 }
 
@@ -28,14 +28,14 @@ pub struct Phasor<T> {
 }
 
 impl<T: Real> Phasor<T> {
-    /// At a phase in 2^-32 periods.
+    /// Creates the phasor of a phase in 2^-32 periods.
     #[inline]
     pub fn at(phase: u32) -> Self {
         let (sine, cosine) = sine_cosine(phase);
         Self { sine, cosine }
     }
 
-    /// Further by another's angle.
+    /// Returns the phasor advanced by the angle of `by`.
     #[inline]
     pub fn turned(&self, by: &Self) -> Self {
         Self {
@@ -44,73 +44,73 @@ impl<T: Real> Phasor<T> {
         }
     }
 
-    /// Its rates, for this rate of the phase.
+    /// Returns the rates of sine and cosine at a rate of the phase.
     #[inline(always)]
     pub fn rates(&self, phase_rate: T) -> Self {
         Self { sine: phase_rate * self.cosine, cosine: -(phase_rate * self.sine) }
     }
 
-    /// Moved straight along rates for so long.
+    /// Extrapolates sine and cosine linearly over `time`.
     #[inline(always)]
     pub fn moved(&self, time: T, rates: &Self) -> Self {
         Self { sine: self.sine + time * rates.sine, cosine: self.cosine + time * rates.cosine }
     }
 }
 
-/// The mesh phase over a tick.
+/// Mesh phase over a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshPhase<T> {
-    /// Where it starts, in 2^-32 periods.
+    /// Phase at the start of the tick, in 2^-32 periods.
     pub start: u32,
-    /// Its advance over the tick, in 2^-32 periods.
+    /// Advance of the phase over the tick, in 2^-32 periods.
     pub advance: T,
     /// d(phase)/d(tau) [rad].
     pub rate: T,
 }
 
 impl<T: Real> MeshPhase<T> {
-    /// The phasor after a part of the tick.
+    /// Returns the phasor after a fraction of the tick.
     #[inline]
     pub fn at(&self, part: T) -> Phasor<T> {
         Phasor::at(self.start.wrapping_add((self.advance * part).to_phase()))
     }
 
-    /// The advance over a part of the tick.
+    /// Returns the phasor of the advance over a fraction of the tick.
     #[inline]
     pub fn over(&self, part: T) -> Phasor<T> {
         Phasor::at((self.advance * part).to_phase())
     }
 }
 
-/// Mesh periods, in 2^-32, over a tick in which the rigid body travels `travel` (2^-64 turns).
+/// Returns the phase advance in 2^-32 periods over a tick in which the rigid body travels `travel` (2^-64 turns).
 #[inline]
 pub fn mesh_phase_advance<T: Real>(excitation: &Excitation<T>, travel: i64) -> T {
     if excitation.periods_per_turn == 0 {
         excitation.phase_advance
     } else {
-        // By two conversions of the hardware: one from 64 bits is a library call.
+        // Two 32-bit conversions in hardware: a conversion from 64 bits is a library call.
         T::from_i32((travel >> 32) as i32) * T::from_i32(excitation.periods_per_turn as i32)
     }
 }
 
-/// Harmonics above the first that a joint may have.
+/// Largest number of harmonics above the first.
 pub const MAX_OVERTONES: usize = MAX_HARMONICS - 1;
 
-/// Phasors of the mesh phase at one moment, with its rate: the fundamental, and room for the higher harmonics.
+/// Phasors of the mesh phase at one instant (fundamental and higher harmonics) and the rate of the phase.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PhaseHarmonics<T, const OVERTONES: usize> {
-    /// Sine and cosine.
+    /// Sine and cosine of the phase.
     pub phasor: Phasor<T>,
-    /// Their rates.
+    /// Rates of sine and cosine.
     pub rates: Phasor<T>,
     /// Rate of the phase.
     pub rate: T,
-    /// Phasors of the higher harmonics, as many as the joint has.
+    /// Phasors of the higher harmonics; places above the joint's harmonics are unused.
     multiples: [Phasor<T>; OVERTONES],
 }
 
 impl<T: Real, const OVERTONES: usize> PhaseHarmonics<T, OVERTONES> {
-    /// At a phase with this rate [rad a unit of dimensionless time].
+    /// Creates the harmonics at a phase and a phase rate [rad per unit of time].
     #[inline]
     pub fn new(phasor: Phasor<T>, rate: T, harmonics: u32) -> Self {
         let mut multiples = [phasor; OVERTONES];
@@ -132,19 +132,19 @@ pub struct MeshExcitation<T> {
     pub stiffness: T,
     /// Imposed error e.
     pub error: T,
-    /// Its rate.
+    /// Rate of the imposed error.
     pub error_rate: T,
 }
 
 impl<T: Real> MeshTable<T> {
-    /// Imposed error at a phasor; its rate at the phasor's rates.
+    /// Returns the imposed error at a phasor; given the phasor's rates, returns the rate of the error.
     #[inline(always)]
     pub fn error_at(&self, phasor: &Phasor<T>) -> T {
         let [sine, cosine] = self.error;
         sine * phasor.sine + cosine * phasor.cosine
     }
 
-    /// At a moment; `mean` is that of its kind, `harmonics` that of the joint.
+    /// Evaluates stiffness, error and error rate; `mean` is the mean stiffness of the mesh, `harmonics` the joint's number.
     #[inline(always)]
     pub fn at<const OVERTONES: usize>(
         &self,
@@ -166,7 +166,7 @@ impl<T: Real> MeshTable<T> {
         }
     }
 
-    /// Rate of the stiffness.
+    /// Returns the rate of the stiffness.
     #[inline]
     pub fn stiffness_rate<const OVERTONES: usize>(
         &self,
@@ -185,14 +185,14 @@ impl<T: Real> MeshTable<T> {
         sum
     }
 
-    /// Sum of the harmonics above the first.
+    /// Returns the sum of the stiffness harmonics above the first.
     #[inline(never)]
     fn overtones<const OVERTONES: usize>(&self, harmonics_now: &PhaseHarmonics<T, OVERTONES>, harmonics: u32) -> T {
         self.above(harmonics_now, harmonics)
             .fold(T::ZERO, |sum, ([sine, cosine], multiple)| sum + *sine * multiple.sine + *cosine * multiple.cosine)
     }
 
-    /// Harmonics above the first with their multiples of the phase.
+    /// Iterates over the coefficients and phasors of the harmonics above the first.
     #[inline(always)]
     fn above<'a, const OVERTONES: usize>(
         &'a self,
@@ -203,7 +203,7 @@ impl<T: Real> MeshTable<T> {
     }
 }
 
-/// Stiffness of every mesh at one moment.
+/// Returns the stiffness of every mesh at one instant.
 #[inline(always)]
 pub fn stiffnesses<T: Real, const N: usize>(tables: &Tables<T, N>, phasor: &Phasor<T>) -> PerMesh<T, N> {
     let mut stiffness = [[T::ZERO; N]; 2];
@@ -220,7 +220,7 @@ pub fn stiffnesses<T: Real, const N: usize>(tables: &Tables<T, N>, phasor: &Phas
     stiffness
 }
 
-/// Adds the harmonics above the first.
+/// Adds the stiffness harmonics above the first.
 #[inline(never)]
 fn add_overtones<T: Real, const N: usize>(tables: &Tables<T, N>, phasor: &Phasor<T>, stiffness: &mut PerMesh<T, N>) {
     let harmonics = tables.excitation.harmonics;
@@ -232,8 +232,8 @@ fn add_overtones<T: Real, const N: usize>(tables: &Tables<T, N>, phasor: &Phasor
     }
 }
 
-/// Evaluates every mesh at a phase with this rate [rad a unit of dimensionless time]; without overtones only the imposed
-/// errors are right.
+/// Evaluates every mesh at a phase and a phase rate [rad per unit of dimensionless time]. With `OVERTONES` = 0 and more
+/// than one harmonic the stiffness is incomplete; the imposed errors are valid.
 #[inline]
 pub fn mesh_excitations<T: Real, const N: usize, const OVERTONES: usize>(
     tables: &Tables<T, N>,

@@ -1,5 +1,5 @@
-//! The joint under a fixed contact set, which makes it linear: state of every mesh and the accelerations that follow, with a
-//! sub-step as the unit of time and accelerations in sixths (see `stages`).
+//! Joint with a fixed contact set, which is linear: state of every mesh (S2) and accelerations (S4). The unit of time is a
+//! sub-step; accelerations are in sixths (see `stages`).
 
 use crate::gears::contact::{AppliedAcceleration, Law, Laws, NetForces};
 use crate::gears::excitation::{MeshExcitation, PhaseHarmonics};
@@ -9,36 +9,36 @@ use crate::gears::state::Relative;
 use crate::gears::tables::Tables;
 use crate::numbers::Real;
 
-/// One mesh at one instant under its law.
+/// State of one mesh at one instant under its law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshState<T> {
-    /// Deflection less the law's offset.
+    /// Deflection minus the offset of the law.
     pub overlap: T,
     /// Rate of the deflection.
     pub speed: T,
-    /// Stiffness, whether it acts or not.
+    /// Stiffness, also if the mesh is open.
     pub stiffness: T,
     /// Imposed error.
     pub error: T,
-    /// Force under the law, whether or not the law still holds.
+    /// Force under the law, also if the law no longer holds.
     pub force: T,
 }
 
-/// The joint with everything that does not change over a tick.
+/// Joint and quantities that are constant over a tick.
 #[derive(Clone, Copy)]
 pub struct FixedContactSet<'a, T: Real, const N: usize, const OVERTONES: usize> {
-    /// The joint.
+    /// Tables of the joint.
     pub tables: &'a Tables<T, N>,
-    /// Accelerations by the applied torques, in units of a stage.
+    /// Accelerations by the applied torques, in stage units.
     pub applied: AppliedAcceleration<T>,
-    /// One under the damping law `contact`, else zero.
+    /// 1 under the damping law `contact`, else 0.
     pub contact_law: T,
-    /// One under the damping law `paper`, else zero.
+    /// 1 under the damping law `paper`, else 0.
     pub paper_law: T,
 }
 
 impl<T: Real, const N: usize, const OVERTONES: usize> FixedContactSet<'_, T, N, OVERTONES> {
-    /// Finds the law that every mesh is under.
+    /// Finds the law of every mesh.
     #[inline(never)]
     pub fn find_laws(
         &self,
@@ -55,7 +55,7 @@ impl<T: Real, const N: usize, const OVERTONES: usize> FixedContactSet<'_, T, N, 
         }
     }
 
-    /// Whether any mesh is under the law of the gap.
+    /// Returns true if any mesh is open.
     #[inline(always)]
     pub fn is_open(&self, laws: &Laws<T, N>) -> bool {
         let [sun, ring] = laws;
@@ -66,7 +66,7 @@ impl<T: Real, const N: usize, const OVERTONES: usize> FixedContactSet<'_, T, N, 
         open > T::ZERO
     }
 
-    /// Stiffness and imposed error of one mesh.
+    /// Returns stiffness and imposed error of one mesh.
     #[inline(always)]
     pub fn wave(&self, (kind, i): (usize, usize), harmonics_now: &PhaseHarmonics<T, OVERTONES>) -> MeshExcitation<T> {
         let tables = self.tables;
@@ -74,7 +74,7 @@ impl<T: Real, const N: usize, const OVERTONES: usize> FixedContactSet<'_, T, N, 
         tables.meshes[kind][i].at(harmonics_now, tables.springs[kind].stiffness, harmonics)
     }
 
-    /// One mesh under a law.
+    /// Evaluates one mesh under a law.
     #[inline(always)]
     pub fn mesh(
         &self,
@@ -92,8 +92,8 @@ impl<T: Real, const N: usize, const OVERTONES: usize> FixedContactSet<'_, T, N, 
         MeshState { overlap, speed, stiffness, error, force }
     }
 
-    /// Violation of a mesh's law: zero while it holds, positive once teeth in the gap have reached a flank, or closed ones
-    /// have left it. Under the damping law `contact` they leave when their force changes sign, else when their overlap does.
+    /// Returns the violation of a mesh's law: zero while the law holds, positive if an open mesh has reached a flank or a
+    /// closed mesh has left it. A mesh leaves its flank when its force (law `contact`) or overlap (law `paper`) changes sign.
     #[inline(always)]
     pub fn violation(&self, law: &Law<T>, (kind, i): (usize, usize), mesh: &MeshState<T>) -> T {
         let half_backlash = self.tables.meshes[kind][i].half_backlash;
@@ -104,14 +104,14 @@ impl<T: Real, const N: usize, const OVERTONES: usize> FixedContactSet<'_, T, N, 
         room.abs() - room
     }
 
-    /// Force between carrier and link.
+    /// Returns the force between carrier and link.
     #[inline(always)]
     pub fn wind_up_force(&self, at: Point<T>) -> T {
         let mobility = &self.tables.stage.mobility;
         mobility.wind_up_stiffness * at.position + mobility.wind_up_damping * at.rate
     }
 
-    /// Accelerations at the points of a stage; `inspect` is called with every mesh.
+    /// Returns the accelerations at a stage; calls `inspect` with the state of every mesh.
     #[inline(always)]
     pub fn accelerations(
         &self,

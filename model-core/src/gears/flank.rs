@@ -1,21 +1,21 @@
-//! The two flanks of a tooth gap, and the sign that each has in the equations.
+//! The two flanks of a tooth gap and their signs in the equations.
 
 use parameters::ContactState;
 
 use crate::numbers::Real;
 
-/// A flank of the teeth. Where none touches, or where it is not known which, there is no `Flank`: `None`. Numbered as
-/// [`ContactState`] is, so that one becomes the other without a branch.
+/// Flank of the teeth. `Option<Flank>` is `None` if no flank touches or the flank is unknown. The discriminants equal those
+/// of [`ContactState`], so that a conversion needs no branch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flank {
-    /// The motor drives the load forwards: deflection, force and torque are positive.
+    /// Drive flank: the motor drives the load forwards; deflection, force and torque are positive.
     Drive = 1,
-    /// The other one: they are negative.
+    /// Back flank: deflection, force and torque are negative.
     Back = 2,
 }
 
 impl Flank {
-    /// The flank that a contact state names.
+    /// Returns the flank of a contact state; `None` if separated.
     pub fn touched(contact: ContactState) -> Option<Self> {
         match contact {
             ContactState::DriveSide => Some(Self::Drive),
@@ -24,7 +24,7 @@ impl Flank {
         }
     }
 
-    /// The flank that a deflection, force or torque points to; neither for zero.
+    /// Returns the flank that a deflection, force or torque points to; `None` for zero or NaN.
     pub fn towards<T: Real>(value: T) -> Option<Self> {
         if value > T::ZERO {
             Some(Self::Drive)
@@ -35,7 +35,7 @@ impl Flank {
         }
     }
 
-    /// 1 on the drive flank, -1 on the back flank.
+    /// Returns 1 for the drive flank, -1 for the back flank.
     pub fn sign<T: Real>(self) -> T {
         match self {
             Self::Drive => T::ONE,
@@ -43,7 +43,7 @@ impl Flank {
         }
     }
 
-    /// The other flank.
+    /// Returns the opposite flank.
     pub fn opposite(self) -> Self {
         match self {
             Self::Drive => Self::Back,
@@ -52,12 +52,12 @@ impl Flank {
     }
 }
 
-/// 1 on the drive flank, -1 on the back flank, 0 on neither.
+/// Returns 1 for the drive flank, -1 for the back flank, 0 for `None`.
 pub fn sign<T: Real>(flank: Option<Flank>) -> T {
     flank.map_or(T::ZERO, Flank::sign)
 }
 
-/// The contact state of a flank that touches, or of none.
+/// Returns the contact state of a touching flank; `Separated` for `None`.
 pub fn contact_state(flank: Option<Flank>) -> ContactState {
     match flank {
         Some(Flank::Drive) => ContactState::DriveSide,

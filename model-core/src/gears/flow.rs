@@ -1,6 +1,6 @@
-//! Exponential flow of the closed joint: a whole tick while every mesh stays on its flank. The linear motion is exact;
-//! ripple, backlash and imposed error are a pseudo-force, cubic in time through value and rate at the start and the
-//! values at two nodes within the step.
+//! Exponential tick (S6), (S7): advances the joint by a whole tick while every mesh stays on its flank. The linear motion
+//! is exact. Ripple, backlash and imposed error act as a pseudo-force, a cubic in time through value and rate at the start
+//! and the values at two nodes within the tick.
 
 use core::array;
 
@@ -13,16 +13,15 @@ use crate::gears::state::{MotionInPlace, Relative};
 use crate::gears::tables::{Block, Inputs, Transition};
 use crate::numbers::Real;
 
-/// Pseudo-force at the start of a tick: the part of the mesh forces that the linear flow of the closed joint leaves out,
-/// k_mean x + c x' - F.
+/// Pseudo-force at the start of a tick, k_mean x + c x' - F (S6): linear mesh force of the flow minus true mesh force.
 pub struct Start<T, const N: usize> {
     value: PseudoForce<T, N>,
-    /// Its rate for each sub-step.
+    /// Rate of the pseudo-force per sub-step.
     rate: PseudoForce<T, N>,
 }
 
-/// The start of a tick in which every mesh is closed; none unless each has so much overlap that its speed cannot open it
-/// before the middle of the tick.
+/// Evaluates the pseudo-force at the start of a tick in which every mesh is closed. Returns `None` unless the overlap of
+/// every mesh exceeds `flow.reach` times the mesh's speed.
 #[inline(never)]
 pub fn start<T: Real, const N: usize, const OVERTONES: usize>(
     fixed: &FixedContactSet<T, N, OVERTONES>,
@@ -65,8 +64,8 @@ pub fn start<T: Real, const N: usize, const OVERTONES: usize>(
     })
 }
 
-/// One tick with the contact set of its start, in place; nothing is moved, and false is said, if a mesh leaves its flank. `K` is the number of in-phase coordinates: 3 with compliance, 2
-/// without.
+/// Advances the motion in place by one tick with the contact set of the start. Returns false and leaves the motion
+/// unchanged if a mesh leaves its flank at a node. `K` is the number of in-phase coordinates: 3 with compliance, else 2.
 #[inline(never)]
 pub fn tick<T: Real, const N: usize, const K: usize, const OVERTONES: usize>(
     fixed: &FixedContactSet<T, N, OVERTONES>,
@@ -105,8 +104,8 @@ pub fn tick<T: Real, const N: usize, const K: usize, const OVERTONES: usize>(
 }
 
 impl<T: Real, const N: usize, const OVERTONES: usize> FixedContactSet<'_, T, N, OVERTONES> {
-    /// Pseudo-force of closed meshes within the tick: offset, imposed error, ripple; and a positive violation if a mesh has
-    /// left its flank.
+    /// Returns the pseudo-force of closed meshes at a node (offset, imposed error, ripple), and a violation, which is positive
+    /// if a mesh has left its flank.
     #[inline(never)]
     fn pseudo_force(
         &self,
@@ -133,11 +132,11 @@ impl<T: Real, const N: usize, const OVERTONES: usize> FixedContactSet<'_, T, N, 
     }
 }
 
-/// A pseudo-force in the form that the flow's inputs take.
+/// Pseudo-force as input of the flow.
 struct PseudoForce<T, const N: usize> {
     /// Sums over planets: sun-planet, ring-planet.
     sums: [T; 2],
-    /// Sun-planet less ring-planet force of every planet, less their mean.
+    /// Sun-planet minus ring-planet force of every planet, minus the mean over planets.
     deviations: [T; N],
 }
 
@@ -153,20 +152,20 @@ impl<T: Real, const N: usize> PseudoForce<T, N> {
     }
 }
 
-/// Positions that the pseudo-force depends on.
+/// Positions of planets and gap at a node.
 struct MeshPositions<T, const N: usize> {
     planets: [T; N],
     gap: T,
 }
 
-/// Positions within the tick: mean planet and gap, and every planet's deviation from the mean.
+/// Positions at a node: mean planet and gap, and every planet's deviation from the mean.
 struct ModalPositions<T, const N: usize> {
     in_phase: [T; 2],
     deviations: [T; N],
 }
 
-/// Motion split into what the planets do together (mean planet, gap, wind-up; then their rates) and what each does
-/// apart (deviation, rate), which the flow decouples.
+/// Motion split into in-phase motion (mean planet, gap, wind-up; then their rates) and the planets' deviations from the
+/// mean (deviation, rate). The flow decouples the two parts.
 struct Modes<T, const N: usize, const K: usize> {
     in_phase: [[T; K]; 2],
     deviations: [[T; 2]; N],
@@ -187,7 +186,7 @@ impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
         }
     }
 
-    /// Linear flow of one in-phase coordinate under constant torques.
+    /// Returns one in-phase coordinate after the linear flow under constant torques.
     #[inline(always)]
     fn coordinate(&self, transition: &Transition<T>, torques: &[T; 3], half: usize, k: usize) -> T {
         let row = 3 * half + k;
@@ -197,14 +196,14 @@ impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
                 change += entry(&transition.in_phase, row, 3 * from + other) * self.in_phase[from][other];
             }
         }
-        // Without compliance the load acts on the carrier, with it on the link.
+        // The load acts on the carrier without compliance, on the link with compliance.
         for torque in [0, K - 1] {
             change += entry(&transition.torques, row, torque) * torques[torque];
         }
         self.in_phase[half][k] + change
     }
 
-    /// Linear flow of one deviation.
+    /// Returns one deviation after the linear flow.
     #[inline(always)]
     fn deviation(&self, transition: &Transition<T>, i: usize, half: usize) -> T {
         let [position, rate] = self.deviations[i];
@@ -212,7 +211,7 @@ impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
             + (entry(&transition.deviation, half, 0) * position + entry(&transition.deviation, half, 1) * rate)
     }
 
-    /// Linear flow of the positions that the meshes see.
+    /// Returns the positions of mean planet, gap and deviations after the linear flow.
     #[inline]
     fn positions(&self, transition: &Transition<T>, torques: &[T; 3]) -> ModalPositions<T, N> {
         let in_phase = [self.coordinate(transition, torques, 0, 0), self.coordinate(transition, torques, 0, 1)];
@@ -223,7 +222,7 @@ impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
         ModalPositions { in_phase, deviations }
     }
 
-    /// Linear flow of everything.
+    /// Returns all positions and rates after the linear flow.
     #[inline]
     fn flow(&self, transition: &Transition<T>, torques: &[T; 3]) -> Self {
         let (mut in_phase, mut deviations) = ([[T::ZERO; K]; 2], [[T::ZERO; 2]; N]);
@@ -238,7 +237,7 @@ impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
         Self { in_phase, deviations }
     }
 
-    /// Plus the response to pseudo-forces, each under its time weight.
+    /// Adds the response to pseudo-forces, each with its weight function of time.
     #[inline]
     fn with<const M: usize>(mut self, terms: [(&Inputs<T>, &PseudoForce<T, N>); M]) -> Self {
         for (inputs, force) in terms {
@@ -270,7 +269,7 @@ impl<T: Real, const N: usize, const K: usize> Modes<T, N, K> {
 }
 
 impl<T: Real, const N: usize> ModalPositions<T, N> {
-    /// Plus the response to pseudo-forces, each under its time weight.
+    /// Adds the response to pseudo-forces, each with its weight function of time.
     #[inline]
     fn with<const M: usize>(mut self, terms: [(&Inputs<T>, &PseudoForce<T, N>); M]) -> MeshPositions<T, N> {
         for (inputs, force) in terms {
@@ -286,7 +285,7 @@ impl<T: Real, const N: usize> ModalPositions<T, N> {
     }
 }
 
-/// In-phase response to the sums of the mesh forces.
+/// Returns the in-phase response to the sums of the pseudo-force.
 #[inline(always)]
 fn in_phase_response<T: Real, const N: usize>(inputs: &Inputs<T>, force: &PseudoForce<T, N>, row: usize) -> T {
     let [sun_planet, ring_planet] = force.sums;

@@ -1,6 +1,6 @@
-//! The classical Runge-Kutta method and semi-implicit Euler on the full nonlinear forces at every evaluation: the path
-//! of the tanh dead zone, which has no contact set to fix, and the common methods, for comparison. No crossing is
-//! corrected.
+//! Classical Runge-Kutta method and semi-implicit Euler on the full nonlinear forces, without crossing correction.
+//! Runge-Kutta is the step of the tanh dead zone, which has no contact set; with the sharp dead zone both methods serve
+//! for comparison.
 
 use crate::gears::contact::{AppliedAcceleration, Law, acceleration, mesh_coordinates, wind_up_force};
 use crate::gears::dead_zone;
@@ -10,7 +10,7 @@ use crate::gears::state::{Motion, Relative};
 use crate::gears::tables::Tables;
 use crate::numbers::Real;
 
-/// One tick of the classical Runge-Kutta method.
+/// Returns the motion after one tick of the classical Runge-Kutta method.
 #[inline(never)]
 pub fn runge_kutta<T: Real, const N: usize>(
     tables: &Tables<T, N>,
@@ -35,7 +35,7 @@ pub fn runge_kutta<T: Real, const N: usize>(
     motion
 }
 
-/// One tick of semi-implicit Euler: the rate first, then the position with the new rate.
+/// Returns the motion after one tick of semi-implicit Euler: first the rate, then the position with the new rate.
 #[cfg(feature = "design")]
 #[inline(never)]
 pub fn semi_implicit_euler<T: Real, const N: usize>(
@@ -57,7 +57,7 @@ pub fn semi_implicit_euler<T: Real, const N: usize>(
     motion
 }
 
-/// Acceleration under the forces at this instant.
+/// Returns the relative accelerations at one instant.
 fn forced<T: Real, const N: usize>(
     tables: &Tables<T, N>,
     applied: &AppliedAcceleration<T>,
@@ -69,8 +69,8 @@ fn forced<T: Real, const N: usize>(
     acceleration(tables, applied, &forces, wind_up_force(tables, position, rate))
 }
 
-/// Mesh forces with the joint's dead zone, sharp or tanh, from mesh coordinates without imposed errors. With the tanh
-/// dead zone damping always acts: there is no contact that could end.
+/// Returns the mesh forces with the joint's dead zone, sharp or tanh, from mesh coordinates without imposed errors. With
+/// the tanh dead zone, which has no contact states, damping always acts.
 pub fn forces<T: Real, const N: usize>(
     tables: &Tables<T, N>,
     positions: &PerMesh<T, N>,
@@ -88,7 +88,7 @@ pub fn forces<T: Real, const N: usize>(
                 let elastic = dead_zone::smoothed(deflection, half_backlash, tables.sharpness);
                 stiffness * elastic + tables.springs[kind].damping * speed
             } else {
-                // A law counts time in sub-steps.
+                // The unit of time of a law is a sub-step.
                 let speed = tables.substep * speed;
                 let law = Law::of(tables, (kind, i), deflection, speed, stiffness);
                 law.closed * stiffness * (deflection - law.offset) + law.damping * speed

@@ -1,4 +1,4 @@
-//! How the gears turn together: the carrier's lever and the ratio, from radii and from teeth.
+//! Kinematics of the gears: lever of the carrier, and the ratio from radii and from teeth.
 
 use parameters::Geometry;
 

@@ -1,12 +1,12 @@
-//! A tick of a joint whose planets are so light that they ring several times within it: one exact exponential while
-//! every mesh stays in contact (`linear_contact`), position-Verlet (leapfrog) sub-steps through contacts otherwise. Contact
-//! events are not located: along a sub-step's straight path the mean force of a sharp dead zone is a closed form.
+//! Tick of a joint with light planets, which ring several times in a tick: one exponential while every mesh stays in
+//! contact (`linear_contact`), otherwise position-Verlet (leapfrog) sub-steps (S11), (S12). Contact events are not located:
+//! on the straight path of a sub-step the mean force of a sharp dead zone has a closed form.
 //!
-//! The Verlet method does not damp what it cannot resolve, as Runge-Kutta methods do: bouncing planets keep their energy.
-//! Force, rate and position are exact to second order; the two largest remainders, curvature of the path and the rate
-//! at which damping is taken, are both proportional to the acceleration and are taken off together (`yielding`), as far
-//! as the planet's own acceleration goes. What sun and carrier add to it is left, as is damping in the gap under the law
-//! `paper`: mesh damping is therefore of first order, with a small factor.
+//! Runge-Kutta methods damp modes that they do not resolve; the Verlet method does not, so bouncing planets keep their
+//! energy. Force, rate and position are of second order. The two largest errors, from the curvature of the path and from
+//! the time at which damping is evaluated, are proportional to the acceleration of the mesh. `yielding` removes both for
+//! the planet's own acceleration. The errors by the accelerations of sun and carrier and, under the law `paper`, of damping
+//! in the gap remain: mesh damping is therefore of first order, with a small factor.
 
 use core::hint::black_box;
 
@@ -18,7 +18,7 @@ use crate::gears::tables::Tables;
 use crate::numbers::Real;
 use parameters::DampingLaw;
 
-/// One tick, in place.
+/// Advances the motion in place by one tick.
 #[inline(always)]
 pub fn tick<T: Real, const N: usize>(
     tables: &Tables<T, N>,
@@ -37,9 +37,9 @@ pub fn tick<T: Real, const N: usize>(
     }
 }
 
-/// Position-Verlet sub-steps: drift by half a sub-step, forces there, drift by the new rate. Deflections are carried from
-/// middle to middle, in a unit of time in which a sub-step lasts one. Imposed errors go straight through their value and rate
-/// in the middle of the tick: so they are multiples of one phasor that does the same.
+/// Advances the motion by position-Verlet sub-steps (S11): drift by half a sub-step, forces there, drift by the new rate.
+/// The loop carries deflections from middle to middle of sub-steps; the unit of time is a sub-step. Imposed errors are
+/// linear in time through value and rate in the middle of the tick; one phasor, linear in time, serves all meshes.
 #[inline(never)]
 fn verlet<T: Real, const N: usize, const CONTACT_LAW: bool>(
     tables: &Tables<T, N>,
@@ -77,8 +77,8 @@ fn verlet<T: Real, const N: usize, const CONTACT_LAW: bool>(
     };
 
     for _ in 0..verlet.substeps {
-        // What is constant in the loop stays where it is: brought before the loop it would go through the stack, at three
-        // instructions in place of one.
+        // `black_box` keeps the compiler from moving loads of constants in front of the loop: from there they would pass
+        // through the stack, three instructions in place of one.
         let Substep { tables, stiffness, sun: sun_drive, carrier: carrier_drive, link: link_drive } =
             black_box(&substep);
         let (verlet, sun_drive, carrier_drive, link_drive) = (&tables.verlet, *sun_drive, *carrier_drive, *link_drive);
@@ -163,34 +163,34 @@ fn verlet<T: Real, const N: usize, const CONTACT_LAW: bool>(
     motion.rate.wind_up = rate * wind_up_travel;
 }
 
-/// What does not change over the sub-steps of a tick.
+/// Constants over the sub-steps of a tick.
 struct Substep<'a, T: Real, const N: usize> {
     tables: &'a Tables<T, N>,
     stiffness: &'a PerMesh<T, N>,
-    /// What the torques alone change of a travel in a sub-step.
+    /// Change of the sun's travel per sub-step by the drive torque; `carrier` and `link` by the load torque.
     sun: T,
     carrier: T,
     link: T,
 }
 
-/// A mesh whose contact begins or ends within a sub-step, its side of contact taken as positive.
+/// Mesh whose contact begins or ends within a sub-step; the side of contact is positive.
 struct Grazing<T> {
     /// Overlap in the middle of the sub-step; negative within the gap.
     over: T,
-    /// How far the teeth approach within the sub-step.
+    /// Distance by which the teeth approach within the sub-step; negative for parting teeth.
     closing: T,
-    /// Half of its magnitude.
+    /// Half the magnitude of `closing`.
     half_travel: T,
-    /// From flank to flank, 2b.
+    /// Distance between the flanks, 2b.
     width: T,
-    /// Damping over stiffness: parting teeth lose contact at this overlap for each unit of speed (law `contact`).
+    /// Damping over stiffness: overlap per unit of speed at which parting teeth lose contact (law `contact`).
     early: T,
     stiffness: T,
     damping: T,
 }
 
 impl<T: Real> Grazing<T> {
-    /// Mean force over the sub-step, and the part of it in contact.
+    /// Returns the mean force over the sub-step (S12) and the fraction of the sub-step in contact.
     #[inline(always)]
     fn mean_force<const CONTACT_LAW: bool>(&self) -> (T, T) {
         let parts = CONTACT_LAW && self.closing < T::ZERO;
@@ -210,7 +210,7 @@ impl<T: Real> Grazing<T> {
         // Here 0 < reach < travel.
         let part = reach.over(travel);
         let mut square = reach * part;
-        // Across the whole gap within the sub-step: the other flank pushes back.
+        // If the path crosses the whole gap, the other flank pushes back.
         let other = self.half_travel - self.over - self.width;
         if other > T::ZERO {
             square -= other * other.over(travel);

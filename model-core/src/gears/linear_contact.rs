@@ -1,9 +1,9 @@
-//! A tick in which every mesh is in contact on one flank, so that the joint is linear, by one exponential of the closed
-//! joint: ripple and imposed error are a pseudo-force linear in time through its values at the start and in the middle.
+//! Exponential tick of light planets (S8), for ticks in which every mesh is in contact on one flank: the joint is linear.
+//! Ripple and imposed error act as a pseudo-force, linear in time through its values at the start and in the middle.
 //!
-//! Whether contact will hold is seen at the start alone. A light planet rings about its balance between sun and ring: as far as it
-//! pushes on one of them more than on the other now, it does on the other half a period later. So a planet whose lesser overlap is
-//! more than its greater speed can open keeps both.
+//! Condition (S13), checked at the start alone: a light planet oscillates about its balance between sun and ring. If it
+//! presses more on the sun than on the ring now, it presses more on the ring half a period later. Both meshes therefore
+//! stay closed if the smaller overlap exceeds the distance that the larger speed can open.
 
 #![allow(clippy::op_ref, reason = "a product by value would copy the table")]
 
@@ -15,8 +15,8 @@ use crate::gears::state::MotionInPlace;
 use crate::gears::tables::Tables;
 use crate::numbers::Real;
 
-/// One tick in place; nothing is done, and false is said, unless every planet has so much overlap that no speed of its meshes can
-/// open either.
+/// Advances the motion in place by one tick. Returns false and leaves the motion unchanged if the phase advances too far
+/// or a planet violates (S13).
 #[inline(never)]
 pub fn tick<T: Real, const N: usize>(
     tables: &Tables<T, N>,
@@ -35,7 +35,8 @@ pub fn tick<T: Real, const N: usize>(
     let rates = middle.rates(phase.rate);
     let first = middle.moved(-half_step, &rates);
     let side = if position.gap < T::ZERO { -T::ONE } else { T::ONE };
-    // Per mesh: what the flow takes from the deflection, what from everything else at the start, and in the middle.
+    // Pseudo-force of each mesh: its factor on the coordinate [0], its value at the start [1], and its part in the middle
+    // that does not depend on the coordinate [2].
     let mut from = [[[T::ZERO; N]; 2]; 3];
     for i in 0..N {
         let (x, u) = (position.planets[i], rate.planets[i]);
@@ -43,7 +44,7 @@ pub fn tick<T: Real, const N: usize>(
         let (at, speed) = ([x, position.gap - x], [u, rate.gap - u]);
         let error_rate = meshes.map(|mesh| mesh.error_at(&rates));
         let offset = meshes.map(|mesh| side * mesh.half_backlash);
-        // Where the flank is at the start.
+        // Coordinate at which each mesh touches its flank at the start.
         let flank = [0, 1].map(|kind| offset[kind] + meshes[kind].error_at(&first));
         let [sun, ring] = [0, 1].map(|kind| side * (at[kind] - flank[kind]));
         let twice_lesser = sun + ring - (sun - ring).abs();
@@ -63,7 +64,7 @@ pub fn tick<T: Real, const N: usize>(
     }
     let share = tables.planet_share;
     let start = PseudoForce::new(share, &from[1]);
-    // Over the first half errors go on: their mean there is that of its middle.
+    // Imposed errors change over the first half of the tick; their value in the middle of this half is the mean.
     let mut forces = from[1];
     for kind in 0..2 {
         for i in 0..N {
@@ -101,7 +102,7 @@ pub fn tick<T: Real, const N: usize>(
 
     let whole = &flow.whole;
     let [first, second] = &flow.whole_linear;
-    // All as changes, which are summed up before they are added to what they change: that rounds once.
+    // Summing the changes before adding them to the state rounds the state only once.
     let change = &whole.in_phase.0 * &in_phase
         + &whole.torques.0 * &torques
         + &first.in_phase.0 * &sums
@@ -125,11 +126,11 @@ pub fn tick<T: Real, const N: usize>(
     true
 }
 
-/// Mesh forces in the form that the flow's inputs take.
+/// Pseudo-force as input of the flow.
 struct PseudoForce<T, const N: usize> {
     /// Sums over planets: sun-planet, ring-planet.
     sums: [T; 2],
-    /// Deviation of (sun-planet - ring-planet) from its mean.
+    /// Sun-planet minus ring-planet force of every planet, minus the mean over planets.
     apart: [T; N],
 }
 

@@ -1,11 +1,11 @@
 //! Load-dependent losses of gears, from their efficiency.
 
-/// Efficiency below which a gear locks itself [-]. With the friction angle phi at the flank and the lead angle lambda a worm has
-/// eta = tan(lambda) / tan(lambda + phi) forwards and tan(lambda - phi) / tan(lambda), which is about 2 - 1/eta, backwards.
+/// Efficiency below which a gear is self-locking [-]. Derived: a worm with the friction angle phi and the lead angle lambda
+/// has eta = tan(lambda) / tan(lambda + phi) forwards, and tan(lambda - phi) / tan(lambda), about 2 - 1/eta, backwards.
 pub const SELF_LOCKING: f64 = 0.5;
 
-/// Loss over the torque that the teeth transmit, for gears of this efficiency: while the motor drives, and while the load
-/// drives back.
+/// Returns the loss over the torque in the teeth at a given efficiency: [while the motor drives, while the load drives
+/// back].
 ///
 /// ```
 /// let [driving, driven] = model_core::gears::gear_losses(0.97);

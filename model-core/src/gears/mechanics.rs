@@ -1,5 +1,5 @@
-//! Inertia, damping and balance along the lines of action: equivalent masses, the meshes' damping coefficients and the
-//! load that holds a drive torque.
+//! Inertia, damping and balance along the lines of action: equivalent masses, damping coefficients of the meshes, and the
+//! load torque that balances a drive torque.
 
 use parameters::{JointParameters, MeshKind};
 
@@ -20,11 +20,11 @@ pub trait Mechanics {
     /// without rotor and link [N s/m].
     fn damping_coefficient(&self, kind: MeshKind) -> f64;
 
-    /// Inertia of the motor's side, referred to the link, and of the link in series: what swings on an equivalent gear
-    /// [kg m^2].
+    /// Reduced inertia J_1 J_2 / (J_1 + J_2) of motor side (referred to the link) and link, which oscillates on the stiffness
+    /// of an equivalent gear [kg m^2].
     fn inertia_in_series(&self) -> f64;
 
-    /// Load torque that keeps the rigid body from accelerating under `drive_torque` [N m].
+    /// Load torque at which the rigid body does not accelerate under `drive_torque` [N m].
     fn balanced_load_torque(&self, drive_torque: f64) -> f64;
 }
 
@@ -48,7 +48,7 @@ impl Mechanics for JointParameters {
         let mesh = self.mesh(kind);
         let planet = self.bodies.planet_equivalent_mass;
         if let Some(gear) = self.equivalent_gear() {
-            // Both meshes are one spring of half their stiffness, which both sides swing on.
+            // Both meshes in series are one spring of half their stiffness, on which motor side and link oscillate.
             let lever = self.geometry.carrier_base_radius();
             let coefficient = 2.0 * gear.damping_ratio * libm::sqrt(gear.stiffness * self.inertia_in_series());
             return coefficient / (2.0 * lever * lever);
@@ -66,7 +66,7 @@ impl Mechanics for JointParameters {
 
     fn inertia_in_series(&self) -> f64 {
         let lever = self.geometry.carrier_base_radius();
-        // The sun's way counts twice on the carrier's line of action.
+        // The sun travels twice as far as the carrier on the line of action.
         let motor = 4.0 * (self.bodies.sun_equivalent_mass + self.rotor_equivalent_mass()) * lever * lever;
         motor * self.link_inertia / (motor + self.link_inertia)
     }

@@ -1,4 +1,4 @@
-//! Phases of every planet's meshes, stated or from tooth counts.
+//! Phases of every planet's meshes, given or derived from tooth counts.
 
 use parameters::{JointParameters, MeshKind, MeshPhases};
 
@@ -27,8 +27,8 @@ impl MeshPhasing for JointParameters {
     }
 }
 
-/// 2 pi gamma with gamma_si = Zs psi_i / 2 pi, gamma_ri = -Zr psi_i / 2 pi, psi_i = 2 pi i / n, reduced to one turn
-/// in whole numbers so that meshes in phase are exactly in phase [rad].
+/// Phase 2 pi gamma with gamma_si = Zs psi_i / 2 pi, gamma_ri = -Zr psi_i / 2 pi, psi_i = 2 pi i / n [rad]. Integers reduce
+/// the phase to one turn, so that meshes in phase are exactly in phase.
 fn tooth_phase(joint: &JointParameters, kind: MeshKind, planet: usize) -> f64 {
     let planets = joint.geometry.planets as u64;
     let turns = |teeth: u32| (u64::from(teeth) * planet as u64) % planets;

@@ -1,11 +1,12 @@
-//! The gears: what follows from a joint's parameters, the tables that are designed from them, and the fixed step that
-//! moves them, in f32 on a board.
+//! Gear model: quantities derived from a joint's parameters, the tables designed from these, and the fixed step, which
+//! advances the joint on the tables (f32 on a board). Equations (S1) to (S13): docs/theory/step.md.
 //!
-//! Start with `model`. `flow` takes ticks in which contacts hold, `substep` and `crossing` those in which they may change,
-//! and `warm_start` chooses between the two; `linear_contact` and `light` do the same for planets that ring several times in
-//! a tick; `contact`, `fixed_contact_set`, `excitation` and `stages` serve all of them; `full_forces` has the path of the
-//! tanh dead zone and the common methods, `paper` the paper's. The laws that parameters leave open stand beside it: [`Kinematics`], [`Mechanics`], [`MeshPhasing`],
-//! [`StiffnessSeries`], [`dead_zone`] and [`gear_losses`]; `design` (f64, offline) makes [`tables`] of them.
+//! Start with `model`. `warm_start` chooses the path of a tick: `flow` while contacts hold, `substep` and `crossing` while
+//! contacts may change. For light planets, which ring several times in a tick, `light` chooses between `linear_contact` and
+//! Verlet sub-steps. These paths share `contact`, `fixed_contact_set`, `excitation` and `stages`. `full_forces` holds the
+//! step of the tanh dead zone and common methods for comparison, `paper` the paper's method, `equivalent` the step of
+//! gears without teeth. [`Kinematics`], [`Mechanics`], [`MeshPhasing`], [`StiffnessSeries`], [`dead_zone`] and
+//! [`gear_losses`] derive quantities from parameters; `design` (f64, offline) computes [`tables`].
 
 #![allow(clippy::needless_range_loop, reason = "one index walks several tables of the same mesh")]
 

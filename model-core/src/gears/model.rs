@@ -1,5 +1,5 @@
-//! The joint, one tick at a time: torques in, motion out. Bounded work, no allocation, no panic; SI only in [`Torques`]
-//! and [`Outputs`].
+//! Fixed step of the joint: advances the motion by one tick under given torques, in bounded time, without allocation or
+//! panic. [`Torques`] and [`Outputs`] are in SI; all other quantities are dimensionless.
 
 use core::array;
 
@@ -15,27 +15,27 @@ use crate::gears::{full_forces, light};
 use crate::numbers::Real;
 use parameters::{ContactState, EQUIVALENT};
 
-/// Torques, constant over a tick.
+/// Torques on the joint, constant over a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Torques<T> {
-    /// On the sun shaft [N m].
+    /// Motor torque on the sun shaft [N m].
     pub drive: T,
-    /// Braking the link (the carrier, without compliance) [N m].
+    /// Load torque that brakes the link, or the carrier in a joint without compliance [N m].
     pub load: T,
 }
 
-/// The motion in SI.
+/// Motion of the joint in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outputs<T, const N: usize> {
     /// Whole turns of the rigid-body carrier angle.
     pub carrier_turns: i32,
-    /// The rest of it, in 2^-32 turns.
+    /// Remaining fraction of the carrier angle, in 2^-32 turns.
     pub carrier_fraction: u32,
     /// Rate of the rigid-body carrier angle [rad/s].
     pub carrier_speed: T,
-    /// Motor angle less ratio times rigid carrier angle [rad].
+    /// Motor angle minus ratio times rigid-body carrier angle [rad].
     pub motor_offset: T,
-    /// Link angle less rigid carrier angle [rad].
+    /// Link angle minus rigid-body carrier angle [rad].
     pub link_offset: T,
     /// Gap coordinate u_s - 2 u_c along the line of action [m].
     pub gap: T,
@@ -43,14 +43,14 @@ pub struct Outputs<T, const N: usize> {
     pub wind_up: T,
     /// Mesh deflections [m]: sun-planet of every planet, then ring-planet.
     pub deflections: PerMesh<T, N>,
-    /// Contact states in the same order.
+    /// Contact states in the order of `deflections`.
     pub contacts: PerMesh<ContactState, N>,
 }
 
-/// The model: tables and the state that they advance.
+/// Gear model: tables and the state advanced with them.
 ///
-/// A motor torque of 1 N m turns the joint for 10 ms, 20,000 ticks a second; the angular momentum that it brings in is
-/// shared by everything that turns:
+/// Example: a motor torque of 1 N m accelerates the joint for 10 ms at 20,000 ticks per second; then a load torque
+/// balances the motor, and the speed stays constant:
 ///
 /// ```
 /// use model_core::gears::{Kinematics, Mechanics, Model, Tables, Torques, design::design};
@@ -81,38 +81,38 @@ pub struct Model<'a, T: Real, const N: usize> {
 }
 
 impl<'a, T: Real, const N: usize> Model<'a, T, N> {
-    /// At rest, undeformed, at angle and phase zero.
+    /// Creates a joint at rest, undeformed, at angle and mesh phase zero.
     pub const fn new(tables: &'a Tables<T, N>) -> Self {
         Self { tables, state: State::REST, warm_start: WarmStart::EMPTY }
     }
 
-    /// Back to rest.
+    /// Returns the joint to rest, undeformed, at angle and mesh phase zero.
     pub fn reset(&mut self) {
         self.set_state(State::REST);
     }
 
-    /// The state.
+    /// Returns the state.
     pub fn state(&self) -> &State<T, N> {
         &self.state
     }
 
-    /// Goes on from another state.
+    /// Replaces the state; the next tick starts without laws and accelerations of an earlier tick.
     pub fn set_state(&mut self, state: State<T, N>) {
         self.state = state;
         self.warm_start.invalidate();
     }
 
-    /// Digest of every bit of the state.
+    /// Returns a digest over every bit of the state.
     pub fn state_digest(&self) -> u64 {
         self.state.digest()
     }
 
-    /// Neither infinite nor NaN anywhere.
+    /// Returns true if no coordinate or rate is infinite or NaN.
     pub fn is_finite(&self) -> bool {
         self.state.is_finite()
     }
 
-    /// One tick. Each method has a stack frame of its own, so that methods that a joint does not use cost it no stack.
+    /// Advances the joint by one tick. Each method has its own stack frame, so unused methods cost a joint no stack.
     pub fn step(&mut self, torques: Torques<T>) {
         let tables = self.tables;
         let units = &tables.units;
@@ -121,7 +121,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
             carrier: -(units.load_on_carrier * torques.load),
             link: -(units.load_on_link * torques.load),
         };
-        // Known when it is compiled: an image of an equivalent gear has nothing of the rest.
+        // `N` is known at compile time: the image of an equivalent gear contains no code below this block.
         if N == EQUIVALENT {
             self.state.rigid.advance(&tables.rigid, torques.drive, torques.load);
             let start = Point { position: self.state.position.gap, rate: self.state.rate.gap };
@@ -153,7 +153,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
                     Scheme::PaperEtd1 => paper::step(tables, &applied, &phase, &before),
                     #[cfg(feature = "design")]
                     Scheme::SemiImplicitEuler => full_forces::semi_implicit_euler(tables, &applied, &phase, &before),
-                    // The tanh dead zone's, and the classical method by name.
+                    // The tanh dead zone under `Realtime`, and `RungeKutta4`.
                     _ => full_forces::runge_kutta(tables, &applied, &phase, &before),
                 };
                 (state.position, state.rate) = (after.position, after.rate);
@@ -162,7 +162,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
         state.canonicalise();
     }
 
-    /// The motion now, in SI.
+    /// Returns the motion at the end of the last tick, in SI.
     pub fn outputs(&self) -> Outputs<T, N> {
         let State { position, rigid, .. } = &self.state;
         let units = &self.tables.units;
@@ -186,7 +186,7 @@ impl<'a, T: Real, const N: usize> Model<'a, T, N> {
         }
     }
 
-    /// Mesh phase in 2^-32 periods.
+    /// Returns the mesh phase in 2^-32 periods.
     fn phase(&self) -> u32 {
         let periods = self.tables.excitation.periods_per_turn;
         let phase =

@@ -1,5 +1,5 @@
-//! The paper's own scheme, for comparison: one constant exponential over each sub-step, with everything nonlinear (dead
-//! zone, ripple, imposed error) as a pseudo-force held from its start; first-order exponential time differencing.
+//! Method of the paper, for comparison: first-order exponential time differencing. One constant exponential advances each
+//! sub-step; dead zone, ripple and imposed error act as a pseudo-force held at its value at the start of the sub-step.
 
 #![allow(clippy::op_ref, reason = "a product by value would copy the table")]
 
@@ -14,8 +14,7 @@ use crate::gears::state::{Motion, Relative};
 use crate::gears::tables::{Inputs, Tables, Transition};
 use crate::numbers::Real;
 
-/// One tick of the paper's scheme: constant exponential, pseudo-force held over each sub-step (first-order
-/// exponential time differencing).
+/// Returns the motion after one tick.
 #[inline(never)]
 pub fn step<T: Real, const N: usize>(
     tables: &Tables<T, N>,
@@ -45,11 +44,11 @@ pub fn step<T: Real, const N: usize>(
     motion
 }
 
-/// Mesh forces in the form that the flow's inputs take.
+/// Pseudo-force as input of the flow.
 struct PseudoForce<T, const N: usize> {
     /// Sums over planets: sun-planet, ring-planet.
     sums: [T; 2],
-    /// Deviation of (sun-planet - ring-planet) from its mean.
+    /// Sun-planet minus ring-planet force of every planet, minus the mean over planets.
     apart: [T; N],
 }
 
@@ -66,7 +65,7 @@ impl<T: Real, const N: usize> PseudoForce<T, N> {
     }
 }
 
-/// Motion split into what the planets do together and what each does apart, which the flow decouples.
+/// Motion split into in-phase motion and the planets' deviations from the mean, which the flow decouples.
 #[derive(Clone, Copy)]
 struct Modes<T: Real, const N: usize> {
     in_phase: SVector<T, 6>,
@@ -85,7 +84,7 @@ impl<T: Real, const N: usize> Modes<T, N> {
         }
     }
 
-    /// Linear flow under constant torques.
+    /// Returns the motion after the linear flow under constant torques.
     #[inline]
     fn free(&self, transition: &Transition<T>, applied: &AppliedAcceleration<T>) -> Self {
         let torques = SVector::from([applied.sun, applied.carrier, applied.link]);
@@ -95,7 +94,7 @@ impl<T: Real, const N: usize> Modes<T, N> {
         }
     }
 
-    /// Plus the response to pseudo-forces, each under its time weight.
+    /// Adds the response to pseudo-forces, each with its weight function of time.
     #[inline]
     fn with<const K: usize>(&self, terms: [(&Inputs<T>, &PseudoForce<T, N>); K]) -> Self {
         let mut sum = *self;

@@ -1,7 +1,7 @@
-//! Every planet in turn, written out. On a core with few registers a loop over planets spends its time on addresses:
-//! the sub-step of three planets takes about a seventh more instructions (emulated Cortex-M4F).
+//! Unrolled loop over the planets. On a core with few registers a loop spends its time on addresses: the sub-step of three
+//! planets takes about a seventh more instructions (EMULATED, Cortex-M4F).
 
-/// Does the same for every planet `$i` of `$n`, at most five.
+/// Repeats a block for every planet `$i` of `$n`, at most five.
 macro_rules! each_planet {
     ($n:expr, $i:ident => $act:block) => {
         const { assert!($n <= 5) };

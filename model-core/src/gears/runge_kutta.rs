@@ -1,10 +1,10 @@
-//! The classical fourth-order Runge-Kutta method for x'' = a(x, x', t), written for positions and rates so that the
-//! stages of the position need no evaluation of their own.
+//! Classical fourth-order Runge-Kutta method for x'' = a(x, x', t), written for positions and rates: the stages of the
+//! position need no evaluation.
 
 use crate::gears::state::{Motion, Relative};
 use crate::numbers::Real;
 
-/// One step; `acceleration` is asked at the start (node 0), twice in the middle (node 1) and at the end (node 2).
+/// Advances by one step; calls `acceleration` at the start (node 0), twice in the middle (node 1) and at the end (node 2).
 #[inline(always)]
 pub fn step<T: Real, const N: usize>(
     step: T,

@@ -1,11 +1,11 @@
 //! Units that make the equations dimensionless: length b_c, frequency omega_n (eq. 18) and the mean force K_m b_c.
-//! Torques, masses and angles follow from these; nothing here knows the motion.
+//! The units of torques, masses and angles follow from these three.
 
 use parameters::{JointParameters, MeshKind};
 
 use crate::gears::mechanics::Mechanics;
 
-/// One dimensionless unit of each quantity, in SI.
+/// SI value of one dimensionless unit of each quantity.
 ///
 /// ```
 /// use model_core::gears::Scales;
@@ -24,15 +24,15 @@ use crate::gears::mechanics::Mechanics;
 pub struct Scales {
     /// Length b_c [m].
     pub length: f64,
-    /// Frequency omega_n = sqrt(K_m (1/M_s + 1/M_p)), gears' own masses; of an equivalent gear that of both sides swinging
-    /// on it in contact [rad/s]. Dimensionless time is omega_n t.
+    /// Frequency omega_n = sqrt(K_m (1/M_s + 1/M_p)), without rotor and link; for an equivalent gear the natural frequency
+    /// of motor side against link in contact [rad/s]. Dimensionless time is omega_n t.
     pub frequency: f64,
-    /// Stiffness: the mean of the sun-planet mesh [N/m].
+    /// Stiffness K_m: mean stiffness of the sun-planet mesh [N/m].
     pub stiffness: f64,
 }
 
 impl Scales {
-    /// Scales of a joint.
+    /// Computes the scales of a joint.
     pub fn new(parameters: &JointParameters) -> Self {
         let stiffness = parameters.mesh(MeshKind::SunPlanet).mean_stiffness;
         let length = parameters.characteristic_length;
@@ -44,22 +44,22 @@ impl Scales {
         Self { length, frequency: libm::sqrt(stiffness * inverse_mass), stiffness }
     }
 
-    /// Force K_m b_c [N].
+    /// Returns the unit of force, K_m b_c [N].
     pub fn force(&self) -> f64 {
         self.stiffness * self.length
     }
 
-    /// Acceleration b_c omega_n^2 [m/s^2].
+    /// Returns the unit of acceleration, b_c omega_n^2 [m/s^2].
     pub fn acceleration(&self) -> f64 {
         self.length * self.frequency * self.frequency
     }
 
-    /// Dimensionless acceleration that a unit force gives to a mass: K_m / (M omega_n^2) [-].
+    /// Returns the dimensionless acceleration of a mass under a unit force: K_m / (M omega_n^2) [-].
     pub fn mobility(&self, mass: f64) -> f64 {
         self.stiffness / (mass * self.frequency * self.frequency)
     }
 
-    /// Dimensionless damping C omega_n / K_m [-].
+    /// Returns the dimensionless damping C omega_n / K_m [-].
     pub fn damping(&self, coefficient: f64) -> f64 {
         coefficient * self.frequency / self.stiffness
     }

@@ -1,29 +1,29 @@
-//! The method of a sub-step for x'' = a(x, x', t), a smooth: two evaluations for fourth order. Where it comes from and
-//! how far it is stable is in docs/theory/step.md.
+//! Integration of a sub-step (S9) for x'' = a(x, x', t), a smooth: fourth order with two evaluations. Derivation and
+//! stability limits: docs/theory/step.md.
 //!
-//! In units in which the sub-step lasts 1 and accelerations are counted in sixths (A = a/6), with A_- half a step
-//! before, A_0 now, A_m in the middle and A_1 at the end:
+//! In units in which the sub-step lasts 1 and accelerations are counted in sixths (A = a/6), with A_- (`before`) half a
+//! sub-step earlier, A_0 (`now`) at the start, A_m (`middle`) in the middle and A_1 (`last`) at the end:
 //!
 //! x_m = x + V/2 + A_0 - A_-/4     V_m = V + (9 A_0 - 3 A_-)/2
 //! x_1 = x + V + A_0 + 2 A_m       V_1 = V + A_0 + 4 A_m + A_1 (Simpson's rule)
 //!
-//! A_1 is taken at x_1 and the rate V + 6 A_m of the midpoint rule, and serves the next sub-step as A_0.
+//! A_1 is evaluated at x_1 and the rate V + 6 A_m of the midpoint rule, and is A_0 of the next sub-step.
 
 use crate::gears::contact::AppliedAcceleration;
 use crate::gears::state::{MotionInPlace, Relative};
 use crate::gears::tables::Mobility;
 use crate::numbers::Real;
 
-/// One coordinate: position and rate, its acceleration now and half a sub-step before.
+/// One coordinate: position, rate, and acceleration now and half a sub-step earlier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coordinate<T> {
     /// Position.
     pub position: T,
-    /// Distance that its rate covers in a sub-step.
+    /// Rate, as the distance travelled in a sub-step.
     pub rate: T,
     /// Acceleration now, in sixths.
     pub now: T,
-    /// Acceleration half a sub-step before, in sixths.
+    /// Acceleration half a sub-step earlier, in sixths.
     pub before: T,
 }
 
@@ -37,7 +37,7 @@ pub struct Point<T> {
 }
 
 impl<T: Real> Point<T> {
-    /// The difference to another.
+    /// Returns `self - other`.
     #[inline(always)]
     pub fn minus(self, other: Self) -> Self {
         Self { position: self.position - other.position, rate: self.rate - other.rate }
@@ -45,16 +45,16 @@ impl<T: Real> Point<T> {
 }
 
 impl<T: Real> Coordinate<T> {
-    /// At rest at zero.
+    /// Coordinate at rest at zero.
     pub const ZERO: Self = Self { position: T::ZERO, rate: T::ZERO, now: T::ZERO, before: T::ZERO };
 
-    /// Where it is.
+    /// Returns position and rate.
     #[inline(always)]
     pub fn point(&self) -> Point<T> {
         Point { position: self.position, rate: self.rate }
     }
 
-    /// Where it is in the middle of the sub-step.
+    /// Returns position and rate in the middle of the sub-step, x_m and V_m of (S9).
     #[inline(always)]
     pub fn middle(&self) -> Point<T> {
         let Self { position, rate, now, before } = *self;
@@ -64,19 +64,20 @@ impl<T: Real> Coordinate<T> {
         }
     }
 
-    /// Advances to the end of the sub-step but for the part that `finish` adds; the rate that is returned is predicted.
+    /// Advances to the end of the sub-step, except for the term added by `finish`; returns x_1 and the predicted rate
+    /// V + 6 A_m.
     #[inline(always)]
     pub fn predict(&mut self, middle: T) -> Point<T> {
         let Self { position, rate, now, .. } = *self;
         let predicted = rate + T::SIX * middle;
-        // The change is summed up before it is added to the position, in whose size that rounds once.
+        // Summing the change first rounds the position only once.
         self.position = position + (rate + now + T::TWO * middle);
         self.rate = rate + now + T::FOUR * middle;
         self.before = middle;
         Point { position: self.position, rate: predicted }
     }
 
-    /// The acceleration at the end, for the last part of Simpson's rule and for the next sub-step.
+    /// Adds the last term A_1 of Simpson's rule and stores A_1 for the next sub-step.
     #[inline(always)]
     pub fn finish(&mut self, last: T) {
         self.rate += last;
@@ -84,7 +85,7 @@ impl<T: Real> Coordinate<T> {
     }
 }
 
-/// All coordinates, with a sub-step as the unit of time.
+/// All relative coordinates (S1); the unit of time is a sub-step.
 #[derive(Debug, Clone)]
 pub struct SubstepState<T, const N: usize> {
     /// u_s - u_pi - u_c of every planet, without imposed error.
@@ -96,23 +97,23 @@ pub struct SubstepState<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> SubstepState<T, N> {
-    /// Before any motion is set.
+    /// State before any motion is set.
     pub const EMPTY: Self = Self { planets: [Coordinate::ZERO; N], gap: Coordinate::ZERO, wind_up: Coordinate::ZERO };
 
-    /// Takes position and rate from a motion; accelerations are left as they are.
+    /// Sets positions and rates from a motion; accelerations stay unchanged.
     #[inline(always)]
     pub fn set_motion(&mut self, motion: &MotionInPlace<T, N>, length: T) {
         self.for_each(motion.position, |coordinate, position| coordinate.position = position);
         self.set_rates(motion.rate, length);
     }
 
-    /// Takes the rates alone: positions are those of the last sub-step.
+    /// Sets the rates from a motion; positions stay as the last sub-step left them.
     #[inline(always)]
     pub fn set_rates(&mut self, rates: &Relative<T, N>, length: T) {
         self.for_each(rates, |coordinate, rate| coordinate.rate = length * rate);
     }
 
-    /// Shifts both accelerations as if the torques had always been larger by so much.
+    /// Adds the accelerations of a change of torque to both stored accelerations, as if the torque had always acted.
     #[inline(always)]
     pub fn shift_accelerations(&mut self, applied: &AppliedAcceleration<T>, mobility: &Mobility<T>) {
         self.for_each(&applied.relative(mobility), |coordinate, more| {
@@ -121,8 +122,8 @@ impl<T: Real, const N: usize> SubstepState<T, N> {
         });
     }
 
-    /// Moves a motion to where this is, from sub-steps of a length, which are `per_length` in a unit of time. Rates are taken over as
-    /// their change, so that what no force has changed keeps its bits.
+    /// Writes positions and rates to a motion. `length` is the length of a sub-step, `per_length` its inverse. Rates are
+    /// updated by their change, so that a rate that no force has changed keeps its bits.
     #[inline(always)]
     pub fn move_to(&self, length: T, per_length: T, motion: MotionInPlace<T, N>) {
         let MotionInPlace { position, rate } = motion;
@@ -137,7 +138,7 @@ impl<T: Real, const N: usize> SubstepState<T, N> {
         take(&self.wind_up, &mut position.wind_up, &mut rate.wind_up);
     }
 
-    /// Calls `act` for every coordinate with the value that belongs to it.
+    /// Calls `act` for every coordinate with its value.
     #[inline(always)]
     pub fn for_each(&mut self, values: &Relative<T, N>, mut act: impl FnMut(&mut Coordinate<T>, T)) {
         for i in 0..N {

@@ -1,5 +1,5 @@
-//! What the step carries from tick to tick: the dimensionless relative motion, the rigid body in whole numbers, and
-//! the mesh phase. Nothing here is derived from something else that is also here.
+//! State of the joint between ticks: dimensionless relative motion (S1), the rigid body in integers (S5), and the mesh
+//! phase. The state has no redundant parts.
 
 use core::array;
 
@@ -9,10 +9,10 @@ use crate::gears::tables::{Rigid, Tables};
 use crate::numbers::Real;
 use crate::numbers::digest::{self, chain};
 
-/// Relative coordinates, or their rates or accelerations, in units of b_c.
+/// Relative coordinates (S1), or their rates or accelerations, in units of b_c.
 ///
-/// They are the paper's X (eqs 16, 17) with the imposed errors left out: X_spi = planets[i] - e_spi / b_c. Moving the
-/// errors from the coordinates to the meshes removes their second derivative from the equations.
+/// The paper's X (eqs 16, 17) includes the imposed errors: X_spi = planets[i] - e_spi / b_c. Moving the errors from the
+/// coordinates to the meshes removes the errors' second derivative from the equations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Relative<T, const N: usize> {
     /// u_s - u_pi - u_c of every planet.
@@ -24,10 +24,10 @@ pub struct Relative<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Relative<T, N> {
-    /// All zero.
+    /// Zero coordinates.
     pub const ZERO: Self = Self { planets: [T::ZERO; N], gap: T::ZERO, wind_up: T::ZERO };
 
-    /// self + scale * other.
+    /// Returns `self + scale * other`.
     #[inline]
     pub fn plus(&self, scale: T, other: &Self) -> Self {
         Self {
@@ -37,7 +37,7 @@ impl<T: Real, const N: usize> Relative<T, N> {
         }
     }
 
-    /// Whether its canonical form is known to be itself. The wind-up is zero in joints without compliance.
+    /// Returns true if every number is certainly in canonical form. A wind-up of zero (no compliance) passes.
     #[inline(always)]
     fn is_ordinary(&self) -> bool {
         self.gap.is_ordinary()
@@ -45,8 +45,8 @@ impl<T: Real, const N: usize> Relative<T, N> {
             && self.planets.iter().all(|planet| planet.is_ordinary())
     }
 
-    /// The canonical form of every number, which no floating-point mode changes: none so small that it may be flushed to
-    /// zero, and one NaN for all that is not finite.
+    /// Brings every number into canonical form: values below `LEAST` become zero and non-finite values one NaN, so that no
+    /// floating-point mode changes the result.
     #[inline]
     fn canonical(&self) -> Self {
         Self { planets: self.planets.map(T::canonical), gap: self.gap.canonical(), wind_up: self.wind_up.canonical() }
@@ -62,41 +62,41 @@ impl<T: Real, const N: usize> Relative<T, N> {
     }
 }
 
-/// Position and rate.
+/// Relative motion: position and rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion<T, const N: usize> {
     /// Relative coordinates.
     pub position: Relative<T, N>,
-    /// Their rates.
+    /// Rates of the relative coordinates.
     pub rate: Relative<T, N>,
 }
 
-/// Position and rate where a state keeps them: what moves a motion in place.
+/// Mutable references to position and rate within a state, to advance the motion in place.
 #[derive(Debug)]
 pub struct MotionInPlace<'a, T, const N: usize> {
     /// Relative coordinates.
     pub position: &'a mut Relative<T, N>,
-    /// Their rates.
+    /// Rates of the relative coordinates.
     pub rate: &'a mut Relative<T, N>,
 }
 
-/// The decoupled rigid motion, as carrier angle. Whole numbers: it neither drifts nor loses digits over any number of
-/// turns, and wraps exactly.
+/// Decoupled rigid motion as carrier angle (S5). Integers keep the angle free of drift over any number of turns, and the
+/// angle wraps exactly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RigidBody {
     /// Whole turns of the carrier.
     pub turns: i32,
-    /// The rest, in 2^-64 turns.
+    /// Fraction of a turn, in 2^-64 turns.
     pub fraction: u64,
     /// Speed in 2^-64 turns a tick.
     pub speed: i64,
 }
 
 impl RigidBody {
-    /// At rest at angle zero.
+    /// Rigid body at rest at angle zero.
     pub const REST: Self = Self { turns: 0, fraction: 0, speed: 0 };
 
-    /// One tick under constant torques (exact: x += v + a/2, v += a); returns its travel, in 2^-64 turns.
+    /// Advances by one tick under constant torques, exactly (S5); returns the travel in 2^-64 turns.
     #[inline]
     pub fn advance<T: Real>(&mut self, table: &Rigid<T>, drive: T, load: T) -> i64 {
         let change = (table.drive * drive - table.load * load).to_i64();
@@ -104,7 +104,7 @@ impl RigidBody {
         self.speed = self.speed.saturating_add(change);
         let (fraction, carried) = self.fraction.overflowing_add(travel as u64);
         self.fraction = fraction;
-        // Adding a negative travel as a whole number of 2^64 carries unless a turn is left behind.
+        // A negative travel is added modulo 2^64: the sum carries unless the angle falls below the current turn.
         self.turns = match (travel < 0, carried) {
             (false, true) => self.turns.wrapping_add(1),
             (true, false) => self.turns.wrapping_sub(1),
@@ -114,12 +114,12 @@ impl RigidBody {
     }
 }
 
-/// The whole state.
+/// State of the joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State<T, const N: usize> {
     /// Relative coordinates.
     pub position: Relative<T, N>,
-    /// Their rates, in b_c omega_n.
+    /// Rates of the relative coordinates, in b_c omega_n.
     pub rate: Relative<T, N>,
     /// Rigid motion.
     pub rigid: RigidBody,
@@ -128,12 +128,11 @@ pub struct State<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> State<T, N> {
-    /// At rest, undeformed, at angle and phase zero.
+    /// State at rest, undeformed, at angle and phase zero.
     pub const REST: Self = Self { position: Relative::ZERO, rate: Relative::ZERO, rigid: RigidBody::REST, phase: 0 };
 
-    /// A state with given mesh deflections and rates (eqs 16 and 17: sun-planet deflections, and the gap u_s - 2 u_c),
-    /// in units of b_c and b_c omega_n, and a carrier speed [rad/s], at angle and phase zero. For tests and scenarios;
-    /// the imposed errors are added here.
+    /// Creates a state from sun-planet deflections, gap u_s - 2 u_c and wind-up, their rates (in units of b_c and b_c omega_n)
+    /// and a carrier speed [rad/s], at angle and phase zero. Adds the imposed errors. For tests and scenarios.
     pub fn from_deflections(
         tables: &Tables<T, N>,
         deflections: &Relative<T, N>,
@@ -144,7 +143,7 @@ impl<T: Real, const N: usize> State<T, N> {
         Self::with_rigid_body(tables, deflections, rates, RigidBody { speed, ..RigidBody::REST })
     }
 
-    /// The same with the rigid body at any angle.
+    /// Creates a state from deflections and rates (see [`Self::from_deflections`]) with a given rigid body.
     pub fn with_rigid_body(
         tables: &Tables<T, N>,
         deflections: &Relative<T, N>,
@@ -164,7 +163,7 @@ impl<T: Real, const N: usize> State<T, N> {
         state
     }
 
-    /// Moves an equivalent gear's gap: its planet without mass is in the middle. Canonical as every state is.
+    /// Sets the gap of an equivalent gear, in canonical form; the massless planet moves by half the gap.
     #[inline]
     pub(super) fn set_gap(&mut self, gap: Point<T>) {
         let (position, rate) = (gap.position.canonical(), gap.rate.canonical());
@@ -172,13 +171,13 @@ impl<T: Real, const N: usize> State<T, N> {
         (self.position.planets, self.rate.planets) = ([T::HALF * position; N], [T::HALF * rate; N]);
     }
 
-    /// Position and rate apart from the rest.
+    /// Borrows position and rate.
     #[inline(always)]
     pub(super) fn motion(&mut self) -> MotionInPlace<'_, T, N> {
         MotionInPlace { position: &mut self.position, rate: &mut self.rate }
     }
 
-    /// Brings every number into its canonical form, so that the next tick does not depend on the floating-point mode.
+    /// Brings every number into canonical form, so that the next tick does not depend on the floating-point mode.
     #[inline(always)]
     pub(super) fn canonicalise(&mut self) {
         if !(self.position.is_ordinary() && self.rate.is_ordinary()) {
@@ -191,12 +190,12 @@ impl<T: Real, const N: usize> State<T, N> {
         (self.position, self.rate) = (self.position.canonical(), self.rate.canonical());
     }
 
-    /// Neither infinite nor NaN anywhere.
+    /// Returns true if no coordinate or rate is infinite or NaN.
     pub fn is_finite(&self) -> bool {
         self.position.is_finite() && self.rate.is_finite()
     }
 
-    /// Digest of every bit of the state.
+    /// Returns a digest over every bit of the state.
     pub fn digest(&self) -> u64 {
         let motion = self.rate.digest(self.position.digest(digest::START));
         let RigidBody { turns, fraction, speed } = self.rigid;

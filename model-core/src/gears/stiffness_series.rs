@@ -1,4 +1,4 @@
-//! The stiffness of a mesh over its period as a Fourier series: eq. 7's harmonic, or Fig. 3's rectangular wave.
+//! Fourier series of the mesh stiffness over a mesh period (S3): harmonic wave of eq. 7 or rectangular wave of Fig. 3.
 
 use parameters::StiffnessWave;
 
@@ -18,7 +18,7 @@ use parameters::StiffnessWave;
 /// assert!(wave.swing() < 1.0, "the stiffness stays positive");
 /// ```
 pub trait StiffnessSeries {
-    /// Largest swing about the mean that the harmonics kept can add up to, relative to the mean.
+    /// Upper bound on the deviation from the mean, relative to the mean: sum of the harmonics' amplitudes.
     fn swing(&self) -> f64;
 
     /// Fourier coefficients (a_m, b_m) of harmonic m >= 1: K/K_m = 1 + sum a_m sin(m phase) + b_m cos(m phase).

@@ -1,6 +1,6 @@
-//! A tick in sub-steps, taken when contacts may change. The contact set is fixed over each sub-step, so that its right-hand
-//! side is smooth, and the sub-step is corrected for every crossing that its end reveals. The tanh dead zone has no contact
-//! set: see `full_forces`.
+//! Tick in sub-steps (S9), for ticks in which contacts may change. A fixed contact set makes the right-hand side of a
+//! sub-step smooth; a law violated at the end of the sub-step triggers the crossing correction (S10). The tanh dead zone
+//! has no contact set: see `full_forces`.
 
 use crate::gears::contact::Laws;
 use crate::gears::crossing::StepEnd;
@@ -9,7 +9,7 @@ use crate::gears::fixed_contact_set::FixedContactSet;
 use crate::gears::stages::SubstepState;
 use crate::numbers::Real;
 
-/// One tick from laws and accelerations at its start; both are brought up to date.
+/// Advances the motion by one tick from the laws and accelerations at the start of the tick; updates both.
 #[inline(never)]
 pub fn advance<T: Real, const N: usize, const OVERTONES: usize>(
     fixed: &FixedContactSet<T, N, OVERTONES>,
@@ -61,8 +61,9 @@ pub fn advance<T: Real, const N: usize, const OVERTONES: usize>(
     }
 }
 
-/// The accelerations at the start of a tick, and those of half a sub-step before from a first evaluation in the middle. Where no
-/// tick is taken whole, only one whose motion was set from outside begins so: it makes do with those at its start for both.
+/// Evaluates the accelerations at the start of a tick (cold start): `now` at the start, and `before` by extrapolation from
+/// an evaluation in the middle of the first sub-step. Without exponential ticks a cold start occurs only after the motion
+/// was set from outside, and `before` equals `now`.
 #[inline(never)]
 pub fn begin<T: Real, const N: usize, const OVERTONES: usize>(
     fixed: &FixedContactSet<T, N, OVERTONES>,

@@ -1,5 +1,5 @@
-//! Everything the fixed step needs, as plain numbers: the single doorway between the offline half (`design`, f64) and
-//! the fast half (`model`, f32). Dimensionless (see `scales`) except where a unit stands.
+//! Tables of the fixed step: the only interface between the offline half (`design`, f64) and the real-time half (`model`,
+//! f32). Quantities without a unit are dimensionless (see `scales`).
 
 use core::fmt;
 
@@ -13,83 +13,84 @@ use parameters::MAX_HARMONICS;
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct Tables<T: Real, const N: usize> {
-    /// Digest over all numbers below; the board checks it before it runs.
+    /// Digest over all other fields; the board checks the digest before the model runs.
     pub digest: u64,
-    /// Fixed steps a second [Hz].
+    /// Ticks per second [Hz].
     pub tick_rate: u32,
-    /// How a tick is stepped.
+    /// Integration method of a tick.
     pub scheme: Scheme,
-    /// Sub-steps of a tick in which contacts may change.
+    /// Number of sub-steps in a tick in which contacts may change.
     pub substeps: u32,
-    /// Half a sub-step over the tick.
+    /// Half a sub-step as a fraction of the tick.
     pub half_substep_share: T,
-    /// A sub-step in dimensionless time, h omega_n / substeps.
+    /// Length h of a sub-step: dimensionless tick length over `substeps`.
     pub substep: T,
     /// 1/N.
     pub planet_share: T,
-    /// Force law of the meshes once teeth part.
+    /// Damping law: `contact` (no force in the gap) or `paper` (damping also in the gap).
     pub damping_law: DampingLaw,
-    /// Sharpness of eq. 13; zero stands for the sharp dead zone of eq. 12.
+    /// Sharpness of the tanh dead zone (eq. 13); zero selects the sharp dead zone (eq. 12).
     pub sharpness: T,
-    /// From SI to dimensionless and back.
+    /// Factors between SI and dimensionless quantities.
     pub units: Units<T>,
-    /// The rigid body.
+    /// Gains of the rigid body.
     pub rigid: Rigid<T>,
-    /// What a unit force does to each body.
+    /// Acceleration of each body under a unit force.
     pub mobility: Mobility<T>,
     /// Mesh phase: its source and rate.
     pub excitation: Excitation<T>,
     /// Stiffness and damping common to the meshes of a kind: sun-planet, ring-planet.
     pub springs: [Spring<T>; 2],
-    /// Each mesh: sun-planet of every planet, then ring-planet.
+    /// Parameters of each mesh: sun-planet of every planet, then ring-planet.
     pub meshes: [[MeshTable<T>; N]; 2],
-    /// The joint in the sub-step's own units of time.
+    /// Joint in units in which a sub-step lasts 1.
     pub stage: Stage<T>,
-    /// Exponential flow of the closed joint over one tick (or one sub-step, for [`Scheme::PaperEtd1`]).
+    /// Exponential flow of the joint with all meshes closed, over one tick (one sub-step for [`Scheme::PaperEtd1`]).
     pub flow: Flow<T>,
     /// Verlet sub-steps for light planets.
     pub verlet: VerletTable<T>,
 }
 
-/// Position-Verlet (leapfrog) sub-steps, in a unit of time in which a sub-step lasts one.
+/// Position-Verlet (leapfrog) sub-steps (S11), (S12), in units in which a sub-step lasts 1.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct VerletTable<T: Real> {
-    /// Sub-steps of a tick; zero where planets are not light.
+    /// Number of sub-steps in a tick; zero if Verlet sub-steps are not used.
     pub substeps: u32,
-    /// Half their number.
+    /// Half the number of sub-steps.
     pub half_count: T,
-    /// A sub-step in dimensionless time.
+    /// Length h of a sub-step in dimensionless time.
     pub substep: T,
-    /// Its square.
+    /// h^2.
     pub square: T,
-    /// Its inverse.
+    /// 1/h.
     pub per_substep: T,
     /// Mobilities.
     pub mobility: Mobility<T>,
-    /// Of the wind-up: carrier's and link's together.
+    /// Mobility of the wind-up: sum of the mobilities of carrier and link.
     pub wind_up_mobility: T,
-    /// What the wind-up's own acceleration adds to its damping force.
+    /// Change of the wind-up's damping force per unit of wind-up acceleration.
     pub wind_up_yield: T,
     /// Damping of the meshes of a kind.
     pub damping: [T; 2],
-    /// Half of it: what the mesh's own acceleration adds to its damping force.
+    /// Half of `damping`: change of a mesh's damping force per unit of the mesh's own acceleration.
     pub half_damped: [T; 2],
-    /// What curvature of the path adds to the mean deflection, for a unit of acceleration.
+    /// Change of the mean deflection by the curvature of the path, per unit of acceleration.
     pub curvature: T,
-    /// A mesh is in contact throughout if its overlap in the middle exceeds its speed times (constant - stiffness
-    /// times slope): half a sub-step and damping over stiffness, by which a mesh that parts loses contact early.
+    /// [constant, slope] of each kind: a mesh stays in contact over the sub-step if its overlap in the middle exceeds its
+    /// speed times (constant - slope * stiffness). The bracket is half a sub-step plus damping over stiffness, by which a
+    /// parting mesh loses contact early.
     pub release: [[T; 2]; 2],
 }
 
-/// The joint in units in which a sub-step lasts 1 and an acceleration is counted in sixths: so the weights of a step
-/// are whole numbers, and those that are 1 cost nothing.
+/// Joint in units in which a sub-step lasts 1 and accelerations are counted in sixths: most weights of the step (S9)
+/// become whole numbers, and a weight of 1 costs no instruction.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct Stage<T: Real> {
-    /// Sub-steps in a unit of dimensionless time, 1/h.
+    /// Sub-steps per unit of dimensionless time, 1/h.
     pub rate: T,
-    /// h^2 / 6: what turns a dimensionless acceleration into one of a stage.
+    /// h^2 / 6: converts a dimensionless acceleration to stage units.
     pub square_sixth: T,
     /// Mobilities times h^2 / 6; damping of the wind-up over h.
     pub mobility: Mobility<T>,
@@ -97,51 +98,51 @@ pub struct Stage<T: Real> {
     pub damping: [T; 2],
 }
 
-/// How a tick is stepped. Those for comparisons are no part of a board's image.
+/// Integration method of a tick. Methods for comparison are not part of a board's image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Scheme {
-    /// Exponential flow while the contact set holds over the tick; otherwise sub-steps with a fixed contact set,
-    /// corrected for every crossing.
+    /// Exponential flow while the contact set holds over the tick; otherwise sub-steps with a fixed contact set, corrected
+    /// for every crossing, or Verlet sub-steps. With a tanh dead zone: Runge-Kutta.
     Realtime,
-    /// The paper's: one constant exponential, everything nonlinear held as a pseudo-force over the sub-step.
+    /// Method of the paper: one constant exponential; all nonlinear forces are a pseudo-force held over the sub-step.
     #[cfg(feature = "design")]
     PaperEtd1,
     /// Classical Runge-Kutta on the full forces, for comparison.
     #[cfg(feature = "design")]
     RungeKutta4,
-    /// Semi-implicit Euler on the full forces, likewise.
+    /// Semi-implicit Euler on the full forces, for comparison.
     #[cfg(feature = "design")]
     SemiImplicitEuler,
 }
 
-/// From SI to dimensionless and back.
+/// Factors between SI and dimensionless quantities.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct Units<T: Real> {
-    /// Dimensionless acceleration of the sun for each N m of drive torque.
+    /// Dimensionless acceleration of the sun per N m of drive torque.
     pub drive: T,
-    /// Dimensionless deceleration of the carrier for each N m of load torque (no compliance).
+    /// Dimensionless deceleration of the carrier per N m of load torque (without compliance).
     pub load_on_carrier: T,
-    /// Dimensionless deceleration of the link for each N m of load torque (with compliance).
+    /// Dimensionless deceleration of the link per N m of load torque (with compliance).
     pub load_on_link: T,
     /// Characteristic length b_c [m].
     pub length: T,
-    /// Carrier speed for each 2^-64 turn a tick [rad/s].
+    /// Carrier speed per 2^-64 turn a tick [rad/s].
     pub carrier_speed: T,
-    /// Sun displacement beyond the rigid body's, for each unit of: any planet, gap, wind-up [rad].
+    /// Angle of the sun beyond the rigid body, per unit of one planet's coordinate, the gap and the wind-up [rad].
     pub motor_offset: [T; 3],
-    /// Link displacement beyond the rigid body's, likewise [rad].
+    /// Angle of the link beyond the rigid body, per unit of one planet's coordinate, the gap and the wind-up [rad].
     pub link_offset: [T; 3],
 }
 
-/// The rigid body: gains from torque to speed change a tick, in 2^-64 turns a tick.
+/// Rigid body: speed change per tick caused by a torque, in 2^-64 turns a tick per N m.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct Rigid<T: Real> {
-    /// For each N m of drive torque.
+    /// Gain of the drive torque.
     pub drive: T,
-    /// For each N m of load torque.
+    /// Gain of the load torque, which decelerates.
     pub load: T,
 }
 
@@ -153,11 +154,11 @@ pub struct Mobility<T: Real> {
     pub sun: T,
     /// One planet.
     pub planet: T,
-    /// Carrier; with the link when there is no compliance.
+    /// Carrier, together with the link in a joint without compliance.
     pub carrier: T,
     /// Link; zero without compliance.
     pub link: T,
-    /// One with compliance, zero without: there the wind-up stays zero.
+    /// 1 with compliance; 0 without compliance, where the wind-up stays zero.
     pub wind_up: T,
     /// Stiffness between carrier and link.
     pub wind_up_stiffness: T,
@@ -171,13 +172,13 @@ pub struct Mobility<T: Real> {
 pub struct Excitation<T: Real> {
     /// `time` mode: fraction of a mesh period that a tick adds, in 2^-64; zero in `angle` mode.
     pub phase_step: u64,
-    /// `time` mode: mesh periods a tick in 2^-32, whole periods included; zero in `angle` mode.
+    /// `time` mode: mesh periods per tick in 2^-32, whole periods included; zero in `angle` mode.
     pub phase_advance: T,
-    /// `angle` mode: ring teeth, mesh periods a carrier turn; zero in `time` mode.
+    /// `angle` mode: mesh periods per carrier turn, which is the number of ring teeth; zero in `time` mode.
     pub periods_per_turn: u32,
-    /// Phase rate in radians a unit of dimensionless time, for each 2^-32 period a tick.
+    /// Phase rate [rad per unit of dimensionless time] per 2^-32 period a tick.
     pub rate: T,
-    /// Harmonics of the stiffness wave in use.
+    /// Number of harmonics of the stiffness wave.
     pub harmonics: u32,
 }
 
@@ -191,78 +192,80 @@ pub struct Spring<T: Real> {
     pub damping: T,
 }
 
-/// One mesh.
+/// Parameters of one mesh.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct MeshTable<T: Real> {
     /// Half-backlash b.
     pub half_backlash: T,
-    /// Transmission error = sine * sin(phase) + cosine * cos(phase): [sine, cosine].
+    /// Coefficients [sine, cosine] of the transmission error sine * sin(phase) + cosine * cos(phase) (S3).
     pub error: [T; 2],
-    /// Stiffness = mean + sum over harmonics of [sine, cosine] likewise.
+    /// Coefficients [sine, cosine] of each harmonic of the stiffness about its mean (S3).
     pub ripple: [[T; 2]; MAX_HARMONICS],
 }
 
-/// Exponential flow over a step: in-phase motion and the planets' deviations from their mean, which decouple.
+/// Exponential flow (S7), (S8) over a step, for the in-phase motion and the planets' deviations from their mean, which are
+/// decoupled.
 ///
 /// In-phase state: mean planet, gap, wind-up, then their rates. Deviation state: deviation, rate. Transitions are
-/// stored less the identity, which saves a digit in f32.
+/// stored minus the identity, which saves a digit in f32.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct Flow<T: Real> {
-    /// Over the whole step.
+    /// Transition over the whole step.
     pub whole: Transition<T>,
-    /// Up to the first node within the step.
+    /// Transition up to the first node within the step.
     pub early: Transition<T>,
-    /// Up to the second node.
+    /// Transition up to the second node.
     pub late: Transition<T>,
-    /// Input integrals up to the first node, of a pseudo-force linear through its value and its rate (a sub-step) at
-    /// the start.
+    /// Input integrals up to the first node, of a pseudo-force linear in time: its value and its rate (per sub-step) at the
+    /// start.
     pub early_inputs: [Inputs<T>; 2],
-    /// Up to the second node, of a parabola: value and rate at the start, value at the first node.
+    /// Input integrals up to the second node, of a parabola: value and rate at the start, value at the first node.
     pub late_inputs: [Inputs<T>; 3],
-    /// Over the whole step, of a cubic: value and rate at the start, values at both nodes.
+    /// Input integrals over the whole step, of a cubic: value and rate at the start, values at both nodes.
     pub whole_inputs: [Inputs<T>; 4],
-    /// Where the nodes are, as parts of the step.
+    /// Times of the nodes as fractions of the step.
     pub nodes: [T; 2],
-    /// Up to the middle: for light planets, whose whole tick evaluates its pseudo-force there alone.
+    /// Transition up to the middle of the step, where light planets evaluate the pseudo-force.
     pub half: Transition<T>,
     /// Input integrals up to the middle, of a constant pseudo-force.
     pub half_constant: Inputs<T>,
-    /// Over the whole step, of a pseudo-force linear through its values at the start and in the middle.
+    /// Input integrals over the whole step, of a pseudo-force linear through its values at the start and in the middle.
     pub whole_linear: [Inputs<T>; 2],
-    /// Pseudo-force constant over the whole step.
+    /// Input integrals over the whole step, of a constant pseudo-force.
     pub whole_constant: Inputs<T>,
-    /// The step, in dimensionless time.
+    /// Length of the step in dimensionless time.
     pub step: T,
-    /// A mesh counts as safely closed at the start of a whole tick when its overlap exceeds this times its speed.
+    /// Time by which the speed of a mesh is multiplied; if its overlap exceeds the product, the mesh is safely closed at the
+    /// start of an exponential tick.
     pub reach: T,
-    /// Mesh periods over the step, in 2^-32, up to which the excitation counts as quadratic in time; zero where no tick is
-    /// taken whole.
+    /// Limit of the mesh phase's advance per step for an exponential tick, in 2^-32 periods: below it the excitation is
+    /// nearly quadratic in time. Zero disables exponential ticks.
     pub longest_advance: T,
 }
 
 impl<T: Real> Flow<T> {
-    /// Whether ticks in which contact holds are taken as a whole.
+    /// Returns true if ticks in which contacts hold are exponential ticks.
     #[inline(always)]
     pub fn takes_whole_ticks(&self) -> bool {
         self.longest_advance > T::ZERO
     }
 }
 
-/// exp(H h) - I in both subspaces, and the response to torques constant over the step.
+/// exp(H t) - I for in-phase motion and deviations, and the response to constant torques.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct Transition<T: Real> {
     /// In-phase motion.
     pub in_phase: Block<T, 6, 6>,
-    /// Deviation of a planet.
+    /// Deviation of a planet from the mean planet.
     pub deviation: Block<T, 2, 2>,
     /// In-phase response to a unit of sun, carrier and link acceleration.
     pub torques: Block<T, 6, 3>,
 }
 
-/// Response to pseudo-forces under one time weight.
+/// Response to pseudo-forces with one weight function of time.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C)]
 pub struct Inputs<T: Real> {
@@ -272,12 +275,12 @@ pub struct Inputs<T: Real> {
     pub deviation: [T; 2],
 }
 
-/// A matrix of a table, `R` rows by `C` columns; prints as the Rust expression that makes it.
+/// Matrix of a table, `R` rows by `C` columns; its `Debug` form is the Rust expression that constructs it.
 #[derive(Clone, PartialEq)]
 #[repr(transparent)]
 pub struct Block<T: Real, const R: usize, const C: usize>(pub SMatrix<T, R, C>);
 
-/// A block from its columns.
+/// Creates a block from its columns.
 pub const fn block<T: Real, const R: usize, const C: usize>(columns: [[T; R]; C]) -> Block<T, R, C> {
     Block(SMatrix::from_array_storage(ArrayStorage(columns)))
 }
@@ -289,12 +292,12 @@ impl<T: Real, const R: usize, const C: usize> fmt::Debug for Block<T, R, C> {
 }
 
 impl<T: Real, const N: usize> Tables<T, N> {
-    /// Whether the numbers are those that the digest was taken over.
+    /// Returns true if the stored digest matches the numbers.
     pub fn digest_is_good(&self) -> bool {
         self.digest == self.numbers_digest()
     }
 
-    /// Digest over every number but the digest itself.
+    /// Computes the digest over every number except the stored digest.
     pub fn numbers_digest(&self) -> u64 {
         let mut digest = Digest(digest::START);
         digest.whole(N as u64);
@@ -330,7 +333,7 @@ impl<T: Real, const N: usize> Tables<T, N> {
     }
 }
 
-/// Takes a digest over numbers in the order in which they are given.
+/// Running digest over numbers; the order of the numbers matters.
 struct Digest(u64);
 
 impl Digest {
@@ -338,7 +341,7 @@ impl Digest {
         self.0 = digest::chain(self.0, word);
     }
 
-    /// Not inlined: it runs once, when a board starts, and is called some dozens of times.
+    /// Adds real numbers. Not inlined, to save flash: called some dozens of times, once after the start of a board.
     #[inline(never)]
     fn reals<T: Real>(&mut self, values: &[T]) {
         values.iter().for_each(|value| self.whole(value.bits()));

@@ -1,6 +1,6 @@
-//! A tick of the sharp dead zone: by exponential while its contact set holds, otherwise in sub-steps, with a warm start: a
-//! tick in sub-steps leaves contact laws and accelerations from which the next one continues, so that only the first of
-//! several has to evaluate its start. Joints with light planets are stepped by `light`.
+//! Tick of a joint with sharp dead zone and without Verlet sub-steps (for these see `light`): an exponential tick while the
+//! contact set holds, otherwise sub-steps. A tick in sub-steps stores contact laws and accelerations, from which the next
+//! tick in sub-steps starts (warm start); without these a tick evaluates its start (cold start).
 
 use crate::gears::contact::{AppliedAcceleration, Law, Laws};
 use crate::gears::excitation::{MeshPhase, PhaseHarmonics, Phasor};
@@ -13,30 +13,30 @@ use crate::gears::tables::{Mobility, Tables};
 use crate::numbers::Real;
 use parameters::DampingLaw;
 
-/// What is known of the start of a tick from the one before.
+/// Quantities at the start of a tick known from the last tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Known {
-    /// Nothing.
+    /// No quantity.
     Nothing,
-    /// The laws of the meshes.
+    /// Laws of the meshes.
     Laws,
     /// Laws and accelerations, under the torques of the last tick.
     Accelerations,
 }
 
-/// What a tick leaves for the next one besides position and rate. It may be dropped at any time: the next tick then
-/// evaluates its start again.
+/// Data that a tick stores for the next tick in addition to position and rate. Optional: without it the next tick
+/// evaluates its start.
 #[derive(Debug, Clone)]
 pub struct WarmStart<T, const N: usize> {
     laws: Laws<T, N>,
     state: SubstepState<T, N>,
-    /// Accelerations by the torques of the last tick, in units of a stage.
+    /// Accelerations by the torques of the last tick, in stage units.
     applied: AppliedAcceleration<T>,
     known: Known,
 }
 
 impl<T: Real, const N: usize> WarmStart<T, N> {
-    /// Nothing to continue from.
+    /// Warm start without any known quantity.
     pub const EMPTY: Self = Self {
         laws: [[Law::ZERO; N]; 2],
         state: SubstepState::EMPTY,
@@ -44,12 +44,13 @@ impl<T: Real, const N: usize> WarmStart<T, N> {
         known: Known::Nothing,
     };
 
-    /// To be called when the motion is changed from outside.
+    /// Discards laws and accelerations; to be called when the motion is changed from outside.
     pub fn invalidate(&mut self) {
         self.known = Known::Nothing;
     }
 
-    /// One tick, in place. Ripple of one harmonic has a copy of its own, which skips the test for more at every mesh.
+    /// Advances the motion in place by one tick. `OVERTONES` is 0 for ripple of one harmonic: this instance omits the test for
+    /// overtones at every mesh.
     #[inline(always)]
     pub fn tick<const OVERTONES: usize>(
         &mut self,
@@ -109,7 +110,8 @@ impl<T: Real, const N: usize> WarmStart<T, N> {
     }
 }
 
-/// Puts accelerations under other torques. Controllers are often slower than ticks: then most changes are none.
+/// Adds a change of torque to the stored accelerations. Controllers are often slower than ticks, so the change is often
+/// zero.
 #[inline(always)]
 fn shift<T: Real, const N: usize>(
     state: &mut SubstepState<T, N>,

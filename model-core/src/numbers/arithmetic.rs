@@ -2,7 +2,7 @@
 
 use crate::numbers::real::Real;
 
-/// The value, limited to the range from `low` to `high`.
+/// Limits a value to the range from `low` to `high`.
 pub fn clamp<T: Real>(value: T, low: T, high: T) -> T {
     if value < low {
         low
@@ -13,7 +13,7 @@ pub fn clamp<T: Real>(value: T, low: T, high: T) -> T {
     }
 }
 
-/// The value with a dead band about zero: its excess over the band on either side, else zero.
+/// Applies a dead band about zero: returns the excess of the value over the band on either side, and zero within.
 pub fn beyond<T: Real>(value: T, band: T) -> T {
     value - clamp(value, -band, band)
 }

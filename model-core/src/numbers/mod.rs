@@ -1,5 +1,5 @@
-//! Arithmetic that gives the same bits on every host and board: the numbers that the step is written for, phases,
-//! bounds, digests and random words.
+//! Arithmetic with equal bits on every host and board: scalar trait of the core, sine and cosine of phases, clamp and dead
+//! band, digests, random words.
 
 pub(crate) mod arithmetic;
 pub mod digest;

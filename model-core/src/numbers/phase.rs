@@ -1,13 +1,12 @@
-//! Sine and cosine of a phase held in 2^-32 turns: a whole-number reduction to an eighth of a turn and two short
-//! polynomials. The step needs nothing from a maths library for it; libm's `sinf` costs some thirty times as much on
-//! a core with single-precision hardware only.
+//! Sine and cosine of a phase in 2^-32 turns: integer reduction to an eighth of a turn, then two short polynomials.
+//! libm's `sinf` costs about thirty times as much on a core with single-precision hardware only.
 
 use crate::numbers::real::Real;
 
-/// (sin, cos) of 2 pi phase / 2^32; error below 1e-7.
+/// Returns (sin, cos) of 2 pi phase / 2^32; error below 1e-7.
 #[inline]
 pub fn sine_cosine<T: Real>(phase: u32) -> (T, T) {
-    // Nearest quarter turn, and what is left of it: at most an eighth of a turn either way.
+    // Nearest quarter turn, and the rest: at most an eighth of a turn in either direction.
     let quarter = phase.wrapping_add(1 << 29) >> 30;
     let rest = phase.wrapping_sub(quarter << 30) as i32;
     let turns = T::from_i32(rest) * T::PHASE_UNIT;

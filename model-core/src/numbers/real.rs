@@ -1,10 +1,10 @@
-//! The scalar that the core is written over: `f32` on the board, `f64` where a test wants the same source without
-//! rounding. Only operations whose bits agree on host and target are here; nothing fused, nothing from the platform.
+//! Scalar type of the core: `f32` on the board, `f64` for tests that need smaller rounding errors. The trait has only
+//! operations with equal bits on host and target: no fused operations, no functions of the platform.
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// A real number with bit-exact arithmetic everywhere.
+/// Real number with bit-exact arithmetic on every host and target.
 pub trait Real:
     Copy
     + Debug
@@ -51,10 +51,10 @@ pub trait Real:
     const TWENTIETH: Self;
     /// 2^-32.
     const PHASE_UNIT: Self;
-    /// Least size of a number that the state keeps; what is smaller is zero. So far above the denormal numbers that no
-    /// product of a step falls among them, so far below one that nothing is lost.
+    /// Smallest magnitude in the state; smaller values become zero. Large enough that no product in a step is denormal, and
+    /// small enough against 1 that no accuracy is lost.
     const LEAST: Self;
-    /// The only NaN that the state keeps.
+    /// The only NaN in the state.
     const NAN: Self;
     /// Polynomial of sin(2 pi t) / t in t^2; see `numbers::phase`.
     const SINE: [Self; 4];
@@ -64,31 +64,31 @@ pub trait Real:
     fn from_f64(value: f64) -> Self;
     /// Exact value; for tests and reports, never in the step.
     fn to_f64(self) -> f64;
-    /// Nearest value of a whole number.
+    /// Nearest value of a 32-bit integer.
     fn from_i32(value: i32) -> Self;
-    /// Nearest value of a wide whole number.
+    /// Nearest value of a 64-bit integer.
     fn from_i64(value: i64) -> Self;
-    /// Towards zero, saturating; NaN gives 0.
+    /// Integer rounded towards zero, saturating; NaN gives 0.
     fn to_i64(self) -> i64;
-    /// An advance in 2^-32 periods as a phase, whole periods left out, towards zero to at least 24 binary digits of a period;
-    /// NaN gives 0.
+    /// Phase of an advance in 2^-32 periods, without whole periods, rounded towards zero to at least 24 bits of a period; NaN
+    /// gives 0.
     fn to_phase(self) -> u32;
-    /// Hyperbolic tangent, the same bits on host and target.
+    /// Hyperbolic tangent, with equal bits on host and target.
     fn tanh(self) -> Self;
     /// Quotient; `divisor` must not be zero.
     fn over(self, divisor: Self) -> Self;
     /// Magnitude.
     fn abs(self) -> Self;
-    /// Square root of what is not negative, by Newton's iteration from the exponent halved: the same bits everywhere, and
-    /// right to a few units in the last place. Zero and what is below it give zero.
+    /// Square root, accurate to a few units in the last place; zero for zero, negative values and NaN. Newton's iteration from
+    /// half the exponent, with equal bits everywhere.
     fn square_root(self) -> Self;
-    /// Canonical form, which no floating-point mode changes: zero if it is smaller than `LEAST`, `NAN` if it is not finite.
-    /// By whole numbers: flags of floating-point comparisons are slow to read on a Cortex-M4F.
+    /// Canonical form, which no floating-point mode changes: zero for magnitudes below `LEAST`, `NAN` for non-finite values.
+    /// Compares integers, because flags of floating-point comparisons are slow to read on a Cortex-M4F.
     fn canonical(self) -> Self;
-    /// Finite and not smaller than `LEAST`: its own canonical form, which is found here by one comparison. So is zero, which is
-    /// not told here.
+    /// Returns true for finite values of at least `LEAST` in magnitude, which are in canonical form; needs one comparison.
+    /// Returns false for zero, although zero is in canonical form.
     fn is_ordinary(self) -> bool;
-    /// Neither infinite nor NaN.
+    /// Returns true for values that are neither infinite nor NaN.
     fn is_finite(self) -> bool;
     /// Bits for a digest.
     fn bits(self) -> u64;
@@ -149,7 +149,7 @@ macro_rules! real {
             }
             fn square_root(self) -> Self {
                 if self > 0.0 {
-                    // Of 1 / sqrt(x): each step doubles the digits that are right.
+                    // Iteration for 1 / sqrt(x): each step doubles the number of correct digits.
                     let mut inverse = <$scalar>::from_bits($first - (self.to_bits() >> 1));
                     for _ in 0..$steps {
                         inverse *= 1.5 - 0.5 * self * inverse * inverse;
@@ -185,7 +185,7 @@ macro_rules! real {
     };
 }
 
-/// By a conversion of the hardware: one to 64 bits is a library call of 29 instructions on a Cortex-M4F.
+/// Converts with a hardware instruction: a conversion to 64 bits is a library call of 29 instructions on a Cortex-M4F.
 fn single_phase(advance: f32) -> u32 {
     ((advance * (1.0 / 256.0)) as i32 as u32) << 8
 }
@@ -194,14 +194,15 @@ fn double_phase(advance: f64) -> u32 {
     advance as i64 as u32
 }
 
-/// By a conversion of the hardware: one from 64 bits is a library call.
+/// Converts values of 32 bits with a hardware instruction: a conversion from 64 bits is a library call.
 #[inline(never)]
 fn single_of_whole(value: i64) -> f32 {
     let lower = value as i32;
     if i64::from(lower) == value { lower as f32 } else { single_of_large(value) }
 }
 
-/// Of a number beyond 32 bits its upper 32, the lowest of them set if one below was: so it rounds as the whole number does.
+/// Converts the upper 32 bits of the magnitude. The lowest of them is set if any bit below is set, so that the result is
+/// rounded as the whole number would be.
 #[cold]
 #[inline(never)]
 fn single_of_large(value: i64) -> f32 {
@@ -218,8 +219,8 @@ fn double_of_whole(value: i64) -> f64 {
     value as f64
 }
 
-/// By two conversions of the hardware, for the upper and the lower half: one to 64 bits is a library call. Every difference is
-/// exact, and what is beyond the range saturates.
+/// Converts upper and lower half with two hardware instructions: a conversion to 64 bits is a library call. Every
+/// difference is exact; values beyond the range saturate.
 #[inline(always)]
 fn single_whole(value: f32) -> i64 {
     const HALF: f32 = 4_294_967_296.0;
@@ -241,8 +242,9 @@ fn double_whole(value: f64) -> i64 {
     value as i64
 }
 
-// 2^-40 and 2^-300; the quiet NaN without sign or payload; first guesses of an inverse root (three halves of the
-// exponent's bias less half of the number's bits, to 3.5 %) and the steps from there.
+// `LEAST` is 2^-40 and 2^-300; `NAN` the quiet NaN without sign or payload. The last two are the constant for the first
+// guess of an inverse root (3/2 of the exponent's bias minus half of the number's bits, within 3.5 %) and the number of
+// Newton steps.
 real!(
     f32,
     u32,
@@ -288,7 +290,7 @@ mod tests {
     #[test]
     fn a_number_of_a_whole_one_of_64_bits_is_the_one_that_the_language_says() {
         let mut state = 7;
-        // Halves between two numbers, and what is next to them, at every size.
+        // Midpoints between two adjacent numbers, and the integers next to the midpoints, at every magnitude.
         let halves = (24..63).flat_map(|bit| {
             let half = (1_i64 << bit) + (1 << (bit - 24));
             [half - 1, half, half + 1, half + (1 << (bit - 23)), (1 << bit) - 1]

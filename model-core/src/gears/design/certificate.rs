@@ -1,5 +1,5 @@
-//! Makes the certificate: instructions from `cost`, stability from `stability`. Errors are no part of it: they are measured,
-//! which takes the runtime, some motions and a second of the host.
+//! Computes the certificate: instructions from `cost`, stability from `stability`. The certificate contains no errors:
+//! measuring these takes the fixed step, some motions and a second on the host.
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -11,7 +11,7 @@ use crate::gears::model::Model;
 use crate::gears::tables::Tables;
 use parameters::JointParameters;
 
-/// The certificate of tables at a tick rate.
+/// Computes the certificate of a joint at a tick rate.
 pub fn certificate(parameters: &JointParameters, tick_rate: u32, effort: Effort) -> Result<Certificate, DesignError> {
     validate(parameters)?;
     let step_size = StepSize::new(parameters);
@@ -40,27 +40,28 @@ pub fn certificate(parameters: &JointParameters, tick_rate: u32, effort: Effort)
 
 fn unseen(step_size: &StepSize, tick_rate: u32, substeps: Substeps) -> Unseen {
     let checks = match substeps {
-        // An exponential tick checks its meshes in the middle and at its end.
+        // An exponential tick checks its meshes at two nodes, half a tick apart.
         Substeps::Corrected(substeps) => substeps.min(2),
         Substeps::Verlet(substeps) => substeps,
     };
     let duration = 1.0 / (f64::from(tick_rate) * f64::from(checks));
     let departure = match substeps {
         Substeps::Corrected(_) => departure(step_size.phase(tick_rate, checks)),
-        // A Verlet sub-step goes straight on from its middle: cos x + x sin x >= 1 up to x = 2.3 sees every mesh that leaves.
+        // The path of a Verlet sub-step is straight from its middle: cos x + x sin x >= 1 up to x = 2.3, so every mesh
+        // that leaves its flank is detected.
         Substeps::Verlet(_) => Some(0.0),
     };
     Unseen { duration, departure }
 }
 
-/// A mesh under a load that deflects it by D oscillates by A > D at the fastest mode, D + A cos(omega t): it is off its
-/// flank for 2 acos(D / A) / omega and goes A - D beyond. All of that falls between two checks up to this (A - D) / D.
+/// Returns the largest undetected (A - D) / D. A mesh deflected by D under load oscillates as D + A cos(omega t) at the
+/// fastest mode; with A > D it is off its flank for 2 acos(D / A) / omega, by up to A - D, between two checks.
 fn departure(phase: f64) -> Option<f64> {
     let half = 0.5 * phase;
     (half < FRAC_PI_2).then(|| 1.0 / libm::cos(half) - 1.0)
 }
 
-/// Bytes of tables and model.
+/// Returns the sizes of tables and model [byte].
 fn sizes(planets: usize) -> (u32, u32) {
     fn of<const N: usize>() -> (u32, u32) {
         (size_of::<Tables<f32, N>>() as u32, size_of::<Model<'_, f32, N>>() as u32)
@@ -77,7 +78,7 @@ fn sizes(planets: usize) -> (u32, u32) {
 mod tests {
     use super::*;
 
-    /// Whether a mesh at 1 + amplitude cos(angle) is still on its flank at both of two checks about its deepest point.
+    /// Returns true if a mesh at 1 - amplitude cos(angle) is on its flank at both checks around its largest departure.
     fn slips_between(phase: f64, amplitude: f64) -> bool {
         [-0.5, 0.5].iter().all(|side| 1.0 - amplitude * libm::cos(side * phase) >= 0.0)
     }

@@ -1,56 +1,55 @@
-//! Instructions of a tick, predicted from what it does. Every constant was counted on an emulated Cortex-M4F (QEMU,
+//! Predicts the instructions of a tick from its operations. All constants were counted on an EMULATED Cortex-M4F (QEMU,
 //! rustc 1.96, opt-level 3, fat LTO) over 108 sets of tables (3, 4 and 5 planets, both laws, with compliance and
-//! without, 1, 2 and 5 harmonics, 1, 2 and 4 sub-steps; Verlet sub-steps apart).
+//! without, 1, 2 and 5 harmonics, 1, 2 and 4 sub-steps), and separately for Verlet sub-steps.
 //!
-//! A tick by the exponential flow costs the same each time. One in sub-steps goes on from the one before at a fixed part, each
-//! sub-step, each correction and each mesh that crosses. It costs more when it begins anew: after an exponential tick, which
-//! may have been tried and given up, or when the motion was set from outside. More than one harmonic of the stiffness wave
-//! makes every evaluation of a mesh dearer.
+//! An exponential tick has a constant cost. A tick in sub-steps costs a fixed part, plus each sub-step, each correction and
+//! each crossing mesh. A cold start adds cost: after an exponential tick, after an abandoned exponential tick, or after
+//! the motion was set from outside. More than one harmonic of the stiffness wave adds cost to every evaluation of a mesh.
 
 use crate::gears::certificate::Substeps;
 use parameters::{DampingLaw, JointParameters, MESH_KINDS, MIN_PLANETS};
 
-/// Instructions with one number of planets, one harmonic, law `paper`, without compliance.
+/// Instructions for one number of planets, with one harmonic, law `paper`, without compliance.
 struct Counted {
     hold: f64,
-    /// More with compliance.
+    /// Additional instructions of `hold` with compliance.
     hold_compliant: f64,
     given_up: f64,
-    /// Where no tick is taken whole, and where some are.
+    /// Cold start of a joint without exponential ticks, and with exponential ticks.
     anew: [f64; 2],
     fixed: f64,
     substep: f64,
     correction: f64,
 }
 
-/// Verlet sub-steps of light planets with one number of planets; compliance and overtones change them less than counts differ.
+/// Instructions of a tick of light planets for one number of planets; compliance and overtones change the instructions less
+/// than the counts scatter.
 #[derive(Debug, PartialEq)]
 struct VerletCost {
-    /// Every mesh is in contact.
+    /// Exponential tick, every mesh in contact.
     hold: f64,
-    /// More if that is given up at the last planet and not at the first.
+    /// Additional instructions if the exponential tick is abandoned at the last planet instead of the first.
     given_up: f64,
-    /// Law `paper`, `contact`.
+    /// Fixed part of a tick in sub-steps under the laws `paper` and `contact`.
     fixed: [f64; 2],
-    /// All teeth apart, law `paper`, `contact`.
+    /// One sub-step with all meshes open, under the laws `paper` and `contact`.
     substep: [f64; 2],
 }
 
-/// 3, 4 and 5 planets, each counted to the instruction at 3 and 9 Verlet sub-steps.
+/// Costs for 3, 4 and 5 planets, each counted to the instruction at 3 and 9 Verlet sub-steps.
 const VERLET: [VerletCost; 3] = [
     VerletCost { hold: 1182.0, given_up: 100.0, fixed: [564.0, 573.0], substep: [160.0, 151.0] },
     VerletCost { hold: 1441.0, given_up: 159.0, fixed: [653.0, 642.0], substep: [280.0, 196.0] },
     VerletCost { hold: 1686.0, given_up: 316.0, fixed: [824.0, 831.0], substep: [344.0, 333.0] },
 ];
-/// More for a mesh that touches its flank in a Verlet sub-step, found by the search for the worst tick; and still more for one that
-/// is not a number, so that no way through the machine code takes more.
+/// Additional instructions of a Verlet sub-step for a mesh that touches its flank (`TOUCH`, found by the search for the
+/// worst tick), and further for a mesh that is NaN, so that no path through the machine code takes more.
 const TOUCH: f64 = 50.0;
 const NOT_A_NUMBER: f64 = 23.0;
 
-/// 3, 4 and 5 planets. Counted to the instruction at 2 and 8 sub-steps, but for `given_up`: what is done of a whole tick up to
-/// its second node, for three planets by function, in proportion to `hold` for others; `anew` at 2 sub-steps of four test joints, under
-/// both laws. `fixed` is with torques that change; without
-/// it is 34 to 42 less.
+/// Costs for 3, 4 and 5 planets, counted to the instruction at 2 and 8 sub-steps. `given_up`: the part of an exponential
+/// tick up to its second node, counted by function for three planets, in proportion to `hold` for others. `anew`: counted at
+/// 2 sub-steps of four test joints under both laws. `fixed`: with changing torques; constant torques take 34 to 42 less.
 const COUNTED: [Counted; 3] = [
     Counted {
         hold: 1799.0,
@@ -80,35 +79,35 @@ const COUNTED: [Counted; 3] = [
         correction: 550.0,
     },
 ];
-/// More in a tick whose state has numbers that are not canonical, by planet.
+/// Additional instructions per planet in a tick whose state is not canonical.
 const CANONICAL: f64 = 42.0;
-/// An equivalent gear: in contact, in free flight, and more for the changes of contact that a tick follows. Each counted to the
-/// instruction, the last as the most that was found for states and torques of joints.
+/// Instructions of an equivalent gear: in contact, in free flight, and additional instructions for changes of contact within
+/// a tick. Each counted to the instruction; the last is the largest count found over states and torques of joints.
 const EQUIVALENT: [f64; 3] = [151.0, 147.0, 96.0];
-/// One mesh of a correction that parts or meets.
+/// Instructions of a correction per mesh that parts or meets.
 const CROSSING: f64 = 211.0;
-/// One that crosses from flank to flank, or is not a number: more than that, found by the search for the worst tick.
+/// Additional instructions for a mesh that crosses from flank to flank or is NaN, found by the search for the worst tick.
 const FLANK_TO_FLANK: f64 = 120.0;
-/// More under the law `contact`: a mesh that crosses, a tick that begins anew.
+/// Additional instructions under the law `contact`: per crossing mesh, per cold start.
 const CONTACT: [f64; 2] = [10.0, 8.0];
-/// More with compliance: a sub-step.
+/// Additional instructions of a sub-step with compliance.
 const COMPLIANCE: f64 = 44.0;
-/// More with overtones: a planet in each evaluation, and again for each harmonic after the first.
+/// Additional instructions with overtones, per planet and evaluation, and per harmonic after the first.
 const OVERTONES: f64 = 60.0;
 const OVERTONE: f64 = 17.0;
-/// The same for a mesh that crosses.
+/// Additional instructions with overtones per crossing mesh, and per harmonic after the first.
 const CROSSING_OVERTONES: f64 = 36.0;
 const CROSSING_OVERTONE: f64 = 19.0;
-/// Evaluations in an exponential tick (some with rates), given up or not, in one that begins anew where some are taken whole, in a
-/// sub-step.
+/// Evaluations of the meshes in an exponential tick (some with rates), abandoned or not; in a cold start of a joint with
+/// exponential ticks; in a sub-step.
 const EVALUATIONS: [f64; 3] = [3.8, 3.0, 2.0];
 
-/// Instructions of a joint's tick.
+/// Instructions of a tick of one joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cost {
     hold: f64,
     given_up: f64,
-    /// Where no tick is taken whole, and where some are.
+    /// Cold start of a joint without exponential ticks, and with exponential ticks.
     anew: [f64; 2],
     fixed: f64,
     substep: f64,
@@ -116,12 +115,12 @@ pub struct Cost {
     crossing: f64,
     meshes: f64,
     verlet: &'static VerletCost,
-    /// 0 for law `paper`, 1 for `contact`.
+    /// Index of the damping law: 0 for `paper`, 1 for `contact`.
     law: usize,
 }
 
 impl Cost {
-    /// Of a joint.
+    /// Predicts the instructions of a joint.
     pub fn new(parameters: &JointParameters) -> Self {
         if parameters.equivalent_gear().is_some() {
             return Self::of_equivalent_gear();
@@ -140,7 +139,7 @@ impl Cost {
         Self {
             hold: counted.hold + compliant(counted.hold_compliant) + evaluations[0],
             given_up: counted.given_up + evaluations[0],
-            // Where none is, it takes an evaluation less.
+            // Without exponential ticks a cold start has one evaluation less.
             anew: [
                 counted.anew[0] + contact[1] + evaluations[1] - overtones,
                 counted.anew[1] + contact[1] + evaluations[1],
@@ -157,7 +156,7 @@ impl Cost {
         }
     }
 
-    /// Of an equivalent gear, whose tick has no sub-steps and at most two changes.
+    /// Predicts the instructions of an equivalent gear; a tick has no sub-steps and at most two changes of contact.
     fn of_equivalent_gear() -> Self {
         let [hold, fixed, correction] = EQUIVALENT;
         Self {
@@ -168,15 +167,15 @@ impl Cost {
             substep: 0.0,
             correction,
             crossing: 0.0,
-            // One contact, and what numbers at the ends of their range cost it.
+            // One contact; covers the cost of numbers at the ends of their range.
             meshes: 1.0,
             verlet: &VERLET[0],
             law: 1,
         }
     }
 
-    /// Whether a tick in which contact holds is taken as a whole, by the exponential flow: where that costs less than the
-    /// sub-steps. Those that are corrected are as accurate and need no test of whether contact will hold.
+    /// Returns true if exponential ticks cost less than sub-steps. Corrected sub-steps are as accurate and need no check in
+    /// advance that contacts hold.
     pub fn takes_whole_ticks(&self, substeps: Substeps) -> bool {
         match substeps {
             Substeps::Corrected(_) => self.substep == 0.0 || self.hold < self.contact_changes(substeps),
@@ -184,7 +183,7 @@ impl Cost {
         }
     }
 
-    /// While contact holds.
+    /// Returns the instructions of a tick in which contacts hold.
     pub fn contact_holds(&self, substeps: Substeps) -> f64 {
         match substeps {
             Substeps::Corrected(_) if self.takes_whole_ticks(substeps) => self.hold,
@@ -194,7 +193,7 @@ impl Cost {
         }
     }
 
-    /// In sub-steps, none of which has a crossing.
+    /// Returns the instructions of a tick in sub-steps without a crossing.
     pub fn contact_changes(&self, substeps: Substeps) -> f64 {
         match substeps {
             Substeps::Corrected(count) => self.fixed + f64::from(count) * self.substep,
@@ -202,8 +201,8 @@ impl Cost {
         }
     }
 
-    /// Every mesh crosses in two of the sub-steps (joints that rattle come to that by themselves), or in one of a tick that
-    /// begins anew, after an exponential tick was given up where there are such; or touches its flank in every Verlet sub-step.
+    /// Returns the instructions if every mesh crosses in two sub-steps (rattling joints reach this), or in one sub-step after a
+    /// cold start and an abandoned exponential tick; or touches its flank in every Verlet sub-step.
     pub fn all_crossing(&self, substeps: Substeps) -> f64 {
         match substeps {
             Substeps::Corrected(count) => {
@@ -214,8 +213,8 @@ impl Cost {
         }
     }
 
-    /// Every mesh crosses in every sub-step, from flank to flank, or is not a number in any Verlet sub-step: an
-    /// upper bound on every state of the search.
+    /// Returns the instructions if every mesh crosses from flank to flank in every sub-step, or is NaN in every Verlet
+    /// sub-step: an upper bound on all states of the search.
     pub fn bound(&self, substeps: Substeps) -> f64 {
         let count = f64::from(substeps.count().max(1));
         let most = match substeps {
@@ -227,13 +226,13 @@ impl Cost {
         most + 0.5 * self.meshes * CANONICAL
     }
 
-    /// In sub-steps that begin anew.
+    /// Returns the instructions of a tick in sub-steps with a cold start.
     fn contact_changes_anew(&self, substeps: Substeps) -> f64 {
         let anew = self.anew[usize::from(self.takes_whole_ticks(substeps))];
         self.given_up(substeps) + anew + self.contact_changes(substeps)
     }
 
-    /// An exponential tick that was tried in vain, where there are such.
+    /// Returns the instructions of an abandoned exponential tick; zero without exponential ticks.
     fn given_up(&self, substeps: Substeps) -> f64 {
         match substeps {
             _ if !self.takes_whole_ticks(substeps) => 0.0,
@@ -242,14 +241,14 @@ impl Cost {
         }
     }
 
-    /// The most sub-steps, of so many, with which `all_crossing` stays within so many instructions; zero if not even one
-    /// does.
+    /// Returns the largest number of sub-steps, at most `most`, with which `all_crossing` stays within `instructions`; zero if
+    /// one sub-step exceeds `instructions`.
     pub fn affordable(&self, instructions: f64, most: u32) -> u32 {
         let fits = |substeps: &u32| self.all_crossing(Substeps::Corrected(*substeps)) <= instructions;
         (1..=most).take_while(fits).last().unwrap_or(0)
     }
 
-    /// Every mesh touches its flank in every Verlet sub-step.
+    /// Returns the instructions if every mesh touches its flank in every Verlet sub-step.
     fn pressing(&self, count: u32) -> f64 {
         self.contact_changes(Substeps::Verlet(count)) + f64::from(count) * self.meshes * TOUCH
     }

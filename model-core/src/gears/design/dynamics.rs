@@ -1,6 +1,5 @@
-//! Eq. 19: the joint's matrices in dimensionless relative coordinates, derived from eqs 1-4 rather than copied from
-//! the print. Excitation, backlash and time do not appear: these are the matrices of the closed joint at mean
-//! stiffness.
+//! Matrices of eq. 19 in dimensionless relative coordinates, derived from eqs 1-4 rather than copied from the paper. They
+//! describe the joint with all meshes closed at mean stiffness, without excitation and backlash.
 //!
 //! Bodies u = (sun, planets.., carrier[, link]) with M u'' = Q - D^T f, deflections d = D u, f = k d + c d'. Relative
 //! coordinates x = T u (planets.., gap[, wind-up]) satisfy D = E T, so x'' = -G (k E x + c E x') + T M^-1 Q with
@@ -23,14 +22,14 @@ pub struct Dynamics {
     pub damping: DMatrix<f64>,
     /// K, by coordinates.
     pub stiffness: DMatrix<f64>,
-    /// G: acceleration taken off by unit mesh forces; one column a mesh, sun-planet of every planet, then ring-planet.
+    /// G: deceleration by unit mesh forces; one column per mesh, sun-planet of every planet, then ring-planet.
     pub mesh_gain: DMatrix<f64>,
-    /// Acceleration of the coordinates for unit accelerations of sun, carrier and link; the last column is zero
-    /// without compliance.
+    /// Acceleration of the coordinates by unit accelerations of sun, carrier and link; the last column is zero without
+    /// compliance.
     pub torque_gain: DMatrix<f64>,
     /// Dimensionless mobilities of the bodies, in the order of u.
     pub mobilities: DVector<f64>,
-    /// Greatest damping over least stiffness of a mesh: the time within which damping can undo a contact force.
+    /// Largest damping over smallest stiffness of a mesh: the time within which damping can cancel a contact force.
     pub longest_relaxation: f64,
     /// Dimensionless stiffness and damping between carrier and link, if compliant.
     pub wind_up: Option<(f64, f64)>,
@@ -43,9 +42,9 @@ pub struct MovingMasses {
     pub sun: f64,
     /// One planet [kg].
     pub planet: f64,
-    /// Carrier with planets, and with the link when there is no compliance [kg].
+    /// Carrier with planets, and with the link in a joint without compliance [kg].
     pub carrier: f64,
-    /// Link, when there is compliance [kg].
+    /// Link, in a joint with compliance [kg].
     pub link: Option<f64>,
 }
 
@@ -76,7 +75,7 @@ impl Dynamics {
         let wind_up = parameters.compliance.as_ref().map(|compliance| {
             let lever = parameters.geometry.carrier_base_radius();
             let stiffness = compliance.stiffness / (lever * lever);
-            // The link swings against everything that is geared to the carrier, the rotor above all.
+            // The link oscillates against all bodies geared to the carrier; the rotor dominates.
             let link = parameters.link_equivalent_mass();
             let geared = masses.rigid(planets) - link;
             let reduced = geared * link / (geared + link);
@@ -108,8 +107,7 @@ impl Dynamics {
             relative[(planets + 1, link)] = -1.0;
         }
 
-        // d = E x: a sun mesh is its own coordinate; a ring mesh is what the gap leaves (eq. 19's argument). The
-        // wind-up spring is one more row.
+        // d = E x: p_i for a sun mesh, g - p_i for a ring mesh (argument of eq. 19). The wind-up spring adds a row.
         let springs = 2 * planets + usize::from(wind_up.is_some());
         let mut elongation = DMatrix::zeros(springs, coordinates);
         let mut stiffness = DVector::zeros(springs);

@@ -1,5 +1,5 @@
-//! Tables of an equivalent gear: those of one planet without mass, of which only the gap and its contact are left. What
-//! belongs to meshes, planets and sub-steps is zero.
+//! Tables of an equivalent gear: a joint with one massless planet, reduced to the gap and one contact. Entries of planets
+//! and sub-steps are zero.
 
 use core::array;
 
@@ -16,11 +16,11 @@ use crate::gears::tables::{
 use crate::numbers::Real;
 use parameters::{JointParameters, MAX_HARMONICS, MESH_KINDS, MeshKind};
 
-/// Phase of the contact's own oscillation in a tick up to which its changes are found and followed [rad]: a contact then
-/// lasts for four ticks at least, and what a part of a tick in contact leaves, t^5 / 720, is below 3e-4 of the motion.
+/// Largest phase of the contact's oscillation per tick [rad]. Up to this phase a contact lasts at least four ticks, and the
+/// error of a part of a tick in contact, t^5 / 720, is below 3e-4 of the motion.
 pub const LARGEST_PHASE: f64 = 0.7;
 
-/// Tables at a tick rate, with units and rigid body as for any gear.
+/// Computes the tables at a tick rate; `units` and `rigid` are those of every gear.
 pub fn tables<T: Real, const N: usize>(
     parameters: &JointParameters,
     tick_rate: u32,
@@ -84,7 +84,7 @@ pub fn tables<T: Real, const N: usize>(
     }
 }
 
-/// Flow of the gap in contact, y'' = -y - c y', over a step.
+/// Computes the flow of the gap in contact, y'' = -y - c y', over a step.
 fn flow<T: Real>(step: f64, damping: f64) -> Flow<T> {
     let motion = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -1.0, -damping]);
     let exact = exponential::exponential_minus_identity(&motion, step);

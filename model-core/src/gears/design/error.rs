@@ -1,67 +1,67 @@
-//! What can be wrong with parameters or with a wanted step. Raised offline, never in the loop.
+//! Errors of the design: invalid parameters or an impossible step. They occur offline, never in the loop.
 
 use core::fmt;
 
 use parameters::ParameterError;
 
-/// Why no tables could be made.
+/// Error of the design of tables.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DesignError {
-    /// The parameters are no joint's.
+    /// Invalid joint parameters.
     Parameters(ParameterError),
     /// Tables for another number of planets than the joint has.
     WrongPlanetCount {
-        /// Of the tables asked for.
+        /// Number of planets of the requested tables.
         wanted: usize,
-        /// Of the joint.
+        /// Number of planets of the joint.
         given: usize,
     },
-    /// A quantity that must be positive (or not negative) is not, or is not a number.
+    /// Quantity outside its range, or not a number.
     OutOfRange {
-        /// Which quantity.
+        /// Name of the quantity.
         what: &'static str,
-        /// Its value in SI.
+        /// Value of the quantity in SI.
         given: f64,
-        /// What it must be.
+        /// Condition on the quantity.
         must_be: &'static str,
     },
     /// No fixed step at this rate is stable.
     RateTooLow {
-        /// What was asked for [Hz].
+        /// Requested tick rate [Hz].
         given: u32,
-        /// The lowest rate that works [Hz].
+        /// Lowest stable tick rate [Hz].
         lowest: u32,
     },
-    /// Under a compensation of this rate and bandwidth the motor would swing in the open gap, or the gap not be learnt.
+    /// Control rate too low for the bandwidth: the motor would oscillate in the open gap, or the gap not be estimated.
     ControlTooSlow {
-        /// Control rate that was asked for [Hz].
+        /// Requested control rate [Hz].
         given: u32,
         /// Bandwidth that was asked for [rad/s].
         bandwidth: f64,
-        /// The lowest control rate that works with it [Hz], if any does.
+        /// Lowest control rate that allows the bandwidth [Hz], if any.
         lowest: Option<u32>,
-        /// The widest bandwidth that works at the rate [rad/s].
+        /// Widest bandwidth at the control rate [rad/s].
         widest: f64,
     },
-    /// The bandwidth exceeds the one up to which the joint itself lets the loop keep its margin.
+    /// Bandwidth above the limit at which the joint leaves the loop its stability margin.
     BandwidthTooWide {
         /// Bandwidth that was asked for [rad/s].
         bandwidth: f64,
-        /// The widest bandwidth that works [rad/s].
+        /// Widest bandwidth [rad/s].
         widest: f64,
         /// Property of the joint that limits it.
         limit: BandwidthLimit,
     },
-    /// A scheme of planets' meshes for a gear without them.
+    /// Method other than the board's requested for an equivalent gear.
     OneSchemeOnly,
-    /// An effect of real joints that a virtual joint does not have.
+    /// Effect of real joints that a virtual joint does not model.
     NoSuchEffect {
-        /// Key of the joint file that states it.
+        /// Key of the effect in the joint file.
         key: &'static str,
     },
-    /// A number does not fit into single precision.
+    /// Number outside the range of single precision.
     NotRepresentable {
-        /// Which table.
+        /// Name of the table.
         what: &'static str,
     },
 }

@@ -1,10 +1,10 @@
-//! Precise integration: exp(A h) - I by 2^N doublings of a short Taylor series, and the integrals of exp against
-//! powers of time. Pure matrices; it knows no gears.
+//! Precise integration: exp(A h) - I by N doublings of a short Taylor series, and integrals of exp times powers of
+//! time, for (S7).
 //!
 //! With E(t) = exp(A t) - I, E(2t) = 2 E(t) + E(t)^2. Doubling E instead of exp(A t) keeps the small increment apart
-//! from the identity: squaring I + E would round E to the unit's grid N times over (Zhong, precise integration).
-//! Doubling also multiplies rounding, without limit where the motion grows before it decays; so everything is done in
-//! double-double numbers and rounded once, at the end.
+//! from the identity: squaring I + E would round E to the resolution of 1 at each of N doublings (Zhong, precise
+//! integration). Doubling also amplifies rounding errors, without limit if the motion grows before it decays; the
+//! calculation therefore uses double-double numbers and rounds once, at the end.
 
 mod double_double;
 
@@ -12,25 +12,25 @@ use double_double::DoubleDouble;
 use nalgebra::DMatrix;
 use std::vec::Vec;
 
-/// Norm of A h / 2^N up to which the series is used: below it the series needs few terms.
+/// Largest norm of A h / 2^N for the series, which then needs few terms.
 pub const SERIES_NORM: f64 = 0.125;
 
-/// Relative remainder allowed to the series, a unit of a double-double number: 2^-106.
+/// Largest relative remainder of the series: 2^-106, the resolution of a double-double number.
 pub const REMAINDER: f64 = 1.232_595_164_407_831e-32;
 
-/// Doublings and series terms for a matrix of a given norm.
+/// Number of doublings and of series terms for a matrix of a given norm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ScalingPlan {
-    /// N: the interval is h / 2^N at first.
+    /// N: the interval of the series is h / 2^N.
     pub doublings: u32,
     /// Highest power of A h / 2^N in the series.
     pub terms: u32,
 }
 
 impl ScalingPlan {
-    /// The fewest doublings that bring `norm` (of A h) to 1/8 or below, then the fewest terms whose remainder,
-    /// bounded by a^L / (L + 1)! / (1 - a / (L + 2)) relative to the leading term, is below what is allowed. A norm
-    /// that is not finite is treated as zero: its result means nothing.
+    /// Finds the smallest number of doublings that brings `norm` (of A h) to 1/8 or below, then the smallest number of
+    /// terms with a remainder, bounded by a^L / (L + 1)! / (1 - a / (L + 2)) relative to the leading term, of at most
+    /// `REMAINDER`. A norm that is not finite counts as zero; the result is then meaningless.
     pub fn new(norm: f64) -> Self {
         let mut start = if norm.is_finite() { norm } else { 0.0 };
         let mut doublings = 0;
@@ -47,26 +47,26 @@ impl ScalingPlan {
     }
 }
 
-/// Largest column sum of magnitudes.
+/// Returns the largest column sum of magnitudes.
 pub fn norm(matrix: &DMatrix<f64>) -> f64 {
     matrix.column_iter().map(|column| column.iter().map(|value| value.abs()).sum()).fold(0.0, f64::max)
 }
 
-/// Flow over a step and the integrals of its response to inputs.
+/// Flow over a step and the integrals of the response to inputs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flow {
     /// exp(A h) - I.
     pub transition: DMatrix<f64>,
-    /// For k = 0, 1, ..: the integral over s in [0, h] of exp(A (h - s)) B (s / h)^k.
+    /// Integrals over s in [0, h] of exp(A (h - s)) B (s / h)^k for k = 0, 1, ...
     pub input_integrals: Vec<DMatrix<f64>>,
 }
 
-/// exp(A h) - I for a square A; entries must be finite.
+/// Returns exp(A h) - I for a square A; entries must be finite.
 pub fn exponential_minus_identity(matrix: &DMatrix<f64>, step: f64) -> DMatrix<f64> {
     flow(matrix, &DMatrix::zeros(matrix.nrows(), 0), step, 0).transition
 }
 
-/// Flow of v' = A v + B u and its response to u = (s / h)^k for every k below `powers`; entries must be finite.
+/// Computes the flow of v' = A v + B u and the response to u = (s / h)^k for every k below `powers`; entries must be finite.
 pub fn flow(matrix: &DMatrix<f64>, inputs: &DMatrix<f64>, step: f64, powers: usize) -> Flow {
     let plan = ScalingPlan::new(norm(matrix) * step.abs());
     let part = libm::ldexp(1.0, -(plan.doublings as i32));
@@ -79,19 +79,19 @@ pub fn flow(matrix: &DMatrix<f64>, inputs: &DMatrix<f64>, step: f64, powers: usi
     Flow { transition: rounded(&response.increment), input_integrals: response.integrals.iter().map(rounded).collect() }
 }
 
-/// What a flow is over an interval t, before it is rounded.
+/// Flow over an interval t in double-double numbers.
 struct Response {
     /// E(t) = exp(A t) - I.
     increment: DMatrix<DoubleDouble>,
-    /// J_k(t): the integral over s in [0, t] of exp(A (t - s)) B (s / t)^k.
+    /// J_k(t), the integral over s in [0, t] of exp(A (t - s)) B (s / t)^k.
     integrals: Vec<DMatrix<DoubleDouble>>,
 }
 
 impl Response {
-    /// E = sum over m >= 1 of (A t)^m / m!, and J_k = sum over m >= 0 of (A t)^m B t k! / (m + k + 1)!, from A t and
-    /// B t. The remainder of any J_k, relative to its leading term, is at most that of E.
+    /// Computes E = sum over m >= 1 of (A t)^m / m! and J_k = sum over m >= 0 of (A t)^m B t k! / (m + k + 1)! from A t and
+    /// B t. The remainder of any J_k, relative to its leading term, is at most the relative remainder of E.
     fn series(matrix: &DMatrix<DoubleDouble>, inputs: &DMatrix<DoubleDouble>, powers: usize, terms: u32) -> Self {
-        // Of m! / (k! (m - k)!), all whole numbers far below 2^53.
+        // Binomial coefficient m! / (k! (m - k)!); all values are integers far below 2^53.
         let choose = |m: u32, k: u32| (0..k).fold(1.0, |value, i| value * f64::from(m - i) / f64::from(i + 1));
         // (A t)^m / m! and (A t)^(m - 1) B t / m!.
         let (mut term, mut driven) = (matrix.clone(), inputs.clone());
@@ -108,8 +108,8 @@ impl Response {
         response
     }
 
-    /// Over twice the interval: E(2t) = 2 E + E^2, and J_k(2t) = ((I + E) J_k + sum over j <= k of k over j J_j) / 2^k,
-    /// since the input of the second half, ((1 + s / t) / 2)^k, is a sum of those of the first.
+    /// Returns the response over twice the interval: E(2t) = 2 E + E^2, and J_k(2t) = ((I + E) J_k + sum over j <= k of
+    /// k over j J_j) / 2^k, because the input of the second half, ((1 + s / t) / 2)^k, is a sum of the powers (s / t)^j.
     fn doubled(&self) -> Self {
         let mut row = Vec::new();
         let integrals = self.integrals.iter().enumerate().map(|(k, integral)| {

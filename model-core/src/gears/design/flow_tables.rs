@@ -1,6 +1,6 @@
-//! The exponential flow sorted for the board. Planets are alike, so the flow keeps what they do together (the
-//! in-phase motion, with gap and wind-up) apart from what each does beside the mean: 36 + 4 numbers for any number of
-//! planets, where a dense matrix has 64 for three and 144 for five.
+//! Tables of the exponential flow (S7), (S8). All planets are alike, so the in-phase motion (mean planet, gap, wind-up)
+//! decouples from the planets' deviations from the mean: 36 + 4 numbers for any number of planets, where a dense matrix has
+//! 64 for three planets and 144 for five.
 
 use core::array;
 use std::vec;
@@ -14,35 +14,36 @@ use crate::gears::design::hamiltonian;
 use crate::gears::tables::{Block, Flow, Inputs, Transition};
 use crate::numbers::Real;
 
-/// Mesh periods over a step up to which a parabola follows the excitation: it leaves some 1e-3 of its amplitude.
+/// Largest advance of the mesh phase per step [periods]: the error of a parabola through the excitation is about 1e-3 of the
+/// amplitude.
 pub const LARGEST_ADVANCE: f64 = 0.06;
 
-/// A tick beside sub-steps is taken as a whole where every mesh overlaps by its speed times so many steps. With one, meshes that
-/// bounce leave their flanks unseen between the nodes, which held the error of a reversal (case L, 20 kHz) at 6e-4; with four it is
-/// that of the sub-steps, 6e-5.
+/// Steps of travel at its speed that every mesh must overlap for an exponential tick (joints with corrected sub-steps). With
+/// one step, bouncing meshes leave their flanks undetected between the nodes: error of a reversal 6e-4 (case L, 20 kHz);
+/// with four steps 6e-5, as with sub-steps.
 const REACH: f64 = 4.0;
 
-/// A tick beside Verlet sub-steps is taken as a whole where every mesh overlaps by its speed times a step, and by no less than so
-/// many radians of a planet's own mode: the slower that is, the more the other bodies have to do with what opens a mesh. With a step
-/// alone case L at 20 kHz, a radian a step, is 1.9e-3 off, with this 1.1e-3.
+/// Travel at its speed that every mesh must overlap for an exponential tick of light planets: at least one step, and at
+/// least this many radians of a planet's own mode (S13). The slower the mode, the more the other bodies help to open a
+/// mesh. Measured on case L at 20 kHz, one radian per step: error 1.1e-3, with one step alone 1.9e-3.
 const RINGING_REACH: f64 = 4.0;
 
-/// Which ticks are taken as a whole.
+/// Use of exponential ticks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WholeTicks {
-    /// None.
+    /// No exponential ticks.
     Never,
-    /// Those in which contact holds.
+    /// Exponential ticks while contacts hold, otherwise corrected sub-steps.
     Held,
-    /// Those in which light planets keep pressing.
+    /// Exponential ticks while light planets stay in contact, otherwise Verlet sub-steps.
     Light,
 }
 
-/// Where within a whole tick its pseudo-force is evaluated: where, with value and rate at the start, a cubic leaves the
-/// least (searched over the unit square on a joint that rings: about half the error that nodes at 1/2 and 1 leave).
+/// Nodes of the pseudo-force as fractions of the tick, chosen for the smallest error of the cubic through these nodes and
+/// value and rate at the start. Tuned over the unit square on a ringing joint: about half the error of nodes at 1/2 and 1.
 const NODES: [f64; 2] = [0.4, 0.9];
 
-/// Tables of the flow over `step` (dimensionless), which the sub-stepped path would take in `substeps`.
+/// Computes the flow over `step` (dimensionless); `substeps` is the number of sub-steps of the step, the unit of rates.
 pub fn flow<T: Real>(dynamics: &Dynamics, step: f64, substeps: u32, whole_ticks: WholeTicks) -> Flow<T> {
     let sorting = Sorting::new(dynamics);
     let [first, second] = NODES;
@@ -51,7 +52,7 @@ pub fn flow<T: Real>(dynamics: &Dynamics, step: f64, substeps: u32, whole_ticks:
     let late = sorting.integrate(second * step, 3);
     let half = sorting.integrate(0.5 * step, 1);
     let [constant, linear] = [0, 1].map(|power| &whole.input_integrals[power]);
-    // Weights of a polynomial's powers of time, in units of the step up to a node, for each value that it goes through.
+    // Input integrals up to a node for each value that the polynomial passes through, from its powers of time.
     let inputs = |flow: &exponential::Flow, node: f64, values: &[Vec<f64>]| -> Vec<Inputs<T>> {
         let of = |powers: &Vec<f64>| {
             let zero = &flow.input_integrals[0] * 0.0;
@@ -80,7 +81,7 @@ pub fn flow<T: Real>(dynamics: &Dynamics, step: f64, substeps: u32, whole_ticks:
         whole_inputs: array::from_fn(|i| whole_inputs[i].clone()),
         nodes: NODES.map(T::from_f64),
         step: T::from_f64(step),
-        // Beyond the longest relaxation a mesh also pushes under the law `contact`.
+        // An overlap above the longest relaxation time times the speed presses under the law `contact`.
         reach: T::from_f64(match whole_ticks {
             WholeTicks::Never | WholeTicks::Held => (REACH * step).max(dynamics.longest_relaxation),
             WholeTicks::Light => step.max(RINGING_REACH / ringing(dynamics)).max(dynamics.longest_relaxation),
@@ -92,10 +93,10 @@ pub fn flow<T: Real>(dynamics: &Dynamics, step: f64, substeps: u32, whole_ticks:
     }
 }
 
-/// Powers of time in the cubic through value and rate (a `rate`-th of the step) at the start and values at two nodes:
-/// one row for each of the four.
+/// Returns the powers of time of the cubic through value and rate (per `rate`-th of the step) at the start and values at
+/// two nodes: one row for each of these four.
 fn cubic(first: f64, second: f64, rate: f64) -> [Vec<f64>; 4] {
-    // The rest beyond value and rate, divided by the square of time, is linear through both nodes.
+    // The cubic without value and rate, divided by the square of time, is linear through both nodes.
     let line = |at_first: f64, at_second: f64| {
         let slope = (at_second - at_first) / (second - first);
         [at_first - first * slope, slope]
@@ -110,7 +111,7 @@ fn cubic(first: f64, second: f64, rate: f64) -> [Vec<f64>; 4] {
     ]
 }
 
-/// Frequency of a planet that moves against the others, between sun and ring.
+/// Returns the frequency of a planet that oscillates against the other planets between sun and ring.
 fn ringing(dynamics: &Dynamics) -> f64 {
     libm::sqrt(dynamics.stiffness[(0, 0)] - dynamics.stiffness[(0, 1)])
 }
@@ -140,8 +141,8 @@ impl<'a> Sorting<'a> {
         Self { dynamics, average, spread }
     }
 
-    /// Flow in (X, X'), integrated in the Hamiltonian form of eq. 20. Inputs: mesh forces taken off the joint, then
-    /// accelerations of sun, carrier and link.
+    /// Computes the flow in (X, X'), integrated in the form of eq. 20. Inputs: pseudo-forces of the meshes, then accelerations
+    /// of sun, carrier and link.
     fn integrate(&self, step: f64, powers: usize) -> exponential::Flow {
         let dynamics = self.dynamics;
         let (size, meshes) = (dynamics.coordinates(), dynamics.mesh_gain.ncols());
@@ -159,7 +160,7 @@ impl<'a> Sorting<'a> {
     fn transition<T: Real>(&self, flow: &exponential::Flow) -> Transition<T> {
         let size = self.dynamics.coordinates();
         let full = &flow.transition;
-        // Between two planets, own effect less effect of another: what a deviation sees.
+        // Effect on a deviation: effect of a planet on itself minus the effect of another planet.
         let deviation = SMatrix::<f64, 2, 2>::from_fn(|row, column| {
             full[(size * row, size * column)] - full[(size * row, size * column + 1)]
         });
@@ -173,7 +174,7 @@ impl<'a> Sorting<'a> {
 
     fn inputs<T: Real>(&self, integral: &DMatrix<f64>) -> Inputs<T> {
         let (planets, size) = (self.dynamics.planets, self.dynamics.coordinates());
-        // Every planet's mesh moves the in-phase motion alike, so one column stands for the sum over planets.
+        // All planets have equal effect on the in-phase motion, so one column serves the sum over planets.
         let column = |mesh: usize| -> DVectorView<'_, f64> { integral.column(mesh) };
         let in_phase = DMatrix::from_columns(&[&self.average * column(0), &self.average * column(planets)]);
         let own_less_other = |row: usize| T::from_f64(integral[(row, 0)] - integral[(row, 1)]);

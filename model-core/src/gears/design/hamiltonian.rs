@@ -1,11 +1,11 @@
-//! Eq. 20: the linear joint as v' = H v + f with v = (X, Y), Y = X' + C X / 2 (unit mass matrix). The reduced K is
-//! not symmetric, so H is not Hamiltonian in the strict sense; exp(H t) is the exact linear flow all the same.
+//! Linear joint in the form of eq. 20: v' = H v + f with v = (X, Y), Y = X' + C X / 2 (unit mass matrix). The reduced K is
+//! not symmetric, so H is not Hamiltonian in the strict sense; exp(H t) is nevertheless the exact linear flow.
 
 use nalgebra::DMatrix;
 
 use crate::gears::design::dynamics::Dynamics;
 
-/// H = [-C/2, I; C^2/4 - K, -C/2].
+/// Returns H = [-C/2, I; C^2/4 - K, -C/2].
 pub fn matrix(dynamics: &Dynamics) -> DMatrix<f64> {
     let size = dynamics.coordinates();
     let half = &dynamics.damping * 0.5;
@@ -17,7 +17,7 @@ pub fn matrix(dynamics: &Dynamics) -> DMatrix<f64> {
     matrix
 }
 
-/// The constant change of state (X, X') -> (X, Y) and its inverse.
+/// Returns the transformation (X, X') -> (X, Y) and its inverse.
 pub fn from_rates(dynamics: &Dynamics) -> (DMatrix<f64>, DMatrix<f64>) {
     let size = dynamics.coordinates();
     let half = &dynamics.damping * 0.5;

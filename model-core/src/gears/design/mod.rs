@@ -1,6 +1,6 @@
-//! The offline half of the gears, f64: from parameters to the tables of a fixed step. `dynamics` is eq. 19,
-//! `hamiltonian` eq. 20, `exponential` the precise integration, `flow_tables` its sorting into in-phase and deviating
-//! motion; `tables` puts them together, `step_size` chooses the sub-steps, `certificate` states their error and cost.
+//! Design of the gear tables (offline, f64) from parameters. `dynamics` is eq. 19 and (S4), `hamiltonian` eq. 20,
+//! `exponential` the precise integration; `flow_tables` splits the flow into in-phase motion and deviations. `tables`
+//! assembles all tables, `step_size` chooses the sub-steps, `certificate` states their cost and stability.
 
 mod certificate;
 mod cost;

@@ -1,5 +1,5 @@
-//! Natural frequencies of the closed, undamped joint at mean stiffness: what a step must resolve, and what a test can
-//! hold against closed forms. Computed in absolute coordinates, where mass and stiffness are symmetric.
+//! Natural frequencies of the joint with all meshes closed, undamped, at mean stiffness, for step-size selection and tests.
+//! Computed in absolute coordinates, in which mass and stiffness matrices are symmetric.
 
 use nalgebra::{DMatrix, DVector};
 use std::vec;
@@ -10,7 +10,7 @@ use crate::gears::kinematics::Kinematics;
 use crate::gears::scales::Scales;
 use parameters::JointParameters;
 
-/// Natural frequencies in rising order, the rigid body's zero first [rad/s].
+/// Returns the natural frequencies in ascending order, starting with the zero of the rigid body [rad/s].
 pub fn natural_frequencies(parameters: &JointParameters) -> Vec<f64> {
     if parameters.equivalent_gear().is_some() {
         return vec![0.0, Scales::new(parameters).frequency];
@@ -45,6 +45,6 @@ pub fn natural_frequencies(parameters: &JointParameters) -> Vec<f64> {
     let symmetric = &roots * stiffness * &roots;
     let mut squares: Vec<f64> = symmetric.symmetric_eigenvalues().iter().copied().collect();
     squares.sort_by(f64::total_cmp);
-    // The rigid body's square is zero up to rounding of either sign.
+    // The square of the rigid body is zero within rounding, of either sign.
     squares.into_iter().enumerate().map(|(i, square)| if i == 0 { 0.0 } else { libm::sqrt(square.max(0.0)) }).collect()
 }

@@ -1,5 +1,5 @@
-//! Tables and their certificate as Rust source, for a build script: what a board links into its flash. Numbers are
-//! printed so that they read back to the same bits.
+//! Rust source of tables and certificate, which a build script writes and a board links into flash. The printed numbers
+//! read back with equal bits.
 
 use std::format;
 use std::string::String;
@@ -12,10 +12,10 @@ use crate::gears::design::tables::design_scheme;
 use crate::gears::tables::{Scheme, Tables};
 use parameters::{JointParameters, ParameterError};
 
-/// `PLANETS`, `JOINT_NAME`, `CERTIFICATE` and the static `TABLES` of a joint at a tick rate, as a module's text; made
+/// Returns a module with `PLANETS`, `JOINT_NAME`, `CERTIFICATE` and the static `TABLES` of a joint at a tick rate, designed
 /// for an STM32F405.
 ///
-/// What a build script writes for a board:
+/// Example of a build script for a board:
 ///
 /// ```
 /// let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap().parameters;
@@ -28,7 +28,7 @@ pub fn rust_source(parameters: &JointParameters, tick_rate: u32) -> Result<Strin
     rust_source_for(parameters, tick_rate, &Processor::STM32F405)
 }
 
-/// The same for another processor.
+/// Returns the module of [`rust_source`], designed for a given processor.
 pub fn rust_source_for(
     parameters: &JointParameters,
     tick_rate: u32,

@@ -1,32 +1,31 @@
-//! How long a sub-step may be: the spectral radius of its method on a damped oscillator; for corrected sub-steps from a
-//! start as `substep` makes it, over so many of them. Kinks and ripple are not in it: they bend a stable motion, but do not
-//! make it grow.
+//! Stability limits of a sub-step: spectral radius of the method on a damped oscillator; for corrected sub-steps over a
+//! number of sub-steps after a cold start (`substep`). Backlash and ripple are neglected: they bend a stable motion but do
+//! not make it grow.
 
-/// Largest phase that is looked at [rad]; no explicit method of two evaluations comes near it.
+/// Largest phase tested [rad], above the limit of any explicit method with two evaluations.
 const LARGEST: f64 = 4.0;
-/// Phases are tried in steps of this [rad].
+/// Resolution of the tested phases [rad].
 const GRID: f64 = 0.005;
-/// Joints that are damped less are judged as if damped so much [-]: without any damping, the order of the method leaves
-/// a growth that nothing real has.
+/// Lower bound of the damping ratio [-]: without damping, the error of the method causes a growth that no real joint has.
 const LEAST_DAMPING: f64 = 0.02;
-/// So many sub-steps from one start that how they began no longer matters.
+/// Number of sub-steps after a cold start that makes the cold start irrelevant: limit of the warm start.
 pub const WITHOUT_END: u32 = 64;
-/// Part of the limit that is used: the damping of modes in contact is an estimate.
+/// Fraction of the stability limit in use, because the damping of modes in contact is an estimate.
 pub const MARGIN: f64 = 0.95;
 
-/// An oscillator of phase `phase` a sub-step and a damping ratio, in units in which a sub-step lasts 1.
+/// Damped oscillator with the phase `phase` per sub-step, in units in which a sub-step lasts 1.
 struct Oscillator {
     phase: f64,
     damping_ratio: f64,
 }
 
 impl Oscillator {
-    /// In sixths, as the stages count.
+    /// Returns the acceleration in sixths, as in `gears::stages`.
     fn acceleration(&self, position: f64, rate: f64) -> f64 {
         -(self.phase * self.phase * position + 2.0 * self.damping_ratio * self.phase * rate) / 6.0
     }
 
-    /// Position and rate after a tick: the stages of `gears::stages` from the start of `gears::substep`.
+    /// Returns position and rate after a tick: cold start of `gears::substep`, then sub-steps of `gears::stages`.
     fn tick(&self, mut position: f64, mut rate: f64, substeps: u32) -> [f64; 2] {
         let middle = |position: f64, rate: f64, now: f64, before: f64| {
             self.acceleration(position + 0.5 * rate + now - 0.25 * before, rate + 4.5 * now - 1.5 * before)
@@ -43,7 +42,7 @@ impl Oscillator {
         [position, rate]
     }
 
-    /// Position in the middle and rate after a Verlet sub-step of `gears::light` in contact throughout.
+    /// Returns position in the middle and rate after a Verlet sub-step of `gears::light` in contact throughout.
     fn verlet(&self, middle: f64, rate: f64) -> [f64; 2] {
         let square = self.phase * self.phase;
         let damping = 2.0 * self.damping_ratio * self.phase;
@@ -53,7 +52,7 @@ impl Oscillator {
     }
 }
 
-/// Greatest growth of a motion by a linear map.
+/// Returns the spectral radius of a linear map.
 fn spectral_radius(map: impl Fn(f64, f64) -> [f64; 2]) -> f64 {
     let ([a, c], [b, d]) = (map(1.0, 0.0), map(0.0, 1.0));
     let (half_trace, determinant) = (0.5 * (a + d), a * d - b * c);
@@ -61,19 +60,19 @@ fn spectral_radius(map: impl Fn(f64, f64) -> [f64; 2]) -> f64 {
     if square < 0.0 { libm::sqrt(determinant) } else { half_trace.abs() + libm::sqrt(square) }
 }
 
-/// Largest phase below which nothing grows [rad].
+/// Returns the largest phase up to which no motion grows [rad].
 fn largest(damping_ratio: f64, growth: impl Fn(&Oscillator) -> f64) -> f64 {
     let damping_ratio = damping_ratio.max(LEAST_DAMPING);
     let phases = (1..).map(|step| GRID * f64::from(step)).take_while(|phase| *phase < LARGEST);
     phases.take_while(|phase| growth(&Oscillator { phase: *phase, damping_ratio }) <= 1.0).last().unwrap_or(GRID)
 }
 
-/// Largest phase of a mode in a sub-step up to which no motion grows [rad], for so many sub-steps from one start.
+/// Returns the stability limit of a mode's phase per sub-step for `substeps` sub-steps after a cold start [rad].
 pub fn largest_phase(damping_ratio: f64, substeps: u32) -> f64 {
     largest(damping_ratio, |oscillator| spectral_radius(|position, rate| oscillator.tick(position, rate, substeps)))
 }
 
-/// The same for Verlet sub-steps.
+/// Returns the stability limit of a mode's phase per Verlet sub-step [rad].
 pub fn largest_verlet_phase(damping_ratio: f64) -> f64 {
     largest(damping_ratio, |oscillator| spectral_radius(|middle, rate| oscillator.verlet(middle, rate)))
 }
@@ -84,7 +83,7 @@ mod tests {
 
     #[test]
     fn limits_are_those_of_the_amplification_matrix() {
-        // Found by the same matrix in another program, to three digits.
+        // Computed independently from the matrix of the method, to three digits.
         for (substeps, damping_ratio, limit) in [(1, 0.05, 2.6), (2, 0.05, 2.74), (4, 0.05, 2.56), (4, 0.2, 2.03)] {
             let found = largest_phase(damping_ratio, substeps);
             assert!((found - limit).abs() < 0.03, "{substeps} sub-steps, damping ratio {damping_ratio}: {found}");

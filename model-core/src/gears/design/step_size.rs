@@ -1,5 +1,5 @@
-//! Step-size selection: sub-steps of a tick from the joint's fastest mode, a prescribed mesh frequency, stability and the
-//! processor's time. The tick rates that follow from it are for reports; the step itself needs only the sub-steps.
+//! Step-size selection: computes the sub-steps of a tick from the joint's fastest mode, a prescribed mesh frequency,
+//! stability and the processor's time. The step needs only the sub-steps; tick rates are for reports.
 
 use core::array;
 
@@ -14,67 +14,68 @@ use crate::gears::mechanics::Mechanics;
 use crate::gears::stiffness_series::StiffnessSeries;
 use parameters::{DeadZone, Excitation, JointParameters, MESH_KINDS};
 
-/// Sub-steps resolve the fastest mode at least this well (its phase a sub-step) [rad]: there the crossing correction
-/// leaves a few 1e-4 of the motion.
+/// Phase of the fastest mode per sub-step at which it counts as resolved [rad]: the error of the crossing correction is a
+/// few 1e-4 of the motion.
 const GOOD_PHASE: f64 = 0.4;
-/// Beyond this many sub-steps the fastest mode is resolved only as far as stability requires: it is that of light planets,
-/// which carry little of the motion.
+/// Number of sub-steps above which only stability counts: a faster mode belongs to light planets, which carry little of the
+/// motion.
 const USUAL_SUBSTEPS: f64 = 4.0;
-/// Phase of a prescribed mesh frequency that a sub-step may have: some twenty evaluations a mesh period [rad].
+/// Largest phase of a prescribed mesh frequency per sub-step, about twenty sub-steps per mesh period [rad].
 const EXCITATION_PHASE: f64 = 0.3;
-/// Beyond this phase of the fastest mode in a sub-step, Runge-Kutta steps damp it away and bounces of light planets with
-/// it; Verlet sub-steps take over, of at most the second, or of more where the processor has no time for so many. They
-/// cost less, and take over from crossings corrected one by one where there is no time for these [rad].
+/// Phase of the fastest mode per sub-step above which corrected sub-steps damp the mode, and with it bounces of light
+/// planets [rad]. Verlet sub-steps of at most `VERLET_PHASE` then replace the corrected sub-steps, or longer ones if the
+/// processor has no time. They cost less, and also replace corrected sub-steps that do not fit into the time.
 const DAMPED_PHASE: f64 = 1.0;
 const VERLET_PHASE: f64 = 1.0;
-/// Most sub-steps a tick.
+/// Largest number of sub-steps per tick.
 const MOST_SUBSTEPS: usize = 16;
 
-/// How much work a tick may take.
+/// Limit of the work of a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Effort {
-    /// What an STM32F405 has time for, as long as that is stable.
+    /// Time of an STM32F405, unless stability needs more.
     Board,
-    /// The same for another processor.
+    /// Time of a given processor, unless stability needs more.
     Within(Processor),
-    /// What accuracy asks for.
+    /// Number of sub-steps for accuracy, without a limit of time.
     Accurate,
-    /// So many sub-steps a tick, for comparisons; not checked for stability.
+    /// Given number of corrected sub-steps per tick, for comparisons; not checked for stability.
     Substeps(u32),
-    /// So many Verlet sub-steps a tick, likewise.
+    /// Given number of Verlet sub-steps per tick, for comparisons; not checked for stability.
     Verlet(u32),
 }
 
-/// What sets the step size of a joint.
+/// Properties of a joint that determine the step size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepSize {
-    /// Fastest mode at the stiffest moment of the ripple [rad/s].
+    /// Frequency of the fastest mode at the largest stiffness of the ripple [rad/s].
     fastest: f64,
-    /// Prescribed mesh frequency; zero in `angle` mode, where the joint's speed keeps it far below the modes [rad/s].
+    /// Prescribed mesh frequency; zero in `angle` mode, where the joint's speed keeps the mesh frequency far below the
+    /// modes [rad/s].
     mesh_frequency: f64,
     cost: Cost,
-    /// Changes of contact are followed within a whole tick, as those of an equivalent gear are: there are no sub-steps.
+    /// True for an equivalent gear, which follows changes of contact without sub-steps.
     whole: bool,
-    /// The dead zone is sharp; Verlet sub-steps are for no other.
+    /// True for the sharp dead zone, the only one with Verlet sub-steps.
     sharp: bool,
-    /// Phase of the fastest mode that a sub-step may have, by the number of sub-steps of a tick from 1 on [rad].
+    /// Stability limits of the fastest mode's phase per sub-step, for 1, 2, ... sub-steps per tick [rad].
     largest_phases: [f64; MOST_SUBSTEPS],
-    /// The same of a Verlet sub-step [rad].
+    /// Stability limit of the fastest mode's phase per Verlet sub-step [rad].
     largest_verlet_phase: f64,
 }
 
 impl StepSize {
-    /// Of a joint.
+    /// Computes the properties of a joint.
     pub fn new(parameters: &JointParameters) -> Self {
         let fastest = modes::natural_frequencies(parameters).last().copied().unwrap_or(0.0);
         let swings = MESH_KINDS.map(|kind| parameters.mesh(kind).stiffness_wave.swing());
         let fastest = fastest * libm::sqrt(1.0 + swings[0].max(swings[1]));
-        // Of a mode that the meshes carry: C = (c / k) K gives it the damping ratio omega c / 2 k.
+        // Damping ratio of a mode on the meshes: C = (c / k) K gives omega c / 2 k.
         let relaxations =
             MESH_KINDS.map(|kind| parameters.damping_coefficient(kind) / parameters.mesh(kind).mean_stiffness);
         let damping_ratio = 0.5 * fastest * relaxations[0].max(relaxations[1]);
         let whole = parameters.equivalent_gear().is_some();
-        // Ticks may each begin anew, or go on from one another without end.
+        // Every tick may have a cold start, or all ticks a warm start.
         let without_end = stability::largest_phase(damping_ratio, stability::WITHOUT_END);
         Self {
             fastest,
@@ -90,7 +91,7 @@ impl StepSize {
         }
     }
 
-    /// Corrected sub-steps of a tick.
+    /// Returns the number of corrected sub-steps of a tick.
     pub fn corrected_substeps(&self, tick_rate: u32, effort: Effort) -> Result<u32, DesignError> {
         if self.whole {
             let lowest = self.lowest_rate(effort);
@@ -117,13 +118,13 @@ impl StepSize {
         let stable = |substeps: &u32| {
             self.phase(tick_rate, *substeps) <= MARGIN * self.largest_phase(Substeps::Corrected(*substeps))
         };
-        // Limits differ by the number of sub-steps, so the next may be stable where one more is not.
+        // The stability limit depends on the number of sub-steps; more sub-steps may be less stable.
         Ok((wanted..=MOST_SUBSTEPS as u32).find(stable).or((1..wanted).rev().find(stable)).unwrap_or(wanted))
     }
 
-    /// Sub-steps of a tick in which contacts change. Verlet sub-steps take over where sub-steps would damp the fastest mode away, or
-    /// where the processor has no time for those that are corrected: as many as it has time for, if that is stable. Of two
-    /// that it has no time for, the cheaper one where both would be damped, else those that are corrected.
+    /// Returns method and number of the sub-steps of a tick in which contacts change. Verlet sub-steps replace corrected
+    /// sub-steps that would damp the fastest mode or exceed the time: as many as fit, if stable. If neither method fits and the
+    /// mode would be damped, the cheaper method is used; otherwise corrected sub-steps.
     pub fn substeps(&self, tick_rate: u32, effort: Effort) -> Result<Substeps, DesignError> {
         let substeps = self.corrected_substeps(tick_rate, effort)?;
         if self.whole {
@@ -150,12 +151,12 @@ impl StepSize {
         Ok(fewer.or_else(cheaper).unwrap_or(substeps))
     }
 
-    /// Whether ticks in which contact holds are taken as a whole: where that is cheaper than the sub-steps, or time does not count.
+    /// Returns true if ticks in which contacts hold are exponential ticks: cheaper than sub-steps, or `Effort::Accurate`.
     pub(super) fn takes_whole_ticks(&self, substeps: Substeps, effort: Effort) -> bool {
         effort == Effort::Accurate || self.cost.takes_whole_ticks(substeps)
     }
 
-    /// Lowest tick rate that is accepted [Hz].
+    /// Returns the lowest accepted tick rate [Hz].
     pub fn lowest_rate(&self, effort: Effort) -> u32 {
         if self.whole {
             return libm::ceil(self.fastest / equivalent::LARGEST_PHASE).max(1.0) as u32;
@@ -169,7 +170,7 @@ impl StepSize {
         libm::ceil(wanted).max(1.0) as u32
     }
 
-    /// Lowest tick rate at which the usual number of sub-steps resolves everything [Hz].
+    /// Returns the lowest tick rate at which `USUAL_SUBSTEPS` resolve the fastest mode and the mesh frequency [Hz].
     pub fn recommended_rate(&self) -> u32 {
         if self.whole {
             return libm::ceil(self.fastest / GOOD_PHASE).max(1.0) as u32;
@@ -178,7 +179,7 @@ impl StepSize {
         libm::ceil(wanted / USUAL_SUBSTEPS).max(1.0) as u32
     }
 
-    /// Phase of the fastest mode in a sub-step from which on a tick of such sub-steps is unstable [rad].
+    /// Returns the stability limit of the fastest mode's phase per sub-step [rad].
     pub fn largest_phase(&self, substeps: Substeps) -> f64 {
         if self.whole {
             return equivalent::LARGEST_PHASE;
@@ -189,12 +190,12 @@ impl StepSize {
         }
     }
 
-    /// Instructions of a tick.
+    /// Returns the instructions of a tick.
     pub fn cost(&self) -> &Cost {
         &self.cost
     }
 
-    /// Phase of the fastest mode in a sub-step [rad].
+    /// Returns the phase of the fastest mode per sub-step [rad].
     pub fn phase(&self, tick_rate: u32, substeps: u32) -> f64 {
         self.fastest / (f64::from(tick_rate) * f64::from(substeps))
     }

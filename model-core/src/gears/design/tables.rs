@@ -1,4 +1,4 @@
-//! From parameters to the tables of the fixed step: everything that is not a flow is put together here.
+//! Computes the tables of the fixed step from parameters, except for the flow (`flow_tables`).
 
 use core::array;
 use core::f64::consts::TAU;
@@ -18,7 +18,7 @@ use crate::gears::tables::{Excitation, MeshTable, Mobility, Rigid, Scheme, Sprin
 use crate::numbers::Real;
 use parameters::{DeadZone, JointParameters, MAX_HARMONICS, MESH_KINDS, MeshKind};
 
-/// Tables of the scheme that a board runs.
+/// Computes the tables of the method that a board runs.
 ///
 /// ```
 /// use model_core::gears::{Tables, design::{DesignError, design}};
@@ -39,7 +39,7 @@ pub fn design<T: Real, const N: usize>(
     design_scheme(parameters, tick_rate, Scheme::Realtime, Effort::Board)
 }
 
-/// Tables of a named scheme at a chosen effort.
+/// Computes the tables of a given method and effort.
 pub fn design_scheme<T: Real, const N: usize>(
     parameters: &JointParameters,
     tick_rate: u32,
@@ -140,7 +140,7 @@ fn rigid<T: Real>(parameters: &JointParameters, tick_rate: u32) -> Rigid<T> {
     let mass = MovingMasses::new(parameters).rigid(parameters.geometry.planets);
     let lever = parameters.geometry.carrier_base_radius();
     let rate = f64::from(tick_rate);
-    // 2^-64 turns a tick, each tick, for a unit of acceleration of q [m/s^2].
+    // Speed change per tick, in 2^-64 turns a tick, per unit of acceleration of q [m/s^2].
     let unit = libm::ldexp(1.0, 64) / (TAU * lever * rate * rate);
     Rigid {
         drive: T::from_f64(unit * 2.0 / (parameters.geometry.sun_base_radius * mass)),
@@ -148,7 +148,7 @@ fn rigid<T: Real>(parameters: &JointParameters, tick_rate: u32) -> Rigid<T> {
     }
 }
 
-/// Mobilities times `scale`, damping times `rate`.
+/// Returns the mobilities times `scale` and the damping times `rate`.
 fn mobility<T: Real>(dynamics: &Dynamics, scale: f64, rate: f64) -> Mobility<T> {
     let real = T::from_f64;
     let mobilities = &dynamics.mobilities;

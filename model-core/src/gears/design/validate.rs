@@ -1,11 +1,11 @@
-//! Whether tables can be designed from parameters: their own limits, and those that follow from the gears' laws.
+//! Checks of parameters before the design: limits of the parameters and limits by the laws of the gears.
 
 use parameters::{JointParameters, MESH_KINDS};
 
 use crate::gears::design::error::DesignError;
 use crate::gears::stiffness_series::StiffnessSeries;
 
-/// Checks everything that the tables rest on.
+/// Checks all parameters that the tables use.
 pub fn validate(parameters: &JointParameters) -> Result<(), DesignError> {
     parameters.validate()?;
     for kind in MESH_KINDS {

@@ -1,4 +1,4 @@
-//! Tables of the position-Verlet (leapfrog) sub-steps that light planets need: mobilities and dampings in the unit of time of a sub-step.
+//! Tables of the position-Verlet (leapfrog) sub-steps of light planets (S11), (S12); the unit of time is a sub-step.
 
 use crate::gears::mechanics::Mechanics;
 use crate::gears::scales::Scales;
@@ -6,7 +6,7 @@ use crate::gears::tables::{Mobility, VerletTable};
 use crate::numbers::Real;
 use parameters::{JointParameters, MESH_KINDS};
 
-/// Tables for a tick (dimensionless) in so many sub-steps.
+/// Computes the tables for a tick of dimensionless length `tick` in `substeps` sub-steps.
 pub fn verlet<T: Real>(parameters: &JointParameters, unit: &Mobility<f64>, tick: f64, substeps: u32) -> VerletTable<T> {
     let scales = Scales::new(parameters);
     let real = T::from_f64;
@@ -35,7 +35,7 @@ pub fn verlet<T: Real>(parameters: &JointParameters, unit: &Mobility<f64>, tick:
         wind_up_yield: real(0.5 * wind_up_damping / (1.0 + 0.5 * wind_up_damping * wind_up_mobility)),
         damping: damping.map(real),
         half_damped: damping.map(|value| real(0.5 * value)),
-        // Makes the method's frequencies right to fourth order (the modified potential of Takahashi and Imada).
+        // Makes the frequencies of the method exact to fourth order (modified potential of Takahashi and Imada).
         curvature: real(1.0 / 12.0),
         release: [0, 1].map(|kind| {
             let stiffness = parameters.mesh(MESH_KINDS[kind]).mean_stiffness / scales.stiffness;

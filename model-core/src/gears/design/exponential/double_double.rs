@@ -1,45 +1,45 @@
-//! Double-double arithmetic: a number held as an unevaluated sum of two f64, some 32 digits (Dekker; Knuth's exact sum). The
-//! doublings are done in it, so that their rounding never shows in the f64 that comes out. Only the operations of matrix
-//! products; nothing is fused, so the bits are the same on every host.
+//! Double-double arithmetic: a number is the unevaluated sum of two f64, about 32 digits (Dekker; Knuth's exact sum). It
+//! keeps the rounding errors of the doublings below the resolution of the resulting f64. Only the operations of matrix
+//! products; no fused operations, so the bits are equal on every host.
 
 use core::ops::{Add, AddAssign, Mul, MulAssign};
 
 use num_traits::{One, Zero};
 
-/// high + low, with |low| at most half a unit of high.
+/// Number high + low, with |low| at most half a unit in the last place of high.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DoubleDouble {
     high: f64,
     low: f64,
 }
 
-/// 2^27 + 1 splits an f64 into halves whose products are exact.
+/// Factor 2^27 + 1, which splits an f64 into halves with exact products.
 const SPLITTER: f64 = 134_217_729.0;
 
 impl DoubleDouble {
-    /// An f64 as it is.
+    /// Converts an f64 exactly.
     pub fn new(value: f64) -> Self {
         Self { high: value, low: 0.0 }
     }
 
-    /// The nearest f64.
+    /// Returns the nearest f64.
     pub fn rounded(self) -> f64 {
         self.high
     }
 
-    /// Product of two f64, exact.
+    /// Returns the exact product of two f64.
     pub fn product(a: f64, b: f64) -> Self {
         let high = a * b;
         let ((a_high, a_low), (b_high, b_low)) = (halves(a), halves(b));
         Self { high, low: a_low * b_low - (((high - a_high * b_high) - a_low * b_high) - a_high * b_low) }
     }
 
-    /// Times a power of two, exact.
+    /// Multiplies by a power of two, exactly.
     pub fn scaled(self, power_of_two: f64) -> Self {
         Self { high: self.high * power_of_two, low: self.low * power_of_two }
     }
 
-    /// Quotient by an f64 other than zero.
+    /// Divides by an f64 other than zero.
     pub fn over(self, divisor: f64) -> Self {
         let first = self.high / divisor;
         let rest = self + Self::product(-first, divisor);
@@ -53,14 +53,14 @@ fn halves(value: f64) -> (f64, f64) {
     (high, value - high)
 }
 
-/// Sum of two f64, exact.
+/// Returns the exact sum of two f64.
 fn sum(a: f64, b: f64) -> DoubleDouble {
     let high = a + b;
     let b_part = high - a;
     DoubleDouble { high, low: (a - (high - b_part)) + (b - b_part) }
 }
 
-/// Sum of two f64 of which the first is the larger, exact.
+/// Returns the exact sum of two f64; `high` must have the larger magnitude.
 fn joined(high: f64, low: f64) -> DoubleDouble {
     let total = high + low;
     DoubleDouble { high: total, low: low - (total - high) }

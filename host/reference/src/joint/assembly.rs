@@ -129,8 +129,8 @@ impl JointEquations {
     }
 }
 
-/// Fraction of a turn that is taken off the coordinates of a joint without teeth, as a divisor; any value works that
-/// keeps the coordinates small.
+/// Substitute for the number of ring teeth in a joint without teeth: whole parts of a turn are taken off the
+/// coordinates; any number works that keeps them small.
 const PARTS_OF_A_TURN: f64 = 16384.0;
 
 fn constants(

@@ -63,8 +63,8 @@ fn board() -> Result<Board, String> {
     Ok(board)
 }
 
-/// Writes linker scripts, for a board only: the board's memory under its own name, then the script of the start-up
-/// code, which includes the workspace's `memory.x`.
+/// Selects the linker scripts, for a board only: first `board.x` with the board's memory, then the script of the
+/// start-up code, which includes the workspace's `memory.x`.
 fn link(board: &Board) -> Result<(), String> {
     if variable("CARGO_CFG_TARGET_OS") != Some("none".into()) {
         return Ok(());

@@ -264,7 +264,7 @@ fn no_run_begins_by_a_reset_that_came_while_flash_was_written() {
     board.said();
     board.send(&ToBoard::Memory(MemoryRequest::Save));
     board.settle();
-    // Flash is written at the next request, after this frame has arrived; a later stop was lost.
+    // Idle writes flash after the reset below has arrived; a stop after the reset may have been lost.
     board.tick();
     board.send(&reset(RunMode::Lockstep));
     board.send(&ToBoard::Hello { protocol: link::PROTOCOL_VERSION });

@@ -27,7 +27,7 @@ fn controller() -> Direct<'static> {
     Direct(Controller::new(&control::OBSERVER, &control::COMPENSATION).with_probe(control::PROBE.as_ref()))
 }
 
-/// One tick of a motion to and fro.
+/// Samples and command of one tick of a motion to and fro.
 fn tick(number: u32) -> (Samples<f32>, Command<f32>) {
     let time = 1000 * number;
     let turned = (0.02 * number as f32).sin();

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 /// Most exchanges in one schedule; an exchange is one control period.
 pub const EXCHANGES_PER_SCHEDULE: usize = 4;
 
-/// One control period of a motor controller: samples and set-point.
+/// Samples and set-point of one control period of a motor controller.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Exchange {
     /// Number of the control period, from 0.

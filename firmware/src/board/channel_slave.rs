@@ -114,7 +114,7 @@ impl Unit for ChannelSpi {
         }
         // SAFETY: every line may have an edge and an interrupt.
         exti.rtsr1().modify(|r, w| unsafe { w.bits(r.bits() | line) });
-        // SAFETY: likewise.
+        // SAFETY: every line may have an interrupt.
         exti.imr1().modify(|r, w| unsafe { w.bits(r.bits() | line) });
         Self { spi, dma, exti, clocks, line }
     }

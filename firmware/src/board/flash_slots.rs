@@ -168,14 +168,14 @@ pub mod mark {
 
     /// Marks a slot as being read.
     pub(super) fn set(slot: Slot) {
-        // SAFETY: nobody else has it in hand.
+        // SAFETY: there is no other user.
         unsafe { MARK.0.get().cast::<[u32; 2]>().write_volatile([word(slot), !word(slot)]) };
     }
 
     /// Returns the marked slot and clears the mark.
     pub(super) fn take() -> Option<Slot> {
         let slot = slot();
-        // SAFETY: nobody else has it in hand.
+        // SAFETY: there is no other user.
         unsafe { MARK.0.get().cast::<[u32; 2]>().write_volatile([0; 2]) };
         slot
     }

@@ -43,7 +43,7 @@ impl<K: Kind> FlashUnit<K> {
     }
 
     fn control(&mut self, bits: u32) {
-        // SAFETY: what it erases are the slots, which are nobody else's; all other bits do nothing without it.
+        // SAFETY: erases slots only, which have no other user; all other bits do nothing without an erase.
         self.registers.cr().write(|w| unsafe { w.bits(bits) });
     }
 }

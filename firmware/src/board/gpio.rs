@@ -26,7 +26,7 @@ impl Pin {
     }
 
     fn registers(self) -> &'static pac::gpioa::RegisterBlock {
-        // SAFETY: ports follow one another at this distance with the same registers; the chip has this one.
+        // SAFETY: ports have equal registers at this distance; the chip has this port.
         unsafe { &*pac::GPIOA::ptr().byte_add(PORT * usize::from(self.port)) }
     }
 

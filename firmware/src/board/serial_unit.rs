@@ -22,7 +22,7 @@ macro_rules! units {
             let _ = clocks.$gates().read();
             clocks.$resets().modify(|_, w| w.$reset().set_bit());
             clocks.$resets().modify(|_, w| w.$reset().clear_bit());
-            // SAFETY: asked for once, at the start; nobody else has the unit in hand.
+            // SAFETY: called once, at the start; there is no other user of the unit.
             unsafe { Registers::steal() }
         }
     )+};

@@ -129,7 +129,7 @@ impl Kind for LastPages {
         words();
         dsb();
         isb();
-        // The exception comes at once, if it comes.
+        // An exception, if any, occurs at once.
         !UNREADABLE.swap(false, Relaxed)
     }
 
@@ -138,14 +138,14 @@ impl Kind for LastPages {
     }
 }
 
-/// Words of a slot could not be read.
+/// A read of a slot has failed.
 static UNREADABLE: AtomicBool = AtomicBool::new(false);
-/// Two or more wrong bits in a word, and in the word beside it where flash is one bank: ones clear the flags.
+/// Flags of two or more wrong bits in a word, and in the neighbouring word if flash is one bank; cleared by ones.
 const DOUBLE_ERRORS: u32 = 1 << 31 | 1 << 29;
 
-/// Flash that cannot be read, which is told until the flags are cleared. In a slot, its record is no good; anywhere else
+/// Handles unreadable flash, which is reported until the flags are cleared. In a slot the record is invalid; elsewhere
 /// the program is.
-// SAFETY: the handler touches the flags and nothing that it may find half changed.
+// SAFETY: the handler accesses only the flags and no data that may be half changed.
 #[exception]
 unsafe fn NonMaskableInt() {
     // SAFETY: only this handler uses this register.
@@ -206,7 +206,7 @@ fn start_clock(clocks: &pac::RCC, power: &pac::PWR, flash: &pac::FLASH, timer: &
     if !wait_until(|| clocks.cfgr().read().sws().is_pll()) {
         return Clock::of(ClockSource::Failed);
     }
-    // One microsecond at half speed, as required by the reference manual.
+    // Waits a microsecond at half speed, as required by the reference manual.
     cortex_m::asm::delay(CORE_RATE / 1_000_000);
     clocks.cfgr().modify(|_, w| w.hpre().div1());
     clock

@@ -81,7 +81,7 @@ impl SecondBank {
 const BUS_FAULTS: u32 = 1 << 10 | 1 << 9 | 1 << 15;
 /// Configuration bit of the core: failing loads continue with arbitrary data while faults are masked.
 const GO_ON: u32 = 1 << 8;
-/// Two or more wrong bits in a word, in the bank's status.
+/// Flag of two or more wrong bits in a word, in the bank's status.
 const DOUBLE_ERROR: u32 = 1 << 26;
 
 impl Flash for SecondBank {
@@ -105,13 +105,13 @@ impl Flash for SecondBank {
     fn erase(&mut self, slot: Slot) {
         // Sector erase (2), the slot's sector (8), by double words (4), start (7).
         let bits = 1 << 2 | (slot.index() as u32) << 8 | 3 << 4 | 1 << 7;
-        // SAFETY: what it erases is a slot, which is nobody else's.
+        // SAFETY: erases a slot, which has no other user.
         self.flash.bank2().cr().write(|w| unsafe { w.bits(bits) });
     }
 
     fn read(&mut self, words: &mut dyn FnMut()) -> bool {
-        // SAFETY: for as long as faults are masked, these loads alone can fail; interrupts wait for the few that a flash
-        // word has.
+        // SAFETY: while faults are masked, only these loads can fail; interrupts wait for the few loads of a flash
+        // word.
         unsafe {
             let scb = &*SCB::PTR;
             scb.ccr.modify(|bits| bits | GO_ON);
@@ -146,7 +146,7 @@ impl Flash for SecondBank {
     fn lock(&mut self) {
         // SAFETY: the lock (0).
         self.flash.bank2().cr().write(|w| unsafe { w.bits(1) });
-        // SAFETY: the cache is the core's alone, and nobody else has it in hand: idle runs below everything.
+        // SAFETY: the cache belongs to the core and has no other user: idle runs below everything.
         let mut core = unsafe { cortex_m::Peripherals::steal() };
         core.SCB.clean_invalidate_dcache(&mut core.CPUID);
     }

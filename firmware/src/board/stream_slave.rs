@@ -108,7 +108,7 @@ impl Unit for StreamSpi {
         }
         // SAFETY: every line may have an edge and an interrupt.
         exti.rtsr().modify(|r, w| unsafe { w.bits(r.bits() | line) });
-        // SAFETY: likewise.
+        // SAFETY: every line may have an interrupt.
         exti.imr().modify(|r, w| unsafe { w.bits(r.bits() | line) });
         Self { spi, dma, exti, clocks, line }
     }

@@ -44,7 +44,7 @@ pub struct Hello {
     pub forced: bool,
 }
 
-/// What an image is for.
+/// Role of an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Role {
     /// Simulated joint; torques in, motion out.

@@ -5,7 +5,7 @@
 pub struct Guard {
     /// Negative once the mode no longer holds.
     pub value: f64,
-    /// Its rate of change [1/s].
+    /// Rate of change of `value` [1/s].
     pub rate: f64,
 }
 

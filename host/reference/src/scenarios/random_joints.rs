@@ -9,7 +9,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::joints::{l1, q1, with_teeth};
 
-/// One joint in this number has no teeth.
+/// Reciprocal of the share of joints without teeth.
 const EQUIVALENT: u32 = 8;
 
 struct Chance(ChaCha8Rng);

@@ -50,7 +50,7 @@ impl Controller for OutputIntegral {
             self.side = planned.signum();
         }
         self.trim += period * self.rate * (motion.position - link);
-        // What the guess of the width may be wrong by at most, and the encoders.
+        // Limit: the largest error of the guessed width, with room for encoder errors.
         self.trim = self.trim.clamp(-lost_motion, lost_motion);
         let mut motor = geared(motion, ratio);
         motor.position += ratio * (0.5 * self.side * lost_motion + self.trim);

@@ -1,12 +1,12 @@
-//! Turns a board file into the constants that the image is built with and the memory that the linker knows, and a joint file into
-//! the tables that the image carries. The board file is named by `BOARD_FILE` (default: the preset of the chip whose feature is
-//! chosen), the joint file by `JOINT_FILE` (default: `joints/q1.toml` of the workspace), the tick rate by `JOINT_TICK_RATE` in Hz
-//! (default: 20000); what can be wrong with either is said as a build error. Roles that control are made for one control
-//! period a tick, for the bandwidth `JOINT_BANDWIDTH` in rad/s (default: 60, or as much as the joint allows), for the
-//! torque `JOINT_PEAK_TORQUE` in N m that the teeth shall pass on at most (default: as the joint allows), without an output encoder
-//! where `JOINT_MOTOR_ONLY` is 1, and from the joint file `JOINT_TOLD` if a controller is to be told another joint than the true
-//! one. `JOINT_FORCED` is 1 where the joint command builds what the board has no time for; the hello says so. Measuring binaries carry the joints that
-//! `MEASURED_JOINTS` lists, in the manner of a search path, one module of tables for each.
+//! Generates the image's constants and memory layout from a board file, and its tables from a joint file. Inputs:
+//! `BOARD_FILE` (default: the preset of the selected chip), `JOINT_FILE` (default: `joints/q1.toml` of the workspace),
+//! tick rate `JOINT_TICK_RATE` in Hz (default: 20000); errors in either file become build errors. Roles that control
+//! are designed for one control period per tick, for the bandwidth `JOINT_BANDWIDTH` in rad/s (default: 60, or the
+//! limit of the joint), for the largest torque through the teeth `JOINT_PEAK_TORQUE` in N m (default: the limit of the
+//! joint), without an output encoder if `JOINT_MOTOR_ONLY` is 1, and from the joint file `JOINT_TOLD` if the
+//! controller's joint is to differ from the true one. `JOINT_FORCED` is 1 if the worst-case tick exceeds the available
+//! time and the build was forced; the hello reports it. Measuring binaries contain one module of tables for each joint
+//! of `MEASURED_JOINTS`, a list in the form of a search path.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -27,7 +27,7 @@ fn main() {
     }
 }
 
-/// The board of this build; writes its constants.
+/// Reads the board of this build and writes its constants.
 fn board() -> Result<Board, String> {
     println!("cargo::rerun-if-env-changed=BOARD_FILE");
     let chip = chip()?;
@@ -63,8 +63,8 @@ fn board() -> Result<Board, String> {
     Ok(board)
 }
 
-/// Linker scripts, for a board only: its own memory first, under a name of its own, then that of the start-up code, which reads
-/// the workspace's `memory.x`.
+/// Selects the linker scripts, for a board only: first `board.x` with the board's memory, then the script of the
+/// start-up code, which includes the workspace's `memory.x`.
 fn link(board: &Board) -> Result<(), String> {
     if variable("CARGO_CFG_TARGET_OS") != Some("none".into()) {
         return Ok(());
@@ -103,7 +103,8 @@ fn write_tables(chip: Chip) -> Result<(), String> {
     write("control.rs", &control(&file, &told, chip)?)
 }
 
-/// Tables of the roles that control. A joint that cannot be controlled can still be simulated: only their binaries fail.
+/// Writes the tables of the roles that control. A joint that cannot be controlled can still be simulated: only the
+/// binaries of these roles fail.
 fn control(file: &Path, told: &Path, chip: Chip) -> Result<String, String> {
     println!("cargo::rerun-if-env-changed=JOINT_MOTOR_ONLY");
     let tick_rate = tick_rate()?;
@@ -121,13 +122,13 @@ fn control(file: &Path, told: &Path, chip: Chip) -> Result<String, String> {
     }
 }
 
-/// Modules `joint_0`, `joint_1`, ... and `visit`, which shows their tables in this order.
+/// Writes modules `joint_0`, `joint_1`, ... and `visit`, which visits their tables in this order.
 fn write_measured(chip: Chip) -> Result<(), String> {
     if variable("CARGO_FEATURE_MEASURING").is_none() {
         return Ok(());
     }
     println!("cargo::rerun-if-env-changed=MEASURED_JOINTS");
-    // The compiler must not fold the numbers into the code, which it cannot do in the image of a board either.
+    // The compiler must not fold the numbers into the code, as it cannot in a board's image.
     let (mut modules, mut visits) = (String::from("use core::hint::black_box;\n"), String::new());
     let files = env::var_os("MEASURED_JOINTS").unwrap_or_default();
     for (index, file) in env::split_paths(&files).filter(|file| !file.as_os_str().is_empty()).enumerate() {
@@ -141,7 +142,7 @@ fn write_measured(chip: Chip) -> Result<(), String> {
     write("measured.rs", &(modules + &visit))
 }
 
-/// The tables of a joint file, as a module's text.
+/// Returns the tables of a joint file as the text of a module.
 fn source(file: &Path, tick_rate: u32, chip: Chip) -> Result<String, String> {
     let joint = read(file)?;
     model_core::gears::design::rust_source_for(&joint.parameters, tick_rate, &chip.processor())
@@ -156,7 +157,7 @@ fn read(file: &Path) -> Result<joint_file::JointFile, String> {
     })
 }
 
-/// The chip of this build.
+/// Returns the chip of this build.
 fn chip() -> Result<Chip, String> {
     let chosen = |chip: &Chip| variable(&format!("CARGO_FEATURE_{}", chip.name().to_uppercase())).is_some();
     let names = Chip::ALL.map(Chip::name);
@@ -168,7 +169,7 @@ fn chip() -> Result<Chip, String> {
     first.ok_or_else(|| format!("no chip: want a feature of {names:?}; {}", board_file::OTHER_CHIPS))
 }
 
-/// A number from the environment; `None` where the variable is absent or empty.
+/// Reads a number from the environment; `None` if the variable is absent or empty.
 fn number(name: &str, unit: &str) -> Result<Option<f64>, String> {
     println!("cargo::rerun-if-env-changed={name}");
     let Some(typed) = variable(name).filter(|typed| !typed.is_empty()) else { return Ok(None) };

@@ -1,10 +1,10 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
-//! The core in somebody else's firmware: their motor-control loop, their panic handler, their chip's vendor table, no
-//! HAL, and nothing of this package but the tables that its build script wrote. Take `model-core` as a dependency and
-//! write the tables in your own build script: those of the model by `model_core::gears::design::rust_source`, those of
-//! the observer by `model_core::observer::design::observer_source`. Once a control period the observer is given what the
-//! loop has measured anyway, encoder counts and torque, and says where the gap is; the model, stepped beside it, says
-//! what the gears do under these torques.
+//! Use of the core in other firmware with its own motor-control loop, panic handler and vector table; without HAL, and
+//! of this package only with the tables written by its build script. Depend on `model-core` and write the tables in
+//! your own build script: those of the model by `model_core::gears::design::rust_source`, those of the observer by
+//! `model_core::observer::design::observer_source`. Once per control period the observer takes the loop's encoder
+//! counts and torque and estimates the gap coordinate; the model, stepped in parallel, simulates the gears under these
+//! torques.
 
 #[cfg(target_os = "none")]
 mod guest {
@@ -37,18 +37,18 @@ mod guest {
         include!(concat!(env!("OUT_DIR"), "/control.rs"));
     }
 
-    /// Motor torque [N m] that swings the joint to and fro through its gap.
+    /// Motor torque that swings the joint to and fro through its gap [N m].
     const SWING: f32 = 0.5;
-    /// Control periods that it acts one way.
+    /// Control periods per direction of the torque.
     const HALF_SWING: u32 = 2000;
-    /// Part of it that is left while the teeth are known to be on their way: a soft landing.
+    /// Share of the torque while the teeth cross the gap: a soft landing.
     const IN_THE_GAP: f32 = 0.25;
 
-    /// What stands for encoders and current loop, so that this runs anywhere: a virtual joint. Yours are drivers.
+    /// Virtual joint in place of encoders and current loop, so that the example runs anywhere; replace it by drivers.
     struct Motor(VirtualJoint<'static, f32, { joint::PLANETS }>);
 
     impl Motor {
-        /// Counts of both encoders with their times, and the torque that was commanded last.
+        /// Returns counts of both encoders with their times, and the last commanded torque.
         fn measure(&self) -> Samples<f32> {
             self.0.samples()
         }
@@ -66,7 +66,7 @@ mod guest {
         let mut observer = Observer::<f32, MAPPED>::new(&control::OBSERVER);
         let mut period = 0_u32;
         loop {
-            // Yours waits here for its timer.
+            // A real loop waits for its timer here.
             let estimates = observer.step(&motor.measure());
             let swing = if (period / HALF_SWING).is_multiple_of(2) { SWING } else { -SWING };
             let open = estimates.contact_valid && estimates.reported_contact == ContactState::Separated;
@@ -86,6 +86,6 @@ mod guest {
     }
 }
 
-/// There is nothing to run on a host.
+/// Empty on a host.
 #[cfg(not(target_os = "none"))]
 fn main() {}

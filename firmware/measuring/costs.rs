@@ -1,6 +1,6 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
-//! Counts the instructions of two steps whose course is known, for every joint of this image: contact holds, and all
-//! teeth are apart.
+//! Counts the instructions of two steps of known course, for every joint of this image: contact holds, and all teeth
+//! are separated.
 
 #[cfg(target_os = "none")]
 mod measurement {
@@ -10,7 +10,7 @@ mod measurement {
     use firmware::measuring::{self, InstructionCounter, Visitor, measured};
     use model_core::gears::{Model, Relative, State, Tables, Torques};
 
-    /// Deflection of every mesh by its load [b_c]: more than backlashes differ by.
+    /// Deflection of every mesh by its load [b_c], larger than the differences between backlashes.
     const DEFLECTION: f32 = 20.0;
     const NONE: Torques<f32> = Torques { drive: 0.0, load: 0.0 };
 
@@ -39,7 +39,7 @@ mod measurement {
         ) -> u32 {
             let mut model = Model::new(tables);
             model.set_state(state);
-            // The second step goes on from the first, as steps do.
+            // The second step continues from the first, as in a run.
             model.step(torques);
             self.counter.count(|| step(black_box(&mut model), black_box(torques)))
         }
@@ -55,7 +55,7 @@ mod measurement {
         State { position: relative(1e-3), rate: relative(1e-4), ..State::REST }
     }
 
-    /// In balance under a load, or nearly so where backlashes differ.
+    /// In balance under a load, approximately where backlashes differ.
     fn loaded<const N: usize>(tables: &Tables<f32, N>) -> (State<f32, N>, Torques<f32>) {
         let [sun, ring] = &tables.meshes;
         let (units, rigid, mobility) = (&tables.units, &tables.rigid, &tables.mobility);
@@ -77,7 +77,7 @@ mod measurement {
 
     #[entry]
     fn main() -> ! {
-        // Alone in this image, and called once.
+        // Always available: the only user in this image, called once.
         if let Some(core) = cortex_m::Peripherals::take() {
             measured::visit(&mut Costs { counter: InstructionCounter::start(core.SYST) });
         }
@@ -85,6 +85,6 @@ mod measurement {
     }
 }
 
-/// There is nothing to run on a host.
+/// Empty on a host.
 #[cfg(not(target_os = "none"))]
 fn main() {}

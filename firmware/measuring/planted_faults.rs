@@ -1,6 +1,6 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
-//! A tick with everything in it that a tick must not have: an index that may fail, recursion, a call through a pointer
-//! and a great deal of stack. It tests the check of the linked image; nothing runs it.
+//! A tick with everything that is forbidden in a tick: an index that may fail, recursion, a call through a pointer and
+//! a large stack. It tests the check of the linked image and is never run.
 
 #[cfg(target_os = "none")]
 mod faults {
@@ -47,6 +47,6 @@ mod faults {
     }
 }
 
-/// There is nothing to run on a host.
+/// Empty on a host.
 #[cfg(not(target_os = "none"))]
 fn main() {}

@@ -1,7 +1,6 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
-//! Counts the instructions of the roles that control, tick by tick, in a motion with reversals, pushes and an output
-//! encoder that falls silent: each role's own work, as its tick does it, and the observer's alone, with error maps and
-//! without.
+//! Counts the instructions of the roles that control, tick by tick, in a motion with reversals, pushes and a silent
+//! output encoder: the work of each role's tick, and the observer alone, with and without error maps.
 
 #[cfg(target_os = "none")]
 mod measurement {
@@ -28,11 +27,11 @@ mod measurement {
         include!(concat!(env!("OUT_DIR"), "/control.rs"));
     }
 
-    /// Control periods: every parameter is learnt, and every flank met some twenty times.
+    /// Control periods: enough to estimate every parameter and to meet every flank some twenty times.
     const PERIODS: u32 = 30_000;
     /// Periods between two knots of the motion.
     const SEGMENT: u32 = 50;
-    /// The output encoder is silent for a tenth of a second in the middle.
+    /// Periods without output encoder: a tenth of a second in the middle.
     const SILENT: core::ops::Range<u32> = 15_000..16_000;
     /// Amplitude [turns] and rate [1/s] of the motion.
     const MOTION: [f32; 2] = [0.05, 1.0];
@@ -40,7 +39,7 @@ mod measurement {
     /// Instructions of one role.
     struct Count {
         name: &'static str,
-        /// What it keeps in memory [B].
+        /// RAM [byte].
         bytes: usize,
         sum: u64,
         most: u32,
@@ -77,7 +76,7 @@ mod measurement {
         observer.step(samples);
     }
 
-    /// What is asked for from a period on: a sine by its first three powers, with a push that changes sides.
+    /// Set-points from a period on: a sine by its first three powers, with a push of alternating sign.
     fn knot(tick: u32) -> Knot {
         let [amplitude, rate] = MOTION;
         let turn = control::SURROUNDINGS.turn;
@@ -102,7 +101,7 @@ mod measurement {
 
     #[entry]
     fn main() -> ! {
-        // Alone in this image, and called once.
+        // Always available: the only user in this image, called once.
         if let Some(core) = cortex_m::Peripherals::take() {
             measure(&InstructionCounter::start(core.SYST));
         }
@@ -151,6 +150,6 @@ mod measurement {
     }
 }
 
-/// There is nothing to run on a host.
+/// Empty on a host.
 #[cfg(not(target_os = "none"))]
 fn main() {}

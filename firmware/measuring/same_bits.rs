@@ -1,6 +1,5 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
-//! Digests of the trial motions of every joint of this image, once for each way in which a caller may have set the
-//! floating-point unit.
+//! Digests of the trial motions of every joint of this image, for each floating-point mode that a caller may have set.
 
 #[cfg(target_os = "none")]
 mod measurement {
@@ -11,7 +10,7 @@ mod measurement {
     use model_core::gears::Tables;
     use stimuli::motion;
 
-    /// Bits of FPSCR: tiny results and operands are taken for zero; every NaN is the default one.
+    /// Bits of FPSCR: flush denormal results and operands to zero; default NaN.
     const FLUSH_TO_ZERO: u32 = 1 << 24;
     const DEFAULT_NAN: u32 = 1 << 25;
     const MODES: [u32; 4] = [0, FLUSH_TO_ZERO, DEFAULT_NAN, FLUSH_TO_ZERO | DEFAULT_NAN];
@@ -39,12 +38,12 @@ mod measurement {
     }
 
     fn set_mode(mode: u32) {
-        // SAFETY: these two bits change the results of floating-point instructions, which is what is tried here, and
-        // nothing else; rounding stays to nearest.
+        // SAFETY: these two bits only change the results of floating-point instructions, as the trial intends; rounding
+        // stays to nearest.
         unsafe { asm!("vmsr fpscr, {mode}", mode = in(reg) mode) };
     }
 }
 
-/// There is nothing to run on a host.
+/// Empty on a host.
 #[cfg(not(target_os = "none"))]
 fn main() {}

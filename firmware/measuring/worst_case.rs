@@ -1,6 +1,6 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
-//! Counts the instructions of one step from a great many states, random and adversarial, for every joint of this
-//! image. The states are those of the crate `stimuli`.
+//! Counts the instructions of one step from many states, random and adversarial, for every joint of this image. The
+//! crate `stimuli` generates the states.
 
 #[cfg(target_os = "none")]
 mod measurement {
@@ -14,13 +14,13 @@ mod measurement {
 
     const SEED: u64 = 1;
 
-    /// Counts of one sort of trials.
+    /// Counts of one kind of trials.
     #[derive(Clone, Copy)]
     struct Count {
         trials: u32,
         sum: u64,
         most: u32,
-        /// The first trial that took the most.
+        /// First trial with the most instructions.
         trial: u32,
     }
 
@@ -45,7 +45,7 @@ mod measurement {
         model.step(torques);
     }
 
-    /// What it takes to call a step, which is not the step's.
+    /// Instructions of the call of a step, which are subtracted.
     #[inline(never)]
     fn no_step<const N: usize>(model: &mut Model<'_, f32, N>, torques: Torques<f32>) {
         black_box((model, torques));
@@ -68,7 +68,7 @@ mod measurement {
                 if worst.is_none_or(|(most, _)| instructions > most) {
                     worst = Some((instructions, trial));
                 }
-                // Random that are none stay so: there is nothing to be found near them.
+                // Non-finite states stay non-finite: nearby states add nothing.
                 let is_worst = class != Class::NotFinite && instructions > worst_finite;
                 if is_worst {
                     worst_finite = instructions;
@@ -96,7 +96,7 @@ mod measurement {
 
     #[entry]
     fn main() -> ! {
-        // Alone in this image, and called once.
+        // Always available: the only user in this image, called once.
         if let Some(core) = cortex_m::Peripherals::take() {
             measured::visit(&mut Search { counter: InstructionCounter::start(core.SYST) });
         }
@@ -104,6 +104,6 @@ mod measurement {
     }
 }
 
-/// There is nothing to run on a host.
+/// Empty on a host.
 #[cfg(not(target_os = "none"))]
 fn main() {}

@@ -1,5 +1,5 @@
-//! Samples on their way to the line: put into the wire's form, collected, and numbered without gaps. `conversation` sends a
-//! batch when the line has room.
+//! Collects samples in wire form into batches with consecutive numbers. `conversation` sends a batch when the line has
+//! room.
 
 use heapless::Vec;
 use link::messages::FromBoard;

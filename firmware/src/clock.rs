@@ -1,5 +1,4 @@
-//! SysTick in its two uses: the timer of the ticks, and a clock that measures how much of the processor's time each part takes.
-//! The board sets up its clock source.
+//! SysTick as the timer of the ticks and as the clock for the processor load. The board sets up its clock source.
 
 use core::sync::atomic::AtomicU32;
 use core::sync::atomic::Ordering::Relaxed;
@@ -19,7 +18,7 @@ const _: () = assert!(PERIOD <= 1 << 24, "SysTick has 24 bits");
 
 /// Ticks since power-up.
 static TICKS: AtomicU32 = AtomicU32::new(0);
-/// Time that interrupts have taken for themselves.
+/// Time spent in interrupts [timer counts].
 static BUSY: AtomicU32 = AtomicU32::new(0);
 
 /// Starts the ticks.
@@ -42,7 +41,7 @@ impl TickTimer for TickClock {
     }
 }
 
-/// Counts since the last expiry. The counter reads 0 at the expiry itself and starts over from the reload value.
+/// Counts since the last expiry. At the expiry the counter reads 0, then restarts from the reload value.
 fn elapsed() -> u32 {
     match SYST::get_current() {
         0 => 0,
@@ -50,14 +49,14 @@ fn elapsed() -> u32 {
     }
 }
 
-/// Runs the tick's work, as called from its interrupt.
+/// Runs the tick's work in its interrupt.
 pub fn in_tick(work: impl FnOnce(&TickClock)) {
     TICKS.store(TICKS.load(Relaxed).wrapping_add(1), Relaxed);
     work(&TickClock);
     BUSY.fetch_add(TickClock.since_expiry(), Relaxed);
 }
 
-/// Runs an interrupt's work below the tick's priority, and counts its time as taken.
+/// Runs the work of an interrupt below the tick's priority and counts its time as busy.
 pub fn in_interrupt(work: impl FnOnce()) {
     let start = Instant::now();
     work();
@@ -74,7 +73,7 @@ pub fn microseconds() -> u64 {
     u64::from(TICKS.load(Relaxed)) * 1_000_000 / u64::from(TABLES.tick_rate)
 }
 
-/// An instant, to measure from.
+/// Instant for time measurements.
 #[derive(Debug, Clone, Copy)]
 struct Instant {
     counts: u32,
@@ -82,7 +81,7 @@ struct Instant {
 }
 
 impl Instant {
-    /// Now, as seen below the tick's priority: a tick in between makes it look again, at most twice.
+    /// Current instant, read below the tick's priority: an intervening tick causes another read, at most twice.
     fn now() -> Self {
         let mut counts = 0;
         for _ in 0..3 {
@@ -95,7 +94,7 @@ impl Instant {
         Self { counts, busy: BUSY.load(Relaxed) }
     }
 
-    /// Time since this instant that no interrupt took.
+    /// Time since this instant, less the time of interrupts.
     fn own_time(self) -> u32 {
         let now = Self::now();
         let taken = now.busy.wrapping_sub(self.busy);
@@ -103,7 +102,7 @@ impl Instant {
     }
 }
 
-/// How much of the processor's time is left over.
+/// Meter of idle processor time.
 #[derive(Debug)]
 pub struct IdleMeter {
     last: Instant,
@@ -112,12 +111,12 @@ pub struct IdleMeter {
 }
 
 impl IdleMeter {
-    /// Starts to measure.
+    /// Starts a measurement.
     pub fn start() -> Self {
         Self { last: Instant::now(), total: 0, idle: 0 }
     }
 
-    /// Sleeps until the next interrupt; that time is idle, apart from what interrupts take of it.
+    /// Sleeps until the next interrupt; this time counts as idle, less the time of interrupts.
     pub fn sleep(&mut self) {
         let start = Instant::now();
         cortex_m::asm::wfi();
@@ -125,14 +124,14 @@ impl IdleMeter {
         self.pass();
     }
 
-    /// Must be called at least once in half the time in which 32 bits of counts wrap: some ten seconds.
+    /// Updates the measurement. To be called at least once per half wrap of 32 bits of counts (some ten seconds).
     pub fn pass(&mut self) {
         let now = Instant::now();
         self.total += u64::from(now.counts.wrapping_sub(self.last.counts));
         self.last = now;
     }
 
-    /// Idle time in thousandths of all time; then starts afresh if asked to.
+    /// Returns idle time in thousandths of all time; restarts the measurement if `reset` is set.
     pub fn permille(&mut self, reset: bool) -> u16 {
         self.pass();
         let share = (self.idle * 1000).checked_div(self.total).unwrap_or(0);

@@ -1,6 +1,6 @@
-//! The conversation with the host, run in idle: reads frames, hands commands and orders to the tick, and sends samples, events,
-//! log and timing statistics. One message at a time, and only when the line has room for the longest frame, so that none is
-//! dropped for want of room; the tick sees by its queues when idle falls behind.
+//! Conversation with the host, run in idle: reads frames, hands commands and orders to the tick, and sends samples,
+//! events, log and timing statistics. A message is sent only while the line has room for the longest frame, so that no
+//! message is dropped. If idle falls behind, the tick notices by its queues.
 
 use core::sync::atomic::Ordering::Acquire;
 
@@ -17,7 +17,7 @@ use crate::serial::{Heard, LineEnd};
 use crate::shared::{Consumer, Producer};
 use crate::timing_report::{LineCounts, Resources, statistics};
 
-/// The encoded log, as far as it waits to be sent.
+/// Encoded log that waits to be sent.
 pub struct LogEnd<'a> {
     /// Encoded bytes.
     pub bytes: Consumer<'a, u8>,
@@ -42,11 +42,11 @@ pub struct Conversation<'a, W: Protocol> {
     batch: W::Batch,
     log_sequence: u16,
     awaiting: bool,
-    /// Of the run that was asked for last.
+    /// Settings of the last requested run.
     settings: RunSettings,
-    /// Stops among the frames that were read.
+    /// Stop frames read so far.
     stops: u32,
-    /// Bytes to be read that were received while flash was written.
+    /// Unread bytes that were received while flash was written.
     stale: usize,
     cause: Option<Trip>,
     clear_with_report: bool,
@@ -54,7 +54,7 @@ pub struct Conversation<'a, W: Protocol> {
 }
 
 impl<'a, W: Protocol> Conversation<'a, W> {
-    /// Before the first message; `period` is the tick's, in timer counts.
+    /// State before the first message; `period` is the tick period in timer counts.
     pub fn new(hello: Hello, period: u32, end: IdleEnd<'a, W>, line: LineEnd<'a>, log: LogEnd<'a>) -> Self {
         let IdleEnd { commands, orders, samples, events, learnt, remembered, progress } = end;
         Self {
@@ -82,8 +82,9 @@ impl<'a, W: Protocol> Conversation<'a, W> {
         }
     }
 
-    /// Does the work with flash, if there is any: nothing runs until then. `writing` wraps what may take a second or two.
-    /// The line may have lost anything meanwhile, a stop too: no run begins by a reset that was received before the end of it.
+    /// Does the pending flash work, if there is any; no run goes on meanwhile. `writing` wraps the write, which may
+    /// take two seconds. During the write the line may lose any frame, also a stop; resets received before its end are
+    /// therefore refused.
     pub fn serve_flash(
         &mut self,
         kept: &mut KeptMemory<impl Slots>,
@@ -101,9 +102,9 @@ impl<'a, W: Protocol> Conversation<'a, W> {
         }
     }
 
-    /// Does one thing of each kind if there is one; returns whether there was any. `resources` is asked when a report is
-    /// due, with `true` if it should start afresh. The host comes first: samples enough to fill the line would let it wait
-    /// for its answers.
+    /// Handles at most one frame, one batch of samples, one event and one log message; returns `true` if there was any.
+    /// `resources` is called for a report; its argument asks to restart the measurement. Frames come first: otherwise a
+    /// line filled with samples would delay the answers to the host.
     pub fn attend(&mut self, resources: &mut dyn FnMut(bool) -> Resources) -> bool {
         let heard = !self.awaiting && !self.memory_requests.is_busy() && self.has_room() && self.take_held_or_listen();
         let sampled = self.has_room() && self.report_samples();
@@ -117,7 +118,7 @@ impl<'a, W: Protocol> Conversation<'a, W> {
     }
 
     fn say(&mut self, message: &FromBoard) {
-        // Every message of ours fits into a frame: link's tests hold the longest of each.
+        // Every message of the board fits into a frame: tests of `link` encode the longest of each.
         if let Ok(frame) = encode(message) {
             self.line.write(&frame);
         }
@@ -127,7 +128,7 @@ impl<'a, W: Protocol> Conversation<'a, W> {
         self.progress.running.load(Acquire)
     }
 
-    /// Takes samples into the batch and sends it once it is full, or once there are no more to come for now.
+    /// Collects samples; sends the batch once it is full, or once no sample is expected for now.
     fn report_samples(&mut self) -> bool {
         let mut taken = false;
         while !self.batch.is_full() {
@@ -144,8 +145,8 @@ impl<'a, W: Protocol> Conversation<'a, W> {
         taken
     }
 
-    /// Sends an event of the tick. The end of a run is sent after its last sample: samples are looked for after the event was
-    /// seen, since the tick may come in between with both.
+    /// Sends an event of the tick. The end of a run is sent after the last sample: samples are checked after the event
+    /// was seen, since the tick may interrupt in between and add both.
     fn report_event(&mut self, resources: &mut dyn FnMut(bool) -> Resources) -> bool {
         let Some(event) = self.events.peek() else { return false };
         let ends_run = matches!(event, Event::Stopped | Event::Tripped(_));
@@ -160,14 +161,14 @@ impl<'a, W: Protocol> Conversation<'a, W> {
                 self.forget_run();
                 self.say(&FromBoard::Hello(self.hello.clone()));
             }
-            // Answered once it is written.
+            // The answer follows once flash is written.
             Event::MemoryReady(Ok(())) => {}
             Event::MemoryReady(Err(why)) => self.say(&FromBoard::MemoryOutcome(why)),
             Event::MemoryChecked(state) => {
                 self.memory_requests.checked(state);
                 self.say(&FromBoard::MemoryChecked(state));
             }
-            // Answered once flash has forgotten it, too.
+            // The answer follows once flash is erased.
             Event::MemoryDiscarded => self.memory_requests.discarded(),
             Event::FaultTaken { taken } => self.say(&FromBoard::FaultTaken { taken }),
             Event::Refused(trip) | Event::Tripped(trip) => self.say(&FromBoard::Tripped(trip)),
@@ -189,7 +190,7 @@ impl<'a, W: Protocol> Conversation<'a, W> {
         true
     }
 
-    /// Drops what is left of the run before a reset.
+    /// Drops samples and counts of the run before a reset.
     fn forget_run(&mut self) {
         while self.samples.dequeue().is_some() {}
         self.batch = W::Batch::default();
@@ -230,7 +231,7 @@ impl<'a, W: Protocol> Conversation<'a, W> {
         !self.intake.holds()
     }
 
-    /// Reads up to the end of a frame.
+    /// Reads bytes up to the end of a frame.
     fn listen(&mut self) -> bool {
         let (mut heard, stops) = (false, self.heard.stops());
         while let Some(byte) = self.line.read() {
@@ -242,7 +243,7 @@ impl<'a, W: Protocol> Conversation<'a, W> {
                 return heard;
             }
         }
-        // All that had come has been read: a stop that was not among it found no room.
+        // All received bytes have been read: a stop that is not among them was dropped for lack of room.
         self.stops = stops;
         heard
     }
@@ -272,7 +273,7 @@ impl<'a, W: Protocol> Conversation<'a, W> {
         }
     }
 
-    /// Gives the tick an order; no frame is read before it is answered.
+    /// Gives the tick an order; no further frame is read until the order is answered.
     fn order(&mut self, order: Order) {
         let _ = self.orders.enqueue(order);
         self.awaiting = true;

@@ -1,5 +1,5 @@
-//! Encoder drivers: sources of counts for the observer, and the ways in which a reading can fail. Each kind of encoder has a
-//! file of its own.
+//! Encoder drivers: sources of counts for the observer, and the failures of a reading. Each type of encoder has a file
+//! of its own.
 
 mod as5047p;
 
@@ -8,33 +8,33 @@ use core::fmt;
 pub use as5047p::As5047p;
 use model_core::observer::Reading;
 
-/// Gives a reading once a control tick.
+/// Source of one reading per control tick.
 pub trait CountSource {
-    /// Counts in a turn, after which they wrap.
+    /// Counts per turn, after which counts wrap.
     const COUNTS_PER_TURN: u32;
 
-    /// The newest reading; `now` is the time at which it is asked for, in ticks of the observer's clock.
+    /// Returns the newest reading; `now` is the time of the call in ticks of the observer's clock.
     fn read(&mut self, now: u32) -> Result<Reading, EncoderFault>;
 }
 
-/// Why there is no reading in this tick. The observer is then given none.
+/// Reason for a tick without reading; the observer gets no reading then.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EncoderFault {
     /// The bus could not transfer.
     Bus,
-    /// Nothing answers: the line stays at one level.
+    /// No answer: the line stays at one level.
     Missing,
     /// The answer's parity is wrong.
     Parity,
-    /// The encoder reports an error; its error register as far as it is known.
+    /// The encoder reports an error; content of its error register, if it is known.
     Reported(u16),
     /// The magnet's field is too weak: too far away, or the wrong magnet.
     MagnetTooWeak,
     /// The magnet's field is too strong: too near.
     MagnetTooStrong,
-    /// There is no magnet, or nothing that turns before the encoder.
+    /// No magnet or no rotating shaft in front of the encoder.
     MagnetLost,
-    /// No angle was asked for in the tick before: the next one brings it.
+    /// No angle was requested in the last tick: the next tick provides it.
     Pending,
 }
 

@@ -1,5 +1,5 @@
-//! The board's identity in its hello: everything that does not change between two resets, from the generated tables and from
-//! the board's start-up.
+//! Identity of the board in its hello: everything that is constant between two resets, from the generated tables and
+//! the start-up.
 
 use heapless::String;
 use link::PROTOCOL_VERSION;
@@ -16,9 +16,9 @@ pub struct StartUp {
     pub board: &'static str,
     /// Timer counts a second [Hz].
     pub timer_rate: u32,
-    /// Where the core clock comes from.
+    /// Source and tolerance of the core clock.
     pub clock: Clock,
-    /// Message left by a panic before the last reset.
+    /// Message that a panic left before the last reset.
     pub last_panic: Option<String<96>>,
     /// The last reset came from the watchdog.
     pub watchdog_reset: bool,
@@ -26,7 +26,7 @@ pub struct StartUp {
     pub memory: MemoryState,
 }
 
-/// The hello of a board in a role, with the digest of its controller's tables if it has any.
+/// Hello of a board in a role, with the digest of its controller's tables, if it has a controller.
 pub fn hello<W: Protocol>(start_up: StartUp, control_digest: Option<u64>) -> Hello {
     Hello {
         protocol: PROTOCOL_VERSION,
@@ -67,7 +67,7 @@ const fn number(digits: &str) -> u8 {
     value
 }
 
-/// As much of a text as fits.
+/// Shortens a text to `LENGTH` bytes.
 fn shortened<const LENGTH: usize>(text: &str) -> String<LENGTH> {
     let mut result = String::new();
     for character in text.chars() {

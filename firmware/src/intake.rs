@@ -1,5 +1,5 @@
-//! Commands from the host: checked, queued for the tick in time and in order, held until there is room, or refused for a
-//! reason.
+//! Checks commands from the host and queues them for the tick in order; holds them until there is room, or refuses them
+//! with a reason.
 
 use core::sync::atomic::Ordering::{Acquire, Release};
 
@@ -12,13 +12,13 @@ use crate::shared::Producer;
 /// Outcome of a schedule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Taken {
-    /// It is queued, or was before.
+    /// The schedule is queued, now or by an earlier copy.
     Accepted(Accepted),
-    /// There is no run that it could be for.
+    /// No run goes on.
     NotRunning,
-    /// It cannot be executed: the run ends.
+    /// The schedule cannot be executed: the run ends.
     Unfit(Trip),
-    /// It follows a gap, or waits for room: nothing is to be said.
+    /// The schedule follows a gap or waits for room: no answer.
     Nothing,
 }
 
@@ -33,23 +33,23 @@ pub struct Intake<'a, W: Protocol> {
 }
 
 impl<'a, W: Protocol> Intake<'a, W> {
-    /// Before the first run.
+    /// State before the first run.
     pub fn new(commands: Producer<'a, W::Command>, progress: &'a Progress) -> Self {
         Self { commands, progress, settings: BEFORE_ANY_RUN, held: None, next_sequence: 0, lost: 0 }
     }
 
-    /// A run has begun.
+    /// Begins a run.
     pub fn begin(&mut self, settings: RunSettings) {
         self.settings = settings;
         self.next_sequence = 0;
     }
 
-    /// A schedule waits for room: until it is taken nothing more should be read.
+    /// Returns `true` while a schedule waits for room; no further frame is to be read until it is queued.
     pub fn holds(&self) -> bool {
         self.held.is_some()
     }
 
-    /// Tries the one that waits again.
+    /// Retries the waiting schedule.
     pub fn take_held(&mut self) -> Taken {
         self.held.take().map_or(Taken::Nothing, |held| self.take(held))
     }
@@ -59,14 +59,14 @@ impl<'a, W: Protocol> Intake<'a, W> {
         self.lost
     }
 
-    /// Whether everything is done that was to be done so far.
+    /// Returns `true` if all steps up to the horizon are done.
     pub fn has_caught_up(&self) -> bool {
         self.progress.steps.load(Acquire) >= self.progress.horizon.load(Acquire)
     }
 
-    /// Queues a schedule's commands, or says why not. In lockstep a schedule that follows a gap is not taken: nothing
-    /// is simulated on torques that never arrived, and the host may send again from the missing one on. Nor is one
-    /// taken there before there is room for it.
+    /// Queues a schedule's commands, or returns the reason for a refusal. In lockstep a schedule after a gap is
+    /// ignored, so that no step uses torques that never arrived; the host can resend from the missing schedule on. In
+    /// lockstep a schedule without room is held.
     pub fn take(&mut self, timetable: W::Timetable) -> Taken {
         if !self.progress.running.load(Acquire) {
             return Taken::NotRunning;
@@ -111,8 +111,8 @@ impl<'a, W: Protocol> Intake<'a, W> {
         self.commands.capacity() - self.commands.len()
     }
 
-    /// The horizon is within reach. Commands lie between the old horizon and the new one, in rising order: those before the
-    /// old one would be late, those past the new one would block the queue.
+    /// Checks that the horizon is within reach and that commands lie in rising order between the old and the new
+    /// horizon. A command before the old horizon would be late; a command past the new horizon would block the queue.
     fn check(&self, timetable: &W::Timetable) -> Result<(), Trip> {
         let mut earliest = self.progress.horizon.load(Acquire);
         if timetable.horizon() < earliest {

@@ -1,39 +1,40 @@
-//! Where what an observer has learnt outlives a reset, and a power cut at any moment: two slots of flash. A memory is written
-//! into the slot that the newest record is not in, and its trailer, sequence number and checksum, last: until the trailer is
-//! whole, the record before it is the newest. What is forgotten is overwritten by a newer record of nothing.
+//! Storage of the estimated parameters (memory) that survives a reset, and a power cut at any moment: two slots of
+//! flash. A memory is written into the slot without the newest record; its trailer (sequence number and checksum) is
+//! written last. Until the trailer is complete, the old record is the newest. To erase, a newer record without content
+//! is written.
 
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use link::messages::MemoryOutcome;
 use model_core::observer::{MEMORY_BYTES, Memory};
 
-/// Bytes of a trailer: what every board's flash writes at a time, or a multiple of it.
+/// Bytes of a trailer: a multiple of the write unit of every board's flash.
 const TRAILER: usize = 32;
 /// Bytes of a record.
 pub const RECORD_BYTES: usize = MEMORY_BYTES + TRAILER;
-/// A memory and its trailer: sequence number and checksum over both, little-endian, the rest as after an erase.
+/// Memory and trailer: sequence number and checksum over both, little-endian; the rest is as erased.
 pub type Record = [u8; RECORD_BYTES];
 
-// Whole words of every board's flash, of up to 32 bytes.
+// Multiple of the write unit of every board's flash, up to 32 bytes.
 const _: () = assert!(RECORD_BYTES.is_multiple_of(32));
 
 static CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
-/// What a memory reads as where nothing is kept: flash after an erase.
+/// Content of an erased memory.
 pub const NOTHING: Memory = [0xff; MEMORY_BYTES];
 
-/// One of the two places.
+/// Slot of flash.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Slot {
-    /// The first.
+    /// First slot.
     A,
-    /// The second.
+    /// Second slot.
     B,
 }
 
 impl Slot {
     const BOTH: [Self; 2] = [Self::A, Self::B];
 
-    /// Its place in a list of two.
+    /// Index, 0 or 1.
     pub fn index(self) -> usize {
         self as usize
     }
@@ -46,23 +47,23 @@ impl Slot {
     }
 }
 
-/// Flash with room for two records. Erasing or writing one leaves the other as it is; each may hold everything up for a second
-/// or two.
+/// Flash with room for two records. Erasing or writing a slot leaves the other slot unchanged; each operation may block
+/// the core for up to two seconds.
 pub trait Slots {
-    /// What a slot holds; `None` where it cannot be read, as after power was cut while it was written.
+    /// Returns the content of a slot; `None` if it cannot be read, as after a power cut during a write.
     fn read(&mut self, slot: Slot) -> Option<Record>;
 
     /// Erases a slot.
     fn erase(&mut self, slot: Slot);
 
-    /// Writes a slot that was erased, from the first byte on.
+    /// Writes an erased slot, in the order of the bytes.
     fn write(&mut self, slot: Slot, record: &Record);
 
-    /// The supply is high enough to write.
+    /// Returns `true` if the supply voltage suffices for writing.
     fn has_supply(&mut self) -> bool;
 }
 
-/// What a slot was found to hold.
+/// Content found in a slot.
 #[allow(clippy::large_enum_variant, reason = "no allocator to box with")]
 enum Content {
     Empty,
@@ -70,15 +71,15 @@ enum Content {
     Kept(u32, Memory),
 }
 
-/// The newest of two records.
+/// Storage with the newest of two records.
 pub struct KeptMemory<S> {
     slots: S,
-    /// Slot and sequence number of the newest record that is whole.
+    /// Slot and sequence number of the newest complete record.
     newest: Option<(Slot, u32)>,
 }
 
 impl<S: Slots> KeptMemory<S> {
-    /// Looks for the newest record.
+    /// Finds the newest record.
     pub fn open(slots: S) -> Self {
         let mut kept = Self { slots, newest: None };
         for slot in Slot::BOTH {
@@ -91,7 +92,7 @@ impl<S: Slots> KeptMemory<S> {
         kept
     }
 
-    /// The memory; `None` if there is none, as after an erase, or where there is no flash at all.
+    /// Returns the memory; `None` if none is stored or the board has no flash.
     pub fn recall(&mut self) -> Option<Memory> {
         let (slot, _) = self.newest?;
         match self.content(slot) {
@@ -100,17 +101,17 @@ impl<S: Slots> KeptMemory<S> {
         }
     }
 
-    /// There is no whole record, but something that may have been one.
+    /// Returns `true` if no record is complete, but a slot holds remains of a record.
     pub fn is_damaged(&mut self) -> bool {
         self.newest.is_none() && Slot::BOTH.into_iter().any(|slot| matches!(self.content(slot), Content::Damaged))
     }
 
-    /// Keeps a memory; what is kept already does not wear the flash again.
+    /// Stores a memory; an unchanged memory is not written again, to spare the flash.
     pub fn keep(&mut self, memory: &Memory) -> MemoryOutcome {
         if self.recall().as_ref() == Some(memory) { MemoryOutcome::Stored } else { self.put(memory) }
     }
 
-    /// Forgets it; what is empty already is not worn again.
+    /// Erases the memory; an empty storage is not written again.
     pub fn erase(&mut self) -> MemoryOutcome {
         if self.recall().is_none() && !self.is_damaged() {
             return MemoryOutcome::Stored;
@@ -122,7 +123,7 @@ impl<S: Slots> KeptMemory<S> {
         outcome
     }
 
-    /// Writes a newer record beside the newest, and reads it back.
+    /// Writes a newer record into the other slot and reads it back.
     #[inline(never)]
     fn put(&mut self, memory: &Memory) -> MemoryOutcome {
         if !self.slots.has_supply() {
@@ -146,7 +147,7 @@ impl<S: Slots> KeptMemory<S> {
     #[inline(never)]
     fn content(&mut self, slot: Slot) -> Content {
         let Some(record) = self.slots.read(slot) else { return Content::Damaged };
-        // Flash after an erase, or none at all.
+        // Erased flash, or no flash at all.
         if [0xff, 0].into_iter().any(|level| record.iter().all(|byte| *byte == level)) {
             return Content::Empty;
         }
@@ -161,7 +162,7 @@ impl<S: Slots> KeptMemory<S> {
     }
 }
 
-/// A memory with its trailer.
+/// Record of a memory and its trailer.
 fn record(memory: &Memory, sequence: u32) -> Record {
     let mut digest = CRC.digest();
     digest.update(memory);
@@ -174,7 +175,7 @@ fn record(memory: &Memory, sequence: u32) -> Record {
     record
 }
 
-/// Whether a sequence number is newer than another; they wrap.
+/// Returns `true` if `sequence` is newer than `other`; sequence numbers wrap.
 fn follows(sequence: u32, other: u32) -> bool {
     sequence.wrapping_sub(other).cast_signed() > 0
 }

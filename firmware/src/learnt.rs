@@ -1,5 +1,5 @@
-//! What an observer has learnt, between runs of a role: none where nothing is learnt, at hand where a run may begin from it.
-//! Where it outlives a reset is in `kept_memory`.
+//! Estimated parameters (memory) between runs of a role. A role without estimator has no memory; otherwise a run may
+//! begin from the memory at hand. `kept_memory` stores it in flash.
 
 use core::convert::Infallible;
 
@@ -8,13 +8,13 @@ use model_core::observer::{MEMORY_BYTES, Memory, MemoryError};
 
 use crate::port::ControllerPort;
 
-/// The memory of a role that learns; a role that learns nothing takes no room for it.
+/// Memory of a role; a role without estimator needs no room for it.
 pub trait Learnt: Clone {
-    /// Room for one; none where nothing is learnt.
+    /// Empty memory; `None` in a role without estimator.
     const EMPTY: Option<Self>;
-    /// The memory's bytes.
+    /// Bytes of the memory.
     fn memory(&self) -> &Memory;
-    /// The same, to be changed.
+    /// Bytes of the memory, mutable.
     fn memory_mut(&mut self) -> &mut Memory;
 }
 
@@ -42,7 +42,7 @@ impl Learnt for Infallible {
     }
 }
 
-/// The wire's form of the result of a check.
+/// Wire form of a memory check; `None` stands for no memory.
 pub fn memory_state(judged: Option<Result<(), MemoryError>>) -> MemoryState {
     match judged {
         None => MemoryState::Nothing,
@@ -55,11 +55,11 @@ pub fn memory_state(judged: Option<Result<(), MemoryError>>) -> MemoryState {
     }
 }
 
-/// The memory at hand, from which runs may begin.
+/// Memory at hand, from which runs may begin.
 #[derive(Debug, Clone)]
 pub struct RunMemory {
     memory: Memory,
-    /// It holds a valid memory.
+    /// The memory is valid.
     good: bool,
 }
 
@@ -70,7 +70,7 @@ impl Default for RunMemory {
 }
 
 impl RunMemory {
-    /// Copies what a controller has learnt; `false` where the port cannot provide it.
+    /// Copies a controller's estimated parameters; `false` if the port cannot provide them.
     #[inline(never)]
     pub fn learn_from(&mut self, port: &impl ControllerPort) -> bool {
         let learnt = port.memory(&mut self.memory);
@@ -78,12 +78,12 @@ impl RunMemory {
         learnt
     }
 
-    /// The memory, if there is one.
+    /// Returns the memory, if it is valid.
     pub fn get(&self) -> Option<&Memory> {
         self.good.then_some(&self.memory)
     }
 
-    /// Takes a memory that the controller finds good.
+    /// Takes a memory if the controller accepts it.
     pub fn take(&mut self, memory: &Memory, port: &mut impl ControllerPort) -> Result<(), MemoryError> {
         port.recall(memory)?;
         self.memory = *memory;
@@ -91,15 +91,15 @@ impl RunMemory {
         Ok(())
     }
 
-    /// Discards it.
+    /// Discards the memory.
     pub fn forget(&mut self) {
         self.good = false;
     }
 
-    /// Loads it into a controller that was reset.
+    /// Loads the memory into a controller after a reset.
     pub fn give(&self, port: &mut impl ControllerPort) {
         if self.good {
-            // It was found good when it was taken.
+            // The memory was checked when it was taken.
             let _ = port.recall(&self.memory);
         }
     }

@@ -1,16 +1,16 @@
 #![cfg_attr(target_os = "none", no_std)]
-//! A joint simulated in the tick of a microcontroller, driven and watched over a serial line.
+//! Firmware that simulates a joint, or runs its observer and compensation, in the tick of a microcontroller; the host
+//! controls it over a serial line.
 //!
-//! `tick_handler` is one tick of any role: it takes commands from `schedule`, steps the role's `work`, records times in
-//! `timing_monitor`, listens for the host's `silence`, and enters `safe_state` on a fault. The roles are `plant`, `observer`
-//! and `whole_loop`; `protocol` is what they differ in on the line. `queues` connects the tick to the rest, by a
-//! `sized_queue` that cannot panic.
-//! `conversation`, run in idle, answers the host with the help of `identity`, `intake`, `memory_requests`, `batcher`, `telemetry`
-//! and `timing_report`; `serial` moves its bytes. `port` is the seam between a motor controller and observer with compensation, `encoder`
-//! where counts come from, `learnt` what an observer has learnt, `kept_memory` where that outlives a power cut.
-//! All of these are free of hardware and are tested on the host; `board`, `clock`, `logger`, `panic_message` and
-//! `stack` exist on a board only; `measuring` in the emulator only. Physics is in `model-core`, the
-//! messages are in `link`.
+//! `tick_handler` is the tick of every role: it takes commands from `schedule`, steps the role's `work`, records times
+//! in `timing_monitor`, ends a run when `silence` finds the host silent, and enters `safe_state` on a fault. The roles
+//! are `plant`, `observer` and `whole_loop`; `protocol` defines the messages of a role. `queues` connects the tick with
+//! idle; `sized_queue` makes queue accesses of the tick free of panics. `conversation` runs in idle and answers the
+//! host with the help of `identity`, `intake`, `memory_requests`, `batcher`, `telemetry` and `timing_report`; `serial`
+//! moves the bytes. `port` is the interface between a motor controller and observer with compensation, `encoder` reads
+//! the counts, `learnt` holds the estimated parameters between runs, `kept_memory` stores them in flash. All of these
+//! are independent of the hardware and tested on the host. `board`, `clock`, `logger`, `panic_message` and `stack`
+//! exist on a board only, `measuring` in the emulator only. The physics is in `model-core`, the messages are in `link`.
 
 pub mod batcher;
 pub mod conversation;

@@ -1,6 +1,5 @@
-//! The sink of defmt's log: encoded bytes go into a queue that idle empties into frames. It masks interrupts up to the
-//! priority below the tick's, never the tick's own; the tick must not log, and what it tried to say would be counted as
-//! lost.
+//! Sink of defmt's log: encoded bytes go into a queue that idle empties into frames. Logging masks the interrupts below
+//! the tick's priority, never the tick. The tick must not log; bytes that it logs are counted as lost.
 
 use core::cell::UnsafeCell;
 use core::sync::atomic::Ordering::Relaxed;
@@ -12,12 +11,12 @@ use heapless::spsc::{Consumer, Producer, Queue};
 
 use crate::board::pac::NVIC_PRIO_BITS;
 
-/// Bytes of log that may wait for idle.
+/// Capacity for log bytes that wait for idle.
 const CAPACITY: usize = 1024;
 /// BASEPRI that leaves only the highest priority unmasked.
 const BELOW_THE_TICK: u8 = 1 << (8 - NVIC_PRIO_BITS);
 
-/// The queue between the log and idle.
+/// Queue between the log and idle.
 pub type LogQueue = Queue<u8, CAPACITY>;
 
 static SINK: Sink = Sink {
@@ -38,15 +37,15 @@ struct Sink {
     lost: AtomicU32,
 }
 
-// SAFETY: `encoder` and `queue` are touched only between `acquire` and `release`, by the one context that has set
-// `taken` and has masked every other that may log; and by `start`, once, before interrupts are on.
+// SAFETY: `encoder` and `queue` are accessed only between `acquire` and `release`, by the one context that has set
+// `taken` and has masked all others that may log; and by `start`, once, before interrupts are on.
 unsafe impl Sync for Sink {}
 
-/// Opens the log; called once, from init. What was logged before is lost and counted.
+/// Opens the log; called once, from init. Earlier log bytes are lost and counted.
 pub fn start(queue: &'static mut LogQueue) -> Consumer<'static, u8> {
     let (producer, consumer) = queue.split();
     cortex_m::interrupt::free(|_| {
-        // SAFETY: with all interrupts off and `taken` clear nobody else is at the queue.
+        // SAFETY: with all interrupts off and `taken` clear there is no other access to the queue.
         unsafe { *SINK.queue.get() = Some(producer) };
     });
     consumer
@@ -78,8 +77,8 @@ impl Sink {
 #[defmt::global_logger]
 struct Logger;
 
-// SAFETY: `acquire` masks every context that may log, and refuses one that comes in between nevertheless; `write` and
-// `release` follow `acquire` in the same context.
+// SAFETY: `acquire` masks every context that may log, and refuses any other; `write` and `release` follow `acquire` in
+// the same context.
 unsafe impl defmt::Logger for Logger {
     fn acquire() {
         let before = basepri::read();
@@ -110,7 +109,7 @@ unsafe impl defmt::Logger for Logger {
         // SAFETY: see `Sync`.
         unsafe { &mut *SINK.encoder.get() }.end_frame(|bytes| SINK.put(bytes));
         SINK.taken.store(false, Relaxed);
-        // SAFETY: what was in force before `acquire`.
+        // SAFETY: restores the mask from before `acquire`.
         unsafe { basepri::write(SINK.masked_before.load(Relaxed)) };
     }
 }

@@ -1,5 +1,5 @@
-//! The host's requests about the memory of what was learnt, between runs: save it, read what is saved, load one, write that
-//! one, erase. Flash is the board's; the role checks a memory in its tick.
+//! Requests of the host about the memory (estimated parameters) between runs: save, read, load, write, erase. The board
+//! provides the flash; the role checks a memory in its tick.
 
 use heapless::Vec;
 use link::messages::{FromBoard, MEMORY_PARTS, MemoryOutcome, MemoryPart, MemoryRequest, MemoryState, PART_BYTES};
@@ -9,15 +9,15 @@ use crate::learnt::Learnt;
 use crate::queues::Order;
 use crate::shared::{Consumer, Producer};
 
-/// The immediate reaction to a request.
+/// Immediate reaction to a request.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(clippy::large_enum_variant, reason = "no allocator to box with")]
 pub enum Reaction {
-    /// The tick is to be given this order.
+    /// Give the tick this order.
     Order(Order),
-    /// This is the answer.
+    /// Send this answer.
     Say(FromBoard),
-    /// More parts are to come, or flash has work to do.
+    /// Wait for further parts or for flash.
     Wait,
 }
 
@@ -29,33 +29,33 @@ enum FlashTask {
     Erase,
 }
 
-/// Outcome of work with flash.
+/// Outcome of flash work.
 pub struct FlashOutcome {
     /// The answer to the host.
     pub answer: FromBoard,
-    /// Validity of the saved memory, if that has changed.
+    /// New validity of the saved memory, if it has changed.
     pub remembered: Option<MemoryState>,
 }
 
-/// Memories on their way between flash, tick and host.
+/// Memories in transit between flash, tick and host.
 pub struct MemoryRequests<'a, L> {
     learnt: Consumer<'a, L>,
     remembered: Producer<'a, L>,
-    /// The memory that the host loads, part by part.
+    /// Memory that the host loads, part by part.
     received: Option<L>,
     next_part: u8,
-    /// The role has found it valid.
+    /// The role has found the received memory valid.
     is_good: bool,
     task: Option<FlashTask>,
 }
 
 impl<'a, L: Learnt> MemoryRequests<'a, L> {
-    /// Nothing is under way.
+    /// State without a pending request.
     pub fn new(learnt: Consumer<'a, L>, remembered: Producer<'a, L>) -> Self {
         Self { learnt, remembered, received: L::EMPTY, next_part: 0, is_good: false, task: None }
     }
 
-    /// Flash has work to do before another frame is read.
+    /// Returns `true` if flash work is pending; no frame is read until it is done.
     pub fn is_busy(&self) -> bool {
         self.task.is_some() || self.learnt.ready()
     }
@@ -63,7 +63,7 @@ impl<'a, L: Learnt> MemoryRequests<'a, L> {
     /// Begins a request.
     pub fn begin(&mut self, request: MemoryRequest, running: bool) -> Reaction {
         let task = match request {
-            // The tick itself says whether a run goes on, and whether anything is learnt.
+            // The tick itself checks for a run and for estimated parameters.
             MemoryRequest::Save => return Reaction::Order(Order::SaveMemory),
             _ if self.received.is_none() => return Reaction::Say(FromBoard::MemoryOutcome(MemoryOutcome::Nothing)),
             _ if running => return Reaction::Say(FromBoard::MemoryOutcome(MemoryOutcome::Running)),
@@ -98,23 +98,23 @@ impl<'a, L: Learnt> MemoryRequests<'a, L> {
         }
         self.next_part = 0;
         if let Some(received) = &self.received {
-            // The tick has taken the one before.
+            // The queue is free: the tick has taken the memory before.
             let _ = self.remembered.enqueue(received.clone());
         }
         Reaction::Order(Order::LoadMemory)
     }
 
-    /// The role has checked what was received.
+    /// Notes the role's verdict on the received memory.
     pub fn checked(&mut self, state: MemoryState) {
         self.is_good = state == MemoryState::Good;
     }
 
-    /// The role has discarded its memory; flash is to forget it next.
+    /// Schedules the erase of flash after the role has discarded its memory.
     pub fn discarded(&mut self) {
         self.task = Some(FlashTask::Erase);
     }
 
-    /// Does the work with flash, if there is any; `writing` wraps what may take a second or two.
+    /// Does the pending flash work, if there is any; `writing` wraps a write, which may take two seconds.
     pub fn serve(
         &mut self,
         kept: &mut KeptMemory<impl Slots>,

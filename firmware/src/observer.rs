@@ -1,5 +1,6 @@
-//! Role `observer`: observer and compensation beside a motor controller; samples and a set-point in, estimates and a
-//! torque out, one exchange a tick at most. It never steps without samples: a controller that stops sending ends the run.
+//! Role `observer`: observer and compensation for a motor controller; samples and a set-point in, estimates and a
+//! torque out, at most one exchange per tick. The role never steps without samples: a controller that stops sending
+//! ends the run.
 
 use link::controller::{Answered, EXCHANGES_PER_SCHEDULE, Exchange};
 use link::messages::{FromBoard, Role, Schedule, ToBoard};
@@ -33,13 +34,13 @@ impl Timed for Exchange {
         self.tick
     }
 
-    /// Observer and compensation flag numbers that are not finite themselves, and go on.
+    /// Always `true`: observer and compensation detect non-finite numbers themselves and continue.
     fn is_sound(&self) -> bool {
         true
     }
 }
 
-/// One answer on its way: the controller waits for each.
+/// Batch of one answer: the controller waits for each answer.
 #[derive(Debug, Default)]
 pub struct AnswerBatch(Option<Answered>);
 
@@ -71,22 +72,22 @@ impl Batch for AnswerBatch {
     }
 }
 
-/// The controller at work.
+/// State of the role `observer`.
 pub struct Observing<P> {
     port: P,
     /// The memory at hand.
     run_memory: RunMemory,
-    /// Tables and their digest agree.
+    /// The tables match their digest.
     sound: bool,
     next: Option<Exchange>,
     answer: Answer<f32>,
-    /// The last exchange asked for estimates.
+    /// The last exchange requested estimates.
     wants_estimates: bool,
     digest: u64,
 }
 
 impl<P: ControllerPort> Observing<P> {
-    /// In front of a controller; `sound` is whether its tables match their digest.
+    /// Role that uses the controller behind `port`; `sound` is true if the controller's tables match their digest.
     pub fn new(port: P, sound: bool) -> Self {
         Self {
             port,

@@ -1,5 +1,5 @@
-//! The message of a panic or a hard fault: left in memory that a reset does not clear, then a reset; the next start sends it
-//! in the hello. Nothing is sent from here, because the line may be what failed.
+//! Message of a panic or a hard fault: it is stored in memory that a reset does not clear, then the board resets; the
+//! next start sends the message in the hello. Nothing is sent before the reset, because the line may be the cause.
 
 use core::cell::UnsafeCell;
 use core::fmt::{self, Write};
@@ -12,7 +12,7 @@ use cortex_m_rt::{ExceptionFrame, exception};
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use heapless::String;
 
-/// Longest message; the hello has room for as much.
+/// Longest message, as the hello allows.
 const LENGTH: usize = 96;
 /// "last", little-endian.
 const MAGIC: u32 = 0x7473_616c;
@@ -30,13 +30,13 @@ struct Words {
 
 struct Memory(UnsafeCell<MaybeUninit<Words>>);
 
-// SAFETY: read once in init before interrupts are on, written once with interrupts off before a reset.
+// SAFETY: read once in init before interrupts are on; written once with interrupts off before a reset.
 unsafe impl Sync for Memory {}
 
 #[unsafe(link_section = ".uninit.last_words")]
 static MEMORY: Memory = Memory(UnsafeCell::new(MaybeUninit::uninit()));
 
-/// The message left before the last reset, if there is a whole one; it is told once.
+/// Returns the message of the last reset, if it is complete, and clears it.
 pub fn take() -> Option<String<LENGTH>> {
     let place = MEMORY.0.get().cast::<Words>();
     // SAFETY: every bit pattern is a `Words`; volatile, since the bytes are those that the memory held at reset.
@@ -64,7 +64,7 @@ fn leave(arguments: fmt::Arguments<'_>) -> ! {
     SCB::sys_reset()
 }
 
-/// Takes as many characters as fit.
+/// Text that keeps as many characters as fit.
 struct Truncated(String<LENGTH>);
 
 impl Write for Truncated {

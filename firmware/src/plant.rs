@@ -1,4 +1,4 @@
-//! Role `plant`: the joint is simulated; torques in, motion out.
+//! Role `plant`: simulates the joint; torques in, motion out.
 
 use core::convert::Infallible;
 
@@ -39,7 +39,7 @@ impl Timed for Command {
 
 const NO_TORQUE: Torques<f32> = Torques { drive: 0.0, load: 0.0 };
 
-/// The simulated joint under torques that hold until the next command.
+/// Simulated joint; torques are held until the next command.
 pub struct Plant<'a, const N: usize> {
     tables: &'a Tables<f32, N>,
     model: Model<'a, f32, N>,
@@ -48,7 +48,7 @@ pub struct Plant<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Plant<'a, N> {
-    /// At rest.
+    /// Joint at rest.
     pub fn new(tables: &'a Tables<f32, N>) -> Self {
         Self { tables, model: Model::new(tables), torques: NO_TORQUE, digest: digest::START }
     }

@@ -1,6 +1,7 @@
-//! The seam between a motor controller and observer with compensation: samples (raw counts with their moments, motor
-//! torque) and a set-point in, estimates and the shaped set-point out, once a control tick. Behind it may be the
-//! controller itself, a guest in the same chip, or another chip on a line; each has a file of its own.
+//! Interface between a motor controller and observer with compensation. Once per control tick, samples (raw counts with
+//! their times, motor torque) and a set-point go in; estimates and the torque command come out. Observer and
+//! compensation run in the controller itself, as a guest on the same chip, or on another chip; each port has a file of
+//! its own.
 //!
 //! | port | answer | time of a tick's work |
 //! |---|---|---|
@@ -9,7 +10,8 @@
 //! | [`SpiPort`] | to the samples before | [`spi::FRAME_BYTES`] bytes at the bus's rate: 75 us at 21 MHz; [`spi_slave`] at its other end |
 //! | [`SerialPort`] | to the last samples that were answered | bytes into and out of queues; [`serial::exchanges_per_second`] |
 //!
-//! A port that answers one tick late adds that tick to the loop's delay: `control_delay_periods` of the joint file.
+//! A port that answers one tick late adds this tick to the delay of the loop: set `control_delay_periods` in the joint
+//! file.
 
 mod direct;
 pub mod serial;
@@ -26,31 +28,32 @@ use model_core::observer::{Memory, MemoryError, Samples};
 pub use serial::SerialPort;
 pub use spi::{SpiGuest, SpiPort};
 
-/// Observer and compensation, wherever they run.
+/// Observer and compensation, in this program or elsewhere.
 pub trait ControllerPort {
-    /// One control tick; bounded, and never waits for the other side.
+    /// Runs one control tick in bounded time; never waits for the other side.
     fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Result<Answer<f32>, PortError>;
 
-    /// One control tick of a width probe, the load being held; always late where the port has no probe.
+    /// Runs one control tick of a width probe while the link is held; returns [`PortError::Late`] where the port has no
+    /// probe.
     fn probe(&mut self, _samples: &Samples<f32>) -> Result<Answer<f32>, PortError> {
         Err(PortError::Late)
     }
 
-    /// Back to the initial state, as far as this side can do it.
+    /// Resets everything that this side of the port can reset.
     fn reset(&mut self);
 
-    /// Copies what has been learnt; `false` where the port cannot provide it.
+    /// Copies the estimated parameters into `memory`; returns `false` if the port cannot provide them.
     fn memory(&self, _memory: &mut Memory) -> bool {
         false
     }
 
-    /// Continues from what was learnt before; refused where the port cannot.
+    /// Loads parameters estimated earlier; refused by ports without access to them.
     fn recall(&mut self, _memory: &Memory) -> Result<(), MemoryError> {
         Err(MemoryError::OtherJoint)
     }
 }
 
-/// One control tick of a port: a set-point's, or without one a width probe's.
+/// Runs one control tick of a port: with a set-point if there is one, else as a width probe.
 pub fn asked(
     port: &mut impl ControllerPort,
     samples: &Samples<f32>,
@@ -62,14 +65,14 @@ pub fn asked(
     }
 }
 
-/// Why there is no answer in this tick: the motor controller goes on without compensation.
+/// Reason for a tick without answer; the motor controller continues without compensation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PortError {
     /// The other side has not answered yet.
     Late,
     /// The bus could not transfer.
     Bus,
-    /// What was received is no valid answer.
+    /// The received frame is no valid answer.
     Damaged,
 }
 

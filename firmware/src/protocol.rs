@@ -1,47 +1,47 @@
-//! The messages of a role: commands in, samples out. Roles differ on the line in this only, so that queues, conversation and
-//! tick are written once. The work of a role's tick is `work::Work`.
+//! Messages of a role: commands in, samples out. Roles differ on the line only in these, so that queues, conversation
+//! and tick exist once. The work of a tick is `work::Work`.
 
 use heapless::Vec;
 use link::messages::{FromBoard, Role, Schedule, ToBoard};
 
 use crate::learnt::Learnt;
 
-/// The messages of a role.
+/// Messages of a role.
 pub trait Protocol {
-    /// Which role.
+    /// Role.
     const ROLE: Role;
-    /// A command, which waits for its tick.
+    /// Command that waits for its tick.
     type Command: Timed + Clone;
-    /// Commands as they come over the line.
+    /// Commands as received over the line.
     type Timetable: Timetable<Command = Self::Command>;
-    /// A sample, which the tick hands to idle to be sent.
+    /// Sample that the tick hands to idle for sending.
     type Sample;
-    /// Samples on their way to the line.
+    /// Batch of samples to send.
     type Batch: Batch<Sample = Self::Sample>;
-    /// The memory of what it learns.
+    /// Memory of the estimated parameters.
     type Learnt: Learnt;
 
-    /// Commands in a message, if it is one for this role.
+    /// Returns the commands in a message, if the message is for this role.
     fn timetable(message: ToBoard) -> Option<Self::Timetable>;
 }
 
-/// A command for a tick.
+/// Command for a tick.
 pub trait Timed {
-    /// First tick that it is for.
+    /// First tick of the command.
     fn tick(&self) -> u32;
-    /// Whether it may be executed: every number in it is finite.
+    /// Returns `true` if the command may be executed: all its numbers are finite.
     fn is_sound(&self) -> bool;
 }
 
-/// Commands in rising order, numbered, up to a horizon.
+/// Numbered list of commands in rising order, up to a horizon.
 pub trait Timetable {
-    /// What they are.
+    /// Type of the commands.
     type Command;
-    /// Rises by one from schedule to schedule.
+    /// Sequence number; rises by one per schedule.
     fn sequence(&self) -> u16;
-    /// Everything before this tick is known with it.
+    /// Tick up to which all commands are known with this schedule.
     fn horizon(&self) -> u32;
-    /// The commands.
+    /// Commands, in rising order of ticks.
     fn commands(&self) -> &[Self::Command];
 }
 
@@ -63,27 +63,27 @@ impl<C, const MOST: usize> Timetable for Schedule<C, MOST> {
 
 /// Collects samples into messages.
 pub trait Batch: Default {
-    /// What it collects.
+    /// Type of the samples.
     type Sample;
-    /// Takes a sample unless it is full.
+    /// Adds a sample unless the batch is full.
     fn add(&mut self, sample: &Self::Sample);
-    /// Whether it is complete.
+    /// Returns `true` if the batch is full.
     fn is_full(&self) -> bool;
-    /// Whether there is nothing to send.
+    /// Returns `true` if the batch is empty.
     fn is_empty(&self) -> bool;
-    /// The samples so far as a message; empty afterwards.
+    /// Returns the collected samples as a message and empties the batch.
     fn take(&mut self) -> FromBoard;
 }
 
-/// The wire's form of batches of up to `MOST` samples, which differs from role to role.
+/// Wire form of batches of up to `MOST` samples, which differs between roles.
 pub trait WireForm<const MOST: usize> {
-    /// A sample as the tick leaves it.
+    /// Sample as the tick provides it.
     type Raw;
-    /// The same as it goes over the line.
+    /// Sample as sent over the line.
     type Wire;
 
-    /// From the one to the other.
+    /// Converts a sample to its wire form.
     fn wire(raw: &Self::Raw) -> Self::Wire;
-    /// The message that carries them.
+    /// Message with the samples.
     fn message(sequence: u16, samples: Vec<Self::Wire, MOST>) -> FromBoard;
 }

@@ -1,4 +1,5 @@
-//! Everything between the tick and idle: single-producer queues and a few counters that either side may read at any time.
+//! Queues and counters between the tick and idle: single-producer queues, and atomic counters that both sides may read
+//! at any time.
 
 use link::messages::{MemoryOutcome, MemoryState, RunMode, RunSettings, Trip};
 use model_core::virtual_joint::fault::{Fault, FixedPoint};
@@ -8,96 +9,96 @@ use crate::shared::{AtomicBool, AtomicU32, Consumer, Producer, Queue};
 use crate::sized_queue::{SizedConsumer, SizedProducer};
 use crate::timing_monitor::Monitor;
 
-/// Places for commands; one is lost to telling full from empty.
+/// Places for commands; one stays empty to tell a full queue from an empty one.
 const COMMANDS: usize = 128;
 /// Places for samples.
 const SAMPLES: usize = 16;
-/// Places for orders and for events: at most one order is under way at a time.
+/// Places for orders and for events: at most one order is pending.
 const NOTES: usize = 4;
 
-/// Places for what was learnt: one, and one that is lost.
+/// Places for memories (estimated parameters): one is usable.
 const LEARNT: usize = 2;
 
-/// Most commands that can wait for their tick.
+/// Greatest number of commands that can wait for their tick.
 pub const COMMAND_CAPACITY: u16 = COMMANDS as u16 - 1;
 
 /// Settings before the first reset.
 pub const BEFORE_ANY_RUN: RunSettings =
     RunSettings { mode: RunMode::Lockstep, decimation: 1, command_timeout: 1, from_memory: false };
 
-/// From idle to the tick, handled at the start of the next one.
+/// Order from idle, handled at the start of the next tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Order {
-    /// Back to rest at tick 0; answered by [`Event::ResetDone`] or [`Event::Refused`].
+    /// Reset to rest at tick 0; answered by [`Event::ResetDone`] or [`Event::Refused`].
     Reset {
-        /// How the run goes.
+        /// Settings of the run.
         settings: RunSettings,
-        /// Stops that came before it: one that has come since overtakes it.
+        /// Stops received before the reset; a later stop overtakes the reset.
         stops: u32,
     },
-    /// Enable off, no further torque sent; answered by [`Event::Stopped`].
+    /// Switch enable off and send no further torque; answered by [`Event::Stopped`].
     Stop,
-    /// Safe state for a reason that idle has found; answered by [`Event::Stopped`].
+    /// Enter the safe state for a reason found by idle; answered by [`Event::Stopped`].
     Trip(Trip),
-    /// Copy what has been learnt; answered by [`Event::MemoryReady`].
+    /// Copy the estimated parameters; answered by [`Event::MemoryReady`].
     SaveMemory,
-    /// Check the memory in its queue and take it as the one at hand; answered by [`Event::MemoryChecked`].
+    /// Check the queued memory and make it the memory at hand; answered by [`Event::MemoryChecked`].
     LoadMemory,
     /// Discard the memory at hand; answered by [`Event::MemoryDiscarded`].
     DiscardMemory,
-    /// A fault between joint and controller; answered by [`Event::FaultTaken`].
+    /// Inject a fault between joint and controller; answered by [`Event::FaultTaken`].
     Fault(Fault<FixedPoint<f32>>),
-    /// A copy of the timing monitor as [`Event::Timing`].
+    /// Copy the timing monitor; answered by [`Event::Timing`].
     Report {
-        /// Then start it afresh.
+        /// Clear the monitor after the copy.
         reset: bool,
     },
 }
 
-/// From the tick to idle.
+/// Event from the tick to idle.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(clippy::large_enum_variant, reason = "no allocator to box with")]
 pub enum Event {
-    /// Everything is at rest, the command queue is empty.
+    /// The role is at rest and the command queue is empty.
     ResetDone,
     /// The run has ended.
     Stopped,
-    /// There is no reset out of this trip.
+    /// The reset was refused for this reason.
     Refused(Trip),
-    /// The tick itself has found a reason for the safe state: the only event that is no answer to an order.
+    /// The tick has tripped the safe state: the only event that answers no order.
     Tripped(Trip),
-    /// A copy of what has been learnt is in its queue, or why there is none.
+    /// A copy of the estimated parameters is queued, or the reason for its absence.
     MemoryReady(Result<(), MemoryOutcome>),
     /// Validity of a memory that was loaded.
     MemoryChecked(MemoryState),
     /// The memory at hand is discarded.
     MemoryDiscarded,
-    /// Whether a fault between joint and controller was taken.
+    /// Result of [`Order::Fault`].
     FaultTaken {
-        /// It was.
+        /// The fault was accepted.
         taken: bool,
     },
-    /// A copy of the timing monitor.
+    /// Copy of the timing monitor.
     Timing(Monitor),
 }
 
-/// Counters that both sides see.
+/// Counters visible to both sides.
 #[derive(Debug, Default)]
 pub struct Progress {
-    /// Everything before this tick is known; written by idle after the commands are in the queue, and put back to 0 by the
-    /// tick with a reset, while idle waits for that.
+    /// Tick up to which all commands are known. Written by idle once the commands are queued; set to 0 by the tick at a
+    /// reset, while idle waits.
     pub horizon: AtomicU32,
     /// Steps done since the reset; written by the tick.
     pub steps: AtomicU32,
-    /// Ticks since power-up, steps or not; written by the tick.
+    /// Ticks since power-up, with or without a step; written by the tick.
     pub ticks: AtomicU32,
-    /// The run goes on; written by the tick.
+    /// A run goes on; written by the tick.
     pub running: AtomicBool,
-    /// The safe state has been entered; written by the tick.
+    /// The board is in the safe state; written by the tick.
     pub tripped: AtomicBool,
 }
 
-/// The queues themselves.
+/// Queues and counters.
 pub struct Queues<W: Protocol> {
     commands: Queue<W::Command, COMMANDS>,
     orders: Queue<Order, NOTES>,
@@ -108,15 +109,15 @@ pub struct Queues<W: Protocol> {
     progress: Progress,
 }
 
-/// The tick's ends.
+/// Tick's ends of the queues.
 pub struct TickEnd<'a, W: Protocol> {
-    /// What is to come.
+    /// Commands.
     pub commands: SizedConsumer<'a, W::Command, COMMANDS>,
-    /// What idle wants.
+    /// Orders from idle.
     pub orders: SizedConsumer<'a, Order, NOTES>,
-    /// What is to be reported.
+    /// Samples to send.
     pub samples: SizedProducer<'a, W::Sample, SAMPLES>,
-    /// What has happened.
+    /// Events for idle.
     pub events: SizedProducer<'a, Event, NOTES>,
     /// Memories to be saved.
     pub learnt: SizedProducer<'a, W::Learnt, LEARNT>,
@@ -129,15 +130,15 @@ pub struct TickEnd<'a, W: Protocol> {
 /// Idle's end of the queue of events.
 pub type Events<'a> = SizedConsumer<'a, Event, NOTES>;
 
-/// Idle's ends.
+/// Idle's ends of the queues.
 pub struct IdleEnd<'a, W: Protocol> {
-    /// What is to come.
+    /// Commands.
     pub commands: Producer<'a, W::Command>,
-    /// What idle wants.
+    /// Orders from idle.
     pub orders: Producer<'a, Order>,
-    /// What is to be reported.
+    /// Samples to send.
     pub samples: Consumer<'a, W::Sample>,
-    /// What has happened.
+    /// Events for idle.
     pub events: Events<'a>,
     /// Memories to be saved.
     pub learnt: Consumer<'a, W::Learnt>,
@@ -148,7 +149,7 @@ pub struct IdleEnd<'a, W: Protocol> {
 }
 
 impl<W: Protocol> Queues<W> {
-    /// Empty.
+    /// Empty queues, counters at zero.
     pub const fn new() -> Self {
         Self {
             commands: Queue::new(),
@@ -167,7 +168,7 @@ impl<W: Protocol> Queues<W> {
         }
     }
 
-    /// Hands each side its ends.
+    /// Splits into the ends of the tick and of idle.
     pub fn split(&mut self) -> (TickEnd<'_, W>, IdleEnd<'_, W>) {
         let (commands_in, commands) = self.commands.split();
         let (orders_in, orders) = self.orders.split();

@@ -1,7 +1,7 @@
-// The application of every role, included by its binary: tasks, priorities, and the ends of the queues that each task holds.
-// The binary defines its role in its module `role`; the work is in the library.
+// Application of every role, included by its binary: tasks, priorities, and the queue ends that each task holds. The
+// module `role` of the binary defines the role; the code is in the library.
 
-/// The application, with the interrupt of the serial line.
+/// Application with the given interrupt of the serial line.
 macro_rules! app {
     ($serial:ident) => {
         #[rtic::app(device = firmware::board::pac)]
@@ -68,7 +68,7 @@ macro_rules! app {
                 (Shared { serial }, Local { control, conversation, progress, light, watchdog, kept })
             }
 
-            /// Looks for what was learnt before. Not inlined, so that its stack is free afterwards.
+            /// Loads the parameters saved in flash. Not inlined, so that its stack is released.
             #[inline(never)]
             fn remember(work: &mut RoleWork, kept: &mut KeptMemory<<ThisChip as Chip>::Slots>) -> MemoryState {
                 let judged = kept.recall().map(|memory| work.remember(&memory));
@@ -84,20 +84,20 @@ macro_rules! app {
                 learnt::memory_state(judged)
             }
 
-            /// The role's work, above everything else.
+            /// Runs the role's tick, at the highest priority.
             #[task(binds = SysTick, priority = 16, local = [control])]
             fn tick(cx: tick::Context) {
                 clock::in_tick(|timer| cx.local.control.tick(timer));
                 board::look_at_serial();
             }
 
-            /// The serial line.
+            /// Serves the serial line.
             #[task(binds = $serial, priority = 2, shared = [serial])]
             fn serve_line(cx: serve_line::Context) {
                 clock::in_interrupt(|| cx.shared.serial.service());
             }
 
-            /// The conversation with the host, the light, and the watchdog, which is fed only while the ticks go on.
+            /// Runs the conversation with the host, the light and the watchdog, which is fed only while ticks occur.
             #[idle(local = [conversation, progress, light, watchdog, kept])]
             fn idle(cx: idle::Context) -> ! {
                 use core::sync::atomic::Ordering::Relaxed;

@@ -1,5 +1,5 @@
-//! The safe state: enable output off and no further step, so no further torque, latched until a `Reset` message; a chip
-//! reset ends in [`State::Stopped`] and loses the cause. The conditions that trip it are checked by the callers.
+//! Safe state: enable output off and no further step, so no further torque, latched until a `Reset` message. A chip
+//! reset ends in [`State::Stopped`] and loses the cause. The callers check the conditions that trip it.
 
 use core::convert::Infallible;
 
@@ -9,15 +9,15 @@ use link::messages::Trip;
 /// State of the board.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum State {
-    /// Nothing runs; a `Reset` message starts a run.
+    /// No run; a `Reset` message starts a run.
     Stopped,
     /// A run goes on; the enable output is on.
     Running,
-    /// Safe state; only a `Reset` message leads to a run, and none does if the tables are bad.
+    /// Safe state; only a `Reset` message starts a run, and with bad tables no run starts.
     Tripped(Trip),
 }
 
-/// Holds the enable output, so that it cannot be on in any state but [`State::Running`].
+/// Owner of the enable output: the output is on in [`State::Running`] only.
 #[derive(Debug)]
 pub struct SafeState<E> {
     enable: E,
@@ -25,7 +25,7 @@ pub struct SafeState<E> {
 }
 
 impl<E: OutputPin<Error = Infallible>> SafeState<E> {
-    /// Switches the output off.
+    /// Stopped state; switches the output off.
     pub fn new(mut enable: E) -> Self {
         let Ok(()) = enable.set_low();
         Self { enable, state: State::Stopped }
@@ -46,7 +46,7 @@ impl<E: OutputPin<Error = Infallible>> SafeState<E> {
         Ok(())
     }
 
-    /// Ends a run. A trip stays what it is.
+    /// Ends a run; a trip stays latched.
     pub fn stop(&mut self) {
         let Ok(()) = self.enable.set_low();
         if self.state == State::Running {
@@ -54,7 +54,7 @@ impl<E: OutputPin<Error = Infallible>> SafeState<E> {
         }
     }
 
-    /// Enters the safe state. The first trip is kept: it is the cause of the rest.
+    /// Enters the safe state. The first trip is kept: later trips follow from it.
     pub fn trip(&mut self, trip: Trip) {
         let Ok(()) = self.enable.set_low();
         if !matches!(self.state, State::Tripped(_)) {

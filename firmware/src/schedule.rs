@@ -1,21 +1,21 @@
-//! Which command is due, and whether there is a next step: commands by tick number, in lockstep with the host or by the
-//! board's own clock.
+//! Selects the command that is due and decides if the tick steps: by tick number, in lockstep with the host or in real
+//! time.
 
 use link::messages::{RunMode, RunSettings, Trip};
 
 use crate::protocol::Timed;
 use crate::sized_queue::SizedConsumer;
 
-/// What the tick does next.
+/// Next action of the tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TickAction<C> {
-    /// Step, with this command from now on if there is one.
+    /// Step; a command given here holds from now on.
     Step(Option<C>),
-    /// Step as before although the host has fallen behind (realtime).
+    /// Step with the old command although the host has fallen behind (realtime).
     StarvedStep,
     /// Do not step: the schedule for this tick is not known yet.
     Wait,
-    /// Go to the safe state.
+    /// Enter the safe state.
     Trip(Trip),
 }
 
@@ -27,22 +27,22 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// At the start of a run: nothing known.
+    /// State at the start of a run, with no command known.
     pub const fn new(settings: RunSettings) -> Self {
         Self { settings, starved_in_a_row: 0 }
     }
 
-    /// Who waits for whom.
+    /// Mode of the run.
     pub fn mode(&self) -> RunMode {
         self.settings.mode
     }
 
-    /// Decides on the step from `tick` to `tick + 1`, everything before `horizon` being known. Ticks rise strictly
-    /// from command to command, so at most one can be due. A run begins with the first schedule, in either mode. In
-    /// lockstep a run that does not wait for ever (`waits_forever` is false) ends when no schedule has come for the timeout.
+    /// Decides on the step from `tick` to `tick + 1`; all commands before `horizon` are known. Ticks rise strictly from
+    /// command to command, so at most one command is due. In either mode a run begins with the first schedule. In
+    /// lockstep without `waits_forever`, a run trips when no schedule arrives within the timeout.
     ///
-    /// The queue is filled before the horizon moves, and this may run in between: a command that is due says by itself
-    /// that its tick is known, and one that is not due stays where it is.
+    /// Idle fills the queue before it moves the horizon, and this function may interrupt in between. A due command
+    /// therefore implies that its tick is known; a command that is not due stays in the queue.
     pub fn next_action<C: Timed, const PLACES: usize>(
         &mut self,
         tick: u32,
@@ -84,7 +84,7 @@ mod tests {
         Schedule::new(RunSettings { mode, decimation: 1, command_timeout: TIMEOUT, from_memory: false })
     }
 
-    /// Drive torque of a step with a new command.
+    /// Drive torque of a step with a new command, if there is one.
     fn new(turn: TickAction<Command>) -> Option<f32> {
         match turn {
             TickAction::Step(due) => due.map(|command| command.drive_torque),
@@ -144,7 +144,7 @@ mod tests {
             let (mut entry, commands) = queue.split();
             let mut commands = SizedConsumer::<_, 4>::new(commands);
             let mut schedule = schedule(mode);
-            // Idle has put the commands into the queue and is interrupted before it moves the horizon.
+            // Idle has queued the commands and is interrupted before it moves the horizon.
             entry.enqueue(command(0, 2.0)).unwrap();
             entry.enqueue(command(2, 3.0)).unwrap();
             assert_eq!(new(schedule.next_action(0, 0, waits_forever, &mut commands)), Some(2.0));

@@ -1,5 +1,5 @@
-//! Bytes between a UART and idle: the interrupt's side and idle's side of two byte queues. The interrupt also says at once
-//! what the tick must know whatever idle is doing: that a good frame has come, and that it was a stop.
+//! Byte queues between the UART's interrupt and idle. The interrupt also counts good frames and stops at once, so that
+//! the tick knows them while idle is busy.
 
 use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 
@@ -8,30 +8,30 @@ use link::scanner::Scanner;
 
 use crate::shared::{AtomicU32, Consumer, Producer, Queue};
 
-/// Bytes received and not yet looked at: more than the schedules that a host may have under way.
+/// Capacity for unread bytes: more than the schedules that a host may have pending.
 const INBOX: usize = 1024;
-/// Bytes to be sent: a few of the longest frames.
+/// Capacity for bytes to send: a few of the longest frames.
 const OUTBOX: usize = 2048;
-/// Most bytes each way in one interrupt, so that none lasts long.
+/// Most bytes per direction and interrupt, which bounds the interrupt's duration.
 const BURST: usize = 16;
 
-/// What a board's UART must offer.
+/// UART of a board.
 pub trait Uart {
-    /// The next received byte.
+    /// Returns the next received byte.
     fn read(&mut self) -> Option<u8>;
-    /// Whether bytes were lost in the UART since the last call.
+    /// Returns `true` if the UART lost bytes since the last call.
     fn overran(&mut self) -> bool;
-    /// Whether a byte can be written now.
+    /// Returns `true` if a byte can be written now.
     fn can_write(&self) -> bool;
     /// Sends a byte.
     fn write(&mut self, byte: u8);
-    /// Whether room for a byte to send interrupts.
+    /// Enables or disables the interrupt for room in the transmitter.
     fn interrupt_on_write(&mut self, on: bool);
-    /// Interrupts once more, although nothing has happened.
+    /// Requests another interrupt without an event.
     fn interrupt_again(&mut self);
 }
 
-/// What has come over the line, counted by its interrupt. The counts wrap.
+/// Counts of good frames, stops and losses, kept by the line's interrupt. Frames and stops wrap.
 #[derive(Debug, Default)]
 pub struct Heard {
     stops: AtomicU32,
@@ -40,29 +40,29 @@ pub struct Heard {
 }
 
 impl Heard {
-    /// Nothing yet.
+    /// Counts at zero.
     pub const fn new() -> Self {
         Self { stops: AtomicU32::new(0), frames: AtomicU32::new(0), lost: AtomicU32::new(0) }
     }
 
-    /// Good frames so far. Whoever sees one that was a stop sees it in [`Heard::stops`] afterwards.
+    /// Good frames so far. A reader that sees a stop frame counted here sees it in [`Heard::stops`], too.
     #[inline]
     pub fn frames(&self) -> u32 {
         self.frames.load(Acquire)
     }
 
-    /// Those among them that were a stop.
+    /// Stop frames so far.
     #[inline]
     pub fn stops(&self) -> u32 {
         self.stops.load(Acquire)
     }
 
-    /// Received bytes that found no room, and times that the UART lost some.
+    /// Received bytes dropped for lack of room, plus the number of losses in the UART.
     pub fn lost(&self) -> u32 {
         self.lost.load(Relaxed)
     }
 
-    /// Called by the one interrupt that counts.
+    /// Counts a good frame; called by one interrupt only.
     fn hear(&self, stop: bool) {
         if stop {
             self.stops.store(self.stops.load(Relaxed).wrapping_add(1), Release);
@@ -75,7 +75,7 @@ impl Heard {
     }
 }
 
-/// The two queues.
+/// Queues and counts of a line.
 pub struct Line {
     inbox: Queue<u8, INBOX>,
     outbox: Queue<u8, OUTBOX>,
@@ -83,12 +83,12 @@ pub struct Line {
 }
 
 impl Line {
-    /// Empty.
+    /// Line with empty queues.
     pub const fn new() -> Self {
         Self { inbox: Queue::new(), outbox: Queue::new(), heard: Heard::new() }
     }
 
-    /// Hands out the two sides. `wake` makes the UART's interrupt run.
+    /// Splits into the interrupt's side and idle's side. `wake` requests the UART's interrupt.
     pub fn split<U: Uart>(&mut self, uart: U, wake: fn()) -> (Serial<'_, U>, LineEnd<'_>) {
         let (inbox, inbox_out) = self.inbox.split();
         let (outbox_in, outbox) = self.outbox.split();
@@ -106,19 +106,19 @@ impl Default for Line {
     }
 }
 
-/// The interrupt's side.
+/// Interrupt's side of a line.
 pub struct Serial<'a, U> {
     uart: U,
     inbox: Producer<'a, u8>,
     outbox: Consumer<'a, u8>,
     heard: &'a Heard,
     scanner: Scanner,
-    /// The byte before found no room.
+    /// The last byte was dropped for lack of room.
     gap: bool,
 }
 
 impl<U: Uart> Serial<'_, U> {
-    /// Moves what can be moved.
+    /// Moves received bytes to the inbox and bytes to send to the UART.
     pub fn service(&mut self) {
         self.receive();
         self.transmit();
@@ -140,13 +140,13 @@ impl<U: Uart> Serial<'_, U> {
             self.heard.lose();
         }
         if more {
-            // Where bytes wait elsewhere than in the UART, none of them interrupts.
+            // Bytes that wait outside the UART raise no interrupt.
             self.uart.interrupt_again();
         }
     }
 
-    /// A full inbox costs bytes, not the interrupt: what comes next may be a stop. A zero keeps half a frame apart from the
-    /// frames after it.
+    /// Queues a byte. With a full inbox bytes are dropped, but the interrupt reads on: the next frame may be a stop. A
+    /// zero separates an incomplete frame from the frames after it.
     fn keep(&mut self, byte: u8) {
         let kept = (!self.gap || self.inbox.enqueue(0).is_ok()) && self.inbox.enqueue(byte).is_ok();
         self.gap = !kept;
@@ -155,8 +155,8 @@ impl<U: Uart> Serial<'_, U> {
         }
     }
 
-    /// A UART that is ready again at once, as an emulated one is, may never raise an interrupt for it: more bytes than
-    /// a burst are taken up by another run of this interrupt. One that needs time raises it.
+    /// Sends bytes. A UART that is ready at once (emulated) may never raise an interrupt for room, so that this
+    /// interrupt is requested again after a burst; a UART that needs time raises it.
     fn transmit(&mut self) {
         for _ in 0..BURST {
             if !self.uart.can_write() {
@@ -173,7 +173,7 @@ impl<U: Uart> Serial<'_, U> {
     }
 }
 
-/// Idle's side.
+/// Idle's side of a line.
 pub struct LineEnd<'a> {
     inbox: Consumer<'a, u8>,
     outbox: Producer<'a, u8>,
@@ -182,27 +182,27 @@ pub struct LineEnd<'a> {
 }
 
 impl<'a> LineEnd<'a> {
-    /// The next received byte.
+    /// Returns the next received byte.
     pub fn read(&mut self) -> Option<u8> {
         self.inbox.dequeue()
     }
 
-    /// Received bytes that were not read yet.
+    /// Number of received, unread bytes.
     pub fn waiting(&self) -> usize {
         self.inbox.len()
     }
 
-    /// What the line's interrupt counts.
+    /// Counts of the line's interrupt.
     pub fn heard(&self) -> &'a Heard {
         self.heard
     }
 
-    /// Places free for bytes to send.
+    /// Free places for bytes to send.
     pub fn room(&self) -> usize {
         self.outbox.capacity() - self.outbox.len()
     }
 
-    /// Sends bytes; the caller has looked whether there is room.
+    /// Queues bytes for sending; the caller has checked [`LineEnd::room`].
     pub fn write(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             let _ = self.outbox.enqueue(byte);

@@ -1,18 +1,17 @@
-//! How long the host has not been heard of, in ticks of the board's own clock: whatever was sent before, and whether the tick
-//! steps or waits.
+//! Detection of a silent host, in ticks of the board's own clock, independent of message types and of steps.
 
-/// What is known of the host in a tick.
+/// State of the host in a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Host {
-    /// It has said something since the tick before.
+    /// A frame has arrived since the last tick.
     HasSpoken,
-    /// It was heard of within the timeout.
+    /// The last frame is more recent than the timeout.
     IsThere,
-    /// It was not.
+    /// No frame has arrived within the timeout.
     IsSilent,
 }
 
-/// Counts the ticks without a frame, in a run or not.
+/// Counts ticks without a frame, inside and outside of runs.
 #[derive(Debug, Clone)]
 pub struct Silence {
     timeout: u32,
@@ -23,13 +22,13 @@ pub struct Silence {
 }
 
 impl Silence {
-    /// From power-up on; silent in the `timeout`'th tick in a row without a frame.
+    /// State at power-up; the host is silent in the `timeout`-th tick in a row without a frame.
     pub const fn new(timeout: u32) -> Self {
         Self { timeout, quiet: 0, frames: 0 }
     }
 
-    /// A run with a timeout of its own is about to begin in this tick; `false` if that is over with it, so many frames having
-    /// been heard: idle has been long about the reset.
+    /// Sets the timeout of a run that begins in this tick; `frames` is the number of frames so far. Returns `false` if
+    /// this timeout has already elapsed, because idle took long to handle the reset.
     pub fn allows(&mut self, timeout: u32, frames: u32) -> bool {
         let in_time = frames != self.frames || self.quiet.saturating_add(1) < timeout;
         if in_time {
@@ -38,7 +37,7 @@ impl Silence {
         in_time
     }
 
-    /// A tick that finds so many frames heard; the count wraps.
+    /// Updates the state in a tick with `frames` frames so far; the count wraps.
     #[inline]
     pub fn after(&mut self, frames: u32) -> Host {
         if frames != self.frames {

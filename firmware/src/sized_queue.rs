@@ -1,19 +1,19 @@
-//! Producer and consumer of a heapless queue with its number of places in the type, for the tick. heapless takes remainders
-//! by a number that it reads from memory: where the compiler cannot tell that it is not zero, the tick could panic, and
-//! would divide where a mask is enough. The queues themselves are in `queues`.
+//! Producer and consumer of a heapless queue with the number of places in the type, for the tick. heapless divides by a
+//! capacity read from memory: if the compiler cannot exclude zero, the tick contains a panic, and a division where a
+//! mask would do. The queues are in `queues`.
 
 use core::sync::atomic::Ordering::Acquire;
 
 use crate::shared::{Consumer, Producer, fence};
 
-/// Puts entries in.
+/// Producer of a queue.
 pub struct SizedProducer<'a, T, const PLACES: usize>(Producer<'a, T>);
 
-/// Takes entries out.
+/// Consumer of a queue.
 pub struct SizedConsumer<'a, T, const PLACES: usize>(Consumer<'a, T>);
 
 impl<'a, T, const PLACES: usize> SizedProducer<'a, T, PLACES> {
-    /// The end of a queue of so many places; with another number of places nothing could be given.
+    /// Producer of a queue with `PLACES` places; with another number of places every entry would be handed back.
     pub fn new(end: Producer<'a, T>) -> Self {
         Self(end)
     }
@@ -21,11 +21,11 @@ impl<'a, T, const PLACES: usize> SizedProducer<'a, T, PLACES> {
     /// Adds an entry, or hands it back if there is no room.
     #[inline]
     pub fn give(&mut self, entry: T) -> Result<(), T> {
-        // Holds always, and tells the compiler the number of places.
+        // Always true; tells the compiler the number of places.
         if self.0.capacity() == PLACES - 1 { self.0.enqueue(entry) } else { Err(entry) }
     }
 
-    /// Whether there is room.
+    /// Returns `true` if there is room.
     #[inline]
     pub fn has_room(&self) -> bool {
         self.0.capacity() == PLACES - 1 && self.0.ready()
@@ -33,7 +33,7 @@ impl<'a, T, const PLACES: usize> SizedProducer<'a, T, PLACES> {
 }
 
 impl<'a, T, const PLACES: usize> SizedConsumer<'a, T, PLACES> {
-    /// The end of a queue of so many places; with another number of places nothing could be taken.
+    /// Consumer of a queue with `PLACES` places; with another number of places no entry could be taken.
     pub fn new(end: Consumer<'a, T>) -> Self {
         Self(end)
     }
@@ -41,11 +41,12 @@ impl<'a, T, const PLACES: usize> SizedConsumer<'a, T, PLACES> {
     /// Takes the first entry.
     #[inline]
     pub fn take(&mut self) -> Option<T> {
-        // Holds always, and tells the compiler the number of places.
+        // Always true; tells the compiler the number of places.
         if self.0.capacity() == PLACES - 1 { self.0.dequeue() } else { None }
     }
 
-    /// Looks at the first entry. heapless looks whether there is one without keeping the look at it behind: the fence does.
+    /// Returns the first entry without taking it. heapless checks for an entry with a relaxed load; the fence orders
+    /// the access to the entry after this check.
     #[inline]
     pub fn peek(&self) -> Option<&T> {
         if !self.0.ready() {
@@ -55,7 +56,7 @@ impl<'a, T, const PLACES: usize> SizedConsumer<'a, T, PLACES> {
         self.0.peek()
     }
 
-    /// How many entries there are.
+    /// Number of entries.
     #[inline]
     pub fn count(&self) -> usize {
         if self.0.capacity() == PLACES - 1 { self.0.len() } else { 0 }

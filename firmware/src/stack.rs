@@ -1,5 +1,5 @@
-//! How much RAM is taken: by statics, from the linker's symbols, and by the stack, from the paint that start-up left
-//! on it. The stack is not guarded; it grows down towards the statics.
+//! RAM in use: statics, by the linker's symbols, and stack, by the paint of the start-up code. The stack is not
+//! guarded; it grows down towards the statics.
 
 use cortex_m_rt::STACK_PAINT_VALUE;
 

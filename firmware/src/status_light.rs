@@ -1,5 +1,5 @@
-//! The status light: a slow blink when stopped, a quick one in a run, three flashes and a pause in the safe state.
-//! Time and state are given by the caller.
+//! Status light: slow blinking when stopped, quick blinking in a run, three flashes and a pause in the safe state. The
+//! caller provides time and state.
 
 use core::convert::Infallible;
 use core::sync::atomic::Ordering::Relaxed;
@@ -8,19 +8,19 @@ use embedded_hal::digital::OutputPin;
 
 use crate::queues::Progress;
 
-/// What the light says.
+/// Pattern of the light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pattern {
     /// Ready for a run.
     Stopped,
-    /// A run goes on.
+    /// Run in progress.
     Running,
     /// Safe state.
     Tripped,
 }
 
 impl Pattern {
-    /// The pattern that tells how far a run is.
+    /// Returns the pattern for the progress of a run.
     pub fn of(progress: &Progress) -> Self {
         if progress.tripped.load(Relaxed) {
             Self::Tripped
@@ -31,7 +31,7 @@ impl Pattern {
         }
     }
 
-    /// Whether the light is on at a time [ms].
+    /// Returns `true` if the light is on at a time [ms].
     pub fn is_on(self, milliseconds: u32) -> bool {
         match self {
             Self::Stopped => milliseconds % 2000 < 1000,
@@ -41,20 +41,20 @@ impl Pattern {
     }
 }
 
-/// A light on an output.
+/// Status light on an output.
 #[derive(Debug)]
 pub struct StatusLight<P> {
     output: P,
 }
 
 impl<P: OutputPin<Error = Infallible>> StatusLight<P> {
-    /// A light on this output, dark.
+    /// Status light on this output, initially off.
     pub fn new(mut output: P) -> Self {
         let Ok(()) = output.set_low();
         Self { output }
     }
 
-    /// Shows the pattern as it is at a time [ms].
+    /// Sets the light by the pattern at a time [ms].
     pub fn show(&mut self, pattern: Pattern, milliseconds: u32) {
         let Ok(()) = self.output.set_state(pattern.is_on(milliseconds).into());
     }

@@ -1,4 +1,4 @@
-//! The plant's samples, as the tick leaves them and in the wire's form.
+//! Samples of the plant, as the tick provides them and in wire form.
 
 use heapless::Vec;
 use link::messages::{FromBoard, MAX_MESHES, SAMPLES_PER_BATCH, Sample, SampleBatch};
@@ -7,20 +7,20 @@ use parameters::ContactState;
 
 use crate::protocol::WireForm;
 
-/// The motion after a step.
+/// Motion after a step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RawSample<const N: usize> {
     /// Steps done since the reset.
     pub tick: u32,
     /// Running digest over every state so far.
     pub state_digest: u64,
-    /// The motion.
+    /// Outputs of the model.
     pub outputs: Outputs<f32, N>,
-    /// Timer counts that the step took.
+    /// Computation time of the step [timer counts].
     pub computation: u16,
 }
 
-/// The form of the plant's samples.
+/// Wire form of the plant's samples.
 pub struct PlantForm<const N: usize>;
 
 impl<const N: usize> WireForm<SAMPLES_PER_BATCH> for PlantForm<N> {
@@ -36,7 +36,7 @@ impl<const N: usize> WireForm<SAMPLES_PER_BATCH> for PlantForm<N> {
     }
 }
 
-/// The wire's form of a sample.
+/// Converts a sample to its wire form.
 fn sample<const N: usize>(raw: &RawSample<N>) -> Sample {
     let outputs = &raw.outputs;
     let mut deflections = Vec::<f32, MAX_MESHES>::new();
@@ -59,7 +59,7 @@ fn sample<const N: usize>(raw: &RawSample<N>) -> Sample {
     }
 }
 
-/// Two bits a mesh, the first mesh lowest.
+/// Contact states, two bits per mesh, the first mesh in the lowest bits.
 fn contact_bits<'a>(contacts: impl DoubleEndedIterator<Item = &'a ContactState>) -> u32 {
     contacts.rev().fold(0, |bits, contact| {
         bits << 2

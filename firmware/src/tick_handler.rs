@@ -1,7 +1,7 @@
-//! The tick of any role: handles an order from idle, takes the command that is due, does the role's work, hands out a sample
-//! every so often, and records its time. Called at the tick rate at the highest priority, it must end before the next call;
-//! one that does not is counted as an overrun. Nothing here allocates, panics, logs, loops without a bound or depends on
-//! the board.
+//! Tick of any role: handles an order from idle, takes the command that is due, steps the role's work, hands out a
+//! sample every `decimation` steps, and records its time. It is called at the tick rate at the highest priority; a tick
+//! that has not ended when the next one is due counts as an overrun. The tick does not allocate, panic, log, loop
+//! without a bound or depend on the board.
 
 use core::convert::Infallible;
 use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
@@ -23,7 +23,7 @@ use crate::work::Work;
 pub struct TickHandler<'a, E, W: Work> {
     work: W,
     steps: u32,
-    /// A reset was granted, and the work has not been reset yet.
+    /// A reset was accepted, and the work has not been reset yet.
     is_fresh: bool,
     decimation: u16,
     until_sample: u16,
@@ -34,13 +34,13 @@ pub struct TickHandler<'a, E, W: Work> {
     end: TickEnd<'a, W::Protocol>,
     heard: &'a Heard,
     silence: Silence,
-    /// Stops that came before this run.
+    /// Stop frames received before this run.
     stops: u32,
 }
 
 impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
-    /// Work at rest with the enable output off; `period` is the tick's, in timer counts. Tables that do not match their
-    /// digest trip it, and no reset clears that. `heard` is what the line's interrupt hears of the host.
+    /// Work at rest with the enable output off; `period` is the tick period in timer counts. Tables that do not match
+    /// their digest trip the safe state for good. `heard` counts the frames that the line's interrupt has received.
     pub fn new(work: W, enable: E, period: u32, end: TickEnd<'a, W::Protocol>, heard: &'a Heard) -> Self {
         let mut safe_state = SafeState::new(enable);
         if !work.is_sound() {
@@ -70,7 +70,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
         self.safe_state.state()
     }
 
-    /// One tick. Deadline: the next expiry of the timer.
+    /// Runs one tick. Deadline: the next expiry of the timer.
     pub fn tick(&mut self, timer: &impl TickTimer) {
         let lateness = timer.since_expiry();
         self.end.progress.ticks.store(self.end.progress.ticks.load(Relaxed).wrapping_add(1), Relaxed);
@@ -87,8 +87,8 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
         }
     }
 
-    /// Handles one order: idle has at most one under way. Its parts are kept out of line, since their stack is not needed while
-    /// stepping, nor by one another.
+    /// Handles one order; at most one is pending. Its parts are not inlined: the tick's step does not need their stack,
+    /// nor does one part need the stack of another.
     fn obey(&mut self) {
         match self.end.orders.take() {
             None => {}
@@ -120,7 +120,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
                 Event::Stopped
             }
             Order::SaveMemory => Event::MemoryReady(Err(MemoryOutcome::Running)),
-            // Has been obeyed: its stack is not needed here.
+            // Handled by `obey`, where this function's stack is not in use.
             Order::LoadMemory => return,
             Order::DiscardMemory => {
                 self.work.forget();
@@ -139,25 +139,25 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
             }
         };
         self.show_state();
-        // Room is certain: idle takes the answer to an order before it gives the next.
+        // There is always room: idle takes the answer to an order before it gives the next order.
         let _ = self.end.events.give(event);
     }
 
     #[inline(never)]
     fn hand_out_memory(&mut self, there_is: bool) {
         let memory = self.work.learnt().filter(|_| there_is);
-        // Idle has taken the one before.
+        // The queue is free: idle has taken the memory before.
         let given = memory.is_some_and(|memory| self.end.learnt.give(memory.clone()).is_ok());
         let _ = self.end.events.give(Event::MemoryReady(if given { Ok(()) } else { Err(MemoryOutcome::Nothing) }));
     }
 
-    /// Between runs only: idle asks for it at no other time.
+    /// Takes a memory from idle, which sends memories between runs only.
     #[inline(never)]
     fn take_memory(&mut self) {
         if <W::Protocol as Protocol>::Learnt::EMPTY.is_none() {
             return;
         }
-        // Looked at where it lies: the stack has no room for a copy.
+        // Checked in place: the stack has no room for a copy.
         let Some(learnt) = self.end.remembered.peek() else { return };
         let judged = self.work.remember_learnt(learnt);
         self.end.remembered.take();
@@ -189,7 +189,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
         Event::ResetDone
     }
 
-    /// Whether the host has been heard of in time and has not said stop: whatever idle has still to read or to send.
+    /// Returns `true` if a frame has arrived in time and none was a stop. Frames that idle has not read yet count.
     fn may_go_on(&mut self, host: Host) -> bool {
         match host {
             Host::IsThere => true,
@@ -208,7 +208,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
         }
     }
 
-    /// Steps if there is a step to do; returns whether there was.
+    /// Steps if a step is due; returns `true` if it did.
     fn advance(&mut self, timer: &impl TickTimer, lateness: u32) -> bool {
         let lockstep = self.schedule.mode() == RunMode::Lockstep;
         if lockstep && self.until_sample == 1 && !self.end.samples.has_room() {
@@ -238,14 +238,14 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
             self.until_sample = self.decimation;
             self.hand_out_sample(timer.since_expiry().saturating_sub(lateness));
         }
-        // After the sample: whoever finds the trip finds the last sample there.
+        // After the sample, so that idle finds the last sample before the trip.
         if !self.work.is_finite() {
             self.trip(Trip::NotFinite { tick: self.steps });
         }
         true
     }
 
-    /// Kept out of line for the same reason.
+    /// Not inlined: the step does not need its stack.
     #[inline(never)]
     fn hand_out_sample(&mut self, computation: u32) {
         let sample = self.work.sample(self.steps, computation.min(u16::MAX.into()) as u16);
@@ -262,7 +262,7 @@ impl<'a, E: OutputPin<Error = Infallible>, W: Work> TickHandler<'a, E, W> {
     fn trip(&mut self, trip: Trip) {
         self.safe_state.trip(trip);
         self.show_state();
-        // Room is certain: a run trips once, and besides that only one answer can be under way.
+        // There is always room: a run trips once, and at most one answer is pending besides.
         let _ = self.end.events.give(Event::Tripped(trip));
     }
 }

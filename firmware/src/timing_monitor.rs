@@ -1,11 +1,11 @@
-//! The timing monitor: computation time and lateness of the ticks, as minimum, mean, maximum and a histogram, and counts of
+//! Timing monitor: computation time and lateness of the ticks as minimum, mean, maximum and histogram, and counts of
 //! overruns, starved and waiting ticks.
 
 use link::messages::{HISTOGRAM_BINS, Timing};
 
-/// Reads the timer that makes the ticks.
+/// Timer that triggers the ticks.
 pub trait TickTimer {
-    /// Counts since the expiry that this tick belongs to; goes on past a period when the tick is that long.
+    /// Counts since the expiry that triggered this tick; exceeds a period if the tick is longer.
     fn since_expiry(&self) -> u32;
 }
 
@@ -19,10 +19,10 @@ pub struct MinMeanMax {
 }
 
 impl MinMeanMax {
-    /// Of no times yet.
+    /// State without times.
     pub const EMPTY: Self = Self { min: u32::MAX, max: 0, sum: 0, count: 0 };
 
-    /// Takes one time in.
+    /// Records a time.
     pub fn record(&mut self, time: u32) {
         self.min = self.min.min(time);
         self.max = self.max.max(time);
@@ -30,7 +30,7 @@ impl MinMeanMax {
         self.count = self.count.saturating_add(1);
     }
 
-    /// What was taken in; zeros for nothing.
+    /// Minimum, mean and maximum of the recorded times; zeros without times.
     pub fn timing(&self) -> Timing {
         match self.count {
             0 => Timing { min: 0, mean: 0, max: 0 },
@@ -39,20 +39,20 @@ impl MinMeanMax {
     }
 }
 
-/// Everything that the tick counts.
+/// Counts and times of the tick.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Monitor {
     /// Steps done.
     pub steps: u32,
     /// Time from the first to the last instruction of ticks that stepped.
     pub computation: MinMeanMax,
-    /// From the timer's expiry to the first instruction, of all ticks.
+    /// Time from the timer's expiry to the first instruction, of all ticks.
     pub lateness: MinMeanMax,
-    /// Computation times by [`Monitor::bin_width`].
+    /// Histogram of computation times with bins of [`Monitor::bin_width`].
     pub histogram: [u32; HISTOGRAM_BINS],
-    /// Counts a bin.
+    /// Width of a bin [timer counts].
     pub bin_width: u32,
-    /// Ticks that ended after the next was due. A tick of several periods counts once: the timer pends only once.
+    /// Ticks that ended after the next tick was due. A tick of several periods counts once: the timer pends only once.
     pub overruns: u32,
     /// Ticks that found no schedule (realtime).
     pub starved: u32,
@@ -65,7 +65,7 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// Starts afresh; the histogram covers one period.
+    /// Empty monitor; the histogram covers one period.
     pub const fn new(period: u32) -> Self {
         Self {
             steps: 0,
@@ -81,7 +81,7 @@ impl Monitor {
         }
     }
 
-    /// Takes in a tick that stepped.
+    /// Records a tick that stepped.
     pub fn step_took(&mut self, computation: u32) {
         self.steps = self.steps.wrapping_add(1);
         self.computation.record(computation);

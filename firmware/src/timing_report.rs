@@ -1,10 +1,10 @@
-//! The wire's form of the timing statistics: the tick's own counts joined with those of idle and of the serial line.
+//! Wire form of the timing statistics: counts of the tick, of idle and of the serial line.
 
 use link::messages::Statistics;
 
 use crate::timing_monitor::Monitor;
 
-/// What idle and the serial line count; cleared together with the tick's monitor.
+/// Counts of idle and of the serial line; cleared together with the tick's monitor.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct LineCounts {
     /// Schedules missing by sequence number.
@@ -18,7 +18,7 @@ pub struct LineCounts {
 }
 
 impl LineCounts {
-    /// What has been added since an earlier reading.
+    /// Counts added since an earlier reading.
     #[must_use]
     pub fn since(self, earlier: Self) -> Self {
         Self {
@@ -41,7 +41,7 @@ pub struct Resources {
     pub stack_used: u32,
 }
 
-/// Joins the three.
+/// Joins the counts of tick, line and resources.
 pub fn statistics(monitor: &Monitor, period: u32, line: LineCounts, resources: Resources) -> Statistics {
     Statistics {
         ticks: monitor.steps,

@@ -1,5 +1,5 @@
-//! Role `loop`: joint, motor, observer and compensation on one chip in real time; a trajectory in, samples
-//! of the motion out. Observer and compensation are behind their port like those of any motor controller.
+//! Role `loop`: joint, motor, observer and compensation on one chip in real time; a trajectory in, samples of the
+//! motion out. Observer and compensation run behind a port, as with any motor controller.
 
 use heapless::Vec;
 use link::messages::{FromBoard, Role, Schedule, ToBoard};
@@ -19,7 +19,7 @@ use crate::port::ControllerPort;
 use crate::protocol::{Protocol, Timed, WireForm};
 use crate::work::Work;
 
-/// Periods after which a segment that no knot follows is held at its end: three of the host's knots.
+/// Longest segment [periods]: three knots of the host. A segment without a following knot is held at this time.
 const LONGEST_SEGMENT: u16 = 150;
 
 /// Messages of the role.
@@ -48,7 +48,7 @@ impl Timed for Knot {
     }
 }
 
-/// The form of the loop's samples, which the tick leaves in the wire's form already.
+/// Wire form of the loop's samples, equal to the form in the tick.
 pub struct LoopForm;
 
 impl WireForm<LOOP_SAMPLES_PER_BATCH> for LoopForm {
@@ -64,12 +64,12 @@ impl WireForm<LOOP_SAMPLES_PER_BATCH> for LoopForm {
     }
 }
 
-/// The whole loop at work.
+/// State of the role `loop`.
 pub struct WholeLoop<'t, P, const N: usize> {
     tables: &'t Tables<f32, N>,
     surroundings: &'t SurroundingsTable<f32>,
     joint: VirtualJoint<'t, f32, N>,
-    /// Faults between joint and port.
+    /// Injected faults of the signals between joint and port.
     faults: Faults<f32>,
     port: P,
     /// The memory at hand.
@@ -83,7 +83,7 @@ pub struct WholeLoop<'t, P, const N: usize> {
 }
 
 impl<'t, P: ControllerPort, const N: usize> WholeLoop<'t, P, N> {
-    /// Everything at rest.
+    /// State at rest.
     pub fn new(tables: &'t Tables<f32, N>, surroundings: &'t SurroundingsTable<f32>, port: P) -> Self {
         Self {
             tables,
@@ -156,7 +156,7 @@ impl<P: ControllerPort, const N: usize> Work for WholeLoop<'_, P, N> {
     fn step(&mut self) {
         let table = self.surroundings;
         let command = self.trajectory.at(table.period * f32::from(self.elapsed), table.turn);
-        // The polynomial is for its segment only: one that no knot follows is held at its end.
+        // A polynomial is valid in its own segment only; without a following knot it is held at the end of the segment.
         self.elapsed = self.elapsed.saturating_add(1).min(LONGEST_SEGMENT);
         let samples = self.faults.sense(self.joint.samples(), table);
         let torque = match self.port.exchange(&samples, &command) {

@@ -1,23 +1,24 @@
-//! The work of a role's tick: the joint, the controller, or both. Clocks, queues and the safe state are the same for all roles
-//! and are in `tick_handler`.
+//! Work of a role's tick: the joint, the controller, or both. Clocks, queues and safe state are common to all roles and
+//! are in `tick_handler`.
 
 use model_core::observer::{Memory, MemoryError};
 use model_core::virtual_joint::fault::{Fault, FixedPoint};
 
 use crate::protocol::Protocol;
 
-/// The work of a role's tick.
+/// Work of a role's tick.
 pub trait Work {
-    /// Its messages.
+    /// Messages of the role.
     type Protocol: Protocol;
-    /// Whether it runs on while the host is silent: a simulation does; a role that answers a controller does not.
+    /// `true` if the role steps on while the host is silent, as a simulation does; a role that answers a controller
+    /// does not.
     const FREE_RUNNING: bool;
 
-    /// Whether its tables match their digest.
+    /// Returns `true` if the tables match their digest.
     fn is_sound(&self) -> bool;
-    /// Back to the start of a run; from the memory at hand, if that is requested.
+    /// Resets to the start of a run; loads the memory at hand (the saved parameters) if requested.
     fn reset(&mut self, from_memory: bool);
-    /// Copies what has been learnt so far into the memory at hand; `false` in a role that learns nothing.
+    /// Copies the estimated parameters into the memory at hand; `false` in a role that estimates none.
     fn learn(&mut self) -> bool {
         false
     }
@@ -25,27 +26,27 @@ pub trait Work {
     fn learnt(&self) -> Option<&<Self::Protocol as Protocol>::Learnt> {
         None
     }
-    /// Takes a memory from flash or from the host as the one at hand, if it is valid.
+    /// Makes a memory from flash or from the host the memory at hand, if it is valid.
     fn remember(&mut self, _memory: &Memory) -> Result<(), MemoryError> {
         Err(MemoryError::OtherJoint)
     }
-    /// The same in the role's own form. Never called in a role that learns nothing: a reference to its form, which has no
-    /// values, is taken by the compiler for a place that is not reached, and what would use it becomes a trap in the tick.
+    /// Makes a memory in the role's own form the memory at hand. Never called in a role without memory: its form has no
+    /// values, so the compiler treats a reference to it as unreachable and would put a trap into the tick.
     fn remember_learnt(&mut self, _learnt: &<Self::Protocol as Protocol>::Learnt) -> Result<(), MemoryError> {
         Err(MemoryError::OtherJoint)
     }
     /// Discards the memory at hand.
     fn forget(&mut self) {}
-    /// Takes the command of the step to come.
+    /// Takes the command for the next step.
     fn take(&mut self, command: <Self::Protocol as Protocol>::Command);
-    /// Takes a fault for the run to come; `false` if the role has none, or no room for another.
+    /// Adds a fault to the next run; `false` if the role has no faults or no room for another.
     fn add_fault(&mut self, _fault: Fault<FixedPoint<f32>>) -> bool {
         false
     }
-    /// One step.
+    /// Advances by one step.
     fn step(&mut self);
-    /// Whether the last step left numbers.
+    /// Returns `true` if the state is finite after the last step.
     fn is_finite(&self) -> bool;
-    /// What there is to be reported after so many steps; the last one took so many timer counts so far.
+    /// Sample to report after `steps` steps; `computation` is the time of the last step [timer counts].
     fn sample(&self, steps: u32, computation: u16) -> <Self::Protocol as Protocol>::Sample;
 }

@@ -1,5 +1,5 @@
-//! Conversations that nobody would have thought of: whatever a host says, does not say or does not read, a stop is heard, a
-//! silent host's run ends in time, every answer is to a request and in their order, and no run goes on after a fault.
+//! Random conversations: whatever a host sends, omits or does not read, a stop takes effect, a silent host's run ends
+//! in time, every answer belongs to a request and answers keep their order, and no run continues after a fault.
 
 #[allow(dead_code, reason = "shared with the host's tests of boards")]
 mod test_board;
@@ -16,10 +16,10 @@ use proptest::test_runner::{Config, RngSeed, TestCaseResult, TestRunner};
 use test_board::TestBoard;
 use test_roles::{LoopWork, ObserverWork, PlantWork, TestRole};
 
-/// Command timeout of every run, in ticks.
+/// Command timeout of every run [ticks].
 const TIMEOUT: u32 = 30;
 
-/// What a host does, or does not.
+/// Action or omission of a host.
 #[derive(Debug, Clone)]
 #[allow(clippy::large_enum_variant, reason = "a few dozen of them at a time")]
 enum Action {
@@ -28,12 +28,12 @@ enum Action {
         mode: RunMode,
         good: bool,
     },
-    /// The next schedule: so many ticks, with so many of them commanded.
+    /// The next schedule: number of ticks, and of commands among them.
     Schedule {
         ticks: u32,
         commands: u32,
     },
-    /// A schedule with another number or another horizon than is due.
+    /// A schedule with a wrong number or a wrong horizon.
     WrongSchedule {
         sequence: u16,
         horizon: u32,
@@ -44,13 +44,13 @@ enum Action {
     Statistics,
     Memory(MemoryRequest),
     Garbage(Vec<u8>),
-    /// So many hellos.
+    /// Number of hellos.
     Flood(usize),
-    /// Whether the host takes what the board sends.
+    /// Sets if the host reads the board's messages.
     Read(bool),
     /// Ticks with idle in between.
     Run(u32),
-    /// Ticks in which idle does not get to anything.
+    /// Ticks without idle.
     Busy(u32),
 }
 
@@ -79,20 +79,20 @@ fn action() -> impl Strategy<Value = Action> {
     ]
 }
 
-/// A board with what is known of it from outside.
+/// Board with its externally visible state.
 struct Case<W: TestRole> {
     board: TestBoard<W>,
     /// Requests that may still be answered, in order.
     asked: VecDeque<ToBoard>,
-    /// The next schedule's number and first tick.
+    /// Number and first tick of the next schedule.
     next: (u16, u32),
     /// A reset has been sent since the last stop.
     may_run: bool,
     /// Ticks since the last good frame.
     quiet: u32,
-    /// After the tick before: in the safe state, steps done.
+    /// State after the last tick: in the safe state, steps.
     before: (bool, u32),
-    /// Longest that the output was on after the last good frame, and how often it went on.
+    /// Longest time that the output was on after the last good frame, and number of times that it was switched on.
     seen: (u32, u32),
 }
 
@@ -109,7 +109,7 @@ impl<W: TestRole> Case<W> {
         }
     }
 
-    /// The line's interrupt has it at once.
+    /// Sends a message; the line's interrupt receives it at once.
     fn send(&mut self, message: ToBoard) {
         self.board.send(&message);
         self.board.hear();
@@ -142,7 +142,8 @@ impl<W: TestRole> Case<W> {
         Ok(())
     }
 
-    /// Every answer is to the first request that it can be to, and no request before that is answered any more.
+    /// Checks that every answer belongs to the first request it can answer, and that no earlier request is answered
+    /// later.
     fn take_answers(&mut self) -> TestCaseResult {
         for answer in self.board.said() {
             let is_answered = |request: &ToBoard| match (&answer, request) {
@@ -160,7 +161,7 @@ impl<W: TestRole> Case<W> {
             };
             match answer {
                 FromBoard::Tripped(Trip::BadSettings | Trip::Overtaken) => {}
-                // Of the run, not of a request.
+                // Belongs to the run, not to a request.
                 FromBoard::Tripped(_) | FromBoard::Samples(_) | FromBoard::Answer(_) | FromBoard::Loop(_) => continue,
                 _ => {}
             }
@@ -172,7 +173,7 @@ impl<W: TestRole> Case<W> {
         Ok(())
     }
 
-    /// A request that is always answered was not passed over, unless the line was too full for it.
+    /// Checks that no request was passed over that must be answered, unless the line was too full for it.
     fn none_is_owed(&self, passed: &[ToBoard]) -> TestCaseResult {
         let is_owed = |of: &&ToBoard| {
             matches!(of, ToBoard::Hello { .. } | ToBoard::Reset(_) | ToBoard::Statistics { .. } | ToBoard::Memory(_))
@@ -211,7 +212,7 @@ impl<W: TestRole> Case<W> {
             Action::Statistics => self.send(ToBoard::Statistics { reset: true }),
             Action::Memory(request) => self.send(ToBoard::Memory(request)),
             Action::Garbage(mut bytes) => {
-                // It ends a frame of its own, and spoils none that follows.
+                // The stop is a frame of its own and spoils no later frame.
                 bytes.push(0);
                 self.board.send_bytes(&bytes);
                 self.board.hear();
@@ -231,11 +232,11 @@ impl<W: TestRole> Case<W> {
         Ok(())
     }
 
-    /// Once the host reads again everything is answered, and the board can be used as before.
+    /// Checks that, once the host reads again, everything is answered and the board works as before.
     fn end(mut self) -> Result<(u32, u32), TestCaseError> {
         self.act(Action::Read(true))?;
         self.act(Action::Run(TIMEOUT))?;
-        // What found no room may be answered yet: a frame that lost its last byte only is ended by the next.
+        // A dropped frame may still be answered: a frame without its last byte is ended by the next frame.
         let left: Vec<ToBoard> = self.asked.iter().cloned().collect();
         self.none_is_owed(&left)?;
         self.act(Action::Stop)?;

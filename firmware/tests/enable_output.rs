@@ -1,4 +1,4 @@
-//! What switches the enable output off, in every state in which it is on: the host's silence, and its stop.
+//! Tests of the enable output: silence of the host and a stop switch it off in every state in which it is on.
 
 #[allow(dead_code, reason = "shared with the host's tests of boards")]
 mod test_board;
@@ -10,7 +10,7 @@ use link::messages::{FromBoard, MemoryOutcome, MemoryRequest, RunMode, RunSettin
 use test_board::TestBoard;
 use test_roles::{LoopWork, ObserverWork, PlantWork, TestRole};
 
-/// Ticks without a word after which a run of these tests ends.
+/// Ticks without a frame after which a run of these tests ends.
 const TIMEOUT: u32 = 200;
 const MODES: [RunMode; 2] = [RunMode::Lockstep, RunMode::Realtime];
 
@@ -18,7 +18,7 @@ fn reset(mode: RunMode) -> ToBoard {
     ToBoard::Reset(RunSettings { mode, decimation: 1, command_timeout: TIMEOUT, from_memory: false })
 }
 
-/// A board in a run, if its role has runs of this mode.
+/// Returns a board in a run, if its role has runs of this mode.
 fn started<W: TestRole>(mode: RunMode) -> Option<TestBoard<W>> {
     let mut board = TestBoard::with(W::work());
     board.send(&reset(mode));
@@ -27,7 +27,7 @@ fn started<W: TestRole>(mode: RunMode) -> Option<TestBoard<W>> {
     board.enable.get().then_some(board)
 }
 
-/// What the host said last before it fell silent.
+/// Last messages of the host before it falls silent.
 fn last_words<W: TestRole>() -> Vec<(&'static str, Vec<ToBoard>)> {
     let hello = ToBoard::Hello { protocol: link::PROTOCOL_VERSION };
     let short = W::schedule(0, 1, 0..1);
@@ -71,7 +71,7 @@ fn a_host_that_falls_silent_ends_the_run_in_time_whatever_it_sent_before() {
     silence_ends_a_run::<LoopWork>();
 }
 
-/// What is full when the stop comes.
+/// Queue that is full when the stop arrives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Filling {
     Nothing,
@@ -79,25 +79,25 @@ enum Filling {
     Replies,
     /// Every place for commands.
     Commands,
-    /// Bytes that were received and not looked at, because the host does not read.
+    /// Received, unread bytes, because the host does not read.
     Inbox,
 }
 
-/// What the board has been told about the ticks to come.
+/// Knowledge of the board about future ticks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Known {
     Nothing,
     Schedules,
-    /// A schedule for which there is no room yet.
+    /// A schedule that waits for room.
     Held,
-    /// A schedule that follows one that was lost.
+    /// A schedule after a lost one.
     Late,
 }
 
 const FILLINGS: [Filling; 4] = [Filling::Nothing, Filling::Replies, Filling::Commands, Filling::Inbox];
 const KNOWN: [Known; 4] = [Known::Nothing, Known::Schedules, Known::Held, Known::Late];
 
-/// A board in a run with this before it; none where that ends the run, or there is no such run.
+/// Returns a board in a run in this state; `None` if the state ends the run or the mode has no such run.
 fn brought_to<W: TestRole>(mode: RunMode, filling: Filling, known: Known) -> Option<TestBoard<W>> {
     let mut board = started::<W>(mode)?;
     let hello = ToBoard::Hello { protocol: link::PROTOCOL_VERSION };
@@ -112,14 +112,14 @@ fn brought_to<W: TestRole>(mode: RunMode, filling: Filling, known: Known) -> Opt
     };
     let capacity = u32::from(COMMAND_CAPACITY);
     match (filling, known) {
-        // Not so many that one would be held.
+        // Few enough that no schedule is held.
         (Filling::Commands, _) => send_until(&mut board, capacity - W::MOST),
         (_, Known::Nothing) => {}
         _ => send_until(&mut board, 4 * W::MOST),
     }
     match known {
         Known::Nothing | Known::Schedules => {}
-        // So many that one is still held after the ticks below.
+        // Enough that a schedule is still held after the ticks below.
         Known::Held => send_until(&mut board, capacity + 40 + W::MOST),
         Known::Late => board.send(&W::schedule(1000, 1900, 1800..1801)),
     }
@@ -138,7 +138,7 @@ fn brought_to<W: TestRole>(mode: RunMode, filling: Filling, known: Known) -> Opt
     board.enable.get().then_some(board)
 }
 
-/// How many states there were in which the output was on.
+/// Returns the number of states in which the output was on.
 fn stop_is_heard<W: TestRole>() -> usize {
     let mut states = 0;
     for mode in MODES {
@@ -146,7 +146,7 @@ fn stop_is_heard<W: TestRole>() -> usize {
             for known in KNOWN {
                 let Some(mut board) = brought_to::<W>(mode, filling, known) else { continue };
                 board.send(&ToBoard::Stop);
-                // The interrupt of the serial line and the tick: idle may have anything else to do.
+                // Only the serial interrupt and the tick run: idle may be busy.
                 board.hear();
                 board.tick();
                 assert!(!board.enable.get(), "{mode:?}, {filling:?}, {known:?}: the stop was not heard");
@@ -166,7 +166,7 @@ fn stop_is_heard<W: TestRole>() -> usize {
 
 #[test]
 fn a_stop_is_heard_within_a_tick_in_every_state_in_which_the_output_is_on() {
-    // In real time no schedule is held: one that does not fit ends the run. Role `observer` has no such runs.
+    // In real time no schedule is held: a schedule without room ends the run. The role `observer` has no such runs.
     let (lockstep, realtime) = (FILLINGS.len() * KNOWN.len(), FILLINGS.len() * (KNOWN.len() - 1));
     assert_eq!(stop_is_heard::<PlantWork>(), lockstep + realtime);
     assert_eq!(stop_is_heard::<ObserverWork>(), lockstep);
@@ -195,7 +195,7 @@ fn a_schedule_with_a_far_horizon_is_refused_by_name() {
 }
 
 fn a_stop_overtakes_a_reset<W: TestRole>() {
-    // Idle has not looked at the reset when the stop comes, or it has and the tick has not.
+    // The stop arrives before idle has read the reset, or after idle and before the tick.
     for idle_is_ahead in [false, true] {
         let mut board = started::<W>(RunMode::Lockstep).expect("a run");
         board.send(&reset(RunMode::Lockstep));
@@ -264,7 +264,7 @@ fn no_run_begins_by_a_reset_that_came_while_flash_was_written() {
     board.said();
     board.send(&ToBoard::Memory(MemoryRequest::Save));
     board.settle();
-    // Written with the next look at the page, which happens after this has arrived; a stop after it was lost.
+    // Idle writes flash after the reset below has arrived; a stop after the reset may have been lost.
     board.tick();
     board.send(&reset(RunMode::Lockstep));
     board.send(&ToBoard::Hello { protocol: link::PROTOCOL_VERSION });

@@ -1,5 +1,5 @@
-//! The AS5047P driver against a bus that expects every byte: frames, parity, error flag, an encoder that is not there.
-//! Angles and errors are made up; no register is read that the driver does not need.
+//! Tests of the AS5047P driver against a bus that expects every byte: frames, parity, error flag, missing encoder.
+//! Angles and errors are invented; the driver may read no other register.
 
 use embedded_hal_mock::eh1::spi::{Mock, Transaction};
 use firmware::encoder::{As5047p, CountSource, EncoderFault};
@@ -17,7 +17,7 @@ fn answer(content: u16) -> u16 {
     content | if content.count_ones().is_multiple_of(2) { 0 } else { 0x8000 }
 }
 
-/// An encoder that is sent these commands and answers so.
+/// Encoder with expected commands and given answers.
 fn encoder(frames: &[(u16, u16)]) -> As5047p<Mock<u8>> {
     let transactions = frames.iter().flat_map(|(command, answer)| {
         [
@@ -32,10 +32,10 @@ fn encoder(frames: &[(u16, u16)]) -> As5047p<Mock<u8>> {
 /// Diagnostics of a good magnet: ready, the gain in its middle.
 const WELL: u16 = 0x0180;
 
-/// What a read in every tick gives, once the encoder was found well; the clock goes on by ten in a tick.
+/// Results of reads in every tick after the encoder was found good; the clock advances by ten per tick.
 fn reads(frames: &[(u16, u16)], ticks: u32) -> Vec<Result<Reading, EncoderFault>> {
     let first = [(ANGLE, 0), (ANGLE, answer(1)), (DIAGNOSTICS, answer(1)), (ANGLE, answer(WELL))];
-    // What the first of these frames answers was asked for before.
+    // The first frame answers an earlier request.
     let mut encoder = encoder(&[&first[..], &frames[1..]].concat());
     assert_eq!(encoder.read(0), Err(EncoderFault::Pending));
     assert_eq!(encoder.read(0), Ok(Reading { counts: 1, time: 0 }));
@@ -45,7 +45,7 @@ fn reads(frames: &[(u16, u16)], ticks: u32) -> Vec<Result<Reading, EncoderFault>
     list
 }
 
-/// The same from the first read on.
+/// Results of reads in every tick from the first read on.
 fn first_reads(frames: &[(u16, u16)], ticks: u32) -> Vec<Result<Reading, EncoderFault>> {
     let mut encoder = encoder(frames);
     let list = (0..ticks).map(|tick| encoder.read(10 * tick)).collect();
@@ -127,7 +127,7 @@ fn a_magnet_that_is_too_weak_too_strong_or_gone_is_told_by_name_until_it_is_well
     for (diagnostics, fault) in cases {
         let angle = (ANGLE, answer(7));
         let look = |found: u16| vec![angle, (DIAGNOSTICS, answer(7)), (ANGLE, answer(found))];
-        // Found at the first look, gone at the next, which comes 256 readings later.
+        // Found at the first check, gone at the next, 256 readings later.
         let frames = [vec![(ANGLE, 0)], look(diagnostics), vec![angle; 255], look(WELL), vec![angle]].concat();
         let list = first_reads(&frames, 1 + 256 + 2);
         assert!(list[1..257].iter().all(|read| *read == Err(fault)), "{diagnostics:#x}");

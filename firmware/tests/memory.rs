@@ -1,5 +1,6 @@
-//! What an observer has learnt outlives a reset of its board, and a power cut at any moment: kept in flash between runs, judged
-//! when the board starts, gone on from where a run asks for it. What the memory is worth is tested elsewhere.
+//! Tests of the stored parameters: they survive a reset of the board and a power cut at any moment. They are stored in
+//! flash between runs, checked at the start, and loaded when a run requests it. Other tests cover the quality of the
+//! parameters.
 
 #[allow(dead_code, reason = "shared with the tests of the roles")]
 mod test_board;
@@ -30,14 +31,14 @@ fn controller() -> Direct<'static> {
     Direct(Controller::new(&control::OBSERVER, &control::COMPENSATION))
 }
 
-/// To and fro through the gap, so that there is something to learn.
+/// Motion to and fro through the gap, for the estimator.
 fn command(tick: u32) -> Command<f32> {
     let (sine, cosine) = (core::f32::consts::TAU * 4.0 * 1e-4 * tick as f32).sin_cos();
     let position = Position { turns: 0, fraction: 0.01 * sine };
     Command::Position { now: Motion { position, speed: 1.6 * cosine, acceleration: -40.0 * sine }, ahead: None }
 }
 
-/// Runs exchanges with a virtual joint at the other end of the line; the last answer.
+/// Runs exchanges with a virtual joint at the other end of the line; returns the last answer.
 fn run(board: &mut TestBoard<Observing<Direct<'static>>>, from_memory: bool, ticks: u32) -> Answer<f32> {
     board.send(&ToBoard::Reset(RunSettings {
         mode: RunMode::Lockstep,
@@ -76,7 +77,7 @@ fn stop(board: &mut TestBoard<Observing<Direct<'static>>>) {
     board.run(3);
 }
 
-/// A board that starts with this flash, and what it says of it.
+/// Starts a board with this flash; returns its verdict, too.
 fn started_with(flash: Flash) -> (TestBoard<Observing<Direct<'static>>>, MemoryState) {
     let mut work = Observing::new(controller(), true);
     let mut kept = KeptMemory::open(flash.clone());
@@ -84,7 +85,7 @@ fn started_with(flash: Flash) -> (TestBoard<Observing<Direct<'static>>>, MemoryS
     (TestBoard::with_flash(work, flash), memory_state(judged))
 }
 
-/// A board that starts with this kept in its flash, and what it says of it.
+/// Starts a board with this memory in flash; returns its verdict, too.
 fn started(memory: Memory) -> (TestBoard<Observing<Direct<'static>>>, MemoryState) {
     started_with(Flash::holding(&memory))
 }
@@ -100,7 +101,7 @@ fn what_was_learnt_is_kept_and_gone_on_from_after_the_next_start() {
     assert_eq!(board.flash.cells().erased, 1, "the same is not written twice");
     let (mut again, found) = started_with(board.flash.clone());
     assert_eq!(found, MemoryState::Good);
-    // Long enough to say what is known, too short to learn.
+    // Long enough to publish the loaded parameters, too short to estimate them.
     let [fresh, remembered] = [false, true].map(|from_memory| run(&mut again, from_memory, 50).estimates);
     assert_ne!(learnt.half_backlash.value, fresh.half_backlash.value, "there was something to learn");
     assert_eq!(remembered.half_backlash.value, learnt.half_backlash.value);
@@ -134,7 +135,7 @@ fn what_is_no_good_memory_is_told_and_not_used() {
     }
 }
 
-/// The same with another identity, and a digest that fits.
+/// Returns the memory with another identity and a matching digest.
 fn of_another_joint(mut memory: Memory) -> Memory {
     use model_core::numbers::digest;
     memory[8] ^= 1;
@@ -153,7 +154,7 @@ fn memories() -> [Memory; 3] {
 fn a_power_cut_at_any_operation_leaves_the_old_memory_or_the_new_one() {
     let [first, second, third] = memories();
     for has_check_bits in [true, false] {
-        // What was kept before, in this order; `None` at its end is an erase.
+        // Memories stored before, in this order; `None` at the end is an erase.
         let histories: [&[Option<Memory>]; 5] = [
             &[],
             &[Some(first)],
@@ -183,7 +184,7 @@ fn a_power_cut_at_any_operation_leaves_the_old_memory_or_the_new_one() {
                 let found = again.recall();
                 assert!(found == old || found == asked, "cut {cut}: neither the old memory nor the new one is left");
                 assert!(found.is_none() || !again.is_damaged());
-                // Whatever was left: the next memory is kept.
+                // After any remains the next memory is stored.
                 assert_eq!(again.keep(&first), MemoryOutcome::Stored);
                 assert_eq!(flash.kept(), Some(first));
                 if !was_cut {
@@ -230,7 +231,7 @@ fn flash_that_takes_nothing_is_found_out() {
     assert_eq!(saved(&mut board), MemoryOutcome::NotWritten);
 }
 
-/// Asks for something about the memory, and hears the answer.
+/// Sends a memory request; returns the answers.
 fn asked(board: &mut TestBoard<Observing<Direct<'static>>>, request: MemoryRequest) -> Vec<FromBoard> {
     board.send(&ToBoard::Memory(request));
     board.run(3);
@@ -245,7 +246,7 @@ fn told(board: &mut TestBoard<Observing<Direct<'static>>>) -> Vec<u8> {
     (0..MEMORY_PARTS).flat_map(part).collect()
 }
 
-/// Sends a memory, and hears what is made of it.
+/// Sends a memory; returns the answers.
 fn brought(board: &mut TestBoard<Observing<Direct<'static>>>, memory: &Memory) -> Vec<FromBoard> {
     let parts = memory.chunks(PART_BYTES).zip(0..);
     let part =
@@ -253,7 +254,7 @@ fn brought(board: &mut TestBoard<Observing<Direct<'static>>>, memory: &Memory) -
     parts.flat_map(|of| asked(board, part(of))).collect()
 }
 
-/// A memory that a board has learnt.
+/// Returns a memory of parameters estimated on a board.
 fn learnt() -> Memory {
     let (mut board, _) = started(NOTHING);
     run(&mut board, false, 3000);

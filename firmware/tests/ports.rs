@@ -1,5 +1,5 @@
-//! The controller's port in its kinds: each gives what the controller itself gives, at most a tick later, and says so when
-//! it cannot. Motions are made up; what an answer is worth is tested elsewhere.
+//! Tests of all controller ports: each returns the controller's own answer, at most a tick later, or reports its
+//! absence. Motions are invented; other tests cover the quality of the answers.
 
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
@@ -27,7 +27,7 @@ fn controller() -> Direct<'static> {
     Direct(Controller::new(&control::OBSERVER, &control::COMPENSATION).with_probe(control::PROBE.as_ref()))
 }
 
-/// One tick of a motion to and fro.
+/// Samples and command of one tick of a motion to and fro.
 fn tick(number: u32) -> (Samples<f32>, Command<f32>) {
     let time = 1000 * number;
     let turned = (0.02 * number as f32).sin();
@@ -37,24 +37,24 @@ fn tick(number: u32) -> (Samples<f32>, Command<f32>) {
     (samples, Command::Position { now: motion, ahead: Some(motion) })
 }
 
-/// What the controller itself says.
+/// Answers of the controller without a port.
 fn expected(ticks: u32) -> Vec<Answer<f32>> {
     let mut controller = controller();
     (0..ticks).map(tick).map(|(samples, command)| controller.exchange(&samples, &command).unwrap()).collect()
 }
 
-/// What of an answer is sent: the compensation on the board alone needs the rest.
+/// Part of an answer that is sent: the rest serves the compensation on the board only.
 fn sent(mut answer: Answer<f32>) -> Answer<f32> {
     (answer.estimates.cogging, answer.estimates.motor_lead) = ([0.0; 2], 0.0);
     answer
 }
 
-/// What another board is told of the expected answers.
+/// Expected answers as another board sends them.
 fn sent_of(ticks: u32) -> Vec<Answer<f32>> {
     expected(ticks).into_iter().map(sent).collect()
 }
 
-/// A joint at rest, as seen in a tick of a probe.
+/// Samples of a joint at rest in a tick of a probe.
 fn still(number: u32) -> Samples<f32> {
     let time = 1000 * number;
     let reading = Reading { counts: 5, time };
@@ -68,7 +68,7 @@ fn a_probe_pushes_through_every_port_that_has_a_controller_behind_it() {
     let mut alone = controller();
     let direct: Vec<_> = (0..ticks).map(|number| alone.probe(&still(number)).unwrap()).collect();
     let pushing = direct.iter().position(|answer| answer.shaped.torque != 0.0).expect("it pushes");
-    // After the period in which it began, time to see the joint.
+    // After the first period the probe needs time to observe the joint.
     assert_eq!(pushing as u32, settle + 1);
     assert!(direct.iter().all(|answer| answer.probed == Some(Progress::Running)));
     let mut memory = SharedMemory::new();
@@ -116,15 +116,15 @@ fn a_guest_that_is_late_costs_ticks_without_an_answer_and_nothing_waits() {
     }
     while guest.serve(&mut behind) {}
     let (samples, command) = tick(20);
-    // Three questions had room: the newest answer is to the last of them.
+    // Three questions had room: the newest answer belongs to the last of them.
     assert_eq!(host.exchange(&samples, &command), Ok(expected(3)[2]));
 }
 
-/// A bus with a guest at its other end, which can change bytes on the way.
+/// Bus with a guest at its other end, which can corrupt bytes.
 struct Bus {
     guest: SpiGuest<Direct<'static>>,
     next: spi::Frame,
-    /// The byte to be changed in the next transfer, and whether it is on its way to the guest.
+    /// Byte to corrupt in the next transfer; `true` if on the way to the guest.
     flip: Rc<Cell<Option<(usize, bool)>>>,
 }
 
@@ -182,7 +182,7 @@ fn a_byte_changed_on_spi_costs_one_answer_and_is_never_taken_for_one() {
     }
 }
 
-/// A slave's hardware between transfers: what came, or why it did not, and what the next one brings.
+/// Hardware of a slave between transfers: received frame or error, and the next frame to send.
 struct Wires(Rc<RefCell<(Result<spi::Frame, Broken>, spi::Frame)>>, spi::Frame);
 
 impl SlaveBus for Wires {
@@ -235,7 +235,7 @@ fn samples_and_answers_fit_into_the_frame_of_spi() {
     assert!(sealed(&answered(u32::MAX), &mut [0; spi::FRAME_BYTES]).is_ok());
 }
 
-/// The longest answer.
+/// Returns the longest answer.
 fn answered(tick: u32) -> Answered {
     let mut estimates = Answer::<f32>::default().estimates;
     (estimates.motor.turns, estimates.link.turns) = (i32::MIN, i32::MIN);
@@ -265,7 +265,7 @@ fn the_rate_of_the_serial_line_is_that_of_the_longest_frames() {
     assert_eq!([230_400, 921_600].map(serial::exchanges_per_second), [107, 430]);
 }
 
-/// Both ways of a line.
+/// Both directions of a line.
 #[derive(Default)]
 struct Wire {
     out: VecDeque<u8>,
@@ -304,7 +304,7 @@ fn a_board_on_a_line_is_asked_again_only_once_it_has_answered() {
         let (samples, command) = tick(number);
         said.push(port.exchange(&samples, &command));
         (0..40).for_each(|_| uart.service());
-        // The board takes two of the controller's ticks over every exchange.
+        // The board needs two ticks of the controller per exchange.
         let bytes: Vec<u8> = if number % 3 == 2 { wire.borrow_mut().out.drain(..).collect() } else { Vec::new() };
         for byte in bytes {
             let Some(ToBoard::Exchanges(schedule)) = receiver.push(byte) else { continue };

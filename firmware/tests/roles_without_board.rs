@@ -1,5 +1,6 @@
-//! The roles that control, without a board: their answers are those of observer and compensation called directly, in every
-//! bit, and a host that errs or falls silent leads where it should. What the answers are worth is tested elsewhere.
+//! Tests of the roles that control, without a board: answers equal those of direct calls of observer and compensation
+//! in every bit, and a host that errs or falls silent leads to the specified state. Other tests cover the quality of
+//! the answers.
 
 #[allow(dead_code, reason = "shared with the tests of the plant")]
 mod test_board;
@@ -203,7 +204,7 @@ fn a_whole_loop_takes_faults_before_its_first_period_only_and_no_more_than_fit()
     assert!(!taken(board.said()), "the run has begun");
 }
 
-/// What the motor was asked for in the period before.
+/// Motor torque commanded in the last period.
 fn own_torque(said: &[LoopSample], tick: u32) -> f32 {
     tick.checked_sub(1).map_or(0.0, |before| said[before as usize].torque)
 }

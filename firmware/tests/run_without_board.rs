@@ -1,5 +1,5 @@
-//! A whole run over the line on a board without hardware: the board does what the model does, loses nothing, and goes
-//! to its safe state when it must. Timing on a real processor is for the emulator tests.
+//! Tests of whole runs over the line on a board without hardware: results equal the model's, nothing is lost, and
+//! faults lead to the safe state. The emulator tests cover timing.
 
 #[allow(dead_code, reason = "shared with the host's tests of boards")]
 mod test_board;
@@ -110,7 +110,7 @@ fn a_realtime_run_without_commands_ends_in_the_safe_state() {
     let mut board = TestBoard::new();
     board.start(RunMode::Realtime, 10, 50);
     board.schedule(0, 100, &[(0, 0.2, 0.0)]);
-    // The host is there, but has nothing to say of what is to come.
+    // The host sends frames, but no schedule.
     let mut heard_for = |ticks: u32| {
         for _ in 0..ticks / 10 {
             board.send(&ToBoard::Hello { protocol: link::PROTOCOL_VERSION });
@@ -150,7 +150,7 @@ fn a_full_queue_makes_the_host_wait_in_lockstep_and_trips_in_realtime() {
     for mode in [RunMode::Lockstep, RunMode::Realtime] {
         let mut board = TestBoard::new();
         board.start(mode, 100, NO_TIMEOUT);
-        // As many as queue, hand and line hold, then the others.
+        // As many as queue, intake and line hold, then the others.
         for schedules in [0..8, 8..12] {
             for i in schedules {
                 board.schedule(i, (u32::from(i) + 1) * 240, &commands(i.into()));

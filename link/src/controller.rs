@@ -1,5 +1,5 @@
-//! Messages between a motor controller and observer with compensation, in the wire's own form: samples and set-points here,
-//! the answers in `answer`. Times are ticks of the samples' clock; every field is SI.
+//! Wire form of the messages between a motor controller and observer with compensation: samples and set-points here,
+//! answers in `answer`. Times are ticks of the samples' clock; every field is SI.
 
 mod answer;
 
@@ -8,77 +8,77 @@ use model_core::compensation::{self, ImpedancePoint, Position};
 use model_core::observer::{Reading, Samples};
 use serde::{Deserialize, Serialize};
 
-/// Most exchanges in one schedule: one control period each.
+/// Most exchanges in one schedule; an exchange is one control period.
 pub const EXCHANGES_PER_SCHEDULE: usize = 4;
 
-/// One control period as a motor controller sees it.
+/// Samples and set-point of one control period of a motor controller.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Exchange {
-    /// The control period, counted from 0.
+    /// Number of the control period, from 0.
     pub tick: u32,
-    /// Now.
+    /// Present time.
     pub time: u32,
-    /// Counts of the motor's encoder and when they were read.
+    /// Counts of the motor encoder and time of the reading.
     pub motor: (u32, u32),
-    /// Likewise of the output's, if there are any.
+    /// Counts of the output encoder and time of the reading, if there is a reading.
     pub output: Option<(u32, u32)>,
-    /// Torque that was commanded last [N m].
+    /// Last commanded torque [N m].
     pub torque: f32,
-    /// What is asked for.
+    /// Set-point.
     pub set_point: SetPoint,
-    /// The answer shall contain all estimates; torque and digest come in any case.
+    /// Requests all estimates in the answer; torque and digest are always sent.
     pub wants_estimates: bool,
 }
 
-/// What is asked for in one control period.
+/// Set-point of one control period.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum SetPoint {
     /// Follow a motion.
     Position {
-        /// Now.
+        /// Present time.
         now: Motion,
-        /// Ahead by the compensation's lead.
+        /// Motion one lead time of the compensation later.
         ahead: Option<Motion>,
     },
     /// Act as a spring and damper.
     Impedance(Impedance),
-    /// Probe the width: the load is held.
+    /// Probe the width; the link is held.
     Probe,
 }
 
-/// A motion at one moment.
+/// Motion at one time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Motion {
-    /// Whole turns and the rest.
+    /// Position: whole turns and fraction.
     pub position: (i32, f32),
-    /// [rad/s].
+    /// Speed [rad/s].
     pub speed: f32,
-    /// [rad/s^2].
+    /// Acceleration [rad/s^2].
     pub acceleration: f32,
 }
 
-/// A spring and damper about a moving point.
+/// Spring and damper about a moving point.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Impedance {
-    /// Whole turns and the rest.
+    /// Position: whole turns and fraction.
     pub position: (i32, f32),
-    /// [rad/s].
+    /// Speed [rad/s].
     pub speed: f32,
-    /// [N m].
+    /// Feedforward torque [N m].
     pub torque: f32,
-    /// [N m/rad].
+    /// Stiffness [N m/rad].
     pub stiffness: f32,
-    /// [N m s/rad].
+    /// Damping [N m s/rad].
     pub damping: f32,
 }
 
 impl Exchange {
-    /// A control period's samples and set-point, to be answered with all estimates.
+    /// Samples and set-point of a control period, with a request for all estimates.
     pub fn new(tick: u32, samples: &Samples<f32>, command: &compensation::Command<f32>) -> Self {
         Self::asking(tick, samples, SetPoint::from(command))
     }
 
-    /// A control period of a width probe.
+    /// Samples of a control period of a width probe.
     pub fn probing(tick: u32, samples: &Samples<f32>) -> Self {
         Self::asking(tick, samples, SetPoint::Probe)
     }
@@ -96,18 +96,18 @@ impl Exchange {
         }
     }
 
-    /// The same without estimates in the answer, which are most of its bytes.
+    /// Drops the request for estimates, which are most of the answer's bytes.
     pub fn without_estimates(self) -> Self {
         Self { wants_estimates: false, ..self }
     }
 
-    /// The samples.
+    /// Samples of the period.
     pub fn samples(&self) -> Samples<f32> {
         let reading = |(counts, time)| Reading { counts, time };
         Samples { time: self.time, motor: reading(self.motor), output: self.output.map(reading), torque: self.torque }
     }
 
-    /// The set-point; none in a period of a width probe.
+    /// Set-point of the period; `None` in a width probe.
     pub fn command(&self) -> Option<compensation::Command<f32>> {
         let motion = |of: Motion| compensation::Motion {
             position: position(of.position),

@@ -1,5 +1,5 @@
-//! Messages on a byte stream: postcard, CRC-32 (ISO-HDLC, little-endian), COBS, a zero byte. A receiver that starts in
-//! mid-frame, or meets garbage, is synchronised again after the next zero byte; it counts the frames that it drops.
+//! Framing of messages on a byte stream: postcard, CRC-32 (ISO-HDLC, little-endian), COBS, a zero byte. A receiver that
+//! starts in mid-frame or meets garbage synchronises at the next zero byte; it counts dropped frames.
 
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
 use heapless::Vec;
@@ -8,19 +8,19 @@ use serde::{Serialize, de::DeserializeOwned};
 
 /// Longest message before stuffing, CRC included.
 pub const MAX_MESSAGE: usize = 512;
-/// Longest frame on the wire: COBS adds a byte in 254 and one more, then the closing zero.
+/// Longest frame on the wire: COBS adds one byte per 254 and one more, then the closing zero follows.
 pub const MAX_FRAME: usize = MAX_MESSAGE + MAX_MESSAGE / 254 + 3;
 
 pub(crate) const CRC_BYTES: usize = 4;
 pub(crate) static CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
-/// The CRC over a message and its own CRC, if neither has changed on the way.
+/// CRC over an unchanged message including its CRC.
 pub(crate) const UNCHANGED: u32 = CRC_32_ISO_HDLC.residue ^ CRC_32_ISO_HDLC.xorout;
 
-/// A message that does not fit into [`MAX_MESSAGE`] bytes.
+/// Error of a message longer than [`MAX_MESSAGE`] bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TooLong;
 
-/// Puts a message with its checksum at the start of a buffer; says how long both are.
+/// Writes a message with its checksum to the start of a buffer; returns their length.
 fn plain<M: Serialize>(message: &M, buffer: &mut [u8]) -> Result<usize, TooLong> {
     let room = buffer.len().checked_sub(CRC_BYTES).ok_or(TooLong)?;
     let length = postcard::to_slice(message, buffer.get_mut(..room).ok_or(TooLong)?).map_err(|_| TooLong)?.len();
@@ -30,7 +30,7 @@ fn plain<M: Serialize>(message: &M, buffer: &mut [u8]) -> Result<usize, TooLong>
     Ok(length + CRC_BYTES)
 }
 
-/// The frame that carries a message.
+/// Encodes a message as a frame.
 ///
 /// ```
 /// use link::framing::{Receiver, encode};
@@ -57,8 +57,8 @@ pub fn encode<M: Serialize>(message: &M) -> Result<Vec<u8, MAX_FRAME>, TooLong> 
     Ok(frame)
 }
 
-/// Fills a frame of fixed length, for buses that clock out as much as they clock in: the message, zeros, and the CRC over
-/// all of that.
+/// Fills a frame of fixed length, for buses that send as many bytes as they receive: message, zeros, and the CRC over
+/// both.
 ///
 /// ```
 /// use link::framing::{sealed, unsealed};
@@ -79,13 +79,13 @@ pub fn sealed<M: Serialize>(message: &M, frame: &mut [u8]) -> Result<(), TooLong
     Ok(())
 }
 
-/// Whether a message stands in the shortest form that there is: a number filled up with zero bits is a second way to say the
-/// same, which no sender of ours takes. Compares byte by byte with what a sender would have written, without a buffer.
+/// Returns `true` if a message has its shortest encoding, as every sender writes it: a number padded with zero bits is
+/// a longer encoding of an equal value. Compares byte by byte with the re-encoded message, without a buffer.
 fn is_shortest<M: Serialize>(message: &M, received: &[u8]) -> bool {
     matches!(postcard::serialize_with_flavor(message, Comparison(received)), Ok([]))
 }
 
-/// Takes what a sender would write as long as it is what was received; what was received beyond that is left.
+/// Sink that accepts bytes equal to the received ones; [`Flavor::finalize`] returns the surplus received bytes.
 struct Comparison<'r>(&'r [u8]);
 
 impl<'r> Flavor for Comparison<'r> {
@@ -106,18 +106,19 @@ impl<'r> Flavor for Comparison<'r> {
     }
 }
 
-/// The message in a frame of fixed length, if it came through unchanged and stands in the one form that [`sealed`] gives it.
+/// Decodes a frame of fixed length; `None` unless the frame is unchanged and has exactly the form of [`sealed`].
 pub fn unsealed<M: Serialize + DeserializeOwned>(frame: &[u8]) -> Option<M> {
     let (message, plain, rest) = unchanged::<M>(frame)?;
     (is_shortest(&message, plain) && rest.iter().all(|byte| *byte == 0)).then_some(message)
 }
 
-/// The same without a look at the form, which costs as much as writing the message anew: for who answers within a tick.
+/// Decodes a frame of fixed length without a check of the encoding, which costs as much as encoding the message; for
+/// receivers that answer within a tick.
 pub fn unsealed_within_a_tick<M: DeserializeOwned>(frame: &[u8]) -> Option<M> {
     unchanged(frame).map(|(message, _, _)| message)
 }
 
-/// The message in a frame that came through unchanged, its bytes, and those that fill the frame up.
+/// Decodes an unchanged frame of fixed length: message, its bytes, padding.
 fn unchanged<M: DeserializeOwned>(frame: &[u8]) -> Option<(M, &[u8], &[u8])> {
     let (content, seal) = frame.split_last_chunk::<CRC_BYTES>()?;
     let good = CRC.checksum(content).to_le_bytes() == *seal;
@@ -126,14 +127,14 @@ fn unchanged<M: DeserializeOwned>(frame: &[u8]) -> Option<(M, &[u8], &[u8])> {
     Some((message, plain, rest))
 }
 
-/// What a [`Receiver`] has thrown away.
+/// Counts of frames dropped by a [`Receiver`].
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Dropped {
-    /// Frames with a bad CRC, a bad length, an unknown content or one that is not in its shortest form.
+    /// Frames with a bad CRC, a bad length, an unknown content or a longer encoding than necessary.
     pub frames: u32,
 }
 
-/// Puts frames together from bytes in any portions.
+/// Assembles frames from single bytes.
 #[derive(Debug, Clone)]
 pub struct Receiver {
     buffer: Vec<u8, MAX_FRAME>,
@@ -148,18 +149,18 @@ impl Default for Receiver {
 }
 
 impl Receiver {
-    /// Waits for the first frame.
+    /// Receiver that waits for the first frame.
     pub const fn new() -> Self {
         Self { buffer: Vec::new(), overflowed: false, dropped: Dropped { frames: 0 } }
     }
 
-    /// Takes one byte; returns a message if the byte ended a good frame. Empty frames are fill, not errors.
+    /// Takes one byte; returns a message if the byte ended a good frame. Empty frames are padding, not errors.
     pub fn push<M: Serialize + DeserializeOwned>(&mut self, byte: u8) -> Option<M> {
         self.take(byte, is_shortest)
     }
 
-    /// The same for a message of which only the beginning is known, and which therefore cannot be held against what a sender
-    /// would have written.
+    /// Takes one byte as [`Receiver::push`] does, for a type that knows only the beginning of a message; without the
+    /// check for the shortest encoding, which needs the whole message.
     pub fn push_beginning<M: DeserializeOwned>(&mut self, byte: u8) -> Option<M> {
         self.take(byte, |_, _| true)
     }
@@ -179,12 +180,12 @@ impl Receiver {
         message
     }
 
-    /// What was thrown away so far.
+    /// Counts of dropped frames so far.
     pub fn dropped(&self) -> Dropped {
         self.dropped
     }
 
-    /// Forgets a half frame and the counts.
+    /// Discards an incomplete frame and clears the counts.
     pub fn clear(&mut self) {
         *self = Self::new();
     }

@@ -1,32 +1,32 @@
-//! Frames as they go by, told without keeping a byte of them: for whoever must know at once that a good frame has come, and
-//! whether it is a stop, however long the message itself has to wait. The same few instructions for every byte.
+//! Detects good frames in passing bytes without storing them, so that a receiver knows at once of a good frame or a
+//! stop, however long the message itself waits. Bounded work per byte.
 
 use crc::{Digest, Table};
 
 use crate::framing::{CRC, CRC_BYTES, MAX_FRAME, UNCHANGED};
 
-/// A frame with a right checksum, as [`Scanner`] tells it.
+/// Frame with a correct checksum, as [`Scanner`] reports it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Scanned {
     /// Bytes of the message.
     pub length: usize,
-    /// The first of them, which says what kind of message it is.
+    /// First byte of the message: its variant number.
     pub first: u8,
 }
 
-/// Follows the bytes of a line: the same frames are good to it as to [`Receiver`](crate::framing::Receiver), but for content
-/// that is of no message, which it does not look at.
+/// Scanner of a line. It accepts the frames that [`Receiver`](crate::framing::Receiver) accepts, and also frames with
+/// unknown content, which it does not check.
 #[derive(Clone)]
 pub struct Scanner {
     checksum: Digest<'static, u32, Table<1>>,
-    /// Bytes since the last zero.
+    /// Encoded bytes since the last zero.
     stuffed: usize,
-    /// Bytes that they stand for.
+    /// Decoded bytes since the last zero.
     plain: usize,
     first: u8,
-    /// Bytes to the next code byte of COBS.
+    /// Bytes before the next code byte of COBS.
     left: u8,
-    /// A zero stood before that code byte.
+    /// The next code byte stands for a zero.
     zero_next: bool,
 }
 
@@ -37,12 +37,12 @@ impl Default for Scanner {
 }
 
 impl Scanner {
-    /// Waits for the first frame.
+    /// Scanner that waits for the first frame.
     pub fn new() -> Self {
         Self { checksum: CRC.digest(), stuffed: 0, plain: 0, first: 0, left: 0, zero_next: false }
     }
 
-    /// Takes one byte; returns what a good frame was if the byte ended one.
+    /// Takes one byte; returns the frame if the byte ended a good frame.
     pub fn push(&mut self, byte: u8) -> Option<Scanned> {
         if byte == 0 {
             return core::mem::take(self).ended();
@@ -74,7 +74,7 @@ impl Scanner {
 
     fn ended(self) -> Option<Scanned> {
         let whole = self.left == 0 && self.stuffed <= MAX_FRAME;
-        // The checksum of nothing is nothing but zeros, which noise may well be: no message is empty.
+        // Rejects the empty message: its checksum is all zeros, which noise can produce.
         let length = self.plain.checked_sub(CRC_BYTES).filter(|length| *length > 0)?;
         (whole && self.checksum.finalize() == UNCHANGED).then_some(Scanned { length, first: self.first })
     }

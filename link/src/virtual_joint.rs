@@ -1,5 +1,5 @@
-//! Messages between a host and a board that runs the whole loop: the trajectory as polynomials over segments of time, so that
-//! a slow line can carry it, and samples of joint and controller.
+//! Messages between a host and a board in the role `loop`: the trajectory as polynomials over time segments, which
+//! suits a slow line, and samples of joint and controller.
 
 use heapless::Vec;
 use model_core::controller::trajectory::{POWERS, Segment, Trajectory};
@@ -12,24 +12,24 @@ pub const KNOTS_PER_SCHEDULE: usize = 6;
 /// Most samples in one [`LoopBatch`].
 pub const LOOP_SAMPLES_PER_BATCH: usize = 4;
 
-/// The trajectory from a tick on, until the next knot.
+/// Trajectory from a tick on, until the next knot.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Knot {
-    /// First control period that it is for.
+    /// First control period of the segment.
     pub tick: u32,
-    /// Torque that brakes the link, beside its friction and weight [N m].
+    /// External torque that brakes the link, without friction and weight [N m].
     pub load_torque: f32,
-    /// The set-points of the segment.
+    /// Set-points of the segment.
     pub trajectory: WireTrajectory,
 }
 
-/// Whole turns and the powers of a motion over a segment of time.
+/// Whole turns and polynomial coefficients of a motion over a time segment.
 pub type WireSegment = (i32, [f32; POWERS]);
 
-/// Set-points over a segment of time.
+/// Set-points over a time segment.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum WireTrajectory {
-    /// Follow a motion: now, and ahead by the compensation's lead.
+    /// Follow a motion: present motion, and the motion one lead time of the compensation later.
     Position(WireSegment, Option<WireSegment>),
     /// Act as a spring and damper.
     Impedance(Impedance),
@@ -56,7 +56,7 @@ impl From<WireTrajectory> for Trajectory<f32> {
 }
 
 impl Knot {
-    /// Every number in it is finite.
+    /// Returns `true` if every number of the knot is finite.
     pub fn is_finite(&self) -> bool {
         let segment = |(_, powers): &WireSegment| powers.iter().all(|power| power.is_finite());
         self.load_torque.is_finite()
@@ -70,38 +70,38 @@ impl Knot {
     }
 }
 
-/// Joint and controller after a control period.
+/// State of joint and controller after a control period.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct LoopSample {
-    /// Control periods done.
+    /// Completed control periods.
     pub tick: u32,
     /// Running digest over joint and answers after every period so far.
     pub digest: u64,
-    /// Carrier as a rigid body: whole turns and 2^-32 turns.
+    /// Angle of the rigid-body carrier: whole turns and 2^-32 turns.
     pub carrier: (i32, u32),
-    /// Link angle less that [rad].
+    /// Link angle less rigid-body carrier angle [rad].
     pub link_offset: f32,
     /// Gap coordinate, true and estimated [m].
     pub gaps: (f32, f32),
-    /// Whether the estimate is valid.
+    /// Validity of the estimated gap coordinate.
     pub gap_valid: bool,
-    /// Half-backlash as learnt [m].
+    /// Estimated half-backlash [m].
     pub half_backlash: f32,
-    /// Torque that was commanded [N m].
+    /// Commanded torque [N m].
     pub torque: f32,
     /// Torque that brakes the link, true and estimated [N m].
     pub loads: (f32, f32),
-    /// Share of the compensation.
+    /// Share of the compensation in the torque, 0 to 1.
     pub trust: f32,
-    /// Computation time of this period, in timer counts.
+    /// Computation time of this period [timer counts].
     pub computation: u16,
 }
 
 /// Consecutive samples.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LoopBatch {
-    /// Rises by one with every batch of a run, from 0 after a reset.
+    /// Sequence number; rises by one per batch of a run, from 0 after a reset.
     pub sequence: u16,
-    /// The samples, oldest first.
+    /// Samples, oldest first.
     pub samples: Vec<LoopSample, LOOP_SAMPLES_PER_BATCH>,
 }

@@ -1,5 +1,5 @@
-//! Samples, set-points, answers and motions come out of the wire's form as they went in, and their longest forms fit into
-//! a frame. Framing itself is tested beside.
+//! Samples, set-points, answers and motions keep their values in wire form, and their longest forms fit into a frame.
+//! Framing has tests of its own.
 
 use link::controller::{Answered, EXCHANGES_PER_SCHEDULE, Exchange, WireEstimates, WireProbed};
 use link::framing::{Receiver, encode};
@@ -80,7 +80,7 @@ fn samples_and_set_points_come_out_as_they_went_in() {
     }
 }
 
-/// No probe, and all that one may say.
+/// No probe, and all results of a probe.
 fn probes() -> Vec<Option<Progress<f32>>> {
     use Refusal::*;
     let refused = [NotAtRest, Loaded, NotHeld, Stuck, Unsteady, BadSamples].map(Progress::Refused);

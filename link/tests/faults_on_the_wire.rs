@@ -1,5 +1,5 @@
-//! Faults between joint and controller, and why a board tripped, byte for byte: boards and hosts of one protocol version
-//! must understand one another, whatever the types are called. Framing is tested beside.
+//! Byte-exact wire form of injected faults and of trip reasons: boards and hosts of one protocol version must
+//! understand each other, whatever the types are called. Framing has tests of its own.
 
 use link::messages::{FromBoard, ToBoard, Trip};
 use model_core::virtual_joint::fault::{Fault, FaultKind, FixedPoint, Shaft};

@@ -1,4 +1,4 @@
-//! Frames on a bad line: what was sent arrives, or is counted as dropped, and the receiver is in step again at the next
+//! Frames on a bad line: a sent message arrives or is counted as dropped, and the receiver synchronises at the next
 //! zero byte.
 
 use link::framing::{MAX_FRAME, Receiver, encode, sealed, unsealed, unsealed_within_a_tick};
@@ -140,7 +140,7 @@ fn the_scanner_passes_over_a_frame_that_is_too_long_and_one_with_runs_of_254_byt
 
 #[test]
 fn a_checksum_alone_is_no_frame() {
-    // COBS of four zero bytes: the checksum of an empty message is right.
+    // COBS of four zero bytes: the valid checksum of an empty message.
     let (mut receiver, mut scanner) = (Receiver::new(), Scanner::new());
     for byte in [1, 1, 1, 1, 1, 0] {
         assert_eq!((receiver.push::<ToBoard>(byte), scanner.push(byte)), (None, None));
@@ -157,7 +157,7 @@ fn zero_bytes_between_frames_are_no_errors() {
 
 #[test]
 fn a_number_that_is_filled_up_makes_a_bad_frame() {
-    // A hello is the number of its kind, 0, and the protocol's: 7, as one byte or with zero bits behind it.
+    // A hello is its variant number, 0, and the protocol version: 7 as one byte, or padded with zero bits.
     for (short, long) in [(&[0, 7][..], &[0, 0x87, 0][..]), (&[0, 7], &[0x80, 0, 7]), (&[0, 7], &[0, 0x87, 0x80, 0])] {
         let mut receiver = Receiver::new();
         let message = ToBoard::Hello { protocol: 7 };
@@ -189,7 +189,7 @@ fn what_is_not_zero_behind_a_message_makes_a_bad_frame_of_fixed_length() {
     }
 }
 
-/// Bytes that are a message already.
+/// Message given as encoded bytes.
 struct Raw<'b>(&'b [u8]);
 
 impl serde::Serialize for Raw<'_> {

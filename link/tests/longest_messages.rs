@@ -1,5 +1,5 @@
-//! The longest form of every message fits into a frame: a board may say any of them without looking back. How long
-//! each is does not matter here.
+//! The longest form of every message fits into a frame, so that a board can send any message without checking its
+//! length.
 
 use heapless::Vec;
 use link::framing::{Receiver, encode};

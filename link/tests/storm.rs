@@ -1,10 +1,10 @@
-//! Bytes that no host ever sent, by the million: noise, frames that were changed, cut or doubled on the way, floods. What is
-//! taken is what was sent, the scanner tells the same frames as the receiver takes, and neither ever stops doing so.
+//! Millions of arbitrary bytes: noise, changed, cut or repeated frames, floods. The receiver accepts sent frames only,
+//! the scanner reports the frames that the receiver accepts, and both keep working.
 //!
-//! Which frames are good is known without decoding: those between two zero bytes that are a sent frame in every byte. A bad
-//! one passes a CRC-32 once in 2^32. Of 1e9 bytes there are 2.4e7 bad frames, so that 0.006 would be taken by chance; none
-//! is, of this seed. Work a byte is bounded by construction: a byte that is no zero costs the
-//! same few instructions, and a zero at most a pass over what came since the last, of which no more than `MAX_FRAME` is kept.
+//! Good frames are known without decoding: bytes between two zero bytes that equal a sent frame. A bad frame passes a
+//! CRC-32 once in 2^32. 1e9 bytes contain 2.4e7 bad frames, so that 0.006 would be accepted by chance; with this seed
+//! none is. The work per byte is bounded by construction: a nonzero byte costs a few instructions, a zero at most a
+//! pass over the bytes since the last zero, of which at most `MAX_FRAME` are kept.
 
 use std::collections::HashSet;
 
@@ -13,7 +13,7 @@ use link::messages::{Command, RunMode, RunSettings, Schedule, ToBoard};
 use link::scanner::Scanner;
 use model_core::numbers::random::splitmix64;
 
-/// Bytes unless `DECODER_BYTES` says how many.
+/// Number of bytes, unless `DECODER_BYTES` sets it.
 const SHORT: u64 = 1_000_000;
 
 struct Draw(u64);
@@ -47,7 +47,7 @@ impl Draw {
         }
     }
 
-    /// Some bytes; the frames among them that were sent go into the list.
+    /// Returns some bytes; adds the sent frames among them to the list.
     fn piece(&mut self, sent: &mut HashSet<Vec<u8>>) -> Vec<u8> {
         let mut frame = encode(&self.message()).expect("a message that fits").to_vec();
         let count = 1 + self.below(2 * MAX_FRAME as u32);
@@ -96,7 +96,7 @@ fn what_is_taken_from_a_storm_of_bytes_is_what_was_sent() {
             dropped += u32::from(!good && !frame.is_empty());
             frame.clear();
         }
-        // A frame goes on in the piece after it at most.
+        // A frame extends at most into the next piece.
         if frame.is_empty() {
             sent.clear();
         }

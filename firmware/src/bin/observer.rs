@@ -1,9 +1,9 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 #![allow(unsafe_op_in_unsafe_fn, reason = "the framework writes its tasks so")]
-//! Role `observer`: observer and compensation beside a motor controller; samples and set-points in, estimates and torques
-//! out. The application is that of every role, the work is in the library.
+//! Role `observer`: observer and compensation for a motor controller; samples and set-points in, estimates and torques
+//! out. All roles share the application; the code is in the library.
 
-/// What this image is: `role_app.rs` asks for it.
+/// Role of this image, used by `role_app.rs`.
 #[cfg(target_os = "none")]
 mod role {
     pub use firmware::observer::ObserverProtocol as RoleProtocol;
@@ -31,6 +31,6 @@ mod role {
 #[cfg(target_os = "none")]
 include!("../role_app.rs");
 
-/// There is nothing to do on a host: this image is for a board.
+/// Empty on a host: this image is for a board.
 #[cfg(not(target_os = "none"))]
 fn main() {}

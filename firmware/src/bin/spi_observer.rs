@@ -1,12 +1,12 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 #![allow(unsafe_op_in_unsafe_fn, reason = "the framework writes its tasks so")]
-//! Observer and compensation as a slave on SPI, beside a motor controller on another chip: each transfer brings samples and
-//! takes the answer to those before. There is no host: the joint is fixed when the image is built.
+//! Observer and compensation as an SPI slave of a motor controller on another chip: each transfer receives samples and
+//! sends the answer to the samples before. Without host: the joint is fixed when the image is built.
 
 #[cfg(all(target_os = "none", not(has_spi_slave)))]
 compile_error!("the board's file has no [spi_slave]");
 
-/// The application, with the interrupt of the chip select.
+/// Application with the interrupt of the chip select.
 #[cfg(all(target_os = "none", has_spi_slave))]
 macro_rules! app {
     ($select:ident) => {
@@ -53,13 +53,14 @@ macro_rules! app {
                 (Shared { slave: SpiSlave::new(bus, controller) }, Local { watchdog })
             }
 
-            /// The master has let go of the chip select.
+            /// Handles the end of a transfer: the master has released chip select.
             #[task(binds = $select, priority = 16, shared = [slave])]
             fn serve_master(cx: serve_master::Context) {
                 cx.shared.slave.serve();
             }
 
-            /// A master may be silent for as long as it likes; an interrupt that never ends would starve the watchdog.
+            /// Feeds the watchdog. A master may be silent for any time; an interrupt that never ends would starve the
+            /// watchdog.
             #[idle(local = [watchdog])]
             fn idle(cx: idle::Context) -> ! {
                 loop {
@@ -98,6 +99,6 @@ app!(EXTI9_5);
 ))]
 app!(EXTI15_10);
 
-/// There is nothing to do on a host: this image is for a board.
+/// Empty on a host: this image is for a board.
 #[cfg(not(target_os = "none"))]
 fn main() {}

@@ -1,6 +1,6 @@
 //! Bounded waiting for hardware; the caller reports a wait that timed out.
 
-/// Polls that outlast the slowest start of a crystal (some milliseconds) at any clock of these boards.
+/// Number of polls; outlasts the slowest start of a crystal (some milliseconds) at any clock of these boards.
 const POLLS: u32 = 1_000_000;
 
 /// Waits for a condition; `false` if it never held.
@@ -9,10 +9,10 @@ pub fn wait_until(mut condition: impl FnMut() -> bool) -> bool {
     (0..POLLS).any(|_| condition())
 }
 
-/// How many times longer flash may take: seconds.
+/// Factor by which flash may take longer: seconds.
 const LONGER: u32 = 400;
 
-/// The same for what takes seconds.
+/// Waits for a condition that may take seconds; `false` if it never held.
 #[must_use]
 pub fn wait_longer(mut condition: impl FnMut() -> bool) -> bool {
     (0..LONGER).any(|_| wait_until(&mut condition))

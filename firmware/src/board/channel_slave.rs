@@ -1,7 +1,7 @@
-//! The SPI of STM32G4 as a slave whose bytes are moved by DMA: mode 0, 8 bits, chip select by the master's hand. Times of the
-//! port are stated for a clock of 21 MHz; which unit it is, and its pins, the board's file says.
+//! SPI slave of STM32G4 with DMA: mode 0, 8 bits, hardware chip select. The port's times are stated for a clock of 21
+//! MHz; the board file selects unit and pins.
 //!
-//! It runs on a model of the chip's registers (`board-model`); it has not been run on silicon.
+//! Tested on a model of the chip's registers (`board-model`); not run on silicon.
 
 use super::bounded_wait::wait_until;
 use super::dma_slave::Unit;
@@ -17,7 +17,7 @@ macro_rules! units {
             use super::pac;
 
             pub type Spi = pac::$spi;
-            /// What the multiplexer calls its requests.
+            /// Request numbers of the DMA multiplexer.
             pub const RECEIVES: u32 = $receives;
             pub const SENDS: u32 = $sends;
 
@@ -25,7 +25,7 @@ macro_rules! units {
             pub fn take(clocks: &pac::RCC) -> Spi {
                 clocks.$gates().modify(|_, w| w.$gate().set_bit());
                 let _ = clocks.$gates().read();
-                // SAFETY: asked for once, at the start; nobody else has the unit in hand.
+                // SAFETY: called once, at the start; there is no other user of the unit.
                 unsafe { Spi::steal() }
             }
 
@@ -47,26 +47,26 @@ use unit::Spi;
 /// Channels of DMA1, counted from 0.
 const RECEIVING: usize = 0;
 const SENDING: usize = 1;
-/// Addresses in memory rise.
+/// Incrementing memory addresses.
 const MEMORY_RISES: u32 = 1 << 7;
-/// From memory to the peripheral.
+/// Direction from memory to the peripheral.
 const OUTWARDS: u32 = 1 << 4;
 const ENABLE: u32 = 1;
 /// All flags of channels 1 and 2.
 const FLAGS: u32 = 0xff;
 
-/// The unit and two channels of DMA1.
+/// SPI unit with two channels of DMA1.
 pub struct ChannelSpi {
     spi: Spi,
     dma: pac::DMA1,
     exti: pac::EXTI,
     clocks: pac::RCC,
-    /// The line of the chip select.
+    /// EXTI line of the chip select.
     line: u32,
 }
 
 impl ChannelSpi {
-    /// Stops a channel; what it has begun it ends.
+    /// Stops a channel; a transfer of a byte in progress is completed.
     fn end(&self, channel: usize) {
         let control = self.dma.ch(channel).cr();
         // SAFETY: a channel that is off may have any settings.
@@ -114,7 +114,7 @@ impl Unit for ChannelSpi {
         }
         // SAFETY: every line may have an edge and an interrupt.
         exti.rtsr1().modify(|r, w| unsafe { w.bits(r.bits() | line) });
-        // SAFETY: likewise.
+        // SAFETY: every line may have an interrupt.
         exti.imr1().modify(|r, w| unsafe { w.bits(r.bits() | line) });
         Self { spi, dma, exti, clocks, line }
     }
@@ -145,13 +145,13 @@ impl Unit for ChannelSpi {
     fn begin(&mut self, received: u32, sent: u32) {
         // SAFETY: ones clear flags.
         self.dma.ifcr().write(|w| unsafe { w.bits(FLAGS) });
-        // Every byte asks to be fetched, not every second one as after its reset. The order is that of the reference manual: what
-        // receives first, then the channels, then what sends.
+        // Each received byte requests DMA, not every second one as after reset. Order of the reference manual:
+        // reception first, then the channels, then transmission.
         self.spi.cr2().modify(|_, w| w.frxth().quarter().rxdmaen().enabled());
         self.set(RECEIVING, received, 0);
         self.set(SENDING, sent, OUTWARDS);
         self.spi.cr2().modify(|_, w| w.txdmaen().enabled());
-        // All else as after its reset: slave, mode 0, 8 bits, chip select by its pin.
+        // All other settings as after reset: slave, mode 0, 8 bits, hardware chip select.
         cortex_m::asm::dmb();
         self.spi.cr1().write(|w| w.spe().enabled());
     }

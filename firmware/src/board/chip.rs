@@ -1,7 +1,7 @@
-//! What the firmware needs of a chip; each has a file of its own.
+//! Interface of a chip; each chip has a file of its own.
 //!
-//! A clock that is switched on comes to its peripheral two cycles of the bus later, and a write before that is lost (RM0440 7.2.17;
-//! STM32F405's errata sheet ES0182): so each switch is read back before what it is for is touched.
+//! A peripheral gets its enabled clock two bus cycles later, and an earlier write is lost (RM0440 7.2.17; STM32F405
+//! errata sheet ES0182): each enable bit is therefore read back before the peripheral is used.
 
 use link::messages::Clock;
 
@@ -10,38 +10,38 @@ use super::pac;
 use crate::kept_memory::Slots;
 use crate::serial::Uart;
 
-/// What the firmware needs of a chip.
+/// Chip, as the firmware uses it.
 pub trait Chip {
-    /// Its own oscillator: the core clock, and that of the serial line, while no PLL runs.
+    /// Internal oscillator: clock of core and serial line while no PLL runs.
     const INTERNAL: Internal;
-    /// The line to the host.
+    /// UART to the host.
     type Port: Uart;
-    /// Where what was learnt is kept.
+    /// Flash slots for the estimated parameters.
     type Slots: Slots;
 
     /// Sets up clock and flash. Every wait is bounded.
     fn start(device: pac::Peripherals, core: &mut cortex_m::Peripherals) -> Parts<Self>;
 
-    /// All ports of pins as after a reset: a bootloader may have set pins up that nobody here may touch.
+    /// Resets all pin ports: a bootloader may have configured pins that the firmware does not use.
     fn reset_ports(clocks: &pac::RCC);
 
-    /// Switches the clock of a port of pins on.
+    /// Enables the clock of a pin port.
     fn power_port(clocks: &pac::RCC, port: u8);
 
-    /// Opens the serial line at a clock of its unit, in Hz.
+    /// Opens the serial line; `clock` is the clock of its unit [Hz].
     fn open_port(clocks: &pac::RCC, clock: u32, baud_rate: u32) -> Self::Port;
 }
 
-/// What a chip's start leaves to its board.
+/// Peripherals and findings of a chip's start.
 pub struct Parts<C: Chip + ?Sized> {
-    /// What the core clock is made of.
+    /// Source and tolerance of the core clock.
     pub clock: Clock,
-    /// Where what was learnt is kept.
+    /// Flash slots for the estimated parameters.
     pub slots: C::Slots,
-    /// Not started yet.
+    /// Watchdog, not started.
     pub watchdog: pac::IWDG,
     /// The last reset came from the watchdog.
     pub watchdog_reset: bool,
-    /// Switches of the clocks of everything else.
+    /// Clock enables of all other peripherals.
     pub clocks: pac::RCC,
 }

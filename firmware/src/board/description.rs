@@ -1,4 +1,4 @@
-//! The board of this build, as its board file says it: written by the build script.
+//! Constants of this build's board file, written by the build script.
 
 #![allow(dead_code, clippy::unreadable_literal, reason = "generated; each chip uses its own part")]
 

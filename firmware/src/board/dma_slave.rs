@@ -1,8 +1,8 @@
-//! A slave on SPI whose bytes are moved by DMA: what a transfer received, and what the next one takes.
+//! SPI slave with DMA: received bytes and prepared answer of each transfer.
 //!
-//! The emulated board has neither DMA nor EXTI. On a model of the boards' registers (`board-model`) good transfers, transfers cut
-//! short and those that are too long are tried, each answered by the next good one. What only a board can show is the least
-//! time between transfers.
+//! The emulated board has neither DMA nor EXTI. Tests on a model of the boards' registers (`board-model`) cover good,
+//! short and overlong transfers, each followed by a good one. The shortest time between transfers can be measured on a
+//! board only.
 
 use super::description::SPI_SLAVE;
 use super::gpio::Pin;
@@ -18,21 +18,21 @@ const PINS: [(u8, u8, u8); 4] = SPI_SLAVE.expect("the build has found a slave in
 pub trait Unit {
     /// Sets up DMA and the interrupt of the chip select; nothing is armed yet.
     fn start(device: pac::Peripherals, select: Pin) -> Self;
-    /// Takes back the request of the chip select's interrupt.
+    /// Clears the pending interrupt of the chip select.
     fn acknowledge(&mut self);
-    /// Bytes that the transfer did not bring.
+    /// Returns the number of missing bytes of the transfer.
     fn missing(&self) -> u16;
-    /// Bytes came that nobody took.
+    /// Returns `true` if received bytes were lost.
     fn overran(&self) -> bool;
-    /// A byte waits that nobody has taken.
+    /// Returns `true` if a received byte has not been read.
     fn has_byte(&self) -> bool;
-    /// Ends both directions. What is left in the SPI would come first in the next transfer, and only a reset empties it.
+    /// Stops both directions and resets the SPI: bytes left in it would be sent first in the next transfer.
     fn stop(&mut self);
-    /// Has the next transfer fill the frame at one address and send the frame at the other.
+    /// Prepares the next transfer with the addresses of the frames to receive and to send.
     fn begin(&mut self, received: u32, sent: u32);
 }
 
-/// The slave with its frames, which live for ever: the unit knows their addresses.
+/// SPI slave with its frames, which are static since the DMA uses their addresses.
 pub struct DmaSlave<U> {
     unit: U,
     received: &'static mut Frame,
@@ -40,10 +40,10 @@ pub struct DmaSlave<U> {
 }
 
 impl<U: Unit> DmaSlave<U> {
-    /// Not armed yet.
+    /// Starts the slave, not armed.
     pub fn start(device: pac::Peripherals, received: &'static mut Frame, sent: &'static mut Frame) -> Self {
         let [select, clock, out, input] = PINS.map(|pin| given(&device.RCC, pin));
-        // At the speed after a reset the answer's edges would take longer than a bit.
+        // At the pin speed after reset, edges of the answer would take longer than a bit.
         out.0.make_fast();
         for (pin, function) in [select, clock, out, input] {
             pin.give_to(function);
@@ -56,7 +56,7 @@ impl<U: Unit> SlaveBus for DmaSlave<U> {
     fn finish(&mut self) -> Result<&Frame, Broken> {
         self.unit.acknowledge();
         let missing = self.unit.missing();
-        // A byte more than was waited for is one too many.
+        // A surplus byte makes the transfer invalid.
         let overran = self.unit.overran() || missing == 0 && self.unit.has_byte();
         self.unit.stop();
         match (overran, missing) {

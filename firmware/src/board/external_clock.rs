@@ -1,5 +1,5 @@
-//! Whether what drives the clock from outside can be trusted: it is measured in terms of the internal oscillator before the core
-//! runs from it. A board with another crystal than its file says would run too fast, or have no line.
+//! Check of the external clock: its frequency is measured with the internal oscillator before the core runs from it.
+//! With another crystal than in the board file the board would run too fast, or have no serial line.
 
 use link::messages::{Clock, ClockSource};
 
@@ -13,28 +13,28 @@ pub type CaptureTimer = pac::TIM11;
 #[cfg(not(family = "stm32f4"))]
 pub type CaptureTimer = pac::TIM17;
 
-/// The chip's own oscillator.
+/// Internal oscillator of the chip.
 pub struct Internal {
-    /// What it runs at [Hz].
+    /// Frequency [Hz].
     pub rate: u32,
-    /// What it is exact to [ppm].
+    /// Tolerance [ppm].
     pub tolerance: u32,
 }
 
-/// What the board's file says of it, and what was found.
+/// External clock by the board file and by measurement.
 pub struct External {
-    /// As the file says [Hz].
+    /// Frequency by the board file [Hz].
     pub frequency: u32,
-    /// It comes from elsewhere, and is no crystal.
+    /// The clock is an external signal, not a crystal.
     pub is_signal: bool,
-    /// As measured [Hz]; nothing if it did not start.
+    /// Measured frequency [Hz]; `None` if the clock did not start.
     pub measured: Option<u32>,
 }
 
-/// What a crystal is exact to, or a clock from elsewhere, which is one of somebody's [ppm].
+/// Tolerance of a crystal or of an external signal [ppm].
 const EXTERNAL_TOLERANCE: u32 = 100;
 
-/// What the core clock is made of, before the PLL has been tried.
+/// Source of the core clock by the measurement, before the PLL starts.
 pub fn judged(external: Option<External>, internal: &Internal) -> Clock {
     let source = match external {
         None => ClockSource::Internal,
@@ -49,22 +49,22 @@ pub fn judged(external: Option<External>, internal: &Internal) -> Clock {
     Clock { source, tolerance }
 }
 
-/// Part of a frequency that what is measured may differ by [ppm]: crystals in use (24, 25 and 26 MHz) lie four percent apart, and at
-/// room temperature the internal oscillator is exact to one.
+/// Largest relative difference between measured and stated frequency [ppm]: crystals in use (24, 25 and 26 MHz) differ
+/// by four percent, and at room temperature the internal oscillator is exact to one percent.
 const NEAR: u64 = 30_000;
 
 fn is_near(frequency: u32, measured: u32) -> bool {
     u64::from(frequency.abs_diff(measured)) * 1_000_000 <= u64::from(frequency) * NEAR
 }
 
-/// What the timer catches: every eighth rising edge (3) of its input (1).
+/// Capture setting of the timer: every eighth rising edge (3) of its input (1).
 const CATCH: u32 = 1 | 3 << 2;
 const PERIODS: u32 = 8;
-/// So many times.
+/// Number of captures.
 const TIMES: u32 = 16;
 
-/// The external clock [Hz], by a timer that runs at the internal oscillator's rate and whose input is that clock, divided.
-/// 0 if nothing comes.
+/// Measures the external clock [Hz] with a timer that runs from the internal oscillator and captures the divided
+/// external clock. Returns 0 without edges.
 pub fn measure(timer: &CaptureTimer, divider: u32, internal: &Internal) -> u32 {
     // SAFETY: any count may be the last before 0, and the timer may catch what it likes.
     unsafe {
@@ -76,10 +76,10 @@ pub fn measure(timer: &CaptureTimer, divider: u32, internal: &Internal) -> u32 {
     timer.cr1().write(|w| w.cen().set_bit());
     let catch = || {
         let caught = wait_until(|| timer.sr().read().cc1if().bit_is_set());
-        // Reading the count takes the flag back.
+        // Reading the count clears the flag.
         caught.then(|| timer.ccr1().read().bits() as u16)
     };
-    // The first begins anywhere.
+    // The first interval is incomplete.
     let mut last = catch().and_then(|_| catch());
     let mut counts = 0;
     for _ in 0..TIMES {

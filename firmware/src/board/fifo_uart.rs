@@ -1,20 +1,20 @@
-//! The newer USART of the STM32 families, with FIFOs (G4: 8 bytes, H7: 16) that outlast the tick at full speed. Pins
-//! and clock are set up by the board.
+//! Newer USART of the STM32 families, with FIFOs (G4: 8 bytes, H7: 16) that hold the bytes received during a tick at
+//! full speed. The board sets up pins and clock.
 
 use super::serial_unit::{Registers, wake};
 use crate::serial::Uart;
 
-/// Nothing to look for: what is received raises its interrupt.
+/// Does nothing: received bytes raise their interrupt.
 pub fn look() {}
 
-/// A USART with its FIFOs on.
+/// USART with FIFOs enabled.
 pub struct FifoUart {
     registers: Registers,
     overran: bool,
 }
 
 impl FifoUart {
-    /// Opens it: 8 data bits, no parity, one stop bit.
+    /// Opens the USART: 8 data bits, no parity, one stop bit.
     pub fn open(registers: Registers, clock: u32, baud_rate: u32) -> Self {
         // SAFETY: the quotient is a valid divider for 16-fold oversampling.
         registers.brr().write(|w| unsafe { w.bits((clock + baud_rate / 2) / baud_rate) });

@@ -1,10 +1,10 @@
-//! Two slots of a board's flash: unlocked, erased, written word by word and locked again, every wait bounded. Where they are,
-//! and the controller's registers, each board's file says. The result is verified by reading back, which also detects a
-//! board without flash, such as the emulated one.
+//! Two slots of a board's flash: unlocked, erased, written word by word and locked again, with bounded waits. Each
+//! board's file defines their location and the controller's registers. Reading back verifies the result and detects a
+//! board without flash, such as the emulated board.
 //!
-//! A slot that power was cut in may hold words that cannot be read: the core is told of them by a fault. Each board's file
-//! says how it reads nevertheless. Should a fault end the program all the same, a mark in memory that a reset does not clear
-//! names the slot, and the next start leaves that slot alone: a board always starts.
+//! After a power cut during a write, a slot may hold unreadable words, which the core reports by a fault. Each board's
+//! file defines a safe way to read. If a fault ends the program nevertheless, a mark in memory that a reset does not
+//! clear names the slot, and the next start skips this slot: a board always starts.
 
 use core::ptr::{read_volatile, write_volatile};
 
@@ -20,39 +20,39 @@ const WORD: usize = 4;
 
 /// The flash controller of a board.
 pub trait Flash {
-    /// First bytes of the slots, outside of what an image may take.
+    /// Addresses of the slots, outside the image's memory.
     const SLOTS: [usize; 2];
-    /// Words that are written at a time.
+    /// Number of words written at a time.
     const TOGETHER: usize;
-    /// Its registers cannot be changed.
+    /// Returns `true` if the registers are locked.
     fn is_locked(&self) -> bool;
-    /// Takes one of the keys that let its registers be changed.
+    /// Writes one of the keys that unlock the registers.
     fn take_key(&mut self, key: u32);
-    /// Forgets errors, and makes ready for what is erased and written next.
+    /// Clears errors and prepares for the next erase or write.
     fn prepare(&mut self);
-    /// Begins to erase a slot.
+    /// Starts to erase a slot.
     fn erase(&mut self, slot: Slot);
-    /// Takes writes from now on, or no more.
+    /// Enables or disables writes.
     fn take_writes(&mut self, on: bool);
-    /// Still at it.
+    /// Returns `true` while an operation is in progress.
     fn is_busy(&self) -> bool;
-    /// No more changes, and no cache with what was there before.
+    /// Locks the registers and invalidates caches.
     fn lock(&mut self);
-    /// Reads words that may be damaged; returns whether all could be read.
+    /// Reads words that may be damaged; returns `true` if all were readable.
     fn read(&mut self, words: &mut dyn FnMut()) -> bool;
-    /// The supply is high enough to write.
+    /// Returns `true` if the supply voltage suffices for writing.
     fn has_supply(&mut self) -> bool;
 }
 
-/// The slots.
+/// Slots of a flash controller.
 pub struct FlashSlots<F> {
     flash: F,
-    /// Ended the program before this start.
+    /// Slot whose read ended the program before this start.
     left_alone: Option<Slot>,
 }
 
 impl<F: Flash> FlashSlots<F> {
-    /// Of a controller.
+    /// Slots of a controller.
     pub fn new(flash: F) -> Self {
         Self { flash, left_alone: mark::take() }
     }
@@ -61,9 +61,9 @@ impl<F: Flash> FlashSlots<F> {
         wait_longer(|| !self.flash.is_busy())
     }
 
-    /// Does something with the registers open.
+    /// Runs a change with unlocked registers.
     fn open(&mut self, change: impl FnOnce(&mut Self)) {
-        // Keys that come while it is open would close it until the next reset.
+        // Writing keys to unlocked registers would lock them until the next reset.
         if self.flash.is_locked() {
             KEYS.into_iter().for_each(|key| self.flash.take_key(key));
         }
@@ -98,7 +98,7 @@ impl<F: Flash> Slots for FlashSlots<F> {
     fn erase(&mut self, slot: Slot) {
         self.open(|slots| {
             slots.flash.erase(slot);
-            // What has no end is found when it is read back.
+            // A timeout is found by reading back.
             let _ = slots.is_done();
         });
         if self.left_alone == Some(slot) {
@@ -109,7 +109,7 @@ impl<F: Flash> Slots for FlashSlots<F> {
     fn write(&mut self, slot: Slot, record: &Record) {
         self.open(|slots| {
             slots.flash.take_writes(true);
-            // It takes them before the first one comes.
+            // Writes must be enabled before the first word.
             dsb();
             isb();
             let first = F::SLOTS[slot.index()] as *mut u32;
@@ -118,7 +118,7 @@ impl<F: Flash> Slots for FlashSlots<F> {
                 // SAFETY: within the slot, which nothing else uses; the controller has been told to take it.
                 unsafe { write_volatile(first.add(index), word) };
                 if (index + 1).is_multiple_of(F::TOGETHER) {
-                    // A store that is still on its way has not made it busy yet.
+                    // A pending store has not set the busy flag yet.
                     dsb();
                     if !slots.is_done() {
                         break;
@@ -134,10 +134,10 @@ impl<F: Flash> Slots for FlashSlots<F> {
     }
 }
 
-// A record is whole writes of every board's flash, of up to eight words.
+// A record is a multiple of every board's write unit, up to eight words.
 const _: () = assert!(RECORD_BYTES.is_multiple_of(8 * WORD));
 
-/// Which slot is being read, in memory that a reset does not clear.
+/// Mark of the slot being read, in memory that a reset does not clear.
 pub mod mark {
     use core::cell::UnsafeCell;
     use core::mem::MaybeUninit;
@@ -159,23 +159,23 @@ pub mod mark {
         MAGIC ^ slot.index() as u32
     }
 
-    /// The slot that is being read, or was when the program ended.
+    /// Returns the slot being read, now or when the program ended.
     pub fn slot() -> Option<Slot> {
         // SAFETY: every bit pattern is words; volatile, since they are what the memory held at reset.
         let [mark, complement] = unsafe { MARK.0.get().cast::<[u32; 2]>().read_volatile() };
         [Slot::A, Slot::B].into_iter().find(|slot| mark == word(*slot) && complement == !mark)
     }
 
-    /// This slot is being read from now on.
+    /// Marks a slot as being read.
     pub(super) fn set(slot: Slot) {
-        // SAFETY: nobody else has it in hand.
+        // SAFETY: there is no other user.
         unsafe { MARK.0.get().cast::<[u32; 2]>().write_volatile([word(slot), !word(slot)]) };
     }
 
-    /// The same as [`slot`], and none from now on.
+    /// Returns the marked slot and clears the mark.
     pub(super) fn take() -> Option<Slot> {
         let slot = slot();
-        // SAFETY: nobody else has it in hand.
+        // SAFETY: there is no other user.
         unsafe { MARK.0.get().cast::<[u32; 2]>().write_volatile([0; 2]) };
         slot
     }

@@ -1,49 +1,49 @@
-//! The flash controller that STM32F4 and STM32G4 share but for numbers: one control and one status register, caches in front.
-//! Where the slots are, how they are erased, and how much is written at a time, each board says.
+//! Flash controller common to STM32F4 and STM32G4: one control register, one status register, caches. Each chip defines
+//! the slots, their erase and the write unit.
 
 use super::flash_slots::Flash;
 use super::pac::FLASH;
 use crate::kept_memory::Slot;
 
-/// What differs between chips.
+/// Differences between chips.
 pub trait Kind {
-    /// First bytes of the slots.
+    /// Addresses of the slots.
     const SLOTS: [usize; 2];
-    /// Words that are written at a time.
+    /// Number of words written at a time.
     const TOGETHER: usize;
-    /// Flags of errors, cleared by ones.
+    /// Error flags, cleared by ones.
     const ERRORS: u32;
-    /// How much is written at a time, beside the bit that takes writes.
+    /// Size bits of a write in the control register.
     const SIZE: u32;
-    /// What erases a slot, beside the bit that begins.
+    /// Control bits that erase a slot, without the start bit.
     fn erase(&self, slot: Slot) -> u32;
-    /// Reads words that may be damaged; returns whether all could be read.
+    /// Reads words that may be damaged; returns `true` if all were readable.
     fn read(&self, words: &mut dyn FnMut()) -> bool;
-    /// The supply is high enough to write.
+    /// Returns `true` if the supply voltage suffices for writing.
     fn has_supply(&self) -> bool;
 }
 
-/// Begins to erase, in the control register; still at it, in the status register.
+/// Start of an erase in the control register; busy flag in the status register.
 const AT_IT: u32 = 1 << 16;
-/// Takes writes.
+/// Write enable.
 const PROGRAM: u32 = 1;
-/// No more changes.
+/// Lock.
 const LOCK: u32 = 1 << 31;
 
-/// The controller of a kind of chip.
+/// Flash controller of a type of chip.
 pub struct FlashUnit<K> {
     registers: FLASH,
     kind: K,
 }
 
 impl<K: Kind> FlashUnit<K> {
-    /// Of a board.
+    /// Controller of a board.
     pub fn new(registers: FLASH, kind: K) -> Self {
         Self { registers, kind }
     }
 
     fn control(&mut self, bits: u32) {
-        // SAFETY: what it erases are the slots, which are nobody else's; all other bits do nothing without it.
+        // SAFETY: erases slots only, which have no other user; all other bits do nothing without an erase.
         self.registers.cr().write(|w| unsafe { w.bits(bits) });
     }
 }
@@ -62,7 +62,8 @@ impl<K: Kind> Flash for FlashUnit<K> {
     }
 
     fn prepare(&mut self) {
-        // What is read beside a bank at work would spoil the data cache of STM32G4 (errata sheet ES0430, 2.2.2).
+        // Reads during an operation of the other bank would corrupt the data cache of STM32G4 (errata sheet ES0430,
+        // 2.2.2).
         self.registers.acr().modify(|_, w| w.dcen().clear_bit());
         // SAFETY: ones clear the flags of errors.
         self.registers.sr().write(|w| unsafe { w.bits(K::ERRORS) });

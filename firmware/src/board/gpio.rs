@@ -1,5 +1,5 @@
-//! Pins by port and number, the same registers on all chips. Which pin is for what the board's file says; the build has held
-//! them against the chip.
+//! Pins by port and number, with equal registers on all chips. The board file defines the use of each pin; the build
+//! has checked it against the chip.
 
 use core::convert::Infallible;
 
@@ -7,37 +7,37 @@ use embedded_hal::digital::{ErrorType, OutputPin};
 
 use super::pac;
 
-/// Bytes from the registers of one port to those of the next.
+/// Address distance between the registers of two ports [byte].
 const PORT: usize = 0x400;
 
 /// A pin.
 #[derive(Debug, Clone, Copy)]
 pub struct Pin {
-    /// Its port, counted from A.
+    /// Port, counted from A.
     pub port: u8,
-    /// Its number there.
+    /// Number within the port.
     pub number: u8,
 }
 
 impl Pin {
-    /// Of a port, counted from A, whose clock is on before anything is asked of the pin.
+    /// Pin of a port, counted from A; the port's clock must be enabled before the pin is used.
     pub const fn new(port: u8, number: u8) -> Self {
         Self { port, number }
     }
 
     fn registers(self) -> &'static pac::gpioa::RegisterBlock {
-        // SAFETY: ports follow one another at this distance with the same registers; the chip has this one.
+        // SAFETY: ports have equal registers at this distance; the chip has this port.
         unsafe { &*pac::GPIOA::ptr().byte_add(PORT * usize::from(self.port)) }
     }
 
-    /// A field of so many bits a pin, in a register that has one for each pin.
+    /// Writes a pin's field in a register with one field per pin.
     fn field(self, bits: u32, width: u8, value: u32) -> u32 {
         let shift = u32::from(width) * u32::from(self.number) % 32;
         let mask = (1 << width) - 1;
         bits & !(mask << shift) | (value & mask) << shift
     }
 
-    /// Gives it to a peripheral.
+    /// Assigns the pin to a peripheral function.
     pub fn give_to(self, function: u8) {
         let registers = self.registers();
         // SAFETY: of the register only this pin's field changes, and every value of that is allowed.
@@ -51,13 +51,13 @@ impl Pin {
         self.set_mode(2);
     }
 
-    /// Edges as steep as the chip makes them: at the speed after a reset a fast line's take longer than a bit.
+    /// Sets the highest pin speed: at the speed after reset, edges of a fast line take longer than a bit.
     pub fn make_fast(self) {
         // SAFETY: of the register only this pin's field changes.
         self.registers().ospeedr().modify(|r, w| unsafe { w.bits(self.field(r.bits(), 2, 3)) });
     }
 
-    /// High where nothing drives it.
+    /// Enables the pull-up.
     pub fn pull_up(self) {
         // SAFETY: of the register only this pin's field changes.
         self.registers().pupdr().modify(|r, w| unsafe { w.bits(self.field(r.bits(), 2, 1)) });
@@ -68,7 +68,7 @@ impl Pin {
         self.registers().moder().modify(|r, w| unsafe { w.bits(self.field(r.bits(), 2, mode)) });
     }
 
-    /// Sets its level, if it is an output: one write, which leaves the port's other pins alone.
+    /// Sets the level of an output by a single write, which leaves the port's other pins unchanged.
     fn set_level(self, high: bool) {
         let bits = 1 << (u32::from(self.number) + if high { 0 } else { 16 });
         // SAFETY: every word is allowed; pins that are no outputs do not care.
@@ -76,7 +76,7 @@ impl Pin {
     }
 }
 
-/// A pin that switches something, on when set high for embedded-hal, whatever its level then is; or none at all.
+/// Output of the board, or none. `set_high` of embedded-hal switches it on, whatever the active level of the pin.
 #[derive(Debug)]
 pub struct Output {
     pin: Option<Pin>,
@@ -84,7 +84,7 @@ pub struct Output {
 }
 
 impl Output {
-    /// Makes the pin an output that is on, or off, from the first moment on.
+    /// Makes the pin an output that is on or off from the start.
     pub fn open(pin: Option<(Pin, bool)>, on: bool) -> Self {
         let output = Self { pin: pin.map(|(pin, _)| pin), on_is_high: pin.is_some_and(|(_, high)| high) };
         output.switch(on);

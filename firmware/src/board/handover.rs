@@ -1,17 +1,16 @@
-//! What a bootloader may leave behind that jumped to the image, where a reset would leave nothing: interrupts that are on or
-//! pending, SysTick, and DMA that is under way. All of it goes before anything else runs: some interrupts would lead to a vector that the
-//! image does not serve, a role without a tick has none for SysTick, and a transfer writes where the image is about to have its
-//! statics. Vectors and clock are set right by the start of the board and of its chip.
+//! Cleanup after a bootloader that jumped to the image without a reset: enabled or pending interrupts, SysTick, running
+//! DMA. It runs first: an interrupt could reach a vector that the image does not serve, a role without tick has no
+//! SysTick handler, and a transfer could overwrite statics. The start of board and chip sets vectors and clock.
 
-/// Registers by which the clock controller resets those that write to memory by themselves, and their bits in them: a one holds it
-/// in reset.
+/// Reset registers of the bus masters (peripherals that write to memory), and their bits; a one holds a master in
+/// reset.
 type Master = [u32; 2];
 
 /// DMA1, DMA2, USB OTG HS: RM0090 7.3, RCC_AHB1RSTR.
 #[cfg(family = "stm32f4")]
 static MASTERS: [Master; 1] = [[0x4002_3810, 1 << 21 | 1 << 22 | 1 << 29]];
 
-/// DMA1, DMA2, and what routes requests to them: RM0440 7.4, RCC_AHB1RSTR.
+/// DMA1, DMA2, and the DMA request multiplexer: RM0440 7.4, RCC_AHB1RSTR.
 #[cfg(family = "stm32g4")]
 static MASTERS: [Master; 1] = [[0x4002_1028, 1 | 1 << 1 | 1 << 2]];
 
@@ -47,12 +46,12 @@ core::arch::global_asm!(
     "str r1, [r0], #4",
     "subs r2, #1",
     "bne 1b",
-    // Nor SysTick nor PendSV (ICSR).
+    // SysTick and PendSV not pending (ICSR).
     "movw r0, #0xed04",
     "movt r0, #0xe000",
     "mov r1, #0x0a000000",
     "str r1, [r0]",
-    // Masters of the bus: held in reset, then as after one.
+    // Bus masters: held in reset, then released.
     "movw r0, #:lower16:{masters}",
     "movt r0, #:upper16:{masters}",
     "movs r3, #{count}",

@@ -1,5 +1,5 @@
-//! The board: what its chip does, behind one trait, and the pins that its file gives to the firmware. Each chip's file has its clock,
-//! its flash and what it was checked on, for its `family`; the board's own facts are constants that the build makes of its board file
+//! Board support: the chip behind one trait, and the pins of the board file. Each chip's file contains its clock, its
+//! flash and the record of its tests, selected by `family`; constants of the board are generated from the board file
 //! (`description`).
 
 mod bounded_wait;

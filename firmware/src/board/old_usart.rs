@@ -1,7 +1,7 @@
-//! The USART of STM32F4, which has room for one byte, while a tick may keep its interrupt waiting for longer than a byte takes. A
-//! DMA stream moves what it receives into a ring, and the interrupt, which each tick asks for, takes it from there. Where that
-//! stream is not there, as on the emulated board, its registers do not read back what is written to them: each byte
-//! raises the interrupt then, and an emulated line waits for it.
+//! USART of STM32F4, which buffers one byte, while a tick may delay its interrupt for longer than a byte takes. A DMA
+//! stream moves received bytes into a ring; each tick requests the interrupt, which reads the ring. Without this stream
+//! (emulated board, detected by registers that do not read back) each byte raises the interrupt, and the emulated line
+//! waits for it.
 
 use core::cell::UnsafeCell;
 use core::sync::atomic::AtomicBool;
@@ -11,12 +11,12 @@ use super::pac;
 use super::serial_unit::{Registers, wake};
 use crate::serial::Uart;
 
-/// Bytes of the ring: those of nearly three milliseconds at 921,600 baud.
+/// Bytes of the ring: nearly three milliseconds at 921,600 baud.
 const RING: usize = 256;
-/// The stream's settings: circular, rising addresses in memory, high priority.
+/// Settings of the stream: circular, incrementing memory addresses, high priority.
 const SETTINGS: u32 = 1 << 8 | 1 << 10 | 2 << 16;
 const ENABLE: u32 = 1;
-/// Flags of a stream, from its first bit on: the ring's end was passed, and its middle.
+/// Flags of a stream, shifted to bit 0: end of the ring passed, middle passed.
 const END: u32 = 1 << 5;
 const MIDDLE: u32 = 1 << 4;
 const FLAGS: u32 = 0x3d;
@@ -35,7 +35,7 @@ const STREAM: (u8, usize, u32) = (1, 0, 4);
 #[cfg(serial = "usart6")]
 const STREAM: (u8, usize, u32) = (2, 1, 5);
 
-/// What the stream writes. The core only reads it.
+/// Buffer written by the stream; the core only reads it.
 struct Ring(UnsafeCell<[u8; RING]>);
 
 // SAFETY: one interrupt reads it, by volatile reads.
@@ -43,10 +43,10 @@ unsafe impl Sync for Ring {}
 
 static RECEIVED: Ring = Ring(UnsafeCell::new([0; RING]));
 
-/// The stream receives: each tick asks for the interrupt.
+/// The stream receives; each tick requests the interrupt.
 static BY_STREAM: AtomicBool = AtomicBool::new(false);
 
-/// Has the interrupt look for what the stream has received.
+/// Requests the interrupt if the stream receives.
 pub fn look() {
     if BY_STREAM.load(Relaxed) {
         wake();
@@ -56,13 +56,13 @@ pub fn look() {
 /// The USART.
 pub struct OldUsart {
     registers: Registers,
-    /// Place in the ring of the byte to be read next; nothing where each byte raises the interrupt.
+    /// Index of the next byte to read in the ring; `None` if each byte raises the interrupt.
     place: Option<usize>,
     overran: bool,
 }
 
 impl OldUsart {
-    /// Opens it: 8 data bits, no parity, one stop bit.
+    /// Opens the USART: 8 data bits, no parity, one stop bit.
     pub fn open(registers: Registers, clocks: &pac::RCC, clock: u32, baud_rate: u32) -> Self {
         // SAFETY: the quotient is a valid divider for 16-fold oversampling.
         registers.brr().write(|w| unsafe { w.bits(((clock + baud_rate / 2) / baud_rate) as u16) });
@@ -73,7 +73,7 @@ impl OldUsart {
         Self { registers, place: by_stream.then_some(0), overran: false }
     }
 
-    /// Takes a byte out of the ring.
+    /// Takes a byte from the ring.
     fn take(&mut self, place: usize) -> Option<u8> {
         let end = RING - (stream().ndtr().read().bits() as usize).min(RING);
         if place == end % RING {
@@ -135,8 +135,8 @@ fn stream() -> &'static pac::dma1::ST {
     controller().st(STREAM.1)
 }
 
-/// The stream has passed both the middle and the end of the ring since the last look: a whole ring may have come, while flash was
-/// written. A look each tick never sees both.
+/// Returns `true` if the stream has passed both middle and end of the ring since the last call: a whole ring may have
+/// arrived while flash was written. One call per tick never sees both.
 fn has_passed_both() -> bool {
     let (controller, shift) = (controller(), [0, 6, 16, 22][STREAM.1 % 4]);
     let (flags, both) = (FLAGS << shift, (END | MIDDLE) << shift);
@@ -155,7 +155,7 @@ fn has_passed_both() -> bool {
     passed & both == both
 }
 
-/// Lets the stream fill the ring from a data register; whether it is there at all.
+/// Starts the stream from a data register to the ring; returns `false` if there is no stream.
 fn start_stream(clocks: &pac::RCC, data: u32) -> bool {
     clocks.ahb1enr().modify(|_, w| if STREAM.0 == 1 { w.dma1en().set_bit() } else { w.dma2en().set_bit() });
     let _ = clocks.ahb1enr().read();

@@ -1,4 +1,4 @@
-//! The USART that the serial line is on, as the board's file says: its registers, its interrupt, the switch of its clock.
+//! USART of the serial line, by the board file: registers, interrupt, clock enable.
 
 use cortex_m::peripheral::NVIC;
 
@@ -7,22 +7,22 @@ use super::pac;
 /// Registers, interrupt and clock of each unit of a chip.
 macro_rules! units {
     ($($name:literal => $unit:ident, $gates:ident, $gate:ident, $resets:ident, $reset:ident;)+) => {$(
-        /// The unit's registers.
+        /// Registers of the unit.
         #[cfg(serial = $name)]
         pub type Registers = pac::$unit;
 
-        /// Its interrupt.
+        /// Interrupt of the unit.
         #[cfg(serial = $name)]
         const INTERRUPT: pac::Interrupt = pac::Interrupt::$unit;
 
-        /// The unit with its clock on, as after a reset: a bootloader may have used it.
+        /// Returns the unit with its clock enabled, after a reset, since a bootloader may have used it.
         #[cfg(serial = $name)]
         pub fn take(clocks: &pac::RCC) -> Registers {
             clocks.$gates().modify(|_, w| w.$gate().set_bit());
             let _ = clocks.$gates().read();
             clocks.$resets().modify(|_, w| w.$reset().set_bit());
             clocks.$resets().modify(|_, w| w.$reset().clear_bit());
-            // SAFETY: asked for once, at the start; nobody else has the unit in hand.
+            // SAFETY: called once, at the start; there is no other user of the unit.
             unsafe { Registers::steal() }
         }
     )+};
@@ -59,7 +59,7 @@ units! {
     "uart8" => UART8, apb1lenr, uart8en, apb1lrstr, uart8rst;
 }
 
-/// Makes the interrupt run.
+/// Requests the interrupt.
 pub fn wake() {
     NVIC::pend(INTERRUPT);
 }

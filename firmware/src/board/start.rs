@@ -1,4 +1,4 @@
-//! The start of a board: its chip first, then the pins that its file names.
+//! Start of a board: chip first, then the pins of the board file.
 
 use link::messages::{Clock, ClockSource};
 
@@ -7,34 +7,33 @@ use super::gpio::{Output, Pin};
 use super::watchdog::Watchdog;
 use super::{ThisChip, description, pac};
 
-/// A board that is up.
+/// Board after its start.
 pub struct Started {
-    /// What the core clock is made of.
+    /// Source and tolerance of the core clock.
     pub clock: Clock,
-    /// The motor-enable output, off.
+    /// Motor-enable output, off.
     pub enable: Output,
-    /// The status light.
+    /// Status light.
     pub light: Output,
-    /// Where what was learnt is kept.
+    /// Flash slots for the estimated parameters.
     pub slots: <ThisChip as Chip>::Slots,
-    /// Running.
+    /// Running watchdog.
     pub watchdog: Watchdog,
     /// The last reset came from the watchdog.
     pub watchdog_reset: bool,
-    /// Switches of the clocks of everything else.
+    /// Clock enables of all other peripherals.
     clocks: pac::RCC,
 }
 
-/// Where the linker puts the vectors: at the start of flash.
+/// Address of the vectors: start of flash.
 const VECTORS: u32 = 0x0800_0000;
 
 /// Sets up clock, outputs and watchdog. Every wait is bounded.
 pub fn start(device: pac::Peripherals, core: &mut cortex_m::Peripherals) -> Started {
-    // Whoever jumped here, such as a bootloader, may have had vectors of its own; what else it leaves is `handover`'s.
-    // SAFETY: vectors are there, and no interrupt is on yet.
+    // A bootloader may have set other vectors; `handover` handles its other leftovers.
     unsafe { core.SCB.vtor.write(VECTORS) };
     ThisChip::reset_ports(&device.RCC);
-    // What holds the supply comes first: until then it is there by courtesy of a finger on a button.
+    // Outputs that hold the supply come first: until then a finger on a button holds it.
     let _supply = output(&device.RCC, description::SUPPLY, true);
     let Parts { clock, slots, watchdog, watchdog_reset, clocks } = ThisChip::start(device, core);
     Started {
@@ -54,7 +53,7 @@ impl Started {
         let [send, receive] =
             [description::SERIAL_SEND, description::SERIAL_RECEIVE].map(|pin| given(&self.clocks, pin));
         send.0.give_to(send.1);
-        // Nothing drives it before a host is there.
+        // No host drives the line yet.
         receive.0.pull_up();
         receive.0.give_to(receive.1);
         let has_pll = self.clock.source != ClockSource::Failed;
@@ -63,7 +62,7 @@ impl Started {
     }
 }
 
-/// An output of the board's file, the clock of its port on.
+/// Opens an output of the board file and enables the clock of its port.
 fn output(clocks: &pac::RCC, output: Option<(u8, u8, bool)>, on: bool) -> Output {
     let pin = output.map(|(port, number, high)| {
         ThisChip::power_port(clocks, port);
@@ -72,7 +71,7 @@ fn output(clocks: &pac::RCC, output: Option<(u8, u8, bool)>, on: bool) -> Output
     Output::open(pin, on)
 }
 
-/// A pin with the function that it is given to, the clock of its port on.
+/// Returns a pin and its function and enables the clock of its port.
 pub(super) fn given(clocks: &pac::RCC, (port, number, function): (u8, u8, u8)) -> (Pin, u8) {
     ThisChip::power_port(clocks, port);
     (Pin::new(port, number), function)

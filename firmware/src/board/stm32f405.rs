@@ -1,8 +1,7 @@
 //! STM32F405 at 168 MHz, and the board `netduinoplus2` of QEMU, which runs the same image.
 //!
-//! What the observer has learnt is kept in the last two sectors; while one is erased the core stands still for a second or two.
-//! The images run on the emulated board and on a model of the chip's registers (`board-model`); nothing here has been run on
-//! silicon yet.
+//! The estimated parameters are stored in the last two sectors; erasing one blocks the core for one or two seconds. The
+//! images run on the emulated board and on a model of the chip's registers (`board-model`); not run on silicon yet.
 
 pub use stm32f4::stm32f405 as pac;
 
@@ -23,7 +22,7 @@ use crate::kept_memory::Slot;
 pub struct Stm32F405;
 
 impl Chip for Stm32F405 {
-    /// Exact to that from -10 to 85 degrees; from -40 it may be 8 % low.
+    /// Tolerance from -10 to 85 degrees; from -40 degrees the frequency may be 8 % low.
     const INTERNAL: Internal = Internal { rate: 16_000_000, tolerance: 40_000 };
     type Port = OldUsart;
     type Slots = FlashSlots<FlashUnit<Sectors>>;
@@ -59,10 +58,10 @@ impl Chip for Stm32F405 {
     }
 }
 
-/// 168 MHz by the PLL: from what drives the clock from outside, if that is what the board's file says, else from the internal
-/// oscillator. Where nothing of that reads as it must there is no clock controller.
+/// Starts the PLL at 168 MHz: from the external clock if its frequency agrees with the board file, else from the
+/// internal oscillator. Registers that do not read back indicate a missing clock controller.
 fn start_clock(clocks: &pac::RCC, flash: &pac::FLASH, timer: &CaptureTimer) -> Clock {
-    // The first source that can be selected, while the internal oscillator is off: no chip is ever so.
+    // Clock source 0 selected while the internal oscillator is off: impossible on a real chip.
     if clocks.cr().read().hsirdy().bit_is_clear() && clocks.cfgr().read().bits() >> 2 & 3 == 0 {
         return Clock::of(ClockSource::NotModelled);
     }
@@ -105,7 +104,7 @@ back_to_internal!(pllon, pllrdy, csson, |clocks| {
     clocks.cfgr().modify(|_, w| w.hpre().div1().ppre1().div1().ppre2().div1());
 });
 
-/// The external clock [Hz]: timer 11 sees a 25th of it.
+/// Measures the external clock [Hz]; timer 11 sees a 25th of it.
 fn measured(clocks: &pac::RCC, timer: &CaptureTimer) -> u32 {
     const DIVIDER: u8 = 25;
     // SAFETY: the division for the clock of the time of day, which nothing else uses.
@@ -119,11 +118,11 @@ fn measured(clocks: &pac::RCC, timer: &CaptureTimer) -> u32 {
     measured
 }
 
-/// The last two sectors, written by words: that takes 2.7 V.
+/// Last two sectors, written by words, which requires 2.7 V.
 pub struct Sectors(pac::PWR);
 
 impl Sectors {
-    /// Has the supply watched at the highest level, 2.9 V.
+    /// Enables supply monitoring at the highest level, 2.9 V.
     fn watch_supply(power: pac::PWR) -> Self {
         // SAFETY: every level is allowed.
         power.cr().modify(|_, w| unsafe { w.pls().bits(7) }.pvde().set_bit());
@@ -131,7 +130,7 @@ impl Sectors {
     }
 }
 
-/// Bytes of a sector, but for the first five of all.
+/// Bytes of a sector, except the first five.
 const SECTOR: u32 = 128 << 10;
 
 impl Kind for Sectors {
@@ -147,7 +146,7 @@ impl Kind for Sectors {
         1 << 1 | sector << 3
     }
 
-    /// This flash has no check bits: what was half written reads as something.
+    /// Always `true`: this flash has no check bits, and incomplete words are readable.
     fn read(&self, words: &mut dyn FnMut()) -> bool {
         words();
         true

@@ -1,9 +1,9 @@
-//! STM32G474, and STM32G431, the same with less memory, at 170 MHz.
+//! STM32G474, and STM32G431 with less memory, at 170 MHz.
 //!
-//! What the observer has learnt is kept at the end of flash, in two slots. On STM32G474 they are 4 KiB apart: one page, or two, as
-//! the option DBANK says.
+//! The estimated parameters are stored at the end of flash, in two slots. On STM32G474 the slots are 4 KiB apart: one
+//! page or two, depending on the option DBANK.
 //!
-//! The images run on a model of the chip's registers (`board-model`); they have not been run on silicon.
+//! Tested on a model of the chip's registers (`board-model`); not run on silicon.
 
 #[cfg(chip = "stm32g431")]
 pub use stm32g4::stm32g431 as pac;
@@ -32,7 +32,7 @@ use crate::kept_memory::Slot;
 pub struct Stm32G4;
 
 impl Chip for Stm32G4 {
-    /// Exact to that from -40 to 105 degrees.
+    /// Tolerance from -40 to 105 degrees.
     const INTERNAL: Internal = Internal { rate: 16_000_000, tolerance: 20_000 };
     type Port = FifoUart;
     type Slots = FlashSlots<FlashUnit<LastPages>>;
@@ -69,17 +69,17 @@ impl Chip for Stm32G4 {
     }
 }
 
-/// The last pages, written by double words.
+/// Last pages, written by double words.
 pub struct LastPages {
     power: pac::PWR,
     pages: Pages,
 }
 
-/// How flash is divided.
+/// Division of flash.
 #[derive(Clone, Copy)]
 struct Pages {
     bytes: u32,
-    /// Pages of the first of two banks; none where there is one.
+    /// Pages of the first of two banks; `None` with one bank.
     of_first_bank: Option<u32>,
 }
 
@@ -94,7 +94,7 @@ impl Pages {
 }
 
 impl LastPages {
-    /// Has the supply watched at 2.9 V, and looks how flash is divided.
+    /// Enables supply monitoring at 2.9 V and reads the division of flash.
     fn watch_supply(power: pac::PWR, flash: &pac::FLASH) -> Self {
         // Pull-downs for an empty battery on USB, at PB4 and PB6 (RM0440 6.4.3): to be switched off whoever uses the pins.
         power.cr3().modify(|r, w| {
@@ -129,7 +129,7 @@ impl Kind for LastPages {
         words();
         dsb();
         isb();
-        // The exception comes at once, if it comes.
+        // An exception, if any, occurs at once.
         !UNREADABLE.swap(false, Relaxed)
     }
 
@@ -138,14 +138,14 @@ impl Kind for LastPages {
     }
 }
 
-/// Words of a slot could not be read.
+/// A read of a slot has failed.
 static UNREADABLE: AtomicBool = AtomicBool::new(false);
-/// Two or more wrong bits in a word, and in the word beside it where flash is one bank: ones clear the flags.
+/// Flags of two or more wrong bits in a word, and in the neighbouring word if flash is one bank; cleared by ones.
 const DOUBLE_ERRORS: u32 = 1 << 31 | 1 << 29;
 
-/// Flash that cannot be read, which is told until the flags are cleared. In a slot, its record is no good; anywhere else
+/// Handles unreadable flash, which is reported until the flags are cleared. In a slot the record is invalid; elsewhere
 /// the program is.
-// SAFETY: the handler touches the flags and nothing that it may find half changed.
+// SAFETY: the handler accesses only the flags and no data that may be half changed.
 #[exception]
 unsafe fn NonMaskableInt() {
     // SAFETY: only this handler uses this register.
@@ -157,10 +157,11 @@ unsafe fn NonMaskableInt() {
     UNREADABLE.store(true, Relaxed);
 }
 
-/// 170 MHz by the PLL: from what drives the clock from outside, if that is what the board's file says, else from the internal
-/// oscillator. Above 150 MHz the regulator must be in its boost mode, and the bus clock is halved while that and the PLL come in.
+/// Starts the PLL at 170 MHz: from the external clock if its frequency agrees with the board file, else from the
+/// internal oscillator. Above 150 MHz the regulator must be in boost mode; the bus clock is halved while boost mode and
+/// PLL start.
 fn start_clock(clocks: &pac::RCC, power: &pac::PWR, flash: &pac::FLASH, timer: &CaptureTimer) -> Clock {
-    // The first source that can be selected, while the internal oscillator is off: no chip is ever so.
+    // Clock source 0 selected while the internal oscillator is off: impossible on a real chip.
     if clocks.cr().read().hsirdy().bit_is_clear() && clocks.cfgr().read().bits() >> 2 & 3 == 0 {
         return Clock::of(ClockSource::NotModelled);
     }
@@ -205,7 +206,7 @@ fn start_clock(clocks: &pac::RCC, power: &pac::PWR, flash: &pac::FLASH, timer: &
     if !wait_until(|| clocks.cfgr().read().sws().is_pll()) {
         return Clock::of(ClockSource::Failed);
     }
-    // A microsecond at half speed, as the reference manual asks.
+    // Waits a microsecond at half speed, as required by the reference manual.
     cortex_m::asm::delay(CORE_RATE / 1_000_000);
     clocks.cfgr().modify(|_, w| w.hpre().div1());
     clock
@@ -215,7 +216,7 @@ back_to_internal!(pllon, pllrdy, csson, |clocks| {
     clocks.cfgr().modify(|_, w| w.hpre().div1().ppre1().div1().ppre2().div1());
 });
 
-/// The external clock [Hz]: timer 17 sees a 32nd of it.
+/// Measures the external clock [Hz]; timer 17 sees a 32nd of it.
 fn measured(clocks: &pac::RCC, timer: &CaptureTimer) -> u32 {
     const DIVIDER: u32 = 32;
     clocks.apb2enr().modify(|_, w| w.tim17en().set_bit());

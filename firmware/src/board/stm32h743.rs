@@ -1,8 +1,8 @@
 //! STM32H743 at 400 MHz.
 //!
-//! What the observer has learnt is kept in the first two sectors of the second bank.
+//! The estimated parameters are stored in the first two sectors of the second bank.
 //!
-//! The images run on a model of the chip's registers (`board-model`); they have not been run on silicon.
+//! Tested on a model of the chip's registers (`board-model`); not run on silicon.
 
 pub use stm32h7::stm32h743 as pac;
 
@@ -26,7 +26,7 @@ use crate::kept_memory::Slot;
 pub struct Stm32H743;
 
 impl Chip for Stm32H743 {
-    /// Exact to that from -40 to 105 degrees.
+    /// Tolerance from -40 to 105 degrees.
     const INTERNAL: Internal = Internal { rate: 64_000_000, tolerance: 20_000 };
     type Port = FifoUart;
     type Slots = FlashSlots<SecondBank>;
@@ -62,14 +62,14 @@ impl Chip for Stm32H743 {
     }
 }
 
-/// The second bank, of which nothing else is used.
+/// Second bank of flash, otherwise unused.
 pub struct SecondBank {
     flash: pac::FLASH,
     power: pac::PWR,
 }
 
 impl SecondBank {
-    /// Has the supply watched at 2.85 V.
+    /// Enables supply monitoring at 2.85 V.
     fn watch_supply(flash: pac::FLASH, power: pac::PWR) -> Self {
         // SAFETY: 6 is a level of the supply itself.
         power.cr1().modify(|_, w| unsafe { w.pls().bits(6) }.pvde().set_bit());
@@ -77,11 +77,11 @@ impl SecondBank {
     }
 }
 
-/// Faults of the data bus in the core's status: imprecise, precise, and with an address.
+/// Data bus faults in the core's status: imprecise, precise, and with an address.
 const BUS_FAULTS: u32 = 1 << 10 | 1 << 9 | 1 << 15;
-/// In the core's configuration: loads that fail while faults are masked go on with anything.
+/// Configuration bit of the core: failing loads continue with arbitrary data while faults are masked.
 const GO_ON: u32 = 1 << 8;
-/// Two or more wrong bits in a word, in the bank's status.
+/// Flag of two or more wrong bits in a word, in the bank's status.
 const DOUBLE_ERROR: u32 = 1 << 26;
 
 impl Flash for SecondBank {
@@ -105,13 +105,13 @@ impl Flash for SecondBank {
     fn erase(&mut self, slot: Slot) {
         // Sector erase (2), the slot's sector (8), by double words (4), start (7).
         let bits = 1 << 2 | (slot.index() as u32) << 8 | 3 << 4 | 1 << 7;
-        // SAFETY: what it erases is a slot, which is nobody else's.
+        // SAFETY: erases a slot, which has no other user.
         self.flash.bank2().cr().write(|w| unsafe { w.bits(bits) });
     }
 
     fn read(&mut self, words: &mut dyn FnMut()) -> bool {
-        // SAFETY: for as long as faults are masked, these loads alone can fail; interrupts wait for the few that a flash
-        // word has.
+        // SAFETY: while faults are masked, only these loads can fail; interrupts wait for the few loads of a flash
+        // word.
         unsafe {
             let scb = &*SCB::PTR;
             scb.ccr.modify(|bits| bits | GO_ON);
@@ -146,16 +146,16 @@ impl Flash for SecondBank {
     fn lock(&mut self) {
         // SAFETY: the lock (0).
         self.flash.bank2().cr().write(|w| unsafe { w.bits(1) });
-        // SAFETY: the cache is the core's alone, and nobody else has it in hand: idle runs below everything.
+        // SAFETY: the cache belongs to the core and has no other user: idle runs below everything.
         let mut core = unsafe { cortex_m::Peripherals::steal() };
         core.SCB.clean_invalidate_dcache(&mut core.CPUID);
     }
 }
 
-/// 400 MHz by PLL 1 at voltage scale 1: from what drives the clock from outside, if that is what the board's file says, else from
-/// the internal oscillator. Buses run at 200 MHz, peripherals at 100 MHz.
+/// Starts PLL 1 at 400 MHz at voltage scale 1: from the external clock if its frequency agrees with the board file,
+/// else from the internal oscillator. Buses run at 200 MHz, peripherals at 100 MHz.
 fn start_clock(clocks: &pac::RCC, power: &pac::PWR, flash: &pac::FLASH, timer: &CaptureTimer) -> Clock {
-    // The first source that can be selected, while the internal oscillator is off: no chip is ever so.
+    // Clock source 0 selected while the internal oscillator is off: impossible on a real chip.
     if clocks.cr().read().hsirdy().bit_is_clear() && clocks.cfgr().read().bits() >> 3 & 7 == 0 {
         return Clock::of(ClockSource::NotModelled);
     }
@@ -215,7 +215,7 @@ back_to_internal!(pll1on, pll1rdy, hsecsson, |clocks| {
     clocks.d2cfgr().modify(|_, w| w.d2ppre1().div1().d2ppre2().div1());
 });
 
-/// The external clock [Hz]: timer 17 sees it divided to 1 MHz, if it is what the board's file says.
+/// Measures the external clock [Hz]; timer 17 sees it divided to 1 MHz, if its frequency agrees with the board file.
 fn measured(clocks: &pac::RCC, timer: &CaptureTimer, frequency: u32) -> u32 {
     let divider = frequency / 1_000_000;
     // SAFETY: the division for the clock of the time of day, 63 at most, which nothing else uses.

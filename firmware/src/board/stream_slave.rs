@@ -1,5 +1,5 @@
-//! The SPI of STM32F405 as a slave whose bytes are moved by DMA: mode 0, 8 bits, chip select by the master's hand. The chip
-//! takes a clock of 42 MHz at most, 21 MHz where wires are long; which unit it is, and its pins, the board's file says.
+//! SPI slave of STM32F405 with DMA: mode 0, 8 bits, hardware chip select. The chip takes a clock of at most 42 MHz, 21
+//! MHz with long wires; the board file selects unit and pins.
 
 use super::bounded_wait::wait_until;
 use super::dma_slave::Unit;
@@ -20,7 +20,7 @@ macro_rules! units {
             /// Streams.
             pub const RECEIVING: usize = $receiving;
             pub const SENDING: usize = $sending;
-            /// Channel of the unit in both, in the stream's register.
+            /// Channel number of the unit for both streams, as in the stream's register.
             pub const CHANNEL: u32 = $channel << 25;
 
             /// The unit and the DMA with their clocks on.
@@ -50,26 +50,26 @@ units! {
 }
 use unit::{CHANNEL, Dma, RECEIVING, SENDING, Spi};
 
-/// Addresses in memory rise.
+/// Incrementing memory addresses.
 const MEMORY_RISES: u32 = 1 << 10;
-/// From memory to the peripheral.
+/// Direction from memory to the peripheral.
 const OUTWARDS: u32 = 1 << 6;
 const ENABLE: u32 = 1;
 /// All flags of a stream, from its first bit on.
 const FLAGS: u32 = 0x3d;
 
-/// The unit and two streams.
+/// SPI unit with two DMA streams.
 pub struct StreamSpi {
     spi: Spi,
     dma: Dma,
     exti: pac::EXTI,
     clocks: pac::RCC,
-    /// The line of the chip select.
+    /// EXTI line of the chip select.
     line: u32,
 }
 
 impl StreamSpi {
-    /// Stops a stream; what it has begun it ends.
+    /// Stops a stream; a transfer of a byte in progress is completed.
     fn end(&self, stream: usize) {
         let control = self.dma.st(stream).cr();
         // SAFETY: a stream that is off may have any settings.
@@ -108,7 +108,7 @@ impl Unit for StreamSpi {
         }
         // SAFETY: every line may have an edge and an interrupt.
         exti.rtsr().modify(|r, w| unsafe { w.bits(r.bits() | line) });
-        // SAFETY: likewise.
+        // SAFETY: every line may have an interrupt.
         exti.imr().modify(|r, w| unsafe { w.bits(r.bits() | line) });
         Self { spi, dma, exti, clocks, line }
     }
@@ -150,7 +150,7 @@ impl Unit for StreamSpi {
         self.set(RECEIVING, received, 0);
         self.spi.cr2().write(|w| w.rxdmaen().enabled().txdmaen().enabled());
         self.set(SENDING, sent, OUTWARDS);
-        // All else as after its reset: slave, mode 0, 8 bits, chip select by its pin.
+        // All other settings as after reset: slave, mode 0, 8 bits, hardware chip select.
         cortex_m::asm::dmb();
         self.spi.cr1().write(|w| w.spe().enabled());
     }

@@ -1,34 +1,35 @@
-//! The independent watchdog, the same on all boards: resets the board when it is not fed for half a second. Idle
-//! feeds it. The emulated board has none: there the writes have no effect.
+//! Independent watchdog, equal on all boards: resets the board if it is not fed for half a second. Idle feeds it. The
+//! emulated board has no watchdog; writes have no effect there.
 
 use super::bounded_wait::wait_until;
 use super::pac::IWDG;
 
-/// Milliseconds to the reset.
+/// Time to the reset [ms].
 const COUNTS: u16 = 500;
 
-/// Counts while flash is written, which may hold the core up for seconds; a count is then eight milliseconds.
+/// Counts to the reset while flash is written, which may block the core for seconds; a count is then eight
+/// milliseconds.
 const WRITING: u16 = 1000;
 
-/// A running watchdog.
+/// Running watchdog.
 pub struct Watchdog(IWDG);
 
 impl Watchdog {
-    /// Starts it. It cannot be stopped again.
+    /// Starts the watchdog, which cannot be stopped.
     pub fn start(registers: IWDG) -> Self {
         registers.kr().write(|w| w.key().start());
         registers.kr().write(|w| w.key().unlock());
         // The 32 kHz oscillator by 32: a count is a millisecond.
         registers.pr().write(|w| w.pr().divide_by32());
         registers.rlr().write(|w| w.rl().set(COUNTS));
-        // Settings that were not taken up leave its longest time in force: no harm.
+        // If the settings fail, the longest time stays in force, which is harmless.
         let _ = wait_until(|| registers.sr().read().bits() == 0);
         let mut watchdog = Self(registers);
         watchdog.feed();
         watchdog
     }
 
-    /// Allows a longer time while flash is written, then the usual one.
+    /// Extends the time during a flash write, then restores it.
     pub fn while_writing<T>(&mut self, write: impl FnOnce() -> T) -> T {
         self.0.kr().write(|w| w.key().unlock());
         self.0.pr().write(|w| w.pr().divide_by256());
@@ -44,7 +45,7 @@ impl Watchdog {
         written
     }
 
-    /// Puts the reset off.
+    /// Feeds the watchdog.
     pub fn feed(&mut self) {
         self.0.kr().write(|w| w.key().feed());
     }

@@ -1,13 +1,13 @@
-//! AS5047P, a 14-bit magnetic encoder on SPI (mode 1, at most 10 MHz): one frame of 16 bits a tick, each carrying a
-//! command and the answer to the one before. Its ABI, PWM and programming are left out. It wants 350 ns between select and clock, and
-//! between frames: that is the bus's business.
+//! AS5047P, a 14-bit magnetic encoder on SPI (mode 1, at most 10 MHz). Each tick transfers one frame of 16 bits: it
+//! sends a command and receives the answer to the previous command. ABI, PWM and programming are not supported. The bus
+//! driver must provide 350 ns between select and clock and between frames.
 //!
-//! A frame: bit 15 makes the parity even; bit 14 of a command says "read", of an answer that the command before was
-//! faulty; 14 bits of address or content. An idle line gives all ones or all zeros, both with a good parity: all ones is
-//! no angle since it reports an error, all zeros may be one, so the diagnostics are asked for, which are never zero.
+//! Frame: bit 15 makes the parity even. Bit 14 means "read" in a command and "previous command faulty" in an answer. 14
+//! bits carry address or content. An idle line reads as all ones or all zeros, both with valid parity. All ones are
+//! rejected by the error bit; all zeros may be an angle, so the diagnostics, which are never zero, are read.
 //!
-//! Now and then the diagnostics are asked for in two frames more: a magnet that is too weak, too strong or gone gives angles that
-//! are none, without an error flag. While that is so there is no reading.
+//! Every `BETWEEN_LOOKS` readings two more frames read the diagnostics: a magnet that is too weak, too strong or
+//! missing gives wrong angles without an error flag. While the diagnostics report a magnet fault, there is no reading.
 
 use embedded_hal::spi::SpiDevice;
 use model_core::observer::Reading;
@@ -16,29 +16,29 @@ use super::{CountSource, EncoderFault};
 
 /// Bit 14 of a command: read.
 const READ: u16 = 1 << 14;
-/// Bit 14 of an answer: the command before was faulty.
+/// Bit 14 of an answer: the previous command was faulty.
 const ERROR: u16 = 1 << 14;
 const CONTENT: u16 = (1 << 14) - 1;
-/// Readings from one look at the diagnostics to the next: 26 ms at 10 kHz.
+/// Readings between two reads of the diagnostics: 26 ms at 10 kHz.
 const BETWEEN_LOOKS: u16 = 256;
-/// Of the diagnostics: ready, angle overflowed, field too strong, field too weak.
+/// Bits of the diagnostics: ready, angle overflow, field too strong, field too weak.
 const READY: u16 = 1 << 8;
 const OVERFLOW: u16 = 1 << 9;
 const STRONG: u16 = 1 << 10;
 const WEAK: u16 = 1 << 11;
-/// What a line gives that is pulled up and nobody drives.
+/// Content of an undriven line with pull-up.
 const NOBODY_HIGH: u16 = u16::MAX;
-/// The same, pulled down.
+/// Content of an undriven line with pull-down.
 const NOBODY_LOW: u16 = 0;
 
-/// What can be read.
+/// Registers in use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Register {
     /// ERRFL; reading clears it.
     Errors = 0x0001,
     /// DIAAGC: gain and alarms.
     Diagnostics = 0x3ffc,
-    /// ANGLECOM: angle, the delay of the chip's own filters taken out.
+    /// ANGLECOM: angle, compensated for the delay of the chip's filters.
     Angle = 0x3fff,
 }
 
@@ -49,50 +49,50 @@ impl Register {
     }
 }
 
-/// The encoder on its bus.
+/// Encoder on its bus.
 #[derive(Debug)]
 pub struct As5047p<S> {
     spi: S,
-    /// When the angle was asked for that the next frame answers.
+    /// Request time of the angle that the next frame delivers.
     asked: Option<u32>,
-    /// Readings until the next look at the diagnostics.
+    /// Readings until the next read of the diagnostics.
     until_look: u16,
-    /// What the last look found wrong with the magnet.
+    /// Magnet fault found by the last read of the diagnostics.
     magnet: Option<EncoderFault>,
 }
 
-/// What the diagnostics say of the magnet. Without one, the field is too weak and the rest of them is of nothing.
+/// Magnet fault by the diagnostics. Without a magnet the field is too weak and the other bits are meaningless.
 fn judged(diagnostics: u16) -> Option<EncoderFault> {
     let has = |flag: u16| diagnostics & flag != 0;
     match (has(WEAK), has(STRONG)) {
         (true, false) if has(OVERFLOW) || !has(READY) => Some(EncoderFault::MagnetLost),
         (true, false) => Some(EncoderFault::MagnetTooWeak),
         (false, true) => Some(EncoderFault::MagnetTooStrong),
-        // Both at once, or an angle that overflowed in a good field: nothing that a magnet does.
+        // Both at once, or an angle overflow in a good field: no magnet behaves like this.
         (true, true) => Some(EncoderFault::MagnetLost),
         (false, false) => has(OVERFLOW).then_some(EncoderFault::MagnetLost),
     }
 }
 
 impl<S: SpiDevice> As5047p<S> {
-    /// An encoder that has not been asked anything yet.
+    /// Encoder before the first request.
     pub fn new(spi: S) -> Self {
         Self { spi, asked: None, until_look: 0, magnet: None }
     }
 
-    /// Gives the bus back.
+    /// Returns the bus.
     pub fn release(self) -> S {
         self.spi
     }
 
-    /// Sends a command; the frame that comes back answers the command before.
+    /// Sends a command; returns the answer to the previous command.
     fn exchange(&mut self, next: Register) -> Result<u16, EncoderFault> {
         let mut frame = next.command().to_be_bytes();
         self.spi.transfer_in_place(&mut frame).map_err(|_| EncoderFault::Bus)?;
         Ok(u16::from_be_bytes(frame))
     }
 
-    /// Content of another register, in two frames more; the angle is asked for again behind it.
+    /// Reads another register with two more frames and requests the angle again.
     fn aside(&mut self, register: Register) -> Result<u16, EncoderFault> {
         self.exchange(register)?;
         let frame = self.exchange(Register::Angle)?;
@@ -115,7 +115,7 @@ impl<S: SpiDevice> CountSource for As5047p<S> {
             return Err(EncoderFault::Parity);
         }
         if frame & ERROR != 0 {
-            // Reading the reason also clears the flag.
+            // Reading the error register also clears the flag.
             return Err(EncoderFault::Reported(self.aside(Register::Errors)?));
         }
         if frame == NOBODY_LOW || self.until_look == 0 {

@@ -1,4 +1,4 @@
-//! Observer and compensation by a function call. Nothing is queued, so the answer is to these samples.
+//! Port by function call; the answer belongs to the samples of the call.
 
 use model_core::compensation::Command;
 use model_core::controller::{Answer, Controller};
@@ -6,7 +6,7 @@ use model_core::observer::{Memory, MemoryError, Samples};
 
 use super::{ControllerPort, PortError};
 
-/// The controller itself.
+/// Port to a controller in this program.
 #[derive(Debug)]
 pub struct Direct<'t>(pub Controller<'t, f32>);
 

@@ -1,6 +1,6 @@
-//! Another board on a serial line, by the protocol of the role `observer`: samples go out as soon as the ones before are
-//! answered, so the exchange runs at the rate that the line carries, and in lockstep where the caller waits for each
-//! answer. Bytes are moved by `serial`.
+//! Port to another board on a serial line, by the protocol of the role `observer`. New samples are sent once the last
+//! ones are answered, so the line determines the exchange rate; a caller that waits for each answer runs in lockstep.
+//! `serial` moves the bytes.
 
 use link::controller::{Answered, Exchange};
 use link::framing::{MAX_FRAME, Receiver, encode};
@@ -12,37 +12,37 @@ use model_core::observer::Samples;
 use super::{ControllerPort, PortError};
 use crate::serial::LineEnd;
 
-/// Bytes of the longest frames of one exchange: samples with a set-point ahead; acceptance and an answer with all
-/// estimates and a probed width. Tests hold both.
+/// Bytes of the longest frames of an exchange: samples with a set-point to the board; acceptance and an answer with all
+/// estimates and a probed width back. Tests check both.
 pub const FRAME_BYTES: [u32; 2] = [88, 214];
-/// Bits of a byte on the line, start and stop among them.
+/// Bits per byte on the line, including start and stop bit.
 const BITS: u32 = 10;
 
-/// Exchanges a second that a line carries, by the direction that has more to say; the controller's own time is little
-/// beside it. 107 at 230400 baud, 430 at 921600.
+/// Exchange rate of a line [Hz], by the direction with more bytes; the computation time is short in comparison. 107 at
+/// 230400 baud, 430 at 921600.
 pub const fn exchanges_per_second(baud_rate: u32) -> u32 {
     let [there, back] = FRAME_BYTES;
     let most = if there > back { there } else { back };
     baud_rate / (BITS * most)
 }
 
-/// The motor controller's side of the line; the run has been started by a reset.
+/// Motor controller's side of the line; the caller has started the run by a reset.
 pub struct SerialPort<'a> {
     line: LineEnd<'a>,
     receiver: Receiver,
-    /// Control periods asked for so far.
+    /// Control periods sent so far.
     asked: u32,
     /// Control periods answered so far.
     answered: u32,
 }
 
 impl<'a> SerialPort<'a> {
-    /// On a line.
+    /// Port on a line.
     pub fn new(line: LineEnd<'a>) -> Self {
         Self { line, receiver: Receiver::new(), asked: 0, answered: 0 }
     }
 
-    /// Reads what has come, no more than one answer.
+    /// Reads received bytes up to the first answer.
     fn listen(&mut self) -> Option<Answered> {
         for _ in 0..2 * MAX_FRAME {
             let byte = self.line.read()?;
@@ -55,7 +55,7 @@ impl<'a> SerialPort<'a> {
 }
 
 impl ControllerPort for SerialPort<'_> {
-    /// The answer to the samples that were sent last, once it has come; only then are these samples sent.
+    /// Returns the answer to the samples sent last, once it has arrived; sends these samples then, else drops them.
     fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Result<Answer<f32>, PortError> {
         self.ask(Exchange::new(self.asked, samples, command))
     }
@@ -79,7 +79,7 @@ impl SerialPort<'_> {
         if self.asked == self.answered && self.line.room() >= MAX_FRAME {
             let (sequence, horizon) = (self.asked as u16, self.asked.wrapping_add(1));
             let mut commands = heapless::Vec::new();
-            // There is room for four.
+            // The vector has room for four.
             let _ = commands.push(exchange);
             let message = ToBoard::Exchanges(Schedule { sequence, horizon, commands });
             let frame = encode(&message).map_err(|_| PortError::Damaged)?;

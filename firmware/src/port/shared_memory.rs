@@ -1,5 +1,5 @@
-//! A guest in the same controller: the motor controller's tick leaves samples, the guest's own task works on them, and
-//! the next tick finds the answer. Two single-producer queues, lock-free; neither side ever waits for the other.
+//! Port to a guest on the same chip: the motor controller's tick queues samples, the guest's own task works on them,
+//! and the next tick finds the answer. Two lock-free single-producer queues; neither side waits for the other.
 
 use heapless::spsc::{Consumer, Producer, Queue};
 use model_core::compensation::Command;
@@ -8,32 +8,32 @@ use model_core::observer::Samples;
 
 use super::{ControllerPort, PortError, asked};
 
-/// Places in either direction; one is lost to telling full from empty.
+/// Places per direction; one stays empty to tell a full queue from an empty one.
 const PLACES: usize = 4;
 
-/// One control tick's worth; without a set-point one of a width probe.
+/// Samples of one control tick; without a set-point, of a width probe.
 type Question = (Samples<f32>, Option<Command<f32>>);
 
-/// The memory that is shared.
+/// Queues shared by both sides.
 pub struct SharedMemory {
     questions: Queue<Question, PLACES>,
     answers: Queue<Answer<f32>, PLACES>,
 }
 
-/// The motor controller's side.
+/// Motor controller's side.
 pub struct Host<'a> {
     questions: Producer<'a, Question>,
     answers: Consumer<'a, Answer<f32>>,
 }
 
-/// The guest's side.
+/// Guest's side.
 pub struct Guest<'a> {
     questions: Consumer<'a, Question>,
     answers: Producer<'a, Answer<f32>>,
 }
 
 impl SharedMemory {
-    /// Empty.
+    /// Empty queues.
     pub const fn new() -> Self {
         Self { questions: Queue::new(), answers: Queue::new() }
     }
@@ -53,7 +53,7 @@ impl Default for SharedMemory {
 }
 
 impl ControllerPort for Host<'_> {
-    /// The newest answer is taken, older ones are dropped; a guest that has fallen behind loses these samples.
+    /// Returns the newest answer and drops older ones. If the guest has fallen behind, these samples are dropped.
     fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Result<Answer<f32>, PortError> {
         self.ask((*samples, Some(*command)))
     }
@@ -80,9 +80,9 @@ impl Host<'_> {
 }
 
 impl Guest<'_> {
-    /// Works on one tick's samples, if there are any: to be called as often as the controller's tick comes.
+    /// Processes the samples of one tick, if there are any; to be called at the control rate.
     pub fn serve(&mut self, controller: &mut impl ControllerPort) -> bool {
-        // An answer that nobody takes must not be worked for.
+        // Without room for an answer there is no work.
         if !self.answers.ready() {
             return false;
         }

@@ -1,6 +1,6 @@
-//! Another chip on SPI: the motor controller is the master, and every transfer takes samples over while it brings the
-//! answer to those before. Frames have one length: postcard, filled up with zeros, then CRC-32. The transfer itself, by
-//! DMA or not, is the bus driver's; a blocking one takes its time out of the tick.
+//! Port to another chip on SPI. The motor controller is the master; every transfer sends samples and receives the
+//! answer to the samples before. Frames have a fixed length: postcard, zero padding, CRC-32. The bus driver does the
+//! transfer, with or without DMA; a blocking transfer takes its time from the tick.
 
 use embedded_hal::spi::SpiDevice;
 use link::controller::{Answered, Exchange};
@@ -11,13 +11,13 @@ use model_core::observer::Samples;
 
 use super::{ControllerPort, PortError, asked};
 
-/// Bytes of a frame either way: the longer of samples and answer, with its checksum.
+/// Bytes of a frame in either direction: the longer of samples and answer, with checksum.
 pub const FRAME_BYTES: usize = 196;
 
-/// A frame.
+/// Frame of fixed length.
 pub type Frame = [u8; FRAME_BYTES];
 
-/// The master's side.
+/// Master's side.
 #[derive(Debug)]
 pub struct SpiPort<S> {
     spi: S,
@@ -25,7 +25,7 @@ pub struct SpiPort<S> {
 }
 
 impl<S: SpiDevice> SpiPort<S> {
-    /// On a bus.
+    /// Port on a bus.
     pub fn new(spi: S) -> Self {
         Self { spi, tick: 0 }
     }
@@ -52,7 +52,7 @@ impl<S: SpiDevice> SpiPort<S> {
         self.spi.transfer_in_place(&mut frame).map_err(|_| PortError::Bus)?;
         self.tick = self.tick.wrapping_add(1);
         let answered: Answered = unsealed(&frame).ok_or(PortError::Damaged)?;
-        // The slave has not had a tick yet, or has missed the one before.
+        // The slave has not processed a frame yet, or has missed the last one.
         if answered.tick.wrapping_add(1) != self.tick {
             return Err(PortError::Late);
         }
@@ -60,7 +60,7 @@ impl<S: SpiDevice> SpiPort<S> {
     }
 }
 
-/// The slave's side, apart from the slave's own bus driver: a frame came in, the next one goes out.
+/// Slave's side without the bus driver: takes a received frame, returns the next frame to send.
 #[derive(Debug)]
 pub struct SpiGuest<P> {
     controller: P,
@@ -68,12 +68,13 @@ pub struct SpiGuest<P> {
 }
 
 impl<P: ControllerPort> SpiGuest<P> {
-    /// In front of a controller.
+    /// Slave that uses this controller.
     pub fn new(controller: P) -> Self {
         Self { controller, digest: model_core::numbers::digest::START }
     }
 
-    /// Works on a frame; the answer is for the next transfer. A damaged frame changes nothing and has no answer.
+    /// Processes a frame and returns the frame for the next transfer. A damaged frame changes nothing and has no
+    /// answer.
     pub fn answer(&mut self, frame: &Frame) -> Option<Frame> {
         let mut next = [0; FRAME_BYTES];
         let exchange = unsealed_within_a_tick::<Exchange>(frame)?;
@@ -91,7 +92,7 @@ impl<P: ControllerPort> SpiGuest<P> {
             probed: answer.probed.map(Into::into),
             computation: 0,
         };
-        // The longest answer fits: tested.
+        // The longest answer fits (tested).
         sealed(&answered, &mut next).ok()?;
         Some(next)
     }

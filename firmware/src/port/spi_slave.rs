@@ -1,28 +1,27 @@
-//! The other end of SPI: a chip that observes and compensates as the slave of a motor controller. After every transfer
-//! it takes the frame that came, works on it, and has the answer ready for the next; a transfer that broke costs that
-//! answer only.
+//! SPI slave that runs observer and compensation for a motor controller. After every transfer it processes the received
+//! frame and prepares the answer for the next transfer; a broken transfer loses its own answer only.
 
 use core::fmt;
 
 use super::ControllerPort;
 use super::spi::{FRAME_BYTES, Frame, SpiGuest};
 
-/// The hardware of a slave: frames of one length, moved without the core while the master clocks.
+/// Hardware of a slave: moves frames of fixed length without the core while the master clocks.
 pub trait SlaveBus {
-    /// After the master has ended a transfer: the frame that came in. Whatever happened, the next [`SlaveBus::arm`] begins
-    /// anew.
+    /// Returns the received frame after the master has ended a transfer. After an error, too, the next
+    /// [`SlaveBus::arm`] starts afresh.
     fn finish(&mut self) -> Result<&Frame, Broken>;
 
-    /// The next transfer brings this frame.
+    /// Sets the frame that the next transfer sends.
     fn arm(&mut self, next: &Frame);
 }
 
-/// Why a transfer received no frame.
+/// Reason for a transfer without a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Broken {
-    /// The master ended it early: so many bytes were missing.
+    /// The master ended the transfer early; number of missing bytes.
     Short(u16),
-    /// Bytes came faster than they could be taken, or more of them than a frame has.
+    /// Bytes arrived faster than the slave could take them, or more bytes than a frame has.
     Overrun,
 }
 
@@ -39,20 +38,20 @@ impl fmt::Display for Broken {
     }
 }
 
-/// What became of the transfers so far.
+/// Counts of transfers so far, by result.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Transfers {
-    /// Answered.
+    /// Answered transfers.
     pub answered: u32,
-    /// With a wrong checksum, or no frame of ours.
+    /// Frames with a wrong checksum or without valid content.
     pub damaged: u32,
-    /// Ended early.
+    /// Transfers ended early.
     pub short: u32,
-    /// Overrun.
+    /// Transfers with lost or surplus bytes.
     pub overrun: u32,
 }
 
-/// The slave at work.
+/// SPI slave with bus and controller.
 pub struct SpiSlave<B, P> {
     bus: B,
     guest: SpiGuest<P>,
@@ -60,14 +59,14 @@ pub struct SpiSlave<B, P> {
 }
 
 impl<B: SlaveBus, P: ControllerPort> SpiSlave<B, P> {
-    /// In front of a controller; the first transfer brings an empty frame, which the master finds damaged.
+    /// Slave that uses this controller; the first transfer sends an empty frame, which the master rejects as damaged.
     pub fn new(mut bus: B, controller: P) -> Self {
         bus.arm(&[0; FRAME_BYTES]);
         Self { bus, guest: SpiGuest::new(controller), transfers: Transfers::default() }
     }
 
-    /// After every transfer, when the master lets go of the chip select. The master has to leave as much time before the next
-    /// one as a step of observer and compensation takes.
+    /// Handles a finished transfer; to be called when the master releases chip select. The master must pause before the
+    /// next transfer for the time of one step of observer and compensation.
     pub fn serve(&mut self) {
         let counts = &mut self.transfers;
         let (next, count) = match self.bus.finish() {
@@ -82,7 +81,7 @@ impl<B: SlaveBus, P: ControllerPort> SpiSlave<B, P> {
         self.bus.arm(&next);
     }
 
-    /// What became of the transfers so far.
+    /// Counts of transfers so far, by result.
     pub fn transfers(&self) -> Transfers {
         self.transfers
     }

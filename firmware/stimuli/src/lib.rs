@@ -1,7 +1,7 @@
 #![no_std]
-//! Trials of the fixed step, the same on every machine: `motion` is long and compared bit for bit; `states` are single ones,
-//! random and adversarial, and `outcome` classifies what the step does with them; `torque` scales torques to the joint,
-//! `random` is a repeatable generator.
+//! Trials of the fixed step, identical on every machine: `motion` generates long motions compared bit for bit; `states`
+//! single states, random and adversarial; `outcome` classifies the result of a step; `torque` scales torques to the
+//! joint; `random` is a repeatable generator.
 
 pub mod motion;
 pub mod outcome;

@@ -1,6 +1,5 @@
-//! A long motion that loses and finds contact, for a comparison bit for bit: torques swing the joint through its gap,
-//! rests let it calm down, a second motion ends in numbers that are none, and many short ones start from the smallest
-//! numbers there are.
+//! Motions for a comparison bit for bit: a long one in which torques swing the joint through its gap, with rests; a
+//! second one that ends in non-finite numbers; and many short ones that start from the smallest numbers.
 
 use core::array;
 
@@ -12,37 +11,37 @@ use crate::torque::{NONE, TorqueScale};
 
 /// Steps of the long motion.
 pub const STEPS: u32 = 100_000;
-/// Steps of the motion that ends badly.
+/// Steps of the motion that ends in non-finite numbers.
 const SHORT: u32 = 2000;
 /// First step of the short motion whose torque is infinite.
 const UNBOUNDED_FROM: u32 = 1900;
-/// Every so often, in steps, the joint is left alone ...
+/// Interval between rests without torque [steps].
 const REST_EVERY: u32 = 25_000;
-/// ... for so long.
+/// Length of a rest [steps].
 const REST: u32 = 12_000;
-/// Halvings, from 2^-20 down past the smallest number of f32, 2^-149, that short motions start from ...
+/// Halvings from which short motions start: 2^-20 down past the smallest number of f32, 2^-149.
 const HALVINGS: core::ops::Range<u32> = 20..152;
-/// ... and their steps.
+/// Steps of a short motion.
 const BRIEF: u32 = 20;
-/// Torques last up to so many steps.
+/// Longest time of a constant torque [steps].
 const LONGEST_HOLD: u32 = 400;
-/// Bits of the smallest number of f32 with all its digits.
+/// Bits of the smallest normal number of f32.
 const FIRST_NORMAL: u32 = 1 << 23;
 
 /// Digests of a joint's motions.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Digests {
-    /// Of state and outputs at every step of the long motion.
+    /// Digest of state and outputs at every step of the long motion.
     pub long: u64,
-    /// Of the state at every step of the motion that ends in infinite torques.
+    /// Digest of the state at every step of the motion with infinite torques.
     pub unbounded: u64,
-    /// Of the state at every step of the motions from tiny numbers.
+    /// Digest of the state at every step of the motions from tiny numbers.
     pub tiny: u64,
-    /// Steps of the long motion after which the contact set is another than before.
+    /// Number of steps of the long motion that change the contact set.
     pub changes: u32,
 }
 
-/// All motions of a joint.
+/// Runs all motions of a joint.
 pub fn digests<const N: usize>(tables: &Tables<f32, N>) -> Digests {
     let (long, changes) = long(tables);
     Digests { long, unbounded: unbounded(tables), tiny: tiny(tables), changes }
@@ -104,7 +103,7 @@ fn chain_outputs<const N: usize>(running: u64, outputs: &Outputs<f32, N>) -> u64
     })
 }
 
-/// Torques that change by chance.
+/// Torques that change at random times.
 struct RandomTorques {
     random: Random,
     size: TorqueScale,

@@ -1,9 +1,10 @@
-//! What the contact set did in one tick: the classes that worst cases are reported by, from the outputs before and after.
+//! Classes of ticks by the change of the contact set, for reports of worst cases; determined from the outputs before
+//! and after.
 
 use model_core::gears::Outputs;
 use parameters::ContactState;
 
-/// What the contact set did.
+/// Change of the contact set in a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Class {
     /// Drive sides in contact, before and after.
@@ -12,18 +13,18 @@ pub enum Class {
     BackSide,
     /// All teeth apart, before and after.
     Apart,
-    /// Some of each, the same before and after.
+    /// Mixed contact, unchanged.
     Mixed,
     /// Some meshes changed.
     SomeChanged,
     /// Every mesh changed.
     AllChanged,
-    /// Random that are infinite, or none.
+    /// Non-finite numbers.
     NotFinite,
 }
 
 impl Class {
-    /// All of them.
+    /// All classes.
     pub const ALL: [Self; 7] = [
         Self::DriveSide,
         Self::BackSide,
@@ -34,7 +35,7 @@ impl Class {
         Self::NotFinite,
     ];
 
-    /// For tables.
+    /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::DriveSide => "drive side held",
@@ -47,7 +48,7 @@ impl Class {
         }
     }
 
-    /// The class of a tick.
+    /// Returns the class of a tick.
     pub fn of<const N: usize>(before: &Outputs<f32, N>, after: &Outputs<f32, N>) -> Self {
         let finite = |outputs: &Outputs<f32, N>| {
             outputs.deflections.iter().flatten().all(|value| value.is_finite()) && outputs.wind_up.is_finite()

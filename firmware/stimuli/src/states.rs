@@ -1,6 +1,6 @@
-//! Single states that a step is tried on, random and adversarial: every contact set, all meshes crossing at once,
-//! grazing and exact touch, speeds that cross the whole gap in a tick, numbers at the limits of their range, states that the joint
-//! comes to by itself, and changes of those that were worst so far.
+//! Single states for trials of a step, random and adversarial: every contact set, all meshes crossing at once, grazing
+//! and exact touch, speeds that cross the whole gap in a tick, numbers at the limits of their range, states reached by
+//! the joint itself, and variations of the worst states so far.
 
 use core::array;
 
@@ -9,31 +9,31 @@ use model_core::gears::{Model, Relative, RigidBody, State, Tables, Torques};
 use crate::random::Random;
 use crate::torque::{NONE, TorqueScale};
 
-/// How a trial came about.
+/// Origin of a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Any contact set at moderate speeds.
     AnySet,
-    /// Every mesh on its way through its gap, fast enough to cross it within the tick.
+    /// Every mesh inside its gap, fast enough to cross it within the tick.
     AllCrossing,
-    /// Teeth that touch exactly, or as nearly as numbers allow, hardly moving.
+    /// Teeth that touch exactly, or as nearly as floating point allows, with little speed.
     Grazing,
-    /// Speeds of many gaps a tick, each mesh its own.
+    /// Speeds of many gaps per tick, different for each mesh.
     Fast,
-    /// Zeros, denormal and huge numbers, infinities, and what is no number.
+    /// Zeros, denormal and huge numbers, infinities, NaN.
     Extreme,
-    /// Where the joint has come to by itself.
+    /// State reached by the joint itself.
     Reached,
-    /// A change of the worst so far.
+    /// Variation of the worst state so far.
     Mutated,
 }
 
 impl Kind {
-    /// All of them.
+    /// All origins.
     pub const ALL: [Self; 7] =
         [Self::AnySet, Self::AllCrossing, Self::Grazing, Self::Fast, Self::Extreme, Self::Reached, Self::Mutated];
 
-    /// For tables.
+    /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::AnySet => "any contact set",
@@ -47,18 +47,18 @@ impl Kind {
     }
 }
 
-/// A state and the torques of its tick.
+/// State and torques of a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trial<const N: usize> {
-    /// How it came about.
+    /// Origin of the trial.
     pub kind: Kind,
-    /// The state.
+    /// State before the tick.
     pub state: State<f32, N>,
-    /// The torques.
+    /// Torques of the tick.
     pub torques: Torques<f32>,
 }
 
-/// Random at the ends of their range.
+/// Numbers at the limits of their range.
 const EXTREMES: [f32; 12] = [
     0.0,
     -0.0,
@@ -74,13 +74,13 @@ const EXTREMES: [f32; 12] = [
     f32::NAN,
 ];
 
-/// Makes trials for a joint.
+/// Generator of trials for a joint.
 pub struct Trials<'a, const N: usize> {
     tables: &'a Tables<f32, N>,
     random: Random,
     /// Length of a tick, in dimensionless time.
     tick: f32,
-    /// Greatest half-backlash; one for a joint without.
+    /// Greatest half-backlash; 1 for a joint without backlash.
     half_gap: f32,
     size: TorqueScale,
     reached: State<f32, N>,
@@ -89,7 +89,7 @@ pub struct Trials<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Trials<'a, N> {
-    /// The trials of a seed.
+    /// Returns the generator of a seed.
     pub fn new(tables: &'a Tables<f32, N>, seed: u64) -> Self {
         let widest = tables.meshes.iter().flatten().fold(0.0, |most: f32, mesh| most.max(mesh.half_backlash));
         Self {
@@ -104,7 +104,7 @@ impl<'a, const N: usize> Trials<'a, N> {
         }
     }
 
-    /// The next trial.
+    /// Returns the next trial.
     pub fn make(&mut self) -> Trial<N> {
         let kind = Kind::ALL[self.random.below(Kind::ALL.len() as u32) as usize];
         match (kind, self.worst) {
@@ -115,7 +115,7 @@ impl<'a, const N: usize> Trials<'a, N> {
         }
     }
 
-    /// Tells what became of a trial; changes of the last worst one are tried from then on.
+    /// Records the result of a trial; later variations start from the last worst trial.
     pub fn stepped(&mut self, trial: &Trial<N>, after: &State<f32, N>, is_worst: bool) {
         if trial.kind == Kind::Reached {
             self.reached = if after.is_finite() { *after } else { State::REST };
@@ -125,7 +125,7 @@ impl<'a, const N: usize> Trials<'a, N> {
         }
     }
 
-    /// The joint goes on from where it is, now and then under other torques.
+    /// Continues from the joint's state, sometimes with new torques.
     fn onward(&mut self) -> Trial<N> {
         if self.random.below(100) == 0 {
             self.torques = self.size.any(&mut self.random);
@@ -136,7 +136,7 @@ impl<'a, const N: usize> Trials<'a, N> {
     fn place(&mut self, kind: Kind) -> Trial<N> {
         let (rigid, phase) = (self.rigid(), self.random.bits());
         let mut state = State { rigid, phase, ..State::REST };
-        // What the meshes' deflections lack of the coordinates at this phase: their imposed errors.
+        // Imposed errors at this phase: coordinate less deflection of each mesh.
         let mut model = Model::new(self.tables);
         model.set_state(state);
         let length = self.tables.units.length;
@@ -174,7 +174,7 @@ impl<'a, const N: usize> Trials<'a, N> {
         trial
     }
 
-    /// One to all numbers of a trial changed, most of them a little.
+    /// Changes one to all numbers of a trial, most of them slightly.
     fn mutate(&mut self, worst: Trial<N>) -> Trial<N> {
         let mut trial = Trial { kind: Kind::Mutated, ..worst };
         let one_in = 1 + self.random.below(8);
@@ -210,7 +210,7 @@ impl<'a, const N: usize> Trials<'a, N> {
     }
 
     fn rates(&mut self, most: f32) -> Relative<f32, N> {
-        // Now and then the whole joint stands still.
+        // In some trials the whole joint is at rest.
         let most = if self.random.below(8) == 0 { 0.0 } else { most };
         let mut any = || most * self.random.signed();
         Relative { planets: array::from_fn(|_| any()), gap: any(), wind_up: any() }
@@ -221,7 +221,7 @@ impl<'a, const N: usize> Trials<'a, N> {
             0 => 0,
             1 => i64::MAX,
             2 => i64::MIN,
-            // Up to some turns a second, and up to a turn in two ticks.
+            // Up to a few turns per second, or up to a turn in two ticks.
             3..=5 => (self.random.bits() as i64) >> 14,
             _ => self.random.bits() as i64,
         };
@@ -241,7 +241,7 @@ impl<'a, const N: usize> Trials<'a, N> {
         }
     }
 
-    /// A size from 10^`from` to 10^`to`.
+    /// Returns a magnitude from 10^`from` to 10^`to`.
     fn magnitude(&mut self, from: i32, to: i32) -> f32 {
         let power = from + self.random.below(to.abs_diff(from)) as i32;
         let factor = if power < 0 { 0.1 } else { 10.0 };
@@ -249,7 +249,7 @@ impl<'a, const N: usize> Trials<'a, N> {
     }
 }
 
-/// Shows every real number of a trial.
+/// Visits every real number of a trial.
 fn each<const N: usize>(trial: &mut Trial<N>, mut show: impl FnMut(&mut f32)) {
     for relative in [&mut trial.state.position, &mut trial.state.rate] {
         relative.planets.iter_mut().for_each(&mut show);
@@ -260,7 +260,7 @@ fn each<const N: usize>(trial: &mut Trial<N>, mut show: impl FnMut(&mut f32)) {
     show(&mut trial.torques.load);
 }
 
-/// Trials for a joint of so many planets: a million for the usual three, so many others as a minute allows.
+/// Number of trials for a joint with `planets` planets: a million for the usual three, else as many as a minute allows.
 pub const fn count(planets: usize) -> u32 {
     if planets == 3 { 1_000_000 } else { 200_000 }
 }

@@ -1,5 +1,5 @@
-//! The trials of a joint are worth their name: every class of contact comes about, by every kind of trial that is meant
-//! to bring it about, and a seed gives the same trials again.
+//! Coverage of the trials of a joint: every class of contact occurs, in every kind of trial made for it, and a seed
+//! reproduces its trials.
 
 use model_core::gears::design::design;
 use model_core::gears::{Model, Tables};
@@ -13,7 +13,7 @@ fn tables() -> Tables<f32, 3> {
     design(&joint_file::read(text).expect("a sound joint").parameters, 20_000).expect("tables")
 }
 
-/// Every trial with its class.
+/// Returns every trial with its class.
 fn run(tables: &Tables<f32, 3>) -> Vec<(Trial<3>, Class)> {
     let (mut trials, mut model) = (Trials::new(tables, 1), Model::new(tables));
     let mut step = |index: usize| {

@@ -1,5 +1,5 @@
-//! The firmware without a board: tick, idle and serial interrupt called in turn, a wire made of two queues, and a timer
-//! that a test sets. Time passes only when a test says so.
+//! Firmware without a board: tick, idle and serial interrupt are called in turn; a wire of two queues and a settable
+//! timer replace the hardware. Time passes only at a test's command.
 
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
@@ -29,7 +29,7 @@ use model_core::observer::Memory;
 /// Timer counts between two ticks.
 pub const PERIOD: u32 = 8400;
 
-/// As many ticks as there are: for tests in which the host says nothing for long.
+/// Longest timeout: for tests in which the host is silent for long.
 pub const NO_TIMEOUT: u32 = u32::MAX;
 
 /// Both directions of the line.
@@ -37,7 +37,7 @@ pub const NO_TIMEOUT: u32 = u32::MAX;
 pub struct Wire {
     to_board: VecDeque<u8>,
     from_board: VecDeque<u8>,
-    /// Whether the host takes what the board sends.
+    /// The host does not read.
     pub blocked: bool,
 }
 
@@ -60,7 +60,7 @@ impl Uart for WireEnd {
     fn interrupt_again(&mut self) {}
 }
 
-/// The output, and how often it was switched on.
+/// Enable output with the number of times that it was switched on.
 struct Enable(Rc<Cell<bool>>, Rc<Cell<u32>>);
 
 impl ErrorType for Enable {
@@ -79,7 +79,7 @@ impl OutputPin for Enable {
     }
 }
 
-/// Counts on by the same amount with every look.
+/// Timer that advances by a fixed amount per read.
 pub struct Timer {
     now: Cell<u32>,
     by: u32,
@@ -97,8 +97,8 @@ impl TickTimer for Timer {
     }
 }
 
-/// Flash that takes what is written, or does not; its clones are the same flash. Power can be cut at any operation of it: an
-/// erase, or a word that is written.
+/// Flash that accepts writes or does not; clones share their content. Power can be cut at any operation: an erase, or
+/// the write of a word.
 #[derive(Clone)]
 pub struct Flash(Arc<Mutex<Cells>>);
 
@@ -107,11 +107,11 @@ pub struct Cells {
     pub works: bool,
     /// The supply is too low to write.
     pub is_starved: bool,
-    /// How often a slot was erased.
+    /// Number of erases.
     pub erased: u32,
-    /// Operations that are left until power is cut.
+    /// Remaining operations until power is cut.
     pub until_cut: Option<u32>,
-    /// A word that power was cut in cannot be read; otherwise it is half of what was to be written.
+    /// A word interrupted by a power cut is unreadable; otherwise half of it is written.
     pub has_check_bits: bool,
 }
 
@@ -128,7 +128,7 @@ impl Flash {
         Self::with([Some([0xff; RECORD_BYTES]); 2])
     }
 
-    /// With a memory that is kept.
+    /// Flash with a stored memory.
     pub fn holding(memory: &Memory) -> Self {
         let flash = Self::empty();
         KeptMemory::open(flash.clone()).keep(memory);
@@ -140,14 +140,15 @@ impl Flash {
         self.0.lock().expect("no test panics in between")
     }
 
-    /// What a board would find there.
+    /// Memory that a board would find.
     pub fn kept(&self) -> Option<Memory> {
         KeptMemory::open(self.clone()).recall()
     }
 }
 
 impl Cells {
-    /// Whether an operation is whole (`Some(true)`), cut in its midst, or not begun.
+    /// Returns `Some(true)` if an operation is complete, `Some(false)` if it is cut midway, `None` if it does not
+    /// begin.
     fn begin(&mut self) -> Option<bool> {
         let Some(left) = &mut self.until_cut else { return Some(true) };
         let now = *left;
@@ -212,15 +213,15 @@ where
     receiver: Receiver,
     pub wire: Rc<RefCell<Wire>>,
     pub enable: Rc<Cell<bool>>,
-    /// How often the output was switched on.
+    /// Number of times that the output was switched on.
     pub switched_on: Rc<Cell<u32>>,
     pub flash: Flash,
     pub kept: KeptMemory<Flash>,
-    /// How far the run is, as tick and idle tell one another.
+    /// Counters shared by tick and idle.
     pub progress: &'static Progress,
-    /// What the line's interrupt has heard of the host.
+    /// Counts of the line's interrupt.
     pub heard: &'static Heard,
-    /// First look at the timer in a tick, and what each look adds.
+    /// First timer value in a tick, and increment per read.
     pub timing: (u32, u32),
 }
 
@@ -244,12 +245,12 @@ impl<W: Work> TestBoard<W>
 where
     W::Protocol: Protocol<Command: 'static, Sample: 'static> + 'static,
 {
-    /// With a role's work.
+    /// Board with a role's work.
     pub fn with(work: W) -> Self {
         Self::with_flash(work, Flash::empty())
     }
 
-    /// With a role's work, and what is in flash.
+    /// Board with a role's work and this flash.
     pub fn with_flash(work: W, flash: Flash) -> Self {
         let wire = Rc::new(RefCell::new(Wire::default()));
         let (enable, switched_on) = (Rc::new(Cell::new(true)), Rc::new(Cell::new(0)));
@@ -297,7 +298,7 @@ where
         self.send_bytes(&encode(message).unwrap());
     }
 
-    /// Idle and serial line, until neither has anything to do.
+    /// Runs idle and serial line until neither has work.
     pub fn settle(&mut self) {
         let mut nothing_to_do = 0;
         while nothing_to_do < 200 {
@@ -311,7 +312,7 @@ where
         }
     }
 
-    /// The serial line's interrupt until nothing is left in the UART, without idle.
+    /// Runs the serial interrupt until the UART is empty, without idle.
     pub fn hear(&mut self) {
         while !self.wire.borrow().to_board.is_empty() {
             self.serial.service();
@@ -322,7 +323,7 @@ where
         self.control.tick(&Timer::new(self.timing.0, self.timing.1));
     }
 
-    /// Ticks, with idle in between.
+    /// Runs ticks, with idle in between.
     pub fn run(&mut self, ticks: u32) {
         for _ in 0..ticks {
             self.settle();
@@ -331,13 +332,13 @@ where
         self.settle();
     }
 
-    /// What the board has said since the last call.
+    /// Returns the board's messages since the last call.
     pub fn said(&mut self) -> Vec<FromBoard> {
         let bytes: Vec<u8> = self.wire.borrow_mut().from_board.drain(..).collect();
         bytes.into_iter().filter_map(|byte| self.receiver.push(byte)).collect()
     }
 
-    /// A run from rest; takes the hello that answers.
+    /// Starts a run from rest and takes the answering hello.
     pub fn start(&mut self, mode: RunMode, decimation: u16, command_timeout: u32) {
         self.send(&ToBoard::Reset(RunSettings { mode, decimation, command_timeout, from_memory: false }));
         self.run(2);

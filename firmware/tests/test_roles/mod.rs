@@ -1,4 +1,4 @@
-//! The three roles on boards without hardware, and schedules that any of them takes.
+//! The three roles on boards without hardware, with schedules for each.
 
 use std::ops::Range;
 
@@ -29,19 +29,19 @@ pub fn controller() -> Controller<'static, f32> {
     Controller::new(&control::OBSERVER, &control::COMPENSATION)
 }
 
-/// A turn of the link by and by, from a tick on.
+/// Slow turn of the link from a tick on.
 pub fn knot(tick: u32) -> Knot {
     let trajectory = WireTrajectory::Position((0, [1e-4 * tick as f32, 0.5, 0.0, 0.0, 0.0, 0.0]), None);
     Knot { tick, load_torque: 0.5, trajectory }
 }
 
-/// A role whose work can be scheduled without knowing which it is.
+/// Role that can be scheduled by generic tests.
 pub trait TestRole: Work<Protocol: Protocol<Command: 'static, Sample: 'static> + 'static> + 'static {
     /// Most commands in one schedule.
     const MOST: u32;
-    /// At rest.
+    /// Role at rest.
     fn work() -> Self;
-    /// A command for each of these ticks, of which there are at most [`TestRole::MOST`].
+    /// Schedule with a command for each of these ticks, at most [`TestRole::MOST`].
     fn schedule(sequence: u16, horizon: u32, ticks: Range<u32>) -> ToBoard;
 }
 

@@ -1,5 +1,5 @@
-//! What a closed loop on the drive train is made of and judged by: controllers behind one trait, the rivals that
-//! compensation is measured against, motions, what happened, and figures of merit.
+//! Closed loop on the drive train: controllers behind one trait, rivals of the compensation, motions, records of runs,
+//! and figures of merit.
 
 mod metrics;
 mod profile;
@@ -15,42 +15,42 @@ pub use sensing::{LinkTracker, MotorTracker};
 
 use crate::drive_train::Measurement;
 
-/// Where the link shall be at one moment.
+/// Wanted motion of the link at one time.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Motion {
-    /// [rad].
+    /// Position [rad].
     pub position: f64,
-    /// [rad/s].
+    /// Speed [rad/s].
     pub speed: f64,
-    /// [rad/s^2].
+    /// Acceleration [rad/s^2].
     pub acceleration: f64,
 }
 
-/// What a controller is asked for in one control period.
+/// Set-point of a controller in one control period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SetPoint {
     /// Follow a position.
     Position {
-        /// Now.
+        /// Present motion.
         now: Motion,
-        /// The same one preview time later, for controllers that were promised one.
+        /// Motion one preview time later, for controllers with preview.
         ahead: Option<Motion>,
     },
-    /// Behave as a spring and damper about a moving point.
+    /// Act as a spring and damper about a moving point.
     Impedance {
         /// Moving point; its acceleration is not sent.
         about: Motion,
-        /// Torque on top [N m].
+        /// Feedforward torque [N m].
         torque: f64,
-        /// [N m/rad].
+        /// Stiffness [N m/rad].
         stiffness: f64,
-        /// [N m s/rad].
+        /// Damping [N m s/rad].
         damping: f64,
     },
 }
 
 impl SetPoint {
-    /// The motion asked for now.
+    /// Returns the present wanted motion.
     pub fn motion(&self) -> Motion {
         match *self {
             Self::Position { now, .. } => now,
@@ -59,9 +59,9 @@ impl SetPoint {
     }
 }
 
-/// A controller of the joint, once a control period.
+/// Controller of the joint, called once per control period.
 pub trait Controller {
-    /// Motor torque for the period that begins now [N m].
+    /// Returns the motor torque for the period that begins [N m].
     fn period(&mut self, measurement: &Measurement, set_point: &SetPoint) -> f64;
 }
 

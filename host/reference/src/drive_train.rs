@@ -1,25 +1,25 @@
-//! The drive train around the joint: motor with current loop, frictions, gravity, efficiency, encoders, disturbances,
-//! advanced one control period at a time with the reference inside. Controllers and observers are what it is there to
-//! test, so there is none in it.
+//! Drive train around the reference joint: motor with current loop, frictions, gravity, efficiency, encoders,
+//! disturbances; advanced by one control period at a time. It contains no controller and no observer, since it serves
+//! to test them.
 //!
-//! Within a control period time is cut into `parts_per_period` equal parts (10 us for Q1). Over each part every torque
-//! is held at its value from the angles and speeds at the part's beginning, friction so that it sticks instead of
-//! chattering; the joint itself moves by the reference's own adaptive steps. All randomness comes from one seed.
+//! A control period is divided into `parts_per_period` equal parts (10 us for Q1). In each part every torque is
+//! constant, computed from angles and speeds at the start of the part; friction sticks instead of chattering. The joint
+//! moves by the reference's adaptive steps. All randomness comes from one seed.
 //!
-//! Backlash and dry friction that vary take their values once a control period, at its beginning: with the time t, the angles of link and
-//! motor and the amplitudes a and phases p of the two variations, the half-backlash of every mesh is
+//! Varying backlash and dry friction are updated at the start of each control period. With time t, angles of link and
+//! motor, amplitudes a and phases p of the two variations, the half-backlash of every mesh is
 //!
 //! ```text
 //! b max(0, 1 + drift t) (1 + a_l sin(theta_l + p_l) + a_m sin(theta_m + p_m))   (W1)
 //! ```
 //!
-//! and both dry frictions are multiplied by max(0, 1 + drift t). Control period k begins at (k + j u_k) T with the period T, the jitter j
-//! and u_k drawn evenly from 0 to 1; the first period begins at 0.
+//! Both dry frictions are multiplied by max(0, 1 + drift t). Control period k begins at (k + j u_k) T with period T,
+//! jitter j and u_k uniformly distributed in 0 to 1; the first period begins at 0.
 //!
-//! Losses that grow with the load sit at the sun: dry friction of (1/efficiency - 1) times the torque that the
-//! sun-planet meshes carry while the motor drives, and (1 - efficiency) times it while the load drives. A gear of an efficiency
-//! below 1/2 locks itself, as a worm does: of the load's torque 2 - 1/efficiency would arrive at the motor, which is nothing,
-//! and the loss while the load drives is 1/efficiency - 1 too, more than the torque that the meshes carry.
+//! Load-dependent losses act at the sun as dry friction: (1/efficiency - 1) times the torque of the sun-planet meshes
+//! while the motor drives, (1 - efficiency) times this torque while the load drives. A gear with an efficiency below
+//! 1/2 is self-locking, as a worm gear: the part 2 - 1/efficiency of the load's torque that would reach the motor is
+//! negative, and the loss while the load drives is also 1/efficiency - 1, more than the torque of the meshes.
 
 mod bristles;
 mod current_loop;
@@ -46,19 +46,19 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::joint::{Observation, Reference, Start};
 
-/// What a controller is given.
+/// Encoder counts available to a controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Measurement {
-    /// Control periods since the start.
+    /// Number of control periods since the start.
     pub period: u64,
-    /// Motor encoder, whole turns included.
+    /// Counts of the motor encoder, whole turns included.
     pub motor_counts: i64,
-    /// Output encoder, whole turns included.
+    /// Counts of the output encoder, whole turns included.
     pub output_counts: i64,
 }
 
 impl Measurement {
-    /// The same with counts from where the encoders were homed.
+    /// Returns the measurement with counts relative to the homing position.
     pub fn homed(self, home: &Self) -> Self {
         Self {
             motor_counts: self.motor_counts - home.motor_counts,
@@ -68,26 +68,26 @@ impl Measurement {
     }
 }
 
-/// What no controller is given: the torques of the last part of time [N m].
+/// True torques during the last part of a period, hidden from controllers [N m].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct TrueTorques {
-    /// In the motor's air gap.
+    /// Air-gap torque of the motor.
     pub air_gap: f64,
-    /// Cogging, driving.
+    /// Cogging torque, positive driving.
     pub cogging: f64,
-    /// Friction at the motor with the gears' load-dependent losses, braking.
+    /// Friction at the motor including load-dependent gear losses, positive braking.
     pub motor_friction: f64,
-    /// Friction at the link, braking.
+    /// Friction at the link, positive braking.
     pub load_friction: f64,
-    /// Weight of the link, braking.
+    /// Weight of the link, positive braking.
     pub gravity: f64,
-    /// Sum of the disturbances, braking.
+    /// Sum of the disturbances, positive braking.
     pub disturbance: f64,
-    /// Spring and damper of the payload, braking.
+    /// Torque of the payload's spring and damper, positive braking.
     pub payload: f64,
 }
 
-/// A joint with everything around it; `J` is the joint model.
+/// Joint with its drive train; `J` is the joint model.
 #[derive(Debug, Clone)]
 pub struct DriveTrain<J = Reference> {
     parameters: DriveTrainParameters,
@@ -102,32 +102,32 @@ pub struct DriveTrain<J = Reference> {
     payload: Option<SwingingPayload>,
     motor_bristles: Option<Bristles>,
     load_bristles: Option<Bristles>,
-    /// Dry frictions over those at time zero.
+    /// Dry frictions relative to their values at time zero.
     friction_scale: f64,
-    /// Half-backlash over the one that the joint was made with or set to.
+    /// Half-backlash relative to its initial or last set value.
     width_scale: f64,
-    /// Inertia and weight of the link over those at time zero.
+    /// Inertia and weight of the link relative to their values at time zero.
     payload_scale: f64,
     jitter: ChaCha8Rng,
     parts_done: u64,
-    /// Length of a part of time without jitter [s].
+    /// Length of a part of a period without jitter [s].
     part: f64,
-    /// Start of the present control period and of the next one, beyond those without jitter [s].
+    /// Delays by jitter of the present and the next period's start [s].
     shifts: [f64; 2],
     delay_parts: u64,
     sun_radius: f64,
     carrier_lever: f64,
     motor_inertia: f64,
-    /// Inertia that the link's friction stops.
+    /// Inertia that the link's friction brakes.
     load_inertia: f64,
-    /// Inertia of the link that is not on a spring.
+    /// Inertia of the link without the payload on its spring.
     rigid_link_inertia: f64,
     compliant: bool,
     stepping: Stepping,
 }
 
 impl DriveTrain {
-    /// A drive train around the reference at time zero.
+    /// Drive train around the reference at time zero.
     pub fn new(
         joint: &JointParameters,
         start: &Start,
@@ -143,7 +143,7 @@ impl DriveTrain {
 }
 
 impl<J: JointModel> DriveTrain<J> {
-    /// A drive train around a joint that is at time zero. The hysteresis between carrier and link is the joint's own.
+    /// Drive train around a joint model at time zero. The joint model includes the hysteresis between carrier and link.
     pub fn around(
         mut joint_model: J,
         joint: &JointParameters,
@@ -219,12 +219,12 @@ impl<J: JointModel> DriveTrain<J> {
         Ok(train)
     }
 
-    /// The same drive train, its joint stepped as stated.
+    /// Returns the drive train with another integration of its joint.
     pub fn stepped(self, stepping: Stepping) -> Self {
         Self { stepping, ..self }
     }
 
-    /// Moves on by one control period under a torque command [N m].
+    /// Advances by one control period under a torque command [N m].
     pub fn advance(&mut self, command: f64) -> Result<(), DriveTrainError> {
         self.current_loop.command(command, self.parts_done + self.delay_parts);
         self.begin_period();
@@ -244,7 +244,7 @@ impl<J: JointModel> DriveTrain<J> {
         Ok(())
     }
 
-    /// Draws where the next period begins and takes what varies: backlash, friction, and the link's inertia.
+    /// Draws the start of the next period and updates backlash, friction and link inertia.
     fn begin_period(&mut self) {
         let around = &self.parameters.surroundings;
         let period = self.part * f64::from(self.parameters.parts_per_period);
@@ -276,23 +276,23 @@ impl<J: JointModel> DriveTrain<J> {
         }
     }
 
-    /// Time after so many parts, of which this many belong to the present control period [s].
+    /// Time after `parts` parts, `of_period` of them in the present control period [s].
     fn moment(&self, parts: f64, of_period: f64) -> f64 {
         let [begin, end] = self.shifts;
         parts * self.part + (begin + (end - begin) * of_period / f64::from(self.parameters.parts_per_period))
     }
 
-    /// Delay of the present control period's start, as the jitter of the control loop has it [s].
+    /// Delay of the present period's start by the jitter of the control loop [s].
     pub fn lateness(&self) -> f64 {
         self.shifts[1]
     }
 
-    /// Half-backlash over the one that the joint was made with or set to, as it varies around the turn and over time [-].
+    /// Half-backlash relative to its initial or last set value, as it varies around the turn and over time [-].
     pub fn width_scale(&self) -> f64 {
         self.width_scale
     }
 
-    /// What a controller is given now.
+    /// Returns the present measurement.
     pub fn measure(&self) -> Measurement {
         Measurement {
             period: self.parts_done / u64::from(self.parameters.parts_per_period),
@@ -301,22 +301,22 @@ impl<J: JointModel> DriveTrain<J> {
         }
     }
 
-    /// The joint as it truly is now.
+    /// Returns the true state of the joint.
     pub fn joint(&self) -> &Observation {
         &self.joint
     }
 
-    /// The joint model, for tests that change it during a run.
+    /// Joint model, for tests that change it during a run.
     pub fn joint_model(&mut self) -> &mut J {
         &mut self.joint_model
     }
 
-    /// Torques of the last part of time.
+    /// Returns the torques during the last part.
     pub fn torques(&self) -> TrueTorques {
         self.torques
     }
 
-    /// Torques of a part of the present control period.
+    /// Torques during a part of the present control period.
     fn torques_now(&mut self, part_of_period: u32) -> TrueTorques {
         let parts = f64::from(self.parameters.parts_per_period);
         let part = self.part + (self.shifts[1] - self.shifts[0]) / parts;
@@ -340,7 +340,7 @@ impl<J: JointModel> DriveTrain<J> {
         };
 
         let gravity = self.payload_scale * around.gravity_torque * joint.link_angle.sin();
-        // The middle of the part stands for the whole of it.
+        // The value at the middle of the part is used for all of it.
         let disturbance = self.disturbances.iter().map(|disturbance| disturbance.torque(middle_of_part)).sum::<f64>();
         let payload =
             self.payload.as_mut().map_or(0.0, |payload| payload.advance(joint.link_angle, joint.link_speed, part));

@@ -1,8 +1,8 @@
-//! Integration of a switched system: smooth within a discrete mode, restarted at every event that changes the mode (a tooth
-//! touches or parts). It depends on no gears and no units, and keeps no history.
+//! Integrator of a switched system: smooth within a discrete mode, restarted at every event that changes the mode
+//! (teeth touch or part). Independent of gears and units; keeps no history.
 //!
-//! `system` defines the system, `guard` the functions whose zeros are events; `adaptive` takes steps of
-//! `dormand_prince` as long as the error allows, and `event` finds where one must end.
+//! `system` defines the system, `guard` the functions whose zeros are events; `adaptive` takes error-controlled steps
+//! of `dormand_prince`, and `event` finds the event at which a step must end.
 
 mod adaptive;
 mod dormand_prince;

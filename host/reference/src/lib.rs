@@ -1,6 +1,6 @@
-//! What the core is judged against: an independent f64 reference of the paper's equations, a drive train around it,
-//! rival controllers and named scenarios. It reads parameters as plain data and never calls the core, so that one mistake
-//! cannot sit in both.
+//! Reference for tests of the core: the paper's equations in f64, a drive train around them, rival controllers and
+//! named scenarios. This crate reads parameters as plain data and never calls the core, so that both cannot share a
+//! bug.
 
 pub mod closed_loop;
 pub mod drive_train;

@@ -1,5 +1,4 @@
-//! Named scenarios as data: a joint, where it starts and what torques act tick by tick, and the reference's trajectory
-//! through them.
+//! Named scenarios as data (joint, start, torques per tick) and the reference's trajectory through them.
 
 pub mod case_r;
 mod cases;
@@ -16,50 +15,51 @@ pub use random_joints::random_joint;
 use crate::integrator::Counters;
 use crate::joint::{Observation, Reference, ReferenceError, RelativeState, Start};
 
-/// Torques from one tick on, until the next segment begins.
+/// Torques from a tick on, until the next segment begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TorqueSegment {
-    /// First tick that the torques act in.
+    /// First tick under these torques.
     pub from_tick: u64,
-    /// On the sun [N m].
+    /// Torque on the sun [N m].
     pub drive_torque: f64,
-    /// Braking the link [N m].
+    /// Torque that brakes the link [N m].
     pub load_torque: f64,
 }
 
-/// A joint and what happens to it.
+/// Joint, start and torques of a scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
-    /// For reports.
+    /// Name in reports.
     pub name: String,
-    /// The joint.
+    /// Parameters of the joint.
     pub joint: JointParameters,
-    /// Its state at tick 0.
+    /// State at tick 0.
     pub start: Start,
-    /// Torques, in order of ticks; none act before the first.
+    /// Torques in order of ticks; zero before the first segment.
     pub torques: Vec<TorqueSegment>,
-    /// Ticks in one second [Hz].
+    /// Tick rate [Hz].
     pub tick_rate: u32,
-    /// Length.
+    /// Length [ticks].
     pub ticks: u64,
     /// Ticks between two samples of `run`.
     pub sample_every: u64,
-    /// Whether single mesh deflections can be compared at all: false where a vanishing change of the start grows to a
-    /// visible part of the motion (chaos, or rattling planets).
+    /// `true` if single mesh deflections are comparable; `false` where a vanishing change of the start grows to a
+    /// visible part of the motion (chaos, rattling planets).
     pub predictable: bool,
 }
 
-/// What the reference did.
+/// Trajectory of the reference.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
-    /// The first sample is the start.
+    /// Samples, beginning with the start.
     pub samples: Vec<Observation>,
     /// Cost of the run.
     pub counters: Counters,
 }
 
 impl Scenario {
-    /// No torques and no length yet, at 20,000 ticks a second, each of them sampled; taken for predictable.
+    /// Scenario without torques and of length zero, at 20,000 ticks per second, each tick sampled, marked as
+    /// predictable.
     pub fn new(name: impl Into<String>, joint: JointParameters, start: RelativeState) -> Self {
         Self {
             name: name.into(),
@@ -73,38 +73,38 @@ impl Scenario {
         }
     }
 
-    /// Drive and load torque during a tick [N m].
+    /// Returns drive and load torque during a tick [N m].
     pub fn torques_at(&self, tick: u64) -> (f64, f64) {
         let segment = self.torques.iter().rev().find(|segment| segment.from_tick <= tick);
         segment.map_or((0.0, 0.0), |segment| (segment.drive_torque, segment.load_torque))
     }
 
-    /// Time at the beginning of a tick [s].
+    /// Time at the start of a tick [s].
     pub fn time_of(&self, tick: u64) -> f64 {
         tick as f64 / f64::from(self.tick_rate)
     }
 
-    /// The scenario's length [s].
+    /// Length of the scenario [s].
     pub fn duration(&self) -> f64 {
         self.time_of(self.ticks)
     }
 }
 
 impl Trajectory {
-    /// One signal over all samples.
+    /// Returns one signal over all samples.
     pub fn signal(&self, of: impl Fn(&Observation) -> f64) -> Vec<f64> {
         self.samples.iter().map(of).collect()
     }
 }
 
-/// Follows a scenario, sampling at tick 0 and then every `sample_every` ticks.
+/// Runs a scenario; samples at tick 0 and then every `sample_every` ticks.
 pub fn run(scenario: &Scenario) -> Result<Trajectory, ReferenceError> {
     let every = scenario.sample_every.max(1);
     let times: Vec<f64> = (0..=scenario.ticks / every).map(|sample| scenario.time_of(sample * every)).collect();
     run_at(scenario, &times)
 }
 
-/// Follows a scenario, sampling at the stated times [s] in rising order, on the tick grid or not.
+/// Runs a scenario; samples at the stated rising times [s], on the tick grid or off it.
 pub fn run_at(scenario: &Scenario, times: &[f64]) -> Result<Trajectory, ReferenceError> {
     let mut reference = Reference::start(&scenario.joint, &scenario.start)?;
     let mut samples = Vec::with_capacity(times.len());

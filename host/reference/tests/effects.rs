@@ -1,5 +1,5 @@
-//! Effects of real joints in the drive train, one at a time: each test has an ideal train with one effect and a figure that follows from
-//! it in closed form.
+//! Effects of real joints in the drive train, tested one at a time: each test adds one effect to an ideal train and
+//! checks a figure that follows from it in closed form.
 
 use std::f64::consts::{PI, TAU};
 
@@ -43,7 +43,7 @@ fn statistics(values: &[f64]) -> [f64; 2] {
     [mean, (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()]
 }
 
-/// Inertia of Q1's link with all that turns with it while the teeth are free, its motor left out [kg m^2].
+/// Inertia of Q1's link and everything that turns with it while the teeth are free, without the motor [kg m^2].
 fn carrier_side(joint: &JointParameters) -> f64 {
     let (cosine, planets) = (joint.geometry.working_pressure_angle.cos(), joint.geometry.planets as f64);
     let lever = joint.geometry.carrier_radius * cosine;
@@ -51,7 +51,7 @@ fn carrier_side(joint: &JointParameters) -> f64 {
     carrier / (cosine * cosine) * lever * lever
 }
 
-/// All inertia of Q1 referred to its link [kg m^2].
+/// Total inertia of Q1 referred to the link [kg m^2].
 fn whole(joint: &JointParameters, link_inertia: f64) -> f64 {
     let lever = joint.geometry.carrier_radius * joint.geometry.working_pressure_angle.cos();
     let motor = joint.rotor_inertia + joint.bodies.sun_equivalent_mass * joint.geometry.sun_base_radius.powi(2);
@@ -167,7 +167,7 @@ fn an_effect_that_is_added_leaves_the_random_numbers_of_the_others() {
     assert_eq!(run(base), run(more));
 }
 
-/// Largest less smallest gap coordinate while the motor is pushed to and fro and the link is held by its friction [m].
+/// Peak-to-peak gap coordinate while the motor is pushed to and fro and the link is held by its friction [m].
 fn free_width(train: &mut DriveTrain) -> f64 {
     let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
     for push in [0.2, -0.2] {
@@ -178,7 +178,7 @@ fn free_width(train: &mut DriveTrain) -> f64 {
     ends[1] - ends[0]
 }
 
-/// The link of Q1 held by its friction, and a motor that comes to rest on a flank.
+/// Q1 with its link held by friction and a motor that comes to rest on a flank.
 fn held() -> Surroundings {
     Surroundings {
         load_friction: Friction { coulomb: 5.0, ..Friction::default() },
@@ -206,7 +206,7 @@ fn the_backlash_varies_around_the_turn_of_the_motor() {
         Surroundings { width: WidthVariation { per_link_turn: 0.0, per_motor_turn: 0.2 }, ..Surroundings::ideal() };
     let mut train = train(1.0, around);
     for _ in 0..2000 {
-        // The width of a period is that at its beginning.
+        // The width is constant within a period, at its initial value.
         let expected = 1.0 + 0.2 * train.joint().motor_angle.sin();
         train.advance(0.0).expect("it runs");
         near(train.width_scale(), expected, 1e-12);
@@ -302,7 +302,7 @@ fn a_payload_swings_against_the_link_as_two_masses_do() {
             payload: Payload { inertia_share: share, frequency, damping_ratio },
             ..Surroundings::ideal()
         };
-        // To and fro, so that the link is left without a mean speed and its teeth stay in the gap.
+        // To and fro, so that the link keeps no mean speed and the teeth stay in the gap.
         let push = |start, torque| Disturbance::Pulse { start, duration: 2e-3, torque };
         let mut train = train_of(&joint, 0.0, around, vec![push(0.0, 1.0), push(0.004, -1.0)]);
         let mut speeds = Vec::new();
@@ -313,7 +313,7 @@ fn a_payload_swings_against_the_link_as_two_masses_do() {
                 speeds.push(train.joint().link_speed);
             }
         }
-        // Mean speed is what the pushes leave: none.
+        // The pushes leave no mean speed.
         let rest = (1.0 - share) * joint.link_inertia + carrier_side(&joint);
         let stiffer = (1.0 + share * joint.link_inertia / rest).sqrt();
         let [found, ratio] = swing(&speeds, PERIOD);
@@ -351,7 +351,8 @@ fn a_payload_step_changes_inertia_and_weight() {
     near(weight(&mut train, 500), 6.0, 1e-3);
 }
 
-/// Q1 without a gap, wound up slowly to and fro; returns the loss in a cycle [J], the largest wind-up [rad], and the largest gap in the books of energy [J].
+/// Q1 without a gap, wound up slowly to and fro; returns the loss per cycle [J], the largest wind-up [rad], and the
+/// largest error of the energy balance [J].
 fn wind_up_cycle(hysteresis: Hysteresis, stepping: Stepping) -> [f64; 3] {
     let mut joint = q1();
     for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
@@ -482,8 +483,8 @@ fn effects_out_of_range_are_refused_by_name() {
     }
 }
 
-/// A gear of an efficiency below 1/2 locks itself: a pull at the link crosses the gap, and the motor stays where it is. Above it the
-/// pull turns the motor, which gets what the losses leave.
+/// A gear with an efficiency below 1/2 is self-locking: a pull at the link crosses the gap, and the motor does not
+/// move. Above 1/2 the pull turns the motor, which receives the torque less the losses.
 #[test]
 fn a_self_locking_gear_holds_the_link_with_the_motor_off() {
     let joint = q1();
@@ -497,7 +498,7 @@ fn a_self_locking_gear_holds_the_link_with_the_motor_off() {
                 train.advance(0.0).expect("a step");
             }
             let Observation { motor_angle, link_angle, .. } = *train.joint();
-            // Twice the wind-up, since the link swings into it, and half the gap on this side.
+            // Twice the wind-up, since the link overshoots, and half the gap on this side.
             let wind_up = 2.0 * pull / joint.compliance.expect("Q1 is compliant").stiffness;
             let held = link_angle.abs() < lost_motion + wind_up + 1e-3 && motor_angle.abs() < 0.05;
             assert_eq!(held, holds, "{efficiency}, {torque} N m: motor {motor_angle} rad, link {link_angle} rad");

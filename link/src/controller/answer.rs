@@ -1,5 +1,5 @@
-//! Outputs of a control period in the wire's own form: the shaped set-point, and all estimates where they were asked for.
-//! Every field is SI.
+//! Wire form of the outputs of a control period: the compensation's outputs, and all estimates if requested. Every
+//! field is SI.
 
 use model_core::compensation::{Shaped, Stage};
 use model_core::controller::Answer;
@@ -13,28 +13,28 @@ use serde::{Deserialize, Serialize};
 /// Outputs of a control period.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Answered {
-    /// Control periods done.
+    /// Completed control periods.
     pub tick: u32,
     /// Running digest over every answer so far.
     pub digest: u64,
-    /// The shaped set-point: the torque for the motor, and the stage of the compensation.
+    /// Compensation outputs: motor torque, stage and diagnostics.
     pub shaped: WireShaped,
-    /// All estimates, if they were asked for.
+    /// All estimates, if requested.
     pub estimates: Option<WireEstimates>,
-    /// Where the width probe stands, in a period of one.
+    /// Progress of the width probe, in a period of a probe.
     pub probed: Option<WireProbed>,
-    /// Computation time of this period, in timer counts.
+    /// Computation time of this period [timer counts].
     pub computation: u16,
 }
 
-/// Where a width probe stands.
+/// Progress of a width probe.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum WireProbed {
-    /// It goes on.
+    /// The probe is running.
     Running,
-    /// The half-backlash [m].
+    /// Measured half-backlash [m].
     Done(WireEstimate),
-    /// No width: 0 the motor was turning, 1 loaded, 2 not held, 3 stuck, 4 unsteady, 5 bad samples.
+    /// Reason for a refusal: 0 motor not at rest, 1 loaded, 2 link not held, 3 stuck, 4 unsteady, 5 bad samples.
     Refused(u8),
 }
 
@@ -65,50 +65,50 @@ impl From<WireProbed> for Progress<f32> {
     }
 }
 
-/// The compensation's answer.
+/// Outputs of the compensation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WireShaped {
-    /// Torque for the motor [N m].
+    /// Motor torque [N m].
     pub torque: f32,
-    /// 0 touching, 1 crossing, 2 landing, 3 plain, 4 off, 5 reversed.
+    /// Stage: 0 touching, 1 crossing, 2 landing, 3 plain, 4 off, 5 reversed.
     pub stage: u8,
-    /// The flank in use: 1 the drive flank, -1 the back flank, 0 none.
+    /// Flank in use: 1 drive flank, -1 back flank, 0 none.
     pub side: f32,
-    /// Torque that the teeth will have to pass on [N m].
+    /// Demanded torque through the teeth [N m].
     pub demand: f32,
-    /// What brakes the link besides dry friction, and the dry friction [N m].
+    /// Load torque without dry friction, and dry friction [N m].
     pub load: [f32; 2],
-    /// Share of the compensation.
+    /// Share of the compensation in the torque, 0 to 1.
     pub trust: f32,
-    /// The law asked for more torque than there is, or brakes early because of that.
+    /// The law demands more torque than the limit, or brakes early because of the limit.
     pub short_of_torque: bool,
-    /// The loop hunted: the motor alone is controlled for a while.
+    /// The loop hunted and is left to plain control for a while.
     pub stepped_back: bool,
 }
 
-/// A value, its variance, and whether it may be used.
+/// Value, variance, validity.
 pub type WireEstimate = (f32, f32, bool);
 
-/// The observer's answer.
+/// Estimates of the observer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WireEstimates {
-    /// 0 both encoders; motor only, because the output's is 1 absent, 2 silent, 3 frozen, 4 out of range; nothing, because the
-    /// motor's is 5 silent, 6 late, 7 frozen, 8 jumped; 9 motor only, because the output
-    /// has given no reading yet.
+    /// Source of the estimates: 0 both encoders; motor only, because the output encoder is 1 absent, 2 silent, 3
+    /// frozen, 4 out of range, 9 without a first reading; none, because the motor encoder is 5 silent, 6 late, 7
+    /// frozen, 8 jumped.
     pub source: u8,
-    /// Bits, the first lowest: torque unknown, out of time, motor implausible, motor jumped, contact valid, settled, torque
-    /// or motor encoder reversed.
+    /// Flags from bit 0 on: torque unknown, out of time, motor implausible, motor jumped, contact valid, settled,
+    /// torque or motor encoder reversed.
     pub flags: u8,
-    /// Contact by force and as reported: 0 separated, 1 drive side, 2 back side.
+    /// Contact by force and reported contact: 0 separated, 1 drive side, 2 back side.
     pub contacts: (u8, u8),
-    /// [m].
+    /// Gap coordinate [m].
     pub gap: WireEstimate,
-    /// Rate of the gap coordinate [m/s], shift of both flanks [m], its slope [m/rad].
+    /// Rate of the gap coordinate [m/s], shift of both flanks [m], slope of the shift [m/rad].
     pub gap_course: [f32; 3],
-    /// Mesh torque, load torque [N m], half-backlash [m], encoder offset [rad], compliance [rad/(N m)], skew [s], torque
-    /// bias, motor friction [N m], inertia of the link over the designed one.
+    /// Mesh torque, load torque [N m], half-backlash [m], encoder offset [rad], compliance [rad/(N m)], skew [s],
+    /// torque bias, motor friction [N m], ratio of the link inertia to the designed one.
     pub others: [WireEstimate; 9],
-    /// Motor and link: whole turns, the rest, speed [rad/s].
+    /// Motor and link: whole turns, fraction, speed [rad/s].
     pub shafts: [(i32, f32, f32); 2],
 }
 
@@ -250,7 +250,7 @@ impl From<WireEstimates> for Estimates<f32> {
             skew,
             torque_bias,
             motor_friction,
-            // Only the compensation on the board needs it: it is not sent.
+            // Used by the compensation on the board only; not sent.
             cogging: [0.0; 2],
             half_backlash_usable: false,
             motor_lead: 0.0,
@@ -262,7 +262,7 @@ impl From<WireEstimates> for Estimates<f32> {
 }
 
 impl Answered {
-    /// The answer, if it contains the estimates.
+    /// Returns the answer, if it contains the estimates.
     pub fn answer(&self) -> Option<Answer<f32>> {
         let probed = self.probed.map(Progress::from);
         Some(Answer { estimates: self.estimates?.into(), shaped: self.shaped.into(), probed })

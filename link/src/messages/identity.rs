@@ -5,96 +5,96 @@ use serde::{Deserialize, Serialize};
 
 use super::MemoryState;
 
-/// Who the board is and what it runs.
+/// Identity of a board and of its image.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Hello {
-    /// The board's [`crate::PROTOCOL_VERSION`].
+    /// [`crate::PROTOCOL_VERSION`] of the board.
     pub protocol: u16,
-    /// Major, minor, patch.
+    /// Firmware version: major, minor, patch.
     pub firmware_version: [u8; 3],
-    /// What the image is for.
+    /// Role of the image.
     pub role: Role,
-    /// Board that the image was built for: the name in its board file, such as `olimex-h405`.
+    /// Board of the image: the name in its board file, such as `olimex-h405`.
     pub board: String<16>,
-    /// Name of the joint that the image was built from.
+    /// Joint of the image.
     pub joint: String<32>,
-    /// Digest over parameters and tables.
+    /// Digest over the joint's parameters and tables.
     pub joint_digest: u64,
-    /// The board's own check of its tables against that digest.
+    /// Result of the board's check of its tables against `joint_digest`.
     pub digest_good: bool,
-    /// Fixed steps a second [Hz].
+    /// Rate of fixed steps [Hz].
     pub tick_rate: u32,
-    /// Timer counts a second, the unit of every time in [`Statistics`] [Hz].
+    /// Timer rate; its count is the unit of every time in [`Statistics`] [Hz].
     pub timer_rate: u32,
-    /// What the core clock is made of.
+    /// Source and tolerance of the core clock.
     pub clock: Clock,
     /// Number of planets.
     pub planets: u8,
-    /// Commands that the queue can hold.
+    /// Capacity of the command queue.
     pub queue_capacity: u16,
-    /// Message left by a panic before the last reset.
+    /// Message that a panic left before the last reset.
     pub last_panic: Option<String<96>>,
     /// The last reset came from the watchdog.
     pub watchdog_reset: bool,
-    /// Digest over the tables of observer, compensation and surroundings, for the roles that have them.
+    /// Digest over the tables of observer, compensation and surroundings, in roles with a controller.
     pub control_digest: Option<u64>,
-    /// Validity of the memory that it keeps of earlier runs.
+    /// Validity of the saved memory of earlier runs.
     pub memory: MemoryState,
-    /// Its worst tick outlasts what the role may take of a period: it was built by force.
+    /// The worst-case tick exceeds the role's share of a period; the image was built with `--force`.
     pub forced: bool,
 }
 
-/// What an image is for.
+/// Role of an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Role {
-    /// The joint is simulated; torques in, motion out.
+    /// Simulated joint; torques in, motion out.
     Plant,
-    /// Observer and compensation beside a motor controller; samples and set-points in, estimates and torques out.
+    /// Observer and compensation for a motor controller; samples and set-points in, estimates and torques out.
     Observer,
-    /// The joint, its motor and both of them on one chip; a trajectory in, the motion out.
+    /// Joint, motor, observer and compensation on one chip; a trajectory in, the motion out.
     Loop,
 }
 
-/// What the core clock is made of, and how exact it is.
+/// Source of the core clock and its tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Clock {
-    /// Where it comes from.
+    /// Source.
     pub source: ClockSource,
-    /// The core clock, and with it every tick and time of the board, is exact to this [ppm]; 0 where it is not known.
+    /// Tolerance of the core clock and thus of every tick and time of the board [ppm]; 0 if unknown.
     pub tolerance: u32,
 }
 
 impl Clock {
-    /// A clock of which nothing is known.
+    /// Clock of unknown tolerance.
     pub const fn of(source: ClockSource) -> Self {
         Self { source, tolerance: 0 }
     }
 }
 
-/// Where the core clock comes from.
+/// Source of the core clock.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ClockSource {
-    /// The board's crystal and the PLL, as its board file says.
+    /// Crystal of the board file, with the PLL.
     Crystal,
-    /// A signal from elsewhere and the PLL, as its board file says.
+    /// External signal of the board file, with the PLL.
     Signal,
-    /// Internal oscillator and PLL: the board file names nothing else.
+    /// Internal oscillator and PLL: the board file names no external clock.
     Internal,
     /// Internal oscillator and PLL: the crystal or signal of the board file did not start.
     DidNotStart,
-    /// Internal oscillator and PLL: what came has another frequency than the board file says.
+    /// Internal oscillator and PLL: the external frequency differs from the board file.
     OtherFrequency {
-        /// As measured by the internal oscillator, 0 if too slow to be measured [Hz].
+        /// Frequency measured with the internal oscillator, 0 if too low to be measured [Hz].
         measured: u32,
     },
-    /// No PLL came up: the tick rate is not the stated one.
+    /// No PLL started: the tick rate is not the stated one.
     Failed,
-    /// No clock controller is there: an emulated board.
+    /// No clock controller: an emulated board.
     NotModelled,
 }
 
 impl ClockSource {
-    /// It is what the board file says of the world outside of the chip.
+    /// Returns `true` for the external clock of the board file.
     pub const fn is_external(self) -> bool {
         matches!(self, Self::Crystal | Self::Signal)
     }

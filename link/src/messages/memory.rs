@@ -1,5 +1,5 @@
-//! The memory of what a controller has learnt, on its way between a board and its host: saved in the board's
-//! flash, read, loaded and erased between runs.
+//! Memory of a controller's estimated parameters, exchanged between board and host between runs: saved in the board's
+//! flash, read, loaded and erased.
 
 use heapless::Vec;
 use model_core::observer::MEMORY_BYTES;
@@ -7,71 +7,71 @@ use serde::{Deserialize, Serialize};
 
 /// Frames that carry one memory.
 pub const MEMORY_PARTS: u8 = 2;
-/// Bytes in each of them.
+/// Bytes per frame.
 pub const PART_BYTES: usize = MEMORY_BYTES / MEMORY_PARTS as usize;
 
-/// A request about the memory. One that cannot be done is answered by
+/// Memory request. A request that cannot be carried out is answered by
 /// [`FromBoard::MemoryOutcome`](super::FromBoard::MemoryOutcome) with the reason.
 #[allow(clippy::large_enum_variant, reason = "a board has no allocator to box with")]
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum MemoryRequest {
-    /// Save what the controller has learnt to flash. Answered by
+    /// Save the controller's estimated parameters to flash. Answered by
     /// [`FromBoard::MemoryOutcome`](super::FromBoard::MemoryOutcome).
     Save,
-    /// Read a part of what the flash page holds. Answered by [`FromBoard::Memory`](super::FromBoard::Memory).
+    /// Read a part of the flash content. Answered by [`FromBoard::Memory`](super::FromBoard::Memory).
     Read {
         /// Number of the part, from 0.
         part: u8,
     },
-    /// Load a part of a memory for runs that begin from one. The last part is answered by
-    /// [`FromBoard::MemoryChecked`](super::FromBoard::MemoryChecked), once the controller has checked the whole.
+    /// Load a part of a memory from which runs may begin. The last part is answered by
+    /// [`FromBoard::MemoryChecked`](super::FromBoard::MemoryChecked) once the controller has checked the whole memory.
     Load(MemoryPart),
-    /// Write the memory that was loaded last, and found good, to flash. Answered by
+    /// Write the last loaded memory to flash, if it is valid. Answered by
     /// [`FromBoard::MemoryOutcome`](super::FromBoard::MemoryOutcome).
     Write,
-    /// Discard it, in flash too. Answered by [`FromBoard::MemoryOutcome`](super::FromBoard::MemoryOutcome).
+    /// Discard the memory, also in flash. Answered by [`FromBoard::MemoryOutcome`](super::FromBoard::MemoryOutcome).
     Erase,
 }
 
-/// A part of a memory.
+/// Part of a memory.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MemoryPart {
-    /// Its number, from 0 to one less than [`MEMORY_PARTS`].
+    /// Number of the part, from 0 to one less than [`MEMORY_PARTS`].
     pub part: u8,
-    /// Its bytes: [`PART_BYTES`] of them.
+    /// Bytes of the part, [`PART_BYTES`] long.
     pub bytes: Vec<u8, PART_BYTES>,
 }
 
-/// Validity of the memory that a board has found in flash or was given.
+/// Validity of a memory found in flash or loaded by the host.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MemoryState {
-    /// None: the role learns nothing, or nothing was saved yet.
+    /// No memory: the role estimates no parameters, or none were saved yet.
     Nothing,
-    /// Valid: runs may begin from it.
+    /// Valid memory: runs may begin from it.
     Good,
-    /// Something that was never a memory.
+    /// Content that was never a memory.
     NotAMemory,
-    /// A memory of another version.
+    /// Memory of another version.
     WrongVersion,
-    /// A memory of which some was lost.
+    /// Damaged memory.
     Damaged,
-    /// A memory of another joint or of other encoders.
+    /// Memory of another joint or of other encoders.
     OtherJoint,
-    /// A memory with a number that is none, or that no joint of its design can have.
+    /// Memory with a value that is not finite or impossible for the joint's design.
     OutOfRange,
 }
 
-/// Outcome of a request about the memory.
+/// Outcome of a memory request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MemoryOutcome {
-    /// It is in flash, and reads as it was written.
+    /// The memory is in flash and was verified by reading back.
     Stored,
-    /// There is nothing to save: the role learns nothing, or no valid memory was loaded.
+    /// There is no memory: the role estimates no parameters, or no valid memory was loaded.
     Nothing,
-    /// A run goes on: stop it first, since writing flash may hold the board up for a second.
+    /// A run goes on: stop it first, since a flash write may block the board for a second.
     Running,
-    /// It does not read as it was written: there is no such flash, or it is worn.
+    /// Verification failed: there is no such flash, or it is worn.
     NotWritten,
-    /// The supply is too low to write flash: nothing was changed.
+    /// The supply voltage is too low to write flash; nothing was changed.
     LowSupply,
 }

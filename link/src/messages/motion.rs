@@ -1,5 +1,4 @@
-//! The motion of a simulated joint as a board reports it. The samples of the whole loop
-//! are in `virtual_joint`.
+//! Motion of a simulated joint. Samples of the role `loop` are in `virtual_joint`.
 
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
@@ -12,22 +11,22 @@ pub const MAX_MESHES: usize = 10;
 /// Consecutive samples.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SampleBatch {
-    /// Rises by one with every batch of a run, from 0 after a reset.
+    /// Sequence number; rises by one per batch of a run, from 0 after a reset.
     pub sequence: u16,
-    /// The samples, oldest first.
+    /// Samples, oldest first.
     pub samples: Vec<Sample, SAMPLES_PER_BATCH>,
 }
 
-/// The motion after a step.
+/// Motion after a step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
-    /// Steps done since the reset.
+    /// Steps since the reset.
     pub tick: u32,
     /// Running digest over the whole state after every step so far.
     pub state_digest: u64,
     /// Whole turns of the rigid-body carrier angle.
     pub carrier_turns: i32,
-    /// The rest of it, in 2^-32 turns.
+    /// Fraction of the rigid-body carrier angle [2^-32 turns].
     pub carrier_fraction: u32,
     /// Rate of the rigid-body carrier angle [rad/s].
     pub carrier_speed: f32,
@@ -41,8 +40,8 @@ pub struct Sample {
     pub wind_up: f32,
     /// Mesh deflections [m]: sun-planet of every planet, then ring-planet.
     pub deflections: Vec<f32, MAX_MESHES>,
-    /// Two bits a mesh in the same order: 0 separated, 1 drive side, 2 back side.
+    /// Contact states, two bits per mesh in the order of `deflections`: 0 separated, 1 drive side, 2 back side.
     pub contacts: u32,
-    /// Computation time of this step, in timer counts.
+    /// Computation time of this step [timer counts].
     pub computation: u16,
 }

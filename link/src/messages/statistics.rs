@@ -1,4 +1,4 @@
-//! Timing statistics of a board, its memory use, and what it lost. The host checks them against its limits.
+//! Timing statistics, memory use and losses of a board. The host checks them against its limits.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,13 +8,13 @@ pub const HISTOGRAM_BINS: usize = 32;
 /// Timing statistics since the last clearing. Times are timer counts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
-    /// Steps done.
+    /// Completed steps.
     pub ticks: u32,
     /// Computation time of the tick.
     pub computation: Timing,
-    /// From the timer's expiry to the first instruction of the tick.
+    /// Time from the timer's expiry to the first instruction of the tick.
     pub lateness: Timing,
-    /// Computation times: bin i counts steps in [i, i + 1) * `bin_width`; the last bin is open.
+    /// Histogram of computation times: bin i counts steps in [i, i + 1) * `bin_width`; the last bin is open.
     pub histogram: [u32; HISTOGRAM_BINS],
     /// Width of a bin.
     pub bin_width: u32,
@@ -22,7 +22,7 @@ pub struct Statistics {
     pub period: u32,
     /// Idle time, in thousandths of all time.
     pub idle_permille: u16,
-    /// Ticks that ended after the next was due.
+    /// Ticks that ended after the next tick was due.
     pub overruns: u32,
     /// Ticks that found no schedule (realtime).
     pub starved: u32,
@@ -46,13 +46,13 @@ pub struct Statistics {
     pub stack_used: u32,
 }
 
-/// Least, mean and greatest of a time, in timer counts.
+/// Minimum, mean and maximum of a time [timer counts].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Timing {
-    /// Least.
+    /// Minimum.
     pub min: u32,
     /// Mean.
     pub mean: u32,
-    /// Greatest.
+    /// Maximum.
     pub max: u32,
 }

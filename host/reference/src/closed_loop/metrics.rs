@@ -1,45 +1,45 @@
-//! Figures of merit of a run, all from the truth.
+//! Figures of merit of a run, computed from the true motion.
 
 use super::{Run, Sample};
 
-/// Share of the half-gap within which a flank counts as touching: mesh deflection and transmission error are less.
+/// Share of the half-gap from which a flank counts as touching; below 1 by mesh deflection and transmission error.
 const NEAR: f64 = 0.9;
 
-/// Share of the half-gap below which a flank counts as left: a bounce that is shorter is part of the strike before it. Chosen.
+/// Share of the half-gap below which a flank counts as left: a shorter bounce belongs to the strike before it. Chosen.
 const LEFT: f64 = 0.8;
 
-/// Figures of one run from a moment on.
+/// Figures of merit of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Figures {
-    /// Of link against wanted position [rad].
+    /// RMS error of the link position [rad].
     pub rms: f64,
     /// [rad].
     pub peak: f64,
-    /// Of the link's position: largest less smallest error [rad].
+    /// Peak-to-peak error of the link position [rad].
     pub peak_to_peak: f64,
     /// Changes from one flank to the other.
     pub crossings: usize,
-    /// Landings on either flank, the one that was left among them.
+    /// Landings on either flank, including the flank that was left.
     pub strikes: usize,
     /// Mean time from leaving one flank to touching the other [s].
     pub lost_motion_time: f64,
-    /// The longest of them [s].
+    /// Longest time from leaving one flank to touching the other [s].
     pub longest_lost_motion: f64,
     /// Time of the last crossing [s].
     pub last_crossing: f64,
     /// Largest net force of the sun's meshes [N].
     pub peak_mesh_force: f64,
-    /// Root of the mean square of the torque asked for [N m].
+    /// RMS of the commanded torque [N m].
     pub effort: f64,
 }
 
 impl Figures {
-    /// Of what happened at `from` [s] and later.
+    /// Computes the figures from `from` on [s].
     pub fn of(run: &Run, from: f64) -> Self {
         Self::between(run, from, f64::INFINITY)
     }
 
-    /// Of what happened between two moments [s].
+    /// Computes the figures between two times [s].
     pub fn between(run: &Run, from: f64, to: f64) -> Self {
         let samples: Vec<Sample> =
             run.samples.iter().filter(|sample| (from..to).contains(&sample.time)).copied().collect();
@@ -82,7 +82,7 @@ impl Figures {
     }
 }
 
-/// Landings of the teeth on a flank after they have left one.
+/// Counts landings on a flank after a flank was left.
 fn strikes(samples: &[Sample]) -> usize {
     let (mut free, mut strikes) = (false, 0);
     for sample in samples {
@@ -95,8 +95,8 @@ fn strikes(samples: &[Sample]) -> usize {
     strikes
 }
 
-/// How far a run is from another of the same motion: link position RMS and peak [rad], and RMS of the torque between
-/// carrier and link [N m].
+/// Deviation of a run from another run of an equal motion: link position RMS and peak [rad], and RMS of the torque
+/// between carrier and link [N m].
 pub fn deviation(run: &Run, from_run: &Run, from: f64) -> (f64, f64, f64) {
     let pairs = run.samples.iter().zip(&from_run.samples).filter(|(sample, _)| sample.time >= from);
     let (mut count, mut squares, mut peak, mut torques) = (0.0_f64, 0.0, 0.0_f64, 0.0);

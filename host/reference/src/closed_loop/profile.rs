@@ -1,4 +1,4 @@
-//! Motion profiles of the link: the standard ones, each with a smooth beginning.
+//! Standard motion profiles of the link, each with a smooth start.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -8,52 +8,52 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::Motion;
 
-/// A motion over time.
+/// Motion over time.
 pub trait MotionProfile {
-    /// At a moment [s].
+    /// Returns the motion at a time [s].
     fn at(&self, time: f64) -> Motion;
 }
 
-/// A motion that several runs follow at once.
+/// Motion shared by several runs.
 pub type SharedProfile = Arc<dyn MotionProfile + Send + Sync>;
 
-/// The standard motions.
+/// Standard motions.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Profile {
-    /// amplitude sin(2 pi frequency t), swelling up over the first second.
+    /// Sine: amplitude sin(2 pi frequency t), fading in over the first second.
     Sine {
         /// [rad].
         amplitude: f64,
         /// [Hz].
         frequency: f64,
     },
-    /// A sum of five sines of random frequency and phase, swelling up over the first second.
+    /// Sum of five sines of random frequency and phase, fading in over the first second.
     Random {
         /// Standard deviation [rad].
         amplitude: f64,
         /// Highest frequency [Hz].
         highest: f64,
-        /// Of frequencies and phases.
+        /// Seed of frequencies and phases.
         seed: u64,
     },
-    /// From one point to another and back, each way on a minimum-jerk path with a rest after it. To keep a preview from
-    /// being the only way to know, the rests differ.
+    /// To and fro between two points on minimum-jerk paths, with a rest after each way. The rests vary, so that a
+    /// controller cannot predict the next move without preview.
     Steps {
         /// [rad].
         height: f64,
-        /// Of one way [s].
+        /// Duration of one way [s].
         duration: f64,
         /// Shortest rest [s].
         rest: f64,
-        /// Of the rests' lengths.
+        /// Seed of the rests' lengths.
         seed: u64,
     },
-    /// Periodic path of a leg's joint, swelling up over the first second: amplitude (sin p + sin(2 p + 1) / 2) / 1.5 with p = 2 pi
-    /// frequency t. The second harmonic gives the two unequal bends of a knee in a step (assumed shape).
+    /// Periodic path of a leg's joint, fading in over the first second: amplitude (sin p + sin(2 p + 1) / 2) / 1.5 with
+    /// p = 2 pi frequency t. The second harmonic gives the two unequal bends of a knee in a step (assumed shape).
     Walking {
         /// [rad].
         amplitude: f64,
-        /// Steps a second [Hz].
+        /// Step frequency [Hz].
         frequency: f64,
     },
     /// Stay at an angle [rad].
@@ -70,7 +70,7 @@ pub fn minimum_jerk(part: f64) -> [f64; 3] {
     ]
 }
 
-/// A motion that swells up to itself over so many seconds, by the product rule.
+/// Fades a motion in over a time, by the product rule.
 pub fn swelling(time: f64, over: f64, motion: Motion) -> Motion {
     let [f, df, ddf] = minimum_jerk(time / over);
     let (df, ddf) = (df / over, ddf / (over * over));
@@ -113,7 +113,7 @@ impl MotionProfile for Profile {
                 let mut random = ChaCha8Rng::seed_from_u64(seed);
                 let mut sum = Motion::default();
                 for index in 0..5 {
-                    // One sine from each fifth of the band, so that no draw is slow throughout.
+                    // One sine per fifth of the band, so that no draw is slow throughout.
                     let frequency = highest * (index as f64 + 0.1 + 0.9 * uniform(&mut random)) / 5.0;
                     let part = sine(amplitude * (0.4_f64).sqrt(), frequency, TAU * uniform(&mut random), time);
                     sum.position += part.position;

@@ -1,5 +1,5 @@
-//! The controllers that compensation is measured against, as strong as their kind allows: designed for the true
-//! inertias, with the same bandwidth, encoders and torque limit. None knows the gap; its width is guessed.
+//! Rival controllers for comparison with the compensation, as strong as their kind allows: designed for the true
+//! inertias, with equal bandwidth, encoders and torque limit. No rival knows the gap; its width is guessed.
 
 mod cascade;
 mod impedance;
@@ -17,33 +17,33 @@ use parameters::JointParameters;
 
 use crate::drive_train::DriveTrainParameters;
 
-/// What a rival is designed from.
+/// Design data of a rival.
 #[derive(Debug, Clone)]
 pub struct Knowledge {
-    /// Motor turns for one of the link.
+    /// Motor turns per link turn.
     pub ratio: f64,
-    /// Everything that turns with the motor while the gap is open, referred to it [kg m^2].
+    /// Inertia that turns with the motor while the gap is open, referred to the motor [kg m^2].
     pub motor_inertia: f64,
-    /// All inertia, referred to the motor [kg m^2].
+    /// Total inertia, referred to the motor [kg m^2].
     pub total_inertia: f64,
     /// [N m].
     pub torque_limit: f64,
     /// [s].
     pub period: f64,
-    /// Resolution of the encoders: motor, output.
+    /// Counts per turn of motor and output encoder.
     pub counts_per_turn: [u64; 2],
-    /// Guess of the whole lost motion at the link [rad].
+    /// Guessed total lost motion at the link [rad].
     pub lost_motion: f64,
     /// Dry friction at the link [N m].
     pub load_friction: f64,
     /// Dry friction at the motor [N m].
     pub motor_friction: f64,
-    /// Weight of the link, times sin(link angle) [N m].
+    /// Amplitude of the gravity torque, times sin(link angle) [N m].
     pub gravity: f64,
 }
 
 impl Knowledge {
-    /// True knowledge of a joint but for the lost motion, which is guessed wrong by a factor.
+    /// Design data of a joint, true except for the lost motion, which is wrong by a factor.
     pub fn of(joint: &JointParameters, train: &DriveTrainParameters, width_factor: f64) -> Self {
         let around = &train.surroundings;
         let geometry = &joint.geometry;

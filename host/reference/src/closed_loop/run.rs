@@ -2,29 +2,29 @@
 
 use crate::joint::Observation;
 
-/// The truth at the end of one control period.
+/// True state at the end of one control period.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Sample {
     /// [s].
     pub time: f64,
-    /// Where the link was to be [rad].
+    /// Wanted link angle [rad].
     pub wanted: f64,
-    /// Where it is [rad].
+    /// Link angle [rad].
     pub link: f64,
     /// [rad/s].
     pub link_speed: f64,
-    /// Gap coordinate over 2b: -1 to 1 while every mesh is free.
+    /// Gap coordinate relative to 2b: -1 to 1 while every mesh is free.
     pub gap: f64,
-    /// All sun-planet meshes together [N].
+    /// Sum of the forces of all sun-planet meshes [N].
     pub mesh_force: f64,
-    /// Between carrier and link [N m].
+    /// Torque between carrier and link [N m].
     pub transmitted: f64,
-    /// Asked of the motor [N m].
+    /// Commanded motor torque [N m].
     pub command: f64,
 }
 
 impl Sample {
-    /// Of a joint whose half-backlash is now so much [m], under a command [N m].
+    /// Sample of a joint with a half-backlash [m] under a command [N m].
     pub fn of(joint: &Observation, wanted: f64, half_backlash: f64, command: f64) -> Self {
         Self {
             time: joint.time,
@@ -39,10 +39,10 @@ impl Sample {
     }
 }
 
-/// What happened.
+/// Record of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
-    /// One for each control period.
+    /// Samples, one per control period.
     pub samples: Vec<Sample>,
     /// Control period [s].
     pub period: f64,

@@ -3,7 +3,8 @@
 
 use std::f64::consts::TAU;
 
-/// Motor angle and speed: a third-order observer of the free rotor with a torque disturbance, poles in one place.
+/// Tracker of motor angle and speed: a third-order observer of the free rotor with a torque disturbance and a triple
+/// pole.
 #[derive(Debug, Clone)]
 pub struct MotorTracker {
     period: f64,
@@ -17,7 +18,7 @@ pub struct MotorTracker {
 }
 
 impl MotorTracker {
-    /// A tracker with its three poles at `pole` [rad/s], for a rotor of `inertia` [kg m^2].
+    /// Tracker with a triple pole at `pole` [rad/s], for a rotor of `inertia` [kg m^2].
     pub fn new(counts_per_turn: u64, inertia: f64, pole: f64, period: f64) -> Self {
         // Discrete poles at exp(-pole period): gains by matching the characteristic polynomial of the sampled chain.
         let z = (-pole * period).exp();
@@ -35,7 +36,7 @@ impl MotorTracker {
         }
     }
 
-    /// Takes a reading under the torque that has acted since the last one; gives angle [rad] and speed [rad/s].
+    /// Takes a reading and the torque since the last reading; returns angle [rad] and speed [rad/s].
     pub fn step(&mut self, counts: i64, torque: f64) -> (f64, f64) {
         let measured = (counts as f64 + 0.5) * self.per_count;
         if !self.started {
@@ -52,17 +53,17 @@ impl MotorTracker {
     }
 }
 
-/// Link angle and speed: the same without a torque.
+/// Tracker of link angle and speed: a third-order observer without torque input.
 #[derive(Debug, Clone)]
 pub struct LinkTracker(MotorTracker);
 
 impl LinkTracker {
-    /// A tracker with its three poles at `pole` [rad/s].
+    /// Tracker with a triple pole at `pole` [rad/s].
     pub fn new(counts_per_turn: u64, pole: f64, period: f64) -> Self {
         Self(MotorTracker::new(counts_per_turn, 1.0, pole, period))
     }
 
-    /// Takes a reading; gives angle [rad] and speed [rad/s].
+    /// Takes a reading; returns angle [rad] and speed [rad/s].
     pub fn step(&mut self, counts: i64) -> (f64, f64) {
         self.0.step(counts, 0.0)
     }

@@ -1,20 +1,21 @@
 //! Dry friction with presliding: the LuGre model (C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, "A new model for control of
 //! systems with friction", IEEE Transactions on Automatic Control 40(3), 1995).
 //!
-//! The deflection z of the bristles of a shaft at speed v follows, with the dry friction g(v) of the law without presliding, which has the
-//! Stribeck rise and the losses in proportion to the load,
+//! The bristles of a shaft at speed v have the deflection z. With the dry friction g(v) of the law without presliding,
+//! including Stribeck rise and load-dependent losses,
 //!
 //! ```text
 //! z' = v - sigma_0 |v| z / g(v)   (L1)
 //! friction = sigma_0 z + sigma_1 z' + viscous v   (L2)
 //! ```
 //!
-//! sigma_0 = F_c / d: the dry friction at speed F_c over the stated displacement d. In steady motion sigma_0 z = g(v), so that the friction
-//! at speed is that of the law without presliding. sigma_1 = 2 zeta sqrt(sigma_0 J) damps the shaft's inertia J on its bristles with
-//! zeta = 0.5 (assumed; no data sheet states it), but sigma_1 |v| is at most g(v), which keeps the friction passive and below 3 g(v)
-//! (H. Olsson, "Control systems with friction", Lund 1996).
+//! sigma_0 = F_c / d, with the dry friction at speed F_c and the stated displacement d. In steady motion sigma_0 z =
+//! g(v), so that the friction at speed equals that of the law without presliding. sigma_1 = 2 zeta sqrt(sigma_0 J)
+//! damps the shaft's inertia J on its bristles with zeta = 0.5 (assumed; no data sheet states it). sigma_1 |v| is
+//! limited to g(v), which keeps the friction passive and below 3 g(v) (H. Olsson, "Control systems with friction", Lund
+//! 1996).
 //!
-//! Over a part of time v is held: (L1) is solved exactly, and (L2) is taken as its mean over the part.
+//! Within a part of a period v is constant: (L1) is solved exactly, and (L2) is averaged over the part.
 
 use parameters::Friction;
 
@@ -23,10 +24,10 @@ use super::friction::{Shaft, dry_friction};
 /// Damping ratio of a shaft on its bristles [-]. Assumed.
 const DAMPING_RATIO: f64 = 0.5;
 
-/// Longest part of time over the bristles' own time, sqrt(J / sigma_0), at which the held speed is a good mean.
+/// Longest part of a period relative to sqrt(J / sigma_0) for which a constant speed is accurate enough.
 const LONGEST_PART: f64 = 0.3;
 
-/// The bristles of one shaft.
+/// Bristles of one shaft.
 #[derive(Debug, Clone)]
 pub(super) struct Bristles {
     /// sigma_0 [N m/rad].
@@ -38,7 +39,7 @@ pub(super) struct Bristles {
 }
 
 impl Bristles {
-    /// Bristles of a shaft, if it has dry friction and presliding.
+    /// Returns the bristles of a shaft with dry friction and presliding, else `None`.
     pub fn new(friction: &Friction, presliding: f64, inertia: f64) -> Option<Self> {
         (presliding > 0.0 && friction.coulomb > 0.0).then(|| {
             let stiffness = friction.coulomb / presliding;
@@ -46,12 +47,12 @@ impl Bristles {
         })
     }
 
-    /// Least presliding that parts of time of this length can follow [rad].
+    /// Smallest presliding displacement that parts of this length can follow [rad].
     pub fn least_presliding(friction: &Friction, inertia: f64, part: f64) -> f64 {
         friction.coulomb * part * part / (inertia * LONGEST_PART * LONGEST_PART)
     }
 
-    /// Mean torque against the motion over the part [N m]; moves the bristles on.
+    /// Returns the mean torque against the motion over the part [N m]; advances the bristles.
     pub fn friction(&mut self, shaft: &Shaft, friction: &Friction, extra: f64) -> f64 {
         let (speed, part) = (shaft.speed, shaft.part);
         let viscous = friction.viscous * speed;
@@ -60,7 +61,7 @@ impl Bristles {
             self.deflection = 0.0;
             return viscous;
         }
-        // Distance that the shaft goes over the bristles' relaxation length g / sigma_0.
+        // Travel of the shaft relative to the bristles' relaxation length g / sigma_0.
         let lengths = self.stiffness * speed.abs() * part / dry;
         let before = self.deflection;
         if lengths < 1e-12 {
@@ -98,7 +99,7 @@ mod tests {
         Shaft { speed, driving_torque: 0.0, inertia: INERTIA, part: PART }
     }
 
-    /// (L1) and (L2) by Heun's method with a hundredth of the part, speeds between parts on a straight line.
+    /// Integrates (L1) and (L2) by Heun's method with a hundredth of the part; speeds are linear between parts.
     fn integrated(friction: &Friction, speeds: impl Fn(f64) -> f64, parts: u32) -> Vec<f64> {
         let stiffness = friction.coulomb / PRESLIDING;
         let sigma = 2.0 * 0.5 * (stiffness * INERTIA).sqrt();

@@ -1,15 +1,15 @@
-//! From a torque command to the torque in the air gap: delay, limit, steps, lag, saturation, ripple, wrong torque constant, noise.
-//! Electrical dynamics beyond one first-order lag are left out.
+//! Model from the torque command to the air-gap torque: delay, limit, resolution, lag, saturation, ripple, wrong torque
+//! constant, noise. Electrical dynamics beyond one first-order lag are neglected.
 //!
-//! With the torque T of the lag, the limit L, the error k of the torque constant, the loss a at the limit, the ripple's amplitude r and its
-//! N periods in a turn of the motor, and the noise n with its ratio, the air gap has the torque
+//! With the torque T after the lag, the limit L, the error k of the torque constant, the loss a at the limit, the
+//! ripple amplitude r with N periods per motor turn, the noise n and its ratio, the air-gap torque is
 //!
 //! ```text
 //! T (1 - a min(1, (T / L)^2)) (1 + k) (1 + r sin(N theta_m)) (1 + ratio n)   (M1)
 //! ```
 //!
-//! A motor's flux grows less than its current as the iron saturates; the first term of that is odd and cubic in the current (J. R.
-//! Hendershot, T. J. E. Miller, "Design of brushless permanent-magnet motors"). Commands are rounded to whole steps of
+//! Iron saturation makes the flux grow less than the current; its first term is odd and cubic in the current (J. R.
+//! Hendershot, T. J. E. Miller, "Design of brushless permanent-magnet motors"). Commands are rounded to multiples of
 //! resolution x L.
 
 use std::collections::VecDeque;
@@ -20,14 +20,14 @@ use rand_chacha::ChaCha8Rng;
 
 use super::random::{self, normal};
 
-/// A command on its way.
+/// Delayed command.
 #[derive(Debug, Clone, Copy)]
 struct Command {
     acts_from: u64,
     torque: f64,
 }
 
-/// The motor up to its air gap. Parts of time are counted, never added up.
+/// Motor up to its air gap. Parts of a period are counted as integers, so that no rounding error adds up.
 #[derive(Debug, Clone)]
 pub(super) struct CurrentLoop {
     around: Surroundings,
@@ -50,7 +50,7 @@ impl CurrentLoop {
         }
     }
 
-    /// Takes a command that will act from a part of time on, and draws the noise of this period.
+    /// Takes a command that acts from a given part on, and draws the noise of this period.
     pub fn command(&mut self, torque: f64, acts_from: u64) {
         let limit = self.around.torque_limit;
         let step = self.around.torque_errors.resolution_ratio * limit;
@@ -60,8 +60,8 @@ impl CurrentLoop {
         self.noise = normal(&mut self.random);
     }
 
-    /// Mean torque in the air gap during a part of time of this length [s], the motor at this angle [rad]: exact for a command that does not
-    /// change within the part [N m].
+    /// Mean air-gap torque over a part of this length [s] at a motor angle [rad]; exact if the command is constant
+    /// within the part [N m].
     pub fn torque(&mut self, part: u64, length: f64, motor_angle: f64) -> f64 {
         while let Some(command) = self.pending.front().filter(|command| command.acts_from <= part) {
             self.wanted = command.torque;

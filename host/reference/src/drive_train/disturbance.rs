@@ -1,18 +1,18 @@
-//! Disturbance torques on the link. Positive brakes, as the load torque of the joint does.
+//! Disturbance torques on the link; positive torques brake, as the load torque of the joint does.
 
 use std::f64::consts::TAU;
 
-/// One disturbance; several add up.
+/// Disturbance torque; several disturbances add up.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Disturbance {
-    /// On from a moment on.
+    /// Step: on from a time on.
     Step {
         /// [s].
         start: f64,
         /// [N m].
         torque: f64,
     },
-    /// On for a while.
+    /// Pulse of limited duration.
     Pulse {
         /// [s].
         start: f64,
@@ -21,7 +21,7 @@ pub enum Disturbance {
         /// [N m].
         torque: f64,
     },
-    /// Grows evenly to its torque, and stays.
+    /// Ramp: rises linearly to its torque, which then stays.
     Ramp {
         /// [s].
         start: f64,
@@ -30,7 +30,7 @@ pub enum Disturbance {
         /// [N m].
         torque: f64,
     },
-    /// Amplitude times sin(2 pi frequency t).
+    /// Sine: amplitude times sin(2 pi frequency t).
     Sine {
         /// [N m].
         amplitude: f64,
@@ -40,7 +40,7 @@ pub enum Disturbance {
 }
 
 impl Disturbance {
-    /// Torque at a moment [N m].
+    /// Returns the torque at a time [N m].
     pub fn torque(&self, time: f64) -> f64 {
         match *self {
             Self::Step { start, torque } => {

@@ -1,16 +1,17 @@
-//! An absolute encoder: the past of an angle, its errors, its counts.
+//! Absolute encoder: past angles, errors, counts.
 //!
-//! A reading of the shaft's angle theta is, with the amplitudes and phases of its errors, C counts and N periods of its scale in a turn, the standard
-//! deviation sigma of its noise and a standard normal deviate n,
+//! With the shaft angle theta, amplitudes and phases of the errors, C counts and N scale periods per turn, the standard
+//! deviation sigma of the noise and a standard normal deviate n, a reading is
 //!
 //! ```text
 //! counts = floor(C / 2 pi (theta + e_1 sin(theta + p_1) + e_2 sin(2 theta + p_2)
 //!                               + s_1 sin(N theta + q_1) + s_2 sin(2 N theta + q_2)) + sigma n)   (E1)
 //! ```
 //!
-//! s_1 and s_2 are what offsets and unequal amplitudes of the sine and cosine of a scale leave after interpolation (P. L. M. Heydemann,
-//! "Determination and correction of quadrature fringe measurement errors in interferometers", Applied Optics 20, 1981). theta is the angle
-//! at the reading's own time, less the skew and, for each reading anew, an age that is drawn evenly from 0 to the age jitter.
+//! s_1 and s_2 are the interpolation errors caused by offsets and unequal amplitudes of the sine and cosine of a scale
+//! (P. L. M. Heydemann, "Determination and correction of quadrature fringe measurement errors in interferometers",
+//! Applied Optics 20, 1981). theta is the angle at the time of the reading, less the skew and an age that is drawn for
+//! each reading, uniformly from 0 to the age jitter.
 
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
@@ -28,7 +29,7 @@ struct Point {
     speed: f64,
 }
 
-/// An encoder and as much of the past as its skew needs.
+/// Encoder with the past angles that its skew requires.
 #[derive(Debug, Clone)]
 pub(super) struct Encoder {
     parameters: AbsoluteEncoder,
@@ -37,13 +38,13 @@ pub(super) struct Encoder {
     past: VecDeque<Point>,
     ages: ChaCha8Rng,
     noises: ChaCha8Rng,
-    /// Further age of the present reading [s].
+    /// Random age of the present reading [s].
     age: f64,
     /// Noise of the present reading [counts].
     noise: f64,
 }
 
-/// Which encoder: its random numbers are its own.
+/// Place of an encoder; selects its random stream.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Place {
     Motor,
@@ -76,23 +77,23 @@ impl Encoder {
         encoder
     }
 
-    /// Draws age and noise of the next reading.
+    /// Draws age and noise of a new reading.
     pub fn begin_reading(&mut self) {
         self.age = self.parameters.age_jitter * uniform(&mut self.ages);
         self.noise = self.parameters.noise_counts * normal(&mut self.noises);
     }
 
-    /// Notes where the shaft is; times must rise.
+    /// Records the shaft's angle and speed; times must rise.
     pub fn note(&mut self, time: f64, angle: f64, speed: f64) {
         self.past.push_back(Point { time, angle, speed });
         let oldest = self.parameters.skew + self.parameters.age_jitter;
-        // One point at or before the moment that is read now, the rest after it.
+        // Keeps one point at or before the time of the reading, and all later points.
         while self.past.len() > 2 && self.past[1].time <= time - oldest {
             self.past.pop_front();
         }
     }
 
-    /// Counts since angle zero, whole turns included.
+    /// Returns counts since angle zero, whole turns included.
     pub fn counts(&self) -> i64 {
         let angle = self.angle_then();
         let once = self.parameters.once_per_turn_error * (angle + self.phases.once_per_turn).sin();
@@ -106,7 +107,7 @@ impl Encoder {
         ((angle + once + twice + within_period) / TAU * counts_per_turn + self.noise).floor() as i64
     }
 
-    /// The angle when the reading was taken: the cubic between the two nearest points.
+    /// Angle at the time of the reading, by a cubic between the two nearest points.
     fn angle_then(&self) -> f64 {
         let Some(last) = self.past.back() else { return 0.0 };
         let then = last.time - self.parameters.skew - self.age;
@@ -114,7 +115,7 @@ impl Encoder {
         let (Some(from), Some(to)) =
             (after.checked_sub(1).and_then(|index| self.past.get(index)), self.past.get(after))
         else {
-            // No skew: the last point itself. Before the start: it stood where it started.
+            // Without skew: the last point. Before the start: the start angle.
             return if after == 0 { self.past[0].angle } else { last.angle };
         };
         let width = to.time - from.time;

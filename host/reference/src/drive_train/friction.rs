@@ -1,25 +1,25 @@
-//! Dry and viscous friction of one shaft over a short part of time, sticking included.
+//! Dry and viscous friction of one shaft over a short part of a period, with sticking.
 
 use parameters::Friction;
 
-/// A shaft over one part of time, as friction sees it.
+/// Shaft during one part of a period.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shaft {
-    /// [rad/s].
+    /// Speed [rad/s].
     pub speed: f64,
-    /// All torques but friction [N m].
+    /// Sum of all torques without friction [N m].
     pub driving_torque: f64,
-    /// [kg m^2].
+    /// Inertia [kg m^2].
     pub inertia: f64,
     /// Length of the part [s].
     pub part: f64,
 }
 
 impl Shaft {
-    /// Torque against the motion [N m]. `extra` is dry friction on top, from the load on the teeth.
+    /// Returns the torque against the motion [N m]. `extra` is additional dry friction from the load on the teeth.
     ///
-    /// Dry friction is at most what would stop the shaft within the part: it sticks instead of chattering about zero,
-    /// and it never turns a shaft round.
+    /// Dry friction is limited to the torque that stops the shaft within the part: the shaft sticks instead of
+    /// chattering about zero, and friction never reverses it.
     pub fn friction(&self, friction: &Friction, extra: f64) -> f64 {
         let dry = dry_friction(friction, self.speed) + extra;
         let viscous = friction.viscous * self.speed;
@@ -28,7 +28,7 @@ impl Shaft {
     }
 }
 
-/// Dry friction at a speed, with its Stribeck rise [N m].
+/// Dry friction at a speed, including the Stribeck rise [N m].
 pub(super) fn dry_friction(friction: &Friction, speed: f64) -> f64 {
     let rise = if friction.stribeck_speed > 0.0 {
         friction.stribeck_rise_ratio * (-speed.abs() / friction.stribeck_speed).exp()

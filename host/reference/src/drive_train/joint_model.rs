@@ -1,30 +1,30 @@
-//! The joint model inside a drive train, and its step: the reference, or another model of the same joint to be compared with
-//! it under the same torques and sensors.
+//! Interface of the joint model inside a drive train, and its integration. The model is the reference, or another model
+//! of the joint for a comparison under equal torques and sensors.
 
 use crate::joint::{Observation, Reference, ReferenceError};
 
-/// How the joint model is integrated over a part of time.
+/// Integration of the joint model over a part of a period.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Stepping {
     /// Adaptive steps of order 8 that end at every contact event.
     #[default]
     Adaptive,
-    /// Fixed fine steps, many times faster: for closed loops, whose feedback forgives what a step loses.
+    /// Fixed fine steps, many times faster: for closed loops, whose feedback compensates the smaller accuracy.
     Fixed,
 }
 
-/// A joint in motion.
+/// Joint model with its state.
 pub trait JointModel {
-    /// Moves on to `time` [s] under constant torques: `drive` on the sun, `load` braking the link [N m].
+    /// Advances to `time` [s] under constant torques: `drive` on the sun, `load` braking the link [N m].
     fn advance(&mut self, time: f64, drive: f64, load: f64, stepping: Stepping) -> Result<(), ReferenceError>;
 
-    /// Outputs now.
+    /// Returns the present outputs.
     fn observe(&self) -> Observation;
 
-    /// Multiplies the half-backlash of every mesh by a factor, which stays until it is changed.
+    /// Multiplies the half-backlash of every mesh by a factor that holds until it is changed.
     fn scale_half_backlash(&mut self, factor: f64);
 
-    /// From now on the link has this inertia [kg m^2].
+    /// Sets the inertia of the link [kg m^2].
     fn set_link_inertia(&mut self, link_inertia: f64);
 }
 

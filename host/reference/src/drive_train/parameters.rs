@@ -1,5 +1,5 @@
-//! What a drive train is made of, as plain data in SI, with Q1's as an example: its surroundings as a data sheet tells
-//! them, and what only the truth has.
+//! Parameters of a drive train as plain data in SI, with those of Q1 as an example: data-sheet values of the
+//! surroundings, and quantities that no data sheet states.
 
 use std::fmt;
 
@@ -8,54 +8,54 @@ use parameters::{AbsoluteEncoder, Friction, Surroundings};
 use super::bristles::Bristles;
 use crate::joint::ReferenceError;
 
-/// What surrounds the gears, and what no data sheet tells of it.
+/// Parameters of a drive train.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriveTrainParameters {
-    /// As a data sheet has it; here it is the truth.
+    /// Data-sheet values, true in the simulation.
     pub surroundings: Surroundings,
-    /// Of the motor's encoder.
+    /// Error phases of the motor encoder.
     pub motor_error_phases: ErrorPhases,
-    /// Of the output encoder.
+    /// Error phases of the output encoder.
     pub output_error_phases: ErrorPhases,
     /// Phases of further effects.
     pub effect_phases: EffectPhases,
-    /// Torques are held constant over this part of a control period, and follow angles and speeds from part to part.
+    /// Parts of a control period; torques are constant within a part and follow angles and speeds from part to part.
     pub parts_per_period: u32,
 }
 
-/// How an encoder was mounted: the phases of its errors at angle zero [rad].
+/// Mounting of an encoder: phases of its errors at angle zero [rad].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ErrorPhases {
-    /// Of the error that comes once a turn [rad].
+    /// Phase of the once-per-turn error [rad].
     pub once_per_turn: f64,
-    /// Of the error that comes twice a turn [rad].
+    /// Phase of the twice-per-turn error [rad].
     pub twice_per_turn: f64,
 }
 
 /// Phases at angle zero that no data sheet states [rad].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EffectPhases {
-    /// Of the motor encoder's error within a period of its scale: first and second harmonic.
+    /// Phases of the motor encoder's error within a scale period: first and second harmonic.
     pub motor_subdivision: [f64; 2],
-    /// Of the output encoder's, likewise.
+    /// Phases of the output encoder's error within a scale period: first and second harmonic.
     pub output_subdivision: [f64; 2],
-    /// Of the backlash around the turn: of the link, of the motor.
+    /// Phases of the backlash variation around the turn: link, motor.
     pub width: [f64; 2],
 }
 
-/// Why a drive train cannot run.
+/// Reason for refusing or stopping a drive train.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DriveTrainError {
     /// A parameter is out of range.
     OutOfRange {
-        /// Which one.
+        /// Name of the parameter.
         quantity: &'static str,
-        /// What it was.
+        /// Rejected value.
         value: f64,
-        /// What it must be.
+        /// Required range.
         must_be: &'static str,
     },
-    /// The joint within cannot be followed.
+    /// The joint model failed.
     Joint(ReferenceError),
 }
 
@@ -79,7 +79,7 @@ impl From<ReferenceError> for DriveTrainError {
 }
 
 impl From<Surroundings> for DriveTrainParameters {
-    /// Phases of encoder errors at zero, ten parts in a control period.
+    /// Parameters with all error phases at zero and ten parts per control period.
     fn from(surroundings: Surroundings) -> Self {
         Self {
             surroundings,
@@ -92,12 +92,12 @@ impl From<Surroundings> for DriveTrainParameters {
 }
 
 impl DriveTrainParameters {
-    /// No friction, lag, noise, gravity, delay or sensor error; 10 kHz, encoders of 18 bits.
+    /// Parameters without friction, lag, noise, gravity, delay or sensor error; 10 kHz, 18-bit encoders.
     pub fn ideal() -> Self {
         Surroundings::ideal().into()
     }
 
-    /// Around joint Q1. Assumed by this module: the number of cogging periods and the Stribeck speed.
+    /// Parameters around joint Q1. Assumed here: number of cogging periods and Stribeck speed.
     pub fn q1() -> Self {
         Surroundings {
             delay: 1.0,
@@ -194,7 +194,7 @@ impl DriveTrainParameters {
         must("jitter of the control loop", jitter, (0.0..=0.5).contains(&jitter), "from 0 to 0.5")
     }
 
-    /// Refuses bristles that parts of time of this length [s] cannot follow, for the inertias of motor and link [kg m^2].
+    /// Refuses bristles that parts of this length [s] cannot follow, for the inertias of motor and link [kg m^2].
     pub(super) fn check_presliding(&self, inertias: [f64; 2], part: f64) -> Result<(), DriveTrainError> {
         let around = &self.surroundings;
         let shafts = [

@@ -1,24 +1,24 @@
-//! Part of the link's inertia that hangs on a spring and a damper.
+//! Payload: part of the link's inertia on a spring and a damper.
 //!
-//! With the link's inertia J_l, the share s, the frequency f and the damping ratio zeta of the payload on a held link, the payload has
-//! the inertia J_p = s J_l and follows, with its angle r from the link and w_0 = 2 pi f (J. P. Den Hartog, "Mechanical
-//! Vibrations", chapter 3),
+//! With the link's inertia J_l and the payload's share s, frequency f and damping ratio zeta on a held link, the
+//! payload has the inertia J_p = s J_l. Its angle r relative to the link follows, with w_0 = 2 pi f (J. P. Den Hartog,
+//! "Mechanical Vibrations", chapter 3),
 //!
 //! ```text
 //! J_p (theta_l'' + r'') = -J_p w_0^2 r - 2 zeta w_0 J_p r'   (P1)
 //! ```
 //!
-//! The rest of the link, (1 - s) J_l, is braked by the torque J_p theta_p'' with theta_p = theta_l + r. On a free link the pair swings at
-//! w_0 / sqrt(1 - s) with the damping ratio zeta / sqrt(1 - s).
+//! The rest of the link, (1 - s) J_l, is braked by the torque J_p theta_p'' with theta_p = theta_l + r. On a free link
+//! the pair swings at w_0 / sqrt(1 - s) with the damping ratio zeta / sqrt(1 - s).
 //!
-//! Over a part of time the link is taken to turn evenly: (P1) is solved exactly, and the link is braked by the mean torque, which is the
-//! change of the payload's angular momentum. Angular momentum is kept to the last bit but for rounding.
+//! Within a part of a period the link's speed is constant: (P1) is solved exactly, and the link is braked by the mean
+//! torque, the change of the payload's angular momentum. Angular momentum is conserved up to rounding.
 
 use std::f64::consts::TAU;
 
 use parameters::Payload;
 
-/// A payload in motion.
+/// Payload with its state.
 #[derive(Debug, Clone)]
 pub(super) struct SwingingPayload {
     /// w_0 [rad/s].
@@ -32,7 +32,7 @@ pub(super) struct SwingingPayload {
 }
 
 impl SwingingPayload {
-    /// At rest on a link, if there is a payload.
+    /// Returns a payload at rest on the link, if there is a payload.
     pub fn on_link(payload: &Payload, link_inertia: f64, angle: f64, speed: f64) -> Option<Self> {
         (payload.inertia_share > 0.0).then_some(Self {
             frequency: TAU * payload.frequency,
@@ -43,16 +43,16 @@ impl SwingingPayload {
         })
     }
 
-    /// Multiplies its inertia; frequency and damping ratio on a held link stay.
+    /// Multiplies the payload's inertia; frequency and damping ratio on a held link stay.
     pub fn scale(&mut self, ratio: f64) {
         self.inertia *= ratio;
     }
 
-    /// Moves on by a part of time beside a link that turns evenly; returns the mean torque that brakes the link [N m].
+    /// Advances by a part of a period with constant link speed; returns the mean torque that brakes the link [N m].
     pub fn advance(&mut self, link_angle: f64, link_speed: f64, part: f64) -> f64 {
         let (r, rate) = (self.angle - link_angle, self.speed - link_speed);
         let decay = self.damping_ratio * self.frequency;
-        // Below 1 always: joint files allow no more.
+        // Always below 1: joint files allow no more.
         let swing = self.frequency * (1.0 - self.damping_ratio * self.damping_ratio).sqrt();
         let (sine, cosine) = (swing * part).sin_cos();
         let left = (-decay * part).exp();

@@ -1,4 +1,5 @@
-//! Random numbers of a drive train: one seed, a stream for each effect, so that an effect that is added leaves the others as they were.
+//! Random numbers of a drive train: one seed, one stream per effect, so that a new effect leaves the random numbers of
+//! the others unchanged.
 
 use std::f64::consts::TAU;
 
@@ -18,19 +19,19 @@ pub const OUTPUT_AGE: u64 = 4;
 /// Starts of the control periods.
 pub const CONTROL_JITTER: u64 = 5;
 
-/// The stream of an effect.
+/// Returns the random stream of an effect.
 pub fn stream(seed: u64, effect: u64) -> ChaCha8Rng {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     random.set_stream(effect);
     random
 }
 
-/// Number between 0 and 1, neither of them: 53 random bits.
+/// Returns a number between 0 and 1, both excluded, with 53 random bits.
 pub fn uniform(random: &mut ChaCha8Rng) -> f64 {
     ((random.next_u64() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
 }
 
-/// Standard normal deviate, by Box and Muller.
+/// Returns a standard normal deviate, by Box and Muller.
 pub fn normal(random: &mut ChaCha8Rng) -> f64 {
     let (radius, turn) = ((-2.0 * uniform(random).ln()).sqrt(), uniform(random));
     radius * (TAU * turn).cos()

@@ -1,4 +1,4 @@
-//! Steps as long as the error allows, ended by every event, after which the mode is selected again.
+//! Adaptive integrator: steps as long as the error allows; an event ends a step, then the mode is selected again.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use super::dormand_prince::trial;
 use super::event::Search;
 use super::system::{Entries, MAX_ENTRIES, SwitchedSystem};
 
-/// Why an integration stopped.
+/// Reason for a failed integration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum IntegrationError {
     /// The state or its rates became infinite or NaN at this time [s].
@@ -26,23 +26,23 @@ impl fmt::Display for IntegrationError {
 
 impl std::error::Error for IntegrationError {}
 
-/// What an integration has cost so far.
+/// Counts of steps and events of an integration.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counters {
     /// Accepted steps.
     pub steps: u64,
-    /// Steps refused for their error.
+    /// Steps rejected for their error.
     pub refused: u64,
     /// Events located.
     pub events: u64,
-    /// Steps taken without event detection, to get past a graze.
+    /// Steps without event detection, taken to pass a graze.
     pub unguarded_steps: u64,
 }
 
-/// So many events within a sliver of time are one graze: its guard hovers about zero, where both choices agree.
+/// Number of events within [`GRAZE`] that count as one graze: the guard stays near zero, where both modes agree.
 const EVENTS_IN_A_GRAZE: u32 = 32;
 
-/// Length of such a sliver, and of the unguarded step that ends it, over the longest step.
+/// Duration of a graze, and of the unguarded step that ends it, relative to the longest step.
 const GRAZE: f64 = 1e-5;
 
 /// State and step size of a running integration.
@@ -55,7 +55,7 @@ pub struct Integrator {
 }
 
 impl Integrator {
-    /// Starts at a state.
+    /// Integrator at a state.
     pub fn new(time: f64, state: Entries) -> Self {
         Self { time, state, step: f64::INFINITY, counters: Counters::default() }
     }
@@ -70,23 +70,23 @@ impl Integrator {
         &self.state
     }
 
-    /// Present state, to be changed between two calls of `advance`.
+    /// Present state, mutable between two calls of `advance`.
     pub fn state_mut(&mut self) -> &mut Entries {
         &mut self.state
     }
 
-    /// Says that the state has been moved to `time` by other means; the next step is sized anew.
+    /// Sets the time after the state was advanced by other means; the size of the next step is estimated anew.
     pub fn move_time(&mut self, time: f64) {
         self.time = time;
         self.step = f64::INFINITY;
     }
 
-    /// What it has cost so far.
+    /// Returns the counts so far.
     pub fn counters(&self) -> Counters {
         self.counters
     }
 
-    /// Integrates up to `end`; inputs of the system may have changed since the last call.
+    /// Integrates up to `end`; inputs of the system may change between calls.
     pub fn advance<S: SwitchedSystem>(&mut self, system: &mut S, end: f64) -> Result<(), IntegrationError> {
         let mut rates = [0.0; MAX_ENTRIES];
         let mut sliver = (self.time, 0);
@@ -96,14 +96,14 @@ impl Integrator {
             let unguarded = sliver.1 >= EVENTS_IN_A_GRAZE;
             let remaining = end - self.time;
             let wanted = if unguarded { GRAZE * longest } else { self.step.min(longest) };
-            // Two equal parts instead of a full step and a crumb.
+            // Two equal steps instead of a full one and a tiny rest.
             let step = if wanted >= remaining { remaining } else { wanted.min(0.5 * remaining) };
             let whole = trial(system, self.time, &self.state, &rates, step);
             let error = whole.error(system, step);
             if !error.is_finite() {
                 return Err(IntegrationError::NotFinite(self.time));
             }
-            // Eighth order: the error of a step goes with its eighth power here, since the estimate is of seventh.
+            // The error of a step grows with its eighth power, since the estimate is of seventh order.
             let factor = (0.9 * error.max(1e-16).powf(-0.125)).clamp(0.2, 4.0);
             if error > 1.0 {
                 self.counters.refused += 1;
@@ -121,7 +121,7 @@ impl Integrator {
             self.state = accepted.state;
             rates = accepted.rates;
             if !unguarded {
-                // A step cut short by the end of the interval says nothing against the one that was wanted.
+                // A step shortened by the end of the interval does not reduce the proposed step size.
                 self.step = if step < wanted { wanted.max(step * factor) } else { step * factor };
             }
             if event.is_some() {

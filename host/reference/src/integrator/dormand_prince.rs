@@ -1,12 +1,10 @@
-//! One step of the explicit Runge-Kutta method of order 8 by Dormand and Prince with its embedded errors of orders 5
-//! and 3 (E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", section II.10, DOP853).
-//! Step size control and the dense output, which events do not need here, are left out.
+//! Step size control and dense output are left out; event search does not need dense output.
 
 use super::system::{Entries, MAX_ENTRIES, SwitchedSystem};
 
 const STAGES: usize = 12;
 
-/// c: where within the step each stage is evaluated.
+/// c: time of each stage within the step.
 const NODES: [f64; STAGES] = [
     0.0,
     0.05260015195876773,
@@ -57,7 +55,7 @@ const ERROR_WEIGHTS: [f64; STAGES] = [
 /// Weights of stages 1, 9 and 12 in the embedded result of order 3.
 const THIRD_ORDER_WEIGHTS: [f64; 3] = [0.2440944881889764, 0.7338466882816118, 0.022058823529411766];
 
-/// a: row s builds the state of stage s from the stages before it; zeros are skipped.
+/// a: row s builds the state of stage s from earlier stages; zeros are skipped.
 const COUPLINGS: [&[f64]; STAGES] = [
     &[],
     &[0.05260015195876773],
@@ -123,20 +121,20 @@ const COUPLINGS: [&[f64]; STAGES] = [
     ],
 ];
 
-/// The outcome of one step.
+/// Result of one step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Trial {
-    /// Its length [s].
+    /// Length of the step [s].
     pub step: f64,
-    /// State at its end.
+    /// State at the end of the step.
     pub state: Entries,
-    /// Rates at its end.
+    /// Rates at the end of the step.
     pub rates: Entries,
     fifth: Entries,
     third: Entries,
 }
 
-/// One step of length `step`; `rates` belong to `state`.
+/// Takes one step of length `step`; `rates` belong to `state`.
 pub(super) fn trial<S: SwitchedSystem>(system: &S, time: f64, state: &Entries, rates: &Entries, step: f64) -> Trial {
     let dimension = system.dimension().min(MAX_ENTRIES);
     let mut stages = [[0.0; MAX_ENTRIES]; STAGES];
@@ -174,7 +172,7 @@ fn add_scaled(sum: &mut Entries, factor: f64, terms: &Entries, dimension: usize)
 }
 
 impl Trial {
-    /// Error over tolerance, as DOP853 joins its two estimates: root mean square over the entries.
+    /// Error relative to the tolerance, joining both estimates as DOP853 does: root mean square over the entries.
     pub fn error<S: SwitchedSystem>(&self, system: &S, step: f64) -> f64 {
         let (mut fifth, mut third) = (0.0, 0.0);
         let dimension = system.dimension();

@@ -1,18 +1,18 @@
-//! Finds the first moment at which a guard of a switched system turns negative within one step.
+//! Search for the first time within a step at which a guard of a switched system turns negative.
 
 use super::dormand_prince::{Trial, trial};
 use super::guard::{Guard, Guards};
 use super::system::{Entries, SwitchedSystem};
 
-/// A point of a step: how far in, and what a guard reads there.
+/// Point of a step: its time in the step and a guard's value.
 #[derive(Debug, Clone, Copy)]
 struct Reading {
     step: f64,
     guard: Guard,
 }
 
-/// Root search within one step. Every probe is a full Runge-Kutta step from the same start, so that a located event
-/// is as accurate as the method itself, which an interpolant of lower order would not be.
+/// Root search within one step. Every probe is a full Runge-Kutta step from the start of the step, so that a located
+/// event is as accurate as the method; an interpolant would be of lower order.
 pub(super) struct Search<'a, S> {
     pub system: &'a S,
     pub time: f64,
@@ -21,7 +21,7 @@ pub(super) struct Search<'a, S> {
 }
 
 impl<S: SwitchedSystem> Search<'_, S> {
-    /// The step up to just after the first event within `whole`, or none.
+    /// Returns the step up to just after the first event within `whole`, if there is an event.
     pub fn first_event(&self, whole: &Trial) -> Option<Trial> {
         let start = self.guards(self.time, self.state, self.rates);
         let mut end = *whole;
@@ -38,10 +38,11 @@ impl<S: SwitchedSystem> Search<'_, S> {
         found.then_some(end)
     }
 
-    /// A guard that is positive at both ends may dip below zero in between: follow the minimum of its Hermite cubic.
+    /// Finds a guard that is positive at both ends but negative in between, by following the minimum of its Hermite
+    /// cubic.
     fn hidden_crossing(&self, index: usize, from: Reading, to: Reading) -> Option<(Reading, Trial)> {
         let (mut left, mut right) = (from, to);
-        // Four probes shrink the distance to the minimum by far more than the guard's resolution needs.
+        // Four probes reduce the distance to the minimum far below the guard's resolution.
         for _ in 0..4 {
             if !(left.guard.rate < 0.0 && right.guard.rate > 0.0) {
                 return None;
@@ -66,7 +67,7 @@ impl<S: SwitchedSystem> Search<'_, S> {
         None
     }
 
-    /// Newton's method on the guard, kept inside its bracket, until it is negative by less than the resolution.
+    /// Newton's method on the guard within its bracket, until the guard is negative by less than the resolution.
     fn narrow(&self, index: usize, from: Reading, beyond: Trial) -> Trial {
         let resolution = self.system.guard_resolution();
         let aim = -0.5 * resolution;
@@ -78,7 +79,7 @@ impl<S: SwitchedSystem> Search<'_, S> {
             }
             let near = if low.guard.value.abs() < high.guard.value.abs() { low } else { high };
             let newton = near.step - (near.guard.value - aim) / near.guard.rate;
-            // A graze can make Newton crawl along one side: every fourth probe halves the bracket.
+            // At a graze Newton's method may advance slowly from one side: every fourth probe halves the bracket.
             let inside = newton > low.step && newton < high.step && round % 4 != 3;
             let step = if inside { newton } else { 0.5 * (low.step + high.step) };
             if !(step > low.step && step < high.step) {
@@ -111,8 +112,8 @@ impl<S: SwitchedSystem> Search<'_, S> {
     }
 }
 
-/// Where within [0, 1] the cubic through two readings is lowest, and how low. The left rate is negative, the right
-/// one positive.
+/// Location in [0, 1] and value of the minimum of the cubic through two readings. The left rate is negative, the right
+/// rate positive.
 fn hermite_minimum(left: Guard, right: Guard, width: f64) -> (f64, f64) {
     let (fall, rise) = (left.rate * width, right.rate * width);
     let cubic = 2.0 * (left.value - right.value) + fall + rise;

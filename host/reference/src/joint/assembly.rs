@@ -1,5 +1,5 @@
-//! Turns `JointParameters` into the masses, springs and phases of `JointEquations`, deriving every one of them again
-//! from the paper instead of asking the core. No state and no time are in here.
+//! Conversion of `JointParameters` into masses, springs and phases of `JointEquations`. All are derived from the paper
+//! again, without the core. No state and no time.
 
 use std::f64::consts::TAU;
 
@@ -12,7 +12,7 @@ use super::mesh_law::{MeshConstants, Zone};
 use super::validity::check;
 
 impl JointEquations {
-    /// The equations of a joint, without torques.
+    /// Equations of a joint, without torques.
     pub fn new(joint: &JointParameters) -> Result<Self, ReferenceError> {
         check(joint)?;
         if let Some(gear) = joint.equivalent_gear() {
@@ -42,7 +42,7 @@ impl JointEquations {
                 add(carrier);
                 add(link);
                 let stiffness = given.stiffness / carrier_lever.powi(2);
-                // The sun turns twice as fast along the line of action, so its mass counts four times.
+                // The sun moves twice as fast along the line of action, so its mass counts four times.
                 let geared = 4.0 * sun + geometry.planets as f64 * planet + carrier;
                 let reduced = geared * link / (geared + link);
                 Some((stiffness, 2.0 * given.damping_ratio * (stiffness * reduced).sqrt()))
@@ -80,8 +80,9 @@ impl JointEquations {
         })
     }
 
-    /// Motor and link on one spring with a gap. On the lever of the link each of two meshes takes half of what both are
-    /// apart in angle, delta = theta_m / ratio - theta_l, and half of the force: together they store K delta^2 / 2.
+    /// Equations of an equivalent gear: motor and link on one spring with a gap. At the link's lever each of the two
+    /// meshes takes half of the angle difference delta = theta_m / ratio - theta_l and half of the force: together they
+    /// store K delta^2 / 2.
     fn of_equivalent_gear(joint: &JointParameters, gear: &EquivalentGear) -> Self {
         let ratio = f64::from(gear.ratio[0]) / f64::from(gear.ratio[1]);
         let lever = joint.geometry.carrier_radius;
@@ -128,7 +129,8 @@ impl JointEquations {
     }
 }
 
-/// Without teeth to count, whole parts of a turn are taken off the coordinates: any number does that keeps them small.
+/// Substitute for the number of ring teeth in a joint without teeth: whole parts of a turn are taken off the
+/// coordinates; any number works that keeps them small.
 const PARTS_OF_A_TURN: f64 = 16384.0;
 
 fn constants(
@@ -138,7 +140,7 @@ fn constants(
     signed_teeth: i64,
 ) -> Vec<MeshConstants, MAX_PLANETS> {
     let planets = joint.geometry.planets as i64;
-    // Planet i stands at 2 pi i / n; only the fraction of a tooth that this makes matters.
+    // Planet i is at angle 2 pi i / n; only the resulting fraction of a tooth matters.
     let by_teeth = |planet: usize| TAU * (signed_teeth * planet as i64).rem_euclid(planets) as f64 / planets as f64;
     let phases = |planet: usize| match &mesh.phases {
         MeshPhases::Given { stiffness, error } => (stiffness[planet], error[planet]),
@@ -176,7 +178,7 @@ fn crest(mesh: &Mesh) -> f64 {
     mesh.mean_stiffness * (1.0 + ratio.abs())
 }
 
-/// A bound on the highest natural frequency (Gershgorin, row by row), with the stiffness at its crest [rad/s].
+/// Upper bound of the highest natural frequency (Gershgorin, row by row) at crest stiffness [rad/s].
 fn highest_frequency(joint: &JointParameters, masses: &[f64], compliance: f64) -> f64 {
     let planets = joint.geometry.planets as f64;
     let (sun_planet, ring_planet) = (crest(&joint.sun_planet), crest(&joint.ring_planet));

@@ -1,5 +1,5 @@
-//! Eqs 1-6 in absolute coordinates along the line of action, u = angle times lever, for sun, planets, carrier and, with
-//! a compliance, the link. Nothing is eliminated or decoupled here: rigid body and teeth move in the same state.
+//! Eqs 1-6 of the paper in absolute coordinates along the line of action, u = angle times lever, for sun, planets,
+//! carrier and, with a compliance, the link. No coordinate is eliminated: rigid body and teeth move in one state.
 
 use heapless::Vec;
 use parameters::{Excitation, MAX_PLANETS};
@@ -14,44 +14,44 @@ pub(super) const WORKS: usize = 4;
 const SUN_PLANET: usize = 0;
 const RING_PLANET: usize = 1;
 
-/// Error that one step may make, over b_c (positions) and b_c omega (speeds).
+/// Error tolerance of one step, relative to b_c (positions) and b_c omega (speeds).
 const STEP_TOLERANCE: f64 = 1e-11;
 
-/// Depth at which an event is declared, over b_c.
+/// Depth at which an event is detected, relative to b_c.
 const EVENT_DEPTH: f64 = 1e-12;
 
-/// Longest step times the highest frequency that stiffnesses, masses and excitation allow. Waves of that frequency have
-/// at most one extremum in it, which is what event search asks for.
+/// Longest step times the highest frequency of stiffnesses, masses and excitation. Waves of this frequency have at most
+/// one extremum per step, as the event search requires.
 const LONGEST_STEP: f64 = 1.5;
 
-/// The joint as masses on springs along the line of action.
+/// Joint as masses on springs along the line of action.
 #[derive(Debug, Clone)]
 pub(super) struct JointEquations {
     pub planets: usize,
-    /// An equivalent gear: its one planet has no mass and is no body, so that it has the same force on both sides.
+    /// Equivalent gear: its single planet has no mass and is not a body, so that both of its meshes carry equal forces.
     pub equivalent: bool,
     pub sun_lever: f64,
     pub carrier_lever: f64,
     pub ring_teeth: f64,
     pub length: f64,
-    /// Equivalent masses in the order of the state: sun, planets, carrier, then the link if it is a body of its own.
+    /// Equivalent masses in the order of the state: sun, planets, carrier, and the link if it is a separate body.
     pub masses: Vec<f64, { MAX_PLANETS + 3 }>,
-    /// Share of the link in the last body's mass.
+    /// Part of the last body's mass that belongs to the link.
     pub link_mass: f64,
-    /// Stiffness of all springs at the last body, at their crests.
+    /// Sum of the crest stiffnesses of all springs at the last body.
     pub link_stiffness: f64,
     /// Stiffness and damping between carrier and link.
     pub compliance: Option<(f64, f64)>,
-    /// Part of the stiffness between carrier and link that slips; its deflection follows the works in the state.
+    /// Slipping part of the stiffness between carrier and link; its deflection follows the work entries in the state.
     pub hysteresis: Option<Slip>,
     pub meshes: [Vec<MeshConstants, MAX_PLANETS>; 2],
     pub zones: [[Zone; MAX_PLANETS]; 2],
     pub excitation: Excitation,
-    /// A bound on the highest natural frequency, teeth in contact [rad/s].
+    /// Upper bound of the highest natural frequency with teeth in contact [rad/s].
     pub highest_frequency: f64,
     /// Highest harmonic of the stiffness waves.
     pub harmonics: f64,
-    /// Phase rate when the zones were selected [rad/s].
+    /// Phase rate at the last selection of the zones [rad/s].
     pub phase_rate: f64,
     /// T_D / r_bs.
     pub drive_force: f64,
@@ -59,7 +59,7 @@ pub(super) struct JointEquations {
     pub load_force: f64,
 }
 
-/// State of every mesh, and the force between carrier and link, at one instant.
+/// State of every mesh, and the force between carrier and link, at one time.
 pub(super) struct InternalForces {
     pub meshes: [[MeshState; MAX_PLANETS]; 2],
     pub wind_up_force: f64,
@@ -74,17 +74,19 @@ impl JointEquations {
         if self.equivalent { 1 } else { self.planets + 1 }
     }
 
-    /// Last body: the link, or the carrier that it is rigidly joined to.
+    /// Index of the last body: the link, or the carrier with the link rigidly attached.
     pub fn link(&self) -> usize {
         self.bodies() - 1
     }
 
-    /// How far each body moves along the line of action while the carrier moves by one: no mesh deflects.
+    /// Displacement of a body along the line of action per displacement of the carrier in rigid motion, in which no
+    /// mesh deflects.
     pub fn rigid_share(body: usize) -> f64 {
         if body == 0 { 2.0 } else { 1.0 }
     }
 
-    /// The coordinate that no internal force can move: the mean of `values` over the rigid shares, weighted by mass.
+    /// Rigid-body coordinate, which no internal force changes: the mass-weighted mean of `values` over the rigid
+    /// shares.
     pub fn rigid(&self, values: &[f64]) -> f64 {
         let (mut sum, mut weight) = (0.0, 0.0);
         for (body, mass) in self.masses.iter().enumerate() {
@@ -139,7 +141,7 @@ impl JointEquations {
         forces[self.carrier()] += both;
     }
 
-    /// Place of the slipping part's deflection in the state.
+    /// Index of the slipping part's deflection in the state.
     pub fn slip_entry(&self) -> usize {
         2 * self.bodies() + WORKS
     }

@@ -1,5 +1,5 @@
-//! The same equations 1-6 by a fixed fine step instead of the adaptive one, for closed loops by the hundred: drift, kick,
-//! drift, of second order, contact events found no closer than a step. The books of work are left out.
+//! Fixed-step integration of eqs 1-6, for closed loops by the hundred: drift, kick, drift, of second order; contact
+//! events are located to within one step. Work is not accumulated.
 
 use parameters::MAX_PLANETS;
 
@@ -8,10 +8,10 @@ use super::mesh_law::{MeshConstants, Phase};
 use super::reference::Reference;
 use crate::integrator::SwitchedSystem;
 
-/// Highest frequency times the step: the teeth's own frequency comes out 0.4 % high at most.
+/// Highest frequency times the step; the teeth's frequency is at most 0.4 % too high.
 const STEP: f64 = 0.3;
 
-/// What the excitation does to a mesh, as a straight line over a part of time.
+/// Excitation of a mesh, linear in time over a part of a period.
 #[derive(Clone, Copy, Default)]
 struct Excited {
     stiffness: f64,
@@ -36,8 +36,8 @@ impl Excited {
 }
 
 impl Reference {
-    /// Moves on to `time` [s] under constant torques as `advance` does, by equal steps that the highest frequency of
-    /// the teeth allows. The work done is not counted.
+    /// Advances to `time` [s] under constant torques as `advance` does, by equal steps that resolve the highest
+    /// frequency of the teeth. Work is not accumulated.
     pub fn advance_by_fixed_steps(&mut self, time: f64, drive_torque: f64, load_torque: f64) {
         self.equations.drive_force = drive_torque / self.equations.sun_lever;
         self.equations.load_force = load_torque / self.equations.carrier_lever;
@@ -68,7 +68,7 @@ impl Reference {
             slide(equations, speeds, slipped, 0.5 * step);
         }
         self.integrator.move_time(time);
-        // What is read off next goes by the zones.
+        // The next observation uses the zones.
         self.equations.select_mode(time, self.integrator.state());
     }
 }
@@ -79,14 +79,14 @@ fn drift(positions: &mut [f64], speeds: &[f64], step: f64) {
     }
 }
 
-/// Moves the slipping part of the compliance on.
+/// Advances the slipping part of the compliance.
 fn slide(equations: &JointEquations, speeds: &[f64], slipped: &mut f64, step: f64) {
     if let Some(slip) = equations.hysteresis {
         *slipped = slip.after(*slipped, step * (speeds[equations.carrier()] - speeds[equations.link()]));
     }
 }
 
-/// Changes the speeds by the forces at these positions, the slipping part's deflection beside them.
+/// Changes the speeds by the forces at these positions and this deflection of the slipping part.
 fn kick(
     equations: &JointEquations,
     excited: &[[Excited; MAX_PLANETS]; 2],

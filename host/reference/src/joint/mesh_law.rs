@@ -1,5 +1,5 @@
-//! One gear mesh as eqs 5-7 and 11 have it: stiffness wave, transmission error and the force across the teeth, with the
-//! zone of the dead zone fixed between events.
+//! Gear mesh by eqs 5-7 and 11 of the paper: stiffness wave, transmission error and mesh force. The zone of the dead
+//! zone is constant between events.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -7,10 +7,10 @@ use parameters::{ContactState, DampingLaw, StiffnessWave};
 
 use crate::integrator::Guards;
 
-/// Which branch of the force law holds until the next event.
+/// Branch of the force law that holds until the next event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Zone {
-    /// No backlash and damping that always acts: there is only one branch.
+    /// No backlash and permanent damping: a single branch.
     Joined,
     /// Within the dead zone.
     Free,
@@ -24,7 +24,7 @@ pub(super) enum Zone {
     BackSlack,
 }
 
-/// Phase of the excitation, the same for all meshes up to their own phases.
+/// Phase of the excitation, common to all meshes up to their own phases.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Phase {
     pub angle: f64,
@@ -41,13 +41,13 @@ pub(super) struct MeshConstants {
     pub damping: f64,
     pub law: DampingLaw,
     pub half_backlash: f64,
-    /// Half-backlash before it varies around the turn or over time.
+    /// Half-backlash without variation around the turn or over time.
     pub nominal_half_backlash: f64,
     pub error_amplitude: f64,
     pub error_phase: f64,
 }
 
-/// What a mesh does at one moment. Deflection d = displacement - e.
+/// State of a mesh at one time. Deflection d = displacement - e.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct MeshState {
     pub deflection: f64,
@@ -55,7 +55,7 @@ pub(super) struct MeshState {
     pub stiffness: f64,
     pub stiffness_rate: f64,
     pub error_rate: f64,
-    /// f(d, b), the part of the deflection that overlaps.
+    /// f(d, b), the overlapping part of the deflection.
     pub overlap: f64,
     pub force: f64,
 }
@@ -76,9 +76,9 @@ impl MeshConstants {
 
     /// K and K' (eq. 7, or Fig. 3 as a Fourier series).
     ///
-    /// The rectangular wave is high over a fraction D of the period, D the fractional part of the contact ratio,
-    /// centred at phase pi/2; its levels differ by 2 ratio K_m and its mean is K_m. Hence
-    /// K / K_m = 1 + sum over m of 4 ratio sin(pi m D) / (pi m) cos(m (phase - pi/2)).
+    /// The rectangular wave is high over the fraction D of the period (fractional part of the contact ratio), centred
+    /// at phase pi/2; its levels differ by 2 ratio K_m and its mean is K_m. Hence K / K_m = 1 + sum over m of 4 ratio
+    /// sin(pi m D) / (pi m) cos(m (phase - pi/2)).
     pub fn stiffness(&self, phase: Phase) -> (f64, f64) {
         let angle = phase.angle + self.stiffness_phase;
         let (value, slope) = match self.wave {
@@ -123,7 +123,7 @@ impl MeshConstants {
         MeshState { deflection, deflection_rate, stiffness, stiffness_rate, error_rate, overlap, force }
     }
 
-    /// Force of the teeth, with the zone by geometry.
+    /// Mesh force, with the zone determined by the deflection.
     pub fn force(&self, deflection: f64, deflection_rate: f64, stiffness: f64) -> f64 {
         let overlap = if deflection > self.half_backlash {
             deflection - self.half_backlash
@@ -141,7 +141,7 @@ impl MeshConstants {
         }
     }
 
-    /// The zone that a mesh is in, from geometry and, under the law `contact`, from the sign of the force line.
+    /// Zone of a mesh, from the deflection and, under the law `contact`, the sign of the force line.
     pub fn zone(&self, deflection: f64, deflection_rate: f64, stiffness: f64) -> Zone {
         let contact = self.law == DampingLaw::Contact;
         let line = |overlap: f64| stiffness * overlap + self.damping * deflection_rate;
@@ -156,10 +156,10 @@ impl MeshConstants {
         }
     }
 
-    /// Lengths that stay positive as long as `zone` holds. `rates` are d' and d''.
+    /// Adds guards: lengths that stay positive while `zone` holds.
     pub fn watch(&self, zone: Zone, mesh: &MeshState, deflection_acceleration: f64, guards: &mut Guards) {
         let rate = mesh.deflection_rate;
-        // The force line as a length, so that every guard has one resolution.
+        // The force line is expressed as a length, so that all guards have one resolution.
         let line = mesh.overlap + self.damping / mesh.stiffness * rate;
         let line_rate = rate + self.damping / mesh.stiffness * deflection_acceleration
             - self.damping * rate * mesh.stiffness_rate / (mesh.stiffness * mesh.stiffness);
@@ -186,7 +186,7 @@ impl MeshConstants {
         }
     }
 
-    /// Which flanks touch, by geometry alone.
+    /// Flanks in contact, by the deflection alone.
     pub fn contact(&self, deflection: f64) -> ContactState {
         if deflection > self.half_backlash {
             ContactState::DriveSide

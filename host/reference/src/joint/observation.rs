@@ -1,38 +1,38 @@
-//! Outputs of the reference at one instant, in SI, without encoders, noise and delays.
+//! Outputs of the reference at one time, in SI, without encoders, noise and delays.
 
 use heapless::Vec;
 use parameters::{ContactState, MAX_PLANETS, PerPlanet};
 
-/// The joint at one moment. Lists of two hold sun-planet meshes first, ring-planet meshes second.
+/// State of the joint at one time. Lists of two hold sun-planet meshes first, ring-planet meshes second.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observation {
     /// Time [s].
     pub time: f64,
-    /// Sun and motor rotor [rad].
+    /// Angle of sun and rotor [rad].
     pub motor_angle: f64,
     /// [rad/s].
     pub motor_speed: f64,
-    /// Carrier [rad].
+    /// Angle of the carrier [rad].
     pub carrier_angle: f64,
     /// [rad/s].
     pub carrier_speed: f64,
-    /// Link; equal to the carrier when no compliance is between them [rad].
+    /// Angle of the link; equal to the carrier's without a compliance [rad].
     pub link_angle: f64,
     /// [rad/s].
     pub link_speed: f64,
-    /// Rigid-body carrier angle, which no internal force can move [turns].
+    /// Rigid-body carrier angle, which no internal force changes [turns].
     pub rigid_turns: f64,
-    /// Its speed [rad/s].
+    /// Speed of the rigid-body carrier [rad/s].
     pub rigid_speed: f64,
-    /// Sun angle less its rigid share, small and without loss of digits at many turns [rad].
+    /// Sun angle less its rigid-body part; small, so that it keeps its digits at many turns [rad].
     pub motor_offset: f64,
-    /// Link angle less the rigid-body carrier angle, likewise [rad].
+    /// Link angle less the rigid-body carrier angle; keeps its digits at many turns [rad].
     pub link_offset: f64,
     /// Gap coordinate u_s - 2 u_c along the line of action [m].
     pub gap: f64,
     /// [m/s].
     pub gap_rate: f64,
-    /// Carrier less link along the line of action, u_c - u_l; zero without compliance [m].
+    /// Wind-up u_c - u_l of carrier against link along the line of action; zero without compliance [m].
     pub wind_up: f64,
     /// [m/s].
     pub wind_up_rate: f64,
@@ -42,15 +42,15 @@ pub struct Observation {
     pub deflection_rates: [PerPlanet; 2],
     /// Mesh forces along the line of action [N].
     pub mesh_forces: [PerPlanet; 2],
-    /// Which flanks touch.
+    /// Flanks in contact.
     pub contacts: [Vec<ContactState, MAX_PLANETS>; 2],
-    /// Torque that passes from carrier to link; zero without compliance [N m].
+    /// Torque from carrier to link; zero without compliance [N m].
     pub wind_up_torque: f64,
     /// Kinetic energy of all bodies [J].
     pub kinetic_energy: f64,
-    /// Energy in meshes and compliance [J].
+    /// Elastic energy in meshes and compliance [J].
     pub elastic_energy: f64,
-    /// Where energy came from and went to since the start.
+    /// Work since the start.
     pub work: Work,
 }
 
@@ -58,25 +58,25 @@ pub struct Observation {
 /// `supplied - dissipated - against_errors + by_stiffness`.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Work {
-    /// By drive torque, less what the load took [J].
+    /// Work of the drive torque less work taken by the load [J].
     pub supplied: f64,
-    /// Lost in mesh damping and in the compliance [J].
+    /// Energy dissipated in mesh damping and in the compliance [J].
     pub dissipated: f64,
-    /// Done by the meshes against the imposed transmission errors [J].
+    /// Work of the meshes against the imposed transmission errors [J].
     pub against_errors: f64,
-    /// Brought in by changing mesh stiffness [J].
+    /// Work of the changing mesh stiffness [J].
     pub by_stiffness: f64,
 }
 
 impl Work {
-    /// What kinetic plus elastic energy must have grown by [J].
+    /// Expected growth of kinetic plus elastic energy [J].
     pub fn net(&self) -> f64 {
         self.supplied - self.dissipated - self.against_errors + self.by_stiffness
     }
 }
 
 impl Observation {
-    /// Elastic and damping force of all sun-planet meshes together [N].
+    /// Sum of elastic and damping forces of all sun-planet meshes [N].
     pub fn sun_force(&self) -> f64 {
         self.mesh_forces[0].iter().sum()
     }

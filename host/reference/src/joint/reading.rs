@@ -9,7 +9,7 @@ use super::observation::{Observation, Work};
 use super::reference::Reference;
 
 impl Reference {
-    /// What can be read off now.
+    /// Returns the present outputs.
     pub fn observe(&self) -> Observation {
         let equations = &self.equations;
         let time = self.integrator.time();
@@ -21,7 +21,7 @@ impl Reference {
         let whole_turns = self.teeth_passed as f64 / equations.ring_teeth;
         let sun_lever = equations.sun_lever;
         let lever = equations.carrier_lever;
-        // What the teeth that have been counted off come to, at the carrier [rad].
+        // Carrier angle of the teeth taken off the coordinates [rad].
         let counted = TAU * whole_turns;
         let internal = equations.internal_forces(time, state);
 

@@ -1,4 +1,4 @@
-//! The joint in motion: started, moved on under torques, and kept to small coordinates.
+//! Reference joint with its state: start, advance under torques, and reduction to small coordinates.
 
 use std::f64::consts::TAU;
 
@@ -9,9 +9,9 @@ use super::start::{Start, resolve};
 use super::validity::ReferenceError;
 use crate::integrator::{Counters, Integrator, MAX_ENTRIES, SwitchedSystem};
 
-/// A joint in motion.
+/// Reference joint with its state.
 ///
-/// Joint Q1 under 1 N m for 10 ms, in which its teeth find their flank; the books of energy close:
+/// Example: joint Q1 under 1 N m for 10 ms, in which its teeth reach their flank; the energy balance closes:
 ///
 /// ```
 /// use reference::joint::Reference;
@@ -30,19 +30,19 @@ use crate::integrator::{Counters, Integrator, MAX_ENTRIES, SwitchedSystem};
 pub struct Reference {
     pub(super) equations: JointEquations,
     pub(super) integrator: Integrator,
-    /// Ring teeth that the carrier has passed and that were taken off all coordinates.
+    /// Ring teeth passed by the carrier and taken off all coordinates.
     pub(super) teeth_passed: i64,
-    /// Half-backlash of every mesh over the one that it was made with or set to.
+    /// Half-backlash of every mesh relative to its initial or last set value.
     pub(super) backlash_scale: f64,
 }
 
 impl Reference {
-    /// A joint at time zero, all bodies still at angle zero.
+    /// Joint at time zero, all bodies at rest at angle zero.
     pub fn new(joint: &JointParameters) -> Result<Self, ReferenceError> {
         Self::start(joint, &Start::Still)
     }
 
-    /// A joint at time zero.
+    /// Joint at time zero.
     ///
     /// # Panics
     /// If a list in `start` has not one value for each planet.
@@ -58,7 +58,7 @@ impl Reference {
         self.integrator.time()
     }
 
-    /// Moves on to `time` [s] under constant torques: `drive_torque` on the sun, `load_torque` braking the link [N m].
+    /// Advances to `time` [s] under constant torques: `drive_torque` on the sun, `load_torque` braking the link [N m].
     pub fn advance(&mut self, time: f64, drive_torque: f64, load_torque: f64) -> Result<(), ReferenceError> {
         self.equations.drive_force = drive_torque / self.equations.sun_lever;
         self.equations.load_force = load_torque / self.equations.carrier_lever;
@@ -67,13 +67,13 @@ impl Reference {
         Ok(())
     }
 
-    /// What the run has cost so far.
+    /// Returns step and event counts of the run so far.
     pub fn counters(&self) -> Counters {
         self.integrator.counters()
     }
 
-    /// Takes whole ring teeth off the coordinates, which leaves every deflection and every mesh phase as it is: the
-    /// coordinates stay millimetres, so that deflections keep their digits at any number of turns.
+    /// Takes whole ring teeth off the coordinates; every deflection and every mesh phase stays. Coordinates stay within
+    /// millimetres, so that deflections keep their digits at any number of turns.
     pub(super) fn count_teeth(&mut self) {
         let pitch = TAU / self.equations.ring_teeth * self.equations.carrier_lever;
         let bodies = self.equations.bodies();

@@ -1,5 +1,4 @@
-//! The states that a joint can be started from, each resolved into absolute coordinates. Torques are not part of a
-//! start.
+//! Initial states of a joint, resolved into absolute coordinates. Torques are not part of a start.
 
 use parameters::{MAX_PLANETS, PerPlanet};
 
@@ -7,16 +6,16 @@ use super::equations::JointEquations;
 use super::observation::Observation;
 use crate::integrator::{Entries, MAX_ENTRIES};
 
-/// Where a joint starts. The rigid-body carrier angle is zero in each.
+/// Initial state of a joint. The rigid-body carrier angle is zero in each.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Start {
-    /// All bodies still at angle zero: deflections are the transmission errors, negated.
+    /// All bodies at rest at angle zero: deflections are the negated transmission errors.
     Still,
-    /// Stated in the relative coordinates of eqs 16 and 17.
+    /// State in the relative coordinates of eqs 16 and 17.
     Relative(RelativeState),
 }
 
-/// Relative coordinates in SI: sun-planet deflections, gap coordinate and wind-up with their rates.
+/// Relative coordinates in SI: sun-planet deflections, gap coordinate and wind-up, with their rates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RelativeState {
     /// X_sp b_c: sun-planet deflection, less the transmission error, one per planet [m].
@@ -27,7 +26,7 @@ pub struct RelativeState {
     pub gap: f64,
     /// [m/s].
     pub gap_rate: f64,
-    /// Carrier less link, u_c - u_l; without compliance it is not used [m].
+    /// Wind-up u_c - u_l; unused without compliance [m].
     pub wind_up: f64,
     /// [m/s].
     pub wind_up_rate: f64,
@@ -36,7 +35,7 @@ pub struct RelativeState {
 }
 
 impl RelativeState {
-    /// X = X' = 0: every tooth in the middle of its gap, as far as the transmission errors allow, and the joint still.
+    /// X = X' = 0: every tooth in the middle of its gap, up to the transmission errors, and the joint at rest.
     pub fn centred(planets: usize) -> Self {
         let zeros: PerPlanet = (0..planets.min(MAX_PLANETS)).map(|_| 0.0).collect();
         Self {
@@ -50,7 +49,7 @@ impl RelativeState {
         }
     }
 
-    /// What an observation shows; where the rigid body is stands beside it.
+    /// Relative coordinates of an observation, without the rigid-body angle.
     pub fn of(observation: &Observation) -> Self {
         Self {
             sun_planet: observation.deflections[0].clone(),
@@ -64,21 +63,21 @@ impl RelativeState {
     }
 }
 
-/// The state at time zero.
+/// Returns the state at time zero.
 pub(super) fn resolve(start: &Start, equations: &JointEquations) -> Entries {
     let mut state = [0.0; MAX_ENTRIES];
     let Start::Relative(relative) = start else {
         return state;
     };
     let bodies = equations.bodies();
-    // The errors' rates need the phase rate, which in mode `angle` is the rigid body's and nothing else's.
+    // The errors' rates need the phase rate, which in mode `angle` depends on the rigid body only.
     for body in 0..bodies {
         state[bodies + body] = JointEquations::rigid_share(body) * relative.rigid_speed * equations.carrier_lever;
     }
     let phase = equations.phase(0.0, &state);
     let mut positions = [0.0; MAX_PLANETS + 3];
     let mut speeds = [0.0; MAX_PLANETS + 3];
-    // With the carrier held at zero; the rigid part is put right afterwards.
+    // The carrier is at zero here; the rigid part is corrected afterwards.
     positions[0] = relative.gap;
     speeds[0] = relative.gap_rate;
     for planet in 0..if equations.equivalent { 0 } else { equations.planets } {

@@ -1,5 +1,5 @@
-//! Parameters that the reference refuses, each error with its cause and remedy. Coherence of the geometry is not checked: the
-//! equations hold for any radii.
+//! Parameter checks of the reference; each error states cause and remedy. The geometry is not checked for coherence:
+//! the equations hold for any radii.
 
 use std::fmt;
 
@@ -7,32 +7,32 @@ use parameters::{DeadZone, EquivalentGear, Excitation, JointParameters, MAX_PLAN
 
 use crate::integrator::IntegrationError;
 
-/// Why the reference cannot follow a joint.
+/// Reason for refusing a joint or stopping its integration.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ReferenceError {
-    /// The tanh dead zone of eq. 13 is an approximation of what the reference holds.
+    /// The tanh dead zone of eq. 13, which only approximates the sharp dead zone of the reference.
     SmoothDeadZone,
     /// Number of planets outside the model's range.
     Planets(usize),
-    /// A list that needs one value for each planet has another length.
+    /// A list that does not have one value per planet.
     ListLength {
-        /// Which list.
+        /// Name of the list.
         quantity: &'static str,
-        /// Its length.
+        /// Length of the list.
         length: usize,
-        /// The number of planets.
+        /// Number of planets.
         planets: usize,
     },
     /// A quantity is out of range, infinite or NaN.
     OutOfRange {
-        /// Which quantity.
+        /// Name of the quantity.
         quantity: &'static str,
-        /// What it was.
+        /// Rejected value.
         value: f64,
-        /// What it must be.
+        /// Required range.
         must_be: &'static str,
     },
-    /// The integration stopped.
+    /// The integration failed.
     Integration(IntegrationError),
 }
 

@@ -1,12 +1,13 @@
-//! Teeth and link that change while the joint moves: backlash that has grown or varies, a mesh whose stiffness has fallen, a link that
-//! has gripped a payload. Between changes the equations are those of any joint.
+//! Changes of teeth and link during a run: growing or varying backlash, a mesh with reduced stiffness, a gripped
+//! payload. Between changes the equations are those of any joint.
 
 use super::hysteresis::Slip;
 use super::reference::Reference;
 use crate::integrator::SwitchedSystem;
 
 impl Reference {
-    /// Lets a share of the stiffness between carrier and link slip at a torque [N m]. A joint without compliance stays as it is.
+    /// Lets a share of the stiffness between carrier and link slip at a torque [N m]; without effect on a joint without
+    /// compliance.
     pub fn with_hysteresis(mut self, stiffness_share: f64, torque: f64) -> Self {
         if let Some((stiffness, _)) = &mut self.equations.compliance
             && stiffness_share > 0.0
@@ -19,7 +20,7 @@ impl Reference {
         self
     }
 
-    /// From now on every mesh has this half-backlash [m].
+    /// Sets the half-backlash of every mesh [m].
     pub fn set_half_backlash(&mut self, half_backlash: f64) {
         for mesh in self.equations.meshes.iter_mut().flatten() {
             mesh.nominal_half_backlash = half_backlash;
@@ -28,7 +29,7 @@ impl Reference {
         self.select_mode_again();
     }
 
-    /// Multiplies the half-backlash that each mesh was made with, or was last set to, by a factor.
+    /// Multiplies the initial or last set half-backlash of each mesh by a factor.
     pub fn scale_half_backlash(&mut self, factor: f64) {
         self.backlash_scale = factor;
         for mesh in self.equations.meshes.iter_mut().flatten() {
@@ -37,7 +38,7 @@ impl Reference {
         self.select_mode_again();
     }
 
-    /// From now on the link has this inertia; a carrier that it is rigidly joined to keeps its own [kg m^2]. Speeds and the damping
+    /// Sets the inertia of the link; a rigidly joined carrier keeps its own inertia [kg m^2]. Speeds and the damping
     /// between carrier and link stay.
     pub fn set_link_inertia(&mut self, link_inertia: f64) {
         let equations = &mut self.equations;
@@ -46,13 +47,14 @@ impl Reference {
         let before = equations.masses[link];
         equations.masses[link] = before + mass - equations.link_mass;
         equations.link_mass = mass;
-        // By Weyl's inequality the largest square of a frequency grows by no more than the last body's stiffness over its mass does.
+        // By Weyl's inequality the largest squared frequency grows by at most the change of the last body's stiffness
+        // over its mass.
         let lighter = (1.0 / equations.masses[link] - 1.0 / before).max(0.0);
         equations.highest_frequency = (equations.highest_frequency.powi(2) + equations.link_stiffness * lighter).sqrt();
         self.select_mode_again();
     }
 
-    /// From now on the sun-planet mesh of one planet has this mean stiffness [N/m].
+    /// Sets the mean stiffness of the sun-planet mesh of one planet [N/m].
     pub fn set_sun_planet_stiffness(&mut self, planet: usize, mean_stiffness: f64) {
         if let Some(mesh) = self.equations.meshes[0].get_mut(planet) {
             mesh.mean_stiffness = mean_stiffness;

@@ -1,10 +1,11 @@
-//! Case R, what a robot joint does: joint Q1 with ripple and error run up and down, reversed through its gap at three
-//! torques and three frequencies, struck at the link and left to fly in its gap, at ten thousand ticks a second. Open
-//! loop, without friction and sensors, so that two integrators can be held against each other.
+//! Case R, typical loads of a robot joint: joint Q1 with ripple and error is run up and down, reversed through its gap
+//! at three torques and three frequencies, hit at the link and left free in its gap, at ten thousand ticks per second.
+//! Open loop, without friction and sensors, for the comparison of two integrators.
 //!
-//! Q1's planets weigh 0.6 % of what moves with the motor and rattle without rule after every crossing of the gap, and the
-//! motion as a whole is chaotic: torques changed by a billionth end elsewhere in the gap. Hence the windows: wherever
-//! torques jump, whoever follows is put back into the reference's state, and is judged by what it does up to the next.
+//! Q1's planets have 0.6 % of the inertia that moves with the motor. They rattle irregularly after every crossing of
+//! the gap, and the motion is chaotic: a change of the torques by 1e-9 changes the final position in the gap. Hence the
+//! windows: wherever torques jump, the compared integrator is reset to the reference's state and judged up to the next
+//! jump.
 
 use std::f64::consts::{PI, TAU};
 
@@ -27,41 +28,41 @@ const RUN_TIME: f64 = 0.4;
 /// Frequency of the reversals [Hz], and how many periods of each.
 const REVERSALS: [(f64, f64); 3] = [(1.0, 1.0), (5.0, 2.0), (20.0, 4.0)];
 
-/// Those of the brief form.
+/// Reversals of the brief form.
 const BRIEF_REVERSALS: [(f64, f64); 2] = [(5.0, 0.5), (20.0, 1.0)];
 
-/// Length of what comes after the reversals, each [s].
+/// Length of each part after the reversals [s].
 const PAUSE: f64 = 0.1;
 const BRIEF_PAUSE: f64 = 0.05;
 
 /// Length of an impact [s].
 const IMPACT: f64 = 0.01;
 
-/// Torque of the reversals over the rated one.
+/// Torques of the reversals relative to the rated torque.
 const SHARES: [f64; 3] = [1.0, 0.2, 0.05];
 
-/// Torques jump where they change from one tick to the next by more than this part of their largest.
+/// Change from tick to tick that counts as a jump, relative to the largest torque.
 const JUMP: f64 = 0.1;
 
-/// A joint, its torques tick by tick, and where each part of the motion begins and ends.
+/// Joint, torques per tick, and limits of the parts of the motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CaseR {
-    /// The joint; it starts still.
+    /// Joint; starts at rest.
     pub joint: JointParameters,
     /// Drive torque on the sun and load torque braking the link, held over each tick [N m].
     pub torques: Vec<[f64; 2]>,
     /// Parts of the motion, in order and without gaps.
     pub parts: Vec<Part>,
-    /// Ticks at which windows begin: with every part, and wherever torques jump.
+    /// First ticks of the windows: each part, and each jump of the torques.
     pub windows: Vec<usize>,
 }
 
-/// A part of the motion.
+/// Part of the motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
-    /// What is done.
+    /// Name of the part.
     pub name: String,
-    /// Its first tick.
+    /// First tick of the part.
     pub first: usize,
 }
 
@@ -78,12 +79,12 @@ pub fn case_r() -> CaseR {
     on(joint)
 }
 
-/// The same motion on another joint: torques are parts of its rated one, the run is as fast.
+/// Case R on another joint: torques relative to its rated torque, the run at an equal speed.
 pub fn on(joint: JointParameters) -> CaseR {
     moved(joint, &REVERSALS, PAUSE)
 }
 
-/// The same with fewer reversals and shorter pauses, a fifth of its length.
+/// Case R with fewer reversals and shorter pauses, a fifth of its length.
 pub fn brief(joint: JointParameters) -> CaseR {
     moved(joint, &BRIEF_REVERSALS, BRIEF_PAUSE)
 }
@@ -92,14 +93,14 @@ fn moved(joint: JointParameters, reversals: &[(f64, f64)], pause: f64) -> CaseR 
     let ratio = ratio(&joint);
     let rated = joint.rated_output_torque;
     let mut case = CaseR { torques: Vec::new(), parts: Vec::new(), windows: Vec::new(), joint };
-    // A sine of torque whose half wave takes the whole joint to its speed.
+    // Sine of torque whose half wave accelerates the joint to its speed.
     let run = PI * RUN_SPEED * case.inertia() / RUN_TIME;
     case.part("run up and down", RUN_TIME, |time| [run * (TAU * time / RUN_TIME).sin() / ratio, 0.0]);
     for (frequency, periods) in reversals {
         for share in SHARES {
             let name = format!("reversals of {:.0} % at {frequency:.0} Hz", 100.0 * share);
             let torque = share * rated / ratio;
-            // A cosine's sign: the joint is at rest again after each period.
+            // Square wave by the sign of a cosine: the joint is at rest again after each period.
             let sign = |time: f64| (TAU * frequency * time).cos().signum();
             case.part(&name, periods / frequency, |time| [torque * sign(time), 0.0]);
         }
@@ -128,7 +129,7 @@ impl CaseR {
         self.joint.geometry.carrier_radius * self.joint.geometry.working_pressure_angle.cos()
     }
 
-    /// Of everything that turns, referred to the link [kg m^2].
+    /// Total inertia, referred to the link [kg m^2].
     fn inertia(&self) -> f64 {
         let joint = &self.joint;
         let (bodies, planets) = (&joint.bodies, joint.geometry.planets as f64);
@@ -140,7 +141,7 @@ impl CaseR {
             + carrier * joint.geometry.carrier_radius.powi(2)
     }
 
-    /// Adds a part; torques are those in the middle of each tick.
+    /// Adds a part; torques are taken at the middle of each tick.
     fn part(&mut self, name: &str, duration: f64, torques: impl Fn(f64) -> [f64; 2]) {
         let first = self.ticks();
         let ticks = (duration * f64::from(TICK_RATE)).round() as usize;

@@ -9,7 +9,7 @@ use super::joints::{PAPER_LENGTH, paper_joint, paper_natural_frequency};
 use super::{Scenario, TorqueSegment};
 use crate::joint::{Observation, RelativeState};
 
-/// omega/omega_n of case A: meshes part and hit, without chaos.
+/// omega/omega_n of case A: meshes separate and collide, without chaos.
 pub const CASE_A_OMEGA: f64 = 0.8;
 
 /// omega/omega_n of case Q: contact holds.
@@ -48,7 +48,7 @@ pub fn case(name: &str, omega: f64) -> Scenario {
     balanced(name, joint, start, drive_torque, 300.0, true)
 }
 
-/// Set P at a half-backlash [m], from X = X' = 0, up to a dimensionless time.
+/// Set P with a half-backlash [m], from X = X' = 0 up to a dimensionless time.
 pub fn regime(name: &str, half_backlash: f64, tau: f64) -> Scenario {
     let joint = paper_joint(0.1, 30e-6, half_backlash, REGIME_OMEGA);
     balanced(name, joint, RelativeState::centred(3), 80.0, tau, half_backlash < CHAOTIC_BACKLASH)

@@ -1,4 +1,4 @@
-//! The joints that scenarios run on, built in code so that a mistake in a joint file cannot reach them.
+//! Joints of the scenarios, built in code, independent of joint files and their mistakes.
 
 use parameters::{
     Bodies, Coherence, Compliance, DampingLaw, DeadZone, Excitation, Geometry, JointParameters, Mesh, MeshPhases,
@@ -8,12 +8,12 @@ use parameters::{
 /// b_c of the paper's joint [m].
 pub const PAPER_LENGTH: f64 = 10e-6;
 
-/// One value for each planet, all the same.
+/// List of equal values, one per planet.
 pub fn same(planets: usize, value: f64) -> PerPlanet {
     (0..planets).map(|_| value).collect()
 }
 
-/// A mesh whose planets all have the same backlash and error, with phases of zero.
+/// Mesh with equal backlash and error for all planets and phases of zero.
 fn mesh(planets: usize, damping_ratio: f64, stiffness_ratio: f64, half_backlash: f64, transmission_error: f64) -> Mesh {
     Mesh {
         mean_stiffness: 1e8,
@@ -62,8 +62,8 @@ pub fn paper_joint(stiffness_ratio: f64, transmission_error: f64, half_backlash:
     }
 }
 
-/// A joint with so many planets and other teeth of its module on sun, planets and ring; every mesh is like the first one of
-/// its kind.
+/// Returns the joint with another number of planets and other teeth of its module on sun, planets and ring; every mesh
+/// is like the first of its kind.
 pub fn with_teeth(mut joint: JointParameters, planets: usize, [sun, planet, ring]: [u32; 3]) -> JointParameters {
     for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
         mesh.half_backlash = same(planets, mesh.half_backlash[0]);
@@ -109,7 +109,7 @@ pub fn q1() -> JointParameters {
             sun_equivalent_mass: 0.02,
             planet_equivalent_mass: 0.03,
             planet_mass,
-            // The carrier is stated over (r_c cos alpha)^2 there, without its planets.
+            // Q1 states the carrier over (r_c cos alpha)^2, without its planets.
             carrier_inertia_over_radius_squared: carrier_equivalent_mass * cosine * cosine,
         },
         rotor_inertia: 2.5e-4,

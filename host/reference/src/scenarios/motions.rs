@@ -1,10 +1,9 @@
-//! Motions that take the teeth through every state that backlash knows: free motion, load steps, reversals through the
-//! gap, all teeth separated, back-side contact; on joints L1 and Q1, under both damping laws. All open loop on a 20 kHz
-//! tick grid.
+//! Motions through every state of backlash: free motion, load steps, reversals through the gap, all teeth separated,
+//! back-side contact; on joints L1 and Q1, under both damping laws. All open loop on a 20 kHz tick grid.
 //!
 //! Under the law `contact` with a damping ratio of 0.05 the planets rattle between sun and ring for milliseconds after
-//! every crossing, and each bounce amplifies what came before: no two integrators agree on single meshes then. L1 is
-//! therefore damped by 0.2 here under that law, which ends the rattling; Q1 is left as it is and marked.
+//! every crossing, and each bounce amplifies earlier deviations: no two integrators agree on single meshes then. L1 is
+//! therefore damped by 0.2 under this law, which ends the rattling; Q1 is unchanged and marked.
 
 use parameters::{DampingLaw, JointParameters, MeshPhases, StiffnessWave};
 
@@ -12,17 +11,17 @@ use super::joints::{l1, q1, same};
 use super::{Scenario, TorqueSegment};
 use crate::joint::RelativeState;
 
-/// A joint, the drive torque that its motions are made of, and what of it can be predicted.
+/// Joint, unit of the drive torque of its motions, and predictability.
 struct Subject {
     name: &'static str,
     joint: JointParameters,
     /// [N m].
     unit: f64,
-    /// Whether its planets rattle after a crossing.
+    /// `true` if the planets rattle after a crossing.
     rattles: bool,
 }
 
-/// All of them, joint by joint.
+/// Returns all motions, joint by joint.
 pub fn motions() -> Vec<Scenario> {
     let with_law = |mut joint: JointParameters, law| {
         joint.damping_law = law;
@@ -42,7 +41,7 @@ pub fn motions() -> Vec<Scenario> {
 }
 
 /// No torque; the joint turns at 20 rad/s while its teeth drift through the gap and bounce. Without errors: bouncing
-/// between moving flanks is a billiard, chaotic on every joint under the law `contact`.
+/// between moving flanks is chaotic on every joint under the law `contact`.
 fn free_motion(subject: &Subject) -> Scenario {
     let planets = subject.joint.geometry.planets;
     let start = RelativeState { gap_rate: 4e-3, rigid_speed: 20.0, ..RelativeState::centred(planets) };
@@ -59,7 +58,7 @@ fn step_load(subject: &Subject) -> Scenario {
     subject.motion("step load", start, 4000, &[(0, 1.0, 1.0), (1000, 1.0, 1.5), (2500, 1.0, 1.0)], true)
 }
 
-/// Drive and load change sign together, so that the teeth cross the gap and the joint hardly moves.
+/// Drive and load change sign together: the teeth cross the gap and the joint hardly moves.
 fn reversal(subject: &Subject) -> Scenario {
     let steps = [(0, 0.5, 0.5), (800, -0.5, -0.5), (2400, 0.5, 0.5)];
     subject.motion("reversal through the gap", subject.seated(0.5), 4000, &steps, !subject.rattles)
@@ -94,12 +93,12 @@ impl Subject {
         self.joint.geometry.carrier_radius * self.joint.geometry.working_pressure_angle.cos()
     }
 
-    /// Load torque that balances a drive torque of one.
+    /// Load torque that balances a unit drive torque.
     fn ratio(&self) -> f64 {
         2.0 * self.carrier_lever() / self.joint.geometry.sun_base_radius
     }
 
-    /// Static contact under a drive torque in units, all bodies still; negative for the back sides.
+    /// Static contact under a drive torque in units, all bodies at rest; negative for the back sides.
     fn seated(&self, drive: f64) -> RelativeState {
         let geometry = &self.joint.geometry;
         let drive_torque = drive * self.unit;

@@ -1,5 +1,5 @@
-//! Random joints by seed, as joints are built: 3 to 5 planets that assemble, between Q1's size and L1's, with planets that
-//! are light beside what turns with the motor and planets that are not. What is to hold for every joint is tried on them.
+//! Realistic random joints by seed: 3 to 5 planets that can be assembled, sizes between Q1 and L1, planets both light
+//! and heavy compared with the inertia at the motor. Tests of properties of all joints use them.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::joints::{l1, q1, with_teeth};
 
-/// One joint in so many has no teeth.
+/// Reciprocal of the share of joints without teeth.
 const EQUIVALENT: u32 = 8;
 
 struct Chance(ChaCha8Rng);
@@ -23,7 +23,7 @@ impl Chance {
         low + (high - low) * self.part()
     }
 
-    /// Evenly over orders of magnitude.
+    /// Returns a log-uniform number.
     fn scaled(&mut self, low: f64, high: f64) -> f64 {
         low * (high / low).powf(self.part())
     }
@@ -37,7 +37,7 @@ impl Chance {
     }
 }
 
-/// The joint of a seed: one in eight is an equivalent gear.
+/// Returns the joint of a seed: one in eight is an equivalent gear.
 pub fn random_joint(seed: u64) -> JointParameters {
     let mut chance = Chance(ChaCha8Rng::seed_from_u64(seed));
     if chance.one_in(EQUIVALENT) { without_teeth(&mut chance, seed) } else { of_planets(&mut chance, seed) }
@@ -96,10 +96,10 @@ fn of_planets(chance: &mut Chance, seed: u64) -> JointParameters {
     joint
 }
 
-/// Teeth of sun, planets and ring with which so many planets, evenly spaced, go between sun and ring.
+/// Returns teeth of sun, planets and ring that allow this number of evenly spaced planets.
 fn teeth(chance: &mut Chance, planets: u32) -> [u32; 3] {
     let sun = chance.whole(15, 36);
-    // Sun and ring together, 2 (sun + planet), are a multiple of the number of planets.
+    // For assembly, the sum of sun and ring teeth, 2 (sun + planet), is a multiple of the number of planets.
     let planet = (sun.max(18)..).find(|planet| (2 * (sun + planet)).is_multiple_of(planets)).unwrap_or(sun);
     let planet = planet + chance.whole(0, 4) * if planets == 4 { 2 } else { planets };
     [sun, planet, sun + 2 * planet]

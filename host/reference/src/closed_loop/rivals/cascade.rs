@@ -1,12 +1,12 @@
-//! The plain load cascade: a proportional loop on the output encoder gives the speed that a proportional-integral loop
-//! on the motor keeps. The gap between the two is ignored.
+//! Plain load cascade: a proportional loop on the output encoder sets the speed of a proportional-integral loop on the
+//! motor. The gap is ignored.
 
 use super::Knowledge;
 use super::motor_pid::tracker;
 use crate::closed_loop::{Controller, LinkTracker, MotorTracker, SetPoint};
 use crate::drive_train::Measurement;
 
-/// Position of the link over speed of the motor.
+/// Cascade of link position and motor speed.
 #[derive(Debug, Clone)]
 pub struct LoadCascade {
     knowledge: Knowledge,
@@ -18,7 +18,7 @@ pub struct LoadCascade {
 }
 
 impl LoadCascade {
-    /// Of a bandwidth [rad/s].
+    /// Cascade of a bandwidth [rad/s].
     pub fn new(knowledge: Knowledge, bandwidth: f64) -> Self {
         let motor = tracker(&knowledge, bandwidth);
         let link =
@@ -33,7 +33,7 @@ impl Controller for LoadCascade {
         let (_, speed) = self.motor.step(measurement.motor_counts, self.torque);
         let (link, _) = self.link.step(measurement.output_counts);
         let Knowledge { ratio, total_inertia: inertia, torque_limit: limit, period, .. } = self.knowledge;
-        // s^3 + 3 w s^2 + 3 w^2 s + (3/4) w^3: as near to three poles in one place as real gains of a cascade come.
+        // s^3 + 3 w s^2 + 3 w^2 s + (3/4) w^3: the nearest to a triple pole that real gains of a cascade allow.
         let pole = self.bandwidth;
         let speed_error = ratio * (motion.speed + 0.5 * pole * (motion.position - link)) - speed;
         let damping = 3.0 * inertia * pole;

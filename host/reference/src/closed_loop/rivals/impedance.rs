@@ -1,23 +1,23 @@
 //! Impedance laws without compensation: spring and damper about a moving point, each measured at the motor or at the
-//! link. The torque is given as if there were no gap.
+//! link. The torque ignores the gap.
 
 use super::Knowledge;
 use super::motor_pid::TRACKER;
 use crate::closed_loop::{Controller, LinkTracker, MotorTracker, SetPoint};
 use crate::drive_train::Measurement;
 
-/// Where spring and damper are measured.
+/// Place of measurement of spring and damper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ImpedanceLaw {
-    /// Both at the motor.
+    /// Spring and damper at the motor.
     MotorSide,
     /// Spring at the link, damper at the motor.
     LinkSpring,
-    /// Both at the link.
+    /// Spring and damper at the link.
     LinkSide,
 }
 
-/// An impedance law.
+/// Impedance law.
 #[derive(Debug, Clone)]
 pub struct Impedance {
     knowledge: Knowledge,
@@ -28,7 +28,7 @@ pub struct Impedance {
 }
 
 impl Impedance {
-    /// `bandwidth` sets the speed filters only [rad/s].
+    /// Impedance law; `bandwidth` sets the speed filters only [rad/s].
     pub fn new(knowledge: Knowledge, law: ImpedanceLaw, bandwidth: f64) -> Self {
         let motor = super::motor_pid::tracker(&knowledge, bandwidth);
         let link = LinkTracker::new(knowledge.counts_per_turn[1], TRACKER * bandwidth, knowledge.period);

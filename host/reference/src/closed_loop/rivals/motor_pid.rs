@@ -1,11 +1,11 @@
-//! The baseline: PID on the motor's encoder alone, all three poles at the bandwidth on the total rigid inertia, with
-//! acceleration feed-forward and back-calculation anti-windup. The gap is ignored.
+//! Baseline: PID on the motor encoder alone, triple pole at the bandwidth for the total rigid inertia, with
+//! acceleration feedforward and back-calculation anti-windup. The gap is ignored.
 
 use super::Knowledge;
 use crate::closed_loop::{Controller, Motion, MotorTracker, SetPoint};
 use crate::drive_train::Measurement;
 
-/// Poles of the speed filter over the bandwidth: fast enough to leave the loop its phase, slow enough for 14 bits.
+/// Poles of the speed filter relative to the bandwidth: fast enough for the loop's phase, slow enough for 14 bits.
 pub(super) const TRACKER: f64 = 30.0;
 
 /// PID on the motor.
@@ -19,13 +19,13 @@ pub struct MotorPid {
 }
 
 impl MotorPid {
-    /// A PID of a bandwidth [rad/s].
+    /// PID of a bandwidth [rad/s].
     pub fn new(knowledge: Knowledge, bandwidth: f64) -> Self {
         let tracker = tracker(&knowledge, bandwidth);
         Self { knowledge, bandwidth, tracker, integral: 0.0, torque: 0.0 }
     }
 
-    /// Follows a motion of the motor shaft with a torque fed forward besides the acceleration's.
+    /// Follows a motion of the motor shaft, with a feedforward torque in addition to the acceleration's.
     pub(super) fn follow(&mut self, counts: i64, motion: Motion, feed_forward: f64) -> f64 {
         let (angle, speed) = self.tracker.step(counts, self.torque);
         let (inertia, pole) = (self.knowledge.total_inertia, self.bandwidth);
@@ -52,7 +52,7 @@ pub(super) fn tracker(knowledge: &Knowledge, bandwidth: f64) -> MotorTracker {
     MotorTracker::new(knowledge.counts_per_turn[0], knowledge.motor_inertia, TRACKER * bandwidth, knowledge.period)
 }
 
-/// The motion of the motor shaft that belongs to one of the link.
+/// Motion of the motor shaft for a motion of the link.
 pub(super) fn geared(motion: Motion, ratio: f64) -> Motion {
     Motion { position: ratio * motion.position, speed: ratio * motion.speed, acceleration: ratio * motion.acceleration }
 }

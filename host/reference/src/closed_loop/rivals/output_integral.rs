@@ -1,22 +1,22 @@
-//! The best of the usual ways: motor PID with the true friction and most of the weight fed forward, its reference
-//! jumping by the guessed lost motion when the planned torque changes its sign, and an integral over the output
-//! encoder's error. Contact and load are not estimated.
+//! Strongest usual method: motor PID with feedforward of the true friction and most of the weight, a reference that
+//! jumps by the guessed lost motion when the planned torque changes sign, and an integral of the output encoder's
+//! error. Contact and load are not estimated.
 
 use super::Knowledge;
 use super::motor_pid::{MotorPid, geared};
 use crate::closed_loop::{Controller, LinkTracker, SetPoint};
 use crate::drive_train::Measurement;
 
-/// Share of the weight that the feed-forward knows.
+/// Share of the weight in the feedforward.
 const KNOWN_GRAVITY: f64 = 0.85;
 
-/// Speed over which the friction fed forward changes its sign [rad/s].
+/// Speed at which the friction feedforward saturates [rad/s].
 const FRICTION_SPEED: f64 = 0.01;
 
-/// Rate of the output integral over the bandwidth.
+/// Rate of the output integral relative to the bandwidth.
 const INTEGRAL_RATE: f64 = 0.25;
 
-/// Motor PID with feed-forward, jump and output integral.
+/// Motor PID with feedforward, jump and output integral.
 #[derive(Debug, Clone)]
 pub struct OutputIntegral {
     pid: MotorPid,
@@ -27,7 +27,7 @@ pub struct OutputIntegral {
 }
 
 impl OutputIntegral {
-    /// Of a bandwidth [rad/s].
+    /// Controller of a bandwidth [rad/s].
     pub fn new(knowledge: Knowledge, bandwidth: f64) -> Self {
         let link =
             LinkTracker::new(knowledge.counts_per_turn[1], super::motor_pid::TRACKER * bandwidth, knowledge.period);
@@ -50,7 +50,7 @@ impl Controller for OutputIntegral {
             self.side = planned.signum();
         }
         self.trim += period * self.rate * (motion.position - link);
-        // What the guess of the width may be wrong by at most, and the encoders.
+        // Limit: the largest error of the guessed width, with room for encoder errors.
         self.trim = self.trim.clamp(-lost_motion, lost_motion);
         let mut motor = geared(motion, ratio);
         motor.position += ratio * (0.5 * self.side * lost_motion + self.trim);

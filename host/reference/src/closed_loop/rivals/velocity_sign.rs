@@ -1,5 +1,5 @@
-//! The usual practice: the motor PID with half the guessed lost motion added in the direction of the wanted speed,
-//! whether friction or inertia drives the joint.
+//! Usual practice: motor PID plus half the guessed lost motion in the direction of the wanted speed, regardless of
+//! whether friction or inertia dominates.
 
 use super::Knowledge;
 use super::motor_pid::{MotorPid, geared};
@@ -14,7 +14,7 @@ pub struct VelocitySign {
 }
 
 impl VelocitySign {
-    /// Of a bandwidth [rad/s].
+    /// Controller of a bandwidth [rad/s].
     pub fn new(knowledge: Knowledge, bandwidth: f64) -> Self {
         Self { pid: MotorPid::new(knowledge, bandwidth), offset: 0.0 }
     }

@@ -31,6 +31,7 @@ const VECTORS: u32 = 0x0800_0000;
 /// Sets up clock, outputs and watchdog. Every wait is bounded.
 pub fn start(device: pac::Peripherals, core: &mut cortex_m::Peripherals) -> Started {
     // A bootloader may have set other vectors; `handover` handles its other leftovers.
+    // SAFETY: the vectors of this image lie at `VECTORS`, and no interrupt is enabled yet.
     unsafe { core.SCB.vtor.write(VECTORS) };
     ThisChip::reset_ports(&device.RCC);
     // Outputs that hold the supply come first: until then a finger on a button holds it.

@@ -57,7 +57,7 @@ mod measurement {
             let (mut classes, mut kinds) = ([Count::NONE; Class::ALL.len()], [Count::NONE; Kind::ALL.len()]);
             let mut worst: Option<(u32, Trial<N>)> = None;
             let mut worst_finite = 0;
-            for trial_number in 0..trials::states::count(N) {
+            for trial_number in 0..stimuli::states::count(N) {
                 let trial = trials.make();
                 model.set_state(trial.state);
                 let before = model.outputs();

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use super::quasi_static::Options;
 use log_reader::column_map::{ColumnMap, renaming};
+use log_reader::columns::Columns;
+use log_reader::log_file;
 use log_reader::units::{self, Unit};
 use report::failure::Outcome;
 
@@ -98,6 +100,20 @@ pub struct Arguments {
 }
 
 impl Arguments {
+    /// Reads the log's columns into samples by `of`. `ratio` is the gear's; `will_do` tells whether a topic or a file has the columns
+    /// that are needed.
+    pub fn read_log<T>(
+        &self,
+        ratio: f64,
+        will_do: impl Fn(&Columns) -> bool,
+        of: impl FnOnce(&mut Columns) -> Outcome<T>,
+    ) -> Outcome<T> {
+        let path = self.log.as_path();
+        let mut columns = log_file::read(path, self.topic.as_deref(), &self.column_map()?, ratio, will_do)?;
+        let samples = of(&mut columns);
+        samples.map_err(|failure| columns.explain(failure).while_doing(path.display()))
+    }
+
     /// Columns and units of the log, as the map and the command line name them.
     pub fn column_map(&self) -> Outcome<ColumnMap> {
         ColumnMap::new(self.map.as_deref(), self.map_joint.as_deref(), &self.column, &self.unit)

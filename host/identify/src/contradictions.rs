@@ -10,6 +10,7 @@ use super::log::{Log, SMOOTH};
 use super::prior::PriorModel;
 use super::regression::{Equations, Solution};
 use super::rows::Rows;
+use super::statistics::range_of;
 use super::twist::{self, BLOCK_LENGTH, Twist};
 use log_reader::readings::Kind;
 use log_reader::resolution::{count_angle, resolution};
@@ -106,7 +107,7 @@ impl Causes {
 
 /// Refuses a log whose angles do not turn by the joint's ratio.
 pub fn angles(log: &Log, prior: &PriorModel) -> Outcome<()> {
-    let [motor, output] = [&log.motor, &log.output].map(|angles| travel(angles));
+    let [motor, output] = [&log.motor, &log.output].map(|angles| range_of(angles));
     let of_motor = motor / prior.ratio();
     let slack = SLACK * (prior.lost_motion + 2.0 * prior.compliance * strongest(log, prior) + ANY_ERROR);
     if output < STANDS * of_motor && of_motor > slack {
@@ -187,8 +188,7 @@ pub fn torques(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<()> {
     let rows = Rows::new(log, prior, shortest);
     let of_motor = twist::fit_with_any_torque(log, &rows, prior).map(|free| balances::of_the_motor(&free.solution));
     if whole.value > 0.0 && of_motor.is_some_and(|factor| factor.is_narrow() && !factor.is_beyond(MOTOR_FACTOR)) {
-        let motor = prior.motor_inertia * prior.ratio() * prior.ratio();
-        let link = (whole.value * (motor + prior.link_inertia) - motor).max(0.0);
+        let link = (whole.value * prior.total_inertia() - prior.motor_at_output()).max(0.0);
         let message = format!(
             "the link of this log has an inertia of about {} kg m^2, that of the joint file {}",
             ESTIMATE.write(link),
@@ -200,7 +200,7 @@ pub fn torques(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<()> {
         );
         return Err(Failure::new(message).with_help(help));
     }
-    Err(contradiction(log, prior, whole, "all that turns", total_inertia(prior)))
+    Err(contradiction(log, prior, whole, "all that turns", prior.total_inertia()))
 }
 
 /// Refuses a log whose ringing asks for another inertia of the motor than its own: `free` is a fit that expected nothing of
@@ -460,10 +460,6 @@ fn contradiction(log: &Log, prior: &PriorModel, factor: Factor, what: &str, iner
     Failure::new(message).with_help(causes.help(Some(otherwise), "check units, bits and the time"))
 }
 
-fn total_inertia(prior: &PriorModel) -> f64 {
-    prior.motor_inertia * prior.ratio() * prior.ratio() + prior.link_inertia
-}
-
 /// Of values about zero.
 fn root_mean_square(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
@@ -472,9 +468,4 @@ fn root_mean_square(values: &[f64]) -> f64 {
 /// Largest torque of the log, at the output [N m].
 fn strongest(log: &Log, prior: &PriorModel) -> f64 {
     prior.ratio() * log.torque.iter().fold(0.0_f64, |most, torque| most.max(torque.abs()))
-}
-
-fn travel(angles: &[f64]) -> f64 {
-    let (least, most) = angles.iter().fold((f64::MAX, f64::MIN), |(a, b), &angle| (a.min(angle), b.max(angle)));
-    most - least
 }

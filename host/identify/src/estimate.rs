@@ -1,6 +1,10 @@
 //! A value with half of its 95 % interval, out of a solution.
 
 use super::regression::Solution;
+use super::statistics::{mean, student};
+
+/// Half of a 95 % interval over the standard deviation of a normal distribution.
+pub(super) const QUANTILE: f64 = 1.96;
 
 /// A value and half of its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,6 +17,13 @@ impl Estimate {
     /// An unknown of a solution.
     pub fn of(solution: &Solution, unknown: usize) -> Self {
         Self { value: solution.values[unknown], half: solution.half(&[(unknown, 1.0)]) }
+    }
+
+    /// Mean of repeated values, with the interval from their scatter (Student).
+    pub fn of_repeats(values: &[f64]) -> Self {
+        let (count, value) = (values.len() as f64, mean(values));
+        let variance = values.iter().map(|one| (one - value).powi(2)).sum::<f64>() / (count - 1.0);
+        Self { value, half: student(count - 1.0) * (variance / count).sqrt() }
     }
 
     /// Any smooth function of a solution, by its slopes.

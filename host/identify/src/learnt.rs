@@ -6,13 +6,12 @@ use model_core::observer::tables::LeverTable;
 use model_core::observer::{MAPPED, Memory, MemoryError, Observer, ObserverTables, memory_numbers};
 use serde::Serialize;
 
+use crate::estimate::QUANTILE;
 use crate::findings::{Finding, angles};
 use crate::page;
 use joint_file::named::Loaded;
 use report::document::{Document, terminal};
 
-/// 95 of 100 values lie within so many standard deviations.
-const REACH: f64 = 1.96;
 /// What is not narrowed to this share of its standard deviation beforehand has not been learnt.
 const NARROWED: f64 = 0.9;
 
@@ -144,7 +143,7 @@ impl Learnt {
 
     fn finding(self, name: &str, unit: &str, key: &str, note: &str) -> Finding {
         let learnt = self.deviation < NARROWED * self.before;
-        let reach = REACH * self.deviation;
+        let reach = QUANTILE * self.deviation;
         Finding {
             name: name.to_owned(),
             unit: unit.to_owned(),
@@ -201,7 +200,7 @@ fn values(numbers: &Numbers, tables: &ObserverTables<f32>, equivalent: bool) -> 
         let [along, across] = [first, first + 1].map(|index| parameter(index).times(factor));
         let phase = across.value.atan2(along.value).to_degrees();
         let size = Learnt::size(along, across);
-        let note = if size.value > REACH * size.deviation {
+        let note = if size.value > QUANTILE * size.deviation {
             format!("phase at count zero {phase:.1} deg")
         } else {
             "may well be zero".to_owned()

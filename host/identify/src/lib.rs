@@ -36,6 +36,7 @@ mod sampling;
 mod scales;
 #[cfg(test)]
 mod schema;
+mod statistics;
 mod twist;
 pub mod virtual_test;
 

@@ -6,12 +6,12 @@ use std::f64::consts::TAU;
 use super::arguments::Arguments;
 use super::prior::PriorModel;
 use super::sampling::sampling;
+use super::statistics::range_of;
 use board::profile::MAX_TORQUE;
 use log_reader::columns::{Columns, MOTOR, OUTPUT, TIMES};
 use log_reader::even_times::EvenTimes;
-use log_reader::log_file;
 use log_reader::noise::Noise;
-use log_reader::readings::{Kind, Readings, readings, without_encoder};
+use log_reader::readings::{Kind, Readings, missing_encoder, readings};
 use log_reader::resolution::count_angle;
 use log_reader::{bad_readings, time_stamps};
 use report::failure::{Failure, Outcome};
@@ -58,21 +58,14 @@ pub struct Log {
 impl Log {
     /// Reads a file.
     pub fn read(arguments: &Arguments, prior: &PriorModel) -> Outcome<Self> {
-        let path = arguments.log.as_path();
-        let map = arguments.column_map()?;
-        let mut columns = log_file::read(path, arguments.topic.as_deref(), &map, prior.ratio(), Columns::will_do)?;
-        let log = Self::of(&mut columns, prior);
-        log.map_err(|failure| columns.explain(failure).while_doing(path.display()))
+        arguments.read_log(prior.ratio(), Columns::will_do, |columns| Self::of(columns, prior))
     }
 
     fn of(columns: &mut Columns, prior: &PriorModel) -> Outcome<Self> {
         columns.leave_out_incomplete(&[&TIMES, &MOTOR, &OUTPUT, &["motor_torque_N_m"], &["output_torque_N_m"]])?;
         time_stamps::resolve(columns)?;
         for (names, turn) in [(MOTOR, prior.motor_turn), (OUTPUT, prior.output_turn)] {
-            let name = columns.name_of(&names).map(str::to_owned).ok_or_else(|| without_encoder(columns, names))?;
-            let is_angle = columns.first_of(&names[..1])?.is_none();
-            let (count, turn) = if is_angle { (count_angle(turn), TAU) } else { (1.0, turn as f64) };
-            bad_readings::leave_out(columns, &name, count, Some(turn))?;
+            bad_readings::leave_out_of(columns, names, turn)?.ok_or_else(|| missing_encoder(columns, names))?;
         }
         let time = columns.time_from_start()?;
         let times = sampling(&time, columns, prior)?;
@@ -151,11 +144,7 @@ impl Log {
     }
 
     fn check(&self, prior: &PriorModel) -> Outcome<()> {
-        let travel = |angles: &[f64]| {
-            let (least, most) = angles.iter().fold((f64::MAX, f64::MIN), |(a, b), &angle| (a.min(angle), b.max(angle)));
-            most - least
-        };
-        let counts = travel(&self.motor) * prior.motor_turn as f64 / TAU;
+        let counts = range_of(&self.motor) * prior.motor_turn as f64 / TAU;
         if counts < LEAST_TRAVEL {
             return Err(Failure::new(format!(
                 "the motor does not move in this log: by {counts:.1} counts of its encoder, {LEAST_TRAVEL} are the least"

@@ -1,22 +1,19 @@
-//! Logs of one encoder and the motor's torque, row by row: of a joint whose output is held, or whose motor has no encoder.
-
-use std::f64::consts::TAU;
+//! Columns of a log with one encoder and the motor's torque: the output is held, or the motor has no encoder.
 
 use board::profile::MAX_TORQUE;
-use log_reader::bad_readings;
+use log_reader::bad_readings::{self, EncoderColumn};
 use log_reader::columns::Columns;
 use log_reader::register::Register;
 use log_reader::resolution::count_angle;
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 
-/// Angles of an encoder, continuous over turns and without bad readings, and its step; nothing if it was not logged [rad].
+/// Returns the angles of an encoder and the angle of a count [rad], or nothing if the encoder was not logged. The angles are continuous over
+/// turns; rows with bad readings are left out.
 pub fn angle(columns: &mut Columns, names: [&'static str; 2], turn: u64) -> Outcome<Option<(Vec<f64>, f64)>> {
-    let Some(name) = columns.name_of(&names).map(str::to_owned) else { return Ok(None) };
     let count = count_angle(turn);
-    let is_counts = columns.first_of(&names[..1])?.is_some();
-    let (step, turn) = if is_counts { (1.0, turn as f64) } else { (count, TAU) };
-    bad_readings::leave_out(columns, &name, step, Some(turn))?;
+    let Some(column) = bad_readings::leave_out_of(columns, names, turn)? else { return Ok(None) };
+    let EncoderColumn { name, is_counts, turn } = column;
     let Some(mut values) = columns.maybe(&name)? else { return Ok(None) };
     if let Some(register) = Register::of(&values, Some(turn)) {
         register.join(&mut values, |_| 1.0);
@@ -28,7 +25,7 @@ pub fn angle(columns: &mut Columns, names: [&'static str; 2], turn: u64) -> Outc
     Ok(Some((values, count)))
 }
 
-/// Time from the first row on, rising from row to row [s].
+/// Returns the time since the first row [s]; fails where the time does not rise.
 pub fn rising_time(columns: &Columns) -> Outcome<Vec<f64>> {
     let time = columns.time_from_start()?;
     match time.windows(2).position(|pair| pair[1] <= pair[0]) {
@@ -38,7 +35,7 @@ pub fn rising_time(columns: &Columns) -> Outcome<Vec<f64>> {
     }
 }
 
-/// The motor's torque times the ratio [N m].
+/// Returns the motor's torque times the ratio [N m].
 pub fn torque_at_output(columns: &Columns, ratio: f64) -> Outcome<Vec<f64>> {
     let (_, torque) = columns.named(&["motor_torque_N_m"])?;
     if let Some(row) = torque.iter().position(|torque| torque.abs() > MAX_TORQUE) {

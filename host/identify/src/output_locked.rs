@@ -13,17 +13,17 @@
 mod cycles;
 
 use super::arguments::Arguments;
-use super::estimate::Estimate;
+use super::estimate::{Estimate, QUANTILE};
 use super::findings::gap::{Shown, static_findings};
 use super::findings::{Finding, SHARE, finding};
 use super::one_encoder;
+use super::pictures::thinning;
 use super::prior::PriorModel;
-use super::quasi_static::statistics::{mean, student};
 use super::results::Results;
+use super::statistics::{mean, range_of};
 use cycles::{Cycle, Cycles};
 use joint_file::named::Loaded;
 use log_reader::columns::{Columns, MOTOR, OUTPUT, TIMES};
-use log_reader::log_file;
 use log_reader::resolution::resolution;
 use log_reader::time_stamps;
 use parameters::StiffnessWave;
@@ -44,10 +44,6 @@ const ENCODER_ERROR: f64 = 1e-3;
 const TORQUE_RIPPLE: f64 = 0.01;
 /// A torque may be late by this time, which looks like friction while it changes [s].
 const TORQUE_LATE: f64 = 1e-3;
-/// Half of a 95 % interval is so many standard deviations.
-const QUANTILE: f64 = 1.96;
-/// More points than this do not make a picture clearer.
-const POINTS: usize = 6000;
 
 /// A log of a joint whose output is held.
 struct HeldLog {
@@ -87,12 +83,8 @@ pub fn identify(arguments: &Arguments, loaded: &Loaded, prior: &PriorModel) -> O
 
 impl HeldLog {
     fn read(arguments: &Arguments, prior: &PriorModel) -> Outcome<Self> {
-        let path = arguments.log.as_path();
-        let map = arguments.column_map()?;
         let will_do = |columns: &Columns| columns.will_do_with([true, false]);
-        let mut columns = log_file::read(path, arguments.topic.as_deref(), &map, prior.ratio(), will_do)?;
-        let log = Self::of(&mut columns, prior);
-        log.map_err(|failure| columns.explain(failure).while_doing(path.display()))
+        arguments.read_log(prior.ratio(), will_do, |columns| Self::of(columns, prior))
     }
 
     fn of(columns: &mut Columns, prior: &PriorModel) -> Outcome<Self> {
@@ -106,7 +98,7 @@ impl HeldLog {
         let mut twist: Vec<f64> = motor.iter().map(|angle| (angle - motor[0]) / prior.ratio()).collect();
         let mut resolution = motor_count / prior.ratio();
         if let Some((output, count)) = &output {
-            let [moved, way] = [output, &twist].map(|angles| travel(angles));
+            let [moved, way] = [output, &twist].map(|angles| range_of(angles));
             if moved > HELD * way + count {
                 return Err(Failure::new(format!(
                     "the output is not held: it moves by {} rad, the motor over its ratio by {} rad",
@@ -122,17 +114,9 @@ impl HeldLog {
     }
 }
 
-fn travel(values: &[f64]) -> f64 {
-    let (least, most) = values.iter().fold((f64::MAX, f64::MIN), |(a, b), value| (a.min(*value), b.max(*value)));
-    most - least
-}
-
 /// A parameter of the cycles: its mean, with the interval from how they repeat.
 fn of_cycles(cycles: &Cycles, parameter: impl Fn(&Cycle) -> f64) -> Estimate {
-    let values: Vec<f64> = cycles.all.iter().map(parameter).collect();
-    let (count, value) = (values.len() as f64, mean(&values));
-    let variance = values.iter().map(|one| (one - value).powi(2)).sum::<f64>() / (count - 1.0);
-    Estimate { value, half: student(count - 1.0) * (variance / count).sqrt() }
+    Estimate::of_repeats(&cycles.all.iter().map(parameter).collect::<Vec<_>>())
 }
 
 fn findings(log: &HeldLog, cycles: &Cycles, loaded: &Loaded, prior: &PriorModel) -> Vec<Finding> {
@@ -225,7 +209,7 @@ fn assumptions(log: &HeldLog, cycles: &Cycles, prior: &PriorModel) -> Vec<String
 
 /// Twist over torque with the flanks that were found.
 fn picture(log: &HeldLog, cycles: &Cycles) -> Figure {
-    let every = log.time.len().div_ceil(POINTS).max(1);
+    let every = thinning(log.time.len());
     let points = log.torque.iter().copied().zip(log.twist.iter().copied()).step_by(every).collect();
     let parts: [fn(&Cycle) -> f64; 3] = [|cycle| cycle.compliance, |cycle| cycle.ends[0], |cycle| cycle.ends[1]];
     let [compliance, upper, lower] = parts.map(|part| of_cycles(cycles, part).value);
@@ -241,7 +225,7 @@ fn picture(log: &HeldLog, cycles: &Cycles) -> Figure {
         flank(upper, 1.0, "fit"),
         flank(lower, -1.0, ""),
     ];
-    let unit = Unit::of_angle(travel(&log.twist));
+    let unit = Unit::of_angle(range_of(&log.twist));
     let panel = Panel { height: 420, ..Panel::lines("Motor over ratio, output held", unit, marks) };
     let note = "The step between the flanks at no torque is the lost motion; friction makes the loop.".into();
     let range = (-1.05 * reach, 1.05 * reach);

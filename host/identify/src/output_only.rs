@@ -1,23 +1,22 @@
-//! `joint identify --output-only`: inertia, friction, weight and a bound of the lost motion from the output's angle and the motor's torque,
-//! of a joint whose motor has no encoder. `swings` are the ways of the output from one turning point to the next on which the torque
-//! reverses; `balance` fits all of them. The output alone shows the lost motion only by how far it goes on while the motor crosses the gap,
-//! of which `crossing` makes an upper bound.
+//! `joint identify --output-only`: estimates inertia, friction and weight, and an upper bound of the lost motion, from the output's angle and
+//! the motor's torque, for a joint whose motor has no encoder. `swings` finds the motions of the output between two turning points during
+//! which the torque reverses. `swing_fit` fits a balance of torques to all swings. While the motor crosses the gap, the output coasts;
+//! `crossing` derives the upper bound from the coasting distance.
 
-mod balance;
 mod crossing;
+mod swing_fit;
 mod swings;
 
 use super::arguments::Arguments;
-use super::estimate::Estimate;
+use super::estimate::{Estimate, QUANTILE};
 use super::findings::gap::{Shown, static_findings};
 use super::findings::{Finding, SHARE, finding};
 use super::one_encoder;
+use super::pictures::thinning;
 use super::prior::PriorModel;
 use super::results::Results;
-use balance::{Balance, Expected, Integrals, SHARED, Samples};
 use joint_file::named::Loaded;
 use log_reader::columns::{Columns, OUTPUT, TIMES};
-use log_reader::log_file;
 use log_reader::resolution::resolution;
 use log_reader::time_stamps;
 use report::failure::{Failure, Outcome};
@@ -27,20 +26,18 @@ use report::plot::ink::Ink;
 use report::plot::mark::Mark;
 use report::plot::panel::Panel;
 use report::plot::unit::{MILLISECONDS, Unit};
+use swing_fit::{Expected, Integrals, SHARED, Samples, SwingFit};
 use swings::{Swing, swings};
 
-/// Fewest swings: as many as leave four for the scatter beside the shared unknowns.
+/// Fewest swings: the scatter needs four swings beyond the number of shared unknowns.
 const LEAST_SWINGS: usize = SHARED + 4;
-/// Share of the largest torque that a balance of torques may feign as friction or weight: twice what logs of both encoders need.
+/// Bias of friction and weight that the simplified balance of torques may cause, over the largest torque [-]. Measured on simulated logs;
+/// twice the share for logs of both encoders.
 const BALANCE_SHARE: f64 = 0.003;
-/// Half of a 95 % interval is so many standard deviations.
-const QUANTILE: f64 = 1.96;
-/// More points than this do not make a picture clearer.
-const POINTS: usize = 6000;
 
-/// A log without the motor's angle.
+/// Log of the output's angle and the motor's torque.
 struct OutputLog {
-    /// From the first sample on [s].
+    /// Time since the first sample [s].
     time: Vec<f64>,
     /// Output angle [rad].
     angle: Vec<f64>,
@@ -57,36 +54,31 @@ pub fn identify(arguments: &Arguments, loaded: &Loaded, prior: &PriorModel) -> O
     let in_the_file = |failure: Failure| failure.while_doing(arguments.log.display());
     let log = OutputLog::read(arguments, prior)?;
     let swings = log.swings().map_err(in_the_file)?;
-    let motor = prior.motor_inertia * prior.ratio() * prior.ratio();
     let expected = Expected {
         step_by_torque: prior.motor_share() * (1.0 - prior.motor_share()) * prior.compliance,
-        inertia: motor + prior.link_inertia,
+        inertia: prior.total_inertia(),
     };
     let integrals = Integrals::new(Samples { time: &log.time, angle: &log.angle, torque: &log.torque });
-    let balance = Balance::of(&integrals, &swings, expected).ok_or_else(|| {
+    let fit = SwingFit::of(&integrals, &swings, expected).ok_or_else(|| {
         in_the_file(
             Failure::new("the swings of this log do not determine a balance of torques")
                 .with_help("let the torque step to and fro with three strengths, and log more samples a swing"),
         )
     })?;
-    check(&balance, motor).map_err(in_the_file)?;
+    check(&fit, prior.motor_at_output()).map_err(in_the_file)?;
     Ok(Results {
         duration: log.time.last().copied().unwrap_or_default(),
         crossings: swings.len(),
-        assumptions: assumptions(&log, &swings, &balance, prior),
-        figures: vec![picture(&balance)],
-        findings: findings(&integrals, &swings, &balance, loaded, prior),
+        assumptions: assumptions(&log, &swings, &fit, prior),
+        figures: vec![picture(&fit)],
+        findings: findings(&integrals, &swings, &fit, loaded, prior),
     })
 }
 
 impl OutputLog {
     fn read(arguments: &Arguments, prior: &PriorModel) -> Outcome<Self> {
-        let path = arguments.log.as_path();
-        let map = arguments.column_map()?;
         let will_do = |columns: &Columns| columns.will_do_with([false, true]);
-        let mut columns = log_file::read(path, arguments.topic.as_deref(), &map, prior.ratio(), will_do)?;
-        let log = Self::of(&mut columns, prior);
-        log.map_err(|failure| columns.explain(failure).while_doing(path.display()))
+        arguments.read_log(prior.ratio(), will_do, |columns| Self::of(columns, prior))
     }
 
     fn of(columns: &mut Columns, prior: &PriorModel) -> Outcome<Self> {
@@ -122,9 +114,9 @@ impl OutputLog {
     }
 }
 
-/// Refuses what no joint does.
-fn check(balance: &Balance, motor: f64) -> Outcome<()> {
-    let Estimate { value, half } = balance.estimate(balance::TORQUE);
+/// Rejects a fit that no joint can have: no response to the torque, or less inertia than the motor alone (`motor`, at the output [kg m^2]).
+fn check(fit: &SwingFit, motor: f64) -> Outcome<()> {
+    let Estimate { value, half } = fit.estimate(swing_fit::TORQUE);
     if value <= half {
         return Err(Failure::new("the output does not follow the torque in this log")
             .with_help("check which columns output and torque are, and that the torque is well above the friction"));
@@ -144,31 +136,29 @@ fn check(balance: &Balance, motor: f64) -> Outcome<()> {
 fn findings(
     integrals: &Integrals<'_>,
     swings: &[Swing],
-    balance: &Balance,
+    fit: &SwingFit,
     loaded: &Loaded,
     prior: &PriorModel,
 ) -> Vec<Finding> {
-    let inverse = balance.estimate(balance::TORQUE);
-    let loss = balance.torque_of(balance::LOSS).value;
+    let inverse = fit.estimate(swing_fit::TORQUE);
+    let loss = fit.torque_of(swing_fit::LOSS).value;
     let largest = swings.iter().flat_map(|swing| swing.torque).fold(0.0, f64::max);
-    // Gears lose another part of the load while it drives: that is in the scale. Friction and weight change what the teeth carry, and
-    // with it what is lost.
+    // The loss of the gears differs between driving and braking, which biases the torque scale by 2 loss^2. Friction and weight change the
+    // torque through the teeth, and the loss with it.
     let scale = (QUANTILE * prior.torque_error).hypot(inverse.half / inverse.value) + 2.0 * loss * loss;
     let scaled = |estimate: Estimate| estimate.beside(scale * estimate.value);
     let inertia = scaled(Estimate { value: 1.0 / inverse.value, half: 0.0 });
-    let motor = prior.motor_inertia * prior.ratio() * prior.ratio();
-    let joint = &loaded.file.parameters;
-    let beside = motor + prior.link_inertia - joint.link_inertia;
+    let beside = prior.total_inertia() - loaded.file.parameters.link_inertia;
     let link = Estimate { value: inertia.value - beside, ..inertia }.beside(QUANTILE * prior.inertia_error * beside);
     let of_balance = BALANCE_SHARE * largest;
-    let dry = balance.torque_of(balance::DRY);
+    let dry = fit.torque_of(swing_fit::DRY);
     let dry = scaled(dry).wider_by(loss * dry.value).wider_by(of_balance);
-    let fastest = balance.fastest;
-    let viscous = scaled(balance.torque_of(balance::VISCOUS));
+    let fastest = fit.fastest;
+    let viscous = scaled(fit.torque_of(swing_fit::VISCOUS));
     let viscous = viscous.wider_by(loss * viscous.value).wider_by(of_balance / fastest);
     let found = |estimate: Estimate, least: f64| estimate.half < (SHARE * estimate.value.abs()).max(least);
     let why = "the output must swing with torques of three strengths that are well above the friction";
-    let mut findings = gap(integrals, swings, balance, prior, inertia);
+    let mut findings = gap(integrals, swings, fit, prior, inertia);
     findings.push(
         finding("inertia of motor and link at the output", "kg m^2", "", inertia).if_so(found(inertia, 0.0), why),
     );
@@ -210,10 +200,10 @@ fn findings(
             .not_negative()
             .noted(note),
     );
-    let [sine, cosine] = [balance::SINE, balance::COSINE].map(|unknown| balance.torque_of(unknown).value);
+    let [sine, cosine] = [swing_fit::SINE, swing_fit::COSINE].map(|unknown| fit.torque_of(unknown).value);
     let weight = sine.hypot(cosine);
-    let slopes = [(balance::SINE, sine / weight), (balance::COSINE, cosine / weight)];
-    let half = balance.half(&slopes.map(|(unknown, slope)| (unknown, slope / inverse.value)));
+    let slopes = [(swing_fit::SINE, sine / weight), (swing_fit::COSINE, cosine / weight)];
+    let half = fit.half(&slopes.map(|(unknown, slope)| (unknown, slope / inverse.value)));
     let weight = scaled(Estimate { value: weight, half }).wider_by(loss * weight).wider_by(of_balance);
     let hangs = (-cosine).atan2(sine).to_degrees();
     findings.push(
@@ -227,20 +217,20 @@ fn findings(
     findings
 }
 
-/// Half-backlash and lost motion, which have an upper bound only, and the compliance, which an output alone does not show.
+/// Half-backlash and lost motion as upper bounds; the compliance, which the output alone does not show, without a value.
 fn gap(
     integrals: &Integrals<'_>,
     swings: &[Swing],
-    balance: &Balance,
+    fit: &SwingFit,
     prior: &PriorModel,
     inertia: Estimate,
 ) -> Vec<Finding> {
-    // What stands before the gap is the sun's side at least, and all that turns with the motor at most.
+    // The inertia before the gap lies between the sun's side alone and everything that turns with the motor.
     let wrong = QUANTILE * prior.inertia_error;
-    let at_output = prior.ratio() * prior.ratio();
-    let least = (prior.sun_inertia * at_output * (1.0 - wrong) / (inertia.value + inertia.half)).min(1.0);
-    let most = (prior.motor_inertia * at_output * (1.0 + wrong) / (inertia.value - inertia.half)).min(1.0);
-    let bound = crossing::bound(integrals, swings, balance, [least, most]);
+    let sun = prior.sun_inertia * prior.ratio() * prior.ratio();
+    let least = (sun * (1.0 - wrong) / (inertia.value + inertia.half)).min(1.0);
+    let most = (prior.motor_at_output() * (1.0 + wrong) / (inertia.value - inertia.half)).min(1.0);
+    let bound = crossing::bound(integrals, swings, fit, [least, most]);
     let why = match bound {
         Ok(_) => format!(
             "the output goes on by the motor's share of the inertia ({:.0} % at least) times the lost motion, less what the teeth bounce; \
@@ -261,7 +251,7 @@ fn gap(
 }
 
 /// Assumptions that the numbers rest on.
-fn assumptions(log: &OutputLog, swings: &[Swing], balance: &Balance, prior: &PriorModel) -> Vec<String> {
+fn assumptions(log: &OutputLog, swings: &[Swing], fit: &SwingFit, prior: &PriorModel) -> Vec<String> {
     let torques = swings.iter().flat_map(|swing| swing.torque);
     let (least, most) =
         torques.fold((f64::MAX, 0.0_f64), |(least, most), torque| (least.min(torque), most.max(torque)));
@@ -281,22 +271,22 @@ fn assumptions(log: &OutputLog, swings: &[Swing], balance: &Balance, prior: &Pri
         format!(
             "Frictions of motor and link are told together; the link's part is what the motor's, as the joint file states it, leaves. Gears \
              lose {} % of the torque beside.",
-            ESTIMATE.write(100.0 * balance.torque_of(balance::LOSS).value)
+            ESTIMATE.write(100.0 * fit.torque_of(swing_fit::LOSS).value)
         ),
-        format!("Torque and reading are {} ms late together; that is taken out.", ESTIMATE.write(1e3 * balance.delay)),
+        format!("Torque and reading are {} ms late together; that is taken out.", ESTIMATE.write(1e3 * fit.delay)),
         format!("Ratio {} / {}; output encoder of {}.", prior.teeth[1], prior.teeth[0], resolution(prior.output_turn)),
     ];
     list.extend(log.told.iter().cloned());
     list
 }
 
-/// Residuals of the balance over the time from the reversal on.
-fn picture(balance: &Balance) -> Figure {
-    let every = balance.left_over.len().div_ceil(POINTS).max(1);
-    let points: Vec<(f64, f64)> = balance.left_over.iter().copied().step_by(every).collect();
+/// Residuals of the fit over the time since the reversal.
+fn picture(fit: &SwingFit) -> Figure {
+    let every = thinning(fit.left_over.len());
+    let points: Vec<(f64, f64)> = fit.left_over.iter().copied().step_by(every).collect();
     let range = points.iter().fold((0.0_f64, 0.0_f64), |(from, to), (time, _)| (from.min(*time), to.max(*time)));
     let marks = vec![Mark::Points { points, ink: Ink::First, label: "samples".into(), size: 2.0 }];
-    let unit = Unit::of_angle(6.0 * balance.residual);
+    let unit = Unit::of_angle(6.0 * fit.residual);
     let panel = Panel { height: 420, ..Panel::lines("Output less the fit", unit, marks) };
     let note = "Scatter within the encoder's step is what the fit should leave; a wave after the reversal is the joint's ringing.".into();
     Figure {

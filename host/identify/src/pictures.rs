@@ -13,10 +13,15 @@ use report::plot::unit::{SECONDS, TORQUE, Unit};
 /// More points than this do not make a picture clearer.
 const POINTS: usize = 6000;
 
+/// Returns the step by which points are thinned out for a picture.
+pub fn thinning(points: usize) -> usize {
+    points.div_ceil(POINTS).max(1)
+}
+
 /// Twist over torque: moments of either flank, those near a change, and the fitted branches.
 pub fn loop_of(log: &Log, rows: &Rows, twist: &Twist, prior: &PriorModel) -> Figure {
     let cleaned = twist.cleaned(log, rows, prior);
-    let every = cleaned.len().div_ceil(POINTS).max(1);
+    let every = thinning(cleaned.len());
     let points = |side: f64| -> Vec<(f64, f64)> {
         let own = cleaned.iter().filter(|(row, _)| row.side == side);
         own.step_by(every).map(|(row, twist)| (row.torque(), *twist)).collect()
@@ -46,9 +51,9 @@ pub fn loop_of(log: &Log, rows: &Rows, twist: &Twist, prior: &PriorModel) -> Fig
 
 /// Torque and what the fit leaves over, in time.
 pub fn time_history(log: &Log, twist: &Twist) -> Figure {
-    let every = log.time.len().div_ceil(POINTS).max(1);
+    let every = thinning(log.time.len());
     let torque = log.time.iter().copied().zip(log.torque.iter().copied()).step_by(every).collect();
-    let every = twist.rows.len().div_ceil(POINTS).max(1);
+    let every = thinning(twist.rows.len());
     let left: Vec<(f64, f64)> =
         twist.rows.iter().zip(&twist.solution.residuals).step_by(every).map(|(row, left)| (row.time, *left)).collect();
     let greatest = left.iter().map(|point| point.1.abs()).fold(0.0, f64::max);

@@ -181,16 +181,24 @@ impl PriorModel {
         f64::from(self.teeth[1]) / f64::from(self.teeth[0])
     }
 
-    /// Part of the joint's inertia that turns with the motor.
+    /// Inertia of the motor side, referred to the output [kg m^2].
+    pub fn motor_at_output(&self) -> f64 {
+        self.motor_inertia * self.ratio() * self.ratio()
+    }
+
+    /// Inertia of motor and link together, referred to the output [kg m^2].
+    pub fn total_inertia(&self) -> f64 {
+        self.motor_at_output() + self.link_inertia
+    }
+
+    /// Share of the joint's inertia that turns with the motor.
     pub fn motor_share(&self) -> f64 {
-        let motor = self.motor_inertia * self.ratio() * self.ratio();
-        motor / (motor + self.link_inertia)
+        self.motor_at_output() / self.total_inertia()
     }
 
     /// Inertia that swings against the compliance: motor and link in series, at the output [kg m^2].
     pub fn swinging_inertia(&self) -> f64 {
-        let motor = self.motor_inertia * self.ratio() * self.ratio();
-        motor * self.link_inertia / (motor + self.link_inertia)
+        self.motor_at_output() * self.link_inertia / self.total_inertia()
     }
 
     /// Period of the swing that the joint file promises [s].

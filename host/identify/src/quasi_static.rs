@@ -3,7 +3,7 @@
 //!
 //! `options` are its own; `samples` puts both encoders on one scale; `passes`
 //! are the motor's ways between turning points, `profiles` their means by place; `loading` says which flank carries;
-//! `results` are figures by `statistics`, with the error `map` and the `prediction`; `page` and `pictures` show them.
+//! `results` are figures by the crate's `statistics`, with the error `map` and the `prediction`; `page` and `pictures` show them.
 
 mod curves;
 mod loading;
@@ -16,7 +16,6 @@ mod prediction;
 mod profiles;
 mod results;
 mod samples;
-pub(crate) mod statistics;
 
 use std::path::{Path, PathBuf};
 

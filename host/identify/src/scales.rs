@@ -10,6 +10,7 @@
 use nalgebra::{SMatrix, SVector, Vector3, Vector4};
 
 use super::balances::{self, Factor};
+use super::estimate::QUANTILE;
 use super::log::Log;
 use super::prior::PriorModel;
 use super::regression::Solution;
@@ -20,8 +21,6 @@ const BOX: f64 = 4e-3;
 /// What losses, teeth and the shapes of frictions put into a ratio beside its scatter. On simulated logs of the presets it is
 /// 0.4 % at most.
 const BALANCE_SHARE: f64 = 0.004;
-/// Half of a 95 % interval is so many standard deviations.
-const QUANTILE: f64 = 1.96;
 /// Logarithms of ratios that say nothing have this deviation.
 const UNKNOWN: f64 = 10.0;
 /// A torque that is not doubted: keeps the sums finite.

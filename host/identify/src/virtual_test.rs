@@ -51,8 +51,7 @@ pub struct VirtualRecording {
 /// Torques of the test: how long [s] and how much [N m].
 pub fn torque_sequence(file: &JointFile) -> Vec<(f64, f64)> {
     let prior = PriorModel::of(file);
-    let motor = prior.motor_inertia * prior.ratio() * prior.ratio();
-    let inertia = motor + prior.link_inertia;
+    let inertia = prior.total_inertia();
     let dry = prior.surroundings.load_friction.coulomb + prior.ratio() * prior.surroundings.motor_friction.coulomb;
     let at_motor = |acceleration: f64, brake: f64| {
         ((inertia * acceleration + brake) / prior.ratio()).min(file.profile.motor_torque_limit)

@@ -2,8 +2,11 @@
 //! frame that was lost gives them. No encoder moves so: the rows are left out, counted and told, and what is near them is not
 //! used, as with any lost sample. More than a share of the log is refused.
 
+use std::f64::consts::TAU;
+
 use super::columns::Columns;
 use super::register::Register;
+use super::resolution::count_angle;
 use report::failure::{Failure, Outcome};
 
 /// Share of a log's rows that may be left out for bad readings of one encoder.
@@ -18,6 +21,31 @@ const USUAL: f64 = 0.8;
 const LEAST_COUNTS: f64 = 8.0;
 /// Rows that a refusal names.
 const NAMED: usize = 5;
+
+/// Column of an encoder.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EncoderColumn {
+    /// Name of the column.
+    pub name: String,
+    /// True for counts, false for angles in rad.
+    pub is_counts: bool,
+    /// A turn, in the unit of the column.
+    pub turn: f64,
+}
+
+/// Leaves out rows with bad readings of an encoder. `names` are its column of counts and its column of angles [rad]. Returns the column
+/// in the log, or nothing if the encoder was not logged.
+pub fn leave_out_of(
+    columns: &mut Columns,
+    names: [&'static str; 2],
+    counts_per_turn: u64,
+) -> Outcome<Option<EncoderColumn>> {
+    let Some(name) = columns.name_of(&names).map(str::to_owned) else { return Ok(None) };
+    let is_counts = columns.first_of(&names[..1])?.is_some();
+    let (count, turn) = if is_counts { (1.0, counts_per_turn as f64) } else { (count_angle(counts_per_turn), TAU) };
+    leave_out(columns, &name, count, Some(turn))?;
+    Ok(Some(EncoderColumn { name, is_counts, turn }))
+}
 
 /// Leaves out rows with bad readings of the encoder in a column. `count` is its resolution, `turn` the size of a turn, if known.
 pub fn leave_out(columns: &mut Columns, name: &str, count: f64, turn: Option<f64>) -> Outcome<()> {

@@ -79,7 +79,7 @@ struct Encoder<'a> {
 pub fn readings(columns: &mut Columns, names: [&str; 2], counts_per_turn: u64, times: &EvenTimes) -> Outcome<Readings> {
     let what = if names[0].starts_with("motor") { "motor" } else { "output" };
     let there = columns.first_of(&names)?;
-    let (name, mut values) = there.ok_or_else(|| without_encoder(columns, names))?;
+    let (name, mut values) = there.ok_or_else(|| missing_encoder(columns, names))?;
     if name == names[0] {
         let turn = counts_per_turn as f64;
         if let Some(line) = values.iter().position(|value| value.fract() != 0.0 || value.abs() > 9e15) {
@@ -101,8 +101,8 @@ pub fn readings(columns: &mut Columns, names: [&str; 2], counts_per_turn: u64, t
     Ok(Readings::Angles(angles))
 }
 
-/// The refusal of a log with one encoder only, with how to read it.
-pub fn without_encoder(columns: &Columns, names: [&str; 2]) -> Failure {
+/// Returns the error of a log that lacks an encoder; its help names the option for such a log.
+pub fn missing_encoder(columns: &Columns, names: [&str; 2]) -> Failure {
     let (what, option, of) = if names == MOTOR {
         ("motor", "--output-only", "a joint without an encoder at the motor")
     } else {

@@ -46,7 +46,7 @@ pub(super) fn gap_and_compliance(
     findings
 }
 
-/// Answer whether a log shows a parameter, and why not.
+/// Visibility of a parameter in a log, with the reason if the log does not show the parameter.
 #[derive(Clone, Copy)]
 pub(crate) struct Shown<'w> {
     pub is_shown: bool,

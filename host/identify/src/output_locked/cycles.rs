@@ -4,7 +4,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use crate::quasi_static::passes::turning_points;
-use crate::quasi_static::statistics::{mean, quantile_of};
+use crate::statistics::{mean, quantile_of};
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 

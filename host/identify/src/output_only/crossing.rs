@@ -1,46 +1,46 @@
-//! Upper bound of the lost motion by how far the output goes on after a reversal.
+//! Upper bound of the lost motion from the coasting of the output after a reversal of the torque.
 //!
-//! With the motor's share a of the inertia and the lost motion g the output is ahead of what the balance of torques says of the common
-//! centre by
+//! a is the motor's share of the inertia and g the lost motion. While the motor crosses the gap, the output is ahead of the common centre
+//! of the balance of torques by
 //!
 //! ```text
-//! r(t) = T t^2 / (2 I)   while the motor crosses the gap, at most a g                            (3)
+//! r(t) = T t^2 / (2 I),   at most a g                                                            (3)
 //! ```
 //!
-//! and by a g less what the teeth bounce afterwards, more by what the joint bends. Means of r are taken over twentieths of the time from the
-//! reversal to the turning point. At the end of the crossing, which is where (3) says, the mean is no less than 0.6 a g: 0.75 a g if the
-//! crossing takes two parts or more, and after a shorter one the teeth have come to rest to 0.65 a g within five parts (restitution up to
-//! 0.85). The bound is the largest g that the means allow, among those whose crossing takes less than a quarter of the time.
+//! Afterwards r is a g less the bouncing of the teeth, plus the bending of the joint. r is averaged over twentieths of the time from the
+//! reversal to the turning point. At the end of the crossing, a time that (3) gives, the mean is at least 0.6 a g: 0.75 a g if the crossing
+//! takes two parts or more; after a shorter crossing the teeth have settled to 0.65 a g within five parts (restitution up to 0.85). The
+//! bound is the largest g that the means allow, among those whose crossing takes less than a quarter of that time.
 
-use super::balance::{Balance, COSINE, DRY, Integrals, OFFSET, SINE, STEP, TORQUE};
+use super::swing_fit::{COSINE, DRY, Integrals, OFFSET, SINE, STEP, SwingFit, TORQUE};
 use super::swings::Swing;
 use crate::estimate::Estimate;
-use crate::quasi_static::statistics::{mean, student};
 
-/// Torques of this share of the largest one are used, of as many swings at least.
+/// Least torque of a swing that is used, over the largest torque [-], and fewest of these swings.
 const STRONG: f64 = 0.8;
-const LEAST_SWINGS: usize = 4;
-/// Parts of the time from the reversal to the turning point, and how many of them are looked at.
+const LEAST_REPEATS: usize = 4;
+/// Parts of the time from the reversal to the turning point, and number of parts that are evaluated.
 const PARTS: f64 = 20.0;
 const QUARTER: usize = 5;
 /// Least share of a g that the largest mean shows.
 const SHOWN: f64 = 0.6;
-/// Share of the torque's delay that the fit may have wrong, since the crossing looks like a part of it. Found: 0.1 to 0.3 in simulated logs.
+/// Error of the fitted delay over the delay [-]: the crossing looks like a part of the delay. Measured: 0.1 to 0.3 in simulated logs.
 const DELAY_ERROR: f64 = 0.5;
-/// The bound is looked for from what a crossing of a quarter makes the output go on, downwards by steps of this ratio to this share.
+/// The search for the bound starts at the coasting distance of a crossing of a quarter, and goes down by this ratio to this share of it.
 const FINER: f64 = 0.98;
 const LEAST: f64 = 1e-6;
 
-/// Greatest lost motion that the swings allow with a motor's share of the inertia from least to most [rad]; else why there is none.
+/// Returns the largest lost motion that the swings allow for a motor's share of the inertia from `least` to `most` [rad], or the reason why
+/// no bound exists.
 pub fn bound(
     integrals: &Integrals<'_>,
     swings: &[Swing],
-    balance: &Balance,
+    fit: &SwingFit,
     [least, most]: [f64; 2],
 ) -> Result<f64, &'static str> {
     let strength = |swing: &Swing| swing.torque[0].min(swing.torque[1]);
     let strongest = swings.iter().map(strength).fold(0.0, f64::max);
-    let [dry, sine, cosine, offset] = [DRY, SINE, COSINE, OFFSET].map(|unknown| balance.torque_of(unknown).value);
+    let [dry, sine, cosine, offset] = [DRY, SINE, COSINE, OFFSET].map(|unknown| fit.torque_of(unknown).value);
     if (1.0 - most) * STRONG * strongest <= dry.abs() + most * (sine.hypot(cosine) + offset.abs()) {
         return Err(
             "friction and weight may hold the flank when the torque reverses: step more torque, or add inertia to the link",
@@ -48,30 +48,27 @@ pub fn bound(
     }
     let strong: Vec<&Swing> = swings.iter().filter(|swing| strength(swing) >= STRONG * strongest).collect();
     let shortest = strong.iter().map(|swing| integrals.time_after(swing)).fold(f64::MAX, f64::min);
-    let ahead: Vec<[Option<f64>; QUARTER]> =
-        strong.iter().filter_map(|swing| ahead(integrals, swing, balance, shortest / PARTS)).collect();
+    let leads: Vec<[Option<f64>; QUARTER]> =
+        strong.iter().filter_map(|swing| mean_leads(integrals, swing, fit, shortest / PARTS)).collect();
     let parts: Vec<Option<Estimate>> = (0..QUARTER)
         .map(|part| {
-            let all: Vec<f64> = ahead.iter().filter_map(|ahead| ahead[part]).collect();
-            let (count, value) = (all.len() as f64, mean(&all));
-            let variance = all.iter().map(|one| (one - value).powi(2)).sum::<f64>() / (count - 1.0);
-            (all.len() >= LEAST_SWINGS)
-                .then(|| Estimate { value, half: student(count - 1.0) * (variance / count).sqrt() })
+            let all: Vec<f64> = leads.iter().filter_map(|leads| leads[part]).collect();
+            (all.len() >= LEAST_REPEATS).then(|| Estimate::of_repeats(&all))
         })
         .collect();
     let seldom =
         "the torque must step at least four times with its largest strength, and a swing must have more samples";
     let parts = parts.into_iter().collect::<Option<Vec<Estimate>>>().ok_or(seldom)?;
     let part = shortest / PARTS;
-    let acceleration = strongest * balance.values[TORQUE];
-    let allowed = |ahead: f64| {
-        let crossing = (2.0 * ahead / acceleration).sqrt();
+    let acceleration = strongest * fit.values[TORQUE];
+    let allowed = |lead: f64| {
+        let crossing = (2.0 * lead / acceleration).sqrt();
         let place = (crossing / part) as usize;
-        // Torques differ, and a short crossing is seen when the teeth have come to rest.
+        // The torques of the swings differ, and a short crossing is visible only after the teeth have settled.
         let near = if place == 0 { 0..=QUARTER - 1 } else { place - 1..=(place + 1).min(QUARTER - 1) };
-        let late = DELAY_ERROR * balance.delay * 2.0 * acceleration * crossing.max(part);
+        let late = DELAY_ERROR * fit.delay * 2.0 * acceleration * crossing.max(part);
         near.filter_map(|part| parts.get(part)).map(|mean| mean.value + mean.half).fold(0.0, f64::max) + late
-            >= SHOWN * ahead
+            >= SHOWN * lead
     };
     let longest = 0.5 * acceleration * (QUARTER as f64 * part).powi(2);
     if allowed(longest) {
@@ -80,18 +77,18 @@ pub fn bound(
                     finer encoder",
         );
     }
-    let mut ahead = longest;
-    while ahead > LEAST * longest && !allowed(ahead) {
-        ahead *= FINER;
+    let mut lead = longest;
+    while lead > LEAST * longest && !allowed(lead) {
+        lead *= FINER;
     }
-    Ok(ahead / (FINER * least))
+    Ok(lead / (FINER * least))
 }
 
-/// How far the output is ahead in each part after the reversal, along its motion [rad].
-fn ahead(integrals: &Integrals<'_>, swing: &Swing, balance: &Balance, part: f64) -> Option<[Option<f64>; QUARTER]> {
+/// Returns the mean lead of the output over the common centre in each part after the reversal, along its motion [rad].
+fn mean_leads(integrals: &Integrals<'_>, swing: &Swing, fit: &SwingFit, part: f64) -> Option<[Option<f64>; QUARTER]> {
     let left = |sample: usize| {
-        let (since, angle, row) = integrals.row(swing, sample, balance.delay);
-        let centre: f64 = row[..STEP].iter().zip(balance.values.iter()).map(|(row, value)| row * value).sum();
+        let (since, angle, row) = integrals.row(swing, sample, fit.delay);
+        let centre: f64 = row[..STEP].iter().zip(fit.values.iter()).map(|(row, value)| row * value).sum();
         (since, angle - centre)
     };
     let before: Vec<(f64, f64)> = (swing.before[0]..swing.before[1]).map(left).collect();

@@ -1,24 +1,24 @@
 //! Swings of the output from one turning point to the next, each with one reversal of the torque on its way.
 
 use crate::quasi_static::passes::turning_points;
-use crate::quasi_static::statistics::quantile_of;
+use crate::statistics::{quantile_of, range_of};
 
-/// The output turns when it then goes back by this share of its range, or by so many counts if that is more.
+/// Motion back from a turning point that confirms the turn: share of the range, and counts; the larger applies.
 const TURNED: f64 = 0.001;
 const TURNED_COUNTS: f64 = 6.0;
-/// The torque changes its sign when it is beyond this share of its largest.
+/// Torque beyond which its sign counts, over the largest torque [-].
 const SIGN: f64 = 0.1;
-/// Share of a half of the swing that is left out beside its turning point, where friction sticks.
+/// Share of each half of a swing that is left out next to its turning point, where friction sticks [-].
 const TURNING: f64 = 0.1;
-/// Share of the half after the reversal that is left out, in which the motor crosses the gap. Tuned: 0.2 moves no finding by a tenth of
+/// Share of the half after the reversal that is left out while the motor crosses the gap [-]. Tuned: 0.2 moves no finding by a tenth of
 /// its interval.
 const SETTLING: f64 = 0.1;
-/// Least samples and counts of the output on either side of a reversal.
+/// Fewest samples, and smallest motion of the output in counts, on either side of a reversal.
 const LEAST_SAMPLES: usize = 8;
 const LEAST_COUNTS: f64 = 8.0;
-/// A torque that steps is at least this share of its median on either side...
+/// A steady torque is at least this share of its median on either side of the reversal,
 const STEADY: f64 = 0.5;
-/// ... but for this share of a half, which a measured torque needs to rise.
+/// except in this share of the samples, in which a measured torque rises.
 const RISE: f64 = 0.08;
 
 /// One swing with a reversal.
@@ -37,7 +37,7 @@ pub struct Swing {
 }
 
 impl Swing {
-    /// Samples that are used.
+    /// Returns the samples that the fit uses.
     pub fn samples(&self) -> impl Iterator<Item = usize> {
         let start = self.after[0] + ((self.after[1] - self.after[0]) as f64 * SETTLING).ceil() as usize;
         (self.before[0]..self.before[1]).chain(start..self.after[1])
@@ -46,8 +46,7 @@ impl Swing {
 
 /// Finds the swings in which a steady torque along the motion steps to one against it.
 pub fn swings(angle: &[f64], torque: &[f64], count: f64) -> Vec<Swing> {
-    let (least, most) = angle.iter().fold((f64::MAX, f64::MIN), |(a, b), value| (a.min(*value), b.max(*value)));
-    let turns = turning_points(angle, (TURNED * (most - least)).max(TURNED_COUNTS * count));
+    let turns = turning_points(angle, (TURNED * range_of(angle)).max(TURNED_COUNTS * count));
     let largest = quantile_of(&torque.iter().map(|torque| torque.abs()).collect::<Vec<_>>(), 0.98);
     turns.windows(2).filter_map(|turns| swing([turns[0], turns[1]], angle, torque, [count, SIGN * largest])).collect()
 }
@@ -55,7 +54,7 @@ pub fn swings(angle: &[f64], torque: &[f64], count: f64) -> Vec<Swing> {
 fn swing([from, to]: [usize; 2], angle: &[f64], torque: &[f64], [count, least_torque]: [f64; 2]) -> Option<Swing> {
     let direction = (angle[to] - angle[from]).signum();
     let along = |sample: usize| direction * torque[sample];
-    // A swing may begin and end with a torque that is still, or again, the other way.
+    // At its start and its end a swing may still or again have the opposite torque.
     let reversal = (from..to)
         .find(|sample| *sample > from && along(*sample) < -least_torque && along(*sample - 1) > -least_torque)?;
     let inside = |samples: usize| ((samples as f64 * TURNING).ceil() as usize).min(samples);

@@ -1,7 +1,7 @@
 //! Groups of repeated curves, and the interval of any figure that is computed from their means.
 
-use super::statistics::{mean, rms, student};
 use crate::estimate::Estimate;
+use crate::statistics::{mean, rms, student};
 use scenario::random::RandomStream;
 
 /// Draws from which an interval is taken where some places have one repeat only.

@@ -1,7 +1,7 @@
 //! Which way the output is loaded in each pass, as far as the log or its user says: by halves, by torque, or not at all.
 
 use super::profiles::{Profile, Profiles};
-use super::statistics::{mean, rms};
+use crate::statistics::{mean, rms};
 use report::failure::{Failure, Outcome};
 
 /// A pass is loaded one way if the torque has that sign in this share of its bins.

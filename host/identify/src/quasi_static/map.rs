@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::statistics::{mean, rms};
+use crate::statistics::{mean, rms};
 
 /// The long wave: a polynomial of this degree.
 const DEGREE: usize = 6;

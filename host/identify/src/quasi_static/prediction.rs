@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::curves::Curves;
-use super::statistics::{mean, quantile, rms};
+use crate::statistics::{mean, quantile, rms};
 
 /// Rounds in which map and numbers are fitted one after the other.
 const ROUNDS: usize = 500;

@@ -2,7 +2,7 @@
 
 use super::passes::Pass;
 use super::samples::Samples;
-use super::statistics::{mean, quantile_of};
+use crate::statistics::{mean, quantile_of};
 use report::failure::{Failure, Outcome};
 
 /// A bin holds so many samples of a usual pass...

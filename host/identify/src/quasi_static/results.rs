@@ -9,8 +9,8 @@ use super::passes::passes;
 use super::prediction::Prediction;
 use super::profiles::{Profile, Profiles, check_count};
 use super::samples::{Samples, Scale, resolution};
-use super::statistics::{mean, quantile_of, rms, student};
 use crate::estimate::Estimate;
+use crate::statistics::{mean, quantile_of, rms, student};
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 

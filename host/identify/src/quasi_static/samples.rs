@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use super::options::Options;
-use super::statistics::quantile;
+use crate::statistics::quantile;
 use log_reader::bad_readings;
 use log_reader::columns::{Columns, DIFFERENCE, KNOWN, MOTOR, OUTPUT, TIMES};
 use log_reader::register::Register;
@@ -90,13 +90,11 @@ impl Samples {
             let count = columns.column(&name).map_or(0.0, resolution);
             bad_readings::leave_out(columns, &name, count, turn)?;
         }
-        let mut time = columns.time()?;
+        let time = columns.time_from_start()?;
         if time.len() < LEAST_SAMPLES {
             return Err(Failure::new(format!("there are only {} samples, {LEAST_SAMPLES} are the least", time.len()))
                 .with_help("record several slow sweeps each way"));
         }
-        let start = time[0];
-        time.iter_mut().for_each(|time| *time -= start);
         let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
         if let Some(row) = steps.iter().position(|step| *step < 0.0) {
             return Err(Failure::new(format!("the time falls in {}", columns.place(row + 1)))

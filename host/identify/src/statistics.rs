@@ -1,4 +1,4 @@
-//! Means, quantiles and Student's quantile.
+//! Means, quantiles, range and Student's quantile.
 
 /// A quantile of sorted values, between neighbours in proportion; not a number of nothing.
 pub fn quantile(sorted: &[f64], share: f64) -> f64 {
@@ -19,6 +19,12 @@ pub fn quantile_of(values: &[f64], share: f64) -> f64 {
 /// Arithmetic mean.
 pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Returns the largest value less the least one.
+pub fn range_of(values: &[f64]) -> f64 {
+    let (least, most) = values.iter().fold((f64::MAX, f64::MIN), |(a, b), &value| (a.min(value), b.max(value)));
+    most - least
 }
 
 /// Root mean square.

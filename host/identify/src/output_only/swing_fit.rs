@@ -1,24 +1,25 @@
-//! Balance of all torques over the swings. With the angle y of the output, the torque T at the output t0 of the reversal, the direction d
-//! and the inertia I of motor and link together, the angle of their common centre obeys
+//! Least-squares fit of the balance of torques to the swings. y is the output's angle, T the motor's torque at the output, d the direction
+//! of the swing, I the inertia of motor and link together and D the delay of the torque. The common centre of motor and link obeys
 //!
 //! ```text
 //! I y'' = T(t - D) - d F - d l |T| - v y' - g_s sin y - g_c cos y - o                           (1)
 //! ```
 //!
-//! whatever the teeth do. The output is off that centre by the motor's share of the inertia times the twist, and goes on by
+//! in every state of contact, with dry friction F, loss l of the gears, viscous friction v, weight g_s, g_c and torque offset o. The output
+//! differs from the common centre by the motor's share of the inertia times the twist, and moves on by
 //!
 //! ```text
 //! S + k |dT| along d                                                                            (2)
 //! ```
 //!
-//! once the twist has changed sides. (1) is integrated twice; angle and speed of each swing, and its speed after the reversal, are
-//! unknowns of the swing alone and are taken out of the equations. Intervals are from the scatter between swings.
+//! after the twist has changed its side. (1) is integrated twice. Angle and speed of each swing, and the change of its speed at the reversal,
+//! are unknowns of that swing alone and are eliminated first. Intervals come from the scatter between swings.
 
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 
 use super::swings::Swing;
 use crate::estimate::Estimate;
-use crate::quasi_static::statistics::{quantile_of, student};
+use crate::statistics::{quantile_of, student};
 
 /// Unknowns that all swings share.
 pub const SHARED: usize = 9;
@@ -34,9 +35,9 @@ pub const STEP: usize = 7;
 pub const STEP_BY_TORQUE: usize = 8;
 /// Unknowns of a swing: angle, speed, and change of the speed at the reversal.
 const OWN: usize = 3;
-/// Fits one after the other, each with the delay and the weights of the one before.
+/// Number of fits; each uses the delay and the weights of the previous fit.
 const ROUNDS: usize = 4;
-/// Share of the torque that the gears may lose: one standard deviation of what is expected.
+/// Standard deviation of the expected loss of the gears, over the torque [-].
 const EXPECTED_LOSS: f64 = 0.3;
 
 /// Samples of a log: time [s], output angle [rad] and torque at the output [N m].
@@ -47,9 +48,9 @@ pub struct Samples<'s> {
     pub torque: &'s [f64],
 }
 
-/// Solution of the balance.
+/// Solution of the fit.
 #[derive(Debug, Clone)]
-pub struct Balance {
+pub struct SwingFit {
     /// Shared unknowns.
     pub values: SVector<f64, SHARED>,
     /// Their covariance.
@@ -66,7 +67,7 @@ pub struct Balance {
     pub fastest: f64,
 }
 
-/// Angle and speed that a unit of torque or of one over the inertia gives, integrated over the log.
+/// Speed and angle that an acceleration `rate` gives, integrated over the log.
 struct Integral {
     speed: Vec<f64>,
     angle: Vec<f64>,
@@ -87,17 +88,17 @@ impl Integral {
 
     fn at(&self, time: &[f64], moment: f64) -> f64 {
         let sample = time.partition_point(|time| *time <= moment).saturating_sub(1);
-        let ahead = moment - time[sample];
-        self.angle[sample] + ahead * (self.speed[sample] + 0.5 * ahead * self.rate[sample])
+        let since = moment - time[sample];
+        self.angle[sample] + since * (self.speed[sample] + 0.5 * since * self.rate[sample])
     }
 }
 
-/// Equations of one swing without its own unknowns.
-struct Equations {
+/// Equations of one swing, with the unknowns of the swing alone eliminated.
+struct SwingEquations {
     /// Left sides, right sides.
     shared: DMatrix<f64>,
     right: DVector<f64>,
-    /// Change of the speed at the reversal that the own unknowns take: by the shared ones, and what is read.
+    /// Change of the speed at the reversal, as eliminated: its slopes by the shared unknowns, and its value from the readings.
     change: (SVector<f64, SHARED>, f64),
     /// Time after the reversal [s].
     after: Vec<f64>,
@@ -111,7 +112,7 @@ pub struct Expected {
     pub inertia: f64,
 }
 
-/// All that is integrated over a log.
+/// Integrals over a log that the equations of all swings use.
 pub struct Integrals<'s> {
     samples: Samples<'s>,
     driven: Integral,
@@ -124,7 +125,7 @@ pub struct Integrals<'s> {
 }
 
 impl<'s> Integrals<'s> {
-    /// Integrates.
+    /// Computes the integrals.
     pub fn new(samples: Samples<'s>) -> Self {
         let Samples { time, angle, torque } = samples;
         let magnitude: Vec<f64> = torque.iter().map(|torque| torque.abs()).collect();
@@ -143,12 +144,12 @@ impl<'s> Integrals<'s> {
         }
     }
 
-    /// Time from the reversal to where the swing ends [s].
+    /// Returns the time from the reversal to the end of the swing [s].
     pub fn time_after(&self, swing: &Swing) -> f64 {
         self.samples.time[swing.after[1]] - self.samples.time[swing.reversal]
     }
 
-    /// Time after the reversal, angle after it, and by how much a unit of each unknown moves the output by then.
+    /// Returns time and angle since the reversal, and the motion of the output by a unit of each shared unknown.
     pub fn row(&self, swing: &Swing, sample: usize, delay: f64) -> (f64, f64, [f64; SHARED]) {
         let Samples { time, angle, .. } = self.samples;
         let (start, direction) = (swing.reversal, swing.direction);
@@ -176,23 +177,23 @@ impl<'s> Integrals<'s> {
     }
 }
 
-impl Balance {
-    /// Solves the balance of the swings; nothing where they do not determine it.
+impl SwingFit {
+    /// Fits the swings; returns nothing if the swings do not determine the unknowns.
     pub fn of(integrals: &Integrals<'_>, swings: &[Swing], expected: Expected) -> Option<Self> {
         let largest = integrals.largest;
         let (mut delay, mut inverse) = (0.0, 1.0 / expected.inertia);
         let mut solved = None;
         let mut weights = vec![1.0; swings.len()];
         for _ in 0..ROUNDS {
-            let of_swing = |(swing, weight): (&Swing, &f64)| Equations::of(integrals, swing, delay, *weight);
-            let equations: Vec<Equations> = swings.iter().zip(&weights).filter_map(of_swing).collect();
+            let of_swing = |(swing, weight): (&Swing, &f64)| SwingEquations::of(integrals, swing, delay, *weight);
+            let equations: Vec<SwingEquations> = swings.iter().zip(&weights).filter_map(of_swing).collect();
             if equations.len() != swings.len() {
                 return None;
             }
             let by_inertia = |torque: f64| 1.0 / (torque * inverse).powi(2);
             let fastest =
                 largest * inverse * swings.iter().map(|swing| integrals.time_after(swing)).fold(0.0, f64::max);
-            // What is expected before the log is read keeps apart what no swing tells apart.
+            // Prior widths separate unknowns that no swing separates.
             let mut expected_size = SVector::<f64, SHARED>::zeros();
             expected_size[LOSS] = 1.0 / (EXPECTED_LOSS * inverse).powi(2);
             expected_size[VISCOUS] = by_inertia(largest / fastest.max(f64::MIN_POSITIVE));
@@ -201,21 +202,21 @@ impl Balance {
             }
             let late = 0.5 * delay * delay * inverse;
             expected_size[STEP_BY_TORQUE] = 1.0 / (0.5 * expected.step_by_torque + late).powi(2);
-            let balance = solve(&equations, expected_size, expected.step_by_torque)?;
-            let reached = |one: &Equations| {
-                let left = &one.right - &one.shared * DVector::from_column_slice(balance.values.as_slice());
+            let fit = solve(&equations, expected_size, expected.step_by_torque)?;
+            let reached = |one: &SwingEquations| {
+                let left = &one.right - &one.shared * DVector::from_column_slice(fit.values.as_slice());
                 (left.norm_squared() / left.len() as f64).max(f64::MIN_POSITIVE)
             };
             let scatter: Vec<f64> = equations.iter().map(reached).collect();
             let usual = quantile_of(&scatter, 0.25);
             weights = scatter.iter().map(|scatter| usual / scatter.max(usual)).collect();
-            inverse = balance.values[TORQUE].abs().max(f64::MIN_POSITIVE);
+            inverse = fit.values[TORQUE].abs().max(f64::MIN_POSITIVE);
             // A torque that comes late by D gives a change of speed of D times the change of acceleration.
             let late: Vec<f64> = swings
                 .iter()
                 .zip(&equations)
                 .map(|(swing, one)| {
-                    let change = one.change.1 - one.change.0.dot(&balance.values);
+                    let change = one.change.1 - one.change.0.dot(&fit.values);
                     swing.direction * change / (inverse * (swing.torque[0] + swing.torque[1]))
                 })
                 .collect();
@@ -223,7 +224,7 @@ impl Balance {
             if !delay.is_finite() {
                 return None;
             }
-            solved = Some(Self { delay, fastest, ..balance });
+            solved = Some(Self { delay, fastest, ..fit });
         }
         solved
     }
@@ -246,7 +247,7 @@ impl Balance {
         self.combination(&[(unknown, 1.0)])
     }
 
-    /// An unknown that stands over the inertia, times the inertia: in the unit of a torque.
+    /// Returns an unknown times the inertia, in the unit of a torque: (1) is divided by I.
     pub fn torque_of(&self, unknown: usize) -> Estimate {
         let inverse = self.values[TORQUE];
         let value = self.values[unknown] / inverse;
@@ -254,7 +255,7 @@ impl Balance {
     }
 }
 
-impl Equations {
+impl SwingEquations {
     fn of(integrals: &Integrals<'_>, swing: &Swing, delay: f64, weight: f64) -> Option<Self> {
         let chosen: Vec<usize> = swing.samples().collect();
         let (mut own, mut shared) = (DMatrix::zeros(chosen.len(), OWN), DMatrix::zeros(chosen.len(), SHARED));
@@ -286,7 +287,7 @@ impl Equations {
 
 /// Least squares of all swings, with what is expected of the unknowns: the inverse of their variance around zero, but for the step by the
 /// torque, which is expected around a value.
-fn solve(equations: &[Equations], expected: SVector<f64, SHARED>, step_by_torque: f64) -> Option<Balance> {
+fn solve(equations: &[SwingEquations], expected: SVector<f64, SHARED>, step_by_torque: f64) -> Option<SwingFit> {
     type Square = SMatrix<f64, SHARED, SHARED>;
     let (mut square, mut right) = (Square::zeros(), SVector::<f64, SHARED>::zeros());
     for one in equations {
@@ -301,7 +302,7 @@ fn solve(equations: &[Equations], expected: SVector<f64, SHARED>, step_by_torque
     let swings_left = equations.len().checked_sub(SHARED).filter(|left| *left > 0)? as f64;
     let mut middle = SVector::<f64, SHARED>::zeros();
     middle[STEP_BY_TORQUE] = step_by_torque;
-    let left_over = |one: &Equations, values: &SVector<f64, SHARED>| {
+    let left_over = |one: &SwingEquations, values: &SVector<f64, SHARED>| {
         &one.right - &one.shared * DVector::from_column_slice(values.as_slice())
     };
     let mut variance = 0.0;
@@ -312,7 +313,7 @@ fn solve(equations: &[Equations], expected: SVector<f64, SHARED>, step_by_torque
         let scaled = scaling * (square + prior) * scaling + Square::identity() * 1e-12;
         let inverse = scaling * scaled.cholesky()?.inverse() * scaling;
         let values = inverse * (right + prior * middle);
-        let weighted = |one: &Equations| one.weight * left_over(one, &values).norm_squared();
+        let weighted = |one: &SwingEquations| one.weight * left_over(one, &values).norm_squared();
         let of_residuals = equations.iter().map(weighted).sum::<f64>() / freedom;
         solved = Some((inverse, values, prior));
         variance = of_residuals;
@@ -332,7 +333,7 @@ fn solve(equations: &[Equations], expected: SVector<f64, SHARED>, step_by_torque
             one.after.iter().copied().zip(left.iter().copied()).collect::<Vec<_>>()
         })
         .collect();
-    values.iter().all(|value| value.is_finite()).then_some(Balance {
+    values.iter().all(|value| value.is_finite()).then_some(SwingFit {
         values,
         covariance: inverse * scatter * inverse,
         quantile: student(swings_left),

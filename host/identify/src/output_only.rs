@@ -101,15 +101,15 @@ impl OutputLog {
             return Err(Failure::new(
                 "the torque brakes where it should drive: torque and output have different signs",
             )
-            .with_help("turn one of them round, so that the output counts up under positive torque"));
+            .with_help("reverse the sign of one of them, so that the output counts up under positive torque"));
         }
         Err(Failure::new(format!(
-            "too few reversals: in {} swings of the output the torque steps from driving it to braking it, {LEAST_SWINGS} are the least",
+            "too few reversals: the torque steps from driving to braking in {} swings of the output; {LEAST_SWINGS} are needed",
             found.len()
         ))
         .with_help(
-            "step the motor's torque to and fro, three strengths, eight times each, so long that the output swings by 20 counts and \
-             more before and after each step",
+            "step the motor's torque between both signs with three strengths, eight times each; let the output move by 20 counts or more \
+             before and after each step",
         ))
     }
 }
@@ -233,8 +233,8 @@ fn gap(
     let bound = crossing::bound(integrals, swings, fit, [least, most]);
     let why = match bound {
         Ok(_) => format!(
-            "the output goes on by the motor's share of the inertia ({:.0} % at least) times the lost motion, less what the teeth bounce; \
-             an encoder at the motor or a held output (--output-locked) shows the lost motion itself",
+            "while the motor crosses the gap, the output moves on by the motor's share of the inertia ({:.0} % at least) times the lost \
+             motion, less the bouncing of the teeth; an encoder at the motor or a held output (--output-locked) shows the lost motion itself",
             100.0 * least
         ),
         Err(why) => format!("not even an upper bound: {why}"),
@@ -263,17 +263,20 @@ fn assumptions(log: &OutputLog, swings: &[Swing], fit: &SwingFit, prior: &PriorM
             ESTIMATE.write(most)
         ),
         format!(
-            "Torque's scale expected to be right within {:.1} % and the rotor's inertia within {:.1} % (one standard deviation): that is in \
-             all intervals.",
+            "The torque scale is expected to be right within {:.1} % and the rotor inertia within {:.1} % (one standard deviation); all \
+             intervals include both.",
             100.0 * prior.torque_error,
             100.0 * prior.inertia_error
         ),
         format!(
-            "Frictions of motor and link are told together; the link's part is what the motor's, as the joint file states it, leaves. Gears \
-             lose {} % of the torque beside.",
+            "The log shows the frictions of motor and link together; the link's part is their sum less the motor's friction in the joint \
+             file. The gears lose {} % of the torque in addition.",
             ESTIMATE.write(100.0 * fit.torque_of(swing_fit::LOSS).value)
         ),
-        format!("Torque and reading are {} ms late together; that is taken out.", ESTIMATE.write(1e3 * fit.delay)),
+        format!(
+            "Torque and reading are late by {} ms together; the fit removes this delay.",
+            ESTIMATE.write(1e3 * fit.delay)
+        ),
         format!("Ratio {} / {}; output encoder of {}.", prior.teeth[1], prior.teeth[0], resolution(prior.output_turn)),
     ];
     list.extend(log.told.iter().cloned());
@@ -288,7 +291,7 @@ fn picture(fit: &SwingFit) -> Figure {
     let marks = vec![Mark::Points { points, ink: Ink::First, label: "samples".into(), size: 2.0 }];
     let unit = Unit::of_angle(6.0 * fit.residual);
     let panel = Panel { height: 420, ..Panel::lines("Output less the fit", unit, marks) };
-    let note = "Scatter within the encoder's step is what the fit should leave; a wave after the reversal is the joint's ringing.".into();
+    let note = "A good fit leaves scatter within a count of the encoder; a wave after the reversal is the ringing of the joint.".into();
     Figure {
         note,
         ..Figure::new("Residuals around the reversals", "time after the reversal", MILLISECONDS, range, vec![panel])

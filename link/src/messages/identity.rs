@@ -24,7 +24,7 @@ pub struct Hello {
     pub digest_good: bool,
     /// Rate of fixed steps [Hz].
     pub tick_rate: u32,
-    /// Timer rate; its count is the unit of every time in [`Statistics`] [Hz].
+    /// Timer rate; its count is the unit of every time in [`super::Statistics`] [Hz].
     pub timer_rate: u32,
     /// Source and tolerance of the core clock.
     pub clock: Clock,

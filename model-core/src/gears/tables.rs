@@ -45,7 +45,7 @@ pub struct Tables<T: Real, const N: usize> {
     pub meshes: [[MeshTable<T>; N]; 2],
     /// Joint in units in which a sub-step lasts 1.
     pub stage: Stage<T>,
-    /// Exponential flow of the joint with all meshes closed, over one tick (one sub-step for [`Scheme::PaperEtd1`]).
+    /// Exponential flow of the joint with all meshes closed, over one tick (one sub-step for `Scheme::PaperEtd1`).
     pub flow: Flow<T>,
     /// Verlet sub-steps for light planets.
     pub verlet: VerletTable<T>,

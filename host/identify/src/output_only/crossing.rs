@@ -73,7 +73,7 @@ pub fn bound(
     let longest = 0.5 * acceleration * (QUARTER as f64 * part).powi(2);
     if allowed(longest) {
         return Err(
-            "the output may go on alone for more than a quarter of the time until it turns: let each torque act longer, or log a \
+            "the output may coast for more than a quarter of the time until it turns: let each torque act longer, or log a \
                     finer encoder",
         );
     }

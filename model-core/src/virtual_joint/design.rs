@@ -8,7 +8,7 @@ use crate::gears::{Kinematics, Mechanics, Scales, Tables, gear_losses};
 use crate::numbers::Real;
 use crate::observer::design::{CLOCK_TICKS, NO_LIMIT};
 use crate::virtual_joint::tables::{
-    COMMANDS_IN_FLIGHT, CurrentLoopTable, EncoderErrorTable, FrictionTable, SurroundingsTable,
+    COMMANDS_IN_FLIGHT, CurrentLoopTable, EncoderErrorTable, FrictionTable, SurroundingsTable, encoder_phase,
 };
 use parameters::{Friction, JointParameters, Surroundings};
 
@@ -81,7 +81,7 @@ pub fn design_surroundings<T: Real, const N: usize>(
             turn: encoder.counts_per_turn as u32,
             errors: [encoder.once_per_turn_error, encoder.twice_per_turn_error].map(|error| real(error * units)),
             lag: real(encoder.skew * units),
-            phase: (1_u128 << 64).div_ceil(encoder.counts_per_turn.into()) as u64,
+            phase: encoder_phase(encoder.counts_per_turn),
         }),
     })
 }

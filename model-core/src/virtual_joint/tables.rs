@@ -112,13 +112,19 @@ impl<T: Real> EncoderErrorTable<T> {
     }
 }
 
+/// Returns [`EncoderErrorTable::phase`] of an encoder with at least two counts per turn.
+#[cfg(any(test, feature = "design"))]
+pub(super) fn encoder_phase(counts_per_turn: u64) -> u64 {
+    (1_u128 << 64).div_ceil(counts_per_turn.into()) as u64
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Encoder with the counts per turn given, as `virtual_joint::design` makes it, without errors.
+    /// Encoder with the counts per turn given, without errors.
     fn encoder(turn: u32) -> EncoderErrorTable<f32> {
-        EncoderErrorTable { turn, errors: [0.0; 2], lag: 0.0, phase: (1_u128 << 64).div_ceil(turn.into()) as u64 }
+        EncoderErrorTable { turn, errors: [0.0; 2], lag: 0.0, phase: encoder_phase(turn.into()) }
     }
 
     #[test]

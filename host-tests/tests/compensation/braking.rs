@@ -16,12 +16,11 @@ use rayon::prelude::*;
 use reference::closed_loop::{Figures, Motion, MotionProfile, Run, minimum_jerk, swelling};
 use scenario::case::Case;
 use scenario::controller::ControllerName::{self, MotorPid, NoPreview, Preview};
-use scenario::execution::RunSpec;
 use scenario::plant::PlantName;
 use scenario::random::RandomStream;
 use scenario::suite::from_text;
 
-use super::run_in;
+use super::{on_core, run_in};
 
 /// Plants that nobody has measured; their links are known to a tenth.
 const PLANTS: &str = r#"
@@ -193,7 +192,7 @@ fn asked(kind: Kind, case: &Case, seed: u64) -> (Excessive, f64) {
     (Excessive { kind, height, acceleration }, times)
 }
 
-/// What became of a motion.
+/// Errors, times and forces of a motion.
 struct Course {
     kind: Kind,
     times: f64,
@@ -215,11 +214,7 @@ impl Course {
         let mut case = test.case(seed).expect("a case of the test");
         let (motion, times) = asked(kind, &case, seed);
         case.motion = Arc::new(motion);
-        let run = |controller| {
-            let spec = RunSpec { controller, plant: PlantName::Core, without_gap: false };
-            run_in(&test, &case, seed, spec).run
-        };
-        let [ours, pid] = [mode, MotorPid].map(run);
+        let [ours, pid] = [mode, MotorPid].map(|controller| run_in(&test, &case, seed, on_core(controller)).run);
         let [with, without] = [&ours, &pid].map(|run| Figures::between(run, BEGINS, f64::INFINITY));
         let geometry = &case.truth.parameters.geometry;
         let lost_motion = 4.0 * case.half_backlash() / (geometry.ratio_by_teeth() * geometry.sun_base_radius);
@@ -344,8 +339,7 @@ fn sine_near_the_torque_limit_follows() {
         .map(|seed| {
             let case = test.case(seed).expect("a case of the test");
             let [ours, pid] = [NoPreview, MotorPid].map(|controller| {
-                let spec = RunSpec { controller, plant: PlantName::Core, without_gap: false };
-                Figures::between(&run_in(&test, &case, seed, spec).run, BEGINS, f64::INFINITY)
+                Figures::between(&run_in(&test, &case, seed, on_core(controller)).run, BEGINS, f64::INFINITY)
             });
             (seed, ours.peak / pid.peak, ours.rms / pid.rms)
         })

@@ -1,10 +1,8 @@
 //! Encoders so coarse that the gap is hardly wider than a count.
 
 use scenario::controller::ControllerName::NoPreview;
-use scenario::execution::RunSpec;
-use scenario::plant::PlantName;
 
-use super::{run_in, shipped};
+use super::{on_core, run_in, shipped};
 
 /// Shafts that stand still are known to half a count only, which is more than the half-gap of a narrow gap under an output encoder of
 /// 12 bits. Of a link that rests between its flanks by that, nothing is wrong with the encoder.
@@ -13,7 +11,7 @@ fn a_sound_output_encoder_is_not_given_up_however_coarse() {
     let test = shipped("never-worse");
     for seed in [5071, 5095, 5123, 5233] {
         let case = test.case(seed).expect("a case of the test");
-        let spec = RunSpec { controller: NoPreview, plant: PlantName::Core, without_gap: false };
+        let spec = on_core(NoPreview);
         let history = run_in(&test, &case, seed, spec);
         let given_up = history.observer_outputs.windows(2).filter(|pair| pair[0].both && !pair[1].both).count();
         assert_eq!(given_up, 0, "seed {seed}: {:?}", case.truth.surroundings.output_encoder);
@@ -26,7 +24,7 @@ fn a_gap_narrower_than_a_count_is_not_valid() {
     let test = shipped("never-worse");
     let seed = 5663;
     let case = test.case(seed).expect("a case of the test");
-    let spec = RunSpec { controller: NoPreview, plant: PlantName::Core, without_gap: false };
+    let spec = on_core(NoPreview);
     let history = run_in(&test, &case, seed, spec);
     let outputs = &history.observer_outputs;
     let settled = &outputs[outputs.len() / 3..];

@@ -85,6 +85,10 @@ fn on_reference(controller: ControllerName) -> RunSpec {
     RunSpec { controller, plant: PlantName::Reference, without_gap: false }
 }
 
+fn on_core(controller: ControllerName) -> RunSpec {
+    RunSpec { controller, plant: PlantName::Core, without_gap: false }
+}
+
 /// Figures of a controller, from when a test judges it.
 fn figures(test: &Test, seed: u64, controller: ControllerName) -> Figures {
     Figures::of(&run(test, seed, controller).run, test.file.settle)

@@ -96,7 +96,7 @@ mod measurement {
     }
 
     fn controller() -> Direct<'static> {
-        Direct(Controller::new(&control::OBSERVER, &control::COMPENSATION))
+        Direct(Controller::with_tables(&control::OBSERVER, &control::COMPENSATION))
     }
 
     #[entry]

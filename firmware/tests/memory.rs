@@ -28,7 +28,7 @@ mod control {
 }
 
 fn controller() -> Direct<'static> {
-    Direct(Controller::new(&control::OBSERVER, &control::COMPENSATION))
+    Direct(Controller::with_tables(&control::OBSERVER, &control::COMPENSATION))
 }
 
 /// Motion to and fro through the gap, for the estimator.

@@ -24,7 +24,7 @@ mod control {
 }
 
 fn controller() -> Direct<'static> {
-    Direct(Controller::new(&control::OBSERVER, &control::COMPENSATION).with_probe(control::PROBE.as_ref()))
+    Direct(Controller::with_tables(&control::OBSERVER, &control::COMPENSATION).with_probe(control::PROBE.as_ref()))
 }
 
 /// Samples and command of one tick of a motion to and fro.

@@ -74,7 +74,7 @@ fn closed<const N: usize>(
     let bandwidth = good_bandwidth(joint, around).expect("a bandwidth");
     let compensation = design_compensation(joint, &compensation_settings(around, bandwidth)).expect("tables");
     let mut plant = VirtualJoint::new(&gears, &surroundings);
-    let mut controller = Controller::<f32>::new(&observer, &compensation);
+    let mut controller = Controller::<f32>::with_tables(&observer, &compensation);
     let last = around.motor_encoder.counts_per_turn as u32 - 1;
     let sign = if wiring == Wiring::TorqueReversed { -1.0 } else { 1.0 };
     let holds = (around.torque_limit * joint.geometry.ratio_by_teeth()) as f32;

@@ -14,6 +14,7 @@ mod equivalent;
 mod joint;
 mod mesh;
 mod planets;
+mod plant;
 mod surroundings;
 mod validity;
 
@@ -27,5 +28,6 @@ pub use mesh::{
     ContactState, DampingLaw, DeadZone, MAX_HARMONICS, MESH_KINDS, Mesh, MeshKind, MeshPhases, StiffnessWave,
 };
 pub use planets::{MAX_PLANETS, MIN_PLANETS, PerPlanet};
+pub use plant::PlantParameters;
 pub use surroundings::{AbsoluteEncoder, DEFAULT_SPEED_LIMIT, Friction, Surroundings};
 pub use validity::ParameterError;

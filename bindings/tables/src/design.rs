@@ -1,6 +1,7 @@
 //! Designs a joint's tables and writes them as a blob.
 
-use model_core::controller::design::{ControlTables, NominalPlant, control_tables, wiring_table};
+use model_core::controller::ControllerDesign;
+use model_core::controller::design::{NominalPlant, wiring_table};
 use model_core::gears::design::{DesignError, Effort, Processor, design_scheme};
 use model_core::gears::{Scheme, Tables};
 use model_core::observer::design::CLOCK_TICKS;
@@ -39,7 +40,7 @@ pub struct Wanted<'a> {
 /// # Ok::<(), model_core::gears::design::DesignError>(())
 /// ```
 pub fn design(wanted: &Wanted<'_>) -> Result<Vec<u64>, DesignError> {
-    let ControlTables { observer, probe, compensation } = control_tables(&wanted.nominal)?;
+    let ControllerDesign { observer, probe, compensation } = ControllerDesign::for_plant(&wanted.nominal)?;
     let wiring = wiring_table(&wanted.nominal)?;
     let mut blob = Writer { bytes: vec![0; HEADER_BYTES], parts: [Part::default(); PARTS] };
     let mut planets = 0;

@@ -1,6 +1,7 @@
 //! What is read in place is what was designed, in every bit; what was changed on the way is refused by name.
 
-use model_core::controller::design::{ControlRequest, NominalPlant, control_tables, wiring_table};
+use model_core::controller::ControllerDesign;
+use model_core::controller::design::{ControlRequest, NominalPlant, wiring_table};
 use model_core::gears::Tables;
 use model_core::gears::design::{Effort, Processor, design_scheme};
 use model_core::gears::tables::Scheme;
@@ -37,7 +38,7 @@ fn every_joint_s_tables_are_read_in_place_as_they_were_designed() {
         let (words, joint) = (blob(name), joint(name));
         let blob = Blob::open(&words).unwrap();
         let nominal = NominalPlant { joint: &joint.parameters, surroundings: &joint.surroundings, request: REQUEST };
-        let tables = control_tables(&nominal).unwrap();
+        let tables = ControllerDesign::for_plant(&nominal).unwrap();
         assert_eq!(blob.observer().unwrap(), &tables.observer);
         assert_eq!(blob.probe().ok(), tables.probe.as_ref());
         assert_eq!(blob.compensation().unwrap(), &tables.compensation);

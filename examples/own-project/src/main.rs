@@ -3,8 +3,7 @@
 mod control;
 
 use control::{Control, MY_JOINT};
-use model_core::compensation::{Motion, Position};
-use model_core::virtual_joint::VirtualJoint;
+use model_core::{Motion, Position, VirtualJoint};
 use table_blob::{Blob, Gears};
 
 fn main() {

@@ -22,7 +22,9 @@ mod role {
 
     pub fn work() -> RoleWork {
         Observing::new(
-            Direct(Controller::new(&control::OBSERVER, &control::COMPENSATION).with_probe(control::PROBE.as_ref())),
+            Direct(
+                Controller::with_tables(&control::OBSERVER, &control::COMPENSATION).with_probe(control::PROBE.as_ref()),
+            ),
             TABLES.digest_is_good(),
         )
     }

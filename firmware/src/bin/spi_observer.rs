@@ -48,7 +48,8 @@ macro_rules! app {
                 let device = unsafe { pac::Peripherals::steal() };
                 let bus = DmaSlave::start(device, cx.local.received, cx.local.sent);
                 let controller = Direct(
-                    Controller::new(&control::OBSERVER, &control::COMPENSATION).with_probe(control::PROBE.as_ref()),
+                    Controller::with_tables(&control::OBSERVER, &control::COMPENSATION)
+                        .with_probe(control::PROBE.as_ref()),
                 );
                 (Shared { slave: SpiSlave::new(bus, controller) }, Local { watchdog })
             }

@@ -21,7 +21,7 @@ mod role {
     pub type RoleWork = WholeLoop<'static, Direct<'static>, PLANETS>;
 
     pub fn work() -> RoleWork {
-        let controller = Controller::new(&control::OBSERVER, &control::COMPENSATION);
+        let controller = Controller::with_tables(&control::OBSERVER, &control::COMPENSATION);
         WholeLoop::new(&TABLES, &control::SURROUNDINGS, Direct(controller))
     }
 }

@@ -26,7 +26,7 @@ pub type ObserverWork = Observing<Direct<'static>>;
 pub type LoopWork = WholeLoop<'static, Direct<'static>, PLANETS>;
 
 pub fn controller() -> Controller<'static, f32> {
-    Controller::new(&control::OBSERVER, &control::COMPENSATION)
+    Controller::with_tables(&control::OBSERVER, &control::COMPENSATION)
 }
 
 /// Slow turn of the link from a tick on.

@@ -65,7 +65,7 @@ impl Subject {
     }
 
     pub fn controller(&self) -> Controller<'_, f32> {
-        Controller::new(&self.observer, &self.compensation)
+        Controller::with_tables(&self.observer, &self.compensation)
     }
 
     pub fn joint(&self) -> VirtualJoint<'_, f32, 3> {

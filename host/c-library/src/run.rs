@@ -137,7 +137,8 @@ pub fn probe_digest(words: &[u64], periods: u32) -> Outcome<u64> {
     };
     let mut joint = VirtualJoint::new(gears, around);
     let (observer, compensation) = (blob.observer().map_err(broken)?, blob.compensation().map_err(broken)?);
-    let mut controller = Controller::new(observer, compensation).with_probe(Some(blob.probe().map_err(broken)?));
+    let mut controller =
+        Controller::with_tables(observer, compensation).with_probe(Some(blob.probe().map_err(broken)?));
     let mut running = START;
     for _ in 0..periods {
         let answer = controller.probe(&joint.samples());

@@ -1,6 +1,6 @@
 //! What a joint file says, once it has been read.
 
-use parameters::{JointParameters, Surroundings};
+use parameters::{JointParameters, PlantParameters, Surroundings};
 
 use crate::motion::Profile;
 use crate::notes::Source;
@@ -21,4 +21,10 @@ pub struct JointFile {
     pub warnings: Vec<Problem>,
     /// Where each number comes from, by the comment behind it.
     pub sources: Vec<Source>,
+}
+
+impl<'f> From<&'f JointFile> for PlantParameters<'f> {
+    fn from(file: &'f JointFile) -> Self {
+        Self { joint: &file.parameters, surroundings: &file.surroundings }
+    }
 }

@@ -42,7 +42,7 @@ impl<'t> HostPort<'t> {
     /// Both as they are after a reset.
     pub fn new(designed: &'t Designed) -> Self {
         let Designed { observer, compensation, probe, .. } = designed;
-        Self(Controller::new(observer, compensation).with_probe(probe.as_ref()))
+        Self(Controller::with_tables(observer, compensation).with_probe(probe.as_ref()))
     }
 }
 

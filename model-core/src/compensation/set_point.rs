@@ -6,7 +6,7 @@ use crate::numbers::Real;
 /// Angle over any number of turns.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
-pub struct Position<T: Real> {
+pub struct Position<T: Real = f32> {
     /// Whole turns.
     pub turns: i32,
     /// Remaining part of a turn [turns].
@@ -23,7 +23,7 @@ impl<T: Real> Position<T> {
 /// Set-point of the link at one moment. `repr(C)`: a C caller's struct is read in place.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
-pub struct Motion<T: Real> {
+pub struct Motion<T: Real = f32> {
     /// Position on the scale of the observer's link shaft.
     pub position: Position<T>,
     /// Speed [rad/s].
@@ -38,20 +38,13 @@ pub struct Motion<T: Real> {
 /// friction holds.
 ///
 /// ```
-/// use model_core::compensation::design::{compensation_settings, design_compensation};
-/// use model_core::compensation::{Command, ImpedancePoint};
-/// use model_core::controller::Controller;
-/// use model_core::gears::{Tables, design::design};
-/// use model_core::observer::design::{design_observer, observer_settings};
-/// use model_core::virtual_joint::{VirtualJoint, design::design_surroundings};
+/// use model_core::{Command, Controller, ControllerDesign, ImpedancePoint, VirtualJointDesign};
 ///
 /// let mut q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
 /// q1.surroundings.gravity_torque = 0.0;
-/// let gears: Tables<f32, 3> = design(&q1.parameters, q1.surroundings.control_rate)?;
-/// let around = design_surroundings(&q1.parameters, &q1.surroundings, &gears)?;
-/// let observer = design_observer(&q1.parameters, &observer_settings(&q1.surroundings))?;
-/// let compensation = design_compensation(&q1.parameters, &compensation_settings(&q1.surroundings, 60.0))?;
-/// let (mut joint, mut controller) = (VirtualJoint::new(&gears, &around), Controller::new(&observer, &compensation));
+/// let design = ControllerDesign::new(&q1, 10_000)?;
+/// let plant = VirtualJointDesign::<3>::new(&q1, 10_000)?;
+/// let (mut joint, mut controller) = (plant.joint(), Controller::new(&design));
 /// let spring = ImpedancePoint { stiffness: 100.0, damping: 4.0, ..ImpedancePoint::default() };
 /// for _ in 0..10_000 {
 ///     let answer = controller.step(&joint.samples(), &Command::Impedance(spring));
@@ -65,7 +58,7 @@ pub struct Motion<T: Real> {
 /// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
-pub struct ImpedancePoint<T: Real> {
+pub struct ImpedancePoint<T: Real = f32> {
     /// Position on the scale of the observer's link shaft.
     pub position: Position<T>,
     /// Speed [rad/s].
@@ -80,7 +73,7 @@ pub struct ImpedancePoint<T: Real> {
 
 /// Command of one control period.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Command<T: Real> {
+pub enum Command<T: Real = f32> {
     /// Position mode: the link follows a motion.
     Position {
         /// Present motion.
@@ -107,6 +100,12 @@ pub enum CommandRef<'given, T: Real> {
 }
 
 impl<T: Real> Command<T> {
+    /// Holds angle zero of the observer's link shaft.
+    pub const HOLD: Self = {
+        let position = Position { turns: 0, fraction: T::ZERO };
+        Self::Position { now: Motion { position, speed: T::ZERO, acceleration: T::ZERO }, ahead: None }
+    };
+
     /// Borrows the command instead of copying the set-points.
     #[inline]
     pub fn by_reference(&self) -> CommandRef<'_, T> {
@@ -139,7 +138,7 @@ pub enum Stage {
 /// Output of the compensation in one control period. The numbers come first, so that they are copied in one block.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
-pub struct Shaped<T: Real> {
+pub struct Shaped<T: Real = f32> {
     /// Torque command of the motor [N m].
     pub torque: T,
     /// Torque through the teeth at the end of a crossing that begins now; zero under plain control [N m].

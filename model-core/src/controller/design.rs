@@ -4,28 +4,27 @@
 use std::format;
 use std::string::String;
 
-use crate::compensation::CompensationTables;
 use crate::compensation::design::{CompensationSettings, compensation_settings, design_compensation, good_bandwidth};
+use crate::controller::ControllerDesign;
 use crate::gears::design::{DesignError, Effort, Processor, design_scheme};
 use crate::gears::{Scheme, Tables};
 use crate::numbers::digest;
 use crate::observer::design::{
     ObserverSettings, design_observer, design_usual_probe, observer_settings, observer_text,
 };
-use crate::observer::{ObserverTables, ProbeTable};
 use crate::virtual_joint::SurroundingsTable;
 use crate::virtual_joint::design::design_surroundings;
 use crate::wiring::WiringTable;
 use crate::wiring::design::design_wiring;
-use parameters::{JointParameters, ParameterError, Surroundings};
+use parameters::{JointParameters, ParameterError, PlantParameters, Surroundings};
 
 /// Requirements on a controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ControlRequest {
-    /// Bandwidth of the loop [rad/s]; [`good_bandwidth`] if left out.
+    /// Bandwidth of the loop [rad/s]; if left out, [`good_bandwidth`] of the plant.
     pub bandwidth: Option<f64>,
-    /// Largest torque through the teeth in position mode, referred to the link [N m]; if left out,
-    /// [`CompensationSettings::peak_torque`] applies.
+    /// Largest torque through the teeth in position mode, referred to the link [N m]; if left out, the motor's
+    /// torque at its limit, at most twice the rated torque.
     pub peak_torque: Option<f64>,
     /// True if the observer reads the output encoder.
     pub output_encoder: bool,
@@ -73,25 +72,38 @@ pub struct ControlSource {
     pub digest: u64,
 }
 
-/// Tables of a controller.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ControlTables {
-    /// Table of the observer.
-    pub observer: ObserverTables<f32>,
-    /// Table of the width probe, if it can be designed.
-    pub probe: Option<ProbeTable<f32>>,
-    /// Table of the compensation.
-    pub compensation: CompensationTables<f32>,
-}
+impl ControllerDesign<f32> {
+    /// Designs observer, width probe and compensation of `joint`, such as a joint file, with [`ControlRequest::USUAL`].
+    /// The controller is to be called `rate` times a second [Hz].
+    ///
+    /// ```
+    /// use model_core::{Controller, ControllerDesign};
+    ///
+    /// let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
+    /// let design = ControllerDesign::new(&q1, 10_000)?;
+    /// let mut controller = Controller::new(&design);
+    /// # assert_eq!(design.observer.control_rate, 10_000);
+    /// # Ok::<(), model_core::gears::design::DesignError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// Names a parameter or a rate that no controller can be designed for.
+    pub fn new<'t>(joint: impl Into<PlantParameters<'t>>, rate: u32) -> Result<Self, DesignError> {
+        let PlantParameters { joint, surroundings } = joint.into();
+        let surroundings = &Surroundings { control_rate: rate, ..*surroundings };
+        Self::for_plant(&NominalPlant { joint, surroundings, request: ControlRequest::USUAL })
+    }
 
-/// Tables of a controller for the nominal plant.
-pub fn control_tables(nominal: &NominalPlant<'_>) -> Result<ControlTables, DesignError> {
-    let settings = settings(nominal);
-    Ok(ControlTables {
-        observer: design_observer(nominal.joint, &settings)?,
-        probe: design_usual_probe(nominal.joint, &settings)?,
-        compensation: design_compensation(nominal.joint, &nominal.compensation_settings()?)?,
-    })
+    /// Designs the controller for the nominal plant at the rate of its surroundings.
+    pub fn for_plant(nominal: &NominalPlant<'_>) -> Result<Self, DesignError> {
+        let settings = settings(nominal);
+        Ok(Self {
+            observer: design_observer(nominal.joint, &settings)?,
+            probe: design_usual_probe(nominal.joint, &settings)?,
+            compensation: design_compensation(nominal.joint, &nominal.compensation_settings()?)?,
+        })
+    }
 }
 
 /// Table of the wiring check for the nominal plant.
@@ -115,7 +127,7 @@ pub fn control_source(
     nominal: &NominalPlant<'_>,
     processor: &Processor,
 ) -> Result<ControlSource, DesignError> {
-    let ControlTables { observer, probe, compensation } = control_tables(nominal)?;
+    let ControllerDesign { observer, probe, compensation } = ControllerDesign::for_plant(nominal)?;
     let observer = observer_text(&observer, probe.as_ref());
     let surroundings: SurroundingsTable<f32> = match joint.geometry.planets {
         1 => surroundings::<1>(joint, around, processor)?,

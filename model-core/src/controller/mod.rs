@@ -3,6 +3,8 @@
 #[cfg(feature = "design")]
 pub mod design;
 mod step;
+mod tables;
 pub mod trajectory;
 
 pub use step::{Answer, Controller};
+pub use tables::ControllerDesign;

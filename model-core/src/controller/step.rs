@@ -3,6 +3,7 @@
 
 use crate::compensation::CompensationTables;
 use crate::compensation::{Command, Compensation, Shaped};
+use crate::controller::ControllerDesign;
 use crate::numbers::Real;
 use crate::numbers::digest::chain;
 use crate::observer::{Estimates, MAPPED, Memory, MemoryError, Observer, Probe, Progress, Samples};
@@ -10,7 +11,7 @@ use crate::observer::{ObserverTables, ProbeTable};
 
 /// Outputs of one control period.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Answer<T: Real> {
+pub struct Answer<T: Real = f32> {
     /// Outputs of the observer.
     pub estimates: Estimates<T>,
     /// Outputs of the compensation.
@@ -38,33 +39,27 @@ impl<T: Real> Answer<T> {
 /// The controller holds a link at angle zero; after a second 3 N m pull at the link:
 ///
 /// ```
-/// use model_core::compensation::design::{compensation_settings, design_compensation};
-/// use model_core::controller::{Controller, trajectory::Trajectory};
-/// use model_core::gears::{Tables, design::design};
-/// use model_core::observer::design::{design_observer, observer_settings};
-/// use model_core::virtual_joint::{VirtualJoint, design::design_surroundings};
+/// use model_core::{Command, Controller, ControllerDesign, VirtualJointDesign};
 ///
 /// let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
-/// let gears: Tables<f32, 3> = design(&q1.parameters, q1.surroundings.control_rate)?;
-/// let around = design_surroundings(&q1.parameters, &q1.surroundings, &gears)?;
-/// let observer = design_observer(&q1.parameters, &observer_settings(&q1.surroundings))?;
-/// let compensation = design_compensation(&q1.parameters, &compensation_settings(&q1.surroundings, 60.0))?;
-/// let (mut joint, mut controller) = (VirtualJoint::new(&gears, &around), Controller::new(&observer, &compensation));
-/// let mut answer = controller.step(&joint.samples(), &Trajectory::HOLD.at(0.0, around.turn));
+/// let design = ControllerDesign::new(&q1, 10_000)?;
+/// let plant = VirtualJointDesign::<3>::new(&q1, 10_000)?;
+/// let (mut joint, mut controller) = (plant.joint(), Controller::new(&design));
+/// let mut answer = controller.step(&joint.samples(), &Command::HOLD);
 /// let mut held = 0.0;
 /// for period in 1..30_000 {
 ///     joint.advance(answer.shaped.torque, if period < 10_000 { 0.0 } else { 3.0 });
-///     answer = controller.step(&joint.samples(), &Trajectory::HOLD.at(0.0, around.turn));
+///     answer = controller.step(&joint.samples(), &Command::HOLD);
 ///     held += if period < 20_000 { 0.0 } else { answer.shaped.torque / 10_000.0 };
 /// }
-/// // The observer knows of the pull, up to what friction takes of it; the motor holds against it through a gear of 6, over a
-/// // second on the mean: as long as nobody has shown it how wide the gap is, it goes to and fro beside that.
+/// // The estimated load torque is the pull, less friction. On average over a second the motor holds against the pull
+/// // through the gear ratio of 6; before the width of the gap is known, the torque oscillates about that.
 /// assert!((answer.estimates.load_torque.value - 3.0).abs() < 0.5, "{:?}", answer.estimates.load_torque);
 /// assert!((6.0 * held - 3.0).abs() < 0.7, "{held}");
 /// # Ok::<(), model_core::gears::design::DesignError>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct Controller<'tables, T: Real> {
+pub struct Controller<'tables, T: Real = f32> {
     observer: Observer<'tables, T, MAPPED>,
     compensation: Compensation<'tables, T>,
     probe_table: Option<&'tables ProbeTable<T>>,
@@ -80,7 +75,12 @@ struct Probing<'tables, T: Real> {
 
 impl<'tables, T: Real> Controller<'tables, T> {
     /// Creates a controller in its initial state.
-    pub fn new(observer: &'tables ObserverTables<T>, compensation: &'tables CompensationTables<T>) -> Self {
+    pub fn new(design: &'tables ControllerDesign<T>) -> Self {
+        Self::with_tables(&design.observer, &design.compensation).with_probe(design.probe.as_ref())
+    }
+
+    /// Creates a controller in its initial state from tables that stand apart, without a width probe.
+    pub fn with_tables(observer: &'tables ObserverTables<T>, compensation: &'tables CompensationTables<T>) -> Self {
         Self {
             observer: Observer::new(observer),
             compensation: Compensation::new(compensation),
@@ -99,6 +99,11 @@ impl<'tables, T: Real> Controller<'tables, T> {
         self.observer.restart();
         self.compensation.restart();
         self.probing = None;
+    }
+
+    /// Estimates of the last step.
+    pub fn estimates(&self) -> &Estimates<T> {
+        self.observer.estimates()
     }
 
     /// Estimated parameters of the observer.

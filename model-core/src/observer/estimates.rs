@@ -5,7 +5,7 @@ use parameters::ContactState;
 
 /// Estimated quantity with its variance and validity flag.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Estimate<T: Real> {
+pub struct Estimate<T: Real = f32> {
     /// Estimated value; always finite.
     pub value: T,
     /// Variance in the square of the value's unit; always finite.
@@ -117,7 +117,7 @@ pub struct Notices {
 
 /// Estimates of one control period. A positive gap coordinate, force or torque drives the load forwards.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Estimates<T: Real> {
+pub struct Estimates<T: Real = f32> {
     /// Encoders in use.
     pub source: Source,
     /// Defects of the samples.

@@ -14,7 +14,7 @@ pub struct Reading {
 
 /// Samples of one control period.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Samples<T: Real> {
+pub struct Samples<T: Real = f32> {
     /// Present time in ticks of the settings' clock; wraps at 2^32.
     pub time: u32,
     /// Encoder on the motor.

@@ -3,14 +3,30 @@
 
 use core::f64::consts::TAU;
 
-use crate::gears::design::DesignError;
+use crate::gears::design::{DesignError, design};
 use crate::gears::{Kinematics, Mechanics, Scales, Tables, gear_losses};
 use crate::numbers::Real;
 use crate::observer::design::{CLOCK_TICKS, NO_LIMIT};
 use crate::virtual_joint::tables::{
-    COMMANDS_IN_FLIGHT, CurrentLoopTable, EncoderErrorTable, FrictionTable, SurroundingsTable, encoder_phase,
+    COMMANDS_IN_FLIGHT, CurrentLoopTable, EncoderErrorTable, FrictionTable, SurroundingsTable, VirtualJointDesign,
+    encoder_phase,
 };
-use parameters::{Friction, JointParameters, Surroundings};
+use parameters::{Friction, JointParameters, PlantParameters, Surroundings};
+
+impl<const N: usize> VirtualJointDesign<N> {
+    /// Designs the tables of `joint`, such as a joint file, for `rate` control periods a second [Hz].
+    ///
+    /// # Errors
+    ///
+    /// Names a parameter or a rate that no virtual joint can be designed for, or the joint's number of planets if it
+    /// is not `N`.
+    pub fn new<'t>(joint: impl Into<PlantParameters<'t>>, rate: u32) -> Result<Self, DesignError> {
+        let PlantParameters { joint, surroundings } = joint.into();
+        let gears = design(joint, rate)?;
+        let surroundings = Surroundings { control_rate: rate, ..*surroundings };
+        Ok(Self { surroundings: design_surroundings(joint, &surroundings, &gears)?, gears })
+    }
+}
 
 /// Designs the tables of a virtual joint's surroundings; `tables` are the gears' tables for a tick of one control
 /// period.

@@ -9,4 +9,4 @@ mod plant;
 pub mod tables;
 
 pub use plant::{ActingTorques, VirtualJoint};
-pub use tables::SurroundingsTable;
+pub use tables::{SurroundingsTable, VirtualJointDesign};

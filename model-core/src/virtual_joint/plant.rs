@@ -8,7 +8,9 @@ use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 use crate::numbers::phase::sine_cosine;
 use crate::observer::{Reading, Samples};
-use crate::virtual_joint::tables::{COMMANDS_IN_FLIGHT, EncoderErrorTable, FrictionTable, SurroundingsTable};
+use crate::virtual_joint::tables::{
+    COMMANDS_IN_FLIGHT, EncoderErrorTable, FrictionTable, SurroundingsTable, VirtualJointDesign,
+};
 
 /// Torques of the last period [N m].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -24,13 +26,11 @@ pub struct ActingTorques<T: Real> {
 /// Joint with its surroundings.
 ///
 /// ```
-/// use model_core::gears::{Tables, design::design};
-/// use model_core::virtual_joint::{VirtualJoint, design::design_surroundings};
+/// use model_core::{VirtualJoint, VirtualJointDesign};
 ///
 /// let q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
-/// let gears: Tables<f32, 3> = design(&q1.parameters, q1.surroundings.control_rate)?;
-/// let around = design_surroundings(&q1.parameters, &q1.surroundings, &gears)?;
-/// let mut joint = VirtualJoint::new(&gears, &around);
+/// let design = VirtualJointDesign::new(&q1, 10_000)?;
+/// let mut joint = design.joint();
 /// let turned = |joint: &mut VirtualJoint<'_, f32, 3>, torque: f32| {
 ///     (0..500).for_each(|_| joint.advance(torque, 0.0));
 ///     joint.samples().output.unwrap().counts
@@ -62,6 +62,13 @@ struct Shafts<T: Real> {
     link: i64,
     /// Speeds [rad/s].
     speeds: [T; 2],
+}
+
+impl<T: Real, const N: usize> VirtualJointDesign<N, T> {
+    /// Creates a joint at rest at angle zero, with the teeth in the middle of their gap.
+    pub fn joint(&self) -> VirtualJoint<'_, T, N> {
+        VirtualJoint::new(&self.gears, &self.surroundings)
+    }
 }
 
 impl<'tables, T: Real, const N: usize> VirtualJoint<'tables, T, N> {

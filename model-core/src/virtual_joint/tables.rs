@@ -1,11 +1,22 @@
 //! Tables of a virtual joint's surroundings, made by `virtual_joint::design`: current loop, frictions, weight,
 //! encoders. SI units; angles that wrap are integers in 2^-32 turns.
 
+use crate::gears::Tables;
 use crate::numbers::Real;
 use crate::observer::tables::MOST_DELAY;
 
 /// Capacity for delayed motor commands.
 pub const COMMANDS_IN_FLIGHT: usize = MOST_DELAY + 1;
+
+/// Tables of a virtual joint with `N` planets.
+#[cfg_attr(feature = "design", doc = "[`VirtualJointDesign::new`] designs them.")]
+#[derive(Debug, Clone, PartialEq)]
+pub struct VirtualJointDesign<const N: usize, T: Real = f32> {
+    /// Table of the gears.
+    pub gears: Tables<T, N>,
+    /// Table of the surroundings.
+    pub surroundings: SurroundingsTable<T>,
+}
 
 /// Surroundings of one joint at one tick rate; a tick is a control period.
 #[derive(Debug, Clone, PartialEq)]

@@ -30,7 +30,7 @@ pub fn controller(joint: &JointFile) -> Controller<'static, f32> {
         design_observer(&joint.parameters, &observer_settings(&around)).expect("an observer");
     let compensation: CompensationTables<f32> =
         design_compensation(&joint.parameters, &compensation_settings(&around, BANDWIDTH)).expect("a compensation");
-    Controller::new(Box::leak(Box::new(observer)), Box::leak(Box::new(compensation)))
+    Controller::with_tables(Box::leak(Box::new(observer)), Box::leak(Box::new(compensation)))
 }
 
 /// What a controller that is told one joint learns of another in so many control periods, to and fro through the gap.

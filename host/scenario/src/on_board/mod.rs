@@ -237,7 +237,7 @@ impl<'w> Boards<'w> {
 
 #[cfg(test)]
 mod tests {
-    use model_core::controller::design::control_tables;
+    use model_core::controller::ControllerDesign;
 
     use super::*;
     use crate::file;
@@ -256,7 +256,7 @@ mod tests {
                 surroundings: &case.nominal_surroundings,
                 request: control(&test, &case).expect("a bandwidth").request(),
             };
-            let image = control_tables(&nominal).expect("a controller");
+            let image = ControllerDesign::for_plant(&nominal).expect("a controller");
             assert_eq!(format!("{:?}", image.compensation), format!("{:?}", designed.compensation), "{keys}");
             assert_eq!(format!("{:?}", image.observer), format!("{:?}", designed.observer), "{keys}");
             format!("{:?}{:?}", image.compensation, image.observer)

@@ -76,7 +76,7 @@ impl Twin<'_> {
             design_scheme(joint, around.control_rate, Scheme::Realtime, effort).map_err(|error| refused(&error))?;
         let table: SurroundingsTable<f32> =
             design_surroundings(joint, &around, &tables).map_err(|error| refused(&error))?;
-        let mut controller = Controller::new(&self.designed.observer, &self.designed.compensation);
+        let mut controller = Controller::with_tables(&self.designed.observer, &self.designed.compensation);
         if self.file.from_memory {
             self.pass(&tables, &table, &mut controller);
             let memory_at_start = Some(remember(&mut controller)?);

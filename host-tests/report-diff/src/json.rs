@@ -1,19 +1,19 @@
-//! JSON by value, key by key: one row. Whole numbers are compared as such, all others by the f64 that they stand for; the
-//! order of keys and the form of a number do not count.
+//! JSON by value, key by key, in one row. Whole numbers are compared as such, all others by their f64; the order of keys and the notation
+//! of a number do not count.
 
 use serde_json::Value;
 
 use crate::ignored::{Place, ignored_key, rule};
 use crate::listing::{Listing, Row};
 
-/// What a document says.
+/// Reads a document.
 pub fn read(document: &Value) -> Listing {
     let mut listing = Listing::of(Row::default());
     walk(document, ["", ""], &mut listing);
     listing
 }
 
-/// `keys` is the way from the top of the document without places in lists.
+/// `keys` is the path from the top of the document without list indices.
 fn walk(value: &Value, [place, keys]: [&str; 2], listing: &mut Listing) {
     let said = match value {
         Value::Object(object) if !object.is_empty() => {
@@ -36,7 +36,7 @@ fn walk(value: &Value, [place, keys]: [&str; 2], listing: &mut Listing) {
             return;
         }
         Value::String(text) => Value::String(listing.masked(text)).to_string(),
-        // 1.0 is written as 1.
+        // Writes 1.0 as 1.
         Value::Number(number) => {
             number.as_f64().filter(|_| number.is_f64()).map_or(number.to_string(), |it| it.to_string())
         }

@@ -1,5 +1,5 @@
-//! MCAP logs by what is in them: topics with their schemas and remarks, and every message by its fields. How a log is cut
-//! into chunks, compressed and indexed does not count.
+//! MCAP logs by content: topics with their schemas and metadata, and every message by its fields. Chunks, compression and index do not
+//! count.
 
 use std::collections::BTreeMap;
 
@@ -14,11 +14,11 @@ use crate::ros::Form;
 struct Topic {
     name: String,
     form: Option<Form>,
-    /// The first says what it is, all others are messages.
+    /// Rows: the first describes the topic, all others are messages.
     rows: Vec<Row>,
 }
 
-/// What a log says; fails if it cannot be read.
+/// Reads a log; fails if it cannot be read.
 pub fn read(log: &[u8]) -> Result<Listing, String> {
     let (mut listing, mut about) = (Listing::default(), Row::default());
     let (mut schemas, mut topics) = (BTreeMap::new(), BTreeMap::new());
@@ -31,7 +31,7 @@ pub fn read(log: &[u8]) -> Result<Listing, String> {
             Record::Schema { header, data } => {
                 schemas.insert(header.id, (header, String::from_utf8_lossy(&data).into_owned()));
             }
-            // The index at a log's end names each topic once more.
+            // The index at a log's end repeats each topic.
             Record::Channel(channel) if !topics.contains_key(&channel.id) => {
                 let mut row = Row::at(&channel.topic);
                 channel.metadata.iter().for_each(|(key, value)| remark(&mut row, key, value, &mut listing));
@@ -60,7 +60,7 @@ pub fn read(log: &[u8]) -> Result<Listing, String> {
             _ => {}
         }
     }
-    // Topics are compared one with one, in whichever order their messages were written.
+    // Topics are matched by name, whatever the order of their messages.
     let mut topics: Vec<Topic> = topics.into_values().collect();
     topics.sort_by(|a, b| a.name.cmp(&b.name));
     listing.rows = std::iter::once(about).chain(topics.into_iter().flat_map(|topic| topic.rows)).collect();
@@ -87,7 +87,7 @@ fn message(topic: &Topic, header: &MessageHeader, data: &[u8]) -> Row {
     row
 }
 
-/// Numbers so that no two different ones are the same text.
+/// Text of some numbers, different for any two different lists of bits.
 fn said(numbers: &[f64]) -> String {
     let said = |number: &f64| match number.is_nan() {
         true => format!("NaN {:x}", number.to_bits()),

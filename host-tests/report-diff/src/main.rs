@@ -1,4 +1,4 @@
-//! `report-diff OLD NEW`: are two trees of records the same? The comparison itself is in the library.
+//! `report-diff OLD NEW` compares two trees of records. The comparison is in the library.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

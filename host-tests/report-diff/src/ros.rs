@@ -1,14 +1,14 @@
-//! Messages of ROS 2 in CDR, as far as our logs need them: fields of 64-bit floats, single or in lists. A message of any
-//! other form is compared by its bytes.
+//! ROS 2 messages in CDR, as far as the project's logs need them: fields of 64-bit floats, single or in lists. A message of any other form
+//! is compared by its bytes.
 
 use std::rc::Rc;
 
-/// Fields by their names, and whether they are lists.
+/// Names of fields, with `true` for a list.
 #[derive(Debug, Clone)]
 pub struct Form(Vec<(Rc<str>, bool)>);
 
 impl Form {
-    /// What a schema says, if it has no other fields than those that are understood.
+    /// Reads a schema; `None` if it has a field of another type.
     pub fn of(schema: &str) -> Option<Self> {
         let lines = schema.lines().map(|line| line.split('#').next().unwrap_or_default().trim());
         let field = |line: &str| match line.split_once(char::is_whitespace)? {
@@ -19,9 +19,9 @@ impl Form {
         lines.filter(|line| !line.is_empty()).map(field).collect::<Option<_>>().map(Self)
     }
 
-    /// The numbers of each field of a message.
+    /// Numbers of each field of a message.
     pub fn decoded(&self, message: &[u8]) -> Option<Vec<(Rc<str>, Vec<f64>)>> {
-        // The head says: little endian.
+        // The header selects little endian.
         let body = message.strip_prefix(&[0, 1, 0, 0])?;
         let mut at = 0_usize;
         let mut fields = Vec::new();
@@ -46,6 +46,7 @@ impl Form {
 mod tests {
     use super::*;
 
+    /// Numbers and lists are decoded; messages of another form or length are not.
     #[test]
     fn numbers_and_lists_are_read_and_other_messages_are_not() {
         let mut message = vec![0, 1, 0, 0];

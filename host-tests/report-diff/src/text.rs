@@ -1,5 +1,5 @@
-//! Text, line by line: what a terminal showed, Markdown, settings, logs. Lines are compared word by word once they are
-//! masked; empty lines and space between words do not count.
+//! Text, line by line: terminal output, Markdown, settings, logs. Lines are masked and compared word by word; empty lines and space between
+//! words do not count.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use crate::ignored::{Place, RULES};
 use crate::listing::{Listing, Row};
 use crate::mask::HIDDEN;
 
-/// What a text says: a row for each line that is not empty.
+/// Reads a text: a row for each line that is not empty.
 pub fn read(text: &str) -> Listing {
     let (mut listing, mut column) = (Listing::default(), None);
     for (index, said) in text.lines().enumerate() {
@@ -29,8 +29,7 @@ pub fn read(text: &str) -> Listing {
     listing
 }
 
-/// Where the words of a column that is left out end, in characters, and by which rule: from the head of its table to the
-/// next empty line.
+/// End of an ignored column's words [characters] and its rule, from the head of its table to the next empty line.
 fn under_head(line: &str, before: Option<(usize, &'static str)>) -> Option<(usize, &'static str)> {
     let first = line.split_whitespace().next()?;
     let end = |(place, rule): &(Place, &'static str)| match place {
@@ -44,7 +43,7 @@ fn under_head(line: &str, before: Option<(usize, &'static str)>) -> Option<(usiz
     RULES.iter().find_map(end).or(before)
 }
 
-/// Bytes of the figure whose last character is the one before this place.
+/// Byte range of the figure that ends right before a character position.
 fn word_that_ends_at(line: &str, end: usize) -> Option<Range<usize>> {
     let end = line.char_indices().map(|(at, _)| at).chain([line.len()]).nth(end)?;
     let start = line[..end].rfind(char::is_whitespace).map_or(0, |at| at + 1);
@@ -57,6 +56,7 @@ fn word_that_ends_at(line: &str, end: usize) -> Option<Range<usize>> {
 mod tests {
     use super::*;
 
+    /// A column of host time is ignored until its table ends.
     #[test]
     fn a_column_of_the_host_s_time_is_left_out_until_its_table_ends() {
         let lines = |error: &str, cost: &str, behind: &str| {

@@ -1,4 +1,4 @@
-//! Walks two trees side by side and compares each pair of files by its kind. Files on one side only are differences.
+//! Walks two trees in parallel and compares each pair of files by its kind. Files on one side only are differences.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -11,7 +11,7 @@ use crate::ignored::FILES;
 use crate::listing::{self, Listing, Row};
 use crate::{csv, html, json, log, text, xml};
 
-/// What counts where it is not the same for everybody.
+/// Options of the comparison.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::Args)]
 pub struct Options {
     /// What counts on HTML pages
@@ -70,18 +70,18 @@ fn files(folder: &Path) -> Result<BTreeSet<PathBuf>, String> {
     Ok(found)
 }
 
-/// Kinds of files that are text whatever is in them.
+/// File extensions compared as text.
 const TEXTS: [&str; 11] = ["txt", "md", "log", "toml", "stdout", "stderr", "exit", "command", "from", "rs", "yaml"];
 
 fn compare_files(name: &str, files: [&[u8]; 2], options: Options, findings: &mut Findings) {
     findings.begin(name);
     let kind = Path::new(name).extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    // Two that cannot be read, as a log that is cut off, may still be the same.
+    // Files that cannot be read, such as a truncated log, are compared byte by byte.
     let listings = listings(&kind, files, options).unwrap_or_else(|why| bytes(files, &why));
     listing::compare(listings.each_ref(), findings);
 }
 
-/// What two files of a kind say; fails, with what is before the place of a byte, if one is not of that kind.
+/// Listings of two files of a kind; fails, with the words before the byte offset in the report, if one is not of this kind.
 fn listings(kind: &str, files: [&[u8]; 2], options: Options) -> Result<[Listing; 2], String> {
     let both = |[old, new]: [Result<Listing, String>; 2]| -> Result<_, String> { Ok([old?, new?]) };
     if kind == "mcap" {
@@ -90,7 +90,7 @@ fn listings(kind: &str, files: [&[u8]; 2], options: Options) -> Result<[Listing;
     let [Ok(old), Ok(new)] = files.map(std::str::from_utf8) else { return Err(String::new()) };
     let texts = [old, new];
     match kind {
-        // A command may have been asked for JSON in place of its text.
+        // Standard output may be JSON.
         "json" | "stdout" if kind == "json" || old.trim_start().starts_with('{') => Ok(json_or_text(texts)),
         "csv" => Ok(csv::read(texts)),
         "html" | "htm" => html::read(texts, options.html, options.html_may_grow)
@@ -101,7 +101,7 @@ fn listings(kind: &str, files: [&[u8]; 2], options: Options) -> Result<[Listing;
     }
 }
 
-/// What is no JSON is a text.
+/// Listings of JSON, or of text where one is not JSON.
 fn json_or_text(texts: [&str; 2]) -> [Listing; 2] {
     match texts.map(serde_json::from_str) {
         [Ok(old), Ok(new)] => [old, new].map(|document| json::read(&document)),
@@ -109,7 +109,7 @@ fn json_or_text(texts: [&str; 2]) -> [Listing; 2] {
     }
 }
 
-/// The bytes of two files from the first that differs.
+/// Listings of the bytes of two files from the first that differs.
 fn bytes(files: [&[u8]; 2], why: &str) -> [Listing; 2] {
     let at = files[0].iter().zip(files[1]).take_while(|(old, new)| old == new).count();
     files.map(|file| {

@@ -1,10 +1,10 @@
-//! XML such as JUnit's: every element, attribute and text, with the way to it, in the document's order.
+//! XML such as JUnit's: every element, attribute and text, with its path, in the document's order.
 
 use crate::ignored::{Place, rule};
 use crate::listing::{Listing, Row};
 use crate::markup::{Piece, pieces};
 
-/// What a document says; fails if it is none.
+/// Reads a document; fails if it cannot be parsed.
 pub fn read(document: &str) -> Result<Listing, String> {
     let (mut way, mut listing) = (Vec::new(), Listing::default());
     let say = |listing: &mut Listing, place: String, value: String| {

@@ -1,4 +1,4 @@
-//! The command as a user meets it: what it prints, and its exit codes.
+//! The command as the user sees it: its output and its exit codes.
 
 use std::fs;
 use std::path::Path;
@@ -12,6 +12,7 @@ fn text(path: &Path) -> &str {
     path.to_str().expect("a name in UTF-8")
 }
 
+/// Exit codes: 0 for equal trees, 1 for different ones, 2 for bad usage.
 #[test]
 fn same_trees_end_with_0_different_ones_with_1_and_bad_usage_with_2() {
     let folder = tempfile::tempdir().expect("a folder");

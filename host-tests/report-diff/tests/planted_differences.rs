@@ -1,5 +1,5 @@
-//! Differences planted into a small tree of records: each is found at its place, and nothing is where nothing was planted.
-//! What a tree holds is written here as the host command writes it, with a figure or two.
+//! Differences planted into a small tree of records: each is found at its place, and no others. The tree's files have the form that the
+//! host command writes, with a figure or two.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -43,7 +43,7 @@ fn motion(rows: &[[f64; 2]], date: &str, compression: Option<Compression>) -> Ve
     bytes
 }
 
-/// A tree of records.
+/// Tree of records.
 struct Tree(TempDir);
 
 impl Tree {
@@ -69,7 +69,7 @@ impl Tree {
         self.0.path().join(name)
     }
 
-    /// Changes a part of a file's text.
+    /// Replaces the first occurrence in a file's text.
     fn change(&self, name: &str, from: &str, to: &str) {
         let text = fs::read_to_string(self.path(name)).expect("a text");
         assert!(text.contains(from), "{name} has no {from}");
@@ -81,7 +81,7 @@ fn found(old: &Tree, new: &Tree) -> Findings {
     compare(old.0.path(), new.0.path(), Options::default()).expect("two trees")
 }
 
-/// The only difference after something was planted.
+/// Single difference caused by `plant`.
 fn only(plant: impl FnOnce(&Tree)) -> Difference {
     let (old, new) = (Tree::new(), Tree::new());
     plant(&new);
@@ -95,6 +95,7 @@ fn difference(file: &str, place: &str, old: Option<&str>, new: Option<&str>) -> 
     Difference { file: file.into(), place: place.into(), old, new }
 }
 
+/// Equal trees have no difference.
 #[test]
 fn two_trees_with_the_same_records_are_the_same() {
     let found = found(&Tree::new(), &Tree::new());
@@ -103,6 +104,7 @@ fn two_trees_with_the_same_records_are_the_same() {
     assert!(found.values > 40, "{}", found.values);
 }
 
+/// A changed last digit or sign in JSON is found.
 #[test]
 fn the_last_digit_of_a_figure_in_json_is_found() {
     let digit = only(|tree| tree.change("hil/record.json", "3.487969661470408", "3.487969661470409"));
@@ -112,6 +114,7 @@ fn the_last_digit_of_a_figure_in_json_is_found() {
     assert_eq!(sign.place, "runs[0].figures.crossings");
 }
 
+/// Notation of numbers and order of keys do not count.
 #[test]
 fn another_form_of_the_same_number_and_another_order_of_keys_are_no_difference() {
     let (old, new) = (Tree::new(), Tree::new());
@@ -122,6 +125,7 @@ fn another_form_of_the_same_number_and_another_order_of_keys_are_no_difference()
     assert!(found(&old, &new).all_same());
 }
 
+/// A removed and an added key are found.
 #[test]
 fn a_key_that_is_gone_and_one_that_has_come_are_found() {
     let gone = only(|tree| tree.change("hil/record.json", ",\"crossings\":8", ""));
@@ -130,6 +134,7 @@ fn a_key_that_is_gone_and_one_that_has_come_are_found() {
     assert_eq!(come, difference("hil/record.json", "runs[1].broken", None, Some("null")));
 }
 
+/// A changed cell, a missing row and a missing column are one difference each.
 #[test]
 fn a_changed_cell_a_missing_row_and_a_missing_column_of_a_table_are_found() {
     let cell = only(|tree| tree.change("sim/history.csv", "8.19e-5", "8.20e-5"));
@@ -140,6 +145,7 @@ fn a_changed_cell_a_missing_row_and_a_missing_column_of_a_table_are_found() {
     assert_eq!(column, difference("sim/history.csv", "columns, contact", Some("contact"), None));
 }
 
+/// A file on one side only is found.
 #[test]
 fn files_on_one_side_only_are_found() {
     let gone = only(|tree| fs::remove_file(tree.path("hil/junit.xml")).expect("removed"));
@@ -148,6 +154,7 @@ fn files_on_one_side_only_are_found() {
     assert_eq!(come, difference("hil/deep/er/more.txt", "", None, Some("a file")));
 }
 
+/// A changed or lost message is found with its field.
 #[test]
 fn a_changed_message_of_a_log_is_found_with_its_field() {
     let log = |rows: &[[f64; 2]]| motion(rows, "2026-11-22T09:57:43Z", None);
@@ -159,6 +166,7 @@ fn a_changed_message_of_a_log_is_found_with_its_field() {
     assert_eq!(lost, difference("sim/history.mcap", "/joint/motion message 2", Some(whole), None));
 }
 
+/// A changed byte is found in a complete and in a truncated log.
 #[test]
 fn one_changed_byte_of_a_log_is_found_even_where_the_log_is_cut_off() {
     let change = |tree: &Tree, length: Option<usize>| {
@@ -185,6 +193,7 @@ fn one_changed_byte_of_a_log_is_found_even_where_the_log_is_cut_off() {
     assert!(found(&old, &new).all_same());
 }
 
+/// Compression and date of a log do not count.
 #[test]
 fn how_a_log_is_compressed_and_when_it_was_written_are_no_difference() {
     let (old, new) = (Tree::new(), Tree::new());
@@ -195,6 +204,7 @@ fn how_a_log_is_compressed_and_when_it_was_written_are_no_difference() {
     assert_eq!(found.left_out["date"].different, 1);
 }
 
+/// Changes of date, commit, folder and duration are ignored and counted.
 #[test]
 fn only_another_date_commit_folder_and_duration_are_no_difference_and_are_counted() {
     let (old, new) = (Tree::new(), Tree::new());
@@ -212,6 +222,7 @@ fn only_another_date_commit_folder_and_duration_are_no_difference_and_are_counte
     assert_eq!(name.place, "line 2");
 }
 
+/// Changed lines, verdicts, figures and pictures are found.
 #[test]
 fn a_changed_line_verdict_figure_and_picture_are_found() {
     let line = only(|tree| tree.change("hil/terminal.stdout", "ok ", "FAILED "));
@@ -227,6 +238,7 @@ fn a_changed_line_verdict_figure_and_picture_are_found() {
     assert_eq!(places, wanted);
 }
 
+/// Figures that depend on the line's timing are ignored by name, and no other figure.
 #[test]
 fn what_the_line_to_the_emulator_was_slow_with_is_left_out_by_its_name_and_nothing_beside_it_is() {
     let (old, new) = (Tree::new(), Tree::new());
@@ -257,6 +269,7 @@ fn what_the_line_to_the_emulator_was_slow_with_is_left_out_by_its_name_and_nothi
     assert_eq!(places[2..], figures);
 }
 
+/// Trees that cannot be compared are rejected.
 #[test]
 fn what_cannot_be_compared_is_refused() {
     let (tree, empty) = (Tree::new(), tempfile::tempdir().expect("a folder"));

@@ -1,21 +1,21 @@
-//! Bounds of equivalent gears: the core's step against the reference, and both against closed forms.
+//! Bounds on equivalent gears: the core's step against the reference, and both against closed forms.
 
 bounds! {
-    /// Core in f32, random equivalent gears, the gap over motions that can be predicted.
+    /// Gap of random equivalent gears, core in f32, over predictable motions.
     RANDOM: "gap of a random equivalent gear in f32 against the reference, over its own size",
         below 3.7e-4, was 2.5e-4,
         since "The worst of some hundred motions: hardly damped, at 0.6 rad of the contact a tick, errors grown thirtyfold; half of them are below 1e-6.";
 
-    /// Half of them at 20 kHz.
+    /// Median of [`RANDOM`] at 20 kHz.
     RANDOM_USUAL: "median of the same over 120 seeds at 20 kHz",
         below 9e-7, was 6.1e-7,
         since "Rounding of f32, which motions amplify more or less.";
-    /// Nine in ten of them.
+    /// 90th percentile of [`RANDOM`] at 20 kHz.
     RANDOM_NINE_IN_TEN: "what nine in ten of the same stay below",
         below 1.2e-5, was 8.5e-6,
         since "Motions with little damping and many changes of contact.";
 
-    /// The same in f64.
+    /// Gap of random equivalent gears, core in f64.
     RANDOM_DOUBLE: "gap of a random equivalent gear in f64 against the reference, over its own size",
         below 3.7e-4, was 2.5e-4,
         since "The same motion: what is left is the step's, not f32's.";
@@ -25,22 +25,22 @@ bounds! {
         below 1e-8, was 1.8e-10,
         argued "The core counts it in whole numbers of 2^-64 turns a tick; slow heavy joints have few of them.";
 
-    /// Energy of an equivalent gear that is left alone.
+    /// Energy gained by an equivalent gear without input.
     ENERGY_GAINED: "energy that an equivalent gear in f32 gains when it is left alone, over what it has",
         below 2.1e-5, was 1.4e-5,
         since "Read off a state in f32; a gear with no damping at all, for 4,000 ticks.";
 
-    /// The same without damping.
+    /// Energy lost by an undamped equivalent gear without input.
     ENERGY_LOST: "energy that an undamped equivalent gear in f32 loses when it is left alone, over what it has",
         below 0.013, was 8.7e-3,
         since "At 0.6 rad of the contact a tick each change leaves some 1e-5 of the motion, a thousand times over.";
 
-    /// Static twist.
+    /// Static twist under a torque.
     STATIC: "twist of an equivalent gear at rest under a torque, relative",
         below 1e-10, was 4.4e-16,
         argued "The transient has fallen by exp(-80).";
 
-    /// Free swings with closed periods.
+    /// Free swings with a known period.
     FREE_SWING: "twist after whole periods of a free swing, over its amplitude",
         below 1e-8, was 1.9e-13,
         argued "Ten periods, each with four changes of contact at 0.03 rad of the contact a tick.";

@@ -1,27 +1,27 @@
-//! The table of crates in ARCHITECTURE.md, which says who may import whom, held against Cargo: a Markdown table with
-//! the columns `crate`, what it is, `may import` and `open first`.
+//! Table of crates in ARCHITECTURE.md, which states the allowed imports, compared with Cargo: a Markdown table with the columns `crate`,
+//! `what it is`, `may import` and `open first`.
 //!
-//! `may import` lists names in backquotes: `` `parameters`, `link` (tests) `` allows `link` to tests only. Words without
-//! backquotes, as in "nothing of ours", are for the reader.
+//! `may import` lists names in backquotes: `` `parameters`, `link` (tests) `` allows `link` to tests only. Words without backquotes, such
+//! as "nothing of ours", are for the reader.
 
 use std::path::Path;
 
 use crate::members::{Kind, Workspace};
 
-/// A row: a crate.
+/// Row of a crate.
 #[derive(Debug, PartialEq)]
 pub struct Row {
-    /// The first name in backquotes of the first column.
+    /// First name in backquotes of the first column.
     pub name: String,
-    /// The crates, and whether they are for tests only.
+    /// Allowed crates, with `true` for tests only.
     pub may_import: Vec<(String, bool)>,
-    /// A path from the workspace's root.
+    /// Path of the file to open first, from the workspace's root.
     pub open_first: String,
-    /// In the page, from one.
+    /// Line in the page, from one.
     pub line: usize,
 }
 
-/// The rows of every such table in a page.
+/// Rows of every such table in a page.
 pub fn rows(page: &str) -> Vec<Row> {
     let mut rows = vec![];
     let mut columns = None;
@@ -50,14 +50,14 @@ pub fn rows(page: &str) -> Vec<Row> {
     rows
 }
 
-/// Names in backquotes (of a link's text too), each with whether `(tests)` follows.
+/// Names in backquotes, also in a link's text, each with `true` if `(tests)` follows.
 fn quoted(cell: &str) -> Vec<(String, bool)> {
     let parts: Vec<&str> = cell.split('`').collect();
     let name = |pair: &[&str]| (pair[0].to_string(), pair[1].trim_start().starts_with("(tests)"));
     parts[1..].chunks_exact(2).map(name).collect()
 }
 
-/// Where page and workspace differ; `exists` tells of a path from the workspace's root.
+/// Differences between page and workspace; `exists` checks a path from the workspace's root.
 pub fn differences(page: &str, workspace: &Workspace, exists: impl Fn(&Path) -> bool) -> Vec<String> {
     let rows = rows(page);
     let mut found = vec![];
@@ -97,7 +97,7 @@ pub fn differences(page: &str, workspace: &Workspace, exists: impl Fn(&Path) -> 
     found
 }
 
-/// Places that a page names between backquotes, with a slash in them, and that are not there.
+/// Paths with a slash that a page names between backquotes and that do not exist.
 pub fn missing(page: &str, exists: impl Fn(&Path) -> bool) -> Vec<String> {
     let quoted = page.lines().flat_map(|line| line.split('`').skip(1).step_by(2));
     let is_place = |text: &&str| text.contains('/') && !text.contains([' ', '*', '<', '$', '(']);

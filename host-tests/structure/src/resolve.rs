@@ -1,35 +1,34 @@
-//! From a path to what it names, as the compiler does it: through modules, imports under other names, re-exports and
-//! globs, to the item where it is defined.
+//! Resolution of a path as by the compiler: through modules, renamed imports, re-exports and globs, to the item where it is defined.
 
 use crate::sources::{Binding, Import, Item, Sources, What};
 
-/// What a path names.
+/// Meaning of a path.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Target {
-    /// A module of the target.
+    /// Module of the target.
     Module(usize),
-    /// An item of the target; what follows it in the path belongs to it.
+    /// Item of the target; the rest of the path belongs to it.
     Item(Item),
     /// Another crate, the prelude, a local variable, a type parameter.
     Foreign,
 }
 
-/// Looks names up. `from` is the module that asks: it decides what private names it sees.
+/// Name lookup on behalf of module `from`, which decides which private names are visible.
 pub struct Resolver<'a> {
     sources: &'a Sources,
     from: usize,
-    /// Imports that are being followed, globs with the name that is sought: none is followed within itself.
+    /// Imports in progress, globs with the name sought: none is followed within itself.
     following: Vec<(usize, String)>,
 }
 
 impl<'a> Resolver<'a> {
-    /// Asked from a module of the sources.
+    /// Lookup on behalf of a module of the sources.
     pub fn new(sources: &'a Sources, from: usize) -> Self {
         Self { sources, from, following: vec![] }
     }
 
-    /// All that a path in `module` names: one name can be a module and a function, or two things under two conditions.
-    /// Nothing if it begins in this target and leads nowhere.
+    /// All meanings of a path in `module`: one name can be a module and a function, or two items under two conditions. Empty if the path
+    /// begins in this target and cannot be resolved.
     pub fn resolve(&mut self, module: usize, path: &[String]) -> Vec<Target> {
         let (mut found, rest) = self.start(module, path);
         for name in rest {
@@ -51,7 +50,7 @@ impl<'a> Resolver<'a> {
         found
     }
 
-    /// Where a path begins, and what remains of it.
+    /// Meanings of the first segments of a path, and the rest of the path.
     fn start<'p>(&mut self, module: usize, path: &'p [String]) -> (Vec<Target>, &'p [String]) {
         let named = self.sources.named(module);
         match path[0].as_str() {
@@ -61,7 +60,7 @@ impl<'a> Resolver<'a> {
             "" | "Self" => (vec![Target::Foreign], &path[1..]),
             name => {
                 let mut found = self.in_scope(module, name);
-                // A function does not hide a crate of its name from what begins with it.
+                // A function does not hide a crate of the same name at the start of a longer path.
                 if path.len() > 1 && found.iter().all(|it| matches!(it, Target::Item(item) if !item.holds)) {
                     found = vec![Target::Foreign];
                 }
@@ -81,7 +80,7 @@ impl<'a> Resolver<'a> {
         (vec![Target::Module(module)], path)
     }
 
-    /// A first name: in the blocks around, in the module, as a macro of the modules above, or elsewhere.
+    /// Meanings of a first segment: in enclosing blocks, in the module, as a macro of the parent modules, or foreign.
     fn in_scope(&mut self, mut module: usize, name: &str) -> Vec<Target> {
         loop {
             let found = self.lookup(module, name);
@@ -105,7 +104,7 @@ impl<'a> Resolver<'a> {
         vec![Target::Foreign]
     }
 
-    /// A name as a module has it: bound there, or through its globs.
+    /// Meanings of a name in a module: bound there, or through its globs.
     fn lookup(&mut self, module: usize, name: &str) -> Vec<Target> {
         let here = &self.sources.modules[module];
         let mut found = vec![];
@@ -114,7 +113,7 @@ impl<'a> Resolver<'a> {
                 found.extend(self.follow(module, binding));
             }
         }
-        // An item shadows what globs bring; a module does not shadow a function.
+        // An item shadows globs; a module does not shadow a function.
         if found.iter().any(|target| !matches!(target, Target::Module(_))) {
             return found;
         }
@@ -139,7 +138,7 @@ impl<'a> Resolver<'a> {
         self.sources.is_within(self.from, self.sources.named(module))
     }
 
-    /// Follows an import, unless it is being followed already.
+    /// Follows an import, unless it is in progress.
     fn once<T>(&mut self, import: &Import, name: &str, follow: impl FnOnce(&mut Self) -> Vec<T>) -> Vec<T> {
         let step = (import.id, name.to_string());
         if self.following.contains(&step) {
@@ -161,7 +160,7 @@ impl<'a> Resolver<'a> {
 
     fn import(&mut self, module: usize, import: &Import) -> Vec<Target> {
         self.once(import, "", |it| {
-            // An import sees what its own module sees.
+            // An import sees the private names of its own module.
             let from = std::mem::replace(&mut it.from, module);
             let found = it.resolve(module, &import.path);
             it.from = from;
@@ -169,7 +168,7 @@ impl<'a> Resolver<'a> {
         })
     }
 
-    /// All that a glob of `module` brings, with its names.
+    /// All names that a glob of `module` brings, with their meanings.
     pub fn all(&mut self, module: usize) -> Vec<(String, Target)> {
         let here = &self.sources.modules[module];
         let mut found = vec![];

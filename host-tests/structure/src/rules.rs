@@ -1,21 +1,21 @@
-//! What may not be among the files of one target: circles of files, circles of folders, runtime that imports design.
+//! Rules for the files of one target: no cycles of files, no cycles of folders, no import of design by the runtime.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use crate::graph::{Graph, Names, circles};
 
-/// Nodes, and the node that a file belongs to, if any.
+/// Number of nodes, and the node of a file, if any.
 type Nodes<'a> = (usize, &'a dyn Fn(usize) -> Option<usize>);
 
-/// Files that import one another, with the edges that tie them and where to cut.
+/// Cycles of files, with their edges and a place to cut.
 pub fn file_circles(graph: &Graph) -> Vec<String> {
     let title = |circle: &[usize]| format!("{} files import one another", circle.len());
     all_circles(graph, (graph.sources.files.len(), &Some), title)
 }
 
-/// Folders that import one another, at every level: `foo.rs` and what is in `foo/` are one node there, and the file of
-/// the folder itself (`mod.rs`, the root) is none.
+/// Cycles of folders, at every level: `foo.rs` and the files in `foo/` are one node, and the file of the folder itself (`mod.rs`, the root)
+/// is none.
 pub fn folder_circles(graph: &Graph) -> Vec<String> {
     let files = &graph.sources.files;
     let folders: BTreeSet<&Path> = files.iter().flat_map(|file| file.path.ancestors().skip(1)).collect();
@@ -38,7 +38,7 @@ pub fn folder_circles(graph: &Graph) -> Vec<String> {
     found
 }
 
-/// Files outside every module `design` that import from one: a board is built without it.
+/// Imports from a module `design` by files outside every such module: a board is built without it.
 pub fn runtime_imports_design(graph: &Graph) -> Vec<String> {
     let files = &graph.sources.files;
     let wrong = |edge: &&(usize, usize)| !files[edge.0].design && files[edge.1].design;
@@ -55,7 +55,7 @@ fn line(graph: &Graph, (from, to): (usize, usize), names: &Names) -> String {
     format!("{} -> {to}: {}", graph.sources.files[from].path.display(), names.join(", "))
 }
 
-/// Every circle with all its edges, and the cheapest cut.
+/// Every cycle with all its edges and the cheapest cut.
 fn all_circles(graph: &Graph, (count, node): Nodes, title: impl Fn(&[usize]) -> String) -> Vec<String> {
     let pair = |edge: &(usize, usize)| Some((node(edge.0)?, node(edge.1)?)).filter(|(from, to)| from != to);
     let all = graph.edges.keys().filter_map(pair);
@@ -72,8 +72,8 @@ fn all_circles(graph: &Graph, (count, node): Nodes, title: impl Fn(&[usize]) -> 
     circles(count, all).into_iter().map(text).collect()
 }
 
-/// Of all ties between two nodes the one without which the least of the circle is left; then rather a child's import
-/// from its parent than the reverse; then the one of the fewest names.
+/// Cheapest cut among all ties between two nodes: the one that leaves the least of the cycle; then rather a child's import from its parent
+/// than the reverse; then the one with the fewest names.
 fn cut(graph: &Graph, count: usize, ties: &BTreeMap<(usize, usize), Vec<(usize, usize)>>) -> String {
     let names = |edges: &[(usize, usize)]| -> BTreeSet<&str> {
         edges.iter().flat_map(|edge| graph.edges[edge].keys()).map(String::as_str).collect()
@@ -94,7 +94,7 @@ fn cut(graph: &Graph, count: usize, ties: &BTreeMap<(usize, usize), Vec<(usize, 
     format!("move {names} out of {to} into a file of its own that both sides import, or out of reach of {from}")
 }
 
-/// The module of the file `above` contains that of `file`.
+/// Returns true if the module of the file `above` contains the module of `file`.
 fn is_above(above: &Path, file: &Path) -> bool {
     let stem = above.file_stem().unwrap_or_default();
     let folder = above.with_extension("");

@@ -1,4 +1,4 @@
-//! Small crates with one fault each, which must be found, and with what is excused, which must not.
+//! Small crates with one planted fault each, which must be found, and with allowed patterns, which must not.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -31,6 +31,7 @@ fn a_and_b(b: &str) -> Graph {
     graph(&[("src/lib.rs", "mod a;\nmod b;"), ("src/a.rs", a), ("src/b.rs", &format!("pub struct B;\n{b}"))])
 }
 
+/// A cycle of two files is found for every way to write a path.
 #[test]
 fn a_circle_of_two_files_is_found_however_the_path_is_written() {
     let ways = [
@@ -62,6 +63,7 @@ fn a_circle_of_two_files_is_found_however_the_path_is_written() {
     }
 }
 
+/// Text that only looks like an import makes no edge.
 #[test]
 fn what_only_looks_like_an_import_makes_no_circle() {
     let ways = [
@@ -80,6 +82,7 @@ fn what_only_looks_like_an_import_makes_no_circle() {
     }
 }
 
+/// A parent may name and re-export its descendants.
 #[test]
 fn a_parent_may_name_and_hand_on_its_descendants() {
     let root = "pub mod foo;\npub use foo::{Foo, deep::Deep as Renamed};\npub(crate) use foo::*;\n\
@@ -91,6 +94,7 @@ fn a_parent_may_name_and_hand_on_its_descendants() {
     assert_eq!(edges(&graph), ["foo/inner.rs -> foo/deep.rs: Deep"]);
 }
 
+/// A parent that uses its child, and is used by it, forms a cycle.
 #[test]
 fn a_parent_that_uses_its_child_and_is_used_by_it_is_a_circle() {
     let child = "use super::Shared;\npub struct Child(Shared);";
@@ -111,6 +115,7 @@ fn a_parent_that_uses_its_child_and_is_used_by_it_is_a_circle() {
     }
 }
 
+/// A path leads to the defining file, whatever re-exports it.
 #[test]
 fn a_path_ties_to_the_file_that_defines_whatever_hands_it_on() {
     let files = [
@@ -141,6 +146,7 @@ fn a_path_ties_to_the_file_that_defines_whatever_hands_it_on() {
     }
 }
 
+/// A cycle through a re-export is found.
 #[test]
 fn a_circle_through_a_re_export_is_found() {
     let files = [
@@ -155,6 +161,7 @@ fn a_circle_through_a_re_export_is_found() {
     assert!(found[0].contains("src/facade/one.rs -> src/user.rs: User (line 1)"), "{found:?}");
 }
 
+/// Folders can form a cycle where files do not.
 #[test]
 fn folders_can_import_in_a_circle_where_files_do_not() {
     let files = [
@@ -173,6 +180,7 @@ fn folders_can_import_in_a_circle_where_files_do_not() {
     assert!(found[0].contains("src/x/b/two.rs -> src/x/a/one.rs: One (line 1)"), "{found:?}");
 }
 
+/// An import of design by the runtime is found, also through a re-export.
 #[test]
 fn runtime_that_imports_design_is_found_also_through_a_re_export() {
     let files = |step| {
@@ -199,6 +207,7 @@ fn runtime_that_imports_design_is_found_also_through_a_re_export() {
     }
 }
 
+/// An unresolved path is reported with its line.
 #[test]
 fn a_path_that_leads_nowhere_is_told_with_its_line() {
     for (b, path) in [
@@ -216,6 +225,7 @@ fn a_path_that_leads_nowhere_is_told_with_its_line() {
     }
 }
 
+/// Files are looked up where the compiler looks them up.
 #[test]
 fn files_are_found_where_the_compiler_finds_them() {
     let root = "#[path = \"odd/place.rs\"]\nmod named;\nmod inline { pub mod file; }\ninclude!(\"../shared.rs\");\n\
@@ -274,6 +284,7 @@ fn all_rules(workspace: &Workspace) -> Vec<String> {
     found.concat()
 }
 
+/// Every forbidden dependency between crates is found.
 #[test]
 fn each_forbidden_dependency_among_crates_is_found() {
     use Kind::{Build, Normal, Tests};
@@ -313,6 +324,7 @@ const PAGE: &str = "# The house
 | `no` | crate |
 ";
 
+/// Table and Cargo must agree.
 #[test]
 fn the_page_and_cargo_must_say_the_same() {
     let found = |page: &str, changed| page::differences(page, &workspace(changed), |path| path == Path::new("a.rs"));
@@ -333,6 +345,7 @@ fn the_page_and_cargo_must_say_the_same() {
     }
 }
 
+/// Sizes exclude tests, and a crate above the limit is reported.
 #[test]
 fn sizes_leave_tests_out_and_tell_what_is_too_large() {
     let root = "mod a;\nfn f() {}\n#[cfg(test)]\nmod tests;\n#[cfg(test)]\nmod more {\n    mod deep;\n}\n";
@@ -347,6 +360,7 @@ fn sizes_leave_tests_out_and_tell_what_is_too_large() {
     assert!(size::too_large(&large)[0].starts_with("link has 8501 lines"));
 }
 
+/// A missing path on a page is found; other words in backquotes are not paths.
 #[test]
 fn a_place_that_is_gone_is_found_on_a_page_and_words_are_not_taken_for_places() {
     let page =
@@ -359,12 +373,14 @@ fn pages(pages: &[(&str, &str)]) -> Pages {
     pages.iter().map(|(path, text)| (PathBuf::from(path), text.to_string())).collect()
 }
 
+/// Anchors follow from the words of a heading.
 #[test]
 fn a_heading_is_linked_by_its_words() {
     let page = "# Error, against `cost`\n## Error, against `cost`\n```\n# a comment\n```\n### [On](x.md#y) a_b-c\n#no";
     assert_eq!(headings(page), ["error-against-cost", "error-against-cost-1", "on-a_b-c"]);
 }
 
+/// Broken links are found; code contains no links.
 #[test]
 fn a_link_that_leads_nowhere_is_found_and_code_holds_no_links() {
     let there = ["docs/b.md", "docs/deep/c.md", "docs/d.svg", "README.md", "docs"].map(Path::new);
@@ -397,6 +413,7 @@ fn a_link_that_leads_nowhere_is_found_and_code_holds_no_links() {
     }
 }
 
+/// A page missing in the book's list is found.
 #[test]
 fn a_page_that_the_book_leaves_out_is_found() {
     let found = |summary: &str| {
@@ -406,6 +423,7 @@ fn a_page_that_the_book_leaves_out_is_found() {
     assert_eq!(found("- [b](b.md)"), ["docs/deep/a.md is not in docs/SUMMARY.md\n  mend: give it a line there"]);
 }
 
+/// Pages named in a source are found with their lines.
 #[test]
 fn a_page_that_a_source_names_is_found_with_its_line() {
     let source = "//! Told in `docs/a-b.md`.\nhelp: \"see docs/deep/c.md.\"; include_str!(\"../docs/d.json\")\n\
@@ -414,6 +432,7 @@ fn a_page_that_a_source_names_is_found_with_its_line() {
     assert_eq!(found, ["1 docs/a-b.md", "2 docs/deep/c.md", "2 docs/d.json"]);
 }
 
+/// An unlisted `unsafe` is found; comments and strings do not count.
 #[test]
 fn an_unsafe_that_is_not_listed_is_found_and_one_in_a_comment_is_none() {
     let source = "// unsafe\nfn f() { let text = \"unsafe\"; unsafe { g() } }\n#[unsafe(no_mangle)]\nunsafe fn h() {}";
@@ -438,6 +457,7 @@ fn an_unsafe_that_is_not_listed_is_found_and_one_in_a_comment_is_none() {
     assert!(crates(forbids, forbids)[0].starts_with("a/Cargo.toml forbids what"));
 }
 
+/// A dependency from another source or with another licence is found.
 #[test]
 fn a_dependency_from_elsewhere_or_under_another_licence_is_found() {
     let lock = "[[package]]\nname = \"a\"\n[[package]]\nsource = \"registry+https://example.org/index\"\n";

@@ -1,4 +1,4 @@
-//! What the compensation does with estimates and set-points that are no numbers, not there, or nonsense.
+//! Compensation with estimates and set-points that are missing, not finite, or absurd.
 
 use model_core::compensation::design::{CompensationSettings, compensation_settings, design_compensation};
 use model_core::compensation::{Command, Compensation, ImpedancePoint, Motion, Stage};
@@ -25,6 +25,7 @@ fn at_rest() -> Command<f32> {
     Command::Position { now: Motion::default(), ahead: None }
 }
 
+/// Torque stays within the limit for any non-finite or huge input, and full trust returns afterwards.
 #[test]
 fn no_input_makes_a_torque_that_is_none_or_too_large() {
     let tables =
@@ -68,6 +69,7 @@ fn no_input_makes_a_torque_that_is_none_or_too_large() {
     }
 }
 
+/// Without a valid gap the compensation hands over to plain control.
 #[test]
 fn a_gap_that_cannot_be_seen_leaves_plain_control() {
     let tables =
@@ -86,6 +88,7 @@ fn a_gap_that_cannot_be_seen_leaves_plain_control() {
     assert_eq!((shaped.stage, shaped.trust), (Stage::Plain, 0.0));
 }
 
+/// A setting that allows no gain is rejected with an error that names it.
 #[test]
 fn settings_that_no_gain_can_be_made_from_are_refused_with_the_mend() {
     let refusal = |change: fn(&mut CompensationSettings)| {

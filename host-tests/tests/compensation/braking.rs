@@ -1,7 +1,7 @@
-//! Motions that ask for more torque than there is: random plants on minimum-jerk moves, jumps, sines and trapezoids, with the
-//! compensation and with PID. With PID the motor strikes the teeth at its full torque, the compensation spares them: it crosses
-//! the gap some milliseconds later. The long form runs 1,000 plants:
-//! `cargo test --release -p host-tests --test compensation -- --ignored --nocapture thousand`.
+//! Motions that need more torque than the motor has: random plants on minimum-jerk moves, jumps, sines and trapezoids, with the
+//! compensation and with PID. PID drives the motor into the teeth at full torque; the compensation limits the impact and crosses the gap
+//! some milliseconds later. The long form runs 1,000 plants: `cargo test --release -p host-tests --test compensation -- --ignored
+//! --nocapture thousand`.
 
 use std::f64::consts::TAU;
 use std::fmt;
@@ -22,7 +22,7 @@ use scenario::suite::from_text;
 
 use super::{on_core, run_in};
 
-/// Plants that nobody has measured; their links are known to a tenth.
+/// Plants without identified parameters; the link's inertia is known to 10 %.
 const PLANTS: &str = r#"
 title = "More torque than there is"
 profile = "steps"
@@ -46,13 +46,13 @@ width_guess_ratio = [0.5, 1.5]
 rms_gain_over_pid = ">= 1"
 "#;
 
-/// A slow swing for the joint to learn in, until [s].
+/// End of the slow swing in which the joint's parameters are estimated [s].
 const LEARNT: f64 = 1.0;
 
-/// When the motion begins [s].
+/// Start of the motion [s].
 const BEGINS: f64 = 1.5;
 
-/// How the link is asked to move.
+/// Shape of the motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     MinimumJerk,
@@ -63,18 +63,18 @@ enum Kind {
 
 const KINDS: [Kind; 4] = [Kind::MinimumJerk, Kind::Jump, Kind::Sine, Kind::Trapezoid];
 
-/// A motion that asks for more than the motor has.
+/// Motion that needs more torque than the motor has.
 #[derive(Debug, Clone, Copy)]
 struct Excessive {
     kind: Kind,
     /// [rad].
     height: f64,
-    /// Largest acceleration asked for [rad/s^2].
+    /// Largest acceleration of the set-point [rad/s^2].
     acceleration: f64,
 }
 
 impl Excessive {
-    /// How long it lasts [s]: of a sine four periods, in the first of which it swells up.
+    /// Duration [s]; for a sine four periods, the first with rising amplitude.
     fn lasts(&self) -> f64 {
         let time = (self.height / self.acceleration).sqrt();
         match self.kind {
@@ -85,12 +85,12 @@ impl Excessive {
         }
     }
 
-    /// When the link is to stand again [s].
+    /// Time at which the link should be at rest again [s].
     fn ends(&self) -> f64 {
         BEGINS + self.lasts()
     }
 
-    /// At a time since it began, while it lasts [s].
+    /// Set-point during the motion, at a time since its start [s].
     fn moving(&self, time: f64) -> Motion {
         let Self { kind, height, acceleration } = *self;
         let lasts = self.lasts();
@@ -154,9 +154,9 @@ impl MotionProfile for Excessive {
     }
 }
 
-/// What the motor can do to a plant, all at the link.
+/// Capability of the motor on a plant, referred to the link.
 struct Strength {
-    /// Of link and motor [kg m^2].
+    /// Inertia of link and motor [kg m^2].
     inertia: f64,
     /// Largest torque [N m].
     torque: f64,
@@ -177,7 +177,7 @@ impl Strength {
     }
 }
 
-/// The motion that a seed asks of its plant, and how many times the torque that takes.
+/// Motion for a plant and a seed, and its acceleration torque over the torque limit.
 fn asked(kind: Kind, case: &Case, seed: u64) -> (Excessive, f64) {
     let mut random = RandomStream::new(seed, "braking");
     let times = 1.0 + 2.0 * random.uniform();
@@ -185,7 +185,7 @@ fn asked(kind: Kind, case: &Case, seed: u64) -> (Excessive, f64) {
     let acceleration = times * torque / inertia;
     let height = match kind {
         Kind::MinimumJerk | Kind::Trapezoid => 0.05 + random.uniform(),
-        // By which the spring of the law asks for that: three times inertia and bandwidth squared.
+        // Height whose spring torque, three times inertia and bandwidth squared, gives the acceleration.
         Kind::Jump => acceleration / (3.0 * 60.0 * 60.0),
         Kind::Sine => 0.05 + 0.4 * random.uniform(),
     };
@@ -196,12 +196,12 @@ fn asked(kind: Kind, case: &Case, seed: u64) -> (Excessive, f64) {
 struct Course {
     kind: Kind,
     times: f64,
-    /// Largest error [rad]: with the compensation, with PID.
+    /// Largest error with the compensation and with PID.
     peaks: [f64; 2],
-    /// Root mean square of the error, over PID's [-].
+    /// RMS error over PID's [-].
     rms: f64,
-    /// Time from the motion's end until the link stays within the lost motion, and in which the motor could have brought it to
-    /// rest there [s].
+    /// Time from the end of the motion until the link stays within the lost motion, and shortest time in which the motor could have brought
+    /// the link to rest there [s].
     late: f64,
     best: f64,
     /// Largest force of the sun's meshes [N].
@@ -234,7 +234,7 @@ impl Course {
         self.peaks[0] / self.peaks[1]
     }
 
-    /// By how much later than a time-optimal stop the link stays where it shall be [s].
+    /// Settling time beyond a time-optimal stop [s].
     fn beyond_best(&self) -> f64 {
         self.late - self.best
     }
@@ -264,15 +264,15 @@ fn late(run: &Run, ends: f64, lost_motion: f64) -> f64 {
     outside.map_or(0.0, |sample| (sample.time - ends).max(0.0))
 }
 
-/// Time in which the motor could have brought the link from where it was at the motion's end to rest where it should be [s]: full
-/// torque towards there, then full torque against it, weight and dry friction as they are.
+/// Shortest time in which the motor could have brought the link from its angle at the end of the motion to rest at the set-point [s]: full
+/// torque toward the set-point, then full torque against it, with weight and dry friction.
 fn time_optimal(run: &Run, case: &Case, motion: &Excessive) -> f64 {
-    /// Of the integration [s].
+    /// Step of the integration [s].
     const STEP: f64 = 1e-4;
-    /// Within which it is there [rad], [rad/s].
+    /// Tolerances of the arrival [rad], [rad/s].
     const NEAR: f64 = 1e-3;
     const SLOW: f64 = 0.1;
-    /// After which nobody asks any more [s].
+    /// End of the search [s].
     const LONGEST: f64 = 3.0;
     let Strength { inertia, torque } = Strength::of(case);
     let around = &case.train.surroundings;
@@ -290,6 +290,7 @@ fn time_optimal(run: &Run, case: &Case, motion: &Excessive) -> f64 {
     time
 }
 
+/// Moves that need up to three times the torque limit end in time, with errors close to PID's.
 #[test]
 fn moves_that_ask_for_up_to_three_times_the_torque_end_in_time_and_go_no_farther_astray_than_with_pid() {
     let runs = [Preview, NoPreview].map(|mode| (0..8).map(move |seed| (mode, seed)));
@@ -306,7 +307,7 @@ fn moves_that_ask_for_up_to_three_times_the_torque_end_in_time_and_go_no_farther
     }
 }
 
-/// A sine about as hard as the motor's torque allows, on links whose inertia is known to 30 %.
+/// Sine near the torque limit, on links whose inertia is known to 30 %.
 const NEAR_LIMIT: &str = r#"
 title = "A sine near the torque limit"
 duration_s = 4.0
@@ -329,8 +330,8 @@ width_guess_ratio = [0.5, 1.5]
 rms_gain_over_pid = ">= 1"
 "#;
 
-/// Braking that is planned with too high an inertia begins too early at each reversal of a sine: the link then stays behind by several
-/// times PID's error although the torque suffices.
+/// Braking planned with too high an inertia begins too early at each reversal of a sine: the link then lags by several times PID's error
+/// although the torque suffices.
 #[test]
 fn sine_near_the_torque_limit_follows() {
     let test = from_text("near-limit.toml", NEAR_LIMIT, Path::new("."), PlantName::Core).expect("a good test");
@@ -351,11 +352,12 @@ fn sine_near_the_torque_limit_follows() {
     }
 }
 
-/// Plants of each kind of motion in the long form.
+/// Number of plants for each kind of motion in the long form.
 fn plants() -> u64 {
     std::env::var("BRAKING_PLANTS").map_or(250, |number| number.parse().expect("a number of plants"))
 }
 
+/// Prints quantiles of error and settling time over random plants for each kind of motion.
 #[test]
 #[ignore = "ten minutes of computing"]
 fn a_thousand_plants_are_asked_for_more_torque_than_there_is() {

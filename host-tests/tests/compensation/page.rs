@@ -1,4 +1,4 @@
-//! What docs/theory/compensation.md says of the stages, held against the table that the control runs.
+//! The table of transitions in docs/theory/compensation.md equals the table that the control runs.
 
 use model_core::compensation::Stage;
 use model_core::compensation::transitions::transitions;
@@ -7,7 +7,7 @@ const PAGE: &str = include_str!("../../../docs/theory/compensation.md");
 const FROM: &str = "<!-- transitions -->";
 const TO: &str = "<!-- /transitions -->";
 
-/// The transitions of the stages that have any, as Markdown.
+/// Transitions of all stages with transitions, as Markdown.
 fn table() -> String {
     let mut table = "| stage | # | event | action | next stage |\n|---|---|---|---|---|\n".to_owned();
     for stage in [Stage::Touching, Stage::Crossing, Stage::Landing] {
@@ -20,6 +20,7 @@ fn table() -> String {
     table
 }
 
+/// The page shows the transition table of the code.
 #[test]
 fn the_page_shows_the_transitions_that_the_control_runs() {
     let (_, rest) = PAGE.split_once(FROM).expect("a beginning of the table");
@@ -32,6 +33,7 @@ fn the_page_shows_the_transitions_that_the_control_runs() {
     );
 }
 
+/// Stages without compensation are left by no transition.
 #[test]
 fn a_stage_without_compensation_has_no_transitions() {
     assert!([Stage::Plain, Stage::Off, Stage::Reversed].map(transitions).iter().all(|lines| lines.is_empty()));

@@ -1,5 +1,5 @@
-//! The width in steps between two places, in the loop with the compensation, whose soft landings leave little to learn from.
-//! Motions under a plain motor controller are the observer's tests.
+//! Estimated width in steps between two places under the compensation, whose soft landings carry little information. Motions under a plain
+//! motor controller are in the observer's tests.
 
 use host_tests::tolerance::observer::{WIDTH_AFTER_STEPS, WIDTH_IN_STEPS, WIDTH_IN_STEPS_WORST};
 use scenario::controller::ControllerName::NoPreview;
@@ -11,6 +11,7 @@ use super::{changed, run};
 const CASES: [(f64, f64, u64); 7] =
     [(20.0, 1.5, 1), (20.0, 0.5, 2), (20.0, 1.5, 3), (20.0, 1.5, 4), (20.0, 0.5, 6), (30.0, 0.5, 3), (40.0, 0.5, 1)];
 
+/// Steps between two places suffice to estimate the half-backlash to 5 %.
 #[test]
 fn steps_between_two_places_show_the_width() {
     let mut squares = 0.0;
@@ -19,7 +20,7 @@ fn steps_between_two_places_show_the_width() {
         test.file.width_guess = Some(NumberOrRange::Exactly(guess));
         let history = run(&test, seed, NoPreview);
         let (mut moving, mut right_after, mut width) = (0.0, 0.0, 0.0);
-        // A sample is taken at its period's end, which is where the next period's estimates are made.
+        // A sample is taken at the end of its period, where the estimates of the next period are made.
         for ((sample, truth), observed) in
             history.run.samples.iter().zip(&history.truths).zip(history.observer_outputs.iter().skip(1))
         {

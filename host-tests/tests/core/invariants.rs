@@ -1,5 +1,5 @@
-//! Invariants of the core, for every scheme: energy against work over a hundred thousand mesh periods, shift of the
-//! backlash, scaling, mirroring (oracles 5 and 6). The reference's own are in `the_reference`.
+//! Invariants of the core, for every scheme: energy balance over a hundred thousand mesh periods, shift of the backlash, scaling, mirroring
+//! (oracles 5 and 6). The reference's invariants are in `the_reference`.
 
 use std::f64::consts::TAU;
 
@@ -15,8 +15,8 @@ fn tables(joint: &JointParameters, tick_rate: u32, scheme: Scheme) -> Tables<f64
     design_scheme(joint, tick_rate, scheme, Effort::Accurate).expect("the paper's joint is sound")
 }
 
-/// Energy of set P and the work that changes it, dimensionless (unit K_m b_c^2), by the sums of oracle 5. Masses and
-/// damping are written out again: none comes from the core.
+/// Energy of set P and the work done on it, dimensionless (unit K_m b_c^2), by the sums of oracle 5. Masses and damping are written out
+/// independently of the core.
 struct Book {
     form: ClosedForm,
     half_backlash: f64,
@@ -25,7 +25,7 @@ struct Book {
     load_force: f64,
 }
 
-/// Energy and what feeds or drains it at one moment.
+/// Energy, power and dissipation at one moment.
 struct Entry {
     energy: f64,
     power: f64,
@@ -51,7 +51,7 @@ impl Book {
         let Relative { planets, gap, .. } = &state.position;
         let Relative { planets: rates, gap: gap_rate, .. } = &state.rate;
 
-        // Speeds of the bodies while the rigid body stands still: 2 M_s u_s + M_p sum u_p + M_c u_c = 0.
+        // Speeds of the bodies while the rigid body is at rest: 2 M_s u_s + M_p sum u_p + M_c u_c = 0.
         let ClosedForm { sun, planet, carrier, damping, .. } = self.form;
         let shares = 2.0 * sun * gap_rate + planet * rates.iter().map(|rate| gap_rate - rate).sum::<f64>();
         let carrier_speed = -shares / (4.0 * sun + 3.0 * planet + carrier);
@@ -75,8 +75,8 @@ impl Book {
     }
 }
 
-/// Oracle 5. Period 3 with loss of contact, and chaos; the integral of power is a sum over ticks, which is exact on
-/// average since ticks and mesh periods never meet.
+/// Oracle 5 on period-3 motion with loss of contact and on chaos. The sum over ticks integrates the power exactly on average, since tick
+/// and mesh period are incommensurate.
 #[test]
 fn energy_and_work_balance_over_a_hundred_thousand_mesh_periods() {
     const TICK_RATE: u32 = 100_000;
@@ -112,7 +112,7 @@ fn energy_and_work_balance_over_a_hundred_thousand_mesh_periods() {
     }
 }
 
-/// A scenario's run at its own tick rate from a state in units of b_c and b_c omega_n.
+/// Outputs at 20 kHz from a state in units of b_c and b_c omega_n.
 fn run(
     joint: &JointParameters,
     scheme: Scheme,
@@ -146,7 +146,7 @@ fn case_a(law: DampingLaw) -> Scenario {
     scenario
 }
 
-/// Oracle 6, first half.
+/// Oracle 6, first half: a wider backlash only shifts the motion while no back side is touched.
 #[test]
 fn without_back_side_contact_the_core_does_not_feel_the_backlash() {
     for (law, scheme) in [
@@ -163,7 +163,7 @@ fn without_back_side_contact_the_core_does_not_feel_the_backlash() {
         let (position, rate) = start();
         let moved =
             Relative { planets: position.planets.map(|x| x + units), gap: position.gap + 2.0 * units, ..position };
-        // Short of the point where the law `contact` has amplified rounding beyond the bound.
+        // 150 ticks end before the law `contact` has amplified rounding beyond the bound.
         let ticks = 150;
         let narrow_run = run(&narrow.joint, scheme, (&position, &rate), narrow.torques_at(0), ticks);
         let wide_run = run(&wide, scheme, (&moved, &rate), narrow.torques_at(0), ticks);
@@ -179,7 +179,7 @@ fn without_back_side_contact_the_core_does_not_feel_the_backlash() {
     }
 }
 
-/// Oracle 6, second half: bit for bit, since a power of two and a sign round nothing.
+/// Oracle 6, second half: exact in every bit, since a power of two and a change of sign cause no rounding.
 #[test]
 fn the_core_scales_and_mirrors_without_changing_a_bit() {
     for factor in [2.0_f64, 0.25, -1.0] {

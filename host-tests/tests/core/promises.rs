@@ -1,5 +1,4 @@
-//! Guarantees of the core for any joint: teeth only push, NaN is reported, the same input gives the same bits, the
-//! digest covers the whole state.
+//! Guarantees of the core for any joint: teeth only push, NaN is reported, equal inputs give equal bits, the digest covers the whole state.
 
 use host_tests::tolerance;
 use model_core::gears::design::{DesignError, Effort, design, design_scheme, rust_source};
@@ -17,6 +16,7 @@ fn swinging(tick: u32) -> Torques<f32> {
     Torques { drive: 0.8 * sign, load: 4.0 * sign }
 }
 
+/// Two runs on the same torques end in the same bits.
 #[test]
 fn the_same_torques_give_the_same_bits() {
     let tables = q1_tables();
@@ -32,6 +32,7 @@ fn the_same_torques_give_the_same_bits() {
     assert_eq!(run(), run());
 }
 
+/// A reset restores the initial state.
 #[test]
 fn a_reset_model_starts_over() {
     let tables = q1_tables();
@@ -43,6 +44,7 @@ fn a_reset_model_starts_over() {
     assert_eq!(model.state_digest(), fresh);
 }
 
+/// A swing through the gap visits both flanks and separation.
 #[test]
 fn every_state_of_contact_occurs_in_a_swing() {
     let tables = q1_tables();
@@ -58,6 +60,7 @@ fn every_state_of_contact_occurs_in_a_swing() {
     assert!(all.iter().all(|state| seen[*state as usize]), "seen: {seen:?}");
 }
 
+/// A NaN torque is reported after one step.
 #[test]
 fn a_torque_that_is_not_a_number_is_seen_at_once() {
     let tables = q1_tables();
@@ -66,6 +69,7 @@ fn a_torque_that_is_not_a_number_is_seen_at_once() {
     assert!(!model.is_finite());
 }
 
+/// Absurd torques cause neither a panic nor a plausible motion.
 #[test]
 fn absurd_torques_neither_panic_nor_pass_for_motion() {
     let tables = q1_tables();
@@ -80,6 +84,7 @@ fn absurd_torques_neither_panic_nor_pass_for_motion() {
     }
 }
 
+/// The digest changes with every kind of number in the tables.
 #[test]
 fn the_digest_of_the_tables_sees_every_kind_of_number() {
     let tables = q1_tables();
@@ -101,6 +106,7 @@ fn the_digest_of_the_tables_sees_every_kind_of_number() {
     }
 }
 
+/// A tanh dead zone converges to the sharp one as its sharpness grows.
 #[test]
 fn a_sharp_tanh_nears_the_sharp_dead_zone() {
     let mut joint = scenarios::paper_joint(0.1, 5e-6, 20e-6, 0.4);
@@ -124,6 +130,7 @@ fn a_sharp_tanh_nears_the_sharp_dead_zone() {
     tolerance::SHARP_TANH.check(errors[2]);
 }
 
+/// Tables for the wrong number of planets are rejected with both numbers.
 #[test]
 fn tables_for_another_number_of_planets_are_refused() {
     let error = design::<f32, 4>(&scenarios::q1(), 20_000).expect_err("q1 has three planets");
@@ -131,6 +138,7 @@ fn tables_for_another_number_of_planets_are_refused() {
     assert!(error.to_string().contains("the joint has 3"));
 }
 
+/// The error for a low tick rate names the lowest rate that works.
 #[test]
 fn a_tick_rate_too_low_names_the_one_that_works() {
     let Err(DesignError::RateTooLow { lowest, .. }) = design::<f32, 3>(&scenarios::q1(), 500) else {
@@ -141,6 +149,7 @@ fn a_tick_rate_too_low_names_the_one_that_works() {
     assert!(design::<f32, 3>(&scenarios::q1(), 0).is_err());
 }
 
+/// The generated source holds joint name, planets and digest.
 #[test]
 fn the_source_for_a_board_holds_the_digest_of_the_tables() {
     let source = rust_source(&scenarios::q1(), 20_000).expect("q1 is sound");

@@ -1,5 +1,5 @@
-//! The core against the reference beyond the usual joint: four and five planets, unequal backlash, the rectangular
-//! stiffness wave, meshes out of phase, the joint turning backwards.
+//! The core against the reference outside the usual joint: four and five planets, unequal backlash, the rectangular stiffness wave, meshes
+//! out of phase, a joint that turns backwards.
 
 use host_tests::tolerance;
 use model_core::gears::Kinematics;
@@ -24,7 +24,7 @@ fn joint(planets: usize, teeth: [u32; 3]) -> JointParameters {
     joint
 }
 
-/// Turning, then both torques change sign and back: through the gap onto the back sides and again.
+/// Scenario whose torques change sign and back while the joint turns: across the gap to the back sides and again.
 fn reversal(name: &str, joint: JointParameters, speed: f64) -> Scenario {
     let ratio = joint.geometry.ratio_by_radii();
     let segment =

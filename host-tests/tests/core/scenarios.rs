@@ -1,5 +1,5 @@
-//! The core's fixed step at 20 kHz against the independent reference, scenario by scenario, in f32 as on a board and
-//! in f64 from the same source. Errors are RMS over the motion's own standard deviation; bounds stand in `tolerance`.
+//! Fixed step of the core at 20 kHz against the independent reference, scenario by scenario, in f32 as on a board and in f64 from the same
+//! source. Errors are RMS over the standard deviation of the motion; bounds are in `tolerance`.
 
 use host_tests::tolerance;
 use model_core::gears::Scheme;
@@ -63,7 +63,7 @@ fn the_paper_s_joint_at_10_um_follows_the_reference() {
     check::<3>(&scenarios::regime("set P, b = 10 um", 10e-6, 300.0), Effort::Accurate, &tolerance::core::REGIMES);
 }
 
-/// From rest, 60 um passes through a chaotic transient; on its period-3 attractor the motion can be predicted.
+/// From rest, 60 um passes through a chaotic transient; on its period-3 attractor the motion is predictable.
 #[test]
 fn the_paper_s_joint_at_60_um_follows_the_reference_on_its_attractor() {
     let mut scenario = scenarios::regime("set P, b = 60 um", 60e-6, 300.0);
@@ -78,7 +78,7 @@ fn the_paper_s_joint_at_60_um_follows_the_reference_on_its_attractor() {
     check::<3>(&scenario, Effort::Accurate, &tolerance::core::REGIMES);
 }
 
-/// Chaos parts any two integrators; until then they agree.
+/// In chaos any two integrators diverge; until then they agree.
 #[test]
 fn the_paper_s_joint_at_120_um_follows_the_reference_until_chaos_parts_them() {
     check::<3>(&scenarios::regime("set P, b = 120 um", 120e-6, 15.0), Effort::Accurate, &tolerance::core::REGIMES);
@@ -98,7 +98,7 @@ fn cases_a_and_q_follow_the_reference() {
     }
 }
 
-/// The paper's own scheme stays available as what it is: right while contact holds and nothing varies.
+/// The paper's own scheme is exact while contact holds and nothing varies, and far off when meshes part.
 #[test]
 fn the_paper_s_scheme_is_exact_while_contact_holds_and_far_off_when_meshes_part() {
     let mut still = scenarios::case("Q without ripple", scenarios::CASE_Q_OMEGA);

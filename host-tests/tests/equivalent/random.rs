@@ -1,10 +1,10 @@
-//! Random equivalent gears by seed, and motions of them that go through the gap.
+//! Random equivalent gears by seed, and their motions through the gap.
 
 use model_core::gears::Scales;
 use model_core::numbers::random::splitmix64;
 use parameters::{EquivalentGear, JointParameters};
 
-/// Numbers of a seed.
+/// Random numbers of a seed.
 pub struct Random(u64);
 
 impl Random {
@@ -12,7 +12,7 @@ impl Random {
         Self(seed.wrapping_mul(0x9e37_79b9) ^ 0x5eed)
     }
 
-    /// From 0 to 1.
+    /// Uniform number from 0 to 1.
     pub fn share(&mut self) -> f64 {
         (splitmix64(&mut self.0) >> 11) as f64 / (1_u64 << 53) as f64
     }
@@ -21,32 +21,32 @@ impl Random {
         low + (high - low) * self.share()
     }
 
-    /// Evenly over orders of magnitude.
+    /// Log-uniform number between two bounds.
     pub fn about(&mut self, low: f64, high: f64) -> f64 {
         low * (high / low).powf(self.share())
     }
 }
 
-/// A joint and the torques that move it.
+/// Joint and the torques that move it.
 pub struct Motion {
     pub joint: JointParameters,
     pub tick_rate: u32,
     pub ticks: u32,
-    /// Drive torque and load torque, each from its tick on [N m].
+    /// First tick, drive torque and load torque of each segment [N m].
     pub torques: Vec<(u32, f64, f64)>,
     /// Phase of the contact in a tick [rad].
     pub phase: f64,
 }
 
 impl Motion {
-    /// Torques of a tick [N m].
+    /// Drive and load torque of a tick [N m].
     pub fn torques_at(&self, tick: u32) -> (f64, f64) {
         let index = self.torques.partition_point(|(from, ..)| *from <= tick) - 1;
         (self.torques[index].1, self.torques[index].2)
     }
 }
 
-/// A gear from a belt's to a cycloid's, at a tick rate; the contact's phase in a tick is drawn first.
+/// Random gear between a belt and a cycloid drive, at a tick rate; the contact's phase in a tick is drawn first.
 pub fn motion(seed: u64, tick_rate: u32) -> Motion {
     let random = &mut Random::new(seed);
     let phase = random.about(0.02, 0.65);
@@ -72,7 +72,7 @@ pub fn motion(seed: u64, tick_rate: u32) -> Motion {
     let joint =
         gear.joint("random".try_into().expect("a short name"), (1.0 - in_gear) * rotor_and_gear, link_inertia, rated);
     assert!((Scales::new(&joint).frequency / frequency - 1.0).abs() < 1e-9);
-    // Load and drive in balance, but for a part that turns the joint, and for reversals.
+    // Load and drive balance except for a part that turns the joint, and for reversals.
     let ticks = 1200;
     let mut torques = Vec::new();
     for from in (0..ticks).step_by(150) {

@@ -1,4 +1,4 @@
-//! What design and reference refuse of an equivalent gear, and why.
+//! Equivalent gears that design and reference reject, with the reason.
 
 use model_core::gears::design::{DesignError, Effort, design, design_scheme};
 use model_core::gears::{Model, Scheme, Tables, Torques};
@@ -7,6 +7,7 @@ use reference::joint::Reference;
 
 use crate::random::motion;
 
+/// A contact too fast for the rate is rejected with the lowest rate that works.
 #[test]
 fn a_contact_too_fast_for_the_rate_is_refused_with_the_rate_that_will_do() {
     let motion = motion(3, 20_000);
@@ -18,6 +19,7 @@ fn a_contact_too_fast_for_the_rate_is_refused_with_the_rate_that_will_do() {
     assert!(design::<f32, 1>(&motion.joint, lowest).is_ok());
 }
 
+/// Properties that only planets have are rejected, and so are the schemes of toothed joints.
 #[test]
 fn what_only_planets_have_is_refused() {
     let joint = motion(1, 20_000).joint;
@@ -48,6 +50,7 @@ fn what_only_planets_have_is_refused() {
     assert!(Reference::new(&without_link).is_err());
 }
 
+/// A tick from any state and torque ends in finite numbers or the canonical NaN.
 #[test]
 fn no_state_and_no_torque_makes_a_tick_end_in_anything_but_numbers_or_the_one_that_is_none() {
     let joint = motion(2, 20_000).joint;

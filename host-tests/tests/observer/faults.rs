@@ -1,4 +1,4 @@
-//! Encoders that fail and implausible samples: detected, reported, errors bounded, recovery.
+//! Encoder faults and implausible samples: they are detected and reported, errors stay bounded, and the observer recovers.
 
 use host_tests::tolerance::observer::{
     FAILURE_FOUND, FAILURE_FOUND_AT_SPEED, GAP_COARSE, LOST_COUNTS_FOUND, ONE_WRONG_BIT, PLACE_AFTER_SLIP,
@@ -12,25 +12,25 @@ use crate::experiment::{Encoders, Experiment};
 use crate::motion::{TestMotion, uniform};
 use crate::replay::samples;
 
-/// A recording of Q1 that turns all the time, with its trial.
+/// Experiment on Q1 in continuous motion, and its recording.
 fn turning() -> (Experiment, Vec<PeriodSample>) {
     let experiment = Experiment::new("q1", "gravity", Encoders::Preset, Some(40e-6), 21).lasting(4.0);
     let log = experiment.record();
     (experiment, log)
 }
 
-/// First moment from `from` seconds on in which the link turns fast.
+/// First period from `from` seconds on in which the link turns faster than 1 rad/s.
 fn fast(log: &[PeriodSample], from: f64) -> usize {
     turns_by(log, from, 1.0)
 }
 
-/// First moment from `from` seconds on in which the link turns by so much [rad/s].
+/// First period from `from` seconds on in which the link exceeds a speed [rad/s].
 fn turns_by(log: &[PeriodSample], from: f64, speed: f64) -> usize {
     let first = (from * 10e3) as usize;
     first + log.iter().skip(first).position(|moment| moment.link[1].abs() > speed).expect("it turns")
 }
 
-/// Source after every period.
+/// Source of the estimates after every period.
 fn sources(experiment: &Experiment, log: &[PeriodSample]) -> Vec<Source> {
     let source = |estimates: &Estimates<f64>| {
         assert!(estimates.gap.value.is_finite() && estimates.gap.variance.is_finite());
@@ -39,6 +39,7 @@ fn sources(experiment: &Experiment, log: &[PeriodSample]) -> Vec<Source> {
     experiment.said(log, |_, _| {}).iter().map(source).collect()
 }
 
+/// A frozen output encoder is excluded soon, and readmitted once it turns again.
 #[test]
 fn a_frozen_output_encoder_is_given_up_soon_and_taken_back_when_it_turns_again() {
     let (experiment, mut log) = turning();
@@ -53,6 +54,7 @@ fn a_frozen_output_encoder_is_given_up_soon_and_taken_back_when_it_turns_again()
     assert_eq!(sources.last(), Some(&Source::Both), "it is taken back");
 }
 
+/// At speed, an output encoder that freezes or jumps is excluded within a millisecond.
 #[test]
 fn an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond() {
     for (name, seed) in [("q1", 22), ("d2", 23)] {
@@ -76,9 +78,10 @@ fn an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond() 
     }
 }
 
+/// Before the gap is known, the travel of the motor reveals a frozen output encoder.
 #[test]
 fn an_encoder_that_freezes_before_the_gap_is_known_is_found_by_how_far_the_motor_goes() {
-    // S1's gap is hidden by its transmission error, and its link is light: teeth may stop it at once from this speed.
+    // The transmission error of S1 hides its gap, and its link is light: its teeth may stop it at once from this speed.
     let mut experiment = Experiment::new("s1", "inertia", Encoders::Preset, None, 27).lasting(2.6);
     experiment.setup.motion = TestMotion::Sine(0.5, 1.0).motion(experiment.setup.seed);
     let mut log = experiment.record();
@@ -95,6 +98,7 @@ fn an_encoder_that_freezes_before_the_gap_is_known_is_found_by_how_far_the_motor
     assert_eq!(sources[at + found], Source::MotorOnly(OutputFault::Frozen));
 }
 
+/// Noise, glitches, impacts, late or lost readings and 12-bit counts do not exclude the output encoder.
 #[test]
 fn noise_glitches_blows_coarse_counts_and_late_or_lost_readings_are_no_failure() {
     let mut experiment = Experiment::new("q1", "gravity", Encoders::Preset, Some(40e-6), 25).lasting(3.0);
@@ -125,13 +129,14 @@ fn noise_glitches_blows_coarse_counts_and_late_or_lost_readings_are_no_failure()
     assert!(sources[10..].iter().all(|source| *source == Source::Both), "a false alarm with 12 bits");
 }
 
-/// Moves the output's reading.
+/// Shifts the output's reading by some counts.
 fn shift(samples: &mut Samples<f64>, by: i32, range: u32) {
     if let Some(output) = &mut samples.output {
         output.counts = output.counts.wrapping_add_signed(by) % range;
     }
 }
 
+/// An output encoder that slips is excluded.
 #[test]
 fn an_output_encoder_that_slips_is_given_up() {
     let (experiment, mut log) = turning();
@@ -143,8 +148,8 @@ fn an_output_encoder_that_slips_is_given_up() {
     assert_eq!(sources[at + found], Source::MotorOnly(OutputFault::OutOfRange));
 }
 
-/// Twenty seeds of encoder errors, on a motion that turns round often. The guess of the width is too small: under one that is
-/// too large, a slip that no single reading shows passes for wear.
+/// Twenty seeds of encoder errors, on a motion with frequent reversals. The guess of the width is too small: with a guess too large, a slip
+/// without an implausible reading passes for wear.
 #[test]
 fn one_wrong_bit_moves_no_estimate_and_a_slip_that_no_single_reading_shows_is_told_from_wear() {
     let experiment = |seed| Experiment::new("q1", "gravity", Encoders::Preset, Some(40e-6), seed).lasting(2.4);
@@ -158,7 +163,8 @@ fn one_wrong_bit_moves_no_estimate_and_a_slip_that_no_single_reading_shows_is_to
         let worst = moved.map(|(a, b)| (a.load_torque.value - b.load_torque.value).abs()).fold(0.0, f64::max);
         ONE_WRONG_BIT.check(worst / experiment.setup.joint.rated_output_torque);
 
-        // Readings are missing while it slips, away from the flank that carries: beyond the flank by what teeth can wear.
+        // Readings are missing during the slip, which goes away from the loaded flank: beyond the flank by a distance that wear can
+        // explain.
         let carries = |from: usize| log[from].gap.abs() > 80e-6 && log[from].gap * log[from + 60].gap > 0.0;
         let at = (20_000..23_000).find(|from| carries(*from)).expect("a flank carries for some milliseconds");
         let slip = if log[at].gap > 0.0 { 30 } else { -30 };
@@ -178,6 +184,7 @@ fn one_wrong_bit_moves_no_estimate_and_a_slip_that_no_single_reading_shows_is_to
     }
 }
 
+/// An output encoder that loses counts never makes the half-backlash negative.
 #[test]
 fn an_output_encoder_that_loses_counts_never_makes_a_width_less_than_none() {
     let experiment = Experiment::new("q1", "inertia", Encoders::Preset, Some(40e-6), 902).lasting(2.5);
@@ -195,6 +202,7 @@ fn an_output_encoder_that_loses_counts_never_makes_a_width_less_than_none() {
     assert!(found, "the encoder is given up");
 }
 
+/// An output encoder that makes the gap narrower is excluded, since wear only widens a gap.
 #[test]
 fn an_output_encoder_that_makes_the_gap_narrower_is_given_up_for_teeth_do_not_grow() {
     let experiment = Experiment::new("q1", "inertia", Encoders::Preset, Some(40e-6), 24).lasting(3.0);
@@ -209,7 +217,7 @@ fn an_output_encoder_that_makes_the_gap_narrower_is_given_up_for_teeth_do_not_gr
     assert!(sources[20_000 + found] == Source::MotorOnly(OutputFault::OutOfRange));
 }
 
-/// Counts of either direction are lost by chance, so that the deflection goes astray on both flanks.
+/// Counts of either direction are lost at random, so that the deflection drifts on both flanks.
 #[test]
 fn counts_that_are_lost_take_nothing_of_the_width_that_was_known() {
     for seed in 27..30 {
@@ -229,6 +237,7 @@ fn counts_that_are_lost_take_nothing_of_the_width_that_was_known() {
     }
 }
 
+/// After the encoder's slip the link's angle is right again once the encoder is readmitted.
 #[test]
 fn a_link_whose_encoder_has_slipped_is_where_it_was_once_the_encoder_turns_with_it_again() {
     let experiment = Experiment::new("q1", "gravity", Encoders::Preset, Some(40e-6), 21).lasting(6.0);
@@ -248,20 +257,21 @@ fn a_link_whose_encoder_has_slipped_is_where_it_was_once_the_encoder_turns_with_
     }
 }
 
-/// Runs the observer with samples that a test may spoil.
+/// Runs the observer with samples that a test modifies.
 fn spoilt(spoil: impl Fn(usize, &mut Samples<f64>)) -> (Experiment, Vec<PeriodSample>, Vec<Estimates<f64>>) {
     let (experiment, log) = turning();
     let said = experiment.said(&log, spoil);
     (experiment, log, said)
 }
 
-/// Error of the gap over the last half second, over the gap.
+/// RMS error of the gap over the last half second, over the gap.
 fn late_error(log: &[PeriodSample], said: &[Estimates<f64>]) -> f64 {
     let late = log.len() - 5000..log.len();
     let sum: f64 = late.clone().map(|period| (said[period].gap.value - log[period].gap).powi(2)).sum();
     (sum / late.len() as f64).sqrt() / 160e-6
 }
 
+/// A silent output encoder is reported, and used again when it returns.
 #[test]
 fn a_silent_output_encoder_is_said_and_waited_for() {
     let (_, log, said) = spoilt(|period, samples| {
@@ -274,6 +284,7 @@ fn a_silent_output_encoder_is_said_and_waited_for() {
     GAP_COARSE.check(late_error(&log, &said));
 }
 
+/// Implausible samples are reported and leave no lasting error.
 #[test]
 fn samples_that_make_no_sense_are_noticed_and_survived() {
     let (_, log, said) = spoilt(|period, samples| match period {
@@ -290,6 +301,7 @@ fn samples_that_make_no_sense_are_noticed_and_survived() {
     GAP_COARSE.check(late_error(&log, &said));
 }
 
+/// A lasting jump of the motor encoder is reported; estimates stay finite.
 #[test]
 fn a_motor_encoder_that_jumps_for_good_is_said_and_learnt_anew() {
     let (_, log, said) = spoilt(|period, samples| {

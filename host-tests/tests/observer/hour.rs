@@ -1,5 +1,5 @@
-//! An hour of motion on the core's own joint, several joints, motions and seeds: no healthy output encoder is given up.
-//! Ignored by default, for it takes minutes.
+//! An hour of motion on the core's own joint, with several joints, motions and seeds: no healthy output encoder is excluded. Ignored by
+//! default because it takes minutes.
 
 use std::f64::consts::TAU;
 
@@ -12,12 +12,13 @@ use model_core::virtual_joint::VirtualJoint;
 use crate::experiment::{Encoders, Experiment};
 use crate::motion::{MotorController, uniform};
 
-/// How long each joint moves in each way [s].
+/// Duration of each joint's motion [s].
 const LASTS: u32 = 240;
 
 /// Periods until both encoders have been read.
 const BEGINS: u64 = 10;
 
+/// No healthy output encoder is excluded in an hour of motion.
 #[test]
 #[ignore = "takes minutes: cargo test --release -p host-tests --test observer hour -- --ignored --nocapture"]
 fn an_hour_of_motion_gives_no_healthy_encoder_up() {
@@ -34,7 +35,7 @@ fn an_hour_of_motion_gives_no_healthy_encoder_up() {
     assert_eq!(alarms, 0, "false alarms");
 }
 
-/// How often the output encoder is given up. The weight of the hold changes to and fro; torque noise is the test's own.
+/// Number of exclusions of the output encoder. In the hold the load torque swings; the torque noise is the test's own.
 fn given_up(name: &str, motion: &str, seed: u64) -> usize {
     let experiment = Experiment::new(name, motion, Encoders::Preset, None, seed);
     let (joint, train) = (&experiment.setup.joint, &experiment.setup.train);

@@ -1,5 +1,5 @@
-//! Late readings, by their own time stamps: no estimate diverges, what cannot be known is marked invalid, and an
-//! encoder that comes back is used again.
+//! Late readings, by their own time stamps: no estimate diverges, unknown quantities are marked invalid, and a returning encoder is used
+//! again.
 
 use host_tests::tolerance::observer::GAP_WORST;
 use model_core::observer::{OutputFault, Samples, Source};
@@ -9,10 +9,10 @@ use crate::experiment::{Encoders, Experiment};
 use crate::motion::TestMotion;
 use crate::replay::samples;
 
-/// When readings begin to be late, and when they are on time again [periods].
+/// Periods in which readings are late.
 const LATE: core::ops::Range<usize> = 15_000..20_000;
 
-/// A recording of a joint to and fro, about inertia alone.
+/// Experiment on a joint that swings against its inertia, and its recording.
 fn to_and_fro(name: &str, profile: TestMotion) -> (Experiment, Vec<PeriodSample>) {
     let mut experiment = Experiment::new(name, "inertia", Encoders::Preset, None, 31).lasting(3.0);
     experiment.setup.motion = profile.motion(experiment.setup.seed);
@@ -20,11 +20,12 @@ fn to_and_fro(name: &str, profile: TestMotion) -> (Experiment, Vec<PeriodSample>
     (experiment, log)
 }
 
-/// Samples of so many periods ago.
+/// Samples of `late` periods ago.
 fn ago(experiment: &Experiment, log: &[PeriodSample], period: usize, late: usize) -> Samples<f32> {
     samples(&experiment.settings, &log[period - late], period - late)
 }
 
+/// Late output readings up to ten periods old still give the present gap.
 #[test]
 fn late_readings_of_the_output_say_where_the_gap_is_now() {
     for name in ["q1", "l1", "d2"] {
@@ -45,6 +46,7 @@ fn late_readings_of_the_output_say_where_the_gap_is_now() {
     }
 }
 
+/// Output readings thirty periods old count as lost.
 #[test]
 fn readings_of_the_output_that_are_too_old_count_as_lost() {
     let (experiment, log) = to_and_fro("q1", TestMotion::Sine(0.5, 1.0));
@@ -58,6 +60,7 @@ fn readings_of_the_output_that_are_too_old_count_as_lost() {
     assert_eq!(said.last().map(|estimates| estimates.source), Some(Source::Both), "it is taken back");
 }
 
+/// Late motor readings keep the speed bounded and the gap invalid.
 #[test]
 fn late_readings_of_the_motor_are_bounded_and_not_vouched_for() {
     for (name, late) in [("q1", 3), ("l1", 3), ("s1", 3), ("l1", 10), ("l1", 30)] {
@@ -83,12 +86,13 @@ fn late_readings_of_the_motor_are_bounded_and_not_vouched_for() {
     }
 }
 
+/// Lost motor readings cost little accuracy and validity.
 #[test]
 fn lost_readings_of_the_motor_cost_little() {
     for name in ["q1", "l1", "d2"] {
         let (experiment, log) = to_and_fro(name, TestMotion::Sine(0.5, 1.0));
         let gap = 4.0 * experiment.setup.joint.sun_planet.half_backlash[0];
-        // Each ninth, and after each seventieth one more.
+        // Every ninth reading, and two in every seventy.
         let lost = |period: usize| LATE.contains(&period) && (period.is_multiple_of(9) || period % 70 < 2);
         let said = experiment.said::<f32>(&log, |period, samples| {
             if lost(period) {
@@ -105,6 +109,7 @@ fn lost_readings_of_the_motor_cost_little() {
     }
 }
 
+/// A recovered output encoder is readmitted although the teeth are hardly loaded.
 #[test]
 fn an_output_encoder_that_turns_again_is_taken_back_though_teeth_are_hardly_pressed() {
     let (experiment, mut log) = to_and_fro("l1", TestMotion::Sine(0.2, 1.0));

@@ -1,5 +1,5 @@
-//! What is learnt where learning is hard: teeth that wear, forces that do not stand out of what bias can be, teeth whose
-//! transmission error is larger than their gap. Errors of ordinary joints are in `gap`.
+//! Parameter estimation under difficulties: wearing teeth, forces within the torque bias, a transmission error larger than the gap. Errors
+//! of ordinary joints are in `gap`.
 
 use host_tests::tolerance::observer::*;
 use model_core::gears::Kinematics;
@@ -13,6 +13,7 @@ use crate::motion::TestMotion;
 use crate::presets::with_backlash;
 use crate::replay::ObserverErrors;
 
+/// The width of worn teeth is estimated anew, and the output encoder is kept.
 #[test]
 fn teeth_that_wear_are_learnt_anew_and_the_encoder_is_kept() {
     for (seed, worn) in [(31, 46e-6), (32, 60e-6), (33, 80e-6)] {
@@ -20,7 +21,7 @@ fn teeth_that_wear_are_learnt_anew_and_the_encoder_is_kept() {
         let kind = FaultKind::Other(HostOnlyFault::GrownBacklash(worn));
         experiment.setup.faults = vec![Fault { start: 2.0, end: f64::INFINITY, seed: (), kind }];
         let log = experiment.record();
-        // What is learnt is held against the teeth as they are then.
+        // Estimates are compared with the worn teeth.
         experiment.setup.joint = with_backlash(&experiment.setup.joint, worn);
         let mut kept = true;
         let figures = experiment
@@ -32,10 +33,10 @@ fn teeth_that_wear_are_learnt_anew_and_the_encoder_is_kept() {
     }
 }
 
+/// Contacts of a few milliseconds on the opposite flank suffice for the width.
 #[test]
 fn teeth_that_touch_a_flank_for_some_milliseconds_on_their_way_show_the_width() {
-    // As the motion begins the teeth cross, rest on the other flank with a few newtons and come back; the link turns
-    // round a second later.
+    // At the start the teeth cross, rest on the opposite flank with a few newtons and return; the link reverses a second later.
     for (half_backlash, seed) in [(56.744_186e-6, 657), (70e-6, 644), (63.33e-6, 646)] {
         let experiment = Experiment::new("q1", "slow", Encoders::Preset, Some(half_backlash), seed).lasting(2.5);
         let figures = experiment.figures(&experiment.record(), 2.0);
@@ -44,11 +45,12 @@ fn teeth_that_touch_a_flank_for_some_milliseconds_on_their_way_show_the_width() 
     }
 }
 
+/// Pushes from flank to flank suffice for the width although the link never rests there.
 #[test]
 fn a_link_that_is_pushed_from_flank_to_flank_shows_the_width_though_it_never_rests_there() {
     for (half_backlash, seed) in [(30e-6, 38), (40e-6, 37), (60e-6, 37)] {
         let mut experiment = Experiment::new("q1", "hold", Encoders::Preset, Some(half_backlash), seed).lasting(0.6);
-        // Nothing brakes it, so it bounces.
+        // Nothing brakes the link, so it bounces.
         experiment.setup.train.surroundings.load_friction.coulomb = 0.0;
         experiment.setup.train.surroundings.load_friction.viscous = 0.0;
         experiment.setup.train.surroundings.motor_friction.coulomb = 0.0;
@@ -66,13 +68,14 @@ fn a_link_that_is_pushed_from_flank_to_flank_shows_the_width_though_it_never_res
     }
 }
 
-/// Errors of an experiment from a moment on, where bias can be a tenth of the largest torque: three of that are more than the
-/// motion takes.
+/// Errors of an experiment from a time on, with a torque bias of up to a tenth of the limit: three times this bias is more torque than the
+/// motion needs.
 fn under_a_wide_bias(mut experiment: Experiment, from: f64) -> ObserverErrors {
     experiment.settings.torque_uncertainty = 0.1 * experiment.settings.torque_limit;
     experiment.figures(&experiment.record(), from)
 }
 
+/// Flanks are detected although no force exceeds the torque bias.
 #[test]
 fn flanks_are_told_without_a_force_that_stands_out_of_bias() {
     for (name, seed) in [("l1", 34), ("q1", 35)] {
@@ -85,10 +88,11 @@ fn flanks_are_told_without_a_force_that_stands_out_of_bias() {
     }
 }
 
+/// Travel of the link gives the width of a joint with hardly any load.
 #[test]
 fn a_joint_that_hardly_feels_its_load_shows_the_width_by_where_its_link_goes() {
-    // What holds the teeth on their flanks is far less than what bias can be; and on S1 the transmission error goes further
-    // than from the middle of the gap to a flank.
+    // The force that holds the teeth on their flanks is far below the torque bias, and the transmission error of S1 exceeds the distance
+    // from the middle of the gap to a flank.
     for (name, half_backlash, frequency, seed) in
         [("l1", 60e-6, 0.4, 40), ("l1", 40e-6, 0.7, 42), ("s1", 20e-6, 0.7, 43), ("s1", 20e-6, 0.7, 44)]
     {
@@ -101,6 +105,7 @@ fn a_joint_that_hardly_feels_its_load_shows_the_width_by_where_its_link_goes() {
     }
 }
 
+/// Contact is not valid where the transmission error exceeds the gap.
 #[test]
 fn teeth_whose_error_is_larger_than_their_gap_are_not_vouched_for() {
     let experiment = Experiment::new("s1", "gravity", Encoders::Preset, None, 36).lasting(4.0);
@@ -109,6 +114,7 @@ fn teeth_whose_error_is_larger_than_their_gap_are_not_vouched_for() {
     }
 }
 
+/// Cogging is estimated while the link turns slowly, and left alone otherwise.
 #[test]
 fn cogging_is_learnt_while_the_link_turns_slowly_and_nothing_is_made_up_where_it_does_not() {
     for (name, amplitude, periods, seed) in [("q1", 0.02, 84, 71), ("q1", 0.03, 60, 72), ("q1", 0.0, 84, 73)] {

@@ -1,16 +1,17 @@
-//! The long run: many seeds, widths, motions and encoders; worst of each figure. Ignored by default, for it takes minutes.
+//! The long run: many seeds, widths, motions and encoders; worst of each error. Ignored by default because it takes minutes.
 
 use model_core::observer::{MAPPED, Source};
 
 use crate::experiment::{Encoders, Experiment, MOTIONS};
 use crate::replay::{ObserverErrors, with_encoders};
 
-/// First seed of the long run: none that anything was chosen on.
+/// First seed of the long run; nothing was tuned on these seeds.
 const FIRST: u64 = 300;
 
-/// Seeds of the long run.
+/// Number of seeds of the long run.
 const SEEDS: u64 = 20;
 
+/// Prints the worst errors over 20 seeds and checks that no encoder is excluded.
 #[test]
 #[ignore = "takes minutes: cargo test --release -p host-tests --test observer -- --ignored --nocapture"]
 fn worst_of_many_seeds() {

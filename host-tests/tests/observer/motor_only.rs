@@ -1,11 +1,11 @@
-//! Without an output encoder: a truthful variance, and invalid estimates where nothing can be known.
+//! Observer without an output encoder: its variance is consistent, and estimates without information are invalid.
 
 use host_tests::tolerance::observer::MOTOR_ONLY_HONESTY;
 use model_core::observer::{MAPPED, OutputFault, Source};
 
 use crate::experiment::{Encoders, Experiment};
 
-/// A trial without an output encoder, told a width right to 2 %.
+/// Experiment without an output encoder, with the width given to 2 %.
 fn experiment(motion: &str, seed: u64) -> Experiment {
     let mut experiment = Experiment::new("q1", motion, Encoders::Preset, Some(40e-6), seed).lasting(4.0);
     experiment.nominal = experiment.setup.joint.clone();
@@ -15,6 +15,7 @@ fn experiment(motion: &str, seed: u64) -> Experiment {
     experiment
 }
 
+/// The variance is consistent, and long separations make the gap invalid.
 #[test]
 fn the_variance_is_honest_and_long_separations_are_refused() {
     for (motion, seed) in [("inertia", 31), ("gravity", 32)] {
@@ -37,6 +38,7 @@ fn the_variance_is_honest_and_long_separations_are_refused() {
     }
 }
 
+/// Without knowledge of the width, no gap is published as valid.
 #[test]
 fn a_width_that_nobody_knows_is_not_made_up() {
     let mut experiment = experiment("inertia", 33);

@@ -1,4 +1,4 @@
-//! The width probe in the loop with a plant: a held load gives the width, everything else a refusal.
+//! Width probe in the loop with a plant: with a held load it measures the width, otherwise it is rejected.
 
 use host_tests::tolerance::observer::PROBED_WIDTH;
 use model_core::observer::design::{ObserverSettings, design_observer, design_probe};
@@ -11,10 +11,10 @@ use scenario::set_point_source::SetPointSource;
 use crate::experiment::{Encoders, Experiment};
 use crate::replay::samples;
 
-/// Periods in which the observer settles before the probe begins.
+/// Periods for the observer to settle before the probe begins.
 const SETTLES: usize = 1000;
 
-/// Observer and probe as a controller; the first reading is that of the second period.
+/// Observer and probe as a controller; the first reading is taken in the second period.
 struct Probing<'t> {
     settings: &'t ObserverSettings,
     observer: Observer<'t, f32, MAPPED>,
@@ -43,8 +43,8 @@ impl Controller for Probing<'_> {
     }
 }
 
-/// Runs a probe on Q1 without an output encoder; the load is held by so much dry friction [N m]. What it came to, and the
-/// largest force on the teeth [N].
+/// Result of a probe on Q1 without an output encoder, with the load held by dry friction `holding` [N m], and the largest force on the
+/// teeth [N].
 fn probed(half_backlash: f64, seed: u64, holding: f64, pushed_by: f64, torque: f64) -> (Progress<f32>, f64) {
     let mut experiment = Experiment::new("q1", "hold", Encoders::Preset, Some(half_backlash), seed).lasting(0.7);
     experiment.setup.train.surroundings.load_friction.coulomb = holding;
@@ -73,6 +73,7 @@ fn probed(half_backlash: f64, seed: u64, holding: f64, pushed_by: f64, torque: f
     (probing.progress, hardest)
 }
 
+/// With a held load the probe measures the half-backlash.
 #[test]
 fn a_held_load_gives_the_width() {
     for (seed, half_backlash) in [(61, 20e-6), (62, 40e-6), (63, 80e-6)] {
@@ -84,6 +85,7 @@ fn a_held_load_gives_the_width() {
     }
 }
 
+/// A free or driven load ends the probe with a refusal.
 #[test]
 fn a_load_that_is_free_or_pushes_is_refused() {
     assert_eq!(probed(40e-6, 64, 0.05, 0.0, 0.5).0, Progress::Refused(Refusal::NotHeld));
@@ -91,6 +93,7 @@ fn a_load_that_is_free_or_pushes_is_refused() {
     assert!(matches!(pushed, Progress::Refused(_)), "{pushed:?}");
 }
 
+/// The design rejects a probe torque too small against friction.
 #[test]
 fn a_probe_that_friction_would_swallow_is_not_designed() {
     let experiment = Experiment::new("q1", "hold", Encoders::Preset, Some(40e-6), 66);

@@ -1,5 +1,5 @@
-//! The core on random joints: finite and repeatable in f32, passive without excitation, and never pulling under the law
-//! `contact`. The digest is tested in `digest`.
+//! The core on random joints: finite and repeatable in f32, passive without excitation, and never pulling with the damping law `contact`.
+//! The digest is tested in `digest`.
 
 use host_tests::tolerance::core::{MOMENTUM, PASSIVITY};
 use model_core::gears::design::{DesignError, Effort, design_scheme};
@@ -12,7 +12,7 @@ use reference::scenarios::{Scenario, same};
 use crate::balances::rigid_gains;
 use crate::random::{TICK_RATE, config, joint, scenario};
 
-/// Tables at a tick rate, or at the one that a refusal names.
+/// Tables at a tick rate, or at the lowest rate that the error names.
 pub fn tables<T: Real, const N: usize>(joint: &JointParameters, tick_rate: u32, effort: Effort) -> Tables<T, N> {
     let design = |tick_rate| design_scheme(joint, tick_rate, Scheme::Realtime, effort);
     match design(tick_rate) {
@@ -21,7 +21,7 @@ pub fn tables<T: Real, const N: usize>(joint: &JointParameters, tick_rate: u32, 
     }
 }
 
-/// Whether the core stays finite and says the same twice.
+/// Returns true if the core stays finite and two runs agree.
 fn stays_finite<const N: usize>(scenario: &Scenario) -> bool {
     let tables: Tables<f32, N> = tables(&scenario.joint, TICK_RATE, Effort::Board);
     let run = || {
@@ -36,7 +36,7 @@ fn stays_finite<const N: usize>(scenario: &Scenario) -> bool {
     finite && run() == (true, digest)
 }
 
-/// Speed of the core's rigid carrier less what its torques must have made of it, over the largest [-].
+/// Error of the core's rigid carrier speed against the torques' momentum, over the largest speed [-].
 fn astray<const N: usize>(scenario: &Scenario) -> f64 {
     let tables: Tables<f64, N> = tables(&scenario.joint, TICK_RATE, Effort::Board);
     let gains = rigid_gains(&scenario.joint);
@@ -52,7 +52,7 @@ fn astray<const N: usize>(scenario: &Scenario) -> f64 {
     worst / largest
 }
 
-/// Kinetic and elastic energy of the relative motion, in units of K_m b_c^2, from the joint's own numbers.
+/// Kinetic and elastic energy of the relative motion, in units of K_m b_c^2, from the joint's own parameters.
 fn energy<const N: usize>(joint: &JointParameters, state: &State<f64, N>) -> f64 {
     let scales = Scales::new(joint);
     let lever = joint.geometry.carrier_base_radius();
@@ -61,7 +61,7 @@ fn energy<const N: usize>(joint: &JointParameters, state: &State<f64, N>) -> f64
     let (planet, link) = (joint.bodies.planet_equivalent_mass, joint.link_inertia / lever.powi(2));
     let carrier = joint.carrier_equivalent_mass();
     let Relative { planets, gap, wind_up } = &state.rate;
-    // Speeds while the rigid body stands still: 2 M_s u_s + M_p sum u_p + M_c u_c + M_l u_l = 0.
+    // Speeds while the rigid body is at rest: 2 M_s u_s + M_p sum u_p + M_c u_c + M_l u_l = 0.
     let shares = 2.0 * sun * gap + planet * planets.iter().map(|rate| gap - rate).sum::<f64>() - link * wind_up;
     let mass = 4.0 * sun + N as f64 * planet + carrier + link;
     let carrier_speed = -shares / mass;
@@ -86,8 +86,8 @@ fn energy<const N: usize>(joint: &JointParameters, state: &State<f64, N>) -> f64
     0.5 * (unit * kinetic + elastic)
 }
 
-/// Energy over what it was at first, at most and at least, in a swing without torques, ripple and errors; at 1 MHz,
-/// where the integration's own loss is small even for a light planet.
+/// Largest and least energy over its initial value, in a swing without torques, ripple and errors; at 1 MHz, where the integration's own
+/// loss is small even for a light planet.
 fn swing<const N: usize>(joint: &JointParameters, start: [f64; 3]) -> (f64, f64) {
     let tables: Tables<f64, N> = tables(joint, 50 * TICK_RATE, Effort::Accurate);
     let mut model = Model::new(&tables);
@@ -104,8 +104,8 @@ fn swing<const N: usize>(joint: &JointParameters, start: [f64; 3]) -> (f64, f64)
     })
 }
 
-/// What a tick changes in the rates when one sun mesh overlaps but recedes at three times the speed at which damping
-/// outweighs its spring, and all others are apart; over that speed.
+/// Change of the rates in a tick when one sun mesh overlaps but recedes at three times the speed at which damping outweighs its spring, and
+/// all others are separated; over this speed.
 fn pull<const N: usize>(joint: &JointParameters) -> f64 {
     let tables: Tables<f64, N> = tables(joint, 50 * TICK_RATE, Effort::Accurate);
     let half_backlash = tables.meshes[0][0].half_backlash;
@@ -126,6 +126,7 @@ fn pull<const N: usize>(joint: &JointParameters) -> f64 {
 proptest! {
     #![proptest_config(config(300))]
 
+    /// The core stays finite and two runs agree in every bit.
     #[test]
     fn the_core_stays_finite_and_repeats_itself(mut scenario in scenario(), sharpness in prop::option::of(1.0..50.0)) {
         if let Some(sharpness) = sharpness {
@@ -139,6 +140,7 @@ proptest! {
         prop_assert!(finite);
     }
 
+    /// With the damping law `contact` no tooth of the core pulls.
     #[test]
     fn teeth_of_the_core_do_not_pull_under_the_law_contact(mut joint in joint(), half_backlash in 10e-6..100e-6) {
         joint.damping_law = DampingLaw::Contact;
@@ -157,6 +159,7 @@ proptest! {
         prop_assert!(pull == 0.0, "rates change by {pull} of themselves without a force");
     }
 
+    /// Momentum of the core equals the torques.
     #[test]
     fn the_core_keeps_the_book_of_momentum(scenario in scenario()) {
         MOMENTUM.check(match scenario.joint.geometry.planets {
@@ -170,6 +173,7 @@ proptest! {
 proptest! {
     #![proptest_config(config(100))]
 
+    /// Without torques and excitation the core gains no energy, and undamped it loses none.
     #[test]
     fn without_torques_and_excitation_the_core_gains_no_energy_and_loses_none_undamped(
         mut joint in joint(),

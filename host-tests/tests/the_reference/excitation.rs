@@ -1,4 +1,4 @@
-//! What drives the mesh phase, forwards and backwards, and the rectangular stiffness wave against its own picture.
+//! Excitation of the mesh phase, forwards and backwards, and the rectangular stiffness wave against its graph.
 
 use std::f64::consts::{PI, TAU};
 
@@ -7,12 +7,12 @@ use parameters::{Excitation, JointParameters, MeshPhases, PerPlanet, StiffnessWa
 use reference::joint::RelativeState;
 use reference::scenarios::{PAPER_LENGTH, Scenario, TorqueSegment, l1, paper_joint, run, run_at, same};
 
-/// Phases of stiffness and error, sun-planet and ring-planet.
+/// Phases of stiffness and error, sun-planet and ring-planet [rad].
 const PHASES: [[f64; 2]; 2] = [[0.3, 1.1], [2.0, -0.6]];
 
 fn with_phases(mut joint: JointParameters, turn: fn(f64) -> f64) -> JointParameters {
     for (mesh, [stiffness, error]) in [&mut joint.sun_planet, &mut joint.ring_planet].into_iter().zip(PHASES) {
-        // A different phase for each planet.
+        // Each planet has its own phase.
         let each = |first: f64| -> PerPlanet { (0..3).map(|planet| turn(first + f64::from(planet))).collect() };
         mesh.stiffness_wave = StiffnessWave::Harmonic { stiffness_ratio: 0.2 };
         mesh.transmission_error = same(3, 8e-6);
@@ -29,6 +29,7 @@ fn turning(joint: JointParameters, rigid_speed: f64) -> Scenario {
     Scenario { torques, ticks: 400, ..Scenario::new("turning", joint, start) }
 }
 
+/// At constant speed, excitation by angle equals excitation by time in both directions.
 #[test]
 fn at_constant_speed_the_angle_excites_as_time_does_forwards_and_backwards() {
     let speed = 12.0;
@@ -50,13 +51,14 @@ fn at_constant_speed_the_angle_excites_as_time_does_forwards_and_backwards() {
     }
 }
 
-/// The wave of Fig. 3 as a picture: high over the fraction `duty` of the period about pi/2, mean one.
+/// Rectangular wave of Fig. 3: high over the fraction `duty` of the period about pi/2, mean one.
 fn picture(phase: f64, ratio: f64, duty: f64) -> f64 {
     let from_centre = (phase - PI / 2.0 + PI).rem_euclid(TAU) - PI;
     let low = 1.0 - 2.0 * ratio * duty;
     if from_centre.abs() < PI * duty { low + 2.0 * ratio } else { low }
 }
 
+/// The rectangular wave is the Fourier series of its graph.
 #[test]
 fn the_rectangular_wave_is_the_fourier_series_of_its_picture() {
     const CELLS: u32 = 20_000;
@@ -73,7 +75,7 @@ fn the_rectangular_wave_is_the_fourier_series_of_its_picture() {
             sum + part(f64::sin) * (m * phase).sin() + part(f64::cos) * (m * phase).cos()
         })
     };
-    // With the excitation standing still at a phase, the joint settles on the stiffness there.
+    // With a constant excitation phase the joint settles on the stiffness at this phase.
     for phase in [0.0, 0.9, 2.2, 4.0] {
         let mut joint = paper_joint(0.0, 0.0, 0.0, 0.0);
         for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {

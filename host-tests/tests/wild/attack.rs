@@ -1,4 +1,4 @@
-//! A joint under the controller, an attack on what the controller is given, and what has to hold.
+//! Joint under the controller, attacks on the controller's inputs, and the guarantees that have to hold.
 
 use std::f64::consts::TAU;
 
@@ -11,25 +11,25 @@ use model_core::observer::{Estimate, Estimates, ObserverTables, Samples};
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint, design::design_surroundings};
 use scenario::random::RandomStream;
 
-/// Presets whose joints are attacked.
+/// Presets under attack.
 pub const PRESETS: [&str; 4] = ["q1", "s1", "l1", "d2"];
 
-/// What is thrown at the controller.
+/// Corruption of the controller's inputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Wild {
-    /// Finite, infinite and missing torques of any size.
+    /// Torques of any size, infinities and NaN.
     Torque,
-    /// Torques up to a few times the limit.
+    /// Torques up to three times the limit.
     StrongTorque,
-    /// Counts of the output that are anything.
+    /// Random counts of the output encoder.
     OutputCounts,
-    /// Readings of the output that come and go.
+    /// Output readings missing at random.
     OutputMissing,
-    /// Times in any order.
+    /// Time stamps in any order.
     Times,
-    /// Set-points of any bits.
+    /// Set-points of random bits.
     SetPoints,
-    /// All of it, counts of the motor that are anything too.
+    /// All corruptions at once, with random counts of the motor encoder.
     Everything,
 }
 
@@ -39,11 +39,11 @@ pub struct Subject {
     compensation: CompensationTables<f32>,
     gears: Tables<f32, 3>,
     around: SurroundingsTable<f32>,
-    /// Largest torque of the motor [N m].
+    /// Torque limit of the motor [N m].
     pub limit: f32,
     rate: u32,
     parameters: parameters::JointParameters,
-    /// Torque of the link's weight, at most [N m].
+    /// Largest torque of the link's weight [N m].
     gravity: f64,
 }
 
@@ -72,12 +72,12 @@ impl Subject {
         VirtualJoint::new(&self.gears, &self.around)
     }
 
-    /// Control periods a second.
+    /// Control rate [Hz].
     pub fn rate(&self) -> f64 {
         f64::from(self.rate)
     }
 
-    /// Angle of the link between the flanks, and what winds up under the largest torque [rad].
+    /// Angle of the link between the flanks, and the wind-up under the largest torque [rad].
     pub fn lost_motion(&self) -> f64 {
         let backlash = |of: &[f64]| of.iter().copied().fold(f64::INFINITY, f64::min);
         let [sun, ring] = [&self.parameters.sun_planet, &self.parameters.ring_planet];
@@ -86,34 +86,34 @@ impl Subject {
         f64::from(self.observer.levers.per_output) * gap + wound_up * self.largest_at_link()
     }
 
-    /// The same with the widest gap that the observer takes for possible before it knows it [rad].
+    /// Lost motion with the widest gap that the observer considers possible before it has estimated the gap [rad].
     pub fn widest_lost_motion(&self) -> f64 {
         let [half_gap, uncertain] = [self.observer.learner.mean[0], self.observer.learner.deviation[0]].map(f64::from);
         let [margin, lever] = [self.observer.supervisor.margin, self.observer.levers.per_output].map(f64::from);
         self.lost_motion() + lever * 2.0 * (half_gap + 3.0 * uncertain + 2.0 * margin)
     }
 
-    /// Largest torque of the motor at the link [N m].
+    /// Torque limit of the motor at the link [N m].
     pub fn largest_at_link(&self) -> f64 {
         f64::from(self.limit * self.observer.levers.ratio)
     }
 
-    /// Acceleration of the link by its weight alone, at most [rad/s^2].
+    /// Largest acceleration of the link by its weight alone [rad/s^2].
     pub fn fall(&self) -> f64 {
         self.gravity / self.parameters.link_inertia
     }
 
-    /// Periods in so many seconds.
+    /// Number of periods in a time [s].
     pub fn periods(&self, seconds: f64) -> u32 {
         (seconds * f64::from(self.rate)) as u32
     }
 
-    /// A swing of a thirtieth of a turn to either side, once in two seconds.
+    /// Swing of 0.03 turns to either side with a period of 2 s.
     pub fn swing(&self, period: u32) -> Command<f32> {
         self.swing_by(period, 0.03, 2.0)
     }
 
-    /// A swing of so many turns to either side, once in so many seconds.
+    /// Swing of `turns` to either side with a period of `seconds`.
     pub fn swing_by(&self, period: u32, turns: f64, seconds: f64) -> Command<f32> {
         let rate = TAU / seconds;
         let motion = |time: f64| {
@@ -130,17 +130,17 @@ impl Subject {
     }
 }
 
-/// Where the link is [rad].
+/// Angle of the link [rad].
 pub fn link_angle(joint: &VirtualJoint<'_, f32, 3>) -> f64 {
     let outputs = joint.outputs();
     TAU * (f64::from(outputs.carrier_turns) + f64::from(outputs.carrier_fraction) / 4_294_967_296.0)
 }
 
-/// Random bits, and values of all sizes.
+/// Random bits and numbers of all sizes.
 pub struct Chance(RandomStream);
 
 impl Chance {
-    /// The draws of an attack for a seed.
+    /// Random numbers of an attack for a seed.
     pub fn new(seed: u64, attack: &str) -> Self {
         Self(RandomStream::new(seed, attack))
     }
@@ -153,12 +153,12 @@ impl Chance {
         self.word() % choices
     }
 
-    /// From -1 to 1.
+    /// Uniform number from -1 to 1.
     pub fn unit(&mut self) -> f32 {
         (2.0 * self.0.uniform() - 1.0) as f32
     }
 
-    /// Any f32, or one of those that hurt most.
+    /// Any f32, or an especially harmful one.
     pub fn wild(&mut self) -> f32 {
         match self.of(8) {
             0 => f32::NAN,
@@ -173,7 +173,7 @@ impl Chance {
 }
 
 impl Wild {
-    /// Spoils what the controller is given in one period.
+    /// Corrupts the controller's inputs of one period.
     pub fn spoil(self, chance: &mut Chance, limit: f32, samples: &mut Samples<f32>, command: &mut Command<f32>) {
         let all = self == Self::Everything;
         let mut does = |which| self == which || all && chance.of(3) == 0;
@@ -225,7 +225,7 @@ fn wild_command(chance: &mut Chance) -> Command<f32> {
     }
 }
 
-/// Whatever was put in: torque within the limit, every estimate finite.
+/// Checks that the torque is within the limit and every estimate finite.
 pub fn hold(answer: &Answer<f32>, limit: f32, when: &dyn Fn() -> String) {
     let torque = answer.shaped.torque;
     assert!(torque.abs() <= limit * 1.0001, "a torque of {torque} N m, the limit is {limit}: {}", when());
@@ -233,7 +233,7 @@ pub fn hold(answer: &Answer<f32>, limit: f32, when: &dyn Fn() -> String) {
     assert!(finite(&answer.estimates), "{:#?}: {}", answer.estimates, when());
 }
 
-/// Whether every number among the estimates is one.
+/// Returns true if all estimates are finite.
 pub fn finite(said: &Estimates<f32>) -> bool {
     let estimates: [&Estimate<f32>; 9] = [
         &said.gap,

@@ -1,23 +1,23 @@
-//! Attacks on the controller of a joint in motion: nothing that is put in makes a torque beyond the limit or an estimate that
-//! is no number, and a second after the attack the link follows as well as before.
+//! Attacks on the controller of a joint in motion: no input makes a torque above the limit or a non-finite estimate, and a second after the
+//! attack the link follows as accurately as before.
 
 use super::attack::{Chance, PRESETS, Subject, Wild, hold, link_angle};
 
-/// When the attack begins, how long it lasts, and the time after it that is judged [s].
+/// Start and duration of an attack, recovery time after it, and time over which errors are compared [s].
 const BEGINS: f64 = 3.0;
 const LASTS: f64 = 0.3;
 const COMES_BACK: f64 = 1.0;
 const JUDGED: f64 = 1.0;
 
-/// Set-points are wild for so long that a link of any joint finds back within that time [s].
+/// Duration of wild set-points, after which a link of any joint returns within the recovery time [s].
 const POINTS_LAST: f64 = 0.05;
 
-/// Seeds of one attack: one in `cargo test`, as many as the long form asks for.
+/// Seeds of one attack: two in `cargo test`, `WILD_SEEDS` in the long form.
 pub fn seeds() -> std::ops::Range<u64> {
     0..std::env::var("WILD_SEEDS").ok().and_then(|seeds| seeds.parse().ok()).unwrap_or(2)
 }
 
-/// RMS error of the link before an attack and a second after it [rad], and the half of the lost motion [rad].
+/// RMS error of the link before an attack and a second after it [rad].
 fn attacked(subject: &Subject, wild: Wild, seed: u64, name: &str) -> [f64; 2] {
     let mut chance = Chance::new(seed, &format!("{wild:?}"));
     let (mut joint, mut controller) = (subject.joint(), subject.controller());
@@ -66,36 +66,43 @@ fn survives(wild: Wild) {
     assert!(failures.is_empty(), "{wild:?} leaves the link worse: {failures:#?}");
 }
 
+/// Non-finite or huge torque samples leave no lasting error.
 #[test]
 fn a_torque_that_no_motor_gives_is_none() {
     survives(Wild::Torque);
 }
 
+/// Torque samples of a few times the limit leave no lasting error.
 #[test]
 fn torques_of_a_few_times_the_limit_leave_nothing_behind() {
     survives(Wild::StrongTorque);
 }
 
+/// Random output counts leave no lasting error.
 #[test]
 fn counts_of_the_output_that_are_anything_leave_nothing_behind() {
     survives(Wild::OutputCounts);
 }
 
+/// Intermittent output readings leave no lasting error.
 #[test]
 fn readings_of_the_output_that_come_and_go_leave_nothing_behind() {
     survives(Wild::OutputMissing);
 }
 
+/// Time stamps in any order leave no lasting error.
 #[test]
 fn times_in_any_order_leave_nothing_behind() {
     survives(Wild::Times);
 }
 
+/// Set-points of random bits leave no lasting error.
 #[test]
 fn set_points_of_any_bits_leave_nothing_behind() {
     survives(Wild::SetPoints);
 }
 
+/// All attacks at once make neither a torque above the limit nor a non-finite estimate.
 #[test]
 fn everything_at_once_makes_no_torque_beyond_the_limit_and_no_estimate_that_is_no_number() {
     for name in PRESETS {

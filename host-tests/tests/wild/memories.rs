@@ -1,14 +1,14 @@
-//! Memories with a good digest whose numbers no joint of the design can have.
+//! Memories with a correct digest whose numbers are impossible for any joint of the design.
 
 use model_core::numbers::digest;
 use model_core::observer::{MAPPED, MEMORY_BYTES, Memory, MemoryError, Observer, memory_numbers};
 
 use super::attack::{Chance, PRESETS, Subject, finite};
 
-/// Bytes before the numbers, and where they end.
+/// Byte range of a memory's numbers.
 const NUMBERS: std::ops::Range<usize> = 24..24 + 4 * (MAPPED + MAPPED * (MAPPED + 1) / 2 + 5 + 2);
 
-/// A memory with one number exchanged, and a digest that fits.
+/// Memory with one number replaced, and its digest corrected.
 fn forged(memory: &Memory, place: usize, number: f32) -> Memory {
     let mut forged = *memory;
     forged[place..place + 4].copy_from_slice(&number.to_le_bytes());
@@ -17,6 +17,7 @@ fn forged(memory: &Memory, place: usize, number: f32) -> Memory {
     forged
 }
 
+/// An impossible memory is rejected, and an accepted one keeps the estimates finite.
 #[test]
 fn a_memory_whose_numbers_no_joint_has_is_refused_and_one_that_is_taken_keeps_estimates_finite() {
     let mut chance = Chance::new(7, "memories");
@@ -57,11 +58,12 @@ fn a_memory_whose_numbers_no_joint_has_is_refused_and_one_that_is_taken_keeps_es
     }
 }
 
+/// An impossible mobility of the link is rejected.
 #[test]
 fn a_mobility_that_no_link_has_is_not_believed() {
     let subject = Subject::preset("q1");
     let memory = subject.controller().save();
-    // The last number but one.
+    // Byte offset of the last but one number.
     let place = NUMBERS.end - 8;
     for mobility in [0.0, -1.0, 1e30] {
         let mut observer = Observer::<f32, MAPPED>::new(&subject.observer);

@@ -1,5 +1,5 @@
-//! Faults of the motor's own encoder, for 50 ms in a motion or at rest: told in 2 ms in motion, no torque from then on, the link
-//! no farther off than lost motion and its speed take it, and a second after the end all is as without the fault.
+//! Faults of the motor encoder, for 50 ms in motion or at rest: reported within 2 ms in motion, no torque from then on, the link displaced
+//! by no more than lost motion and speed allow, and a second after the end the joint moves as without the fault.
 
 use std::f64::consts::TAU;
 
@@ -9,54 +9,54 @@ use model_core::observer::{MAPPED, MotorFault, Observer, Source};
 use super::attack::{Chance, PRESETS, Subject, hold, link_angle};
 use super::controller::seeds;
 
-/// When the fault begins at the earliest, how long it lasts, the time after it that is judged [s].
+/// Earliest start and duration of the fault, recovery time after it [s].
 const BEGINS: f64 = 3.0;
 const LASTS: f64 = 0.05;
 const COMES_BACK: f64 = 1.0;
-/// The same after a slip, where the offset is learnt anew [s].
+/// Recovery time after a slip, in which the offset is estimated anew; time over which errors are compared [s].
 const LEARNT_ANEW: f64 = 3.0;
 const JUDGED: f64 = 1.0;
 
-/// Time within which a fault in motion is told [s].
+/// Longest time until a fault in motion is reported [s].
 const TOLD: f64 = 2e-3;
 
-/// What becomes of the motor's counts.
+/// Fault of the motor's counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Fault {
-    /// They are anything.
+    /// Random counts.
     Random,
-    /// They stand still.
+    /// Counts that stand still.
     Frozen,
-    /// They are elsewhere, and come back.
+    /// Counts shifted far, and back later.
     Elsewhere,
-    /// They are a little further on than a motor could go, and come back.
+    /// Counts shifted slightly further than a motor could go, and back later.
     Nearby,
-    /// They are elsewhere for good: a coupling has slipped.
+    /// Counts shifted for good by a slipping coupling.
     Slipped,
 }
 
-/// What a fault came to.
+/// Course of a fault.
 struct Course {
-    /// Speed of the motor when it began, over its largest until then.
+    /// Speed of the motor at the start of the fault, over its largest until then.
     part_of_speed: f32,
-    /// Time from its beginning to its being told [s], and the way of the link until then [rad].
+    /// Time from the start to the report [s], and travel of the link until the report [rad].
     told: Option<f64>,
     unnoticed: f64,
-    /// What was told.
+    /// Reported faults.
     faults: Vec<MotorFault>,
-    /// The output encoder was blamed meanwhile.
+    /// True if the output encoder was excluded meanwhile.
     output_blamed: bool,
-    /// Torque after it was told [N m].
+    /// Largest torque after the report [N m].
     torque: f32,
-    /// RMS error a second after it, and in the same second of the same motion without it [rad].
+    /// RMS error a second after the fault, and in the same second of the same motion without it [rad].
     rms: f64,
     rms_without: f64,
-    /// Largest error until it was over, and what lost motion and speed allow [rad].
+    /// Largest error until the end of the fault, and limit from lost motion and speed [rad].
     largest: f64,
     allowed: f64,
 }
 
-/// A swing of an eighteenth of a turn to either side, in so many seconds; at rest without.
+/// Swing of 0.055 turns to either side with a period of `lasts` seconds; standstill without a period.
 fn swing(subject: &Subject, period: u32, lasts: Option<f64>) -> Command<f32> {
     let Some(lasts) = lasts else {
         let position = Position { turns: 0, fraction: 0.0 };
@@ -149,7 +149,7 @@ fn course(subject: &Subject, fault: Fault, lasts: Option<f64>, seed: u64, name: 
     }
     let root = |sum: f64| (sum / f64::from(subject.periods(JUDGED))).sqrt();
     (course.rms, course.rms_without) = (root(course.rms), root(course.rms_without));
-    // Without torque the link goes on as it went; its weight takes it besides.
+    // Without torque the link keeps its speed and falls by its weight.
     let fall = subject.fall() * LASTS;
     course.allowed = subject.lost_motion() + travelled + (fastest + 0.5 * fall) * LASTS;
     course
@@ -175,18 +175,18 @@ fn survives(fault: Fault) {
                     1e3 * rms_without,
                 );
                 println!("{line}");
-                // Counts that stand still say nothing until the motor should have moved, or the link has left the teeth.
+                // Frozen counts reveal nothing until the motor should have moved, or the link has left the teeth.
                 let within = fault == Fault::Frozen && unnoticed <= subject.widest_lost_motion();
                 let in_time = within || told.is_some_and(|told| told <= TOLD);
-                // What is learnt anew goes on getting better; until it is, either encoder may be the one that is elsewhere.
-                // A joint that has never moved does not know its gap: control without compensation may hold it anywhere in it.
+                // After a slip the estimates keep improving; until they are right, either encoder may be the faulty one. A joint that has
+                // never moved does not know its gap: plain control may hold it anywhere in it.
                 let slipped = fault == Fault::Slipped;
                 let left = match lasts {
                     None => 0.5 * subject.lost_motion(),
-                    // L1 in the swing of 5 s: 0.59 mrad after a slip, 0.15 mrad without one.
+                    // L1 in the swing of 5 s: 0.59 mrad after a slip, 0.15 mrad without a slip.
                     Some(_) if slipped && name == "l1" => 0.3 * subject.lost_motion(),
                     Some(_) if slipped => 0.25 * subject.lost_motion(),
-                    // The transmission error of S1 hides its gap: 0.76 to 0.94 mrad a second after a fault, 0.46 without one.
+                    // The transmission error of S1 hides its gap: 0.76 to 0.94 mrad a second after a fault, 0.46 mrad without a fault.
                     Some(_) if name == "s1" => 0.3e-3,
                     Some(_) => 0.2e-3,
                 };
@@ -202,31 +202,37 @@ fn survives(fault: Fault) {
     assert!(failures.is_empty(), "{failures:#?}");
 }
 
+/// Random motor counts are reported at once and leave no lasting error.
 #[test]
 fn counts_of_the_motor_that_are_anything_are_told_at_once_and_leave_nothing_behind() {
     survives(Fault::Random);
 }
 
+/// Frozen motor counts are reported and leave no lasting error.
 #[test]
 fn counts_of_the_motor_that_stand_still_are_told_and_leave_nothing_behind() {
     survives(Fault::Frozen);
 }
 
+/// A temporary large shift of the motor counts is reported and leaves no lasting error.
 #[test]
 fn counts_of_the_motor_that_are_elsewhere_for_a_while_are_told_and_leave_nothing_behind() {
     survives(Fault::Elsewhere);
 }
 
+/// A slip of the motor encoder is reported, and the offset is estimated anew.
 #[test]
 fn a_motor_encoder_that_slips_is_told_and_learnt_anew() {
     survives(Fault::Slipped);
 }
 
+/// A temporary small shift of the motor counts is reported and leaves no lasting error.
 #[test]
 fn counts_of_the_motor_that_jump_a_little_are_told_and_leave_nothing_behind() {
     survives(Fault::Nearby);
 }
 
+/// A motor encoder that freezes at speed is detected within a millisecond.
 #[test]
 fn a_motor_encoder_that_freezes_at_speed_is_found_in_a_few_periods() {
     for name in ["q1", "l1", "d2"] {
@@ -241,6 +247,7 @@ fn a_motor_encoder_that_freezes_at_speed_is_found_in_a_few_periods() {
     }
 }
 
+/// A motor encoder that freezes in slow motion is detected before the link has crossed the gap.
 #[test]
 fn a_motor_encoder_that_freezes_in_slow_motion_is_found_before_the_link_has_crossed_the_gap() {
     let subject = Subject::preset("q1");
@@ -251,6 +258,7 @@ fn a_motor_encoder_that_freezes_in_slow_motion_is_found_before_the_link_has_cros
     }
 }
 
+/// A motor encoder that freezes at rest is detected by the travel of the link.
 #[test]
 fn a_motor_encoder_that_freezes_at_rest_is_found_by_how_far_the_link_goes() {
     for name in PRESETS {
@@ -269,15 +277,15 @@ fn a_motor_encoder_that_freezes_at_rest_is_found_by_how_far_the_link_goes() {
             }
             assert_eq!(source, Source::Both, "{name}, period {period}, {:.2} mrad", 1e3 * link);
             assert!(link.abs() < 2.0 * subject.widest_lost_motion(), "{name}: not told");
-            // A hand pushes the link, which takes the motor along.
+            // A hand pushes the link, which drives the motor.
             joint.advance(0.0, if period < 1000 { 0.0 } else { push });
         }
     }
 }
 
 /// A motor encoder that is frozen or random for half a second takes the link far from its set-point, and the loop brings it back at full
-/// torque. No inertia is estimated from that: on joint C1, whose gear is an equivalent one, it had been
-/// doubled, and the error was six times larger for good.
+/// torque. This motion must not change the estimated inertia: on joint C1 with its equivalent gear it had doubled the estimate, and the
+/// error was six times larger for good.
 #[test]
 fn half_second_fault_leaves_the_inertia() {
     const LASTS: f64 = 0.5;

@@ -1,5 +1,5 @@
-//! A board of the firmware's own tick, serial interrupt and idle, each to be run by a thread of a model. Its role does next
-//! to nothing: a step uses the number that was commanded last, and a sample says it.
+//! Board of the firmware's own tick, serial interrupt and idle, each to be run by a thread of a model. Its role is minimal: a step uses the
+//! last commanded number, and a sample is the number of steps.
 
 use std::collections::VecDeque;
 use std::convert::Infallible;
@@ -25,11 +25,11 @@ use link::messages::{
 use loom::model::Builder;
 use loom::sync::atomic::Ordering::Relaxed;
 
-/// A run in which the host may be silent for as long as it likes.
+/// Settings of a run without a command timeout.
 pub const SETTINGS: RunSettings =
     RunSettings { mode: RunMode::Lockstep, decimation: 1, command_timeout: u32::MAX, from_memory: false };
 
-/// Runs a model through all its interleavings of so many forced switches at most.
+/// Explores all interleavings of a model with at most `switches` forced switches.
 pub fn explore(switches: usize, model: impl Fn() + Send + Sync + 'static) {
     let mut builder = Builder::new();
     builder.preemption_bound = Some(switches);
@@ -37,10 +37,10 @@ pub fn explore(switches: usize, model: impl Fn() + Send + Sync + 'static) {
     builder.check(model);
 }
 
-/// The role's messages.
+/// Protocol of the role.
 pub struct Told;
 
-/// A command as the role keeps it.
+/// Command of the role.
 #[derive(Clone)]
 pub struct Number(pub Command);
 
@@ -67,7 +67,7 @@ impl Protocol for Told {
     }
 }
 
-/// Samples on their way, said as a log of bytes.
+/// Batch of samples, sent as a log of bytes.
 #[derive(Default)]
 pub struct Numbers(List<u8, 4>);
 
@@ -89,10 +89,10 @@ impl Batch for Numbers {
     }
 }
 
-/// The role's work.
+/// Work of the role.
 pub struct Steps {
     number: f32,
-    /// What every step used; a step that uses 13 breaks down.
+    /// Number used by every step; a step that uses 13 becomes non-finite.
     pub used: Arc<Mutex<Vec<f32>>>,
 }
 
@@ -120,12 +120,12 @@ impl Work for Steps {
     }
 }
 
-/// A UART that a test fills and looks at.
+/// UART lines filled and read by a test.
 #[derive(Default)]
 struct Wires {
     incoming: VecDeque<u8>,
     outgoing: Vec<u8>,
-    /// Closed while threads run: what is said then waits in its queue.
+    /// Closed while threads run: messages then wait in their queue.
     open: bool,
 }
 
@@ -174,7 +174,7 @@ impl TickTimer for NoTime {
     }
 }
 
-/// What the tick is given.
+/// State of the tick.
 pub struct Tick {
     handler: TickHandler<'static, Enable, Steps>,
     pub heard: &'static Heard,
@@ -192,7 +192,7 @@ impl Tick {
     }
 }
 
-/// What idle is given.
+/// State of idle.
 pub struct Idle(Conversation<'static, Told>);
 
 impl Idle {
@@ -201,14 +201,14 @@ impl Idle {
     }
 }
 
-/// What the interrupt is given.
+/// State of the serial interrupt.
 pub struct Interrupt {
     serial: Serial<'static, UartEnd>,
     wires: Arc<Mutex<Wires>>,
 }
 
 impl Interrupt {
-    /// Bytes that have come.
+    /// Feeds received bytes to the interrupt.
     pub fn receive(&mut self, bytes: &[u8]) {
         self.wires.lock().unwrap().incoming.extend(bytes);
         while !self.wires.lock().unwrap().incoming.is_empty() {
@@ -220,7 +220,7 @@ impl Interrupt {
         self.receive(&frame(message));
     }
 
-    /// What the board has said so far.
+    /// Messages sent by the board so far.
     pub fn said(&mut self) -> Vec<FromBoard> {
         self.wires.lock().unwrap().open = true;
         let mut length = usize::MAX;
@@ -234,7 +234,7 @@ impl Interrupt {
     }
 }
 
-/// A message as it goes over the line.
+/// Message as a frame of the line.
 pub fn frame(message: &ToBoard) -> Vec<u8> {
     encode(message).expect("a short message").to_vec()
 }
@@ -248,8 +248,8 @@ pub fn line() -> (Interrupt, LineEnd<'static>) {
     (Interrupt { serial, wires }, end)
 }
 
-/// All three of a board, and every atomic looked at once, before any thread begins. What they share stays until the program
-/// ends: threads of a model borrow from nobody.
+/// Interrupt, tick and idle of a board, with every atomic accessed once before any thread begins. Shared state is leaked, since threads of
+/// a model cannot borrow.
 pub fn board() -> (Interrupt, Tick, Idle) {
     let queues: &'static mut Queues<Told> = Box::leak(Box::default());
     let (tick_end, idle_end) = queues.split();
@@ -271,7 +271,7 @@ fn look_at_all(progress: &Progress) {
     let _ = (running.load(Relaxed), tripped.load(Relaxed));
 }
 
-/// A board in a run that has made no step yet.
+/// Board in a run that has not made a step yet.
 pub fn running() -> (Interrupt, Tick, Idle) {
     let (mut interrupt, mut tick, mut idle) = board();
     interrupt.hear(&ToBoard::Reset(SETTINGS));
@@ -282,7 +282,7 @@ pub fn running() -> (Interrupt, Tick, Idle) {
     (interrupt, tick, idle)
 }
 
-/// Commands one tick apart, the first of them for a tick, each to use its own number.
+/// Commands one tick apart from tick `first` on, each with a number of its own.
 pub fn schedule(sequence: u16, first: u32, numbers: &[f32]) -> ToBoard {
     let command = |(tick, &number)| Command { tick, drive_torque: number, load_torque: 0.0 };
     let commands = (first..).zip(numbers).map(command).collect();

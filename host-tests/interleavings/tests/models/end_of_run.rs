@@ -1,10 +1,11 @@
-//! The end of a run, and what the board says of it.
+//! End of a run, and its report by the board.
 
 use link::messages::{FromBoard, Trip};
 use loom::thread;
 
 use crate::board::{explore, running, schedule};
 
+/// A run that becomes non-finite is reported after its last sample.
 #[test]
 fn a_run_that_breaks_down_is_said_to_have_ended_after_its_last_sample() {
     explore(3, || {

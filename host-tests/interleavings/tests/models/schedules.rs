@@ -1,10 +1,11 @@
-//! Commands and the horizon behind which they lie.
+//! Commands and the horizon up to which they are known.
 
 use link::messages::{FromBoard, ToBoard};
 use loom::thread;
 
 use crate::board::{SETTINGS, explore, running, schedule};
 
+/// Every step uses the command of its tick, and no command is lost.
 #[test]
 fn every_step_uses_the_command_of_its_tick_and_none_is_lost() {
     explore(2, || {
@@ -25,6 +26,7 @@ fn every_step_uses_the_command_of_its_tick_and_none_is_lost() {
     });
 }
 
+/// A run after another one starts with its own commands at once.
 #[test]
 fn a_run_that_follows_another_begins_with_its_own_commands_at_once() {
     explore(3, || {

@@ -1,10 +1,11 @@
-//! A stop is never unseen, and no reset overtakes it.
+//! A stop is never overlooked, and no reset overtakes it.
 
 use link::messages::{FromBoard, ToBoard, Trip};
 use loom::thread;
 
 use crate::board::{Idle, SETTINGS, Tick, board, explore, frame, line, running};
 
+/// A thread that sees the frame of a stop sees the stop.
 #[test]
 fn whoever_sees_the_frame_of_a_stop_sees_the_stop() {
     explore(3, || {
@@ -21,6 +22,7 @@ fn whoever_sees_the_frame_of_a_stop_sees_the_stop() {
     });
 }
 
+/// A thread that sees a stop finds every byte before the last byte of the stop.
 #[test]
 fn whoever_sees_a_stop_finds_every_byte_that_came_before_its_last() {
     explore(3, || {
@@ -35,6 +37,7 @@ fn whoever_sees_a_stop_finds_every_byte_that_came_before_its_last() {
     });
 }
 
+/// The tick that sees a stop ends the run, and the next tick keeps it ended.
 #[test]
 fn the_tick_that_finds_a_stop_ends_the_run_and_so_does_the_one_after_it() {
     explore(3, || {
@@ -52,6 +55,7 @@ fn the_tick_that_finds_a_stop_ends_the_run_and_so_does_the_one_after_it() {
     });
 }
 
+/// A tick that can see a stop behind a reset starts no run.
 #[test]
 fn no_run_begins_in_a_tick_that_can_know_of_the_stop_behind_its_reset() {
     explore(3, || {
@@ -74,11 +78,12 @@ fn no_run_begins_in_a_tick_that_can_know_of_the_stop_behind_its_reset() {
     });
 }
 
+/// Idle knows which of the received stops it has read.
 #[test]
 fn idle_knows_which_of_the_stops_that_were_heard_it_has_read() {
     explore(3, || {
         let (mut interrupt, mut tick, mut idle) = board();
-        // The last byte of the reset, and the stop behind it, come while idle listens: no tick in between.
+        // The last byte of the reset and the stop behind it arrive while idle listens, without a tick in between.
         let reset = frame(&ToBoard::Reset(SETTINGS));
         let (end, most) = reset.split_last().unwrap();
         interrupt.receive(most);
@@ -96,7 +101,7 @@ fn idle_knows_which_of_the_stops_that_were_heard_it_has_read() {
     });
 }
 
-/// What is left to be done when the stop has been heard: the output is off all the while.
+/// Completes the handling of a stop, with the output off throughout.
 fn settle(tick: &mut Tick, idle: &mut Idle) {
     for _ in 0..4 {
         tick.tick();

@@ -1,4 +1,4 @@
-//! What can happen between two ticks: a tooth parts and returns, or crosses its whole gap within one sub-step.
+//! Contact changes between two ticks: a tooth parts and returns, or crosses its whole gap within one sub-step.
 
 use host_tests::tolerance::light_planets::{PARTED_WITHIN_A_TICK, SUBSTEP_ACROSS_THE_GAP, SUBSTEP_THROUGH_THE_MIDDLE};
 use model_core::gears::{Model, Torques};
@@ -10,9 +10,9 @@ use super::subject::{joint, pressed, reference, state, verlet_only};
 
 const RATE: u32 = 10_000;
 const SUBSTEPS: u32 = 8;
-/// A torque on the sun and what balances it at the link [N m].
+/// Torque on the sun and balancing torque on the link [N m].
 const TORQUES: (f64, f64) = (0.2, 1.2);
-/// Moments of the reference within a tick.
+/// Samples of the reference within a tick.
 const MOMENTS: u32 = 200;
 
 /// Largest error of a deflection at the ends of the first ticks [m].
@@ -31,7 +31,7 @@ fn error<const N: usize>(joint: &JointParameters, start: &RelativeState, seen: &
     worst
 }
 
-/// Contact states of the first sun-planet mesh, one after another.
+/// Successive contact states of the first sun-planet mesh.
 fn contacts(seen: &[Observation]) -> Vec<ContactState> {
     let mut states: Vec<ContactState> = seen.iter().map(|seen| seen.contacts[0][0]).collect();
     states.dedup();
@@ -60,7 +60,7 @@ fn crosses_the_gap<const N: usize>(law: DampingLaw) {
     start.gap = 0.0;
     start.sun_planet_rate[0] = -0.2;
     let seen = reference(&joint, &start, TORQUES, MOMENTS * RATE, 2 * MOMENTS);
-    // From flank to flank in less than the time of a sub-step.
+    // The flanks are hit within less than one sub-step.
     let substep = (MOMENTS / SUBSTEPS) as usize;
     let state = |moment: usize| seen[moment].contacts[0][0];
     let opposite = |from: usize| {
@@ -73,7 +73,7 @@ fn crosses_the_gap<const N: usize>(law: DampingLaw) {
     SUBSTEP_ACROSS_THE_GAP.check(10.0 * error::<N>(&joint, &start, &seen, 4 * SUBSTEPS) / largest);
 }
 
-/// Relative change of a planet's speed over one sub-step that takes it from flank to flank, as deep into one as into the other.
+/// Relative change of a planet's speed over one sub-step from flank to flank, equally deep in both.
 fn change_through_the_middle<const N: usize>(law: DampingLaw) -> f64 {
     const SPEED: f64 = 0.2;
     let mut joint = joint(N, law);
@@ -96,6 +96,7 @@ fn change_through_the_middle<const N: usize>(law: DampingLaw) -> f64 {
     model.state().rate.planets[0] / before.rate.planets[0] - 1.0
 }
 
+/// A sub-step from flank to flank, equally deep in both, leaves the planet's speed unchanged.
 #[test]
 fn both_flanks_push_alike_in_a_leap_through_the_middle_of_the_gap() {
     for law in [DampingLaw::Contact, DampingLaw::Paper] {
@@ -105,6 +106,7 @@ fn both_flanks_push_alike_in_a_leap_through_the_middle_of_the_gap() {
     }
 }
 
+/// A tooth that parts and returns within a tick stays near the reference.
 #[test]
 fn a_tooth_that_parts_and_returns_within_a_tick_is_seen() {
     for law in [DampingLaw::Contact, DampingLaw::Paper] {
@@ -114,6 +116,7 @@ fn a_tooth_that_parts_and_returns_within_a_tick_is_seen() {
     }
 }
 
+/// Sub-steps across the whole gap stay near the reference.
 #[test]
 fn verlet_sub_steps_across_the_whole_gap_stay_with_the_reference() {
     for law in [DampingLaw::Contact, DampingLaw::Paper] {

@@ -1,5 +1,5 @@
-//! Exponential ticks of light planets: taken where every tooth keeps pressing, and refused where one opens within the
-//! tick. A refused tick is one in Verlet sub-steps, in every bit.
+//! Exponential ticks of light planets: used while every tooth keeps contact, and rejected where a tooth opens within the tick. A rejected
+//! tick equals Verlet sub-steps in every bit.
 
 use host_tests::tolerance::light_planets::{HELD_OVER_AN_OPENING, PRESSED, PRESSED_SWINGING};
 use model_core::gears::{Model, Tables, Torques};
@@ -10,19 +10,19 @@ use super::subject::{joint, reference, resting, state, tables, verlet_only};
 
 const RATE: u32 = 10_000;
 const SUBSTEPS: u32 = 8;
-/// Moments at which the reference is looked at within the tick.
+/// Samples of the reference within the tick.
 const MOMENTS: u32 = 100;
 
-/// Ticks by what happened in them.
+/// Ticks by contact and method.
 #[derive(Debug, Default)]
 struct Found {
-    /// Every tooth kept pressing: taken by the exponential, left to Verlet sub-steps.
+    /// Ticks with every tooth in contact: advanced by the exponential, left to Verlet sub-steps.
     closed: [u32; 2],
-    /// A tooth opened: the same.
+    /// Ticks in which a tooth opens: advanced by the exponential, left to Verlet sub-steps.
     opened: [u32; 2],
-    /// Largest error of the first kind taken, over b_c.
+    /// Largest error of the exponential with every tooth in contact, over b_c.
     error: f64,
-    /// Widest opening that the exponential took for none, over b_c.
+    /// Widest opening that the exponential overlooked, over b_c.
     unseen: f64,
 }
 
@@ -61,7 +61,7 @@ impl Found {
     }
 }
 
-/// A joint that turns under balanced torques of either sign; one planet moves away from the sun at one speed after another.
+/// Ticks of a joint that turns under balanced torques of either sign while one planet moves away from the sun at increasing speeds.
 fn moving<const N: usize>(law: DampingLaw) -> Found {
     found::<N>(law, |_, start, drive| {
         let at = |step: u32| {
@@ -73,8 +73,8 @@ fn moving<const N: usize>(law: DampingLaw) -> Found {
     })
 }
 
-/// The same joint; one planet is off its balance between sun and ring, and swings. Places are parts of its load's deflection, speeds
-/// those with which it would swing as far.
+/// Ticks of the same joint while one planet is off its balance between sun and ring and swings. Positions are fractions of the static
+/// deflection, speeds those of a swing with that amplitude.
 fn swinging<const N: usize>(law: DampingLaw) -> Found {
     found::<N>(law, |joint, start, drive| {
         let deflection = start.sun_planet[0] - drive.signum() * joint.sun_planet.half_backlash[0];
@@ -91,7 +91,7 @@ fn swinging<const N: usize>(law: DampingLaw) -> Found {
     })
 }
 
-/// What became of the ticks from all of these starts, made of the one at rest under each torque.
+/// Ticks from all starts, each derived from the state at rest under a torque.
 fn found<const N: usize>(
     law: DampingLaw,
     starts: impl Fn(&JointParameters, &RelativeState, f64) -> Vec<RelativeState>,
@@ -120,6 +120,7 @@ fn check<const N: usize>() {
     }
 }
 
+/// A tick in which a tooth opens is left to Verlet sub-steps.
 #[test]
 fn a_tick_in_which_a_tooth_opens_takes_verlet_sub_steps() {
     check::<3>();

@@ -1,6 +1,5 @@
-//! How fast the error of Verlet sub-steps falls with their length on motions in which light planets lose contact and find it again,
-//! for 3, 4 and 5 planets and both damping laws. Ticks shrink with the Verlet sub-steps, as in a tick ripple and errors are taken
-//! from its middle.
+//! Order of convergence of Verlet sub-steps on motions in which light planets lose and regain contact, for 3, 4 and 5 planets and both
+//! damping laws. Ticks shrink with the sub-steps, since a tick takes ripple and errors from its middle.
 
 use host_tests::tolerance::light_planets::{ORDER_OF_VERLET, SUBSTEPS};
 use parameters::{ContactState, DampingLaw, JointParameters};
@@ -9,13 +8,13 @@ use reference::joint::{RelativeState, Start};
 use super::subject::{joint, pressed, reference, verlet_only};
 use crate::comparison::rms_error;
 
-/// Ticks a second of the coarsest run, where samples are taken; Verlet sub-steps a tick.
+/// Tick rate of the coarsest run [Hz], where samples are taken; Verlet sub-steps a tick.
 const COARSEST: u32 = 10_000;
 const SUBSTEPS_A_TICK: u32 = 8;
-/// Length in ticks of the coarsest run.
+/// Length of the coarsest run [ticks].
 const LENGTH: u32 = 60;
 
-/// On its flanks, but for planets that have been pushed off the sun and bounce back.
+/// Start on the drive side with planets pushed off the sun, which bounce back.
 fn bouncing(joint: &JointParameters) -> RelativeState {
     let mut start = pressed(joint, 0.0);
     start.gap -= 10e-6;
@@ -60,6 +59,7 @@ fn damped<const N: usize>() {
     }
 }
 
+/// Without mesh damping, sub-steps are of second order where meshes part and hit.
 #[test]
 fn verlet_sub_steps_are_of_second_order_through_parting_and_hitting() {
     undamped::<3>();
@@ -67,6 +67,7 @@ fn verlet_sub_steps_are_of_second_order_through_parting_and_hitting() {
     undamped::<5>();
 }
 
+/// Mesh damping is delayed by half a sub-step: first order with a small factor.
 #[test]
 fn mesh_damping_lags_by_half_a_leap_and_leaves_first_order_with_a_small_factor() {
     damped::<3>();

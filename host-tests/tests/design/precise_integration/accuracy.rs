@@ -1,5 +1,5 @@
-//! Errors against 50 digits: |E found - E| / max(1, |E|) in units of u max(1, |A h|), u = 2^-53, where norms are largest
-//! column sums. Speed is not judged.
+//! Errors against 50 digits: |E found - E| / max(1, |E|) in units of u max(1, |A h|), u = 2^-53, where norms are largest column sums. Speed
+//! is not tested.
 
 use host_tests::tolerance::{DERIVATION, NALGEBRA_EXPONENTIAL, PRECISE_INTEGRALS, PRECISE_INTEGRATION};
 use model_core::gears::Scales;
@@ -11,7 +11,7 @@ use reference::scenarios::{paper_joint, q1, same};
 
 use super::fixtures::{Expected, Fixture, models, others};
 
-/// u of an f64.
+/// Unit roundoff u of an f64.
 const UNIT: f64 = 1.0 / 9_007_199_254_740_992.0;
 
 /// |E found - E| / max(1, |E|), over u max(1, |A h|).
@@ -32,6 +32,7 @@ fn all() -> Vec<Fixture> {
     models().into_iter().chain(others()).collect()
 }
 
+/// Increments are accurate to 50 digits' fixtures, in units of rounding.
 #[test]
 fn increments_are_those_of_fifty_digits() {
     each(all(), |fixture, expected| {
@@ -41,6 +42,7 @@ fn increments_are_those_of_fifty_digits() {
     });
 }
 
+/// The flow has the same increment, and input integrals accurate to the fixtures.
 #[test]
 fn the_flow_has_the_same_increment_and_the_integrals_of_fifty_digits() {
     each(all(), |fixture, expected| {
@@ -49,7 +51,7 @@ fn the_flow_has_the_same_increment_and_the_integrals_of_fifty_digits() {
         PRECISE_INTEGRATION.check(units(&found.transition, fixture, expected));
         let reach = (norm(&fixture.matrix) * expected.step).max(1.0);
         for (power, (found, exact)) in found.input_integrals.iter().zip(&expected.integrals).enumerate() {
-            // Integrals have a length of their own: h |B| for a matrix of zeros.
+            // Integrals have a scale of their own: h |B| for a matrix of zeros.
             let size = norm(exact).max(expected.step * norm(&fixture.inputs));
             print!("  power {power}: ");
             PRECISE_INTEGRALS.check(norm(&(found - exact)) / size / (UNIT * reach));
@@ -57,7 +59,7 @@ fn the_flow_has_the_same_increment_and_the_integrals_of_fifty_digits() {
     });
 }
 
-/// Another method altogether. Where it is farther from the truth than the bound, so may we be from it, and no farther.
+/// nalgebra's exponential is an independent method: the distance between both is at most nalgebra's own error plus the bound.
 #[test]
 fn nalgebra_s_exponential_is_as_far_away_as_its_own_error() {
     each(all(), |fixture, expected| {
@@ -71,7 +73,7 @@ fn nalgebra_s_exponential_is_as_far_away_as_its_own_error() {
     });
 }
 
-/// The fixtures are worth something for the model only if their matrices are the model's.
+/// The fixtures' matrices are the model's, so that they test the model.
 #[test]
 fn the_fixtures_hold_the_matrices_of_equation_20() {
     let paper = paper_joint(0.0, 0.0, 0.0, 1.0);

@@ -1,5 +1,5 @@
-//! Eq. 19 term by term as the paper prints it, with the sum that its second row lost, in the paper's own X: deflections
-//! of the sun-planet meshes (errors taken off) and the gap coordinate.
+//! Eq. 19 term by term as printed, with the sum missing in its second row restored, in the paper's own X: deflections of the sun-planet
+//! meshes (errors subtracted) and the gap coordinate.
 
 use parameters::MAX_PLANETS;
 use reference::integrator::{Entries, MAX_ENTRIES};
@@ -8,12 +8,12 @@ use super::joint::{Formulation, Joint, Moving};
 
 /// State: X_sp of every planet, X_sc, then their rates.
 pub struct Equation19 {
-    /// Whether the K_rp term of the second row is summed over planets, as it must be.
+    /// Sums the K_rp term of the second row over planets, which is correct; the printed row has one planet.
     pub sum_of_the_second_row: bool,
 }
 
 impl Formulation for Equation19 {
-    /// X = X' = 0, as the reference starts.
+    /// Start at X = X' = 0, where the reference starts.
     fn start(&self, _: &Joint) -> Entries {
         [0.0; MAX_ENTRIES]
     }

@@ -1,5 +1,5 @@
-//! The reduced model (n + 1 relative coordinates) against the full one (n + 2 bodies, one more of each with a
-//! compliance): flow of the one, read in the coordinates of the other. Linear: contact is closed throughout.
+//! The reduced model (n + 1 relative coordinates) against the full model (n + 2 bodies, one more of each with a compliance): flow of the
+//! reduced model against the full flow in relative coordinates. Linear: contact is closed throughout.
 
 use host_tests::tolerance::REDUCED;
 use model_core::gears::Scales;
@@ -10,14 +10,14 @@ use nalgebra::{DMatrix, DVector};
 use parameters::JointParameters;
 use reference::scenarios::{paper_joint, q1};
 
-/// Bodies in the order sun, planets, carrier, link: mass matrix, damping and stiffness of eqs 1-6 by hand, and the
-/// relative coordinates of eqs 16 and 17.
+/// Bodies in the order sun, planets, carrier, link: mass matrix, damping and stiffness of eqs 1-6 by hand, and the relative coordinates of
+/// eqs 16 and 17.
 struct Full {
     masses: DVector<f64>,
     damping: DMatrix<f64>,
     stiffness: DMatrix<f64>,
     relative: DMatrix<f64>,
-    /// Sun twice as far as all others.
+    /// Rigid-body motion: the sun moves twice as far as all others.
     rigid: DVector<f64>,
 }
 
@@ -84,11 +84,12 @@ impl Full {
     }
 }
 
-/// The same matrix for positions and rates.
+/// Block matrix that applies a matrix to positions and to rates.
 fn twice(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     DMatrix::<f64>::identity(2, 2).kronecker(matrix)
 }
 
+/// The reduced flow equals the full flow in relative coordinates, with 3 to 5 planets.
 #[test]
 fn the_reduced_flow_is_the_full_flow_in_relative_coordinates() {
     for planets in 3..=5 {
@@ -110,7 +111,7 @@ fn the_reduced_flow_is_the_full_flow_in_relative_coordinates() {
     }
 }
 
-/// What the reduction leaves out: the rigid body, which coasts.
+/// The reduction leaves out the rigid body, which coasts.
 #[test]
 fn the_full_model_has_one_motion_more_and_it_coasts() {
     for planets in 3..=5 {

@@ -1,5 +1,5 @@
-//! One joint in three formulations that share no equation of motion: eqs 1-6 in absolute coordinates (the reference),
-//! eq. 19 written out by hand, eq. 20 with the design's own H. All with damping law `paper` and the sharp dead zone.
+//! One joint in three formulations without a common equation of motion: eqs 1-6 in absolute coordinates (the reference), eq. 19 written out
+//! by hand, eq. 20 with the design's own H. All use the damping law `paper` and the sharp dead zone.
 
 mod equation_19;
 mod equation_20;
@@ -17,9 +17,9 @@ use equation_19::Equation19;
 use equation_20::Equation20;
 use joint::{Deflections, Formulation, Joint, OMEGA, System};
 
-/// Drive torque [N m]: some 7 um of deflection a mesh, so that errors of 10 um part it again and again.
+/// Drive torque [N m]: about 7 um of deflection a mesh, so that errors of 10 um separate it again and again.
 const DRIVE_TORQUE: f64 = 80.0;
-/// Samples of a run and the dimensionless time between them.
+/// Number of samples of a run, and the dimensionless time between them.
 const SAMPLES: u32 = 120;
 const INTERVAL: f64 = 0.5;
 
@@ -41,7 +41,7 @@ fn parameters(planets: usize) -> JointParameters {
     joint
 }
 
-/// Runs the reference from X = X' = 0: through the gap, into contact, and parting again and again.
+/// Runs the reference from X = X' = 0: through the gap, into contact, and through repeated separation.
 fn reference(parameters: &JointParameters) -> Vec<Deflections> {
     let load_torque = parameters.balanced_load_torque(DRIVE_TORQUE);
     let planets = parameters.geometry.planets;
@@ -56,7 +56,7 @@ fn reference(parameters: &JointParameters) -> Vec<Deflections> {
     found.samples.iter().map(|sample| sample.deflections.each_ref().map(read)).collect()
 }
 
-/// Integrates a formulation and reads its mesh deflections at the reference's times.
+/// Integrates a formulation and returns its mesh deflections at the reference's times.
 fn follow(joint: &Joint, formulation: impl Formulation) -> Vec<Deflections> {
     let mut integrator = Integrator::new(0.0, formulation.start(joint));
     let mut system = System { joint: joint.clone(), formulation };
@@ -74,6 +74,7 @@ fn apart(expected: &[Deflections], found: &[Deflections]) -> f64 {
     pairs.map(|(expected, found)| (expected - found).abs()).fold(0.0, f64::max)
 }
 
+/// The three formulations give one motion, with 3 to 5 planets.
 #[test]
 fn equations_1_to_6_and_19_and_20_are_one_motion() {
     for planets in 3..=5 {
@@ -85,7 +86,7 @@ fn equations_1_to_6_and_19_and_20_are_one_motion() {
     }
 }
 
-/// The print's second row takes K_rp of one planet only (here the first): that is another motion altogether.
+/// The printed second row has K_rp of one planet only (here the first), which gives a different motion.
 #[test]
 fn equation_19_as_printed_is_another_motion() {
     let parameters = parameters(3);

@@ -140,7 +140,7 @@ fn run(line: &mut Line) -> Vec<Sample> {
 /// State digests and outputs of the board equal the core's at every sample.
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn the_board_s_state_is_the_core_s_in_every_bit() {
+fn board_state_equals_core_in_every_bit() {
     let say = |line: &str| println!("{line}");
     let toolchain = Toolchain::prepare(&say).expect("a toolchain for the board");
     emulator::ensure(&say).expect("an emulator");
@@ -178,7 +178,8 @@ fn the_board_s_state_is_the_core_s_in_every_bit() {
     assert_eq!(found, expected);
     // The run is only meaningful if the joint crossed its gap.
     let gaps = samples.iter().map(|sample| f64::from(sample.gap));
-    let (least, greatest) = gaps.fold((f64::MAX, f64::MIN), |(least, most), gap| (gap.min(least), gap.max(most)));
+    let (least, greatest) =
+        gaps.fold((f64::MAX, f64::MIN), |(least, greatest), gap| (gap.min(least), gap.max(greatest)));
     let half_backlash = scenarios::q1().sun_planet.half_backlash[0];
     assert!(least < -2.0 * half_backlash && greatest > 2.0 * half_backlash, "gap from {least:e} to {greatest:e} m");
 }

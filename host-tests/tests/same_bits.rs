@@ -23,7 +23,7 @@ fn here(in_mode: InMode<'_>) -> String {
 
 /// Digests of the step equal the recorded ones.
 #[test]
-fn the_step_s_results_are_those_of_every_build_before() {
+fn step_digests_equal_recorded_ones() {
     let found = here(&|work| work());
     if std::env::var_os(WRITE).is_some() {
         fs::write(Path::new(KNOWN), &found).expect("a file that can be written");
@@ -39,7 +39,7 @@ fn the_step_s_results_are_those_of_every_build_before() {
 /// Flush-to-zero and denormals-are-zero of the caller change no bit.
 #[test]
 #[cfg(target_arch = "x86_64")]
-fn the_caller_s_flush_to_zero_changes_no_bit() {
+fn flush_to_zero_changes_no_bit() {
     let plain = here(&|work| work());
     for (name, bits) in [("FTZ", 1 << 15), ("DAZ", 1 << 6), ("FTZ and DAZ", 1 << 15 | 1 << 6)] {
         assert_eq!(here(&|work| x86::with_mode(bits, work)), plain, "with {name}");
@@ -48,7 +48,7 @@ fn the_caller_s_flush_to_zero_changes_no_bit() {
 
 #[test]
 #[cfg(not(target_arch = "x86_64"))]
-fn the_caller_s_flush_to_zero_changes_no_bit() {
+fn flush_to_zero_changes_no_bit() {
     println!("not tried on this processor: only MXCSR of x86-64 is known here; the emulated board is tried anyway");
 }
 
@@ -75,7 +75,7 @@ mod x86 {
 /// Results of this build equal the board's in every bit.
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn this_build_s_results_are_the_board_s_in_every_bit() {
+fn board_equals_this_build_in_every_bit() {
     let say = |line: &str| println!("{line}");
     let toolchain = Toolchain::prepare(&say).expect("a toolchain for the board");
     emulator::ensure(&say).expect("an emulator");

@@ -23,29 +23,29 @@ pub use loom::sync::atomic::fence;
 #[derive(Debug, Default)]
 pub struct AtomicU32 {
     first: u32,
-    watched: OnceLock<(atomic::AtomicU32, atomic::AtomicU32)>,
+    cell: OnceLock<(atomic::AtomicU32, atomic::AtomicU32)>,
 }
 
 impl AtomicU32 {
     /// Atomic with its initial value.
     pub const fn new(first: u32) -> Self {
-        Self { first, watched: OnceLock::new() }
+        Self { first, cell: OnceLock::new() }
     }
 
-    fn watched(&self) -> &(atomic::AtomicU32, atomic::AtomicU32) {
-        self.watched.get_or_init(|| (atomic::AtomicU32::new(self.first), atomic::AtomicU32::new(0)))
+    fn cell(&self) -> &(atomic::AtomicU32, atomic::AtomicU32) {
+        self.cell.get_or_init(|| (atomic::AtomicU32::new(self.first), atomic::AtomicU32::new(0)))
     }
 
     /// Reads the number.
     pub fn load(&self, ordering: Ordering) -> u32 {
-        let (number, turn) = self.watched();
+        let (number, turn) = self.cell();
         turn.fetch_add(0, Relaxed);
         number.load(ordering)
     }
 
     /// Stores a number.
     pub fn store(&self, number: u32, ordering: Ordering) {
-        self.watched().0.store(number, ordering);
+        self.cell().0.store(number, ordering);
     }
 }
 
@@ -53,27 +53,27 @@ impl AtomicU32 {
 #[derive(Debug, Default)]
 pub struct AtomicBool {
     first: bool,
-    watched: OnceLock<atomic::AtomicBool>,
+    cell: OnceLock<atomic::AtomicBool>,
 }
 
 impl AtomicBool {
     /// Atomic with its initial value.
     pub const fn new(first: bool) -> Self {
-        Self { first, watched: OnceLock::new() }
+        Self { first, cell: OnceLock::new() }
     }
 
-    fn watched(&self) -> &atomic::AtomicBool {
-        self.watched.get_or_init(|| atomic::AtomicBool::new(self.first))
+    fn cell(&self) -> &atomic::AtomicBool {
+        self.cell.get_or_init(|| atomic::AtomicBool::new(self.first))
     }
 
     /// Reads the flag.
     pub fn load(&self, ordering: Ordering) -> bool {
-        self.watched().load(ordering)
+        self.cell().load(ordering)
     }
 
     /// Stores the flag.
     pub fn store(&self, flag: bool, ordering: Ordering) {
-        self.watched().store(flag, ordering);
+        self.cell().store(flag, ordering);
     }
 }
 
@@ -83,8 +83,8 @@ type Entry<T> = (T, Option<Arc<atomic::AtomicBool>>);
 /// Numbers of removed and added entries, which do not wrap.
 #[derive(Default)]
 struct Indices {
-    taken: AtomicUsize,
-    given: AtomicUsize,
+    removed: AtomicUsize,
+    added: AtomicUsize,
 }
 
 /// State shared by both sides.
@@ -99,8 +99,8 @@ impl<T> Ring<T> {
         self.indices.get_or_init(Indices::default)
     }
 
-    fn entries<R>(&self, look: impl FnOnce(&mut VecDeque<Entry<T>>) -> R) -> R {
-        look(&mut self.entries.lock().unwrap_or_else(PoisonError::into_inner))
+    fn entries<R>(&self, visit: impl FnOnce(&mut VecDeque<Entry<T>>) -> R) -> R {
+        visit(&mut self.entries.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
@@ -117,8 +117,8 @@ impl<T, const PLACES: usize> Queue<T, PLACES> {
     /// Returns both ends.
     pub fn split(&mut self) -> (Producer<'_, T>, Consumer<'_, T>) {
         let ring = &self.0;
-        let (taken, given) = (ring.indices().taken.load(Relaxed), ring.indices().given.load(Relaxed));
-        (Producer { ring, given, taken }, Consumer { ring, taken, given: Cell::new(given), front: OnceCell::new() })
+        let (removed, added) = (ring.indices().removed.load(Relaxed), ring.indices().added.load(Relaxed));
+        (Producer { ring, added, removed }, Consumer { ring, removed, added: Cell::new(added), front: OnceCell::new() })
     }
 }
 
@@ -131,9 +131,9 @@ impl<T, const PLACES: usize> Default for Queue<T, PLACES> {
 /// End for adding entries.
 pub struct Producer<'a, T> {
     ring: &'a Ring<T>,
-    given: usize,
+    added: usize,
     /// Number of removed entries, as last seen.
-    taken: usize,
+    removed: usize,
 }
 
 impl<T> Producer<'_, T> {
@@ -144,7 +144,7 @@ impl<T> Producer<'_, T> {
 
     /// Number of entries.
     pub fn len(&self) -> usize {
-        self.given - self.ring.indices().taken.load(Relaxed)
+        self.added - self.ring.indices().removed.load(Relaxed)
     }
 
     /// Returns true if the queue is empty.
@@ -159,10 +159,10 @@ impl<T> Producer<'_, T> {
 
     /// Adds an entry, or returns it if the queue is full.
     pub fn enqueue(&mut self, entry: T) -> Result<(), T> {
-        if self.given - self.taken == self.capacity() {
-            self.taken = self.ring.indices().taken.load(Acquire);
+        if self.added - self.removed == self.capacity() {
+            self.removed = self.ring.indices().removed.load(Acquire);
         }
-        if self.given - self.taken == self.capacity() {
+        if self.added - self.removed == self.capacity() {
             return Err(entry);
         }
         let mark = (size_of::<T>() > 1).then(|| {
@@ -171,8 +171,8 @@ impl<T> Producer<'_, T> {
             mark
         });
         self.ring.entries(|entries| entries.push_back((entry, mark)));
-        self.given += 1;
-        self.ring.indices().given.store(self.given, Release);
+        self.added += 1;
+        self.ring.indices().added.store(self.added, Release);
         Ok(())
     }
 }
@@ -180,9 +180,9 @@ impl<T> Producer<'_, T> {
 /// End for removing entries.
 pub struct Consumer<'a, T> {
     ring: &'a Ring<T>,
-    taken: usize,
+    removed: usize,
     /// Number of added entries, as last seen.
-    given: Cell<usize>,
+    added: Cell<usize>,
     /// First entry, if it was peeked at.
     front: OnceCell<Entry<T>>,
 }
@@ -195,7 +195,7 @@ impl<T> Consumer<'_, T> {
 
     /// Number of entries.
     pub fn len(&self) -> usize {
-        self.ring.indices().given.load(Relaxed) - self.taken
+        self.ring.indices().added.load(Relaxed) - self.removed
     }
 
     /// Returns true if the queue is empty.
@@ -205,7 +205,7 @@ impl<T> Consumer<'_, T> {
 
     /// Returns true if there is an entry.
     pub fn ready(&self) -> bool {
-        self.ring.indices().given.load(Relaxed) > self.taken
+        self.ring.indices().added.load(Relaxed) > self.removed
     }
 
     /// First entry, not removed.
@@ -222,16 +222,16 @@ impl<T> Consumer<'_, T> {
 
     /// Removes the first entry.
     pub fn dequeue(&mut self) -> Option<T> {
-        if self.taken == self.given.get() {
-            self.given.set(self.ring.indices().given.load(Acquire));
+        if self.removed == self.added.get() {
+            self.added.set(self.ring.indices().added.load(Acquire));
         }
-        if self.taken == self.given.get() {
+        if self.removed == self.added.get() {
             return None;
         }
         self.front();
         let (entry, _) = self.front.take()?;
-        self.taken += 1;
-        self.ring.indices().taken.store(self.taken, Release);
+        self.removed += 1;
+        self.ring.indices().removed.store(self.removed, Release);
         Some(entry)
     }
 }

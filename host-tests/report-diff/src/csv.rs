@@ -23,16 +23,16 @@ pub fn read(tables: [&str; 2]) -> [Listing; 2] {
 fn rows(table: &[StringRecord], common: &[Rc<str>]) -> Vec<Row> {
     let Some((head, lines)) = table.split_first() else { return Vec::new() };
     let mut names = Row::at("columns");
-    head.iter().for_each(|name| names.say(name, name));
+    head.iter().for_each(|name| names.push(name, name));
     let places: Vec<Option<usize>> = common.iter().map(|name| head.iter().position(|it| it == &**name)).collect();
     let cells = |line: &StringRecord| {
         let mut row = Row::at(format!("line {}", line.position().map_or(0, csv::Position::line)));
         for (name, place) in common.iter().zip(&places) {
             if let Some(cell) = place.and_then(|place| line.get(place)) {
-                row.say(Rc::clone(name), cell);
+                row.push(Rc::clone(name), cell);
             }
         }
-        line.iter().enumerate().skip(head.len()).for_each(|(at, cell)| row.say(format!("column {}", at + 1), cell));
+        line.iter().enumerate().skip(head.len()).for_each(|(at, cell)| row.push(format!("column {}", at + 1), cell));
         row
     };
     std::iter::once(names).chain(lines.iter().map(cells)).collect()

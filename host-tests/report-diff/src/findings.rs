@@ -18,7 +18,7 @@ pub struct Difference {
 
 /// Values ignored by one rule.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct LeftOut {
+pub struct IgnoredCount {
     /// Number of ignored values.
     pub values: u64,
     /// Number of ignored values that differ.
@@ -35,32 +35,32 @@ pub struct Findings {
     /// Values that differ.
     pub differences: Vec<Difference>,
     /// Ignored values by the name of the rule.
-    pub left_out: BTreeMap<&'static str, LeftOut>,
+    pub ignored_counts: BTreeMap<&'static str, IgnoredCount>,
     file: String,
 }
 
 impl Findings {
     /// Attributes the following findings to a file.
-    pub fn begin(&mut self, file: &str) {
+    pub fn start_file(&mut self, file: &str) {
         self.files += 1;
         file.clone_into(&mut self.file);
     }
 
     /// Records a value that differs or is missing on one side.
-    pub fn differs(&mut self, place: impl Into<String>, old: Option<String>, new: Option<String>) {
+    pub fn add_difference(&mut self, place: impl Into<String>, old: Option<String>, new: Option<String>) {
         self.values += 1;
         self.differences.push(Difference { file: self.file.clone(), place: place.into(), old, new });
     }
 
     /// Records an ignored value.
-    pub fn leave_out(&mut self, rule: &'static str, different: bool) {
-        let counted = self.left_out.entry(rule).or_default();
+    pub fn count_ignored(&mut self, rule: &'static str, different: bool) {
+        let counted = self.ignored_counts.entry(rule).or_default();
         counted.values += 1;
         counted.different += u64::from(different);
     }
 
     /// Returns true if nothing differs.
-    pub fn all_same(&self) -> bool {
+    pub fn is_same(&self) -> bool {
         self.differences.is_empty()
     }
 }
@@ -91,30 +91,30 @@ impl fmt::Display for Difference {
 /// Report with at most `shown` differences of each file, then the counts.
 pub fn report(findings: &Findings, shown: usize) -> String {
     let mut text = String::new();
-    let mut of_file: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut file_counts: BTreeMap<&str, usize> = BTreeMap::new();
     for difference in &findings.differences {
-        let count = of_file.entry(&difference.file).or_default();
+        let count = file_counts.entry(&difference.file).or_default();
         *count += 1;
         if *count <= shown {
             text += &format!("{difference}\n");
         }
     }
-    for (file, count) in of_file.iter().filter(|(_, count)| **count > shown) {
+    for (file, count) in file_counts.iter().filter(|(_, count)| **count > shown) {
         text += &format!("{file}: {} more\n", count - shown);
     }
-    if !findings.left_out.is_empty() {
-        let of_rule = |(rule, counted): (&&str, &LeftOut)| {
+    if !findings.ignored_counts.is_empty() {
+        let rule_text = |(rule, counted): (&&str, &IgnoredCount)| {
             format!("{rule} {} ({} of them different)", counted.values, counted.different)
         };
-        let list: Vec<String> = findings.left_out.iter().map(of_rule).collect();
-        text += &format!("left out: {}\n", list.join(", "));
+        let list: Vec<String> = findings.ignored_counts.iter().map(rule_text).collect();
+        text += &format!("ignored: {}\n", list.join(", "));
     }
     let (files, values) = (findings.files, findings.values);
     let word = if files == 1 { "file" } else { "files" };
     match findings.differences.len() {
         0 => text += &format!("same: {values} values in {files} {word}\n"),
         count => {
-            text += &format!("different: {count} of {values} values, in {} of {files} {word}\n", of_file.len());
+            text += &format!("different: {count} of {values} values, in {} of {files} {word}\n", file_counts.len());
         }
     }
     text

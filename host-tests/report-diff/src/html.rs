@@ -47,7 +47,7 @@ pub fn read(pages: [&str; 2], level: Level, may_grow: bool) -> Result<[Listing; 
         }
         for (listing, counts) in listings.iter_mut().zip([old, new]) {
             let mut row = Row::default();
-            counts.iter().for_each(|(word, count)| row.say(format!("{what} `{word}`"), format!("{count} times")));
+            counts.iter().for_each(|(word, count)| row.push(format!("{what} `{word}`"), format!("{count} times")));
             listing.rows.push(row);
         }
     }
@@ -86,7 +86,7 @@ mod tests {
 
     /// A changed layout with equal figures is no difference.
     #[test]
-    fn figures_count_and_layout_does_not() {
+    fn layout_is_ignored() {
         let other = "<table><tr><th>check</th></tr><tr><th>figure</th></tr><tr><td>gap</td></tr><tr><td>2.5 <i>um</i></td></tr></table>\
             <div>Run <em>7</em></div><div>1.5</div> <div>% error</div><svg><text>8.8</text></svg>";
         assert!(differences(PAGE, other, Level::Figures, false).is_empty());
@@ -95,7 +95,7 @@ mod tests {
 
     /// Changed figures, missing figures and changed cells are found.
     #[test]
-    fn another_figure_a_lost_one_and_another_cell_are_found() {
+    fn changed_figures_and_cells_are_found() {
         let found = differences(PAGE, &PAGE.replace("1.5", "1.6"), Level::Figures, false);
         assert_eq!(found, ["figure `1.5`", "figure `1.6`"]);
         let verdict = PAGE.replace("gap", "twist");
@@ -109,7 +109,7 @@ mod tests {
 
     /// Columns, rows and tiles of host time are ignored.
     #[test]
-    fn columns_rows_and_tiles_of_the_host_s_time_are_left_out() {
+    fn host_time_is_ignored() {
         let page = |cost: &str, error: &str, date: &str| {
             let heads =
                 ["scheme", "deflections", "gap", "link offset", "cost", "sub-steps"].map(|h| format!("<th>{h}</th>"));

@@ -102,8 +102,8 @@ pub fn rule(is_there: impl Fn(&Place) -> bool) -> Option<&'static str> {
 }
 
 /// Rule that ignores the value below a key, given all keys on the path, joined by dots.
-pub fn ignored_key(way: &str) -> Option<&'static str> {
-    let ends = |end: &str| way.strip_suffix(end).is_some_and(|before| before.is_empty() || before.ends_with('.'));
+pub fn ignored_key(path: &str) -> Option<&'static str> {
+    let ends = |end: &str| path.strip_suffix(end).is_some_and(|before| before.is_empty() || before.ends_with('.'));
     rule(|place| matches!(place, Place::Key(end) if ends(end)))
 }
 
@@ -125,8 +125,8 @@ impl fmt::Display for Place {
 pub fn list() -> String {
     let places: String = RULES.iter().map(|(place, rule)| format!("  {place}: {rule}\n")).collect();
     format!(
-        "Not compared, wherever it stands:\n  {DATE}\n  {CLOCK}\n  {PATH}\n  `{}`: {COMMIT}\n\
-         Not compared, where it stands:\n{places}",
+        "Ignored everywhere:\n  {DATE}\n  {CLOCK}\n  {PATH}\n  `{}`: {COMMIT}\n\
+         Ignored at these places:\n{places}",
         CHANGED.trim()
     )
 }
@@ -137,7 +137,7 @@ mod tests {
 
     /// A key matches by the end of its path.
     #[test]
-    fn a_key_is_known_by_the_end_of_its_way() {
+    fn key_matches_by_end_of_path() {
         assert_eq!(ignored_key("identity.date"), Some(DATE));
         assert_eq!(ignored_key("host.times.cost"), Some(HOST_TIME));
         for kept in ["methods.cost", "duration_s", "date.figure", "update"] {

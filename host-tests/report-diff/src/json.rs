@@ -8,20 +8,21 @@ use crate::listing::{Listing, Row};
 
 /// Reads a document.
 pub fn read(document: &Value) -> Listing {
-    let mut listing = Listing::of(Row::default());
+    let mut listing = Listing::from_row(Row::default());
     walk(document, ["", ""], &mut listing);
     listing
 }
 
 /// `keys` is the path from the top of the document without list indices.
 fn walk(value: &Value, [place, keys]: [&str; 2], listing: &mut Listing) {
-    let said = match value {
+    let text = match value {
         Value::Object(object) if !object.is_empty() => {
-            let own = object.get("name").and_then(Value::as_str);
+            let own_name = object.get("name").and_then(Value::as_str);
             for (key, value) in object {
                 let [place, keys] =
-                    [place, keys].map(|way| if way.is_empty() { key.clone() } else { format!("{way}.{key}") });
-                let by_name = rule(|place| matches!(place, Place::Named(name, at) if Some(*name) == own && at == key));
+                    [place, keys].map(|path| if path.is_empty() { key.clone() } else { format!("{path}.{key}") });
+                let by_name =
+                    rule(|place| matches!(place, Place::Named(name, at) if Some(*name) == own_name && at == key));
                 match by_name.or_else(|| ignored_key(&keys)) {
                     Some(rule) => listing.hidden.push((rule, value.to_string())),
                     None => walk(value, [&place, &keys], listing),
@@ -42,5 +43,5 @@ fn walk(value: &Value, [place, keys]: [&str; 2], listing: &mut Listing) {
         }
         other => other.to_string(),
     };
-    listing.rows[0].say(place, said);
+    listing.rows[0].push(place, text);
 }

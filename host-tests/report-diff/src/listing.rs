@@ -36,7 +36,7 @@ impl Row {
     }
 
     /// Adds a value.
-    pub fn say(&mut self, name: impl Into<Rc<str>>, value: impl Into<String>) {
+    pub fn push(&mut self, name: impl Into<Rc<str>>, value: impl Into<String>) {
         self.values.push((name.into(), value.into()));
     }
 
@@ -56,7 +56,7 @@ impl Row {
 
 impl Listing {
     /// Listing of one row.
-    pub fn of(row: Row) -> Self {
+    pub fn from_row(row: Row) -> Self {
         Self { rows: vec![row], hidden: Vec::new() }
     }
 
@@ -71,19 +71,19 @@ impl Listing {
 /// Compares two listings.
 pub fn compare([old, new]: [&Listing; 2], findings: &mut Findings) {
     let count = |rows: &mut dyn Iterator<Item = &Row>| rows.map(|row| row.values.len() as u64).sum::<u64>();
-    let pairs = differing(&old.rows, &new.rows);
+    let pairs = differing_pairs(&old.rows, &new.rows);
     findings.values += count(&mut old.rows.iter()) - count(&mut pairs.iter().filter_map(|pair| pair.0));
     for pair in pairs {
         match pair {
             (Some(old), Some(new)) => compare_rows(old, new, findings),
-            (Some(old), None) => findings.differs(old.whole_place(), Some(old.whole()), None),
-            (None, Some(new)) => findings.differs(new.whole_place(), None, Some(new.whole())),
+            (Some(old), None) => findings.add_difference(old.whole_place(), Some(old.whole()), None),
+            (None, Some(new)) => findings.add_difference(new.whole_place(), None, Some(new.whole())),
             (None, None) => {}
         }
     }
     let mut hidden = new.hidden.iter();
-    old.hidden.iter().for_each(|old| findings.leave_out(old.0, hidden.next() != Some(old)));
-    hidden.for_each(|new| findings.leave_out(new.0, true));
+    old.hidden.iter().for_each(|old| findings.count_ignored(old.0, hidden.next() != Some(old)));
+    hidden.for_each(|new| findings.count_ignored(new.0, true));
 }
 
 fn compare_rows(old: &Row, new: &Row, findings: &mut Findings) {
@@ -91,16 +91,16 @@ fn compare_rows(old: &Row, new: &Row, findings: &mut Findings) {
     for (name, value) in &old.values {
         match others.remove(&**name) {
             Some(other) if other == value => findings.values += 1,
-            other => findings.differs(old.place_of(name), Some(value.clone()), other.cloned()),
+            other => findings.add_difference(old.place_of(name), Some(value.clone()), other.cloned()),
         }
     }
     for (name, value) in new.values.iter().filter(|(name, _)| others.contains_key(&**name)) {
-        findings.differs(new.place_of(name), None, Some(value.clone()));
+        findings.add_difference(new.place_of(name), None, Some(value.clone()));
     }
 }
 
 /// Rows that differ: two at the same position, or one that exists on one side only.
-fn differing<'a>(old: &'a [Row], new: &'a [Row]) -> Vec<(Option<&'a Row>, Option<&'a Row>)> {
+fn differing_pairs<'a>(old: &'a [Row], new: &'a [Row]) -> Vec<(Option<&'a Row>, Option<&'a Row>)> {
     let same = |(a, b): &(&Row, &Row)| a.values == b.values;
     let head = old.iter().zip(new).take_while(same).count();
     let tail = old[head..].iter().rev().zip(new[head..].iter().rev()).take_while(same).count();
@@ -108,22 +108,22 @@ fn differing<'a>(old: &'a [Row], new: &'a [Row]) -> Vec<(Option<&'a Row>, Option
     if old.len() == new.len() {
         return old.iter().zip(new).filter(|pair| !same(pair)).map(|(a, b)| (Some(a), Some(b))).collect();
     }
-    let gone = beyond(old, new).into_iter().map(|row| (Some(row), None));
-    gone.chain(beyond(new, old).into_iter().map(|row| (None, Some(row)))).collect()
+    let gone = surplus(old, new).into_iter().map(|row| (Some(row), None));
+    gone.chain(surplus(new, old).into_iter().map(|row| (None, Some(row)))).collect()
 }
 
 /// Rows of one list that the other does not have, or not as often: the last ones of several equal rows.
-fn beyond<'a>(rows: &'a [Row], others: &[Row]) -> Vec<&'a Row> {
+fn surplus<'a>(rows: &'a [Row], others: &[Row]) -> Vec<&'a Row> {
     let mut counts: HashMap<&[(Rc<str>, String)], usize> = HashMap::new();
     others.iter().for_each(|row| *counts.entry(&row.values).or_default() += 1);
-    let is_beyond = |row: &&Row| match counts.get_mut(&row.values[..]).filter(|count| **count > 0) {
+    let is_surplus = |row: &&Row| match counts.get_mut(&row.values[..]).filter(|count| **count > 0) {
         Some(count) => {
             *count -= 1;
             false
         }
         None => true,
     };
-    rows.iter().filter(is_beyond).collect()
+    rows.iter().filter(is_surplus).collect()
 }
 
 #[cfg(test)]
@@ -132,7 +132,7 @@ mod tests {
 
     /// A missing row is one difference, not one for each row behind it.
     #[test]
-    fn a_missing_row_is_one_difference() {
+    fn missing_row_is_one_difference() {
         let places = |old: &str, new: &str| {
             let row = |value: &str| Row { place: String::new(), values: vec![("".into(), value.to_owned())] };
             let listing = |text: &str| Listing { rows: text.split_whitespace().map(row).collect(), hidden: Vec::new() };

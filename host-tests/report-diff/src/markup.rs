@@ -66,7 +66,7 @@ mod tests {
 
     /// Tags, attributes and text are separated, entities resolved.
     #[test]
-    fn a_document_falls_into_tags_and_text() {
+    fn document_splits_into_tags_and_text() {
         let found = pieces(
             "<!DOCTYPE html><!-- <b> --><p class=\"a>b\" id=x hidden>1 &lt; 2 & 3</p><br/><style>p > a{}</style>",
         );

@@ -5,11 +5,11 @@ use std::rc::Rc;
 
 /// Names of fields, with `true` for a list.
 #[derive(Debug, Clone)]
-pub struct Form(Vec<(Rc<str>, bool)>);
+pub struct MessageLayout(Vec<(Rc<str>, bool)>);
 
-impl Form {
+impl MessageLayout {
     /// Reads a schema; `None` if it has a field of another type.
-    pub fn of(schema: &str) -> Option<Self> {
+    pub fn from_schema(schema: &str) -> Option<Self> {
         let lines = schema.lines().map(|line| line.split('#').next().unwrap_or_default().trim());
         let field = |line: &str| match line.split_once(char::is_whitespace)? {
             ("float64", name) => Some((name.trim().into(), false)),
@@ -20,7 +20,7 @@ impl Form {
     }
 
     /// Numbers of each field of a message.
-    pub fn decoded(&self, message: &[u8]) -> Option<Vec<(Rc<str>, Vec<f64>)>> {
+    pub fn decode(&self, message: &[u8]) -> Option<Vec<(Rc<str>, Vec<f64>)>> {
         // The header selects little endian.
         let body = message.strip_prefix(&[0, 1, 0, 0])?;
         let mut at = 0_usize;
@@ -48,17 +48,17 @@ mod tests {
 
     /// Numbers and lists are decoded; messages of another form or length are not.
     #[test]
-    fn numbers_and_lists_are_read_and_other_messages_are_not() {
+    fn only_float_messages_are_decoded() {
         let mut message = vec![0, 1, 0, 0];
         message.extend(1.5_f64.to_le_bytes());
         message.extend(2_u32.to_le_bytes());
         message.extend([0; 4]);
         [2.5_f64, 3.5].iter().for_each(|number| message.extend(number.to_le_bytes()));
-        let decoded = |schema: &str, message: &[u8]| Form::of(schema)?.decoded(message);
+        let decode = |schema: &str, message: &[u8]| MessageLayout::from_schema(schema)?.decode(message);
         let schema = "float64 a  # [m]\nfloat64[] b\n";
-        assert_eq!(decoded(schema, &message), Some(vec![("a".into(), vec![1.5]), ("b".into(), vec![2.5, 3.5])]));
-        assert_eq!(decoded("float64 a\n", &message), None);
-        assert_eq!(decoded("string a\n", &message), None);
-        assert_eq!(decoded(schema, &message[..message.len() - 1]), None);
+        assert_eq!(decode(schema, &message), Some(vec![("a".into(), vec![1.5]), ("b".into(), vec![2.5, 3.5])]));
+        assert_eq!(decode("float64 a\n", &message), None);
+        assert_eq!(decode("string a\n", &message), None);
+        assert_eq!(decode(schema, &message[..message.len() - 1]), None);
     }
 }

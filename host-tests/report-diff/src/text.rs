@@ -5,24 +5,24 @@ use std::ops::Range;
 
 use crate::ignored::{Place, RULES};
 use crate::listing::{Listing, Row};
-use crate::mask::HIDDEN;
+use crate::mask::MASKED;
 
 /// Reads a text: a row for each line that is not empty.
 pub fn read(text: &str) -> Listing {
     let (mut listing, mut column) = (Listing::default(), None);
-    for (index, said) in text.lines().enumerate() {
-        column = under_head(said, column);
-        let mut line = said.to_owned();
+    for (index, raw) in text.lines().enumerate() {
+        column = under_head(raw, column);
+        let mut line = raw.to_owned();
         if let Some((end, rule)) = column
-            && let Some(word) = word_that_ends_at(said, end)
+            && let Some(word) = word_that_ends_at(raw, end)
         {
-            listing.hidden.push((rule, said[word.clone()].to_owned()));
-            line.replace_range(word, HIDDEN);
+            listing.hidden.push((rule, raw[word.clone()].to_owned()));
+            line.replace_range(word, MASKED);
         }
         let line = listing.masked(&line);
         if !line.is_empty() {
             let mut row = Row::at(format!("line {}", index + 1));
-            row.say("", line);
+            row.push("", line);
             listing.rows.push(row);
         }
     }
@@ -58,7 +58,7 @@ mod tests {
 
     /// A column of host time is ignored until its table ends.
     #[test]
-    fn a_column_of_the_host_s_time_is_left_out_until_its_table_ends() {
+    fn host_time_column_is_ignored_in_its_table() {
         let lines = |error: &str, cost: &str, behind: &str| {
             let table = format!(
                 "scheme      deflections          gap  link offset      cost  sub-steps\n\
@@ -69,9 +69,9 @@ mod tests {
             read(&table).rows.into_iter().map(|row| row.values).collect::<Vec<_>>()
         };
         let old = lines("2.03e-2", "  3.45", "3.45");
-        let differing = |new: Vec<_>| old.iter().zip(&new).filter(|(old, new)| old != new).count();
-        assert_eq!(differing(lines("2.03e-2", "276.26", "3.45")), 0);
-        assert_eq!(differing(lines("2.04e-2", "  3.45", "3.45")), 1);
-        assert_eq!(differing(lines("2.03e-2", "  3.45", "3.46")), 1);
+        let differing_lines = |new: Vec<_>| old.iter().zip(&new).filter(|(old, new)| old != new).count();
+        assert_eq!(differing_lines(lines("2.03e-2", "276.26", "3.45")), 0);
+        assert_eq!(differing_lines(lines("2.04e-2", "  3.45", "3.45")), 1);
+        assert_eq!(differing_lines(lines("2.03e-2", "  3.45", "3.46")), 1);
     }
 }

@@ -12,7 +12,7 @@
 //! The compiler checks the limits of `since` and `scatters`.
 
 /// Largest bound allowed for a kind, from the measured value.
-macro_rules! most {
+macro_rules! bound_max {
     (since, $measured:expr) => {
         1.5 * $measured
     };
@@ -26,14 +26,14 @@ macro_rules! most {
 
 /// Rows of the table: name, quantity, bound, measured value, and the reason for the margin.
 macro_rules! bounds {
-    ($($(#[$about:meta])* $name:ident: $of:literal, below $limit:expr, was $measured:expr, $kind:ident $reason:literal;)*) => {
+    ($($(#[$about:meta])* $name:ident: $quantity:literal, below $limit:expr, was $measured:expr, $kind:ident $reason:literal;)*) => {
         $(
             $(#[$about])*
             pub const $name: $crate::tolerance::Bound =
-                $crate::tolerance::Bound { of: $of, limit: $limit, measured: $measured, reason: $reason };
+                $crate::tolerance::Bound { quantity: $quantity, limit: $limit, measured: $measured, reason: $reason };
             // The factor covers decimal fractions that are not exact in binary.
             const _: () = assert!(
-                $limit <= (1.0 + 1e-9) * most!($kind, $measured),
+                $limit <= (1.0 + 1e-9) * bound_max!($kind, $measured),
                 concat!("the bound ", stringify!($name), " is too far from what was measured")
             );
         )*
@@ -51,7 +51,7 @@ pub mod observer;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bound {
     /// Error and its normalisation.
-    pub of: &'static str,
+    pub quantity: &'static str,
     /// The error must be below this limit.
     pub limit: f64,
     /// Value measured when the bound was set (x86-64 Linux, f64 unless stated).
@@ -67,11 +67,11 @@ impl Bound {
     /// If the error is not below the limit, or is NaN; the message states the value measured when the bound was set.
     #[track_caller]
     pub fn check(&self, error: f64) {
-        println!("{}: {error:.2e} (limit {:.0e}, was {:.1e})", self.of, self.limit, self.measured);
+        println!("{}: {error:.2e} (limit {:.0e}, was {:.1e})", self.quantity, self.limit, self.measured);
         assert!(
             error.abs() < self.limit,
             "{}: {error:e} is not below {:e}; it was {:e} when the bound was set. {}",
-            self.of,
+            self.quantity,
             self.limit,
             self.measured,
             self.reason
@@ -83,15 +83,15 @@ bounds! {
     /// Reference against the data files of cases A and Q.
     CASE_DATA: "trajectory error of the reference on cases A and Q, over the standard deviation",
         below 1e-9, was 9.5e-12,
-        argued "The files carry twelve digits; a missed event would show as 1e-3.";
+        argued "The files have twelve digits; a missed event would show as 1e-3.";
 
     /// Growth of a very small disturbance in a predictable motion.
     PREDICTABILITY: "change of mesh deflections over the change of 1e-12 m that caused it",
         below 94.0, was 63.0,
-        since "Where errors grow more, a bound on a trajectory would judge the motion instead of the integrator.";
+        since "With larger growth, a bound on a trajectory would test the motion instead of the integrator.";
 
     /// Energy balance of the reference.
-    BOOKS_OF_THE_REFERENCE: "residual of the reference's energy balance over what is dissipated",
+    REFERENCE_ENERGY_BALANCE: "residual of the reference's energy balance over the dissipated energy",
         below 1e-10, was 2.6e-12,
         argued "The integration's own error.";
 
@@ -101,14 +101,14 @@ bounds! {
         argued "Ticks may miss a crest by a 96th of a mesh period, which is 5e-4 of the swing.";
 
     /// Power outside the mesh frequency.
-    SIM_NON_FUNDAMENTAL: "non-fundamental over fundamental in set P's regular regimes against what is printed",
+    SIM_NON_FUNDAMENTAL: "non-fundamental over fundamental in set P's regular regimes against the printed figure",
         below 6e-3, was 1.1e-3,
         argued "Half a unit of the last digit printed.";
 
     /// Static deflection and force of a joint at rest.
-    SIM_STATIC: "mesh force and deflection of a standing joint against oracle 4, relative",
+    SIM_STATIC: "mesh force and deflection of a joint at rest against oracle 4, relative",
         below 1e-7, was 7.9e-14,
-        argued "Torques are rounded to f32 on their way to the joint; the ones tried lose nothing by it.";
+        argued "Torques are rounded to f32 on their way to the joint; the tested torques are exact in f32.";
 
     /// Undamped natural frequencies.
     NATURAL_FREQUENCY: "natural frequency, relative",
@@ -128,7 +128,7 @@ bounds! {
     /// Distance of the steady motion from a pure ellipse.
     ELLIPSE_PURITY: "distance from a pure ellipse, over b_c",
         below 1e-9, was 3.0e-11,
-        argued "The transient has fallen by exp(-0.0323 x 800); what is left is integration error.";
+        argued "The transient has fallen by exp(-0.0323 x 800); the rest is integration error.";
 
     /// Static deflection, gap coordinate and lost motion.
     STATIC: "static deflection, over b_c",
@@ -153,17 +153,17 @@ bounds! {
     /// Poincare points of set P against printed ones.
     POINCARE: "Poincare point of set P, dimensionless",
         below 7.9e-5, was 5.3e-5,
-        since "The expected values are known to four digits after the point, so 5e-5 is theirs.";
+        since "The expected values are known to four digits after the point, which contributes 5e-5.";
 
     /// Tooth phase of planets in and out of phase.
-    TOOTH_PHASE: "deflection of a planet against the one that its tooth phase predicts, over b_c",
+    TOOTH_PHASE: "deflection of a planet against the deflection predicted by its tooth phase, over b_c",
         below 1e-10, was 2.3e-12,
-        argued "Steady state of a linear joint; only integration error and the rest of the transient are left.";
+        argued "Steady state of a linear joint; only integration error and the end of the transient are left.";
 
     /// A motion repeated many turns later.
     MANY_TURNS: "difference of mesh deflections after many turns, over b_c",
         below 1e-9, was 3.7e-11,
-        argued "Coordinates stay within a tooth, so that no digits are lost however far the joint has turned.";
+        argued "Coordinates stay within a tooth, so no digits are lost however far the joint has turned.";
 
     /// Stiffness of the rectangular wave against a projection of its graph.
     RECTANGULAR_WAVE: "stiffness of the rectangular wave, over the mean",
@@ -173,17 +173,17 @@ bounds! {
     /// Motions of the drive train that can be computed by hand.
     DRIVE_TRAIN: "drive train against a figure by hand, relative",
         below 1e-9, was 1.5e-13,
-        argued "Nothing in these motions changes within a part of 10 us.";
+        argued "Nothing in these motions changes within a step of 10 us.";
 
     /// Number of integration steps in a control period of the drive train.
-    DRIVE_TRAIN_PARTS: "link angle with 10 against 40 parts in a control period, over its travel",
+    DRIVE_TRAIN_PARTS: "link angle with 10 against 40 steps in a control period, over its travel",
         below 5.2e-4, was 3.5e-4,
-        since "Friction and cogging follow angles and speeds with a delay of half a part, and rattling planets amplify it.";
+        since "Friction and cogging follow angles and speeds with a delay of half a step, which rattling planets amplify.";
 
     /// Efficiency of the drive train, from the residual acceleration under balanced torques.
-    EFFICIENCY: "efficiency by the acceleration left over",
+    EFFICIENCY: "efficiency by the residual acceleration",
         below 1e-8, was 1.3e-14,
-        argued "The wind-up is damped until nothing rings; the two directions of power differ by 9e-4.";
+        argued "The wind-up is damped until no oscillation is left; the two directions of power differ by 9e-4.";
 
     /// Mesh forces of the two damping laws.
     MESH_FORCE: "mesh force against the law by hand, relative",
@@ -218,17 +218,17 @@ bounds! {
     /// Input integrals against 50 digits.
     PRECISE_INTEGRALS: "input integral against 50 digits, relative, in units of 2^-53 max(1, |A h|)",
         below 2.0, was 0.0,
-        argued "As for the increment.";
+        argued "Integrals and their fixtures are each rounded once, as the increment is.";
 
     /// nalgebra's exponential against precise integration.
     NALGEBRA_EXPONENTIAL: "distance to nalgebra's exponential beyond its own error, in units of 2^-53 max(1, |A h|)",
         below 0.9, was 0.6,
-        since "Its own error, measured against 50 digits, reaches a million units where motion grows before it decays.";
+        since "nalgebra's own error, measured against 50 digits, reaches a million units where motion grows before it decays.";
 
     /// Small increments.
     DIGITS_KEPT: "diagonal of exp(A h) - I, each entry relative to itself",
         below 2.5e-16, was 0.0,
-        argued "Rounded once, and its fixture too.";
+        argued "Result and fixture are each rounded once.";
 
     /// Eqs 1-6, eq. 19 and eq. 20 on one motion.
     FORMULATIONS: "mesh deflections by another formulation, over b_c",
@@ -238,12 +238,12 @@ bounds! {
     /// The reduced model against the full one.
     REDUCED: "entries of the flow of the reduced model against the full one's",
         below 3e-14, was 7.1e-15,
-        argued "Speeds of the coasting rigid body add up over 20.5: one unit of that.";
+        argued "Speeds of the coasting rigid body add up over a step of 20.5; this is one unit of rounding there.";
 
     /// Eigenvalues of H against closed forms.
     CLOSED_FORM: "eigenvalue of H against its closed form",
         below 1e-12, was 6.1e-14,
-        argued "Planet modes are a multiple eigenvalue, which an iteration finds to fewer digits.";
+        argued "Planet modes are a multiple eigenvalue, for which an iteration yields fewer digits.";
 
     /// Published frequencies of the gear that Table 1 is taken from.
     PUBLISHED_FREQUENCY: "natural frequency against the published one, relative",

@@ -31,7 +31,9 @@ pub fn foreign(lock: &str) -> Vec<String> {
     let mut sources = lock.lines().filter_map(source).peekable();
     let first = sources.peek().cloned().unwrap_or_default();
     let foreign = sources.filter(|source| !source.starts_with(REGISTRY) || *source != first);
-    foreign.map(|source| format!("Cargo.lock: a package of {source}\n  mend: one of the registry")).collect()
+    foreign
+        .map(|source| format!("Cargo.lock: a package from {source}\n  help: use a package of the registry"))
+        .collect()
 }
 
 /// Returns true if an SPDX expression permits one of the licences; a slash is an old form of OR.
@@ -87,7 +89,7 @@ pub fn unlicensed(metadata: &Value) -> Vec<String> {
     let judge = |package: &Value| {
         let (name, licence) = (package["name"].as_str()?, package["license"].as_str().unwrap_or("none stated"));
         (!is_allowed(licence))
-            .then(|| format!("{name}: licence {licence}\n  mend: do without it, or allow that licence"))
+            .then(|| format!("{name}: licence {licence}\n  help: remove the dependency, or allow its licence"))
     };
     packages.iter().filter_map(judge).collect()
 }

@@ -28,7 +28,7 @@ impl Graph {
     pub fn new(sources: Sources) -> Self {
         let mut graph = Self { edges: BTreeMap::new(), resolved: 0, unresolved: sources.unread.clone(), sources };
         for at in 0..graph.sources.references.len() {
-            graph.tie(at);
+            graph.add_edges(at);
         }
         graph
     }
@@ -38,14 +38,14 @@ impl Graph {
         format!("{}:{line}", self.sources.files[file].path.display())
     }
 
-    fn tie(&mut self, at: usize) {
+    fn add_edges(&mut self, at: usize) {
         let reference = &self.sources.references[at];
         let Reference { module, file, line, .. } = *reference;
         let named = self.sources.named(module);
         let targets = Resolver::new(&self.sources, module).resolve(module, &reference.path);
         let keyword = matches!(reference.path[0].as_str(), "crate" | "super" | "self");
         if targets.is_empty() && (keyword || reference.place != Place::Tokens) {
-            let text = format!("{}: `{}` is not found", self.place(file, line), reference.path.join("::"));
+            let text = format!("{}: `{}` does not resolve", self.place(file, line), reference.path.join("::"));
             self.unresolved.push(text);
         }
         self.resolved +=
@@ -90,7 +90,7 @@ impl Graph {
 }
 
 /// Strongly connected groups of the nodes `0..count`.
-pub fn circles(count: usize, edges: impl Iterator<Item = (usize, usize)>) -> Vec<Vec<usize>> {
+pub fn cycles(count: usize, edges: impl Iterator<Item = (usize, usize)>) -> Vec<Vec<usize>> {
     let mut next = vec![vec![]; count];
     edges.for_each(|(from, to)| next[from].push(to));
     let reach: Vec<Vec<bool>> = (0..count)
@@ -112,6 +112,6 @@ pub fn circles(count: usize, edges: impl Iterator<Item = (usize, usize)>) -> Vec
     (0..count)
         .filter(|&first| !(0..first).any(|earlier| together(earlier, first)))
         .map(group)
-        .filter(|circle| circle.len() > 1)
+        .filter(|cycle| cycle.len() > 1)
         .collect()
 }

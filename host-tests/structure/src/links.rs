@@ -122,18 +122,18 @@ pub fn broken(pages: &Pages, exists: impl Fn(&Path) -> bool) -> Vec<String> {
             let place = format!("{}:{line}", path.display());
             let target = if file.is_empty() { Some(path.clone()) } else { beside(path, &file) };
             let Some(target) = target.filter(|target| exists(target)) else {
-                found.push(format!("{place}: the link to `{file}` leads nowhere\n  mend: name where it is now"));
+                found.push(format!("{place}: broken link to `{file}`\n  help: link the file where it is now"));
                 continue;
             };
             if path.starts_with(BOOK) && !target.starts_with(BOOK) {
-                let mend = "name the file in backquotes, without a link";
-                found.push(format!("{place}: the link to `{file}` leads out of the book\n  mend: {mend}"));
+                let help = "name the file in backquotes, without a link";
+                found.push(format!("{place}: the link to `{file}` leaves the book\n  help: {help}"));
             }
             let Some(heading) = heading else { continue };
             let known = pages.get(&target).map(|page| headings(page)).unwrap_or_default();
             if !known.contains(&heading) {
                 let (target, known) = (target.display(), known.join(", "));
-                found.push(format!("{place}: {target} has no heading `{heading}`\n  mend: one of {known}"));
+                found.push(format!("{place}: {target} has no heading `{heading}`\n  help: use one of {known}"));
             }
         }
     }
@@ -147,5 +147,5 @@ pub fn unlisted(pages: &Pages) -> Vec<String> {
     let listed: Vec<PathBuf> = listed.iter().filter_map(|link| beside(summary, &link.file)).collect();
     let of_book = pages.keys().filter(|path| path.starts_with(BOOK) && *path != summary);
     let left_out = of_book.filter(|path| !listed.contains(path));
-    left_out.map(|path| format!("{} is not in {SUMMARY}\n  mend: give it a line there", path.display())).collect()
+    left_out.map(|path| format!("{} is not in {SUMMARY}\n  help: add a line there", path.display())).collect()
 }

@@ -120,19 +120,19 @@ impl Workspace {
     /// nothing.
     pub fn independence(&self, name: &str, other: &str) -> Vec<String> {
         if self.member(name).is_none() || self.member(other).is_none() {
-            return vec![format!("there is no crate {name} or no crate {other}: name them as they are called now")];
+            return vec![format!("no crate {name} or no crate {other}; help: use their present names in this test")];
         }
-        let mut ways = vec![vec![name.to_string()]];
+        let mut paths_to_try = vec![vec![name.to_string()]];
         let mut seen = BTreeSet::new();
-        while let Some(way) = ways.pop() {
-            let last = way.last().expect("a way has a start");
+        while let Some(dependency_path) = paths_to_try.pop() {
+            let last = dependency_path.last().expect("a way has a start");
             if last == other {
-                return vec![format!("{name} must stand without {other}, but depends on it: {}", way.join(" -> "))];
+                return vec![format!("{name} must not depend on {other}, but does: {}", dependency_path.join(" -> "))];
             }
             for (next, kind) in self.member(last).map_or(&[][..], |member| &member.imports) {
                 // Tests of a dependency are not in the tree.
                 if (*kind != Kind::Tests || last == name) && seen.insert(next.clone()) {
-                    ways.push([way.clone(), vec![next.clone()]].concat());
+                    paths_to_try.push([dependency_path.clone(), vec![next.clone()]].concat());
                 }
             }
         }
@@ -149,8 +149,8 @@ impl Workspace {
     }
 
     /// Crates that depend on the command; even tests use the crates below it instead.
-    pub fn imports_of_the_command(&self, command: &str) -> Vec<String> {
-        let help = "move what is needed into the crate that it belongs to, below the command";
+    pub fn command_imports(&self, command: &str) -> Vec<String> {
+        let help = "move the needed code into a crate below the command";
         self.forbidden(|_, _| true, |other| other.name == command, help)
     }
 

@@ -64,9 +64,7 @@ pub fn differences(page: &str, workspace: &Workspace, exists: impl Fn(&Path) -> 
     for Row { name, may_import, open_first, line } in &rows {
         let place = format!("ARCHITECTURE.md:{line}");
         if workspace.member(name).is_none() {
-            found.push(format!(
-                "{place}: `{name}` is no crate of the workspace\n  help: remove the row or name it anew"
-            ));
+            found.push(format!("{place}: `{name}` is no crate of the workspace\n  help: remove or rename the row"));
         }
         if rows.iter().any(|row| row.name == *name && row.line < *line) {
             found.push(format!("{place}: `{name}` has a row already\n  help: remove one"));
@@ -80,7 +78,7 @@ pub fn differences(page: &str, workspace: &Workspace, exists: impl Fn(&Path) -> 
     }
     for member in &workspace.members {
         let Some(row) = rows.iter().find(|row| row.name == member.name) else {
-            found.push(format!("ARCHITECTURE.md has no row for `{}`\n  help: say there what it is", member.name));
+            found.push(format!("ARCHITECTURE.md has no row for `{}`\n  help: add one", member.name));
             continue;
         };
         for (other, kind) in &member.imports {
@@ -88,7 +86,7 @@ pub fn differences(page: &str, workspace: &Workspace, exists: impl Fn(&Path) -> 
             if !row.may_import.iter().any(allows) {
                 let manifest = member.folder.join("Cargo.toml");
                 let (manifest, section, line) = (manifest.display(), kind.section(), row.line);
-                let help = "drop the dependency, or move what is needed to where it may be imported from";
+                let help = "remove the dependency, or move the needed code into a crate that may be imported";
                 let text = format!("{manifest}: {other} in [{section}] is not allowed by ARCHITECTURE.md:{line}");
                 found.push(format!("{text}\n  help: {help}"));
             }
@@ -102,5 +100,5 @@ pub fn missing(page: &str, exists: impl Fn(&Path) -> bool) -> Vec<String> {
     let quoted = page.lines().flat_map(|line| line.split('`').skip(1).step_by(2));
     let is_place = |text: &&str| text.contains('/') && !text.contains([' ', '*', '<', '$', '(']);
     let lost = quoted.filter(is_place).filter(|place| !exists(Path::new(place)));
-    lost.map(|place| format!("the page names `{place}`, which is not there\n  help: name where it is now")).collect()
+    lost.map(|place| format!("the page names `{place}`, which does not exist\n  help: use its present path")).collect()
 }

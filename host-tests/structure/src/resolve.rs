@@ -1,6 +1,6 @@
 //! Resolution of a path as by the compiler: through modules, renamed imports, re-exports and globs, to the item where it is defined.
 
-use crate::sources::{Binding, Import, Item, Sources, What};
+use crate::sources::{Binding, Import, Item, Meaning, Sources};
 
 /// Meaning of a path.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,11 +37,11 @@ impl<'a> Resolver<'a> {
                     let found = self.lookup(module, name);
                     let here = &self.sources.modules[module];
                     if found.is_empty() && here.generated {
-                        return vec![Target::Item(Item { holds: true, ..Item::at(name, here.file, module) })];
+                        return vec![Target::Item(Item { is_container: true, ..Item::at(name, here.file, module) })];
                     }
                     found
                 }
-                Target::Item(item) if item.holds => vec![Target::Item(item)],
+                Target::Item(item) if item.is_container => vec![Target::Item(item)],
                 Target::Item(_) => vec![],
                 Target::Foreign => vec![Target::Foreign],
             };
@@ -61,7 +61,7 @@ impl<'a> Resolver<'a> {
             name => {
                 let mut found = self.in_scope(module, name);
                 // A function does not hide a crate of the same name at the start of a longer path.
-                if path.len() > 1 && found.iter().all(|it| matches!(it, Target::Item(item) if !item.holds)) {
+                if path.len() > 1 && found.iter().all(|it| matches!(it, Target::Item(item) if !item.is_container)) {
                     found = vec![Target::Foreign];
                 }
                 (found, &path[1..])
@@ -94,9 +94,9 @@ impl<'a> Resolver<'a> {
         while let Some(parent) = self.sources.modules[module].parent {
             module = parent;
             let here = self.sources.modules[module].names.get(name);
-            for Binding { what, .. } in here.into_iter().flatten() {
-                match what {
-                    What::Item(item) if item.is_macro => return vec![Target::Item(item.clone())],
+            for Binding { meaning, .. } in here.into_iter().flatten() {
+                match meaning {
+                    Meaning::Item(item) if item.is_macro => return vec![Target::Item(item.clone())],
                     _ => {}
                 }
             }
@@ -124,7 +124,7 @@ impl<'a> Resolver<'a> {
             }
             for target in self.import(module, glob) {
                 match target {
-                    Target::Module(within) => found.extend(self.once(glob, name, |it| it.lookup(within, name))),
+                    Target::Module(within) => found.extend(self.follow_once(glob, name, |it| it.lookup(within, name))),
                     Target::Item(item) if item.variants.iter().any(|it| it == name) => found.push(Target::Item(item)),
                     Target::Item(_) => {}
                     Target::Foreign => foreign.push(Target::Foreign),
@@ -139,7 +139,7 @@ impl<'a> Resolver<'a> {
     }
 
     /// Follows an import, unless it is in progress.
-    fn once<T>(&mut self, import: &Import, name: &str, follow: impl FnOnce(&mut Self) -> Vec<T>) -> Vec<T> {
+    fn follow_once<T>(&mut self, import: &Import, name: &str, follow: impl FnOnce(&mut Self) -> Vec<T>) -> Vec<T> {
         let step = (import.id, name.to_string());
         if self.following.contains(&step) {
             return vec![];
@@ -151,15 +151,15 @@ impl<'a> Resolver<'a> {
     }
 
     fn follow(&mut self, module: usize, binding: &Binding) -> Vec<Target> {
-        match &binding.what {
-            What::Module(module) => vec![Target::Module(*module)],
-            What::Item(item) => vec![Target::Item(item.clone())],
-            What::Import(import) => self.import(module, import),
+        match &binding.meaning {
+            Meaning::Module(module) => vec![Target::Module(*module)],
+            Meaning::Item(item) => vec![Target::Item(item.clone())],
+            Meaning::Import(import) => self.import(module, import),
         }
     }
 
     fn import(&mut self, module: usize, import: &Import) -> Vec<Target> {
-        self.once(import, "", |it| {
+        self.follow_once(import, "", |it| {
             // An import sees the private names of its own module.
             let from = std::mem::replace(&mut it.from, module);
             let found = it.resolve(module, &import.path);
@@ -181,7 +181,7 @@ impl<'a> Resolver<'a> {
             if glob.public || self.sees(module) {
                 for target in self.import(module, glob) {
                     if let Target::Module(within) = target {
-                        found.extend(self.once(glob, "*", |it| it.all(within)));
+                        found.extend(self.follow_once(glob, "*", |it| it.all(within)));
                     }
                 }
             }

@@ -3,20 +3,20 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use crate::graph::{Graph, Names, circles};
+use crate::graph::{Graph, Names, cycles};
 
 /// Number of nodes, and the node of a file, if any.
 type Nodes<'a> = (usize, &'a dyn Fn(usize) -> Option<usize>);
 
 /// Cycles of files, with their edges and a place to cut.
-pub fn file_circles(graph: &Graph) -> Vec<String> {
-    let title = |circle: &[usize]| format!("{} files import one another", circle.len());
-    all_circles(graph, (graph.sources.files.len(), &Some), title)
+pub fn file_cycles(graph: &Graph) -> Vec<String> {
+    let title = |cycle: &[usize]| format!("{} files import one another", cycle.len());
+    all_cycles(graph, (graph.sources.files.len(), &Some), title)
 }
 
 /// Cycles of folders, at every level: `foo.rs` and the files in `foo/` are one node, and the file of the folder itself (`mod.rs`, the root)
 /// is none.
-pub fn folder_circles(graph: &Graph) -> Vec<String> {
+pub fn folder_cycles(graph: &Graph) -> Vec<String> {
     let files = &graph.sources.files;
     let folders: BTreeSet<&Path> = files.iter().flat_map(|file| file.path.ancestors().skip(1)).collect();
     let mut found = vec![];
@@ -29,11 +29,11 @@ pub fn folder_circles(graph: &Graph) -> Vec<String> {
         let names: BTreeSet<PathBuf> = (0..files.len()).filter_map(name).collect();
         let names: Vec<PathBuf> = names.into_iter().collect();
         let node = |file| name(file).map(|name| names.binary_search(&name).expect("it is among all"));
-        let title = |circle: &[usize]| {
-            let names: Vec<String> = circle.iter().map(|&node| names[node].display().to_string()).collect();
+        let title = |cycle: &[usize]| {
+            let names: Vec<String> = cycle.iter().map(|&node| names[node].display().to_string()).collect();
             format!("in {}/, {} import one another", folder.display(), names.join(", "))
         };
-        found.extend(all_circles(graph, (names.len(), &node), title));
+        found.extend(all_cycles(graph, (names.len(), &node), title));
     }
     found
 }
@@ -56,20 +56,20 @@ fn line(graph: &Graph, (from, to): (usize, usize), names: &Names) -> String {
 }
 
 /// Every cycle with all its edges and the cheapest cut.
-fn all_circles(graph: &Graph, (count, node): Nodes, title: impl Fn(&[usize]) -> String) -> Vec<String> {
+fn all_cycles(graph: &Graph, (count, node): Nodes, title: impl Fn(&[usize]) -> String) -> Vec<String> {
     let pair = |edge: &(usize, usize)| Some((node(edge.0)?, node(edge.1)?)).filter(|(from, to)| from != to);
     let all = graph.edges.keys().filter_map(pair);
-    let text = |circle: Vec<usize>| {
+    let text = |cycle: Vec<usize>| {
         let mut ties: BTreeMap<(usize, usize), Vec<(usize, usize)>> = BTreeMap::new();
         for edge in graph.edges.keys() {
-            if let Some(pair) = pair(edge).filter(|(from, to)| circle.contains(from) && circle.contains(to)) {
+            if let Some(pair) = pair(edge).filter(|(from, to)| cycle.contains(from) && cycle.contains(to)) {
                 ties.entry(pair).or_default().push(*edge);
             }
         }
         let lines = ties.values().flatten().map(|edge| format!("\n    {}", line(graph, *edge, &graph.edges[edge])));
-        format!("{}{}\n  help: {}", title(&circle), lines.collect::<String>(), cut(graph, count, &ties))
+        format!("{}{}\n  help: {}", title(&cycle), lines.collect::<String>(), cut(graph, count, &ties))
     };
-    circles(count, all).into_iter().map(text).collect()
+    cycles(count, all).into_iter().map(text).collect()
 }
 
 /// Cheapest cut among all ties between two nodes: the one that leaves the least of the cycle; then rather a child's import from its parent
@@ -79,7 +79,7 @@ fn cut(graph: &Graph, count: usize, ties: &BTreeMap<(usize, usize), Vec<(usize, 
         edges.iter().flat_map(|edge| graph.edges[edge].keys()).map(String::as_str).collect()
     };
     let cost = |(tie, edges): &(&(usize, usize), &Vec<(usize, usize)>)| {
-        let left = circles(count, ties.keys().copied().filter(|other| other != *tie));
+        let left = cycles(count, ties.keys().copied().filter(|other| other != *tie));
         let down =
             edges.iter().any(|&(from, to)| !is_above(&graph.sources.files[to].path, &graph.sources.files[from].path));
         (left.iter().map(Vec::len).sum::<usize>(), down, names(edges).len())
@@ -91,7 +91,7 @@ fn cut(graph: &Graph, count: usize, ties: &BTreeMap<(usize, usize), Vec<(usize, 
     };
     let (from, to) = (edges.iter().map(|edge| edge.0).collect(), edges.iter().map(|edge| edge.1).collect());
     let (names, from, to) = (names(edges).into_iter().collect::<Vec<_>>().join(", "), files(from), files(to));
-    format!("move {names} out of {to} into a file of its own that both sides import, or out of reach of {from}")
+    format!("move {names} from {to} into a separate file that both sides import, or remove its use in {from}")
 }
 
 /// Returns true if the module of the file `above` contains the module of `file`.

@@ -37,7 +37,7 @@ pub fn sizes(member: &Member, graphs: &[(String, Graph)]) -> BTreeMap<String, us
 /// Crates and subjects above the limit.
 pub fn too_large(sizes: &BTreeMap<String, usize>) -> Vec<String> {
     let text = |(name, lines): (&String, &usize)| {
-        format!("{name} has {lines} lines, more than {LIMIT}\n  help: make a crate of its own of a subject in it")
+        format!("{name} has {lines} lines, more than {LIMIT}\n  help: move a subject into a crate of its own")
     };
     sizes.iter().filter(|(_, lines)| **lines > LIMIT).map(text).collect()
 }

@@ -58,12 +58,12 @@ pub struct Binding {
     /// Visible outside its module and the modules within.
     pub public: bool,
     /// Meaning of the name.
-    pub what: What,
+    pub meaning: Meaning,
 }
 
 /// Meaning of a bound name.
 #[derive(Clone)]
-pub enum What {
+pub enum Meaning {
     /// A module.
     Module(usize),
     /// A type, function, constant, trait or macro, defined here.
@@ -82,7 +82,7 @@ pub struct Item {
     /// Module of the definition.
     pub module: usize,
     /// True if the name can stand before `::`.
-    pub holds: bool,
+    pub is_container: bool,
     /// Variants of an enum.
     pub variants: Vec<String>,
     /// True for a trait, whose methods are used without its name.
@@ -94,7 +94,15 @@ pub struct Item {
 impl Item {
     /// Item with its location only.
     pub fn at(name: &str, file: usize, module: usize) -> Self {
-        Self { name: name.to_string(), file, module, holds: false, variants: vec![], is_trait: false, is_macro: false }
+        Self {
+            name: name.to_string(),
+            file,
+            module,
+            is_container: false,
+            variants: vec![],
+            is_trait: false,
+            is_macro: false,
+        }
     }
 }
 
@@ -214,15 +222,15 @@ impl Walk<'_> {
         self.file = outer;
     }
 
-    fn bind(&mut self, name: &syn::Ident, public: bool, what: What) {
+    fn bind(&mut self, name: &syn::Ident, public: bool, meaning: Meaning) {
         let names = &mut self.sources.modules[self.module].names;
-        names.entry(name.unraw().to_string()).or_default().push(Binding { public, what });
+        names.entry(name.unraw().to_string()).or_default().push(Binding { public, meaning });
     }
 
     fn bind_item(&mut self, name: &syn::Ident, visibility: &syn::Visibility, describe: impl FnOnce(&mut Item)) {
         let mut item = Item::at(&name.unraw().to_string(), self.file, self.module);
         describe(&mut item);
-        self.bind(name, is_public(visibility), What::Item(item));
+        self.bind(name, is_public(visibility), Meaning::Item(item));
     }
 
     fn refer(&mut self, path: Vec<String>, at: Span, place: Place) {
@@ -262,7 +270,7 @@ impl<'ast> Visit<'ast> for Walk<'_> {
         module.attrs.iter().for_each(|attribute| self.visit_attribute(attribute));
         let name = module.ident.unraw().to_string();
         let child = self.child(false);
-        self.bind(&module.ident, is_public(&module.vis), What::Module(child));
+        self.bind(&module.ident, is_public(&module.vis), Meaning::Module(child));
         let (folder, inline, test, file) = (self.folder.clone(), self.inline, self.test, self.file);
         self.test |= module.attrs.iter().any(is_for_tests);
         let design = self.sources.files[file].design || name == "design";
@@ -300,7 +308,7 @@ impl<'ast> Visit<'ast> for Walk<'_> {
         for leaf in tokens::leaves(start, &item.tree) {
             let import = Import { id: self.sources.references.len(), path: leaf.path.clone(), public };
             match leaf.name {
-                Some(name) => self.bind(&name, public, What::Import(import)),
+                Some(name) => self.bind(&name, public, Meaning::Import(import)),
                 None if leaf.glob => self.sources.modules[self.module].globs.push(import),
                 None => {}
             }
@@ -340,15 +348,15 @@ impl<'ast> Visit<'ast> for Walk<'_> {
 
     fn visit_item(&mut self, item: &'ast syn::Item) {
         match item {
-            syn::Item::Struct(it) => self.bind_item(&it.ident, &it.vis, |item| item.holds = true),
-            syn::Item::Union(it) => self.bind_item(&it.ident, &it.vis, |item| item.holds = true),
-            syn::Item::Type(it) => self.bind_item(&it.ident, &it.vis, |item| item.holds = true),
+            syn::Item::Struct(it) => self.bind_item(&it.ident, &it.vis, |item| item.is_container = true),
+            syn::Item::Union(it) => self.bind_item(&it.ident, &it.vis, |item| item.is_container = true),
+            syn::Item::Type(it) => self.bind_item(&it.ident, &it.vis, |item| item.is_container = true),
             syn::Item::Enum(it) => self.bind_item(&it.ident, &it.vis, |item| {
-                item.holds = true;
+                item.is_container = true;
                 item.variants = it.variants.iter().map(|variant| variant.ident.unraw().to_string()).collect();
             }),
             syn::Item::Trait(it) => self.bind_item(&it.ident, &it.vis, |item| {
-                item.holds = true;
+                item.is_container = true;
                 item.is_trait = true;
             }),
             syn::Item::Const(it) => self.bind_item(&it.ident, &it.vis, |_| ()),

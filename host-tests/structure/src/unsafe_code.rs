@@ -41,10 +41,10 @@ pub fn differences(page: &str, found: &BTreeMap<PathBuf, usize>) -> Vec<String> 
     for (file, count) in found {
         let name = file.display();
         match listed.get(file) {
-            None => out.push(format!("{name}: `unsafe` {count} times\n  mend: do without, or give it a row in {PAGE}")),
+            None => out.push(format!("{name}: `unsafe` {count} times\n  help: remove it, or add a row to {PAGE}")),
             Some((said, _)) if said != count => {
                 out.push(format!(
-                    "{name}: `unsafe` {count} times, {PAGE} says {said}\n  mend: the row, and its reason"
+                    "{name}: `unsafe` {count} times, {PAGE} says {said}\n  help: correct the row and its reason"
                 ));
             }
             Some((_, why)) if why.len() < 10 => out.push(format!("{PAGE}: {name} has no reason")),
@@ -52,7 +52,7 @@ pub fn differences(page: &str, found: &BTreeMap<PathBuf, usize>) -> Vec<String> 
         }
     }
     let gone = listed.keys().filter(|file| !found.contains_key(*file));
-    out.extend(gone.map(|file| format!("{PAGE}: {} has no `unsafe`\n  mend: take the row out", file.display())));
+    out.extend(gone.map(|file| format!("{PAGE}: {} has no `unsafe`\n  help: remove the row", file.display())));
     out
 }
 
@@ -70,7 +70,7 @@ pub fn unforbidden(page: &str, manifests: &[(PathBuf, String)]) -> Vec<String> {
         let name = folder.components().as_path().display();
         match (excused.contains(&folder), forbids) {
             (false, false) => {
-                Some(format!("{name}/Cargo.toml: `unsafe` is not forbidden\n  mend: [lints] workspace = true"))
+                Some(format!("{name}/Cargo.toml: `unsafe` is not forbidden\n  help: add [lints] workspace = true"))
             }
             (true, true) => Some(format!("{name}/Cargo.toml forbids what {PAGE} lists")),
             _ => None,

@@ -27,7 +27,7 @@ fn at_rest() -> Command<f32> {
 
 /// Torque stays within the limit for any non-finite or huge input, and full trust returns afterwards.
 #[test]
-fn no_input_makes_a_torque_that_is_none_or_too_large() {
+fn bad_input_keeps_torque_within_limit() {
     let tables =
         design_compensation::<f32>(&q1(), &compensation_settings(&DriveTrainParameters::q1().surroundings, 60.0))
             .expect("sound");
@@ -71,7 +71,7 @@ fn no_input_makes_a_torque_that_is_none_or_too_large() {
 
 /// Without a valid gap the compensation hands over to plain control.
 #[test]
-fn a_gap_that_cannot_be_seen_leaves_plain_control() {
+fn invalid_gap_leaves_plain_control() {
     let tables =
         design_compensation::<f32>(&q1(), &compensation_settings(&DriveTrainParameters::q1().surroundings, 60.0))
             .expect("sound");
@@ -90,7 +90,7 @@ fn a_gap_that_cannot_be_seen_leaves_plain_control() {
 
 /// A setting that allows no gain is rejected with an error that names it.
 #[test]
-fn settings_that_no_gain_can_be_made_from_are_refused_with_the_mend() {
+fn unsound_settings_are_rejected_by_name() {
     let refusal = |change: fn(&mut CompensationSettings)| {
         let mut settings = compensation_settings(&DriveTrainParameters::q1().surroundings, 60.0);
         change(&mut settings);

@@ -31,7 +31,7 @@ use scenario::run_history::RunHistory;
 use scenario::suite::{Test, from_text};
 
 /// Time limit of a run, which takes seconds.
-const LONGEST: Duration = Duration::from_secs(3600);
+const RUN_TIME_MAX: Duration = Duration::from_secs(3600);
 
 /// Test of `hil/` by name, unchanged.
 fn shipped(name: &str) -> Test {
@@ -52,9 +52,9 @@ fn changed(name: &str, above: &str, below: &str) -> Test {
 fn case_of(test: &Test, seed: u64, joint: &JointParameters, train: &DriveTrainParameters) -> Case {
     let mut case = test.case(seed).expect("a case of the test");
     let mut train = train.clone();
-    let of_file = &case.train.surroundings;
-    train.surroundings.load_friction.coulomb = of_file.load_friction.coulomb;
-    train.surroundings.gravity_torque = of_file.gravity_torque;
+    let file_surroundings = &case.train.surroundings;
+    train.surroundings.load_friction.coulomb = file_surroundings.load_friction.coulomb;
+    train.surroundings.gravity_torque = file_surroundings.gravity_torque;
     case.truth.parameters = joint.clone();
     case.nominal = joint.clone();
     for mesh in [&mut case.nominal.sun_planet, &mut case.nominal.ring_planet] {
@@ -77,7 +77,7 @@ fn run(test: &Test, seed: u64, controller: ControllerName) -> RunHistory {
 
 /// Runs a controller through a test on a given case.
 fn run_in(test: &Test, case: &Case, seed: u64, spec: RunSpec) -> RunHistory {
-    execute(&test.file, case, seed, spec, Instant::now() + LONGEST).expect("the test runs")
+    execute(&test.file, case, seed, spec, Instant::now() + RUN_TIME_MAX).expect("the test runs")
 }
 
 fn on_reference(controller: ControllerName) -> RunSpec {

@@ -10,7 +10,7 @@ use reference::scenarios::q1;
 const LIMIT: f32 = 2.5;
 
 /// Motor speed at rest that makes its damper ask for the torque limit [rad/s].
-const SLOWER: f32 = 10.0;
+const DAMPER_LIMIT_SPEED: f32 = 10.0;
 
 /// Estimates of a joint whose link is not observed, with the motor at its set-point and at some speed [rad/s].
 fn estimates(motor_speed: f32) -> Estimates<f32> {
@@ -24,7 +24,7 @@ fn estimates(motor_speed: f32) -> Estimates<f32> {
 }
 
 /// Torque at rest [N m] after a number of disturbances of the motor to either side, three times as fast to one side as to the other.
-fn torque_after_throws(throws: usize) -> f32 {
+fn torque_after_disturbances(disturbances: usize) -> f32 {
     let tables =
         design_compensation::<f32>(&q1(), &compensation_settings(&DriveTrainParameters::q1().surroundings, 60.0))
             .expect("sound");
@@ -35,8 +35,9 @@ fn torque_after_throws(throws: usize) -> f32 {
         assert_eq!(output.stage, Stage::Plain);
         output.torque
     };
-    for throw in 0..throws {
-        let (speed, side) = if throw % 2 == 0 { (SLOWER, -1.0) } else { (-3.0 * SLOWER, 1.0) };
+    for disturbance in 0..disturbances {
+        let (speed, side) =
+            if disturbance % 2 == 0 { (DAMPER_LIMIT_SPEED, -1.0) } else { (-3.0 * DAMPER_LIMIT_SPEED, 1.0) };
         let torques = [(); 20].map(|()| step(speed));
         assert!(torques.iter().all(|torque| torque * side > 0.9 * LIMIT), "to the limit: {torques:?}");
     }
@@ -45,9 +46,9 @@ fn torque_after_throws(throws: usize) -> f32 {
 
 /// Torque cut off by the limit during an oscillation does not wind up the integral.
 #[test]
-fn what_the_limits_cut_off_a_torque_that_swings_does_not_move_the_motor_aside() {
+fn limited_oscillation_does_not_wind_up() {
     // Torque cut off before the oscillation is detected does count.
-    let [few, many] = [2, 40].map(torque_after_throws);
+    let [few, many] = [2, 40].map(torque_after_disturbances);
     println!("{few} and {many} N m");
     assert!(few.abs() < 0.5 * LIMIT, "{few} N m");
     assert!((many - few).abs() < 0.01 * LIMIT, "{many} N m in place of {few}");

@@ -53,7 +53,7 @@ fn any_encoder_zeros_hold_still() {
 
 /// A link that turns at 1 rad/s at power-up is caught with at most 1.1 times PID's peak.
 #[test]
-fn a_turning_joint_is_caught() {
+fn turning_joint_is_caught() {
     for joint in JOINTS {
         let test = hold(joint, "");
         for seed in 710..712 {
@@ -65,7 +65,7 @@ fn a_turning_joint_is_caught() {
 
 /// An output encoder that falls silent while the joint rests leaves the link in place.
 #[test]
-fn output_silent_at_rest_holds_still() {
+fn silent_output_at_rest_holds_still() {
     let lost = "[[fault]]\nkind = \"lost_frames\"\nframes = \"output\"\nshare = 1\nstart_s = 3\nend_s = 5";
     for joint in JOINTS {
         let test = hold(joint, lost);
@@ -79,7 +79,7 @@ fn output_silent_at_rest_holds_still() {
 
 /// Before its first reading the angle of the link is unknown, so the torque is zero.
 #[test]
-fn output_late_at_power_up_waits() {
+fn late_output_at_power_up_waits() {
     let late = "[[fault]]\nkind = \"lost_frames\"\nframes = \"output\"\nshare = 1\nstart_s = 0\nend_s = 0.1";
     for joint in JOINTS {
         for seed in 730..732 {

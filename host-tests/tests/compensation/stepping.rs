@@ -15,7 +15,7 @@ const LOST_MOTION: f64 = 3.78e-3;
 
 /// The link moves alike with fixed and adaptive steps.
 #[test]
-fn fixed_steps_move_the_joint_as_adaptive_ones_do() {
+fn fixed_steps_match_adaptive_steps() {
     let (mut test, seed) = (shipped("t2"), 131);
     test.file.duration = 1.5;
     let case = test.case(seed).expect("a case of the test");

@@ -1,7 +1,7 @@
 //! Estimated width in steps between two places under the compensation, whose soft landings carry little information. Motions under a plain
 //! motor controller are in the observer's tests.
 
-use host_tests::tolerance::observer::{WIDTH_AFTER_STEPS, WIDTH_IN_STEPS, WIDTH_IN_STEPS_WORST};
+use host_tests::tolerance::observer::{WIDTH_FROM_STEPS, WIDTH_FROM_STEPS_WORST, WIDTH_TIME_IN_STEPS};
 use scenario::controller::ControllerName::NoPreview;
 use scenario::random::NumberOrRange;
 
@@ -13,7 +13,7 @@ const CASES: [(f64, f64, u64); 7] =
 
 /// Steps between two places suffice to estimate the half-backlash to 5 %.
 #[test]
-fn steps_between_two_places_show_the_width() {
+fn steps_reveal_the_width() {
     let mut squares = 0.0;
     for (half_backlash, guess, seed) in CASES {
         let mut test = changed("steps-no-preview", "", &format!("[known]\nmesh.half_backlash_um = {half_backlash}"));
@@ -31,9 +31,9 @@ fn steps_between_two_places_show_the_width() {
         println!(
             "{half_backlash} um, guess {guess}, seed {seed}: {width:+.4}, right after {right_after} s of motion in contact"
         );
-        WIDTH_IN_STEPS_WORST.check(width);
-        WIDTH_AFTER_STEPS.check(right_after);
+        WIDTH_FROM_STEPS_WORST.check(width);
+        WIDTH_TIME_IN_STEPS.check(right_after);
         squares += width * width;
     }
-    WIDTH_IN_STEPS.check((squares / CASES.len() as f64).sqrt());
+    WIDTH_FROM_STEPS.check((squares / CASES.len() as f64).sqrt());
 }

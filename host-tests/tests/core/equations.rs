@@ -57,7 +57,7 @@ fn largest(matrix: &DMatrix<f64>) -> f64 {
 
 /// Stiffness and damping matrices equal eq. 19 with its misprint corrected.
 #[test]
-fn the_derived_matrices_are_those_of_equation_19_corrected() {
+fn matrices_equal_corrected_equation_19() {
     for planets in 3..=5 {
         let joint = joint(planets);
         let scales = Scales::new(&joint);
@@ -77,7 +77,7 @@ fn the_derived_matrices_are_those_of_equation_19_corrected() {
 
 /// The printed second row would couple the rigid body: the derivation has a sum over planets there.
 #[test]
-fn without_the_lost_sum_the_rigid_body_would_not_be_decoupled() {
+fn printed_row_couples_the_rigid_body() {
     // The printed row two takes K_rp of one planet: for three planets a third of the derived value.
     let joint = joint(3);
     let dynamics = Dynamics::new(&joint, &Scales::new(&joint));
@@ -87,7 +87,7 @@ fn without_the_lost_sum_the_rigid_body_would_not_be_decoupled() {
 
 /// The Hamiltonian form has the same flow as positions and rates.
 #[test]
-fn the_hamiltonian_flow_is_the_flow_of_positions_and_rates() {
+fn hamiltonian_flow_equals_direct_flow() {
     let joint = joint(3);
     let dynamics = Dynamics::new(&joint, &Scales::new(&joint));
     let size = dynamics.coordinates();
@@ -105,7 +105,7 @@ fn the_hamiltonian_flow_is_the_flow_of_positions_and_rates() {
 
 /// Oracle 2: damped eigenvalues of the paper's joint without backlash and ripple.
 #[test]
-fn eigenvalues_of_h_are_those_known_for_the_paper_s_joint() {
+fn paper_joint_has_known_eigenvalues() {
     let joint = scenarios::paper_joint(0.0, 0.0, 0.0, 1.0);
     let dynamics = Dynamics::new(&joint, &Scales::new(&joint));
     let mut found: Vec<(f64, f64)> = hamiltonian::matrix(&dynamics)

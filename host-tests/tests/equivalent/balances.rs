@@ -17,7 +17,7 @@ fn bodies(joint: &JointParameters) -> (f64, f64, f64) {
 
 /// Momentum changes by the external torques alone, in core and reference.
 #[test]
-fn momentum_grows_by_the_torques_alone() {
+fn momentum_follows_the_torques() {
     for seed in 0..30 {
         let motion = motion(seed, 20_000);
         let (motor, link, ratio) = bodies(&motion.joint);
@@ -43,7 +43,7 @@ fn momentum_grows_by_the_torques_alone() {
 
 /// Energy of the reference equals the net work done on it.
 #[test]
-fn the_reference_keeps_the_books_of_energy() {
+fn reference_energy_balances() {
     for seed in 0..30 {
         let motion = motion(seed, 20_000);
         let gear = motion.joint.equivalent_gear().expect("an equivalent gear");
@@ -67,7 +67,7 @@ fn the_reference_keeps_the_books_of_energy() {
 
 /// An undamped gear keeps its energy and a damped gear gains none.
 #[test]
-fn an_undamped_gear_keeps_its_energy_and_a_damped_one_never_gains_any() {
+fn free_gear_gains_no_energy() {
     for seed in 0..30 {
         let mut motion = motion(seed, 20_000);
         for damping_ratio in [0.0, 0.1] {
@@ -94,13 +94,13 @@ fn an_undamped_gear_keeps_its_energy_and_a_damped_one_never_gains_any() {
                 0.5 * reduced * rate * rate + 0.5 * gear.stiffness * beyond * beyond
             };
             let first = energy(&model);
-            let (mut least, mut most) = (first, first);
+            let (mut least, mut greatest) = (first, first);
             for _ in 0..4000 {
                 model.step(Torques { drive: 0.0, load: 0.0 });
                 let now = energy(&model);
-                (least, most) = (least.min(now), most.max(now));
+                (least, greatest) = (least.min(now), greatest.max(now));
             }
-            equivalent::ENERGY_GAINED.check(most / first - 1.0);
+            equivalent::ENERGY_GAINED.check(greatest / first - 1.0);
             if damping_ratio == 0.0 {
                 equivalent::ENERGY_LOST.check(1.0 - least / first);
             }
@@ -110,7 +110,7 @@ fn an_undamped_gear_keeps_its_energy_and_a_damped_one_never_gains_any() {
 
 /// The contact force pushes on either flank and is zero between them.
 #[test]
-fn the_contact_pushes_and_never_pulls() {
+fn contact_never_pulls() {
     for seed in 0..20 {
         let motion = motion(seed, 20_000);
         let mut reference = Reference::new(&motion.joint).expect("a sound joint");

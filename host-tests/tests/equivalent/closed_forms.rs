@@ -52,7 +52,7 @@ fn twists(joint: &JointParameters, from: f64, ticks: u32, torques: (f64, f64)) -
 
 /// A balanced torque twists the gear by half the lost motion plus the elastic part.
 #[test]
-fn a_balanced_torque_winds_up_half_the_lost_motion_and_its_own_share_of_the_spring() {
+fn static_twist_matches_closed_form() {
     for (half, torque) in [(0.0, 30.0), (0.3e-3, 30.0), (0.3e-3, -70.0)] {
         // Five times the slowest decay.
         let found = twists(&joint(half, 0.2), 0.0, 12_000, (torque / 50.5, torque));
@@ -65,7 +65,7 @@ fn a_balanced_torque_winds_up_half_the_lost_motion_and_its_own_share_of_the_spri
 
 /// A free swing has the period of the spring plus the time in the gap.
 #[test]
-fn free_swings_take_the_spring_s_period_and_the_time_in_the_gap() {
+fn free_swing_has_closed_period() {
     for (half, amplitude) in [(0.0, 1e-3), (0.2e-3, 1e-3), (1e-3, 0.4e-3)] {
         let period = (TAU + 4.0 * half / amplitude) / frequency();
         // After whole periods the twist is back at its start, except for the fraction of a tick.
@@ -80,7 +80,7 @@ fn free_swings_take_the_spring_s_period_and_the_time_in_the_gap() {
 
 /// Under a torque, contact returns after the time of a parabolic flight.
 #[test]
-fn under_a_torque_the_contact_is_lost_and_found_again_after_the_time_of_a_throw() {
+fn loaded_swing_has_closed_period() {
     let half = 2e-3;
     for (torque, share) in [(40.0, 1.5), (20.0, 3.0)] {
         // A swing about the rest position, larger than the rest deflection: the contact opens and closes again.

@@ -107,7 +107,7 @@ impl Experiment {
     }
 
     /// Estimates of a recording, period by period, from samples that a test may modify.
-    pub fn said<T: Real>(
+    pub fn published<T: Real>(
         &self,
         log: &[PeriodSample],
         mut spoil: impl FnMut(usize, &mut Samples<T>),

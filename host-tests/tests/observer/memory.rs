@@ -21,7 +21,7 @@ fn learnt() -> (Experiment, Vec<PeriodSample>, Memory) {
 
 /// An observer with a memory knows the gap from its first period.
 #[test]
-fn an_observer_that_remembers_knows_the_gap_from_the_first_moment() {
+fn loaded_memory_makes_the_gap_valid() {
     let (experiment, log, memory) = learnt();
     let tables = experiment.tables();
     for loaded_at in [0, 5] {
@@ -45,7 +45,7 @@ fn an_observer_that_remembers_knows_the_gap_from_the_first_moment() {
 
 /// Memories that do not fit are rejected and change nothing.
 #[test]
-fn memories_that_do_not_fit_are_refused_and_change_nothing() {
+fn unfit_memories_are_rejected() {
     let (experiment, _, memory) = learnt();
     let tables = experiment.tables();
     let refusal = |memory: &[u8]| {

@@ -6,7 +6,7 @@ use crate::experiment::{Encoders, Experiment, MOTIONS};
 use crate::replay::{ObserverErrors, with_encoders};
 
 /// First seed of the long run; nothing was tuned on these seeds.
-const FIRST: u64 = 300;
+const FIRST_SEED: u64 = 300;
 
 /// Number of seeds of the long run.
 const SEEDS: u64 = 20;
@@ -18,7 +18,7 @@ fn worst_of_many_seeds() {
     for (motion, _) in MOTIONS {
         let mut worst = [0; 3].map(|_| ObserverErrors::default());
         let mut alarms = 0;
-        for seed in FIRST..FIRST + SEEDS {
+        for seed in FIRST_SEED..FIRST_SEED + SEEDS {
             let half_backlash = Some(20e-6 + 60e-6 * ((seed * 7 % SEEDS) as f64 / (SEEDS - 1) as f64));
             let base = Experiment::new("q1", motion, Encoders::Preset, half_backlash, seed);
             let log = base.record();

@@ -13,7 +13,7 @@ use reference::drive_train::{DriveTrainParameters, Measurement};
 const BANDWIDTH: f64 = 60.0;
 
 /// Poles of its observer of the motor, fast enough for a motor alone inside the gap [rad/s].
-const TRACKING: f64 = 1200.0;
+const TRACKING_BANDWIDTH: f64 = 1200.0;
 
 /// Motion of the link.
 #[derive(Debug, Clone)]
@@ -30,7 +30,7 @@ pub enum TestMotion {
 struct Tones(Vec<[f64; 3]>);
 
 /// Motion at a fifth of its amplitude until a time [s], and at full amplitude half a second later.
-struct Growing(SharedProfile, f64);
+struct GrowingMotion(SharedProfile, f64);
 
 impl TestMotion {
     /// Motion for a seed.
@@ -58,7 +58,7 @@ impl TestMotion {
 
 /// Motion that grows from a fifth to full amplitude at a time [s].
 pub fn growing(motion: SharedProfile, at: f64) -> SharedProfile {
-    Arc::new(Growing(motion, at))
+    Arc::new(GrowingMotion(motion, at))
 }
 
 impl MotionProfile for Tones {
@@ -85,7 +85,7 @@ impl MotionProfile for Tones {
     }
 }
 
-impl MotionProfile for Growing {
+impl MotionProfile for GrowingMotion {
     fn at(&self, time: f64) -> Motion {
         let Self(motion, at) = self;
         let part = 0.2 + 0.8 * ((time - at) / 0.5).clamp(0.0, 1.0);
@@ -163,10 +163,11 @@ impl MotorController {
         let measured = (counts as f64 + 0.5) * self.per_count;
         // Angle, speed and disturbance from the counts and the last command, with a triple pole.
         let tracked = &mut self.tracked;
-        let lacking = measured - tracked[0];
-        tracked[0] += (tracked[1] + 3.0 * TRACKING * lacking) * period;
-        tracked[1] += (self.before / self.motor_inertia + tracked[2] + 3.0 * TRACKING.powi(2) * lacking) * period;
-        tracked[2] += TRACKING.powi(3) * lacking * period;
+        let innovation = measured - tracked[0];
+        tracked[0] += (tracked[1] + 3.0 * TRACKING_BANDWIDTH * innovation) * period;
+        tracked[1] +=
+            (self.before / self.motor_inertia + tracked[2] + 3.0 * TRACKING_BANDWIDTH.powi(2) * innovation) * period;
+        tracked[2] += TRACKING_BANDWIDTH.powi(3) * innovation * period;
         let (position_error, speed_error) = (ratio * angle - tracked[0], ratio * speed - tracked[1]);
         let wanted = inertia
             * (ratio * acceleration

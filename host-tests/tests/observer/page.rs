@@ -11,7 +11,7 @@ const OUTPUT_FAULTS: &str = include_str!("../../../model-core/src/observer/healt
 const MOTOR_FAULTS: &str = include_str!("../../../model-core/src/observer/health/motor_faults.rs");
 
 /// Rows of a numbered table in the page, between two marks.
-fn in_the_page(mark: &str) -> Vec<Vec<String>> {
+fn page_rows(mark: &str) -> Vec<Vec<String>> {
     let (from, to) = (format!("<!-- {mark} -->"), format!("<!-- /{mark} -->"));
     let (_, rest) = PAGE.split_once(&from).expect("a beginning of the table");
     let (table, _) = rest.split_once(&to).expect("an end of the table");
@@ -19,7 +19,7 @@ fn in_the_page(mark: &str) -> Vec<Vec<String>> {
 }
 
 /// Rows of the numbered table at the head of a source.
-fn in_the_source(source: &str) -> Vec<Vec<String>> {
+fn source_rows(source: &str) -> Vec<Vec<String>> {
     rows(source.lines().filter_map(|line| line.strip_prefix("//! ")))
 }
 
@@ -42,9 +42,9 @@ fn test_of(row: &[String]) -> (String, String) {
 
 /// Page and sources list the same checks in the same order, each with an existing test.
 #[test]
-fn each_way_to_tell_a_flank_or_a_fault_is_in_page_and_source_and_names_the_test_that_needs_it() {
+fn page_lists_the_checks_of_the_sources() {
     for (mark, source) in [("flank", FLANK), ("output faults", OUTPUT_FAULTS), ("motor faults", MOTOR_FAULTS)] {
-        let (page, source) = (in_the_page(mark), in_the_source(source));
+        let (page, source) = (page_rows(mark), source_rows(source));
         assert!(page.len() >= 5, "the list of {mark} is read");
         assert_eq!(page.len(), source.len(), "docs/theory/observer.md and the source list other ways under {mark}");
         for (shown, written) in page.iter().zip(&source) {

@@ -10,7 +10,7 @@ use crate::replay::samples;
 
 /// The gap in f32 agrees with f64 at the start and after 300 turns.
 #[test]
-fn single_precision_is_enough_at_the_start_and_after_300_turns() {
+fn single_precision_is_enough() {
     let experiment = Experiment::new("q1", "gravity", Encoders::Preset, Some(40e-6), 41).lasting(3.0);
     let log = experiment.record();
     for turns in [0, 300] {

@@ -82,7 +82,7 @@ pub struct ObserverErrors {
     /// Relative error of the width at the end.
     pub width: f64,
     /// Mean of squared gap errors over their variances, while the gap is valid.
-    pub honesty: f64,
+    pub nees: f64,
     /// Share of the periods with a valid gap.
     pub valid: f64,
     /// RMS error of the gap while it is valid, over the gap 4b.
@@ -112,7 +112,7 @@ impl ObserverErrors {
             mesh_torque: self.mesh_torque.max(other.mesh_torque),
             width_after: self.width_after.max(other.width_after),
             width: self.width.abs().max(other.width.abs()),
-            honesty: self.honesty.max(other.honesty),
+            nees: self.nees.max(other.nees),
             valid: if self.landings == 0 { other.valid } else { self.valid.min(other.valid) },
             gap_valid: self.gap_valid.max(other.gap_valid),
         }
@@ -129,9 +129,9 @@ pub fn replay<const P: usize>(
     mut watch: impl FnMut(usize, &PeriodSample, &Estimates<f64>),
 ) -> ObserverErrors {
     let mut observer = Observer::<f64, P>::new(tables);
-    let largest_of = |errors: &[f64]| errors.iter().fold(0.0, |most: f64, error| most.max(error.abs()));
+    let largest_of = |errors: &[f64]| errors.iter().fold(0.0, |greatest: f64, error| greatest.max(error.abs()));
     let [of_sun, of_ring] = [&joint.sun_planet, &joint.ring_planet].map(|mesh| largest_of(&mesh.transmission_error));
-    let shift = of_sun + of_ring;
+    let flank_shift = of_sun + of_ring;
     let half_backlash = joint.sun_planet.half_backlash[0];
     let gap = 4.0 * half_backlash;
     let rated_force = joint.rated_output_torque / (2.0 * joint.geometry.carrier_base_radius());
@@ -195,7 +195,7 @@ pub fn replay<const P: usize>(
         }
         // A landing is the first force above the band on the flank opposite to the last one. Bumps of a single planet before the others
         // have closed their gaps do not count.
-        let at_flank = moment.gap * moment.sun_force > 0.0 && moment.gap.abs() > 0.5 * gap - shift;
+        let at_flank = moment.gap * moment.sun_force > 0.0 && moment.gap.abs() > 0.5 * gap - flank_shift;
         if at_flank && moment.sun_force.abs() > 0.05 * rated_force && side != side_before {
             if side_before != ContactState::Separated {
                 missed += usize::from(landing.is_some());
@@ -222,7 +222,7 @@ pub fn replay<const P: usize>(
         mesh_torque: mean(sums[2]),
         width_after: (width_wrong_at + 1).saturating_sub(both_touched_at) as f64 * period,
         width,
-        honesty: sums[3] / f64::from(valid.max(1)),
+        nees: sums[3] / f64::from(valid.max(1)),
         valid: f64::from(valid) / counted,
         gap_valid: (sums[4] / f64::from(valid.max(1))).sqrt(),
     }

@@ -39,20 +39,20 @@ proptest! {
 
     /// Energy equals work, and momentum the torques, on random joints.
     #[test]
-    fn the_reference_keeps_the_books_of_momentum_and_energy(scenario in scenario()) {
+    fn reference_balances_close(scenario in scenario()) {
         let samples = run(&scenario).expect("a sound joint runs").samples;
         let energy = |sample: &Observation| sample.kinetic_energy + sample.elastic_energy;
         let largest = samples.iter().map(energy).fold(0.0, f64::max);
         let fastest = samples.iter().map(|sample| sample.rigid_speed.abs()).fold(1.0, f64::max);
         let missing = |sample: &Observation| (energy(sample) - energy(&samples[0]) - sample.work.net()).abs();
         ENERGY.check(samples.iter().map(missing).fold(0.0, f64::max) / largest);
-        let astray = |sample: &Observation| (sample.rigid_speed - rigid_speed(&scenario, sample.time)).abs();
-        MOMENTUM.check(samples.iter().map(astray).fold(0.0, f64::max) / fastest);
+        let momentum_error = |sample: &Observation| (sample.rigid_speed - rigid_speed(&scenario, sample.time)).abs();
+        MOMENTUM.check(samples.iter().map(momentum_error).fold(0.0, f64::max) / fastest);
     }
 
     /// With the damping law `contact` no tooth of the reference pulls.
     #[test]
-    fn teeth_only_push_under_the_law_contact(mut scenario in scenario()) {
+    fn reference_teeth_only_push(mut scenario in scenario()) {
         scenario.joint.damping_law = DampingLaw::Contact;
         for sample in run(&scenario).expect("a sound joint runs").samples {
             for kind in [0, 1] {

@@ -26,7 +26,7 @@ fn difference(one: &Trajectory, other: &Trajectory, of: impl Fn(&Observation, &O
 
 /// Energy equals the net work in every scenario.
 #[test]
-fn energy_grows_by_the_work_done_in_every_scenario() {
+fn energy_equals_work_in_every_scenario() {
     let mut scenarios = motions();
     scenarios.push(case("case A", CASE_A_OMEGA));
     for half_backlash in [0.0, 10e-6, 60e-6, 120e-6] {
@@ -53,7 +53,7 @@ fn energy_grows_by_the_work_done_in_every_scenario() {
 
 /// Without back-side contact a wider backlash only shifts the motion.
 #[test]
-fn without_back_side_contact_the_motion_does_not_depend_on_the_backlash() {
+fn backlash_only_shifts_one_sided_motion() {
     let narrow = case("narrow", CASE_A_OMEGA);
     let mut wide = narrow.clone();
     let shift = 55e-6;
@@ -78,7 +78,7 @@ fn without_back_side_contact_the_motion_does_not_depend_on_the_backlash() {
 
 /// Errors, torques, backlash and state scale together.
 #[test]
-fn errors_torques_backlash_and_state_scale_together() {
+fn all_lengths_scale_together() {
     let factor = 2.5;
     for law in [DampingLaw::Paper, DampingLaw::Contact] {
         let mut small = case("small", CASE_A_OMEGA);
@@ -108,7 +108,7 @@ fn errors_torques_backlash_and_state_scale_together() {
 
 /// Mesh deflections depend neither on the speed nor on the turns of the joint.
 #[test]
-fn teeth_do_not_feel_how_fast_and_how_far_the_joint_has_turned() {
+fn deflections_ignore_rigid_rotation() {
     let motion = motions().into_iter().find(|motion| motion.name == "L1 contact, reversal through the gap");
     let mut still = motion.expect("the motion is there");
     for mesh in meshes(&mut still) {
@@ -131,7 +131,7 @@ fn teeth_do_not_feel_how_fast_and_how_far_the_joint_has_turned() {
 
 /// Scenarios marked predictable, and no others, damp a change of one picometre.
 #[test]
-fn only_motions_marked_predictable_forget_a_picometre() {
+fn predictable_motions_damp_a_picometre() {
     const CHANGE: f64 = 1e-12;
     for scenario in motions() {
         let mut moved = scenario.clone();

@@ -35,7 +35,7 @@ fn trajectory_error(omega: f64, text: &str) -> (f64, Counters) {
 
 /// Case A separates and hits as in the data.
 #[test]
-fn case_a_parts_and_hits_as_in_the_data() {
+fn case_a_matches_the_data() {
     let (error, counters) = trajectory_error(CASE_A_OMEGA, CASE_A);
     CASE_DATA.check(error);
     // 300 omega_n seconds are 38.2 mesh periods, each with 11.3 events.
@@ -45,7 +45,7 @@ fn case_a_parts_and_hits_as_in_the_data() {
 
 /// Case Q keeps contact as in the data.
 #[test]
-fn case_q_keeps_contact_as_in_the_data() {
+fn case_q_matches_the_data() {
     let (error, counters) = trajectory_error(CASE_Q_OMEGA, CASE_Q);
     CASE_DATA.check(error);
     assert_eq!(counters.events, 0, "contact holds in case Q");

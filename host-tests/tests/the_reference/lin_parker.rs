@@ -123,11 +123,11 @@ impl Gear {
 const ROTATIONAL: [f64; 6] = [0.0, 1475.7, 1930.3, 2658.3, 7462.8, 11775.3];
 const TRANSLATIONAL: [f64; 6] = [743.2, 1102.4, 1896.0, 2276.4, 6986.3, 9647.9];
 /// Planet modes with four and more planets [Hz].
-const OF_PLANETS: [f64; 3] = [1808.2, 5963.8, 6981.7];
+const PLANET_MODES: [f64; 3] = [1808.2, 5963.8, 6981.7];
 
 /// With Table 1 corrected the gear has the published frequencies.
 #[test]
-fn with_table_1_put_back_the_published_frequencies_come_out() {
+fn corrected_table_1_has_the_frequencies() {
     let mut published: Vec<f64> = ROTATIONAL.into_iter().chain(TRANSLATIONAL).chain(TRANSLATIONAL).collect();
     published.sort_by(f64::total_cmp);
     let found = Gear::new(3, BODIES, RING_TORSION).frequencies();
@@ -139,7 +139,7 @@ fn with_table_1_put_back_the_published_frequencies_come_out() {
 
 /// Carrier and ring as printed belong to another gear.
 #[test]
-fn with_table_1_as_printed_they_do_not() {
+fn printed_table_1_misses_the_frequencies() {
     let [carrier, ring, sun, planet] = BODIES;
     let lowest = Gear::new(3, [ring, carrier, sun, planet], RING_TORSION).frequencies()[1];
     assert!((lowest / 743.2 - 1.0).abs() > 0.02, "{lowest} Hz");
@@ -147,10 +147,10 @@ fn with_table_1_as_printed_they_do_not() {
 
 /// Four and five planets add one and two of each planet mode.
 #[test]
-fn four_and_five_planets_add_one_and_two_of_each_planet_mode() {
+fn more_planets_add_planet_modes() {
     for planets in [4, 5] {
         let found = Gear::new(planets, BODIES, RING_TORSION).frequencies();
-        for published in OF_PLANETS {
+        for published in PLANET_MODES {
             let near = found.iter().filter(|found| (**found / published - 1.0).abs() < PUBLISHED_FREQUENCY.limit);
             assert_eq!(near.count(), planets - 3, "{published} Hz with {planets} planets: {found:?}");
         }
@@ -160,7 +160,7 @@ fn four_and_five_planets_add_one_and_two_of_each_planet_mode() {
 /// The project's model is this gear with stiff bearings and a fixed ring. Its carrier moves by u_c cos(alpha) along a mesh, which appears
 /// as a mass over the square of the cosine.
 #[test]
-fn the_project_s_model_is_the_torsional_part() {
+fn model_is_the_torsional_part() {
     for planets in 3..=5 {
         let found = Gear::new(planets, BODIES, 0.0).torsional_part(planets).frequencies();
         let mut joint = paper_joint(0.0, 0.0, 0.0, 0.0);

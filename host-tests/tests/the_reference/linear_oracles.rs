@@ -65,7 +65,7 @@ fn planet_eigenvalue(signal: &[f64]) -> Complex<f64> {
 
 /// Free vibration has the frequencies of the characteristic polynomial.
 #[test]
-fn natural_frequencies_are_those_of_the_characteristic_polynomial() {
+fn free_vibration_has_natural_frequencies() {
     let (overall, planet) = free_vibration(0.0);
     let (stiffness, sun, planet_mass, n): (f64, f64, f64, f64) = (1e8, 0.39, 0.61, 3.0);
     let carrier = (6.29 + 3.0 * 0.66) / 24.6_f64.to_radians().cos().powi(2);
@@ -89,7 +89,7 @@ fn natural_frequencies_are_those_of_the_characteristic_polynomial() {
 
 /// Free vibration decays with the damped eigenvalues.
 #[test]
-fn free_vibration_decays_with_the_damped_eigenvalues() {
+fn free_vibration_has_damped_eigenvalues() {
     let (overall, planet) = free_vibration(0.05);
     for expected in [Complex::new(-0.032282, 0.637513), Complex::new(-0.119223, 1.526734)] {
         EIGENVALUE.check((overall_eigenvalue(&overall, expected) - expected).norm());
@@ -99,7 +99,7 @@ fn free_vibration_decays_with_the_damped_eigenvalues() {
 
 /// Without backlash and ripple the steady motion is the known ellipse.
 #[test]
-fn without_backlash_and_ripple_the_steady_state_is_the_exact_ellipse() {
+fn steady_motion_is_the_known_ellipse() {
     const SAMPLES: u32 = 64;
     let omega = 2.1;
     let joint = paper_joint(0.0, 30e-6, 0.0, omega);
@@ -142,7 +142,7 @@ fn balanced(joint: &JointParameters, drive_torque: f64) -> Vec<TorqueSegment> {
 
 /// The joint settles at the static deflection of either flank, four half-backlashes apart.
 #[test]
-fn teeth_come_to_rest_at_the_static_deflection_and_lose_four_half_backlashes() {
+fn joint_settles_at_static_deflection() {
     let half_backlash = 60e-6;
     for law in [DampingLaw::Paper, DampingLaw::Contact] {
         let mut joint = paper_joint(0.0, 0.0, half_backlash, 0.0);
@@ -173,7 +173,7 @@ fn teeth_come_to_rest_at_the_static_deflection_and_lose_four_half_backlashes() {
 
 /// A static load winds the compliance up by torque over stiffness.
 #[test]
-fn a_rigid_load_torque_winds_the_compliance_up_by_torque_over_stiffness() {
+fn static_load_winds_up_the_compliance() {
     let mut joint = q1();
     // Far more damping than Q1's, so that the joint settles soon.
     joint.compliance.as_mut().expect("Q1 is compliant").damping_ratio = 2.0;

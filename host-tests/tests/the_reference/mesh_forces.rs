@@ -42,7 +42,7 @@ fn by_hand(law: DampingLaw, deflection: f64, rate: f64, damping: f64) -> f64 {
 
 /// Mesh forces equal both laws, computed by hand.
 #[test]
-fn mesh_forces_are_those_of_the_two_laws() {
+fn mesh_forces_follow_both_laws() {
     for law in [DampingLaw::Paper, DampingLaw::Contact] {
         for deflection in [-75e-6, -61e-6, -20e-6, 0.0, 59e-6, 61e-6, 90e-6] {
             for rate in [-0.5, -0.01, 0.01, 0.5] {
@@ -57,7 +57,7 @@ fn mesh_forces_are_those_of_the_two_laws() {
 
 /// Separated teeth carry no force with the law `contact`, and drag with the law `paper`.
 #[test]
-fn separated_teeth_carry_no_force_under_the_law_contact_and_drag_under_the_law_paper() {
+fn separated_teeth_drag_in_law_paper_only() {
     for (force, contact) in meshes(DampingLaw::Contact, 59e-6, 0.5) {
         assert_eq!((force, contact), (0.0, ContactState::Separated));
     }
@@ -69,7 +69,7 @@ fn separated_teeth_carry_no_force_under_the_law_contact_and_drag_under_the_law_p
 
 /// Flanks that recede faster than they spring back touch without force.
 #[test]
-fn flanks_that_leave_faster_than_they_spring_back_touch_without_force() {
+fn receding_flanks_touch_without_force() {
     for (force, contact) in meshes(DampingLaw::Contact, 61e-6, -0.5) {
         assert_eq!((force, contact), (0.0, ContactState::DriveSide));
     }

@@ -77,7 +77,7 @@ fn period_error(force: f64, half_backlash: f64, amplitude: f64, period: f64) -> 
 
 /// Without mean force the period grows by the time spent in the gap.
 #[test]
-fn without_a_mean_force_the_period_grows_by_the_time_in_the_gap() {
+fn gap_lengthens_the_free_period() {
     for (half_backlash, amplitude) in [(0.5_f64, 1.0), (2.0, 0.3), (0.01, 5.0)] {
         FREE_PERIOD.check(period_error(0.0, half_backlash, amplitude, TAU + 4.0 * half_backlash / amplitude));
     }
@@ -85,7 +85,7 @@ fn without_a_mean_force_the_period_grows_by_the_time_in_the_gap() {
 
 /// With loss of contact on one side the period matches its closed form.
 #[test]
-fn one_sided_loss_of_contact_has_its_closed_period() {
+fn one_sided_contact_has_closed_period() {
     for (force, half_backlash, amplitude) in [(1.0_f64, 2.0, 1.5_f64), (1.0, 5.0, 3.0), (0.2, 1.0, 0.21)] {
         assert!(
             (amplitude.powi(2) - force.powi(2)) / (2.0 * force) < 2.0 * half_backlash,
@@ -99,7 +99,7 @@ fn one_sided_loss_of_contact_has_its_closed_period() {
 
 /// With contact on both flanks the period matches its closed form.
 #[test]
-fn two_sided_contact_has_its_closed_period() {
+fn two_sided_contact_has_closed_period() {
     for (force, half_backlash, amplitude) in [(0.5_f64, 0.5, 2.0_f64), (1.0, 0.3, 4.0), (0.1, 2.0, 3.0)] {
         let entry = (amplitude.powi(2) - force.powi(2)).sqrt();
         let exit = (entry.powi(2) - 4.0 * half_backlash * force).sqrt();
@@ -113,7 +113,7 @@ fn two_sided_contact_has_its_closed_period() {
 
 /// The method is of eighth order.
 #[test]
-fn the_method_is_of_eighth_order() {
+fn method_is_of_eighth_order() {
     let error = |step: f64| {
         let mut mass = Mass { longest_step: step, tolerance: f64::INFINITY, ..Mass::new(0.0, 0.0) };
         let mut motion = mass.released(1.0);
@@ -127,7 +127,7 @@ fn the_method_is_of_eighth_order() {
 
 /// Grazes deeper than the resolution are found; shallower grazes do no harm.
 #[test]
-fn a_graze_deeper_than_the_resolution_is_found_and_a_shallower_one_does_no_harm() {
+fn grazes_are_found_to_the_resolution() {
     // At amplitude = force the mass swings back exactly to the edge of the gap.
     for (excess, least_events) in [(1e-3, 180), (1e-6, 180), (1e-9, 180), (1e-14, 0), (0.0, 0), (-1e-14, 0), (-1e-6, 0)]
     {
@@ -148,7 +148,7 @@ fn a_graze_deeper_than_the_resolution_is_found_and_a_shallower_one_does_no_harm(
 
 /// A mass at rest on the edge of the gap stays there without events.
 #[test]
-fn a_mass_at_rest_on_the_edge_of_the_gap_stays_there() {
+fn mass_on_the_edge_stays_there() {
     let mut mass = Mass::new(0.0, 0.5);
     let mut motion = mass.released(0.0);
     motion.advance(&mut mass, 1000.0).expect("it runs");
@@ -158,7 +158,7 @@ fn a_mass_at_rest_on_the_edge_of_the_gap_stays_there() {
 
 /// A non-finite state is reported with its time.
 #[test]
-fn a_state_that_blows_up_is_reported_with_its_time() {
+fn non_finite_state_is_reported() {
     let mut mass = Mass::new(f64::NAN, 0.5);
     let mut motion = mass.released(0.0);
     let error = motion.advance(&mut mass, 1.0).expect_err("NaN is no state");

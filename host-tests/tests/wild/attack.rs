@@ -16,7 +16,7 @@ pub const PRESETS: [&str; 4] = ["q1", "s1", "l1", "d2"];
 
 /// Corruption of the controller's inputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Wild {
+pub enum Attack {
     /// Torques of any size, infinities and NaN.
     Torque,
     /// Torques up to three times the limit.
@@ -79,7 +79,7 @@ impl Subject {
 
     /// Angle of the link between the flanks, and the wind-up under the largest torque [rad].
     pub fn lost_motion(&self) -> f64 {
-        let backlash = |of: &[f64]| of.iter().copied().fold(f64::INFINITY, f64::min);
+        let backlash = |halves: &[f64]| halves.iter().copied().fold(f64::INFINITY, f64::min);
         let [sun, ring] = [&self.parameters.sun_planet, &self.parameters.ring_planet];
         let gap = 2.0 * (backlash(&sun.half_backlash) + backlash(&ring.half_backlash));
         let wound_up = self.parameters.compliance.map_or(0.0, |compliance| 2.0 / compliance.stiffness);
@@ -137,9 +137,9 @@ pub fn link_angle(joint: &VirtualJoint<'_, f32, 3>) -> f64 {
 }
 
 /// Random bits and numbers of all sizes.
-pub struct Chance(RandomStream);
+pub struct RandomValues(RandomStream);
 
-impl Chance {
+impl RandomValues {
     /// Random numbers of an attack for a seed.
     pub fn new(seed: u64, attack: &str) -> Self {
         Self(RandomStream::new(seed, attack))
@@ -149,7 +149,7 @@ impl Chance {
         self.0.word()
     }
 
-    pub fn of(&mut self, choices: u64) -> u64 {
+    pub fn below(&mut self, choices: u64) -> u64 {
         self.word() % choices
     }
 
@@ -159,8 +159,8 @@ impl Chance {
     }
 
     /// Any f32, or an especially harmful one.
-    pub fn wild(&mut self) -> f32 {
-        match self.of(8) {
+    pub fn any_f32(&mut self) -> f32 {
+        match self.below(8) {
             0 => f32::NAN,
             1 => f32::INFINITY.copysign(self.unit()),
             2 => f32::MAX.copysign(self.unit()),
@@ -172,61 +172,61 @@ impl Chance {
     }
 }
 
-impl Wild {
+impl Attack {
     /// Corrupts the controller's inputs of one period.
-    pub fn spoil(self, chance: &mut Chance, limit: f32, samples: &mut Samples<f32>, command: &mut Command<f32>) {
+    pub fn apply(self, random: &mut RandomValues, limit: f32, samples: &mut Samples<f32>, command: &mut Command<f32>) {
         let all = self == Self::Everything;
-        let mut does = |which| self == which || all && chance.of(3) == 0;
+        let mut does = |which| self == which || all && random.below(3) == 0;
         let [torque, strong, output, missing, times, points] =
             [Self::Torque, Self::StrongTorque, Self::OutputCounts, Self::OutputMissing, Self::Times, Self::SetPoints]
                 .map(&mut does);
         if torque {
-            samples.torque = chance.wild();
+            samples.torque = random.any_f32();
         }
         if strong {
-            samples.torque = 3.0 * limit * chance.unit();
+            samples.torque = 3.0 * limit * random.unit();
         }
         if output && let Some(reading) = &mut samples.output {
-            reading.counts = chance.word() as u32;
+            reading.counts = random.word() as u32;
         }
-        if missing && chance.of(2) == 0 {
+        if missing && random.below(2) == 0 {
             samples.output = None;
         }
         if times {
-            samples.time = samples.time.wrapping_add(chance.word() as u32 >> chance.of(32));
-            samples.motor.time = samples.motor.time.wrapping_sub(chance.word() as u32 >> chance.of(32));
+            samples.time = samples.time.wrapping_add(random.word() as u32 >> random.below(32));
+            samples.motor.time = samples.motor.time.wrapping_sub(random.word() as u32 >> random.below(32));
         }
-        if all && chance.of(2) == 0 {
-            samples.motor.counts = chance.word() as u32;
+        if all && random.below(2) == 0 {
+            samples.motor.counts = random.word() as u32;
         }
         if points {
-            *command = wild_command(chance);
+            *command = wild_command(random);
         }
     }
 }
 
-fn wild_command(chance: &mut Chance) -> Command<f32> {
+fn wild_command(random: &mut RandomValues) -> Command<f32> {
     let mut motion = || Motion {
-        position: Position { turns: chance.word() as i32 >> chance.of(32), fraction: chance.wild() },
-        speed: chance.wild(),
-        acceleration: chance.wild(),
+        position: Position { turns: random.word() as i32 >> random.below(32), fraction: random.any_f32() },
+        speed: random.any_f32(),
+        acceleration: random.any_f32(),
     };
     let (now, ahead) = (motion(), motion());
-    match chance.of(3) {
+    match random.below(3) {
         0 => Command::Position { now, ahead: None },
         1 => Command::Position { now, ahead: Some(ahead) },
         _ => Command::Impedance(ImpedancePoint {
             position: now.position,
             speed: now.speed,
-            torque: chance.wild(),
-            stiffness: chance.wild(),
-            damping: chance.wild(),
+            torque: random.any_f32(),
+            stiffness: random.any_f32(),
+            damping: random.any_f32(),
         }),
     }
 }
 
 /// Checks that the torque is within the limit and every estimate finite.
-pub fn hold(answer: &Answer<f32>, limit: f32, when: &dyn Fn() -> String) {
+pub fn check_answer(answer: &Answer<f32>, limit: f32, when: &dyn Fn() -> String) {
     let torque = answer.shaped.torque;
     assert!(torque.abs() <= limit * 1.0001, "a torque of {torque} N m, the limit is {limit}: {}", when());
     assert!(answer.shaped.load.iter().all(|load| load.is_finite()), "{:?}: {}", answer.shaped, when());
@@ -234,23 +234,30 @@ pub fn hold(answer: &Answer<f32>, limit: f32, when: &dyn Fn() -> String) {
 }
 
 /// Returns true if all estimates are finite.
-pub fn finite(said: &Estimates<f32>) -> bool {
+pub fn finite(published: &Estimates<f32>) -> bool {
     let estimates: [&Estimate<f32>; 9] = [
-        &said.gap,
-        &said.mesh_torque,
-        &said.load_torque,
-        &said.half_backlash,
-        &said.encoder_offset,
-        &said.compliance,
-        &said.skew,
-        &said.torque_bias,
-        &said.motor_friction,
+        &published.gap,
+        &published.mesh_torque,
+        &published.load_torque,
+        &published.half_backlash,
+        &published.encoder_offset,
+        &published.compliance,
+        &published.skew,
+        &published.torque_bias,
+        &published.motor_friction,
     ];
-    let shafts = [said.motor, said.link];
-    let [sine, cosine] = said.cogging;
-    let others = [said.gap_rate, said.flank_shift, said.flank_shift_slope, said.link_inertia_ratio.value, sine, cosine];
+    let shafts = [published.motor, published.link];
+    let [sine, cosine] = published.cogging;
+    let others = [
+        published.gap_rate,
+        published.flank_shift,
+        published.flank_shift_slope,
+        published.link_inertia_ratio.value,
+        sine,
+        cosine,
+    ];
     estimates.iter().all(|estimate| estimate.value.is_finite() && estimate.variance.is_finite())
         && shafts.iter().all(|shaft| shaft.fraction.is_finite() && shaft.speed.is_finite())
         && others.iter().all(|other| other.is_finite())
-        && said.link_inertia_ratio.variance.is_finite()
+        && published.link_inertia_ratio.variance.is_finite()
 }

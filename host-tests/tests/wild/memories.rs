@@ -3,7 +3,7 @@
 use model_core::numbers::digest;
 use model_core::observer::{MAPPED, MEMORY_BYTES, Memory, MemoryError, Observer, memory_numbers};
 
-use super::attack::{Chance, PRESETS, Subject, finite};
+use super::attack::{PRESETS, RandomValues, Subject, finite};
 
 /// Byte range of a memory's numbers.
 const NUMBERS: std::ops::Range<usize> = 24..24 + 4 * (MAPPED + MAPPED * (MAPPED + 1) / 2 + 5 + 2);
@@ -19,8 +19,8 @@ fn forged(memory: &Memory, place: usize, number: f32) -> Memory {
 
 /// An impossible memory is rejected, and an accepted one keeps the estimates finite.
 #[test]
-fn a_memory_whose_numbers_no_joint_has_is_refused_and_one_that_is_taken_keeps_estimates_finite() {
-    let mut chance = Chance::new(7, "memories");
+fn impossible_memory_is_rejected() {
+    let mut random = RandomValues::new(7, "memories");
     for name in PRESETS {
         let subject = Subject::preset(name);
         let (mut joint, mut controller) = (subject.joint(), subject.controller());
@@ -33,16 +33,16 @@ fn a_memory_whose_numbers_no_joint_has_is_refused_and_one_that_is_taken_keeps_es
         let mut refused = 0;
         let forgeries = 300;
         for _ in 0..forgeries {
-            let place = NUMBERS.start + 4 * chance.of(NUMBERS.len() as u64 / 4) as usize;
-            let forged = forged(&memory, place, chance.wild());
+            let place = NUMBERS.start + 4 * random.below(NUMBERS.len() as u64 / 4) as usize;
+            let forged = forged(&memory, place, random.any_f32());
             let mut observer = Observer::<f32, MAPPED>::new(&subject.observer);
             let before = observer.save();
             match observer.load(&forged) {
                 Ok(()) => {
                     let mut joint = subject.joint();
                     for _ in 0..200 {
-                        let said = *observer.step(&joint.samples());
-                        assert!(finite(&said), "{name}: byte {place} of the memory: {said:#?}");
+                        let published = *observer.step(&joint.samples());
+                        assert!(finite(&published), "{name}: byte {place} of the memory: {published:#?}");
                         joint.advance(0.1 * subject.limit, 0.0);
                     }
                 }
@@ -60,7 +60,7 @@ fn a_memory_whose_numbers_no_joint_has_is_refused_and_one_that_is_taken_keeps_es
 
 /// An impossible mobility of the link is rejected.
 #[test]
-fn a_mobility_that_no_link_has_is_not_believed() {
+fn impossible_mobility_is_rejected() {
     let subject = Subject::preset("q1");
     let memory = subject.controller().save();
     // Byte offset of the last but one number.

@@ -7,13 +7,13 @@ use crate::board::{Idle, SETTINGS, Tick, board, explore, frame, line, running};
 
 /// A thread that sees the frame of a stop sees the stop.
 #[test]
-fn whoever_sees_the_frame_of_a_stop_sees_the_stop() {
+fn stop_frame_makes_the_stop_visible() {
     explore(3, || {
         let (mut interrupt, tick, _) = board();
         let heard = tick.heard;
         let line = thread::spawn(move || {
-            interrupt.hear(&ToBoard::Stop);
-            interrupt.hear(&ToBoard::Stop);
+            interrupt.receive_message(&ToBoard::Stop);
+            interrupt.receive_message(&ToBoard::Stop);
         });
         let frames = heard.frames();
         assert!(heard.stops() >= frames);
@@ -24,7 +24,7 @@ fn whoever_sees_the_frame_of_a_stop_sees_the_stop() {
 
 /// A thread that sees a stop finds every byte before the last byte of the stop.
 #[test]
-fn whoever_sees_a_stop_finds_every_byte_that_came_before_its_last() {
+fn stop_makes_earlier_bytes_visible() {
     explore(3, || {
         let (mut interrupt, mut end) = line();
         let stop = frame(&ToBoard::Stop);
@@ -39,10 +39,10 @@ fn whoever_sees_a_stop_finds_every_byte_that_came_before_its_last() {
 
 /// The tick that sees a stop ends the run, and the next tick keeps it ended.
 #[test]
-fn the_tick_that_finds_a_stop_ends_the_run_and_so_does_the_one_after_it() {
+fn tick_that_sees_a_stop_ends_the_run() {
     explore(3, || {
         let (mut interrupt, mut tick, _) = running();
-        let line = thread::spawn(move || interrupt.hear(&ToBoard::Stop));
+        let line = thread::spawn(move || interrupt.receive_message(&ToBoard::Stop));
         let before = tick.heard.frames();
         for _ in 0..2 {
             let stopped = tick.heard.frames() != before;
@@ -57,13 +57,13 @@ fn the_tick_that_finds_a_stop_ends_the_run_and_so_does_the_one_after_it() {
 
 /// A tick that can see a stop behind a reset starts no run.
 #[test]
-fn no_run_begins_in_a_tick_that_can_know_of_the_stop_behind_its_reset() {
+fn stop_behind_reset_prevents_the_run() {
     explore(3, || {
         let (mut interrupt, mut tick, mut idle) = board();
-        interrupt.hear(&ToBoard::Reset(SETTINGS));
+        interrupt.receive_message(&ToBoard::Reset(SETTINGS));
         idle.attend();
         let line = thread::spawn(move || {
-            interrupt.hear(&ToBoard::Stop);
+            interrupt.receive_message(&ToBoard::Stop);
             interrupt
         });
         for _ in 0..2 {
@@ -73,31 +73,34 @@ fn no_run_begins_in_a_tick_that_can_know_of_the_stop_behind_its_reset() {
         }
         let mut interrupt = line.join().unwrap();
         settle(&mut tick, &mut idle);
-        let said = interrupt.said();
-        assert!(matches!(said[..], [FromBoard::Hello(_)] | [FromBoard::Tripped(Trip::Overtaken)]), "{said:?}");
+        let sent_messages = interrupt.sent_messages();
+        assert!(
+            matches!(sent_messages[..], [FromBoard::Hello(_)] | [FromBoard::Tripped(Trip::Overtaken)]),
+            "{sent_messages:?}"
+        );
     });
 }
 
 /// Idle knows which of the received stops it has read.
 #[test]
-fn idle_knows_which_of_the_stops_that_were_heard_it_has_read() {
+fn idle_tells_read_stops_from_unread_ones() {
     explore(3, || {
         let (mut interrupt, mut tick, mut idle) = board();
         // The last byte of the reset and the stop behind it arrive while idle listens, without a tick in between.
         let reset = frame(&ToBoard::Reset(SETTINGS));
-        let (end, most) = reset.split_last().unwrap();
-        interrupt.receive(most);
+        let (end, head) = reset.split_last().unwrap();
+        interrupt.receive(head);
         let end = *end;
         let line = thread::spawn(move || {
             interrupt.receive(&[end]);
-            interrupt.hear(&ToBoard::Stop);
+            interrupt.receive_message(&ToBoard::Stop);
             interrupt
         });
         idle.attend();
         idle.attend();
         let mut interrupt = line.join().unwrap();
         settle(&mut tick, &mut idle);
-        assert_eq!(interrupt.said(), [FromBoard::Tripped(Trip::Overtaken)]);
+        assert_eq!(interrupt.sent_messages(), [FromBoard::Tripped(Trip::Overtaken)]);
     });
 }
 

@@ -41,7 +41,7 @@ fn period_error<const N: usize>(force: f64, half_backlash: f64, amplitude: f64, 
     (phase - (ticks / f64::from(TICK_RATE) * frequency - 20.0 * period)) / (20.0 * period)
 }
 
-fn on_every_joint(force: f64, half_backlash: f64, amplitude: f64, period: f64) {
+fn check_on_every_joint(force: f64, half_backlash: f64, amplitude: f64, period: f64) {
     CORE_FREE_PERIOD.check(period_error::<3>(force, half_backlash, amplitude, period));
     CORE_FREE_PERIOD.check(period_error::<4>(force, half_backlash, amplitude, period));
     CORE_FREE_PERIOD.check(period_error::<5>(force, half_backlash, amplitude, period));
@@ -49,32 +49,32 @@ fn on_every_joint(force: f64, half_backlash: f64, amplitude: f64, period: f64) {
 
 /// Without mean force the period grows by the time spent in the gap.
 #[test]
-fn without_a_mean_force_the_sun_s_period_grows_by_the_time_in_the_gap() {
+fn gap_lengthens_the_free_period() {
     for (half_backlash, amplitude) in [(0.5, 1.0), (6.0, 2.0), (0.1, 5.0)] {
-        on_every_joint(0.0, half_backlash, amplitude, TAU + 4.0 * half_backlash / amplitude);
+        check_on_every_joint(0.0, half_backlash, amplitude, TAU + 4.0 * half_backlash / amplitude);
     }
 }
 
 /// With loss of contact on one side the period matches its closed form.
 #[test]
-fn one_sided_loss_of_contact_gives_the_sun_its_closed_period() {
+fn one_sided_contact_has_closed_period() {
     for (force, half_backlash, amplitude) in [(1.0_f64, 2.0, 1.5_f64), (1.0, 5.0, 3.0), (0.5, 3.0, 1.0)] {
         let way = amplitude.powi(2) - force.powi(2);
         assert!(way / (2.0 * force) < 2.0 * half_backlash, "the far side is not reached");
         let period = 2.0 * (PI - (force / amplitude).acos()) + 2.0 * way.sqrt() / force;
-        on_every_joint(force, half_backlash, amplitude, period);
+        check_on_every_joint(force, half_backlash, amplitude, period);
     }
 }
 
 /// With contact on both flanks the period matches its closed form.
 #[test]
-fn two_sided_contact_gives_the_sun_its_closed_period() {
+fn two_sided_contact_has_closed_period() {
     for (force, half_backlash, amplitude) in [(0.5_f64, 0.5, 2.0_f64), (1.0, 0.3, 4.0), (0.1, 2.0, 3.0)] {
         let entry = (amplitude.powi(2) - force.powi(2)).sqrt();
         let exit = (entry.powi(2) - 4.0 * half_backlash * force).sqrt();
         let period = 2.0 * (PI - (force / amplitude).acos())
             + 2.0 * (entry - exit) / force
             + 2.0 * (force / exit.hypot(force)).acos();
-        on_every_joint(force, half_backlash, amplitude, period);
+        check_on_every_joint(force, half_backlash, amplitude, period);
     }
 }

@@ -36,14 +36,14 @@ pub fn state<const N: usize>(joint: &JointParameters, tables: &Tables<f64, N>, s
 }
 
 /// State at rest with all meshes pressed by `overlap` on the drive side [m].
-pub fn pressed(joint: &JointParameters, overlap: f64) -> RelativeState {
+pub fn in_contact(joint: &JointParameters, overlap: f64) -> RelativeState {
     let planets = joint.geometry.planets;
     let deflection = joint.sun_planet.half_backlash[0] + overlap;
     RelativeState { sun_planet: same(planets, deflection), gap: 2.0 * deflection, ..RelativeState::centred(planets) }
 }
 
 /// State at rest under a drive torque, and the load torque that balances it.
-pub fn resting(joint: &JointParameters, drive: f64) -> (RelativeState, f64) {
+pub fn at_rest_under(joint: &JointParameters, drive: f64) -> (RelativeState, f64) {
     let geometry = &joint.geometry;
     let force = drive / (geometry.planets as f64 * geometry.sun_base_radius);
     let load = drive * geometry.ratio_by_radii();

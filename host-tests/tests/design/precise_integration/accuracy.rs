@@ -20,7 +20,7 @@ fn units(found: &DMatrix<f64>, fixture: &Fixture, expected: &Expected) -> f64 {
     error / (UNIT * (norm(&fixture.matrix) * expected.step).max(1.0))
 }
 
-fn each(fixtures: Vec<Fixture>, check: impl Fn(&Fixture, &Expected)) {
+fn for_each_step(fixtures: Vec<Fixture>, check: impl Fn(&Fixture, &Expected)) {
     for fixture in &fixtures {
         for expected in &fixture.steps {
             check(fixture, expected);
@@ -34,8 +34,8 @@ fn all() -> Vec<Fixture> {
 
 /// Increments are accurate to 50 digits' fixtures, in units of rounding.
 #[test]
-fn increments_are_those_of_fifty_digits() {
-    each(all(), |fixture, expected| {
+fn increments_match_fifty_digits() {
+    for_each_step(all(), |fixture, expected| {
         let found = exponential_minus_identity(&fixture.matrix, expected.step);
         print!("{} at {}: ", fixture.name, expected.step);
         PRECISE_INTEGRATION.check(units(&found, fixture, expected));
@@ -44,8 +44,8 @@ fn increments_are_those_of_fifty_digits() {
 
 /// The flow has the same increment, and input integrals accurate to the fixtures.
 #[test]
-fn the_flow_has_the_same_increment_and_the_integrals_of_fifty_digits() {
-    each(all(), |fixture, expected| {
+fn flow_matches_fifty_digits() {
+    for_each_step(all(), |fixture, expected| {
         let found = flow(&fixture.matrix, &fixture.inputs, expected.step, 3);
         print!("{} at {}: ", fixture.name, expected.step);
         PRECISE_INTEGRATION.check(units(&found.transition, fixture, expected));
@@ -61,8 +61,8 @@ fn the_flow_has_the_same_increment_and_the_integrals_of_fifty_digits() {
 
 /// nalgebra's exponential is an independent method: the distance between both is at most nalgebra's own error plus the bound.
 #[test]
-fn nalgebra_s_exponential_is_as_far_away_as_its_own_error() {
-    each(all(), |fixture, expected| {
+fn nalgebra_differs_by_its_own_error() {
+    for_each_step(all(), |fixture, expected| {
         let theirs = (&fixture.matrix * expected.step).exp();
         let theirs = &theirs - DMatrix::identity(theirs.nrows(), theirs.ncols());
         let ours = exponential_minus_identity(&fixture.matrix, expected.step);
@@ -75,7 +75,7 @@ fn nalgebra_s_exponential_is_as_far_away_as_its_own_error() {
 
 /// The fixtures' matrices are the model's, so that they test the model.
 #[test]
-fn the_fixtures_hold_the_matrices_of_equation_20() {
+fn fixtures_hold_matrices_of_equation_20() {
     let paper = paper_joint(0.0, 0.0, 0.0, 1.0);
     let of_both = [paper, q1()];
     let joints = of_both.iter().flat_map(|joint| (3..=5).map(move |planets| (joint.clone(), planets)));

@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 
 use super::fixtures::{Expected, Fixture, models};
 
-fn the_paper_s() -> Fixture {
+fn paper_fixture() -> Fixture {
     models().into_iter().find(|fixture| fixture.name == "paper_3").expect("the fixture is there")
 }
 
@@ -32,17 +32,17 @@ fn error(found: &DMatrix<f64>, expected: &Expected) -> f64 {
 
 /// Decimal digits that plain squaring loses against precise integration.
 fn digits_lost(expected: &Expected, matrix: &DMatrix<f64>, doublings: u32) -> f64 {
-    let apart = error(&exponential_minus_identity(matrix, expected.step), expected);
+    let kept_apart = error(&exponential_minus_identity(matrix, expected.step), expected);
     let lost = (error(&plain_squaring(matrix, expected.step, doublings), expected) / f64::EPSILON).log10();
     print!("step {}, {doublings} doublings, {lost:.1} digits lost: ", expected.step);
-    DIGITS_KEPT.check(apart);
+    DIGITS_KEPT.check(kept_apart);
     lost
 }
 
 /// At small steps plain squaring loses the digits hidden by the identity.
 #[test]
-fn at_small_steps_plain_squaring_loses_the_digits_that_the_identity_takes() {
-    let fixture = the_paper_s();
+fn small_steps_lose_digits_when_squared() {
+    let fixture = paper_fixture();
     let [smallest, small] = [0, 1].map(|index| &fixture.steps[index]);
     assert_eq!([smallest.step, small.step], [1e-4, 0.05]);
     // Damping moves the diagonal by about 1e-5 from 1, so five digits are lost before the first squaring.
@@ -54,8 +54,8 @@ fn at_small_steps_plain_squaring_loses_the_digits_that_the_identity_takes() {
 
 /// Each doubling of plain squaring loses a third of a digit.
 #[test]
-fn each_doubling_of_plain_squaring_costs_the_third_of_a_digit() {
-    let fixture = the_paper_s();
+fn squaring_loses_a_third_digit_a_doubling() {
+    let fixture = paper_fixture();
     // A tick at 20 kHz. Zhong's precise integration starts at 2^-20 of the step.
     let tick = &fixture.steps[2];
     assert_eq!(tick.step, 1.025);

@@ -27,7 +27,7 @@ fn left_out(start: f64, terms: u32) -> f64 {
 
 /// Doublings reduce the norm to the series' limit and no further.
 #[test]
-fn doublings_bring_the_norm_to_the_series_and_no_further() {
+fn doublings_are_as_few_as_possible() {
     for norm in norms() {
         let plan = ScalingPlan::new(norm);
         let start = start(norm, &plan);
@@ -38,7 +38,7 @@ fn doublings_bring_the_norm_to_the_series_and_no_further() {
 
 /// The remainder is below its limit, with no term too many.
 #[test]
-fn the_series_leaves_less_than_is_allowed_and_has_no_term_too_many() {
+fn series_terms_are_as_few_as_possible() {
     for norm in norms() {
         let plan = ScalingPlan::new(norm);
         let start = start(norm, &plan);
@@ -51,7 +51,7 @@ fn the_series_leaves_less_than_is_allowed_and_has_no_term_too_many() {
 
 /// An infinite or NaN norm ends the plan without doublings.
 #[test]
-fn a_norm_beyond_numbers_still_ends() {
+fn non_finite_norm_ends_the_plan() {
     for norm in [f64::INFINITY, f64::NAN] {
         assert_eq!(ScalingPlan::new(norm).doublings, 0);
     }

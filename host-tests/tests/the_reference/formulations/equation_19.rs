@@ -4,7 +4,7 @@
 use parameters::MAX_PLANETS;
 use reference::integrator::{Entries, MAX_ENTRIES};
 
-use super::joint::{Formulation, Joint, Moving};
+use super::joint::{Formulation, Joint, MeshMotion};
 
 /// State: X_sp of every planet, X_sc, then their rates.
 pub struct Equation19 {
@@ -19,14 +19,14 @@ impl Formulation for Equation19 {
     }
 
     /// X_spi, and the argument of f for the ring: X_sc - X_spi - e_spi - e_rpi; with their rates.
-    fn meshes(&self, joint: &Joint, time: f64, state: &Entries) -> [[Moving; MAX_PLANETS]; 2] {
+    fn meshes(&self, joint: &Joint, time: f64, state: &Entries) -> [[MeshMotion; MAX_PLANETS]; 2] {
         let n = joint.planets;
         let (positions, rates) = (&state[..=n], &state[n + 1..]);
-        let mut meshes = [[Moving::default(); MAX_PLANETS]; 2];
+        let mut meshes = [[MeshMotion::default(); MAX_PLANETS]; 2];
         for i in 0..n {
             let (sun, ring) = (joint.error(0, i, time), joint.error(1, i, time));
-            meshes[0][i] = Moving { deflection: positions[i], rate: rates[i] };
-            meshes[1][i] = Moving {
+            meshes[0][i] = MeshMotion { deflection: positions[i], rate: rates[i] };
+            meshes[1][i] = MeshMotion {
                 deflection: positions[n] - positions[i] - sun[0] - ring[0],
                 rate: rates[n] - rates[i] - sun[1] - ring[1],
             };

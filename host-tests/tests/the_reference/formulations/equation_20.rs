@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 use parameters::{JointParameters, MAX_PLANETS};
 use reference::integrator::{Entries, MAX_ENTRIES};
 
-use super::joint::{Formulation, Joint, Moving};
+use super::joint::{Formulation, Joint, MeshMotion};
 
 /// State: v.
 pub struct Equation20 {
@@ -50,16 +50,16 @@ impl Formulation for Equation20 {
         state
     }
 
-    fn meshes(&self, joint: &Joint, time: f64, state: &Entries) -> [[Moving; MAX_PLANETS]; 2] {
+    fn meshes(&self, joint: &Joint, time: f64, state: &Entries) -> [[MeshMotion; MAX_PLANETS]; 2] {
         let (positions, rates) = self.motion(joint, state);
-        let mut meshes = [[Moving::default(); MAX_PLANETS]; 2];
-        for (kind, i) in joint.each() {
+        let mut meshes = [[MeshMotion::default(); MAX_PLANETS]; 2];
+        for (kind, i) in joint.mesh_indices() {
             let across = |values: &DVector<f64>| match kind {
                 0 => values[i],
                 _ => values[joint.planets] - values[i],
             };
             let [error, error_rate, _] = joint.error(kind, i, time);
-            meshes[kind][i] = Moving { deflection: across(&positions) - error, rate: across(&rates) - error_rate };
+            meshes[kind][i] = MeshMotion { deflection: across(&positions) - error, rate: across(&rates) - error_rate };
         }
         meshes
     }
@@ -69,10 +69,10 @@ impl Formulation for Equation20 {
         let meshes = self.meshes(joint, time, state);
         // Excess of the linear part: its own force of each mesh less the true force.
         let mut excess = DVector::zeros(2 * n);
-        for (kind, i) in joint.each() {
+        for (kind, i) in joint.mesh_indices() {
             let mesh = &joint.meshes[kind][i];
             let [error, error_rate, _] = joint.error(kind, i, time);
-            let Moving { deflection, rate } = meshes[kind][i];
+            let MeshMotion { deflection, rate } = meshes[kind][i];
             let linear = mesh.stiffness * (deflection + error) + mesh.damping * (rate + error_rate);
             let true_force = joint.elastic(kind, i, time, deflection) + mesh.damping * rate;
             excess[kind * n + i] = self.force * (linear - true_force);

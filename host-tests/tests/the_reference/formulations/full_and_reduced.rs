@@ -85,13 +85,13 @@ impl Full {
 }
 
 /// Block matrix that applies a matrix to positions and to rates.
-fn twice(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+fn block_diagonal(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     DMatrix::<f64>::identity(2, 2).kronecker(matrix)
 }
 
 /// The reduced flow equals the full flow in relative coordinates, with 3 to 5 planets.
 #[test]
-fn the_reduced_flow_is_the_full_flow_in_relative_coordinates() {
+fn reduced_flow_equals_full_flow() {
     for planets in 3..=5 {
         for mut joint in [paper_joint(0.0, 0.0, 0.0, 1.0), q1()] {
             joint.geometry.planets = planets;
@@ -100,12 +100,12 @@ fn the_reduced_flow_is_the_full_flow_in_relative_coordinates() {
             let scales = Scales::new(&joint);
             let dynamics = Dynamics::new(&joint, &scales);
             let (forward, backward) = hamiltonian::from_rates(&dynamics);
-            let relative = twice(&full.relative);
+            let relative = block_diagonal(&full.relative);
             for step in [0.01, 1.025, 20.5] {
                 let reduced = &backward * exponential_minus_identity(&hamiltonian::matrix(&dynamics), step) * &forward;
-                let apart = &relative * full.flow(scales.frequency, step) - reduced * &relative;
+                let difference = &relative * full.flow(scales.frequency, step) - reduced * &relative;
                 print!("{}, {planets} planets, step {step}: ", joint.name);
-                REDUCED.check(apart.amax());
+                REDUCED.check(difference.amax());
             }
         }
     }
@@ -113,7 +113,7 @@ fn the_reduced_flow_is_the_full_flow_in_relative_coordinates() {
 
 /// The reduction leaves out the rigid body, which coasts.
 #[test]
-fn the_full_model_has_one_motion_more_and_it_coasts() {
+fn full_model_adds_a_coasting_mode() {
     for planets in 3..=5 {
         for mut joint in [paper_joint(0.0, 0.0, 0.0, 1.0), q1()] {
             joint.geometry.planets = planets;

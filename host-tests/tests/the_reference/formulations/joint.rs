@@ -27,7 +27,7 @@ pub struct Mesh {
 
 /// Deflection of a mesh and its rate.
 #[derive(Clone, Copy, Default)]
-pub struct Moving {
+pub struct MeshMotion {
     pub deflection: f64,
     pub rate: f64,
 }
@@ -38,7 +38,7 @@ pub trait Formulation {
     fn start(&self, joint: &Joint) -> Entries;
 
     /// Deflections and their rates in a state.
-    fn meshes(&self, joint: &Joint, time: f64, state: &Entries) -> [[Moving; MAX_PLANETS]; 2];
+    fn meshes(&self, joint: &Joint, time: f64, state: &Entries) -> [[MeshMotion; MAX_PLANETS]; 2];
 
     /// Derivative of a state with the contact sides held.
     fn derivative(&self, joint: &Joint, time: f64, state: &Entries, rates: &mut Entries);
@@ -51,12 +51,12 @@ pub struct System<F> {
 }
 
 impl<F: Formulation> System<F> {
-    fn meshes(&self, time: f64, state: &Entries) -> [[Moving; MAX_PLANETS]; 2] {
+    fn meshes(&self, time: f64, state: &Entries) -> [[MeshMotion; MAX_PLANETS]; 2] {
         self.formulation.meshes(&self.joint, time, state)
     }
 
     pub fn deflections(&self, time: f64, state: &Entries) -> Deflections {
-        self.joint.list(&self.meshes(time, state))
+        self.joint.to_deflections(&self.meshes(time, state))
     }
 }
 
@@ -71,11 +71,11 @@ impl<F: Formulation> SwitchedSystem for System<F> {
 
     fn select_mode(&mut self, time: f64, state: &Entries) {
         let meshes = self.meshes(time, state);
-        self.joint.hold(&meshes);
+        self.joint.select_sides(&meshes);
     }
 
     fn guards(&self, time: f64, state: &Entries, _: &Entries, guards: &mut Guards) {
-        self.joint.watch(&self.meshes(time, state), guards);
+        self.joint.add_guards(&self.meshes(time, state), guards);
     }
 
     fn guard_resolution(&self) -> f64 {
@@ -159,17 +159,17 @@ impl Joint {
     }
 
     /// Sets the sides from the deflections.
-    pub fn hold(&mut self, meshes: &[[Moving; MAX_PLANETS]; 2]) {
-        for (kind, i) in self.each() {
+    pub fn select_sides(&mut self, meshes: &[[MeshMotion; MAX_PLANETS]; 2]) {
+        for (kind, i) in self.mesh_indices() {
             let (deflection, half_backlash) = (meshes[kind][i].deflection, self.meshes[kind][i].half_backlash);
             self.sides[kind][i] = if deflection.abs() > half_backlash { deflection.signum() } else { 0.0 };
         }
     }
 
     /// Adds guards that stay positive while the sides hold.
-    pub fn watch(&self, meshes: &[[Moving; MAX_PLANETS]; 2], guards: &mut Guards) {
-        for (kind, i) in self.each() {
-            let Moving { deflection, rate } = meshes[kind][i];
+    pub fn add_guards(&self, meshes: &[[MeshMotion; MAX_PLANETS]; 2], guards: &mut Guards) {
+        for (kind, i) in self.mesh_indices() {
+            let MeshMotion { deflection, rate } = meshes[kind][i];
             let (half_backlash, side) = (self.meshes[kind][i].half_backlash, self.sides[kind][i]);
             if side == 0.0 {
                 guards.watch(half_backlash - deflection, -rate);
@@ -181,13 +181,13 @@ impl Joint {
     }
 
     /// Indices (kind, planet) of every mesh.
-    pub fn each(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+    pub fn mesh_indices(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let planets = self.planets;
         (0..2).flat_map(move |kind| (0..planets).map(move |i| (kind, i)))
     }
 
     /// Deflections in the reference's order.
-    pub fn list(&self, meshes: &[[Moving; MAX_PLANETS]; 2]) -> Deflections {
+    pub fn to_deflections(&self, meshes: &[[MeshMotion; MAX_PLANETS]; 2]) -> Deflections {
         meshes.map(|family| family[..self.planets].iter().map(|mesh| mesh.deflection).collect())
     }
 }

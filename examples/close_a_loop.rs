@@ -1,5 +1,5 @@
-//! A closed loop: a virtual joint is measured, the observer says where the gap is, the compensation gives the torque. The
-//! link swings about where its weight turns over, so that the teeth change flanks twice a swing; with and without it.
+//! A closed loop: the observer locates the gap of a virtual joint, and the compensation commands the torque. The link swings about the
+//! angle at which its weight changes sign, so that the teeth change flanks twice a swing; with and without compensation.
 //!
 //! `cargo run -p examples --example close_a_loop`
 
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (mut touched, mut crossings, mut lost_s, mut error_turns) = (None, 0.0, 0.0, 0.0_f32);
         for time_s in (0..(DURATION_S / period_s) as u32).map(|period| period_s * f64::from(period)) {
             let mut estimates = *observer.step(&joint.samples());
-            // The compensation makes no use of a gap that the observer does not stand by.
+            // Without a valid contact the compensation hands over to plain control.
             estimates.contact_valid &= compensates;
             let now = motion(time_s);
             let command = Command::Position { now, ahead: Some(motion(time_s + lead_s)) };
@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Where the link shall be.
+/// Set-point of the link.
 fn motion(time_s: f64) -> Motion<f32> {
     let (sine, cosine) = (SWING_RAD_PER_S * time_s).sin_cos();
     let (turns, speed) = (SWING_TURNS * sine, TAU * SWING_TURNS * SWING_RAD_PER_S * cosine);

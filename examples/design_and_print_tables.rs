@@ -1,5 +1,5 @@
-//! What a build script does: a joint file in, the tables of the fixed step out as Rust source, with their certificate in
-//! front; `joint budget` measures their error. A file with a mistake is answered with the place underlined.
+//! Work of a build script: it reads a joint file and prints the tables of the fixed step as Rust source, with their certificate in front;
+//! `joint budget` measures their error. A mistake in the file is reported with its place underlined.
 //!
 //! `cargo run -p examples --example design_and_print_tables -- joints/q1.toml 20000 > tables.rs`
 

@@ -1,5 +1,5 @@
-//! The observer over a recorded log, as `joint identify` takes it: where the motor stands in the gap, which flank touches,
-//! how wide the gap is. Without a log one is recorded first, from a virtual joint whose half-backlash has worn to 55 um.
+//! The observer over a recorded log in the format of `joint identify`: position of the motor in the gap, flank in contact, width of the
+//! gap. Without a log it records one first, from a virtual joint whose half-backlash has worn to 55 um.
 //!
 //! `cargo run -p examples --example observe_a_log -- LOG.csv joints/q1.toml`
 
@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [first, second, ..] = &rows[..] else { return Err("the log has less than two rows".into()) };
     let around = Surroundings { control_rate: (1.0 / (second[0] - first[0])).round() as u32, ..joint.surroundings };
     let tables = design::design_observer(&joint.parameters, &design::observer_settings(&around))?;
-    // The torque of a row acts after its readings: the observer is shown it with the next ones.
+    // The torque of a row acts after its readings: the observer receives it with the next readings.
     let (mut observer, mut torque) = (Observer::<f32, MAPPED>::new(&tables), 0.0);
     println!("time_s  gap_um  flank       half_backlash_um  deviation_um");
     for (period, row) in (0_u32..).zip(&rows) {
@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A test on the virtual joint: the motor swings the link to and fro by a torque that turns round twice a second.
+/// Log of a test on the virtual joint: the motor swings the link to and fro by a torque that reverses twice a second.
 fn record() -> Result<String, Box<dyn Error>> {
     let worn = load_with(Path::new("q1"), &["mesh.half_backlash_um=55".into()]).map_err(|it| it.to_string())?.file;
     let gears: Tables<f32, 3> = gears::design::design(&worn.parameters, worn.surroundings.control_rate)?;

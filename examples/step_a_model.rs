@@ -1,5 +1,5 @@
-//! The gears of a joint, stepped at 20 kHz as a board steps them. The motor's torque turns round: the teeth leave their
-//! flank, fly through the gap, bounce off the other flank and settle on it.
+//! The gears of a joint, stepped at 20 kHz as on a board. The motor's torque reverses: the teeth leave their flank, cross the gap, bounce
+//! off the other flank and settle on it.
 //!
 //! `cargo run -p examples --example step_a_model`
 

@@ -1,10 +1,10 @@
-//! Every program runs, ends well and prints numbers, none of which is infinite or NaN.
+//! Every program runs, ends successfully and prints finite numbers.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// Where Cargo puts a program of this package: beside the folder of its tests.
+/// Path of a program of this package: Cargo puts it beside the folder of its tests.
 fn program(name: &str) -> PathBuf {
     let test = std::env::current_exe().expect("a test has a path");
     let folder = test.ancestors().nth(2).expect("a test is in a folder of the target folder");
@@ -16,7 +16,7 @@ fn run(name: &str, arguments: &[&str]) -> Output {
     output.unwrap_or_else(|error| panic!("{name}: {error}; `cargo test -p examples` builds it"))
 }
 
-/// What a program prints; its words and numbers are checked on the way.
+/// Output of a program, whose numbers are checked to be finite.
 fn printed(name: &str, arguments: &[&str]) -> String {
     let output = run(name, arguments);
     assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
@@ -28,40 +28,45 @@ fn printed(name: &str, arguments: &[&str]) -> String {
     text
 }
 
-/// The numbers of a line.
+/// Numbers of a line.
 fn numbers(line: &str) -> Vec<f64> {
     line.split_whitespace().filter_map(|word| word.parse().ok()).collect()
 }
 
+/// The model crosses its gap from flank to flank.
 #[test]
-fn a_stepped_model_crosses_its_gap() {
+fn stepped_model_crosses_its_gap() {
     let text = printed("step_a_model", &[]);
     assert!(text.contains("DriveSide") && text.contains("BackSide") && text.contains("Separated"), "{text}");
 }
 
+/// The tables are printed as a Rust module.
 #[test]
 fn designed_tables_are_a_rust_module() {
     let text = printed("design_and_print_tables", &["s1", "10000"]);
     assert!(text.starts_with("// S1 at 10000 Hz") && text.contains("pub static TABLES"), "{text}");
 }
 
+/// A missing joint file ends the program with exit code 2.
 #[test]
-fn a_joint_that_cannot_be_read_ends_with_its_exit_code() {
+fn unreadable_joint_sets_exit_code() {
     let output = run("design_and_print_tables", &["no/such/joint.toml"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("no/such/joint.toml"));
 }
 
+/// The observer estimates a half-backlash worn from 40 to 55 um.
 #[test]
-fn a_log_shows_a_gap_that_has_worn_from_40_to_55_um() {
+fn log_reveals_worn_gap() {
     let text = printed("observe_a_log", &[]);
     let last = numbers(text.lines().last().unwrap_or_default());
     let [.., half_backlash_um, deviation_um] = last[..] else { panic!("{text}") };
     assert!((half_backlash_um - 55.0).abs() < 2.0 && deviation_um < 2.0, "{text}");
 }
 
+/// Bad logs are rejected with a reason and without a panic.
 #[test]
-fn a_log_that_is_none_is_refused_without_a_panic() {
+fn invalid_log_is_rejected() {
     let file = std::env::temp_dir().join(format!("no-log-{}.csv", std::process::id()));
     let head = "time_s,motor_counts,output_counts,motor_torque_N_m\n";
     for (text, why) in [
@@ -94,8 +99,9 @@ fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("examples are in the workspace").to_owned()
 }
 
+/// The project of its own builds outside the workspace and estimates the lost motion.
 #[test]
-fn own_project_builds_outside_and_finds_the_lost_motion() {
+fn own_project_builds_and_finds_lost_motion() {
     let (workspace, folder) = (workspace(), tempfile::tempdir().expect("a folder"));
     let from = workspace.join("examples/own-project");
     fs::create_dir(folder.path().join("src")).expect("a folder");
@@ -105,7 +111,7 @@ fn own_project_builds_outside_and_finds_the_lost_motion() {
     let manifest = fs::read_to_string(from.join("Cargo.toml")).expect("a manifest");
     let elsewhere = manifest.replace("path = \"../..", &format!("path = \"{}", workspace.display()));
     fs::write(folder.path().join("Cargo.toml"), elsewhere).expect("a manifest");
-    // The same versions as here, all of which are there already.
+    // Lock file of the workspace, whose versions are all present.
     fs::copy(workspace.join("Cargo.lock"), folder.path().join("Cargo.lock")).expect("a lock file");
     let target = program("own-project").ancestors().nth(3).expect("a target folder").join("own-project");
     let output = Command::new(env!("CARGO"))
@@ -122,6 +128,7 @@ fn own_project_builds_outside_and_finds_the_lost_motion() {
     assert!((lost_motion_arcmin - 3.0).abs() < 0.06 && error_mrad.abs() < 0.1, "{text}");
 }
 
+/// README shows code from the project's files.
 #[test]
 fn readme_shows_the_own_project() {
     let read = |name: &str| fs::read_to_string(workspace().join(name)).expect("a file");

@@ -1,3 +1,3 @@
-//! Every bound that tests hold a number against, with its reason. The tests themselves are in `tests/`.
+//! Tolerances of all tests, each with its reason. The tests are in `tests/`.
 
 pub mod tolerance;

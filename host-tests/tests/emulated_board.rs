@@ -1,5 +1,5 @@
-//! The firmware on the emulated board, spoken to in bare frames: what it says of itself, and that its f32 state is the
-//! core's on this machine in every bit of every step.
+//! The firmware on the emulated board, addressed in bare frames: its identity, and its f32 state, which equals the core's on this machine
+//! in every bit of every step.
 
 use std::io::{ErrorKind, Read, Write};
 use std::os::unix::net::UnixStream;
@@ -22,15 +22,15 @@ use reference::scenarios;
 
 const TICK_RATE: u32 = 20_000;
 const TICKS: u32 = 4000;
-/// Ticks from one change of the torques to the next.
+/// Ticks between changes of the torques.
 const HOLD: u32 = 100;
-/// A busy machine is given time; nothing here is judged by it.
+/// Timeout of an answer, long enough for a busy machine.
 const TIMEOUT: Duration = Duration::from_secs(120);
-/// Silence after which a message is taken for lost and sent again. An answer arrives in pieces, each of them a sign that
-/// the board is at it: who asked again at every piece would flood it, and a flood loses frames.
+/// Silence after which a message counts as lost and is sent again. A reply arrives in pieces, each a sign of life: repeating the request at
+/// every piece would flood the board, and a flood loses frames.
 const REPEAT_AFTER: Duration = Duration::from_secs(2);
 
-/// The line to the board, in messages.
+/// Connection to the board, in messages.
 struct Line {
     stream: UnixStream,
     receiver: Receiver,
@@ -47,7 +47,7 @@ impl Line {
         self.stream.write_all(&frame).expect("the emulator listens");
     }
 
-    /// What has arrived within a moment.
+    /// Messages that have arrived within 50 ms.
     fn receive(&mut self) -> Vec<FromBoard> {
         let mut bytes = [0; 4096];
         let count = match self.stream.read(&mut bytes) {
@@ -58,7 +58,7 @@ impl Line {
         bytes[..count].iter().filter_map(|byte| self.receiver.push(*byte)).collect()
     }
 
-    /// Asks until an answer is found.
+    /// Repeats a request until `answer` accepts a reply.
     fn ask<A>(&mut self, message: &ToBoard, answer: impl Fn(FromBoard) -> Option<A>) -> A {
         let start = Instant::now();
         let mut asked: Option<Instant> = None;
@@ -74,7 +74,7 @@ impl Line {
         panic!("no answer to {message:?}");
     }
 
-    /// Waits until the board has nothing more to say: where it was asked twice, it answers twice.
+    /// Waits until the board is silent: a repeated request is answered repeatedly.
     fn drain(&mut self) {
         let mut heard = Instant::now();
         while heard.elapsed() < REPEAT_AFTER {
@@ -106,14 +106,14 @@ fn schedule(sequence: u16) -> ToBoard {
     ToBoard::Schedule(Schedule { sequence, horizon: tick + HOLD, commands })
 }
 
-/// The whole run: samples in order.
+/// Samples of a whole run, in order.
 fn run(line: &mut Line) -> Vec<Sample> {
-    // The emulated clock runs as fast as it can while this host is thinking.
+    // The emulated clock runs as fast as it can while this host is busy.
     let command_timeout = u32::MAX;
     let settings =
         RunSettings { mode: RunMode::Lockstep, decimation: HOLD as u16, command_timeout, from_memory: false };
     line.ask(&ToBoard::Reset(settings), hello);
-    // On a busy machine the board was asked more than once: a reset that comes later would end the run.
+    // A repeated reset that arrives late would end the run.
     line.drain();
     let (mut samples, mut next) = (Vec::new(), 0);
     let start = Instant::now();
@@ -137,9 +137,10 @@ fn run(line: &mut Line) -> Vec<Sample> {
     samples
 }
 
+/// State digests and outputs of the board equal the core's at every sample.
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn the_board_s_state_is_the_core_s_in_every_bit() {
+fn board_state_equals_core_in_every_bit() {
     let say = |line: &str| println!("{line}");
     let toolchain = Toolchain::prepare(&say).expect("a toolchain for the board");
     emulator::ensure(&say).expect("an emulator");
@@ -175,9 +176,10 @@ fn the_board_s_state_is_the_core_s_in_every_bit() {
         .map(|sample| (sample.tick, sample.state_digest, sample.gap.to_bits(), sample.link_offset.to_bits()))
         .collect();
     assert_eq!(found, expected);
-    // The run is worth its name: the joint went through its gap.
+    // The run is only meaningful if the joint crossed its gap.
     let gaps = samples.iter().map(|sample| f64::from(sample.gap));
-    let (least, greatest) = gaps.fold((f64::MAX, f64::MIN), |(least, most), gap| (gap.min(least), gap.max(most)));
+    let (least, greatest) =
+        gaps.fold((f64::MAX, f64::MIN), |(least, greatest), gap| (gap.min(least), gap.max(greatest)));
     let half_backlash = scenarios::q1().sun_planet.half_backlash[0];
     assert!(least < -2.0 * half_backlash && greatest > 2.0 * half_backlash, "gap from {least:e} to {greatest:e} m");
 }

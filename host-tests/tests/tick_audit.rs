@@ -1,5 +1,4 @@
-//! The linked image of every role: its tick cannot reach a panic, and its stack is bounded; an image in which that is not
-//! so is refused.
+//! Linked images of every role: the tick cannot reach a panic and its stack is bounded; an image that violates this is rejected.
 
 use board::device::board::Board;
 use board::device::image::{build_image, preset_file};
@@ -8,9 +7,10 @@ use board::device::toolchain::Toolchain;
 use image_proof::tick;
 use link::messages::Role;
 
+/// No path of the tick ends in a panic, and its stack has a bound.
 #[test]
 #[ignore = "needs the compiler for the board: run by `cargo joint hil --check`"]
-fn the_tick_cannot_panic_and_its_stack_is_bounded() {
+fn tick_cannot_panic_and_bounds_its_stack() {
     let say = |line: &str| println!("{line}");
     let toolchain = Toolchain::prepare(&say).expect("a toolchain for the board");
     for (role, rate) in [(Role::Plant, 20_000), (Role::Observer, 10_000), (Role::Loop, 10_000)] {
@@ -21,9 +21,10 @@ fn the_tick_cannot_panic_and_its_stack_is_bounded() {
     }
 }
 
+/// Planted faults are all found and named.
 #[test]
 #[ignore = "needs the compiler for the board: run by `cargo joint hil --check`"]
-fn planted_faults_are_all_found_and_named() {
+fn planted_faults_are_found_and_named() {
     let say = |line: &str| println!("{line}");
     let toolchain = Toolchain::prepare(&say).expect("a toolchain for the board");
     let elf = build_measuring(&toolchain, "planted_faults", &[], 20_000, &say).expect("an image");

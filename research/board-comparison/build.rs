@@ -1,4 +1,4 @@
-//! Tells the linker about the emulated board's memory, as the firmware's build script does for its own binaries.
+//! Passes the emulated board's memory layout to the linker, as the firmware's build script does for its own binaries.
 
 use std::path::Path;
 

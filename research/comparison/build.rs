@@ -1,9 +1,9 @@
-//! Links SUNDIALS where the feature `cvode` asks for it.
+//! Links SUNDIALS for the feature `cvode`.
 
 use std::path::Path;
 use std::{env, fs};
 
-/// CVODE and what it needs; from version 7 on also `core`.
+/// CVODE and its dependencies; version 7 and later also need `core`.
 const LIBRARIES: [&str; 3] = ["sundials_cvode", "sundials_nvecserial", "sundials_sunnonlinsolfixedpoint"];
 
 fn main() {

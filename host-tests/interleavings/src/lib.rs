@@ -1,5 +1,5 @@
-//! The firmware's tick, serial interrupt and idle as they ship, file by file, on atomics of which every order is tried. Only
-//! `shared` is another file: it has the same names and the same orderings, and loom behind them. The models are in `tests`.
+//! Tick, serial interrupt and idle of the firmware, unchanged, on atomics whose every ordering is explored. Only `shared` is replaced: it
+//! has the same names and orderings on top of loom. The models are in `tests`.
 
 #[path = "../../../firmware/src/conversation.rs"]
 pub mod conversation;

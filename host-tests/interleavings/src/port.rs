@@ -1,11 +1,11 @@
-//! What `learnt` asks of a port to a controller. No model has a role that learns: nobody implements it.
+//! Port to a controller that `learnt` needs. No model has a role with a memory, so nothing implements it.
 
 use model_core::observer::{Memory, MemoryError};
 
-/// Of the firmware's ports, what a memory goes through.
+/// Part of the firmware's ports that transfers a memory.
 pub trait ControllerPort {
-    /// Copies what was learnt; `false` if there is nothing.
+    /// Copies the estimated parameters; returns `false` if there are none.
     fn memory(&self, memory: &mut Memory) -> bool;
-    /// Takes what was learnt earlier.
+    /// Loads parameters estimated earlier.
     fn recall(&mut self, memory: &Memory) -> Result<(), MemoryError>;
 }

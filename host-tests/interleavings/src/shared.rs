@@ -1,13 +1,13 @@
-//! In place of `firmware/src/shared.rs`: the same atomics and queues, watched by loom.
+//! Replacement of `firmware/src/shared.rs`: the same atomics and queues on top of loom.
 //!
-//! Constructors are constant there, loom's are not, so each is made at the first look at it: models look at all of them
-//! before their threads begin.
+//! Constructors are `const` there and not in loom, so each atomic is created at its first access: models access all of them before their
+//! threads begin.
 //!
-//! The queue stands for heapless's, with its two indices and their orderings: each side reads its own as it likes, the
-//! other's with Acquire where it takes or gives and Relaxed where it only looks, and writes its own with Release. An index
-//! of the other side is read again only when the last reading of it is used up, which heapless may be as late to see. How
-//! heapless keeps its entries is its own affair: here they lie behind a lock, and each has a mark that was set before the
-//! entry was handed over. Whoever can see the entry without the mark could see half an entry.
+//! The queue stands for heapless's, with its two indices and their orderings: each side reads its own index freely, reads the other's with
+//! Acquire where it adds or removes an entry and with Relaxed where it only checks, and writes its own with Release. The other side's index
+//! is read again only when its last known value is used up, the latest point at which heapless reads it. The storage of the entries in
+//! heapless is not modelled: here they are behind a lock, each with a mark set before the entry is published. A thread that sees an entry
+//! without its mark could see half an entry.
 
 use std::cell::{Cell, OnceCell};
 use std::collections::VecDeque;
@@ -18,76 +18,76 @@ use loom::sync::atomic::{self, AtomicUsize};
 
 pub use loom::sync::atomic::fence;
 
-/// A number. Loom tries two orders where a store meets the last look at the same atomic: whoever looks itself before it
-/// stores hides the looks of others. So every look is preceded by a turn, of which all orders are tried.
+/// Atomic number. Loom explores two orders where a store meets the last access of an atomic, so a thread that reads before it stores hides
+/// the reads of others. Every read is therefore preceded by an access to `turn`, all orders of which are explored.
 #[derive(Debug, Default)]
 pub struct AtomicU32 {
     first: u32,
-    watched: OnceLock<(atomic::AtomicU32, atomic::AtomicU32)>,
+    cell: OnceLock<(atomic::AtomicU32, atomic::AtomicU32)>,
 }
 
 impl AtomicU32 {
-    /// With its first value.
+    /// Atomic with its initial value.
     pub const fn new(first: u32) -> Self {
-        Self { first, watched: OnceLock::new() }
+        Self { first, cell: OnceLock::new() }
     }
 
-    fn watched(&self) -> &(atomic::AtomicU32, atomic::AtomicU32) {
-        self.watched.get_or_init(|| (atomic::AtomicU32::new(self.first), atomic::AtomicU32::new(0)))
+    fn cell(&self) -> &(atomic::AtomicU32, atomic::AtomicU32) {
+        self.cell.get_or_init(|| (atomic::AtomicU32::new(self.first), atomic::AtomicU32::new(0)))
     }
 
-    /// Looks at it.
+    /// Reads the number.
     pub fn load(&self, ordering: Ordering) -> u32 {
-        let (number, turn) = self.watched();
+        let (number, turn) = self.cell();
         turn.fetch_add(0, Relaxed);
         number.load(ordering)
     }
 
-    /// Changes it.
+    /// Stores a number.
     pub fn store(&self, number: u32, ordering: Ordering) {
-        self.watched().0.store(number, ordering);
+        self.cell().0.store(number, ordering);
     }
 }
 
-/// A flag, which nobody looks at who sets it.
+/// Atomic flag that its writer never reads.
 #[derive(Debug, Default)]
 pub struct AtomicBool {
     first: bool,
-    watched: OnceLock<atomic::AtomicBool>,
+    cell: OnceLock<atomic::AtomicBool>,
 }
 
 impl AtomicBool {
-    /// With its first value.
+    /// Atomic with its initial value.
     pub const fn new(first: bool) -> Self {
-        Self { first, watched: OnceLock::new() }
+        Self { first, cell: OnceLock::new() }
     }
 
-    fn watched(&self) -> &atomic::AtomicBool {
-        self.watched.get_or_init(|| atomic::AtomicBool::new(self.first))
+    fn cell(&self) -> &atomic::AtomicBool {
+        self.cell.get_or_init(|| atomic::AtomicBool::new(self.first))
     }
 
-    /// Looks at it.
+    /// Reads the flag.
     pub fn load(&self, ordering: Ordering) -> bool {
-        self.watched().load(ordering)
+        self.cell().load(ordering)
     }
 
-    /// Changes it.
+    /// Stores the flag.
     pub fn store(&self, flag: bool, ordering: Ordering) {
-        self.watched().store(flag, ordering);
+        self.cell().store(flag, ordering);
     }
 }
 
-/// An entry and its mark; a byte has none, since there is no half of it.
+/// Entry and its mark; a byte has no mark, since it cannot be seen in part.
 type Entry<T> = (T, Option<Arc<atomic::AtomicBool>>);
 
-/// They count entries, and do not wrap.
+/// Numbers of removed and added entries, which do not wrap.
 #[derive(Default)]
 struct Indices {
-    taken: AtomicUsize,
-    given: AtomicUsize,
+    removed: AtomicUsize,
+    added: AtomicUsize,
 }
 
-/// What both sides see.
+/// State shared by both sides.
 struct Ring<T> {
     places: usize,
     indices: OnceLock<Indices>,
@@ -99,26 +99,26 @@ impl<T> Ring<T> {
         self.indices.get_or_init(Indices::default)
     }
 
-    fn entries<R>(&self, look: impl FnOnce(&mut VecDeque<Entry<T>>) -> R) -> R {
-        look(&mut self.entries.lock().unwrap_or_else(PoisonError::into_inner))
+    fn entries<R>(&self, visit: impl FnOnce(&mut VecDeque<Entry<T>>) -> R) -> R {
+        visit(&mut self.entries.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
-/// A queue for one producer and one consumer.
+/// Queue for one producer and one consumer.
 pub struct Queue<T, const PLACES: usize>(Ring<T>);
 
 impl<T, const PLACES: usize> Queue<T, PLACES> {
-    /// Empty.
+    /// Empty queue.
     pub const fn new() -> Self {
         let entries = Mutex::new(VecDeque::new());
         Self(Ring { places: PLACES, indices: OnceLock::new(), entries })
     }
 
-    /// Hands out its ends.
+    /// Returns both ends.
     pub fn split(&mut self) -> (Producer<'_, T>, Consumer<'_, T>) {
         let ring = &self.0;
-        let (taken, given) = (ring.indices().taken.load(Relaxed), ring.indices().given.load(Relaxed));
-        (Producer { ring, given, taken }, Consumer { ring, taken, given: Cell::new(given), front: OnceCell::new() })
+        let (removed, added) = (ring.indices().removed.load(Relaxed), ring.indices().added.load(Relaxed));
+        (Producer { ring, added, removed }, Consumer { ring, removed, added: Cell::new(added), front: OnceCell::new() })
     }
 }
 
@@ -128,41 +128,41 @@ impl<T, const PLACES: usize> Default for Queue<T, PLACES> {
     }
 }
 
-/// The end that entries go into.
+/// End for adding entries.
 pub struct Producer<'a, T> {
     ring: &'a Ring<T>,
-    given: usize,
-    /// As last seen.
-    taken: usize,
+    added: usize,
+    /// Number of removed entries, as last seen.
+    removed: usize,
 }
 
 impl<T> Producer<'_, T> {
-    /// Most entries.
+    /// Capacity [entries].
     pub fn capacity(&self) -> usize {
         self.ring.places - 1
     }
 
-    /// Entries that are there.
+    /// Number of entries.
     pub fn len(&self) -> usize {
-        self.given - self.ring.indices().taken.load(Relaxed)
+        self.added - self.ring.indices().removed.load(Relaxed)
     }
 
-    /// Whether there is none.
+    /// Returns true if the queue is empty.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Whether there is room.
+    /// Returns true if there is room for an entry.
     pub fn ready(&self) -> bool {
         self.len() < self.capacity()
     }
 
-    /// Puts an entry in, or gives it back.
+    /// Adds an entry, or returns it if the queue is full.
     pub fn enqueue(&mut self, entry: T) -> Result<(), T> {
-        if self.given - self.taken == self.capacity() {
-            self.taken = self.ring.indices().taken.load(Acquire);
+        if self.added - self.removed == self.capacity() {
+            self.removed = self.ring.indices().removed.load(Acquire);
         }
-        if self.given - self.taken == self.capacity() {
+        if self.added - self.removed == self.capacity() {
             return Err(entry);
         }
         let mark = (size_of::<T>() > 1).then(|| {
@@ -171,44 +171,44 @@ impl<T> Producer<'_, T> {
             mark
         });
         self.ring.entries(|entries| entries.push_back((entry, mark)));
-        self.given += 1;
-        self.ring.indices().given.store(self.given, Release);
+        self.added += 1;
+        self.ring.indices().added.store(self.added, Release);
         Ok(())
     }
 }
 
-/// The end that entries come out of.
+/// End for removing entries.
 pub struct Consumer<'a, T> {
     ring: &'a Ring<T>,
-    taken: usize,
-    /// As last seen.
-    given: Cell<usize>,
-    /// The first, if it was looked at.
+    removed: usize,
+    /// Number of added entries, as last seen.
+    added: Cell<usize>,
+    /// First entry, if it was peeked at.
     front: OnceCell<Entry<T>>,
 }
 
 impl<T> Consumer<'_, T> {
-    /// Most entries.
+    /// Capacity [entries].
     pub fn capacity(&self) -> usize {
         self.ring.places - 1
     }
 
-    /// Entries that are there.
+    /// Number of entries.
     pub fn len(&self) -> usize {
-        self.ring.indices().given.load(Relaxed) - self.taken
+        self.ring.indices().added.load(Relaxed) - self.removed
     }
 
-    /// Whether there is none.
+    /// Returns true if the queue is empty.
     pub fn is_empty(&self) -> bool {
         !self.ready()
     }
 
-    /// Whether there is one.
+    /// Returns true if there is an entry.
     pub fn ready(&self) -> bool {
-        self.ring.indices().given.load(Relaxed) > self.taken
+        self.ring.indices().added.load(Relaxed) > self.removed
     }
 
-    /// Looks at the first.
+    /// First entry, not removed.
     pub fn peek(&self) -> Option<&T> {
         self.ready().then(|| self.front())
     }
@@ -220,18 +220,18 @@ impl<T> Consumer<'_, T> {
         entry
     }
 
-    /// Takes the first out.
+    /// Removes the first entry.
     pub fn dequeue(&mut self) -> Option<T> {
-        if self.taken == self.given.get() {
-            self.given.set(self.ring.indices().given.load(Acquire));
+        if self.removed == self.added.get() {
+            self.added.set(self.ring.indices().added.load(Acquire));
         }
-        if self.taken == self.given.get() {
+        if self.removed == self.added.get() {
             return None;
         }
         self.front();
         let (entry, _) = self.front.take()?;
-        self.taken += 1;
-        self.ring.indices().taken.store(self.taken, Release);
+        self.removed += 1;
+        self.ring.indices().removed.store(self.removed, Release);
         Some(entry)
     }
 }

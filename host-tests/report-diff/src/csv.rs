@@ -1,5 +1,5 @@
-//! CSV, cell by cell. Columns belong together by their names, so that a column that has moved is no difference, and one that
-//! is missing is a single one, at the head. Cells are compared as they are written.
+//! CSV, cell by cell. Columns are matched by name: a moved column is no difference, and a missing column is one difference, in the head.
+//! Cells are compared as written.
 
 use std::rc::Rc;
 
@@ -7,7 +7,7 @@ use csv::{ReaderBuilder, StringRecord};
 
 use crate::listing::{Listing, Row};
 
-/// What two tables say whose first line names their columns.
+/// Reads two tables whose first line names their columns.
 pub fn read(tables: [&str; 2]) -> [Listing; 2] {
     let tables = tables.map(|table| {
         let reader = ReaderBuilder::new().has_headers(false).flexible(true).from_reader(table.as_bytes());
@@ -19,20 +19,20 @@ pub fn read(tables: [&str; 2]) -> [Listing; 2] {
     tables.map(|table| Listing { rows: rows(&table, &common), hidden: Vec::new() })
 }
 
-/// The head, and the cells of the common columns of each other line; of a line that is longer, also what is beyond.
+/// Head of a table, and the cells of the common columns of each line; of a longer line also the surplus cells.
 fn rows(table: &[StringRecord], common: &[Rc<str>]) -> Vec<Row> {
     let Some((head, lines)) = table.split_first() else { return Vec::new() };
     let mut names = Row::at("columns");
-    head.iter().for_each(|name| names.say(name, name));
+    head.iter().for_each(|name| names.push(name, name));
     let places: Vec<Option<usize>> = common.iter().map(|name| head.iter().position(|it| it == &**name)).collect();
     let cells = |line: &StringRecord| {
         let mut row = Row::at(format!("line {}", line.position().map_or(0, csv::Position::line)));
         for (name, place) in common.iter().zip(&places) {
             if let Some(cell) = place.and_then(|place| line.get(place)) {
-                row.say(Rc::clone(name), cell);
+                row.push(Rc::clone(name), cell);
             }
         }
-        line.iter().enumerate().skip(head.len()).for_each(|(at, cell)| row.say(format!("column {}", at + 1), cell));
+        line.iter().enumerate().skip(head.len()).for_each(|(at, cell)| row.push(format!("column {}", at + 1), cell));
         row
     };
     std::iter::once(names).chain(lines.iter().map(cells)).collect()

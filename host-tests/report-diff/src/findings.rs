@@ -1,71 +1,71 @@
-//! What a comparison has found: differences, how many values were compared, and what was left out by which rule.
+//! Findings of a comparison: differences, number of compared values, and number of values ignored by each rule.
 
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// One value that is not the same.
+/// A value that differs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Difference {
     /// File, relative to both trees.
     pub file: String,
-    /// Where in it; empty for the file as a whole.
+    /// Place in the file; empty for the file as a whole.
     pub place: String,
-    /// What stands in the old tree; none if nothing does.
+    /// Value in the old tree, if any.
     pub old: Option<String>,
-    /// What stands in the new tree; none if nothing does.
+    /// Value in the new tree, if any.
     pub new: Option<String>,
 }
 
-/// Values that one rule has left out.
+/// Values ignored by one rule.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct LeftOut {
-    /// All of them.
+pub struct IgnoredCount {
+    /// Number of ignored values.
     pub values: u64,
-    /// Those that were not the same.
+    /// Number of ignored values that differ.
     pub different: u64,
 }
 
-/// Everything found so far.
+/// Findings so far.
 #[derive(Debug, Clone, Default)]
 pub struct Findings {
-    /// Files compared.
+    /// Number of compared files.
     pub files: usize,
-    /// Values compared, those that were left out not counted.
+    /// Number of compared values, without ignored values.
     pub values: u64,
-    /// What is not the same.
+    /// Values that differ.
     pub differences: Vec<Difference>,
-    /// By the name of the rule.
-    pub left_out: BTreeMap<&'static str, LeftOut>,
+    /// Ignored values by the name of the rule.
+    pub ignored_counts: BTreeMap<&'static str, IgnoredCount>,
     file: String,
 }
 
 impl Findings {
-    /// What follows belongs to this file.
-    pub fn begin(&mut self, file: &str) {
+    /// Attributes the following findings to a file.
+    pub fn start_file(&mut self, file: &str) {
         self.files += 1;
         file.clone_into(&mut self.file);
     }
 
-    /// A value differs, or one side does not have it.
-    pub fn differs(&mut self, place: impl Into<String>, old: Option<String>, new: Option<String>) {
+    /// Records a value that differs or is missing on one side.
+    pub fn add_difference(&mut self, place: impl Into<String>, old: Option<String>, new: Option<String>) {
         self.values += 1;
         self.differences.push(Difference { file: self.file.clone(), place: place.into(), old, new });
     }
 
-    /// A value was left out.
-    pub fn leave_out(&mut self, rule: &'static str, different: bool) {
-        let counted = self.left_out.entry(rule).or_default();
+    /// Records an ignored value.
+    pub fn count_ignored(&mut self, rule: &'static str, different: bool) {
+        let counted = self.ignored_counts.entry(rule).or_default();
         counted.values += 1;
         counted.different += u64::from(different);
     }
 
-    /// Whether nothing differs.
-    pub fn all_same(&self) -> bool {
+    /// Returns true if nothing differs.
+    pub fn is_same(&self) -> bool {
         self.differences.is_empty()
     }
 }
 
-/// Longest value that is shown whole.
+/// Longest value shown whole [characters].
 const SHOWN: usize = 300;
 
 impl fmt::Display for Difference {
@@ -88,33 +88,33 @@ impl fmt::Display for Difference {
     }
 }
 
-/// The report: at most `shown` differences of each file, then the counts.
+/// Report with at most `shown` differences of each file, then the counts.
 pub fn report(findings: &Findings, shown: usize) -> String {
     let mut text = String::new();
-    let mut of_file: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut file_counts: BTreeMap<&str, usize> = BTreeMap::new();
     for difference in &findings.differences {
-        let count = of_file.entry(&difference.file).or_default();
+        let count = file_counts.entry(&difference.file).or_default();
         *count += 1;
         if *count <= shown {
             text += &format!("{difference}\n");
         }
     }
-    for (file, count) in of_file.iter().filter(|(_, count)| **count > shown) {
+    for (file, count) in file_counts.iter().filter(|(_, count)| **count > shown) {
         text += &format!("{file}: {} more\n", count - shown);
     }
-    if !findings.left_out.is_empty() {
-        let of_rule = |(rule, counted): (&&str, &LeftOut)| {
+    if !findings.ignored_counts.is_empty() {
+        let rule_text = |(rule, counted): (&&str, &IgnoredCount)| {
             format!("{rule} {} ({} of them different)", counted.values, counted.different)
         };
-        let list: Vec<String> = findings.left_out.iter().map(of_rule).collect();
-        text += &format!("left out: {}\n", list.join(", "));
+        let list: Vec<String> = findings.ignored_counts.iter().map(rule_text).collect();
+        text += &format!("ignored: {}\n", list.join(", "));
     }
     let (files, values) = (findings.files, findings.values);
     let word = if files == 1 { "file" } else { "files" };
     match findings.differences.len() {
         0 => text += &format!("same: {values} values in {files} {word}\n"),
         count => {
-            text += &format!("different: {count} of {values} values, in {} of {files} {word}\n", of_file.len());
+            text += &format!("different: {count} of {values} values, in {} of {files} {word}\n", file_counts.len());
         }
     }
     text

@@ -1,6 +1,6 @@
-//! HTML pages by what can be read on them. The layout of a page may change while every figure has to stay, so that pages
-//! are compared, unless more is asked for, by how often each word with a digit stands on them and by the texts of their
-//! tables' cells. Pictures, styles and scripts are left aside: what is drawn is in the records from which it is drawn.
+//! HTML pages by their visible content. The layout of a page may change while every figure has to stay, so pages are compared, unless more
+//! is requested, by the number of occurrences of each word with a digit and by the texts of their table cells. Pictures, styles and scripts
+//! are skipped: drawn data is in the records.
 
 use std::collections::BTreeMap;
 
@@ -8,22 +8,22 @@ use crate::listing::{Listing, Row};
 use crate::page::{self, Page};
 use crate::text;
 
-/// What counts on a page.
+/// Compared content of a page.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Level {
-    /// Each word with a digit, as often as it stands there.
+    /// Words with a digit, by their number of occurrences.
     Numbers,
-    /// Those, and the texts of tables' cells.
+    /// Words with a digit, and texts of table cells.
     #[default]
     Figures,
-    /// All of it, in order.
+    /// All text, in order.
     Text,
 }
 
-/// How often each text is there.
+/// Number of occurrences of each text.
 type Counts = BTreeMap<String, usize>;
 
-/// What two pages say; `may_grow` lets the new one have more. Fails if one is no page.
+/// Reads two pages; `may_grow` allows the new page to have more. Fails if either cannot be parsed.
 pub fn read(pages: [&str; 2], level: Level, may_grow: bool) -> Result<[Listing; 2], String> {
     let [old, new] = pages.map(page::read);
     let pages = [old?, new?];
@@ -47,7 +47,7 @@ pub fn read(pages: [&str; 2], level: Level, may_grow: bool) -> Result<[Listing; 
         }
         for (listing, counts) in listings.iter_mut().zip([old, new]) {
             let mut row = Row::default();
-            counts.iter().for_each(|(word, count)| row.say(format!("{what} `{word}`"), format!("{count} times")));
+            counts.iter().for_each(|(word, count)| row.push(format!("{what} `{word}`"), format!("{count} times")));
             listing.rows.push(row);
         }
     }
@@ -60,7 +60,7 @@ fn counted(words: impl Iterator<Item = String>) -> Counts {
     counts
 }
 
-/// Words with a digit, without the punctuation around them.
+/// Words with a digit, without surrounding punctuation.
 fn with_digits(line: &str) -> Vec<String> {
     line.split_whitespace()
         .map(|word| word.trim_matches(|c: char| "()[]{},;:.·\"'`".contains(c)))
@@ -84,16 +84,18 @@ mod tests {
     const PAGE: &str = "<h1>Run 7</h1><p>error <b>1.5</b> %</p><svg><text>9.9</text></svg>\
         <table><tr><th>check</th><th>figure</th></tr><tr><td>gap</td><td>2.5 um</td></tr></table>";
 
+    /// A changed layout with equal figures is no difference.
     #[test]
-    fn figures_count_and_layout_does_not() {
+    fn layout_is_ignored() {
         let other = "<table><tr><th>check</th></tr><tr><th>figure</th></tr><tr><td>gap</td></tr><tr><td>2.5 <i>um</i></td></tr></table>\
             <div>Run <em>7</em></div><div>1.5</div> <div>% error</div><svg><text>8.8</text></svg>";
         assert!(differences(PAGE, other, Level::Figures, false).is_empty());
         assert!(!differences(PAGE, other, Level::Text, false).is_empty());
     }
 
+    /// Changed figures, missing figures and changed cells are found.
     #[test]
-    fn another_figure_a_lost_one_and_another_cell_are_found() {
+    fn changed_figures_and_cells_are_found() {
         let found = differences(PAGE, &PAGE.replace("1.5", "1.6"), Level::Figures, false);
         assert_eq!(found, ["figure `1.5`", "figure `1.6`"]);
         let verdict = PAGE.replace("gap", "twist");
@@ -105,8 +107,9 @@ mod tests {
         assert_eq!(differences(&more, PAGE, Level::Figures, true), ["figure `3.25`"]);
     }
 
+    /// Columns, rows and tiles of host time are ignored.
     #[test]
-    fn columns_rows_and_tiles_of_the_host_s_time_are_left_out() {
+    fn host_time_is_ignored() {
         let page = |cost: &str, error: &str, date: &str| {
             let heads =
                 ["scheme", "deflections", "gap", "link offset", "cost", "sub-steps"].map(|h| format!("<th>{h}</th>"));

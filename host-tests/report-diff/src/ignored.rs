@@ -1,61 +1,61 @@
-//! Everything that is not compared, in one place: what two runs of the same sources do not share. Each rule has a name, by
-//! which the report counts what was left out, and a reason. Nothing else is left out anywhere.
+//! All ignored values in one place: values that differ between two runs of the same sources. Each rule has a reason, and a name by which
+//! the report counts ignored values. Nothing else is ignored anywhere.
 
 use std::fmt;
 
-/// When it ran.
+/// Date of the run.
 pub const DATE: &str = "date";
-/// At what time of day.
+/// Time of day of the run.
 pub const CLOCK: &str = "time of day";
-/// Where the sources and results lie on this machine; the last part of a path is compared.
+/// Folder of sources and results on this machine; the last part of a path is compared.
 pub const PATH: &str = "folder";
-/// How long the host took, by its clock or by its processor's time.
+/// Time spent by the host, by clock or processor time.
 pub const HOST_TIME: &str = "host time";
-/// Which sources.
+/// Commit of the sources.
 pub const COMMIT: &str = "commit";
-/// Digest of an ELF file: names and paths in its debugging information, which no board ever sees, are in it. Its sizes and
-/// everything that it does on a board are compared.
+/// Digest of an ELF file, which includes names and paths in its debugging information that no board sees. Its sizes and its behaviour on a
+/// board are compared.
 pub const ELF_DIGEST: &str = "digest of an ELF file";
-/// When bytes came over the line between host and emulator, which is the host's affair: how often a tick waited for them,
-/// and which tick or deepest call an interrupt of the line fell into. It costs no step; mean, least and greatest time of a
-/// tick are compared, so are the RAM of statics, and the deepest stack that `joint hil --check` finds in the image.
+/// Arrival times of bytes between host and emulator, which depend on the host: number of ticks that waited for them, and the tick or call
+/// depth at which an interrupt of the line occurred. The step does not depend on them. Mean, least and greatest time of a tick are
+/// compared, as are the RAM of statics and the deepest stack that `joint hil --check` finds in the image.
 pub const LINE_TIMING: &str = "timing of the line";
 
-/// Lists of the files beside them, with digests of whole files, dates and all: what is in a file is compared there.
+/// Lists of files with digests and dates; the files themselves are compared.
 pub const FILES: [&str; 1] = [".written-by-joint"];
 
-/// Where something stands that is left out. In words, `#` is a number that is left out, `@` a digest of hexadecimal digits.
+/// Place of an ignored value. In phrases, `#` is an ignored number and `@` an ignored digest of hexadecimal digits.
 #[derive(Debug, Clone, Copy)]
 pub enum Place {
-    /// Below this key of JSON, or of the remarks in an MCAP log: the end of the way to it.
+    /// Value below a key of JSON, or of the metadata of an MCAP log, whose path ends so.
     Key(&'static str),
-    /// In an object of JSON that has this `name`, below this key.
+    /// Value below a key in a JSON object with this `name`.
     Named(&'static str, &'static str),
-    /// In this attribute of XML.
+    /// Value of an XML attribute.
     Attribute(&'static str),
-    /// In these words of a text with one space between them, whichever file it is in.
+    /// Number or digest in a phrase of any text, with single spaces between words.
     Phrase(&'static str),
-    /// In a table of text or HTML whose first column has this head, in small letters or large ones: in this column.
+    /// Column of a table of text or HTML whose first column has this head, in either case.
     Column(&'static str, &'static str),
-    /// In a cell of an HTML table to the right of this one, which may end with [`MARK`].
+    /// Cell of an HTML table to the right of this cell, which may end with [`MARK`].
     Beside(&'static str),
-    /// On a page, beside the line with this name of a figure, before it or behind it: in a line of this form.
+    /// Line of this form before or after the line with this figure's name, on a page.
     Tile(&'static str, &'static str),
 }
 
-/// What stands behind the name of a figure that an emulator has measured.
+/// Suffix of the name of a figure measured by an emulator.
 pub const MARK: &str = " EMULATED";
 
-/// Behind a commit: the sources were not quite it.
+/// Suffix of a commit whose sources were modified.
 pub const CHANGED: &str = " (changed)";
 
-/// Where which rule holds; those for dates, times of day and folders hold everywhere besides.
+/// Places and their rules; the rules for dates, times of day and folders hold everywhere besides.
 pub const RULES: &[(Place, &str)] = &[
     (Place::Key("date"), DATE),
     (Place::Key("git_commit"), COMMIT),
     (Place::Key("commit"), COMMIT),
     (Place::Key("elf_sha256"), ELF_DIGEST),
-    // A test or a whole run of them.
+    // A test or a whole run of tests.
     (Place::Key("seconds"), HOST_TIME),
     // Schemes of `joint sim --scheme all`.
     (Place::Key("cost_ratio"), HOST_TIME),
@@ -96,14 +96,14 @@ pub const RULES: &[(Place, &str)] = &[
     (Place::Tile("Idle", "# %"), LINE_TIMING),
 ];
 
-/// The rule that holds at such a place.
+/// Rule for the first place that satisfies `is_there`.
 pub fn rule(is_there: impl Fn(&Place) -> bool) -> Option<&'static str> {
     RULES.iter().find(|(place, _)| is_there(place)).map(|(_, rule)| *rule)
 }
 
-/// The rule that leaves out what is below a key, by all keys that lead to it with a dot between them.
-pub fn ignored_key(way: &str) -> Option<&'static str> {
-    let ends = |end: &str| way.strip_suffix(end).is_some_and(|before| before.is_empty() || before.ends_with('.'));
+/// Rule that ignores the value below a key, given all keys on the path, joined by dots.
+pub fn ignored_key(path: &str) -> Option<&'static str> {
+    let ends = |end: &str| path.strip_suffix(end).is_some_and(|before| before.is_empty() || before.ends_with('.'));
     rule(|place| matches!(place, Place::Key(end) if ends(end)))
 }
 
@@ -121,12 +121,12 @@ impl fmt::Display for Place {
     }
 }
 
-/// All of it, to be read.
+/// List of all rules, for the user.
 pub fn list() -> String {
     let places: String = RULES.iter().map(|(place, rule)| format!("  {place}: {rule}\n")).collect();
     format!(
-        "Not compared, wherever it stands:\n  {DATE}\n  {CLOCK}\n  {PATH}\n  `{}`: {COMMIT}\n\
-         Not compared, where it stands:\n{places}",
+        "Ignored everywhere:\n  {DATE}\n  {CLOCK}\n  {PATH}\n  `{}`: {COMMIT}\n\
+         Ignored at these places:\n{places}",
         CHANGED.trim()
     )
 }
@@ -135,8 +135,9 @@ pub fn list() -> String {
 mod tests {
     use super::*;
 
+    /// A key matches by the end of its path.
     #[test]
-    fn a_key_is_known_by_the_end_of_its_way() {
+    fn key_matches_by_end_of_path() {
         assert_eq!(ignored_key("identity.date"), Some(DATE));
         assert_eq!(ignored_key("host.times.cost"), Some(HOST_TIME));
         for kept in ["methods.cost", "duration_s", "date.figure", "update"] {

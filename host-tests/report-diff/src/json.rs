@@ -1,27 +1,28 @@
-//! JSON by value, key by key: one row. Whole numbers are compared as such, all others by the f64 that they stand for; the
-//! order of keys and the form of a number do not count.
+//! JSON by value, key by key, in one row. Whole numbers are compared as such, all others by their f64; the order of keys and the notation
+//! of a number do not count.
 
 use serde_json::Value;
 
 use crate::ignored::{Place, ignored_key, rule};
 use crate::listing::{Listing, Row};
 
-/// What a document says.
+/// Reads a document.
 pub fn read(document: &Value) -> Listing {
-    let mut listing = Listing::of(Row::default());
+    let mut listing = Listing::from_row(Row::default());
     walk(document, ["", ""], &mut listing);
     listing
 }
 
-/// `keys` is the way from the top of the document without places in lists.
+/// `keys` is the path from the top of the document without list indices.
 fn walk(value: &Value, [place, keys]: [&str; 2], listing: &mut Listing) {
-    let said = match value {
+    let text = match value {
         Value::Object(object) if !object.is_empty() => {
-            let own = object.get("name").and_then(Value::as_str);
+            let own_name = object.get("name").and_then(Value::as_str);
             for (key, value) in object {
                 let [place, keys] =
-                    [place, keys].map(|way| if way.is_empty() { key.clone() } else { format!("{way}.{key}") });
-                let by_name = rule(|place| matches!(place, Place::Named(name, at) if Some(*name) == own && at == key));
+                    [place, keys].map(|path| if path.is_empty() { key.clone() } else { format!("{path}.{key}") });
+                let by_name =
+                    rule(|place| matches!(place, Place::Named(name, at) if Some(*name) == own_name && at == key));
                 match by_name.or_else(|| ignored_key(&keys)) {
                     Some(rule) => listing.hidden.push((rule, value.to_string())),
                     None => walk(value, [&place, &keys], listing),
@@ -36,11 +37,11 @@ fn walk(value: &Value, [place, keys]: [&str; 2], listing: &mut Listing) {
             return;
         }
         Value::String(text) => Value::String(listing.masked(text)).to_string(),
-        // 1.0 is written as 1.
+        // Writes 1.0 as 1.
         Value::Number(number) => {
             number.as_f64().filter(|_| number.is_f64()).map_or(number.to_string(), |it| it.to_string())
         }
         other => other.to_string(),
     };
-    listing.rows[0].say(place, said);
+    listing.rows[0].push(place, text);
 }

@@ -1,9 +1,9 @@
-//! Are two trees of records the same? A tree is a folder with everything that some commands have printed and written:
-//! before a change of the sources, and after it. Every difference is reported with its file, its place, the old and the
-//! new value; values that are not compared are in one list, [`ignored`], and are counted.
+//! Compares two trees of records. A tree is a folder with everything that some commands have printed and written, before a change of the
+//! sources and after it. Every difference is reported with its file, its place, the old and the new value; ignored values are listed in one
+//! place, [`ignored`], and counted.
 //!
-//! Each kind of file is read into one form, a [`listing`] of values and their places, and that is compared: [`json`],
-//! [`csv`], [`text`], [`html`], [`xml`], [`log`] for MCAP; all others are compared byte by byte.
+//! Each kind of file is read into one form, a [`listing`] of values and their places, which is compared: [`json`], [`csv`], [`text`],
+//! [`html`], [`xml`], [`log`] for MCAP; all others are compared byte by byte.
 
 pub mod csv;
 pub mod findings;

@@ -1,9 +1,9 @@
-//! What a file says, as one flat list: rows of values, each value with its place. Every kind of file is read into this form,
-//! and this form is what is compared.
+//! Content of a file as a flat list: rows of values, each value with its place. Every kind of file is read into this form and compared in
+//! this form.
 //!
-//! Rows stand in an order: lines, lines of a table, tags, messages. They are compared one with one between what both lists
-//! begin and end with; where one list has more of them there, those that only one of them has are named, so that a row
-//! that is missing is one difference and not one of every row behind it. Within a row, values belong together by name.
+//! Rows have an order: lines, lines of a table, tags, messages. After the common beginning and end of both lists, rows are compared pair by
+//! pair if their numbers agree; otherwise rows that exist in one list only are reported, so that a missing row is one difference and not
+//! one for every row behind it. Within a row, values are matched by name.
 
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -11,32 +11,32 @@ use std::rc::Rc;
 use crate::findings::Findings;
 use crate::mask::{Hidden, masked};
 
-/// Values that stand and fall together.
+/// Values of one line, tag or message.
 #[derive(Debug, Default)]
 pub struct Row {
-    /// Where it is in its file; it may have moved there.
+    /// Place in the file; it may have moved.
     pub place: String,
-    /// By their names; a value that is the whole row, or that the row's place names, has an empty one.
+    /// Values by name; a value without a name is the whole row, or is named by the row's place.
     pub values: Vec<(Rc<str>, String)>,
 }
 
-/// Everything that a file says.
+/// Content of a file.
 #[derive(Debug, Default)]
 pub struct Listing {
-    /// In the file's order.
+    /// Rows in the file's order.
     pub rows: Vec<Row>,
-    /// What rules have left out.
+    /// Ignored values with their rules.
     pub hidden: Vec<Hidden>,
 }
 
 impl Row {
-    /// A row without values.
+    /// Row without values.
     pub fn at(place: impl Into<String>) -> Self {
         Self { place: place.into(), values: Vec::new() }
     }
 
     /// Adds a value.
-    pub fn say(&mut self, name: impl Into<Rc<str>>, value: impl Into<String>) {
+    pub fn push(&mut self, name: impl Into<Rc<str>>, value: impl Into<String>) {
         self.values.push((name.into(), value.into()));
     }
 
@@ -44,7 +44,7 @@ impl Row {
         [&self.place, name].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
     }
 
-    /// The place of the whole row; that of its value if it has only one.
+    /// Place of the whole row, or of its value if it has only one.
     fn whole_place(&self) -> String {
         self.place_of(if let [(name, _)] = &self.values[..] { name } else { "" })
     }
@@ -55,12 +55,12 @@ impl Row {
 }
 
 impl Listing {
-    /// A list of one row.
-    pub fn of(row: Row) -> Self {
+    /// Listing of one row.
+    pub fn from_row(row: Row) -> Self {
         Self { rows: vec![row], hidden: Vec::new() }
     }
 
-    /// A text without what rules leave out of it.
+    /// Text without ignored words, which are recorded.
     pub fn masked(&mut self, text: &str) -> String {
         let (text, hidden) = masked(text);
         self.hidden.extend(hidden);
@@ -68,22 +68,22 @@ impl Listing {
     }
 }
 
-/// Compares what two files say.
+/// Compares two listings.
 pub fn compare([old, new]: [&Listing; 2], findings: &mut Findings) {
     let count = |rows: &mut dyn Iterator<Item = &Row>| rows.map(|row| row.values.len() as u64).sum::<u64>();
-    let pairs = differing(&old.rows, &new.rows);
+    let pairs = differing_pairs(&old.rows, &new.rows);
     findings.values += count(&mut old.rows.iter()) - count(&mut pairs.iter().filter_map(|pair| pair.0));
     for pair in pairs {
         match pair {
             (Some(old), Some(new)) => compare_rows(old, new, findings),
-            (Some(old), None) => findings.differs(old.whole_place(), Some(old.whole()), None),
-            (None, Some(new)) => findings.differs(new.whole_place(), None, Some(new.whole())),
+            (Some(old), None) => findings.add_difference(old.whole_place(), Some(old.whole()), None),
+            (None, Some(new)) => findings.add_difference(new.whole_place(), None, Some(new.whole())),
             (None, None) => {}
         }
     }
     let mut hidden = new.hidden.iter();
-    old.hidden.iter().for_each(|old| findings.leave_out(old.0, hidden.next() != Some(old)));
-    hidden.for_each(|new| findings.leave_out(new.0, true));
+    old.hidden.iter().for_each(|old| findings.count_ignored(old.0, hidden.next() != Some(old)));
+    hidden.for_each(|new| findings.count_ignored(new.0, true));
 }
 
 fn compare_rows(old: &Row, new: &Row, findings: &mut Findings) {
@@ -91,16 +91,16 @@ fn compare_rows(old: &Row, new: &Row, findings: &mut Findings) {
     for (name, value) in &old.values {
         match others.remove(&**name) {
             Some(other) if other == value => findings.values += 1,
-            other => findings.differs(old.place_of(name), Some(value.clone()), other.cloned()),
+            other => findings.add_difference(old.place_of(name), Some(value.clone()), other.cloned()),
         }
     }
     for (name, value) in new.values.iter().filter(|(name, _)| others.contains_key(&**name)) {
-        findings.differs(new.place_of(name), None, Some(value.clone()));
+        findings.add_difference(new.place_of(name), None, Some(value.clone()));
     }
 }
 
-/// Rows that are not the same: two at the same place, or one that only one side has.
-fn differing<'a>(old: &'a [Row], new: &'a [Row]) -> Vec<(Option<&'a Row>, Option<&'a Row>)> {
+/// Rows that differ: two at the same position, or one that exists on one side only.
+fn differing_pairs<'a>(old: &'a [Row], new: &'a [Row]) -> Vec<(Option<&'a Row>, Option<&'a Row>)> {
     let same = |(a, b): &(&Row, &Row)| a.values == b.values;
     let head = old.iter().zip(new).take_while(same).count();
     let tail = old[head..].iter().rev().zip(new[head..].iter().rev()).take_while(same).count();
@@ -108,30 +108,31 @@ fn differing<'a>(old: &'a [Row], new: &'a [Row]) -> Vec<(Option<&'a Row>, Option
     if old.len() == new.len() {
         return old.iter().zip(new).filter(|pair| !same(pair)).map(|(a, b)| (Some(a), Some(b))).collect();
     }
-    let gone = beyond(old, new).into_iter().map(|row| (Some(row), None));
-    gone.chain(beyond(new, old).into_iter().map(|row| (None, Some(row)))).collect()
+    let gone = surplus(old, new).into_iter().map(|row| (Some(row), None));
+    gone.chain(surplus(new, old).into_iter().map(|row| (None, Some(row)))).collect()
 }
 
-/// Rows of one list that the other has not, or not as often: the last ones of several that are equal.
-fn beyond<'a>(rows: &'a [Row], others: &[Row]) -> Vec<&'a Row> {
+/// Rows of one list that the other does not have, or not as often: the last ones of several equal rows.
+fn surplus<'a>(rows: &'a [Row], others: &[Row]) -> Vec<&'a Row> {
     let mut counts: HashMap<&[(Rc<str>, String)], usize> = HashMap::new();
     others.iter().for_each(|row| *counts.entry(&row.values).or_default() += 1);
-    let is_beyond = |row: &&Row| match counts.get_mut(&row.values[..]).filter(|count| **count > 0) {
+    let is_surplus = |row: &&Row| match counts.get_mut(&row.values[..]).filter(|count| **count > 0) {
         Some(count) => {
             *count -= 1;
             false
         }
         None => true,
     };
-    rows.iter().filter(is_beyond).collect()
+    rows.iter().filter(is_surplus).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// A missing row is one difference, not one for each row behind it.
     #[test]
-    fn a_missing_row_is_one_difference() {
+    fn missing_row_is_one_difference() {
         let places = |old: &str, new: &str| {
             let row = |value: &str| Row { place: String::new(), values: vec![("".into(), value.to_owned())] };
             let listing = |text: &str| Listing { rows: text.split_whitespace().map(row).collect(), hidden: Vec::new() };

@@ -1,5 +1,5 @@
-//! MCAP logs by what is in them: topics with their schemas and remarks, and every message by its fields. How a log is cut
-//! into chunks, compressed and indexed does not count.
+//! MCAP logs by content: topics with their schemas and metadata, and every message by its fields. Chunks, compression and index do not
+//! count.
 
 use std::collections::BTreeMap;
 
@@ -8,17 +8,17 @@ use mcap::records::{MessageHeader, Record};
 
 use crate::ignored::ignored_key;
 use crate::listing::{Listing, Row};
-use crate::ros::Form;
+use crate::ros::MessageLayout;
 
 /// One topic.
 struct Topic {
     name: String,
-    form: Option<Form>,
-    /// The first says what it is, all others are messages.
+    layout: Option<MessageLayout>,
+    /// Rows: the first describes the topic, all others are messages.
     rows: Vec<Row>,
 }
 
-/// What a log says; fails if it cannot be read.
+/// Reads a log; fails if it cannot be read.
 pub fn read(log: &[u8]) -> Result<Listing, String> {
     let (mut listing, mut about) = (Listing::default(), Row::default());
     let (mut schemas, mut topics) = (BTreeMap::new(), BTreeMap::new());
@@ -31,7 +31,7 @@ pub fn read(log: &[u8]) -> Result<Listing, String> {
             Record::Schema { header, data } => {
                 schemas.insert(header.id, (header, String::from_utf8_lossy(&data).into_owned()));
             }
-            // The index at a log's end names each topic once more.
+            // The index at a log's end repeats each topic.
             Record::Channel(channel) if !topics.contains_key(&channel.id) => {
                 let mut row = Row::at(&channel.topic);
                 channel.metadata.iter().for_each(|(key, value)| remark(&mut row, key, value, &mut listing));
@@ -42,8 +42,8 @@ pub fn read(log: &[u8]) -> Result<Listing, String> {
                     remark(&mut row, "schema encoding", &header.encoding, &mut listing);
                     remark(&mut row, "schema", text, &mut listing);
                 }
-                let form = schema.and_then(|(_, text)| Form::of(text));
-                topics.insert(channel.id, Topic { name: channel.topic, form, rows: vec![row] });
+                let layout = schema.and_then(|(_, text)| MessageLayout::from_schema(text));
+                topics.insert(channel.id, Topic { name: channel.topic, layout, rows: vec![row] });
             }
             Record::Message { header, data } => {
                 let topic = topics.get_mut(&header.channel_id).ok_or("a message has no topic")?;
@@ -60,7 +60,7 @@ pub fn read(log: &[u8]) -> Result<Listing, String> {
             _ => {}
         }
     }
-    // Topics are compared one with one, in whichever order their messages were written.
+    // Topics are matched by name, whatever the order of their messages.
     let mut topics: Vec<Topic> = topics.into_values().collect();
     topics.sort_by(|a, b| a.name.cmp(&b.name));
     listing.rows = std::iter::once(about).chain(topics.into_iter().flat_map(|topic| topic.rows)).collect();
@@ -70,28 +70,28 @@ pub fn read(log: &[u8]) -> Result<Listing, String> {
 fn remark(row: &mut Row, key: &str, value: &str, listing: &mut Listing) {
     match ignored_key(key) {
         Some(rule) => listing.hidden.push((rule, value.to_owned())),
-        None => row.say(key, listing.masked(value)),
+        None => row.push(key, listing.masked(value)),
     }
 }
 
 fn message(topic: &Topic, header: &MessageHeader, data: &[u8]) -> Row {
     let mut row = Row::at(format!("{} message {}", topic.name, topic.rows.len() - 1));
-    row.say("topic", &*topic.name);
+    row.push("topic", &*topic.name);
     let times = [("log time", header.log_time), ("publish time", header.publish_time)];
-    times.into_iter().for_each(|(name, time)| row.say(name, time.to_string()));
-    row.say("sequence", header.sequence.to_string());
-    match topic.form.as_ref().and_then(|form| form.decoded(data)) {
-        Some(fields) => fields.into_iter().for_each(|(name, numbers)| row.say(name, said(&numbers))),
-        None => row.say("bytes", data.escape_ascii().to_string()),
+    times.into_iter().for_each(|(name, time)| row.push(name, time.to_string()));
+    row.push("sequence", header.sequence.to_string());
+    match topic.layout.as_ref().and_then(|layout| layout.decode(data)) {
+        Some(fields) => fields.into_iter().for_each(|(name, numbers)| row.push(name, number_list(&numbers))),
+        None => row.push("bytes", data.escape_ascii().to_string()),
     }
     row
 }
 
-/// Numbers so that no two different ones are the same text.
-fn said(numbers: &[f64]) -> String {
-    let said = |number: &f64| match number.is_nan() {
+/// Text of some numbers, different for any two different lists of bits.
+fn number_list(numbers: &[f64]) -> String {
+    let text = |number: &f64| match number.is_nan() {
         true => format!("NaN {:x}", number.to_bits()),
         false => format!("{number:?}"),
     };
-    format!("[{}]", numbers.iter().map(said).collect::<Vec<_>>().join(", "))
+    format!("[{}]", numbers.iter().map(text).collect::<Vec<_>>().join(", "))
 }

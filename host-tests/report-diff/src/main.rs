@@ -1,4 +1,4 @@
-//! `report-diff OLD NEW`: are two trees of records the same? The comparison itself is in the library.
+//! `report-diff OLD NEW` compares two trees of records. The comparison is in the library.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -8,23 +8,23 @@ use report_diff::{Options, compare, findings, ignored};
 
 /// Compares two trees of records value by value, or two files
 #[derive(Parser)]
-#[command(after_help = "Exit code: 0 if both are the same, 1 if not, 2 for bad usage or what cannot be read.")]
-struct Asked {
-    /// What is compared: two folders or two files
+#[command(after_help = "Exit code: 0 if both are equal, 1 if they differ, 2 for bad usage or unreadable files.")]
+struct Arguments {
+    /// Two folders or two files to compare
     #[arg(num_args = 2, value_names = ["OLD", "NEW"], required_unless_present = "ignored")]
     trees: Vec<PathBuf>,
     #[command(flatten)]
     options: Options,
-    /// Differences shown of each file
+    /// Number of differences shown for each file
     #[arg(long, value_name = "N", default_value_t = 20)]
     shown: usize,
-    /// Lists what is not compared, and ends
+    /// List the ignored values and exit
     #[arg(long)]
     ignored: bool,
 }
 
 fn main() -> ExitCode {
-    let Asked { trees, options, shown, ignored } = Asked::parse();
+    let Arguments { trees, options, shown, ignored } = Arguments::parse();
     if ignored {
         print!("{}", ignored::list());
         return ExitCode::SUCCESS;
@@ -32,10 +32,10 @@ fn main() -> ExitCode {
     match compare(&trees[0], &trees[1], options) {
         Ok(found) => {
             print!("{}", findings::report(&found, shown));
-            ExitCode::from(u8::from(!found.all_same()))
+            ExitCode::from(u8::from(!found.is_same()))
         }
-        Err(why) => {
-            eprintln!("error: {why}");
+        Err(reason) => {
+            eprintln!("error: {reason}");
             ExitCode::from(2)
         }
     }

@@ -1,33 +1,33 @@
-//! HTML and XML in pieces: tags with their attributes, and the text between them. Whether tags are well nested does not
-//! count; comments, declarations and the document's type are passed over.
+//! HTML and XML as a sequence of tags with their attributes and the text between them. Nesting of tags is not checked; comments,
+//! declarations and the document type are skipped.
 
 use quick_xml::escape::unescape;
 use quick_xml::events::Event;
 
-/// A piece of a document.
+/// Piece of a document.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Piece {
-    /// `<name attribute="value">`, and `<name/>`, which is followed by its end.
+    /// Start tag `<name attribute="value">`, or `<name/>`, which is followed by its end.
     Open {
         /// Name of the element.
         name: String,
-        /// Its attributes, sorted by name.
+        /// Attributes, sorted by name.
         attributes: Vec<(String, String)>,
     },
-    /// `</name>`.
+    /// End tag `</name>`.
     Close(String),
-    /// Text, with its entities resolved.
+    /// Text with its entities resolved.
     Text(String),
 }
 
-/// The pieces of a document; fails at what cannot be a tag.
+/// Pieces of a document; fails at an invalid tag.
 pub fn pieces(document: &str) -> Result<Vec<Piece>, String> {
     let mut reader = quick_xml::Reader::from_str(document);
     let settings = reader.config_mut();
     (settings.expand_empty_elements, settings.allow_dangling_amp) = (true, true);
     (settings.check_end_names, settings.allow_unmatched_ends) = (false, true);
     let resolved = |text: &str| unescape(text).map_or(text.to_owned(), |text| text.into_owned());
-    // A text comes in parts, cut at its entities.
+    // The parser cuts a text at its entities.
     let (mut pieces, mut text) = (Vec::new(), String::new());
     loop {
         let piece = match reader.read_event().map_err(|error| error.to_string())? {
@@ -64,8 +64,9 @@ pub fn pieces(document: &str) -> Result<Vec<Piece>, String> {
 mod tests {
     use super::*;
 
+    /// Tags, attributes and text are separated, entities resolved.
     #[test]
-    fn a_document_falls_into_tags_and_text() {
+    fn document_splits_into_tags_and_text() {
         let found = pieces(
             "<!DOCTYPE html><!-- <b> --><p class=\"a>b\" id=x hidden>1 &lt; 2 & 3</p><br/><style>p > a{}</style>",
         );

@@ -1,44 +1,44 @@
-//! What can be read on an HTML page: its lines, a line for each block, and the cells of its tables, both masked. Pictures,
-//! styles and scripts are passed over.
+//! Visible content of an HTML page: a line for each block, and the cells of its tables, both masked. Pictures, styles and scripts are
+//! skipped.
 
 use regex::Regex;
 
 use crate::ignored::{MARK, Place, RULES, rule};
 use crate::markup::{Piece, pieces};
-use crate::mask::{Hidden, form, masked};
+use crate::mask::{Hidden, masked, pattern};
 
-/// What can be read on a page.
+/// Visible content of a page.
 #[derive(Debug, Default)]
 pub struct Page {
     /// Text outside of pictures, a line for each block.
     pub lines: Vec<String>,
     /// Cells of tables.
     pub cells: Vec<String>,
-    /// What a rule has left out.
+    /// Ignored values with their rules.
     pub hidden: Vec<Hidden>,
 }
 
-/// Elements that cannot be read.
-const UNSEEN: [&str; 4] = ["svg", "style", "script", "template"];
-/// Elements in the middle of a line.
+/// Invisible elements.
+const INVISIBLE: [&str; 4] = ["svg", "style", "script", "template"];
+/// Elements within a line.
 const INLINE: [&str; 14] =
     ["a", "b", "code", "em", "i", "span", "strong", "sub", "sup", "small", "abbr", "var", "mark", "kbd"];
 
-/// The table that is being read.
+/// Table in progress.
 #[derive(Debug, Default)]
 struct Table {
     head: Vec<String>,
     row: Vec<String>,
 }
 
-/// Reads a page; fails if it is none.
+/// Reads a page; fails if it cannot be parsed.
 pub fn read(document: &str) -> Result<Page, String> {
     let (mut page, mut table, mut text) = (Page::default(), Table::default(), String::new());
-    let (mut unseen, mut in_cell) = (0_usize, false);
+    let (mut invisible_depth, mut in_cell) = (0_usize, false);
     for piece in pieces(document)? {
         let (name, opens) = match piece {
-            // A narrow space stands between the thousands of a number.
-            Piece::Text(part) if unseen == 0 => {
+            // A narrow space separates the thousands of a number.
+            Piece::Text(part) if invisible_depth == 0 => {
                 text += &part.replace('\u{202f}', "");
                 continue;
             }
@@ -46,12 +46,12 @@ pub fn read(document: &str) -> Result<Page, String> {
             Piece::Open { name, .. } => (name, true),
             Piece::Close(name) => (name, false),
         };
-        if UNSEEN.contains(&name.as_str()) {
-            unseen = if opens { unseen + 1 } else { unseen.saturating_sub(1) };
-        } else if unseen == 0 && !INLINE.contains(&name.as_str()) {
+        if INVISIBLE.contains(&name.as_str()) {
+            invisible_depth = if opens { invisible_depth + 1 } else { invisible_depth.saturating_sub(1) };
+        } else if invisible_depth == 0 && !INLINE.contains(&name.as_str()) {
             match (name.as_str(), opens) {
                 ("td" | "th", false) => page.end_cell(&std::mem::take(&mut text), &mut table),
-                // Blocks in a cell are words of their own.
+                // Blocks in a cell are separate words.
                 _ if in_cell => text.push(' '),
                 _ => page.end_line(&std::mem::take(&mut text)),
             }
@@ -90,14 +90,15 @@ impl Page {
         table.row.push(text);
     }
 
-    /// Takes out the lines beside the names of figures that do not count.
+    /// Removes the lines beside the names of ignored figures.
     fn leave_out_tiles(&mut self) {
         for (place, rule) in RULES {
             let Place::Tile(tile, words) = place else { continue };
-            let form = Regex::new(&format!("^{}$", form(words))).expect("a pattern");
+            let pattern = Regex::new(&format!("^{}$", pattern(words))).expect("a pattern");
             while let Some(name) = self.lines.iter().position(|line| unmarked(line) == *tile) {
                 let beside = [name.wrapping_sub(1), name + 1];
-                let found = beside.into_iter().find(|at| self.lines.get(*at).is_some_and(|line| form.is_match(line)));
+                let found =
+                    beside.into_iter().find(|at| self.lines.get(*at).is_some_and(|line| pattern.is_match(line)));
                 self.lines[name] += ":";
                 if let Some(at) = found {
                     self.hidden.push((rule, self.lines.remove(at)));
@@ -108,19 +109,19 @@ impl Page {
 }
 
 impl Table {
-    /// The rule by which the next cell is left out.
+    /// Rule that ignores the next cell.
     fn rule(&self) -> Option<&'static str> {
         let (before, first) = (self.row.last()?, self.head.first().map_or("", String::as_str));
-        let own = self.head.get(self.row.len()).map_or("", String::as_str);
+        let own_head = self.head.get(self.row.len()).map_or("", String::as_str);
         rule(|place| match place {
             Place::Beside(name) => *name == unmarked(before),
-            Place::Column(head, column) => head.eq_ignore_ascii_case(first) && *column == own,
+            Place::Column(head, column) => head.eq_ignore_ascii_case(first) && *column == own_head,
             _ => false,
         })
     }
 }
 
-/// The name of a figure without the mark of an emulated one.
+/// Name of a figure without the suffix of an emulated one.
 fn unmarked(name: &str) -> &str {
     name.strip_suffix(MARK).unwrap_or(name)
 }

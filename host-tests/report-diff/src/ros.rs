@@ -1,15 +1,15 @@
-//! Messages of ROS 2 in CDR, as far as our logs need them: fields of 64-bit floats, single or in lists. A message of any
-//! other form is compared by its bytes.
+//! ROS 2 messages in CDR, as far as the project's logs need them: fields of 64-bit floats, single or in lists. A message of any other form
+//! is compared by its bytes.
 
 use std::rc::Rc;
 
-/// Fields by their names, and whether they are lists.
+/// Names of fields, with `true` for a list.
 #[derive(Debug, Clone)]
-pub struct Form(Vec<(Rc<str>, bool)>);
+pub struct MessageLayout(Vec<(Rc<str>, bool)>);
 
-impl Form {
-    /// What a schema says, if it has no other fields than those that are understood.
-    pub fn of(schema: &str) -> Option<Self> {
+impl MessageLayout {
+    /// Reads a schema; `None` if it has a field of another type.
+    pub fn from_schema(schema: &str) -> Option<Self> {
         let lines = schema.lines().map(|line| line.split('#').next().unwrap_or_default().trim());
         let field = |line: &str| match line.split_once(char::is_whitespace)? {
             ("float64", name) => Some((name.trim().into(), false)),
@@ -19,9 +19,9 @@ impl Form {
         lines.filter(|line| !line.is_empty()).map(field).collect::<Option<_>>().map(Self)
     }
 
-    /// The numbers of each field of a message.
-    pub fn decoded(&self, message: &[u8]) -> Option<Vec<(Rc<str>, Vec<f64>)>> {
-        // The head says: little endian.
+    /// Numbers of each field of a message.
+    pub fn decode(&self, message: &[u8]) -> Option<Vec<(Rc<str>, Vec<f64>)>> {
+        // The header selects little endian.
         let body = message.strip_prefix(&[0, 1, 0, 0])?;
         let mut at = 0_usize;
         let mut fields = Vec::new();
@@ -46,18 +46,19 @@ impl Form {
 mod tests {
     use super::*;
 
+    /// Numbers and lists are decoded; messages of another form or length are not.
     #[test]
-    fn numbers_and_lists_are_read_and_other_messages_are_not() {
+    fn only_float_messages_are_decoded() {
         let mut message = vec![0, 1, 0, 0];
         message.extend(1.5_f64.to_le_bytes());
         message.extend(2_u32.to_le_bytes());
         message.extend([0; 4]);
         [2.5_f64, 3.5].iter().for_each(|number| message.extend(number.to_le_bytes()));
-        let decoded = |schema: &str, message: &[u8]| Form::of(schema)?.decoded(message);
+        let decode = |schema: &str, message: &[u8]| MessageLayout::from_schema(schema)?.decode(message);
         let schema = "float64 a  # [m]\nfloat64[] b\n";
-        assert_eq!(decoded(schema, &message), Some(vec![("a".into(), vec![1.5]), ("b".into(), vec![2.5, 3.5])]));
-        assert_eq!(decoded("float64 a\n", &message), None);
-        assert_eq!(decoded("string a\n", &message), None);
-        assert_eq!(decoded(schema, &message[..message.len() - 1]), None);
+        assert_eq!(decode(schema, &message), Some(vec![("a".into(), vec![1.5]), ("b".into(), vec![2.5, 3.5])]));
+        assert_eq!(decode("float64 a\n", &message), None);
+        assert_eq!(decode("string a\n", &message), None);
+        assert_eq!(decode(schema, &message[..message.len() - 1]), None);
     }
 }

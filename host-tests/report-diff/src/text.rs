@@ -1,36 +1,35 @@
-//! Text, line by line: what a terminal showed, Markdown, settings, logs. Lines are compared word by word once they are
-//! masked; empty lines and space between words do not count.
+//! Text, line by line: terminal output, Markdown, settings, logs. Lines are masked and compared word by word; empty lines and space between
+//! words do not count.
 
 use std::ops::Range;
 
 use crate::ignored::{Place, RULES};
 use crate::listing::{Listing, Row};
-use crate::mask::HIDDEN;
+use crate::mask::MASKED;
 
-/// What a text says: a row for each line that is not empty.
+/// Reads a text: a row for each line that is not empty.
 pub fn read(text: &str) -> Listing {
     let (mut listing, mut column) = (Listing::default(), None);
-    for (index, said) in text.lines().enumerate() {
-        column = under_head(said, column);
-        let mut line = said.to_owned();
+    for (index, raw) in text.lines().enumerate() {
+        column = under_head(raw, column);
+        let mut line = raw.to_owned();
         if let Some((end, rule)) = column
-            && let Some(word) = word_that_ends_at(said, end)
+            && let Some(word) = word_that_ends_at(raw, end)
         {
-            listing.hidden.push((rule, said[word.clone()].to_owned()));
-            line.replace_range(word, HIDDEN);
+            listing.hidden.push((rule, raw[word.clone()].to_owned()));
+            line.replace_range(word, MASKED);
         }
         let line = listing.masked(&line);
         if !line.is_empty() {
             let mut row = Row::at(format!("line {}", index + 1));
-            row.say("", line);
+            row.push("", line);
             listing.rows.push(row);
         }
     }
     listing
 }
 
-/// Where the words of a column that is left out end, in characters, and by which rule: from the head of its table to the
-/// next empty line.
+/// End of an ignored column's words [characters] and its rule, from the head of its table to the next empty line.
 fn under_head(line: &str, before: Option<(usize, &'static str)>) -> Option<(usize, &'static str)> {
     let first = line.split_whitespace().next()?;
     let end = |(place, rule): &(Place, &'static str)| match place {
@@ -44,7 +43,7 @@ fn under_head(line: &str, before: Option<(usize, &'static str)>) -> Option<(usiz
     RULES.iter().find_map(end).or(before)
 }
 
-/// Bytes of the figure whose last character is the one before this place.
+/// Byte range of the figure that ends right before a character position.
 fn word_that_ends_at(line: &str, end: usize) -> Option<Range<usize>> {
     let end = line.char_indices().map(|(at, _)| at).chain([line.len()]).nth(end)?;
     let start = line[..end].rfind(char::is_whitespace).map_or(0, |at| at + 1);
@@ -57,8 +56,9 @@ fn word_that_ends_at(line: &str, end: usize) -> Option<Range<usize>> {
 mod tests {
     use super::*;
 
+    /// A column of host time is ignored until its table ends.
     #[test]
-    fn a_column_of_the_host_s_time_is_left_out_until_its_table_ends() {
+    fn host_time_column_is_ignored_in_its_table() {
         let lines = |error: &str, cost: &str, behind: &str| {
             let table = format!(
                 "scheme      deflections          gap  link offset      cost  sub-steps\n\
@@ -69,9 +69,9 @@ mod tests {
             read(&table).rows.into_iter().map(|row| row.values).collect::<Vec<_>>()
         };
         let old = lines("2.03e-2", "  3.45", "3.45");
-        let differing = |new: Vec<_>| old.iter().zip(&new).filter(|(old, new)| old != new).count();
-        assert_eq!(differing(lines("2.03e-2", "276.26", "3.45")), 0);
-        assert_eq!(differing(lines("2.04e-2", "  3.45", "3.45")), 1);
-        assert_eq!(differing(lines("2.03e-2", "  3.45", "3.46")), 1);
+        let differing_lines = |new: Vec<_>| old.iter().zip(&new).filter(|(old, new)| old != new).count();
+        assert_eq!(differing_lines(lines("2.03e-2", "276.26", "3.45")), 0);
+        assert_eq!(differing_lines(lines("2.04e-2", "  3.45", "3.45")), 1);
+        assert_eq!(differing_lines(lines("2.03e-2", "  3.45", "3.46")), 1);
     }
 }

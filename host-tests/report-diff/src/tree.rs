@@ -1,4 +1,4 @@
-//! Walks two trees side by side and compares each pair of files by its kind. Files on one side only are differences.
+//! Walks two trees in parallel and compares each pair of files by its kind. Files on one side only are differences.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -11,13 +11,13 @@ use crate::ignored::FILES;
 use crate::listing::{self, Listing, Row};
 use crate::{csv, html, json, log, text, xml};
 
-/// What counts where it is not the same for everybody.
+/// Options of the comparison.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::Args)]
 pub struct Options {
-    /// What counts on HTML pages
+    /// Compared content of HTML pages
     #[arg(long, value_name = "LEVEL", value_enum, default_value_t)]
     pub html: html::Level,
-    /// Pages of NEW may have more figures and cells than those of OLD, but none may be gone
+    /// Allow pages of NEW to have more figures and cells than pages of OLD
     #[arg(long)]
     pub html_may_grow: bool,
 }
@@ -36,7 +36,7 @@ pub fn compare(old: &Path, new: &Path, options: Options) -> Result<Findings, Str
     }
     let (before, after) = (files(old)?, files(new)?);
     if before.is_empty() {
-        return Err(format!("{}: there is no file in it", old.display()));
+        return Err(format!("{}: the folder has no files", old.display()));
     }
     for path in before.union(&after) {
         let name = path.to_string_lossy();
@@ -46,8 +46,8 @@ pub fn compare(old: &Path, new: &Path, options: Options) -> Result<Findings, Str
                 compare_files(&name, [&read(&old.join(path))?, &read(&new.join(path))?], options, &mut findings);
             }
             (in_old, in_new) => {
-                findings.begin(&name);
-                findings.differs("", side(in_old), side(in_new));
+                findings.start_file(&name);
+                findings.add_difference("", side(in_old), side(in_new));
             }
         }
     }
@@ -70,38 +70,38 @@ fn files(folder: &Path) -> Result<BTreeSet<PathBuf>, String> {
     Ok(found)
 }
 
-/// Kinds of files that are text whatever is in them.
+/// File extensions compared as text.
 const TEXTS: [&str; 11] = ["txt", "md", "log", "toml", "stdout", "stderr", "exit", "command", "from", "rs", "yaml"];
 
 fn compare_files(name: &str, files: [&[u8]; 2], options: Options, findings: &mut Findings) {
-    findings.begin(name);
+    findings.start_file(name);
     let kind = Path::new(name).extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    // Two that cannot be read, as a log that is cut off, may still be the same.
-    let listings = listings(&kind, files, options).unwrap_or_else(|why| bytes(files, &why));
+    // Files that cannot be read, such as a truncated log, are compared byte by byte.
+    let listings = listings(&kind, files, options).unwrap_or_else(|reason| bytes(files, &reason));
     listing::compare(listings.each_ref(), findings);
 }
 
-/// What two files of a kind say; fails, with what is before the place of a byte, if one is not of that kind.
+/// Listings of two files of a kind; fails, with the words before the byte offset in the report, if one is not of this kind.
 fn listings(kind: &str, files: [&[u8]; 2], options: Options) -> Result<[Listing; 2], String> {
     let both = |[old, new]: [Result<Listing, String>; 2]| -> Result<_, String> { Ok([old?, new?]) };
     if kind == "mcap" {
-        return both(files.map(log::read)).map_err(|why| format!("a log that cannot be read ({why}), "));
+        return both(files.map(log::read)).map_err(|reason| format!("unreadable log ({reason}), "));
     }
     let [Ok(old), Ok(new)] = files.map(std::str::from_utf8) else { return Err(String::new()) };
     let texts = [old, new];
     match kind {
-        // A command may have been asked for JSON in place of its text.
+        // Standard output may be JSON.
         "json" | "stdout" if kind == "json" || old.trim_start().starts_with('{') => Ok(json_or_text(texts)),
         "csv" => Ok(csv::read(texts)),
         "html" | "htm" => html::read(texts, options.html, options.html_may_grow)
-            .map_err(|why| format!("a page that cannot be read ({why}), ")),
-        "xml" => both(texts.map(xml::read)).map_err(|why| format!("XML that cannot be read ({why}), ")),
+            .map_err(|reason| format!("unreadable page ({reason}), ")),
+        "xml" => both(texts.map(xml::read)).map_err(|reason| format!("unreadable XML ({reason}), ")),
         kind if TEXTS.contains(&kind) => Ok(texts.map(text::read)),
         _ => Err(String::new()),
     }
 }
 
-/// What is no JSON is a text.
+/// Listings of JSON, or of text where one is not JSON.
 fn json_or_text(texts: [&str; 2]) -> [Listing; 2] {
     match texts.map(serde_json::from_str) {
         [Ok(old), Ok(new)] => [old, new].map(|document| json::read(&document)),
@@ -109,13 +109,13 @@ fn json_or_text(texts: [&str; 2]) -> [Listing; 2] {
     }
 }
 
-/// The bytes of two files from the first that differs.
-fn bytes(files: [&[u8]; 2], why: &str) -> [Listing; 2] {
+/// Listings of the bytes of two files from the first that differs.
+fn bytes(files: [&[u8]; 2], reason: &str) -> [Listing; 2] {
     let at = files[0].iter().zip(files[1]).take_while(|(old, new)| old == new).count();
     files.map(|file| {
         let here = file[at..file.len().min(at + 16)].escape_ascii();
-        let mut row = Row::at(format!("{why}byte {at}"));
-        row.say("", format!("{} bytes, here {here}", file.len()));
-        Listing::of(row)
+        let mut row = Row::at(format!("{reason}byte {at}"));
+        row.push("", format!("{} bytes, here {here}", file.len()));
+        Listing::from_row(row)
     })
 }

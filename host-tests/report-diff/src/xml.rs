@@ -1,23 +1,23 @@
-//! XML such as JUnit's: every element, attribute and text, with the way to it, in the document's order.
+//! XML such as JUnit's: every element, attribute and text, with its path, in the document's order.
 
 use crate::ignored::{Place, rule};
 use crate::listing::{Listing, Row};
 use crate::markup::{Piece, pieces};
 
-/// What a document says; fails if it is none.
+/// Reads a document; fails if it cannot be parsed.
 pub fn read(document: &str) -> Result<Listing, String> {
-    let (mut way, mut listing) = (Vec::new(), Listing::default());
+    let (mut path, mut listing) = (Vec::new(), Listing::default());
     let say = |listing: &mut Listing, place: String, value: String| {
         let mut row = Row::default();
-        row.say(place, value);
+        row.push(place, value);
         listing.rows.push(row);
     };
     for piece in pieces(document)? {
         match piece {
             Piece::Open { name, attributes } => {
-                let own = attributes.iter().find(|(key, _)| key == "name");
-                way.push(own.map_or(name.clone(), |(_, own)| format!("{name} `{own}`")));
-                let place = way.join("/");
+                let own_name = attributes.iter().find(|(key, _)| key == "name");
+                path.push(own_name.map_or(name.clone(), |(_, own_name)| format!("{name} `{own_name}`")));
+                let place = path.join("/");
                 say(&mut listing, place.clone(), String::new());
                 for (key, value) in attributes {
                     match rule(|place| matches!(place, Place::Attribute(name) if *name == key)) {
@@ -26,11 +26,11 @@ pub fn read(document: &str) -> Result<Listing, String> {
                     }
                 }
             }
-            Piece::Close(_) => drop(way.pop()),
+            Piece::Close(_) => drop(path.pop()),
             Piece::Text(text) => {
                 let text = listing.masked(&text);
                 if !text.is_empty() {
-                    say(&mut listing, way.join("/"), text);
+                    say(&mut listing, path.join("/"), text);
                 }
             }
         }

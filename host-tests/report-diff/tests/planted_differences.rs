@@ -1,5 +1,5 @@
-//! Differences planted into a small tree of records: each is found at its place, and nothing is where nothing was planted.
-//! What a tree holds is written here as the host command writes it, with a figure or two.
+//! Differences planted into a small tree of records: each is found at its place, and no others. The tree's files have the form that the
+//! host command writes, with a figure or two.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -43,7 +43,7 @@ fn motion(rows: &[[f64; 2]], date: &str, compression: Option<Compression>) -> Ve
     bytes
 }
 
-/// A tree of records.
+/// Tree of records.
 struct Tree(TempDir);
 
 impl Tree {
@@ -69,7 +69,7 @@ impl Tree {
         self.0.path().join(name)
     }
 
-    /// Changes a part of a file's text.
+    /// Replaces the first occurrence in a file's text.
     fn change(&self, name: &str, from: &str, to: &str) {
         let text = fs::read_to_string(self.path(name)).expect("a text");
         assert!(text.contains(from), "{name} has no {from}");
@@ -81,7 +81,7 @@ fn found(old: &Tree, new: &Tree) -> Findings {
     compare(old.0.path(), new.0.path(), Options::default()).expect("two trees")
 }
 
-/// The only difference after something was planted.
+/// Single difference caused by `plant`.
 fn only(plant: impl FnOnce(&Tree)) -> Difference {
     let (old, new) = (Tree::new(), Tree::new());
     plant(&new);
@@ -95,16 +95,18 @@ fn difference(file: &str, place: &str, old: Option<&str>, new: Option<&str>) -> 
     Difference { file: file.into(), place: place.into(), old, new }
 }
 
+/// Equal trees have no difference.
 #[test]
-fn two_trees_with_the_same_records_are_the_same() {
+fn equal_trees_have_no_difference() {
     let found = found(&Tree::new(), &Tree::new());
-    assert!(found.all_same(), "{:?}", found.differences);
+    assert!(found.is_same(), "{:?}", found.differences);
     assert_eq!(found.files, 7);
     assert!(found.values > 40, "{}", found.values);
 }
 
+/// A changed last digit or sign in JSON is found.
 #[test]
-fn the_last_digit_of_a_figure_in_json_is_found() {
+fn last_digit_in_json_is_found() {
     let digit = only(|tree| tree.change("hil/record.json", "3.487969661470408", "3.487969661470409"));
     let place = "runs[0].figures.rms_mrad";
     assert_eq!(digit, difference("hil/record.json", place, Some("3.487969661470408"), Some("3.487969661470409")));
@@ -112,26 +114,29 @@ fn the_last_digit_of_a_figure_in_json_is_found() {
     assert_eq!(sign.place, "runs[0].figures.crossings");
 }
 
+/// Notation of numbers and order of keys do not count.
 #[test]
-fn another_form_of_the_same_number_and_another_order_of_keys_are_no_difference() {
+fn json_notation_and_key_order_are_ignored() {
     let (old, new) = (Tree::new(), Tree::new());
     new.change("hil/record.json", "{\"rms_mrad\":0.1}", "{ \"rms_mrad\": 1e-1 }");
     let (figures, turned) =
         ("\"rms_mrad\":3.487969661470408,\"crossings\":8", "\"crossings\":8,\"rms_mrad\":3.487969661470408");
     new.change("hil/record.json", figures, turned);
-    assert!(found(&old, &new).all_same());
+    assert!(found(&old, &new).is_same());
 }
 
+/// A removed and an added key are found.
 #[test]
-fn a_key_that_is_gone_and_one_that_has_come_are_found() {
+fn removed_and_added_json_keys_are_found() {
     let gone = only(|tree| tree.change("hil/record.json", ",\"crossings\":8", ""));
     assert_eq!(gone, difference("hil/record.json", "runs[0].figures.crossings", Some("8"), None));
     let come = only(|tree| tree.change("hil/record.json", "\"seed\":2", "\"seed\":2,\"broken\":null"));
     assert_eq!(come, difference("hil/record.json", "runs[1].broken", None, Some("null")));
 }
 
+/// A changed cell, a missing row and a missing column are one difference each.
 #[test]
-fn a_changed_cell_a_missing_row_and_a_missing_column_of_a_table_are_found() {
+fn csv_changes_are_found() {
     let cell = only(|tree| tree.change("sim/history.csv", "8.19e-5", "8.20e-5"));
     assert_eq!(cell, difference("sim/history.csv", "line 3, gap_m", Some("8.19e-5"), Some("8.20e-5")));
     let row = only(|tree| tree.change("sim/history.csv", "5e-5,8.19e-5,1\n", ""));
@@ -140,6 +145,7 @@ fn a_changed_cell_a_missing_row_and_a_missing_column_of_a_table_are_found() {
     assert_eq!(column, difference("sim/history.csv", "columns, contact", Some("contact"), None));
 }
 
+/// A file on one side only is found.
 #[test]
 fn files_on_one_side_only_are_found() {
     let gone = only(|tree| fs::remove_file(tree.path("hil/junit.xml")).expect("removed"));
@@ -148,8 +154,9 @@ fn files_on_one_side_only_are_found() {
     assert_eq!(come, difference("hil/deep/er/more.txt", "", None, Some("a file")));
 }
 
+/// A changed or lost message is found with its field.
 #[test]
-fn a_changed_message_of_a_log_is_found_with_its_field() {
+fn changed_log_message_is_found_by_field() {
     let log = |rows: &[[f64; 2]]| motion(rows, "2026-11-22T09:57:43Z", None);
     let field = only(|tree| tree.write("sim/history.mcap", log(&[ROWS[0], [5e-5, 81.9_f64.next_up()], ROWS[2]])));
     assert_eq!((&*field.file, &*field.place), ("sim/history.mcap", "/joint/motion message 1, gap_um"));
@@ -159,8 +166,9 @@ fn a_changed_message_of_a_log_is_found_with_its_field() {
     assert_eq!(lost, difference("sim/history.mcap", "/joint/motion message 2", Some(whole), None));
 }
 
+/// A changed byte is found in a complete and in a truncated log.
 #[test]
-fn one_changed_byte_of_a_log_is_found_even_where_the_log_is_cut_off() {
+fn changed_byte_of_truncated_log_is_found() {
     let change = |tree: &Tree, length: Option<usize>| {
         let mut bytes = fs::read(tree.path("sim/history.mcap")).expect("a log");
         let wanted = 81.9_f64.to_le_bytes();
@@ -182,21 +190,23 @@ fn one_changed_byte_of_a_log_is_found_even_where_the_log_is_cut_off() {
     assert_eq!(differences.len(), 1, "{differences:?}");
     assert!(differences[0].place.ends_with(&format!("byte {place}")), "{differences:?}");
     new.write("sim/history.mcap", &whole[..length]);
-    assert!(found(&old, &new).all_same());
+    assert!(found(&old, &new).is_same());
 }
 
+/// Compression and date of a log do not count.
 #[test]
-fn how_a_log_is_compressed_and_when_it_was_written_are_no_difference() {
+fn log_compression_and_date_are_ignored() {
     let (old, new) = (Tree::new(), Tree::new());
     new.write("sim/history.mcap", motion(&ROWS, "2027-01-01T00:00:00Z", Some(Compression::Lz4)));
     assert_ne!(fs::read(old.path("sim/history.mcap")).ok(), fs::read(new.path("sim/history.mcap")).ok());
     let found = found(&old, &new);
-    assert!(found.all_same(), "{:?}", found.differences);
-    assert_eq!(found.left_out["date"].different, 1);
+    assert!(found.is_same(), "{:?}", found.differences);
+    assert_eq!(found.ignored_counts["date"].different, 1);
 }
 
+/// Changes of date, commit, folder and duration are ignored and counted.
 #[test]
-fn only_another_date_commit_folder_and_duration_are_no_difference_and_are_counted() {
+fn ignored_values_are_counted() {
     let (old, new) = (Tree::new(), Tree::new());
     new.change("hil/record.json", "2026-11-22T09:57:43Z", "2027-01-01T00:00:00Z");
     new.change("hil/record.json", "b1f3478181d7", "0000000000aa");
@@ -205,15 +215,16 @@ fn only_another_date_commit_folder_and_duration_are_no_difference_and_are_counte
     new.change("hil/junit.xml", "time=\"3.500\"", "time=\"4.250\"");
     new.change("hil/terminal.stdout", "/home/one/target/hil/", "/elsewhere/");
     let found = found(&old, &new);
-    assert!(found.all_same(), "{:?}", found.differences);
-    let different = |rule: &str| found.left_out[rule].different;
+    assert!(found.is_same(), "{:?}", found.differences);
+    let different = |rule: &str| found.ignored_counts[rule].different;
     assert_eq!((different("date"), different("commit"), different("folder"), different("host time")), (2, 1, 1, 2));
     let name = only(|tree| tree.change("hil/terminal.stdout", "report.html", "page.html"));
     assert_eq!(name.place, "line 2");
 }
 
+/// Changed lines, verdicts, figures and pictures are found.
 #[test]
-fn a_changed_line_verdict_figure_and_picture_are_found() {
+fn text_xml_html_and_svg_changes_are_found() {
     let line = only(|tree| tree.change("hil/terminal.stdout", "ok ", "FAILED "));
     assert_eq!((&*line.file, &*line.place), ("hil/terminal.stdout", "line 1"));
     let case = only(|tree| tree.change("hil/junit.xml", "tests=\"1\"", "tests=\"2\""));
@@ -227,19 +238,20 @@ fn a_changed_line_verdict_figure_and_picture_are_found() {
     assert_eq!(places, wanted);
 }
 
+/// Figures that depend on the line's timing are ignored by name, and no other figure.
 #[test]
-fn what_the_line_to_the_emulator_was_slow_with_is_left_out_by_its_name_and_nothing_beside_it_is() {
+fn line_timing_is_ignored_by_name() {
     let (old, new) = (Tree::new(), Tree::new());
-    let checks = |idle: &str, most: &str| {
+    let checks = |idle: &str, longest: &str| {
         format!(
-            "{{\"timing\":{{\"idle_percent\":{idle},\"max_s\":{most}}},\"checks\":[{{\"name\":\"idle time\",\"figure\":{idle}}},\
-             {{\"name\":\"longest tick\",\"figure\":{most}}}]}}"
+            "{{\"timing\":{{\"idle_percent\":{idle},\"max_s\":{longest}}},\"checks\":[{{\"name\":\"idle time\",\"figure\":{idle}}},\
+             {{\"name\":\"longest tick\",\"figure\":{longest}}}]}}"
         )
     };
-    let page = |idle: &str, most: &str| {
+    let page = |idle: &str, longest: &str| {
         format!(
             "<div>{idle}<span> %</span></div><div>Idle <b>EMULATED</b></div><table><tr><td>idle time <b>EMULATED</b></td>\
-             <td>{idle} %</td></tr><tr><td>longest</td><td>{most} us</td></tr></table>"
+             <td>{idle} %</td></tr><tr><td>longest</td><td>{longest} us</td></tr></table>"
         )
     };
     for (tree, idle) in [(&old, "61.1"), (&new, "60.9")] {
@@ -257,11 +269,12 @@ fn what_the_line_to_the_emulator_was_slow_with_is_left_out_by_its_name_and_nothi
     assert_eq!(places[2..], figures);
 }
 
+/// Trees that cannot be compared are rejected.
 #[test]
-fn what_cannot_be_compared_is_refused() {
+fn incomparable_trees_are_rejected() {
     let (tree, empty) = (Tree::new(), tempfile::tempdir().expect("a folder"));
     let refused = |old: &Path, new: &Path| compare(old, new, Options::default()).expect_err("refused");
-    assert!(refused(empty.path(), tree.0.path()).contains("no file"));
+    assert!(refused(empty.path(), tree.0.path()).contains("has no files"));
     assert!(refused(tree.0.path(), &tree.path("hil/record.json")).contains("one is a folder"));
     assert!(refused(&tree.path("missing"), &tree.path("missing")).contains("missing"));
 }

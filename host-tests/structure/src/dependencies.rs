@@ -1,15 +1,14 @@
-//! What the workspace is built from that is not its own: where it comes from, and under which licence.
+//! Third-party packages of the workspace: their source and their licence.
 
 use std::path::Path;
 use std::process::Command;
 
 use serde_json::Value;
 
-/// How the source of a package begins that comes from a registry, not from a repository of somebody's.
+/// Prefix of the source of a package from a registry, as opposed to a repository.
 const REGISTRY: &str = "registry+";
 
-/// Licences under which a dependency may be used here: they ask for a notice at most. MPL-2.0 asks for its own files to stay
-/// open, which they are.
+/// Licences allowed for dependencies: most of them require a notice at most. MPL-2.0 requires its own files to stay open, which they do.
 const LICENCES: [&str; 12] = [
     "0BSD",
     "Apache-2.0",
@@ -25,17 +24,19 @@ const LICENCES: [&str; 12] = [
     "Zlib",
 ];
 
-/// Packages of `Cargo.lock`, for every platform, that come from elsewhere than the one registry that the first of them comes
-/// from; the workspace's own have no source.
+/// Packages of `Cargo.lock`, for every platform, from a source other than the registry of the first package; members of the workspace have
+/// no source.
 pub fn foreign(lock: &str) -> Vec<String> {
     let source = |line: &str| line.strip_prefix("source = \"").map(|rest| rest.trim_end_matches('"').to_string());
     let mut sources = lock.lines().filter_map(source).peekable();
     let first = sources.peek().cloned().unwrap_or_default();
     let foreign = sources.filter(|source| !source.starts_with(REGISTRY) || *source != first);
-    foreign.map(|source| format!("Cargo.lock: a package of {source}\n  mend: one of the registry")).collect()
+    foreign
+        .map(|source| format!("Cargo.lock: a package from {source}\n  help: use a package of the registry"))
+        .collect()
 }
 
-/// Whether an SPDX expression lets us use one of the licences; a slash is an old form of OR.
+/// Returns true if an SPDX expression permits one of the licences; a slash is an old form of OR.
 pub fn is_allowed(licence: &str) -> bool {
     let mut words = Vec::<String>::new();
     for word in licence.replace('(', " ( ").replace(')', " ) ").replace('/', " OR ").split_whitespace() {
@@ -82,22 +83,21 @@ fn one(words: &[String]) -> (bool, &[String]) {
     }
 }
 
-/// Packages whose licence is not among those that are allowed, of Cargo's own account of them.
+/// Packages of Cargo's metadata whose licence is not allowed.
 pub fn unlicensed(metadata: &Value) -> Vec<String> {
     let packages = metadata["packages"].as_array().map(Vec::as_slice).unwrap_or_default();
     let judge = |package: &Value| {
         let (name, licence) = (package["name"].as_str()?, package["license"].as_str().unwrap_or("none stated"));
         (!is_allowed(licence))
-            .then(|| format!("{name}: licence {licence}\n  mend: do without it, or allow that licence"))
+            .then(|| format!("{name}: licence {licence}\n  help: remove the dependency, or allow its licence"))
     };
     packages.iter().filter_map(judge).collect()
 }
 
-/// What Cargo knows of all packages that are built on this machine, without the network: those of other platforms need not
-/// be here.
+/// Cargo's metadata of all packages built on this machine, read offline: packages of other platforms need not be present.
 ///
 /// # Panics
-/// If Cargo cannot be run or refuses: there is nothing to check then.
+/// If Cargo cannot be run or reports an error.
 pub fn metadata(root: &Path) -> Value {
     let cargo = || Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
     let version = cargo().arg("-vV").output().expect("cargo runs").stdout;

@@ -1,7 +1,7 @@
-//! Which file imports which: an edge for every path that leads to an item in another file.
+//! Imports between files: an edge for every path that leads to an item in another file.
 //!
-//! `mod child` makes none, nor does a re-export of what a module's own descendants define: naming its children is what
-//! a parent is for. A plain `use` of a child's item is an edge as any other, and so is a child's `super::X`.
+//! `mod child` makes no edge, nor does a re-export of an item defined by the module's own descendants: a parent may name its children. A
+//! plain `use` of a child's item is an edge like any other, and so is a child's `super::X`.
 
 use std::collections::BTreeMap;
 
@@ -11,24 +11,24 @@ use crate::sources::{Place, Reference, Sources};
 /// Names with the line of their first use.
 pub type Names = BTreeMap<String, usize>;
 
-/// The files of one target and their imports.
+/// Files of one target and their imports.
 pub struct Graph {
-    /// As it was read.
+    /// Sources as read.
     pub sources: Sources,
-    /// From the file that names to the file that defines.
+    /// Edges from the naming file to the defining file.
     pub edges: BTreeMap<(usize, usize), Names>,
-    /// Paths that were followed to something of this target.
+    /// Number of paths resolved within this target.
     pub resolved: usize,
-    /// Paths that begin in this target and lead nowhere.
+    /// Paths that begin in this target and cannot be resolved.
     pub unresolved: Vec<String>,
 }
 
 impl Graph {
-    /// Follows every path.
+    /// Resolves every path.
     pub fn new(sources: Sources) -> Self {
         let mut graph = Self { edges: BTreeMap::new(), resolved: 0, unresolved: sources.unread.clone(), sources };
         for at in 0..graph.sources.references.len() {
-            graph.tie(at);
+            graph.add_edges(at);
         }
         graph
     }
@@ -38,19 +38,19 @@ impl Graph {
         format!("{}:{line}", self.sources.files[file].path.display())
     }
 
-    fn tie(&mut self, at: usize) {
+    fn add_edges(&mut self, at: usize) {
         let reference = &self.sources.references[at];
         let Reference { module, file, line, .. } = *reference;
         let named = self.sources.named(module);
         let targets = Resolver::new(&self.sources, module).resolve(module, &reference.path);
         let keyword = matches!(reference.path[0].as_str(), "crate" | "super" | "self");
         if targets.is_empty() && (keyword || reference.place != Place::Tokens) {
-            let text = format!("{}: `{}` is not found", self.place(file, line), reference.path.join("::"));
+            let text = format!("{}: `{}` does not resolve", self.place(file, line), reference.path.join("::"));
             self.unresolved.push(text);
         }
         self.resolved +=
             usize::from(targets.iter().any(|target| *target != Target::Foreign) && reference.path.len() > 1);
-        // (what it is called, the module that it belongs to, the file that defines it)
+        // Each end: name, its module, its defining file.
         let mut ends = vec![];
         let end = |name: &str, target: &Target| match target {
             Target::Item(item) => Some((item.name.clone(), item.module, item.file)),
@@ -60,12 +60,12 @@ impl Graph {
         let last = reference.path.last().expect("a path has a name");
         for target in &targets {
             match (target, reference.place) {
-                // Alone it gives access only: what is reached through it makes the edge. Handing it on is more.
+                // A module alone only gives access; a path through it makes the edge. Re-exporting it does make one.
                 (Target::Module(_), Place::Code | Place::Tokens | Place::Use) => {}
                 (Target::Module(within), Place::Glob | Place::GlobReexport) => {
                     for (name, target) in Resolver::new(&self.sources, module).all(*within) {
-                        // A plain glob imports what its module defines, and traits wherever they are defined: their
-                        // methods are used without a name. Other names make their edges where they are used.
+                        // A plain glob imports the items that its module defines, and traits wherever they are defined: their methods are
+                        // used without a name. Other names make their edges where they are used.
                         let comes = match &target {
                             Target::Item(item) => item.module == *within || item.is_trait,
                             _ => false,
@@ -89,8 +89,8 @@ impl Graph {
     }
 }
 
-/// The groups of nodes that lead to one another, by edges between the nodes `0..count`.
-pub fn circles(count: usize, edges: impl Iterator<Item = (usize, usize)>) -> Vec<Vec<usize>> {
+/// Strongly connected groups of the nodes `0..count`.
+pub fn cycles(count: usize, edges: impl Iterator<Item = (usize, usize)>) -> Vec<Vec<usize>> {
     let mut next = vec![vec![]; count];
     edges.for_each(|(from, to)| next[from].push(to));
     let reach: Vec<Vec<bool>> = (0..count)
@@ -112,6 +112,6 @@ pub fn circles(count: usize, edges: impl Iterator<Item = (usize, usize)>) -> Vec
     (0..count)
         .filter(|&first| !(0..first).any(|earlier| together(earlier, first)))
         .map(group)
-        .filter(|circle| circle.len() > 1)
+        .filter(|cycle| cycle.len() > 1)
         .collect()
 }

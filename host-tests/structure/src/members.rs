@@ -1,5 +1,5 @@
-//! The crates of the workspace as Cargo knows them, and who among them may not depend on whom. A crate from a registry
-//! cannot depend on one of these, so members and their declared dependencies, whatever the features, are all there is.
+//! Crates of the workspace as Cargo knows them, and forbidden dependencies between them. A crate from a registry cannot depend on a member,
+//! so the members and their declared dependencies, whatever the features, are complete.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -9,53 +9,53 @@ use serde_json::Value;
 
 /// All members.
 pub struct Workspace {
-    /// In Cargo's order.
+    /// Members in Cargo's order.
     pub members: Vec<Member>,
 }
 
 /// A crate of the workspace.
 #[derive(Clone, Debug, Default)]
 pub struct Member {
-    /// Of the package.
+    /// Name of the package.
     pub name: String,
-    /// From the workspace's root.
+    /// Folder from the workspace's root.
     pub folder: PathBuf,
     /// Built by a plain `cargo build`.
     pub default: bool,
-    /// The members that it depends on.
+    /// Members that this crate depends on.
     pub imports: Vec<(String, Kind)>,
-    /// Their kinds (`lib`, `bin`, `test`, ...) and root files.
+    /// Kinds of the targets (`lib`, `bin`, `test`, ...) and their root files.
     pub targets: Vec<(String, PathBuf)>,
 }
 
-/// What a dependency is for.
+/// Purpose of a dependency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
-    /// The crate itself.
+    /// For the crate itself.
     Normal,
-    /// Its build script.
+    /// For its build script.
     Build,
-    /// Its tests and examples.
+    /// For its tests and examples.
     Tests,
 }
 
 impl Member {
-    /// Tests, tolerances, checks: everything under `host-tests/`.
+    /// Returns true for tests, tolerances and checks: everything under `host-tests/`.
     pub fn is_test(&self) -> bool {
         self.folder.starts_with("host-tests")
     }
 
-    /// Everything under `research/`.
+    /// Returns true for everything under `research/`.
     pub fn is_research(&self) -> bool {
         self.folder.starts_with("research")
     }
 
-    /// What users build on; measuring programs are for this project's own figures.
+    /// Returns true for crates that users build on; measuring programs serve this project's own figures.
     pub fn ships(&self) -> bool {
         !self.is_test() && !self.is_research() && !self.folder.ends_with("measuring")
     }
 
-    /// The kind of the target whose root is this file, with a name that tells it from the crate's others.
+    /// Unique label of the target with this kind and root file.
     pub fn label(&self, kind: &str, root: &Path) -> String {
         let stem = root.strip_prefix(&self.folder).unwrap_or(root).with_extension("");
         format!("{} ({kind} {})", self.name, stem.display())
@@ -63,10 +63,10 @@ impl Member {
 }
 
 impl Workspace {
-    /// Asks Cargo, without the network: the members' own manifests say all.
+    /// Queries Cargo offline: the members' own manifests suffice.
     ///
     /// # Panics
-    /// If Cargo cannot be run or refuses a manifest: there is nothing to check then.
+    /// If Cargo cannot be run or rejects a manifest.
     pub fn read(root: &Path) -> Self {
         let cargo = std::env::var_os("CARGO").unwrap_or("cargo".into());
         let arguments = ["metadata", "--format-version", "1", "--no-deps", "--offline"];
@@ -111,34 +111,35 @@ impl Workspace {
         Self { members: packages.iter().map(member).collect() }
     }
 
-    /// The member of this name.
+    /// Member of this name.
     pub fn member(&self, name: &str) -> Option<&Member> {
         self.members.iter().find(|member| member.name == name)
     }
 
-    /// `crate`'s whole tree with its tests is without `other`; a missing crate is a finding, as it proves nothing.
+    /// Checks that the dependency tree of `name`, with its tests, does not contain `other`; a missing crate is a finding, as it would prove
+    /// nothing.
     pub fn independence(&self, name: &str, other: &str) -> Vec<String> {
         if self.member(name).is_none() || self.member(other).is_none() {
-            return vec![format!("there is no crate {name} or no crate {other}: name them as they are called now")];
+            return vec![format!("no crate {name} or no crate {other}; help: use their present names in this test")];
         }
-        let mut ways = vec![vec![name.to_string()]];
+        let mut paths_to_try = vec![vec![name.to_string()]];
         let mut seen = BTreeSet::new();
-        while let Some(way) = ways.pop() {
-            let last = way.last().expect("a way has a start");
+        while let Some(dependency_path) = paths_to_try.pop() {
+            let last = dependency_path.last().expect("a way has a start");
             if last == other {
-                return vec![format!("{name} must stand without {other}, but depends on it: {}", way.join(" -> "))];
+                return vec![format!("{name} must not depend on {other}, but does: {}", dependency_path.join(" -> "))];
             }
             for (next, kind) in self.member(last).map_or(&[][..], |member| &member.imports) {
                 // Tests of a dependency are not in the tree.
                 if (*kind != Kind::Tests || last == name) && seen.insert(next.clone()) {
-                    ways.push([way.clone(), vec![next.clone()]].concat());
+                    paths_to_try.push([dependency_path.clone(), vec![next.clone()]].concat());
                 }
             }
         }
         vec![]
     }
 
-    /// What ships depends on no test crate and on no research, its own tests aside.
+    /// Crates that ship and depend on a test crate or on research, except for their own tests.
     pub fn shipped_imports(&self) -> Vec<String> {
         self.forbidden(
             |member, kind| member.ships() && kind != Kind::Tests,
@@ -147,13 +148,13 @@ impl Workspace {
         )
     }
 
-    /// Nobody depends on the command, not even tests: they use the crates below it.
-    pub fn imports_of_the_command(&self, command: &str) -> Vec<String> {
-        let help = "move what is needed into the crate that it belongs to, below the command";
+    /// Crates that depend on the command; even tests use the crates below it instead.
+    pub fn command_imports(&self, command: &str) -> Vec<String> {
+        let help = "move the needed code into a crate below the command";
         self.forbidden(|_, _| true, |other| other.name == command, help)
     }
 
-    /// What a plain `cargo build` builds is no research, and depends on none.
+    /// Default members that are research or depend on research.
     pub fn research_by_default(&self) -> Vec<String> {
         let itself = self.members.iter().filter(|member| member.default && member.is_research());
         let mut found: Vec<String> = itself
@@ -185,7 +186,7 @@ impl Workspace {
 }
 
 impl Kind {
-    /// Of the manifest.
+    /// Section of the manifest.
     pub fn section(self) -> &'static str {
         match self {
             Kind::Normal => "dependencies",

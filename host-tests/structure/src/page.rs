@@ -1,27 +1,27 @@
-//! The table of crates in ARCHITECTURE.md, which says who may import whom, held against Cargo: a Markdown table with
-//! the columns `crate`, what it is, `may import` and `open first`.
+//! Table of crates in ARCHITECTURE.md, which states the allowed imports, compared with Cargo: a Markdown table with the columns `crate`,
+//! `what it is`, `may import` and `open first`.
 //!
-//! `may import` lists names in backquotes: `` `parameters`, `link` (tests) `` allows `link` to tests only. Words without
-//! backquotes, as in "nothing of ours", are for the reader.
+//! `may import` lists names in backquotes: `` `parameters`, `link` (tests) `` allows `link` to tests only. Words without backquotes, such
+//! as "nothing of ours", are for the reader.
 
 use std::path::Path;
 
 use crate::members::{Kind, Workspace};
 
-/// A row: a crate.
+/// Row of a crate.
 #[derive(Debug, PartialEq)]
 pub struct Row {
-    /// The first name in backquotes of the first column.
+    /// First name in backquotes of the first column.
     pub name: String,
-    /// The crates, and whether they are for tests only.
+    /// Allowed crates, with `true` for tests only.
     pub may_import: Vec<(String, bool)>,
-    /// A path from the workspace's root.
+    /// Path of the file to open first, from the workspace's root.
     pub open_first: String,
-    /// In the page, from one.
+    /// Line in the page, from one.
     pub line: usize,
 }
 
-/// The rows of every such table in a page.
+/// Rows of every such table in a page.
 pub fn rows(page: &str) -> Vec<Row> {
     let mut rows = vec![];
     let mut columns = None;
@@ -50,23 +50,21 @@ pub fn rows(page: &str) -> Vec<Row> {
     rows
 }
 
-/// Names in backquotes (of a link's text too), each with whether `(tests)` follows.
+/// Names in backquotes, also in a link's text, each with `true` if `(tests)` follows.
 fn quoted(cell: &str) -> Vec<(String, bool)> {
     let parts: Vec<&str> = cell.split('`').collect();
     let name = |pair: &[&str]| (pair[0].to_string(), pair[1].trim_start().starts_with("(tests)"));
     parts[1..].chunks_exact(2).map(name).collect()
 }
 
-/// Where page and workspace differ; `exists` tells of a path from the workspace's root.
+/// Differences between page and workspace; `exists` checks a path from the workspace's root.
 pub fn differences(page: &str, workspace: &Workspace, exists: impl Fn(&Path) -> bool) -> Vec<String> {
     let rows = rows(page);
     let mut found = vec![];
     for Row { name, may_import, open_first, line } in &rows {
         let place = format!("ARCHITECTURE.md:{line}");
         if workspace.member(name).is_none() {
-            found.push(format!(
-                "{place}: `{name}` is no crate of the workspace\n  help: remove the row or name it anew"
-            ));
+            found.push(format!("{place}: `{name}` is no crate of the workspace\n  help: remove or rename the row"));
         }
         if rows.iter().any(|row| row.name == *name && row.line < *line) {
             found.push(format!("{place}: `{name}` has a row already\n  help: remove one"));
@@ -80,7 +78,7 @@ pub fn differences(page: &str, workspace: &Workspace, exists: impl Fn(&Path) -> 
     }
     for member in &workspace.members {
         let Some(row) = rows.iter().find(|row| row.name == member.name) else {
-            found.push(format!("ARCHITECTURE.md has no row for `{}`\n  help: say there what it is", member.name));
+            found.push(format!("ARCHITECTURE.md has no row for `{}`\n  help: add one", member.name));
             continue;
         };
         for (other, kind) in &member.imports {
@@ -88,7 +86,7 @@ pub fn differences(page: &str, workspace: &Workspace, exists: impl Fn(&Path) -> 
             if !row.may_import.iter().any(allows) {
                 let manifest = member.folder.join("Cargo.toml");
                 let (manifest, section, line) = (manifest.display(), kind.section(), row.line);
-                let help = "drop the dependency, or move what is needed to where it may be imported from";
+                let help = "remove the dependency, or move the needed code into a crate that may be imported";
                 let text = format!("{manifest}: {other} in [{section}] is not allowed by ARCHITECTURE.md:{line}");
                 found.push(format!("{text}\n  help: {help}"));
             }
@@ -97,10 +95,10 @@ pub fn differences(page: &str, workspace: &Workspace, exists: impl Fn(&Path) -> 
     found
 }
 
-/// Places that a page names between backquotes, with a slash in them, and that are not there.
+/// Paths with a slash that a page names between backquotes and that do not exist.
 pub fn missing(page: &str, exists: impl Fn(&Path) -> bool) -> Vec<String> {
     let quoted = page.lines().flat_map(|line| line.split('`').skip(1).step_by(2));
     let is_place = |text: &&str| text.contains('/') && !text.contains([' ', '*', '<', '$', '(']);
     let lost = quoted.filter(is_place).filter(|place| !exists(Path::new(place)));
-    lost.map(|place| format!("the page names `{place}`, which is not there\n  help: name where it is now")).collect()
+    lost.map(|place| format!("the page names `{place}`, which does not exist\n  help: use its present path")).collect()
 }

@@ -1,35 +1,34 @@
-//! From a path to what it names, as the compiler does it: through modules, imports under other names, re-exports and
-//! globs, to the item where it is defined.
+//! Resolution of a path as by the compiler: through modules, renamed imports, re-exports and globs, to the item where it is defined.
 
-use crate::sources::{Binding, Import, Item, Sources, What};
+use crate::sources::{Binding, Import, Item, Meaning, Sources};
 
-/// What a path names.
+/// Meaning of a path.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Target {
-    /// A module of the target.
+    /// Module of the target.
     Module(usize),
-    /// An item of the target; what follows it in the path belongs to it.
+    /// Item of the target; the rest of the path belongs to it.
     Item(Item),
     /// Another crate, the prelude, a local variable, a type parameter.
     Foreign,
 }
 
-/// Looks names up. `from` is the module that asks: it decides what private names it sees.
+/// Name lookup on behalf of module `from`, which decides which private names are visible.
 pub struct Resolver<'a> {
     sources: &'a Sources,
     from: usize,
-    /// Imports that are being followed, globs with the name that is sought: none is followed within itself.
+    /// Imports in progress, globs with the name sought: none is followed within itself.
     following: Vec<(usize, String)>,
 }
 
 impl<'a> Resolver<'a> {
-    /// Asked from a module of the sources.
+    /// Lookup on behalf of a module of the sources.
     pub fn new(sources: &'a Sources, from: usize) -> Self {
         Self { sources, from, following: vec![] }
     }
 
-    /// All that a path in `module` names: one name can be a module and a function, or two things under two conditions.
-    /// Nothing if it begins in this target and leads nowhere.
+    /// All meanings of a path in `module`: one name can be a module and a function, or two items under two conditions. Empty if the path
+    /// begins in this target and cannot be resolved.
     pub fn resolve(&mut self, module: usize, path: &[String]) -> Vec<Target> {
         let (mut found, rest) = self.start(module, path);
         for name in rest {
@@ -38,11 +37,11 @@ impl<'a> Resolver<'a> {
                     let found = self.lookup(module, name);
                     let here = &self.sources.modules[module];
                     if found.is_empty() && here.generated {
-                        return vec![Target::Item(Item { holds: true, ..Item::at(name, here.file, module) })];
+                        return vec![Target::Item(Item { is_container: true, ..Item::at(name, here.file, module) })];
                     }
                     found
                 }
-                Target::Item(item) if item.holds => vec![Target::Item(item)],
+                Target::Item(item) if item.is_container => vec![Target::Item(item)],
                 Target::Item(_) => vec![],
                 Target::Foreign => vec![Target::Foreign],
             };
@@ -51,7 +50,7 @@ impl<'a> Resolver<'a> {
         found
     }
 
-    /// Where a path begins, and what remains of it.
+    /// Meanings of the first segments of a path, and the rest of the path.
     fn start<'p>(&mut self, module: usize, path: &'p [String]) -> (Vec<Target>, &'p [String]) {
         let named = self.sources.named(module);
         match path[0].as_str() {
@@ -61,8 +60,8 @@ impl<'a> Resolver<'a> {
             "" | "Self" => (vec![Target::Foreign], &path[1..]),
             name => {
                 let mut found = self.in_scope(module, name);
-                // A function does not hide a crate of its name from what begins with it.
-                if path.len() > 1 && found.iter().all(|it| matches!(it, Target::Item(item) if !item.holds)) {
+                // A function does not hide a crate of the same name at the start of a longer path.
+                if path.len() > 1 && found.iter().all(|it| matches!(it, Target::Item(item) if !item.is_container)) {
                     found = vec![Target::Foreign];
                 }
                 (found, &path[1..])
@@ -81,7 +80,7 @@ impl<'a> Resolver<'a> {
         (vec![Target::Module(module)], path)
     }
 
-    /// A first name: in the blocks around, in the module, as a macro of the modules above, or elsewhere.
+    /// Meanings of a first segment: in enclosing blocks, in the module, as a macro of the parent modules, or foreign.
     fn in_scope(&mut self, mut module: usize, name: &str) -> Vec<Target> {
         loop {
             let found = self.lookup(module, name);
@@ -95,9 +94,9 @@ impl<'a> Resolver<'a> {
         while let Some(parent) = self.sources.modules[module].parent {
             module = parent;
             let here = self.sources.modules[module].names.get(name);
-            for Binding { what, .. } in here.into_iter().flatten() {
-                match what {
-                    What::Item(item) if item.is_macro => return vec![Target::Item(item.clone())],
+            for Binding { meaning, .. } in here.into_iter().flatten() {
+                match meaning {
+                    Meaning::Item(item) if item.is_macro => return vec![Target::Item(item.clone())],
                     _ => {}
                 }
             }
@@ -105,7 +104,7 @@ impl<'a> Resolver<'a> {
         vec![Target::Foreign]
     }
 
-    /// A name as a module has it: bound there, or through its globs.
+    /// Meanings of a name in a module: bound there, or through its globs.
     fn lookup(&mut self, module: usize, name: &str) -> Vec<Target> {
         let here = &self.sources.modules[module];
         let mut found = vec![];
@@ -114,7 +113,7 @@ impl<'a> Resolver<'a> {
                 found.extend(self.follow(module, binding));
             }
         }
-        // An item shadows what globs bring; a module does not shadow a function.
+        // An item shadows globs; a module does not shadow a function.
         if found.iter().any(|target| !matches!(target, Target::Module(_))) {
             return found;
         }
@@ -125,7 +124,7 @@ impl<'a> Resolver<'a> {
             }
             for target in self.import(module, glob) {
                 match target {
-                    Target::Module(within) => found.extend(self.once(glob, name, |it| it.lookup(within, name))),
+                    Target::Module(within) => found.extend(self.follow_once(glob, name, |it| it.lookup(within, name))),
                     Target::Item(item) if item.variants.iter().any(|it| it == name) => found.push(Target::Item(item)),
                     Target::Item(_) => {}
                     Target::Foreign => foreign.push(Target::Foreign),
@@ -139,8 +138,8 @@ impl<'a> Resolver<'a> {
         self.sources.is_within(self.from, self.sources.named(module))
     }
 
-    /// Follows an import, unless it is being followed already.
-    fn once<T>(&mut self, import: &Import, name: &str, follow: impl FnOnce(&mut Self) -> Vec<T>) -> Vec<T> {
+    /// Follows an import, unless it is in progress.
+    fn follow_once<T>(&mut self, import: &Import, name: &str, follow: impl FnOnce(&mut Self) -> Vec<T>) -> Vec<T> {
         let step = (import.id, name.to_string());
         if self.following.contains(&step) {
             return vec![];
@@ -152,16 +151,16 @@ impl<'a> Resolver<'a> {
     }
 
     fn follow(&mut self, module: usize, binding: &Binding) -> Vec<Target> {
-        match &binding.what {
-            What::Module(module) => vec![Target::Module(*module)],
-            What::Item(item) => vec![Target::Item(item.clone())],
-            What::Import(import) => self.import(module, import),
+        match &binding.meaning {
+            Meaning::Module(module) => vec![Target::Module(*module)],
+            Meaning::Item(item) => vec![Target::Item(item.clone())],
+            Meaning::Import(import) => self.import(module, import),
         }
     }
 
     fn import(&mut self, module: usize, import: &Import) -> Vec<Target> {
-        self.once(import, "", |it| {
-            // An import sees what its own module sees.
+        self.follow_once(import, "", |it| {
+            // An import sees the private names of its own module.
             let from = std::mem::replace(&mut it.from, module);
             let found = it.resolve(module, &import.path);
             it.from = from;
@@ -169,7 +168,7 @@ impl<'a> Resolver<'a> {
         })
     }
 
-    /// All that a glob of `module` brings, with its names.
+    /// All names that a glob of `module` brings, with their meanings.
     pub fn all(&mut self, module: usize) -> Vec<(String, Target)> {
         let here = &self.sources.modules[module];
         let mut found = vec![];
@@ -182,7 +181,7 @@ impl<'a> Resolver<'a> {
             if glob.public || self.sees(module) {
                 for target in self.import(module, glob) {
                     if let Target::Module(within) = target {
-                        found.extend(self.once(glob, "*", |it| it.all(within)));
+                        found.extend(self.follow_once(glob, "*", |it| it.all(within)));
                     }
                 }
             }

@@ -1,7 +1,7 @@
-//! How much a reader has to take in: lines of Rust a crate, blank ones and comments included.
+//! Reading effort: lines of Rust in a crate, with blank lines and comments.
 //!
-//! Tests and benches are left out, for they are read one at a time. Two crates hold many subjects that are read by
-//! themselves, and are measured a folder at a time: `model-core`, and `host-tests`, where tests are what it holds.
+//! Tests and benches are excluded, since they are read one at a time. Two crates hold many independent subjects and are measured a folder
+//! at a time: `model-core`, and `host-tests`, whose content is tests.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -9,13 +9,13 @@ use std::path::Path;
 use crate::graph::Graph;
 use crate::members::Member;
 
-/// The most that one person keeps in mind, chosen at the start of the split: 8,000 lines and a margin.
+/// Largest size of a crate [lines], chosen at the start of the split: 8,000 lines and a margin.
 pub const LIMIT: usize = 8_500;
 
-/// Crates that are measured by subject.
+/// Crates measured by subject.
 pub const BY_SUBJECT: [&str; 2] = ["model-core", "host-tests"];
 
-/// Lines a crate, or a subject's folder of it, by what they are called.
+/// Lines of a crate, or of each subject's folder, by name.
 pub fn sizes(member: &Member, graphs: &[(String, Graph)]) -> BTreeMap<String, usize> {
     let by_subject = BY_SUBJECT.contains(&member.name.as_str());
     let mut files = BTreeMap::new();
@@ -34,10 +34,10 @@ pub fn sizes(member: &Member, graphs: &[(String, Graph)]) -> BTreeMap<String, us
     sizes
 }
 
-/// What is larger than the limit.
+/// Crates and subjects above the limit.
 pub fn too_large(sizes: &BTreeMap<String, usize>) -> Vec<String> {
     let text = |(name, lines): (&String, &usize)| {
-        format!("{name} has {lines} lines, more than {LIMIT}\n  help: make a crate of its own of a subject in it")
+        format!("{name} has {lines} lines, more than {LIMIT}\n  help: move a subject into a crate of its own")
     };
     sizes.iter().filter(|(_, lines)| **lines > LIMIT).map(text).collect()
 }

@@ -1,5 +1,5 @@
-//! The modules of one target (a library, a binary, a test program) as they stand in its files: the names that each
-//! module binds, and every path that is written in it. Nothing is resolved here.
+//! Modules of one target (a library, a binary, a test program) as written in its files: the names bound by each module, and every path
+//! written in it. Nothing is resolved here.
 
 use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
@@ -10,120 +10,128 @@ use syn::visit::{self, Visit};
 
 use crate::tokens;
 
-/// The text of a file, if there is one at this path. Tests give texts from memory.
+/// Returns the text of a file, if it exists. Tests provide texts from memory.
 pub type Reader<'a> = &'a dyn Fn(&Path) -> Option<String>;
 
 /// One target, as written.
 #[derive(Default)]
 pub struct Sources {
-    /// The first is the root's.
+    /// Files; the first is the root's.
     pub files: Vec<File>,
-    /// The first is the root. A block with items in it is a module without a name.
+    /// Modules; the first is the root. A block that contains items is a module without a name.
     pub modules: Vec<Module>,
-    /// In the order in which they stand.
+    /// Paths in the order of the text.
     pub references: Vec<Reference>,
-    /// What could not be read, with the reason.
+    /// Files that could not be read, with the reason.
     pub unread: Vec<String>,
 }
 
-/// A file of the target.
+/// File of the target.
 pub struct File {
-    /// As the reader was asked for it.
+    /// Path as passed to the reader.
     pub path: PathBuf,
-    /// Of its code: without inline modules that are for tests only, and nothing at all if the file is such a module.
+    /// Lines of code, without inline modules for tests only; zero if the file is such a module.
     pub lines: usize,
-    /// It is a module named `design`, or is below one.
+    /// True for a module named `design` and everything below it.
     pub design: bool,
 }
 
-/// A module, or a block with items in it.
+/// Module, or block that contains items.
 pub struct Module {
-    /// What it stands in.
+    /// Enclosing module.
     pub parent: Option<usize>,
-    /// Where its body is.
+    /// File of the body.
     pub file: usize,
-    /// Names are looked up in the parent as well, and `self` is the parent's.
+    /// True for a block: names are looked up in the parent as well, and `self` is the parent's.
     pub block: bool,
-    /// A macro or a generated file adds names that are not to be seen here.
+    /// True if a macro or a generated file adds names that are not visible here.
     pub generated: bool,
-    /// By the name that they have here; one name can be bound several times, under different conditions.
+    /// Bindings by name; one name can be bound several times, under different conditions.
     pub names: HashMap<String, Vec<Binding>>,
-    /// `use ...::*`
+    /// Imports of the form `use ...::*`.
     pub globs: Vec<Import>,
 }
 
-/// What a name in a module is.
+/// Binding of a name in a module.
 #[derive(Clone)]
 pub struct Binding {
-    /// Seen from anywhere but its module and those within.
+    /// Visible outside its module and the modules within.
     pub public: bool,
-    /// What it is.
-    pub what: What,
+    /// Meaning of the name.
+    pub meaning: Meaning,
 }
 
-/// What a name is bound to.
+/// Meaning of a bound name.
 #[derive(Clone)]
-pub enum What {
+pub enum Meaning {
     /// A module.
     Module(usize),
     /// A type, function, constant, trait or macro, defined here.
     Item(Item),
-    /// Something from elsewhere.
+    /// An import.
     Import(Import),
 }
 
-/// An item where it is defined.
+/// Item where it is defined.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Item {
-    /// As it is defined.
+    /// Name at the definition.
     pub name: String,
-    /// The file that it is written in.
+    /// File of the definition.
     pub file: usize,
-    /// The module that it belongs to.
+    /// Module of the definition.
     pub module: usize,
-    /// It can stand before `::`.
-    pub holds: bool,
-    /// Of an enum.
+    /// True if the name can stand before `::`.
+    pub is_container: bool,
+    /// Variants of an enum.
     pub variants: Vec<String>,
-    /// Its methods are used without its name.
+    /// True for a trait, whose methods are used without its name.
     pub is_trait: bool,
-    /// Seen below its module without being imported.
+    /// True for a macro, visible below its module without an import.
     pub is_macro: bool,
 }
 
 impl Item {
-    /// What is known of an item at first: where it is.
+    /// Item with its location only.
     pub fn at(name: &str, file: usize, module: usize) -> Self {
-        Self { name: name.to_string(), file, module, holds: false, variants: vec![], is_trait: false, is_macro: false }
+        Self {
+            name: name.to_string(),
+            file,
+            module,
+            is_container: false,
+            variants: vec![],
+            is_trait: false,
+            is_macro: false,
+        }
     }
 }
 
-/// The right side of a `use`.
+/// Right side of a `use`.
 #[derive(Clone)]
 pub struct Import {
-    /// Distinguishes it from every other.
+    /// Unique number.
     pub id: usize,
-    /// Without the `*`.
+    /// Path without the `*`.
     pub path: Vec<String>,
-    /// Seen from outside.
+    /// Visible from outside.
     pub public: bool,
 }
 
-/// A path somewhere in the sources.
+/// Path somewhere in the sources.
 pub struct Reference {
-    /// The innermost module or block that it stands in.
+    /// Innermost module or block.
     pub module: usize,
-    /// The file that it is written in.
+    /// File of the path.
     pub file: usize,
-    /// Counted from one.
+    /// Line, from one.
     pub line: usize,
-    /// Its segments; an empty first one stands for a leading `::`.
+    /// Segments; an empty first segment stands for a leading `::`.
     pub path: Vec<String>,
-    /// Where it stands.
+    /// Syntactic position.
     pub place: Place,
 }
 
-/// Where a path stands.
+/// Syntactic position of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
     /// In an expression, a type, a pattern, an attribute.
@@ -152,13 +160,13 @@ impl Sources {
         sources
     }
 
-    /// The module that `self` means in `module`.
+    /// Module that `self` means in `module`.
     pub fn named(&self, module: usize) -> usize {
         let it = &self.modules[module];
         if it.block { self.named(it.parent.expect("a block is in a module")) } else { module }
     }
 
-    /// `module` is `above` or within it.
+    /// Returns true if `module` is `above` or within it.
     pub fn is_within(&self, module: usize, above: usize) -> bool {
         module == above || self.modules[module].parent.is_some_and(|parent| self.is_within(parent, above))
     }
@@ -170,19 +178,19 @@ impl Module {
     }
 }
 
-/// A walk through one file after the other; `module`, `file`, `folder` are where it is.
+/// Walk through one file after the other; `module`, `file` and `folder` are the present position.
 struct Walk<'a> {
     sources: &'a mut Sources,
     reader: Reader<'a>,
     module: usize,
     file: usize,
-    /// Where the files of child modules are.
+    /// Folder of the files of child modules.
     folder: PathBuf,
-    /// In a module with a body in braces: `#[path]` starts at `folder` instead of at the file's.
+    /// Inside a module with a body in braces: `#[path]` is relative to `folder` instead of to the file's folder.
     inline: bool,
-    /// In a module that is for tests only.
+    /// Inside a module for tests only.
     test: bool,
-    /// Names that patterns bind in the functions around: these are no items.
+    /// Names bound by patterns in the enclosing functions, which are not items.
     locals: Vec<BTreeSet<String>>,
 }
 
@@ -214,15 +222,15 @@ impl Walk<'_> {
         self.file = outer;
     }
 
-    fn bind(&mut self, name: &syn::Ident, public: bool, what: What) {
+    fn bind(&mut self, name: &syn::Ident, public: bool, meaning: Meaning) {
         let names = &mut self.sources.modules[self.module].names;
-        names.entry(name.unraw().to_string()).or_default().push(Binding { public, what });
+        names.entry(name.unraw().to_string()).or_default().push(Binding { public, meaning });
     }
 
     fn bind_item(&mut self, name: &syn::Ident, visibility: &syn::Visibility, describe: impl FnOnce(&mut Item)) {
         let mut item = Item::at(&name.unraw().to_string(), self.file, self.module);
         describe(&mut item);
-        self.bind(name, is_public(visibility), What::Item(item));
+        self.bind(name, is_public(visibility), Meaning::Item(item));
     }
 
     fn refer(&mut self, path: Vec<String>, at: Span, place: Place) {
@@ -247,7 +255,7 @@ impl Walk<'_> {
         self.sources.modules.len() - 1
     }
 
-    /// Remembers what patterns bind within a function while it is walked.
+    /// Records the names that patterns bind within a function while it is walked.
     fn with_locals(&mut self, find: impl FnOnce(&mut Locals), walk: impl FnOnce(&mut Self)) {
         let mut locals = Locals::default();
         find(&mut locals);
@@ -262,7 +270,7 @@ impl<'ast> Visit<'ast> for Walk<'_> {
         module.attrs.iter().for_each(|attribute| self.visit_attribute(attribute));
         let name = module.ident.unraw().to_string();
         let child = self.child(false);
-        self.bind(&module.ident, is_public(&module.vis), What::Module(child));
+        self.bind(&module.ident, is_public(&module.vis), Meaning::Module(child));
         let (folder, inline, test, file) = (self.folder.clone(), self.inline, self.test, self.file);
         self.test |= module.attrs.iter().any(is_for_tests);
         let design = self.sources.files[file].design || name == "design";
@@ -300,7 +308,7 @@ impl<'ast> Visit<'ast> for Walk<'_> {
         for leaf in tokens::leaves(start, &item.tree) {
             let import = Import { id: self.sources.references.len(), path: leaf.path.clone(), public };
             match leaf.name {
-                Some(name) => self.bind(&name, public, What::Import(import)),
+                Some(name) => self.bind(&name, public, Meaning::Import(import)),
                 None if leaf.glob => self.sources.modules[self.module].globs.push(import),
                 None => {}
             }
@@ -340,15 +348,15 @@ impl<'ast> Visit<'ast> for Walk<'_> {
 
     fn visit_item(&mut self, item: &'ast syn::Item) {
         match item {
-            syn::Item::Struct(it) => self.bind_item(&it.ident, &it.vis, |item| item.holds = true),
-            syn::Item::Union(it) => self.bind_item(&it.ident, &it.vis, |item| item.holds = true),
-            syn::Item::Type(it) => self.bind_item(&it.ident, &it.vis, |item| item.holds = true),
+            syn::Item::Struct(it) => self.bind_item(&it.ident, &it.vis, |item| item.is_container = true),
+            syn::Item::Union(it) => self.bind_item(&it.ident, &it.vis, |item| item.is_container = true),
+            syn::Item::Type(it) => self.bind_item(&it.ident, &it.vis, |item| item.is_container = true),
             syn::Item::Enum(it) => self.bind_item(&it.ident, &it.vis, |item| {
-                item.holds = true;
+                item.is_container = true;
                 item.variants = it.variants.iter().map(|variant| variant.ident.unraw().to_string()).collect();
             }),
             syn::Item::Trait(it) => self.bind_item(&it.ident, &it.vis, |item| {
-                item.holds = true;
+                item.is_container = true;
                 item.is_trait = true;
             }),
             syn::Item::Const(it) => self.bind_item(&it.ident, &it.vis, |_| ()),
@@ -391,7 +399,7 @@ impl<'ast> Visit<'ast> for Walk<'_> {
 
     fn visit_expr_call(&mut self, call: &'ast syn::ExprCall) {
         call.attrs.iter().for_each(|attribute| self.visit_attribute(attribute));
-        // What is called is a function even where a local has its name: `let energy = energy(state)`.
+        // A call names a function even where a local variable has the same name: `let energy = energy(state)`.
         match &*call.func {
             syn::Expr::Path(function) => visit::visit_expr_path(self, function),
             other => self.visit_expr(other),
@@ -440,7 +448,7 @@ impl<'ast> Visit<'ast> for Walk<'_> {
     }
 }
 
-/// The names that patterns bind; a name in capitals is a constant or a variant, which a pattern compares with.
+/// Names bound by patterns; a name in capitals is a constant or a variant, which a pattern compares with.
 #[derive(Default)]
 struct Locals(BTreeSet<String>);
 
@@ -453,7 +461,7 @@ impl<'ast> Visit<'ast> for Locals {
     }
 }
 
-/// Without `..`, so that a file has one path.
+/// Path without `..`, so that a file has one path.
 fn joined(folder: &Path, relative: &str) -> PathBuf {
     let mut path = folder.to_path_buf();
     for part in Path::new(relative).components() {
@@ -469,7 +477,7 @@ fn is_constant(name: &syn::Ident) -> bool {
     name.unraw().to_string().starts_with(char::is_uppercase)
 }
 
-/// `pub`, also with a restriction; `pub(self)` is private.
+/// Returns true for `pub`, also with a restriction; `pub(self)` is private.
 fn is_public(visibility: &syn::Visibility) -> bool {
     match visibility {
         syn::Visibility::Public(_) => true,

@@ -1,17 +1,17 @@
-//! Paths where syn keeps none ready: among the tokens of a macro call, and in the tree of a `use`.
+//! Paths that syn does not provide: among the tokens of a macro call, and in the tree of a `use`.
 
 use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt;
 
-/// One name that a `use` brings, or one glob.
+/// One name brought by a `use`, or one glob.
 pub struct Leaf {
-    /// The whole path, without the `*`.
+    /// Whole path, without the `*`.
     pub path: Vec<String>,
-    /// The name that it has from now on; none for a glob and for `as _`.
+    /// Bound name; `None` for a glob and for `as _`.
     pub name: Option<syn::Ident>,
-    /// `*`
+    /// True for `*`.
     pub glob: bool,
-    /// Where it stands.
+    /// Position in the source.
     pub at: Span,
 }
 
@@ -39,7 +39,7 @@ pub fn leaves(path: Vec<String>, tree: &syn::UseTree) -> Vec<Leaf> {
     }
 }
 
-/// What looks like a path: `a::b` anywhere; a single name if it is called or begins with a capital.
+/// Likely paths: `a::b` anywhere; a single name if it is called or begins with a capital.
 pub fn paths(tokens: TokenStream) -> Vec<(Vec<String>, Span)> {
     let tokens: Vec<TokenTree> = tokens.into_iter().collect();
     let is = |at: usize, sign: char| matches!(tokens.get(at), Some(TokenTree::Punct(it)) if it.as_char() == sign);

@@ -1,14 +1,14 @@
-//! Where the compiler is told to trust: every `unsafe` of the sources against the list of them in docs/reference/unsafe.md.
+//! Every `unsafe` of the sources against the list in docs/reference/unsafe.md.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use proc_macro2::{TokenStream, TokenTree};
 
-/// The list.
+/// Page with the list.
 pub const PAGE: &str = "docs/reference/unsafe.md";
 
-/// How often the word stands in a source, comments and texts left out; the error if it is no Rust.
+/// Number of times the word `unsafe` stands in a source, without comments and strings; fails if the source is not Rust.
 pub fn count(source: &str) -> Result<usize, String> {
     source.parse::<TokenStream>().map(within).map_err(|error| error.to_string())
 }
@@ -22,7 +22,7 @@ fn within(tokens: TokenStream) -> usize {
     tokens.into_iter().map(one).sum()
 }
 
-/// The rows of the list: file, how often, why.
+/// Rows of the list: file, number, reason.
 pub fn rows(page: &str) -> Vec<(PathBuf, usize, String)> {
     let row = |line: &str| {
         let mut cells = line.strip_prefix("| `")?.split(" | ");
@@ -33,7 +33,7 @@ pub fn rows(page: &str) -> Vec<(PathBuf, usize, String)> {
     page.lines().filter_map(row).collect()
 }
 
-/// What list and sources say differently. `found` holds the files in which the word stands.
+/// Differences between list and sources. `found` holds the files that contain the word, with their number.
 pub fn differences(page: &str, found: &BTreeMap<PathBuf, usize>) -> Vec<String> {
     let listed: BTreeMap<PathBuf, (usize, String)> =
         rows(page).into_iter().map(|(file, count, why)| (file, (count, why))).collect();
@@ -41,10 +41,10 @@ pub fn differences(page: &str, found: &BTreeMap<PathBuf, usize>) -> Vec<String> 
     for (file, count) in found {
         let name = file.display();
         match listed.get(file) {
-            None => out.push(format!("{name}: `unsafe` {count} times\n  mend: do without, or give it a row in {PAGE}")),
+            None => out.push(format!("{name}: `unsafe` {count} times\n  help: remove it, or add a row to {PAGE}")),
             Some((said, _)) if said != count => {
                 out.push(format!(
-                    "{name}: `unsafe` {count} times, {PAGE} says {said}\n  mend: the row, and its reason"
+                    "{name}: `unsafe` {count} times, {PAGE} says {said}\n  help: correct the row and its reason"
                 ));
             }
             Some((_, why)) if why.len() < 10 => out.push(format!("{PAGE}: {name} has no reason")),
@@ -52,12 +52,12 @@ pub fn differences(page: &str, found: &BTreeMap<PathBuf, usize>) -> Vec<String> 
         }
     }
     let gone = listed.keys().filter(|file| !found.contains_key(*file));
-    out.extend(gone.map(|file| format!("{PAGE}: {} has no `unsafe`\n  mend: take the row out", file.display())));
+    out.extend(gone.map(|file| format!("{PAGE}: {} has no `unsafe`\n  help: remove the row", file.display())));
     out
 }
 
-/// Crates without a file in the list whose manifest does not take the workspace's lints, which forbid it; and the other way
-/// round. `manifests` are the folders of the members with their manifests.
+/// Crates without a file in the list whose manifest does not inherit the workspace's lints, which forbid `unsafe`, and crates with a file
+/// whose manifest does. `manifests` are the members' folders with their manifests.
 pub fn unforbidden(page: &str, manifests: &[(PathBuf, String)]) -> Vec<String> {
     let listed = rows(page);
     let folder_of = |file: &Path| {
@@ -70,7 +70,7 @@ pub fn unforbidden(page: &str, manifests: &[(PathBuf, String)]) -> Vec<String> {
         let name = folder.components().as_path().display();
         match (excused.contains(&folder), forbids) {
             (false, false) => {
-                Some(format!("{name}/Cargo.toml: `unsafe` is not forbidden\n  mend: [lints] workspace = true"))
+                Some(format!("{name}/Cargo.toml: `unsafe` is not forbidden\n  help: add [lints] workspace = true"))
             }
             (true, true) => Some(format!("{name}/Cargo.toml forbids what {PAGE} lists")),
             _ => None,

@@ -1,4 +1,4 @@
-//! Small crates with one fault each, which must be found, and with what is excused, which must not.
+//! Small crates with one planted fault each, which must be found, and with allowed patterns, which must not.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use structure::graph::Graph;
 use structure::links::{Pages, broken, headings, named, unlisted};
 use structure::members::{Kind, Member, Workspace};
-use structure::rules::{file_circles, folder_circles, runtime_imports_design};
+use structure::rules::{file_cycles, folder_cycles, runtime_imports_design};
 use structure::sources::Sources;
 use structure::{dependencies, page, size, unsafe_code};
 
@@ -31,9 +31,10 @@ fn a_and_b(b: &str) -> Graph {
     graph(&[("src/lib.rs", "mod a;\nmod b;"), ("src/a.rs", a), ("src/b.rs", &format!("pub struct B;\n{b}"))])
 }
 
+/// A cycle of two files is found for every way to write a path.
 #[test]
-fn a_circle_of_two_files_is_found_however_the_path_is_written() {
-    let ways = [
+fn file_cycle_is_found_for_any_path_form() {
+    let forms = [
         ("use crate::a::A;", "A"),
         ("use super::{a::{self, A as Other}};", "A"),
         ("use crate::a; fn g() { a::f() }", "f"),
@@ -51,20 +52,21 @@ fn a_circle_of_two_files_is_found_however_the_path_is_written() {
         ("#[cfg(test)] mod tests { use super::super::a::f; }", "f"),
         ("macro_rules! n { () => { $crate::a::f() } }", "f"),
     ];
-    for (way, name) in ways {
-        let graph = a_and_b(way);
-        let found = file_circles(&graph);
-        assert_eq!(found.len(), 1, "{way}: {:?}", edges(&graph));
-        assert!(found[0].contains("src/a.rs -> src/b.rs: B (line 1)"), "{way}: {found:?}");
-        let tie = found[0].lines().find(|line| line.contains("src/b.rs -> src/a.rs: ")).expect(way);
-        assert!(tie.contains(&format!("{name} (line 2)")), "{way}: {tie}");
-        assert!(found[0].contains("help: move "), "{way}: {found:?}");
+    for (form, name) in forms {
+        let graph = a_and_b(form);
+        let found = file_cycles(&graph);
+        assert_eq!(found.len(), 1, "{form}: {:?}", edges(&graph));
+        assert!(found[0].contains("src/a.rs -> src/b.rs: B (line 1)"), "{form}: {found:?}");
+        let edge_line = found[0].lines().find(|line| line.contains("src/b.rs -> src/a.rs: ")).expect(form);
+        assert!(edge_line.contains(&format!("{name} (line 2)")), "{form}: {edge_line}");
+        assert!(found[0].contains("help: move "), "{form}: {found:?}");
     }
 }
 
+/// Text that only looks like an import makes no edge.
 #[test]
-fn what_only_looks_like_an_import_makes_no_circle() {
-    let ways = [
+fn lookalikes_make_no_edge() {
+    let forms = [
         "/// See [`crate::a::A`].\nstruct C;",
         "pub(in crate::b) struct C;",
         "fn g(a: i32) -> i32 { a }",
@@ -74,14 +76,15 @@ fn what_only_looks_like_an_import_makes_no_circle() {
         "use ::a::A; fn g(x: X) { x.f() }",
         "fn a() {} fn g() { a(); ::a::f() }",
     ];
-    for way in ways {
-        let graph = a_and_b(way);
-        assert_eq!(edges(&graph), ["a.rs -> b.rs: B"], "{way}");
+    for form in forms {
+        let graph = a_and_b(form);
+        assert_eq!(edges(&graph), ["a.rs -> b.rs: B"], "{form}");
     }
 }
 
+/// A parent may name and re-export its descendants.
 #[test]
-fn a_parent_may_name_and_hand_on_its_descendants() {
+fn parent_may_reexport_descendants() {
     let root = "pub mod foo;\npub use foo::{Foo, deep::Deep as Renamed};\npub(crate) use foo::*;\n\
                 #[cfg(x)]\npub use foo::deep;";
     let foo = "pub(super) mod deep;\nmod inner;\npub use inner::Foo;\npub(in crate::foo) use deep::*;";
@@ -91,8 +94,9 @@ fn a_parent_may_name_and_hand_on_its_descendants() {
     assert_eq!(edges(&graph), ["foo/inner.rs -> foo/deep.rs: Deep"]);
 }
 
+/// A parent that uses its child, and is used by it, forms a cycle.
 #[test]
-fn a_parent_that_uses_its_child_and_is_used_by_it_is_a_circle() {
+fn parent_and_child_can_form_a_cycle() {
     let child = "use super::Shared;\npub struct Child(Shared);";
     for parent in [
         "use child::Child;\npub struct Owner(Child);",
@@ -105,14 +109,15 @@ fn a_parent_that_uses_its_child_and_is_used_by_it_is_a_circle() {
             let found = edges(&graph).join("; ").replace("foo/mod.rs", "foo.rs");
             let there_and_back = ["foo.rs -> foo/child.rs: Child", "foo/child.rs -> foo.rs: Shared"];
             assert!(there_and_back.iter().all(|edge| found.contains(edge)), "{found}");
-            assert_eq!((file_circles(&graph).len(), folder_circles(&graph).len()), (1, 0));
-            assert!(file_circles(&graph)[0].contains("help: move Shared out of src/foo"));
+            assert_eq!((file_cycles(&graph).len(), folder_cycles(&graph).len()), (1, 0));
+            assert!(file_cycles(&graph)[0].contains("help: move Shared from src/foo"));
         }
     }
 }
 
+/// A path leads to the defining file, whatever re-exports it.
 #[test]
-fn a_path_ties_to_the_file_that_defines_whatever_hands_it_on() {
+fn path_leads_to_defining_file() {
     let files = [
         ("src/lib.rs", "mod facade;\nmod user;\nmod far;"),
         (
@@ -141,22 +146,24 @@ fn a_path_ties_to_the_file_that_defines_whatever_hands_it_on() {
     }
 }
 
+/// A cycle through a re-export is found.
 #[test]
-fn a_circle_through_a_re_export_is_found() {
+fn cycle_through_reexport_is_found() {
     let files = [
         ("src/lib.rs", "mod facade;\nmod user;"),
         ("src/facade.rs", "mod one;\npub use one::One;"),
         ("src/facade/one.rs", "use crate::user::User;\npub struct One(User);"),
         ("src/user.rs", "use crate::facade::One;\npub struct User(One);"),
     ];
-    let found = file_circles(&graph(&files));
+    let found = file_cycles(&graph(&files));
     assert_eq!(found.len(), 1);
     assert!(found[0].contains("src/user.rs -> src/facade/one.rs: One (line 1)"), "{found:?}");
     assert!(found[0].contains("src/facade/one.rs -> src/user.rs: User (line 1)"), "{found:?}");
 }
 
+/// Folders can form a cycle where files do not.
 #[test]
-fn folders_can_import_in_a_circle_where_files_do_not() {
+fn folder_cycle_without_file_cycle_is_found() {
     let files = [
         ("src/lib.rs", "mod x;"),
         ("src/x/mod.rs", "mod a;\nmod b;"),
@@ -166,15 +173,16 @@ fn folders_can_import_in_a_circle_where_files_do_not() {
         ("src/x/b/two.rs", "use crate::x::a::one::One;"),
     ];
     let graph = graph(&files);
-    assert!(file_circles(&graph).is_empty());
-    let found = folder_circles(&graph);
+    assert!(file_cycles(&graph).is_empty());
+    let found = folder_cycles(&graph);
     assert_eq!(found.len(), 1, "{found:?}");
     assert!(found[0].starts_with("in src/x/, a, b import one another"), "{found:?}");
     assert!(found[0].contains("src/x/b/two.rs -> src/x/a/one.rs: One (line 1)"), "{found:?}");
 }
 
+/// An import of design by the runtime is found, also through a re-export.
 #[test]
-fn runtime_that_imports_design_is_found_also_through_a_re_export() {
+fn runtime_import_of_design_is_found() {
     let files = |step| {
         graph(&[
             ("src/lib.rs", "mod gears;"),
@@ -199,8 +207,9 @@ fn runtime_that_imports_design_is_found_also_through_a_re_export() {
     }
 }
 
+/// An unresolved path is reported with its line.
 #[test]
-fn a_path_that_leads_nowhere_is_told_with_its_line() {
+fn unresolved_path_is_reported_with_line() {
     for (b, path) in [
         ("use crate::a::Missing;", "`crate::a::Missing`"),
         ("fn g() { super::missing::f() }", "`super::missing::f`"),
@@ -216,8 +225,9 @@ fn a_path_that_leads_nowhere_is_told_with_its_line() {
     }
 }
 
+/// Files are looked up where the compiler looks them up.
 #[test]
-fn files_are_found_where_the_compiler_finds_them() {
+fn files_are_found_as_by_the_compiler() {
     let root = "#[path = \"odd/place.rs\"]\nmod named;\nmod inline { pub mod file; }\ninclude!(\"../shared.rs\");\n\
                 mod foo;\nmod generated { include!(concat!(env!(\"OUT_DIR\"), \"/x.rs\")); }\n\
                 macro_rules! m {() => {}}\nmod last;";
@@ -268,14 +278,15 @@ fn all_rules(workspace: &Workspace) -> Vec<String> {
     let found = [
         workspace.independence("reference", "model-core"),
         workspace.shipped_imports(),
-        workspace.imports_of_the_command("joint"),
+        workspace.command_imports("joint"),
         workspace.research_by_default(),
     ];
     found.concat()
 }
 
+/// Every forbidden dependency between crates is found.
 #[test]
-fn each_forbidden_dependency_among_crates_is_found() {
+fn forbidden_dependency_is_found() {
     use Kind::{Build, Normal, Tests};
     let allowed = member("parameters", "parameters", &[("host-tests", Tests)]);
     assert_eq!(all_rules(&workspace(allowed)), [""; 0]);
@@ -301,9 +312,9 @@ const PAGE: &str = "# The house
 
 | crate | what it is | may import | open first |
 |---|---|---|---|
-| `parameters` | What a joint is | nothing of ours | `a.rs` |
-| `model-core` | What runs on a board | `parameters`, `reference` (tests) | [`a.rs`](a.rs) |
-| `reference` | What it is judged by | `parameters` | `a.rs` |
+| `parameters` | Joint parameters | nothing of ours | `a.rs` |
+| `model-core` | Code of a board | `parameters`, `reference` (tests) | [`a.rs`](a.rs) |
+| `reference` | Independent model | `parameters` | `a.rs` |
 | `joint` | The command | `model-core` | `a.rs` |
 | `host-tests` | Tests | `reference`, `model-core` | `a.rs` |
 | `paper` | The study | `reference` | `a.rs` |
@@ -313,8 +324,9 @@ const PAGE: &str = "# The house
 | `no` | crate |
 ";
 
+/// Table and Cargo must agree.
 #[test]
-fn the_page_and_cargo_must_say_the_same() {
+fn page_must_agree_with_cargo() {
     let found = |page: &str, changed| page::differences(page, &workspace(changed), |path| path == Path::new("a.rs"));
     let core = |kind| member("model-core", "model-core", &[("parameters", Kind::Normal), ("reference", kind)]);
     assert_eq!(page::rows(PAGE).len(), 6);
@@ -333,8 +345,9 @@ fn the_page_and_cargo_must_say_the_same() {
     }
 }
 
+/// Sizes exclude tests, and a crate above the limit is reported.
 #[test]
-fn sizes_leave_tests_out_and_tell_what_is_too_large() {
+fn sizes_exclude_tests() {
     let root = "mod a;\nfn f() {}\n#[cfg(test)]\nmod tests;\n#[cfg(test)]\nmod more {\n    mod deep;\n}\n";
     let files = [("src/lib.rs", root), ("src/a/mod.rs", "\n\n\n"), ("src/tests.rs", "\n"), ("src/more/deep.rs", "\n")];
     let graphs = [("lib".to_string(), graph(&files)), ("test".to_string(), graph(&[("src/lib.rs", "\n\n")]))];
@@ -347,8 +360,9 @@ fn sizes_leave_tests_out_and_tell_what_is_too_large() {
     assert!(size::too_large(&large)[0].starts_with("link has 8501 lines"));
 }
 
+/// A missing path on a page is found; other words in backquotes are not paths.
 #[test]
-fn a_place_that_is_gone_is_found_on_a_page_and_words_are_not_taken_for_places() {
+fn missing_path_on_page_is_found() {
     let page =
         "open `a/b.rs`, then `a/gone.rs`; `cargo joint hil hil/t2.toml`, `+ - *` and `Model::step` are no places";
     let found = page::missing(page, |path| path == Path::new("a/b.rs"));
@@ -359,14 +373,16 @@ fn pages(pages: &[(&str, &str)]) -> Pages {
     pages.iter().map(|(path, text)| (PathBuf::from(path), text.to_string())).collect()
 }
 
+/// Anchors follow from the words of a heading.
 #[test]
-fn a_heading_is_linked_by_its_words() {
+fn heading_anchor_follows_its_words() {
     let page = "# Error, against `cost`\n## Error, against `cost`\n```\n# a comment\n```\n### [On](x.md#y) a_b-c\n#no";
     assert_eq!(headings(page), ["error-against-cost", "error-against-cost-1", "on-a_b-c"]);
 }
 
+/// Broken links are found; code contains no links.
 #[test]
-fn a_link_that_leads_nowhere_is_found_and_code_holds_no_links() {
+fn broken_link_is_found_outside_code() {
     let there = ["docs/b.md", "docs/deep/c.md", "docs/d.svg", "README.md", "docs"].map(Path::new);
     let found = |text: &str| {
         let others =
@@ -382,40 +398,43 @@ fn a_link_that_leads_nowhere_is_found_and_code_holds_no_links() {
         assert_eq!(found(good), [""; 0], "{good}");
     }
     for (bad, text) in [
-        ("\n[b](gone.md)", "docs/a.md:2: the link to `gone.md` leads nowhere"),
-        ("![d](gone.svg)", "docs/a.md:1: the link to `gone.svg` leads nowhere"),
-        ("[b](b.md#there)", "docs/b.md has no heading `there`\n  mend: one of here"),
+        ("\n[b](gone.md)", "docs/a.md:2: broken link to `gone.md`"),
+        ("![d](gone.svg)", "docs/a.md:1: broken link to `gone.svg`"),
+        ("[b](b.md#there)", "docs/b.md has no heading `there`\n  help: use one of here"),
         ("# Up\n\nsee [it](#down)", "docs/a.md:3: docs/a.md has no heading `down`"),
         ("[d](d.svg#part)", "docs/d.svg has no heading `part`"),
-        ("[up](../../x.md)", "`../../x.md` leads nowhere"),
-        ("[up](/b.md)", "`/b.md` leads nowhere"),
-        ("[root](../README.md)", "leads out of the book"),
-        ("`one` [b](gone.md) `two`", "`gone.md` leads nowhere"),
+        ("[up](../../x.md)", "broken link to `../../x.md`"),
+        ("[up](/b.md)", "broken link to `/b.md`"),
+        ("[root](../README.md)", "leaves the book"),
+        ("`one` [b](gone.md) `two`", "broken link to `gone.md`"),
     ] {
         let found = found(bad);
         assert!(matches!(&found[..], [one] if one.contains(text)), "{bad}: {found:?}");
     }
 }
 
+/// A page missing in the book's list is found.
 #[test]
-fn a_page_that_the_book_leaves_out_is_found() {
+fn unlisted_page_is_found() {
     let found = |summary: &str| {
         unlisted(&pages(&[("docs/SUMMARY.md", summary), ("docs/deep/a.md", ""), ("docs/b.md", ""), ("README.md", "")]))
     };
     assert_eq!(found("- [a](deep/a.md)\n- [none]()\n- [b](b.md)"), [""; 0]);
-    assert_eq!(found("- [b](b.md)"), ["docs/deep/a.md is not in docs/SUMMARY.md\n  mend: give it a line there"]);
+    assert_eq!(found("- [b](b.md)"), ["docs/deep/a.md is not in docs/SUMMARY.md\n  help: add a line there"]);
 }
 
+/// Pages named in a source are found with their lines.
 #[test]
-fn a_page_that_a_source_names_is_found_with_its_line() {
+fn pages_named_in_sources_are_found() {
     let source = "//! Told in `docs/a-b.md`.\nhelp: \"see docs/deep/c.md.\"; include_str!(\"../docs/d.json\")\n\
                   // docs/ holds pages; https://far.example/docs/e.md is none of them";
     let found: Vec<String> = named(source).iter().map(|(line, page)| format!("{line} {}", page.display())).collect();
     assert_eq!(found, ["1 docs/a-b.md", "2 docs/deep/c.md", "2 docs/d.json"]);
 }
 
+/// An unlisted `unsafe` is found; comments and strings do not count.
 #[test]
-fn an_unsafe_that_is_not_listed_is_found_and_one_in_a_comment_is_none() {
+fn unlisted_unsafe_is_found() {
     let source = "// unsafe\nfn f() { let text = \"unsafe\"; unsafe { g() } }\n#[unsafe(no_mangle)]\nunsafe fn h() {}";
     assert_eq!(unsafe_code::count(source), Ok(3));
     let list = "| `a/src/x.rs` | 3 | Hardware demands it. |\n";
@@ -438,8 +457,9 @@ fn an_unsafe_that_is_not_listed_is_found_and_one_in_a_comment_is_none() {
     assert!(crates(forbids, forbids)[0].starts_with("a/Cargo.toml forbids what"));
 }
 
+/// A dependency from another source or with another licence is found.
 #[test]
-fn a_dependency_from_elsewhere_or_under_another_licence_is_found() {
+fn foreign_source_or_licence_is_found() {
     let lock = "[[package]]\nname = \"a\"\n[[package]]\nsource = \"registry+https://example.org/index\"\n";
     assert_eq!(dependencies::foreign(lock), [""; 0]);
     let git = format!("{lock}source = \"git+https://example.com/x?rev=1#1\"\n");

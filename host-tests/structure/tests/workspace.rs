@@ -1,5 +1,4 @@
-//! What holds of this workspace: who imports whom, among files, folders and crates, how large they are, and that its
-//! pages link to what is there.
+//! Rules of this workspace: imports between files, folders and crates, sizes of crates, and links of pages.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -10,13 +9,13 @@ use structure::members::{Member, Workspace};
 use structure::sources::Sources;
 use structure::{dependencies, links, page, rules, size, unsafe_code};
 
-/// A crate and its targets with their kinds.
+/// Crate and its targets with their kinds.
 type Crate = (&'static Member, Vec<(String, Graph)>);
 
 static WORKSPACE: LazyLock<Workspace> = LazyLock::new(|| Workspace::read(&root()));
 static CRATES: LazyLock<Vec<Crate>> = LazyLock::new(|| WORKSPACE.members.iter().map(|it| (it, graphs(it))).collect());
 
-/// Whose pages are not there on purpose.
+/// File that names missing pages on purpose.
 const PLANTED: &str = "structure/tests/planted.rs";
 
 fn root() -> PathBuf {
@@ -29,8 +28,8 @@ fn graphs(member: &Member) -> Vec<(String, Graph)> {
     member.targets.iter().map(|(kind, path)| (kind.clone(), graph(path))).collect()
 }
 
-/// Fails with all findings, each under the first target that has it: test programs share files.
-fn none_in_any_target(judge: impl Fn(&str, &Graph) -> Vec<String>) {
+/// Fails with all findings, each under the first target that has it, since test programs share files.
+fn check_every_target(judge: impl Fn(&str, &Graph) -> Vec<String>) {
     let mut found: Vec<String> = vec![];
     for (member, graphs) in CRATES.iter() {
         for (kind, graph) in graphs {
@@ -42,70 +41,80 @@ fn none_in_any_target(judge: impl Fn(&str, &Graph) -> Vec<String>) {
             }
         }
     }
-    none(found);
+    assert_no_findings(found);
 }
 
-fn none(found: Vec<String>) {
+fn assert_no_findings(found: Vec<String>) {
     assert!(found.is_empty(), "{} findings\n\n{}\n", found.len(), found.join("\n\n"));
 }
 
+/// No cycle of imports between files.
 #[test]
-fn files_do_not_import_one_another_in_a_circle() {
-    none_in_any_target(|_, graph| rules::file_circles(graph));
+fn files_form_no_cycle() {
+    check_every_target(|_, graph| rules::file_cycles(graph));
 }
 
+/// No cycle of imports between folders.
 #[test]
-fn folders_do_not_import_one_another_in_a_circle() {
-    none_in_any_target(|_, graph| rules::folder_circles(graph));
+fn folders_form_no_cycle() {
+    check_every_target(|_, graph| rules::folder_cycles(graph));
 }
 
+/// The runtime does not import design.
 #[test]
-fn the_runtime_never_imports_design() {
-    none_in_any_target(|kind, graph| if kind == "lib" { rules::runtime_imports_design(graph) } else { vec![] });
+fn runtime_does_not_import_design() {
+    check_every_target(|kind, graph| if kind == "lib" { rules::runtime_imports_design(graph) } else { vec![] });
 }
 
+/// Every path within a crate resolves.
 #[test]
-fn every_path_within_a_crate_leads_somewhere() {
+fn every_path_resolves() {
     let resolved: usize = CRATES.iter().flat_map(|(_, graphs)| graphs).map(|(_, graph)| graph.resolved).sum();
     println!("{resolved} paths within crates resolved");
-    none_in_any_target(|_, graph| graph.unresolved.clone());
+    check_every_target(|_, graph| graph.unresolved.clone());
 }
 
+/// The reference does not depend on the core.
 #[test]
-fn the_reference_stands_without_the_core() {
-    none(WORKSPACE.independence("reference", "model-core"));
+fn reference_does_not_depend_on_the_core() {
+    assert_no_findings(WORKSPACE.independence("reference", "model-core"));
 }
 
+/// Crates that ship depend neither on tests nor on research.
 #[test]
-fn nothing_that_ships_depends_on_tests_or_research() {
-    none(WORKSPACE.shipped_imports());
+fn shipped_crates_import_no_tests() {
+    assert_no_findings(WORKSPACE.shipped_imports());
 }
 
+/// No crate depends on the command.
 #[test]
-fn nobody_depends_on_the_command() {
-    none(WORKSPACE.imports_of_the_command("joint"));
+fn nothing_depends_on_the_command() {
+    assert_no_findings(WORKSPACE.command_imports("joint"));
 }
 
+/// Default members do not depend on research.
 #[test]
-fn the_default_members_know_no_research() {
-    none(WORKSPACE.research_by_default());
+fn default_members_import_no_research() {
+    assert_no_findings(WORKSPACE.research_by_default());
 }
 
+/// Crates import only as ARCHITECTURE.md allows.
 #[test]
-fn crates_import_what_the_architecture_page_allows() {
+fn crates_import_as_the_page_allows() {
     let text = std::fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap_or_default();
-    none(page::differences(&text, &WORKSPACE, |path| root().join(path).exists()));
+    assert_no_findings(page::differences(&text, &WORKSPACE, |path| root().join(path).exists()));
 }
 
+/// ARCHITECTURE.md and CONTRIBUTING.md name existing paths only.
 #[test]
-fn the_pages_for_newcomers_name_places_that_are_there() {
+fn newcomer_pages_name_existing_paths() {
     for name in ["ARCHITECTURE.md", "CONTRIBUTING.md"] {
         let text = std::fs::read_to_string(root().join(name)).expect("a page");
-        none(page::missing(&text, |path| root().join(path).exists()));
+        assert_no_findings(page::missing(&text, |path| root().join(path).exists()));
     }
 }
 
-/// The Markdown pages at the workspace's root, in docs and beside the firmware.
+/// Markdown pages at the workspace's root, in docs and in firmware.
 fn pages() -> links::Pages {
     let mut folders: Vec<PathBuf> = ["", links::BOOK, "firmware"].map(PathBuf::from).into();
     let mut pages = links::Pages::new();
@@ -113,7 +122,7 @@ fn pages() -> links::Pages {
         for entry in std::fs::read_dir(root().join(&folder)).expect("a folder").map(|entry| entry.expect("an entry")) {
             let path = folder.join(entry.file_name());
             if entry.path().is_dir() {
-                // The root's own folders but docs and firmware hold no pages.
+                // Other folders of the root hold no pages.
                 folders.extend(path.parent().is_some_and(|it| it.starts_with(links::BOOK)).then_some(path));
             } else if path.extension().is_some_and(|kind| kind == "md") {
                 pages.insert(path, std::fs::read_to_string(entry.path()).expect("a page"));
@@ -123,17 +132,19 @@ fn pages() -> links::Pages {
     pages
 }
 
+/// Every link of a page has a target.
 #[test]
-fn every_link_of_a_page_leads_somewhere() {
+fn every_link_has_a_target() {
     let pages = pages();
     let count: usize = pages.values().map(|page| links::links(page).len()).sum();
     println!("{count} links on {} pages", pages.len());
     assert!(pages.contains_key(Path::new("README.md")) && count > 100);
-    none(links::broken(&pages, |path| root().join(path).exists()));
+    assert_no_findings(links::broken(&pages, |path| root().join(path).exists()));
 }
 
+/// Sources name existing pages only.
 #[test]
-fn sources_name_pages_that_are_there() {
+fn sources_name_existing_pages() {
     let files = CRATES.iter().flat_map(|(_, graphs)| graphs).flat_map(|(_, graph)| &graph.sources.files);
     let paths: BTreeSet<&PathBuf> = files.map(|file| &file.path).filter(|path| !path.ends_with(PLANTED)).collect();
     let mut found = vec![];
@@ -142,16 +153,18 @@ fn sources_name_pages_that_are_there() {
         let lost = links::named(&text).into_iter().filter(|(_, page)| !root().join(page).exists());
         found.extend(lost.map(|(line, page)| format!("{}:{line}: no {}", path.display(), page.display())));
     }
-    none(found);
+    assert_no_findings(found);
 }
 
+/// The book lists every page.
 #[test]
-fn the_book_lists_every_page() {
-    none(links::unlisted(&pages()));
+fn book_lists_every_page() {
+    assert_no_findings(links::unlisted(&pages()));
 }
 
+/// No crate exceeds the limit of lines; prints the table of crates.
 #[test]
-fn a_crate_is_of_a_size_that_can_be_read() {
+fn crates_stay_below_the_size_limit() {
     println!("{:<32} {:>6} {:>6} {:>6}", "crate or subject", "lines", "files", "edges");
     let mut found = vec![];
     for (member, graphs) in CRATES.iter() {
@@ -164,7 +177,7 @@ fn a_crate_is_of_a_size_that_can_be_read() {
         }
         found.extend(size::too_large(&sizes));
     }
-    none(found);
+    assert_no_findings(found);
 }
 
 /// Every Rust file of the members, whatever target it belongs to.
@@ -184,8 +197,9 @@ fn rust_files() -> Vec<PathBuf> {
     files.into_iter().collect()
 }
 
+/// Every `unsafe` is listed with its reason, and all other crates forbid it.
 #[test]
-fn every_unsafe_is_listed_with_its_reason_and_forbidden_elsewhere() {
+fn every_unsafe_is_listed() {
     let page = std::fs::read_to_string(root().join(unsafe_code::PAGE)).expect("the list");
     let mut found = BTreeMap::new();
     for path in rust_files() {
@@ -195,20 +209,21 @@ fn every_unsafe_is_listed_with_its_reason_and_forbidden_elsewhere() {
             found.insert(path, count);
         }
     }
-    none(unsafe_code::differences(&page, &found));
+    assert_no_findings(unsafe_code::differences(&page, &found));
     let manifest = |member: &Member| {
         let text = std::fs::read_to_string(root().join(&member.folder).join("Cargo.toml")).expect("a manifest");
         (member.folder.clone(), text)
     };
-    none(unsafe_code::unforbidden(&page, &WORKSPACE.members.iter().map(manifest).collect::<Vec<_>>()));
+    assert_no_findings(unsafe_code::unforbidden(&page, &WORKSPACE.members.iter().map(manifest).collect::<Vec<_>>()));
     let workspace = std::fs::read_to_string(root().join("Cargo.toml")).expect("a manifest");
     assert!(workspace.contains("unsafe_code = \"forbid\""));
 }
 
+/// Third-party packages come from one registry, under allowed licences.
 #[test]
-fn what_is_not_ours_comes_from_one_registry_under_licences_that_are_allowed() {
+fn dependencies_have_allowed_licences() {
     let lock = std::fs::read_to_string(root().join("Cargo.lock")).expect("a lock file");
     assert!(lock.matches("[[package]]").count() > 100);
-    none(dependencies::foreign(&lock));
-    none(dependencies::unlicensed(&dependencies::metadata(&root())));
+    assert_no_findings(dependencies::foreign(&lock));
+    assert_no_findings(dependencies::unlicensed(&dependencies::metadata(&root())));
 }

@@ -1,4 +1,4 @@
-//! What the compensation does with estimates and set-points that are no numbers, not there, or nonsense.
+//! Compensation with estimates and set-points that are missing, not finite, or absurd.
 
 use model_core::compensation::design::{CompensationSettings, compensation_settings, design_compensation};
 use model_core::compensation::{Command, Compensation, ImpedancePoint, Motion, Stage};
@@ -25,8 +25,9 @@ fn at_rest() -> Command<f32> {
     Command::Position { now: Motion::default(), ahead: None }
 }
 
+/// Torque stays within the limit for any non-finite or huge input, and full trust returns afterwards.
 #[test]
-fn no_input_makes_a_torque_that_is_none_or_too_large() {
+fn bad_input_keeps_torque_within_limit() {
     let tables =
         design_compensation::<f32>(&q1(), &compensation_settings(&DriveTrainParameters::q1().surroundings, 60.0))
             .expect("sound");
@@ -68,8 +69,9 @@ fn no_input_makes_a_torque_that_is_none_or_too_large() {
     }
 }
 
+/// Without a valid gap the compensation hands over to plain control.
 #[test]
-fn a_gap_that_cannot_be_seen_leaves_plain_control() {
+fn invalid_gap_leaves_plain_control() {
     let tables =
         design_compensation::<f32>(&q1(), &compensation_settings(&DriveTrainParameters::q1().surroundings, 60.0))
             .expect("sound");
@@ -86,8 +88,9 @@ fn a_gap_that_cannot_be_seen_leaves_plain_control() {
     assert_eq!((shaped.stage, shaped.trust), (Stage::Plain, 0.0));
 }
 
+/// A setting that allows no gain is rejected with an error that names it.
 #[test]
-fn settings_that_no_gain_can_be_made_from_are_refused_with_the_mend() {
+fn unsound_settings_are_rejected_by_name() {
     let refusal = |change: fn(&mut CompensationSettings)| {
         let mut settings = compensation_settings(&DriveTrainParameters::q1().surroundings, 60.0);
         change(&mut settings);

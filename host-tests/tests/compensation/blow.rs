@@ -1,13 +1,13 @@
-//! Blows that throw the link off its flank.
+//! External impacts that drive the link off its flank.
 
 use scenario::controller::ControllerName::{MotorPid, NoPreview};
 
 use super::{figures, shipped};
 
-/// From a flank the wrong blow had 1.16 of PID's peak, with seeds 15 and 105 still 1.1 from one that friction kept. The first blow meets a
-/// joint that does not know its gap yet, from anywhere in it: with seed 15 it has 1.11 of PID's mesh force.
+/// Pushing from the wrong flank gave 1.16 of PID's peak, and with seeds 15 and 105 still 1.1 where friction held the wrong flank. At the
+/// first impact the gap is not known yet and the link may be anywhere in it: with seed 15 its mesh force is 1.11 of PID's.
 #[test]
-fn a_blow_throws_the_link_no_further_than_under_pid_and_strikes_hardly_harder() {
+fn impact_moves_the_link_less_than_pid() {
     let test = shipped("impact");
     for seed in [10, 15, 105] {
         let (pid, ours) = (figures(&test, seed, MotorPid), figures(&test, seed, NoPreview));

@@ -1,13 +1,13 @@
-//! Encoders so coarse that the gap is hardly wider than a count.
+//! Output encoders so coarse that the gap is hardly wider than a count.
 
 use scenario::controller::ControllerName::NoPreview;
 
 use super::{on_core, run_in, shipped};
 
-/// Shafts that stand still are known to half a count only, which is more than the half-gap of a narrow gap under an output encoder of
-/// 12 bits. Of a link that rests between its flanks by that, nothing is wrong with the encoder.
+/// Angles of resting shafts are known to half a count only. With a 12-bit output encoder that is more than half of a narrow gap, so a link
+/// that rests between its flanks is no reason to exclude the encoder.
 #[test]
-fn a_sound_output_encoder_is_not_given_up_however_coarse() {
+fn coarse_sound_encoder_is_kept() {
     let test = shipped("never-worse");
     for seed in [5071, 5095, 5123, 5233] {
         let case = test.case(seed).expect("a case of the test");
@@ -18,9 +18,9 @@ fn a_sound_output_encoder_is_not_given_up_however_coarse() {
     }
 }
 
-/// A lost motion of 1.49 mrad under counts of 1.53 mrad.
+/// Lost motion of 1.49 mrad with counts of 1.53 mrad.
 #[test]
-fn a_gap_narrower_than_a_count_is_not_valid() {
+fn gap_below_one_count_is_invalid() {
     let test = shipped("never-worse");
     let seed = 5663;
     let case = test.case(seed).expect("a case of the test");

@@ -1,5 +1,5 @@
-//! From which control rate on, and up to which bandwidth, a joint can be controlled: what the design refuses, what it names
-//! instead, and whether the motor bears that in the open gap, simulated alone with delay and lag.
+//! Lowest control rate and widest bandwidth of a joint: the design rejects the rest and names both limits. A motor alone in the open gap,
+//! simulated with delay and lag, has to be stable at these limits.
 
 use model_core::compensation::design::{CompensationSettings, compensation_settings, design_compensation};
 use model_core::compensation::{Command, Compensation, CompensationTables, Motion};
@@ -22,8 +22,8 @@ fn tables(joint: &JointParameters, settings: &CompensationSettings) -> Result<Co
     design_compensation(joint, settings)
 }
 
-/// The least that is refused: the lowest rate and the widest bandwidth that would do.
-fn refused(joint: &JointParameters, settings: &CompensationSettings) -> (Option<u32>, f64) {
+/// Lowest rate and widest bandwidth that the error of a rejected design names.
+fn named_limits(joint: &JointParameters, settings: &CompensationSettings) -> (Option<u32>, f64) {
     match tables(joint, settings) {
         Err(DesignError::ControlTooSlow { lowest, widest, .. }) => (lowest, widest),
         Err(DesignError::BandwidthTooWide { widest, .. }) => (None, widest),
@@ -31,13 +31,13 @@ fn refused(joint: &JointParameters, settings: &CompensationSettings) -> (Option<
     }
 }
 
-/// Half of the swing of a motor alone in the open gap between two times [rad], wherever in the gap it swings, after it began half a
-/// milliradian beside the set-point. Its torques act after the settings' delay and the current loop's `lag` [s].
-fn excursion(tables: &CompensationTables<f64>, settings: &CompensationSettings, lag: f64, from: f64, to: f64) -> f64 {
+/// Amplitude of a motor alone in the open gap between two times [rad], from half a milliradian beside the set-point. Its torque acts after
+/// the settings' delay and the current loop's `lag` [s].
+fn amplitude(tables: &CompensationTables<f64>, settings: &CompensationSettings, lag: f64, from: f64, to: f64) -> f64 {
     const FINE: usize = 50;
     let step = tables.clock.period / FINE as f64;
     let known = |value| Estimate { value, variance: 0.0, valid: true };
-    // A motion that is too slow to go anywhere, so that the law is that of motion.
+    // Set-point too slow to travel, so that the law of motion applies and not that of rest.
     let command = Command::Position { now: Motion { speed: 1e-9, ..Motion::default() }, ahead: None };
     let mut compensation = Compensation::new(tables);
     let (mut place, mut speed, mut torque) = (0.5e-3, 0.0, 0.0);
@@ -71,12 +71,13 @@ fn excursion(tables: &CompensationTables<f64>, settings: &CompensationSettings, 
     0.5 * (swing[1] - swing[0])
 }
 
+/// The named limits are accepted, slightly lower rates and wider bandwidths are rejected.
 #[test]
-fn the_named_rate_and_the_named_bandwidth_are_taken_and_a_little_less_is_not() {
+fn named_rate_and_bandwidth_are_limits() {
     let (joint, usual) = q1();
     let heavy = JointParameters { link_inertia: 0.54, ..joint.clone() };
     let light = JointParameters { link_inertia: 0.03, ..joint.clone() };
-    // Delays decide in the first three, periods in a time constant in the others.
+    // In the first three cases the delays decide, in the others the periods per time constant.
     for (joint, rate, lag, bandwidth, delays) in [
         (&joint, 2000, 1e-3, 60.0, true),
         (&heavy, 2500, 0.2e-3, 60.0, true),
@@ -86,23 +87,24 @@ fn the_named_rate_and_the_named_bandwidth_are_taken_and_a_little_less_is_not() {
         (&joint, 500, 0.2e-3, 60.0, false),
     ] {
         let slow = CompensationSettings { control_rate: rate, torque_lag: lag, bandwidth, ..usual.clone() };
-        let (lowest, widest) = refused(joint, &slow);
+        let (lowest, widest) = named_limits(joint, &slow);
         let lowest = lowest.expect("some rate does");
         assert_eq!(f64::from(lowest) > 33.1 * bandwidth, delays, "{lowest} Hz");
         let at = |control_rate| CompensationSettings { control_rate, ..slow.clone() };
         let with = |bandwidth| CompensationSettings { bandwidth, ..slow.clone() };
         tables(joint, &at(lowest)).expect("the rate that was named");
         tables(joint, &with(widest)).expect("the bandwidth that was named");
-        refused(joint, &at(lowest - 2));
-        refused(joint, &with(widest + 1.01));
+        named_limits(joint, &at(lowest - 2));
+        named_limits(joint, &with(widest + 1.01));
     }
 }
 
+/// Where no rate compensates the lag, the error names a bandwidth only.
 #[test]
-fn a_lag_that_no_rate_makes_good_leaves_a_bandwidth() {
+fn long_lag_names_bandwidth_only() {
     let (joint, usual) = q1();
     let slow = CompensationSettings { torque_lag: 4e-3, ..usual };
-    let (lowest, widest) = refused(&joint, &slow);
+    let (lowest, widest) = named_limits(&joint, &slow);
     assert_eq!(lowest, None);
     let text = tables(&joint, &slow).expect_err("too slow").to_string();
     tables(&joint, &CompensationSettings { bandwidth: widest, ..slow }).expect("the bandwidth that was named");
@@ -110,38 +112,39 @@ fn a_lag_that_no_rate_makes_good_leaves_a_bandwidth() {
     assert!(!text.contains("Hz or more"), "{text}");
 }
 
-/// However slow the motor and however absurd what is asked for, the bandwidth that is named is more than none, and is taken.
+/// The named bandwidth is positive and accepted for any slow motor and any absurd request.
 #[test]
-fn the_named_bandwidth_is_never_none() {
+fn named_bandwidth_is_positive() {
     let (joint, usual) = q1();
     for (torque_lag, bandwidth) in [(1.0, 60.0), (0.2e-3, 1e300)] {
         let asked = CompensationSettings { torque_lag, bandwidth, ..usual.clone() };
-        let (_, widest) = refused(&joint, &asked);
+        let (_, widest) = named_limits(&joint, &asked);
         assert!(widest > 0.0, "{widest} rad/s");
         tables(&joint, &CompensationSettings { bandwidth: widest, ..asked }).expect("the bandwidth that was named");
     }
 }
 
-/// At the lowest rate the phase margin is three degrees: the motor comes to rest with the delays as they are, and swings with
-/// half a millisecond more.
+/// At the lowest rate the phase margin is three degrees: the motor comes to rest with the nominal delays, and oscillates with half a
+/// millisecond more.
 #[test]
-fn at_the_lowest_rate_the_motor_just_comes_to_rest_in_the_open_gap() {
+fn lowest_rate_is_just_stable_in_the_gap() {
     let (joint, usual) = q1();
     let heavy = JointParameters { link_inertia: 0.54, ..joint.clone() };
     for (joint, lag) in [(&heavy, 0.2e-3), (&joint, 1e-3)] {
         let slow = CompensationSettings { control_rate: 1000, torque_lag: lag, ..usual.clone() };
-        let lowest = refused(joint, &slow).0.expect("some rate does");
+        let lowest = named_limits(joint, &slow).0.expect("some rate does");
         let settings = CompensationSettings { control_rate: lowest, ..slow };
         let tables = tables(joint, &settings).expect("the rate that was named");
-        let at = |lag| excursion(&tables, &settings, lag, 1.0, 1.2);
+        let at = |lag| amplitude(&tables, &settings, lag, 1.0, 1.2);
         let (settled, swinging) = (at(lag), at(lag + 0.5e-3));
         assert!(settled < 0.05e-3, "{lag}: {settled} rad are left of 0.5 mrad at {lowest} Hz");
         assert!(swinging > 0.5e-3, "{lag}: {swinging} rad with half a millisecond more at {lowest} Hz");
     }
 }
 
+/// Each preset passes both designs at its own control rate.
 #[test]
-fn every_preset_can_be_observed_and_controlled_at_its_own_rate() {
+fn presets_pass_at_their_own_rate() {
     for name in ["q1", "s1", "d2", "l1", "c1"] {
         let (joint, surroundings) = preset(name);
         tables(&joint, &compensation_settings(&surroundings, 60.0)).unwrap_or_else(|error| panic!("{name}: {error}"));
@@ -150,8 +153,9 @@ fn every_preset_can_be_observed_and_controlled_at_its_own_rate() {
     }
 }
 
+/// The observer's estimation interval of 1 ms must hold at least one period.
 #[test]
-fn an_observer_is_refused_whose_period_is_longer_than_what_is_learnt_from() {
+fn observer_below_1_khz_is_rejected() {
     let (joint, surroundings) = preset("q1");
     let at = |control_rate| {
         let designed: Result<ObserverTables<f32>, _> =

@@ -8,19 +8,21 @@ use scenario::controller::ControllerName::{LoadCascade, MotorPid, NoPreview, Tru
 
 use super::{figures, run, shipped};
 
-/// Q1's, 4b over twice the carrier's lever [rad].
+/// Lost motion of Q1: 4b over twice the carrier's lever [rad].
 const LOST_MOTION: f64 = 3.78e-3;
 
+/// A disturbed hold moves by a fraction of PID's motion.
 #[test]
-fn a_disturbed_hold_moves_a_fraction_of_what_it_did() {
+fn disturbed_hold_moves_less_than_pid() {
     let (test, seed) = (shipped("disturbed-hold"), 111);
     let (pid, ours) = (figures(&test, seed, MotorPid), figures(&test, seed, NoPreview));
     HOLD_OVER_PID.check(ours.rms / pid.rms);
     HOLD_SWING_OVER_PID.check(ours.peak_to_peak / pid.peak_to_peak);
 }
 
+/// Crossings end soon where there is dry friction.
 #[test]
-fn a_little_friction_ends_all_crossings() {
+fn friction_ends_crossings() {
     let test = shipped("free-hold");
     let run = run(&test, 112, NoPreview).run;
     let crossings = Figures::of(&run, test.file.settle).crossings;
@@ -28,24 +30,26 @@ fn a_little_friction_ends_all_crossings() {
     assert_eq!(Figures::of(&run, 4.0).crossings, 0, "crossings go on");
 }
 
-/// The link rests a count beside its set-point, and its friction and the motor's hold it there: put right by an integral that
-/// winds up for two seconds, it cost a crossing.
+/// The link rests a count beside its set-point, held by its own and the motor's friction. An integral that removed this error in two
+/// seconds cost a crossing.
 #[test]
-fn an_error_that_friction_holds_is_let_be() {
+fn error_held_by_friction_is_tolerated() {
     let run = run(&shipped("free-hold"), 18, NoPreview).run;
     assert_eq!(Figures::of(&run, 2.5).crossings, 0, "the gap is crossed for an error of a count");
 }
 
+/// With a known gap and no friction, crossings are rare and the motion is smaller than the gap.
 #[test]
-fn without_any_friction_a_known_gap_is_crossed_seldom_and_swings_less_than_it_is_wide() {
+fn free_hold_with_known_gap_rarely_crosses() {
     let (test, seed) = (shipped("free-hold-no-friction"), 113);
     let (ours, cascade) = (figures(&test, seed, TrueStateCompensation), figures(&test, seed, LoadCascade));
     assert!(ours.crossings < cascade.crossings / 4, "{} crossings against {}", ours.crossings, cascade.crossings);
     FREE_HOLD_SWING.check(ours.peak_to_peak / LOST_MOTION);
 }
 
+/// With an unknown gap and no friction, the width is estimated from the first soft contacts.
 #[test]
-fn without_any_friction_a_gap_that_is_not_known_yet_is_learnt_from_the_first_soft_touches() {
+fn free_hold_learns_unknown_gap() {
     let test = shipped("free-hold-no-friction");
     for seed in 114..120 {
         let (ours, cascade) = (figures(&test, seed, NoPreview), figures(&test, seed, LoadCascade));

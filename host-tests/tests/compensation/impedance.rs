@@ -1,4 +1,4 @@
-//! Impedance mode: how far the link and its torque are from what the same law does on teeth without backlash.
+//! Impedance mode: deviation of link and torque from the same law on teeth without backlash.
 
 use host_tests::tolerance::compensation::{
     IMPEDANCE_DEVIATION, IMPEDANCE_OVER_RIVAL, IMPEDANCE_TORQUE, SOFT_SPRING_SWING,
@@ -14,13 +14,12 @@ use scenario::suite::Test;
 
 use super::{case_of, changed, l1_train, on_reference, run_in, shipped};
 
-/// How far a controller is from what the law that it is measured from does without a gap: link, root mean square [rad], and
-/// torque [N m].
+/// Deviation of a controller from its law without backlash: link, RMS [rad], and torque [N m].
 fn deviation_of(test: &Test, seed: u64, controller: ControllerName) -> (f64, f64) {
     deviation_in(test, &test.case(seed).expect("a case of the test"), seed, controller)
 }
 
-/// The same in a case of its own.
+/// Deviation of a controller from its law without backlash, in a given case.
 fn deviation_in(test: &Test, case: &Case, seed: u64, controller: ControllerName) -> (f64, f64) {
     let law = RunSpec { without_gap: true, ..on_reference(controller.without_gap()) };
     let [ours, without_gap] = [on_reference(controller), law].map(|spec| run_in(test, case, seed, spec));
@@ -28,7 +27,7 @@ fn deviation_in(test: &Test, case: &Case, seed: u64, controller: ControllerName)
     (link, torque)
 }
 
-/// A shipped impedance test with another stiffness [N m/rad] and, where `alone`, no torque sent along with the motion.
+/// Shipped impedance test with another stiffness [N m/rad]; `alone` drops the feed-forward torque of the motion.
 fn with_spring(name: &str, stiffness: f64, alone: bool) -> Test {
     let mut test = shipped(name);
     let gains = test.file.gains.expect("a test of an impedance");
@@ -36,49 +35,54 @@ fn with_spring(name: &str, stiffness: f64, alone: bool) -> Test {
     test
 }
 
-/// Deviation and torque error with compensation, whose law has its spring at the link and its damper at the motor; the
-/// deviation held against that of the rival with the same law.
-fn no_worse_than_the_best_rival(test: &Test, seed: u64) -> (f64, f64) {
+/// Checks the deviation against the rival with its spring at the link and its damper at the motor, and returns deviation and torque error
+/// of the compensation.
+fn check_against_best_rival(test: &Test, seed: u64) -> (f64, f64) {
     let (ours, torque) = deviation_of(test, seed, Impedance);
     let (rival, _) = deviation_of(test, seed, LinkSpring);
     IMPEDANCE_OVER_RIVAL.check(ours / rival);
     (ours, torque)
 }
 
-fn comes_near_the_law_without_a_gap(test: &Test, seed: u64) {
-    let (ours, torque) = no_worse_than_the_best_rival(test, seed);
+fn check_against_gapless_law(test: &Test, seed: u64) {
+    let (ours, torque) = check_against_best_rival(test, seed);
     let (motor, motor_torque) = deviation_of(test, seed, MotorSide);
     IMPEDANCE_DEVIATION.check(ours / motor);
     IMPEDANCE_TORQUE.check(torque / motor_torque);
 }
 
+/// A spring of medium stiffness follows its law without backlash.
 #[test]
-fn a_medium_spring_behaves_as_if_there_were_no_gap() {
-    comes_near_the_law_without_a_gap(&shipped("impedance"), 121);
+fn medium_spring_follows_gapless_law() {
+    check_against_gapless_law(&shipped("impedance"), 121);
 }
 
+/// A stiff spring follows its law without backlash.
 #[test]
-fn a_stiff_spring_behaves_as_if_there_were_no_gap() {
-    comes_near_the_law_without_a_gap(&shipped("impedance-stiff"), 122);
+fn stiff_spring_follows_gapless_law() {
+    check_against_gapless_law(&shipped("impedance-stiff"), 122);
 }
 
+/// A stiff spring without feed-forward torque deviates no more than the best rival, in steps and in a hold.
 #[test]
-fn a_stiff_spring_steps_and_holds_no_worse_than_its_best_rival() {
+fn stiff_spring_matches_best_rival() {
     for (name, seed) in [("impedance-steps", 123), ("impedance-hold", 124)] {
-        comes_near_the_law_without_a_gap(&with_spring(name, 600.0, true), seed);
+        check_against_gapless_law(&with_spring(name, 600.0, true), seed);
     }
 }
 
+/// Steps with feed-forward torque deviate no more than the best rival.
 #[test]
-fn steps_with_their_own_torque_sent_along_are_no_worse_than_the_best_rival() {
-    // The motor is near its limit then, and whatever a flank comes late is missing.
+fn feedforward_steps_match_best_rival() {
+    // The motor is near its limit, so torque missed by a late flank cannot be made up.
     for (stiffness, seed) in [(100.0, 125), (300.0, 126), (600.0, 127)] {
-        no_worse_than_the_best_rival(&with_spring("impedance-steps", stiffness, false), seed);
+        check_against_best_rival(&with_spring("impedance-steps", stiffness, false), seed);
     }
 }
 
+/// An uncertain flank does not make a soft spring on a large joint oscillate.
 #[test]
-fn a_soft_spring_on_a_large_joint_does_not_swing_in_the_doubt_about_its_flank() {
+fn soft_spring_on_large_joint_is_stable() {
     let (test, seed) = (changed("impedance-steps", "joint = \"l1\"\nduration_s = 4", ""), 128);
     let (swing, _) = deviation_in(&test, &case_of(&test, seed, &l1(), &l1_train()), seed, Impedance);
     SOFT_SPRING_SWING.check(swing);

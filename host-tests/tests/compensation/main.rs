@@ -1,6 +1,5 @@
-//! The compensation in the loop with the drive train, against the rivals, on few seeds: tests of `hil/`, some of them
-//! with a joint of their own, held to tighter bounds than the files'. The long form is ignored by default. The observer
-//! by itself is tested in `observer`. `page` compares the documentation with the code.
+//! The compensation in closed loop with the drive train, against the rivals, on a few seeds: tests of `hil/`, some with another joint, held
+//! to tighter bounds than those of the files. The long forms are ignored by default. The observer alone is tested in `observer`.
 
 mod bad_input;
 mod blow;
@@ -31,15 +30,15 @@ use scenario::plant::PlantName;
 use scenario::run_history::RunHistory;
 use scenario::suite::{Test, from_text};
 
-/// A run takes seconds; more is none.
-const LONGEST: Duration = Duration::from_secs(3600);
+/// Time limit of a run, which takes seconds.
+const RUN_TIME_MAX: Duration = Duration::from_secs(3600);
 
-/// A test of `hil/` by its name, as users run it.
+/// Test of `hil/` by name, unchanged.
 fn shipped(name: &str) -> Test {
     changed(name, "", "")
 }
 
-/// The same with lines above it, such as another joint, and below it, such as what else is known of the joint.
+/// Test of `hil/` with lines above it, such as another joint, and below it, such as further known parameters.
 fn changed(name: &str, above: &str, below: &str) -> Test {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hil");
     let name = format!("{name}.toml");
@@ -47,15 +46,15 @@ fn changed(name: &str, above: &str, below: &str) -> Test {
     from_text(&name, &format!("{above}\n{text}\n{below}\n"), &folder, PlantName::Reference).expect("a good test")
 }
 
-/// The case of a seed with a joint of `scenarios` and a drive train in place of the file's; dry friction and weight of the
-/// link stay what the file's motion asks for. Such joints have no ripple and no error but what a test gives them, and their
-/// encoders' errors begin where the motion does: bounds that tell one cause apart were set on them.
+/// Case of a seed with a joint of `scenarios` and a drive train in place of the file's. Dry friction and weight of the link stay those of
+/// the file. Such joints have no ripple and no errors except those of the test, and their encoder errors start at the start angle: bounds
+/// that separate causes were set on them.
 fn case_of(test: &Test, seed: u64, joint: &JointParameters, train: &DriveTrainParameters) -> Case {
     let mut case = test.case(seed).expect("a case of the test");
     let mut train = train.clone();
-    let of_file = &case.train.surroundings;
-    train.surroundings.load_friction.coulomb = of_file.load_friction.coulomb;
-    train.surroundings.gravity_torque = of_file.gravity_torque;
+    let file_surroundings = &case.train.surroundings;
+    train.surroundings.load_friction.coulomb = file_surroundings.load_friction.coulomb;
+    train.surroundings.gravity_torque = file_surroundings.gravity_torque;
     case.truth.parameters = joint.clone();
     case.nominal = joint.clone();
     for mesh in [&mut case.nominal.sun_planet, &mut case.nominal.ring_planet] {
@@ -66,19 +65,19 @@ fn case_of(test: &Test, seed: u64, joint: &JointParameters, train: &DriveTrainPa
     case
 }
 
-/// Without friction, weight and errors, but with a period's delay and the motor that L1 has.
+/// Drive train of L1: no friction, weight or errors; one period of delay; L1's torque limit.
 fn l1_train() -> DriveTrainParameters {
     Surroundings { delay: 1.0, torque_limit: 120.0, ..Surroundings::ideal() }.into()
 }
 
-/// What a controller does in a test, on the reference.
+/// Runs a controller through a test on the reference.
 fn run(test: &Test, seed: u64, controller: ControllerName) -> RunHistory {
     run_in(test, &test.case(seed).expect("a case of the test"), seed, on_reference(controller))
 }
 
-/// The same in a case of its own.
+/// Runs a controller through a test on a given case.
 fn run_in(test: &Test, case: &Case, seed: u64, spec: RunSpec) -> RunHistory {
-    execute(&test.file, case, seed, spec, Instant::now() + LONGEST).expect("the test runs")
+    execute(&test.file, case, seed, spec, Instant::now() + RUN_TIME_MAX).expect("the test runs")
 }
 
 fn on_reference(controller: ControllerName) -> RunSpec {
@@ -89,12 +88,12 @@ fn on_core(controller: ControllerName) -> RunSpec {
     RunSpec { controller, plant: PlantName::Core, without_gap: false }
 }
 
-/// Figures of a controller, from when a test judges it.
+/// Figures of a controller from the test's settling time on.
 fn figures(test: &Test, seed: u64, controller: ControllerName) -> Figures {
     Figures::of(&run(test, seed, controller).run, test.file.settle)
 }
 
-/// The same in a case of its own.
+/// Figures of a controller on a given case.
 fn figures_in(test: &Test, case: &Case, seed: u64, controller: ControllerName) -> Figures {
     Figures::of(&run_in(test, case, seed, on_reference(controller)).run, test.file.settle)
 }

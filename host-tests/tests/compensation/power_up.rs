@@ -1,5 +1,5 @@
-//! Power-up: encoders whose zeros lie anywhere, a joint that was left anywhere in its gap or turns already, an output encoder that
-//! comes late. Encoder zeros and the place in the gap are drawn in every run of every test; here they are looked at by themselves.
+//! Power-up: encoders with arbitrary zeros, a joint anywhere in its gap or already turning, a late output encoder. All tests draw encoder
+//! zeros and the place in the gap; the tests below look at them alone.
 
 use std::path::Path;
 
@@ -17,10 +17,10 @@ use scenario::suite::{Test, from_text};
 
 use super::{on_reference, run, run_in};
 
-/// Joints with teeth and gears without, of ratios from 6 to 100.
+/// Joints with teeth and equivalent gears, ratios from 6 to 100.
 const JOINTS: [&str; 5] = ["q1", "s1", "c1", "d2", "l1"];
 
-/// A link that stays where it is after a push.
+/// Hold after a push.
 fn hold(joint: &str, faults: &str) -> Test {
     let text = format!(
         "joint = \"{joint}\"\nprofile = \"free_hold\"\nduration_s = 6\nsettle_s = 2\n{faults}\n[controller]\nmode = \"no_preview\"\nrivals = []\n"
@@ -28,13 +28,13 @@ fn hold(joint: &str, faults: &str) -> Test {
     from_text("power-up.toml", &text, Path::new("."), PlantName::Reference).expect("a good test")
 }
 
-/// Angle of the link that the teeth leave free [rad].
+/// Lost motion at the link [rad].
 fn lost_motion(test: &Test, seed: u64) -> f64 {
     let case = test.case(seed).expect("a case of the test");
     2.0 * case.half_backlash() / case.truth.parameters.geometry.carrier_base_radius()
 }
 
-/// Encoder zeros that differ by any angle cost no crossing: the same joint with both zeros at the start is the measure.
+/// Encoder zeros at any angle cost no crossing, compared with the same joint whose zeros are at the start.
 #[test]
 fn any_encoder_zeros_hold_still() {
     for joint in JOINTS {
@@ -51,9 +51,9 @@ fn any_encoder_zeros_hold_still() {
     }
 }
 
-/// A link that turns at 1 rad/s when the controller is switched on is caught as PID catches it.
+/// A link that turns at 1 rad/s at power-up is caught with at most 1.1 times PID's peak.
 #[test]
-fn a_turning_joint_is_caught() {
+fn turning_joint_is_caught() {
     for joint in JOINTS {
         let test = hold(joint, "");
         for seed in 710..712 {
@@ -63,9 +63,9 @@ fn a_turning_joint_is_caught() {
     }
 }
 
-/// An output encoder that falls silent while the joint rests leaves the link where it is.
+/// An output encoder that falls silent while the joint rests leaves the link in place.
 #[test]
-fn output_silent_at_rest_holds_still() {
+fn silent_output_at_rest_holds_still() {
     let lost = "[[fault]]\nkind = \"lost_frames\"\nframes = \"output\"\nshare = 1\nstart_s = 3\nend_s = 5";
     for joint in JOINTS {
         let test = hold(joint, lost);
@@ -77,9 +77,9 @@ fn output_silent_at_rest_holds_still() {
     }
 }
 
-/// Before its first reading nobody knows where the link is against its set-point: no torque is given until then.
+/// Before its first reading the angle of the link is unknown, so the torque is zero.
 #[test]
-fn output_late_at_power_up_waits() {
+fn late_output_at_power_up_waits() {
     let late = "[[fault]]\nkind = \"lost_frames\"\nframes = \"output\"\nshare = 1\nstart_s = 0\nend_s = 0.1";
     for joint in JOINTS {
         for seed in 730..732 {
@@ -92,7 +92,7 @@ fn output_late_at_power_up_waits() {
     }
 }
 
-/// Figures of a joint whose link turns at 1 rad/s when its controller is switched on.
+/// Figures of a joint whose link turns at 1 rad/s at power-up.
 fn turning(test: &Test, seed: u64, controller: ControllerName) -> Figures {
     let case = test.case(seed).expect("a case of the test");
     let mut setup = setup(&test.file, &case, seed, on_reference(controller));

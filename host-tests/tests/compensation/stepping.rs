@@ -1,4 +1,4 @@
-//! The fixed fine steps that closed loops run on, against the adaptive ones.
+//! Fixed fine steps of closed loops against adaptive steps.
 
 use host_tests::tolerance::compensation::FIXED_STEPS;
 use reference::drive_train::Stepping;
@@ -10,17 +10,18 @@ use scenario::set_point_source::SetPointSource;
 
 use super::{on_reference, shipped};
 
-/// Of Q1 at its link [rad].
+/// Lost motion of Q1 at its link [rad].
 const LOST_MOTION: f64 = 3.78e-3;
 
+/// The link moves alike with fixed and adaptive steps.
 #[test]
-fn fixed_steps_move_the_joint_as_adaptive_ones_do() {
+fn fixed_steps_match_adaptive_steps() {
     let (mut test, seed) = (shipped("t2"), 131);
     test.file.duration = 1.5;
     let case = test.case(seed).expect("a case of the test");
     let spec = on_reference(ControllerName::MotorPid);
     let [fixed, adaptive] = [Stepping::Fixed, Stepping::Adaptive].map(|stepping| {
-        // From the middle of the gap, which the bound was measured from.
+        // Middle of the gap; the bound was measured from there.
         let start = Start::Relative(RelativeState::centred(case.truth.parameters.geometry.planets));
         let setup = Setup { stepping, start, ..setup(&test.file, &case, seed, spec) };
         let mut controller = ActiveController::rival(

@@ -1,4 +1,4 @@
-//! The core and the reference through the same scenario, and the error between them.
+//! Core and reference on the same scenario, and the errors between them.
 
 use host_tests::tolerance::Bound;
 use model_core::gears::design::{Effort, design_scheme};
@@ -10,14 +10,14 @@ use reference::scenarios;
 use reference::scenarios::Scenario;
 use simulation::sim::start::core_state;
 
-/// What the core and the reference both say at one moment: mesh deflections, gap, link less rigid body.
+/// Sample of core or reference: mesh deflections, gap, link relative to the rigid body.
 struct Snapshot {
     deflections: [Vec<f64>; 2],
     gap: f64,
     link_offset: f64,
 }
 
-/// RMS errors over standard deviations: all mesh deflections together, gap, link less rigid body.
+/// RMS errors over standard deviations: all mesh deflections together, gap, link relative to the rigid body.
 #[derive(Debug, Clone, Copy)]
 pub struct Errors {
     pub deflection: f64,
@@ -31,7 +31,7 @@ impl Errors {
     }
 }
 
-/// The core through a scenario, sampled as the reference is.
+/// Runs the core through a scenario and samples it at the reference's times.
 fn follow<T: Real, const N: usize>(scenario: &Scenario, scheme: Scheme, effort: Effort) -> Vec<Snapshot> {
     let tables: Tables<T, N> =
         design_scheme(&scenario.joint, scenario.tick_rate, scheme, effort).expect("a scenario's joint is sound");
@@ -86,7 +86,7 @@ pub fn errors<T: Real, const N: usize>(scenario: &Scenario, scheme: Scheme, effo
     }
 }
 
-/// RMS over all mesh deflections at the reference's moments, over b_c.
+/// RMS error of all mesh deflections at the reference's sample times, over b_c.
 pub fn rms_error<const N: usize>(
     joint: &JointParameters,
     tables: &Tables<f64, N>,
@@ -112,7 +112,7 @@ pub fn rms_error<const N: usize>(
     (squares / (2 * N * expected.len()) as f64).sqrt()
 }
 
-/// Holds f32 and f64 against a bound.
+/// Checks f32 and f64 against a bound.
 #[track_caller]
 pub fn check<const N: usize>(scenario: &Scenario, effort: Effort, bound: &Bound) {
     for (scalar, errors) in [

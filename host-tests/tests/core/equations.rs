@@ -1,5 +1,5 @@
-//! The design's matrices against the paper's equations written out by hand, with the misprints corrected, and against
-//! eigenvalues known from closed forms.
+//! Matrices of the design against the paper's equations written out by hand, with the misprints corrected, and against eigenvalues from
+//! closed forms.
 
 use host_tests::tolerance;
 use model_core::gears::Scales;
@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 use parameters::JointParameters;
 use reference::scenarios;
 
-/// The paper's joint with other masses and stiffnesses, and n planets (radii do not enter the relative equations).
+/// The paper's joint with other masses, stiffnesses and number of planets; radii do not enter the relative equations.
 fn joint(planets: usize) -> JointParameters {
     let mut joint = scenarios::paper_joint(0.0, 0.0, 0.0, 1.0);
     joint.geometry.planets = planets;
@@ -23,8 +23,8 @@ fn joint(planets: usize) -> JointParameters {
     joint
 }
 
-/// Coefficients of K (or C) in eq. 19 for constant stiffness and no backlash, row by row as the paper prints them, with
-/// the sum over planets that the second row's K_rp term lost.
+/// Coefficients of K (or C) in eq. 19 for constant stiffness and no backlash, row by row as printed, with the sum over planets that is
+/// missing in the second row's K_rp term.
 fn printed(joint: &JointParameters, sun_planet: f64, ring_planet: f64) -> DMatrix<f64> {
     let planets = joint.geometry.planets;
     let sun = joint.bodies.sun_equivalent_mass + joint.rotor_inertia / joint.geometry.sun_base_radius.powi(2);
@@ -55,8 +55,9 @@ fn largest(matrix: &DMatrix<f64>) -> f64 {
     matrix.iter().fold(0.0, |largest, value| value.abs().max(largest))
 }
 
+/// Stiffness and damping matrices equal eq. 19 with its misprint corrected.
 #[test]
-fn the_derived_matrices_are_those_of_equation_19_corrected() {
+fn matrices_equal_corrected_equation_19() {
     for planets in 3..=5 {
         let joint = joint(planets);
         let scales = Scales::new(&joint);
@@ -74,17 +75,19 @@ fn the_derived_matrices_are_those_of_equation_19_corrected() {
     }
 }
 
+/// The printed second row would couple the rigid body: the derivation has a sum over planets there.
 #[test]
-fn without_the_lost_sum_the_rigid_body_would_not_be_decoupled() {
-    // As printed, row two takes K_rp of one planet: for three planets that is a third of what the derivation gives.
+fn printed_row_couples_the_rigid_body() {
+    // The printed row two takes K_rp of one planet: for three planets a third of the derived value.
     let joint = joint(3);
     let dynamics = Dynamics::new(&joint, &Scales::new(&joint));
     let one_planet = dynamics.stiffness[(3, 3)] / 3.0;
     assert!((dynamics.stiffness[(3, 3)] - one_planet).abs() > 0.1 * one_planet);
 }
 
+/// The Hamiltonian form has the same flow as positions and rates.
 #[test]
-fn the_hamiltonian_flow_is_the_flow_of_positions_and_rates() {
+fn hamiltonian_flow_equals_direct_flow() {
     let joint = joint(3);
     let dynamics = Dynamics::new(&joint, &Scales::new(&joint));
     let size = dynamics.coordinates();
@@ -95,14 +98,14 @@ fn the_hamiltonian_flow_is_the_flow_of_positions_and_rates() {
     let (forward, backward) = hamiltonian::from_rates(&dynamics);
     let hamiltonian = exponential_minus_identity(&hamiltonian::matrix(&dynamics), 1.3);
     let back = &backward * hamiltonian * &forward;
-    // nalgebra's exponential, another method altogether, as the judge.
+    // nalgebra's exponential is an independent method.
     let expected = (direct * 1.3).exp() - DMatrix::identity(2 * size, 2 * size);
     tolerance::FLOW.check(largest(&(back - expected)));
 }
 
 /// Oracle 2: damped eigenvalues of the paper's joint without backlash and ripple.
 #[test]
-fn eigenvalues_of_h_are_those_known_for_the_paper_s_joint() {
+fn paper_joint_has_known_eigenvalues() {
     let joint = scenarios::paper_joint(0.0, 0.0, 0.0, 1.0);
     let dynamics = Dynamics::new(&joint, &Scales::new(&joint));
     let mut found: Vec<(f64, f64)> = hamiltonian::matrix(&dynamics)

@@ -1,5 +1,5 @@
-//! Invariants of the core, for every scheme: energy against work over a hundred thousand mesh periods, shift of the
-//! backlash, scaling, mirroring (oracles 5 and 6). The reference's own are in `the_reference`.
+//! Invariants of the core, for every scheme: energy balance over a hundred thousand mesh periods, shift of the backlash, scaling, mirroring
+//! (oracles 5 and 6). The reference's invariants are in `the_reference`.
 
 use std::f64::consts::TAU;
 
@@ -15,9 +15,9 @@ fn tables(joint: &JointParameters, tick_rate: u32, scheme: Scheme) -> Tables<f64
     design_scheme(joint, tick_rate, scheme, Effort::Accurate).expect("the paper's joint is sound")
 }
 
-/// Energy of set P and the work that changes it, dimensionless (unit K_m b_c^2), by the sums of oracle 5. Masses and
-/// damping are written out again: none comes from the core.
-struct Book {
+/// Energy of set P and the work done on it, dimensionless (unit K_m b_c^2), by the sums of oracle 5. Masses and damping are written out
+/// independently of the core.
+struct EnergyBalance {
     form: ClosedForm,
     half_backlash: f64,
     omega: f64,
@@ -25,15 +25,15 @@ struct Book {
     load_force: f64,
 }
 
-/// Energy and what feeds or drains it at one moment.
-struct Entry {
+/// Energy, power and dissipation at one moment.
+struct EnergySample {
     energy: f64,
     power: f64,
     dissipated: f64,
 }
 
-impl Book {
-    fn of_set_p(half_backlash: f64, drive_torque: f64) -> Self {
+impl EnergyBalance {
+    fn for_set_p(half_backlash: f64, drive_torque: f64) -> Self {
         let drive_force = drive_torque / 36.8241e-3 / (1e8 * 10e-6);
         Self {
             form: ClosedForm::with_ring(3, 0.05, 1.0),
@@ -44,14 +44,14 @@ impl Book {
         }
     }
 
-    fn entry(&self, state: &State<f64, 3>) -> Entry {
+    fn sample(&self, state: &State<f64, 3>) -> EnergySample {
         let (sine, cosine) = (state.phase as f64 * (TAU / 2.0_f64.powi(64))).sin_cos();
         let (error, error_rate) = (3.0 * sine, 3.0 * self.omega * cosine);
         let (stiffness, stiffness_rate) = (1.0 + 0.1 * sine, 0.1 * self.omega * cosine);
         let Relative { planets, gap, .. } = &state.position;
         let Relative { planets: rates, gap: gap_rate, .. } = &state.rate;
 
-        // Speeds of the bodies while the rigid body stands still: 2 M_s u_s + M_p sum u_p + M_c u_c = 0.
+        // Speeds of the bodies while the rigid body is at rest: 2 M_s u_s + M_p sum u_p + M_c u_c = 0.
         let ClosedForm { sun, planet, carrier, damping, .. } = self.form;
         let shares = 2.0 * sun * gap_rate + planet * rates.iter().map(|rate| gap_rate - rate).sum::<f64>();
         let carrier_speed = -shares / (4.0 * sun + 3.0 * planet + carrier);
@@ -71,35 +71,35 @@ impl Book {
                 power += 0.5 * stiffness_rate * overlap * overlap;
             }
         }
-        Entry { energy, power: power - dissipated, dissipated }
+        EnergySample { energy, power: power - dissipated, dissipated }
     }
 }
 
-/// Oracle 5. Period 3 with loss of contact, and chaos; the integral of power is a sum over ticks, which is exact on
-/// average since ticks and mesh periods never meet.
+/// Oracle 5 on period-3 motion with loss of contact and on chaos. The sum over ticks integrates the power exactly on average, since tick
+/// and mesh period are incommensurate.
 #[test]
-fn energy_and_work_balance_over_a_hundred_thousand_mesh_periods() {
+fn energy_balances_over_100000_mesh_periods() {
     const TICK_RATE: u32 = 100_000;
     for (half_backlash, periods) in [(60e-6, 100_000.0), (120e-6, 10_000.0)] {
         let scenario = regime("set P", half_backlash, 1.0);
         let tables = tables(&scenario.joint, TICK_RATE, Scheme::Realtime);
         let step = tables.flow.step;
-        let book = Book::of_set_p(half_backlash, 80.0);
+        let balance = EnergyBalance::for_set_p(half_backlash, 80.0);
         let (drive, load) = scenario.torques_at(0);
         let mut model = Model::new(&tables);
         model.set_state(State::from_deflections(&tables, &Relative::ZERO, &Relative::ZERO, 0.0));
-        let first = book.entry(model.state());
+        let first = balance.sample(model.state());
         let (mut before, mut work, mut dissipated, mut worst) = (first.power, 0.0, 0.0, 0.0_f64);
         let mut crossings = 0_u64;
         let mut sides = [[ContactState::Separated; 3]; 2];
-        let ticks = (periods * TAU / book.omega / step).ceil() as u64;
+        let ticks = (periods * TAU / balance.omega / step).ceil() as u64;
         for tick in 0..ticks {
             model.step(Torques { drive, load });
-            let entry = book.entry(model.state());
-            work += 0.5 * step * (before + entry.power);
-            before = entry.power;
-            dissipated += step * entry.dissipated;
-            worst = worst.max((entry.energy - first.energy - work).abs());
+            let sample = balance.sample(model.state());
+            work += 0.5 * step * (before + sample.power);
+            before = sample.power;
+            dissipated += step * sample.dissipated;
+            worst = worst.max((sample.energy - first.energy - work).abs());
             if tick < 100_000 {
                 let now = model.outputs().contacts;
                 crossings += u64::from(now != sides);
@@ -112,7 +112,7 @@ fn energy_and_work_balance_over_a_hundred_thousand_mesh_periods() {
     }
 }
 
-/// A scenario's run at its own tick rate from a state in units of b_c and b_c omega_n.
+/// Outputs at 20 kHz from a state in units of b_c and b_c omega_n.
 fn run(
     joint: &JointParameters,
     scheme: Scheme,
@@ -146,9 +146,9 @@ fn case_a(law: DampingLaw) -> Scenario {
     scenario
 }
 
-/// Oracle 6, first half.
+/// Oracle 6, first half: a wider backlash only shifts the motion while no back side is touched.
 #[test]
-fn without_back_side_contact_the_core_does_not_feel_the_backlash() {
+fn backlash_only_shifts_one_sided_motion() {
     for (law, scheme) in [
         (DampingLaw::Paper, Scheme::Realtime),
         (DampingLaw::Contact, Scheme::Realtime),
@@ -163,7 +163,7 @@ fn without_back_side_contact_the_core_does_not_feel_the_backlash() {
         let (position, rate) = start();
         let moved =
             Relative { planets: position.planets.map(|x| x + units), gap: position.gap + 2.0 * units, ..position };
-        // Short of the point where the law `contact` has amplified rounding beyond the bound.
+        // 150 ticks end before the law `contact` has amplified rounding beyond the bound.
         let ticks = 150;
         let narrow_run = run(&narrow.joint, scheme, (&position, &rate), narrow.torques_at(0), ticks);
         let wide_run = run(&wide, scheme, (&moved, &rate), narrow.torques_at(0), ticks);
@@ -179,9 +179,9 @@ fn without_back_side_contact_the_core_does_not_feel_the_backlash() {
     }
 }
 
-/// Oracle 6, second half: bit for bit, since a power of two and a sign round nothing.
+/// Oracle 6, second half: exact in every bit, since a power of two and a change of sign cause no rounding.
 #[test]
-fn the_core_scales_and_mirrors_without_changing_a_bit() {
+fn scaling_and_mirroring_keep_every_bit() {
     for factor in [2.0_f64, 0.25, -1.0] {
         for (law, scheme) in [
             (DampingLaw::Paper, Scheme::Realtime),

@@ -1,5 +1,4 @@
-//! The core: against the independent reference, against closed forms and the paper's equations written out, and by its own
-//! promises.
+//! The core against the independent reference, against closed forms and the paper's equations, and its own guarantees.
 
 mod comparison;
 mod convergence;

@@ -1,5 +1,4 @@
-//! Guarantees of the core for any joint: teeth only push, NaN is reported, the same input gives the same bits, the
-//! digest covers the whole state.
+//! Guarantees of the core for any joint: teeth only push, NaN is reported, equal inputs give equal bits, the digest covers the whole state.
 
 use host_tests::tolerance;
 use model_core::gears::design::{DesignError, Effort, design, design_scheme, rust_source};
@@ -17,8 +16,9 @@ fn swinging(tick: u32) -> Torques<f32> {
     Torques { drive: 0.8 * sign, load: 4.0 * sign }
 }
 
+/// Two runs on the same torques end in the same bits.
 #[test]
-fn the_same_torques_give_the_same_bits() {
+fn equal_torques_give_equal_bits() {
     let tables = q1_tables();
     let run = || {
         let mut model = Model::new(&tables);
@@ -32,8 +32,9 @@ fn the_same_torques_give_the_same_bits() {
     assert_eq!(run(), run());
 }
 
+/// A reset restores the initial state.
 #[test]
-fn a_reset_model_starts_over() {
+fn reset_restores_the_initial_state() {
     let tables = q1_tables();
     let mut model = Model::new(&tables);
     let fresh = model.state_digest();
@@ -43,8 +44,9 @@ fn a_reset_model_starts_over() {
     assert_eq!(model.state_digest(), fresh);
 }
 
+/// A swing through the gap visits both flanks and separation.
 #[test]
-fn every_state_of_contact_occurs_in_a_swing() {
+fn swing_visits_every_contact_state() {
     let tables = q1_tables();
     let mut model = Model::new(&tables);
     let mut seen = [false; 3];
@@ -58,16 +60,18 @@ fn every_state_of_contact_occurs_in_a_swing() {
     assert!(all.iter().all(|state| seen[*state as usize]), "seen: {seen:?}");
 }
 
+/// A NaN torque is reported after one step.
 #[test]
-fn a_torque_that_is_not_a_number_is_seen_at_once() {
+fn nan_torque_is_reported() {
     let tables = q1_tables();
     let mut model = Model::new(&tables);
     model.step(Torques { drive: f32::NAN, load: 0.0 });
     assert!(!model.is_finite());
 }
 
+/// Absurd torques cause neither a panic nor a plausible motion.
 #[test]
-fn absurd_torques_neither_panic_nor_pass_for_motion() {
+fn absurd_torques_are_reported() {
     let tables = q1_tables();
     for torque in [1e9, 1e30, f32::MAX, f32::INFINITY, f32::MIN, -f32::INFINITY] {
         let mut model = Model::new(&tables);
@@ -80,8 +84,9 @@ fn absurd_torques_neither_panic_nor_pass_for_motion() {
     }
 }
 
+/// The digest changes with every kind of number in the tables.
 #[test]
-fn the_digest_of_the_tables_sees_every_kind_of_number() {
+fn table_digest_covers_every_number() {
     let tables = q1_tables();
     assert!(tables.digest_is_good());
     let changes: [fn(&mut Tables<f32, 3>); 8] = [
@@ -101,8 +106,9 @@ fn the_digest_of_the_tables_sees_every_kind_of_number() {
     }
 }
 
+/// A tanh dead zone converges to the sharp one as its sharpness grows.
 #[test]
-fn a_sharp_tanh_nears_the_sharp_dead_zone() {
+fn tanh_dead_zone_converges_to_sharp() {
     let mut joint = scenarios::paper_joint(0.1, 5e-6, 20e-6, 0.4);
     let gaps = |joint: &JointParameters| {
         let tables: Tables<f64, 3> =
@@ -124,15 +130,17 @@ fn a_sharp_tanh_nears_the_sharp_dead_zone() {
     tolerance::SHARP_TANH.check(errors[2]);
 }
 
+/// Tables for the wrong number of planets are rejected with both numbers.
 #[test]
-fn tables_for_another_number_of_planets_are_refused() {
+fn wrong_planet_count_is_rejected() {
     let error = design::<f32, 4>(&scenarios::q1(), 20_000).expect_err("q1 has three planets");
     assert_eq!(error, DesignError::WrongPlanetCount { wanted: 4, given: 3 });
     assert!(error.to_string().contains("the joint has 3"));
 }
 
+/// The error for a low tick rate names the lowest rate that works.
 #[test]
-fn a_tick_rate_too_low_names_the_one_that_works() {
+fn low_tick_rate_names_the_lowest() {
     let Err(DesignError::RateTooLow { lowest, .. }) = design::<f32, 3>(&scenarios::q1(), 500) else {
         panic!("500 Hz is far below the planets' 13 kHz")
     };
@@ -141,8 +149,9 @@ fn a_tick_rate_too_low_names_the_one_that_works() {
     assert!(design::<f32, 3>(&scenarios::q1(), 0).is_err());
 }
 
+/// The generated source holds joint name, planets and digest.
 #[test]
-fn the_source_for_a_board_holds_the_digest_of_the_tables() {
+fn board_source_holds_the_table_digest() {
     let source = rust_source(&scenarios::q1(), 20_000).expect("q1 is sound");
     assert!(source.contains("pub const PLANETS: usize = 3;"));
     assert!(source.contains("pub const JOINT_NAME: &str = \"q1\";"));

@@ -1,5 +1,5 @@
-//! The core against the reference beyond the usual joint: four and five planets, unequal backlash, the rectangular
-//! stiffness wave, meshes out of phase, the joint turning backwards.
+//! The core against the reference outside the usual joint: four and five planets, unequal backlash, the rectangular stiffness wave, meshes
+//! out of phase, a joint that turns backwards.
 
 use host_tests::tolerance;
 use model_core::gears::Kinematics;
@@ -24,7 +24,7 @@ fn joint(planets: usize, teeth: [u32; 3]) -> JointParameters {
     joint
 }
 
-/// Turning, then both torques change sign and back: through the gap onto the back sides and again.
+/// Scenario whose torques change sign and back while the joint turns: across the gap to the back sides and again.
 fn reversal(name: &str, joint: JointParameters, speed: f64) -> Scenario {
     let ratio = joint.geometry.ratio_by_radii();
     let segment =
@@ -35,28 +35,28 @@ fn reversal(name: &str, joint: JointParameters, speed: f64) -> Scenario {
 }
 
 #[test]
-fn four_planets_follow_the_reference() {
+fn four_planets_follow_reference() {
     check::<4>(&reversal("four planets", joint(4, [28, 36, 100]), 10.0), Effort::Accurate, &tolerance::core::RANGE);
 }
 
 #[test]
-fn five_planets_follow_the_reference() {
+fn five_planets_follow_reference() {
     check::<5>(&reversal("five planets", joint(5, [25, 35, 95]), 10.0), Effort::Accurate, &tolerance::core::RANGE);
 }
 
 #[test]
-fn planets_out_of_phase_follow_the_reference() {
+fn planets_out_of_phase_follow_reference() {
     // 26 / 3 and 100 / 3 are not whole: the planets mesh a third of a period apart.
     check::<3>(&reversal("out of phase", joint(3, [26, 37, 100]), 10.0), Effort::Accurate, &tolerance::core::RANGE);
 }
 
 #[test]
-fn a_joint_that_turns_backwards_follows_the_reference() {
+fn backward_joint_follows_reference() {
     check::<3>(&reversal("backwards", joint(3, [27, 36, 99]), -15.0), Effort::Accurate, &tolerance::core::RANGE);
 }
 
 #[test]
-fn unequal_backlash_follows_the_reference() {
+fn unequal_backlash_follows_reference() {
     let mut joint = joint(3, [27, 36, 99]);
     joint.sun_planet.half_backlash = [30e-6, 50e-6, 80e-6].into_iter().collect::<PerPlanet>();
     joint.ring_planet.half_backlash = [60e-6, 20e-6, 45e-6].into_iter().collect::<PerPlanet>();
@@ -65,7 +65,7 @@ fn unequal_backlash_follows_the_reference() {
 }
 
 #[test]
-fn the_rectangular_wave_follows_the_reference() {
+fn rectangular_wave_follows_reference() {
     let mut joint = joint(3, [27, 36, 99]);
     for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
         mesh.stiffness_wave = StiffnessWave::Rectangular { stiffness_ratio: 0.2, contact_ratio: 1.6, order: 5 };

@@ -1,16 +1,17 @@
-//! Verlet sub-steps: of joints with light planets on processors that have no time for all that are wanted, and of joints with
-//! heavy ones where there is no time for corrected sub-steps.
+//! Verlet sub-steps: for joints with light planets on processors without time for the number wanted, and for joints with heavy planets
+//! where corrected sub-steps do not fit.
 
 use model_core::gears::design::{Effort, Processor, StepSize, Substeps};
 use reference::scenarios::{q1, with_teeth};
 
-fn of_preset(name: &str) -> StepSize {
+fn preset_step_size(name: &str) -> StepSize {
     StepSize::new(&joint_file::read(joint_file::preset(name).expect("a preset")).expect("a sound joint").parameters)
 }
 
+/// A processor short of time gets as many stable Verlet sub-steps as fit.
 #[test]
-fn a_processor_short_of_time_takes_as_many_verlet_sub_steps_as_it_can_and_as_are_stable() {
-    let size = of_preset("q1");
+fn slow_processor_takes_fewer_verlet_substeps() {
+    let size = preset_step_size("q1");
     let mut fewer = 0;
     for processor in [Processor::STM32F405, Processor::STM32G474] {
         for rate in (10_000..=90_000).step_by(2_500) {
@@ -35,17 +36,18 @@ fn a_processor_short_of_time_takes_as_many_verlet_sub_steps_as_it_can_and_as_are
     assert_eq!(on_g474(42_500), Some(Substeps::Verlet(2)), "three, as wanted, take more than the period");
 }
 
+/// Heavy planets get Verlet sub-steps where corrected ones do not fit.
 #[test]
-fn heavy_planets_get_verlet_sub_steps_where_there_is_no_time_for_corrected_ones() {
+fn heavy_planets_fall_back_to_verlet() {
     let processor = Processor { share: 0.75, ..Processor::STM32F405 };
     for name in ["paper", "l1"] {
-        let size = of_preset(name);
+        let size = preset_step_size(name);
         let (mut corrected, mut verlet, mut neither) = (0, 0, 0);
         for rate in (10_000..=150_000).step_by(2_500) {
             let fits = |substeps| size.cost().all_crossing(substeps) <= processor.affordable(rate);
             let effort = Effort::Within(processor);
             let smooth = size.corrected_substeps(rate, effort).expect("stable");
-            // Verlet sub-steps where corrected ones would damp the planets' own mode are another matter.
+            // Verlet sub-steps chosen where corrected ones would damp the planets' own mode are a different case.
             if size.phase(rate, smooth) > 1.0 {
                 continue;
             }
@@ -60,9 +62,10 @@ fn heavy_planets_get_verlet_sub_steps_where_there_is_no_time_for_corrected_ones(
     }
 }
 
+/// Five light planets take at most three fifths of an STM32G4 at 40 kHz.
 #[test]
-fn five_light_planets_take_three_fifths_of_an_stm32g4_at_40_khz() {
-    // From memory that never waits; at worst, every mesh touching its flank.
+fn five_light_planets_fit_an_stm32g4() {
+    // Memory without wait states; worst case with every mesh crossing to its flank.
     let processor = Processor { flash_wait: 0.0, share: 0.6, ..Processor::STM32G474 };
     let size = StepSize::new(&with_teeth(q1(), 5, [30, 20, 70]));
     let chosen = size.substeps(40_000, Effort::Within(processor)).expect("stable");

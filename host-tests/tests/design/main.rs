@@ -1,4 +1,4 @@
-//! The design: its exponentials against 50 digits, whether its certificate holds, and sub-steps that a processor has time for.
+//! The design: its exponentials against 50 digits, its certificate, and the number of sub-steps that a processor can afford.
 
 mod certificate;
 mod light_planets;

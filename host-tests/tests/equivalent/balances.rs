@@ -1,4 +1,4 @@
-//! Momentum and energy of the core and of the reference, by hand.
+//! Momentum and energy balances of the core and of the reference, computed by hand.
 
 use host_tests::tolerance::{ENERGY, equivalent};
 use model_core::gears::design::design;
@@ -8,15 +8,16 @@ use reference::joint::Reference;
 
 use crate::random::motion;
 
-/// Inertia of motor and gear, and of the link [kg m^2]; ratio.
+/// Inertia of motor and gear, inertia of the link [kg m^2], and ratio.
 fn bodies(joint: &JointParameters) -> (f64, f64, f64) {
     let gear = joint.equivalent_gear().expect("an equivalent gear");
     let ratio = f64::from(gear.ratio[0]) / f64::from(gear.ratio[1]);
     (joint.rotor_inertia + gear.inertia_at_input, joint.link_inertia, ratio)
 }
 
+/// Momentum changes by the external torques alone, in core and reference.
 #[test]
-fn momentum_grows_by_the_torques_alone() {
+fn momentum_follows_the_torques() {
     for seed in 0..30 {
         let motion = motion(seed, 20_000);
         let (motor, link, ratio) = bodies(&motion.joint);
@@ -28,7 +29,7 @@ fn momentum_grows_by_the_torques_alone() {
             let (drive, load) = motion.torques_at(tick);
             model.step(Torques { drive, load });
             reference.advance(f64::from(tick + 1) / 20e3, drive, load).expect("it can be integrated");
-            // At the link: what motor and link gain together, and the gear's support takes the rest of the motor's.
+            // Referred to the link: the gear's support takes the rest of the motor's momentum.
             gained += (ratio * drive - load) / 20e3;
             largest = largest.max(gained.abs());
         }
@@ -40,8 +41,9 @@ fn momentum_grows_by_the_torques_alone() {
     }
 }
 
+/// Energy of the reference equals the net work done on it.
 #[test]
-fn the_reference_keeps_the_books_of_energy() {
+fn reference_energy_balances() {
     for seed in 0..30 {
         let motion = motion(seed, 20_000);
         let gear = motion.joint.equivalent_gear().expect("an equivalent gear");
@@ -63,8 +65,9 @@ fn the_reference_keeps_the_books_of_energy() {
     }
 }
 
+/// An undamped gear keeps its energy and a damped gear gains none.
 #[test]
-fn an_undamped_gear_keeps_its_energy_and_a_damped_one_never_gains_any() {
+fn free_gear_gains_no_energy() {
     for seed in 0..30 {
         let mut motion = motion(seed, 20_000);
         for damping_ratio in [0.0, 0.1] {
@@ -78,7 +81,7 @@ fn an_undamped_gear_keeps_its_energy_and_a_damped_one_never_gains_any() {
             let mut model = Model::new(&tables);
             let twist =
                 |outputs: &Outputs<f32, 1>| f64::from(outputs.motor_offset) / ratio - f64::from(outputs.link_offset);
-            // A push winds it up, then it is left alone.
+            // A push winds the gear up before it is left alone.
             for _ in 0..100 {
                 let rated = motion.joint.rated_output_torque;
                 model.step(Torques { drive: (rated / ratio) as f32, load: rated as f32 });
@@ -86,18 +89,18 @@ fn an_undamped_gear_keeps_its_energy_and_a_damped_one_never_gains_any() {
             let speed = tables.units.length * motion.phase as f32 * 20e3;
             let energy = |model: &Model<'_, f32, 1>| {
                 let beyond = (twist(&model.outputs()).abs() - 0.5 * gear.lost_motion).max(0.0);
-                // The rate of the gap is that of twice the twist.
+                // The gap's rate is that of twice the twist.
                 let rate = 0.5 * f64::from(model.state().rate.gap * speed);
                 0.5 * reduced * rate * rate + 0.5 * gear.stiffness * beyond * beyond
             };
             let first = energy(&model);
-            let (mut least, mut most) = (first, first);
+            let (mut least, mut greatest) = (first, first);
             for _ in 0..4000 {
                 model.step(Torques { drive: 0.0, load: 0.0 });
                 let now = energy(&model);
-                (least, most) = (least.min(now), most.max(now));
+                (least, greatest) = (least.min(now), greatest.max(now));
             }
-            equivalent::ENERGY_GAINED.check(most / first - 1.0);
+            equivalent::ENERGY_GAINED.check(greatest / first - 1.0);
             if damping_ratio == 0.0 {
                 equivalent::ENERGY_LOST.check(1.0 - least / first);
             }
@@ -105,8 +108,9 @@ fn an_undamped_gear_keeps_its_energy_and_a_damped_one_never_gains_any() {
     }
 }
 
+/// The contact force pushes on either flank and is zero between them.
 #[test]
-fn the_contact_pushes_and_never_pulls() {
+fn contact_never_pulls() {
     for seed in 0..20 {
         let motion = motion(seed, 20_000);
         let mut reference = Reference::new(&motion.joint).expect("a sound joint");

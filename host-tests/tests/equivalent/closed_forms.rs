@@ -1,4 +1,4 @@
-//! What is known of two masses on a spring with a gap without integrating anything: where they rest, how they swing.
+//! Closed forms of two masses on a spring with a gap: rest positions and swings, without integration.
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,7 +11,7 @@ use simulation::sim::start::core_state;
 
 const RATE: u32 = 20_000;
 
-/// 50 to 1, half the lost motion [rad], damping ratio.
+/// Joint with ratio 50.5, half the lost motion [rad] and a damping ratio.
 fn joint(half: f64, damping_ratio: f64) -> JointParameters {
     let gear = EquivalentGear {
         ratio: [101, 2],
@@ -23,13 +23,13 @@ fn joint(half: f64, damping_ratio: f64) -> JointParameters {
     gear.joint("closed".try_into().expect("a short name"), 0.8e-4, 0.6, 80.0)
 }
 
-/// Of both sides against each other in contact, written out [rad/s].
+/// Natural frequency of both sides against each other in contact [rad/s].
 fn frequency() -> f64 {
     let at_link: f64 = 50.5 * 50.5 * 1.2e-4;
     (40e3 * (1.0 / at_link + 1.0 / 0.6)).sqrt()
 }
 
-/// Twist, motor over the ratio less link, at a time, by core and reference, from rest at a twist [rad].
+/// Twist of core and reference, motor over the ratio less link, after some ticks from rest at a twist [rad].
 fn twists(joint: &JointParameters, from: f64, ticks: u32, torques: (f64, f64)) -> [f64; 2] {
     let lever = joint.geometry.carrier_radius;
     let start = RelativeState {
@@ -50,8 +50,9 @@ fn twists(joint: &JointParameters, from: f64, ticks: u32, torques: (f64, f64)) -
     [core.motor_offset / 50.5 - core.link_offset, seen.motor_angle / 50.5 - seen.link_angle]
 }
 
+/// A balanced torque twists the gear by half the lost motion plus the elastic part.
 #[test]
-fn a_balanced_torque_winds_up_half_the_lost_motion_and_its_own_share_of_the_spring() {
+fn static_twist_matches_closed_form() {
     for (half, torque) in [(0.0, 30.0), (0.3e-3, 30.0), (0.3e-3, -70.0)] {
         // Five times the slowest decay.
         let found = twists(&joint(half, 0.2), 0.0, 12_000, (torque / 50.5, torque));
@@ -62,11 +63,12 @@ fn a_balanced_torque_winds_up_half_the_lost_motion_and_its_own_share_of_the_spri
     }
 }
 
+/// A free swing has the period of the spring plus the time in the gap.
 #[test]
-fn free_swings_take_the_spring_s_period_and_the_time_in_the_gap() {
+fn free_swing_has_closed_period() {
     for (half, amplitude) in [(0.0, 1e-3), (0.2e-3, 1e-3), (1e-3, 0.4e-3)] {
         let period = (TAU + 4.0 * half / amplitude) / frequency();
-        // After so many whole periods it is back where it was let go, but for the part of a tick that is left.
+        // After whole periods the twist is back at its start, except for the fraction of a tick.
         let ticks = (10.0 * period * f64::from(RATE)).round();
         let late = frequency() * (ticks / f64::from(RATE) - 10.0 * period);
         let expected = half + amplitude * late.cos();
@@ -76,11 +78,12 @@ fn free_swings_take_the_spring_s_period_and_the_time_in_the_gap() {
     }
 }
 
+/// Under a torque, contact returns after the time of a parabolic flight.
 #[test]
-fn under_a_torque_the_contact_is_lost_and_found_again_after_the_time_of_a_throw() {
+fn loaded_swing_has_closed_period() {
     let half = 2e-3;
     for (torque, share) in [(40.0, 1.5), (20.0, 3.0)] {
-        // Swings about where it would rest, by more than that: it leaves the flank and falls back.
+        // A swing about the rest position, larger than the rest deflection: the contact opens and closes again.
         let (rest, amplitude) = (torque / 40e3, share * torque / 40e3);
         let left: f64 = amplitude * amplitude - rest * rest;
         assert!(left / (2.0 * rest) < 2.0 * half, "the other flank is not reached");

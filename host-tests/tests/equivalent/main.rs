@@ -1,5 +1,5 @@
-//! Equivalent gears: the core against the independent reference on random joints, both against closed forms and balances,
-//! and what is refused.
+//! Equivalent gears: the core against the independent reference on random joints, both against closed forms and balances, and rejected
+//! joints.
 
 mod balances;
 mod closed_forms;

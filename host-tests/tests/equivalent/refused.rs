@@ -1,4 +1,4 @@
-//! What design and reference refuse of an equivalent gear, and why.
+//! Equivalent gears that design and reference reject, with the reason.
 
 use model_core::gears::design::{DesignError, Effort, design, design_scheme};
 use model_core::gears::{Model, Scheme, Tables, Torques};
@@ -7,19 +7,21 @@ use reference::joint::Reference;
 
 use crate::random::motion;
 
+/// A contact too fast for the rate is rejected with the lowest rate that works.
 #[test]
-fn a_contact_too_fast_for_the_rate_is_refused_with_the_rate_that_will_do() {
+fn fast_contact_names_the_lowest_rate() {
     let motion = motion(3, 20_000);
-    let slow = (motion.phase * 20e3 / 0.8) as u32;
-    let Err(DesignError::RateTooLow { lowest, .. }) = design::<f32, 1>(&motion.joint, slow) else {
-        panic!("{slow} Hz is enough")
+    let low_rate = (motion.phase * 20e3 / 0.8) as u32;
+    let Err(DesignError::RateTooLow { lowest, .. }) = design::<f32, 1>(&motion.joint, low_rate) else {
+        panic!("{low_rate} Hz is enough")
     };
     assert!((f64::from(lowest) * 0.7 / (motion.phase * 20e3) - 1.0).abs() < 1e-3, "{lowest} Hz");
     assert!(design::<f32, 1>(&motion.joint, lowest).is_ok());
 }
 
+/// Properties that only planets have are rejected, and so are the schemes of toothed joints.
 #[test]
-fn what_only_planets_have_is_refused() {
+fn planet_properties_are_rejected() {
     let joint = motion(1, 20_000).joint;
     let refused = |change: &dyn Fn(&mut JointParameters)| {
         let mut joint = joint.clone();
@@ -48,8 +50,9 @@ fn what_only_planets_have_is_refused() {
     assert!(Reference::new(&without_link).is_err());
 }
 
+/// A tick from any state and torque ends in finite numbers or the canonical NaN.
 #[test]
-fn no_state_and_no_torque_makes_a_tick_end_in_anything_but_numbers_or_the_one_that_is_none() {
+fn any_state_ends_finite_or_canonical_nan() {
     let joint = motion(2, 20_000).joint;
     let tables: Tables<f32, 1> = design(&joint, 20_000).expect("a sound joint");
     assert!(tables.digest_is_good());

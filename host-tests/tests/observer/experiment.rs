@@ -1,5 +1,5 @@
-//! One experiment: a joint in motion, and an observer whose nominal width and compliance are wrong and which knows
-//! nothing of offset, skew and error maps.
+//! Experiments with the observer: a joint in motion, and an observer with a wrong nominal width and compliance and without knowledge of
+//! offset, skew and encoder errors.
 
 use model_core::gears::Kinematics;
 use model_core::numbers::Real;
@@ -15,34 +15,34 @@ use crate::motion::{MotorController, TestMotion, inertia_at_motor, uniform};
 use crate::presets::{preset, with_backlash};
 use crate::replay::{ObserverErrors, replay, samples, settings};
 
-/// Encoders of a trial.
+/// Encoders of an experiment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Encoders {
-    /// As the preset has them, skew by the seed.
+    /// The preset's encoders, skew by the seed.
     Preset,
     /// 18 bits each and no error.
     Ideal,
-    /// The preset's errors with so many bits: motor, output.
+    /// The preset's errors with other resolutions [bits]: motor, output.
     Bits(u32, u32),
 }
 
-/// A trial.
+/// Joint in motion, and the observer's knowledge of it.
 #[derive(Clone)]
 pub struct Experiment {
-    /// What truly moves.
+    /// Joint, drive train and motion of the plant.
     pub setup: Setup,
-    /// What the observer is told of the joint.
+    /// Joint parameters given to the observer.
     pub nominal: JointParameters,
-    /// What it is told of the drive train.
+    /// Drive train settings given to the observer.
     pub settings: ObserverSettings,
 }
 
-/// The usual motions: slow against friction, fast against inertia, faster with gravity, random with gravity; and the
-/// friction and gravity that go with each, as parts of the preset's rated torque.
+/// Usual motions with their durations [s]: slow against friction, fast against inertia, faster with gravity, random with gravity. Friction
+/// and gravity of each are parts of the preset's rated torque.
 pub const MOTIONS: [(&str, f64); 4] = [("slow", 8.0), ("inertia", 5.0), ("gravity", 5.0), ("random", 6.0)];
 
 impl Experiment {
-    /// A trial of a preset: a motion by its name, encoders, half-backlash [m] and a seed for everything random.
+    /// Experiment on a preset: name of a motion, encoders, half-backlash [m] and a seed for everything random.
     pub fn new(name: &str, motion: &str, encoders: Encoders, half_backlash: Option<f64>, seed: u64) -> Self {
         let (joint, mut train) = preset(name, seed);
         let joint = half_backlash.map_or(joint.clone(), |half_backlash| with_backlash(&joint, half_backlash));
@@ -71,7 +71,7 @@ impl Experiment {
         }
         let settings = settings(&train);
         let motion = profile.motion(seed);
-        // What is judged is an estimate to a part of a percent: the plant is stepped as finely as it can be.
+        // Estimates are tested to a fraction of a percent, so the plant has adaptive steps.
         let setup = Setup {
             start: Start::Still,
             stepping: Stepping::Adaptive,
@@ -80,18 +80,18 @@ impl Experiment {
         Self { setup, nominal, settings }
     }
 
-    /// The observer's tables.
+    /// Tables of the observer.
     pub fn tables<T: Real>(&self) -> ObserverTables<T> {
         design_observer(&self.nominal, &self.settings).expect("tables")
     }
 
-    /// The same, so long [s].
+    /// Experiment with another duration [s].
     pub fn lasting(mut self, duration: f64) -> Self {
         self.setup.duration = duration;
         self
     }
 
-    /// What the estimates of a recording are worth from a moment on [s]; `watch` sees every estimate.
+    /// Errors of the estimates of a recording from a time on [s]; `watch` sees every estimate.
     pub fn replay<const P: usize>(
         &self,
         log: &[PeriodSample],
@@ -101,13 +101,13 @@ impl Experiment {
         replay::<P>(&self.setup.joint, &self.tables(), &self.settings, log, from, watch)
     }
 
-    /// The same, of the observer with its maps.
+    /// Errors of the estimates of a recording from a time on [s], for the observer with its error maps.
     pub fn figures(&self, log: &[PeriodSample], from: f64) -> ObserverErrors {
         self.replay::<MAPPED>(log, from, |_, _, _| {})
     }
 
-    /// What an observer says of a recording, period by period, with samples that a test may spoil.
-    pub fn said<T: Real>(
+    /// Estimates of a recording, period by period, from samples that a test may modify.
+    pub fn published<T: Real>(
         &self,
         log: &[PeriodSample],
         mut spoil: impl FnMut(usize, &mut Samples<T>),
@@ -122,7 +122,7 @@ impl Experiment {
         log.iter().enumerate().map(step).collect()
     }
 
-    /// The recording, under a plain motor controller.
+    /// Recording under a plain motor controller.
     pub fn record(&self) -> Vec<PeriodSample> {
         let Setup { joint, train, motion, .. } = &self.setup;
         let rig = Rig::new(&self.setup).expect("a sound drive train");
@@ -132,13 +132,13 @@ impl Experiment {
     }
 }
 
-/// Profile, dry friction, gravity and duration of a motion, to the size of the joint.
+/// Profile, dry friction, gravity and duration of a motion, scaled to the joint.
 fn motion_of(name: &str, joint: &JointParameters, train: &DriveTrainParameters) -> (TestMotion, f64, f64, f64) {
     let rated = joint.rated_output_torque;
     let friction = train.surroundings.load_friction.coulomb;
     let gravity = 0.4 * rated;
     let inertia = joint.geometry.ratio_by_teeth().powi(2) * inertia_at_motor(joint);
-    // A quarter of the rated torque at 1 Hz, and a turn to and fro at most.
+    // Part of the rated torque at a frequency, and one radian at most.
     let amplitude =
         |frequency: f64, part: f64| (part * rated / inertia / (core::f64::consts::TAU * frequency).powi(2)).min(1.0);
     let duration = MOTIONS.iter().find(|(motion, _)| *motion == name).map_or(4.0, |(_, duration)| *duration);

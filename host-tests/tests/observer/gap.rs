@@ -1,4 +1,4 @@
-//! Gap, contact, torques and width with both encoders: figures against their bounds on a few joints, widths and motions.
+//! Gap, contact, torques and width with both encoders: errors against their bounds on a few joints, widths and motions.
 
 use host_tests::tolerance::observer::*;
 use model_core::observer::{Estimate, MAPPED, PLAIN};
@@ -9,17 +9,18 @@ use crate::experiment::{Encoders, Experiment};
 use crate::motion::growing;
 use crate::replay::{ObserverErrors, with_encoders};
 
-/// Half-backlash of the trials with a seed each [m].
+/// Seeds and half-backlash of the experiments [m].
 const WIDTHS: [(u64, f64); 3] = [(1, 20e-6), (2, 40e-6), (3, 80e-6)];
 
-/// Errors of a Q1 experiment with the map, once a second of contact has been seen.
+/// Errors of an experiment on Q1 with error maps, from 2 s on.
 fn figures(motion: &str, encoders: Encoders, half_backlash: f64, seed: u64) -> ObserverErrors {
     let experiment = Experiment::new("q1", motion, encoders, Some(half_backlash), seed).lasting(4.5);
     experiment.figures(&experiment.record(), 2.0)
 }
 
+/// Ideal encoders of 18 bits.
 #[test]
-fn ideal_encoders_give_the_gap_to_half_a_percent() {
+fn ideal_encoders_locate_the_gap() {
     for (seed, half_backlash) in WIDTHS {
         let experiment = Experiment::new("q1", "inertia", Encoders::Ideal, Some(half_backlash), seed).lasting(4.0);
         let figures = experiment.replay::<PLAIN>(&experiment.record(), 1.5, |_, _, _| {});
@@ -28,8 +29,9 @@ fn ideal_encoders_give_the_gap_to_half_a_percent() {
     }
 }
 
+/// The preset's encoders.
 #[test]
-fn real_encoders_give_gap_contact_torque_and_width() {
+fn preset_encoders_meet_all_bounds() {
     let mut all = ObserverErrors::default();
     for (seed, half_backlash) in WIDTHS {
         for motion in ["inertia", "random"] {
@@ -42,7 +44,7 @@ fn real_encoders_give_gap_contact_torque_and_width() {
             LOAD_TORQUE.check(figures.load_torque);
             MESH_TORQUE.check(figures.mesh_torque);
             WIDTH.check(figures.width);
-            WIDTH_AFTER.check(figures.width_after);
+            WIDTH_TIME.check(figures.width_after);
             all = all.worse(&figures);
         }
     }
@@ -50,8 +52,9 @@ fn real_encoders_give_gap_contact_torque_and_width() {
     LANDING_DELAY_LONG.check(all.delay(0.95));
 }
 
+/// Finer encoders, and a slow motion against friction.
 #[test]
-fn finer_encoders_do_better_and_slow_motion_against_friction_is_enough() {
+fn fine_encoders_and_slow_motion() {
     GAP_FINE.check(figures("gravity", Encoders::Bits(16, 18), 40e-6, 4).gap);
     let slow = Experiment::new("q1", "slow", Encoders::Preset, Some(40e-6), 5).lasting(6.0);
     let figures = slow.figures(&slow.record(), 2.0);
@@ -59,8 +62,9 @@ fn finer_encoders_do_better_and_slow_motion_against_friction_is_enough() {
     WIDTH.check(figures.width);
 }
 
+/// A two-stage joint and a stiff joint.
 #[test]
-fn two_stages_and_a_stiff_joint_are_seen_as_well() {
+fn other_joints_meet_the_bounds() {
     for (name, seed) in [("d2", 6), ("l1", 7)] {
         let experiment = Experiment::new(name, "gravity", Encoders::Preset, None, seed).lasting(3.0);
         let figures = experiment.figures(&experiment.record(), 2.0);
@@ -71,19 +75,21 @@ fn two_stages_and_a_stiff_joint_are_seen_as_well() {
     }
 }
 
+/// Error maps reduce the gap's error, and keep doing so when the range of motion grows.
 #[test]
-fn the_error_maps_are_worth_a_factor_and_hold_when_the_range_grows() {
-    // A fifth of the swing at first, all of it later.
+fn error_maps_reduce_the_gap_error() {
+    // A fifth of the amplitude at first, all of it later.
     let mut experiment = Experiment::new("q1", "inertia", Encoders::Preset, Some(40e-6), 8).lasting(5.0);
     experiment.setup.motion = growing(experiment.setup.motion, 2.5);
     let log = experiment.record();
     GAP_COARSE.check(experiment.figures(&log, 2.4).gap);
     let plain = experiment.replay::<PLAIN>(&log, 1.5, |_, _, _| {});
-    WITHOUT_MAP.check(experiment.figures(&log, 1.5).gap / plain.gap);
+    GAP_WITH_MAP_OVER_WITHOUT.check(experiment.figures(&log, 1.5).gap / plain.gap);
 }
 
+/// An encoder harmonic outside the map costs little.
 #[test]
-fn a_harmonic_that_is_not_in_the_map_costs_little() {
+fn unmapped_harmonic_costs_little() {
     let experiment = Experiment::new("q1", "gravity", Encoders::Preset, Some(40e-6), 9).lasting(4.0);
     let log = experiment.record();
     let clean = with_encoders(&log, &experiment.setup.train);
@@ -96,8 +102,9 @@ fn a_harmonic_that_is_not_in_the_map_costs_little() {
     FOURTH_HARMONIC.check(experiment.figures(&dirty, 2.0).gap - experiment.figures(&clean, 2.0).gap);
 }
 
+/// A link inertia wrong by 30 % is estimated from landings.
 #[test]
-fn an_inertia_that_is_wrong_is_learnt_from_landings() {
+fn wrong_inertia_is_learnt_from_landings() {
     let right = Experiment::new("q1", "inertia", Encoders::Preset, Some(40e-6), 10).lasting(4.0);
     let log = right.record();
     for wrong in [0.7, 1.3] {
@@ -108,12 +115,13 @@ fn an_inertia_that_is_wrong_is_learnt_from_landings() {
         GAP_COARSE.check(figures.gap);
         LOAD_TORQUE_WRONG_INERTIA.check(figures.load_torque);
         LINK_INERTIA.check((learnt.value * wrong - 1.0).abs());
-        assert!(learnt.valid, "it is vouched for");
+        assert!(learnt.valid, "the estimate is valid");
     }
 }
 
+/// External pushes at irregular times do not change the estimated inertia.
 #[test]
-fn a_link_that_is_pushed_time_after_time_says_nothing_of_its_inertia() {
+fn pushes_keep_the_inertia_estimate() {
     let mut experiment = Experiment::new("q1", "random", Encoders::Preset, Some(40e-6), 12).lasting(4.0);
     let rated = experiment.setup.joint.rated_output_torque;
     let push = |n: u32| Disturbance::Pulse {
@@ -128,14 +136,17 @@ fn a_link_that_is_pushed_time_after_time_says_nothing_of_its_inertia() {
     });
 }
 
+/// A torque bias is measured inside the gap.
 #[test]
-fn a_torque_bias_is_read_inside_the_gap() {
+fn torque_bias_is_measured_in_the_gap() {
     for part in [0.05, -0.05] {
         let experiment = Experiment::new("q1", "inertia", Encoders::Preset, Some(40e-6), 11).lasting(4.0);
         let mut log = experiment.record();
-        let read = |log: &[PeriodSample]| experiment.said::<f64>(log, |_, _| {}).last().map(|said| said.torque_bias);
+        let read = |log: &[PeriodSample]| {
+            experiment.published::<f64>(log, |_, _| {}).last().map(|published| published.torque_bias)
+        };
         let own = read(&log).expect("a recording");
-        // The motor gives as much less than it is told to: a bias is torque that it loses.
+        // A bias is torque lost by the motor, which gives less than its command.
         let bias = part * experiment.setup.train.surroundings.torque_limit;
         log.iter_mut().for_each(|moment| moment.command += bias);
         let found = read(&log).expect("a recording");

@@ -1,5 +1,5 @@
-//! Late readings, by their own time stamps: no estimate diverges, what cannot be known is marked invalid, and an
-//! encoder that comes back is used again.
+//! Late readings, by their own time stamps: no estimate diverges, unknown quantities are marked invalid, and a returning encoder is used
+//! again.
 
 use host_tests::tolerance::observer::GAP_WORST;
 use model_core::observer::{OutputFault, Samples, Source};
@@ -9,10 +9,10 @@ use crate::experiment::{Encoders, Experiment};
 use crate::motion::TestMotion;
 use crate::replay::samples;
 
-/// When readings begin to be late, and when they are on time again [periods].
-const LATE: core::ops::Range<usize> = 15_000..20_000;
+/// Periods in which readings are late.
+const LATE_PERIODS: core::ops::Range<usize> = 15_000..20_000;
 
-/// A recording of a joint to and fro, about inertia alone.
+/// Experiment on a joint that swings against its inertia, and its recording.
 fn to_and_fro(name: &str, profile: TestMotion) -> (Experiment, Vec<PeriodSample>) {
     let mut experiment = Experiment::new(name, "inertia", Encoders::Preset, None, 31).lasting(3.0);
     experiment.setup.motion = profile.motion(experiment.setup.seed);
@@ -20,99 +20,109 @@ fn to_and_fro(name: &str, profile: TestMotion) -> (Experiment, Vec<PeriodSample>
     (experiment, log)
 }
 
-/// Samples of so many periods ago.
-fn ago(experiment: &Experiment, log: &[PeriodSample], period: usize, late: usize) -> Samples<f32> {
+/// Samples of `late` periods ago.
+fn delayed_samples(experiment: &Experiment, log: &[PeriodSample], period: usize, late: usize) -> Samples<f32> {
     samples(&experiment.settings, &log[period - late], period - late)
 }
 
+/// Late output readings up to ten periods old still give the present gap.
 #[test]
-fn late_readings_of_the_output_say_where_the_gap_is_now() {
+fn late_output_readings_locate_the_gap() {
     for name in ["q1", "l1", "d2"] {
         let (experiment, log) = to_and_fro(name, TestMotion::Sine(0.5, 1.0));
         let gap = 4.0 * experiment.setup.joint.sun_planet.half_backlash[0];
         for late in [2, 5, 10] {
-            let said = experiment.said::<f32>(&log, |period, samples| {
-                if LATE.contains(&period) {
-                    samples.output = ago(&experiment, &log, period, late).output;
+            let published = experiment.published::<f32>(&log, |period, samples| {
+                if LATE_PERIODS.contains(&period) {
+                    samples.output = delayed_samples(&experiment, &log, period, late).output;
                 }
             });
-            let of = |period: usize| (f64::from(said[period].gap.value) - log[period].gap).abs() / gap;
-            let worst = LATE.map(of).fold(0.0, f64::max);
+            let of = |period: usize| (f64::from(published[period].gap.value) - log[period].gap).abs() / gap;
+            let worst = LATE_PERIODS.map(of).fold(0.0, f64::max);
             println!("{name}, {late} periods late: {worst:.4} of the gap");
             GAP_WORST.check(worst);
-            assert!(LATE.clone().all(|period| said[period].source == Source::Both), "{name}: given up");
+            assert!(LATE_PERIODS.clone().all(|period| published[period].source == Source::Both), "{name}: excluded");
         }
     }
 }
 
+/// Output readings thirty periods old count as lost.
 #[test]
-fn readings_of_the_output_that_are_too_old_count_as_lost() {
+fn old_output_readings_count_as_lost() {
     let (experiment, log) = to_and_fro("q1", TestMotion::Sine(0.5, 1.0));
-    let said = experiment.said::<f32>(&log, |period, samples| {
-        if LATE.contains(&period) {
-            samples.output = ago(&experiment, &log, period, 30).output;
+    let published = experiment.published::<f32>(&log, |period, samples| {
+        if LATE_PERIODS.contains(&period) {
+            samples.output = delayed_samples(&experiment, &log, period, 30).output;
         }
     });
-    assert_eq!(said[LATE.start + 150].source, Source::MotorOnly(OutputFault::Silent));
-    assert_eq!(said[LATE.end - 1].source, Source::MotorOnly(OutputFault::Silent));
-    assert_eq!(said.last().map(|estimates| estimates.source), Some(Source::Both), "it is taken back");
+    assert_eq!(published[LATE_PERIODS.start + 150].source, Source::MotorOnly(OutputFault::Silent));
+    assert_eq!(published[LATE_PERIODS.end - 1].source, Source::MotorOnly(OutputFault::Silent));
+    assert_eq!(published.last().map(|estimates| estimates.source), Some(Source::Both), "it is readmitted");
 }
 
+/// Late motor readings keep the speed bounded and the gap invalid.
 #[test]
-fn late_readings_of_the_motor_are_bounded_and_not_vouched_for() {
+fn late_motor_readings_are_invalid() {
     for (name, late) in [("q1", 3), ("l1", 3), ("s1", 3), ("l1", 10), ("l1", 30)] {
         let (experiment, log) = to_and_fro(name, TestMotion::Sine(0.5, 1.0));
-        let said = experiment.said::<f32>(&log, |period, samples| {
-            if LATE.contains(&period) {
-                samples.motor = ago(&experiment, &log, period, late).motor;
+        let published = experiment.published::<f32>(&log, |period, samples| {
+            if LATE_PERIODS.contains(&period) {
+                samples.motor = delayed_samples(&experiment, &log, period, late).motor;
             }
         });
-        assert!(LATE.clone().all(|period| !said[period].gap.valid && !said[period].contact_valid));
-        let fastest = LATE.map(|period| log[period].motor[1].abs()).fold(0.0, f64::max);
-        let said_fastest = LATE.map(|period| f64::from(said[period].motor.speed).abs()).fold(0.0, f64::max);
-        println!("{name}, {late} periods late: {said_fastest:.1} in place of {fastest:.1} rad/s");
-        assert!(said_fastest < 2.0 * fastest, "{name}, {late} periods late: the motor runs away");
+        assert!(LATE_PERIODS.clone().all(|period| !published[period].gap.valid && !published[period].contact_valid));
+        let fastest = LATE_PERIODS.map(|period| log[period].motor[1].abs()).fold(0.0, f64::max);
+        let published_fastest =
+            LATE_PERIODS.map(|period| f64::from(published[period].motor.speed).abs()).fold(0.0, f64::max);
+        println!("{name}, {late} periods late: {published_fastest:.1} in place of {fastest:.1} rad/s");
+        assert!(published_fastest < 2.0 * fastest, "{name}, {late} periods late: the motor runs away");
         let nothing = |mut periods: core::ops::Range<usize>| {
-            periods.all(|period| matches!(said[period].source, Source::Nothing(_)))
+            periods.all(|period| matches!(published[period].source, Source::Nothing(_)))
         };
-        assert!(nothing(LATE.start + 4..LATE.end + 31), "{name}, {late} periods late: it counts as heard of");
         assert!(
-            said.last().is_some_and(|estimates| !matches!(estimates.source, Source::Nothing(_))),
-            "it is heard again"
+            nothing(LATE_PERIODS.start + 4..LATE_PERIODS.end + 31),
+            "{name}, {late} periods late: the motor counts as read"
+        );
+        assert!(
+            published.last().is_some_and(|estimates| !matches!(estimates.source, Source::Nothing(_))),
+            "the motor is read again"
         );
     }
 }
 
+/// Lost motor readings cost little accuracy and validity.
 #[test]
-fn lost_readings_of_the_motor_cost_little() {
+fn lost_motor_readings_cost_little() {
     for name in ["q1", "l1", "d2"] {
         let (experiment, log) = to_and_fro(name, TestMotion::Sine(0.5, 1.0));
         let gap = 4.0 * experiment.setup.joint.sun_planet.half_backlash[0];
-        // Each ninth, and after each seventieth one more.
-        let lost = |period: usize| LATE.contains(&period) && (period.is_multiple_of(9) || period % 70 < 2);
-        let said = experiment.said::<f32>(&log, |period, samples| {
+        // Every ninth reading, and two in every seventy.
+        let lost = |period: usize| LATE_PERIODS.contains(&period) && (period.is_multiple_of(9) || period % 70 < 2);
+        let published = experiment.published::<f32>(&log, |period, samples| {
             if lost(period) {
                 let before = (0..period).rev().find(|before| !lost(*before)).unwrap_or(0);
-                samples.motor = ago(&experiment, &log, period, period - before).motor;
+                samples.motor = delayed_samples(&experiment, &log, period, period - before).motor;
             }
         });
-        let of = |period: usize| (f64::from(said[period].gap.value) - log[period].gap).abs() / gap;
-        let worst = LATE.map(of).fold(0.0, f64::max);
-        let vouched = LATE.filter(|period| said[*period].gap.valid).count() as f64 / LATE.len() as f64;
-        println!("{name}: {worst:.4} of the gap, vouched for in {vouched:.3} of all periods");
+        let of = |period: usize| (f64::from(published[period].gap.value) - log[period].gap).abs() / gap;
+        let worst = LATE_PERIODS.map(of).fold(0.0, f64::max);
+        let valid_share =
+            LATE_PERIODS.filter(|period| published[*period].gap.valid).count() as f64 / LATE_PERIODS.len() as f64;
+        println!("{name}: {worst:.4} of the gap, valid in {valid_share:.3} of all periods");
         GAP_WORST.check(worst);
-        assert!(vouched > 0.97, "{name}: not vouched for");
+        assert!(valid_share > 0.97, "{name}: not valid");
     }
 }
 
+/// A recovered output encoder is readmitted although the teeth are hardly loaded.
 #[test]
-fn an_output_encoder_that_turns_again_is_taken_back_though_teeth_are_hardly_pressed() {
+fn recovered_output_is_readmitted_unloaded() {
     let (experiment, mut log) = to_and_fro("l1", TestMotion::Sine(0.2, 1.0));
     let counts = log[13_000].output_counts;
     log[13_000..20_000].iter_mut().for_each(|moment| moment.output_counts = counts);
-    let said = experiment.said::<f32>(&log, |_, _| {});
-    assert!(matches!(said[19_999].source, Source::MotorOnly(_)), "it is given up");
-    let back = said[20_000..].iter().position(|estimates| estimates.source == Source::Both);
-    println!("taken back after {back:?} periods");
-    assert!(back.is_some_and(|periods| periods < 6_000), "it is taken back");
+    let published = experiment.published::<f32>(&log, |_, _| {});
+    assert!(matches!(published[19_999].source, Source::MotorOnly(_)), "it is excluded");
+    let back = published[20_000..].iter().position(|estimates| estimates.source == Source::Both);
+    println!("readmitted after {back:?} periods");
+    assert!(back.is_some_and(|periods| periods < 6_000), "it is readmitted");
 }

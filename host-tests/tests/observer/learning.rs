@@ -1,5 +1,5 @@
-//! What is learnt where learning is hard: teeth that wear, forces that do not stand out of what bias can be, teeth whose
-//! transmission error is larger than their gap. Errors of ordinary joints are in `gap`.
+//! Parameter estimation under difficulties: wearing teeth, forces within the torque bias, a transmission error larger than the gap. Errors
+//! of ordinary joints are in `gap`.
 
 use host_tests::tolerance::observer::*;
 use model_core::gears::Kinematics;
@@ -13,14 +13,15 @@ use crate::motion::TestMotion;
 use crate::presets::with_backlash;
 use crate::replay::ObserverErrors;
 
+/// The width of worn teeth is estimated anew, and the output encoder is kept.
 #[test]
-fn teeth_that_wear_are_learnt_anew_and_the_encoder_is_kept() {
+fn wear_is_learnt_and_encoder_kept() {
     for (seed, worn) in [(31, 46e-6), (32, 60e-6), (33, 80e-6)] {
         let mut experiment = Experiment::new("q1", "inertia", Encoders::Preset, Some(40e-6), seed).lasting(4.5);
         let kind = FaultKind::Other(HostOnlyFault::GrownBacklash(worn));
         experiment.setup.faults = vec![Fault { start: 2.0, end: f64::INFINITY, seed: (), kind }];
         let log = experiment.record();
-        // What is learnt is held against the teeth as they are then.
+        // Estimates are compared with the worn teeth.
         experiment.setup.joint = with_backlash(&experiment.setup.joint, worn);
         let mut kept = true;
         let figures = experiment
@@ -32,23 +33,24 @@ fn teeth_that_wear_are_learnt_anew_and_the_encoder_is_kept() {
     }
 }
 
+/// Contacts of a few milliseconds on the opposite flank suffice for the width.
 #[test]
-fn teeth_that_touch_a_flank_for_some_milliseconds_on_their_way_show_the_width() {
-    // As the motion begins the teeth cross, rest on the other flank with a few newtons and come back; the link turns
-    // round a second later.
+fn brief_contact_reveals_the_width() {
+    // At the start the teeth cross, rest on the opposite flank with a few newtons and return; the link reverses a second later.
     for (half_backlash, seed) in [(56.744_186e-6, 657), (70e-6, 644), (63.33e-6, 646)] {
         let experiment = Experiment::new("q1", "slow", Encoders::Preset, Some(half_backlash), seed).lasting(2.5);
         let figures = experiment.figures(&experiment.record(), 2.0);
         println!("{half_backlash}: {figures:?}");
-        WIDTH_AFTER.check(figures.width_after);
+        WIDTH_TIME.check(figures.width_after);
     }
 }
 
+/// Pushes from flank to flank suffice for the width although the link never rests there.
 #[test]
-fn a_link_that_is_pushed_from_flank_to_flank_shows_the_width_though_it_never_rests_there() {
+fn bounces_reveal_the_width() {
     for (half_backlash, seed) in [(30e-6, 38), (40e-6, 37), (60e-6, 37)] {
         let mut experiment = Experiment::new("q1", "hold", Encoders::Preset, Some(half_backlash), seed).lasting(0.6);
-        // Nothing brakes it, so it bounces.
+        // Nothing brakes the link, so it bounces.
         experiment.setup.train.surroundings.load_friction.coulomb = 0.0;
         experiment.setup.train.surroundings.load_friction.viscous = 0.0;
         experiment.setup.train.surroundings.motor_friction.coulomb = 0.0;
@@ -61,63 +63,67 @@ fn a_link_that_is_pushed_from_flank_to_flank_shows_the_width_though_it_never_res
             known += usize::from(estimates.half_backlash.valid);
         });
         println!("{half_backlash}: {figures:?}, known for {known} periods");
-        WIDTH_IN_PASSING.check(figures.width.abs());
+        WIDTH_FROM_BOUNCES.check(figures.width.abs());
         assert!(known > 2000, "{half_backlash} was not learnt in passing");
     }
 }
 
-/// Errors of an experiment from a moment on, where bias can be a tenth of the largest torque: three of that are more than the
-/// motion takes.
-fn under_a_wide_bias(mut experiment: Experiment, from: f64) -> ObserverErrors {
+/// Errors of an experiment from a time on, with a torque bias of up to a tenth of the limit: three times this bias is more torque than the
+/// motion needs.
+fn errors_with_wide_bias(mut experiment: Experiment, from: f64) -> ObserverErrors {
     experiment.settings.torque_uncertainty = 0.1 * experiment.settings.torque_limit;
     experiment.figures(&experiment.record(), from)
 }
 
+/// Flanks are detected although no force exceeds the torque bias.
 #[test]
-fn flanks_are_told_without_a_force_that_stands_out_of_bias() {
+fn flanks_are_detected_below_the_bias() {
     for (name, seed) in [("l1", 34), ("q1", 35)] {
         let experiment = Experiment::new(name, "inertia", Encoders::Preset, None, seed).lasting(4.0);
-        let figures = under_a_wide_bias(experiment, 2.5);
+        let figures = errors_with_wide_bias(experiment, 2.5);
         println!("{name}: {figures:?}");
         GAP_COARSE.check(figures.gap);
         WIDTH.check(figures.width);
-        assert!(figures.valid > 0.99, "{name} is not vouched for");
+        assert!(figures.valid > 0.99, "{name}: the gap is not valid");
     }
 }
 
+/// Travel of the link gives the width of a joint with hardly any load.
 #[test]
-fn a_joint_that_hardly_feels_its_load_shows_the_width_by_where_its_link_goes() {
-    // What holds the teeth on their flanks is far less than what bias can be; and on S1 the transmission error goes further
-    // than from the middle of the gap to a flank.
+fn link_travel_reveals_the_width() {
+    // The force that holds the teeth on their flanks is far below the torque bias, and the transmission error of S1 exceeds the distance
+    // from the middle of the gap to a flank.
     for (name, half_backlash, frequency, seed) in
         [("l1", 60e-6, 0.4, 40), ("l1", 40e-6, 0.7, 42), ("s1", 20e-6, 0.7, 43), ("s1", 20e-6, 0.7, 44)]
     {
         let mut experiment = Experiment::new(name, "inertia", Encoders::Preset, Some(half_backlash), seed).lasting(5.0);
         experiment.setup.motion = TestMotion::Sine(0.5, frequency).motion(experiment.setup.seed);
-        let figures = under_a_wide_bias(experiment, 3.5);
+        let figures = errors_with_wide_bias(experiment, 3.5);
         println!("{name} {half_backlash} {seed}: {figures:?}");
         WIDTH.check(figures.width);
-        assert!(figures.valid > 0.99, "{name} is not vouched for");
+        assert!(figures.valid > 0.99, "{name}: the gap is not valid");
     }
 }
 
+/// Contact is not valid where the transmission error exceeds the gap.
 #[test]
-fn teeth_whose_error_is_larger_than_their_gap_are_not_vouched_for() {
+fn hidden_gap_has_no_valid_contact() {
     let experiment = Experiment::new("s1", "gravity", Encoders::Preset, None, 36).lasting(4.0);
-    for (k, estimates) in experiment.said::<f64>(&experiment.record(), |_, _| {}).iter().enumerate() {
+    for (k, estimates) in experiment.published::<f64>(&experiment.record(), |_, _| {}).iter().enumerate() {
         assert!(k < 20_000 || !estimates.contact_valid, "contact at {k} would be over before anyone could act on it");
     }
 }
 
+/// Cogging is estimated while the link turns slowly, and left alone otherwise.
 #[test]
-fn cogging_is_learnt_while_the_link_turns_slowly_and_nothing_is_made_up_where_it_does_not() {
+fn cogging_is_learnt_in_slow_motion() {
     for (name, amplitude, periods, seed) in [("q1", 0.02, 84, 71), ("q1", 0.03, 60, 72), ("q1", 0.0, 84, 73)] {
         let mut experiment = Experiment::new(name, "slow", Encoders::Preset, Some(40e-6), seed).lasting(5.0);
         let around = &mut experiment.setup.train.surroundings;
         (around.cogging_torque, around.cogging_periods_per_turn) = (amplitude, periods);
         experiment.settings.cogging_periods = periods;
         let log = experiment.record();
-        let [sine, cosine] = experiment.said::<f32>(&log, |_, _| {}).last().expect("it lasts").cogging;
+        let [sine, cosine] = experiment.published::<f32>(&log, |_, _| {}).last().expect("it lasts").cogging;
         let at_link = |motor: f64| motor * experiment.setup.joint.geometry.ratio_by_teeth();
         let astray = f64::from(sine - at_link(amplitude) as f32).hypot(cosine.into());
         println!("{name}: cogging of {amplitude} N m is taken for {sine} and {cosine} at the link");
@@ -125,8 +131,8 @@ fn cogging_is_learnt_while_the_link_turns_slowly_and_nothing_is_made_up_where_it
     }
     for motion in ["hold", "inertia"] {
         let experiment = Experiment::new("q1", motion, Encoders::Preset, Some(40e-6), 74).lasting(4.0);
-        let said = experiment.said::<f32>(&experiment.record(), |_, _| {});
-        let [sine, cosine] = said.last().expect("it lasts").cogging.map(f64::from);
+        let published = experiment.published::<f32>(&experiment.record(), |_, _| {});
+        let [sine, cosine] = published.last().expect("it lasts").cogging.map(f64::from);
         println!("{motion}: {sine} and {cosine}");
         let amplitude = 0.02 * experiment.setup.joint.geometry.ratio_by_teeth();
         assert!((sine - amplitude).hypot(cosine) < 1.1 * amplitude, "{motion}: worse than nothing");

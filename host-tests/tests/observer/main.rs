@@ -1,5 +1,5 @@
-//! The observer against the fine-step plant: gap, contact, torques, width, faults, motor only, precision, memory, probe.
-//! Each test is short; `monte_carlo` is the long run over many seeds, and is ignored by default.
+//! The observer against the fine-step plant: gap, contact, torques, width, faults, motor only, precision, memory, probe. Tests are short
+//! except the long runs `monte_carlo` and `hour`, which are ignored by default.
 
 mod experiment;
 mod faults;

@@ -1,4 +1,4 @@
-//! What was learnt outlives the observer: saved, loaded by another one that starts elsewhere, refused when it must be.
+//! Memory of estimated parameters: saved, loaded by another observer at another place, rejected where it does not fit.
 
 use host_tests::tolerance::observer::GAP_COARSE;
 use model_core::observer::{MAPPED, MEMORY_BYTES, Memory, MemoryError, Observer, PLAIN};
@@ -19,14 +19,15 @@ fn learnt() -> (Experiment, Vec<PeriodSample>, Memory) {
     (experiment, log, memory)
 }
 
+/// An observer with a memory knows the gap from its first period.
 #[test]
-fn an_observer_that_remembers_knows_the_gap_from_the_first_moment() {
+fn loaded_memory_makes_the_gap_valid() {
     let (experiment, log, memory) = learnt();
     let tables = experiment.tables();
     for loaded_at in [0, 5] {
         let mut observer = Observer::<f32, MAPPED>::new(&tables);
         let mut sum = 0.0;
-        // It wakes somewhere in the middle.
+        // The observer starts in the middle of the recording.
         let part = &log[13_000..18_000];
         for (period, moment) in part.iter().enumerate() {
             if period == loaded_at {
@@ -42,8 +43,9 @@ fn an_observer_that_remembers_knows_the_gap_from_the_first_moment() {
     }
 }
 
+/// Memories that do not fit are rejected and change nothing.
 #[test]
-fn memories_that_do_not_fit_are_refused_and_change_nothing() {
+fn unfit_memories_are_rejected() {
     let (experiment, _, memory) = learnt();
     let tables = experiment.tables();
     let refusal = |memory: &[u8]| {

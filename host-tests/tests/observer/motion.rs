@@ -1,5 +1,5 @@
-//! The motions of the observer's tests: profiles that excite everything quickly, and a plain motor controller that uses
-//! the motor encoder alone, so that no recording depends on the observer under test.
+//! Motions of the observer's tests: profiles that excite all parameters quickly, and a plain motor controller that uses the motor encoder
+//! alone, so that no recording depends on the observer under test.
 
 use model_core::gears::{Kinematics, Mechanics};
 use std::f64::consts::TAU;
@@ -12,28 +12,28 @@ use reference::drive_train::{DriveTrainParameters, Measurement};
 /// Poles of the motor controller [rad/s].
 const BANDWIDTH: f64 = 60.0;
 
-/// Poles of its observer of the motor alone, fast enough for a motor that is alone inside the gap [rad/s].
-const TRACKING: f64 = 1200.0;
+/// Poles of its observer of the motor, fast enough for a motor alone inside the gap [rad/s].
+const TRACKING_BANDWIDTH: f64 = 1200.0;
 
-/// What the link is to do.
+/// Motion of the link.
 #[derive(Debug, Clone)]
 pub enum TestMotion {
-    /// Amplitude times a sine [rad, Hz].
+    /// Sine of an amplitude [rad] and a frequency [Hz].
     Sine(f64, f64),
-    /// Sines from 0.2 Hz up to the highest given, phases and sizes by the seed: [largest acceleration rad/s^2, Hz].
+    /// Sines from 0.2 Hz up to a highest frequency, phases and amplitudes by the seed: [largest acceleration rad/s^2, Hz].
     Random(f64, f64),
-    /// Standing still.
+    /// Standstill.
     Hold,
 }
 
-/// Sines that begin at rest and are all there after 0.2 s: amplitude [rad], rate [rad/s] and phase [rad] of each.
+/// Sines that start from rest and reach full amplitude after 0.2 s: amplitude [rad], rate [rad/s] and phase [rad] of each.
 struct Tones(Vec<[f64; 3]>);
 
-/// A fifth of a motion until a moment [s], all of it half a second later.
-struct Growing(SharedProfile, f64);
+/// Motion at a fifth of its amplitude until a time [s], and at full amplitude half a second later.
+struct GrowingMotion(SharedProfile, f64);
 
 impl TestMotion {
-    /// The motion, as a seed determines it.
+    /// Motion for a seed.
     pub fn motion(&self, seed: u64) -> SharedProfile {
         Arc::new(match *self {
             Self::Hold => Tones(Vec::new()),
@@ -45,7 +45,7 @@ impl TestMotion {
                     (0..tones)
                         .map(|_| {
                             let rate = TAU * 0.2 * (highest / 0.2).powf(uniform());
-                            // Slow tones are kept to a turn or less.
+                            // Slow tones stay below 0.3 rad.
                             let amplitude = (acceleration / f64::from(tones) / (rate * rate)).min(0.3);
                             [amplitude * (0.6 + 0.8 * uniform()), rate, TAU * uniform()]
                         })
@@ -56,9 +56,9 @@ impl TestMotion {
     }
 }
 
-/// A motion that grows from a fifth to all of itself at a moment [s].
+/// Motion that grows from a fifth to full amplitude at a time [s].
 pub fn growing(motion: SharedProfile, at: f64) -> SharedProfile {
-    Arc::new(Growing(motion, at))
+    Arc::new(GrowingMotion(motion, at))
 }
 
 impl MotionProfile for Tones {
@@ -85,7 +85,7 @@ impl MotionProfile for Tones {
     }
 }
 
-impl MotionProfile for Growing {
+impl MotionProfile for GrowingMotion {
     fn at(&self, time: f64) -> Motion {
         let Self(motion, at) = self;
         let part = 0.2 + 0.8 * ((time - at) / 0.5).clamp(0.0, 1.0);
@@ -94,7 +94,7 @@ impl MotionProfile for Growing {
     }
 }
 
-/// Numbers from 0 to 1 that a seed determines.
+/// Uniform random numbers from 0 to 1 for a seed.
 pub fn uniform(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(0x1234_5678_9abc_def1);
     move || {
@@ -105,7 +105,7 @@ pub fn uniform(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// Inertia of the joint referred to its motor while it moves as one [kg m^2].
+/// Inertia of the joint referred to its motor, moving as one body [kg m^2].
 pub fn inertia_at_motor(joint: &JointParameters) -> f64 {
     let geometry = &joint.geometry;
     let planets = geometry.planets as f64 * joint.bodies.planet_equivalent_mass;
@@ -115,8 +115,8 @@ pub fn inertia_at_motor(joint: &JointParameters) -> f64 {
         + (joint.link_inertia + carrier) / geometry.ratio_by_teeth().powi(2)
 }
 
-/// The motor controller: a triple pole on the total inertia, with feed-forward and back-calculation, behind an observer of
-/// the motor alone.
+/// Motor controller: triple pole on the total inertia, with feed-forward and back-calculation, on the angle of an observer of the motor
+/// alone.
 #[derive(Debug)]
 pub struct MotorController {
     ratio: f64,
@@ -124,7 +124,7 @@ pub struct MotorController {
     motor_inertia: f64,
     limit: f64,
     per_count: f64,
-    /// Where the encoder of the motor is homed [counts].
+    /// Home of the motor encoder [counts].
     home: i64,
     /// Control period [s].
     pub period: f64,
@@ -135,7 +135,7 @@ pub struct MotorController {
 }
 
 impl MotorController {
-    /// For a joint at rest.
+    /// Controller of a joint at rest.
     pub fn new(joint: &JointParameters, train: &DriveTrainParameters) -> Self {
         Self {
             ratio: joint.geometry.ratio_by_teeth(),
@@ -152,21 +152,22 @@ impl MotorController {
         }
     }
 
-    /// The same where readings are counted from a home; its angles are the encoder's own.
+    /// Controller whose readings are counted from a home; its angles are the encoder's.
     pub fn homed(self, home: &Measurement) -> Self {
         Self { home: home.motor_counts, ..self }
     }
 
-    /// The command after a reading of the motor's counts, to follow a motion of the link.
+    /// Motor torque after a reading of the motor's counts, to follow a motion of the link [N m].
     pub fn step(&mut self, counts: i64, Motion { position: angle, speed, acceleration }: Motion) -> f64 {
         let (ratio, inertia, period) = (self.ratio, self.inertia, self.period);
         let measured = (counts as f64 + 0.5) * self.per_count;
-        // Angle, speed and disturbance from counts and the last command, with a triple pole.
+        // Angle, speed and disturbance from the counts and the last command, with a triple pole.
         let tracked = &mut self.tracked;
-        let lacking = measured - tracked[0];
-        tracked[0] += (tracked[1] + 3.0 * TRACKING * lacking) * period;
-        tracked[1] += (self.before / self.motor_inertia + tracked[2] + 3.0 * TRACKING.powi(2) * lacking) * period;
-        tracked[2] += TRACKING.powi(3) * lacking * period;
+        let innovation = measured - tracked[0];
+        tracked[0] += (tracked[1] + 3.0 * TRACKING_BANDWIDTH * innovation) * period;
+        tracked[1] +=
+            (self.before / self.motor_inertia + tracked[2] + 3.0 * TRACKING_BANDWIDTH.powi(2) * innovation) * period;
+        tracked[2] += TRACKING_BANDWIDTH.powi(3) * innovation * period;
         let (position_error, speed_error) = (ratio * angle - tracked[0], ratio * speed - tracked[1]);
         let wanted = inertia
             * (ratio * acceleration

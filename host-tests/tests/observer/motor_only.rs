@@ -1,11 +1,11 @@
-//! Without an output encoder: a truthful variance, and invalid estimates where nothing can be known.
+//! Observer without an output encoder: its variance is consistent, and estimates without information are invalid.
 
-use host_tests::tolerance::observer::MOTOR_ONLY_HONESTY;
+use host_tests::tolerance::observer::MOTOR_ONLY_NEES;
 use model_core::observer::{MAPPED, OutputFault, Source};
 
 use crate::experiment::{Encoders, Experiment};
 
-/// A trial without an output encoder, told a width right to 2 %.
+/// Experiment without an output encoder, with the width given to 2 %.
 fn experiment(motion: &str, seed: u64) -> Experiment {
     let mut experiment = Experiment::new("q1", motion, Encoders::Preset, Some(40e-6), seed).lasting(4.0);
     experiment.nominal = experiment.setup.joint.clone();
@@ -15,8 +15,9 @@ fn experiment(motion: &str, seed: u64) -> Experiment {
     experiment
 }
 
+/// The variance is consistent, and long separations make the gap invalid.
 #[test]
-fn the_variance_is_honest_and_long_separations_are_refused() {
+fn variance_is_consistent() {
     for (motion, seed) in [("inertia", 31), ("gravity", 32)] {
         let experiment = experiment(motion, seed);
         let log = experiment.record();
@@ -31,14 +32,15 @@ fn the_variance_is_honest_and_long_separations_are_refused() {
             }
         });
         println!("{motion}: {figures:?}; {refused} of {long} refused");
-        MOTOR_ONLY_HONESTY.check(figures.honesty);
+        MOTOR_ONLY_NEES.check(figures.nees);
         assert!(figures.valid > 0.2, "it says something");
         assert!(refused as f64 >= 0.95 * f64::from(long), "after 30 ms in the gap nothing is known");
     }
 }
 
+/// Without knowledge of the width, no gap is published as valid.
 #[test]
-fn a_width_that_nobody_knows_is_not_made_up() {
+fn unknown_width_stays_invalid() {
     let mut experiment = experiment("inertia", 33);
     experiment.settings.backlash_uncertainty = 0.5;
     experiment.replay::<MAPPED>(&experiment.record(), 1.0, |_, _, estimates| {

@@ -1,5 +1,5 @@
-//! Ordered lists of docs/theory/observer.md (evidence for a flank, checks of both encoders) have the numbers of the lists at the head
-//! of their sources, and each row of a source names a test that exists.
+//! Numbered lists of docs/theory/observer.md (evidence for a flank, checks of both encoders) agree with the lists at the head of their
+//! sources, and each row of a source names an existing test.
 
 use std::fs;
 use std::path::Path;
@@ -10,20 +10,20 @@ const OUTPUT_FAULTS: &str = include_str!("../../../model-core/src/observer/healt
 
 const MOTOR_FAULTS: &str = include_str!("../../../model-core/src/observer/health/motor_faults.rs");
 
-/// The rows of a numbered table in the page, between two marks.
-fn in_the_page(mark: &str) -> Vec<Vec<String>> {
+/// Rows of a numbered table in the page, between two marks.
+fn page_rows(mark: &str) -> Vec<Vec<String>> {
     let (from, to) = (format!("<!-- {mark} -->"), format!("<!-- /{mark} -->"));
     let (_, rest) = PAGE.split_once(&from).expect("a beginning of the table");
     let (table, _) = rest.split_once(&to).expect("an end of the table");
     rows(table.lines())
 }
 
-/// The rows of the numbered table at the head of a source.
-fn in_the_source(source: &str) -> Vec<Vec<String>> {
+/// Rows of the numbered table at the head of a source.
+fn source_rows(source: &str) -> Vec<Vec<String>> {
     rows(source.lines().filter_map(|line| line.strip_prefix("//! ")))
 }
 
-/// The cells of each row that begins with a number.
+/// Cells of each row that begins with a number.
 fn rows<'a>(lines: impl Iterator<Item = &'a str>) -> Vec<Vec<String>> {
     lines
         .filter_map(|line| line.strip_prefix("| "))
@@ -32,7 +32,7 @@ fn rows<'a>(lines: impl Iterator<Item = &'a str>) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// The test at the end of a row of a source, as its file and its function: "`program module::function`".
+/// File and function of the test at the end of a source's row: "`program module::function`".
 fn test_of(row: &[String]) -> (String, String) {
     let name = row.last().expect("a row has cells").trim_matches('`');
     let (program, path) = name.split_once(' ').expect("a program and a path");
@@ -40,10 +40,11 @@ fn test_of(row: &[String]) -> (String, String) {
     (format!("tests/{program}/{module}.rs"), function.to_owned())
 }
 
+/// Page and sources list the same checks in the same order, each with an existing test.
 #[test]
-fn each_way_to_tell_a_flank_or_a_fault_is_in_page_and_source_and_names_the_test_that_needs_it() {
+fn page_lists_the_checks_of_the_sources() {
     for (mark, source) in [("flank", FLANK), ("output faults", OUTPUT_FAULTS), ("motor faults", MOTOR_FAULTS)] {
-        let (page, source) = (in_the_page(mark), in_the_source(source));
+        let (page, source) = (page_rows(mark), source_rows(source));
         assert!(page.len() >= 5, "the list of {mark} is read");
         assert_eq!(page.len(), source.len(), "docs/theory/observer.md and the source list other ways under {mark}");
         for (shown, written) in page.iter().zip(&source) {

@@ -1,4 +1,4 @@
-//! The joints of the presets with their drive trains, as the plant takes them. Phases of encoder errors are by the seed.
+//! Presets with their drive trains, for the plant. Phases of encoder errors are drawn by the seed.
 
 use std::f64::consts::TAU;
 
@@ -8,7 +8,7 @@ use reference::scenarios::same;
 
 use crate::motion::uniform;
 
-/// A preset, with its ripple and transmission error, and its drive train.
+/// Preset joint with ripple and transmission error, and its drive train.
 pub fn preset(name: &str, seed: u64) -> (JointParameters, DriveTrainParameters) {
     let file = joint_file::read(joint_file::preset(name).expect("a preset")).expect("a good preset");
     let mut uniform = uniform(seed ^ 0x5eed);
@@ -21,7 +21,7 @@ pub fn preset(name: &str, seed: u64) -> (JointParameters, DriveTrainParameters) 
     (file.parameters, parameters)
 }
 
-/// The same joint with another half-backlash [m].
+/// Joint with another half-backlash [m].
 pub fn with_backlash(joint: &JointParameters, half_backlash: f64) -> JointParameters {
     let mut joint = joint.clone();
     let planets = joint.geometry.planets;

@@ -1,4 +1,4 @@
-//! The observer over a recording, and the errors of its estimates against the truth.
+//! Replay of a recording through the observer, and the errors of its estimates.
 
 use model_core::gears::Kinematics;
 use std::f64::consts::TAU;
@@ -10,10 +10,10 @@ use parameters::{AbsoluteEncoder, ContactState, JointParameters};
 use reference::drive_train::{DriveTrainParameters, ErrorPhases};
 use scenario::rig::PeriodSample;
 
-/// Ticks of the samples' clock in a second.
+/// Rate of the samples' clock [Hz].
 pub const CLOCK_RATE: u32 = 10_000_000;
 
-/// What a data sheet says of a drive train: sizes, never the phases or signs of its errors.
+/// Settings from the data sheet of a drive train: sizes, but no phases or signs of errors.
 pub fn settings(train: &DriveTrainParameters) -> ObserverSettings {
     let around = &train.surroundings;
     let encoder = |encoder: &AbsoluteEncoder| EncoderSettings {
@@ -43,7 +43,7 @@ pub fn settings(train: &DriveTrainParameters) -> ObserverSettings {
     }
 }
 
-/// Samples of a recorded moment.
+/// Samples of a recorded period.
 pub fn samples<T: Real>(settings: &ObserverSettings, moment: &PeriodSample, period: usize) -> Samples<T> {
     let time = (period as u64 * u64::from(settings.clock_rate / settings.control_rate)) as u32;
     let counts = |counts: i64, encoder: EncoderSettings| {
@@ -58,44 +58,44 @@ pub fn samples<T: Real>(settings: &ObserverSettings, moment: &PeriodSample, peri
     }
 }
 
-/// Errors of one replay, from a moment on.
+/// Errors of one replay from a time on.
 #[derive(Debug, Clone, Default)]
 pub struct ObserverErrors {
-    /// Root mean square of the gap's error, over the gap 4b.
+    /// RMS error of the gap, over the gap 4b.
     pub gap: f64,
-    /// Largest.
+    /// Largest error of the gap, over the gap 4b.
     pub gap_worst: f64,
-    /// Part of the time outside the bands in which the reported contact was right.
+    /// Share of the periods outside the bands in which the reported contact is right.
     pub contact: f64,
-    /// Landings that the observer never reported.
+    /// Landings that the observer did not report.
     pub missed: usize,
-    /// Landings.
+    /// Number of landings.
     pub landings: usize,
-    /// Delays in reporting landings, sorted [s].
+    /// Sorted delays of reported landings [s].
     pub delays: Vec<f64>,
-    /// Root mean square of the load torque's error over the motor's largest torque at the output.
+    /// RMS error of the load torque, over the motor's torque limit at the output.
     pub load_torque: f64,
-    /// Root mean square of the transmitted torque's error, likewise.
+    /// RMS error of the transmitted torque, over the motor's torque limit at the output.
     pub mesh_torque: f64,
-    /// Time from first force on both flanks until the width was right to 5 % for good [s].
+    /// Time from the first force on both flanks until the width is right to 5 % for good [s].
     pub width_after: f64,
-    /// Width at the end less the true one, over it.
+    /// Relative error of the width at the end.
     pub width: f64,
-    /// Mean of squared gap errors over their variances, where the gap estimate is valid.
-    pub honesty: f64,
-    /// Part of the time in which the gap is said to be valid.
+    /// Mean of squared gap errors over their variances, while the gap is valid.
+    pub nees: f64,
+    /// Share of the periods with a valid gap.
     pub valid: f64,
-    /// Root mean square of the gap's error there, over the gap 4b.
+    /// RMS error of the gap while it is valid, over the gap 4b.
     pub gap_valid: f64,
 }
 
 impl ObserverErrors {
-    /// The delay that such a part of the landings stays below [s].
+    /// Delay that a part of the landings stays below [s].
     pub fn delay(&self, part: f64) -> f64 {
         self.delays.get((part * self.delays.len() as f64) as usize).copied().unwrap_or(0.0)
     }
 
-    /// The worse of each figure.
+    /// Worse value of each figure.
     pub fn worse(&self, other: &Self) -> Self {
         Self {
             gap: self.gap.max(other.gap),
@@ -112,14 +112,14 @@ impl ObserverErrors {
             mesh_torque: self.mesh_torque.max(other.mesh_torque),
             width_after: self.width_after.max(other.width_after),
             width: self.width.abs().max(other.width.abs()),
-            honesty: self.honesty.max(other.honesty),
+            nees: self.nees.max(other.nees),
             valid: if self.landings == 0 { other.valid } else { self.valid.min(other.valid) },
             gap_valid: self.gap_valid.max(other.gap_valid),
         }
     }
 }
 
-/// Replays a recording; figures are taken from `from` seconds on. `watch` sees every estimate.
+/// Replays a recording and returns its errors from `from` seconds on. `watch` sees every estimate.
 pub fn replay<const P: usize>(
     joint: &JointParameters,
     tables: &ObserverTables<f64>,
@@ -129,9 +129,9 @@ pub fn replay<const P: usize>(
     mut watch: impl FnMut(usize, &PeriodSample, &Estimates<f64>),
 ) -> ObserverErrors {
     let mut observer = Observer::<f64, P>::new(tables);
-    let largest_of = |errors: &[f64]| errors.iter().fold(0.0, |most: f64, error| most.max(error.abs()));
+    let largest_of = |errors: &[f64]| errors.iter().fold(0.0, |greatest: f64, error| greatest.max(error.abs()));
     let [of_sun, of_ring] = [&joint.sun_planet, &joint.ring_planet].map(|mesh| largest_of(&mesh.transmission_error));
-    let shift = of_sun + of_ring;
+    let flank_shift = of_sun + of_ring;
     let half_backlash = joint.sun_planet.half_backlash[0];
     let gap = 4.0 * half_backlash;
     let rated_force = joint.rated_output_torque / (2.0 * joint.geometry.carrier_base_radius());
@@ -183,7 +183,7 @@ pub fn replay<const P: usize>(
         } else {
             ContactState::Separated
         };
-        // Within 5 % of the gap from an edge, or with less than 5 % of the rated force, no side is judged.
+        // No side is counted within 5 % of the gap from an edge, or below 5 % of the rated force.
         let clear = if side == ContactState::Separated {
             moment.gap.abs() < 0.45 * gap
         } else {
@@ -193,9 +193,9 @@ pub fn replay<const P: usize>(
             judged += 1;
             right += usize::from(side == estimates.reported_contact);
         }
-        // A landing: the first force beyond the band on the flank opposite to the last one. A planet that bumps about
-        // before its neighbours have closed their gaps too is none.
-        let at_flank = moment.gap * moment.sun_force > 0.0 && moment.gap.abs() > 0.5 * gap - shift;
+        // A landing is the first force above the band on the flank opposite to the last one. Bumps of a single planet before the others
+        // have closed their gaps do not count.
+        let at_flank = moment.gap * moment.sun_force > 0.0 && moment.gap.abs() > 0.5 * gap - flank_shift;
         if at_flank && moment.sun_force.abs() > 0.05 * rated_force && side != side_before {
             if side_before != ContactState::Separated {
                 missed += usize::from(landing.is_some());
@@ -222,13 +222,13 @@ pub fn replay<const P: usize>(
         mesh_torque: mean(sums[2]),
         width_after: (width_wrong_at + 1).saturating_sub(both_touched_at) as f64 * period,
         width,
-        honesty: sums[3] / f64::from(valid.max(1)),
+        nees: sums[3] / f64::from(valid.max(1)),
         valid: f64::from(valid) / counted,
         gap_valid: (sums[4] / f64::from(valid.max(1))).sqrt(),
     }
 }
 
-/// Readings of other encoders in the same motion: the truth at the control periods, older by the skew at the speed then.
+/// Readings of other encoders on a recorded motion: the true angles at the control periods, delayed by the skew at the present speed.
 pub fn with_encoders(log: &[PeriodSample], train: &DriveTrainParameters) -> Vec<PeriodSample> {
     let read = |[angle, speed]: [f64; 2], encoder: &AbsoluteEncoder, phases: ErrorPhases| {
         let angle = angle - encoder.skew * speed;

@@ -1,4 +1,4 @@
-//! Balances of the reference: momentum against torques, energy against work, and no tooth that pulls.
+//! Balances of the reference: momentum against torques, energy against work, and teeth that only push.
 
 use host_tests::tolerance::ENERGY;
 use host_tests::tolerance::core::MOMENTUM;
@@ -9,7 +9,7 @@ use reference::scenarios::{Scenario, TorqueSegment, run};
 
 use crate::random::{config, scenario};
 
-/// Acceleration of the rigid carrier for each N m of drive and of load torque, by hand [1/(kg m^2)].
+/// Acceleration of the rigid carrier per N m of drive and of load torque, computed by hand [1/(kg m^2)].
 pub fn rigid_gains(joint: &JointParameters) -> [f64; 2] {
     let geometry = &joint.geometry;
     let cosine = geometry.working_pressure_angle.cos();
@@ -22,7 +22,7 @@ pub fn rigid_gains(joint: &JointParameters) -> [f64; 2] {
     [2.0 / (geometry.sun_base_radius * mass * lever), -1.0 / (lever * mass * lever)]
 }
 
-/// What the torques must have made of the rigid body's speed, by its momentum [rad/s].
+/// Speed of the rigid body from its initial speed and the torques, by its momentum [rad/s].
 fn rigid_speed(scenario: &Scenario, time: f64) -> f64 {
     let Start::Relative(start) = &scenario.start else { unreachable!("scenarios here state their start") };
     let [drive, load] = rigid_gains(&scenario.joint);
@@ -37,20 +37,22 @@ fn rigid_speed(scenario: &Scenario, time: f64) -> f64 {
 proptest! {
     #![proptest_config(config(48))]
 
+    /// Energy equals work, and momentum the torques, on random joints.
     #[test]
-    fn the_reference_keeps_the_books_of_momentum_and_energy(scenario in scenario()) {
+    fn reference_balances_close(scenario in scenario()) {
         let samples = run(&scenario).expect("a sound joint runs").samples;
         let energy = |sample: &Observation| sample.kinetic_energy + sample.elastic_energy;
         let largest = samples.iter().map(energy).fold(0.0, f64::max);
         let fastest = samples.iter().map(|sample| sample.rigid_speed.abs()).fold(1.0, f64::max);
         let missing = |sample: &Observation| (energy(sample) - energy(&samples[0]) - sample.work.net()).abs();
         ENERGY.check(samples.iter().map(missing).fold(0.0, f64::max) / largest);
-        let astray = |sample: &Observation| (sample.rigid_speed - rigid_speed(&scenario, sample.time)).abs();
-        MOMENTUM.check(samples.iter().map(astray).fold(0.0, f64::max) / fastest);
+        let momentum_error = |sample: &Observation| (sample.rigid_speed - rigid_speed(&scenario, sample.time)).abs();
+        MOMENTUM.check(samples.iter().map(momentum_error).fold(0.0, f64::max) / fastest);
     }
 
+    /// With the damping law `contact` no tooth of the reference pulls.
     #[test]
-    fn teeth_only_push_under_the_law_contact(mut scenario in scenario()) {
+    fn reference_teeth_only_push(mut scenario in scenario()) {
         scenario.joint.damping_law = DampingLaw::Contact;
         for sample in run(&scenario).expect("a sound joint runs").samples {
             for kind in [0, 1] {

@@ -1,5 +1,5 @@
-//! The core on random joints: finite and repeatable in f32, passive without excitation, and never pulling under the law
-//! `contact`. The digest is tested in `digest`.
+//! The core on random joints: finite and repeatable in f32, passive without excitation, and never pulling with the damping law `contact`.
+//! The digest is tested in `digest`.
 
 use host_tests::tolerance::core::{MOMENTUM, PASSIVITY};
 use model_core::gears::design::{DesignError, Effort, design_scheme};
@@ -12,7 +12,7 @@ use reference::scenarios::{Scenario, same};
 use crate::balances::rigid_gains;
 use crate::random::{TICK_RATE, config, joint, scenario};
 
-/// Tables at a tick rate, or at the one that a refusal names.
+/// Tables at a tick rate, or at the lowest rate that the error names.
 pub fn tables<T: Real, const N: usize>(joint: &JointParameters, tick_rate: u32, effort: Effort) -> Tables<T, N> {
     let design = |tick_rate| design_scheme(joint, tick_rate, Scheme::Realtime, effort);
     match design(tick_rate) {
@@ -21,7 +21,7 @@ pub fn tables<T: Real, const N: usize>(joint: &JointParameters, tick_rate: u32, 
     }
 }
 
-/// Whether the core stays finite and says the same twice.
+/// Returns true if the core stays finite and two runs agree.
 fn stays_finite<const N: usize>(scenario: &Scenario) -> bool {
     let tables: Tables<f32, N> = tables(&scenario.joint, TICK_RATE, Effort::Board);
     let run = || {
@@ -36,8 +36,8 @@ fn stays_finite<const N: usize>(scenario: &Scenario) -> bool {
     finite && run() == (true, digest)
 }
 
-/// Speed of the core's rigid carrier less what its torques must have made of it, over the largest [-].
-fn astray<const N: usize>(scenario: &Scenario) -> f64 {
+/// Error of the core's rigid carrier speed against the torques' momentum, over the largest speed [-].
+fn momentum_error<const N: usize>(scenario: &Scenario) -> f64 {
     let tables: Tables<f64, N> = tables(&scenario.joint, TICK_RATE, Effort::Board);
     let gains = rigid_gains(&scenario.joint);
     let mut model = Model::new(&tables);
@@ -52,7 +52,7 @@ fn astray<const N: usize>(scenario: &Scenario) -> f64 {
     worst / largest
 }
 
-/// Kinetic and elastic energy of the relative motion, in units of K_m b_c^2, from the joint's own numbers.
+/// Kinetic and elastic energy of the relative motion, in units of K_m b_c^2, from the joint's own parameters.
 fn energy<const N: usize>(joint: &JointParameters, state: &State<f64, N>) -> f64 {
     let scales = Scales::new(joint);
     let lever = joint.geometry.carrier_base_radius();
@@ -61,7 +61,7 @@ fn energy<const N: usize>(joint: &JointParameters, state: &State<f64, N>) -> f64
     let (planet, link) = (joint.bodies.planet_equivalent_mass, joint.link_inertia / lever.powi(2));
     let carrier = joint.carrier_equivalent_mass();
     let Relative { planets, gap, wind_up } = &state.rate;
-    // Speeds while the rigid body stands still: 2 M_s u_s + M_p sum u_p + M_c u_c + M_l u_l = 0.
+    // Speeds while the rigid body is at rest: 2 M_s u_s + M_p sum u_p + M_c u_c + M_l u_l = 0.
     let shares = 2.0 * sun * gap + planet * planets.iter().map(|rate| gap - rate).sum::<f64>() - link * wind_up;
     let mass = 4.0 * sun + N as f64 * planet + carrier + link;
     let carrier_speed = -shares / mass;
@@ -86,9 +86,9 @@ fn energy<const N: usize>(joint: &JointParameters, state: &State<f64, N>) -> f64
     0.5 * (unit * kinetic + elastic)
 }
 
-/// Energy over what it was at first, at most and at least, in a swing without torques, ripple and errors; at 1 MHz,
-/// where the integration's own loss is small even for a light planet.
-fn swing<const N: usize>(joint: &JointParameters, start: [f64; 3]) -> (f64, f64) {
+/// Largest and least energy over its initial value, in a swing without torques, ripple and errors; at 1 MHz, where the integration's own
+/// loss is small even for a light planet.
+fn energy_range<const N: usize>(joint: &JointParameters, start: [f64; 3]) -> (f64, f64) {
     let tables: Tables<f64, N> = tables(joint, 50 * TICK_RATE, Effort::Accurate);
     let mut model = Model::new(&tables);
     let [spread, gap, rate] = start;
@@ -97,16 +97,16 @@ fn swing<const N: usize>(joint: &JointParameters, start: [f64; 3]) -> (f64, f64)
     let rates = Relative { planets: [rate; N], gap: -rate, wind_up: 0.0 };
     model.set_state(State::from_deflections(&tables, &position, &rates, 0.0));
     let first = energy(joint, model.state());
-    (0..2000).fold((1.0, 1.0), |(most, least): (f64, f64), _| {
+    (0..2000).fold((1.0, 1.0), |(greatest, least): (f64, f64), _| {
         model.step(Torques { drive: 0.0, load: 0.0 });
         let now = energy(joint, model.state()) / first;
-        (most.max(now), least.min(now))
+        (greatest.max(now), least.min(now))
     })
 }
 
-/// What a tick changes in the rates when one sun mesh overlaps but recedes at three times the speed at which damping
-/// outweighs its spring, and all others are apart; over that speed.
-fn pull<const N: usize>(joint: &JointParameters) -> f64 {
+/// Change of the rates in a tick when one sun mesh overlaps but recedes at three times the speed at which damping outweighs its spring, and
+/// all others are separated; over this speed.
+fn pull_of_receding_mesh<const N: usize>(joint: &JointParameters) -> f64 {
     let tables: Tables<f64, N> = tables(joint, 50 * TICK_RATE, Effort::Accurate);
     let half_backlash = tables.meshes[0][0].half_backlash;
     let overlap = 0.01 * half_backlash;
@@ -126,8 +126,9 @@ fn pull<const N: usize>(joint: &JointParameters) -> f64 {
 proptest! {
     #![proptest_config(config(300))]
 
+    /// The core stays finite and two runs agree in every bit.
     #[test]
-    fn the_core_stays_finite_and_repeats_itself(mut scenario in scenario(), sharpness in prop::option::of(1.0..50.0)) {
+    fn core_is_finite_and_repeatable(mut scenario in scenario(), sharpness in prop::option::of(1.0..50.0)) {
         if let Some(sharpness) = sharpness {
             scenario.joint.dead_zone = DeadZone::Tanh { sharpness };
         }
@@ -139,8 +140,9 @@ proptest! {
         prop_assert!(finite);
     }
 
+    /// With the damping law `contact` no tooth of the core pulls.
     #[test]
-    fn teeth_of_the_core_do_not_pull_under_the_law_contact(mut joint in joint(), half_backlash in 10e-6..100e-6) {
+    fn core_teeth_only_push(mut joint in joint(), half_backlash in 10e-6..100e-6) {
         joint.damping_law = DampingLaw::Contact;
         let planets = joint.geometry.planets;
         for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
@@ -149,20 +151,21 @@ proptest! {
             mesh.stiffness_wave = StiffnessWave::Harmonic { stiffness_ratio: 0.0 };
             mesh.transmission_error = same(planets, 0.0);
         }
-        let pull = match planets {
-            3 => pull::<3>(&joint),
-            4 => pull::<4>(&joint),
-            _ => pull::<5>(&joint),
+        let pull_of_receding_mesh = match planets {
+            3 => pull_of_receding_mesh::<3>(&joint),
+            4 => pull_of_receding_mesh::<4>(&joint),
+            _ => pull_of_receding_mesh::<5>(&joint),
         };
-        prop_assert!(pull == 0.0, "rates change by {pull} of themselves without a force");
+        prop_assert!(pull_of_receding_mesh == 0.0, "rates change by {pull_of_receding_mesh} of themselves without a force");
     }
 
+    /// Momentum of the core equals the torques.
     #[test]
-    fn the_core_keeps_the_book_of_momentum(scenario in scenario()) {
+    fn core_momentum_follows_torques(scenario in scenario()) {
         MOMENTUM.check(match scenario.joint.geometry.planets {
-            3 => astray::<3>(&scenario),
-            4 => astray::<4>(&scenario),
-            _ => astray::<5>(&scenario),
+            3 => momentum_error::<3>(&scenario),
+            4 => momentum_error::<4>(&scenario),
+            _ => momentum_error::<5>(&scenario),
         });
     }
 }
@@ -170,8 +173,9 @@ proptest! {
 proptest! {
     #![proptest_config(config(100))]
 
+    /// Without torques and excitation the core gains no energy, and undamped it loses none.
     #[test]
-    fn without_torques_and_excitation_the_core_gains_no_energy_and_loses_none_undamped(
+    fn core_is_passive_without_input(
         mut joint in joint(),
         start in (-3.0..3.0, -20.0..20.0, 0.1..2.0),
         damped in any::<bool>(),
@@ -186,12 +190,12 @@ proptest! {
             compliance.damping_ratio *= f64::from(damped);
         }
         let start = start.into();
-        let (most, least) = match planets {
-            3 => swing::<3>(&joint, start),
-            4 => swing::<4>(&joint, start),
-            _ => swing::<5>(&joint, start),
+        let (greatest, least) = match planets {
+            3 => energy_range::<3>(&joint, start),
+            4 => energy_range::<4>(&joint, start),
+            _ => energy_range::<5>(&joint, start),
         };
-        PASSIVITY.check(most - 1.0);
+        PASSIVITY.check(greatest - 1.0);
         if !damped {
             PASSIVITY.check(1.0 - least);
         }

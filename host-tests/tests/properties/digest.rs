@@ -1,4 +1,4 @@
-//! The digest of the tables, on random joints: a change of any parameter changes it.
+//! Digest of the tables on random joints: every parameter changes it.
 
 use model_core::gears::design::Effort;
 use parameters::{DampingLaw, DeadZone, Excitation, JointParameters, MeshPhases, StiffnessWave};
@@ -8,7 +8,7 @@ use reference::scenarios::same;
 use crate::core::tables;
 use crate::random::{TICK_RATE, config, joint};
 
-/// A change of one parameter by a thousandth, or of a choice.
+/// Change of one parameter by a thousandth, or of a choice.
 type Change = fn(&mut JointParameters);
 
 const CHANGES: [(&str, Change); 19] = [
@@ -51,6 +51,7 @@ fn digest<const N: usize>(joint: &JointParameters) -> u64 {
 proptest! {
     #![proptest_config(config(30))]
 
+    /// Every parameter changes the digest.
     #[test]
     fn every_parameter_changes_the_digest(joint in joint()) {
         let digest = match joint.geometry.planets {

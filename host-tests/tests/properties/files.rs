@@ -1,5 +1,5 @@
-//! Random joints as joint files: each is read, and comes back as itself. They are drawn more widely than joints are built,
-//! with masses that do not go together, so their files say so.
+//! Random joints as joint files: each is read back unchanged. They are drawn more widely than joints are built, with inconsistent masses,
+//! so the files set `coherence = "warn"`.
 
 use joint_file::Severity;
 use parameters::{DampingLaw, DeadZone, Excitation, JointParameters, Mesh, MeshPhases, PerPlanet, StiffnessWave};
@@ -79,9 +79,10 @@ fn file(joint: &JointParameters) -> String {
 proptest! {
     #![proptest_config(config(1000))]
 
+    /// The reader accepts any random joint as a file.
     #[test]
     fn random_joints_are_accepted_as_files(mut joint in joint()) {
-        // A file states an amplitude and has its own least backlash.
+        // A file states amplitudes and has a least backlash of its own.
         for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
             mesh.transmission_error.iter_mut().for_each(|error| *error = error.abs());
             mesh.half_backlash.iter_mut().filter(|b| **b < 0.5e-6).for_each(|b| *b = 0.0);

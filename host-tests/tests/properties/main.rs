@@ -1,6 +1,5 @@
-//! Random joints: three to five planets, both laws, both excitations, both dead zones, ripple, errors, unequal
-//! backlash, with a compliance or without. For all of them the reference's balances close and the core's guarantees
-//! hold.
+//! Random joints: three to five planets, both damping laws, both excitations, both dead zones, ripple, errors, unequal backlash, with and
+//! without compliance. For all of them the reference's balances close and the core's guarantees hold.
 
 mod balances;
 mod core;

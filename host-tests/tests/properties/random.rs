@@ -9,10 +9,10 @@ use proptest::test_runner::RngSeed;
 use reference::joint::RelativeState;
 use reference::scenarios::{Scenario, TorqueSegment, l1, same};
 
-/// Ticks a second of every scenario.
+/// Tick rate of every scenario [Hz].
 pub const TICK_RATE: u32 = 20_000;
 
-/// From a tenth to ten times a value, evenly over orders of magnitude.
+/// Log-uniform number from a tenth to ten times a value.
 fn about(value: f64) -> impl Strategy<Value = f64> {
     (-1.0..1.0_f64).prop_map(move |power| value * 10.0_f64.powf(power))
 }
@@ -76,7 +76,7 @@ pub fn joint() -> impl Strategy<Value = JointParameters> {
     )
 }
 
-/// Torques that change once, and not in balance; the joint turns.
+/// Scenario of a turning joint whose unbalanced torques change once.
 pub fn scenario() -> impl Strategy<Value = Scenario> {
     (joint(), -100.0..100.0, -500.0..500.0, -100.0..100.0, -20.0..20.0).prop_map(
         |(joint, drive, load, later, speed)| {
@@ -90,7 +90,7 @@ pub fn scenario() -> impl Strategy<Value = Scenario> {
     )
 }
 
-/// So many cases, the same ones each time, and no file of failures.
+/// Configuration with a number of cases from a fixed seed, and no file of failures.
 pub fn config(cases: u32) -> ProptestConfig {
     ProptestConfig { cases, rng_seed: RngSeed::Fixed(1), failure_persistence: None, ..ProptestConfig::default() }
 }

@@ -1,5 +1,4 @@
-//! The drive train around the joint, effect by effect: each test has an ideal train with one thing added, and a figure
-//! that follows from it by hand.
+//! The drive train around the joint, effect by effect: each test adds one effect to an ideal train and checks a figure computed by hand.
 
 use std::f64::consts::TAU;
 
@@ -11,12 +10,12 @@ use reference::scenarios::{l1, q1};
 
 const RATIO: f64 = 6.0;
 
-/// Inertia of all of Q1 referred to its link while it moves as one.
+/// Inertia of all of Q1 referred to its link, moving as one body [kg m^2].
 fn q1_inertia() -> f64 {
     let joint = q1();
     let sun = joint.rotor_inertia + 0.02 * joint.geometry.sun_base_radius.powi(2);
     let lever = joint.geometry.carrier_radius * joint.geometry.working_pressure_angle.cos();
-    // Planets move along the line of action as the carrier does: three of 0.03 kg, and the carrier with its planets.
+    // Planets move along the line of action with the carrier: three of 0.03 kg, and the carrier with its planets.
     let cosine = joint.geometry.working_pressure_angle.cos();
     let carrier = 0.15 + 3.0 * 0.05 / (cosine * cosine);
     RATIO * RATIO * sun + (3.0 * 0.03 + carrier) * lever * lever + joint.link_inertia
@@ -30,14 +29,14 @@ fn train(joint: &JointParameters, start: &Start, parameters: DriveTrainParameter
     DriveTrain::new(joint, start, parameters, Vec::new(), 1).expect("a sound drive train")
 }
 
-/// Runs a number of control periods under one command.
-fn hold(train: &mut DriveTrain, command: f64, periods: u32) {
+/// Runs a number of control periods with a constant command.
+fn advance_periods(train: &mut DriveTrain, command: f64, periods: u32) {
     for _ in 0..periods {
         train.advance(command).expect("it runs");
     }
 }
 
-/// A profile through the gap and back with everything of Q1 switched on.
+/// Counts and link angles of a run through the gap and back with all effects of Q1.
 fn q1_run(seed: u64, parts_per_period: u32) -> (Vec<Measurement>, Vec<f64>) {
     let parameters = DriveTrainParameters { parts_per_period, ..DriveTrainParameters::q1() };
     let disturbances = vec![Disturbance::Pulse { start: 0.03, duration: 0.01, torque: 1.5 }];
@@ -52,15 +51,17 @@ fn q1_run(seed: u64, parts_per_period: u32) -> (Vec<Measurement>, Vec<f64>) {
     (measured, link)
 }
 
+/// Equal seeds give equal runs, different seeds different runs.
 #[test]
-fn one_seed_is_one_run() {
+fn equal_seeds_give_equal_runs() {
     let (first, _) = q1_run(7, 10);
     assert_eq!(first, q1_run(7, 10).0);
     assert_ne!(first, q1_run(8, 10).0);
 }
 
+/// Ten integration steps per control period are enough.
 #[test]
-fn ten_parts_to_a_period_are_enough() {
+fn ten_steps_per_period_are_enough() {
     let (_, coarse) = q1_run(7, 10);
     let (_, fine) = q1_run(7, 40);
     let difference = coarse.iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -68,34 +69,37 @@ fn ten_parts_to_a_period_are_enough() {
     DRIVE_TRAIN_PARTS.check(difference / travel);
 }
 
+/// Without effects the train only accelerates the joint.
 #[test]
-fn an_ideal_train_only_accelerates_the_joint() {
+fn ideal_train_only_accelerates() {
     let mut train = train(&q1(), &turning(0.0), DriveTrainParameters::ideal());
-    hold(&mut train, 0.5, 1000);
+    advance_periods(&mut train, 0.5, 1000);
     DRIVE_TRAIN.check(train.joint().rigid_speed / (0.5 * RATIO * 0.1 / q1_inertia()) - 1.0);
 }
 
+/// The current loop has a lag, a delay, a torque limit and a gain error.
 #[test]
-fn the_current_loop_lags_delays_and_limits() {
+fn current_loop_lags_delays_and_limits() {
     let mut parameters = DriveTrainParameters::ideal();
     parameters.surroundings.current_lag = 0.2e-3;
     parameters.surroundings.torque_limit = 2.0;
     parameters.surroundings.torque_constant_error_ratio = 0.03;
     parameters.surroundings.delay = 1.0;
     let mut train = train(&q1(), &turning(0.0), parameters);
-    hold(&mut train, 5.0, 1);
+    advance_periods(&mut train, 5.0, 1);
     assert_eq!(train.torques().air_gap, 0.0, "the command is on its way for one period");
-    hold(&mut train, 5.0, 2);
-    // The last part is held at the mean over it, whose moment is its middle as far as a part is short of the lag.
+    advance_periods(&mut train, 5.0, 2);
+    // The last step holds the mean over its length, which is the value at its middle for steps short against the lag.
     let middle = 0.2e-3 - 0.5 * 10e-6;
     let expected = 2.0 * 1.03 * (1.0 - (-middle / 0.2e-3_f64).exp());
     assert!((train.torques().air_gap / expected - 1.0).abs() < 2e-4, "{} N m", train.torques().air_gap);
-    hold(&mut train, 5.0, 100);
+    advance_periods(&mut train, 5.0, 100);
     DRIVE_TRAIN.check(train.torques().air_gap / (2.0 * 1.03) - 1.0);
 }
 
+/// Torque noise has the configured standard deviation.
 #[test]
-fn torque_noise_has_the_stated_size() {
+fn torque_noise_has_its_deviation() {
     let mut parameters = DriveTrainParameters::ideal();
     parameters.surroundings.torque_noise_ratio = 0.015;
     parameters.parts_per_period = 1;
@@ -106,82 +110,88 @@ fn torque_noise_has_the_stated_size() {
         squares += (train.torques().air_gap / 2.0 - 1.0).powi(2);
     }
     let ratio = (squares / 2000.0).sqrt();
-    // The scatter of such an estimate is 1/sqrt(4000) = 1.6 %.
+    // The scatter of this estimate is 1/sqrt(4000) = 1.6 %.
     assert!((ratio / 0.015 - 1.0).abs() < 0.06, "{ratio}");
 }
 
+/// Dry friction holds a smaller torque and is subtracted from a larger one.
 #[test]
-fn dry_friction_holds_a_torque_below_it_and_yields_to_one_above() {
+fn dry_friction_holds_smaller_torques() {
     let mut parameters = DriveTrainParameters::ideal();
     parameters.surroundings.motor_friction.coulomb = 0.03;
     let mut held = train(&q1(), &turning(0.0), parameters.clone());
-    hold(&mut held, 0.029, 500);
+    advance_periods(&mut held, 0.029, 500);
     DRIVE_TRAIN.check(held.joint().motor_speed);
-    // Turning fast enough that no bounce of the teeth turns the motor back.
+    // The joint turns fast enough that no bounce of the teeth reverses the motor.
     let mut moving = train(&q1(), &turning(2.0), parameters);
-    hold(&mut moving, 0.08, 1000);
+    advance_periods(&mut moving, 0.08, 1000);
     DRIVE_TRAIN.check((moving.joint().rigid_speed - 2.0) / (0.05 * RATIO * 0.1 / q1_inertia()) - 1.0);
 }
 
+/// A turning joint coasts to rest and stays at rest.
 #[test]
-fn a_turning_joint_coasts_to_rest_and_stays() {
+fn turning_joint_coasts_to_rest() {
     let mut parameters = DriveTrainParameters::ideal();
     parameters.surroundings.load_friction = Friction { coulomb: 0.3, ..Friction::default() };
     let mut train = train(&q1(), &turning(0.3), parameters);
-    hold(&mut train, 0.0, 500);
+    advance_periods(&mut train, 0.0, 500);
     DRIVE_TRAIN.check(train.joint().rigid_speed / (0.3 - 0.3 * 0.05 / q1_inertia()) - 1.0);
-    hold(&mut train, 0.0, 3000);
+    advance_periods(&mut train, 0.0, 3000);
     assert!(train.joint().link_speed.abs() < 1e-9, "{} rad/s", train.joint().link_speed);
 }
 
+/// Break-away torque exceeds dry friction by the Stribeck rise.
 #[test]
-fn friction_at_rest_is_higher_by_the_stribeck_rise() {
+fn break_away_exceeds_dry_friction() {
     let mut parameters = DriveTrainParameters::ideal();
     parameters.surroundings.load_friction =
         Friction { coulomb: 0.3, stribeck_rise_ratio: 0.2, stribeck_speed: 0.05, viscous: 0.0 };
     for (torque, moves) in [(0.35, false), (0.37, true)] {
         let push = vec![Disturbance::Step { start: 0.0, torque }];
         let mut train = DriveTrain::new(&q1(), &turning(0.0), parameters.clone(), push, 1).expect("sound");
-        hold(&mut train, 0.0, 300);
+        advance_periods(&mut train, 0.0, 300);
         assert_eq!(train.joint().link_speed < -1e-3, moves, "{torque} N m: {} rad/s", train.joint().link_speed);
     }
 }
 
+/// Gravity returns the link to zero after half a period of the pendulum.
 #[test]
-fn gravity_pulls_the_link_back_to_zero() {
+fn gravity_returns_the_link_to_zero() {
     let mut parameters = DriveTrainParameters::ideal();
     parameters.surroundings.gravity_torque = 6.0;
-    // A pendulum at small angle: the link swings out under its speed and returns after half a period.
+    // A pendulum at small angles: the link swings out with its speed and returns after half a period.
     let mut train = train(&q1(), &turning(0.05), parameters);
     let half_period = 0.5 * TAU * (q1_inertia() / 6.0).sqrt();
-    hold(&mut train, 0.0, (0.5 * half_period * 10e3).round() as u32);
+    advance_periods(&mut train, 0.0, (0.5 * half_period * 10e3).round() as u32);
     assert!(train.joint().link_angle > 0.0 && train.torques().gravity > 0.0);
-    hold(&mut train, 0.0, (0.5 * half_period * 10e3).round() as u32);
-    // The teeth are free to drift within 4b, 3.8 mrad at the output.
+    advance_periods(&mut train, 0.0, (0.5 * half_period * 10e3).round() as u32);
+    // The teeth drift freely within 4b, 3.8 mrad at the output.
     assert!(train.joint().link_angle.abs() < 4e-3, "{} rad", train.joint().link_angle);
 }
 
+/// Efficiency is output over input power while the motor drives, and the inverse while the load drives.
 #[test]
-fn efficiency_is_output_over_input_while_the_motor_drives() {
+fn efficiency_is_output_over_input() {
     for (command, speed, load) in [(1.0, 2.0, RATIO * 0.97), (1.0, -2.0, RATIO / 0.97)] {
         let parameters = Surroundings { efficiency: 0.97, ..Surroundings::ideal() }.into();
         let brake = vec![Disturbance::Step { start: 0.0, torque: load }];
-        // Forwards the motor drives a load that takes 97 %; backwards a load drives the motor, which gets 97 %.
+        // Forwards the motor drives a load of 97 %; backwards the load drives the motor, which receives 97 %.
         let mut joint = q1();
-        // Far more damping than Q1 has, so that the wind-up settles soon.
+        // Far more damping than Q1's, so that the wind-up settles soon.
         joint.compliance.as_mut().expect("Q1 is compliant").damping_ratio = 2.0;
         let mut train = DriveTrain::new(&joint, &turning(speed), parameters, brake, 1).expect("sound");
-        hold(&mut train, command, 1000);
+        advance_periods(&mut train, command, 1000);
         let settled = train.joint().rigid_speed;
-        hold(&mut train, command, 1000);
+        advance_periods(&mut train, command, 1000);
         let acceleration = (train.joint().rigid_speed - settled) / 0.1;
-        // As the error of the efficiency that would cause it.
+        // Error of the efficiency that would cause this acceleration.
         EFFICIENCY.check(acceleration / (RATIO / q1_inertia()));
     }
 }
 
+/// An encoder reads the delayed angle with its errors, to one count.
 #[test]
-fn an_encoder_reads_the_angle_that_was_with_its_errors_to_one_count() {
+fn encoder_reads_delayed_angle_with_errors() {
     let mut parameters = DriveTrainParameters::ideal();
     parameters.surroundings.output_encoder = AbsoluteEncoder {
         once_per_turn_error: 2e-3,
@@ -205,8 +215,9 @@ fn an_encoder_reads_the_angle_that_was_with_its_errors_to_one_count() {
     assert!(train.joint().link_angle > TAU, "whole turns are counted");
 }
 
+/// Cogging depends on the motor angle alone.
 #[test]
-fn cogging_repeats_with_the_motor_angle() {
+fn cogging_follows_the_motor_angle() {
     let mut parameters = DriveTrainParameters::ideal();
     parameters.surroundings.cogging_torque = 0.02;
     parameters.surroundings.cogging_periods_per_turn = 84;
@@ -215,14 +226,15 @@ fn cogging_repeats_with_the_motor_angle() {
         let before = train.joint().motor_angle;
         let speed = train.joint().motor_speed;
         train.advance(0.0).expect("it runs");
-        // The last of ten parts lies between the two.
+        // The last of ten integration steps lies between both angles.
         let last_part = before + speed * 95e-6;
         assert!((train.torques().cogging - 0.02 * (84.0 * last_part).sin()).abs() < 2e-4);
     }
 }
 
+/// Drive train parameters out of range are rejected with their limits.
 #[test]
-fn a_drive_train_out_of_range_is_refused_with_the_mend() {
+fn parameters_out_of_range_are_rejected() {
     let refusal = |change: fn(&mut DriveTrainParameters)| {
         let mut parameters = DriveTrainParameters::q1();
         change(&mut parameters);

@@ -1,5 +1,4 @@
-//! Invariants of any integrator: energy against work, shift and scaling of the backlash, independence of whole turns,
-//! and the difference between predictable motions and the rest.
+//! Invariants of any integrator: energy against work, shift and scaling of the backlash, independence of whole turns, and predictability.
 
 use std::f64::consts::TAU;
 
@@ -25,8 +24,9 @@ fn difference(one: &Trajectory, other: &Trajectory, of: impl Fn(&Observation, &O
     one.samples.iter().zip(&other.samples).map(|(a, b)| of(a, b).abs()).fold(0.0, f64::max) / PAPER_LENGTH
 }
 
+/// Energy equals the net work in every scenario.
 #[test]
-fn energy_grows_by_the_work_done_in_every_scenario() {
+fn energy_equals_work_in_every_scenario() {
     let mut scenarios = motions();
     scenarios.push(case("case A", CASE_A_OMEGA));
     for half_backlash in [0.0, 10e-6, 60e-6, 120e-6] {
@@ -51,8 +51,9 @@ fn energy_grows_by_the_work_done_in_every_scenario() {
     }
 }
 
+/// Without back-side contact a wider backlash only shifts the motion.
 #[test]
-fn without_back_side_contact_the_motion_does_not_depend_on_the_backlash() {
+fn backlash_only_shifts_one_sided_motion() {
     let narrow = case("narrow", CASE_A_OMEGA);
     let mut wide = narrow.clone();
     let shift = 55e-6;
@@ -75,13 +76,14 @@ fn without_back_side_contact_the_motion_does_not_depend_on_the_backlash() {
     }
 }
 
+/// Errors, torques, backlash and state scale together.
 #[test]
-fn errors_torques_backlash_and_state_scale_together() {
+fn all_lengths_scale_together() {
     let factor = 2.5;
     for law in [DampingLaw::Paper, DampingLaw::Contact] {
         let mut small = case("small", CASE_A_OMEGA);
         small.joint.damping_law = law;
-        // Short of the point where the law `contact` has amplified rounding beyond the bound.
+        // 150 ticks end before the law `contact` has amplified rounding beyond the bound.
         small.ticks = 150;
         let mut large = small.clone();
         for mesh in meshes(&mut large) {
@@ -104,8 +106,9 @@ fn errors_torques_backlash_and_state_scale_together() {
     }
 }
 
+/// Mesh deflections depend neither on the speed nor on the turns of the joint.
 #[test]
-fn teeth_do_not_feel_how_fast_and_how_far_the_joint_has_turned() {
+fn deflections_ignore_rigid_rotation() {
     let motion = motions().into_iter().find(|motion| motion.name == "L1 contact, reversal through the gap");
     let mut still = motion.expect("the motion is there");
     for mesh in meshes(&mut still) {
@@ -126,13 +129,14 @@ fn teeth_do_not_feel_how_fast_and_how_far_the_joint_has_turned() {
     MANY_TURNS.check(difference(&still, &turning, |a, b| b.gap - a.gap));
 }
 
+/// Scenarios marked predictable, and no others, damp a change of one picometre.
 #[test]
-fn only_motions_marked_predictable_forget_a_picometre() {
+fn predictable_motions_damp_a_picometre() {
     const CHANGE: f64 = 1e-12;
     for scenario in motions() {
         let mut moved = scenario.clone();
         relative(&mut moved).gap += CHANGE;
-        // Of one mesh alone: what the planets have in common is steadier than what they have not.
+        // Only one mesh changes: differences between planets grow faster than their common motion.
         moved.joint.sun_planet.half_backlash[0] += CHANGE;
         let (one, other) = (run(&scenario).expect("it runs"), run(&moved).expect("it runs"));
         let squares = one.samples.iter().zip(&other.samples).flat_map(|(a, b)| {

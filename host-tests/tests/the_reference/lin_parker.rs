@@ -1,6 +1,6 @@
-//! A planetary gear in the plane, three degrees of freedom a body (Lin and Parker 1999, from which the paper's Table 1
-//! is taken), built here from its springs alone: with Table 1's columns put back it has the frequencies that were
-//! published. The project's model is its torsional part: taken out of the same matrices, it has the same frequencies.
+//! Planar planetary gear with three degrees of freedom a body (Lin and Parker 1999, source of the paper's Table 1), built here from its
+//! springs alone: with the columns of Table 1 corrected it has the published frequencies. The project's model is its torsional part:
+//! extracted from the same matrices, it has the model's frequencies.
 
 use std::f64::consts::TAU;
 
@@ -21,7 +21,7 @@ const RING: usize = 1;
 const SUN: usize = 2;
 const PLANET: usize = 3;
 
-/// Springs [N/m]: meshes, bearings of carrier, ring, sun and planets, and what keeps the ring from turning.
+/// Springs [N/m]: meshes, bearings of carrier, ring, sun and planets, and the torsional support of the ring.
 const MESH: f64 = 5e8;
 const BEARING: f64 = 1e8;
 const RING_TORSION: f64 = 1e9;
@@ -71,7 +71,7 @@ impl Gear {
                     (planet + u, -1.0),
                 ],
             );
-            // The planet's bearing in the carrier, radially and tangentially.
+            // Bearing of the planet in the carrier, radial and tangential.
             let (radial, tangential) = (angle.cos(), angle.sin());
             gear.spring(BEARING, &[(3 * CARRIER + x, radial), (3 * CARRIER + y, tangential), (planet + x, -1.0)]);
             gear.spring(
@@ -104,8 +104,8 @@ impl Gear {
         frequencies
     }
 
-    /// The motions in which bodies only turn: sun, planets, and the carrier with its planets' axes on board. Axes move
-    /// along the tangent by u_c, whose cosine a mesh feels; planets' masses ride with the carrier.
+    /// Pure rotations: sun, planets, and the carrier with the planets' axes. The axes move along the tangent by u_c, of which a mesh
+    /// deflects by the cosine; the planets' masses ride with the carrier.
     fn torsional_part(&self, planets: usize) -> Self {
         let mut shapes = DMatrix::zeros(self.masses.len(), planets + 2);
         shapes[(3 * SUN + 2, 0)] = 1.0;
@@ -119,14 +119,15 @@ impl Gear {
     }
 }
 
-/// Frequencies published for three planets [Hz]: six rotational modes, and six translational ones that come in pairs.
+/// Frequencies published for three planets [Hz]: six rotational modes, and six translational modes in pairs.
 const ROTATIONAL: [f64; 6] = [0.0, 1475.7, 1930.3, 2658.3, 7462.8, 11775.3];
 const TRANSLATIONAL: [f64; 6] = [743.2, 1102.4, 1896.0, 2276.4, 6986.3, 9647.9];
-/// Modes of planets alone, for four planets and more [Hz].
-const OF_PLANETS: [f64; 3] = [1808.2, 5963.8, 6981.7];
+/// Planet modes with four and more planets [Hz].
+const PLANET_MODES: [f64; 3] = [1808.2, 5963.8, 6981.7];
 
+/// With Table 1 corrected the gear has the published frequencies.
 #[test]
-fn with_table_1_put_back_the_published_frequencies_come_out() {
+fn corrected_table_1_has_the_frequencies() {
     let mut published: Vec<f64> = ROTATIONAL.into_iter().chain(TRANSLATIONAL).chain(TRANSLATIONAL).collect();
     published.sort_by(f64::total_cmp);
     let found = Gear::new(3, BODIES, RING_TORSION).frequencies();
@@ -136,29 +137,30 @@ fn with_table_1_put_back_the_published_frequencies_come_out() {
     }
 }
 
-/// Carrier and ring as the paper prints them belong to another gear.
+/// Carrier and ring as printed belong to another gear.
 #[test]
-fn with_table_1_as_printed_they_do_not() {
+fn printed_table_1_misses_the_frequencies() {
     let [carrier, ring, sun, planet] = BODIES;
     let lowest = Gear::new(3, [ring, carrier, sun, planet], RING_TORSION).frequencies()[1];
     assert!((lowest / 743.2 - 1.0).abs() > 0.02, "{lowest} Hz");
 }
 
+/// Four and five planets add one and two of each planet mode.
 #[test]
-fn four_and_five_planets_add_one_and_two_of_each_planet_mode() {
+fn more_planets_add_planet_modes() {
     for planets in [4, 5] {
         let found = Gear::new(planets, BODIES, RING_TORSION).frequencies();
-        for published in OF_PLANETS {
+        for published in PLANET_MODES {
             let near = found.iter().filter(|found| (**found / published - 1.0).abs() < PUBLISHED_FREQUENCY.limit);
             assert_eq!(near.count(), planets - 3, "{published} Hz with {planets} planets: {found:?}");
         }
     }
 }
 
-/// The project's model is this gear with stiff bearings and a fixed ring. Its carrier moves by u_c cos(alpha) along a
-/// mesh, which turns up as a mass over the square of the cosine.
+/// The project's model is this gear with stiff bearings and a fixed ring. Its carrier moves by u_c cos(alpha) along a mesh, which appears
+/// as a mass over the square of the cosine.
 #[test]
-fn the_project_s_model_is_the_torsional_part() {
+fn model_is_the_torsional_part() {
     for planets in 3..=5 {
         let found = Gear::new(planets, BODIES, 0.0).torsional_part(planets).frequencies();
         let mut joint = paper_joint(0.0, 0.0, 0.0, 0.0);

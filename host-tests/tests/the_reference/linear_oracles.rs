@@ -1,5 +1,5 @@
-//! The reference without backlash against what linear algebra says: natural frequencies, damped eigenvalues, the steady
-//! ellipse. And with backlash at rest: static deflections and lost motion.
+//! The reference without backlash against linear algebra: natural frequencies, damped eigenvalues, the steady ellipse. With backlash at
+//! rest: static deflections and lost motion.
 
 use std::f64::consts::TAU;
 
@@ -12,13 +12,13 @@ use reference::scenarios::{PAPER_LENGTH, Scenario, TorqueSegment, paper_joint, p
 /// Dimensionless sampling interval, short against every mode.
 const INTERVAL: f64 = 0.5;
 
-/// A scenario without torques.
+/// Scenario without torques.
 fn free(joint: JointParameters, start: RelativeState) -> Scenario {
     Scenario::new("free vibration", joint, start)
 }
 
-/// Free vibration of the paper's joint without backlash, ripple and error, all modes excited: sum of the sun-planet
-/// deflections (overall modes) and difference of two (planet mode), dimensionless.
+/// Free vibration of the paper's joint without backlash, ripple and error, all modes excited: sum of the sun-planet deflections (overall
+/// modes) and difference of two (planet mode), dimensionless.
 fn free_vibration(damping_ratio: f64) -> (Vec<f64>, Vec<f64>) {
     let mut joint = paper_joint(0.0, 0.0, 0.0, 0.0);
     joint.sun_planet.damping_ratio = damping_ratio;
@@ -35,8 +35,8 @@ fn free_vibration(damping_ratio: f64) -> (Vec<f64>, Vec<f64>) {
     (overall, planet)
 }
 
-/// Sum of two decaying oscillations: x[k+4] = a x[k+3] + b x[k+2] + c x[k+1] + d x[k]. The root of its characteristic
-/// polynomial next to a guessed eigenvalue.
+/// Eigenvalue of the overall modes next to a guess, as root of the characteristic polynomial of x[k+4] = a x[k+3] + b x[k+2] + c x[k+1] + d
+/// x[k], the sum of two decaying oscillations.
 fn overall_eigenvalue(signal: &[f64], guess: Complex<f64>) -> Complex<f64> {
     let matrix = Matrix4::from_fn(|row, column| signal[4 * row + 3 - column]);
     let coefficients =
@@ -54,7 +54,7 @@ fn overall_eigenvalue(signal: &[f64], guess: Complex<f64>) -> Complex<f64> {
     root.ln() / INTERVAL
 }
 
-/// One decaying oscillation: x[k+2] = a x[k+1] + b x[k].
+/// Eigenvalue of the planet mode from x[k+2] = a x[k+1] + b x[k], one decaying oscillation.
 fn planet_eigenvalue(signal: &[f64]) -> Complex<f64> {
     let determinant = signal[1] * signal[6] - signal[0] * signal[7];
     let a = (signal[2] * signal[6] - signal[0] * signal[8]) / determinant;
@@ -63,8 +63,9 @@ fn planet_eigenvalue(signal: &[f64]) -> Complex<f64> {
     root.ln() / INTERVAL
 }
 
+/// Free vibration has the frequencies of the characteristic polynomial.
 #[test]
-fn natural_frequencies_are_those_of_the_characteristic_polynomial() {
+fn free_vibration_has_natural_frequencies() {
     let (overall, planet) = free_vibration(0.0);
     let (stiffness, sun, planet_mass, n): (f64, f64, f64, f64) = (1e8, 0.39, 0.61, 3.0);
     let carrier = (6.29 + 3.0 * 0.66) / 24.6_f64.to_radians().cos().powi(2);
@@ -86,8 +87,9 @@ fn natural_frequencies_are_those_of_the_characteristic_polynomial() {
     NATURAL_FREQUENCY.check(found / expected - 1.0);
 }
 
+/// Free vibration decays with the damped eigenvalues.
 #[test]
-fn free_vibration_decays_with_the_damped_eigenvalues() {
+fn free_vibration_has_damped_eigenvalues() {
     let (overall, planet) = free_vibration(0.05);
     for expected in [Complex::new(-0.032282, 0.637513), Complex::new(-0.119223, 1.526734)] {
         EIGENVALUE.check((overall_eigenvalue(&overall, expected) - expected).norm());
@@ -95,8 +97,9 @@ fn free_vibration_decays_with_the_damped_eigenvalues() {
     EIGENVALUE.check((planet_eigenvalue(&planet) - Complex::new(-0.050725, 0.881718)).norm());
 }
 
+/// Without backlash and ripple the steady motion is the known ellipse.
 #[test]
-fn without_backlash_and_ripple_the_steady_state_is_the_exact_ellipse() {
+fn steady_motion_is_the_known_ellipse() {
     const SAMPLES: u32 = 64;
     let omega = 2.1;
     let joint = paper_joint(0.0, 30e-6, 0.0, omega);
@@ -137,8 +140,9 @@ fn balanced(joint: &JointParameters, drive_torque: f64) -> Vec<TorqueSegment> {
     vec![TorqueSegment { from_tick: 0, drive_torque, load_torque: drive_torque * ratio(joint) }]
 }
 
+/// The joint settles at the static deflection of either flank, four half-backlashes apart.
 #[test]
-fn teeth_come_to_rest_at_the_static_deflection_and_lose_four_half_backlashes() {
+fn joint_settles_at_static_deflection() {
     let half_backlash = 60e-6;
     for law in [DampingLaw::Paper, DampingLaw::Contact] {
         let mut joint = paper_joint(0.0, 0.0, half_backlash, 0.0);
@@ -167,10 +171,11 @@ fn teeth_come_to_rest_at_the_static_deflection_and_lose_four_half_backlashes() {
     }
 }
 
+/// A static load winds the compliance up by torque over stiffness.
 #[test]
-fn a_rigid_load_torque_winds_the_compliance_up_by_torque_over_stiffness() {
+fn static_load_winds_up_the_compliance() {
     let mut joint = q1();
-    // Far more damping than Q1 has, so that it settles soon.
+    // Far more damping than Q1's, so that the joint settles soon.
     joint.compliance.as_mut().expect("Q1 is compliant").damping_ratio = 2.0;
     let mut scenario = free(joint.clone(), RelativeState::centred(3));
     scenario.torques = balanced(&joint, 1.0);

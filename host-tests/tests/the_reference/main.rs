@@ -1,5 +1,5 @@
-//! The reference: the integrator itself, then the joint against closed forms, printed figures, another integrator's data and
-//! the laws that no motion may break, and the drive train around it.
+//! The reference: the integrator alone, the joint against closed forms, printed figures, another integrator's data and conservation laws,
+//! and the drive train around it.
 
 mod drive_train;
 mod excitation;

@@ -1,4 +1,4 @@
-//! The two damping laws at single states: a joint is set into a state and its mesh forces are read.
+//! The two damping laws at single states: mesh forces of a joint set to a state.
 
 use host_tests::tolerance::MESH_FORCE;
 use parameters::{ContactState, DampingLaw};
@@ -7,7 +7,7 @@ use reference::scenarios::{l1, same};
 
 const HALF_BACKLASH: f64 = 60e-6;
 
-/// Damping of L1's meshes from the gears' own masses: neither its rotor nor its link may count.
+/// Damping of L1's meshes from the gears' own masses, without rotor and link.
 fn damping() -> [f64; 2] {
     [0.39 * 0.61 / (0.39 + 0.61), 0.61].map(|mass: f64| 2.0 * 0.05 * (1e8 * mass).sqrt())
 }
@@ -28,7 +28,7 @@ fn meshes(law: DampingLaw, deflection: f64, rate: f64) -> [(f64, ContactState); 
     [0, 1].map(|kind| (seen.mesh_forces[kind][0], seen.contacts[kind][0]))
 }
 
-/// What the laws say.
+/// Mesh force of the damping laws, computed by hand.
 fn by_hand(law: DampingLaw, deflection: f64, rate: f64, damping: f64) -> f64 {
     let overlap = (deflection - HALF_BACKLASH).max(0.0) + (deflection + HALF_BACKLASH).min(0.0);
     let line = 1e8 * overlap + damping * rate;
@@ -40,8 +40,9 @@ fn by_hand(law: DampingLaw, deflection: f64, rate: f64, damping: f64) -> f64 {
     }
 }
 
+/// Mesh forces equal both laws, computed by hand.
 #[test]
-fn mesh_forces_are_those_of_the_two_laws() {
+fn mesh_forces_follow_both_laws() {
     for law in [DampingLaw::Paper, DampingLaw::Contact] {
         for deflection in [-75e-6, -61e-6, -20e-6, 0.0, 59e-6, 61e-6, 90e-6] {
             for rate in [-0.5, -0.01, 0.01, 0.5] {
@@ -54,8 +55,9 @@ fn mesh_forces_are_those_of_the_two_laws() {
     }
 }
 
+/// Separated teeth carry no force with the law `contact`, and drag with the law `paper`.
 #[test]
-fn separated_teeth_carry_no_force_under_the_law_contact_and_drag_under_the_law_paper() {
+fn separated_teeth_drag_in_law_paper_only() {
     for (force, contact) in meshes(DampingLaw::Contact, 59e-6, 0.5) {
         assert_eq!((force, contact), (0.0, ContactState::Separated));
     }
@@ -65,8 +67,9 @@ fn separated_teeth_carry_no_force_under_the_law_contact_and_drag_under_the_law_p
     }
 }
 
+/// Flanks that recede faster than they spring back touch without force.
 #[test]
-fn flanks_that_leave_faster_than_they_spring_back_touch_without_force() {
+fn receding_flanks_touch_without_force() {
     for (force, contact) in meshes(DampingLaw::Contact, 61e-6, -0.5) {
         assert_eq!((force, contact), (0.0, ContactState::DriveSide));
     }

@@ -1,12 +1,12 @@
-//! The integrator itself, on one mass in a dead zone whose free periods have closed forms, and at the edges where event
-//! search could miss or never end. Gears are not involved.
+//! The integrator alone, on one mass in a dead zone with known free periods, and in cases where event search could miss or never end. No
+//! gears.
 
 use std::f64::consts::TAU;
 
 use host_tests::tolerance::FREE_PERIOD;
 use reference::integrator::{Entries, Guards, Integrator, MAX_ENTRIES, SwitchedSystem};
 
-/// x'' = force - f(x, half_backlash), mass and stiffness one.
+/// Mass with x'' = force - f(x, half_backlash), mass and stiffness one.
 struct Mass {
     force: f64,
     half_backlash: f64,
@@ -20,7 +20,7 @@ impl Mass {
         Self { force, half_backlash, side: 0.0, longest_step: 1.0, tolerance: 1e-13 }
     }
 
-    /// Released from rest at `amplitude` beyond the equilibrium on the side of the force.
+    /// Motion from rest at `amplitude` beyond the equilibrium on the side of the force.
     fn released(&self, amplitude: f64) -> Integrator {
         let mut state: Entries = [0.0; MAX_ENTRIES];
         state[0] = self.half_backlash + self.force + amplitude;
@@ -64,8 +64,8 @@ impl SwitchedSystem for Mass {
     }
 }
 
-/// Releases the mass, waits for twenty of the expected periods, and says by how much the last came early or late: near
-/// the turning point the speed is the acceleration there times the delay.
+/// Error of a period, relative: releases the mass, runs twenty of the expected periods and reads the speed, which near the turning point is
+/// the acceleration there times the delay.
 fn period_error(force: f64, half_backlash: f64, amplitude: f64, period: f64) -> f64 {
     let mut mass = Mass::new(force, half_backlash);
     let mut motion = mass.released(amplitude);
@@ -75,15 +75,17 @@ fn period_error(force: f64, half_backlash: f64, amplitude: f64, period: f64) -> 
     speed / amplitude / period
 }
 
+/// Without mean force the period grows by the time spent in the gap.
 #[test]
-fn without_a_mean_force_the_period_grows_by_the_time_in_the_gap() {
+fn gap_lengthens_the_free_period() {
     for (half_backlash, amplitude) in [(0.5_f64, 1.0), (2.0, 0.3), (0.01, 5.0)] {
         FREE_PERIOD.check(period_error(0.0, half_backlash, amplitude, TAU + 4.0 * half_backlash / amplitude));
     }
 }
 
+/// With loss of contact on one side the period matches its closed form.
 #[test]
-fn one_sided_loss_of_contact_has_its_closed_period() {
+fn one_sided_contact_has_closed_period() {
     for (force, half_backlash, amplitude) in [(1.0_f64, 2.0, 1.5_f64), (1.0, 5.0, 3.0), (0.2, 1.0, 0.21)] {
         assert!(
             (amplitude.powi(2) - force.powi(2)) / (2.0 * force) < 2.0 * half_backlash,
@@ -95,8 +97,9 @@ fn one_sided_loss_of_contact_has_its_closed_period() {
     }
 }
 
+/// With contact on both flanks the period matches its closed form.
 #[test]
-fn two_sided_contact_has_its_closed_period() {
+fn two_sided_contact_has_closed_period() {
     for (force, half_backlash, amplitude) in [(0.5_f64, 0.5, 2.0_f64), (1.0, 0.3, 4.0), (0.1, 2.0, 3.0)] {
         let entry = (amplitude.powi(2) - force.powi(2)).sqrt();
         let exit = (entry.powi(2) - 4.0 * half_backlash * force).sqrt();
@@ -108,12 +111,13 @@ fn two_sided_contact_has_its_closed_period() {
     }
 }
 
+/// The method is of eighth order.
 #[test]
-fn the_method_is_of_eighth_order() {
+fn method_is_of_eighth_order() {
     let error = |step: f64| {
         let mut mass = Mass { longest_step: step, tolerance: f64::INFINITY, ..Mass::new(0.0, 0.0) };
         let mut motion = mass.released(1.0);
-        // Away from x = 0, so that no event cuts a step short.
+        // Ends before x = 0, so that no event shortens a step.
         motion.advance(&mut mass, 1.5).expect("it runs");
         (motion.state()[0] - 1.5_f64.cos()).hypot(motion.state()[1] + 1.5_f64.sin())
     };
@@ -121,9 +125,10 @@ fn the_method_is_of_eighth_order() {
     assert!((7.5..9.5).contains(&order), "order {order}");
 }
 
+/// Grazes deeper than the resolution are found; shallower grazes do no harm.
 #[test]
-fn a_graze_deeper_than_the_resolution_is_found_and_a_shallower_one_does_no_harm() {
-    // At amplitude = force the mass swings back to the edge of the gap and no further.
+fn grazes_are_found_to_the_resolution() {
+    // At amplitude = force the mass swings back exactly to the edge of the gap.
     for (excess, least_events) in [(1e-3, 180), (1e-6, 180), (1e-9, 180), (1e-14, 0), (0.0, 0), (-1e-14, 0), (-1e-6, 0)]
     {
         let mut mass = Mass::new(1.0, 0.5);
@@ -141,8 +146,9 @@ fn a_graze_deeper_than_the_resolution_is_found_and_a_shallower_one_does_no_harm(
     }
 }
 
+/// A mass at rest on the edge of the gap stays there without events.
 #[test]
-fn a_mass_at_rest_on_the_edge_of_the_gap_stays_there() {
+fn mass_on_the_edge_stays_there() {
     let mut mass = Mass::new(0.0, 0.5);
     let mut motion = mass.released(0.0);
     motion.advance(&mut mass, 1000.0).expect("it runs");
@@ -150,8 +156,9 @@ fn a_mass_at_rest_on_the_edge_of_the_gap_stays_there() {
     assert_eq!(motion.counters().events, 0);
 }
 
+/// A non-finite state is reported with its time.
 #[test]
-fn a_state_that_blows_up_is_reported_with_its_time() {
+fn non_finite_state_is_reported() {
     let mut mass = Mass::new(f64::NAN, 0.5);
     let mut motion = mass.released(0.0);
     let error = motion.advance(&mut mass, 1.0).expect_err("NaN is no state");

@@ -1,4 +1,4 @@
-//! How planets differ by their tooth counts, the four regimes of set P, and what the reference refuses.
+//! Phase differences of planets by tooth counts, the four regimes of set P, and rejected joints.
 
 use std::f64::consts::TAU;
 
@@ -13,7 +13,7 @@ use reference::scenarios::{
 /// omega/omega_n of set P.
 const OMEGA: f64 = 2.1;
 
-/// A joint without backlash and with constant stiffness, linear, whose planets mesh as the tooth counts say.
+/// Linear joint without backlash and with constant stiffness, whose mesh phases follow from the tooth counts.
 fn by_teeth(planets: usize, sun_teeth: u32, ring_teeth: u32) -> Scenario {
     let mut scenario = regime("by teeth", 0.0, 0.0);
     let joint = &mut scenario.joint;
@@ -30,16 +30,17 @@ fn by_teeth(planets: usize, sun_teeth: u32, ring_teeth: u32) -> Scenario {
     scenario
 }
 
-/// Times tau = first + i period / parts, in seconds.
+/// Times tau = first + i period / parts [s].
 fn parts_of_a_period(first: f64, parts: usize, count: usize) -> Vec<f64> {
     let period = TAU / OMEGA;
     let first = (first / period).ceil() * period;
     (0..count).map(|part| (first + period * part as f64 / parts as f64) / paper_natural_frequency()).collect()
 }
 
+/// Planets follow one another by the fraction of a tooth.
 #[test]
-fn planets_follow_one_another_by_the_fraction_of_a_tooth() {
-    // Zs/n = 28/3 and 26/4: planet i is ahead by a third and by a half of a mesh period, on the ring as on the sun.
+fn planets_follow_by_tooth_fraction() {
+    // Zs/n = 28/3 and 26/4: planet i leads by a third and by a half of a mesh period, on ring and sun.
     for (planets, sun_teeth, ring_teeth, lead) in [(3, 28, 98, 1), (4, 26, 98, 2), (5, 27, 98, 2)] {
         let times = parts_of_a_period(900.0, planets, 3 * planets);
         let found = run_at(&by_teeth(planets, sun_teeth, ring_teeth), &times).expect("it runs");
@@ -57,8 +58,9 @@ fn planets_follow_one_another_by_the_fraction_of_a_tooth() {
     }
 }
 
+/// Planets with whole tooth counts move in phase.
 #[test]
-fn planets_of_whole_tooth_counts_move_as_one() {
+fn whole_tooth_counts_move_in_phase() {
     let mut scenario = by_teeth(3, 27, 99);
     for mesh in [&mut scenario.joint.sun_planet, &mut scenario.joint.ring_planet] {
         mesh.half_backlash = same(3, 10e-6);
@@ -86,8 +88,9 @@ fn distance(one: &[f64; 4], other: &[f64; 4]) -> f64 {
     one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
+/// Set P at 0 and 10 um has period one.
 #[test]
-fn set_p_without_backlash_and_with_ten_micrometres_is_of_period_one() {
+fn set_p_at_0_and_10_um_has_period_one() {
     for (half_backlash, expected) in
         [(0.0, [-0.0678, 0.8675, -11.5051, -5.0495]), (10e-6, [0.3748, 1.4129, -9.0687, -2.7137])]
     {
@@ -97,13 +100,14 @@ fn set_p_without_backlash_and_with_ten_micrometres_is_of_period_one() {
     }
 }
 
+/// Set P at 60 um has period three.
 #[test]
-fn set_p_with_sixty_micrometres_is_of_period_three() {
+fn set_p_at_60_um_has_period_three() {
     let expected =
         [[0.7489, 6.1283, -13.9408, -6.2729], [-6.2003, 0.6379, -4.3947, 0.8576], [6.5018, 10.4328, -2.1416, 3.4190]];
     let (found, _) = points(60e-6, 900, 6);
     let first = expected.iter().position(|point| distance(point, &found[0]) < 1.0).expect("one of the three points");
-    // The order of the three around the cycle is not stated: it must be the same each time.
+    // The phase of the cycle is not given: the three points must come in one order.
     for (index, point) in found.iter().enumerate() {
         let nearest = expected.iter().map(|expected| distance(expected, point)).fold(f64::INFINITY, f64::min);
         POINCARE.check(nearest);
@@ -111,8 +115,9 @@ fn set_p_with_sixty_micrometres_is_of_period_three() {
     }
 }
 
+/// Set P at 120 um never repeats.
 #[test]
-fn set_p_with_a_hundred_and_twenty_micrometres_never_repeats() {
+fn set_p_at_120_um_never_repeats() {
     let (found, counters) = points(120e-6, 300, 300);
     let mut distinct: Vec<[f64; 4]> = Vec::new();
     for point in found {
@@ -124,8 +129,9 @@ fn set_p_with_a_hundred_and_twenty_micrometres_never_repeats() {
     assert_eq!(counters.unguarded_steps, 0);
 }
 
+/// Without backlash the law `contact` separates a mesh that would pull otherwise.
 #[test]
-fn without_backlash_the_law_contact_still_parts_where_a_joined_mesh_would_pull() {
+fn contact_law_parts_without_backlash() {
     let mut scenario = regime("no backlash, law contact", 0.0, 200.0);
     scenario.joint.damping_law = DampingLaw::Contact;
     let found = run(&scenario).expect("it runs");
@@ -134,14 +140,15 @@ fn without_backlash_the_law_contact_still_parts_where_a_joined_mesh_would_pull()
             assert!(deflection * force >= 0.0, "flanks only push: {deflection} m, {force} N");
         }
     }
-    // A zone of no width is left as soon as it is entered: a few events a period, not one after another.
+    // A zone of zero width is left as soon as it is entered: a few events a period, not an endless series.
     let periods = 200.0 * OMEGA / TAU;
     let each = found.counters.events as f64 / periods / 6.0;
     assert!((1.0..20.0).contains(&each), "{each} events for each mesh and period");
 }
 
+/// A joint at rest on the edge of every gap stays there.
 #[test]
-fn a_joint_still_at_the_edge_of_every_gap_stays_there() {
+fn joint_on_every_edge_stays_there() {
     let mut joint = paper_joint(0.0, 0.0, 10e-6, 0.0);
     joint.damping_law = DampingLaw::Contact;
     let edge = RelativeState { sun_planet: same(3, 10e-6), gap: 20e-6, ..RelativeState::centred(3) };
@@ -151,8 +158,9 @@ fn a_joint_still_at_the_edge_of_every_gap_stays_there() {
     assert!(reference.counters().steps < 10_000, "{:?}", reference.counters());
 }
 
+/// A tanh dead zone and unsound parameters are rejected with the remedy.
 #[test]
-fn a_smoothed_dead_zone_and_broken_parameters_are_refused_with_the_mend() {
+fn unsound_joints_are_rejected() {
     let refusal = |change: fn(&mut parameters::JointParameters)| {
         let mut joint = paper_joint(0.1, 30e-6, 60e-6, OMEGA);
         change(&mut joint);

@@ -1,4 +1,4 @@
-//! A joint under the controller, an attack on what the controller is given, and what has to hold.
+//! Joint under the controller, attacks on the controller's inputs, and the guarantees that have to hold.
 
 use std::f64::consts::TAU;
 
@@ -11,25 +11,25 @@ use model_core::observer::{Estimate, Estimates, ObserverTables, Samples};
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint, design::design_surroundings};
 use scenario::random::RandomStream;
 
-/// Presets whose joints are attacked.
+/// Presets under attack.
 pub const PRESETS: [&str; 4] = ["q1", "s1", "l1", "d2"];
 
-/// What is thrown at the controller.
+/// Corruption of the controller's inputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Wild {
-    /// Finite, infinite and missing torques of any size.
+pub enum Attack {
+    /// Torques of any size, infinities and NaN.
     Torque,
-    /// Torques up to a few times the limit.
+    /// Torques up to three times the limit.
     StrongTorque,
-    /// Counts of the output that are anything.
+    /// Random counts of the output encoder.
     OutputCounts,
-    /// Readings of the output that come and go.
+    /// Output readings missing at random.
     OutputMissing,
-    /// Times in any order.
+    /// Time stamps in any order.
     Times,
-    /// Set-points of any bits.
+    /// Set-points of random bits.
     SetPoints,
-    /// All of it, counts of the motor that are anything too.
+    /// All corruptions at once, with random counts of the motor encoder.
     Everything,
 }
 
@@ -39,11 +39,11 @@ pub struct Subject {
     compensation: CompensationTables<f32>,
     gears: Tables<f32, 3>,
     around: SurroundingsTable<f32>,
-    /// Largest torque of the motor [N m].
+    /// Torque limit of the motor [N m].
     pub limit: f32,
     rate: u32,
     parameters: parameters::JointParameters,
-    /// Torque of the link's weight, at most [N m].
+    /// Largest torque of the link's weight [N m].
     gravity: f64,
 }
 
@@ -72,48 +72,48 @@ impl Subject {
         VirtualJoint::new(&self.gears, &self.around)
     }
 
-    /// Control periods a second.
+    /// Control rate [Hz].
     pub fn rate(&self) -> f64 {
         f64::from(self.rate)
     }
 
-    /// Angle of the link between the flanks, and what winds up under the largest torque [rad].
+    /// Angle of the link between the flanks, and the wind-up under the largest torque [rad].
     pub fn lost_motion(&self) -> f64 {
-        let backlash = |of: &[f64]| of.iter().copied().fold(f64::INFINITY, f64::min);
+        let backlash = |halves: &[f64]| halves.iter().copied().fold(f64::INFINITY, f64::min);
         let [sun, ring] = [&self.parameters.sun_planet, &self.parameters.ring_planet];
         let gap = 2.0 * (backlash(&sun.half_backlash) + backlash(&ring.half_backlash));
         let wound_up = self.parameters.compliance.map_or(0.0, |compliance| 2.0 / compliance.stiffness);
         f64::from(self.observer.levers.per_output) * gap + wound_up * self.largest_at_link()
     }
 
-    /// The same with the widest gap that the observer takes for possible before it knows it [rad].
+    /// Lost motion with the widest gap that the observer considers possible before it has estimated the gap [rad].
     pub fn widest_lost_motion(&self) -> f64 {
         let [half_gap, uncertain] = [self.observer.learner.mean[0], self.observer.learner.deviation[0]].map(f64::from);
         let [margin, lever] = [self.observer.supervisor.margin, self.observer.levers.per_output].map(f64::from);
         self.lost_motion() + lever * 2.0 * (half_gap + 3.0 * uncertain + 2.0 * margin)
     }
 
-    /// Largest torque of the motor at the link [N m].
+    /// Torque limit of the motor at the link [N m].
     pub fn largest_at_link(&self) -> f64 {
         f64::from(self.limit * self.observer.levers.ratio)
     }
 
-    /// Acceleration of the link by its weight alone, at most [rad/s^2].
+    /// Largest acceleration of the link by its weight alone [rad/s^2].
     pub fn fall(&self) -> f64 {
         self.gravity / self.parameters.link_inertia
     }
 
-    /// Periods in so many seconds.
+    /// Number of periods in a time [s].
     pub fn periods(&self, seconds: f64) -> u32 {
         (seconds * f64::from(self.rate)) as u32
     }
 
-    /// A swing of a thirtieth of a turn to either side, once in two seconds.
+    /// Swing of 0.03 turns to either side with a period of 2 s.
     pub fn swing(&self, period: u32) -> Command<f32> {
         self.swing_by(period, 0.03, 2.0)
     }
 
-    /// A swing of so many turns to either side, once in so many seconds.
+    /// Swing of `turns` to either side with a period of `seconds`.
     pub fn swing_by(&self, period: u32, turns: f64, seconds: f64) -> Command<f32> {
         let rate = TAU / seconds;
         let motion = |time: f64| {
@@ -130,17 +130,17 @@ impl Subject {
     }
 }
 
-/// Where the link is [rad].
+/// Angle of the link [rad].
 pub fn link_angle(joint: &VirtualJoint<'_, f32, 3>) -> f64 {
     let outputs = joint.outputs();
     TAU * (f64::from(outputs.carrier_turns) + f64::from(outputs.carrier_fraction) / 4_294_967_296.0)
 }
 
-/// Random bits, and values of all sizes.
-pub struct Chance(RandomStream);
+/// Random bits and numbers of all sizes.
+pub struct RandomValues(RandomStream);
 
-impl Chance {
-    /// The draws of an attack for a seed.
+impl RandomValues {
+    /// Random numbers of an attack for a seed.
     pub fn new(seed: u64, attack: &str) -> Self {
         Self(RandomStream::new(seed, attack))
     }
@@ -149,18 +149,18 @@ impl Chance {
         self.0.word()
     }
 
-    pub fn of(&mut self, choices: u64) -> u64 {
+    pub fn below(&mut self, choices: u64) -> u64 {
         self.word() % choices
     }
 
-    /// From -1 to 1.
+    /// Uniform number from -1 to 1.
     pub fn unit(&mut self) -> f32 {
         (2.0 * self.0.uniform() - 1.0) as f32
     }
 
-    /// Any f32, or one of those that hurt most.
-    pub fn wild(&mut self) -> f32 {
-        match self.of(8) {
+    /// Any f32, or an especially harmful one.
+    pub fn any_f32(&mut self) -> f32 {
+        match self.below(8) {
             0 => f32::NAN,
             1 => f32::INFINITY.copysign(self.unit()),
             2 => f32::MAX.copysign(self.unit()),
@@ -172,85 +172,92 @@ impl Chance {
     }
 }
 
-impl Wild {
-    /// Spoils what the controller is given in one period.
-    pub fn spoil(self, chance: &mut Chance, limit: f32, samples: &mut Samples<f32>, command: &mut Command<f32>) {
+impl Attack {
+    /// Corrupts the controller's inputs of one period.
+    pub fn apply(self, random: &mut RandomValues, limit: f32, samples: &mut Samples<f32>, command: &mut Command<f32>) {
         let all = self == Self::Everything;
-        let mut does = |which| self == which || all && chance.of(3) == 0;
+        let mut does = |which| self == which || all && random.below(3) == 0;
         let [torque, strong, output, missing, times, points] =
             [Self::Torque, Self::StrongTorque, Self::OutputCounts, Self::OutputMissing, Self::Times, Self::SetPoints]
                 .map(&mut does);
         if torque {
-            samples.torque = chance.wild();
+            samples.torque = random.any_f32();
         }
         if strong {
-            samples.torque = 3.0 * limit * chance.unit();
+            samples.torque = 3.0 * limit * random.unit();
         }
         if output && let Some(reading) = &mut samples.output {
-            reading.counts = chance.word() as u32;
+            reading.counts = random.word() as u32;
         }
-        if missing && chance.of(2) == 0 {
+        if missing && random.below(2) == 0 {
             samples.output = None;
         }
         if times {
-            samples.time = samples.time.wrapping_add(chance.word() as u32 >> chance.of(32));
-            samples.motor.time = samples.motor.time.wrapping_sub(chance.word() as u32 >> chance.of(32));
+            samples.time = samples.time.wrapping_add(random.word() as u32 >> random.below(32));
+            samples.motor.time = samples.motor.time.wrapping_sub(random.word() as u32 >> random.below(32));
         }
-        if all && chance.of(2) == 0 {
-            samples.motor.counts = chance.word() as u32;
+        if all && random.below(2) == 0 {
+            samples.motor.counts = random.word() as u32;
         }
         if points {
-            *command = wild_command(chance);
+            *command = wild_command(random);
         }
     }
 }
 
-fn wild_command(chance: &mut Chance) -> Command<f32> {
+fn wild_command(random: &mut RandomValues) -> Command<f32> {
     let mut motion = || Motion {
-        position: Position { turns: chance.word() as i32 >> chance.of(32), fraction: chance.wild() },
-        speed: chance.wild(),
-        acceleration: chance.wild(),
+        position: Position { turns: random.word() as i32 >> random.below(32), fraction: random.any_f32() },
+        speed: random.any_f32(),
+        acceleration: random.any_f32(),
     };
     let (now, ahead) = (motion(), motion());
-    match chance.of(3) {
+    match random.below(3) {
         0 => Command::Position { now, ahead: None },
         1 => Command::Position { now, ahead: Some(ahead) },
         _ => Command::Impedance(ImpedancePoint {
             position: now.position,
             speed: now.speed,
-            torque: chance.wild(),
-            stiffness: chance.wild(),
-            damping: chance.wild(),
+            torque: random.any_f32(),
+            stiffness: random.any_f32(),
+            damping: random.any_f32(),
         }),
     }
 }
 
-/// Whatever was put in: torque within the limit, every estimate finite.
-pub fn hold(answer: &Answer<f32>, limit: f32, when: &dyn Fn() -> String) {
+/// Checks that the torque is within the limit and every estimate finite.
+pub fn check_answer(answer: &Answer<f32>, limit: f32, when: &dyn Fn() -> String) {
     let torque = answer.shaped.torque;
     assert!(torque.abs() <= limit * 1.0001, "a torque of {torque} N m, the limit is {limit}: {}", when());
     assert!(answer.shaped.load.iter().all(|load| load.is_finite()), "{:?}: {}", answer.shaped, when());
     assert!(finite(&answer.estimates), "{:#?}: {}", answer.estimates, when());
 }
 
-/// Whether every number among the estimates is one.
-pub fn finite(said: &Estimates<f32>) -> bool {
+/// Returns true if all estimates are finite.
+pub fn finite(published: &Estimates<f32>) -> bool {
     let estimates: [&Estimate<f32>; 9] = [
-        &said.gap,
-        &said.mesh_torque,
-        &said.load_torque,
-        &said.half_backlash,
-        &said.encoder_offset,
-        &said.compliance,
-        &said.skew,
-        &said.torque_bias,
-        &said.motor_friction,
+        &published.gap,
+        &published.mesh_torque,
+        &published.load_torque,
+        &published.half_backlash,
+        &published.encoder_offset,
+        &published.compliance,
+        &published.skew,
+        &published.torque_bias,
+        &published.motor_friction,
     ];
-    let shafts = [said.motor, said.link];
-    let [sine, cosine] = said.cogging;
-    let others = [said.gap_rate, said.flank_shift, said.flank_shift_slope, said.link_inertia_ratio.value, sine, cosine];
+    let shafts = [published.motor, published.link];
+    let [sine, cosine] = published.cogging;
+    let others = [
+        published.gap_rate,
+        published.flank_shift,
+        published.flank_shift_slope,
+        published.link_inertia_ratio.value,
+        sine,
+        cosine,
+    ];
     estimates.iter().all(|estimate| estimate.value.is_finite() && estimate.variance.is_finite())
         && shafts.iter().all(|shaft| shaft.fraction.is_finite() && shaft.speed.is_finite())
         && others.iter().all(|other| other.is_finite())
-        && said.link_inertia_ratio.variance.is_finite()
+        && published.link_inertia_ratio.variance.is_finite()
 }

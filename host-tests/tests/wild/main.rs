@@ -1,7 +1,7 @@
-//! Nothing wild in, nothing wild out: samples, set-points and memories that no joint gives are thrown at the controller.
+//! Samples, set-points and memories that no joint produces are fed to the controller; its torque and estimates stay sound.
 //!
-//! Short in `cargo test`, on seeds that do not change; `WILD_SEEDS=1000 cargo test --release -p host-tests --test wild`
-//! is the long form. Each attack prints its seed when it fails.
+//! `cargo test` runs a short form on fixed seeds; `WILD_SEEDS=1000 cargo test --release -p host-tests --test wild` is the long form. Each
+//! attack prints its seed when it fails.
 
 mod attack;
 mod controller;

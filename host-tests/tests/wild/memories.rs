@@ -1,14 +1,14 @@
-//! Memories with a good digest whose numbers no joint of the design can have.
+//! Memories with a correct digest whose numbers are impossible for any joint of the design.
 
 use model_core::numbers::digest;
 use model_core::observer::{MAPPED, MEMORY_BYTES, Memory, MemoryError, Observer, memory_numbers};
 
-use super::attack::{Chance, PRESETS, Subject, finite};
+use super::attack::{PRESETS, RandomValues, Subject, finite};
 
-/// Bytes before the numbers, and where they end.
+/// Byte range of a memory's numbers.
 const NUMBERS: std::ops::Range<usize> = 24..24 + 4 * (MAPPED + MAPPED * (MAPPED + 1) / 2 + 5 + 2);
 
-/// A memory with one number exchanged, and a digest that fits.
+/// Memory with one number replaced, and its digest corrected.
 fn forged(memory: &Memory, place: usize, number: f32) -> Memory {
     let mut forged = *memory;
     forged[place..place + 4].copy_from_slice(&number.to_le_bytes());
@@ -17,9 +17,10 @@ fn forged(memory: &Memory, place: usize, number: f32) -> Memory {
     forged
 }
 
+/// An impossible memory is rejected, and an accepted one keeps the estimates finite.
 #[test]
-fn a_memory_whose_numbers_no_joint_has_is_refused_and_one_that_is_taken_keeps_estimates_finite() {
-    let mut chance = Chance::new(7, "memories");
+fn impossible_memory_is_rejected() {
+    let mut random = RandomValues::new(7, "memories");
     for name in PRESETS {
         let subject = Subject::preset(name);
         let (mut joint, mut controller) = (subject.joint(), subject.controller());
@@ -32,16 +33,16 @@ fn a_memory_whose_numbers_no_joint_has_is_refused_and_one_that_is_taken_keeps_es
         let mut refused = 0;
         let forgeries = 300;
         for _ in 0..forgeries {
-            let place = NUMBERS.start + 4 * chance.of(NUMBERS.len() as u64 / 4) as usize;
-            let forged = forged(&memory, place, chance.wild());
+            let place = NUMBERS.start + 4 * random.below(NUMBERS.len() as u64 / 4) as usize;
+            let forged = forged(&memory, place, random.any_f32());
             let mut observer = Observer::<f32, MAPPED>::new(&subject.observer);
             let before = observer.save();
             match observer.load(&forged) {
                 Ok(()) => {
                     let mut joint = subject.joint();
                     for _ in 0..200 {
-                        let said = *observer.step(&joint.samples());
-                        assert!(finite(&said), "{name}: byte {place} of the memory: {said:#?}");
+                        let published = *observer.step(&joint.samples());
+                        assert!(finite(&published), "{name}: byte {place} of the memory: {published:#?}");
                         joint.advance(0.1 * subject.limit, 0.0);
                     }
                 }
@@ -57,11 +58,12 @@ fn a_memory_whose_numbers_no_joint_has_is_refused_and_one_that_is_taken_keeps_es
     }
 }
 
+/// An impossible mobility of the link is rejected.
 #[test]
-fn a_mobility_that_no_link_has_is_not_believed() {
+fn impossible_mobility_is_rejected() {
     let subject = Subject::preset("q1");
     let memory = subject.controller().save();
-    // The last number but one.
+    // Byte offset of the last but one number.
     let place = NUMBERS.end - 8;
     for mobility in [0.0, -1.0, 1e30] {
         let mut observer = Observer::<f32, MAPPED>::new(&subject.observer);

@@ -82,7 +82,7 @@ fn a_joint_that_stands_under_its_torque_has_the_static_deflection() {
 #[test]
 fn the_energy_books_of_the_reference_balance() {
     let figures = figures(&["paper", "--scheme", "reference", "--duration", "0.01"]);
-    tolerance::BOOKS_OF_THE_REFERENCE.check(number(&figures["energy"]["residual_over_dissipated"]));
+    tolerance::REFERENCE_ENERGY_BALANCE.check(number(&figures["energy"]["residual_over_dissipated"]));
 }
 
 #[test]

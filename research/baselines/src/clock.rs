@@ -1,5 +1,5 @@
-//! The mesh phase from step to step: prescribed in time, or made by the rigid carrier's angle. Whole numbers, so that
-//! it neither drifts nor loses digits; the rigid motion under constant torques is exact.
+//! Mesh phase from step to step: prescribed in time, or derived from the rigid carrier's angle. Integers, so that it neither drifts nor
+//! loses digits; the rigid motion under constant torques is exact.
 
 use model_core::numbers::Real;
 use model_core::numbers::phase::sine_cosine;
@@ -7,26 +7,26 @@ use model_core::numbers::phase::sine_cosine;
 use crate::instant::Rotor;
 use crate::plant::Plant;
 
-/// Phase, and the rigid body where it makes the phase.
+/// Mesh phase, and the rigid body where its angle determines the phase.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clock<T> {
     /// Mesh phase [2^-64 periods] if prescribed, else rigid carrier angle [2^-64 turns].
     place: u64,
     /// Rigid carrier speed [2^-64 turns a step].
     speed: i64,
-    /// Its change a step under the present torques.
+    /// Change of the speed per step under the present torques.
     change: i64,
-    /// Whether the carrier's angle makes the phase.
+    /// True if the carrier's angle determines the phase.
     angle: bool,
     rotor: Rotor<T>,
-    /// Steps since the rotor was last taken from the phase itself.
+    /// Steps since the rotor was last computed from the phase.
     since: u32,
 }
 
-/// Steps that a prescribed phase is turned by before it is taken afresh: rounding has not yet grown to a millionth.
+/// Steps by which a prescribed phase is rotated before it is recomputed: rounding is still below a millionth.
 const FRESH: u32 = 8;
 
-/// Phase in the middle and at the end of a step.
+/// Mesh phase in the middle and at the end of a step.
 pub struct Ahead<T> {
     /// In the middle.
     pub middle: Rotor<T>,
@@ -35,7 +35,7 @@ pub struct Ahead<T> {
 }
 
 impl<T: Real> Clock<T> {
-    /// At phase zero; where the rigid carrier makes the phase, at its angle [2^-64 turns] and speed [2^-64 turns a step].
+    /// Clock at phase zero; where the rigid carrier determines the phase, at its angle [2^-64 turns] and speed [2^-64 turns a step].
     pub fn new<const N: usize>(plant: &Plant<T, N>, place: u64, speed: i64) -> Self {
         let mut clock = Self {
             place: 0,
@@ -52,22 +52,22 @@ impl<T: Real> Clock<T> {
         clock
     }
 
-    /// Phase now.
+    /// Present phase.
     pub fn now(&self) -> &Rotor<T> {
         &self.rotor
     }
 
-    /// Angle of the rigid carrier [2^-64 turns], where it makes the phase.
+    /// Angle of the rigid carrier [2^-64 turns], if it determines the phase.
     pub fn carrier(&self) -> Option<u64> {
         self.angle.then_some(self.place)
     }
 
-    /// Takes torques [N m].
+    /// Sets the torques [N m].
     pub fn set_torques<const N: usize>(&mut self, plant: &Plant<T, N>, drive: T, load: T) {
         self.change = (plant.gains.rigid[0] * drive - plant.gains.rigid[1] * load).to_i64();
     }
 
-    /// Goes on by a step; `MIDDLE` says whether the middle is wanted, else what stands there is of no use.
+    /// Advances by a step. Without `MIDDLE` the middle of the result is meaningless.
     #[inline(always)]
     pub fn advance<const MIDDLE: bool, const N: usize>(&mut self, plant: &Plant<T, N>) -> Ahead<T> {
         let phase = &plant.phase;
@@ -100,7 +100,7 @@ impl<T: Real> Clock<T> {
     }
 }
 
-/// Further by an angle of this sine and cosine.
+/// Rotor advanced by an angle given by its sine and cosine.
 #[inline(always)]
 fn turned<T: Real>(rotor: &Rotor<T>, [sine, cosine]: [T; 2]) -> Rotor<T> {
     Rotor {
@@ -110,13 +110,13 @@ fn turned<T: Real>(rotor: &Rotor<T>, [sine, cosine]: [T; 2]) -> Rotor<T> {
     }
 }
 
-/// Sine and cosine of the phase that the rigid carrier makes.
+/// Sine and cosine of the phase at an angle of the rigid carrier.
 #[inline(always)]
 fn at<T: Real, const N: usize>(plant: &Plant<T, N>, place: u64) -> (T, T) {
     sine_cosine((place.wrapping_mul(plant.phase.periods_per_turn.into()) >> 32) as u32)
 }
 
-/// The same with its rate.
+/// Rotor at an angle and a speed of the rigid carrier.
 #[inline(always)]
 fn carried<T: Real, const N: usize>(plant: &Plant<T, N>, place: u64, speed: i64) -> Rotor<T> {
     let (sine, cosine) = at(plant, place);
@@ -126,6 +126,6 @@ fn carried<T: Real, const N: usize>(plant: &Plant<T, N>, place: u64, speed: i64)
 /// Phase rate at a rigid speed.
 #[inline(always)]
 fn rate<T: Real, const N: usize>(plant: &Plant<T, N>, speed: i64) -> T {
-    // A step goes far less than half a turn, so that the upper half of the speed fits.
+    // A step covers far less than half a turn, so the upper half of the speed suffices.
     plant.phase.rate * T::from_i32((speed >> 32) as i32)
 }

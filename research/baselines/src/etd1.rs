@@ -1,7 +1,6 @@
-//! The paper's scheme: one constant exponential of the closed joint at mean stiffness, and everything else, dead zone,
-//! ripple and errors, as a pseudo-force that is held over the step (exponential time differencing of first order). The
-//! exponential is applied to what planets do together and to what each does beside their mean, which is the same product
-//! with 16 + 4n numbers for n planets instead of 4 (n + 1)^2.
+//! The paper's scheme: one constant exponential of the closed joint at mean stiffness, with dead zone, ripple and errors as a pseudo-force
+//! held over the step (exponential time differencing of first order). The exponential is applied to the mean of the planets and to each
+//! planet's deviation from it, which is the same product with 16 + 4n numbers for n planets instead of 4 (n + 1)^2.
 
 use core::array;
 
@@ -13,7 +12,7 @@ use crate::motion::{Coordinates, PeerState};
 use crate::plant::{Flow, Plant};
 use crate::scheme::{Phases, Scheme};
 
-/// The method with the response to the torques that act.
+/// The method with its response to the present torques.
 #[derive(Debug, Clone, Copy)]
 pub struct Etd1<T> {
     driven: [T; 6],
@@ -41,7 +40,7 @@ impl<T: Real, const N: usize> Scheme<T, N> for Etd1<T> {
         let PeerState { position, rate } = motion;
         let now = Instant::at(plant, phases.start);
         let flow = &plant.flow;
-        // What the closed joint at mean stiffness has too much of.
+        // Surplus force of the closed joint at mean stiffness.
         let missing = |kind: usize, i: usize, displacement: T, speed: T| {
             let spring = Spring {
                 stiffness: now.stiffness[kind][i],

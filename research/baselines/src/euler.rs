@@ -1,5 +1,5 @@
-//! Semi-implicit Euler: the rate first, then the position by the new rate. The cheapest method that keeps its energy;
-//! kinks inside the step are not looked for.
+//! Semi-implicit Euler: the rate first, then the position with the new rate. The cheapest method that keeps its energy; kinks inside the
+//! step are not located.
 
 use model_core::numbers::Real;
 
@@ -9,7 +9,7 @@ use crate::motion::PeerState;
 use crate::plant::Plant;
 use crate::scheme::{Phases, Scheme};
 
-/// The method; it carries nothing from step to step.
+/// The method, without state between steps.
 #[derive(Debug, Clone, Copy)]
 pub struct SemiImplicitEuler;
 

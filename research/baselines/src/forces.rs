@@ -1,5 +1,5 @@
-//! Forces of the meshes (eqs 4-6, with the dead zones of eqs 12 and 13) and the accelerations that they and the torques
-//! cause (eqs 1-3). Time stepping is the schemes'.
+//! Forces of the meshes (eqs 4-6, with the dead zones of eqs 12 and 13) and the accelerations by mesh forces and torques (eqs 1-3). Time
+//! stepping is in the schemes.
 
 use model_core::numbers::Real;
 
@@ -10,30 +10,30 @@ use crate::plant::Plant;
 /// Accelerations by the torques.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Push<T> {
-    /// Of the sun.
+    /// Acceleration of the sun.
     pub sun: T,
-    /// Of the carrier.
+    /// Acceleration of the carrier.
     pub carrier: T,
-    /// Of the link.
+    /// Acceleration of the link.
     pub link: T,
 }
 
-/// What distinguishes the laws, resolved when compiled.
+/// Force law, selected at compile time.
 pub trait ForceLaw<T: Real> {
-    /// Whether teeth only push: damping ends where contact does.
+    /// True if teeth only push: damping ends with contact.
     const PUSHES_ONLY: bool;
 
     /// Force of a mesh from its deflection and rate.
     fn force(spring: &Spring<T>, deflection: T, rate: T) -> T;
 
-    /// Force less the damping of the displacement's speed, from the deflection, that speed and the rate of the error.
+    /// Force less the damping of the displacement's speed, from deflection, speed and rate of the error.
     #[inline(always)]
     fn beyond_damping(spring: &Spring<T>, deflection: T, speed: T, error_rate: T) -> T {
         Self::force(spring, deflection, speed - error_rate) - spring.damping * speed
     }
 }
 
-/// What a mesh is made of at an instant.
+/// Parameters of a mesh at an instant.
 pub struct Spring<T> {
     /// Stiffness.
     pub stiffness: T,
@@ -45,13 +45,13 @@ pub struct Spring<T> {
     pub sharpness: T,
 }
 
-/// [`crate::plant::Law::Always`].
+/// Law of [`crate::plant::Law::Always`].
 pub struct Always;
-/// [`crate::plant::Law::Push`].
+/// Law of [`crate::plant::Law::Push`].
 pub struct PushOnly;
-/// [`crate::plant::Law::Smooth`].
+/// Law of [`crate::plant::Law::Smooth`].
 pub struct Smooth;
-/// [`crate::plant::Law::SmoothPush`].
+/// Law of [`crate::plant::Law::SmoothPush`].
 pub struct SmoothPush;
 
 impl<T: Real> ForceLaw<T> for Always {
@@ -113,8 +113,8 @@ impl<T: Real> ForceLaw<T> for SmoothPush {
     }
 }
 
-/// Overlap by eq. 13, and how far the teeth are closed, between 0 and 1. Eq. 13 is odd: with y = |x| the farther flank's
-/// tanh is one almost always, so that one tanh is left.
+/// Overlap by eq. 13, and degree of contact between 0 and 1. Eq. 13 is odd: with y = |x| the tanh of the farther flank is almost always
+/// one, so that one tanh remains.
 #[inline(always)]
 fn smooth<T: Real>(spring: &Spring<T>, deflection: T) -> (T, T) {
     let negative = deflection < T::ZERO;
@@ -126,8 +126,8 @@ fn smooth<T: Real>(spring: &Spring<T>, deflection: T) -> (T, T) {
     (if negative { -overlap } else { overlap }, T::ONE - parted)
 }
 
-/// tanh by Lambert's continued fraction to seven terms, held at one from where it gets there: off by 1e-4 at most, a
-/// small part of what eq. 13 is off at its corners.
+/// tanh by Lambert's continued fraction to seven terms, clamped where it reaches one: error at most 1e-4, a small part of the corner error
+/// of eq. 13.
 #[inline(always)]
 fn rational_tanh<T: Real>(x: T) -> T {
     let limit = T::from_f64(4.97);

@@ -1,5 +1,5 @@
-//! Plants from joint parameters, in f64. The dimensionless bodies come from the core's `gears::design::dynamics`, which the
-//! independent reference checks; everything about meshes and phase is worked out here for the peers' own layout.
+//! Plants from joint parameters, in f64. The dimensionless bodies come from the core's `gears::design::dynamics`, which the independent
+//! reference verifies; meshes and phase are computed here for the baselines' own layout.
 
 use core::array;
 use core::f64::consts::TAU;
@@ -16,12 +16,12 @@ use crate::peer::Start;
 use crate::plant::{Flow, Gains, Law, Mesh, Phase, Plant};
 use crate::two_mass::{Contact, TwoMass};
 
-/// 2^64 and 2^32 as numbers.
+/// 2^64 and 2^32 as floating-point numbers.
 const WHOLE: f64 = 18_446_744_073_709_551_616.0;
 const HALF_WHOLE: f64 = 4_294_967_296.0;
 
 impl<T: Real, const N: usize> Plant<T, N> {
-    /// The plant of a joint at so many steps a second. `N` must be the joint's number of planets.
+    /// Plant of a joint at `rate` steps a second. `N` must be the joint's number of planets.
     pub fn new(parameters: &JointParameters, rate: f64) -> Self {
         let real = T::from_f64;
         let scales = Scales::new(parameters);
@@ -42,7 +42,7 @@ impl<T: Real, const N: usize> Plant<T, N> {
             law: match (parameters.dead_zone, parameters.damping_law) {
                 (DeadZone::Sharp, DampingLaw::Paper) => Law::Always,
                 (DeadZone::Sharp, DampingLaw::Contact) => Law::Push,
-                // The core's: with the tanh dead zone there is no contact that could end.
+                // As in the core: with the tanh dead zone there is no end of contact.
                 (DeadZone::Tanh { .. }, _) => Law::Smooth,
             },
             sharpness: match parameters.dead_zone {
@@ -66,7 +66,7 @@ fn gains<T: Real>(parameters: &JointParameters, scales: &Scales, rate: f64) -> G
     let masses = MovingMasses::new(parameters);
     let (sun_lever, lever) = (parameters.geometry.sun_base_radius, parameters.geometry.carrier_base_radius());
     let gain = |lever: f64, mass: f64| 1.0 / (lever * mass * scales.acceleration());
-    // 2^-64 carrier turns a step, each step, for a unit of rigid acceleration [m/s^2].
+    // Turns per step and step [2^-64 carrier turns] for a unit of rigid acceleration [m/s^2].
     let turns = WHOLE / (TAU * lever * rate * rate);
     let rigid_mass = masses.rigid(parameters.geometry.planets);
     Gains {
@@ -99,7 +99,7 @@ fn phase<T: Real>(parameters: &JointParameters, rate: f64, step: f64) -> Phase<T
     }
 }
 
-/// v' = A v + B u with v = (x, x'), integrated by the core's precise integration and sorted by what planets do together.
+/// Flow of v' = A v + B u with v = (x, x'), from the core's precise integration, split into the planets' mean and deviations.
 fn flow<T: Real, const N: usize>(
     dynamics: &Dynamics,
     step: f64,
@@ -117,7 +117,7 @@ fn flow<T: Real, const N: usize>(
     inputs.view_mut((size, meshes), (size, 3)).copy_from(&dynamics.torque_gain);
     let exponential::Flow { transition, input_integrals } = exponential::flow(&matrix, &inputs, step, 1);
     let response = &input_integrals[0];
-    // Entries of the full state that an in-phase entry stands for: all planets, or one other coordinate if it is there.
+    // Entries of the full state behind an in-phase entry: all planets, or one other coordinate if it exists.
     let full = |entry: usize| match entry % 3 {
         0 => (size * (entry / 3), N),
         other if N + other - 1 < size => (size * (entry / 3) + N + other - 1, 1),
@@ -137,7 +137,7 @@ fn flow<T: Real, const N: usize>(
         }),
         missing: array::from_fn(|row| [0, N].map(|mesh| real(mean(response, row, mesh)))),
         torques: array::from_fn(|row| array::from_fn(|body| real(mean(response, row, meshes + body)))),
-        // Between two planets: own effect less the effect of another.
+        // Between two planets: own effect less the effect of another planet.
         deviation: array::from_fn(|row| {
             array::from_fn(|column| {
                 real(transition[(size * row, size * column)] - transition[(size * row, size * column + 1)])
@@ -170,8 +170,8 @@ fn mesh<T: Real>(parameters: &JointParameters, scales: &Scales, kind: MeshKind, 
 }
 
 impl<T: Real, const N: usize> Start<T, N> {
-    /// From sun-planet deflections, gap and wind-up [m], their rates [m/s] and the rigid carrier's place [2^-64 turns] and
-    /// speed [rad/s], for a plant of so many steps a second.
+    /// Start from sun-planet deflections, gap and wind-up [m], their rates [m/s] and the rigid carrier's angle [2^-64 turns] and speed
+    /// [rad/s], for a plant of `rate` steps a second.
     pub fn new(
         parameters: &JointParameters,
         rate: f64,
@@ -195,9 +195,9 @@ impl<T: Real, const N: usize> Start<T, N> {
 }
 
 impl<T: Real> TwoMass<T> {
-    /// The joint as two masses with one gap: everything geared to the motor on one side and the link on the other if there
-    /// is a spring between carrier and link, else sun and planets on one side (at rest under torque the planets yield with
-    /// the sun) and carrier and link on the other. The spring is that of all meshes and the compliance in series, its damping ratio that of the softer of the two.
+    /// Joint as two masses with one gap. With a spring between carrier and link, everything geared to the motor is one mass and the link
+    /// the other; without it, sun and planets are one mass (at rest under torque the planets yield with the sun), carrier and link the
+    /// other. The spring is the series of all meshes and the compliance, with the damping ratio of the softer of both.
     pub fn new(parameters: &JointParameters, rate: f64, contact: Contact) -> Self {
         let scales = Scales::new(parameters);
         let masses = MovingMasses::new(parameters);
@@ -226,7 +226,7 @@ impl<T: Real> TwoMass<T> {
             half_backlash: real(0.5 * (least(&sun.half_backlash) + least(&ring.half_backlash)) / scales.length),
             stiffness: real(stiffness * mobility * scales.length / acceleration),
             damping: real(damping * mobility * scales.length * scales.frequency / acceleration),
-            // What an impact leaves of the speed: half a period of the damped spring.
+            // Speed ratio of an impact: half a period of the damped spring.
             restitution: real((-core::f64::consts::PI * damping_ratio / (1.0 - damping_ratio.powi(2)).sqrt()).exp()),
             gains: [real(2.0 / (sun_lever * motor * acceleration)), real(1.0 / (lever * load * acceleration))],
             link_offset: real(-motor / all * scales.length / lever),

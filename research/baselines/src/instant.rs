@@ -11,7 +11,7 @@ pub struct Rotor<T> {
     pub sine: T,
     /// Cosine.
     pub cosine: T,
-    /// [rad] a unit of dimensionless time.
+    /// Phase rate [rad per unit of dimensionless time].
     pub rate: T,
 }
 
@@ -25,16 +25,16 @@ pub struct Instant<T, const N: usize> {
     pub stiffness: PerMesh<T, N>,
     /// Imposed error.
     pub error: PerMesh<T, N>,
-    /// Its rate.
+    /// Rate of the imposed error.
     pub error_rate: PerMesh<T, N>,
 }
 
 impl<T: Real, const N: usize> Instant<T, N> {
-    /// Nothing imposed and no stiffness.
+    /// Zero stiffness and errors.
     pub const EMPTY: Self =
         Self { stiffness: [[T::ZERO; N]; 2], error: [[T::ZERO; N]; 2], error_rate: [[T::ZERO; N]; 2] };
 
-    /// The meshes at a phase.
+    /// All meshes at a phase.
     #[inline(always)]
     pub fn at(plant: &Plant<T, N>, rotor: &Rotor<T>) -> Self {
         let Rotor { sine, cosine, rate } = *rotor;

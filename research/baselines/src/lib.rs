@@ -1,11 +1,11 @@
 #![no_std]
-//! Fixed-step methods that people use for joints with backlash, each written for speed as its own advocate would: what
-//! the core's step is compared with. Nothing of the core's step is used here, only its scalar, its sine and, to make
-//! [`plant::Plant`]s, its parameters.
+//! Fixed-step methods in common use for joints with backlash, each written for speed as its own advocate would write it: the methods that
+//! the core's step is compared with. They use no part of the core's step, only its scalar, its sine and, to make [`plant::Plant`]s, its
+//! parameters.
 //!
-//! [`peer::Peer`] runs the whole joint by a [`scheme::Scheme`]: [`runge_kutta::RungeKutta4`],
-//! [`euler::SemiImplicitEuler`], [`trapezoid::Trapezoid`], [`etd1::Etd1`]. [`two_mass`] holds the gap model of two masses that controls
-//! people use, as spring-damper and with restitution. [`moving`] runs any of them, and the core, along a case.
+//! [`peer::Peer`] runs the whole joint by a [`scheme::Scheme`]: [`runge_kutta::RungeKutta4`], [`euler::SemiImplicitEuler`],
+//! [`trapezoid::Trapezoid`], [`etd1::Etd1`]. [`two_mass`] holds the two-mass gap model common in control, as spring-damper and with
+//! restitution. [`moving`] runs each of them, and the core, through a case.
 
 #![allow(clippy::needless_range_loop, reason = "one index walks several tables of the same mesh")]
 

@@ -1,4 +1,4 @@
-//! Relative coordinates of the joint (those of eqs 16 and 17 less the imposed errors) and sums of them.
+//! Relative coordinates of the joint (those of eqs 16 and 17 less the imposed errors) and their sums.
 
 use core::array;
 
@@ -7,19 +7,19 @@ use model_core::numbers::{Real, digest};
 /// Coordinates, or their rates or accelerations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coordinates<T, const N: usize> {
-    /// u_s - u_pi - u_c of every planet.
+    /// Coordinates u_s - u_pi - u_c of every planet.
     pub planets: [T; N],
-    /// u_s - 2 u_c.
+    /// Coordinate u_s - 2 u_c.
     pub gap: T,
-    /// u_c - u_l; zero unless compliant.
+    /// Coordinate u_c - u_l; zero unless compliant.
     pub wind_up: T,
 }
 
 impl<T: Real, const N: usize> Coordinates<T, N> {
-    /// All zero.
+    /// Zero in all coordinates.
     pub const ZERO: Self = Self { planets: [T::ZERO; N], gap: T::ZERO, wind_up: T::ZERO };
 
-    /// self + scale * other; the wind-up only of a compliant joint.
+    /// Sum self + scale * other; includes the wind-up of a compliant joint only.
     #[inline(always)]
     pub fn plus<const COMPLIANT: bool>(&self, scale: T, other: &Self) -> Self {
         Self {
@@ -35,7 +35,7 @@ impl<T: Real, const N: usize> Coordinates<T, N> {
 pub struct PeerState<T, const N: usize> {
     /// Coordinates.
     pub position: Coordinates<T, N>,
-    /// Their rates.
+    /// Rates of the coordinates.
     pub rate: Coordinates<T, N>,
 }
 

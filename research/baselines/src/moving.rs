@@ -1,4 +1,4 @@
-//! A steppable model, and one run of it under changing torques and restarts, the same on the host and on the board.
+//! A steppable model, and one run of it under changing torques and restarts, identical on host and board.
 
 use model_core::gears::{Model, State, Torques};
 use model_core::numbers::{Real, digest};
@@ -8,19 +8,19 @@ use crate::plant::Plant;
 use crate::scheme::Scheme;
 use crate::two_mass::{TwoMass, TwoMassPeer};
 
-/// A model that moves in steps.
+/// Model that moves in steps.
 pub trait SteppedModel<T> {
-    /// Puts it back to the so-many-th start; nothing if there is none.
+    /// Resets the model to start number `count`; does nothing if there is none.
     fn restart(&mut self, count: usize);
-    /// Torques from now on [N m].
+    /// Sets the torques [N m].
     fn set_torques(&mut self, drive: T, load: T);
-    /// One step.
+    /// Advances by one step.
     fn step(&mut self);
-    /// Digest over where it is.
+    /// Digest over the state.
     fn digest(&self) -> u64;
 }
 
-/// The core, by the scheme of its tables.
+/// The core, with the scheme of its tables.
 pub struct Core<'a, T: Real, const N: usize> {
     /// The model.
     pub model: Model<'a, T, N>,
@@ -28,7 +28,7 @@ pub struct Core<'a, T: Real, const N: usize> {
     torques: Torques<T>,
 }
 
-/// A joint by a scheme.
+/// Joint with a scheme.
 pub struct GearedJoint<'a, T: Real, const N: usize, S> {
     /// The joint.
     pub peer: Peer<'a, T, N, S>,
@@ -36,7 +36,7 @@ pub struct GearedJoint<'a, T: Real, const N: usize, S> {
     starts: &'a [Start<T, N>],
 }
 
-/// The gap model of two masses.
+/// Two-mass gap model.
 pub struct Gap<'a, T: Real> {
     /// The model.
     pub peer: TwoMassPeer<'a, T>,
@@ -45,7 +45,7 @@ pub struct Gap<'a, T: Real> {
 }
 
 impl<'a, T: Real, const N: usize> Core<'a, T, N> {
-    /// At the first of its starts.
+    /// Core at the first of its starts.
     pub fn new(model: Model<'a, T, N>, starts: &'a [State<T, N>]) -> Self {
         let mut core = Self { model, starts, torques: Torques { drive: T::ZERO, load: T::ZERO } };
         core.restart(0);
@@ -54,14 +54,14 @@ impl<'a, T: Real, const N: usize> Core<'a, T, N> {
 }
 
 impl<'a, T: Real, const N: usize, S: Scheme<T, N>> GearedJoint<'a, T, N, S> {
-    /// At the first of its starts; none if there is none.
+    /// Joint at the first of its starts; `None` without starts.
     pub fn new(plant: &'a Plant<T, N>, starts: &'a [Start<T, N>]) -> Option<Self> {
         Some(Self { peer: Peer::new(plant, starts.first()?), plant, starts })
     }
 }
 
 impl<'a, T: Real> Gap<'a, T> {
-    /// At the first of its starts: displacements and their rates.
+    /// Model at the first of its starts: displacements and their rates.
     pub fn new(model: &'a TwoMass<T>, starts: &'a [[T; 2]]) -> Self {
         let mut gap = Self { peer: TwoMassPeer::new(model, T::ZERO, T::ZERO), model, starts };
         gap.restart(0);
@@ -132,19 +132,18 @@ impl<T: Real> SteppedModel<T> for Gap<'_, T> {
     }
 }
 
-/// How far something moves, and when what changes: restarts and torques (drive, load) by the step before which they come,
-/// both in order.
+/// Number of steps, restarts and torque changes (drive, load), each before a step and in order.
 pub struct StepSchedule<R, C> {
     /// Number of steps.
     pub steps: u64,
-    /// Steps of the restarts.
+    /// Steps before which the model restarts.
     pub restarts: R,
-    /// Steps and torques.
+    /// Steps before which the torques change, and the torques.
     pub changes: C,
 }
 
-/// Moves something along a schedule. `look` is called before each step and after the last, ahead of what changes there; `step`
-/// takes a step. The digest is over the last state, and the last before every restart.
+/// Runs a model through a schedule. `look` is called before each step and after the last, before any change there; `step` takes a step. The
+/// digest is over the last state, and the last before every restart.
 pub fn follow<T: Real, M: SteppedModel<T>>(
     moving: &mut M,
     schedule: StepSchedule<impl Iterator<Item = u64>, impl Iterator<Item = (u64, T, T)>>,

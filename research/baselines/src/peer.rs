@@ -11,7 +11,7 @@ use crate::motion::{Coordinates, PeerState};
 use crate::plant::{Law, Plant};
 use crate::scheme::{Phases, Scheme};
 
-/// A joint and the scheme that moves it.
+/// Joint and scheme.
 #[derive(Debug, Clone)]
 pub struct Peer<'a, T: Real, const N: usize, S> {
     plant: &'a Plant<T, N>,
@@ -21,21 +21,21 @@ pub struct Peer<'a, T: Real, const N: usize, S> {
     motion: PeerState<T, N>,
 }
 
-/// Where a peer starts.
+/// Initial state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Start<T: Real, const N: usize> {
-    /// Sun-planet deflections d (errors taken off), gap and wind-up.
+    /// Sun-planet deflections d (errors subtracted), gap and wind-up.
     pub position: Coordinates<T, N>,
-    /// Their rates.
+    /// Rates of the coordinates.
     pub rate: Coordinates<T, N>,
     /// Angle of the rigid carrier [2^-64 turns].
     pub rigid_place: u64,
-    /// Its speed [2^-64 turns a step].
+    /// Speed of the rigid carrier [2^-64 turns a step].
     pub rigid_speed: i64,
 }
 
 impl<'a, T: Real, const N: usize, S: Scheme<T, N>> Peer<'a, T, N, S> {
-    /// A joint without torques.
+    /// Joint at a start, without torques.
     pub fn new(plant: &'a Plant<T, N>, start: &Start<T, N>) -> Self {
         let clock = Clock::new(plant, start.rigid_place, start.rigid_speed);
         let instant = Instant::at(plant, clock.now());
@@ -48,7 +48,7 @@ impl<'a, T: Real, const N: usize, S: Scheme<T, N>> Peer<'a, T, N, S> {
         Self { plant, scheme: S::begin(plant, clock.now()), push, clock, motion }
     }
 
-    /// Torques from now on [N m].
+    /// Sets the torques [N m].
     pub fn set_torques(&mut self, drive: T, load: T) {
         let gains = &self.plant.gains;
         self.push = Push { sun: gains.sun * drive, carrier: -(gains.carrier * load), link: -(gains.link * load) };
@@ -56,7 +56,7 @@ impl<'a, T: Real, const N: usize, S: Scheme<T, N>> Peer<'a, T, N, S> {
         self.scheme.set_torques(self.plant, &self.push);
     }
 
-    /// One step.
+    /// Advances by one step.
     pub fn step(&mut self) {
         match (self.plant.compliant, self.plant.law) {
             (false, Law::Always) => self.step_under::<Always, false>(),
@@ -81,17 +81,17 @@ impl<'a, T: Real, const N: usize, S: Scheme<T, N>> Peer<'a, T, N, S> {
         self.scheme.advance::<L, COMPLIANT>(self.plant, &self.push, &phases, &mut self.motion);
     }
 
-    /// The motion now.
+    /// Present motion.
     pub fn motion(&self) -> &PeerState<T, N> {
         &self.motion
     }
 
-    /// Phase and, where it makes the phase, the rigid carrier.
+    /// Phase and, where it determines the phase, the rigid carrier.
     pub fn clock(&self) -> &Clock<T> {
         &self.clock
     }
 
-    /// Mesh deflections now: sun-planet of every planet, then ring-planet.
+    /// Present mesh deflections: sun-planet of every planet, then ring-planet.
     pub fn deflections(&self) -> PerMesh<T, N> {
         let position = &self.motion.position;
         let error = Instant::at(self.plant, self.clock.now()).error;

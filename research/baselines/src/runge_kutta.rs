@@ -1,5 +1,5 @@
-//! The classical Runge-Kutta method of order 4, in its form for second-order equations: the stages of the positions
-//! need no evaluation of their own, and the last sums are formed once. Kinks inside the step are not looked for.
+//! Classical Runge-Kutta method of order 4, in its form for second-order equations: the position stages need no evaluations of their own,
+//! and the final sums are formed once. Kinks inside the step are not located.
 
 use model_core::numbers::Real;
 
@@ -9,7 +9,7 @@ use crate::motion::PeerState;
 use crate::plant::Plant;
 use crate::scheme::{Phases, Scheme};
 
-/// The method with the meshes as the last step left them.
+/// The method with the meshes at the end of the last step.
 #[derive(Debug, Clone, Copy)]
 pub struct RungeKutta4<T, const N: usize> {
     start: Instant<T, N>,

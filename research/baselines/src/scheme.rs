@@ -1,4 +1,4 @@
-//! The interface of a fixed-step method.
+//! Interface of a fixed-step method.
 
 use model_core::numbers::Real;
 
@@ -7,28 +7,28 @@ use crate::instant::Rotor;
 use crate::motion::PeerState;
 use crate::plant::Plant;
 
-/// The mesh phase over a step.
+/// Mesh phase over a step.
 pub struct Phases<'a, T> {
     /// At the start.
     pub start: &'a Rotor<T>,
-    /// In the middle; of no use where the method does not want it.
+    /// In the middle; meaningless unless the method evaluates there.
     pub middle: &'a Rotor<T>,
     /// At the end.
     pub end: &'a Rotor<T>,
 }
 
-/// A fixed-step method.
+/// Fixed-step method.
 pub trait Scheme<T: Real, const N: usize>: Sized {
-    /// Whether it evaluates in the middle of the step.
+    /// True if the method evaluates in the middle of the step.
     const MIDDLE: bool;
 
-    /// Ready for the first step, from this phase on.
+    /// Method before its first step, from a phase on.
     fn begin(plant: &Plant<T, N>, phase: &Rotor<T>) -> Self;
 
-    /// Takes torques; what was taken over from the last step may no longer hold.
+    /// Sets the torques; data kept from the last step may be invalid from then on.
     fn set_torques(&mut self, _plant: &Plant<T, N>, _push: &Push<T>) {}
 
-    /// One step.
+    /// Advances the motion by one step.
     fn advance<L: ForceLaw<T>, const COMPLIANT: bool>(
         &mut self,
         plant: &Plant<T, N>,

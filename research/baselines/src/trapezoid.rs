@@ -1,6 +1,6 @@
-//! The implicit trapezoidal rule with an active set: contacts at the end of the step are guessed, the then linear
-//! equations solved, and the guess corrected until it holds. Planets meet only in sun and carrier, so that what is solved
-//! is two by two; kinks inside the step are not looked for.
+//! Implicit trapezoidal rule with an active set: contacts at the end of the step are guessed, the resulting linear equations solved, and
+//! the guess corrected until it is consistent. Planets couple only through sun and carrier, so the system is two by two; kinks inside the
+//! step are not located.
 
 use model_core::numbers::Real;
 
@@ -10,15 +10,15 @@ use crate::motion::{Coordinates, PeerState};
 use crate::plant::Plant;
 use crate::scheme::{Phases, Scheme};
 
-/// Most guesses in a step: what is left then is off by a contact that is about to change anyway.
+/// Largest number of guesses in a step: the remaining error is a contact about to change anyway.
 const GUESSES: usize = 4;
 
-/// The method with what a step leaves for the next.
+/// The method with the data kept for the next step.
 #[derive(Debug, Clone, Copy)]
 pub struct Trapezoid<T, const N: usize> {
     /// One where teeth were in contact at the end of the last step, else zero.
     closed: PerMesh<T, N>,
-    /// b on the drive side, -b on the back side, zero where open.
+    /// Contact offset: b on the drive side, -b on the back side, zero where open.
     offset: PerMesh<T, N>,
     /// Accelerations at the end of the last step, while torques do not change.
     last: Option<Coordinates<T, N>>,
@@ -31,7 +31,7 @@ struct Linear<T> {
     per_acceleration: T,
 }
 
-/// What the carrier, with what hangs on it, makes of the sum of mesh forces: given + per_force * sum.
+/// Acceleration of the carrier and the bodies attached to it, from the sum of mesh forces: given + per_force * sum.
 struct Carrier<T> {
     given: T,
     per_force: T,
@@ -67,7 +67,7 @@ impl<T: Real, const N: usize> Scheme<T, N> for Trapezoid<T, N> {
         let now = Instant::at(plant, phases.end);
         let half = plant.step * T::HALF;
         let rate = motion.rate.plus::<COMPLIANT>(half, &before);
-        // x + h (v + v1) / 2 with v1 = v + h (a + a1) / 2, the share of a1 apart.
+        // x + h (v + v1) / 2 with v1 = v + h (a + a1) / 2, without the share of a1.
         let position = motion.position.plus::<COMPLIANT>(half, &motion.rate).plus::<COMPLIANT>(half, &rate);
         let predicted = PeerState { position, rate };
         for _ in 0..GUESSES {
@@ -109,7 +109,7 @@ impl<T: Real, const N: usize> Trapezoid<T, N> {
         let mut inverse = [T::ZERO; N];
         let mut driven = [T::ZERO; N];
         let mut by_gap = [T::ZERO; N];
-        // Sums of forces: given, for each unit of (sun - carrier) acceleration, for each unit of gap acceleration.
+        // Sums of forces: given, per unit of (sun - carrier) acceleration, per unit of gap acceleration.
         let (mut sun, mut ring) = ([T::ZERO; 3], [T::ZERO; 3]);
         for i in 0..N {
             let planet = position.planets[i];
@@ -130,7 +130,7 @@ impl<T: Real, const N: usize> Trapezoid<T, N> {
         let (apart, gap) = (push.sun - carrier.given, push.sun - carrier.given - carrier.given);
         let (pulled, twice) = (plant.sun + carrier.per_force, carrier.per_force + carrier.per_force);
         let gap_pulled = plant.sun + twice;
-        // Both sums on both sides: two equations.
+        // Both sums occur on both sides: two equations.
         let sun_row = [
             T::ONE + sun[1] * pulled + sun[2] * gap_pulled,
             sun[1] * carrier.per_force + sun[2] * twice,
@@ -181,7 +181,7 @@ impl<T: Real, const N: usize> Trapezoid<T, N> {
         }
     }
 
-    /// Takes the contacts from the end of the step; whether they were as guessed.
+    /// Sets the contacts from the end of the step; returns true if the guess was right.
     #[inline(always)]
     fn correct_contacts<L: ForceLaw<T>>(
         &mut self,

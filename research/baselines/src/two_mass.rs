@@ -1,42 +1,41 @@
-//! The gap model that is common in control: two masses, one gap, and either a spring-damper at its ends or an impact
-//! with restitution. It has no planets, ripple or errors, so that only the output angle and the force can be read from
-//! it.
+//! Gap model common in control: two masses, one gap, and either a spring-damper at its ends or an impact with restitution. It has no
+//! planets, ripple or errors, so only output angle and force can be read from it.
 
 use model_core::numbers::Real;
 
-/// What happens at the ends of the gap.
+/// Contact at the ends of the gap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Contact {
-    /// A spring with a damper, which only push; stepped by the classical Runge-Kutta method.
+    /// Spring with a damper that only pushes; stepped by the classical Runge-Kutta method.
     SpringDamper,
-    /// An impact; the masses then stick together until the torques pull them apart.
+    /// Impact; the masses then stick together until the torques separate them.
     Restitution,
 }
 
-/// The model: delta'' = by torques - force, all lengths over b_c and times by omega_n.
+/// Model delta'' = acceleration by torques - force, all lengths over b_c and times by omega_n.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TwoMass<T: Real> {
-    /// What happens at the ends of the gap.
+    /// Contact at the ends of the gap.
     pub contact: Contact,
-    /// The step h omega_n.
+    /// Step h omega_n.
     pub step: T,
     /// Half the gap.
     pub half_backlash: T,
-    /// Relative deceleration for a unit of overlap.
+    /// Relative deceleration per unit of overlap.
     pub stiffness: T,
-    /// For a unit of overlap's rate.
+    /// Relative deceleration per unit of the overlap's rate.
     pub damping: T,
-    /// Speed that an impact leaves, as a part of what it found.
+    /// Speed after an impact over the speed before it.
     pub restitution: T,
-    /// Relative acceleration for each N m of drive and of load torque.
+    /// Relative acceleration per N m of drive and of load torque.
     pub gains: [T; 2],
-    /// Link angle less the rigid carrier's [rad] for a unit of relative displacement.
+    /// Link angle less the rigid carrier's angle [rad] per unit of relative displacement.
     pub link_offset: T,
-    /// Force of a mesh [N] for a unit of relative deceleration.
+    /// Force of a mesh [N] per unit of relative deceleration.
     pub force: T,
 }
 
-/// The model in motion.
+/// Model in motion.
 #[derive(Debug, Clone)]
 pub struct TwoMassPeer<'a, T: Real> {
     model: &'a TwoMass<T>,
@@ -48,17 +47,17 @@ pub struct TwoMassPeer<'a, T: Real> {
 }
 
 impl<'a, T: Real> TwoMassPeer<'a, T> {
-    /// At a displacement of motor against link (both along the output's line of action, over b_c) and its rate.
+    /// Model at a displacement of motor against link (both along the output's line of action, over b_c) and its rate.
     pub fn new(model: &'a TwoMass<T>, place: T, rate: T) -> Self {
         Self { model, place, rate, push: T::ZERO, force: T::ZERO, engaged: false }
     }
 
-    /// Torques from now on [N m].
+    /// Sets the torques [N m].
     pub fn set_torques(&mut self, drive: T, load: T) {
         self.push = self.model.gains[0] * drive + self.model.gains[1] * load;
     }
 
-    /// One step.
+    /// Advances by one step.
     pub fn step(&mut self) {
         match self.model.contact {
             Contact::SpringDamper => self.step_spring(),
@@ -66,7 +65,7 @@ impl<'a, T: Real> TwoMassPeer<'a, T> {
         }
     }
 
-    /// Link angle less the rigid carrier's [rad].
+    /// Link angle less the rigid carrier's angle [rad].
     pub fn link_offset(&self) -> T {
         self.model.link_offset * self.place
     }
@@ -125,14 +124,14 @@ impl<'a, T: Real> TwoMassPeer<'a, T> {
         if !beyond || (self.rate > T::ZERO) != front {
             return;
         }
-        // Back to the impact, and off again with what it leaves for the rest of the step. Rate and place are of one sign
-        // here, so that the quotient is finite.
+        // Returns to the impact and leaves it with the rebound speed for the rest of the step. Rate and displacement have one sign here, so
+        // the quotient is finite.
         let since = (self.place - end).over(self.rate);
         let since = if since < model.step { since } else { model.step };
         let leaving = -(model.restitution * (self.rate - since * self.push));
         self.rate = leaving + since * self.push;
         self.place = end + since * T::HALF * (leaving + self.rate);
-        // A rebound that the torques undo within eight steps is none: so short a one cannot be followed.
+        // A rebound that the torques reverse within eight steps counts as sticking: it is too short to resolve.
         let (rebound, pressed) = if front { (-leaving, self.push) } else { (leaving, -self.push) };
         if rebound <= T::TWO * T::TWO * model.step * pressed {
             self.place = end;

@@ -1,5 +1,5 @@
-//! The comparison in a Markdown file, between two marks, with a picture beside the file; and where its figures come from.
-//! What stands outside the marks is left as it is.
+//! The comparison in a Markdown file, between two marks, with a picture beside the file; and the origin of its figures. Text outside the
+//! marks stays unchanged.
 
 use std::fs;
 use std::path::Path;
@@ -16,7 +16,7 @@ use report::write::write_text;
 const BEGIN: &str = "<!-- comparison: written by `cargo joint bench --document` -->";
 const END: &str = "<!-- end of comparison -->";
 
-/// Where the figures of this run come from.
+/// Origin of the figures of this run.
 pub fn origin(toolchain: &Toolchain, emulator: String) -> Origin {
     let model = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = model
@@ -36,12 +36,12 @@ fn failed(path: &Path, error: &std::io::Error) -> Failure {
     Failure::new(format!("{}: {error}", path.display())).with_help("name a Markdown file that can be read and written")
 }
 
-/// The file that the comparison is put into.
+/// Text of the Markdown file.
 pub fn read(path: &Path) -> Outcome<String> {
     fs::read_to_string(path).map_err(|error| failed(path, &error))
 }
 
-/// Puts the comparison into the file, or at its end if it has none yet.
+/// Replaces the comparison in the file, or appends it if there is none.
 pub fn update(path: &Path, figures: &BenchmarkRecord, document: &Document) -> Outcome<()> {
     let before = read(path)?;
     for case in &figures.cases {

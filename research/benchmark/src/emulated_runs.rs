@@ -1,5 +1,5 @@
-//! The fixed-step methods on the emulated core: jobs as Rust source, built into one image, run, and compared with the
-//! digests that the host computed.
+//! Fixed-step methods on the emulated core: jobs as Rust source, built into one image, run, and compared with the digests computed by the
+//! host.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -22,31 +22,31 @@ use report::failure::{Failure, Outcome};
 pub struct Job<'a> {
     /// The case.
     pub case: &'a Case,
-    /// Where it restarts.
+    /// Restarts of the case.
     pub restarts: &'a [Restart],
     /// The method.
     pub method: Method,
-    /// Steps a second.
+    /// Step rate [Hz].
     pub rate: u32,
-    /// Sub-steps of each.
+    /// Sub-steps of each step.
     pub substeps: u32,
-    /// Digest that the host reached; none if the motion got lost: one NaN is not like another.
+    /// Digest reached by the host; `None` if the motion diverged, since NaNs differ.
     pub digest: Option<u64>,
 }
 
-/// What a job took on the emulated core.
+/// Instructions of a job on the emulated core.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Count {
-    /// Instructions a step, mean.
+    /// Mean instructions a step.
     pub mean: f64,
-    /// Greatest.
+    /// Largest number of instructions of a step.
     pub most: u32,
-    /// Greatest sum within a sample of 10, 20 and 40 kHz; 0 where steps do not fit.
+    /// Largest sum within a sample of 10, 20 and 40 kHz; 0 where steps do not fit.
     pub samples: [u32; 3],
 }
 
-/// Most flash that the numbers of one image may take beside the torques of a case, which its jobs share: the rest is code, most of it
-/// for five planets.
+/// Largest flash for the numbers of one image besides the torques of a case, which its jobs share: the rest is code, most of it for five
+/// planets [bytes].
 const ROOM: usize = 250_000;
 
 /// Runs all jobs; results in their order.
@@ -54,7 +54,7 @@ pub fn run(jobs: &[Job<'_>], toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec
     let mut counts = Vec::with_capacity(jobs.len());
     let mut rest = jobs;
     while !rest.is_empty() {
-        // As many as fit into the flash, one image after another.
+        // Each image holds as many jobs as fit into the flash.
         let mut size = 0;
         let fitting = rest.iter().take_while(|job| {
             size += bytes(job);
@@ -67,7 +67,7 @@ pub fn run(jobs: &[Job<'_>], toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec
     Ok(counts)
 }
 
-/// Estimate of the flash that a job's numbers take.
+/// Estimated flash of a job's numbers [bytes].
 fn bytes(job: &Job<'_>) -> usize {
     let planets = job.case.joint.geometry.planets;
     let starts = 1 + job.restarts.len();
@@ -118,7 +118,7 @@ fn write(folder: &Path, source: &str) -> Outcome<PathBuf> {
     place.canonicalize().map_err(|error| Failure::new(format!("{}: {error}", place.display())))
 }
 
-/// The jobs as the firmware's `comparison` takes them.
+/// Source of the jobs for the firmware's `comparison`.
 fn source(jobs: &[Job<'_>]) -> Outcome<String> {
     let mut text = String::from(
         "use core::option::Option::*;\n\
@@ -167,7 +167,7 @@ fn lists(index: usize, case: &Case) -> String {
     text + &format!("];\nstatic RESTARTS_{index}: [u32; {count}] = {ticks:?};\n")
 }
 
-/// Statics of a job, and its call but for the schedule.
+/// Statics of a job, and its call without the schedule.
 fn numbers<const N: usize>(index: usize, job: &Job<'_>) -> Outcome<(String, String)> {
     let joint = &job.case.joint;
     let starts = Deflected::<N>::all(joint, &job.case.start, job.restarts);
@@ -175,7 +175,7 @@ fn numbers<const N: usize>(index: usize, job: &Job<'_>) -> Outcome<(String, Stri
     let peer = |scheme: &str| {
         let plant = run::plant::<f32, N>(joint, job.method, job.rate);
         let starts: Vec<_> = starts.iter().map(|start| start.peer::<f32>(joint, f64::from(job.rate))).collect();
-        // The core's tables have a flow too.
+        // The core's tables have a type `Flow` too.
         let plant = format!("{plant:?}").replace("Flow {", "PlantFlow {");
         (
             format!(

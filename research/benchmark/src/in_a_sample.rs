@@ -1,5 +1,5 @@
-//! What each method achieves within the computing time of one control sample, at equal cost: error of output angle and
-//! peak mesh force. Only for cases that are judged by the output angle.
+//! Best result of each method within the computing time of one control sample: error of output angle and peak mesh force. Only for cases
+//! evaluated by the output angle.
 
 use serde::Serialize;
 
@@ -8,11 +8,11 @@ use comparison::method::Method;
 use super::method_results::{CaseRecord, MethodResult, StepResult};
 use super::verdicts::least_cost_at;
 
-/// Samples in a second [Hz].
+/// Sample rate [Hz].
 pub const SAMPLE_RATE: u32 = 10_000;
-/// Instructions that a sample may take, on average.
+/// Largest mean number of instructions a sample.
 pub const INSTRUCTIONS: f64 = 2_000.0;
-/// What is asked of the link angle over the lost motion, RMS and worst, and of the largest mesh force.
+/// Required errors of the link angle over the lost motion, RMS and worst, and of the largest mesh force.
 pub const ASKED: [f64; 3] = [1e-3, 1e-2, 0.1];
 
 /// One method at its best within the cost.
@@ -23,38 +23,38 @@ pub struct InASample {
     pub case: String,
     /// Method.
     pub name: &'static str,
-    /// Its step with the least RMS error of those that fit; none if none fits or all get lost.
+    /// Step with the least RMS error among those that fit; none if none fits or all diverge.
     pub best: Option<Best>,
-    /// Instructions a sample at which its RMS error is that of this step; none if it never is.
+    /// Instructions a sample at which the method reaches the RMS error of this step; none if it never does.
     pub at_equal_error: Option<f64>,
 }
 
-/// The best step of a method.
+/// Best step of a method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Best {
-    /// Steps a sample; sub-steps of this step; none where the design chose.
+    /// Steps a sample, with sub-steps for this step; none where the design chose.
     pub steps: Option<u32>,
     /// Link angle over the lost motion, RMS.
     pub link_rms: f64,
-    /// Worst.
+    /// Link angle over the lost motion, worst.
     pub link_worst: f64,
-    /// Largest mesh force, relative.
+    /// Largest mesh force, relative error.
     pub peak_force: f64,
     /// Mean instructions a sample.
     pub instructions: f64,
-    /// Greatest.
+    /// Largest number of instructions a sample.
     pub instructions_most: u32,
 }
 
 impl Best {
-    /// Whether it does all that is asked.
+    /// Returns true if all required errors are met.
     pub fn does(&self) -> bool {
         [self.link_rms, self.link_worst, self.peak_force].iter().zip(ASKED).all(|(found, asked)| *found <= asked)
     }
 }
 
-/// All methods on all cases that are judged by the output angle.
+/// Best steps of all methods on all cases evaluated by the output angle.
 pub fn in_a_sample(cases: &[CaseRecord], entries: &[MethodResult]) -> Vec<InASample> {
     let judged = |entry: &&MethodResult| cases.iter().any(|case| case.key == entry.case && case.by_link_angle);
     let own = |case: &str| {
@@ -113,6 +113,7 @@ mod tests {
         MethodResult { case: "R".into(), method: Method::Euler, name: Method::Euler.name(), marks }
     }
 
+    /// The best step has the least error among those that fit.
     #[test]
     fn the_best_step_is_the_one_with_the_least_error_of_those_that_fit() {
         let found = best(&entry(vec![mark(1, 600.0, 0.1), mark(3, 600.0, 1e-3), mark(4, 600.0, 1e-4)])).unwrap();
@@ -121,6 +122,7 @@ mod tests {
         assert!(found.does());
     }
 
+    /// A method that diverges at every step that fits has no best step.
     #[test]
     fn a_method_that_gets_lost_at_every_step_that_fits_has_no_best_step() {
         let lost = StepResult { link_rms: None, ..mark(1, 600.0, 1.0) };

@@ -1,7 +1,6 @@
-//! `joint bench`: the core's step against common methods, error by cost, on the emulated core and on the host.
-//! `method_results` runs the fixed-step methods, through `emulated_runs` on the emulated core, `libraries` times what a
-//! host program would take from a library, `verdicts` and `in_a_sample` draw the conclusions; all of it is the
-//! `record`, and `page` and `document` show it.
+//! `joint bench`: the core's step against common methods, error by cost, on the emulated core and on the host. `method_results` runs the
+//! fixed-step methods, through `emulated_runs` on the emulated core, `libraries` times the libraries available to a host program,
+//! `verdicts` and `in_a_sample` draw the conclusions; all of it is the `record`, and `page` and `document` present it.
 
 mod document;
 mod emulated_runs;
@@ -31,7 +30,7 @@ use report::seeds::Seeds;
 use report::write::write_text;
 use report::{folder, interruption, output};
 
-/// What the command does, in a line of its help.
+/// Description of the command in a line of its help.
 pub const ABOUT: &str =
     "Compare the step with what people use: error against cost, on the emulated core and on the host";
 
@@ -73,7 +72,7 @@ pub struct Arguments {
     document: Option<PathBuf>,
 }
 
-/// Compares.
+/// Runs the comparison.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     let wanted = [("json", &arguments.json), ("html", &arguments.html), ("document", &arguments.document)];
     let read: Vec<&Path> = arguments.file.as_deref().into_iter().collect();
@@ -103,7 +102,7 @@ fn gather(arguments: &Arguments, progress: &Progress) -> Outcome<BenchmarkRecord
     let emulator = emulator::ensure(&say)?;
     let (cases, methods) = method_results::run(cases, &toolchain, progress, &say)?;
     progress.stage("host libraries");
-    // They take the named cases only: a program of its own knows these.
+    // Libraries run the named cases only, which the program behind them contains.
     let host = match arguments.no_libraries || arguments.file.is_some() || arguments.random.is_some() {
         true => None,
         false => Some(libraries::run(&keys, &say)?),
@@ -122,7 +121,7 @@ fn gather(arguments: &Arguments, progress: &Progress) -> Outcome<BenchmarkRecord
     })
 }
 
-/// The cases asked for.
+/// Requested cases.
 fn cases(arguments: &Arguments) -> Outcome<Vec<Case>> {
     if let Some(file) = &arguments.file {
         let loaded = named::load(file)?;

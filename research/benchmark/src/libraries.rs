@@ -1,5 +1,5 @@
-//! Host libraries, timed by a program of the workspace that is built for it: they are too many dependencies for this
-//! command. CVODE is among them where SUNDIALS is installed or can be.
+//! Host libraries, timed by a program of the workspace that is built for the purpose: they are too many dependencies for this command.
+//! CVODE is included where SUNDIALS is installed or can be installed.
 
 use std::process::Command;
 
@@ -12,29 +12,29 @@ use report::workspace::workspace;
 /// Debian's package of SUNDIALS.
 const SUNDIALS: &str = "libsundials-dev";
 
-/// What one contestant did at one setting.
+/// Time and error of one method at one setting.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Time {
     /// Case.
     pub case: String,
-    /// Contestant.
+    /// Method.
     pub name: String,
     /// Tolerance, or step h omega_n.
     pub setting: f64,
-    /// Trajectory error, worst over the phases; none if it failed.
+    /// Trajectory error, worst over the phases; none if the method failed.
     pub error: Option<f64>,
     /// Processor seconds for a second of the joint.
     pub cost: f64,
 }
 
-/// The result.
+/// Times of all methods.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Times {
-    /// Every contestant at every setting.
+    /// Time of every method at every setting.
     pub times: Vec<Time>,
-    /// Why CVODE is not among them.
+    /// Reason why CVODE is missing, if it is.
     pub without_cvode: Option<String>,
 }
 

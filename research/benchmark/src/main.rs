@@ -1,4 +1,4 @@
-//! `joint bench` as a program of its own, which the host command starts through cargo.
+//! `joint bench` as a separate program, started by the host command through cargo.
 
 use std::process::ExitCode;
 

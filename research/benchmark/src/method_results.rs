@@ -13,12 +13,12 @@ use board::device::toolchain::Toolchain;
 use report::failure::{Failure, Outcome};
 use report::progress::Progress;
 
-/// Steps a second over a quarter of the case's sample rate, where the phase is prescribed.
+/// Step rates over a quarter of the case's sample rate, where the phase is prescribed.
 const MULTIPLES: [u32; 15] = [1, 2, 3, 4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64];
 /// Steps a tick where torques change tick by tick.
 const STEPS_A_TICK: [u32; 11] = [1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 32];
-/// Sub-steps that the core's step takes in a tick, and ticks a second over a quarter of the case's sample rate: a tick
-/// costs something of its own, and while contact holds it is all there is.
+/// Sub-steps of the core's step in a tick, and tick rates over a quarter of the case's sample rate: a tick has a cost of its own, which is
+/// all of the cost while contact holds.
 const SUBSTEPS: [u32; 10] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16];
 const SUBSTEPS_OF_LONG_RUNS: [u32; 6] = [1, 2, 3, 4, 6, 8];
 const TICKS: [u32; 3] = [1, 2, 4];
@@ -31,9 +31,9 @@ pub struct MethodResult {
     pub case: String,
     /// Method.
     pub method: Method,
-    /// In tables and pictures.
+    /// Name in tables and pictures.
     pub name: &'static str,
-    /// From coarse to fine.
+    /// Steps from coarse to fine.
     pub marks: Vec<StepResult>,
 }
 
@@ -42,34 +42,34 @@ pub struct MethodResult {
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "units are spelled as in every file that this command writes")]
 pub struct StepResult {
-    /// Steps a second; of the core's step ticks a second.
+    /// Step rate; for the core's step the tick rate.
     pub rate_Hz: u32,
-    /// Sub-steps of each; 0 for what the design chooses for a board.
+    /// Sub-steps of each step; 0 for the design's choice for a board.
     pub substeps: u32,
-    /// h omega_n, of a sub-step; of the whole tick where the design chooses.
+    /// Step h omega_n: of a sub-step, or of the whole tick where the design chooses.
     pub step: f64,
-    /// The case's measure, worst over the phases; none if the motion got lost.
+    /// Error by the case's measure, worst over the phases; none if the motion diverged.
     pub error: Option<f64>,
-    /// The same in double precision, where it was asked.
+    /// Error in double precision, where computed.
     pub error_f64: Option<f64>,
     /// Link angle over the lost motion, RMS.
     pub link_rms: Option<f64>,
-    /// Likewise, worst.
+    /// Link angle over the lost motion, worst.
     pub link_worst: Option<f64>,
-    /// Largest mesh force.
+    /// Largest mesh force, relative error.
     pub peak_force: Option<f64>,
-    /// Instructions a step, mean.
+    /// Mean instructions a step.
     pub instructions: f64,
-    /// Greatest.
+    /// Largest number of instructions of a step.
     pub instructions_most: u32,
-    /// Greatest in a sample of 10, 20 and 40 kHz; 0 where steps do not fit.
+    /// Largest number of instructions in a sample of 10, 20 and 40 kHz; 0 where steps do not fit.
     pub sample_instructions_most: [u32; 3],
 }
 
 impl MethodResult {
-    /// Cost and error, from coarse to fine, in series that differ in the step alone.
+    /// Cost and error, from coarse to fine, in series whose entries differ in the step only.
     pub fn series(&self) -> Vec<Vec<(f64, f64)>> {
-        // Ticks matter to the core's step alone; what the design chooses is a series of its own.
+        // Tick rates form series for the core's step only; the design's choice is a series of its own.
         let ticks = |mark: &StepResult| match self.method {
             Method::Realtime if mark.substeps != AS_DESIGNED => mark.rate_Hz,
             _ => 0,
@@ -99,19 +99,19 @@ impl StepResult {
 pub struct CaseRecord {
     /// Short name.
     pub key: String,
-    /// What happens.
+    /// Title.
     pub title: String,
-    /// What the error is of.
+    /// Error measure.
     pub measure: &'static str,
-    /// Whether that is the output angle.
+    /// True if the measure is the output angle.
     pub by_link_angle: bool,
     /// Length [s].
     pub duration_s: f64,
     /// Phases in the envelope.
     pub phases: usize,
-    /// Windows that the motion is judged in, each begun in the reference's state.
+    /// Number of windows of the evaluation, each starting in the reference's state.
     pub windows: usize,
-    /// The measure of the reference itself once its start is moved by a millionth of b_c, without windows.
+    /// Error of the reference itself if its start is moved by a millionth of b_c, without windows.
     pub sensitivity: f64,
 }
 
@@ -126,7 +126,7 @@ pub fn run(
     for case in cases {
         progress.stage(&format!("case {}: reference", case.key));
         let failed = |error: &dyn std::fmt::Display| Failure::new(format!("case {}: {error}", case.key));
-        // Where the motion is unpredictable a few phases say as much as many.
+        // For a chaotic motion a few phases are as informative as many.
         let phases = if case.measure == Measure::LinkAngle { 2 } else { PHASES };
         let envelope = PhaseEnvelope::new(case.clone(), phases).map_err(|error| failed(&error))?;
         let sensitivity = envelope.sensitivity().map_err(|error| failed(&error))?;
@@ -164,7 +164,7 @@ pub fn run(
     Ok((figures, entries))
 }
 
-/// All methods at all rates that they can run at; this step in double precision too.
+/// All methods at all rates that they support; this step in double precision too.
 fn points(envelope: &PhaseEnvelope) -> Vec<(Method, Point, Option<Point>)> {
     let case = &envelope.case;
     let constant = case.torques.len() <= 1;
@@ -182,7 +182,7 @@ fn points(envelope: &PhaseEnvelope) -> Vec<(Method, Point, Option<Point>)> {
             _ => multiples.iter().map(|multiple| (multiple * unit, 1)).collect(),
         };
         for (rate, substeps) in steps {
-            // The design refuses what it cannot make tables of.
+            // The design rejects steps without tables.
             let Ok(point) = envelope.point(method, Scalar::Single, rate, substeps) else { continue };
             let double = (method == Method::Realtime)
                 .then(|| envelope.point(method, Scalar::Double, rate, substeps).ok())
@@ -207,7 +207,7 @@ fn of_measure(case: &Case, errors: &Errors) -> f64 {
     }
 }
 
-/// None of an error that says that the motion got lost.
+/// Error, or `None` if the motion diverged.
 fn finite(error: f64) -> Option<f64> {
     (error.is_finite() && error < 1e6).then_some(error)
 }

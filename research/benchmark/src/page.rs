@@ -1,5 +1,5 @@
-//! The comparison as a document: for a page, for a Markdown file, and, with every method at every step, for a terminal.
-//! Nothing is computed here but units.
+//! The comparison as a document: for a page, for a Markdown file, and, with every method at every step, for a terminal. Only units are
+//! computed here.
 
 use comparison::method::Method;
 use comparison::run::AS_DESIGNED;
@@ -17,12 +17,12 @@ use report::number::{SCIENTIFIC, fixed, powers_of_ten};
 use report::plot::Figure;
 use report::provenance::VERSION;
 
-/// All but Markdown files, which have the conclusions only.
+/// All media except Markdown files, which show the conclusions only.
 const WITH_STEPS: &[Medium] = &[Medium::Page, Medium::Terminal];
-/// All but pages, which say it elsewhere.
+/// All media except pages, which show the provenance elsewhere.
 const LINES: &[Medium] = &[Medium::Terminal, Medium::Markdown];
 
-/// All of it.
+/// The whole document.
 pub fn document(figures: &BenchmarkRecord) -> Document {
     let mut blocks = vec![Block::Only(LINES, vec![Block::Paragraph(provenance(figures))])];
     blocks.extend(figures.cases.iter().map(|case| one(figures, case)));
@@ -41,7 +41,7 @@ pub fn document(figures: &BenchmarkRecord) -> Document {
     }
 }
 
-/// Name of the picture of a case, without its ending.
+/// File name of a case's picture, without its extension.
 pub fn picture_name(case: &CaseRecord) -> String {
     format!("error-by-cost-{}", case.key.to_lowercase())
 }
@@ -65,7 +65,7 @@ fn provenance(figures: &BenchmarkRecord) -> Text {
         )
 }
 
-/// Two digits and a power of ten; a motion may have got lost.
+/// Two digits and a power of ten, or `lost` for a diverged motion.
 fn scientific(value: Option<f64>) -> String {
     value.map_or_else(|| "lost".into(), |value| SCIENTIFIC.write(value))
 }
@@ -101,7 +101,7 @@ fn one(figures: &BenchmarkRecord, case: &CaseRecord) -> Block {
     section(format!("Case {}: {}", case.key, case.title), blocks)
 }
 
-/// What windows there are, as a sentence after another.
+/// Sentence about the windows of a case.
 fn windows(case: &CaseRecord) -> String {
     if case.windows == 1 {
         return String::new();
@@ -113,7 +113,7 @@ fn windows(case: &CaseRecord) -> String {
     )
 }
 
-/// Every method at every step.
+/// Table of every method at every step.
 fn steps(figures: &BenchmarkRecord, case: &CaseRecord) -> Block {
     let heads =
         ["kHz", "h omega_n", "error", "link RMS", "link worst", "peak force", "instr/step", "worst", "M instr/s"];
@@ -142,8 +142,7 @@ fn step(entry: &MethodResult, mark: &StepResult) -> Row {
     ])
 }
 
-/// Steps that a table shows: of this step those that no other one undercuts, else every other one of a long list, the
-/// coarsest and the finest always.
+/// Steps shown in a table: for this step the Pareto front, otherwise every other step of a long list, with the coarsest and the finest.
 fn shown(entry: &MethodResult) -> Vec<&StepResult> {
     let best = front(entry.series().into_iter().flatten().collect());
     let last = entry.marks.len().saturating_sub(1);
@@ -157,7 +156,7 @@ fn shown(entry: &MethodResult) -> Vec<&StepResult> {
     marks
 }
 
-/// What a controller gets out of one sample.
+/// Results of all methods within one sample.
 fn in_a_sample(found: &[&InASample]) -> [Block; 2] {
     let [rms, worst, peak] = ASKED;
     let lead = format!(
@@ -190,7 +189,7 @@ fn in_a_sample(found: &[&InASample]) -> [Block; 2] {
     [Block::Paragraph(lead.into()), table(columns, rows.collect())]
 }
 
-/// One row a contestant, two columns a level of error.
+/// Table with one row a method and two columns for each error level.
 fn equal(found: &[&AtError], cost: impl Fn(f64) -> String) -> Block {
     let mut rows: Vec<Vec<String>> = Vec::new();
     for at in found {

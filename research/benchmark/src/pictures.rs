@@ -1,5 +1,5 @@
-//! Pictures of error against cost, case by case: instructions of the fixed-step methods on the board, processor time of
-//! the host's contestants. Both axes run by powers of ten.
+//! Pictures of error against cost, case by case: instructions of the fixed-step methods on the board, processor time of the methods on the
+//! host. Both axes are logarithmic.
 
 use comparison::method::Method;
 
@@ -16,17 +16,17 @@ const NO_UNIT: Unit = Unit { factor: 1.0, name: "" };
 /// Instructions a second of the joint.
 const MEGA: Unit = Unit { factor: 1e-6, name: "million" };
 const MILLI: Unit = Unit { factor: 1e3, name: "ms" };
-/// Own line, others.
+/// Line width of this step, and of the others.
 const WIDTHS: [f64; 2] = [3.0, 1.6];
 const HEIGHT: i32 = 420;
 
-/// One contestant's line.
+/// Line of one method.
 struct Curve<'a> {
     /// Cost and error.
     points: Vec<(f64, f64)>,
     ink: Ink,
     name: &'a str,
-    /// Whether it is this step.
+    /// True for this step.
     own: bool,
 }
 
@@ -44,7 +44,7 @@ fn ink(method: Method) -> Ink {
     }
 }
 
-/// A name short enough for a legend of many.
+/// Name short enough for a legend of many.
 fn short(name: &str) -> &str {
     const SHORT: [(&str, &str); 12] = [
         ("the paper's (ETD1)", "ETD1"),
@@ -63,7 +63,7 @@ fn short(name: &str) -> &str {
     SHORT.iter().find(|pair| pair.0 == name).map_or(name, |pair| pair.1)
 }
 
-/// Error by instructions.
+/// Figure of error against instructions.
 pub fn board(case: &CaseRecord, entries: &[MethodResult]) -> Option<Figure> {
     let own = |entry: &&MethodResult| entry.case == case.key && entry.marks.iter().any(|mark| mark.error.is_some());
     let curves: Vec<Curve<'_>> = entries
@@ -82,11 +82,11 @@ pub fn board(case: &CaseRecord, entries: &[MethodResult]) -> Option<Figure> {
     figure(format!("Case {}: {}", case.key, case.title), "instructions", MEGA, curves, Some(half), note)
 }
 
-/// Error by processor time.
+/// Figure of error against processor time.
 pub fn host(case: &CaseRecord, times: &[Time]) -> Option<Figure> {
     let mut names: Vec<&str> = Vec::new();
     for time in times.iter().filter(|time| time.case == case.key && time.error.is_some()) {
-        // One line for this step and one for Runge-Kutta: in f64, as libraries compute.
+        // One line for this step and one for Runge-Kutta: in f64, as in the libraries.
         if !names.contains(&time.name.as_str()) && !time.name.ends_with("f32") {
             names.push(&time.name);
         }
@@ -120,12 +120,12 @@ fn figure(
     let most = |of: fn((f64, f64)) -> f64| all().map(of).fold(0.0, f64::max);
     let (left, right) = (least(|point| point.0), most(|point| point.0));
     let (low, high) = (least(|point| point.1), most(|point| point.1));
-    // Of no points at all the least is infinite.
+    // Without any points the least value is infinite.
     if !(left > 0.0 && left.is_finite() && low > 0.0 && right.is_finite()) {
         return None;
     }
     let mut marks: Vec<Mark> = limit.into_iter().map(|at| Mark::Deadline { at, label: "half a core".into() }).collect();
-    // This step last, above the others.
+    // This step is drawn last, above the others.
     let (own, others): (Vec<_>, Vec<_>) = curves.into_iter().partition(|curve| curve.own);
     for Curve { points, ink, name, own } in others.into_iter().chain(own) {
         marks.push(Mark::Points {
@@ -151,6 +151,7 @@ mod tests {
         Curve { points: points.to_vec(), ink: Ink::First, name: "a method", own }
     }
 
+    /// Curves over many decades are drawn.
     #[test]
     fn curves_over_many_decades_are_drawn() {
         let curves = vec![
@@ -162,6 +163,7 @@ mod tests {
         assert!(svg.contains("a method") && svg.contains("half a core"), "{svg}");
     }
 
+    /// Without points there is no picture.
     #[test]
     fn nothing_to_draw_is_no_picture() {
         assert!(figure(String::new(), "", MEGA, vec![curve(&[], true)], None, String::new()).is_none());

@@ -1,20 +1,19 @@
-//! The record of a comparison, with its provenance, as it is written as JSON in the schema
-//! `joint-bench/1`.
+//! Record of a comparison with its provenance, written as JSON in the schema `joint-bench/1`.
 
 use serde::Serialize;
 
 use crate::{in_a_sample, libraries, method_results, verdicts};
 
-/// Says which fields there are; rises when one changes its meaning or goes.
+/// Version of the schema; rises when a field changes its meaning or is removed.
 pub const SCHEMA: &str = "joint-bench/1";
 
-/// Everything found.
+/// Results of a comparison.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct BenchmarkRecord {
     /// `joint-bench/1`.
     pub schema: &'static str,
-    /// Where the figures come from.
+    /// Origin of the figures.
     pub origin: Origin,
     /// Cases.
     pub cases: Vec<method_results::CaseRecord>,
@@ -22,11 +21,11 @@ pub struct BenchmarkRecord {
     pub methods: Vec<method_results::MethodResult>,
     /// Instructions at equal error.
     pub at_equal_error: Vec<verdicts::AtError>,
-    /// Robot joints: every method at the same cost.
+    /// Robot joints: every method at equal cost.
     pub in_a_sample: Vec<in_a_sample::InASample>,
-    /// Least error in half a board.
+    /// Least error within half a board.
     pub in_budget: Vec<verdicts::InBudget>,
-    /// f32 beside f64.
+    /// f32 against f64.
     pub rounding: Vec<verdicts::Rounding>,
     /// Host times, unless left out.
     pub host: Option<libraries::Times>,
@@ -34,7 +33,7 @@ pub struct BenchmarkRecord {
     pub host_at_equal_error: Vec<verdicts::AtError>,
 }
 
-/// Where figures come from.
+/// Origin of the figures.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Origin {

@@ -1,9 +1,10 @@
-//! The published schema of a comparison is that of its type. Only tests are here.
+//! Test that the published schema of a comparison equals its type's.
 
 use report::schema::assert_published;
 
 use crate::BenchmarkRecord;
 
+/// The published schema equals the type's.
 #[test]
 fn the_published_schema_is_that_of_the_type() {
     assert_published::<BenchmarkRecord>("bench.schema.json");

@@ -6,34 +6,34 @@ use serde::Serialize;
 use super::libraries::Time;
 use super::method_results::{MethodResult, StepResult};
 
-/// Cycles for an instruction, where no trace weighs them: a Cortex-M4F without wait states on code like this.
+/// Cycles per instruction where no trace weighs them: a Cortex-M4F without wait states on similar code.
 pub const CYCLES: f64 = 1.4;
-/// Clock of the board that budgets are stated for [Hz].
+/// Clock of the board for which budgets are stated [Hz].
 pub const CLOCK: f64 = 168e6;
-/// Part of the processor that the joint may take.
+/// Share of the processor available to the joint.
 const SHARE: f64 = 0.5;
-/// How much more than the mean the worst sample may take.
+/// Largest ratio of the worst sample to the budget.
 const WORST: f64 = 1.5;
-/// Errors at which methods are compared.
+/// Error levels of the comparison.
 pub const LEVELS: [f64; 2] = [1e-3, 1e-4];
 
-/// What it takes to reach an error.
+/// Cost of reaching an error.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct AtError {
     /// Case.
     pub case: String,
-    /// Contestant.
+    /// Method.
     pub name: String,
-    /// The error.
+    /// Error level.
     pub error: f64,
-    /// Cost there, interpolated between two steps or tolerances; none if it was not reached.
+    /// Cost at this error, interpolated between two steps or tolerances; none if it was not reached.
     pub cost: Option<f64>,
-    /// Over that of this step.
+    /// Cost over the cost of this step.
     pub ratio: Option<f64>,
 }
 
-/// The least error within half a board.
+/// Least error within half a board.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "units are spelled as in every file that this command writes")]
@@ -46,11 +46,11 @@ pub struct InBudget {
     pub sample_rate_Hz: u32,
     /// Steps a sample; none if no step fits.
     pub steps: Option<u32>,
-    /// Its error.
+    /// Error of these steps.
     pub error: Option<f64>,
     /// Mean cycles a sample.
     pub cycles: Option<f64>,
-    /// Greatest.
+    /// Largest number of cycles a sample.
     pub cycles_most: Option<f64>,
 }
 
@@ -71,7 +71,7 @@ pub fn at_equal_error(entries: &[MethodResult]) -> Vec<AtError> {
     entries.iter().filter(|entry| entry.method.has_meshes()).flat_map(levels).collect()
 }
 
-/// Processor time at equal error, library by library; this step as the faster of its two scalars.
+/// Processor time at equal error, library by library; this step with the faster of its two scalars.
 pub fn host_at_equal_error(times: &[Time]) -> Vec<AtError> {
     let mut names: Vec<(&str, &str)> = Vec::new();
     for time in times {
@@ -91,7 +91,7 @@ pub fn host_at_equal_error(times: &[Time]) -> Vec<AtError> {
     names.iter().flat_map(|name| LEVELS.map(|error| level(name, error))).collect()
 }
 
-/// Cost and error of a contestant of the host.
+/// Cost and error of a method on the host.
 pub fn curve(times: &[Time], case: &str, name: &str) -> Vec<(f64, f64)> {
     let of = times.iter().filter(|time| time.case == case && time.name == name);
     front(of.filter_map(|time| Some((time.cost, time.error?))).collect())
@@ -101,7 +101,7 @@ fn ratio(case: String, name: String, error: f64, cost: Option<f64>, own: Option<
     AtError { case, name, error, cost, ratio: cost.zip(own).map(|(cost, own)| cost / own) }
 }
 
-/// The points that no other one undercuts in both cost and error, from cheap to dear.
+/// Pareto front: points that no other point undercuts in both cost and error, from cheap to expensive.
 pub fn front(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut least = f64::INFINITY;
@@ -113,12 +113,12 @@ pub fn front(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     points
 }
 
-/// The least over several curves.
+/// Least cost at an error over several curves.
 pub fn least_cost_at(curves: Vec<Vec<(f64, f64)>>, error: f64) -> Option<f64> {
     curves.iter().filter_map(|curve| cost_at(curve, error)).min_by(f64::total_cmp)
 }
 
-/// Cost at which a curve, from cheap to dear, first comes down to an error: straight between two points in powers of ten.
+/// Cost at which a curve, from cheap to expensive, first reaches an error: interpolated linearly in logarithms.
 fn cost_at(curve: &[(f64, f64)], error: f64) -> Option<f64> {
     let first = curve.iter().position(|point| point.1 <= error)?;
     let (cost, below) = curve[first];
@@ -127,7 +127,7 @@ fn cost_at(curve: &[(f64, f64)], error: f64) -> Option<f64> {
     Some((dearer.ln() + part * (cost / dearer).ln()).exp())
 }
 
-/// The least error of every method within half a 168 MHz Cortex-M4F, sample rate by sample rate.
+/// Least error of every method within half a 168 MHz Cortex-M4F, for each sample rate.
 pub fn in_budget(entries: &[MethodResult]) -> Vec<InBudget> {
     let one = |entry: &MethodResult, index: usize| {
         let sample_rate = SAMPLE_RATES[index];
@@ -154,7 +154,7 @@ pub fn in_budget(entries: &[MethodResult]) -> Vec<InBudget> {
     entries.iter().filter(|entry| entry.method.has_meshes()).flat_map(rates).collect()
 }
 
-/// f32 beside f64 by step: what rounding adds.
+/// f32 against f64 by step: error added by rounding.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Rounding {
@@ -164,20 +164,20 @@ pub struct Rounding {
     pub step: f64,
     /// Error in f32.
     pub single: f64,
-    /// In f64.
+    /// Error in f64.
     pub double: f64,
-    /// What is left if the two add as independent errors do.
+    /// Part of the f32 error due to rounding, if both parts add as independent errors.
     pub rounding: f64,
 }
 
-/// Steps at which rounding is asked: coarser, the method's own error hides it.
+/// Steps at which rounding is evaluated: at coarser steps the method's own error hides it.
 const ROUNDED_STEPS: (f64, f64) = (0.04, 0.3);
 
-/// Of this step; steps that come to the same motion as others, since contact held, once.
+/// Rounding of this step; steps with the motion of another step, since contact held, appear once.
 pub fn rounding(entries: &[MethodResult]) -> Vec<Rounding> {
     let mut all: Vec<Rounding> = Vec::new();
     for entry in entries.iter().filter(|entry| entry.method == Method::Realtime) {
-        // The shortest ticks that several sub-steps were tried in will do: rounding is a matter of the sub-step.
+        // The shortest ticks with several numbers of sub-steps suffice: rounding depends on the sub-step.
         let stated = || entry.marks.iter().filter(|mark| mark.substeps > 1);
         let series = |rate: &u32| stated().filter(|mark| mark.rate_Hz == *rate).count() > 1;
         let ticks = stated().map(|mark| mark.rate_Hz).filter(series).max().unwrap_or_default();
@@ -199,6 +199,7 @@ pub fn rounding(entries: &[MethodResult]) -> Vec<Rounding> {
 mod tests {
     use super::*;
 
+    /// Cost at an error is interpolated in logarithms.
     #[test]
     fn the_cost_at_an_error_is_interpolated_in_powers_of_ten() {
         let curve = [(1.0, 1e-2), (10.0, 1e-4), (100.0, 1e-6)];
@@ -208,11 +209,13 @@ mod tests {
         assert!((at_a_point - 10.0).abs() < 1e-12, "{at_a_point}");
     }
 
+    /// A point that another point undercuts is not on the front.
     #[test]
     fn a_point_that_another_undercuts_is_left_out() {
         assert_eq!(front(vec![(3.0, 1.0), (1.0, 9.0), (2.0, 10.0), (4.0, 2.0)]), [(1.0, 9.0), (3.0, 1.0)]);
     }
 
+    /// An unreached error has no cost.
     #[test]
     fn an_error_that_is_not_reached_has_no_cost() {
         assert_eq!(cost_at(&[(1.0, 1e-2)], 1e-3), None);

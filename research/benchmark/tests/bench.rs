@@ -1,5 +1,5 @@
-//! `joint bench` as a user meets it: the comparison of one case on the emulated core, and what it says to bad input. The
-//! libraries of the host are left out: they take minutes to build.
+//! `joint bench` as the user sees it: the comparison of one case on the emulated core, and its errors for bad input. The libraries of the
+//! host are left out: they take minutes to build.
 
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -7,7 +7,7 @@ use std::process::{Command, Output, Stdio};
 use report::schema::assert_valid;
 use serde_json::Value;
 
-/// Runs the program to its end, with an output that is as wide as its messages.
+/// Runs the program to its end, with output as wide as its messages.
 fn bench(arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_benchmark"));
     command.args(arguments).env("NO_COLOR", "1").env("COLUMNS", "400").stdin(Stdio::null());
@@ -22,6 +22,7 @@ fn text(path: &Path) -> &str {
     path.to_str().expect("temporary folders have plain names")
 }
 
+/// An unknown case is named together with the known ones.
 #[test]
 fn a_case_that_is_not_known_is_named_with_those_that_are() {
     let ended = bench(&["--case", "A,Z"]);
@@ -29,12 +30,14 @@ fn a_case_that_is_not_known_is_named_with_those_that_are() {
     assert!(err(&ended).contains("--case Z") && err(&ended).contains("A, Q, R"), "{}", err(&ended));
 }
 
+/// Empty seed ranges and joints without teeth are rejected.
 #[test]
 fn seeds_that_are_none_and_joints_without_teeth_are_told() {
     refused(&["--random", "9-8"], &["--random", "no seed is from 9 to 8"]);
     refused(&["--random", "7005"], &["--random 7005", "equivalent gears", "help:"]);
 }
 
+/// A missing joint file is named.
 #[test]
 fn a_joint_file_that_is_not_there_is_named() {
     let ended = bench(&["no/such/joint.toml"]);
@@ -42,7 +45,7 @@ fn a_joint_file_that_is_not_there_is_named() {
     assert!(err(&ended).contains("no/such/joint.toml"), "{}", err(&ended));
 }
 
-/// Bad input: exit code 2 with all these words in the message, and no panic.
+/// Checks bad input: exit code 2 with all `words` in the message, and no panic.
 #[track_caller]
 fn refused(arguments: &[&str], words: &[&str]) {
     let ended = bench(arguments);
@@ -51,6 +54,7 @@ fn refused(arguments: &[&str], words: &[&str]) {
     assert!(words.iter().all(|word| said.contains(word)) && !said.contains("panicked"), "{arguments:?}: {said}");
 }
 
+/// Unreadable joint files are named.
 #[test]
 fn a_file_that_is_nothing_is_refused_by_its_name() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -64,6 +68,7 @@ fn a_file_that_is_nothing_is_refused_by_its_name() {
     refused(&[text(folder.path())], &[text(folder.path()), "help:"]);
 }
 
+/// Outputs that cannot be written are rejected before the work.
 #[test]
 fn a_result_that_cannot_be_written_is_known_before_the_work() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -78,6 +83,7 @@ fn a_result_that_cannot_be_written_is_known_before_the_work() {
     refused(&[text(&file), "--html", text(&file)], &["would write over", "name another file"]);
 }
 
+/// Each method takes at most the instructions of a dedicated prototype.
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
 fn the_peers_are_as_lean_as_their_advocates_would_have_them() {
@@ -88,14 +94,14 @@ fn the_peers_are_as_lean_as_their_advocates_would_have_them() {
     assert_eq!(ended.status.code(), Some(0), "{}", err(&ended));
     let figures: Value = serde_json::from_slice(&ended.stdout).expect("JSON");
     assert_valid("bench.schema.json", &figures);
-    // At the finest step, where contacts seldom change within one; mean instructions a step.
+    // Finest step, where contacts seldom change within a step; mean instructions a step.
     let finest = |method: &str| {
         let entries = figures["methods"].as_array().expect("a list").iter();
         let marks =
             entries.filter(|entry| entry["method"] == method).filter_map(|entry| entry["marks"].as_array()?.last());
         marks.filter_map(|mark| mark["instructions"].as_f64()).fold(0.0, f64::max)
     };
-    // What throwaway prototypes of the same methods took.
+    // Instructions of throwaway prototypes of the same methods.
     for (method, bound) in [
         ("runge_kutta4", 1100.0),
         ("runge_kutta4_tanh", 2572.0),

@@ -1,6 +1,6 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
-//! The comparison of fixed-step methods on the emulated core: each job moves a case by a method and says what a step took
-//! and the digest of where it came to. The jobs are written by the host, which knows the right digests.
+//! The comparison of fixed-step methods on the emulated core: each job moves a case by a method and prints the instructions of its steps
+//! and the digest of its last state. The host generates the jobs and knows the expected digests.
 
 #[cfg(target_os = "none")]
 mod comparison {
@@ -16,7 +16,7 @@ mod comparison {
     use firmware::measuring::{self, InstructionCounter};
     use model_core::gears::{Model, State, Tables};
 
-    /// Every job, as `run(runner)`.
+    /// All jobs, as `run(runner)`.
     mod jobs {
         #![allow(clippy::all, clippy::excessive_precision, reason = "generated numbers")]
         include!(env!("COMPARISON_JOBS"));
@@ -29,22 +29,22 @@ mod comparison {
         load: f32,
     }
 
-    /// How far, how fast, and under what torques.
+    /// Steps of a job, their rate, torques and restarts.
     pub struct StepSchedule {
         steps: u32,
-        /// Steps in a second.
+        /// Step rate [Hz].
         rate: u32,
-        /// Ticks in a second.
+        /// Tick rate [Hz].
         tick_rate: u32,
         torques: &'static [Change],
-        /// Ticks at whose beginning the next start is taken.
+        /// Ticks at whose beginning the next start is used.
         restarts: &'static [u32],
     }
 
-    /// Samples in a second within which the work is summed too: control rates of joints.
+    /// Sample rates for which instructions are summed as well: control rates of joints [Hz].
     const SAMPLE_RATES: [u32; 3] = [10_000, 20_000, 40_000];
 
-    /// Greatest sum of instructions within a sample.
+    /// Largest sum of instructions within a sample.
     #[derive(Clone, Copy)]
     struct Sample {
         steps: u32,
@@ -71,13 +71,13 @@ mod comparison {
         }
     }
 
-    /// Counts and tells.
+    /// Runs jobs, counts their instructions and prints the results.
     pub struct JobRunner {
         counter: InstructionCounter,
     }
 
     impl JobRunner {
-        /// The core, by the scheme of its tables.
+        /// Runs the core with the scheme of its tables.
         pub fn core<const N: usize>(
             &self,
             job: u32,
@@ -88,7 +88,7 @@ mod comparison {
             self.run(job, schedule, &mut Core::new(Model::new(black_box(tables)), black_box(starts)));
         }
 
-        /// A peer.
+        /// Runs a baseline.
         pub fn peer<const N: usize, S: Scheme<f32, N>>(
             &self,
             job: u32,
@@ -101,7 +101,7 @@ mod comparison {
             }
         }
 
-        /// The model of two masses, from displacements and their rates.
+        /// Runs the two-mass model from displacements and their rates.
         pub fn two_mass(&self, job: u32, model: &TwoMass<f32>, starts: &[[f32; 2]], schedule: &StepSchedule) {
             self.run(job, schedule, &mut Gap::new(black_box(model), black_box(starts)));
         }
@@ -129,7 +129,7 @@ mod comparison {
         }
     }
 
-    /// A call that is not inlined, so that nothing moves out of the count.
+    /// Call that is not inlined, so that no code moves out of the count.
     #[inline(never)]
     fn call<M: SteppedModel<f32>>(moving: &mut M) {
         moving.step();
@@ -144,6 +144,6 @@ mod comparison {
     }
 }
 
-/// There is nothing to run on a host.
+/// Nothing runs on a host.
 #[cfg(not(target_os = "none"))]
 fn main() {}

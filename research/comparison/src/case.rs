@@ -1,4 +1,4 @@
-//! A case: a joint, its initial state, the torques, and which error counts. The cases are listed in `catalogue`.
+//! A case: joint, initial state, torques, and the error measure. The cases are listed in `catalogue`.
 
 use model_core::gears::{Kinematics, MeshPhasing};
 use parameters::{Excitation, JointParameters, MESH_KINDS, MeshKind, MeshPhases};
@@ -7,12 +7,12 @@ use reference::scenarios::case_r::{CaseR, TICK_RATE};
 use reference::scenarios::{Scenario, TorqueSegment};
 use std::f64::consts::TAU;
 
-/// What counts.
+/// Error measure of a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measure {
-    /// Every mesh's deflection: RMS error over the standard deviation.
+    /// Deflections of all meshes: RMS error over the standard deviation.
     Deflections,
-    /// The link's angle: RMS error over the lost motion. Where single meshes rattle without rule.
+    /// Angle of the link: RMS error over the lost motion, for cases whose single meshes rattle chaotically.
     LinkAngle,
 }
 
@@ -21,32 +21,32 @@ pub enum Measure {
 pub struct Case {
     /// Short name: one word.
     pub key: String,
-    /// What happens, in a line.
+    /// Title in one line.
     pub title: String,
     /// The joint.
     pub joint: JointParameters,
-    /// Its state at time zero.
+    /// State at time zero.
     pub start: Start,
     /// Torques, in order.
     pub torques: Vec<TorqueSegment>,
-    /// Ticks of `torques` in a second [Hz]: a method's rate must be a multiple of it where torques change.
+    /// Ticks of `torques` in a second [Hz]: where torques change, a method's rate must be a multiple.
     pub tick_rate: u32,
-    /// Length in these ticks.
+    /// Length [ticks].
     pub ticks: u64,
-    /// Samples in a second [Hz].
+    /// Sample rate [Hz].
     pub sample_rate: u32,
-    /// First moment that counts [s].
+    /// Start of the evaluation [s].
     pub counts_from: f64,
-    /// First tick of every part of which the largest mesh force is compared.
+    /// First tick of every part whose largest mesh force is compared.
     pub parts: Vec<u64>,
-    /// Ticks at which a method is put back into the reference's state: a motion that is chaotic in the long run is judged
-    /// in windows. Only where the carrier's angle makes the mesh phase.
+    /// Ticks at which a method is reset to the reference's state: a motion that is chaotic in the long run is evaluated in windows. Only
+    /// where the carrier's angle determines the mesh phase.
     pub restarts: Vec<u64>,
-    /// What counts.
+    /// Error measure.
     pub measure: Measure,
 }
 
-/// Bodies still and undeflected: the deflections are the imposed errors, negated.
+/// State of bodies at rest without displacement: the deflections are the imposed errors, negated.
 pub fn at_rest(joint: &JointParameters) -> RelativeState {
     let rate = match joint.excitation {
         Excitation::Time { mesh_frequency } => mesh_frequency,
@@ -62,7 +62,7 @@ pub fn at_rest(joint: &JointParameters) -> RelativeState {
 }
 
 impl Case {
-    /// A scenario of which all deflections count from a moment [s] on.
+    /// Scenario whose deflections are all evaluated from a time [s] on.
     pub fn of_scenario(key: &str, title: &str, scenario: Scenario, sample_rate: u32, counts_from: f64) -> Self {
         Self {
             key: key.into(),
@@ -80,7 +80,7 @@ impl Case {
         }
     }
 
-    /// The motion of a robot joint.
+    /// Motion of a robot joint.
     pub fn of_robot_joint(key: &str, title: &str, case: CaseR) -> Self {
         let mut torques: Vec<TorqueSegment> = Vec::new();
         for (tick, [drive, load]) in case.torques.iter().enumerate() {
@@ -115,7 +115,7 @@ impl Case {
         MESH_KINDS.into_iter().map(least).sum::<f64>() / self.joint.geometry.carrier_base_radius()
     }
 
-    /// Its start with the sun displaced by a part of b_c.
+    /// Start with the sun displaced by a part of b_c.
     pub fn moved_start(&self, part: f64) -> Start {
         let by = part * self.joint.characteristic_length;
         let mut start = match &self.start {
@@ -135,7 +135,7 @@ impl Case {
         }
     }
 
-    /// The same with all mesh phases further on by so many periods. The bodies start where they did.
+    /// Case with all mesh phases advanced by a number of periods. The bodies start where they did.
     pub fn shifted(&self, periods: f64) -> Self {
         let mut shifted = self.clone();
         for mesh in [&mut shifted.joint.sun_planet, &mut shifted.joint.ring_planet] {

@@ -1,4 +1,4 @@
-//! The cases of the comparison: those that everybody is judged by, and the same questions asked of any joint.
+//! The cases of the comparison: named cases for all methods, and similar ones for any joint.
 
 use std::f64::consts::TAU;
 
@@ -12,11 +12,11 @@ use reference::scenarios::{
 
 use crate::case::Case;
 
-/// Dimensionless time from which cases with a prescribed phase count: what the start stirred up has died down.
+/// Dimensionless time from which cases with a prescribed phase are evaluated: transients of the start have decayed.
 const SETTLED: f64 = 100.0;
-/// Their dimensionless length.
+/// Dimensionless length of cases with a prescribed phase.
 const LENGTH: f64 = 300.0;
-/// Samples a second of cases at the paper's joint: two a unit of dimensionless time.
+/// Sample rate of cases at the paper's joint: two samples per unit of dimensionless time [Hz].
 const SAMPLE_RATE: u32 = 40_000;
 
 /// All cases.
@@ -38,8 +38,8 @@ pub fn cases() -> Vec<Case> {
     all
 }
 
-/// What a joint from a file is asked: the motion of a robot joint if its angle makes the mesh phase; if the phase is
-/// prescribed, steady running under half the rated torque.
+/// Case of a joint from a file: the motion of a robot joint if its angle determines the mesh phase; steady running under half the rated
+/// torque if the phase is prescribed.
 pub fn of_joint(joint: &JointParameters) -> Case {
     let key = joint.name.as_str();
     if joint.excitation == Excitation::Angle {
@@ -62,7 +62,7 @@ pub fn of_joint(joint: &JointParameters) -> Case {
         ..RelativeState::centred(geometry.planets)
     };
     let frequency = Scales::new(joint).frequency;
-    // Ticks of a length near the paper's, on a grid of whole kilohertz.
+    // Tick length near the paper's, on a grid of whole kilohertz.
     let tick_rate = 1_000 * (frequency / 1_000.0).ceil().max(1.0) as u32;
     Case {
         key: key.into(),
@@ -80,7 +80,7 @@ pub fn of_joint(joint: &JointParameters) -> Case {
     }
 }
 
-/// The motion of a robot joint, a fifth as long, on the random joint of a seed; none of an equivalent gear, which has no meshes.
+/// Motion of a robot joint, a fifth as long, on the random joint of a seed; `None` for an equivalent gear, which has no meshes.
 pub fn of_seed(seed: u64) -> Option<Case> {
     let joint = random_joint(seed);
     let (key, has_teeth) = (joint.name.to_string(), joint.equivalent_gear().is_none());
@@ -92,7 +92,7 @@ fn both_flanks() -> Scenario {
     loaded(case("B", BOTH_FLANKS.0), BOTH_FLANKS.1, BOTH_FLANKS.2)
 }
 
-/// omega/omega_n, half-backlash [m] and mean deflection [m].
+/// Frequency omega/omega_n, half-backlash [m] and mean deflection [m].
 const BOTH_FLANKS: (f64, f64, f64) = (0.6, 10e-6, 3e-6);
 
 /// Case A's joint with five planets: 25/35/95 teeth, planets a fifth of a mesh period apart.
@@ -114,11 +114,11 @@ fn five_planets() -> Scenario {
     loaded(scenario, 60e-6, 15e-6)
 }
 
-/// omega/omega_n of case F.
+/// Frequency omega/omega_n of case F.
 const FIVE_OMEGA: f64 = 0.8;
 
-/// A scenario at another half-backlash, balanced under the torque of this mean deflection [m], its bodies where they rest
-/// then without errors.
+/// Scenario with another half-backlash, balanced under the torque of a mean deflection [m], starting from rest under this torque without
+/// errors.
 fn loaded(mut scenario: Scenario, half_backlash: f64, mean_deflection: f64) -> Scenario {
     let joint = &mut scenario.joint;
     let planets = joint.geometry.planets;

@@ -1,5 +1,5 @@
-//! Error by step: a method over a case at one rate after another, as the envelope over excitation phases, so that no
-//! lucky step counts.
+//! Error against step: a method on a case at several rates, as the envelope over excitation phases, so that no step benefits from a lucky
+//! phase.
 
 use model_core::gears::Scales;
 use model_core::gears::design::DesignError;
@@ -17,15 +17,15 @@ pub const PHASES: usize = 8;
 
 /// A case at all its excitation phases, with the reference's trajectories.
 pub struct PhaseEnvelope {
-    /// The case as stated: the first phase.
+    /// Case at its own phase, which is the first.
     pub case: Case,
     phases: Vec<(Case, ReferenceTrajectory)>,
 }
 
-/// Which scalar moves.
+/// Scalar type of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scalar {
-    /// As on a board.
+    /// Single precision, as on a board.
     Single,
     /// Double precision.
     Double,
@@ -34,20 +34,20 @@ pub enum Scalar {
 /// A method at one rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
-    /// Steps in a second [Hz].
+    /// Step rate [Hz].
     pub rate: u32,
-    /// Sub-steps of each; [`run::AS_DESIGNED`] for those that the design chooses.
+    /// Sub-steps of each step; [`run::AS_DESIGNED`] for the design's choice.
     pub substeps: u32,
-    /// h omega_n, of a sub-step; of the whole step where the design chooses.
+    /// Step h omega_n: of a sub-step, or of the whole step where the design chooses.
     pub step: f64,
-    /// Worst over the phases.
+    /// Worst errors over the phases.
     pub errors: Errors,
-    /// What a board must reach, at the first phase.
+    /// Digest that a board must reach, at the first phase.
     pub digest: u64,
 }
 
 impl PhaseEnvelope {
-    /// Follows the reference through a case at so many phases.
+    /// Runs the reference through a case at `phases` phases.
     pub fn new(case: Case, phases: usize) -> Result<Self, ReferenceError> {
         let phases: Result<Vec<_>, _> = (0..phases)
             .into_par_iter()
@@ -59,7 +59,7 @@ impl PhaseEnvelope {
         Ok(Self { case, phases: phases? })
     }
 
-    /// The reference's motion at the case's own phase.
+    /// Motion of the reference at the case's own phase.
     pub fn trajectory(&self) -> &ReferenceTrajectory {
         &self.phases[0].1
     }
@@ -69,8 +69,8 @@ impl PhaseEnvelope {
         &self.phases
     }
 
-    /// Error of the reference itself if its start is moved by a millionth of b_c: what no integrator can be
-    /// expected to undercut in single precision.
+    /// Error of the reference itself if its start is moved by a millionth of b_c: no integrator can be expected to be better in single
+    /// precision.
     pub fn sensitivity(&self) -> Result<Errors, ReferenceError> {
         let (case, trajectory) = &self.phases[0];
         let moved = ReferenceTrajectory::from(case, &case.moved_start(1e-6))?;
@@ -78,7 +78,7 @@ impl PhaseEnvelope {
         Ok(trajectory.errors(&samples))
     }
 
-    /// A method at a rate; the core's step at so many sub-steps, too.
+    /// Errors of a method at a rate; `substeps` applies to the core's step.
     pub fn point(&self, method: Method, scalar: Scalar, rate: u32, substeps: u32) -> Result<Point, DesignError> {
         let runs: Result<Vec<(Errors, u64)>, DesignError> = self
             .phases

@@ -1,6 +1,6 @@
-//! Integration methods compared: error against cost on given joints and motions. [`catalogue`] lists the cases,
-//! [`method`] the fixed-step methods; [`run`] moves a case by a method, [`trajectory`] is the reference's motion and
-//! [`curve`] the error by step, as an envelope over excitation phases.
+//! Comparison of integration methods: error against cost on given joints and motions. [`catalogue`] lists the cases, [`method`] the
+//! fixed-step methods; [`run`] moves a case by a method, [`trajectory`] is the reference's motion and [`curve`] the error by step, as an
+//! envelope over excitation phases.
 
 pub mod case;
 pub mod catalogue;

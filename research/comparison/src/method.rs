@@ -1,5 +1,5 @@
-//! The fixed-step methods by name: what people use, what the paper has, and the core's own step. How each moves a joint
-//! is in `baselines` and in the core.
+//! Fixed-step methods by name: those in common use, the paper's, and the core's own step. They are implemented in `baselines` and in the
+//! core.
 
 use serde::Serialize;
 
@@ -10,7 +10,7 @@ use serde::Serialize;
 pub enum Method {
     /// The core's step.
     Realtime,
-    /// The paper's own.
+    /// The paper's scheme.
     PaperEtd1,
     /// Classical Runge-Kutta, sharp dead zone.
     RungeKutta4,
@@ -26,11 +26,11 @@ pub enum Method {
     TwoMassRestitution,
 }
 
-/// Sharpness of the tanh dead zone in the comparison: eq. 13 is then 0.007 b_c off at its corners.
+/// Sharpness of the tanh dead zone in the comparison: the corner error of eq. 13 is then 0.007 b_c.
 pub const SHARPNESS: f64 = 20.0;
 
 impl Method {
-    /// All.
+    /// All methods.
     pub const ALL: [Self; 8] = [
         Self::Realtime,
         Self::PaperEtd1,
@@ -42,12 +42,12 @@ impl Method {
         Self::TwoMassRestitution,
     ];
 
-    /// Whether it moves every mesh; else only link angle and force can be compared.
+    /// Returns true if the method moves every mesh; otherwise only link angle and force can be compared.
     pub fn has_meshes(self) -> bool {
         !matches!(self, Self::TwoMassSpring | Self::TwoMassRestitution)
     }
 
-    /// In tables and pictures.
+    /// Name in tables and pictures.
     pub fn name(self) -> &'static str {
         match self {
             Self::Realtime => "this step",

@@ -1,5 +1,5 @@
-//! Readings of a motion: computed in f64 from coordinates, rates and phase, by one formula for every method, so that
-//! none is favoured by its own outputs.
+//! Readings of a motion, computed in f64 from coordinates, rates and phase, by one formula for every method, so that no method benefits
+//! from its own outputs.
 
 use baselines::forces::{Always, ForceLaw, PushOnly, Smooth, SmoothPush, Spring};
 use baselines::instant::{Instant, Rotor};
@@ -12,18 +12,18 @@ use parameters::JointParameters;
 /// A motion at one moment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
-    /// Deflections of all meshes over b_c; none of a model that has no meshes.
+    /// Deflections of all meshes over b_c; empty for a model without meshes.
     pub deflections: Vec<f64>,
-    /// Link angle: all of it in mode `angle`, else what it is beyond the rigid body's [rad].
+    /// Link angle: total in mode `angle`, else relative to the rigid body [rad].
     pub link_angle: f64,
     /// Largest force in any mesh [N].
     pub mesh_force: f64,
 }
 
-/// Reads motions of a joint.
+/// Readings of motions of a joint.
 pub struct Gauge<const N: usize> {
     plant: Plant<f64, N>,
-    /// Rigid coordinate along the line of action for each planet, gap, wind-up, all negative: the carrier is at zero.
+    /// Rigid coordinate along the line of action per planet, gap and wind-up, negated: the carrier is at zero.
     rigid: [f64; 3],
     length: f64,
     lever: f64,
@@ -31,7 +31,7 @@ pub struct Gauge<const N: usize> {
 }
 
 impl<const N: usize> Gauge<N> {
-    /// For a joint.
+    /// Readings for a joint.
     pub fn new(joint: &JointParameters) -> Self {
         let masses = MovingMasses::new(joint);
         let all = masses.rigid(N);
@@ -47,8 +47,7 @@ impl<const N: usize> Gauge<N> {
         }
     }
 
-    /// Reads a dimensionless motion at sine and cosine of the mesh phase, with the rate of the phase and the rigid
-    /// carrier's angle [rad].
+    /// Reads a dimensionless motion, given the mesh phase with its rate and the rigid carrier's angle [rad].
     pub fn read(&self, motion: &PeerState<f64, N>, phase: &Rotor<f64>, carrier: f64) -> Reading {
         let now = Instant::at(&self.plant, phase);
         let PeerState { position, rate } = motion;

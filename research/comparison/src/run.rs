@@ -1,5 +1,5 @@
-//! A case moved by a method at a rate, in f32 as on a board or in f64: readings at the samples that fall on its steps,
-//! and the digest that a board must reach.
+//! A case moved by a method at a rate, in f32 as on a board or in f64: readings at the samples that coincide with steps, and the digest
+//! that a board must reach.
 
 use std::f64::consts::TAU;
 
@@ -26,18 +26,18 @@ use crate::reading::{Gauge, Reading};
 use crate::start::Deflected;
 use crate::trajectory::Restart;
 
-/// The result of a run.
+/// Result of a run.
 #[derive(Debug, Clone)]
 pub struct Run {
-    /// Readings with the number of the reference's sample.
+    /// Readings with the index of the reference's sample.
     pub readings: Vec<(usize, Reading)>,
     /// Digest over the last state, and the last before every restart.
     pub digest: u64,
-    /// Measured time of the steps.
+    /// Measured time of the steps [s].
     pub seconds: f64,
 }
 
-/// Steps of a method that a case has at a rate.
+/// Number of steps of a case at a rate.
 pub fn steps(case: &Case, rate: u32) -> u64 {
     (case.duration() * f64::from(rate)).floor() as u64
 }
@@ -48,13 +48,13 @@ pub fn torques_by_step(case: &Case, rate: u32) -> Vec<(u64, f64, f64)> {
     case.torques.iter().map(|segment| (step(segment.from_tick), segment.drive_torque, segment.load_torque)).collect()
 }
 
-/// Sub-steps of the core's step that the design chooses for half of a board's processor, Verlet sub-steps among them.
+/// Number of sub-steps for the design's choice for half of a board's processor, Verlet sub-steps included.
 pub const AS_DESIGNED: u32 = 0;
 
-/// Half of an STM32F405, and one and a half times that at worst.
+/// Half of an STM32F405, and one and a half times as much in the worst case.
 const HALF: Processor = Processor { share: 0.75, ..Processor::STM32F405 };
 
-/// Tables of the core's step: ticks a second, sub-steps a tick.
+/// Tables of the core's step for a tick rate and a number of sub-steps a tick.
 pub fn tables<T: Real, const N: usize>(
     joint: &JointParameters,
     rate: u32,
@@ -64,7 +64,7 @@ pub fn tables<T: Real, const N: usize>(
     design_scheme(joint, rate, Scheme::Realtime, effort)
 }
 
-/// The peers' plant for a method at a rate.
+/// Plant of the baselines for a method at a rate.
 pub fn plant<T: Real, const N: usize>(joint: &JointParameters, method: Method, rate: u32) -> Plant<T, N> {
     let mut plant = Plant::new(joint, f64::from(rate));
     if method == Method::RungeKutta4Tanh {
@@ -74,14 +74,13 @@ pub fn plant<T: Real, const N: usize>(joint: &JointParameters, method: Method, r
     plant
 }
 
-/// First steps, of a method at a rate, that come after the restarts of a case.
+/// First steps of a method, at a rate, after the restarts of a case.
 pub fn restarts_by_step(case: &Case, rate: u32) -> impl Iterator<Item = u64> {
     case.restarts.iter().map(move |tick| (tick * u64::from(rate)).div_ceil(u64::from(case.tick_rate)))
 }
 
-/// Moves a case by so many steps a second, put back wherever the case restarts; the core's step takes each in so many
-/// sub-steps, of which the others know nothing. `N` must be the joint's number of planets. The clock, in seconds, is
-/// read before the first step and after the last.
+/// Moves a case at `rate` steps a second, reset at each restart of the case; only the core's step uses `substeps`. `N` must be the joint's
+/// number of planets. `clock` [s] is read before the first step and after the last.
 pub fn run<T: Real, const N: usize>(
     case: &Case,
     restarts: &[Restart],
@@ -120,7 +119,7 @@ fn whole<T: Real, const N: usize, S: PeerScheme<T, N>>(
     let plant = plant(&case.joint, method, rate);
     let starts: Vec<Start<T, N>> = starts.iter().map(|start| start.peer(&case.joint, f64::from(rate))).collect();
     let gauge = Gauge::new(&case.joint);
-    // Angle of the rigid carrier, whole turns included, and where the clock was at the last reading.
+    // Angle of the rigid carrier with whole turns, and the clock's place at the last reading.
     let (mut carrier, mut last) = (0.0, 0_u64);
     let read = |(motion, clock): &(PeerState<T, N>, Clock<T>)| {
         let wide = |values: &Coordinates<T, N>| Coordinates {
@@ -163,7 +162,7 @@ fn two_mass<T: Real, const N: usize>(
     follow(case, rate, clock, &mut carried, moment, read)
 }
 
-/// `moment` takes all that a reading is made of, which `read` makes when the clock has stopped, in the moments' order.
+/// Runs a model: `moment` records the data of a reading, and `read` computes the readings in order once the clock has stopped.
 fn follow<T: Real, M: SteppedModel<T>, X>(
     case: &Case,
     rate: u32,
@@ -179,7 +178,7 @@ fn follow<T: Real, M: SteppedModel<T>, X>(
             .into_iter()
             .map(|(step, drive, load)| (step, T::from_f64(drive), T::from_f64(load))),
     };
-    // Steps at which a sample of the reference falls.
+    // Steps that coincide with a sample of the reference.
     let divisor = greatest_divisor(rate, case.sample_rate);
     let (every, stride) = (u64::from(rate / divisor), (case.sample_rate / divisor) as usize);
     let mut moments = Vec::with_capacity((schedule.steps / every) as usize + 1);
@@ -202,7 +201,7 @@ fn greatest_divisor(a: u32, b: u32) -> u32 {
     if b == 0 { a } else { greatest_divisor(b, a % b) }
 }
 
-/// Reads a state of the core.
+/// Reading of a state of the core.
 fn read_core<T: Real, const N: usize>(case: &Case, rate: u32, gauge: &Gauge<N>, state: &State<T, N>) -> Reading {
     let wide = |values: &Relative<T, N>| Coordinates {
         planets: values.planets.map(Real::to_f64),
@@ -225,10 +224,10 @@ fn read_core<T: Real, const N: usize>(case: &Case, rate: u32, gauge: &Gauge<N>, 
     gauge.read(&motion, &Rotor { sine, cosine, rate: rate / frequency }, carrier)
 }
 
-/// 2^64.
+/// One turn, 2^64.
 const TURN: f64 = 18_446_744_073_709_551_616.0;
 
-/// The model of two masses with the rigid carrier that it has none of, and where that is at each restart.
+/// Two-mass model with the rigid carrier that it lacks, and the carrier's state at each restart.
 struct Carried<'a, T: Real> {
     gap: Gap<'a, T>,
     carrier: RigidCarrier,
@@ -256,7 +255,7 @@ impl<T: Real> SteppedModel<f64> for Carried<'_, T> {
     }
 }
 
-/// The rigid motion beside a model that has none, exactly; at zero where the phase is prescribed.
+/// Exact rigid motion beside a model without it; zero where the phase is prescribed.
 #[derive(Clone)]
 struct RigidCarrier {
     angle: f64,

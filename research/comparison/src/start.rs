@@ -1,4 +1,4 @@
-//! A case's start in the forms that the core and the peers take. The reference takes it as it is.
+//! Start of a case in the forms of the core and of the baselines. The reference uses it directly.
 
 use std::array;
 use std::f64::consts::TAU;
@@ -13,10 +13,10 @@ use reference::joint::Start;
 use crate::case::at_rest;
 use crate::trajectory::Restart;
 
-/// 2^64.
+/// One turn, 2^64.
 const TURN: f64 = 18_446_744_073_709_551_616.0;
 
-/// Sun-planet deflections (errors taken off), gap and wind-up [m], their rates [m/s], and the rigid carrier.
+/// Sun-planet deflections (errors subtracted), gap and wind-up [m], their rates [m/s], and the rigid carrier.
 pub struct Deflected<const N: usize> {
     /// Coordinates.
     pub position: Coordinates<f64, N>,
@@ -24,12 +24,12 @@ pub struct Deflected<const N: usize> {
     pub rate: Coordinates<f64, N>,
     /// Angle of the rigid carrier [turns].
     pub turns: f64,
-    /// Its speed [rad/s].
+    /// Speed of the rigid carrier [rad/s].
     pub speed: f64,
 }
 
 impl<const N: usize> Deflected<N> {
-    /// Of a joint at a start.
+    /// State of a joint at a start.
     pub fn new(joint: &JointParameters, start: &Start) -> Self {
         match start {
             Start::Relative(given) => Self {
@@ -50,22 +50,22 @@ impl<const N: usize> Deflected<N> {
         }
     }
 
-    /// Where a case restarts.
+    /// State at a restart.
     pub fn again(joint: &JointParameters, restart: &Restart) -> Self {
         Self { turns: restart.turns, ..Self::new(joint, &Start::Relative(restart.state.clone())) }
     }
 
-    /// At the start of a case, and wherever it restarts.
+    /// States at the start of a case and at each of its restarts.
     pub fn all(joint: &JointParameters, start: &Start, restarts: &[Restart]) -> Vec<Self> {
         std::iter::once(Self::new(joint, start)).chain(restarts.iter().map(|at| Self::again(joint, at))).collect()
     }
 
-    /// What is left of the rigid carrier's whole turns [2^-64 turns].
+    /// Fraction of the rigid carrier's turns [2^-64 turns].
     fn place(&self) -> u64 {
         ((self.turns - self.turns.floor()) * TURN) as u64
     }
 
-    /// For the core.
+    /// State for the core.
     pub fn state<T: Real>(&self, joint: &JointParameters, tables: &Tables<T, N>) -> State<T, N> {
         let scales = Scales::new(joint);
         let over = |values: &Coordinates<f64, N>, unit: f64| Relative {
@@ -83,13 +83,13 @@ impl<const N: usize> Deflected<N> {
         State::with_rigid_body(tables, &position, &rate, rigid)
     }
 
-    /// For a peer of so many steps a second.
+    /// Start for a baseline of `rate` steps a second.
     pub fn peer<T: Real>(&self, joint: &JointParameters, rate: f64) -> peer::Start<T, N> {
         peer::Start::new(joint, rate, &self.position, &self.rate, (self.place(), self.speed))
     }
 
-    /// For the model of two masses, dimensionless: motor against link along the output's line of action, half the gap and
-    /// the wind-up, and its rate.
+    /// State for the two-mass model, dimensionless: motor against link along the output's line of action, half the gap plus the wind-up,
+    /// and its rate.
     pub fn two_mass(&self, joint: &JointParameters) -> (f64, f64) {
         let scales = Scales::new(joint);
         let apart = |values: &Coordinates<f64, N>| 0.5 * values.gap + values.wind_up;

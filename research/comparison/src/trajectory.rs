@@ -1,5 +1,5 @@
-//! The reference's sampled trajectory through a case, and the error of another motion against it. The other motion may
-//! be sampled more coarsely.
+//! Sampled trajectory of the reference through a case, and the error of another motion against it. The other motion may be sampled more
+//! coarsely.
 
 use parameters::Excitation;
 use reference::joint::{Reference, ReferenceError, RelativeState, Start};
@@ -7,51 +7,51 @@ use reference::joint::{Reference, ReferenceError, RelativeState, Start};
 use crate::case::Case;
 use crate::reading::Reading;
 
-/// The reference's motion.
+/// Motion of the reference.
 #[derive(Debug, Clone)]
 pub struct ReferenceTrajectory {
-    /// From time zero on, `sample_rate` in a second.
+    /// Samples from time zero on, at `sample_rate`.
     samples: Vec<Reading>,
-    /// Its state wherever the case restarts.
+    /// States at the restarts of the case.
     restarts: Vec<Restart>,
-    /// First sample that counts.
+    /// First evaluated sample.
     first: usize,
     /// Sample at which each part of the case begins.
     parts: Vec<usize>,
-    /// Standard deviation of all deflections that count.
+    /// Standard deviation of all evaluated deflections.
     deviation: f64,
     lost_motion: f64,
 }
 
-/// Where a method is put back into the reference's state.
+/// State of the reference to which a method is reset.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Restart {
-    /// Tick of the case at whose beginning that is.
+    /// Tick of the case at whose beginning the method is reset.
     pub tick: u64,
-    /// The state but for the rigid carrier's angle.
+    /// State without the rigid carrier's angle.
     pub state: RelativeState,
-    /// That angle [turns].
+    /// Angle of the rigid carrier [turns].
     pub turns: f64,
 }
 
-/// How far a motion is from the reference.
+/// Errors of a motion against the reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Errors {
-    /// RMS over all deflections, over their standard deviation; NaN of a model without meshes.
+    /// RMS over all deflections, over their standard deviation; NaN for a model without meshes.
     pub deflections: f64,
-    /// RMS of the link angle over the lost motion.
+    /// RMS error of the link angle over the lost motion.
     pub link_rms: f64,
-    /// Worst of the link angle over the lost motion.
+    /// Worst error of the link angle over the lost motion.
     pub link_worst: f64,
-    /// Of the largest mesh force, over that force; the worst over the parts of the case.
+    /// Relative error of the largest mesh force; the worst over the parts of the case.
     pub peak_force: f64,
 }
 
 impl Errors {
-    /// None at all.
+    /// Zero errors.
     pub const NONE: Self = Self { deflections: 0.0, link_rms: 0.0, link_worst: 0.0, peak_force: 0.0 };
 
-    /// The worse of both, figure by figure; NaN is worst.
+    /// Worse of both, figure by figure; NaN is worst.
     pub fn or_worse(&self, other: &Self) -> Self {
         let worse = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) };
         Self {
@@ -64,12 +64,12 @@ impl Errors {
 }
 
 impl ReferenceTrajectory {
-    /// Follows a case.
+    /// Runs the reference through a case.
     pub fn new(case: &Case) -> Result<Self, ReferenceError> {
         Self::from(case, &case.start)
     }
 
-    /// Follows a case from another start.
+    /// Runs the reference through a case from another start.
     pub fn from(case: &Case, start: &Start) -> Result<Self, ReferenceError> {
         let mut reference = Reference::start(&case.joint, start)?;
         let whole = matches!(case.joint.excitation, Excitation::Angle);
@@ -83,14 +83,14 @@ impl ReferenceTrajectory {
         for index in 0..=count {
             let time = index as f64 / f64::from(case.sample_rate);
             let begins = |tick: u64| tick as f64 / f64::from(case.tick_rate);
-            // What begins at the sample itself acts after it.
+            // Changes at the time of a sample take effect after it.
             while let Some(change) = changes.next_if(|change| begins(change.from_tick) < time) {
                 reference.advance(begins(change.from_tick), drive, load)?;
                 (drive, load) = (change.drive_torque, change.load_torque);
             }
             reference.advance(time, drive, load)?;
             let now = reference.observe();
-            // Restarts are ticks, and ticks samples where there are any.
+            // Restarts are ticks, and ticks coincide with samples where there are restarts.
             while let Some(tick) = due.next_if(|tick| begins(**tick) <= time) {
                 restarts.push(Restart { tick: *tick, state: RelativeState::of(&now), turns: now.rigid_turns });
             }
@@ -110,7 +110,7 @@ impl ReferenceTrajectory {
         Ok(Self { restarts, first, parts, deviation, lost_motion: case.lost_motion(), samples })
     }
 
-    /// Where a method is put back into the reference's state.
+    /// States to which a method is reset.
     pub fn restarts(&self) -> &[Restart] {
         &self.restarts
     }
@@ -120,12 +120,12 @@ impl ReferenceTrajectory {
         &self.samples
     }
 
-    /// Whether a sample counts.
+    /// Returns true if a sample is evaluated.
     pub fn counts(&self, sample: usize) -> bool {
         sample >= self.first && sample < self.samples.len()
     }
 
-    /// How far readings are from the reference, each with the number of its sample. Infinite if a motion got lost.
+    /// Errors of readings against the reference, each with the index of its sample. Infinite for a diverged motion.
     pub fn errors(&self, motion: &[(usize, Reading)]) -> Errors {
         let (mut squares, mut values) = (0.0, 0_usize);
         let (mut link_squares, mut link_worst, mut counted) = (0.0, 0.0_f64, 0_usize);
@@ -138,10 +138,10 @@ impl ReferenceTrajectory {
             }
             let error = (found.link_angle - right.link_angle) / self.lost_motion;
             link_squares += error * error;
-            // Not `max`, which would pass over what is no number.
+            // `max` would ignore NaN.
             link_worst = if error.abs() <= link_worst { link_worst } else { error.abs() };
             counted += 1;
-            // The sample at which a part begins is the last of the one before.
+            // The sample at which a part begins is the last of the part before.
             let part = self.parts.partition_point(|first| first < sample).saturating_sub(1);
             if let Some((peak, right_peak)) = peaks.get_mut(part) {
                 *peak = peak.max(found.mesh_force);

@@ -1,5 +1,5 @@
-//! Libraries get the joint's own equations: their Jacobian is that of the right-hand side, and each comes to the
-//! reference's motion as its tolerance falls. Times are not asked here.
+//! Libraries solve the joint's own equations: their Jacobian is the derivative of the right-hand side, and each converges to the
+//! reference's motion with its tolerance. Times are not tested.
 #![cfg(feature = "libraries")]
 
 use comparison::catalogue::cases;
@@ -12,6 +12,7 @@ fn envelope(key: &str) -> PhaseEnvelope {
     PhaseEnvelope::new(case, 1).expect("the reference follows")
 }
 
+/// The Jacobian equals the numerical derivative of the rates.
 #[test]
 fn the_jacobian_is_the_derivative_of_the_rates() {
     let envelope = envelope("A");
@@ -34,6 +35,7 @@ fn the_jacobian_is_the_derivative_of_the_rates() {
     }
 }
 
+/// Every library converges to the reference's motion.
 #[test]
 fn every_library_comes_to_the_reference_s_motion() {
     let envelope = envelope("A");

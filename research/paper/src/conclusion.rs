@@ -1,16 +1,15 @@
-//! The conclusions of a study in sentences, made from its record: which regimes there are, whether the route to chaos
-//! is monotone, what depends on the initial state.
+//! Conclusions of a study in sentences, derived from its record: regimes, order of the route to chaos, dependence on the initial state.
 
 use super::pictures::micrometres;
 use super::record::{Class, ClassWindow, Reading, StudyRecord, Sweep};
 use super::windows::chaos_below;
 
-/// With a sign and four decimals.
+/// Exponent with a sign and four decimals.
 pub fn exponent(value: f64) -> String {
     format!("{value:+.4}").replace('-', "\u{2212}")
 }
 
-/// How the points of a sweep begin, as a sentence.
+/// Sentence about the initial states of a sweep.
 pub fn start(sweep: &Sweep) -> &'static str {
     match sweep.start.as_str() {
         "up" => "Upward, each b from the last state of the one before.",
@@ -19,11 +18,11 @@ pub fn start(sweep: &Sweep) -> &'static str {
     }
 }
 
-/// A sentence or two under a head.
+/// Headed paragraph of one or two sentences.
 pub struct Finding {
-    /// What it is about.
+    /// Subject.
     pub head: String,
-    /// What was found.
+    /// Result.
     pub text: String,
 }
 
@@ -43,7 +42,7 @@ pub fn findings(record: &StudyRecord) -> Vec<Finding> {
     findings
 }
 
-/// Whether this is the paper's joint at the mesh frequency of set P.
+/// Returns true for the paper's joint at the mesh frequency of set P.
 fn is_papers(reading: &Reading) -> bool {
     let preset = reading.joint_file == "paper" || reading.joint_file == "paper_printed";
     preset && (reading.omega - 2.1).abs() < 1e-9
@@ -81,7 +80,7 @@ fn span(window: &ClassWindow) -> String {
     }
 }
 
-/// Whether more backlash always means a motion farther from order.
+/// Finding on whether disorder grows monotonically with backlash.
 fn route(reading: &Reading, sweep: &Sweep) -> Option<Finding> {
     let periodic = |attractor: &&super::record::AttractorRecord| matches!(attractor.class, Class::Periodic(_));
     let last_periodic = reading.attractors.iter().filter(periodic).map(|a| a.half_backlash_m).fold(0.0, f64::max);
@@ -139,7 +138,7 @@ fn kilograms(reading: &Reading) -> String {
     format!("{:.4}", reading.carrier_equivalent_mass_kg)
 }
 
-/// Where windows from several starts differ.
+/// Finding on windows that depend on the start.
 fn starts(reading: &Reading) -> Option<Finding> {
     let [first, others @ ..] = &reading.sweeps[..] else { return None };
     let differing = |other: &Sweep| {

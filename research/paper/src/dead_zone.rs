@@ -1,5 +1,5 @@
-//! Figs 4 and 5: the sharp dead zone, eq. 13 as corrected and as printed, and how far they are apart by sharpness. The
-//! functions that the model uses are the core's; the printed one exists only here.
+//! Figs 4 and 5: the sharp dead zone, eq. 13 as corrected and as printed, and the distance between them by sharpness. The functions used by
+//! the model are the core's; the printed one exists only here.
 
 use model_core::gears::dead_zone::{sharp, smoothed};
 
@@ -8,10 +8,10 @@ use super::record::{DeadZoneError, DeadZoneFigure, Smoothed};
 /// Half-backlash over b_c: 60 um, Fig. 7.
 const HALF_BACKLASH: f64 = 6.0;
 
-/// Sharpnesses whose curves are drawn: visibly round, a little, and the one that the paper calls good.
+/// Sharpnesses of the drawn curves: visibly round, slightly round, and the value recommended by the paper.
 const DRAWN: [f64; 3] = [0.5, 2.0, 1000.0];
 
-/// The sharpness that the paper calls good.
+/// Sharpness recommended by the paper.
 pub const PAPERS_SHARPNESS: f64 = 1000.0;
 
 /// Points of a curve on either side of zero.
@@ -24,7 +24,7 @@ pub fn printed(deflection: f64, half_backlash: f64, sharpness: f64) -> f64 {
     deflection + 0.5 * (above - below) - 0.5 * half_backlash * (above + below)
 }
 
-/// Everything for the figure.
+/// Data of the figure.
 pub fn figure() -> DeadZoneFigure {
     let b = HALF_BACKLASH;
     let deflection: Vec<f64> =
@@ -45,7 +45,7 @@ pub fn figure() -> DeadZoneFigure {
 
 fn error(sharpness: f64) -> DeadZoneError {
     let largest = |f: &dyn Fn(f64) -> f64| {
-        // The corrected form is farthest off within a few widths 1/s of a corner, the printed one all over the gap.
+        // The corrected form has its largest error within a few widths 1/s of a corner, the printed one all over the gap.
         let near_corner = (-4000..=4000).map(|i| HALF_BACKLASH + f64::from(i) * 1e-3 / sharpness);
         let everywhere = (-1000..=1000).map(|i| f64::from(i) * 2e-3 * HALF_BACKLASH);
         near_corner.chain(everywhere).map(|x| (f(x) - sharp(x, HALF_BACKLASH)).abs()).fold(0.0, f64::max)
@@ -61,6 +61,7 @@ fn error(sharpness: f64) -> DeadZoneError {
 mod tests {
     use super::*;
 
+    /// The error of the corrected form falls with sharpness, that of the printed one does not.
     #[test]
     fn the_corrected_form_nears_the_sharp_one_and_the_printed_one_does_not() {
         let figure = figure();

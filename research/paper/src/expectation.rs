@@ -1,11 +1,11 @@
-//! Classes that a user expects of the attractors (`--expect 1,1,3,chaos`), and the error when one has another.
+//! Classes expected of the attractors (`--expect 1,1,3,chaos`), and the error for an attractor of another class.
 
 use super::pictures::micrometres;
 use super::record::AttractorRecord;
 use crate::numerics::attractor::Class;
 use report::failure::{Failure, Outcome};
 
-/// Reads as many expectations as there are half-backlashes.
+/// Reads one expectation for each half-backlash.
 pub fn list(text: &str, count: usize) -> Outcome<Vec<Class>> {
     let failed = |what: String| {
         let help = "write a period or the word chaos for each half-backlash, such as --expect 1,1,3,chaos";
@@ -23,7 +23,7 @@ pub fn list(text: &str, count: usize) -> Outcome<Vec<Class>> {
     Ok(expected)
 }
 
-/// Fails at the first attractor of a joint that is not what was asked for.
+/// Fails at the first attractor of a joint that differs from the expectation.
 pub fn judge(joint: &str, expected: &[Class], attractors: &[AttractorRecord]) -> Outcome<()> {
     let Some((asked, found)) = expected.iter().zip(attractors).find(|(asked, found)| **asked != found.class) else {
         return Ok(());
@@ -44,6 +44,7 @@ pub fn judge(joint: &str, expected: &[Class], attractors: &[AttractorRecord]) ->
 mod tests {
     use super::*;
 
+    /// The list must have one class for each half-backlash.
     #[test]
     fn expectations_are_as_many_as_half_backlashes() {
         let read = list("1,1,3,chaos", 4).expect("four classes");

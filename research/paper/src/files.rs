@@ -1,4 +1,4 @@
-//! The files of a study: report, record, pictures and tables in one folder, each written atomically.
+//! Files of a study: report, record, pictures and tables in one folder, each written atomically.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use report::output;
 
 const REPORT: &str = "report.html";
 const RECORD: &str = "study.json";
-/// Everything that a study may write; which attractors there are to draw, it shows itself.
+/// All files that a study may write; the attractors determine the pictures.
 pub const ALL: [&str; 10] = [
     REPORT,
     RECORD,
@@ -26,9 +26,9 @@ pub const ALL: [&str; 10] = [
     "figure-*.svg",
 ];
 
-/// Writes everything, the record also to a file that was asked for by name; returns where the report is.
+/// Writes all files, and the record to an additional file if requested; returns the path of the report.
 pub fn write(folder: &Folder, json: Option<&Path>, record: &StudyRecord, document: &Document) -> Outcome<PathBuf> {
-    // What was asked for by name comes first: nothing after it can cost it.
+    // The requested file comes first, so that no later failure can lose it.
     json.map_or(Ok(()), |path| output::write_json_record(path, record))?;
     folder.write_record(RECORD, record)?;
     for (name, table) in tables(record) {
@@ -74,7 +74,7 @@ fn tables(record: &StudyRecord) -> Vec<(String, String)> {
     tables
 }
 
-/// Typed in micrometres, and given back without the noise of the way to metres.
+/// Length in micrometres, without the rounding noise of the conversion to metres.
 fn micrometres(length: f64) -> f64 {
     (length * 1e12).round() / 1e6
 }

@@ -1,20 +1,20 @@
-//! Lists and grids of half-backlash as they are typed: `0,10,60,120` and `0:150:0.5`, in micrometres.
+//! Lists and grids of half-backlash on the command line: `0,10,60,120` and `0:150:0.5`, in micrometres.
 
 use report::failure::{Failure, Outcome};
 
-/// Beyond this no one waits for a diagram, and no picture could show it.
+/// Largest number of points of a diagram, limited by time and by the picture's resolution.
 const MOST_POINTS: f64 = 20_000.0;
 
-/// More attractors than this make no report.
+/// Largest number of attractors in a report.
 const MOST_VALUES: usize = 24;
 
-/// No gear has more backlash than this [um].
+/// Largest half-backlash of any gear [um].
 const GREATEST: f64 = 10_000.0;
 
-/// Micrometres in a metre: dividing by it gives the number nearest to what was typed, multiplying by 1e-6 would not.
+/// Micrometres in a metre: dividing by it gives the number nearest to the text, multiplying by 1e-6 would not.
 const MICROMETRES: f64 = 1e6;
 
-/// `0,10,60,120` [um] in metres.
+/// Reads `0,10,60,120` [um] in metres.
 pub fn list(text: &str) -> Outcome<Vec<f64>> {
     let failed = |what: String| {
         Failure::new(format!("--b {text}: {what}"))
@@ -28,7 +28,7 @@ pub fn list(text: &str) -> Outcome<Vec<f64>> {
     Ok(values)
 }
 
-/// `0:150:0.5` [um] in metres, both ends included.
+/// Reads `0:150:0.5` [um] in metres, both ends included.
 pub fn grid(text: &str) -> Outcome<Vec<f64>> {
     let failed = |what: String| {
         let help = "write from:to:step of half-backlash in um, such as --grid 0:150:0.5";
@@ -40,7 +40,7 @@ pub fn grid(text: &str) -> Outcome<Vec<f64>> {
     if step == 0.0 || to < from {
         return Err(failed("there is no point in it".to_owned()));
     }
-    // A step that divides the range on paper must do so here.
+    // The margin keeps the last point of a step that divides the range in decimals.
     let steps = ((to - from) / step + 1e-9).floor();
     if steps + 1.0 > MOST_POINTS {
         return Err(failed(format!("{:.0} points, and at most {MOST_POINTS} can be shown", steps + 1.0)));
@@ -62,6 +62,7 @@ fn value(text: &str) -> Result<f64, String> {
 mod tests {
     use super::*;
 
+    /// A grid includes both ends.
     #[test]
     fn a_grid_has_both_its_ends() {
         let grid = grid("0:150:0.5").expect("a good grid");
@@ -70,6 +71,7 @@ mod tests {
         assert_eq!(super::grid("60:60:1").expect("one point").len(), 1);
     }
 
+    /// Invalid grids are rejected with a remedy.
     #[test]
     fn what_is_no_grid_is_refused_with_the_mend() {
         for text in
@@ -82,6 +84,7 @@ mod tests {
         assert!(grid("0:150:0.000001").expect_err("too many").message().contains("150000001 points"));
     }
 
+    /// Invalid lists are rejected with a remedy.
     #[test]
     fn what_is_no_list_is_refused_with_the_mend() {
         assert_eq!(list("0, 10,60").expect("a good list").len(), 3);

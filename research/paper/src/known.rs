@@ -1,27 +1,27 @@
-//! Known results for the paper's joint under set P, from independent earlier computations, and how closely a study must
-//! reproduce them. For other joints only the two integrators and the two exponents are compared.
+//! Known results for the paper's joint under set P, from independent earlier computations, and the tolerances for reproducing them. For
+//! other joints only the two integrators and the two exponents are compared.
 
 use super::plan::{StudyPlan, SweepStart};
 use super::record::{AttractorRecord, Class, ClassWindow, DeadZoneFigure, Reading};
 use super::windows::class_at;
 use report::checks::{Bound, Check, Source};
 
-/// Distance allowed to a known Poincare point, over b_c.
+/// Tolerance of a known Poincare point, over b_c.
 const POINT: f64 = 1e-3;
-/// Distance allowed to a known exponent of a periodic motion.
+/// Tolerance of a known exponent of a periodic motion.
 const PERIODIC_EXPONENT: f64 = 0.002;
-/// Distance allowed to a known exponent of chaos.
+/// Tolerance of a known exponent of chaos.
 const CHAOTIC_EXPONENT: f64 = 0.01;
-/// Distance allowed to a known edge of a window [um].
+/// Tolerance of a known edge of a window [um].
 const EDGE: f64 = 1.0;
-/// Distance allowed between exponents by tangent vector and by two trajectories.
+/// Largest distance between exponents by tangent vector and by two trajectories.
 const METHODS: f64 = 0.002;
-/// Distance allowed between the two integrators, over b_c: measured 3e-11 on periods and 2e-10 in chaos.
+/// Largest distance between the two integrators, over b_c: measured 3e-11 on periodic motions and 2e-10 in chaos.
 const INTEGRATORS: f64 = 1e-8;
 /// Largest error of eq. 13 times its sharpness: max over u of u (1 - tanh u) / 2.
 const DEAD_ZONE: f64 = 0.13924;
 
-/// What is known at one half-backlash.
+/// Known results at one half-backlash.
 struct Known {
     half_backlash_um: f64,
     class: Class,
@@ -31,7 +31,7 @@ struct Known {
     peak_to_peak: Option<f64>,
 }
 
-/// The corrected carrier.
+/// Results with the corrected carrier.
 const CORRECTED: [Known; 4] = [
     Known {
         half_backlash_um: 0.0,
@@ -71,7 +71,7 @@ const CORRECTED: [Known; 4] = [
     },
 ];
 
-/// The carrier as printed.
+/// Results with the carrier as printed.
 const PRINTED: [Known; 4] = [
     known_class(0.0, Class::Periodic(1), -0.0374),
     known_class(10.0, Class::Periodic(1), -0.0374),
@@ -83,7 +83,7 @@ const fn known_class(half_backlash_um: f64, class: Class, exponent: f64) -> Know
     Known { half_backlash_um, class, exponent, points: &[], non_fundamental_ratio: None, peak_to_peak: None }
 }
 
-/// Windows from rest with the corrected carrier: class, first and last half-backlash [um], where they are known.
+/// Windows from rest with the corrected carrier: class, first and last half-backlash [um], where known.
 const WINDOWS: [(Class, Option<f64>, Option<f64>); 6] = [
     (Class::Periodic(1), None, Some(19.0)),
     (Class::Periodic(2), None, Some(34.5)),
@@ -93,13 +93,13 @@ const WINDOWS: [(Class, Option<f64>, Option<f64>); 6] = [
     (Class::Chaotic, Some(71.0), None),
 ];
 
-/// About here lies a narrow chaotic window from rest [um].
+/// Half-backlash of a narrow chaotic window from rest [um].
 const NARROW_WINDOW: f64 = 45.0;
 
-/// Carried upward, period 2 holds to here [um].
+/// Last half-backlash with period 2 in an upward sweep [um].
 const PERIOD_2_UPWARD: f64 = 40.0;
 
-/// Everything that can be checked of a study.
+/// All checks of a study.
 pub fn checks(plan: &StudyPlan, readings: &[Reading], dead_zone: &DeadZoneFigure) -> Vec<Check> {
     let mut checks = Vec::new();
     for (index, reading) in readings.iter().enumerate() {
@@ -122,7 +122,7 @@ pub fn checks(plan: &StudyPlan, readings: &[Reading], dead_zone: &DeadZoneFigure
 }
 
 fn place(reading: &Reading, found: &AttractorRecord) -> String {
-    // Micrometres typed in decimals come back with rounding noise.
+    // Conversion from decimal micrometres leaves rounding noise.
     format!("{}, b = {} µm", reading.joint, (found.half_backlash_m * 1e9).round() / 1e3)
 }
 
@@ -171,7 +171,7 @@ fn far(one: &[f64; 4], other: &[f64; 4]) -> f64 {
     one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// What must hold of any joint.
+/// Checks that apply to any joint.
 fn consistency(reading: &Reading, found: &AttractorRecord, checks: &mut Vec<Check>) {
     let place = place(reading, found);
     let distance = (found.exponent_by_tangent_vector - found.exponent_by_two_trajectories).abs();
@@ -190,8 +190,8 @@ fn consistency(reading: &Reading, found: &AttractorRecord, checks: &mut Vec<Chec
     });
 }
 
-/// An attractor and the diagram from the same start are of one class at one half-backlash: where they are not, one of them had
-/// not settled, and neither may be called known.
+/// Attractor and diagram from the same start have one class at one half-backlash: if they differ, one of them had not settled and neither
+/// is reliable.
 fn same_in_diagram(reading: &Reading, found: &AttractorRecord) -> Option<Check> {
     let rest = reading.sweeps.iter().find(|sweep| sweep.start == SweepStart::Rest.word())?;
     let shown = class_at(&rest.windows, found.half_backlash_m)?;

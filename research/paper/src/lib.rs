@@ -1,8 +1,8 @@
-//! `joint paper`: repeats the study of He, Jia, Chen and Sun (2015), or the same study of another joint: stiffness
-//! wave, dead zone, attractors by backlash, bifurcation diagram. The numerics are in `numerics`.
+//! `joint paper`: repeats the study of He, Jia, Chen and Sun (2015), or runs it on another joint: stiffness wave, dead zone, attractors by
+//! backlash, bifurcation diagram. The numerics are in `numerics`.
 //!
-//! `plan` validates the request, `files` checks that the report can be written; `study` computes, `oracle` checks with
-//! a second integrator, `known` judges, `pictures` and `page` show.
+//! `plan` validates the request, `files` checks that the report can be written; `study` computes, `oracle` checks with a second integrator,
+//! `known` compares with known results, `pictures` and `page` present them.
 
 mod conclusion;
 mod dead_zone;
@@ -38,10 +38,10 @@ use report::progress::Progress;
 use report::provenance;
 use report::{interruption, output};
 
-/// What the command does, in a line of its help.
+/// Description of the command in a line of its help.
 pub const ABOUT: &str = "Redo the paper, or the same study of another joint: attractors, bifurcation diagram, figures";
 
-/// Redoes the study; succeeds only if every check held.
+/// Runs the study; succeeds only if every check holds.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     interruption::watch()?;
     let plan = StudyPlan::new(arguments)?;
@@ -65,7 +65,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     all_hold(&record.checks, "the report shows each with its figure and bound")
 }
 
-/// Computes everything that a plan asks for, and judges it.
+/// Computes and checks a plan.
 pub fn study(plan: &StudyPlan, progress: &Progress) -> Outcome<StudyRecord> {
     let date = provenance::date();
     let readings = study::run(plan, progress)?;

@@ -1,5 +1,5 @@
-//! An independent check of an attractor: the event-restarted Runge-Kutta method of order 8 in absolute coordinates,
-//! which shares neither equations nor method with the study. It is too slow for whole diagrams.
+//! Independent check of an attractor: the event-restarted Runge-Kutta method of order 8 in absolute coordinates, which shares neither
+//! equations nor method with the study. It is too slow for whole diagrams.
 
 use model_core::gears::Scales;
 use reference::joint::{Reference, RelativeState, Start};
@@ -8,11 +8,11 @@ use super::plan::StudyJoint;
 use crate::numerics::attractor::Class;
 use crate::numerics::integrator::{EventIntegrator, State};
 
-/// Periods compared on an attractor without a period: neighbours have not parted much yet.
+/// Periods compared on an attractor without a period: neighbouring trajectories have diverged little by then.
 const PERIODS: usize = 6;
 
-/// Greatest distance over b_c (rates over b_c omega_n) at the next Poincare points, from where a motion is; none if the
-/// second integrator refuses the joint.
+/// Largest distance over b_c (rates over b_c omega_n) at the next Poincare points, from the present state of a motion; `None` if the second
+/// integrator rejects the joint.
 pub fn distance(subject: &StudyJoint, half_backlash: f64, motion: &EventIntegrator<'_>, class: Class) -> Option<f64> {
     let parameters = subject.with_half_backlash(half_backlash);
     let scales = Scales::new(&parameters);

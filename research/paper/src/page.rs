@@ -1,6 +1,6 @@
-//! The report of a study as a document: conclusion first, then the table of attractors, figures in the paper's order,
-//! diagrams and checks. A terminal shows attractors, windows and how many checks held. Sentences are made from the record;
-//! `conclusion` has those that judge.
+//! Report of a study as a document: conclusion first, then the table of attractors, figures in the paper's order, diagrams and checks. A
+//! terminal shows attractors, windows and the number of passed checks. Sentences come from the record; `conclusion` has the evaluating
+//! ones.
 
 use super::conclusion::{self, exponent, start};
 use super::pictures::{self, Picture, micrometres};
@@ -14,7 +14,7 @@ use report::document::{
 use report::number::{PAGE, fixed};
 use report::plot::ink::Ink;
 
-/// All of it.
+/// The whole document.
 pub fn document(record: &StudyRecord) -> Document {
     let first = &record.readings[0];
     let each = |part: fn(&Reading) -> Block| record.readings.iter().map(part);
@@ -145,12 +145,12 @@ fn attractor(found: &AttractorRecord) -> Row {
     ])
 }
 
-/// b in micrometres, on a terminal with two decimals.
+/// Half-backlash in micrometres, on a terminal with two decimals.
 fn micrometres_to_two(length: f64) -> Text {
     number_as((length * 1e9).round() / 1e3, fixed(2))
 }
 
-/// Figs 3 to 5: what the model is made of.
+/// Figs 3 to 5: elements of the model.
 fn ingredients(record: &StudyRecord) -> Block {
     let wave = &record.stiffness;
     let stiffness = format!(

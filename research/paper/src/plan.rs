@@ -1,5 +1,4 @@
-//! A validated request for a study: joints, mesh frequency, half-backlashes and expectations are checked before
-//! anything is computed.
+//! Validated request for a study: joints, mesh frequency, half-backlashes and expectations are checked before any computation.
 
 use std::path::PathBuf;
 
@@ -61,7 +60,7 @@ pub struct Arguments {
     pub json: Option<PathBuf>,
 }
 
-/// Which diagrams.
+/// Starts of the diagrams.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum StartChoice {
     /// From rest at each b
@@ -74,31 +73,31 @@ pub enum StartChoice {
     All,
 }
 
-/// How each point of a diagram is started.
+/// Initial state of each point of a diagram.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SweepStart {
-    /// From X = X' = 0.
+    /// Start at X = X' = 0.
     Rest,
-    /// From the last state at the next smaller b.
+    /// Last state at the next smaller b.
     Up,
-    /// From the last state at the next greater b.
+    /// Last state at the next greater b.
     Down,
 }
 
 /// A joint to study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyJoint {
-    /// Its file.
+    /// Joint file.
     pub loaded: Loaded,
-    /// Its parameters, with the mesh frequency of the study.
+    /// Parameters, with the mesh frequency of the study.
     pub parameters: JointParameters,
     /// Torque on the sun [N m].
     pub drive_torque: f64,
-    /// Load in balance with it [N m].
+    /// Balancing load torque [N m].
     pub load_torque: f64,
 }
 
-/// Everything that is to be computed.
+/// Plan of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyPlan {
     /// Joints.
@@ -107,13 +106,13 @@ pub struct StudyPlan {
     pub values: Vec<f64>,
     /// Half-backlashes of the diagrams, rising [m].
     pub grid: Vec<f64>,
-    /// Diagrams.
+    /// Starts of the diagrams.
     pub starts: Vec<SweepStart>,
-    /// What the attractors must be, if the user says so.
+    /// Classes that the user expects of the attractors, if stated.
     pub expected: Option<Vec<Class>>,
-    /// Whether these are the paper's joint and settings, whose results are known.
+    /// True for the paper's joint and settings, whose results are known.
     pub is_set_p: bool,
-    /// Command line that runs this again.
+    /// Command line that repeats the study.
     pub replay: String,
 }
 
@@ -157,7 +156,7 @@ impl StudyPlan {
         Ok(Self { subjects, values, grid, starts, expected, is_set_p, replay: arguments.replay() })
     }
 
-    /// Name of the study: that of its first joint.
+    /// Name of the study, taken from its first joint.
     pub fn name(&self) -> &str {
         &self.subjects[0].parameters.name
     }
@@ -183,18 +182,18 @@ impl StudyJoint {
         let drive_torque = loaded.file.profile.drive_torque;
         let load_torque = parameters.balanced_load_torque(drive_torque);
         let subject = Self { loaded, parameters, drive_torque, load_torque };
-        // Whatever the study refuses it refuses now.
+        // A joint that the study rejects is rejected here.
         subject.system(subject.half_backlash())?;
         Ok(subject)
     }
 
-    /// The greatest half-backlash of the file [m].
+    /// Greatest half-backlash of the file [m].
     pub fn half_backlash(&self) -> f64 {
         let meshes = [&self.parameters.sun_planet, &self.parameters.ring_planet];
         meshes.iter().flat_map(|mesh| mesh.half_backlash.iter()).fold(0.0, |most, b| most.max(*b))
     }
 
-    /// The same joint with another half-backlash [m]; meshes that differ in the file keep their proportions.
+    /// Joint with another half-backlash [m]; meshes that differ in the file keep their proportions.
     pub fn with_half_backlash(&self, half_backlash: f64) -> JointParameters {
         let mut parameters = self.parameters.clone();
         let own = self.half_backlash();
@@ -206,13 +205,13 @@ impl StudyJoint {
         parameters
     }
 
-    /// The joint as the study integrates it.
+    /// Joint in the form that the study integrates.
     pub fn system(&self, half_backlash: f64) -> Outcome<System> {
         let parameters = self.with_half_backlash(half_backlash);
         System::new(&parameters, self.drive_torque, self.load_torque).map_err(|error| self.failure(error))
     }
 
-    /// An error about this joint, with the help.
+    /// Error about this joint, with a remedy.
     pub fn failure(&self, error: StudyError) -> Failure {
         let help = match error {
             StudyError::SmoothDeadZone => "write dead_zone = \"sharp\" in [contact] of a copy of the file",

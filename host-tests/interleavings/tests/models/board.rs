@@ -1,5 +1,5 @@
-//! A board of the firmware's own tick, serial interrupt and idle, each to be run by a thread of a model. Its role does next
-//! to nothing: a step uses the number that was commanded last, and a sample says it.
+//! Board of the firmware's own tick, serial interrupt and idle, each to be run by a thread of a model. Its role is minimal: a step uses the
+//! last commanded number, and a sample is the number of steps.
 
 use std::collections::VecDeque;
 use std::convert::Infallible;
@@ -25,11 +25,11 @@ use link::messages::{
 use loom::model::Builder;
 use loom::sync::atomic::Ordering::Relaxed;
 
-/// A run in which the host may be silent for as long as it likes.
+/// Settings of a run without a command timeout.
 pub const SETTINGS: RunSettings =
     RunSettings { mode: RunMode::Lockstep, decimation: 1, command_timeout: u32::MAX, from_memory: false };
 
-/// Runs a model through all its interleavings of so many forced switches at most.
+/// Explores all interleavings of a model with at most `switches` forced switches.
 pub fn explore(switches: usize, model: impl Fn() + Send + Sync + 'static) {
     let mut builder = Builder::new();
     builder.preemption_bound = Some(switches);
@@ -37,14 +37,14 @@ pub fn explore(switches: usize, model: impl Fn() + Send + Sync + 'static) {
     builder.check(model);
 }
 
-/// The role's messages.
-pub struct Told;
+/// Protocol of the role.
+pub struct TestProtocol;
 
-/// A command as the role keeps it.
+/// Command of the role.
 #[derive(Clone)]
-pub struct Number(pub Command);
+pub struct TestCommand(pub Command);
 
-impl Timed for Number {
+impl Timed for TestCommand {
     fn tick(&self) -> u32 {
         self.0.tick
     }
@@ -53,25 +53,25 @@ impl Timed for Number {
     }
 }
 
-impl Protocol for Told {
+impl Protocol for TestProtocol {
     const ROLE: Role = Role::Plant;
-    type Command = Number;
-    type Timetable = Schedule<Number>;
+    type Command = TestCommand;
+    type Timetable = Schedule<TestCommand>;
     type Sample = u32;
-    type Batch = Numbers;
+    type Batch = SampleBatch;
     type Learnt = Infallible;
 
-    fn timetable(message: ToBoard) -> Option<Schedule<Number>> {
+    fn timetable(message: ToBoard) -> Option<Schedule<TestCommand>> {
         let ToBoard::Schedule(Schedule { sequence, horizon, commands }) = message else { return None };
-        Some(Schedule { sequence, horizon, commands: commands.into_iter().map(Number).collect() })
+        Some(Schedule { sequence, horizon, commands: commands.into_iter().map(TestCommand).collect() })
     }
 }
 
-/// Samples on their way, said as a log of bytes.
+/// Batch of samples, sent as a log of bytes.
 #[derive(Default)]
-pub struct Numbers(List<u8, 4>);
+pub struct SampleBatch(List<u8, 4>);
 
-impl Batch for Numbers {
+impl Batch for SampleBatch {
     type Sample = u32;
 
     fn add(&mut self, sample: &u32) {
@@ -89,15 +89,15 @@ impl Batch for Numbers {
     }
 }
 
-/// The role's work.
-pub struct Steps {
+/// Work of the role.
+pub struct TestWork {
     number: f32,
-    /// What every step used; a step that uses 13 breaks down.
+    /// Number used by every step; a step that uses 13 becomes non-finite.
     pub used: Arc<Mutex<Vec<f32>>>,
 }
 
-impl Work for Steps {
-    type Protocol = Told;
+impl Work for TestWork {
+    type Protocol = TestProtocol;
     const FREE_RUNNING: bool = true;
 
     fn is_sound(&self) -> bool {
@@ -106,7 +106,7 @@ impl Work for Steps {
     fn reset(&mut self, _: bool) {
         self.number = 0.0;
     }
-    fn take(&mut self, command: Number) {
+    fn take(&mut self, command: TestCommand) {
         self.number = command.0.drive_torque;
     }
     fn step(&mut self) {
@@ -120,16 +120,16 @@ impl Work for Steps {
     }
 }
 
-/// A UART that a test fills and looks at.
+/// UART lines filled and read by a test.
 #[derive(Default)]
-struct Wires {
+struct UartLines {
     incoming: VecDeque<u8>,
     outgoing: Vec<u8>,
-    /// Closed while threads run: what is said then waits in its queue.
+    /// Closed while threads run: messages then wait in their queue.
     open: bool,
 }
 
-struct UartEnd(Arc<Mutex<Wires>>);
+struct UartEnd(Arc<Mutex<UartLines>>);
 
 impl Uart for UartEnd {
     fn read(&mut self) -> Option<u8> {
@@ -166,17 +166,17 @@ impl OutputPin for Enable {
     }
 }
 
-struct NoTime;
+struct NoTimer;
 
-impl TickTimer for NoTime {
+impl TickTimer for NoTimer {
     fn since_expiry(&self) -> u32 {
         0
     }
 }
 
-/// What the tick is given.
+/// State of the tick.
 pub struct Tick {
-    handler: TickHandler<'static, Enable, Steps>,
+    handler: TickHandler<'static, Enable, TestWork>,
     pub heard: &'static Heard,
     pub enable: Arc<AtomicBool>,
     pub used: Arc<Mutex<Vec<f32>>>,
@@ -184,7 +184,7 @@ pub struct Tick {
 
 impl Tick {
     pub fn tick(&mut self) {
-        self.handler.tick(&NoTime);
+        self.handler.tick(&NoTimer);
     }
 
     pub fn is_on(&self) -> bool {
@@ -192,8 +192,8 @@ impl Tick {
     }
 }
 
-/// What idle is given.
-pub struct Idle(Conversation<'static, Told>);
+/// State of idle.
+pub struct Idle(Conversation<'static, TestProtocol>);
 
 impl Idle {
     pub fn attend(&mut self) {
@@ -201,88 +201,88 @@ impl Idle {
     }
 }
 
-/// What the interrupt is given.
+/// State of the serial interrupt.
 pub struct Interrupt {
     serial: Serial<'static, UartEnd>,
-    wires: Arc<Mutex<Wires>>,
+    uart_lines: Arc<Mutex<UartLines>>,
 }
 
 impl Interrupt {
-    /// Bytes that have come.
+    /// Feeds received bytes to the interrupt.
     pub fn receive(&mut self, bytes: &[u8]) {
-        self.wires.lock().unwrap().incoming.extend(bytes);
-        while !self.wires.lock().unwrap().incoming.is_empty() {
+        self.uart_lines.lock().unwrap().incoming.extend(bytes);
+        while !self.uart_lines.lock().unwrap().incoming.is_empty() {
             self.serial.service();
         }
     }
 
-    pub fn hear(&mut self, message: &ToBoard) {
+    pub fn receive_message(&mut self, message: &ToBoard) {
         self.receive(&frame(message));
     }
 
-    /// What the board has said so far.
-    pub fn said(&mut self) -> Vec<FromBoard> {
-        self.wires.lock().unwrap().open = true;
+    /// Messages sent by the board so far.
+    pub fn sent_messages(&mut self) -> Vec<FromBoard> {
+        self.uart_lines.lock().unwrap().open = true;
         let mut length = usize::MAX;
-        while std::mem::replace(&mut length, self.wires.lock().unwrap().outgoing.len()) != length {
+        while std::mem::replace(&mut length, self.uart_lines.lock().unwrap().outgoing.len()) != length {
             self.serial.service();
         }
-        self.wires.lock().unwrap().open = false;
+        self.uart_lines.lock().unwrap().open = false;
         let mut receiver = Receiver::new();
-        let bytes = std::mem::take(&mut self.wires.lock().unwrap().outgoing);
+        let bytes = std::mem::take(&mut self.uart_lines.lock().unwrap().outgoing);
         bytes.into_iter().filter_map(|byte| receiver.push(byte)).collect()
     }
 }
 
-/// A message as it goes over the line.
+/// Message as a frame of the line.
 pub fn frame(message: &ToBoard) -> Vec<u8> {
     encode(message).expect("a short message").to_vec()
 }
 
 /// The serial line alone: the interrupt's end and idle's.
 pub fn line() -> (Interrupt, LineEnd<'static>) {
-    let wires = Arc::new(Mutex::new(Wires::default()));
+    let uart_lines = Arc::new(Mutex::new(UartLines::default()));
     let line: &'static mut Line = Box::leak(Box::default());
-    let (serial, end) = line.split(UartEnd(wires.clone()), || {});
+    let (serial, end) = line.split(UartEnd(uart_lines.clone()), || {});
     let _ = (end.heard().frames(), end.heard().stops(), end.heard().lost());
-    (Interrupt { serial, wires }, end)
+    (Interrupt { serial, uart_lines }, end)
 }
 
-/// All three of a board, and every atomic looked at once, before any thread begins. What they share stays until the program
-/// ends: threads of a model borrow from nobody.
+/// Interrupt, tick and idle of a board, with every atomic accessed once before any thread begins. Shared state is leaked, since threads of
+/// a model cannot borrow.
 pub fn board() -> (Interrupt, Tick, Idle) {
-    let queues: &'static mut Queues<Told> = Box::leak(Box::default());
+    let queues: &'static mut Queues<TestProtocol> = Box::leak(Box::default());
     let (tick_end, idle_end) = queues.split();
     let (interrupt, line_end) = line();
     let log: &'static mut Queue<u8, 4> = Box::leak(Box::default());
     let (heard, progress) = (line_end.heard(), idle_end.progress);
-    look_at_all(progress);
+    access_all(progress);
     let (enable, used) = (Arc::new(AtomicBool::new(true)), Arc::new(Mutex::new(Vec::new())));
-    let work = Steps { number: 0.0, used: used.clone() };
+    let work = TestWork { number: 0.0, used: used.clone() };
     let handler = TickHandler::new(work, Enable(enable.clone()), 1000, tick_end, heard);
     let conversation =
         Conversation::new(hello(), 1000, idle_end, line_end, LogEnd { bytes: log.split().1, lost: || 0 });
     (interrupt, Tick { handler, heard, enable, used }, Idle(conversation))
 }
 
-fn look_at_all(progress: &Progress) {
+fn access_all(progress: &Progress) {
     let Progress { horizon, steps, ticks, running, tripped } = progress;
     let _ = (horizon.load(Relaxed), steps.load(Relaxed), ticks.load(Relaxed));
     let _ = (running.load(Relaxed), tripped.load(Relaxed));
 }
 
-/// A board in a run that has made no step yet.
+/// Board in a run that has not made a step yet.
 pub fn running() -> (Interrupt, Tick, Idle) {
     let (mut interrupt, mut tick, mut idle) = board();
-    interrupt.hear(&ToBoard::Reset(SETTINGS));
+    interrupt.receive_message(&ToBoard::Reset(SETTINGS));
     idle.attend();
     tick.tick();
     idle.attend();
-    assert!(tick.is_on() && matches!(interrupt.said()[..], [FromBoard::Hello(_)]));
+    assert!(tick.is_on() && matches!(interrupt.sent_messages()[..], [FromBoard::Hello(_)]));
     (interrupt, tick, idle)
 }
 
-/// Commands one tick apart, the first of them for a tick, each to use its own number.
+/// Commands one tick apart from tick `first` on, each with a number of its own.
 pub fn schedule(sequence: u16, first: u32, numbers: &[f32]) -> ToBoard {
     let command = |(tick, &number)| Command { tick, drive_torque: number, load_torque: 0.0 };
     let commands = (first..).zip(numbers).map(command).collect();

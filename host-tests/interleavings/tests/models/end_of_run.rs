@@ -1,34 +1,35 @@
-//! The end of a run, and what the board says of it.
+//! End of a run, and its report by the board.
 
 use link::messages::{FromBoard, Trip};
 use loom::thread;
 
 use crate::board::{explore, running, schedule};
 
+/// A run that becomes non-finite is reported after its last sample.
 #[test]
-fn a_run_that_breaks_down_is_said_to_have_ended_after_its_last_sample() {
+fn failed_run_reports_trip_after_last_sample() {
     explore(3, || {
         let (mut interrupt, mut tick, mut idle) = running();
-        interrupt.hear(&schedule(0, 0, &[1.0, 13.0]));
+        interrupt.receive_message(&schedule(0, 0, &[1.0, 13.0]));
         idle.attend();
         tick.tick();
-        let talking = thread::spawn(move || {
+        let idle_thread = thread::spawn(move || {
             idle.attend();
             idle.attend();
             idle
         });
         tick.tick();
         assert!(!tick.is_on());
-        let mut idle = talking.join().unwrap();
+        let mut idle = idle_thread.join().unwrap();
         for _ in 0..4 {
             idle.attend();
         }
-        let said = interrupt.said();
-        let samples: Vec<u8> = said
+        let sent_messages = interrupt.sent_messages();
+        let samples: Vec<u8> = sent_messages
             .iter()
             .flat_map(|message| if let FromBoard::Log(log) = message { log.bytes.to_vec() } else { vec![] })
             .collect();
-        assert_eq!(samples, [1, 2], "{said:?}");
-        assert_eq!(said.last(), Some(&FromBoard::Tripped(Trip::NotFinite { tick: 2 })), "{said:?}");
+        assert_eq!(samples, [1, 2], "{sent_messages:?}");
+        assert_eq!(sent_messages.last(), Some(&FromBoard::Tripped(Trip::NotFinite { tick: 2 })), "{sent_messages:?}");
     });
 }

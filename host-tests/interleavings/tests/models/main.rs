@@ -1,9 +1,9 @@
-//! What tick, serial interrupt and idle pass to one another, in every order in which they can come to it, with every value
-//! that an atomic may show. The code is the firmware's own.
+//! Data passed between tick, serial interrupt and idle, in every order and with every value that an atomic may show. The code is the
+//! firmware's own.
 //!
-//! On a board the tick interrupts the two others and the serial line interrupts idle, on one core. Here all three are
-//! threads that may be held up anywhere, two or three times a run: whatever a board can do is among that, and more. Each
-//! model was seen to fail when what it is about was weakened:
+//! On a board the tick interrupts the two others and the serial line interrupts idle, on one core. Here all three are threads that may be
+//! suspended anywhere, two or three times a run, which includes all that a board can do, and more. Each model was seen to fail when its
+//! subject was weakened:
 //!
 //! | in `firmware/src` | changed | found by |
 //! |---|---|---|
@@ -19,11 +19,10 @@
 //! | `conversation.rs` | idle looks for samples before it looks for the event | the end of a run |
 //! | `sized_queue.rs` | the first entry looked at without the fence | commands, the end of a run |
 //!
-//! Relaxed would do for `steps`, `running` and the horizon of a reset: what they are about comes through a queue, whose order
-//! is enough. Not modelled: the inside of heapless's queues; two queues without an atomic beside them (the log, the port in
-//! shared memory), which pass nothing but entries; the log's sink and the clock's counts, which exist on a board only. The
-//! sink is held by one context that has masked the others, of the clock's counts each is written by one priority or added to
-//! in one step, and a reader looks twice.
+//! Relaxed would suffice for `steps`, `running` and the horizon of a reset, since a queue orders the data that they announce. Not modelled:
+//! the inside of heapless's queues; two queues without an atomic beside them (the log, the port in shared memory), which pass nothing but
+//! entries; the log's sink and the clock's counts, which exist on a board only. The sink is held by one context that has masked the others;
+//! each of the clock's counts is written by one priority or incremented atomically, and a reader reads twice.
 
 mod board;
 mod end_of_run;

@@ -1,23 +1,24 @@
-//! Commands and the horizon behind which they lie.
+//! Commands and the horizon up to which they are known.
 
 use link::messages::{FromBoard, ToBoard};
 use loom::thread;
 
 use crate::board::{SETTINGS, explore, running, schedule};
 
+/// Every step uses the command of its tick, and no command is lost.
 #[test]
-fn every_step_uses_the_command_of_its_tick_and_none_is_lost() {
+fn every_step_uses_the_command_of_its_tick() {
     explore(2, || {
         let (mut interrupt, mut tick, mut idle) = running();
-        interrupt.hear(&schedule(0, 0, &[1.0, 2.0]));
-        interrupt.hear(&schedule(1, 2, &[3.0]));
+        interrupt.receive_message(&schedule(0, 0, &[1.0, 2.0]));
+        interrupt.receive_message(&schedule(1, 2, &[3.0]));
         idle.attend();
         tick.tick();
-        let listening = thread::spawn(move || idle.attend());
+        let idle_thread = thread::spawn(move || idle.attend());
         for _ in 0..2 {
             tick.tick();
         }
-        listening.join().unwrap();
+        idle_thread.join().unwrap();
         tick.tick();
         tick.tick();
         assert_eq!(*tick.used.lock().unwrap(), [1.0, 2.0, 3.0]);
@@ -25,22 +26,23 @@ fn every_step_uses_the_command_of_its_tick_and_none_is_lost() {
     });
 }
 
+/// A run after another one starts with its own commands at once.
 #[test]
-fn a_run_that_follows_another_begins_with_its_own_commands_at_once() {
+fn next_run_uses_its_own_commands() {
     explore(3, || {
         let (mut interrupt, mut tick, mut idle) = running();
-        interrupt.hear(&schedule(0, 0, &[1.0, 2.0]));
+        interrupt.receive_message(&schedule(0, 0, &[1.0, 2.0]));
         idle.attend();
         tick.tick();
         tick.tick();
-        interrupt.hear(&ToBoard::Stop);
+        interrupt.receive_message(&ToBoard::Stop);
         idle.attend();
         tick.tick();
         idle.attend();
-        interrupt.hear(&ToBoard::Reset(SETTINGS));
-        interrupt.hear(&schedule(0, 0, &[3.0]));
+        interrupt.receive_message(&ToBoard::Reset(SETTINGS));
+        interrupt.receive_message(&schedule(0, 0, &[3.0]));
         idle.attend();
-        let talking = thread::spawn(move || {
+        let idle_thread = thread::spawn(move || {
             for _ in 0..3 {
                 idle.attend();
             }
@@ -48,13 +50,13 @@ fn a_run_that_follows_another_begins_with_its_own_commands_at_once() {
         });
         tick.tick();
         tick.tick();
-        let mut idle = talking.join().unwrap();
+        let mut idle = idle_thread.join().unwrap();
         for _ in 0..2 {
             idle.attend();
             tick.tick();
         }
-        let said = interrupt.said();
-        assert!(!said.iter().any(|message| matches!(message, FromBoard::Tripped(_))), "{said:?}");
+        let sent_messages = interrupt.sent_messages();
+        assert!(!sent_messages.iter().any(|message| matches!(message, FromBoard::Tripped(_))), "{sent_messages:?}");
         assert_eq!(*tick.used.lock().unwrap(), [1.0, 2.0, 3.0]);
     });
 }

@@ -1,18 +1,19 @@
-//! A stop is never unseen, and no reset overtakes it.
+//! A stop is never overlooked, and no reset overtakes it.
 
 use link::messages::{FromBoard, ToBoard, Trip};
 use loom::thread;
 
 use crate::board::{Idle, SETTINGS, Tick, board, explore, frame, line, running};
 
+/// A thread that sees the frame of a stop sees the stop.
 #[test]
-fn whoever_sees_the_frame_of_a_stop_sees_the_stop() {
+fn stop_frame_makes_the_stop_visible() {
     explore(3, || {
         let (mut interrupt, tick, _) = board();
         let heard = tick.heard;
         let line = thread::spawn(move || {
-            interrupt.hear(&ToBoard::Stop);
-            interrupt.hear(&ToBoard::Stop);
+            interrupt.receive_message(&ToBoard::Stop);
+            interrupt.receive_message(&ToBoard::Stop);
         });
         let frames = heard.frames();
         assert!(heard.stops() >= frames);
@@ -21,8 +22,9 @@ fn whoever_sees_the_frame_of_a_stop_sees_the_stop() {
     });
 }
 
+/// A thread that sees a stop finds every byte before the last byte of the stop.
 #[test]
-fn whoever_sees_a_stop_finds_every_byte_that_came_before_its_last() {
+fn stop_makes_earlier_bytes_visible() {
     explore(3, || {
         let (mut interrupt, mut end) = line();
         let stop = frame(&ToBoard::Stop);
@@ -35,11 +37,12 @@ fn whoever_sees_a_stop_finds_every_byte_that_came_before_its_last() {
     });
 }
 
+/// The tick that sees a stop ends the run, and the next tick keeps it ended.
 #[test]
-fn the_tick_that_finds_a_stop_ends_the_run_and_so_does_the_one_after_it() {
+fn tick_that_sees_a_stop_ends_the_run() {
     explore(3, || {
         let (mut interrupt, mut tick, _) = running();
-        let line = thread::spawn(move || interrupt.hear(&ToBoard::Stop));
+        let line = thread::spawn(move || interrupt.receive_message(&ToBoard::Stop));
         let before = tick.heard.frames();
         for _ in 0..2 {
             let stopped = tick.heard.frames() != before;
@@ -52,14 +55,15 @@ fn the_tick_that_finds_a_stop_ends_the_run_and_so_does_the_one_after_it() {
     });
 }
 
+/// A tick that can see a stop behind a reset starts no run.
 #[test]
-fn no_run_begins_in_a_tick_that_can_know_of_the_stop_behind_its_reset() {
+fn stop_behind_reset_prevents_the_run() {
     explore(3, || {
         let (mut interrupt, mut tick, mut idle) = board();
-        interrupt.hear(&ToBoard::Reset(SETTINGS));
+        interrupt.receive_message(&ToBoard::Reset(SETTINGS));
         idle.attend();
         let line = thread::spawn(move || {
-            interrupt.hear(&ToBoard::Stop);
+            interrupt.receive_message(&ToBoard::Stop);
             interrupt
         });
         for _ in 0..2 {
@@ -69,34 +73,38 @@ fn no_run_begins_in_a_tick_that_can_know_of_the_stop_behind_its_reset() {
         }
         let mut interrupt = line.join().unwrap();
         settle(&mut tick, &mut idle);
-        let said = interrupt.said();
-        assert!(matches!(said[..], [FromBoard::Hello(_)] | [FromBoard::Tripped(Trip::Overtaken)]), "{said:?}");
+        let sent_messages = interrupt.sent_messages();
+        assert!(
+            matches!(sent_messages[..], [FromBoard::Hello(_)] | [FromBoard::Tripped(Trip::Overtaken)]),
+            "{sent_messages:?}"
+        );
     });
 }
 
+/// Idle knows which of the received stops it has read.
 #[test]
-fn idle_knows_which_of_the_stops_that_were_heard_it_has_read() {
+fn idle_tells_read_stops_from_unread_ones() {
     explore(3, || {
         let (mut interrupt, mut tick, mut idle) = board();
-        // The last byte of the reset, and the stop behind it, come while idle listens: no tick in between.
+        // The last byte of the reset and the stop behind it arrive while idle listens, without a tick in between.
         let reset = frame(&ToBoard::Reset(SETTINGS));
-        let (end, most) = reset.split_last().unwrap();
-        interrupt.receive(most);
+        let (end, head) = reset.split_last().unwrap();
+        interrupt.receive(head);
         let end = *end;
         let line = thread::spawn(move || {
             interrupt.receive(&[end]);
-            interrupt.hear(&ToBoard::Stop);
+            interrupt.receive_message(&ToBoard::Stop);
             interrupt
         });
         idle.attend();
         idle.attend();
         let mut interrupt = line.join().unwrap();
         settle(&mut tick, &mut idle);
-        assert_eq!(interrupt.said(), [FromBoard::Tripped(Trip::Overtaken)]);
+        assert_eq!(interrupt.sent_messages(), [FromBoard::Tripped(Trip::Overtaken)]);
     });
 }
 
-/// What is left to be done when the stop has been heard: the output is off all the while.
+/// Completes the handling of a stop, with the output off throughout.
 fn settle(tick: &mut Tick, idle: &mut Idle) {
     for _ in 0..4 {
         tick.tick();

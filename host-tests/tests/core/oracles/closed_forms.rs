@@ -1,14 +1,14 @@
-//! The closed joint by hand: dimensionless masses and springs, its planet modes and the two-by-two system of what the
-//! planets do in phase (eq. 19 with all X_sp alike). Nothing here is asked of the core.
+//! Closed forms of the joint: dimensionless masses and springs, the planet modes, and the two-by-two system of in-phase planet motion (eq.
+//! 19 with all X_sp equal). Nothing here comes from the core.
 
 use nalgebra::{Complex, Matrix2, Vector2};
 use parameters::{JointParameters, MeshPhases};
 use reference::scenarios::{PAPER_LENGTH, paper_joint, same};
 
-/// K_rp over K_sp: different, so that no formula may mix them up.
+/// K_rp over K_sp, different from 1 so that mixing them up shows.
 const RING_STIFFNESS: f64 = 1.3;
 
-/// The paper's masses with n planets.
+/// Masses of the paper's joint with n planets.
 #[derive(Clone, Copy)]
 pub struct ClosedForm {
     pub planets: f64,
@@ -18,11 +18,11 @@ pub struct ClosedForm {
     pub carrier: f64,
     /// K_sp and K_rp over K_m.
     pub stiffness: [f64; 2],
-    /// Damping of either, dimensionless.
+    /// Damping of both families, dimensionless.
     pub damping: [f64; 2],
 }
 
-/// The same joint for the core: no ripple, errors of 30 um in phase, half-backlash [m], Omega.
+/// Parameters of the same joint for the core: no ripple, errors of 30 um in phase, half-backlash [m], Omega.
 pub fn joint(planets: usize, damping_ratio: f64, half_backlash: f64, omega: f64) -> JointParameters {
     let mut joint = paper_joint(0.0, 30e-6, half_backlash, omega);
     joint.geometry.planets = planets;
@@ -37,12 +37,12 @@ pub fn joint(planets: usize, damping_ratio: f64, half_backlash: f64, omega: f64)
 }
 
 impl ClosedForm {
-    /// With the stiffnesses of `joint`.
+    /// Closed form with the ring stiffness of [`joint`].
     pub fn new(planets: usize, damping_ratio: f64) -> Self {
         Self::with_ring(planets, damping_ratio, RING_STIFFNESS)
     }
 
-    /// With any stiffness of the ring meshes.
+    /// Closed form with a given ring stiffness.
     pub fn with_ring(planets: usize, damping_ratio: f64, ring: f64) -> Self {
         let planets = planets as f64;
         let (sun, planet) = (0.39_f64, 0.61_f64);
@@ -59,7 +59,7 @@ impl ClosedForm {
         }
     }
 
-    /// Oracle 1: frequencies of planet mode and of the two overall modes, over omega_n.
+    /// Oracle 1: frequencies of the planet mode and of the two overall modes, over omega_n.
     pub fn frequencies(&self) -> [f64; 3] {
         let (n, [sp, rp]) = (self.planets, self.stiffness);
         let (sun, planet, carrier) = (self.sun, self.planet, self.carrier);
@@ -70,7 +70,7 @@ impl ClosedForm {
         [(sp + rp) / planet, (-l2 - root) / (2.0 * l1), (-l2 + root) / (2.0 * l1)].map(f64::sqrt)
     }
 
-    /// What a unit force in every sun mesh, and in every ring mesh, takes off the accelerations of (X_sp, X_sc).
+    /// Deceleration of (X_sp, X_sc) by a unit force in every sun mesh, and in every ring mesh.
     fn gains(&self) -> [Vector2<f64>; 2] {
         let (n, sun, planet, carrier) = (self.planets, self.sun, self.planet, self.carrier);
         [
@@ -85,7 +85,7 @@ impl ClosedForm {
         sun_planet * sun * Vector2::new(1.0, 0.0).transpose() + ring_planet * ring * Vector2::new(-1.0, 1.0).transpose()
     }
 
-    /// Oracle 3: complex amplitudes of the deflections X_sp and X_rp under the same error in every mesh, over b_c.
+    /// Oracle 3: complex amplitudes of the deflections X_sp and X_rp under an equal error in every mesh, over b_c.
     pub fn ellipse(&self, omega: f64, error: f64) -> [Complex<f64>; 2] {
         let complex = |matrix: Matrix2<f64>| matrix.map(|value| Complex::new(value, 0.0));
         let turn = Complex::new(0.0, omega);
@@ -99,7 +99,7 @@ impl ClosedForm {
         [solved[0] - error, solved[1] - solved[0] - error]
     }
 
-    /// Oracle 4: static deflections of the meshes and the gap coordinate for a drive torque [N m], over b_c.
+    /// Oracle 4: static mesh deflections and gap coordinate for a drive torque [N m], over b_c.
     pub fn at_rest(&self, drive: f64, half_backlash: f64) -> [f64; 3] {
         let force = drive / (self.planets * 36.8241e-3) / (1e8 * PAPER_LENGTH);
         let [sun, ring] = self.stiffness.map(|stiffness| force.signum() * half_backlash + force / stiffness);

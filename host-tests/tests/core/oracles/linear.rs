@@ -1,4 +1,4 @@
-//! Oracles 1 to 4: the core's tables and its steps where contact holds, so that the joint is linear.
+//! Oracles 1 to 4: tables and steps of the core while contact holds, so that the joint is linear.
 
 use std::f64::consts::TAU;
 
@@ -14,13 +14,13 @@ use reference::scenarios::{PAPER_LENGTH, paper_natural_frequency, same};
 use super::closed_forms::{ClosedForm, joint};
 use super::{Start, run};
 
-/// Preload [N m] and half-backlash [m] under which small vibrations keep contact.
+/// Preload [N m] and half-backlash [m] that keep contact under small vibrations.
 const DRIVE: f64 = 2400.0;
 const HALF_BACKLASH: f64 = 60e-6;
 
-/// Oracle 1.
+/// Oracle 1 on the design's matrices, for 3 to 5 planets.
 #[test]
-fn natural_frequencies_are_those_of_the_closed_form_for_any_number_of_planets() {
+fn frequencies_match_closed_form() {
     for planets in 3..=5 {
         let form = ClosedForm::new(planets, 0.0);
         let [planet, low, high] = form.frequencies();
@@ -29,7 +29,7 @@ fn natural_frequencies_are_those_of_the_closed_form_for_any_number_of_planets() 
         expected.sort_by(f64::total_cmp);
         let parameters = joint(planets, 0.0, 0.0, 1.0);
         let full = modes::natural_frequencies(&parameters);
-        // The reduced model has the same ones but for the rigid body's.
+        // The reduced model has the same frequencies except for the rigid body's zero.
         let dynamics = Dynamics::new(&parameters, &Scales::new(&parameters));
         let mut reduced: Vec<f64> =
             dynamics.stiffness.complex_eigenvalues().iter().map(|value| value.re.sqrt()).collect();
@@ -42,15 +42,15 @@ fn natural_frequencies_are_those_of_the_closed_form_for_any_number_of_planets() 
             NATURAL_FREQUENCY.check(reduced / expected - 1.0);
         }
     }
-    // The figures known for the paper's joint.
+    // Frequencies known for the paper's joint [Hz].
     let known = [2881.84, 2082.85, 4997.09];
     for (found, known) in ClosedForm::with_ring(3, 0.0, 1.0).frequencies().into_iter().zip(known) {
         assert_eq!((found * paper_natural_frequency() / TAU * 100.0).round() / 100.0, known);
     }
 }
 
-/// Oracle 1, by the step itself: small undamped vibrations about the loaded joint follow the cosine of their mode.
-fn each_mode_is_a_cosine<const N: usize>() {
+/// Oracle 1 on the step: small undamped vibrations about the loaded joint follow the cosine of their mode.
+fn check_modes<const N: usize>() {
     let form = ClosedForm::new(N, 0.0);
     let mut parameters = joint(N, 0.0, HALF_BACKLASH, 0.0);
     for mesh in [&mut parameters.sun_planet, &mut parameters.ring_planet] {
@@ -75,7 +75,7 @@ fn each_mode_is_a_cosine<const N: usize>() {
             },
             ..Start::<N>::centred(DRIVE)
         };
-        // Some 40 to 100 periods, a radian or two a tick.
+        // Some 40 to 100 periods, one or two radians a tick.
         for (tick, (outputs, _)) in run(&parameters, 20_000, &start, 0, 400).iter().enumerate() {
             let wave = amplitude * (frequency * tick as f64 * paper_natural_frequency() / 20_000.0).cos();
             CORE_MODE.check(outputs.gap / PAPER_LENGTH - gap - gap_share * wave);
@@ -86,16 +86,17 @@ fn each_mode_is_a_cosine<const N: usize>() {
     }
 }
 
+/// In contact the core vibrates in each mode at its natural frequency, for 3 to 5 planets.
 #[test]
-fn in_contact_the_core_vibrates_in_every_mode_as_its_cosine() {
-    each_mode_is_a_cosine::<3>();
-    each_mode_is_a_cosine::<4>();
-    each_mode_is_a_cosine::<5>();
+fn modes_vibrate_at_their_frequency() {
+    check_modes::<3>();
+    check_modes::<4>();
+    check_modes::<5>();
 }
 
-/// Oracle 2: n - 1 planet modes by their own quadratic, two overall modes as roots of det(s^2 + C s + K).
+/// Oracle 2: n - 1 planet modes from their own quadratic, two overall modes as roots of det(s^2 + C s + K).
 #[test]
-fn damped_eigenvalues_of_h_are_those_of_the_closed_form_for_any_number_of_planets() {
+fn damped_eigenvalues_match_closed_form() {
     for planets in 3..=5 {
         for ring in [1.0, 1.3] {
             let form = ClosedForm::with_ring(planets, 0.05, ring);
@@ -107,10 +108,10 @@ fn damped_eigenvalues_of_h_are_those_of_the_closed_form_for_any_number_of_planet
             let planet = Complex::new(-0.5 * rate, (square - 0.25 * rate * rate).sqrt());
             let found: Vec<Complex<f64>> =
                 hamiltonian::matrix(&dynamics).complex_eigenvalues().iter().copied().filter(|s| s.im > 0.0).collect();
-            let (of_planets, overall): (Vec<Complex<f64>>, Vec<Complex<f64>>) =
+            let (planet_modes, overall): (Vec<Complex<f64>>, Vec<Complex<f64>>) =
                 found.iter().copied().partition(|s| (*s - planet).norm() < 1e-3);
-            assert_eq!((of_planets.len(), overall.len()), (planets - 1, 2), "{found:?}");
-            of_planets.iter().for_each(|s| CLOSED_FORM.check((*s - planet).norm()));
+            assert_eq!((planet_modes.len(), overall.len()), (planets - 1, 2), "{found:?}");
+            planet_modes.iter().for_each(|s| CLOSED_FORM.check((*s - planet).norm()));
             let [stiffness, damping] = [form.stiffness, form.damping].map(|families| form.in_phase(families));
             for s in overall {
                 let matrix = stiffness.zip_map(&damping, |k, c| s * c + k) + Matrix2::identity() * (s * s);
@@ -138,14 +139,14 @@ fn amplitude(signal: &[f64], frequency: f64) -> f64 {
     fitted[1].hypot(fitted[2])
 }
 
-/// Oracle 3: with the teeth held together by the load, whose static deflection is no part of the ellipse.
-fn the_ellipse_is_exact<const N: usize>(ring: f64) -> [f64; 2] {
+/// Oracle 3 with the teeth pressed together by the load, whose static deflection is not part of the ellipse.
+fn check_ellipse<const N: usize>(ring: f64) -> [f64; 2] {
     const TICK_RATE: u32 = 200_000;
     let omega = 2.1;
     let mut parameters = joint(N, 0.05, HALF_BACKLASH, omega);
     parameters.ring_planet.mean_stiffness = ring * 1e8;
     let expected = ClosedForm::with_ring(N, 0.05, ring).ellipse(omega, 3.0).map(Complex::norm);
-    // The load is no part of the ellipse; this one keeps the teeth so firmly together that every tick is taken as a whole.
+    // This load presses the teeth together so firmly that the core advances every tick as a whole.
     let found = run(&parameters, TICK_RATE, &Start::<N>::centred(4.0 * DRIVE), 6000, 600);
     let step = omega * paper_natural_frequency() / f64::from(TICK_RATE);
     for (kind, expected) in expected.into_iter().enumerate() {
@@ -155,18 +156,19 @@ fn the_ellipse_is_exact<const N: usize>(ring: f64) -> [f64; 2] {
     expected
 }
 
+/// The steady motion of the core has the amplitudes of the closed form, for 3 to 5 planets.
 #[test]
-fn the_steady_state_of_the_core_is_the_exact_ellipse() {
-    let known = the_ellipse_is_exact::<3>(1.0);
+fn steady_motion_is_the_known_ellipse() {
+    let known = check_ellipse::<3>(1.0);
     ELLIPSE.check(known[0] - 5.658641);
     ELLIPSE.check(known[1] - 2.925511);
-    the_ellipse_is_exact::<3>(1.3);
-    the_ellipse_is_exact::<4>(1.3);
-    the_ellipse_is_exact::<5>(1.3);
+    check_ellipse::<3>(1.3);
+    check_ellipse::<4>(1.3);
+    check_ellipse::<5>(1.3);
 }
 
 /// Oracle 4: deflections on either flank, and the lost motion at the sun.
-fn the_joint_settles<const N: usize>(law: DampingLaw) {
+fn check_settling<const N: usize>(law: DampingLaw) {
     let half_backlash = HALF_BACKLASH / PAPER_LENGTH;
     let mut parameters = joint(N, 0.2, HALF_BACKLASH, 0.0);
     parameters.damping_law = law;
@@ -188,11 +190,12 @@ fn the_joint_settles<const N: usize>(law: DampingLaw) {
     CORE_STATIC.check(lost - 4.0 * half_backlash);
 }
 
+/// The core settles at the static deflection of either flank, four half-backlashes apart, for 3 to 5 planets.
 #[test]
-fn the_core_comes_to_rest_at_the_static_deflection_and_loses_four_half_backlashes() {
+fn joint_settles_at_static_deflection() {
     for law in [DampingLaw::Paper, DampingLaw::Contact] {
-        the_joint_settles::<3>(law);
-        the_joint_settles::<4>(law);
-        the_joint_settles::<5>(law);
+        check_settling::<3>(law);
+        check_settling::<4>(law);
+        check_settling::<5>(law);
     }
 }

@@ -1,5 +1,5 @@
-//! The core against closed forms that no integrator enters, for three, four and five planets: oracles 1 to 4, 7 and 8.
-//! Oracles 5 and 6 are in `invariants`; the reference meets its own in `the_reference`.
+//! The core against closed forms without any integrator, for three, four and five planets: oracles 1 to 4, 7 and 8. Oracles 5 and 6 are in
+//! `invariants`; the reference's tests are in `the_reference`.
 
 pub mod closed_forms;
 mod linear;
@@ -10,23 +10,23 @@ use model_core::gears::design::{Effort, design_scheme};
 use model_core::gears::{Mechanics, Model, Outputs, Relative, Scheme, State, Tables, Torques};
 use parameters::JointParameters;
 
-/// Where a run starts, in units of b_c and b_c omega_n, and the torques that act on it.
+/// Initial state of a run, in units of b_c and b_c omega_n, and its torque.
 #[derive(Clone, Copy)]
 struct Start<const N: usize> {
     position: Relative<f64, N>,
     rate: Relative<f64, N>,
-    /// On the sun; the load balances it [N m].
+    /// Torque on the sun [N m]; the load balances it.
     drive: f64,
 }
 
 impl<const N: usize> Start<N> {
-    /// At rest, every tooth in the middle of its gap.
+    /// Start at rest with every tooth in the middle of its gap.
     fn centred(drive: f64) -> Self {
         Self { position: Relative::ZERO, rate: Relative::ZERO, drive }
     }
 }
 
-/// Runs the core in f64 for some ticks, and then samples it at every tick; the first sample is the state reached.
+/// Runs the core in f64 for `skipped` ticks, then samples every tick; the first sample is the state reached.
 fn run<const N: usize>(
     joint: &JointParameters,
     tick_rate: u32,

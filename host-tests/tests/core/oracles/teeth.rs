@@ -1,5 +1,5 @@
-//! Oracle 8 on the core: planets are ahead of one another by the fraction of a tooth that Z / n leaves, and move as one
-//! where it leaves none.
+//! Oracle 8 on the core: planets lead one another by the fraction of a tooth left by Z / n, and move in phase where the division leaves
+//! none.
 
 use std::f64::consts::TAU;
 
@@ -27,8 +27,8 @@ fn by_teeth(planets: usize, sun_teeth: u32, ring_teeth: u32, ripple: f64) -> Joi
     parameters
 }
 
-/// Under load, so that contact holds and the motion has the period of its meshes.
-fn planets_follow_one_another<const N: usize>(sun_teeth: u32, ring_teeth: u32, lead: usize) {
+/// Checks the phases of the planets under a load that keeps contact, so that the motion has the mesh period.
+fn check_tooth_phases<const N: usize>(sun_teeth: u32, ring_teeth: u32, lead: usize) {
     let parameters = by_teeth(N, sun_teeth, ring_teeth, 0.05);
     let found = run(&parameters, TICK_RATE, &Start::<N>::centred(2400.0), 200 * PERIOD, 2 * PERIOD);
     for kind in [0, 1] {
@@ -44,16 +44,18 @@ fn planets_follow_one_another<const N: usize>(sun_teeth: u32, ring_teeth: u32, l
     assert!(apart.fold(0.0, f64::max) > 0.1 * PAPER_LENGTH, "the planets are not in phase");
 }
 
+/// Planets follow one another by the fraction of a tooth.
 #[test]
-fn the_core_s_planets_follow_one_another_by_the_fraction_of_a_tooth() {
-    planets_follow_one_another::<3>(28, 98, 1);
-    planets_follow_one_another::<4>(26, 98, 2);
-    planets_follow_one_another::<5>(27, 98, 2);
+fn planets_follow_by_tooth_fraction() {
+    check_tooth_phases::<3>(28, 98, 1);
+    check_tooth_phases::<4>(26, 98, 2);
+    check_tooth_phases::<5>(27, 98, 2);
 }
 
+/// Planets with whole tooth counts move in phase in every bit.
 #[test]
-fn the_core_s_planets_of_whole_tooth_counts_move_as_one_bit_for_bit() {
-    // Without load and through the gap, where the smallest difference would grow.
+fn whole_tooth_counts_move_in_phase() {
+    // The joint swings through its gap without load, where the smallest difference would grow.
     for (outputs, _) in run(&by_teeth(3, 27, 99, 0.2), TICK_RATE, &Start::<3>::centred(2.0), 0, 20_000) {
         for family in outputs.deflections {
             assert_eq!(family, [family[0]; 3]);

@@ -1,18 +1,18 @@
-//! What can happen between two ticks: a tooth parts and returns, or crosses its whole gap within one sub-step.
+//! Contact changes between two ticks: a tooth parts and returns, or crosses its whole gap within one sub-step.
 
-use host_tests::tolerance::light_planets::{PARTED_WITHIN_A_TICK, SUBSTEP_ACROSS_THE_GAP, SUBSTEP_THROUGH_THE_MIDDLE};
+use host_tests::tolerance::light_planets::{PARTING_WITHIN_A_TICK, SUBSTEP_ACROSS_THE_GAP, SUBSTEP_THROUGH_THE_MIDDLE};
 use model_core::gears::{Model, Torques};
 use parameters::{ContactState, DampingLaw, JointParameters};
 use reference::joint::{Observation, RelativeState};
 use reference::scenarios::same;
 
-use super::subject::{joint, pressed, reference, state, verlet_only};
+use super::subject::{in_contact, joint, reference, state, verlet_only};
 
 const RATE: u32 = 10_000;
 const SUBSTEPS: u32 = 8;
-/// A torque on the sun and what balances it at the link [N m].
+/// Torque on the sun and balancing torque on the link [N m].
 const TORQUES: (f64, f64) = (0.2, 1.2);
-/// Moments of the reference within a tick.
+/// Samples of the reference within a tick.
 const MOMENTS: u32 = 200;
 
 /// Largest error of a deflection at the ends of the first ticks [m].
@@ -31,36 +31,36 @@ fn error<const N: usize>(joint: &JointParameters, start: &RelativeState, seen: &
     worst
 }
 
-/// Contact states of the first sun-planet mesh, one after another.
+/// Successive contact states of the first sun-planet mesh.
 fn contacts(seen: &[Observation]) -> Vec<ContactState> {
     let mut states: Vec<ContactState> = seen.iter().map(|seen| seen.contacts[0][0]).collect();
     states.dedup();
     states
 }
 
-fn parts_and_returns<const N: usize>(law: DampingLaw) {
+fn check_parting<const N: usize>(law: DampingLaw) {
     let joint = joint(N, law);
-    let mut start = pressed(&joint, 0.5e-6);
+    let mut start = in_contact(&joint, 0.5e-6);
     start.sun_planet_rate[0] = -0.1;
     let seen = reference(&joint, &start, TORQUES, MOMENTS * RATE, MOMENTS);
     let closed = ContactState::DriveSide;
     assert_eq!(contacts(&seen), [closed, ContactState::Separated, closed], "{N} planets, {law:?}");
     let deflections = || seen.iter().map(|seen| seen.deflections[0][0]);
     let swing = deflections().fold(f64::NEG_INFINITY, f64::max) - deflections().fold(f64::INFINITY, f64::min);
-    PARTED_WITHIN_A_TICK.check(error::<N>(&joint, &start, &seen, SUBSTEPS) / swing);
+    PARTING_WITHIN_A_TICK.check(error::<N>(&joint, &start, &seen, SUBSTEPS) / swing);
 }
 
-fn crosses_the_gap<const N: usize>(law: DampingLaw) {
+fn check_crossing<const N: usize>(law: DampingLaw) {
     let mut joint = joint(N, law);
     for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
         mesh.half_backlash = same(N, 0.5e-6);
         mesh.transmission_error = same(N, 1e-6);
     }
-    let mut start = pressed(&joint, 0.2e-6);
+    let mut start = in_contact(&joint, 0.2e-6);
     start.gap = 0.0;
     start.sun_planet_rate[0] = -0.2;
     let seen = reference(&joint, &start, TORQUES, MOMENTS * RATE, 2 * MOMENTS);
-    // From flank to flank in less than the time of a sub-step.
+    // The flanks are hit within less than one sub-step.
     let substep = (MOMENTS / SUBSTEPS) as usize;
     let state = |moment: usize| seen[moment].contacts[0][0];
     let opposite = |from: usize| {
@@ -73,8 +73,8 @@ fn crosses_the_gap<const N: usize>(law: DampingLaw) {
     SUBSTEP_ACROSS_THE_GAP.check(10.0 * error::<N>(&joint, &start, &seen, 4 * SUBSTEPS) / largest);
 }
 
-/// Relative change of a planet's speed over one sub-step that takes it from flank to flank, as deep into one as into the other.
-fn change_through_the_middle<const N: usize>(law: DampingLaw) -> f64 {
+/// Relative change of a planet's speed over one sub-step from flank to flank, equally deep in both.
+fn speed_change<const N: usize>(law: DampingLaw) -> f64 {
     const SPEED: f64 = 0.2;
     let mut joint = joint(N, law);
     for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
@@ -96,29 +96,32 @@ fn change_through_the_middle<const N: usize>(law: DampingLaw) -> f64 {
     model.state().rate.planets[0] / before.rate.planets[0] - 1.0
 }
 
+/// A sub-step from flank to flank, equally deep in both, leaves the planet's speed unchanged.
 #[test]
-fn both_flanks_push_alike_in_a_leap_through_the_middle_of_the_gap() {
+fn symmetric_crossing_keeps_the_speed() {
     for law in [DampingLaw::Contact, DampingLaw::Paper] {
-        SUBSTEP_THROUGH_THE_MIDDLE.check(change_through_the_middle::<3>(law));
-        SUBSTEP_THROUGH_THE_MIDDLE.check(change_through_the_middle::<4>(law));
-        SUBSTEP_THROUGH_THE_MIDDLE.check(change_through_the_middle::<5>(law));
+        SUBSTEP_THROUGH_THE_MIDDLE.check(speed_change::<3>(law));
+        SUBSTEP_THROUGH_THE_MIDDLE.check(speed_change::<4>(law));
+        SUBSTEP_THROUGH_THE_MIDDLE.check(speed_change::<5>(law));
     }
 }
 
+/// A tooth that parts and returns within a tick stays near the reference.
 #[test]
-fn a_tooth_that_parts_and_returns_within_a_tick_is_seen() {
+fn parting_within_a_tick_is_resolved() {
     for law in [DampingLaw::Contact, DampingLaw::Paper] {
-        parts_and_returns::<3>(law);
-        parts_and_returns::<4>(law);
-        parts_and_returns::<5>(law);
+        check_parting::<3>(law);
+        check_parting::<4>(law);
+        check_parting::<5>(law);
     }
 }
 
+/// Sub-steps across the whole gap stay near the reference.
 #[test]
-fn verlet_sub_steps_across_the_whole_gap_stay_with_the_reference() {
+fn crossing_substeps_follow_reference() {
     for law in [DampingLaw::Contact, DampingLaw::Paper] {
-        crosses_the_gap::<3>(law);
-        crosses_the_gap::<4>(law);
-        crosses_the_gap::<5>(law);
+        check_crossing::<3>(law);
+        check_crossing::<4>(law);
+        check_crossing::<5>(law);
     }
 }

@@ -1,32 +1,32 @@
-//! Exponential ticks of light planets: taken where every tooth keeps pressing, and refused where one opens within the
-//! tick. A refused tick is one in Verlet sub-steps, in every bit.
+//! Exponential ticks of light planets: used while every tooth keeps contact, and rejected where a tooth opens within the tick. A rejected
+//! tick equals Verlet sub-steps in every bit.
 
-use host_tests::tolerance::light_planets::{HELD_OVER_AN_OPENING, PRESSED, PRESSED_SWINGING};
+use host_tests::tolerance::light_planets::{EXPONENTIAL_TICK, EXPONENTIAL_TICK_SWINGING, OVERLOOKED_OPENING};
 use model_core::gears::{Model, Tables, Torques};
 use parameters::{ContactState, DampingLaw, JointParameters};
 use reference::joint::RelativeState;
 
-use super::subject::{joint, reference, resting, state, tables, verlet_only};
+use super::subject::{at_rest_under, joint, reference, state, tables, verlet_only};
 
 const RATE: u32 = 10_000;
 const SUBSTEPS: u32 = 8;
-/// Moments at which the reference is looked at within the tick.
+/// Samples of the reference within the tick.
 const MOMENTS: u32 = 100;
 
-/// Ticks by what happened in them.
+/// Ticks by contact and method.
 #[derive(Debug, Default)]
-struct Found {
-    /// Every tooth kept pressing: taken by the exponential, left to Verlet sub-steps.
+struct TickCounts {
+    /// Ticks with every tooth in contact: advanced by the exponential, left to Verlet sub-steps.
     closed: [u32; 2],
-    /// A tooth opened: the same.
+    /// Ticks in which a tooth opens: advanced by the exponential, left to Verlet sub-steps.
     opened: [u32; 2],
-    /// Largest error of the first kind taken, over b_c.
+    /// Largest error of the exponential with every tooth in contact, over b_c.
     error: f64,
-    /// Widest opening that the exponential took for none, over b_c.
-    unseen: f64,
+    /// Widest opening that the exponential overlooked, over b_c.
+    overlooked: f64,
 }
 
-impl Found {
+impl TickCounts {
     fn add<const N: usize>(
         &mut self,
         joint: &JointParameters,
@@ -38,13 +38,13 @@ impl Found {
         let length = joint.characteristic_length;
         let separated = |contact: &ContactState| *contact == ContactState::Separated;
         let opens = seen.iter().any(|seen| seen.contacts.iter().flatten().any(separated));
-        let [ours, leapt] = both.each_ref().map(|tables| {
+        let [ours, verlet] = both.each_ref().map(|tables| {
             let mut model = Model::new(tables);
             model.set_state(state(joint, tables, start));
             model.step(Torques { drive: torques.0, load: torques.1 });
             (model.state_digest(), model.outputs().deflections)
         });
-        let refused = ours.0 == leapt.0;
+        let refused = ours.0 == verlet.0;
         let count = if opens { &mut self.opened } else { &mut self.closed };
         count[usize::from(refused)] += 1;
         if !refused && !opens {
@@ -56,13 +56,13 @@ impl Found {
             let half = joint.sun_planet.half_backlash[0];
             let open =
                 seen.iter().flat_map(|seen| seen.deflections.iter().flatten()).map(|d| (half - d.abs()) / length);
-            self.unseen = open.fold(self.unseen, f64::max);
+            self.overlooked = open.fold(self.overlooked, f64::max);
         }
     }
 }
 
-/// A joint that turns under balanced torques of either sign; one planet moves away from the sun at one speed after another.
-fn moving<const N: usize>(law: DampingLaw) -> Found {
+/// Ticks of a joint that turns under balanced torques of either sign while one planet moves away from the sun at increasing speeds.
+fn count_receding<const N: usize>(law: DampingLaw) -> TickCounts {
     found::<N>(law, |_, start, drive| {
         let at = |step: u32| {
             let mut start = start.clone();
@@ -73,9 +73,9 @@ fn moving<const N: usize>(law: DampingLaw) -> Found {
     })
 }
 
-/// The same joint; one planet is off its balance between sun and ring, and swings. Places are parts of its load's deflection, speeds
-/// those with which it would swing as far.
-fn swinging<const N: usize>(law: DampingLaw) -> Found {
+/// Ticks of the same joint while one planet is off its balance between sun and ring and swings. Positions are fractions of the static
+/// deflection, speeds those of a swing with that amplitude.
+fn count_swinging<const N: usize>(law: DampingLaw) -> TickCounts {
     found::<N>(law, |joint, start, drive| {
         let deflection = start.sun_planet[0] - drive.signum() * joint.sun_planet.half_backlash[0];
         let stiffness = joint.sun_planet.mean_stiffness + joint.ring_planet.mean_stiffness;
@@ -91,16 +91,16 @@ fn swinging<const N: usize>(law: DampingLaw) -> Found {
     })
 }
 
-/// What became of the ticks from all of these starts, made of the one at rest under each torque.
+/// Ticks from all starts, each derived from the state at rest under a torque.
 fn found<const N: usize>(
     law: DampingLaw,
     starts: impl Fn(&JointParameters, &RelativeState, f64) -> Vec<RelativeState>,
-) -> Found {
+) -> TickCounts {
     let joint = joint(N, law);
     let both = [tables::<N>(&joint, RATE, SUBSTEPS), verlet_only::<N>(&joint, RATE, SUBSTEPS)];
-    let mut found = Found::default();
+    let mut found = TickCounts::default();
     for drive in [-3.0_f64, -1.0, 0.1, 0.5, 2.0, 3.0] {
-        let (rest, load) = resting(&joint, drive);
+        let (rest, load) = at_rest_under(&joint, drive);
         let turning = RelativeState { rigid_speed: 3.0, ..rest };
         for start in starts(&joint, &turning, drive) {
             found.add(&joint, &both, &start, (drive, load));
@@ -112,16 +112,19 @@ fn found<const N: usize>(
 
 fn check<const N: usize>() {
     for law in [DampingLaw::Contact, DampingLaw::Paper] {
-        for (found, bound) in [(moving::<N>(law), &PRESSED), (swinging::<N>(law), &PRESSED_SWINGING)] {
+        for (found, bound) in
+            [(count_receding::<N>(law), &EXPONENTIAL_TICK), (count_swinging::<N>(law), &EXPONENTIAL_TICK_SWINGING)]
+        {
             assert!(found.closed[0] >= 5 && found.opened[1] >= 5, "ticks of both kinds: {found:?}");
             bound.check(found.error);
-            HELD_OVER_AN_OPENING.check(found.unseen);
+            OVERLOOKED_OPENING.check(found.overlooked);
         }
     }
 }
 
+/// A tick in which a tooth opens is left to Verlet sub-steps.
 #[test]
-fn a_tick_in_which_a_tooth_opens_takes_verlet_sub_steps() {
+fn opening_tooth_takes_verlet_substeps() {
     check::<3>();
     check::<4>();
     check::<5>();

@@ -1,5 +1,5 @@
-//! Verlet sub-steps, in which the core takes joints whose planets ring several times within a tick, against the reference: tick by
-//! tick, in f64. What the design makes of them on a whole motion is asked in `robot_joint`.
+//! Verlet sub-steps, which the core uses for joints whose planets oscillate several times within a tick, against the reference: tick by
+//! tick, in f64. The choice of the design on a whole motion is tested in `robot_joint`.
 
 mod crossing;
 mod linear_contact;

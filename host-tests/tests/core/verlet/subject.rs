@@ -1,5 +1,5 @@
-//! Joint Q1 with light planets, ripple and errors, its tables in stated Verlet sub-steps, and one run of core and reference side by
-//! side. No bound is stated here.
+//! Joint Q1 with light planets, ripple and errors, its tables with a given number of Verlet sub-steps, and runs of core and reference. No
+//! bound is stated here.
 
 use model_core::gears::design::{Effort, design_scheme};
 use model_core::gears::{Kinematics, Scheme, State, Tables};
@@ -8,7 +8,7 @@ use reference::joint::{Observation, Reference, RelativeState, Start};
 use reference::scenarios::{case_r, same, with_teeth};
 use simulation::sim::start::core_state;
 
-/// Case R's joint with so many planets, under a damping law.
+/// Case R's joint with a number of planets and a damping law.
 pub fn joint(planets: usize, law: DampingLaw) -> JointParameters {
     let teeth = match planets {
         3 => [15, 30, 75],
@@ -18,32 +18,32 @@ pub fn joint(planets: usize, law: DampingLaw) -> JointParameters {
     JointParameters { damping_law: law, ..with_teeth(case_r::case_r().joint, planets, teeth) }
 }
 
-/// Tables in so many Verlet sub-steps a tick.
+/// Tables with a given number of Verlet sub-steps a tick.
 pub fn tables<const N: usize>(joint: &JointParameters, rate: u32, substeps: u32) -> Tables<f64, N> {
     design_scheme(joint, rate, Scheme::Realtime, Effort::Verlet(substeps)).expect("a sound joint")
 }
 
-/// The same without exponential ticks.
+/// Tables with Verlet sub-steps and no exponential ticks.
 pub fn verlet_only<const N: usize>(joint: &JointParameters, rate: u32, substeps: u32) -> Tables<f64, N> {
     let mut tables = tables(joint, rate, substeps);
     tables.flow.longest_advance = -1.0;
     tables
 }
 
-/// A start as the core takes it.
+/// Start of the reference as a state of the core.
 pub fn state<const N: usize>(joint: &JointParameters, tables: &Tables<f64, N>, start: &RelativeState) -> State<f64, N> {
     core_state(joint, tables, &Start::Relative(start.clone()))
 }
 
-/// All meshes pressed alike on the drive side [m], nothing moving.
-pub fn pressed(joint: &JointParameters, overlap: f64) -> RelativeState {
+/// State at rest with all meshes pressed by `overlap` on the drive side [m].
+pub fn in_contact(joint: &JointParameters, overlap: f64) -> RelativeState {
     let planets = joint.geometry.planets;
     let deflection = joint.sun_planet.half_backlash[0] + overlap;
     RelativeState { sun_planet: same(planets, deflection), gap: 2.0 * deflection, ..RelativeState::centred(planets) }
 }
 
-/// All bodies at rest relative to each other under a drive torque and the load torque beside it that balances it.
-pub fn resting(joint: &JointParameters, drive: f64) -> (RelativeState, f64) {
+/// State at rest under a drive torque, and the load torque that balances it.
+pub fn at_rest_under(joint: &JointParameters, drive: f64) -> (RelativeState, f64) {
     let geometry = &joint.geometry;
     let force = drive / (geometry.planets as f64 * geometry.sun_base_radius);
     let load = drive * geometry.ratio_by_radii();
@@ -59,7 +59,7 @@ pub fn resting(joint: &JointParameters, drive: f64) -> (RelativeState, f64) {
     (start, load)
 }
 
-/// What the reference does over so many ticks: the start, then the end of each.
+/// Observations of the reference at the start and at the end of each tick.
 pub fn reference(
     joint: &JointParameters,
     start: &RelativeState,

@@ -1,5 +1,5 @@
-//! Errors against 50 digits: |E found - E| / max(1, |E|) in units of u max(1, |A h|), u = 2^-53, where norms are largest
-//! column sums. Speed is not judged.
+//! Errors against 50 digits: |E found - E| / max(1, |E|) in units of u max(1, |A h|), u = 2^-53, where norms are largest column sums. Speed
+//! is not tested.
 
 use host_tests::tolerance::{DERIVATION, NALGEBRA_EXPONENTIAL, PRECISE_INTEGRALS, PRECISE_INTEGRATION};
 use model_core::gears::Scales;
@@ -11,7 +11,7 @@ use reference::scenarios::{paper_joint, q1, same};
 
 use super::fixtures::{Expected, Fixture, models, others};
 
-/// u of an f64.
+/// Unit roundoff u of an f64.
 const UNIT: f64 = 1.0 / 9_007_199_254_740_992.0;
 
 /// |E found - E| / max(1, |E|), over u max(1, |A h|).
@@ -20,7 +20,7 @@ fn units(found: &DMatrix<f64>, fixture: &Fixture, expected: &Expected) -> f64 {
     error / (UNIT * (norm(&fixture.matrix) * expected.step).max(1.0))
 }
 
-fn each(fixtures: Vec<Fixture>, check: impl Fn(&Fixture, &Expected)) {
+fn for_each_step(fixtures: Vec<Fixture>, check: impl Fn(&Fixture, &Expected)) {
     for fixture in &fixtures {
         for expected in &fixture.steps {
             check(fixture, expected);
@@ -32,24 +32,26 @@ fn all() -> Vec<Fixture> {
     models().into_iter().chain(others()).collect()
 }
 
+/// Increments are accurate to 50 digits' fixtures, in units of rounding.
 #[test]
-fn increments_are_those_of_fifty_digits() {
-    each(all(), |fixture, expected| {
+fn increments_match_fifty_digits() {
+    for_each_step(all(), |fixture, expected| {
         let found = exponential_minus_identity(&fixture.matrix, expected.step);
         print!("{} at {}: ", fixture.name, expected.step);
         PRECISE_INTEGRATION.check(units(&found, fixture, expected));
     });
 }
 
+/// The flow has the same increment, and input integrals accurate to the fixtures.
 #[test]
-fn the_flow_has_the_same_increment_and_the_integrals_of_fifty_digits() {
-    each(all(), |fixture, expected| {
+fn flow_matches_fifty_digits() {
+    for_each_step(all(), |fixture, expected| {
         let found = flow(&fixture.matrix, &fixture.inputs, expected.step, 3);
         print!("{} at {}: ", fixture.name, expected.step);
         PRECISE_INTEGRATION.check(units(&found.transition, fixture, expected));
         let reach = (norm(&fixture.matrix) * expected.step).max(1.0);
         for (power, (found, exact)) in found.input_integrals.iter().zip(&expected.integrals).enumerate() {
-            // Integrals have a length of their own: h |B| for a matrix of zeros.
+            // Integrals have a scale of their own: h |B| for a matrix of zeros.
             let size = norm(exact).max(expected.step * norm(&fixture.inputs));
             print!("  power {power}: ");
             PRECISE_INTEGRALS.check(norm(&(found - exact)) / size / (UNIT * reach));
@@ -57,10 +59,10 @@ fn the_flow_has_the_same_increment_and_the_integrals_of_fifty_digits() {
     });
 }
 
-/// Another method altogether. Where it is farther from the truth than the bound, so may we be from it, and no farther.
+/// nalgebra's exponential is an independent method: the distance between both is at most nalgebra's own error plus the bound.
 #[test]
-fn nalgebra_s_exponential_is_as_far_away_as_its_own_error() {
-    each(all(), |fixture, expected| {
+fn nalgebra_differs_by_its_own_error() {
+    for_each_step(all(), |fixture, expected| {
         let theirs = (&fixture.matrix * expected.step).exp();
         let theirs = &theirs - DMatrix::identity(theirs.nrows(), theirs.ncols());
         let ours = exponential_minus_identity(&fixture.matrix, expected.step);
@@ -71,9 +73,9 @@ fn nalgebra_s_exponential_is_as_far_away_as_its_own_error() {
     });
 }
 
-/// The fixtures are worth something for the model only if their matrices are the model's.
+/// The fixtures' matrices are the model's, so that they test the model.
 #[test]
-fn the_fixtures_hold_the_matrices_of_equation_20() {
+fn fixtures_hold_matrices_of_equation_20() {
     let paper = paper_joint(0.0, 0.0, 0.0, 1.0);
     let of_both = [paper, q1()];
     let joints = of_both.iter().flat_map(|joint| (3..=5).map(move |planets| (joint.clone(), planets)));

@@ -1,8 +1,8 @@
-//! Reads the files of `data/exponential`. Numbers there are nearest f64s, so nothing is lost.
+//! Reader of the files in `data/exponential`. Their numbers are nearest f64s, so reading is exact.
 
 use nalgebra::DMatrix;
 
-/// A matrix with inputs, and what 50 digits say of it at several steps.
+/// Matrix with inputs, and its flow to 50 digits at several steps.
 pub struct Fixture {
     pub name: &'static str,
     pub matrix: DMatrix<f64>,
@@ -15,7 +15,7 @@ pub struct Expected {
     pub step: f64,
     /// exp(A h) - I.
     pub transition: DMatrix<f64>,
-    /// Of exp(A (h - s)) B (s / h)^k over s in [0, h], for k = 0, 1, 2.
+    /// Integrals of exp(A (h - s)) B (s / h)^k over s in [0, h], for k = 0, 1, 2.
     pub integrals: Vec<DMatrix<f64>>,
 }
 
@@ -25,7 +25,7 @@ macro_rules! files {
     };
 }
 
-/// Joint, number of planets and fixture of every model matrix.
+/// Fixtures of the model's matrices: paper and Q1, each with three to five planets.
 pub fn models() -> Vec<Fixture> {
     files!["paper_3" "paper_4" "paper_5" "q1_3" "q1_4" "q1_5"].map(|(name, text)| read(name, text)).into()
 }

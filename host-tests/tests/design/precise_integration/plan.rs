@@ -1,4 +1,4 @@
-//! The number of doublings and of series terms, over norms of every size: never one too few, never one too many.
+//! Numbers of doublings and series terms over norms of every size: as few as possible and as many as necessary.
 
 use model_core::gears::design::exponential::{REMAINDER, SERIES_NORM, ScalingPlan};
 
@@ -14,19 +14,20 @@ fn norms() -> Vec<f64> {
 
 /// Norm at which the series of a plan starts.
 fn start(norm: f64, plan: &ScalingPlan) -> f64 {
-    // In two parts, since 2^N itself may be beyond an f64.
+    // Two factors, since 2^N itself may overflow an f64.
     let half = plan.doublings / 2;
     norm * 2.0_f64.powi(-(half as i32)) * 2.0_f64.powi(-((plan.doublings - half) as i32))
 }
 
-/// What `terms` terms leave out of the series, relative to its first.
+/// Remainder of the series after `terms` terms, relative to its first.
 fn left_out(start: f64, terms: u32) -> f64 {
     let all = |from: u32, to: u32| (from..=to).fold(1.0, |term, k| term * start / f64::from(k));
     (terms + 1..terms + 40).map(|last| all(2, last)).sum()
 }
 
+/// Doublings reduce the norm to the series' limit and no further.
 #[test]
-fn doublings_bring_the_norm_to_the_series_and_no_further() {
+fn doublings_are_as_few_as_possible() {
     for norm in norms() {
         let plan = ScalingPlan::new(norm);
         let start = start(norm, &plan);
@@ -35,8 +36,9 @@ fn doublings_bring_the_norm_to_the_series_and_no_further() {
     }
 }
 
+/// The remainder is below its limit, with no term too many.
 #[test]
-fn the_series_leaves_less_than_is_allowed_and_has_no_term_too_many() {
+fn series_terms_are_as_few_as_possible() {
     for norm in norms() {
         let plan = ScalingPlan::new(norm);
         let start = start(norm, &plan);
@@ -47,8 +49,9 @@ fn the_series_leaves_less_than_is_allowed_and_has_no_term_too_many() {
     }
 }
 
+/// An infinite or NaN norm ends the plan without doublings.
 #[test]
-fn a_norm_beyond_numbers_still_ends() {
+fn non_finite_norm_ends_the_plan() {
     for norm in [f64::INFINITY, f64::NAN] {
         assert_eq!(ScalingPlan::new(norm).doublings, 0);
     }

@@ -1,32 +1,32 @@
-//! Eq. 19 term by term as the paper prints it, with the sum that its second row lost, in the paper's own X: deflections
-//! of the sun-planet meshes (errors taken off) and the gap coordinate.
+//! Eq. 19 term by term as printed, with the sum missing in its second row restored, in the paper's own X: deflections of the sun-planet
+//! meshes (errors subtracted) and the gap coordinate.
 
 use parameters::MAX_PLANETS;
 use reference::integrator::{Entries, MAX_ENTRIES};
 
-use super::joint::{Formulation, Joint, Moving};
+use super::joint::{Formulation, Joint, MeshMotion};
 
 /// State: X_sp of every planet, X_sc, then their rates.
 pub struct Equation19 {
-    /// Whether the K_rp term of the second row is summed over planets, as it must be.
+    /// Sums the K_rp term of the second row over planets, which is correct; the printed row has one planet.
     pub sum_of_the_second_row: bool,
 }
 
 impl Formulation for Equation19 {
-    /// X = X' = 0, as the reference starts.
+    /// Start at X = X' = 0, where the reference starts.
     fn start(&self, _: &Joint) -> Entries {
         [0.0; MAX_ENTRIES]
     }
 
     /// X_spi, and the argument of f for the ring: X_sc - X_spi - e_spi - e_rpi; with their rates.
-    fn meshes(&self, joint: &Joint, time: f64, state: &Entries) -> [[Moving; MAX_PLANETS]; 2] {
+    fn meshes(&self, joint: &Joint, time: f64, state: &Entries) -> [[MeshMotion; MAX_PLANETS]; 2] {
         let n = joint.planets;
         let (positions, rates) = (&state[..=n], &state[n + 1..]);
-        let mut meshes = [[Moving::default(); MAX_PLANETS]; 2];
+        let mut meshes = [[MeshMotion::default(); MAX_PLANETS]; 2];
         for i in 0..n {
             let (sun, ring) = (joint.error(0, i, time), joint.error(1, i, time));
-            meshes[0][i] = Moving { deflection: positions[i], rate: rates[i] };
-            meshes[1][i] = Moving {
+            meshes[0][i] = MeshMotion { deflection: positions[i], rate: rates[i] };
+            meshes[1][i] = MeshMotion {
                 deflection: positions[n] - positions[i] - sun[0] - ring[0],
                 rate: rates[n] - rates[i] - sun[1] - ring[1],
             };

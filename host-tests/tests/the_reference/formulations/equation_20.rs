@@ -1,5 +1,5 @@
-//! Eq. 20, v' = H v + f with v = (X, Y) and Y = X' + C X / 2: H and the gains of forces from the design, everything
-//! that is not linear in f. X keeps the imposed errors, as the core does, so that no e'' appears.
+//! Eq. 20, v' = H v + f with v = (X, Y) and Y = X' + C X / 2: H and the force gains come from the design, all nonlinear terms are in f. X
+//! contains the imposed errors, as in the core, so that e'' does not appear.
 
 use model_core::gears::Scales;
 use model_core::gears::design::dynamics::Dynamics;
@@ -8,13 +8,13 @@ use nalgebra::{DMatrix, DVector};
 use parameters::{JointParameters, MAX_PLANETS};
 use reference::integrator::{Entries, MAX_ENTRIES};
 
-use super::joint::{Formulation, Joint, Moving};
+use super::joint::{Formulation, Joint, MeshMotion};
 
 /// State: v.
 pub struct Equation20 {
     dynamics: Dynamics,
     hamiltonian: DMatrix<f64>,
-    /// omega_n^2 / K_m makes forces dimensionless.
+    /// Factor omega_n^2 / K_m that makes forces dimensionless.
     force: f64,
 }
 
@@ -36,7 +36,7 @@ impl Equation20 {
 }
 
 impl Formulation for Equation20 {
-    /// Deflections and their rates zero on the sun side, as is the gap.
+    /// Start with zero deflections and rates on the sun side, and zero gap.
     fn start(&self, joint: &Joint) -> Entries {
         let n = joint.planets;
         let errors = |order: usize| {
@@ -50,16 +50,16 @@ impl Formulation for Equation20 {
         state
     }
 
-    fn meshes(&self, joint: &Joint, time: f64, state: &Entries) -> [[Moving; MAX_PLANETS]; 2] {
+    fn meshes(&self, joint: &Joint, time: f64, state: &Entries) -> [[MeshMotion; MAX_PLANETS]; 2] {
         let (positions, rates) = self.motion(joint, state);
-        let mut meshes = [[Moving::default(); MAX_PLANETS]; 2];
-        for (kind, i) in joint.each() {
+        let mut meshes = [[MeshMotion::default(); MAX_PLANETS]; 2];
+        for (kind, i) in joint.mesh_indices() {
             let across = |values: &DVector<f64>| match kind {
                 0 => values[i],
                 _ => values[joint.planets] - values[i],
             };
             let [error, error_rate, _] = joint.error(kind, i, time);
-            meshes[kind][i] = Moving { deflection: across(&positions) - error, rate: across(&rates) - error_rate };
+            meshes[kind][i] = MeshMotion { deflection: across(&positions) - error, rate: across(&rates) - error_rate };
         }
         meshes
     }
@@ -67,12 +67,12 @@ impl Formulation for Equation20 {
     fn derivative(&self, joint: &Joint, time: f64, state: &Entries, rates: &mut Entries) {
         let n = joint.planets;
         let meshes = self.meshes(joint, time, state);
-        // What the linear part takes off too much: its own force of each mesh less the true one.
+        // Excess of the linear part: its own force of each mesh less the true force.
         let mut excess = DVector::zeros(2 * n);
-        for (kind, i) in joint.each() {
+        for (kind, i) in joint.mesh_indices() {
             let mesh = &joint.meshes[kind][i];
             let [error, error_rate, _] = joint.error(kind, i, time);
-            let Moving { deflection, rate } = meshes[kind][i];
+            let MeshMotion { deflection, rate } = meshes[kind][i];
             let linear = mesh.stiffness * (deflection + error) + mesh.damping * (rate + error_rate);
             let true_force = joint.elastic(kind, i, time, deflection) + mesh.damping * rate;
             excess[kind * n + i] = self.force * (linear - true_force);

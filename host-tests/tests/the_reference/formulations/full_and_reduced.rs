@@ -1,5 +1,5 @@
-//! The reduced model (n + 1 relative coordinates) against the full one (n + 2 bodies, one more of each with a
-//! compliance): flow of the one, read in the coordinates of the other. Linear: contact is closed throughout.
+//! The reduced model (n + 1 relative coordinates) against the full model (n + 2 bodies, one more of each with a compliance): flow of the
+//! reduced model against the full flow in relative coordinates. Linear: contact is closed throughout.
 
 use host_tests::tolerance::REDUCED;
 use model_core::gears::Scales;
@@ -10,14 +10,14 @@ use nalgebra::{DMatrix, DVector};
 use parameters::JointParameters;
 use reference::scenarios::{paper_joint, q1};
 
-/// Bodies in the order sun, planets, carrier, link: mass matrix, damping and stiffness of eqs 1-6 by hand, and the
-/// relative coordinates of eqs 16 and 17.
+/// Bodies in the order sun, planets, carrier, link: mass matrix, damping and stiffness of eqs 1-6 by hand, and the relative coordinates of
+/// eqs 16 and 17.
 struct Full {
     masses: DVector<f64>,
     damping: DMatrix<f64>,
     stiffness: DMatrix<f64>,
     relative: DMatrix<f64>,
-    /// Sun twice as far as all others.
+    /// Rigid-body motion: the sun moves twice as far as all others.
     rigid: DVector<f64>,
 }
 
@@ -84,13 +84,14 @@ impl Full {
     }
 }
 
-/// The same matrix for positions and rates.
-fn twice(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+/// Block matrix that applies a matrix to positions and to rates.
+fn block_diagonal(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     DMatrix::<f64>::identity(2, 2).kronecker(matrix)
 }
 
+/// The reduced flow equals the full flow in relative coordinates, with 3 to 5 planets.
 #[test]
-fn the_reduced_flow_is_the_full_flow_in_relative_coordinates() {
+fn reduced_flow_equals_full_flow() {
     for planets in 3..=5 {
         for mut joint in [paper_joint(0.0, 0.0, 0.0, 1.0), q1()] {
             joint.geometry.planets = planets;
@@ -99,20 +100,20 @@ fn the_reduced_flow_is_the_full_flow_in_relative_coordinates() {
             let scales = Scales::new(&joint);
             let dynamics = Dynamics::new(&joint, &scales);
             let (forward, backward) = hamiltonian::from_rates(&dynamics);
-            let relative = twice(&full.relative);
+            let relative = block_diagonal(&full.relative);
             for step in [0.01, 1.025, 20.5] {
                 let reduced = &backward * exponential_minus_identity(&hamiltonian::matrix(&dynamics), step) * &forward;
-                let apart = &relative * full.flow(scales.frequency, step) - reduced * &relative;
+                let difference = &relative * full.flow(scales.frequency, step) - reduced * &relative;
                 print!("{}, {planets} planets, step {step}: ", joint.name);
-                REDUCED.check(apart.amax());
+                REDUCED.check(difference.amax());
             }
         }
     }
 }
 
-/// What the reduction leaves out: the rigid body, which coasts.
+/// The reduction leaves out the rigid body, which coasts.
 #[test]
-fn the_full_model_has_one_motion_more_and_it_coasts() {
+fn full_model_adds_a_coasting_mode() {
     for planets in 3..=5 {
         for mut joint in [paper_joint(0.0, 0.0, 0.0, 1.0), q1()] {
             joint.geometry.planets = planets;

@@ -1,5 +1,5 @@
-//! The joint's numbers in dimensionless form and what an excited mesh does, for the formulations that are integrated
-//! here: written out again, with nothing from the core's tables or the reference.
+//! Dimensionless parameters of the joint and forces of excited meshes, for the formulations integrated here: written out independently of
+//! the core's tables and of the reference.
 
 use std::array;
 
@@ -7,13 +7,13 @@ use parameters::{JointParameters, MAX_PLANETS, MeshPhases, StiffnessWave};
 use reference::integrator::{Entries, Guards, SwitchedSystem};
 use reference::scenarios::{PAPER_LENGTH, paper_natural_frequency};
 
-/// omega / omega_n.
+/// Dimensionless excitation frequency omega / omega_n.
 pub const OMEGA: f64 = 0.8;
 
 /// Sun-planet deflections of every planet, then ring-planet, over b_c.
 pub type Deflections = [Vec<f64>; 2];
 
-/// A mesh: K_m / omega_n^2 [kg], C / omega_n [kg], and lengths over b_c.
+/// Parameters of a mesh: K_m / omega_n^2 [kg], C / omega_n [kg], and lengths over b_c.
 #[derive(Clone, Copy, Default)]
 pub struct Mesh {
     pub stiffness: f64,
@@ -27,36 +27,36 @@ pub struct Mesh {
 
 /// Deflection of a mesh and its rate.
 #[derive(Clone, Copy, Default)]
-pub struct Moving {
+pub struct MeshMotion {
     pub deflection: f64,
     pub rate: f64,
 }
 
-/// Equations of motion of the joint, in coordinates of their own.
+/// Equations of motion of the joint in coordinates of their own.
 pub trait Formulation {
-    /// X = X' = 0, as the reference starts.
+    /// Initial state with X = X' = 0, where the reference starts.
     fn start(&self, joint: &Joint) -> Entries;
 
     /// Deflections and their rates in a state.
-    fn meshes(&self, joint: &Joint, time: f64, state: &Entries) -> [[Moving; MAX_PLANETS]; 2];
+    fn meshes(&self, joint: &Joint, time: f64, state: &Entries) -> [[MeshMotion; MAX_PLANETS]; 2];
 
-    /// Rates of a state on the sides that are held.
+    /// Derivative of a state with the contact sides held.
     fn derivative(&self, joint: &Joint, time: f64, state: &Entries, rates: &mut Entries);
 }
 
-/// A joint in a formulation, as the reference's integrator takes it.
+/// Joint and formulation, as a system for the reference's integrator.
 pub struct System<F> {
     pub joint: Joint,
     pub formulation: F,
 }
 
 impl<F: Formulation> System<F> {
-    fn meshes(&self, time: f64, state: &Entries) -> [[Moving; MAX_PLANETS]; 2] {
+    fn meshes(&self, time: f64, state: &Entries) -> [[MeshMotion; MAX_PLANETS]; 2] {
         self.formulation.meshes(&self.joint, time, state)
     }
 
     pub fn deflections(&self, time: f64, state: &Entries) -> Deflections {
-        self.joint.list(&self.meshes(time, state))
+        self.joint.to_deflections(&self.meshes(time, state))
     }
 }
 
@@ -71,11 +71,11 @@ impl<F: Formulation> SwitchedSystem for System<F> {
 
     fn select_mode(&mut self, time: f64, state: &Entries) {
         let meshes = self.meshes(time, state);
-        self.joint.hold(&meshes);
+        self.joint.select_sides(&meshes);
     }
 
     fn guards(&self, time: f64, state: &Entries, _: &Entries, guards: &mut Guards) {
-        self.joint.watch(&self.meshes(time, state), guards);
+        self.joint.add_guards(&self.meshes(time, state), guards);
     }
 
     fn guard_resolution(&self) -> f64 {
@@ -99,17 +99,17 @@ pub struct Joint {
     pub planet: f64,
     pub carrier: f64,
     pub meshes: [[Mesh; MAX_PLANETS]; 2],
-    /// T_D / (M_s r_bs omega_n^2 b_c).
+    /// Drive term T_D / (M_s r_bs omega_n^2 b_c).
     pub drive: f64,
-    /// T_L / (M_c r_c cos(alpha) omega_n^2 b_c).
+    /// Load term T_L / (M_c r_c cos(alpha) omega_n^2 b_c).
     pub load: f64,
     omega: f64,
-    /// Side of each dead zone that is held until the next event: 1, 0, -1.
+    /// Side of each dead zone, held until the next event: 1, 0, -1.
     pub sides: [[f64; MAX_PLANETS]; 2],
 }
 
 impl Joint {
-    /// The paper's masses with `parameters`' meshes, under balanced torques.
+    /// The paper's masses with the meshes of `parameters`, under balanced torques.
     pub fn new(parameters: &JointParameters, drive_torque: f64) -> Self {
         let frequency = paper_natural_frequency();
         let square = frequency.powi(2);
@@ -143,14 +143,14 @@ impl Joint {
         Self { planets, sun, planet, carrier, meshes, drive, load, omega, sides: [[0.0; MAX_PLANETS]; 2] }
     }
 
-    /// e, e', e'' of a mesh (eq. 11).
+    /// Error e of a mesh with e' and e'' (eq. 11).
     pub fn error(&self, kind: usize, i: usize, time: f64) -> [f64; 3] {
         let mesh = &self.meshes[kind][i];
         let (sine, cosine) = (self.omega * time + mesh.error_phase).sin_cos();
         [mesh.error * sine, mesh.error * self.omega * cosine, -mesh.error * self.omega.powi(2) * sine]
     }
 
-    /// K f(d, b) of a mesh (eqs 7 and 12) on the side that is held.
+    /// Elastic force K f(d, b) of a mesh (eqs 7 and 12) on the held side.
     pub fn elastic(&self, kind: usize, i: usize, time: f64, deflection: f64) -> f64 {
         let mesh = &self.meshes[kind][i];
         let side = self.sides[kind][i];
@@ -158,18 +158,18 @@ impl Joint {
         stiffness * side.abs() * (deflection - side * mesh.half_backlash)
     }
 
-    /// Takes the sides from the deflections.
-    pub fn hold(&mut self, meshes: &[[Moving; MAX_PLANETS]; 2]) {
-        for (kind, i) in self.each() {
+    /// Sets the sides from the deflections.
+    pub fn select_sides(&mut self, meshes: &[[MeshMotion; MAX_PLANETS]; 2]) {
+        for (kind, i) in self.mesh_indices() {
             let (deflection, half_backlash) = (meshes[kind][i].deflection, self.meshes[kind][i].half_backlash);
             self.sides[kind][i] = if deflection.abs() > half_backlash { deflection.signum() } else { 0.0 };
         }
     }
 
-    /// Distances that stay positive while the sides hold.
-    pub fn watch(&self, meshes: &[[Moving; MAX_PLANETS]; 2], guards: &mut Guards) {
-        for (kind, i) in self.each() {
-            let Moving { deflection, rate } = meshes[kind][i];
+    /// Adds guards that stay positive while the sides hold.
+    pub fn add_guards(&self, meshes: &[[MeshMotion; MAX_PLANETS]; 2], guards: &mut Guards) {
+        for (kind, i) in self.mesh_indices() {
+            let MeshMotion { deflection, rate } = meshes[kind][i];
             let (half_backlash, side) = (self.meshes[kind][i].half_backlash, self.sides[kind][i]);
             if side == 0.0 {
                 guards.watch(half_backlash - deflection, -rate);
@@ -180,14 +180,14 @@ impl Joint {
         }
     }
 
-    /// Every mesh.
-    pub fn each(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+    /// Indices (kind, planet) of every mesh.
+    pub fn mesh_indices(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let planets = self.planets;
         (0..2).flat_map(move |kind| (0..planets).map(move |i| (kind, i)))
     }
 
-    /// Deflections as the reference lists them.
-    pub fn list(&self, meshes: &[[Moving; MAX_PLANETS]; 2]) -> Deflections {
+    /// Deflections in the reference's order.
+    pub fn to_deflections(&self, meshes: &[[MeshMotion; MAX_PLANETS]; 2]) -> Deflections {
         meshes.map(|family| family[..self.planets].iter().map(|mesh| mesh.deflection).collect())
     }
 }

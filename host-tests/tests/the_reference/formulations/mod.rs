@@ -1,5 +1,5 @@
-//! One joint in three formulations that share no equation of motion: eqs 1-6 in absolute coordinates (the reference),
-//! eq. 19 written out by hand, eq. 20 with the design's own H. All with damping law `paper` and the sharp dead zone.
+//! One joint in three formulations without a common equation of motion: eqs 1-6 in absolute coordinates (the reference), eq. 19 written out
+//! by hand, eq. 20 with the design's own H. All use the damping law `paper` and the sharp dead zone.
 
 mod equation_19;
 mod equation_20;
@@ -17,9 +17,9 @@ use equation_19::Equation19;
 use equation_20::Equation20;
 use joint::{Deflections, Formulation, Joint, OMEGA, System};
 
-/// Drive torque [N m]: some 7 um of deflection a mesh, so that errors of 10 um part it again and again.
+/// Drive torque [N m]: about 7 um of deflection a mesh, so that errors of 10 um separate it again and again.
 const DRIVE_TORQUE: f64 = 80.0;
-/// Samples of a run and the dimensionless time between them.
+/// Number of samples of a run, and the dimensionless time between them.
 const SAMPLES: u32 = 120;
 const INTERVAL: f64 = 0.5;
 
@@ -29,19 +29,19 @@ fn parameters(planets: usize) -> JointParameters {
     joint.geometry.planets = planets;
     joint.ring_planet.mean_stiffness = 1.2e8;
     joint.ring_planet.damping_ratio = 0.07;
-    let each = |of: &dyn Fn(f64) -> f64| -> PerPlanet { (0..planets).map(|planet| of(planet as f64)).collect() };
+    let per_planet = |of: &dyn Fn(f64) -> f64| -> PerPlanet { (0..planets).map(|planet| of(planet as f64)).collect() };
     for (mesh, offset) in [(&mut joint.sun_planet, 0.0), (&mut joint.ring_planet, 0.7)] {
-        mesh.half_backlash = each(&|planet| (20.0 + 4.0 * planet + 3.0 * offset) * 1e-6);
-        mesh.transmission_error = each(&|planet| (10.0 - planet + offset) * 1e-6);
+        mesh.half_backlash = per_planet(&|planet| (20.0 + 4.0 * planet + 3.0 * offset) * 1e-6);
+        mesh.transmission_error = per_planet(&|planet| (10.0 - planet + offset) * 1e-6);
         mesh.phases = MeshPhases::Given {
-            stiffness: each(&|planet| 2.1 * planet + offset + 0.4),
-            error: each(&|planet| 2.1 * planet + offset),
+            stiffness: per_planet(&|planet| 2.1 * planet + offset + 0.4),
+            error: per_planet(&|planet| 2.1 * planet + offset),
         };
     }
     joint
 }
 
-/// Runs the reference from X = X' = 0: through the gap, into contact, and parting again and again.
+/// Runs the reference from X = X' = 0: through the gap, into contact, and through repeated separation.
 fn reference(parameters: &JointParameters) -> Vec<Deflections> {
     let load_torque = parameters.balanced_load_torque(DRIVE_TORQUE);
     let planets = parameters.geometry.planets;
@@ -56,7 +56,7 @@ fn reference(parameters: &JointParameters) -> Vec<Deflections> {
     found.samples.iter().map(|sample| sample.deflections.each_ref().map(read)).collect()
 }
 
-/// Integrates a formulation and reads its mesh deflections at the reference's times.
+/// Integrates a formulation and returns its mesh deflections at the reference's times.
 fn follow(joint: &Joint, formulation: impl Formulation) -> Vec<Deflections> {
     let mut integrator = Integrator::new(0.0, formulation.start(joint));
     let mut system = System { joint: joint.clone(), formulation };
@@ -69,28 +69,29 @@ fn follow(joint: &Joint, formulation: impl Formulation) -> Vec<Deflections> {
 }
 
 /// Largest difference of a mesh deflection, over b_c.
-fn apart(expected: &[Deflections], found: &[Deflections]) -> f64 {
+fn largest_difference(expected: &[Deflections], found: &[Deflections]) -> f64 {
     let pairs = expected.iter().flatten().flatten().zip(found.iter().flatten().flatten());
     pairs.map(|(expected, found)| (expected - found).abs()).fold(0.0, f64::max)
 }
 
+/// The three formulations give one motion, with 3 to 5 planets.
 #[test]
-fn equations_1_to_6_and_19_and_20_are_one_motion() {
+fn formulations_give_one_motion() {
     for planets in 3..=5 {
         let parameters = parameters(planets);
         let expected = reference(&parameters);
         let joint = Joint::new(&parameters, DRIVE_TORQUE);
-        FORMULATIONS.check(apart(&expected, &follow(&joint, Equation19 { sum_of_the_second_row: true })));
-        FORMULATIONS.check(apart(&expected, &follow(&joint, Equation20::new(&parameters))));
+        FORMULATIONS.check(largest_difference(&expected, &follow(&joint, Equation19 { sum_of_the_second_row: true })));
+        FORMULATIONS.check(largest_difference(&expected, &follow(&joint, Equation20::new(&parameters))));
     }
 }
 
-/// The print's second row takes K_rp of one planet only (here the first): that is another motion altogether.
+/// The printed second row has K_rp of one planet only (here the first), which gives a different motion.
 #[test]
-fn equation_19_as_printed_is_another_motion() {
+fn printed_equation_19_differs() {
     let parameters = parameters(3);
     let expected = reference(&parameters);
     let joint = Joint::new(&parameters, DRIVE_TORQUE);
-    let apart = apart(&expected, &follow(&joint, Equation19 { sum_of_the_second_row: false }));
-    assert!(apart > 1.0, "the print differs by {apart} b_c only");
+    let difference = largest_difference(&expected, &follow(&joint, Equation19 { sum_of_the_second_row: false }));
+    assert!(difference > 1.0, "the print differs by {difference} b_c only");
 }

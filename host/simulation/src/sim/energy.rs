@@ -236,7 +236,7 @@ mod tests {
                 worst[2] = worst[2].max((snapshot.link_offset - read.link_offset).abs());
             });
             println!("{}: {worst:?}", joint.name);
-            worst.into_iter().for_each(|error| tolerance::core::READ_OFF.check(error));
+            worst.into_iter().for_each(|error| tolerance::core::HOST_OUTPUTS.check(error));
         }
     }
 
@@ -247,7 +247,7 @@ mod tests {
             run_through(&joint, 200_000, SchemeName::Reference, &mut |snapshot| account.take(snapshot));
             let balance = account.balance().expect("it has run");
             println!("{}: {balance:?}", joint.name);
-            tolerance::BOOKS_OF_THE_REFERENCE.check(balance.residual_over_dissipated);
+            tolerance::REFERENCE_ENERGY_BALANCE.check(balance.residual_over_dissipated);
         }
     }
 
@@ -263,7 +263,7 @@ mod tests {
         let [realtime, runge_kutta, euler] =
             [SchemeName::Realtime, SchemeName::RungeKutta4, SchemeName::Euler].map(residual);
         println!("realtime {realtime:.1e}, Runge-Kutta {runge_kutta:.1e}, Euler {euler:.1e}");
-        tolerance::core::BOOKS_OF_THE_BOARD.check(realtime);
+        tolerance::core::BOARD_ENERGY_BALANCE.check(realtime);
         assert!(realtime < runge_kutta && runge_kutta < euler);
     }
 

@@ -2,11 +2,11 @@
 //!
 //! | # | found by | condition | purpose | needed by |
 //! |---|---|---|---|---|
-//! | 1 | counts that jumped ([`Advance::Jumped`]) | four readings farther apart than any motor turns | random counts, a slipped coupling | `wild motor_encoder::counts_of_the_motor_that_are_anything_are_told_at_once_and_leave_nothing_behind` |
-//! | 2 | [`Plausibility`]: counts that jump | a few readings farther on than motor and link can throw the motor | small jumps | `wild motor_encoder::counts_of_the_motor_that_jump_a_little_are_told_and_leave_nothing_behind` |
-//! | 3 | [`Plausibility`]: counts that stand still at once | fewer counts than torque and teeth explain | a frozen encoder in motion, within a few periods | `wild motor_encoder::a_motor_encoder_that_freezes_at_speed_is_found_in_a_few_periods` |
-//! | 4 | the output outruns counts that stand still under a torque | more than wind-up, while a free motor would have moved | a frozen encoder in slow motion | `wild motor_encoder::a_motor_encoder_that_freezes_in_slow_motion_is_found_before_the_link_has_crossed_the_gap` |
-//! | 5 | the output outruns counts that stand still | more than gap and wind-up, while the counts stand still for 1 ms | a frozen encoder in slow motion without torque | `wild motor_encoder::a_motor_encoder_that_freezes_at_rest_is_found_by_how_far_the_link_goes` |
+//! | 1 | counts that jumped ([`Advance::Jumped`]) | four readings farther apart than any motor turns | random counts, a slipped coupling | `wild motor_encoder::random_motor_counts_are_reported` |
+//! | 2 | [`Plausibility`]: counts that jump | a few readings farther on than motor and link can throw the motor | small jumps | `wild motor_encoder::small_motor_jump_is_reported` |
+//! | 3 | [`Plausibility`]: counts that stand still at once | fewer counts than torque and teeth explain | a frozen encoder in motion, within a few periods | `wild motor_encoder::motor_freeze_at_speed_is_detected` |
+//! | 4 | the output outruns counts that stand still under a torque | more than wind-up, while a free motor would have moved | a frozen encoder in slow motion | `wild motor_encoder::slow_motor_freeze_is_detected_in_the_gap` |
+//! | 5 | the output outruns counts that stand still | more than gap and wind-up, while the counts stand still for 1 ms | a frozen encoder in slow motion without torque | `wild motor_encoder::link_travel_reveals_frozen_motor` |
 //!
 //! After an exclusion no reading of the motor is used and no estimate is valid. The encoder is readmitted once its
 //! readings have been plausible for 20 ms, move, and agree with the output encoder, or after 100 ms at rest. Readings

@@ -3,13 +3,13 @@
 //!
 //! | # | found by | condition | purpose | needed by |
 //! |---|---|---|---|---|
-//! | 1 | counts that jumped for good ([`Advance::Jumped`]) | readings farther apart than any motor turns | a lost reference, a wrong absolute word | `observer faults::an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond` |
-//! | 2 | [`Plausibility`]: counts that jump | a few readings that confirm the jump | a slipped coupling, an offset; acts before the deflection is corrupted | `observer faults::an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond` |
-//! | 3 | [`Plausibility`]: counts that stand still at once | fewer counts than any stop explains | a frozen encoder in motion, within a few periods | `observer faults::an_encoder_that_freezes_or_jumps_at_speed_is_given_up_within_a_millisecond` |
-//! | 4 | silence ([`OutputFault::Silent`]) | no fresh reading for 10 ms | a broken line | `observer faults::a_silent_output_encoder_is_said_and_waited_for` |
-//! | 5 | the motor outruns counts that stand still | more than gap and wind-up, for 4 ms | an encoder that froze in slow motion or at rest | `observer faults::an_encoder_that_freezes_before_the_gap_is_known_is_found_by_how_far_the_motor_goes` |
-//! | 6 | a deflection that no teeth allow | out of range for 4 ms, longer than impacts ring | all other faults: slow slip, missing counts | `observer faults::an_output_encoder_that_loses_counts_never_makes_a_width_less_than_none` |
-//! | 7 | teeth that seem to have grown, or shafts to have turned against each other ([`learnt::Outcome::EncoderFails`]) | a half-gap trusted on both flanks | missing counts that stay within the gap | `observer faults::an_output_encoder_that_makes_the_gap_narrower_is_given_up_for_teeth_do_not_grow` |
+//! | 1 | counts that jumped for good ([`Advance::Jumped`]) | readings farther apart than any motor turns | a lost reference, a wrong absolute word | `observer faults::output_fault_at_speed_is_excluded_in_1_ms` |
+//! | 2 | [`Plausibility`]: counts that jump | a few readings that confirm the jump | a slipped coupling, an offset; acts before the deflection is corrupted | `observer faults::output_fault_at_speed_is_excluded_in_1_ms` |
+//! | 3 | [`Plausibility`]: counts that stand still at once | fewer counts than any stop explains | a frozen encoder in motion, within a few periods | `observer faults::output_fault_at_speed_is_excluded_in_1_ms` |
+//! | 4 | silence ([`OutputFault::Silent`]) | no fresh reading for 10 ms | a broken line | `observer faults::silent_output_is_reported_and_readmitted` |
+//! | 5 | the motor outruns counts that stand still | more than gap and wind-up, for 4 ms | an encoder that froze in slow motion or at rest | `observer faults::motor_travel_reveals_frozen_output` |
+//! | 6 | a deflection that no teeth allow | out of range for 4 ms, longer than impacts ring | all other faults: slow slip, missing counts | `observer faults::lost_counts_keep_half_backlash_positive` |
+//! | 7 | teeth that seem to have grown, or shafts to have turned against each other ([`learnt::Outcome::EncoderFails`]) | a half-gap trusted on both flanks | missing counts that stay within the gap | `observer faults::narrowing_output_is_excluded` |
 //!
 //! [`learnt::Outcome::EncoderFails`]: crate::observer::learnt::Outcome::EncoderFails
 

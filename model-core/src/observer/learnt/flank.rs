@@ -2,11 +2,11 @@
 //!
 //! | # | evidence | needs | purpose | needed by |
 //! |---|---|---|---|---|
-//! | 1 | [`settled`] contact, by deflection and force | the half-gap | most reliable: deflection and force come from independent sensors | `observer learning::teeth_that_touch_a_flank_for_some_milliseconds_on_their_way_show_the_width` |
-//! | 2 | [`settled`] contact, by the steady force | force above bias and ripple | the only evidence before the half-gap is known | `compensation holding::without_any_friction_a_gap_that_is_not_known_yet_is_learnt_from_the_first_soft_touches` |
-//! | 3 | [`loaded`] contact that has not settled | force above noise in two intervals | a link thrown to and fro never settles; two successive flanks show the half-gap | `compensation width::steps_between_two_places_show_the_width` |
-//! | 4 | change of the deflection since the last rest ([`LastRest::flank`]) | a crossing above noise, a force on that side | bias hides the sign of a light force | `observer learning::teeth_that_touch_a_flank_for_some_milliseconds_on_their_way_show_the_width` |
-//! | 5 | common motion of motor and link ([`CoMotion::flank`]) | a crossing, and a link that has left its course since | contact without any force | `observer learning::a_joint_that_hardly_feels_its_load_shows_the_width_by_where_its_link_goes` |
+//! | 1 | [`settled`] contact, by deflection and force | the half-gap | most reliable: deflection and force come from independent sensors | `observer learning::brief_contact_reveals_the_width` |
+//! | 2 | [`settled`] contact, by the steady force | force above bias and ripple | the only evidence before the half-gap is known | `compensation holding::free_hold_learns_unknown_gap` |
+//! | 3 | [`loaded`] contact that has not settled | force above noise in two intervals | a link thrown to and fro never settles; two successive flanks show the half-gap | `compensation width::steps_reveal_the_width` |
+//! | 4 | change of the deflection since the last rest ([`LastRest::flank`]) | a crossing above noise, a force on that side | bias hides the sign of a light force | `observer learning::brief_contact_reveals_the_width` |
+//! | 5 | common motion of motor and link ([`CoMotion::flank`]) | a crossing, and a link that has left its course since | contact without any force | `observer learning::link_travel_reveals_the_width` |
 //!
 //! If no row holds, a rest updates only parameters that do not depend on the flank.
 //!

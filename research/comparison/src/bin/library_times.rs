@@ -1,5 +1,4 @@
-//! Times libraries and fixed-step methods on the cases named as arguments and prints JSON on standard output, for
-//! `joint bench`.
+//! Times libraries and fixed-step methods on the cases named as arguments and prints JSON on standard output, for `joint bench`.
 
 use std::process::ExitCode;
 
@@ -9,7 +8,7 @@ use comparison::libraries::timing::{Time, times};
 
 /// Tolerances from loose to tight.
 const TOLERANCES: [f64; 9] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
-/// Steps a second in units of the case's sample rate over four, and sub-steps of each.
+/// Step rates in units of a quarter of the case's sample rate, and sub-steps of each step.
 const RATES: [(u32, u32); 16] = [
     (1, 2),
     (1, 3),

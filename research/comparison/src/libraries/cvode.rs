@@ -1,5 +1,5 @@
-//! SUNDIALS CVODE (6 or 7), Adams with fixed-point iteration, through the dozen functions of its C interface that this
-//! takes. With `restarted`, its root finding stops it at every kink of the forces and it starts again there.
+//! SUNDIALS CVODE (6 or 7), Adams with fixed-point iteration, through a dozen functions of its C interface. With `restarted`, its root
+//! finding stops at every kink of the forces and the integration restarts there.
 
 use std::ffi::{c_int, c_long, c_void};
 use std::ptr;
@@ -38,7 +38,7 @@ unsafe extern "C" {
 }
 
 unsafe extern "C" fn rates<const N: usize, const D: usize>(time: f64, y: Opaque, dy: Opaque, data: Opaque) -> c_int {
-    // SAFETY: CVODE passes the equations that it was given, and serial vectors of D entries.
+    // SAFETY: CVODE passes the registered equations, and serial vectors of D entries.
     unsafe {
         let equations = &*data.cast::<Equations<N, D>>();
         let state = &*N_VGetArrayPointer_Serial(y).cast::<[f64; D]>();
@@ -58,7 +58,7 @@ unsafe extern "C" fn roots<const N: usize, const D: usize>(time: f64, y: Opaque,
     0
 }
 
-/// Everything that must be given back.
+/// Resources to be freed.
 struct Session {
     context: Opaque,
     state: Opaque,
@@ -68,7 +68,7 @@ struct Session {
 
 impl Drop for Session {
     fn drop(&mut self) {
-        // SAFETY: each came from its own create function, or is null, which all of these take.
+        // SAFETY: each pointer came from its own create function, or is null, which all of these functions accept.
         unsafe {
             if !self.memory.is_null() {
                 CVodeFree(&mut self.memory);
@@ -95,8 +95,8 @@ pub(super) fn solve<const N: usize, const D: usize>(
     let null = ptr::null_mut();
     let mut session = Session { context: null, state: null, solver: null, memory: null };
     let mut states = Vec::with_capacity(times.len());
-    // SAFETY: the calls follow CVODE's manual in order and number of arguments; `state` and `equations` outlive the
-    // session, which is dropped first.
+    // SAFETY: the calls follow CVODE's manual in order and number of arguments; `state` and `equations` outlive the session, which is
+    // dropped first.
     unsafe {
         check("context", SUNContext_Create(null, &mut session.context))?;
         session.state = N_VMake_Serial(D as i64, state.as_mut_ptr(), session.context);

@@ -1,5 +1,5 @@
-//! The joint as y' = f(t, y) for libraries: coordinates, then their rates, dimensionless, with `D` = 2 (N + 1) entries.
-//! The forces are the peers', compiled for this law; the Jacobian is exact on either side of a kink.
+//! The joint as y' = f(t, y) for libraries: coordinates, then their rates, dimensionless, with `D` = 2 (N + 1) entries. The forces are
+//! those of the baselines, compiled for one law; the Jacobian is exact on either side of a kink.
 
 use std::array;
 
@@ -14,7 +14,7 @@ use crate::case::Case;
 use crate::reading::{Gauge, Reading};
 use crate::start::Deflected;
 
-/// A case with a prescribed phase, one pair of torques and no compliance.
+/// Case with a prescribed phase, one pair of torques and no compliance.
 pub struct Equations<const N: usize, const D: usize> {
     plant: Plant<f64, N>,
     push: Push<f64>,
@@ -25,12 +25,12 @@ pub struct Equations<const N: usize, const D: usize> {
 }
 
 impl<const N: usize, const D: usize> Equations<N, D> {
-    /// None if the case is not of this kind.
+    /// Equations of a case; `None` for a case of another kind.
     pub fn new(case: &Case) -> Option<Self> {
         let Excitation::Time { mesh_frequency } = case.joint.excitation else { return None };
         let [torques] = case.torques.as_slice() else { return None };
         let scales = Scales::new(&case.joint);
-        // The step of this plant does not matter.
+        // The step of this plant is not used.
         let plant: Plant<f64, N> = Plant::new(&case.joint, scales.frequency);
         if plant.compliant || !matches!(plant.law, Law::Always | Law::Push) || D != 2 * (N + 1) {
             return None;
@@ -58,7 +58,7 @@ impl<const N: usize, const D: usize> Equations<N, D> {
         &self.start
     }
 
-    /// f(t, y).
+    /// Right-hand side f(t, y).
     #[inline]
     pub fn rates(&self, time: f64, state: &[f64], rates: &mut [f64]) {
         match self.plant.law {
@@ -78,7 +78,7 @@ impl<const N: usize, const D: usize> Equations<N, D> {
         rates[2 * N + 1] = change.gap;
     }
 
-    /// The Jacobian of f times a vector.
+    /// Product of the Jacobian of f with a vector.
     pub fn jacobian_times(&self, time: f64, state: &[f64], vector: &[f64], product: &mut [f64]) {
         let plant = &self.plant;
         let now = Instant::at(plant, &rotor(self.omega, time));
@@ -111,7 +111,7 @@ impl<const N: usize, const D: usize> Equations<N, D> {
         product[2 * N + 1] = sun - 2.0 * carrier;
     }
 
-    /// Distance of each mesh from either end of its gap: where one is zero, the forces have a kink.
+    /// Distance of each mesh from either end of its gap: the forces have a kink at zero.
     pub fn kinks(&self, time: f64, state: &[f64], distances: &mut [f64]) {
         let now = Instant::at(&self.plant, &rotor(self.omega, time));
         let (position, _) = split::<N>(state);
@@ -126,7 +126,7 @@ impl<const N: usize, const D: usize> Equations<N, D> {
         }
     }
 
-    /// What is read off a state.
+    /// Reading of a state.
     pub fn read(&self, time: f64, state: &[f64]) -> Reading {
         let (position, rate) = split::<N>(state);
         self.gauge.read(&PeerState { position, rate }, &rotor(self.omega, time), 0.0)

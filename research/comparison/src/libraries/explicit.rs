@@ -1,5 +1,5 @@
-//! Explicit methods of the crate `differential-equations`, with its dense output at the wanted times. Its event
-//! detection is not used: the methods step over the kinks, controlled by their error estimates.
+//! Explicit methods of the crate `differential-equations`, with its dense output at the wanted times. Its event detection is not used: the
+//! methods step over the kinks under error control.
 
 use differential_equations::prelude::*;
 
@@ -13,7 +13,7 @@ impl<const N: usize, const D: usize> ODE<f64, [f64; D]> for Equations<N, D> {
     }
 }
 
-/// Steps that a run may take.
+/// Largest number of steps of a run.
 const MOST_STEPS: usize = 10_000_000;
 
 pub(super) fn solve<const N: usize, const D: usize>(

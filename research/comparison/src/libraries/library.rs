@@ -1,11 +1,11 @@
 //! The libraries' methods by name.
 
-/// A library's method with its settings.
+/// Method of a library with its settings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Library {
     /// SUNDIALS CVODE, Adams with fixed-point iteration.
     CvodeAdams,
-    /// The same, restarted at every crossing, which its root finding finds.
+    /// SUNDIALS CVODE, Adams with fixed-point iteration, restarted at every crossing found by its root finding.
     CvodeAdamsRestarted,
     /// diffsol, BDF with an analytic Jacobian.
     DiffsolBdf,
@@ -20,7 +20,7 @@ pub enum Library {
 }
 
 impl Library {
-    /// All that this build has.
+    /// All methods of this build.
     pub const ALL: &[Self] = &[
         #[cfg(feature = "cvode")]
         Self::CvodeAdams,
@@ -33,7 +33,7 @@ impl Library {
         Self::CashKarp,
     ];
 
-    /// In tables and pictures.
+    /// Name in tables and pictures.
     pub fn name(self) -> &'static str {
         match self {
             Self::CvodeAdams => "CVODE Adams",

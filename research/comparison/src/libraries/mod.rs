@@ -1,7 +1,6 @@
-//! Integrators that a host program takes from a library, each over the same compiled right-hand side: `cvode` (Adams),
-//! `stiff` (diffsol's BDF and its explicit method), `explicit` (differential-equations). `solve` puts
-//! it to the method that `library` names, `timing` times them beside the fixed-step methods. Cases with a prescribed phase,
-//! torques that do not change and no compliance only.
+//! Integrators from libraries for host programs, each with the same compiled right-hand side: `cvode` (Adams), `stiff` (diffsol's BDF and
+//! its explicit method), `explicit` (differential-equations). `solve` selects the method of a `library`, `timing` times all of them beside
+//! the fixed-step methods. Only for cases with a prescribed phase, constant torques and no compliance.
 
 #[cfg(feature = "cvode")]
 mod cvode;

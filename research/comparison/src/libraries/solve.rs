@@ -1,4 +1,4 @@
-//! Puts the equations to the method that is asked for, in the file of its library.
+//! Solves the equations by the selected method of a library.
 
 #[cfg(feature = "cvode")]
 use super::cvode;
@@ -7,7 +7,7 @@ use super::library::Library;
 use super::{explicit, stiff};
 
 impl Library {
-    /// Integrates from time zero at a tolerance, relative and absolute alike: the state at each of the given times.
+    /// Integrates from time zero at a tolerance, relative and absolute: the state at each of the given times.
     pub fn solve<const N: usize, const D: usize>(
         self,
         equations: &Equations<N, D>,

@@ -1,6 +1,6 @@
-//! diffsol: its BDF with an analytic Jacobian and dense LU, and its explicit Tsitouras method, both stepping over the
-//! kinks under error control and interpolating at the wanted times. Its root finding would restart the BDF at order one
-//! at each of eleven crossings a mesh period.
+//! diffsol: its BDF with an analytic Jacobian and dense LU, and its explicit Tsitouras method, both stepping over the kinks under error
+//! control and interpolating at the wanted times. Its root finding would restart the BDF at order one at each of eleven crossings a mesh
+//! period.
 
 use diffsol::Vector;
 use diffsol::{NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason};
@@ -46,7 +46,7 @@ pub(super) fn tsit45<const N: usize, const D: usize>(
     follow(solver, times)
 }
 
-/// Steps as the method likes, and reads its interpolant.
+/// Runs a solver with its own steps and interpolates at the wanted times.
 fn follow<'a, Eqn, S, const D: usize>(mut solver: S, times: &[f64]) -> Result<Vec<[f64; D]>, String>
 where
     Eqn: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a,
@@ -61,7 +61,7 @@ where
         let reason = solver.step().map_err(|error| error.to_string())?;
         let now = solver.state().t;
         let ended = !matches!(reason, OdeSolverStopReason::InternalTimestep);
-        // The stop time may be reached but for a rounding.
+        // The stop time is reached except for rounding.
         while let Some(time) = wanted.next_if(|time| ended || *time <= now) {
             solver.interpolate_inplace(time.min(now), &mut state).map_err(|error| error.to_string())?;
             states.push(std::array::from_fn(|entry| state.get_index(entry)));

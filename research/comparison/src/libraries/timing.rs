@@ -1,5 +1,5 @@
-//! Processor time of libraries and fixed-step methods in one process, in turn, so that all see the same machine: the
-//! least of several rounds for each, the mean over phases, beside the worst error over phases.
+//! Processor time of libraries and fixed-step methods in one process, in turn, so that all see the same machine: the least of several
+//! rounds for each, the mean over phases, beside the worst error over phases.
 
 use cpu_time::ThreadTime;
 use model_core::gears::Scales;
@@ -12,25 +12,25 @@ use crate::method::Method;
 use crate::run;
 use crate::trajectory::{Errors, ReferenceTrajectory};
 
-/// Rounds; the least time of each contestant counts.
+/// Number of rounds; the least time of each method counts.
 const ROUNDS: usize = 3;
 
-/// What one contestant did at one setting.
+/// Time and error of one method at one setting.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Time {
     /// Case.
     pub case: String,
-    /// Contestant.
+    /// Method.
     pub name: String,
     /// Tolerance, or step h omega_n.
     pub setting: f64,
-    /// Trajectory error, worst over the phases; none if it failed.
+    /// Trajectory error, worst over the phases; `None` if the method failed.
     pub error: Option<f64>,
     /// Processor seconds for a second of the joint.
     pub cost: f64,
 }
 
-/// Times everything on a case at its phases; none if libraries cannot take the case.
+/// Times every method on a case at its phases; `None` if libraries cannot run the case.
 pub fn times<const N: usize, const D: usize>(
     phases: &[(Case, ReferenceTrajectory)],
     tolerances: &[f64],
@@ -62,7 +62,7 @@ pub fn times<const N: usize, const D: usize>(
         (Method::RungeKutta4, Scalar::Double, "RK4, f64"),
     ] {
         for &(rate, substeps) in rates {
-            // What is no step of the core is taken in as many steps of its own.
+            // Other methods than the core's step have no sub-steps: they take as many steps.
             let rate = if method == Method::Realtime { (rate, substeps) } else { (rate * substeps, 1) };
             let step = frequency / f64::from(rate.0 * rate.1);
             all.push(timed(first, name, step, phases.len(), |phase| {
@@ -84,7 +84,7 @@ fn now() -> f64 {
     ThreadTime::now().as_duration().as_secs_f64()
 }
 
-/// Runs all phases in rounds; the work says how long it took and how far off it was.
+/// Runs all phases in rounds; `work` returns time and errors.
 fn timed(case: &Case, name: &str, setting: f64, phases: usize, work: impl Fn(usize) -> Option<(f64, Errors)>) -> Time {
     let mut least = f64::INFINITY;
     let mut error = None;

@@ -1,5 +1,4 @@
-//! That the motion of case R is chaotic, and that its windows are not: the reference beside itself under torques that
-//! differ by a billionth.
+//! The motion of case R is chaotic, and its windows are not: the reference compared with itself under torques that differ by a billionth.
 
 use host_tests::tolerance::light_planets::NOISE_IN_WINDOWS;
 use model_core::gears::Kinematics;
@@ -12,7 +11,7 @@ use crate::variants::joint;
 /// Relative size of the torque noise.
 const NOISE: f64 = 1e-9;
 
-/// RMS of what noise does to the link's angle, over the lost motion: left to itself, and in windows.
+/// RMS effect of the noise on the link's angle, over the lost motion: over the whole case, and in windows.
 fn growth(case: &CaseR) -> [f64; 2] {
     let start = |joint: &JointParameters| Reference::new(joint).expect("a sound joint");
     let mut clean = start(&case.joint);
@@ -39,11 +38,13 @@ fn growth(case: &CaseR) -> [f64; 2] {
     found
 }
 
+/// In windows the effect of noise stays small, on the short form.
 #[test]
 fn noise_stays_small_in_a_window() {
     NOISE_IN_WINDOWS.check(growth(&brief(joint()))[1]);
 }
 
+/// Without windows the noise moves the joint within its gap, on all of case R.
 #[test]
 #[ignore = "a minute: the reference three times through all of case R"]
 fn noise_of_a_billionth_ends_elsewhere_in_the_gap_unless_windows_stop_it() {

@@ -1,4 +1,4 @@
-//! Case R's joint and others like it. No bound is stated here.
+//! Case R's joint and variants of it. No bound is stated here.
 
 use parameters::{JointParameters, Mesh};
 use reference::scenarios::case_r;
@@ -8,7 +8,7 @@ pub fn joint() -> JointParameters {
     case_r::case_r().joint
 }
 
-/// With both kinds of mesh changed.
+/// Joint with both kinds of mesh changed.
 pub fn with_meshes(change: impl Fn(&mut Mesh)) -> JointParameters {
     let mut joint = joint();
     change(&mut joint.sun_planet);

@@ -1,4 +1,4 @@
-//! The motion of case R in windows: how far the board's step, as designed for 10 kHz and in f32, is from the reference.
+//! The motion of case R in windows: errors of the board's step, as designed for 10 kHz and in f32, against the reference.
 
 use comparison::case::Case;
 use comparison::curve::{PhaseEnvelope, Scalar};
@@ -11,7 +11,7 @@ use reference::scenarios::case_r::{CaseR, TICK_RATE};
 
 use crate::variants::joint;
 
-/// Errors over a motion with all mesh phases further on by so many periods.
+/// Errors over a motion with all mesh phases advanced by a number of periods.
 pub fn errors(motion: CaseR, shift: f64) -> Errors {
     let case = Case::of_robot_joint("R", "what a robot joint does", motion).shifted(shift);
     let envelope = PhaseEnvelope::new(case, 1).expect("the reference follows");
@@ -26,11 +26,13 @@ fn check(errors: &Errors) {
     ROBOT_PEAK_FORCE.check(errors.peak_force);
 }
 
+/// Output angle and peak mesh force follow the reference in every window, on the short form.
 #[test]
 fn output_angle_and_peak_mesh_force_stay_with_the_reference_in_every_window() {
     check(&errors(case_r::brief(joint()), 0.0));
 }
 
+/// Output angle and peak mesh force follow the reference in every window of case R.
 #[test]
 #[ignore = "half a minute: the reference through all of case R"]
 fn the_whole_of_case_r_stays_with_the_reference_in_every_window() {

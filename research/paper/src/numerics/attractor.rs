@@ -1,5 +1,4 @@
-//! The attractor of a motion: periodic with which period, or chaotic, by its Poincare points and its largest Lyapunov
-//! exponent.
+//! Attractor of a motion: periodic with a period, or chaotic, by its Poincare points and its largest Lyapunov exponent.
 
 use std::fmt;
 
@@ -10,31 +9,31 @@ use super::lyapunov::{Growth, generic, measured_period, normalise, two_trajector
 use super::shooting::periodic_state;
 use super::system::{StudyError, System};
 
-/// Longest period looked for, in mesh periods.
+/// Longest period considered, in mesh periods.
 pub const LONGEST_PERIOD: usize = 24;
 
-/// Poincare points nearer than this, over b_c, are the same point once the motion has settled.
+/// Distance of Poincare points, over b_c, below which they are equal once the motion has settled.
 const SAME_POINT: f64 = 1e-4;
 
-/// A motion that repeats this well has settled, and need not be waited for any longer.
+/// Distance at which a repeating motion counts as settled, which ends the transient.
 const SETTLED: f64 = 1e-7;
 
-/// Exponents above this, per unit of dimensionless time, are chaos: finite runs leave less to orbits without any.
+/// Exponent per unit of dimensionless time above which a motion is chaotic: periodic orbits stay below it in finite runs.
 const CHAOTIC_EXPONENT: f64 = 0.004;
 
-/// Points farther apart than this, over b_c, count as distinct where points of chaos are counted.
+/// Distance of chaotic points, over b_c, above which they count as distinct.
 const DISTINCT: f64 = 1e-2;
 
-/// What a motion settles on.
+/// Class of the attractor of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(tag = "class", content = "period", rename_all = "snake_case")]
 pub enum Class {
-    /// It repeats after so many mesh periods.
+    /// Repeats after a number of mesh periods.
     Periodic(usize),
-    /// Neighbours part exponentially.
+    /// Neighbouring trajectories diverge exponentially.
     Chaotic,
-    /// Quasi-periodic, of a longer period than is looked for, or not settled.
+    /// Quasi-periodic, of a period longer than considered, or not settled.
     Unsettled,
 }
 
@@ -48,45 +47,45 @@ impl fmt::Display for Class {
     }
 }
 
-/// How many periods are spent on each part of the search.
+/// Number of periods for each part of the search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Effort {
-    /// Periods before anything is looked at.
+    /// Periods before the motion is examined.
     pub transient: u32,
-    /// Periods after which a motion that has not become periodic is taken as it is.
+    /// Longest transient of a motion that does not become periodic.
     pub longest_transient: u32,
-    /// Periods in which a tangent vector finds its direction.
+    /// Periods for a tangent vector to find its direction.
     pub alignment: u32,
-    /// Periods measured, one Poincare point each.
+    /// Measured periods, one Poincare point each.
     pub points: u32,
-    /// Periods over which the exponent of chaos is measured: it wanders by about 0.13 over the root of their number.
+    /// Periods for the exponent of chaos, whose standard deviation is about 0.13 over the root of their number.
     pub chaotic_periods: u32,
 }
 
 /// An attractor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Attractor {
-    /// What it is.
+    /// Class of the attractor.
     pub class: Class,
     /// Largest Lyapunov exponent per unit of dimensionless time, by a tangent vector.
     pub exponent: f64,
-    /// X_sp of planet 0, X_sc, X_sp', X_sc' at the beginning of each period measured.
+    /// X_sp of planet 0, X_sc, X_sp', X_sc' at the beginning of each measured period.
     pub points: Vec<[f64; 4]>,
-    /// Periods before measuring began.
+    /// Periods before the measurement.
     pub settled_after: u32,
-    /// Where the tangent vector started.
+    /// Start of the tangent vector.
     pub start: State,
 }
 
 impl Effort {
-    /// Periods over which the exponent of an attractor is measured.
+    /// Number of periods for the exponent of an attractor.
     pub fn periods(&self, class: Class) -> u32 {
         if class == Class::Chaotic { self.points.max(self.chaotic_periods) } else { self.points }
     }
 }
 
 impl Attractor {
-    /// The points that tell it: one cycle if it is periodic, else all.
+    /// Points of the attractor: one cycle if it is periodic, else all.
     pub fn cycle(&self) -> &[[f64; 4]] {
         match self.class {
             Class::Periodic(period) => &self.points[..period.min(self.points.len())],
@@ -94,7 +93,7 @@ impl Attractor {
         }
     }
 
-    /// How many points can be told apart.
+    /// Number of distinguishable points.
     pub fn distinct_points(&self) -> usize {
         let mut known: Vec<&[f64; 4]> = Vec::new();
         for point in &self.points {
@@ -106,7 +105,7 @@ impl Attractor {
     }
 }
 
-/// Follows a motion until it has settled, and measures it. The motion is left at the end of that.
+/// Runs a motion until it has settled, and measures its attractor. The motion is left at the end of the measurement.
 pub fn find(motion: &mut EventIntegrator<'_>, effort: &Effort) -> Result<Attractor, StudyError> {
     let mut recent: Vec<State> = Vec::new();
     let mut settled_after = 0;
@@ -123,7 +122,7 @@ pub fn find(motion: &mut EventIntegrator<'_>, effort: &Effort) -> Result<Attract
     if found.class != Class::Unsettled || found.exponent >= 0.0 {
         return Ok(found);
     }
-    // Neighbours come together, but too slowly to wait for.
+    // Neighbouring trajectories converge, but too slowly to wait.
     let Some(state) = periodic_state(motion)? else { return Ok(found) };
     let mut shorter = EventIntegrator::new(motion.system(), state);
     let polished = measure(&mut shorter, effort, settled_after + effort.alignment + effort.points)?;
@@ -134,7 +133,7 @@ pub fn find(motion: &mut EventIntegrator<'_>, effort: &Effort) -> Result<Attract
     Ok(found)
 }
 
-/// Poincare points and exponent from where a motion is.
+/// Poincare points and exponent from the present state of a motion.
 fn measure(motion: &mut EventIntegrator<'_>, effort: &Effort, settled_after: u32) -> Result<Attractor, StudyError> {
     let start = motion.state();
     *motion.tangents() = vec![generic(motion.system().coordinates())];
@@ -168,7 +167,7 @@ fn measure(motion: &mut EventIntegrator<'_>, effort: &Effort, settled_after: u32
     Ok(Attractor { class, exponent, points, settled_after: settled_after + effort.alignment, start })
 }
 
-/// The shortest period after which the last states repeat to `tolerance`, if any.
+/// Shortest period after which the last states repeat to `tolerance`, if any.
 fn period(states: &[State], tolerance: f64) -> Option<usize> {
     let repeats = |period: usize| {
         let last = &states[states.len() - 2 * period.max(LONGEST_PERIOD / 2)..];
@@ -186,8 +185,8 @@ fn distance(one: &[f64; 4], other: &[f64; 4]) -> f64 {
     one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// The exponent of an attractor once more, by two trajectories. The first of them is the very motion along which the
-/// tangent vector was carried, so that what differs is the method and not the stretch of chaos.
+/// Exponent of an attractor by two trajectories. The first trajectory is the motion that carried the tangent vector, so that the methods
+/// differ and not the stretch of chaos.
 pub fn by_two_trajectories(system: &System, found: &Attractor, effort: &Effort) -> Result<f64, StudyError> {
     let motion = EventIntegrator::new(system, found.start);
     let growth = two_trajectories(&motion, effort.alignment, effort.periods(found.class))?;
@@ -197,15 +196,15 @@ pub fn by_two_trajectories(system: &System, found: &Attractor, effort: &Effort) 
     })
 }
 
-/// The largest exponent of disturbances that drive planets apart, for planets that all mesh in phase; otherwise there is
-/// no such motion to begin with. Below zero, planets in phase stay in phase.
+/// Largest exponent of disturbances that drive planets apart, for planets that all mesh in phase; `None` for other joints. Below zero,
+/// planets in phase stay in phase.
 pub fn between_planets(motion: &EventIntegrator<'_>, effort: &Effort) -> Result<Option<f64>, StudyError> {
     let system = motion.system();
     if !system.in_phase() {
         return Ok(None);
     }
     let mut apart = State::default();
-    // What one planet gains the next loses: sun and carrier do not notice, so the vector stays of this kind for good.
+    // One planet gains as much as the next loses: sun and carrier are not affected, so the vector stays of this kind.
     [apart.position[0], apart.position[1]] = [1.0, -1.0];
     let mut motion = EventIntegrator::new(system, motion.state());
     *motion.tangents() = vec![apart];

@@ -1,17 +1,17 @@
-//! The first time at which a polynomial becomes negative.
+//! First time at which a polynomial becomes negative.
 
-/// Parts of the interval looked at one by one. Within one a guard has at most one extremum: a step is at most about one
+/// Number of intervals that are examined one by one. Within one interval a guard has at most one extremum: a step is at most about one
 /// radian of the fastest motion.
 const PARTS: usize = 4;
 
-/// Starts nearer to zero than this are zero: the guard's own event has just been passed.
+/// Start values below this are zero: the guard's own event has just been passed.
 const ZERO: f64 = 1e-10;
 
-/// The first `s` in [0, length] at which `coefficients` (lowest first) turns negative, if any.
+/// First `s` in [0, length] at which `coefficients` (lowest first) turns negative, if any.
 pub(super) fn first_fall(coefficients: &[f64], length: f64) -> Option<f64> {
     let start = coefficients[0];
     if start.abs() < ZERO {
-        // The root at the start is divided out, or it would be found again.
+        // Dividing by the root at the start avoids finding it again.
         let rest = &coefficients[1..];
         return if rest[0] < 0.0 { Some(0.0) } else { search(rest, length) };
     }
@@ -22,7 +22,7 @@ pub(super) fn first_fall(coefficients: &[f64], length: f64) -> Option<f64> {
     if farthest < start { None } else { search(coefficients, length) }
 }
 
-/// The same for a polynomial that starts at or above zero.
+/// First time at which a polynomial with a start value of zero or above turns negative, if any.
 fn search(coefficients: &[f64], length: f64) -> Option<f64> {
     let (mut left, mut left_slope) = (0.0, slope(coefficients, 0.0));
     for part in 1..=PARTS {
@@ -53,7 +53,7 @@ fn root(coefficients: &[f64], mut left: f64, mut right: f64) -> f64 {
             left = at;
         }
         let newton = at - here / slope(coefficients, at);
-        // A graze can make Newton crawl along one side: every fourth probe halves the bracket.
+        // At a graze Newton's method can converge slowly from one side: every fourth iteration halves the bracket.
         let inside = newton > left && newton < right && round % 4 != 3;
         let next = if inside { newton } else { 0.5 * (left + right) };
         if (next - at).abs() <= 1e-15 * right {
@@ -64,7 +64,7 @@ fn root(coefficients: &[f64], mut left: f64, mut right: f64) -> f64 {
     at
 }
 
-/// Where the slope passes zero between a falling and a rising end.
+/// Zero of the slope between a falling and a rising end.
 fn minimum(coefficients: &[f64], mut left: f64, mut right: f64) -> f64 {
     for _ in 0..40 {
         let middle = 0.5 * (left + right);
@@ -89,20 +89,23 @@ fn slope(coefficients: &[f64], at: f64) -> f64 {
 mod tests {
     use super::*;
 
+    /// The first of two falls is found.
     #[test]
     fn the_first_of_two_falls_is_found() {
-        // (s - 0.2)(s - 0.5)(s - 0.9) turned over: falls at 0.2 and at 0.9.
+        // -(s - 0.2)(s - 0.5)(s - 0.9) falls at 0.2 and at 0.9.
         let found = first_fall(&[0.09, -0.73, 1.6, -1.0], 1.0).expect("it falls");
         assert!((found - 0.2).abs() < 1e-14, "{found}");
     }
 
+    /// A dip between two positive ends is found.
     #[test]
     fn a_dip_between_two_positive_ends_is_found() {
-        // (s - 0.4)(s - 0.41): negative over a hundredth of the interval.
+        // (s - 0.4)(s - 0.41) is negative over a hundredth of the interval.
         let found = first_fall(&[0.164, -0.81, 1.0], 1.0).expect("it falls");
         assert!((found - 0.4).abs() < 1e-13, "{found}");
     }
 
+    /// A root at the start is not found again.
     #[test]
     fn a_root_at_the_start_is_not_found_again() {
         assert_eq!(first_fall(&[0.0, 1.0, 1.0], 1.0), None);
@@ -111,11 +114,13 @@ mod tests {
         assert!((found - 0.5).abs() < 1e-14, "{found}");
     }
 
+    /// A polynomial that falls at the start falls at zero.
     #[test]
     fn what_falls_at_once_falls_at_zero() {
         assert_eq!(first_fall(&[1e-17, -1.0, 5.0], 1.0), Some(0.0));
     }
 
+    /// A graze from above is not a fall.
     #[test]
     fn a_graze_from_above_is_no_fall() {
         assert_eq!(first_fall(&[0.25 + 1e-9, -1.0, 1.0], 1.0), None);

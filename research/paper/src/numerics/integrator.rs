@@ -1,5 +1,5 @@
-//! Integrates a joint mesh period by mesh period: Taylor steps that end at every contact event, with any number of
-//! tangent vectors carried along. No history is kept.
+//! Integrates a joint mesh period by mesh period: Taylor steps that end at every contact event, together with any number of tangent
+//! vectors. No history is kept.
 
 use parameters::{ContactState, DampingLaw};
 
@@ -9,28 +9,28 @@ use super::series::{Moment, Series};
 use super::system::{MAX_COORDINATES, MAX_MESHES, StudyError, System};
 use super::zone::{Guard, Side, Zone};
 
-/// Size of the last terms kept, over b_c: what a step neglects is smaller still.
+/// Size of the last terms kept, over b_c; the neglected terms are smaller.
 const TOLERANCE: f64 = 1e-12;
 
-/// Longest step in dimensionless time: what `first_root` asks for.
+/// Longest step in dimensionless time, as required by `first_root`.
 const LONGEST_STEP: f64 = 0.6;
 
 /// Shortest step that counts as progress, in periods.
 const SLIVER: f64 = 1e-12;
 
-/// So many events without progress are one graze; it is left behind by a short step without a look at the guards.
+/// Number of events without progress that count as one graze, which a short step without guards leaves behind.
 const EVENTS_IN_A_GRAZE: u32 = 32;
 
-/// Length of that step over the longest.
+/// Length of the step out of a graze over the longest step.
 const GRAZE: f64 = 1e-5;
 
-/// More steps than any motion of gears takes in one period.
+/// Largest number of steps in one period, above that of any motion of gears.
 const MOST_STEPS: u32 = 1_000_000;
 
-/// Positions beyond this, over b_c, are no motion of gears any more.
+/// Largest position of any motion of gears, over b_c.
 const FARTHEST: f64 = 1e9;
 
-/// A joint with its present state, integrated forwards.
+/// Joint with its present state, integrated forwards.
 #[derive(Debug, Clone)]
 pub struct EventIntegrator<'a> {
     system: &'a System,
@@ -43,25 +43,25 @@ pub struct EventIntegrator<'a> {
     steps: u64,
 }
 
-/// The motion within one step, evaluated at any time in it.
+/// Motion within one step, evaluated at any time in it.
 pub struct Segment<'a> {
     system: &'a System,
     series: &'a Series,
-    /// Its beginning, since the beginning of the period.
+    /// Beginning of the segment, since the beginning of the period.
     pub from: f64,
-    /// Its end.
+    /// End of the segment.
     pub to: f64,
 }
 
 impl Segment<'_> {
-    /// State at a time within.
+    /// State at a time within the segment.
     pub fn at(&self, time: f64) -> State {
         self.series.at(self.system.coordinates(), time - self.from)
     }
 }
 
 impl<'a> EventIntegrator<'a> {
-    /// A joint at the beginning of a period.
+    /// Joint at the beginning of a period.
     pub fn new(system: &'a System, state: State) -> Self {
         let mut motion = Self {
             system,
@@ -76,7 +76,7 @@ impl<'a> EventIntegrator<'a> {
         motion
     }
 
-    /// From X = X' = 0: every tooth in the middle of its gap, as far as the transmission errors allow.
+    /// Joint at X = X' = 0: every tooth in the middle of its gap, up to the transmission errors.
     pub fn from_rest(system: &'a System) -> Self {
         let mut state = State::default();
         for planet in 0..system.planets {
@@ -95,17 +95,17 @@ impl<'a> EventIntegrator<'a> {
         self.state
     }
 
-    /// Contact events so far.
+    /// Number of contact events so far.
     pub fn events(&self) -> u64 {
         self.events
     }
 
-    /// Steps so far.
+    /// Number of steps so far.
     pub fn steps(&self) -> u64 {
         self.steps
     }
 
-    /// Tangent vectors that are carried along.
+    /// Tangent vectors of the motion.
     pub fn tangents(&mut self) -> &mut Vec<State> {
         &mut self.tangents
     }
@@ -118,12 +118,12 @@ impl<'a> EventIntegrator<'a> {
         [position[0] - error, position[gap], rate[0] - error_rate, rate[gap]]
     }
 
-    /// Goes on to the beginning of the next period.
+    /// Advances to the beginning of the next period.
     pub fn period(&mut self) -> Result<(), StudyError> {
         self.period_with(|_| ())
     }
 
-    /// The same, with a callback for every segment.
+    /// Advances to the beginning of the next period, with a callback for every segment.
     pub fn period_with(&mut self, mut look: impl FnMut(&Segment<'_>)) -> Result<(), StudyError> {
         let end = self.system.period();
         let coordinates = self.system.coordinates();
@@ -139,7 +139,7 @@ impl<'a> EventIntegrator<'a> {
             let wanted = series.step(coordinates, TOLERANCE).min(LONGEST_STEP);
             let blind = idle >= EVENTS_IN_A_GRAZE;
             let wanted = if blind { wanted.min(GRAZE * LONGEST_STEP) } else { wanted };
-            // Two equal parts instead of a full step and a crumb.
+            // Two equal parts replace a full step and a tiny rest.
             let whole = if wanted >= remaining { remaining } else { wanted.min(0.5 * remaining) };
             let event = if blind { None } else { self.first_event(&series, whole) };
             let step = event.as_ref().map_or(whole, |event| event.step);
@@ -180,7 +180,7 @@ impl<'a> EventIntegrator<'a> {
                     Some(at) if first.as_ref().is_none_or(|event| at < event.step) => {
                         first = Some(Event { step: at, falls: vec![(mesh, *guard)] });
                     }
-                    // Planets in phase meet together: apart, they would leave each other by rounding alone.
+                    // Planets in phase change contact at the same time; separate events would drive them apart by rounding alone.
                     Some(at) => first.iter_mut().filter(|e| e.step == at).for_each(|e| e.falls.push((mesh, *guard))),
                     None => {}
                 }
@@ -200,8 +200,8 @@ impl<'a> EventIntegrator<'a> {
         }
     }
 
-    /// Tangent vectors across a moment at which a mesh force jumps by C d' (law `contact`): neighbours meet at another
-    /// time, by -dd / d', and have felt the jump so much longer or shorter.
+    /// Carries tangent vectors across a moment at which a mesh force jumps by C d' (law `contact`): neighbouring trajectories meet earlier
+    /// or later by -dd / d', and feel the jump longer or shorter by this time.
     fn jump(&mut self, mesh: usize) {
         let planets = self.system.planets;
         let damping = self.system.meshes[mesh].damping;
@@ -240,7 +240,7 @@ pub fn deflection(system: &System, state: &State, mesh: usize, time: f64) -> (f6
     (across(&state.position) - error, across(&state.rate) - error_rate)
 }
 
-/// Which flank touches at a deflection over b_c, by geometry alone.
+/// Flank in contact at a deflection over b_c, by geometry alone.
 pub fn contact(system: &System, mesh: usize, deflection: f64) -> ContactState {
     let half = system.meshes[mesh].half_backlash;
     if deflection > half {
@@ -252,12 +252,12 @@ pub fn contact(system: &System, mesh: usize, deflection: f64) -> ContactState {
     }
 }
 
-/// The greater magnitude; unlike `max`, NaN once met stays.
+/// Greater magnitude; unlike with `max`, NaN is kept.
 fn farther(most: f64, value: &f64) -> f64 {
     if most.is_nan() || value.abs() <= most { most } else { value.abs() }
 }
 
-/// Guards that fall, and when.
+/// Falling guards and their time.
 #[derive(Debug, Clone)]
 struct Event {
     step: f64,

@@ -1,34 +1,34 @@
-//! The largest Lyapunov exponent, by a tangent vector and by two trajectories: the mean rate at which neighbours part,
-//! per unit of dimensionless time.
+//! Largest Lyapunov exponent, by a tangent vector and by two trajectories: the mean rate at which neighbouring trajectories diverge, per
+//! unit of dimensionless time.
 
 use super::integrator::{EventIntegrator, State};
 use super::system::StudyError;
 
-/// Distance of the second trajectory, over b_c: far above what the steps neglect, far below what the motion does.
+/// Distance of the second trajectory, over b_c: far above the truncation of the steps, far below the motion.
 const DISTANCE: f64 = 1e-7;
 
-/// Growth of something that is brought back to its first length once a period.
+/// Growth of a vector that is normalised once a period.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Growth {
-    /// Logarithm of what it would have become, after each period.
+    /// Logarithm of the unnormalised length, after each period.
     logarithms: Vec<f64>,
 }
 
 impl Growth {
-    /// One more period, over which it grew by `factor`.
+    /// Adds a period with a growth of `factor`.
     pub fn add(&mut self, factor: f64) {
         let before = self.logarithms.last().copied().unwrap_or(0.0);
-        // Contraction to nothing is as good as contraction by any large factor.
+        // Contraction to zero is treated as contraction by a large factor.
         self.logarithms.push(before + factor.max(f64::MIN_POSITIVE).ln());
     }
 
-    /// Mean rate of growth per unit of time, for growth that wanders without memory, as chaos does.
+    /// Mean growth rate per unit of time, for growth with random fluctuations, as in chaos.
     pub fn mean(&self, period: f64) -> f64 {
         self.logarithms.last().map_or(f64::NAN, |last| last / self.logarithms.len() as f64 / period)
     }
 
-    /// Rate of growth per unit of time: the slope of the straight line through all logarithms. A tangent vector that
-    /// turns while it shrinks waves about that line, which spoils the mean far more.
+    /// Growth rate per unit of time: slope of the straight line through all logarithms. A tangent vector that turns while it shrinks
+    /// oscillates about this line, which disturbs the mean far more.
     pub fn exponent(&self, period: f64) -> f64 {
         let count = self.logarithms.len() as f64;
         let middle = 0.5 * (count - 1.0);
@@ -42,7 +42,7 @@ impl Growth {
     }
 }
 
-/// A tangent vector that no symmetry spares: every coordinate takes part, each differently.
+/// Tangent vector without symmetry: every coordinate takes part, each differently.
 pub fn generic(coordinates: usize) -> State {
     let mut state = State::default();
     for index in 0..coordinates {
@@ -53,7 +53,7 @@ pub fn generic(coordinates: usize) -> State {
     state
 }
 
-/// Brings a vector to length one and returns its length.
+/// Normalises a vector and returns its length.
 pub fn normalise(vector: &mut State) -> f64 {
     let length = length(vector);
     for value in vector.position.iter_mut().chain(&mut vector.rate) {
@@ -66,15 +66,14 @@ fn length(vector: &State) -> f64 {
     vector.position.iter().chain(&vector.rate).map(|value| value * value).sum::<f64>().sqrt()
 }
 
-/// One period of a motion whose first tangent vector is being measured.
+/// Advances a motion by one period and adds the growth of its first tangent vector.
 pub fn measured_period(motion: &mut EventIntegrator<'_>, growth: &mut Growth) -> Result<(), StudyError> {
     motion.period()?;
     growth.add(motion.tangents().first_mut().map_or(1.0, normalise));
     Ok(())
 }
 
-/// Growth of the distance of two trajectories, over `periods` after `skipped` ones in which their difference finds its
-/// direction.
+/// Growth of the distance of two trajectories, over `periods` after `skipped` periods in which their difference finds its direction.
 pub fn two_trajectories(motion: &EventIntegrator<'_>, skipped: u32, periods: u32) -> Result<Growth, StudyError> {
     let system = motion.system();
     let mut first = EventIntegrator::new(system, motion.state());
@@ -109,6 +108,7 @@ fn moved(state: &State, direction: &State, factor: f64) -> State {
 mod tests {
     use super::*;
 
+    /// Uniform growth has its exponent.
     #[test]
     fn growth_by_the_same_factor_has_its_exponent() {
         let mut growth = Growth::default();
@@ -117,6 +117,7 @@ mod tests {
         assert!((growth.mean(2.0) - 0.5_f64.ln() / 2.0).abs() < 1e-14);
     }
 
+    /// The exponent of a turning vector follows its trend.
     #[test]
     fn a_turning_vector_is_judged_by_its_trend() {
         let mut growth = Growth::default();

@@ -1,10 +1,9 @@
-//! Numerics for studies of periodically driven joints: motion by Taylor series from contact event to contact event,
-//! Poincare sections, Lyapunov exponents, attractors.
+//! Numerics for studies of periodically driven joints: motion by Taylor series from contact event to contact event, Poincare sections,
+//! Lyapunov exponents, attractors.
 //!
-//! `system` makes the equations dimensionless, `zone` is the branch of the force law that each mesh is on, `series`
-//! expands motion and tangent vectors, `first_root` finds the time at which a branch ends, `integrator` strings the
-//! pieces together; `lyapunov`, `attractor` and `signal` analyse the motion, and `shooting` finds periodic motions that
-//! are reached slowly.
+//! `system` makes the equations dimensionless, `zone` is the branch of the force law of each mesh, `series` expands motion and tangent
+//! vectors, `first_root` finds the end of a branch, `integrator` joins the pieces; `lyapunov`, `attractor` and `signal` analyse the motion,
+//! and `shooting` finds periodic motions that are approached slowly.
 
 pub mod attractor;
 mod first_root;

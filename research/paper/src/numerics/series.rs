@@ -1,5 +1,5 @@
-//! Taylor series of motion and of tangent vectors about one moment, on fixed branches of the force law. The equations
-//! are eqs 1-6 read along the line of action; the coordinates are X_sp + e (planets), X_sc (gap) and the wind-up.
+//! Taylor series of motion and of tangent vectors about one moment, on fixed branches of the force law. The equations are eqs 1-6 along the
+//! line of action; the coordinates are X_sp + e (planets), X_sc (gap) and the wind-up.
 
 use super::system::{MAX_COORDINATES, MAX_MESHES, System};
 use super::zone::{Guard, Zone};
@@ -7,24 +7,24 @@ use super::zone::{Guard, Zone};
 /// Highest power kept.
 pub(super) const ORDER: usize = 14;
 
-/// Powers of a series.
+/// Number of terms of a series.
 pub(super) const TERMS: usize = ORDER + 1;
 
-/// Coordinates or their rates; only those that the system has count.
+/// Coordinates or their rates; entries beyond the system's coordinates are unused.
 pub type Coordinates = [f64; MAX_COORDINATES];
 
 /// Positions and rates, dimensionless: sun-planet displacement of every planet (X_sp + e/b_c), gap X_sc, wind-up.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct State {
-    /// Over b_c.
+    /// Positions over b_c.
     pub position: Coordinates,
-    /// Over b_c omega_n.
+    /// Rates over b_c omega_n.
     pub rate: Coordinates,
 }
 
 type MeshTerms = [[f64; MAX_MESHES]; TERMS];
 
-/// What a step knows of its meshes before any motion: stiffness and error as series, branches as masks.
+/// Motion-independent data of a step: stiffness and error as series, branches as masks.
 #[derive(Debug, Clone)]
 pub(super) struct Moment {
     meshes: usize,
@@ -35,18 +35,18 @@ pub(super) struct Moment {
     offset: [f64; MAX_MESHES],
 }
 
-/// A motion, or a tangent vector, as power series in time.
+/// Motion, or tangent vector, as power series in time.
 #[derive(Debug, Clone)]
 pub(super) struct Series {
     pub position: [Coordinates; TERMS],
-    /// Deflections less errors, before backlash is taken off.
+    /// Deflections less errors, before the backlash is subtracted.
     pub deflection: MeshTerms,
-    /// Lines of force of meshes in contact, whether they act or not.
+    /// Forces of meshes by their contact law, acting or not.
     pub force: MeshTerms,
 }
 
 impl Moment {
-    /// About a time since the beginning of a mesh period.
+    /// Data at a time since the beginning of a mesh period.
     pub fn new(system: &System, zones: &[Zone; MAX_MESHES], time: f64) -> Self {
         let meshes = system.meshes.len();
         let mut moment = Self {
@@ -103,12 +103,12 @@ impl Moment {
 }
 
 impl Series {
-    /// The motion that starts at `state`.
+    /// Motion that starts at `state`.
     pub fn motion(system: &System, moment: &Moment, state: &State) -> Self {
         Self::expand(system, moment, state, 1.0)
     }
 
-    /// A tangent vector: the same branches, without errors, backlash and torques.
+    /// Tangent vector on the same branches, without errors, backlash and torques.
     pub fn tangent(system: &System, moment: &Moment, state: &State) -> Self {
         Self::expand(system, moment, state, 0.0)
     }
@@ -171,7 +171,7 @@ impl Series {
         series
     }
 
-    /// Eq. 4 for one power: the sun-planet mesh is its own coordinate, the ring-planet mesh what the gap leaves.
+    /// Eq. 4 for one power: the sun-planet mesh is a coordinate, the ring-planet mesh the rest of the gap.
     fn deflect(&mut self, moment: &Moment, planets: usize, power: usize, imposed: f64) {
         let position = &self.position[power];
         let (error, deflection) = (&moment.error[power], &mut self.deflection[power]);
@@ -181,7 +181,7 @@ impl Series {
         }
     }
 
-    /// The longest step whose last terms stay below `tolerance`.
+    /// Longest step whose last terms stay below `tolerance`.
     pub fn step(&self, coordinates: usize, tolerance: f64) -> f64 {
         let longest = |power: usize| {
             let greatest = self.position[power][..coordinates].iter().fold(0.0_f64, |most, c| most.max(c.abs()));
@@ -203,7 +203,7 @@ impl Series {
         state
     }
 
-    /// A guard as a polynomial, positive as long as its zone holds.
+    /// Guard as a polynomial, positive as long as its zone holds.
     pub fn guard(&self, mesh: usize, half_backlash: f64, guard: Guard, sign: f64) -> [f64; TERMS] {
         let column = |terms: &MeshTerms| core::array::from_fn(|power| sign * terms[power][mesh]);
         let edge = match guard {
@@ -216,7 +216,7 @@ impl Series {
         terms
     }
 
-    /// Accelerations of the coordinates that a unit force of one mesh takes off.
+    /// Deceleration of the coordinates by a unit force of one mesh.
     pub fn gain(system: &System, mesh: usize) -> Coordinates {
         let planets = system.planets;
         let [sun, planet, carrier, _] = system.mobilities;

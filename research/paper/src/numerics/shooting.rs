@@ -1,19 +1,19 @@
-//! Newton's method on the Poincare map: finds the periodic motion that a slowly decaying one is on its way to, where
-//! waiting would take ten thousands of periods. Whether it is stable is found afterwards, by following it.
+//! Newton's method on the Poincare map: finds the periodic motion that a slowly decaying motion approaches, where waiting would take tens
+//! of thousands of periods. Its stability is found afterwards, by running it.
 
 use super::integrator::{EventIntegrator, State};
 use super::system::StudyError;
 
-/// Rounds of Newton's method; it doubles the digits in each.
+/// Iterations of Newton's method, which doubles the number of digits in each.
 const ROUNDS: u32 = 12;
 
-/// A cycle closes when its ends are this near, over b_c.
+/// Distance of the ends of a closed cycle, over b_c.
 const CLOSED: f64 = 1e-9;
 
-/// Longest cycle looked for: longer ones seldom decay slowly, and each costs as many periods in a round.
+/// Longest cycle considered: longer cycles seldom decay slowly, and each costs its length in periods per iteration.
 const LONGEST: usize = 6;
 
-/// A state on a periodic motion near to where `motion` is, if there is one.
+/// State on a periodic motion near the present state of `motion`, if there is one.
 pub fn periodic_state(motion: &EventIntegrator<'_>) -> Result<Option<State>, StudyError> {
     for periods in candidates(motion)? {
         if let Some(state) = newton(motion, periods)? {
@@ -23,7 +23,7 @@ pub fn periodic_state(motion: &EventIntegrator<'_>) -> Result<Option<State>, Stu
     Ok(None)
 }
 
-/// Cycle lengths, the one whose ends are nearest first; of equally good ones the shortest.
+/// Cycle lengths, the one with the nearest ends first; of equally good lengths the shortest.
 fn candidates(motion: &EventIntegrator<'_>) -> Result<Vec<usize>, StudyError> {
     let mut follower = EventIntegrator::new(motion.system(), motion.state());
     let start = entries(motion, &motion.state());
@@ -49,7 +49,7 @@ fn newton(motion: &EventIntegrator<'_>, periods: usize) -> Result<Option<State>,
         for _ in 0..periods {
             match follower.period() {
                 Ok(()) => {}
-                // A wild guess is no failure of the study.
+                // A diverging guess is not a failure of the study.
                 Err(StudyError::NotFinite) => return Ok(None),
                 Err(error) => return Err(error),
             }
@@ -91,7 +91,7 @@ fn with_entry(mut state: State, coordinates: usize, index: usize, value: f64) ->
     state
 }
 
-/// Gaussian elimination with pivots; each row ends with its right-hand side. None if the matrix is singular.
+/// Solves by Gaussian elimination with pivots; each row ends with its right-hand side. `None` if the matrix is singular.
 fn solve(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     let size = rows.len();
     for column in 0..size {
@@ -118,6 +118,7 @@ fn solve(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
 mod tests {
     use super::*;
 
+    /// A system that needs pivots is solved, a singular one is not.
     #[test]
     fn a_system_that_needs_pivots_is_solved_and_a_singular_one_is_not() {
         let solution = solve(vec![vec![0.0, 2.0, 4.0], vec![1.0, 1.0, 5.0]]).expect("regular");

@@ -1,5 +1,5 @@
-//! X_sp over whole mesh periods, evenly sampled, and what is read off such a record: peak to peak, content beside the
-//! mesh frequency, shares of contact.
+//! X_sp over whole mesh periods, evenly sampled, and figures derived from it: peak to peak, content outside the mesh frequency, shares of
+//! contact.
 
 use std::f64::consts::TAU;
 
@@ -14,15 +14,15 @@ pub const SAMPLES: usize = 256;
 /// Shares of time over all meshes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ContactShares {
-    /// Teeth on the drive side touch.
+    /// Contact on the drive side.
     pub drive_side: f64,
-    /// No tooth touches.
+    /// No contact.
     pub separated: f64,
-    /// Teeth on the back side touch.
+    /// Contact on the back side.
     pub back_side: f64,
 }
 
-/// The sun-planet mesh of planet 0 over a whole number of periods, [`SAMPLES`] each.
+/// Sun-planet mesh of planet 0 over a whole number of periods, [`SAMPLES`] each.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Signal {
     /// Time between two samples.
@@ -31,12 +31,12 @@ pub struct Signal {
     pub position: Vec<f64>,
     /// X_sp'.
     pub rate: Vec<f64>,
-    /// Of all meshes.
+    /// Contact shares of all meshes.
     pub contact: ContactShares,
 }
 
 impl Signal {
-    /// The next `periods` of a motion.
+    /// Records the next `periods` of a motion.
     pub fn record(motion: &mut EventIntegrator<'_>, periods: u32) -> Result<Self, StudyError> {
         let system = motion.system();
         let interval = system.period() / SAMPLES as f64;
@@ -69,15 +69,15 @@ impl Signal {
         Ok(signal)
     }
 
-    /// Greatest less least.
+    /// Largest less least value.
     pub fn peak_to_peak(&self) -> f64 {
         let extremes = (f64::INFINITY, f64::NEG_INFINITY);
         let (low, high) = self.position.iter().fold(extremes, |(low, high), x| (low.min(*x), high.max(*x)));
         high - low
     }
 
-    /// Root mean square of all that is neither mean nor at the mesh frequency, over that of the mesh frequency. Over
-    /// whole cycles it is exact, whatever the period.
+    /// RMS of the content that is neither mean nor at the mesh frequency, over RMS at the mesh frequency. Exact over whole cycles, whatever
+    /// the period.
     pub fn non_fundamental_ratio(&self) -> f64 {
         let count = self.position.len() as f64;
         let mean = self.position.iter().sum::<f64>() / count;
@@ -97,6 +97,7 @@ impl Signal {
 mod tests {
     use super::*;
 
+    /// Content outside the mesh frequency is related to the content at the mesh frequency.
     #[test]
     fn what_is_beside_the_mesh_frequency_is_measured_against_it() {
         // Amplitude 2 at the mesh frequency, 1 at a third of it, and a mean.

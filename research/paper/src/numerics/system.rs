@@ -1,6 +1,5 @@
-//! A joint under constant torques and a prescribed mesh frequency, in the dimensionless relative coordinates of eqs
-//! 15-19: masses, springs and excitation as plain numbers. The tanh dead zone and the phase mode `angle` are refused,
-//! since no Poincare section belongs to them.
+//! Joint under constant torques and a prescribed mesh frequency, in the dimensionless relative coordinates of eqs 15-19: masses, springs
+//! and excitation as plain numbers. The tanh dead zone and the phase mode `angle` are rejected, since they have no Poincare section.
 
 use std::f64::consts::TAU;
 use std::fmt;
@@ -9,13 +8,13 @@ use model_core::gears::design::dynamics::MovingMasses;
 use model_core::gears::{Kinematics, Mechanics, MeshPhasing, Scales, StiffnessSeries};
 use parameters::{DampingLaw, DeadZone, Excitation, JointParameters, MAX_PLANETS, MESH_KINDS};
 
-/// The most meshes: sun-planet of every planet, then ring-planet.
+/// Largest number of meshes: sun-planet of every planet, then ring-planet.
 pub(super) const MAX_MESHES: usize = 2 * MAX_PLANETS;
 
-/// The most coordinates: one a planet, the gap, the wind-up.
+/// Largest number of coordinates: one a planet, the gap, the wind-up.
 pub(super) const MAX_COORDINATES: usize = MAX_PLANETS + 2;
 
-/// Why a joint cannot be studied.
+/// Reason why a joint cannot be studied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StudyError {
     /// The dead zone is smoothed.
@@ -24,7 +23,7 @@ pub enum StudyError {
     NoFrequency,
     /// The prescribed frequency is zero.
     Standstill,
-    /// More steps within one mesh period than any motion of gears needs.
+    /// One mesh period takes more steps than any motion of gears needs.
     TooStiff,
     /// The state became infinite or NaN.
     NotFinite,
@@ -63,15 +62,15 @@ pub(super) struct MeshConstants {
     pub harmonics: Vec<Harmonic>,
     pub damping: f64,
     pub half_backlash: f64,
-    /// e = sine sin(phase) + cosine cos(phase).
+    /// Error e = sine sin(phase) + cosine cos(phase).
     pub error: Harmonic,
 }
 
-/// A joint ready to be studied. Lengths are over b_c, times over 1/omega_n, forces over K_m b_c.
+/// Joint ready to be studied. Lengths are over b_c, times over 1/omega_n, forces over K_m b_c.
 #[derive(Debug, Clone, PartialEq)]
 pub struct System {
     pub(super) planets: usize,
-    /// Dimensionless accelerations that a unit force gives to sun, one planet, carrier and link.
+    /// Dimensionless accelerations of sun, one planet, carrier and link by a unit force.
     pub(super) mobilities: [f64; 4],
     /// Stiffness and damping between carrier and link, if compliant.
     pub(super) compliance: Option<(f64, f64)>,
@@ -79,12 +78,12 @@ pub struct System {
     pub(super) load_force: f64,
     pub(super) law: DampingLaw,
     pub(super) meshes: Vec<MeshConstants>,
-    /// Omega = omega / omega_n.
+    /// Dimensionless mesh frequency Omega = omega / omega_n.
     pub(super) omega: f64,
 }
 
 impl System {
-    /// The joint under constant torques on sun and link [N m].
+    /// Joint under constant torques on sun and link [N m].
     pub fn new(joint: &JointParameters, drive_torque: f64, load_torque: f64) -> Result<Self, StudyError> {
         let Excitation::Time { mesh_frequency } = joint.excitation else { return Err(StudyError::NoFrequency) };
         if joint.dead_zone != DeadZone::Sharp {
@@ -158,7 +157,7 @@ impl System {
         self.planets + 1 + usize::from(self.compliance.is_some())
     }
 
-    /// Omega = omega / omega_n.
+    /// Dimensionless mesh frequency Omega = omega / omega_n.
     pub fn omega(&self) -> f64 {
         self.omega
     }
@@ -175,7 +174,7 @@ impl System {
         (sine * s + cosine * c, self.omega * (sine * c - cosine * s))
     }
 
-    /// Whether no planet differs from another, in phase or otherwise.
+    /// Returns true if all planets are identical, in phase and otherwise.
     pub fn in_phase(&self) -> bool {
         self.meshes.chunks(self.planets).all(|family| family.iter().all(|mesh| *mesh == family[0]))
     }

@@ -1,20 +1,20 @@
-//! Which branch of the force law a mesh is on, and what comes after it. The branches are those of the two damping laws
-//! with the sharp dead zone; when a branch ends is found from its guards by `first_root`.
+//! Branch of the force law of a mesh, and its successor. The branches are those of the two damping laws with the sharp dead zone;
+//! `first_root` finds the end of a branch from its guards.
 
 use parameters::DampingLaw;
 
 use super::system::MeshConstants;
 
-/// A branch on which the force is a linear function of deflection and rate.
+/// Branch on which the force is a linear function of deflection and rate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Zone {
-    /// No backlash and damping that always acts: there is only one branch.
+    /// No backlash and permanent damping: the only branch.
     Joined,
     /// Within the dead zone.
     Free,
-    /// Overlap on a flank that pushes; +1 drive side, -1 back side.
+    /// Overlap on a pushing flank; +1 drive side, -1 back side.
     Push(Side),
-    /// Overlap on a flank that parts faster than it can push (law `contact`).
+    /// Overlap on a flank that separates faster than it can push (law `contact`).
     Slack(Side),
 }
 
@@ -25,27 +25,27 @@ pub(super) enum Side {
     Back,
 }
 
-/// What a branch leaves of the force.
+/// Parts of the force law on a branch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Branch {
-    /// 1 where the spring is in its line of force.
+    /// 1 where the force includes the spring.
     pub spring: f64,
-    /// 1 where the damper is.
+    /// 1 where the force includes the damper.
     pub damper: f64,
-    /// 1 where that line acts, 0 where it is only watched.
+    /// 1 where the force acts, 0 where it is only monitored.
     pub acts: f64,
-    /// Taken off the deflection: the overlap is what is left.
+    /// Offset subtracted from the deflection, which leaves the overlap.
     pub offset: f64,
 }
 
-/// What happened to a mesh.
+/// Event of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Guard {
-    /// The deflection passed +b, whichever way.
+    /// The deflection passed +b, in either direction.
     DriveEdge,
-    /// The deflection passed -b, whichever way.
+    /// The deflection passed -b, in either direction.
     BackEdge,
-    /// The line of force passed zero while the teeth overlap.
+    /// The force passed zero while the teeth overlap.
     NoForce,
 }
 
@@ -59,7 +59,7 @@ impl Side {
 }
 
 impl Zone {
-    /// The zone of a deflection and its rate, with the stiffness of that moment.
+    /// Zone of a deflection and its rate, with the stiffness at this moment.
     pub fn of(mesh: &MeshConstants, law: DampingLaw, deflection: f64, rate: f64, stiffness: f64) -> Self {
         if law == DampingLaw::Paper && mesh.half_backlash == 0.0 {
             return Self::Joined;
@@ -74,7 +74,7 @@ impl Zone {
         if law == DampingLaw::Paper || pushes { Self::Push(side) } else { Self::Slack(side) }
     }
 
-    /// The branch of the force that holds here.
+    /// Branch of the force in this zone.
     pub fn branch(self, mesh: &MeshConstants, law: DampingLaw) -> Branch {
         match self {
             Self::Joined => Branch { spring: 1.0, damper: 1.0, acts: 1.0, offset: 0.0 },
@@ -91,7 +91,7 @@ impl Zone {
         }
     }
 
-    /// What is watched here: each guard with the sign under which it stays positive as long as the zone holds.
+    /// Guards of this zone, each with the sign under which it stays positive as long as the zone holds.
     pub fn guards(self, law: DampingLaw) -> &'static [(Guard, f64)] {
         use Guard::{BackEdge, DriveEdge, NoForce};
         match (self, law) {
@@ -99,7 +99,7 @@ impl Zone {
             (Self::Free, _) => &[(DriveEdge, -1.0), (BackEdge, 1.0)],
             (Self::Push(Side::Drive), DampingLaw::Paper) => &[(DriveEdge, 1.0)],
             (Self::Push(Side::Back), DampingLaw::Paper) => &[(BackEdge, -1.0)],
-            // Under `contact` the force always vanishes before the teeth part.
+            // With the law `contact` the force always vanishes before the teeth separate.
             (Self::Push(Side::Drive), DampingLaw::Contact) => &[(NoForce, 1.0)],
             (Self::Push(Side::Back), DampingLaw::Contact) => &[(NoForce, -1.0)],
             (Self::Slack(Side::Drive), _) => &[(DriveEdge, 1.0), (NoForce, -1.0)],
@@ -107,7 +107,7 @@ impl Zone {
         }
     }
 
-    /// The zone after one of its guards fell.
+    /// Zone after one of its guards fell.
     pub fn after(self, guard: Guard) -> Self {
         match (self, guard) {
             (Self::Free, Guard::DriveEdge) => Self::Push(Side::Drive),

@@ -1,4 +1,4 @@
-//! Figs 4 and 5: the dead zone with its smoothed forms, and how far they are from it.
+//! Figs 4 and 5: the dead zone with its smoothed forms, and their errors.
 
 use super::axes::{plain, points};
 use crate::record::{DeadZoneError, DeadZoneFigure};
@@ -11,7 +11,7 @@ use report::plot::{Figure, HorizontalAxis, Shape};
 /// Half the page.
 const HALF: Shape = Shape { width: 540, left: 64 };
 
-/// f(x, b), sharp, smoothed and as printed.
+/// f(x, b): sharp, smoothed and as printed.
 pub fn curves(data: &DeadZoneFigure) -> Figure {
     let line =
         |values: &[f64], ink, label: String, width| Mark::line(points(&data.deflection, values), ink, label, width);

@@ -1,4 +1,4 @@
-//! The bifurcation diagram with the Lyapunov exponent below it. Points that would fall on one spot are drawn once.
+//! The bifurcation diagram with the Lyapunov exponent below it. Points that would coincide are drawn once.
 
 use super::axes::plain;
 use super::picture::Picture;
@@ -10,12 +10,12 @@ use report::plot::mark::Mark;
 use report::plot::panel::Panel;
 use report::plot::unit::Unit;
 
-/// Heights that can be told apart.
+/// Number of distinguishable heights.
 const ROWS: f64 = 350.0;
 
 const MICROMETRES: Unit = Unit { factor: 1e6, name: "µm" };
 
-/// The picture.
+/// Picture of a sweep.
 pub fn diagram(reading: &Reading, sweep: &Sweep) -> Picture {
     let ends = (
         sweep.points.first().map_or(0.0, |point| point.half_backlash_m),
@@ -43,7 +43,7 @@ fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
-/// Upright lines at the half-backlashes of Figs 5 to 8.
+/// Vertical lines at the half-backlashes of Figs 5 to 8.
 fn guides(reading: &Reading, range: (f64, f64)) -> Vec<Mark> {
     let at = |b: f64| Mark::line(vec![(b, range.0), (b, range.1)], Ink::Reference, "", 1.0);
     reading.attractors.iter().map(|attractor| at(attractor.half_backlash_m)).collect()

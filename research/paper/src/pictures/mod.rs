@@ -1,4 +1,4 @@
-//! The pictures of a study, each with the name of its file. What they show is in the record.
+//! Pictures of a study, each with the name of its file. Their data is in the record.
 
 mod axes;
 mod dead_zone;
@@ -14,12 +14,12 @@ pub use regimes::regime;
 
 use super::record::StudyRecord;
 
-/// Fig. 3.
+/// Picture of Fig. 3.
 pub fn stiffness(record: &StudyRecord) -> Picture {
     Picture { name: "figure-3-stiffness".into(), figure: stiffness::figure(&record.stiffness) }
 }
 
-/// Figs 4 and 5.
+/// Pictures of Figs 4 and 5.
 pub fn dead_zone(record: &StudyRecord) -> [Picture; 2] {
     [
         Picture { name: "figure-4-dead-zone".into(), figure: dead_zone::curves(&record.dead_zone) },

@@ -4,8 +4,8 @@ use report::plot::Figure;
 
 /// A picture.
 pub struct Picture {
-    /// File name without its ending.
+    /// File name without its extension.
     pub name: String,
-    /// What is drawn.
+    /// Figure to draw.
     pub figure: Figure,
 }

@@ -10,7 +10,7 @@ use report::plot::panel::{Panel, VerticalAxis};
 use report::plot::unit::axis_range;
 use report::plot::{Figure, Shape};
 
-/// Height of each of the three [px].
+/// Height of each picture [px].
 const HEIGHT: i32 = 250;
 
 /// Periods of the time history.
@@ -45,7 +45,7 @@ fn history(attractor: &AttractorRecord, b: &str) -> Figure {
 
 fn portrait(attractor: &AttractorRecord, b: &str) -> Figure {
     let history = &attractor.history;
-    // A closed curve is drawn once; what never closes is drawn as far as the record goes, in a thinner line.
+    // A closed curve is drawn once; an open one is drawn over the whole record, in a thinner line.
     let (cycles, width) = match attractor.class {
         Class::Periodic(period) => (period as f64, 1.6),
         _ => (f64::INFINITY, 0.5),

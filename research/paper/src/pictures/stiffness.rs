@@ -7,7 +7,7 @@ use report::plot::ink::Ink;
 use report::plot::mark::Mark;
 use report::plot::panel::Panel;
 
-/// The picture.
+/// Figure of the stiffness wave.
 pub fn figure(data: &StiffnessFigure) -> Figure {
     let line = |values: &[f64], ink, label, width| Mark::line(points(&data.phase, values), ink, label, width);
     let marks = vec![

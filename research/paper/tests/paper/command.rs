@@ -1,4 +1,4 @@
-//! The command as users meet it: files that it leaves, exit codes, and messages that name the mend.
+//! The command as users see it: its files, exit codes, and messages with a remedy.
 
 use std::fs;
 use std::path::Path;
@@ -15,6 +15,7 @@ fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
+/// A small study writes report, record, pictures and tables.
 #[test]
 fn a_small_study_leaves_report_record_pictures_and_tables() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -61,6 +62,7 @@ fn a_small_study_leaves_report_record_pictures_and_tables() {
     }
 }
 
+/// Files that the user has put into the folder are not overwritten.
 #[test]
 fn what_the_user_has_put_into_the_folder_is_not_written_over() {
     for name in ["report.html", "study.json", "stiffness.csv", "bifurcation-mine.svg", "attractor-mine.svg"] {
@@ -74,6 +76,7 @@ fn what_the_user_has_put_into_the_folder_is_not_written_over() {
     }
 }
 
+/// An unexpected attractor is reported, and the report is kept.
 #[test]
 fn chaos_where_a_period_was_asked_for_is_said_and_the_report_kept() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -85,6 +88,7 @@ fn chaos_where_a_period_was_asked_for_is_said_and_the_report_kept() {
     assert!(folder.path().join("out/report.html").is_file());
 }
 
+/// Bad input is rejected before anything is written.
 #[test]
 fn bad_input_is_refused_before_anything_is_written() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -129,6 +133,7 @@ fn bad_input_is_refused_before_anything_is_written() {
     }
 }
 
+/// Only the paper's own settings are compared with known numbers.
 #[test]
 fn the_paper_alone_is_judged_by_known_numbers() {
     assert!(plan(&[]).expect("a good plan").is_set_p);

@@ -1,4 +1,4 @@
-//! The four regimes of set P in both readings of Table 1, and what is known of exponents from elsewhere.
+//! The four regimes of set P in both readings of Table 1, and exponents known from elsewhere.
 
 use paper::numerics::attractor;
 use paper::numerics::attractor::{Class, Effort, by_two_trajectories, find};
@@ -9,23 +9,24 @@ use parameters::StiffnessWave;
 
 use super::{SHORT, from_rest, plan, subject};
 
-/// Poincare points are known to this, over b_c.
+/// Tolerance of known Poincare points, over b_c.
 const POINT: f64 = 1e-3;
-/// Exponents of periodic motion are known to this.
+/// Tolerance of known exponents of periodic motion.
 const PERIODIC: f64 = 0.002;
-/// Exponents of chaos are known to this.
+/// Tolerance of known exponents of chaos.
 const CHAOTIC: f64 = 0.01;
 
-/// Two methods on one stretch of motion come to this.
+/// Largest distance of two methods on one stretch of motion.
 const METHODS: f64 = 1e-3;
 
-/// Exponents of chaos come to about 0.0014 (one standard deviation).
+/// Effort for exponents of chaos to about 0.0014 (one standard deviation).
 const LONG: Effort = Effort { chaotic_periods: 9000, ..SHORT };
 
 fn distance(one: &[f64; 4], other: &[f64; 4]) -> f64 {
     one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
+/// Set P has four regimes with known points and exponents.
 #[test]
 fn set_p_has_its_four_regimes_with_their_points_and_exponents() {
     let paper = subject("paper", None);
@@ -57,6 +58,7 @@ fn set_p_has_its_four_regimes_with_their_points_and_exponents() {
     assert!((chaos.exponent - 0.1402).abs() < CHAOTIC, "{}", chaos.exponent);
 }
 
+/// The carrier as printed has the same regimes with other exponents.
 #[test]
 fn the_carrier_as_printed_has_the_same_regimes_with_its_own_exponents() {
     let printed = subject("paper_printed", None);
@@ -70,6 +72,7 @@ fn the_carrier_as_printed_has_the_same_regimes_with_its_own_exponents() {
     assert!((chaos.exponent - 0.1410).abs() < CHAOTIC, "{}", chaos.exponent);
 }
 
+/// The exponent of a linear joint is the real part of its slowest eigenvalue.
 #[test]
 fn without_backlash_and_ripple_the_exponent_is_the_slowest_eigenvalue() {
     let mut linear = subject("paper", None);
@@ -77,10 +80,11 @@ fn without_backlash_and_ripple_the_exponent_is_the_slowest_eigenvalue() {
         mesh.stiffness_wave = StiffnessWave::Harmonic { stiffness_ratio: 0.0 };
     }
     let found = from_rest(&linear, 0.0, &Effort { points: 600, ..SHORT });
-    // The real part of -0.032282 +- 0.637513i; a turning vector shrinks at that rate on the whole.
+    // Real part of -0.032282 +- 0.637513i: the mean decay of a turning vector.
     assert!((found.exponent + 0.032282).abs() < 2e-5, "{}", found.exponent);
 }
 
+/// The motion of a linear joint is the known ellipse.
 #[test]
 fn without_backlash_and_ripple_the_motion_is_the_exact_ellipse() {
     let mut linear = subject("paper", None);
@@ -91,11 +95,12 @@ fn without_backlash_and_ripple_the_motion_is_the_exact_ellipse() {
     let mut motion = EventIntegrator::from_rest(&system);
     find(&mut motion, &SHORT).expect("it runs");
     let signal = Signal::record(&mut motion, 1).expect("it runs");
-    // Twice |X_sp| of the complex solve; samples miss the crests by a little.
+    // Twice |X_sp| of the complex solve; samples miss the crests slightly.
     assert!((signal.peak_to_peak() - 2.0 * 5.658641).abs() < 2e-3, "{}", signal.peak_to_peak());
     assert!(signal.non_fundamental_ratio() < 1e-8, "{}", signal.non_fundamental_ratio());
 }
 
+/// Content outside the mesh frequency shows the period of three.
 #[test]
 fn the_period_of_three_hides_from_whole_harmonics_but_not_from_the_rest() {
     let paper = subject("paper", None);
@@ -115,6 +120,7 @@ fn both(system: &System, effort: &Effort) -> (f64, f64) {
     (found.exponent, by_two_trajectories(system, &found, effort).expect("it runs"))
 }
 
+/// Both methods agree for periodic motion and for chaos.
 #[test]
 fn a_tangent_vector_and_two_trajectories_give_one_exponent() {
     let paper = subject("paper", None);
@@ -124,6 +130,7 @@ fn a_tangent_vector_and_two_trajectories_give_one_exponent() {
     }
 }
 
+/// Both methods agree with the law `contact`, where tangent vectors jump.
 #[test]
 fn tangent_vectors_jump_with_the_force_where_teeth_only_push() {
     // Joint l1 has the damping law `contact`: its force jumps by C d' when teeth meet.
@@ -137,6 +144,7 @@ fn tangent_vectors_jump_with_the_force_where_teeth_only_push() {
     assert!((tangent - two).abs() < METHODS, "{tangent} and {two}");
 }
 
+/// Disturbances between planets in phase decay, even in chaos.
 #[test]
 fn planets_in_phase_stay_in_phase_in_chaos_too() {
     let paper = subject("paper", None);
@@ -151,6 +159,7 @@ fn planets_in_phase_stay_in_phase_in_chaos_too() {
     assert_eq!(attractor::between_planets(&EventIntegrator::from_rest(&system), &SHORT), Ok(None));
 }
 
+/// A slowly settling motion is found by Newton's method.
 #[test]
 fn what_settles_too_slowly_to_wait_for_is_found_by_newtons_method() {
     // The link of q1 swings on its compliance for tens of thousands of mesh periods.
@@ -159,6 +168,7 @@ fn what_settles_too_slowly_to_wait_for_is_found_by_newtons_method() {
     assert_eq!(found.class, Class::Periodic(1), "exponent {}", found.exponent);
 }
 
+/// The independent integrator finds the same motion.
 #[test]
 fn an_independent_integrator_finds_the_same_motion() {
     for words in [

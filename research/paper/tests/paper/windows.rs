@@ -1,4 +1,4 @@
-//! Where set P changes its class, from rest and carried, and that the number of threads changes nothing.
+//! Window edges of set P, from rest and carried, and independence of the number of threads.
 
 use paper::numerics::attractor::Class;
 use paper::{StudyRecord, study};
@@ -6,6 +6,7 @@ use report::progress::Progress;
 
 use super::{SHORT, from_rest, plan, subject};
 
+/// Classes from rest match the known windows.
 #[test]
 fn windows_from_rest_end_where_they_are_known_to() {
     let paper = subject("paper", None);
@@ -37,6 +38,7 @@ fn studied(words: &[&str], threads: usize) -> StudyRecord {
     record
 }
 
+/// Carried upward, period two holds longer than from rest.
 #[test]
 fn carried_upward_the_period_of_two_holds_longer_than_from_rest() {
     let record = studied(&["paper", "--b", "60", "--grid", "30:42:1", "--sweep", "all"], 2);
@@ -49,6 +51,7 @@ fn carried_upward_the_period_of_two_holds_longer_than_from_rest() {
     assert!((last_of_two("up") - 40.0).abs() <= 1.0, "{}", last_of_two("up"));
 }
 
+/// Records do not depend on the number of threads.
 #[test]
 fn the_number_of_threads_changes_nothing() {
     let words = ["paper_printed", "--b", "60", "--grid", "100:104:1", "--sweep", "all"];

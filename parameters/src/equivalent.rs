@@ -1,5 +1,7 @@
 //! Equivalent gear: a spur train, cycloid or belt with unknown teeth, described by its data sheet, and its conversion to
 //! joint parameters. Preload and hysteresis, as in harmonic drives, are not modelled.
+//!
+//! Equations: (E1), (E2), (E3), (E4) in docs/theory/equivalent-gear.md.
 
 use heapless::String;
 

@@ -4,9 +4,8 @@
 //! at a time: `model-core`, and `host-tests`, whose content is tests.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use crate::graph::Graph;
 use crate::members::Member;
 
 /// Largest size of a crate [lines], chosen at the start of the split: 8,000 lines and a margin.
@@ -15,23 +14,28 @@ pub const LIMIT: usize = 8_500;
 /// Crates measured by subject.
 pub const BY_SUBJECT: [&str; 2] = ["model-core", "host-tests"];
 
-/// Lines of a crate, or of each subject's folder, by name.
-pub fn sizes(member: &Member, graphs: &[(String, Graph)]) -> BTreeMap<String, usize> {
+/// Lines of a crate, or of each subject's folder, by name. `files` are the crate's sources, whose paths begin at the
+/// workspace's root, with their lines.
+pub fn sizes(member: &Member, files: &[(PathBuf, usize)]) -> BTreeMap<String, usize> {
     let by_subject = BY_SUBJECT.contains(&member.name.as_str());
-    let mut files = BTreeMap::new();
-    for (kind, graph) in graphs {
-        if by_subject || !matches!(kind.as_str(), "test" | "bench") {
-            files.extend(graph.sources.files.iter().map(|file| (&file.path, file.lines)));
-        }
-    }
     let mut sizes = BTreeMap::new();
     for (path, lines) in files {
-        let subject = path.strip_prefix(&member.folder).unwrap_or(path).components().take(2);
-        let subject = subject.collect::<std::path::PathBuf>().with_extension("");
+        let inside = path.strip_prefix(&member.folder).unwrap_or(path);
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        let tests = name == "tests" || name.ends_with("_tests");
+        if tests || !by_subject && (inside.starts_with("tests") || inside.starts_with("benches")) {
+            continue;
+        }
+        let subject = inside.components().take(2).collect::<PathBuf>().with_extension("");
         let subject = if by_subject { member.folder.join(subject) } else { Path::new(&member.name).to_path_buf() };
         *sizes.entry(subject.display().to_string()).or_insert(0) += lines;
     }
     sizes
+}
+
+/// Lines of a source without its unit tests, which stand at its end.
+pub fn lines(text: &str) -> usize {
+    text.split("\n#[cfg(test)]\nmod tests {").next().unwrap_or_default().lines().count()
 }
 
 /// Crates and subjects above the limit.

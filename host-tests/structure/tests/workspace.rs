@@ -1,19 +1,16 @@
 //! Rules of this workspace: imports between files, folders and crates, sizes of crates, and links of pages.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use structure::graph::Graph;
+use structure::imports::{Imports, Sources};
 use structure::members::{Member, Workspace};
-use structure::sources::Sources;
-use structure::{dependencies, links, page, rules, size, unsafe_code};
-
-/// Crate and its targets with their kinds.
-type Crate = (&'static Member, Vec<(String, Graph)>);
+use structure::{dependencies, equations, links, page, size, unsafe_code};
 
 static WORKSPACE: LazyLock<Workspace> = LazyLock::new(|| Workspace::read(&root()));
-static CRATES: LazyLock<Vec<Crate>> = LazyLock::new(|| WORKSPACE.members.iter().map(|it| (it, graphs(it))).collect());
+/// Rust files of the members with their texts, whatever target each belongs to.
+static SOURCES: LazyLock<Sources> = LazyLock::new(sources);
 
 /// File that names missing pages on purpose.
 const PLANTED: &str = "structure/tests/planted.rs";
@@ -22,56 +19,69 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-fn graphs(member: &Member) -> Vec<(String, Graph)> {
-    let reader = |path: &Path| std::fs::read_to_string(root().join(path)).ok();
-    let graph = |path: &PathBuf| Graph::new(Sources::read(path, &reader));
-    member.targets.iter().map(|(kind, path)| (kind.clone(), graph(path))).collect()
-}
-
-/// Fails with all findings, each under the first target that has it, since test programs share files.
-fn check_every_target(judge: impl Fn(&str, &Graph) -> Vec<String>) {
-    let mut found: Vec<String> = vec![];
-    for (member, graphs) in CRATES.iter() {
-        for (kind, graph) in graphs {
-            let label = member.label(kind, &graph.sources.files[0].path);
-            for finding in judge(kind, graph) {
-                if !found.iter().any(|earlier| earlier.ends_with(&finding)) {
-                    found.push(format!("{label}: {finding}"));
-                }
+fn sources() -> Sources {
+    let mut folders: Vec<PathBuf> = WORKSPACE.members.iter().map(|member| member.folder.clone()).collect();
+    let mut sources = Sources::new();
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(root().join(&folder)).expect("a folder").map(|entry| entry.expect("an entry")) {
+            let path = folder.join(entry.file_name());
+            if entry.path().is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|kind| kind == "rs") {
+                let text = std::fs::read_to_string(entry.path()).expect("a source");
+                sources.insert(path, text);
             }
         }
     }
-    assert_no_findings(found);
+    sources
+}
+
+/// Sources of one member, without those of members in its folder.
+fn sources_of(member: &Member) -> Sources {
+    let inner: Vec<&PathBuf> = WORKSPACE
+        .members
+        .iter()
+        .map(|other| &other.folder)
+        .filter(|folder| **folder != member.folder && folder.starts_with(&member.folder))
+        .collect();
+    let mine = |path: &Path| path.starts_with(&member.folder) && !inner.iter().any(|folder| path.starts_with(folder));
+    SOURCES.iter().filter(|(path, _)| mine(path)).map(|(path, text)| (path.clone(), text.clone())).collect()
+}
+
+/// Imports of every target whose root lies in a folder of its own, with the target's kind.
+fn imports(member: &Member) -> Vec<(String, Imports)> {
+    let sources = sources_of(member);
+    let roots = member
+        .targets
+        .iter()
+        .filter(|(_, root)| root.file_stem().is_some_and(|name| ["lib", "main"].iter().any(|it| name == *it)));
+    roots
+        .map(|(kind, root)| {
+            let folder = root.parent().expect("a root lies in a folder");
+            let files = sources.iter().filter(|(path, _)| path.starts_with(folder));
+            let files: Sources = files.map(|(path, text)| (path.clone(), text.clone())).collect();
+            (kind.clone(), Imports::read(folder, &files).unwrap_or_else(|broken| panic!("{}", broken.join("\n"))))
+        })
+        .collect()
 }
 
 fn assert_no_findings(found: Vec<String>) {
     assert!(found.is_empty(), "{} findings\n\n{}\n", found.len(), found.join("\n\n"));
 }
 
-/// No cycle of imports between files.
+/// Siblings of a folder do not import one another in a cycle.
 #[test]
-fn files_form_no_cycle() {
-    check_every_target(|_, graph| rules::file_cycles(graph));
-}
-
-/// No cycle of imports between folders.
-#[test]
-fn folders_form_no_cycle() {
-    check_every_target(|_, graph| rules::folder_cycles(graph));
+fn imports_form_no_cycle() {
+    let all: Vec<(String, Imports)> = WORKSPACE.members.iter().flat_map(imports).collect();
+    assert!(all.len() > WORKSPACE.members.len() / 2, "most crates are read");
+    assert_no_findings(all.iter().flat_map(|(_, imports)| imports.cycles()).collect());
 }
 
 /// The runtime does not import design.
 #[test]
 fn runtime_does_not_import_design() {
-    check_every_target(|kind, graph| if kind == "lib" { rules::runtime_imports_design(graph) } else { vec![] });
-}
-
-/// Every path within a crate resolves.
-#[test]
-fn every_path_resolves() {
-    let resolved: usize = CRATES.iter().flat_map(|(_, graphs)| graphs).map(|(_, graph)| graph.resolved).sum();
-    println!("{resolved} paths within crates resolved");
-    check_every_target(|_, graph| graph.unresolved.clone());
+    let all = WORKSPACE.members.iter().flat_map(imports);
+    assert_no_findings(all.filter(|(kind, _)| kind == "lib").flat_map(|(_, it)| it.runtime_imports_design()).collect());
 }
 
 /// The reference does not depend on the core.
@@ -145,12 +155,9 @@ fn every_link_has_a_target() {
 /// Sources name existing pages only.
 #[test]
 fn sources_name_existing_pages() {
-    let files = CRATES.iter().flat_map(|(_, graphs)| graphs).flat_map(|(_, graph)| &graph.sources.files);
-    let paths: BTreeSet<&PathBuf> = files.map(|file| &file.path).filter(|path| !path.ends_with(PLANTED)).collect();
     let mut found = vec![];
-    for path in paths {
-        let text = std::fs::read_to_string(root().join(path)).expect("a source");
-        let lost = links::named(&text).into_iter().filter(|(_, page)| !root().join(page).exists());
+    for (path, text) in SOURCES.iter().filter(|(path, _)| !path.ends_with(PLANTED)) {
+        let lost = links::named(text).into_iter().filter(|(_, page)| !root().join(page).exists());
         found.extend(lost.map(|(line, page)| format!("{}:{line}: no {}", path.display(), page.display())));
     }
     assert_no_findings(found);
@@ -165,13 +172,13 @@ fn book_lists_every_page() {
 /// No crate exceeds the limit of lines; prints the table of crates.
 #[test]
 fn crates_stay_below_the_size_limit() {
-    println!("{:<32} {:>6} {:>6} {:>6}", "crate or subject", "lines", "files", "edges");
+    println!("{:<32} {:>6} {:>6}", "crate or subject", "lines", "files");
     let mut found = vec![];
-    for (member, graphs) in CRATES.iter() {
-        let files: usize = graphs.iter().map(|(_, graph)| graph.sources.files.len()).sum();
-        let edges: usize = graphs.iter().map(|(_, graph)| graph.edges.len()).sum();
-        let sizes = size::sizes(member, graphs);
-        println!("{:<32} {:>6} {files:>6} {edges:>6}", member.name, sizes.values().sum::<usize>());
+    for member in &WORKSPACE.members {
+        let files: Vec<(PathBuf, usize)> =
+            sources_of(member).into_iter().map(|(path, text)| (path, size::lines(&text))).collect();
+        let sizes = size::sizes(member, &files);
+        println!("{:<32} {:>6} {:>6}", member.name, sizes.values().sum::<usize>(), files.len());
         for (subject, lines) in sizes.iter().filter(|(subject, _)| **subject != member.name) {
             println!("  {subject:<30} {lines:>6}");
         }
@@ -180,33 +187,15 @@ fn crates_stay_below_the_size_limit() {
     assert_no_findings(found);
 }
 
-/// Every Rust file of the members, whatever target it belongs to.
-fn rust_files() -> Vec<PathBuf> {
-    let mut folders: Vec<PathBuf> = WORKSPACE.members.iter().map(|member| member.folder.clone()).collect();
-    let mut files = BTreeSet::new();
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(root().join(&folder)).expect("a folder").map(|entry| entry.expect("an entry")) {
-            let path = folder.join(entry.file_name());
-            if entry.path().is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|kind| kind == "rs") {
-                files.insert(path);
-            }
-        }
-    }
-    files.into_iter().collect()
-}
-
 /// Every `unsafe` is listed with its reason, and all other crates forbid it.
 #[test]
 fn every_unsafe_is_listed() {
     let page = std::fs::read_to_string(root().join(unsafe_code::PAGE)).expect("the list");
     let mut found = BTreeMap::new();
-    for path in rust_files() {
-        let source = std::fs::read_to_string(root().join(&path)).expect("a source");
-        let count = unsafe_code::count(&source).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    for (path, text) in SOURCES.iter() {
+        let count = unsafe_code::count(text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         if count > 0 {
-            found.insert(path, count);
+            found.insert(path.clone(), count);
         }
     }
     assert_no_findings(unsafe_code::differences(&page, &found));
@@ -226,4 +215,10 @@ fn dependencies_have_allowed_licences() {
     assert!(lock.matches("[[package]]").count() > 100);
     assert_no_findings(dependencies::foreign(&lock));
     assert_no_findings(dependencies::unlicensed(&dependencies::metadata(&root())));
+}
+
+/// Pages of docs/theory and comments of the code cite the same numbered equations.
+#[test]
+fn equation_numbers_of_pages_and_code_agree() {
+    assert_no_findings(equations::mismatches(&root()));
 }

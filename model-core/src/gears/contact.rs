@@ -1,5 +1,8 @@
 //! Contact law of a mesh (S2) and the accelerations caused by mesh forces (S4). A law is affine in deflection and rate, so
 //! the joint is linear while the contact set is fixed (`fixed_contact_set`).
+//!
+//! Equations: (P1), (P3) in docs/theory/paper.md.
+//! Equations: (S1) in docs/theory/step.md.
 
 use crate::gears::excitation::PerMesh;
 use crate::gears::state::Relative;

@@ -1,4 +1,6 @@
 //! Dead zone of a gear mesh: sharp (eq. 12), and smoothed by tanh (eq. 13, with the factor missing in print).
+//!
+//! Equations: (P7), (P8) in docs/theory/paper.md.
 
 use crate::numbers::Real;
 

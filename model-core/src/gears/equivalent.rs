@@ -5,6 +5,8 @@
 //!
 //! In dimensionless time the contact has stiffness one: y'' = a - y - c y' for the overlap y and the acceleration a by
 //! the torques (`pull`). The contact presses while y > 0 and y + c y' > 0, so that it never pulls.
+//!
+//! Equations: (E7), (E8), (E9) in docs/theory/equivalent-gear.md.
 
 use crate::gears::tables::Tables;
 use crate::numbers::Real;

@@ -1,5 +1,7 @@
 //! Stiffness and imposed error of every mesh at one instant (S3; eqs 7 and 11), from sine and cosine of the mesh phase. The
 //! tables include the phases of the meshes. The wave of Fig. 3 uses a few harmonics of sine and cosine.
+//!
+//! Equations: (P4), (P6) in docs/theory/paper.md.
 
 use crate::gears::tables::{Excitation, MeshTable, Tables};
 use crate::numbers::Real;

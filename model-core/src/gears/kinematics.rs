@@ -1,4 +1,6 @@
 //! Kinematics of the gears: lever of the carrier, and the ratio from radii and from teeth.
+//!
+//! Equations: (P2) in docs/theory/paper.md.
 
 use parameters::Geometry;
 

@@ -1,4 +1,6 @@
 //! Load-dependent losses of gears, from their efficiency.
+//!
+//! Equations: (E5) in docs/theory/equivalent-gear.md.
 
 /// Efficiency below which a gear is self-locking [-]. Derived: a worm with the friction angle phi and the lead angle lambda
 /// has eta = tan(lambda) / tan(lambda + phi) forwards, and tan(lambda - phi) / tan(lambda), about 2 - 1/eta, backwards.

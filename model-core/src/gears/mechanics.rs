@@ -1,5 +1,7 @@
 //! Inertia, damping and balance along the lines of action: equivalent masses, damping coefficients of the meshes, and the
 //! load torque that balances a drive torque.
+//!
+//! Equations: (P5), (P10) in docs/theory/paper.md.
 
 use parameters::{JointParameters, MeshKind};
 

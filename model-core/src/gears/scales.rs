@@ -1,5 +1,7 @@
 //! Units that make the equations dimensionless: length b_c, frequency omega_n (eq. 18) and the mean force K_m b_c.
 //! The units of torques, masses and angles follow from these three.
+//!
+//! Equations: (P10) in docs/theory/paper.md.
 
 use parameters::{JointParameters, MeshKind};
 

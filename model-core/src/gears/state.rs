@@ -1,5 +1,8 @@
 //! State of the joint between ticks: dimensionless relative motion (S1), the rigid body in integers (S5), and the mesh
 //! phase. The state has no redundant parts.
+//!
+//! Equations: (E6) in docs/theory/equivalent-gear.md.
+//! Equations: (P9) in docs/theory/paper.md.
 
 use core::array;
 

@@ -1,4 +1,6 @@
 //! Fourier series of the mesh stiffness over a mesh period (S3): harmonic wave of eq. 7 or rectangular wave of Fig. 3.
+//!
+//! Equations: (P4) in docs/theory/paper.md.
 
 use parameters::StiffnessWave;
 

@@ -16,6 +16,8 @@
 //! 1996).
 //!
 //! Within a part of a period v is constant: (L1) is solved exactly, and (L2) is averaged over the part.
+//!
+//! Equations: (R4) in docs/theory/real-joints.md.
 
 use parameters::Friction;
 

@@ -11,6 +11,8 @@
 //! Iron saturation makes the flux grow less than the current; its first term is odd and cubic in the current (J. R.
 //! Hendershot, T. J. E. Miller, "Design of brushless permanent-magnet motors"). Commands are rounded to multiples of
 //! resolution x L.
+//!
+//! Equations: (R6) in docs/theory/real-joints.md.
 
 use std::collections::VecDeque;
 use std::f64::consts::TAU;

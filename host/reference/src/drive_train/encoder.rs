@@ -12,6 +12,8 @@
 //! (P. L. M. Heydemann, "Determination and correction of quadrature fringe measurement errors in interferometers",
 //! Applied Optics 20, 1981). theta is the angle at the time of the reading, less the skew and an age that is drawn for
 //! each reading, uniformly from 0 to the age jitter.
+//!
+//! Equations: (R7) in docs/theory/real-joints.md.
 
 use std::collections::VecDeque;
 use std::f64::consts::TAU;

@@ -1,4 +1,6 @@
 //! Dry and viscous friction of one shaft over a short part of a period, with sticking.
+//!
+//! Equations: (R4) in docs/theory/real-joints.md.
 
 use parameters::Friction;
 

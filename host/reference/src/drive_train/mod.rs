@@ -20,6 +20,8 @@
 //! while the motor drives, (1 - efficiency) times this torque while the load drives. A gear with an efficiency below
 //! 1/2 is self-locking, as a worm gear: the part 2 - 1/efficiency of the load's torque that would reach the motor is
 //! negative, and the loss while the load drives is also 1/efficiency - 1, more than the torque of the meshes.
+//!
+//! Equations: (R3), (R5), (R8) in docs/theory/real-joints.md.
 
 mod bristles;
 mod current_loop;

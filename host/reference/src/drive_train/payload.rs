@@ -13,6 +13,8 @@
 //!
 //! Within a part of a period the link's speed is constant: (P1) is solved exactly, and the link is braked by the mean
 //! torque, the change of the payload's angular momentum. Angular momentum is conserved up to rounding.
+//!
+//! Equations: (R1) in docs/theory/real-joints.md.
 
 use std::f64::consts::TAU;
 

@@ -1,5 +1,7 @@
 //! Eqs 1-6 of the paper in absolute coordinates along the line of action, u = angle times lever, for sun, planets,
 //! carrier and, with a compliance, the link. No coordinate is eliminated: rigid body and teeth move in one state.
+//!
+//! Equations: (P1), (P2) in docs/theory/paper.md.
 
 use heapless::Vec;
 use parameters::{Excitation, MAX_PLANETS};

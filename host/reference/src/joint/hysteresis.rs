@@ -13,6 +13,8 @@
 //! ```text
 //! E = 4 k q_s (X - q_s tanh(X / q_s))   (D2)
 //! ```
+//!
+//! Equations: (R2) in docs/theory/real-joints.md.
 
 /// Slipping spring.
 #[derive(Debug, Clone, Copy)]

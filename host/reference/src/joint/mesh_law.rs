@@ -1,5 +1,7 @@
 //! Gear mesh by eqs 5-7 and 11 of the paper: stiffness wave, transmission error and mesh force. The zone of the dead
 //! zone is constant between events.
+//!
+//! Equations: (P3), (P4), (P6), (P7) in docs/theory/paper.md.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 

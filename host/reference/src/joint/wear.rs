@@ -1,5 +1,7 @@
 //! Changes of teeth and link during a run: growing or varying backlash, a mesh with reduced stiffness, a gripped
 //! payload. Between changes the equations are those of any joint.
+//!
+//! Equations: (R3) in docs/theory/real-joints.md.
 
 use super::hysteresis::Slip;
 use super::reference::Reference;

@@ -4,6 +4,9 @@
 //! Bodies u = (sun, planets.., carrier[, link]) with M u'' = Q - D^T f, deflections d = D u, f = k d + c d'. Relative
 //! coordinates x = T u (planets.., gap[, wind-up]) satisfy D = E T, so x'' = -G (k E x + c E x') + T M^-1 Q with
 //! G = T M^-1 D^T. With unit mass matrix, K = G k E and C = G c E.
+//!
+//! Equations: (P11) in docs/theory/paper.md.
+//! Equations: (S4) in docs/theory/step.md.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,5 +1,8 @@
 //! Linear joint in the form of eq. 20: v' = H v + f with v = (X, Y), Y = X' + C X / 2 (unit mass matrix). The reduced K is
 //! not symmetric, so H is not Hamiltonian in the strict sense; exp(H t) is nevertheless the exact linear flow.
+//!
+//! Equations: (P12) in docs/theory/paper.md.
+//! Equations: (S7) in docs/theory/step.md.
 
 use nalgebra::DMatrix;
 

@@ -5,6 +5,8 @@
 //! from the identity: squaring I + E would round E to the resolution of 1 at each of N doublings (Zhong, precise
 //! integration). Doubling also amplifies rounding errors, without limit if the motion grows before it decays; the
 //! calculation therefore uses double-double numbers and rounds once, at the end.
+//!
+//! Equations: (P13) in docs/theory/paper.md.
 
 mod double_double;
 

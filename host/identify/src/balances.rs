@@ -1,5 +1,5 @@
-//! What the torque of a log accelerates, held against the joint file's inertias: the motor's alone while the joint rings, and
-//! all that turns. `contradictions` refuses what cannot be; `scales` finds what torque and inertias come to together.
+//! Comparison of the logged torque with the joint file's inertias: the motor's inertia while the joint rings, and the
+//! total inertia. `contradictions` rejects implausible ratios; `scales` estimates torque and inertias from them.
 
 use super::friction::{self, MotorSide};
 use super::prior::PriorModel;
@@ -7,41 +7,41 @@ use super::regression::{Equations, Solution};
 use super::rows::Rows;
 use super::twist::{self, BLOCK_LENGTH};
 
-/// A factor is taken for certain if it stands out of its scatter by so many standard deviations.
+/// Standard deviations by which a factor is certain.
 pub const SURE: f64 = 6.0;
-/// Share of the largest torque that gravity, or an offset, may take.
+/// Prior width of gravity and of an offset, as a share of the largest torque.
 const HELD: f64 = 1.0;
-/// A balance of torques tells its factor if it is as narrow as this.
+/// Largest relative standard deviation of a factor that counts as determined.
 const NARROW: f64 = 0.1;
 
-/// What should be 1.
+/// Ratio with the expected value 1.
 #[derive(Debug, Clone, Copy)]
 pub struct Factor {
-    /// What it is.
+    /// Value of the ratio.
     pub value: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the ratio.
     pub deviation: f64,
 }
 
 impl Factor {
-    /// An unknown of a solution.
+    /// Ratio from an unknown of a solution.
     pub fn of(solution: &Solution, unknown: usize) -> Self {
         Self { value: solution.values[unknown], deviation: solution.half(&[(unknown, 1.0)]) / solution.reach }
     }
 
-    /// Known well enough to be held against anything.
+    /// Returns true if the ratio is determined well enough for comparisons.
     pub fn is_narrow(self) -> bool {
         self.deviation < NARROW * self.value.abs()
     }
 
-    /// Surely not from 1/most to most.
+    /// Returns true if the ratio is certainly outside of 1/most to most.
     pub fn is_beyond(self, most: f64) -> bool {
         let reach = SURE * self.deviation;
         self.value + reach < 1.0 / most || self.value - reach > most
     }
 }
 
-/// Logged torque over what the motor's inertia takes of it while the joint rings.
+/// Logged torque over the torque that the motor's inertia needs while the joint rings.
 pub fn of_the_motor(free: &Solution) -> Factor {
     let compliance = free.values[twist::COMPLIANCE];
     let value = 1.0 / (1.0 + free.values[twist::TORQUE_ERROR] / compliance);
@@ -51,8 +51,8 @@ pub fn of_the_motor(free: &Solution) -> Factor {
     }
 }
 
-/// By the torque measured at the output: the motor's true torque over the logged one, and the inertias of motor and link over the joint
-/// file's. Rows are those of ringing and those of slow motion.
+/// Ratios from the torque measured at the output: the motor's true torque over the logged torque, and the inertias of
+/// motor and link over the joint file's. `quick` are moments of ringing, `slow` moments of slow motion.
 pub fn by_the_sensor([quick, slow]: [&Rows; 2], prior: &PriorModel) -> [Option<Factor>; 3] {
     let motor = friction::of_the_motor(quick, prior);
     let of = |unknown: usize, over: f64| {
@@ -69,24 +69,24 @@ pub fn by_the_sensor([quick, slow]: [&Rows; 2], prior: &PriorModel) -> [Option<F
     ]
 }
 
-/// Logged torque over what the joint file's inertias need: everything that turns, losses, friction and weight apart.
+/// Logged torque over the torque that the joint file's total inertia needs, beside losses, friction and weight.
 pub fn of_all(rows: &Rows, prior: &PriorModel) -> Option<Factor> {
     Some(Factor::of(&all(rows, prior, &|needed, _| vec![needed])?, 0))
 }
 
-/// A constant torque beside them [N m].
+/// Constant torque at the output [N m].
 pub fn constant(rows: &Rows, prior: &PriorModel) -> Option<Factor> {
     Some(Factor::of(&all(rows, prior, &|needed, _| vec![needed])?, LAST))
 }
 
-/// Logged torque over what is needed, where that is forwards and where it is backwards.
+/// Logged torque over needed torque, for forward and backward torque separately.
 pub fn one_way_and_the_other(rows: &Rows, prior: &PriorModel) -> Option<[Factor; 2]> {
     let solution =
         all(rows, prior, &|needed, torque| if torque > 0.0 { vec![needed, 0.0] } else { vec![0.0, needed] })?;
     Some([0, 1].map(|way| Factor::of(&solution, way)))
 }
 
-/// Logged torque over what is needed by the smaller torques, and by how much that is another by the larger ones.
+/// Logged torque over needed torque for small torques, and the excess of this ratio for large torques.
 pub fn small_and_large(rows: &Rows, prior: &PriorModel) -> Option<[Factor; 2]> {
     let large = LARGE * rows.greatest;
     let split = |needed: f64, torque: f64| {
@@ -96,13 +96,12 @@ pub fn small_and_large(rows: &Rows, prior: &PriorModel) -> Option<[Factor; 2]> {
     Some([0, 1].map(|part| Factor::of(&solution, part)))
 }
 
-/// Torques above this share of the largest are large.
+/// Least share of the largest torque of a large torque.
 const LARGE: f64 = 0.6;
-/// Place of the constant torque where what is needed has one unknown.
+/// Index of the constant torque after a single unknown for the needed torque.
 const LAST: usize = 5;
 
-/// Logged torque by unknowns that go with what the inertias need, which `split` makes of it and of the torque, then friction, weight
-/// and a constant.
+/// Fits the logged torque by `split` parts of the needed torque, friction, weight and a constant.
 fn all(rows: &Rows, prior: &PriorModel, split: &dyn Fn(f64, f64) -> Vec<f64>) -> Option<Solution> {
     let mut equations = Equations::of_moments(rows.alike);
     let mut unknowns = 0;

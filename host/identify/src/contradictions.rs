@@ -1,6 +1,6 @@
-//! What a log contradicts: the joint file, or itself. The two angles of a geared joint turn by its ratio, and a torque
-//! accelerates an inertia. Where the numbers say otherwise, a unit, a sign, a resolution or the time step is not what it was
-//! taken for, and all that would be found were wrong by as much. Such a log is refused with its likely causes.
+//! Rejection of logs that contradict the joint file or themselves. The angles of a geared joint turn by its ratio, and
+//! a torque accelerates an inertia. If the numbers contradict this, a unit, a sign, a resolution or the time step is
+//! wrong, and every result would be wrong by as much. The failure names the likely causes.
 
 use std::f64::consts::TAU;
 
@@ -17,67 +17,68 @@ use log_reader::resolution::{count_angle, resolution};
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 
-/// So many moments are enough to hold angle against angle.
+/// Moments compared at most, angle against angle.
 const MOMENTS: usize = 4000;
-/// Over a whole turn and more an encoder's own error cancels, and teeth do not slip: the ratio holds within this.
+/// Tolerance of the ratio over a whole turn and more: encoder errors cancel, and teeth do not slip.
 const RATIO_OVER_TURNS: f64 = 2e-3;
-/// Errors of both encoders, at both ends of what the output turns [rad].
+/// Errors of both encoders, at both ends of the output's travel [rad].
 const ENCODER_ERRORS: f64 = 0.01;
-/// Over less than a turn an encoder's error of 0.2 degrees feigns this much.
+/// Tolerance of the ratio within a turn: an encoder error of 0.2 degrees mimics this much.
 const RATIO_WITHIN_A_TURN: f64 = 1e-2;
-/// What gap and wind-up feign of a ratio where the joint hardly moves: so many times what the joint file says of them.
+/// Multiple of the joint file's gap and wind-up that may mimic another ratio while the joint hardly moves.
 const SLACK: f64 = 3.0;
-/// Error by angle that is always possible [rad].
+/// Error by angle allowed for any encoder [rad].
 const ANY_ERROR: f64 = 1e-3;
-/// An output that turns by less than this share of what the motor does stands.
+/// Share of the motor's travel below which the output stands.
 const STANDS: f64 = 1e-3;
-/// Box of the kernel for the balance of torques: longer than a swing on the compliance, shorter than a reversal [s].
+/// Kernel box of the torque balances: longer than a swing on the compliance, shorter than a reversal [s].
 const BALANCE_BOX: f64 = 8e-3;
-/// What turns in all is known within this factor, or the file is not this joint's.
+/// Largest ratio between the log's and the joint file's total inertia.
 const INERTIA_FACTOR: f64 = 1.6;
-/// The motor's own inertia stands in a data sheet: it is known better.
+/// Largest ratio between the log's and the joint file's motor inertia, which a data sheet states.
 const MOTOR_FACTOR: f64 = 1.25;
-/// Torques before and behind the gears differ by ratio and losses, and by no more than this factor.
+/// Largest ratio between the torques before and behind the gears, beside the gear ratio.
 const GEARS_FACTOR: f64 = 1.5;
-/// A cause is likely if it gives the factor within this ratio; those that come nearest are named first, and so many.
+/// A cause is likely within this logarithm of the factor; the NAMED nearest causes are named.
 const LIKELY: f64 = 0.2;
 const NAMED: usize = 4;
-/// Bits by which both encoders may be told wrong.
+/// Bits by which both encoders may be stated wrong.
 const BITS: i32 = 5;
-/// Inertias of motor and link that a torque at the output makes other than the joint file's by more than this, both the same way,
-/// are no error of both but of the time step.
+/// If a torque sensor at the output gives both inertias this much larger, or this much smaller, the time step is wrong
+/// rather than both inertias.
 const BOTH_INERTIAS: f64 = 1.08;
-/// An offset between the encoders that steps by more than this share of the lost motion, and surely, is no scatter.
+/// Largest step of the offset between the encoders, as a share of the lost motion.
 const STEP: f64 = 0.03;
-/// The swing on the compliance may turn by so much in the output's age [rad]: beyond, its reading says little of the twist.
+/// Largest phase of the swing during the output's age [rad]; beyond, the reading says little of the twist.
 const AGE: f64 = 0.35;
-/// Angles that scatter by less than this share of what an encoder does, squared, were never read by one.
+/// Variance, as a share of the quantisation's, below which angles were never read by an encoder.
 const READ: f64 = 1e-6;
-/// Motor readings that are older than the output's by this part of the swing do not go with the torque.
+/// Largest age of the motor's readings relative to the output's, as a phase of the swing [rad]; beyond, they do not go
+/// with the torque.
 const LEAD: f64 = 0.2;
-/// A friction below zero by so many halves of its interval contradicts the log.
+/// Half-intervals below zero from which a friction contradicts the log.
 const BELOW_ZERO: f64 = 3.0;
-/// A constant torque of this share of the largest one is not weight or friction.
+/// Largest constant torque, as a share of the largest torque.
 const OFFSET: f64 = 0.08;
-/// The torque that goes one way may be other than that the other way by this factor.
+/// Largest ratio between the torque scales of both directions.
 const ONE_WAY: f64 = 1.2;
-/// What torques beyond six tenths of the largest need may grow by this share faster or slower than below.
+/// Largest relative change of the torque scale above 0.6 of the largest torque.
 const BENT: f64 = 0.3;
-/// Torques before and behind the gears that are alike within this share, whatever the motor's acceleration and friction, are one.
+/// Relative difference below which the torques before and behind the gears are copies of each other.
 const THE_SAME: f64 = 0.01;
 
 const DEGREES: f64 = 360.0 / TAU;
-/// Units that an angle may be in instead, and how many of them are a radian.
+/// Angle units that may be mistaken for radians, per radian.
 const ANGLES: [(&str, f64); 3] = [("turns", 1.0 / TAU), ("degrees", DEGREES), ("mrad", 1e3)];
-/// Units that a torque may be in instead, and how many of them are 1 N m.
+/// Torque units that may be mistaken for N m, per N m.
 const TORQUES: [(&str, f64); 5] =
     [("mN m", 1e3), ("N cm", 1e2), ("kgf cm", 10.197), ("ozf in", 141.61), ("lbf in", 8.8507)];
-/// Ratios by which a time step is wrong: another prescaler, or every so many-th sample.
+/// Ratios by which a time step may be wrong: another prescaler, or every n-th sample.
 const STEPS: [f64; 6] = [2.0, 3.0, 4.0, 5.0, 8.0, 10.0];
-/// Constants of motors that there are [N m/A].
+/// Range of plausible torque constants [N m/A].
 const TORQUE_CONSTANTS: [f64; 2] = [0.002, 20.0];
 
-/// What may explain a factor, each with how far it is from doing so.
+/// Possible causes of a factor, each with its logarithmic distance from the factor.
 struct Causes {
     factor: f64,
     list: Vec<(f64, String)>,
@@ -88,7 +89,7 @@ impl Causes {
         Self { factor: factor.value, list: Vec::new() }
     }
 
-    /// Something that would make the factor so much.
+    /// Adds a cause that gives the factor `by`, if it is close enough.
     fn consider(&mut self, by: f64, text: impl Into<String>) {
         let apart = (self.factor / by).ln().abs();
         if self.factor * by > 0.0 && apart < LIKELY {
@@ -96,7 +97,7 @@ impl Causes {
         }
     }
 
-    /// The likeliest, and what to look at in any case; `otherwise` stands at the end of them.
+    /// Help text: the likeliest causes, then `otherwise`, then what to check in any case.
     fn help(mut self, otherwise: Option<String>, check: &str) -> String {
         self.list.sort_by(|one, other| one.0.total_cmp(&other.0));
         let mut causes: Vec<String> = self.list.into_iter().take(NAMED).map(|(_, text)| text).collect();
@@ -105,7 +106,7 @@ impl Causes {
     }
 }
 
-/// Refuses a log whose angles do not turn by the joint's ratio.
+/// Rejects a log whose angles do not turn by the joint's ratio.
 pub fn angles(log: &Log, prior: &PriorModel) -> Outcome<()> {
     let [motor, output] = [&log.motor, &log.output].map(|angles| range_of(angles));
     let of_motor = motor / prior.ratio();
@@ -135,7 +136,7 @@ pub fn angles(log: &Log, prior: &PriorModel) -> Outcome<()> {
     Err(Failure::new(message).with_help(causes.help(otherwise, check)))
 }
 
-/// What the motor turns over the ratio for what the output turns, but for what goes with the flank.
+/// Travel of the motor over the ratio per travel of the output, separated from the change by flank.
 fn angle_by_angle(log: &Log, prior: &PriorModel) -> Option<Factor> {
     let mut equations = Equations::default();
     for sample in (0..log.time.len()).step_by((log.time.len() / MOMENTS).max(1)) {
@@ -174,9 +175,9 @@ fn angle_causes(log: &Log, prior: &PriorModel, factor: Factor) -> Causes {
     causes
 }
 
-/// Refuses a log whose torque does not go with the acceleration of what it turns, or with the torque behind the gears.
+/// Rejects a log whose torque does not fit the acceleration of the inertias, or the torque behind the gears.
 ///
-/// Moments of ringing are looked at by a kernel with a box as short as this [s].
+/// The ringing is evaluated with a kernel box of `shortest` [s].
 pub fn torques(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<()> {
     let rows = Rows::new(log, prior, BALANCE_BOX);
     behind_the_gears(prior, &rows)?;
@@ -184,7 +185,7 @@ pub fn torques(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<()> {
     if !whole.is_narrow() || !whole.is_beyond(INERTIA_FACTOR) {
         return Ok(());
     }
-    // Where the motor's own inertia agrees, it is the link's that does not.
+    // If the motor's own inertia agrees, the link's inertia is wrong.
     let rows = Rows::new(log, prior, shortest);
     let of_motor = twist::fit_with_any_torque(log, &rows, prior).map(|free| balances::of_the_motor(&free.solution));
     if whole.value > 0.0 && of_motor.is_some_and(|factor| factor.is_narrow() && !factor.is_beyond(MOTOR_FACTOR)) {
@@ -203,8 +204,7 @@ pub fn torques(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<()> {
     Err(contradiction(log, prior, whole, "all that turns", prior.total_inertia()))
 }
 
-/// Refuses a log whose ringing asks for another inertia of the motor than its own: `free` is a fit that expected nothing of
-/// the torque's scale.
+/// Rejects a log whose ringing needs another motor inertia; `free` is a fit with an unknown torque scale.
 pub fn ringing(log: &Log, prior: &PriorModel, free: &Solution) -> Outcome<()> {
     let factor = balances::of_the_motor(free);
     if !factor.is_narrow() || !factor.is_beyond(MOTOR_FACTOR) {
@@ -213,7 +213,7 @@ pub fn ringing(log: &Log, prior: &PriorModel, free: &Solution) -> Outcome<()> {
     Err(contradiction(log, prior, factor, "the motor", prior.motor_inertia))
 }
 
-/// Refuses a log whose encoders do not keep their offset: a slip, lost counts, or two logs in one.
+/// Rejects a log whose encoders change their offset: a slip, lost counts, or two logs in one.
 pub fn offsets(log: &Log, rows: &Rows, prior: &PriorModel) -> Outcome<()> {
     let Some(steps) = twist::steps_of_the_offset(log, rows, prior) else { return Ok(()) };
     let least = (STEP * prior.lost_motion).max(2.0 * counts(prior));
@@ -233,18 +233,18 @@ pub fn offsets(log: &Log, rows: &Rows, prior: &PriorModel) -> Outcome<()> {
     ))
 }
 
-/// One count of either encoder, at the output [rad].
+/// One count of both encoders, at the output [rad].
 fn counts(prior: &PriorModel) -> f64 {
     count_angle(prior.motor_turn) / prior.ratio() + count_angle(prior.output_turn)
 }
 
-/// Counts in a turn, doubled so many times, or halved; nothing where they are not whole.
+/// Counts per turn times 2^times; `None` unless whole.
 fn doubled(turn: u64, times: i32) -> Option<u64> {
     let factor = 1_u64.checked_shl(times.unsigned_abs())?;
     if times < 0 { turn.is_multiple_of(factor).then(|| turn / factor) } else { turn.checked_mul(factor) }
 }
 
-/// Refuses a log whose output is read so much later or earlier than the motor that the swing turns meanwhile.
+/// Rejects a log in which motor and output are read so far apart that the swing turns in between.
 pub fn age(twist: &Twist, prior: &PriorModel) -> Outcome<()> {
     let age = twist.solution.values[twist::SKEW];
     let scatter = twist.solution.half(&[(twist::SKEW, 1.0)]);
@@ -266,12 +266,13 @@ pub fn age(twist: &Twist, prior: &PriorModel) -> Outcome<()> {
     )))
 }
 
-/// Refuses a log of filtered angles: they scatter less than their encoders, and more than angles that no encoder has read, as a
-/// simulation writes them; or else they follow the torque so late that the swing turns meanwhile.
+/// Rejects a log of filtered angles: their scatter is below the encoders' and above that of simulated angles, or they
+/// follow the torque so late that the swing turns in between.
 pub fn filter(log: &Log, twist: &Twist, prior: &PriorModel) -> Outcome<()> {
     let Some(shares) = log.smoothness(prior) else { return Ok(()) };
     let most = AGE * prior.swing() / TAU;
-    // Behind a torque that was measured at the output it is the swing's damping that grows, behind the motor's its delay.
+    // With a torque measured at the output the delay shows as damping of the swing, otherwise as delay of the motor's
+    // torque.
     let is_late = [(twist::RELAXATION, -1.0), (twist::DELAY, 1.0)]
         .into_iter()
         .any(|(unknown, sign)| sign * twist.solution.values[unknown] - twist.solution.half(&[(unknown, 1.0)]) > most);
@@ -288,7 +289,7 @@ pub fn filter(log: &Log, twist: &Twist, prior: &PriorModel) -> Outcome<()> {
     .with_help("perhaps a filter or an observer smoothed them: log raw readings, or say --motor-bits and --output-bits as they are"))
 }
 
-/// Refuses a log whose torque at the output makes inertias other than they can be.
+/// Rejects a log whose torque at the output gives implausible inertias.
 pub fn sensor(prior: &PriorModel, [_, motor, link]: [Option<Factor>; 3]) -> Outcome<()> {
     let sure =
         |factor: &Option<Factor>, most: f64| factor.filter(|factor| factor.is_narrow() && factor.is_beyond(most));
@@ -317,7 +318,7 @@ pub fn sensor(prior: &PriorModel, [_, motor, link]: [Option<Factor>; 3]) -> Outc
     .with_help("check rotor_inertia_kg_m2 and the gears' inertia, units and signs of both torques"))
 }
 
-/// Refuses a log by which a friction drives.
+/// Rejects a log with a negative friction.
 pub fn frictions(findings: &[Finding]) -> Outcome<()> {
     let drives = |finding: &&Finding| {
         let (Some(value), Some([low, high])) = (finding.value, finding.interval) else { return false };
@@ -333,10 +334,10 @@ pub fn frictions(findings: &[Finding]) -> Outcome<()> {
     .with_help("perhaps time runs backwards, signs of torque and angles are exchanged, or the efficiency of the joint file is too low"))
 }
 
-/// Refuses a log whose torque is larger one way than the other, or holds against a constant one.
+/// Rejects a log whose torque differs by direction, is not proportional, or has a large constant part.
 pub fn one_as_the_other(log: &Log, prior: &PriorModel) -> Outcome<()> {
     let rows = &Rows::new(log, prior, BALANCE_BOX);
-    // Where the whole balance says nothing, parts of it say less.
+    // If the whole balance is undetermined, so are its parts.
     if !balances::of_all(rows, prior).is_some_and(Factor::is_narrow) {
         return Ok(());
     }
@@ -379,7 +380,8 @@ pub fn one_as_the_other(log: &Log, prior: &PriorModel) -> Outcome<()> {
     .with_help("perhaps it is clipped or scaled one way: check how the torque is measured, and its zero"))
 }
 
-/// What stands behind the gears is what the motor gives, less what it takes for itself.
+/// Rejects a torque behind the gears that differs from the motor's torque less the torque for its own acceleration and
+/// friction.
 fn behind_the_gears(prior: &PriorModel, rows: &Rows) -> Outcome<()> {
     let mut equations = Equations::of_moments(rows.alike);
     let mut alone = Equations::of_moments(rows.alike);
@@ -460,7 +462,7 @@ fn contradiction(log: &Log, prior: &PriorModel, factor: Factor, what: &str, iner
     Failure::new(message).with_help(causes.help(Some(otherwise), "check units, bits and the time"))
 }
 
-/// Of values about zero.
+/// Root mean square of the values.
 fn root_mean_square(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }

@@ -1,10 +1,10 @@
-//! An error of an encoder that comes more than twice a turn.
+//! Encoder error of more than twice a turn.
 
-/// An encoder and how many times a turn of it an error comes.
+/// Encoder and order of one of its errors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Higher {
-    /// Place of its errors among the unknowns of `twist`.
+    /// First unknown of the encoder's errors in `twist`.
     pub encoder: usize,
-    /// Times a turn.
+    /// Periods per turn.
     pub order: f64,
 }

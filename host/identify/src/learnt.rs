@@ -1,5 +1,5 @@
-//! The content of a memory file: the observer's parameters with their covariances, in the units of the joint file. The
-//! byte layout is defined by the observer (`model_core::observer`).
+//! Content of a memory file: the observer's parameters with their covariances, in the units of the joint file. The
+//! observer defines the byte layout (`model_core::observer`).
 
 use model_core::observer::design::{design_observer, observer_settings};
 use model_core::observer::tables::LeverTable;
@@ -12,27 +12,27 @@ use crate::page;
 use joint_file::named::Loaded;
 use report::document::{Document, terminal};
 
-/// What is not narrowed to this share of its standard deviation beforehand has not been learnt.
+/// A parameter counts as estimated if its standard deviation is below this share of the prior one.
 const NARROWED: f64 = 0.9;
 
-/// Bias and friction, their variances, and their covariance.
+/// Bias and friction, their variances and their covariance.
 const MOTOR_NUMBERS: usize = 5;
 
-/// A memory of a known joint.
+/// Memory of a known joint.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Content {
-    /// Name and version of this form.
+    /// Name and version of the format.
     schema: &'static str,
     /// Name of the joint.
     joint: String,
-    /// It was learnt with the output encoder.
+    /// True if the output encoder took part in the estimation.
     output_encoder: bool,
-    /// What was learnt.
+    /// Estimated parameters.
     values: Vec<Finding>,
 }
 
-/// One number, with its standard deviation and the one beforehand.
+/// Parameter with its standard deviation and the prior standard deviation.
 #[derive(Debug, Clone, Copy)]
 struct Learnt {
     value: f64,
@@ -41,7 +41,7 @@ struct Learnt {
 }
 
 impl Content {
-    /// Judges a memory as the observer of a joint does, and reads it.
+    /// Reads a memory, with the checks of the joint's observer.
     pub fn of(memory: &Memory, loaded: &Loaded) -> Result<Self, MemoryError> {
         let joint = &loaded.file.parameters;
         let mut refused = MemoryError::OtherJoint;
@@ -50,7 +50,7 @@ impl Content {
             if !output_encoder {
                 settings.output_encoder = None;
             }
-            // A joint that no observer can be designed for has learnt nothing.
+            // No memory belongs to a joint without an observer.
             let Ok(tables) = design_observer::<f32>(joint, &settings) else { continue };
             match Observer::<f32, MAPPED>::new(&tables).load(memory) {
                 Ok(()) => {
@@ -64,7 +64,7 @@ impl Content {
         Err(refused)
     }
 
-    /// What there is, beside what the joint file says, as a terminal shows it.
+    /// Values beside those of the joint file, as terminal text.
     pub fn text(&self, name: &str, loaded: &Loaded) -> String {
         let with = if self.output_encoder { "both encoders" } else { "the motor's encoder alone" };
         let line = format!("{name}: learnt of joint {} with {with}", self.joint);
@@ -77,13 +77,13 @@ impl Content {
         self.values
     }
 
-    /// A value by its name.
+    /// Value by the name of its finding.
     pub fn value(&self, name: &str) -> Option<f64> {
         self.values.iter().find(|finding| finding.name == name)?.value
     }
 }
 
-/// The numbers of a memory, in their order.
+/// Numbers of a memory, in their order.
 struct Numbers(Vec<f64>);
 
 impl Numbers {
@@ -95,7 +95,8 @@ impl Numbers {
         self.0.get(index).copied().unwrap_or_default()
     }
 
-    /// A parameter. Of its covariance U D U^T there is each column down to its diagonal, in standard deviations beforehand.
+    /// Parameter by its index. The memory holds the covariance as U D U^T: each column down to its diagonal, in prior
+    /// standard deviations.
     fn parameter(&self, tables: &ObserverTables<f32>, index: usize) -> Learnt {
         let column = |j: usize| MAPPED + j * (j + 1) / 2;
         let part = |j: usize| {
@@ -107,14 +108,14 @@ impl Numbers {
         Learnt { value: self.at(index), deviation: variance.max(0.0).sqrt() * before, before }
     }
 
-    /// Torque bias and dry friction as force, with their variances.
+    /// Torque bias (index 0) or dry friction (index 1) of the motor, as a force.
     fn of_motor(&self, tables: &ObserverTables<f32>, index: usize) -> Learnt {
         let first = MAPPED + MAPPED * (MAPPED + 1) / 2;
         let before = f64::from(tables.contact.bias_prior).sqrt();
         Learnt { value: self.at(first + index), deviation: self.at(first + 2 + index).max(0.0).sqrt(), before }
     }
 
-    /// Inertia of the link over the designed one: kept as its inverse.
+    /// Inertia of the link over the designed inertia; the memory holds the inverse.
     fn inertia_ratio(&self, tables: &ObserverTables<f32>) -> Learnt {
         let first = MAPPED + MAPPED * (MAPPED + 1) / 2 + MOTOR_NUMBERS;
         let [mobility, variance] = [self.at(first), self.at(first + 1)];
@@ -128,13 +129,13 @@ impl Numbers {
 }
 
 impl Learnt {
-    /// In another unit.
+    /// Converts to another unit.
     fn times(self, factor: f64) -> Self {
         let size = factor.abs();
         Self { value: self.value * factor, deviation: self.deviation * size, before: self.before * size }
     }
 
-    /// Size of two parts.
+    /// Amplitude of a sine and a cosine part.
     fn size(along: Self, across: Self) -> Self {
         let value = along.value.hypot(across.value);
         let deviation = along.deviation.max(across.deviation);
@@ -156,7 +157,7 @@ impl Learnt {
     }
 }
 
-/// What was learnt; an equivalent gear has a lost motion and no errors of teeth.
+/// Findings of a memory; an equivalent gear has a lost motion and no tooth errors.
 fn values(numbers: &Numbers, tables: &ObserverTables<f32>, equivalent: bool) -> Vec<Finding> {
     let LeverTable { sun, per_sun, per_output, .. } = &tables.levers;
     let [sun, per_sun, per_output] = [sun, per_sun, per_output].map(|lever| f64::from(*lever));

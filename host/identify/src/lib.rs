@@ -1,13 +1,14 @@
-//! `joint identify`: from a recorded reversal test to a joint's backlash, compliance, damping, friction and encoder
-//! errors, each with its interval, and to a patched joint file.
+//! `joint identify`: estimates a joint's backlash, compliance, damping, friction and encoder errors from a recorded
+//! reversal test, each with its interval, and writes a patched joint file.
 //!
-//! Logs are read into columns and angles at even times by the crate `log-reader`. `log` turns them into samples, checked by `sampling`.
-//! `prior` says what the joint file knows; `rows`
-//! are the moments at which a flank carries, smoothed by `kernel`; `load_sharing` is what planets out of phase take of the gap; `twist` and `friction` are fitted to them by `regression`;
-//! `balances` hold torque against inertias, for `contradictions` and for `scales`. `findings` is what comes of it, with its
-//! `estimate`s; `page`, `pictures` and `patch` show it. `virtual_test` makes a log without hardware.
-//! `quasi_static` reads slow logs by itself, `output_locked` those of a joint whose output is held, `output_only` those
-//! without the motor's angle; the latter two read their columns by `one_encoder`.
+//! The crate `log-reader` reads logs into columns and resamples angles at even times. `log` turns columns into samples,
+//! `sampling` checks their rate. `prior` holds the values of the joint file. `rows` selects the moments at which a
+//! flank carries, smoothed by `kernel`. `twist` and `friction` are fitted to these moments by `regression`;
+//! `load_sharing` models the reduction of the gap by planets out of phase. `balances` compare torque with inertias for
+//! `contradictions` and `scales`. `findings` are the results, made of `estimate`s; `page`, `pictures` and `patch` write
+//! them. `virtual_test` simulates a log without hardware. `quasi_static` handles slow logs, `output_locked` logs of a
+//! joint with a clamped output, `output_only` logs without the motor's angle; the last two read their columns through
+//! `one_encoder`.
 
 mod arguments;
 mod balances;
@@ -67,26 +68,27 @@ use report::output;
 use report::progress::Progress;
 use report::write::write_text;
 
-/// Box of the kernel for frictions, which need no quick motion but exact accelerations [s].
+/// Kernel box for the friction fit, which needs exact accelerations and no bandwidth [s].
 const SLOW_BOX: f64 = 4e-3;
 
-/// Box of the kernel for everything else: at most this long [s], and a sixth of the swing's period...
+/// Shortest kernel box of the twist fit [s]; at most 1/SWING_PARTS of the swing's period.
 const QUICK_BOX: f64 = 1e-3;
 const SWING_PARTS: f64 = 6.0;
-/// ... but longer, step by step, if the encoders' counts then are most of what an acceleration shows.
+/// The box grows by LONGER up to LONGEST_BOX [s] until the reliability of the fit exceeds RELIABLE: with a short box,
+/// encoder quantisation dominates the accelerations.
 const LONGER: f64 = 1.4;
 const LONGEST_BOX: f64 = 8e-3;
 const RELIABLE: f64 = 0.9;
-/// Below this they are most of it.
+/// Least reliability of a fit that is used.
 const LEAST_RELIABLE: f64 = 0.5;
 
-/// Fits one after the other, each with the errors by angle of the last taken off the accelerations.
+/// Fits in succession; each removes the angle errors of the previous one from the accelerations.
 const ROUNDS: usize = 4;
 
-/// What a log has shown.
+/// Result of the fits of one log.
 struct Identified {
     log: Log,
-    /// What was known before, with the inertias that were found.
+    /// Values of the joint file, with the inertias corrected by the log.
     prior: PriorModel,
     rows: Rows,
     twist: Twist,
@@ -107,10 +109,10 @@ impl Identified {
     }
 }
 
-/// Folder of the results of several joints, each in a folder of its own below that of the log.
+/// Folder above the results of several joints: one folder per log, one below it per joint.
 const SEVERAL: &str = "joint-out/identify";
 
-/// Identifies the joint of a log, or each of several by a map, or makes a log of one, and prints the result.
+/// Identifies the joint of a log, or every joint of a column map, or simulates a log; returns the printed result.
 pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     let joints = column_map::joints(arguments.map.as_deref())?;
     if joints.is_empty() || arguments.map_joint.is_some() {
@@ -136,7 +138,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     if refused.is_empty() {
         return Ok(text);
     }
-    // What was found of the others is not lost.
+    // Findings of the other joints are printed before the failure.
     output::print(&text)?;
     let messages: Vec<String> =
         refused.iter().map(|(name, failure)| format!("{name}: {}", failure.message())).collect();
@@ -220,7 +222,7 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
     let mut log = read.clone();
     let mut known = prior.clone();
     for round in 0..ROUNDS {
-        // An error that comes often a turn is looked for once the others are taken off.
+        // Higher harmonics of the encoder errors are sought after the low ones are removed.
         while let Some(higher) = (round > 0).then(|| twist.more_often_a_turn(&log, &known)).flatten() {
             known.higher.push(higher);
             let Some(better) = twist::fit(&log, &rows, &known) else { break };
@@ -241,7 +243,7 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
         let Some(better) = twist::fit(&corrected, &seen, prior) else { break };
         (log, rows, twist) = (corrected, seen, better);
     }
-    // What is told goes into the joint's model until the log agrees with it.
+    // The estimated losses enter the joint's model until model and log agree.
     let mut prior = known;
     for _ in 0..ROUNDS {
         if prior.losses != Losses::Open {
@@ -297,8 +299,8 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
     Ok(Identified { log, prior, rows, twist, findings })
 }
 
-/// The fit in which losses are unknown, if they are known by the joint file only and the log tells them. A joint without
-/// any friction and losses is an ideal one, and stays it.
+/// Fits with unknown losses; `None` unless the joint file alone stated the losses and the log determines them. A joint
+/// without friction and losses is ideal and stays ideal.
 fn told_losses(log: &Log, rows: &Rows, known: &PriorModel) -> Option<(PriorModel, Twist)> {
     if known.losses == Losses::Open || known.is_ideal() {
         return None;
@@ -308,8 +310,8 @@ fn told_losses(log: &Log, rows: &Rows, known: &PriorModel) -> Option<(PriorModel
     Some((open, told))
 }
 
-/// The fit with the shortest box of the kernel at which encoder counts are not most of what an acceleration shows; the best
-/// there is if they always are.
+/// Fits with the shortest kernel box at which encoder quantisation does not dominate the accelerations, or else with
+/// the most reliable box.
 fn first_fit(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<(f64, Rows, Twist)> {
     let mut best: Option<(f64, Rows, Twist)> = None;
     let mut refused = None;
@@ -327,7 +329,8 @@ fn first_fit(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<(f64, Rows
                     break;
                 }
             }
-            // A longer box may see what quantisation hides; the reason for the shortest is the one that a user can act on.
+            // A longer box may succeed where quantisation hides the reversals. The refusal of the shortest box is kept:
+            // the user can act on it.
             Err(failure) => refused = refused.or(Some(failure)),
         }
         length *= LONGER;
@@ -340,7 +343,7 @@ fn first_fit(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<(f64, Rows
     })
 }
 
-/// What the numbers take for granted.
+/// Assumptions behind the numbers, a sentence each.
 fn assumptions(identified: &Identified) -> Vec<String> {
     let Identified { log, prior, twist, .. } = identified;
     let mut list = vec![
@@ -394,7 +397,7 @@ fn assumptions(identified: &Identified) -> Vec<String> {
 
 fn simulate(arguments: &Arguments, loaded: &Loaded, progress: &Progress) -> Outcome<String> {
     folder::check_file("simulate", &arguments.log, &[&arguments.joint])?;
-    // What lies there may be a recorded test, which nobody can make again.
+    // The existing file may be a recorded test that cannot be repeated.
     if arguments.log.exists() {
         return Err(Failure::new(format!("--simulate would write over {}", arguments.log.display()))
             .with_help("name a new file, or remove this one if it is not needed"));

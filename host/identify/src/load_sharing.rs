@@ -1,44 +1,45 @@
-//! What errors of the teeth take of a gap. Planets whose meshes are out of phase do not touch at once: with errors e_i of
-//! sun's and ring's mesh together, the planet that stands foremost carries first, and the others only as it gives. Half of the
-//! gap is therefore smaller under little torque than what the teeth are cut to, by the mean over a mesh period of what the
-//! foremost planet stands out, and comes back as the torque grows:
+//! Reduction of the gap by errors of the teeth. Planets whose meshes are out of phase do not touch at once: with errors
+//! e_i of the sun's and ring's mesh together, the foremost planet carries first and the others after it deflects. Under
+//! little torque half of the gap is therefore smaller than cut, by the mean over a mesh period of the foremost planet's
+//! lead, and grows back with the torque:
 //!
 //! ```text
 //! sum over planets of max(0, w - t_i) = F,   t_i = o_i + e_i,   F = T (1/K_sp + 1/K_rp) / (2 r_c cos(alpha))
 //! ```
 //!
-//! where w is what sun's and ring's mesh of a planet give together beyond the mean gap, o_i by how much this planet's gap is wider than the mean
-//! one, and T the torque on the joint. Evenly shared w were F / n; a half of F / n - w, over the lever r_c cos(alpha), is what
-//! they take.
+//! w is the deflection of sun's and ring's mesh of a planet beyond the mean gap, o_i the excess of the planet's gap
+//! over the mean gap, and T the torque on the joint. With even sharing w is F / n. The reduction is half of F / n - w
+//! over the lever r_c cos(alpha).
 
 use std::f64::consts::TAU;
 
 use model_core::gears::{Kinematics, MeshPhasing};
 use parameters::{JointParameters, MESH_KINDS};
 
-/// Places in a mesh period at which it is reckoned.
+/// Points per mesh period of the mean.
 const PLACES: usize = 24;
-/// Errors of teeth are known within this share of what the joint file states, and within so much [m]: a standard deviation.
+/// Standard deviation of the stated tooth errors: this share of the error, ...
 const UNCERTAIN: f64 = 0.5;
+/// ... at least this [m].
 const AT_LEAST: f64 = 1e-6;
-/// What is less is nothing [m].
+/// Reductions below this are neglected [m].
 const NOTHING: f64 = 1e-9;
 
-/// Of a joint.
+/// Load sharing of a joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadSharing {
-    /// r_c cos(alpha) [m].
+    /// Lever r_c cos(alpha) [m].
     lever: f64,
-    /// What both meshes of a planet give for each N on them [m/N].
+    /// Compliance of both meshes of a planet [m/N].
     give: f64,
-    /// Thresholds t_i at the places, each from the foremost on [m].
+    /// Thresholds t_i at each point of the mesh period, ascending [m].
     as_stated: Vec<Vec<f64>>,
-    /// Likewise with errors that are larger by a standard deviation.
+    /// Thresholds for errors one standard deviation larger [m].
     with_more: Vec<Vec<f64>>,
 }
 
 impl LoadSharing {
-    /// Of a joint whose meshes have these stiffnesses; nothing where all planets touch at once.
+    /// Load sharing for these mesh stiffnesses; `None` if all planets touch at once.
     pub fn of(joint: &JointParameters, stiffnesses: [f64; 2]) -> Option<Self> {
         let planets = joint.geometry.planets;
         let gap = |planet: usize| MESH_KINDS.iter().map(|kind| joint.mesh(*kind).half_backlash[planet]).sum::<f64>();
@@ -69,12 +70,12 @@ impl LoadSharing {
         (sharing.lever * sharing.taken(0.0).max(sharing.more(0.0)) > NOTHING).then_some(sharing)
     }
 
-    /// What is taken of half of the lost motion under a torque on the joint, either way [rad].
+    /// Reduction of half of the lost motion under a torque of either sign [rad].
     pub fn taken(&self, torque: f64) -> f64 {
         self.mean(&self.as_stated, torque)
     }
 
-    /// What errors that are larger by a standard deviation take more [rad].
+    /// Additional reduction by errors one standard deviation larger [rad].
     pub fn more(&self, torque: f64) -> f64 {
         self.mean(&self.with_more, torque) - self.taken(torque)
     }
@@ -86,7 +87,7 @@ impl LoadSharing {
     }
 }
 
-/// w of sum of max(0, w - t) = force, with thresholds that rise.
+/// Solves sum of max(0, w - t) = force for w; the thresholds ascend.
 fn deflection(thresholds: &[f64], force: f64) -> f64 {
     let mut sum = force;
     for (before, threshold) in thresholds.iter().enumerate() {
@@ -122,7 +123,7 @@ mod tests {
         assert_eq!(LoadSharing::of(&joint(&[]), [1e8; 2]), None, "75 teeth on three planets");
         let four = [("planets", "4"), ("sun_teeth", "22"), ("planet_teeth", "34"), ("ring_teeth", "90")];
         let sharing = LoadSharing::of(&joint(&four), [1e8; 2]).expect("out of phase by a half");
-        // Two and two against each other: the mean of |sin|, of sun's and ring's mesh together.
+        // Two planets against two: mean of |sin| over the sun's and ring's mesh together.
         let expected = 3e-6 * 2.0 / std::f64::consts::PI;
         let found = sharing.taken(0.0) * sharing.lever;
         assert!((found / expected - 1.0).abs() < 0.01, "{found}");

@@ -1,5 +1,5 @@
-//! A recorded test as samples: read from columns by their names, checked, encoders as angles and their difference from
-//! whole counts.
+//! A recorded test as samples: reads and checks the columns, converts encoder readings to angles, and computes the
+//! twist from whole counts.
 
 use std::f64::consts::TAU;
 
@@ -17,41 +17,41 @@ use log_reader::{bad_readings, time_stamps};
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 
-/// Fewer counts of the motor may be its encoder's own scatter.
+/// Least travel of the motor [counts]: a smaller one may be scatter of the encoder.
 const LEAST_TRAVEL: f64 = 8.0;
-/// The link's speed is taken over this time to either side [s].
+/// Window on either side for the link's speed [s].
 const SPEED_OVER: f64 = 1e-3;
-/// Readings scatter by the twelfth of a count squared; what scatters by less than this share of it was filtered.
+/// Quantisation scatters by 1/12 of a count squared; readings with less than this share of it were filtered.
 pub const SMOOTH: f64 = 0.1;
 
 /// A recorded test.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Log {
-    /// From the first sample on [s].
+    /// Time since the first sample [s].
     pub time: Vec<f64>,
     /// Sampling period [s].
     pub period: f64,
-    /// Motor angle, as far as the encoder's errors are known [rad].
+    /// Motor angle, corrected by the encoder errors found so far [rad].
     pub motor: Vec<f64>,
-    /// Output angle, likewise [rad].
+    /// Output angle, corrected by the encoder errors found so far [rad].
     pub output: Vec<f64>,
-    /// Motor angle as it would be without errors of the teeth: planets and carrier follow it [rad].
+    /// Motor angle corrected by the errors of the teeth; planets and carrier follow it [rad].
     pub carried: Vec<f64>,
-    /// Motor over the ratio less output, as the encoders read, exact on counts [rad].
+    /// Motor angle over the ratio less output angle, uncorrected, exact for counts [rad].
     pub twist: Vec<f64>,
     /// Motor torque [N m].
     pub torque: Vec<f64>,
-    /// Torque of the joint on its link, if it was measured [N m].
+    /// Torque of the joint on its link; `None` if it was not measured [N m].
     pub output_torque: Option<Vec<f64>>,
-    /// How much motor and output readings scatter [rad^2].
+    /// Variance of motor and output readings [rad^2].
     pub noise: [Noise; 2],
-    /// By how much the output's readings are older than the motor's, as far as that is known [s].
+    /// Age of the output's readings relative to the motor's, as far as it is known [s].
     pub age: f64,
-    /// What motor and output were read as.
+    /// Kind of the motor and output readings.
     pub kinds: [Kind; 2],
-    /// Changes to the rows of the file, a sentence each.
+    /// Changes made to the rows of the file, a sentence each.
     pub told: Vec<String>,
-    /// What is lost between samples.
+    /// Even times, with the gaps between samples.
     pub times: EvenTimes,
 }
 
@@ -104,22 +104,23 @@ impl Log {
         Ok(log)
     }
 
-    /// Phase of the teeth: whole periods at the ring, by the joint's angle as the inertias on either side weigh it [rad].
+    /// Phase of the teeth, one turn per mesh period at the ring, from motor and output angle weighted by their inertias
+    /// [rad].
     pub fn teeth(&self, sample: usize, prior: &PriorModel) -> f64 {
         let share = prior.motor_share();
         let joint = (1.0 - share) * self.output[sample] + share * self.motor[sample] / prior.ratio();
         f64::from(prior.ring_teeth) * joint
     }
 
-    /// The same with errors of both encoders and of the teeth, each by its angle, taken off the angles, and with the output
-    /// at the motor's time: accelerations and the phase of the teeth are sensitive to them.
+    /// Returns the log with encoder and tooth errors, each a function of its angle, subtracted, and the output advanced
+    /// to the motor's time. Accelerations and the phase of the teeth are sensitive to both.
     pub fn without(&self, errors: [&dyn Fn(f64) -> f64; 3], skew: f64, prior: &PriorModel) -> Self {
         let [motor, output, teeth] = errors;
         let corrected = |angles: &[f64], error: &dyn Fn(f64) -> f64| -> Vec<f64> {
             angles.iter().map(|angle| angle - error(angle - error(*angle))).collect()
         };
         let (motor, read) = (corrected(&self.motor, motor), corrected(&self.output, output));
-        // The motor swings where the link does not: the link's own speed is what counts.
+        // The motor swings while the link does not, so the skew is applied with the link's own speed.
         let around = (SPEED_OVER / self.period).ceil() as usize;
         let speed = |sample: usize| {
             let (before, after) = (sample.saturating_sub(around), (sample + around).min(read.len() - 1));
@@ -132,8 +133,8 @@ impl Log {
         log
     }
 
-    /// By which share of what their encoders do angles scatter: motor and output; nothing where none is smoother than its encoder can
-    /// read it.
+    /// Variance of motor and output angles over the variance of their quantisation; `None` unless one of them is
+    /// smoother than its encoder can resolve.
     pub fn smoothness(&self, prior: &PriorModel) -> Option<[f64; 2]> {
         let share = |place: usize, turn: u64| {
             let count = count_angle(turn);
@@ -155,7 +156,7 @@ impl Log {
     }
 }
 
-/// Motor over ratio less output: in whole numbers as long as both are counts, so that turns cost no digit.
+/// Motor angle over the ratio less output angle; in whole numbers for counts, so that many turns lose no digits.
 fn twist(motor: &Readings, output: &Readings, prior: &PriorModel) -> Vec<f64> {
     if let (Readings::Counts(motor), Readings::Counts(output)) = (motor, output) {
         let [sun, both] = prior.teeth.map(i128::from);

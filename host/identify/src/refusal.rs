@@ -1,19 +1,19 @@
-//! Logs from which nothing can be identified, each with the reason and the help. A reason that concerns one parameter
-//! only is given with that parameter.
+//! Rejection of logs without a usable reversal test, with reason and remedy. A reason for one parameter only is part of
+//! that parameter's finding.
 
 use super::log::Log;
 use super::prior::PriorModel;
 use super::rows::Rows;
 use report::failure::{Failure, Outcome};
 
-/// Changes of flank that are needed: from fewer the gap is a guess.
+/// Least changes of flank for an estimate of the gap.
 const LEAST_CROSSINGS: usize = 4;
-/// Moments near lost samples are left out; more than so many of them, and the rest is no test.
+/// Largest share of moments that may be excluded near lost samples.
 const MOST_LEFT_OUT: f64 = 0.7;
-/// Time that each flank must carry in all [s].
+/// Least time that each flank carries [s].
 const LEAST_CARRIED: f64 = 0.1;
 
-/// Refuses a log without a usable reversal test in it.
+/// Rejects a log without a usable reversal test.
 pub fn check(log: &Log, rows: &Rows, prior: &PriorModel) -> Outcome<()> {
     if rows.left_out > MOST_LEFT_OUT {
         return Err(Failure::new(format!(

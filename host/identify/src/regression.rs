@@ -1,94 +1,96 @@
-//! Linear least squares with robust weights, prior widths for parameters that a log may not determine, and intervals
-//! from blocks of time, since residuals within a block are correlated.
+//! Linear least squares with robust weights, prior widths for unknowns that a log may not determine, and intervals from
+//! blocks of time, because residuals within a block are correlated.
 
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-/// Rounds of turning down outliers.
+/// Rounds of reweighting outliers.
 const ROUNDS: usize = 12;
-/// After so many of them what lies so many deviations beyond is taken for none of what the equations are about, such as teeth
-/// that bounce on.
+/// After TURNED_DOWN rounds, residuals beyond NONE_OF_IT deviations are excluded: they belong to another state, such as
+/// bouncing teeth.
 const TURNED_DOWN: usize = 5;
 const NONE_OF_IT: f64 = 8.0;
 /// Residuals beyond this many deviations count less (Huber); the usual constant for 95 % efficiency.
 const HUBER: f64 = 1.345;
 
-/// What every equation is off by, each by one and with the worst sign, moves the part that an unknown has in the values by so
-/// much at most in a log that tells the unknowns apart. In simulated reversal tests of the presets it is 5.5 and less, and with
-/// sines of one strength, where errors of encoders and teeth, inertia and compliance go with one another, up to 10,000.
+/// Error amplification of an unknown in a log that separates the unknowns: the change of the unknown's contribution to
+/// the values if each equation is off by one, with the worst signs. It is 5.5 and less in simulated reversal tests of
+/// the presets; with sines of one strength, where encoder and tooth errors, inertia and compliance are confounded, up
+/// to 10,000.
 const TOLD_APART: f64 = 6.0;
-/// From here on an unknown is not told apart from the others; so much sooner where all strokes are alike.
+/// From this amplification on, an unknown is not separated from the others; the threshold falls by SOONER if all
+/// strokes are alike.
 const NOT_TOLD_APART: f64 = 20.0;
 const SOONER: f64 = 14.0;
 
-/// Coefficients of an equation that are measured and therefore scatter.
+/// Coefficients of an equation that are measured and therefore noisy.
 pub const SCATTERING: usize = 3;
 
-/// How some coefficients of an equation and its value scatter: their covariance, the value last. Least squares alone would
-/// find unknowns with scattering coefficients too small.
+/// Covariance of an equation's noisy coefficients and of its value, the value last. Plain least squares would
+/// underestimate unknowns with noisy coefficients.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Scatter(pub [[f64; SCATTERING + 1]; SCATTERING + 1]);
 
-/// A system of equations to be solved in the least-squares sense.
+/// System of equations, to be solved by least squares.
 #[derive(Debug, Clone, Default)]
 pub struct Equations {
     rows: Vec<Vec<f64>>,
     values: Vec<f64>,
-    /// Block of time that an equation belongs to.
+    /// Block of time of each equation.
     blocks: Vec<usize>,
-    /// Group of equations, whenever they were, whose residuals may be alike; nothing if there are none.
+    /// Group of each equation, independent of time, whose residuals may be correlated; empty without groups.
     groups: Vec<usize>,
-    /// How coefficients scatter; nothing if none do.
+    /// Covariance of the coefficients of each equation; empty if all coefficients are exact.
     scatters: Vec<Scatter>,
-    /// Which coefficients these are.
+    /// Indices of the noisy coefficients.
     scattering: [usize; SCATTERING],
-    /// How far their moments repeat one another, 0 to 1: what they leave over is then no scatter.
+    /// Repetition of the moments, 0 to 1: residuals of repeated moments are not independent.
     repeated: f64,
 }
 
-/// Their solution.
+/// Solution of a system.
 #[derive(Debug, Clone)]
 pub struct Solution {
-    /// The unknowns.
+    /// Unknowns.
     pub values: DVector<f64>,
-    /// Their covariance.
+    /// Covariance of the unknowns.
     pub covariance: DMatrix<f64>,
-    /// Half of a 95 % interval is this times a standard deviation.
+    /// Half of a 95 % interval over the standard deviation.
     pub reach: f64,
-    /// Likewise where it is groups whose residuals are alike, with its reach; nothing without groups.
+    /// Covariance and reach from groups instead of blocks; `None` without groups.
     by_groups: Option<(DMatrix<f64>, f64)>,
-    /// What the equations leave over.
+    /// Residuals of the equations.
     pub residuals: Vec<f64>,
-    /// Its standard deviation, outliers apart.
+    /// Standard deviation of the residuals, outliers excluded.
     pub noise: f64,
-    /// Half of an interval that is to be added to that of an unknown that goes with others: what the equations leave over may be
-    /// no scatter, and is not turned down up to some size. Where their moments repeat one another that counts whole, elsewhere
-    /// as far as it moves an unknown by more than it might where unknowns are told apart. Infinite if this one is not.
+    /// Addition to half of an unknown's interval for confounding: residuals may be systematic, and below some size the
+    /// weights do not reduce them. Repeated moments count in full, others as far as the amplification exceeds
+    /// TOLD_APART. Infinite if the unknown is not separated from the others.
     pub confounded: DVector<f64>,
-    /// Part of what the equations seem to say of an unknown with scattering coefficients that is no scatter; of the worst.
+    /// Share of the information on the noisy-coefficient unknowns that is not scatter; the lowest of the unknowns.
     pub reliability: f64,
 }
 
 impl Equations {
-    /// None yet, of moments that repeat one another so far, 0 to 1.
+    /// Empty system for moments of a repetition of 0 to 1.
     pub fn of_moments(repeated: f64) -> Self {
         Self { repeated, ..Self::default() }
     }
 
-    /// One more equation.
+    /// Adds an equation.
     pub fn push(&mut self, row: Vec<f64>, value: f64, block: usize) {
         self.rows.push(row);
         self.values.push(value);
         self.blocks.push(block);
     }
 
-    /// The last equation is one of a group whose residuals may be alike; all must be in one then.
+    /// Assigns the last equation to a group with correlated residuals; then every equation needs a group.
     pub fn in_group(&mut self, group: usize) {
         self.groups.push(group);
     }
 
-    /// One more equation whose coefficients of these unknowns scatter; all equations must be of this kind then.
+    /// Adds an equation with noisy coefficients; then every equation must have them.
     pub fn push_scattering(
         &mut self,
         row: Vec<f64>,
@@ -102,26 +104,26 @@ impl Equations {
         self.push(row, value, block);
     }
 
-    /// How many there are.
+    /// Number of equations.
     pub fn count(&self) -> usize {
         self.rows.len()
     }
 
-    /// Solves them; each unknown is expected near zero within its width, which may be infinite.
+    /// Solves the system; each unknown is expected near zero within its width, which may be infinite.
     ///
-    /// `None` if there are too few, or if they do not determine the unknowns.
+    /// Returns `None` if the equations are too few, or do not determine the unknowns.
     pub fn solve(&self, widths: &[f64]) -> Option<Solution> {
         self.solve_considering(widths, &[])
     }
 
-    /// The same where some unknowns are held near zero by their widths, but are uncertain by a standard deviation that these
-    /// equations are not trusted to better: what that moves is in the covariance (Schmidt's considered parameters).
+    /// Solves the system with some unknowns held near zero by their widths but uncertain by a standard deviation; the
+    /// covariance includes their effect (Schmidt's considered parameters).
     pub fn solve_considering(&self, widths: &[f64], considered: &[(usize, f64)]) -> Option<Solution> {
         let unknowns = widths.len();
         if self.count() < 2 * unknowns {
             return None;
         }
-        // Columns of equal size, so that the solution does not depend on units.
+        // Columns are scaled to equal size, so that the solution does not depend on units.
         let scale = |column: usize| {
             let sum: f64 = self.rows.iter().map(|row| row[column] * row[column]).sum();
             if sum > 0.0 { (sum / self.count() as f64).sqrt() } else { 1.0 }
@@ -205,7 +207,7 @@ impl Equations {
         })
     }
 
-    /// Takes what scatter alone puts into the sums out of them.
+    /// Removes the bias by noisy coefficients from the normal equations.
     fn take_off(
         &self,
         Scatter(scatter): &Scatter,
@@ -222,7 +224,7 @@ impl Equations {
         }
     }
 
-    /// Sum over what has the same label of the square of what it pulls, and how many labels there are.
+    /// Sum over the labels of the squared score of each label, and the number of labels.
     fn scatter(&self, labels: &[usize], pulls: &Pulls<'_>, noise: f64) -> (DMatrix<f64>, usize) {
         let Pulls { matrix, weights, residuals, solved, scales } = *pulls;
         let unknowns = matrix.ncols();
@@ -231,7 +233,7 @@ impl Equations {
             let pull = pulls.entry(*label).or_insert_with(|| DVector::zeros(unknowns));
             let weight = weights[row] / (noise * noise);
             *pull += matrix.row(row).transpose() * (weight * residuals[row]);
-            // As in the sums, what scatter alone puts in is taken out.
+            // The bias by noisy coefficients is removed here as in the normal equations.
             let Some(Scatter(scatter)) = self.scatters.get(row) else { continue };
             for (place, &unknown) in self.scattering.iter().enumerate() {
                 let others = self.scattering.iter().enumerate();
@@ -240,7 +242,7 @@ impl Equations {
                 pull[unknown] += weight * (of_others - scatter[place][SCATTERING]) / scales[unknown];
             }
         }
-        // Each has pulled the solution towards itself.
+        // Small-sample correction: each block has moved the solution towards itself.
         let correction = pulls.len() as f64 / (pulls.len() as f64 - 1.0).max(1.0)
             * (self.count() as f64 / (self.count() - unknowns) as f64);
         let mut sum = DMatrix::zeros(unknowns, unknowns);
@@ -249,7 +251,7 @@ impl Equations {
     }
 }
 
-/// What single equations pull with.
+/// Matrix, weights and residuals of a weighted solution.
 struct Pulls<'p> {
     matrix: &'p DMatrix<f64>,
     weights: &'p DVector<f64>,
@@ -259,7 +261,7 @@ struct Pulls<'p> {
 }
 
 impl Solution {
-    /// Half of the 95 % interval of any smooth function of the unknowns, by its slopes.
+    /// Half of the 95 % interval of a smooth function of the unknowns, by its slopes.
     pub fn half(&self, slopes: &[(usize, f64)]) -> f64 {
         let mut slope = DVector::zeros(self.values.len());
         slopes.iter().for_each(|(unknown, by)| slope[*unknown] = *by);
@@ -274,7 +276,7 @@ impl Solution {
         scatter + confounded.sum::<f64>()
     }
 
-    /// Whether the equations tell an unknown apart from the others.
+    /// Returns true if the equations separate an unknown from the others.
     pub fn tells_apart(&self, unknown: usize) -> bool {
         self.confounded[unknown] == 0.0
     }
@@ -285,7 +287,7 @@ impl Solution {
     }
 }
 
-/// Standard deviation of most of them, from the median of their sizes.
+/// Robust standard deviation, from the median of the sizes.
 fn spread(values: &[f64]) -> f64 {
     let mut sizes: Vec<f64> = values.iter().map(|value| value.abs()).collect();
     sizes.sort_by(f64::total_cmp);
@@ -296,7 +298,7 @@ fn spread(values: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A line through points that scatter, a few of them far off.
+    /// Line through noisy points, a few of them far off.
     fn line(wild: f64) -> Equations {
         let mut equations = Equations::default();
         for index in 0..400_usize {
@@ -317,7 +319,7 @@ mod tests {
 
     #[test]
     fn what_is_wrong_alike_in_a_group_widens_the_interval() {
-        // Values of one kind are too large wherever in time they come.
+        // Values of one kind are too large, at any time.
         let mean = |grouped: bool| {
             let mut equations = Equations::default();
             for index in 0..400_usize {
@@ -336,7 +338,7 @@ mod tests {
 
     #[test]
     fn what_is_held_but_uncertain_widens_what_goes_with_it() {
-        // The line's slope, held at three but known within a half, moves the mean by half as much.
+        // The line's slope is held at 3 with a deviation of 0.5, which moves the mean by 0.25.
         let mut equations = line(0.0);
         equations.values.iter_mut().zip(&equations.rows).for_each(|(value, row)| *value -= 3.0 * row[1]);
         let widths = [f64::INFINITY, 1e-9, 1e-9];

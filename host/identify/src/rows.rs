@@ -1,101 +1,101 @@
-//! The samples that the fits use: those at which one flank carries torque, with all signals smoothed alike. Samples
-//! near a change of flank, or where the direction of the motor's motion is uncertain, are skipped.
+//! Moments that the fits use: one flank carries torque, and all signals are smoothed by one kernel. Moments near a
+//! change of flank or with an uncertain direction of motion are skipped.
 
 use super::kernel::Kernel;
 use super::log::Log;
 use super::prior::PriorModel;
 use log_reader::resolution::count_angle;
 
-/// Strengths of torque that are told apart, for what may be wrong with each both ways.
+/// Levels of torque; a systematic error of each level, of both signs together, widens the intervals.
 const LEVELS: f64 = 20.0;
-/// What a torque may still be on its way, from command to air gap [s].
+/// Largest delay of the torque, from command to air gap [s].
 const LAG: f64 = 1.5e-3;
-/// A flank carries when the torque on it is more than this share of the largest...
+/// A flank carries if its torque exceeds this share of the largest torque, ...
 const CARRYING_SHARE: f64 = 0.03;
-/// ... more than this many times what friction may feign...
+/// ... this multiple of the torque that friction can mimic, ...
 const OVER_FRICTION: f64 = 1.5;
-/// ... and more than this many deviations of what the motor encoder's scatter feigns.
+/// ... and this many standard deviations of the torque that the motor encoder's scatter mimics.
 const OVER_SCATTER: f64 = 4.0;
-/// A kernel's box that is longer than this part of a swing does not show it.
+/// A kernel box above this share of a swing does not resolve the swing.
 const UNRESOLVED: f64 = 0.5;
-/// Teeth bounce so long after a change of flank [s].
+/// Duration of bouncing after a change of flank [s].
 const BOUNCING: f64 = 0.07;
-/// Strokes are alike if they take as long and bend the joint by as much torque, within this share up or down...
+/// Two strokes are alike if duration and torque agree within this share.
 const ALIKE: f64 = 0.1;
-/// ... that torque is what so much of a stroke stays below...
+/// Torque of a stroke: this quantile of the torque's size.
 const STROKE_PART: f64 = 0.8;
-/// ... and where up to the first of these shares of a log's time is in strokes of one kind nothing repeats itself, from the
-/// second on all does.
+/// Shares of the carrying time in strokes of one kind at which repetition begins and is complete.
 const ONE_KIND: [f64; 2] = [0.6, 0.75];
-/// A slow motor's direction is told from this long to either side [s]...
+/// Window on either side for the direction of a slow motor [s].
 const SLOW: f64 = 0.05;
-/// ... if it moves by more than so many counts in every quarter of that.
+/// Least motion of a slow motor in each quarter of the window [counts].
 const SLOW_COUNTS: f64 = 2.0;
-/// Steps of a swing between looks at a motor's direction.
+/// Steps per swing between readings that decide the motor's direction.
 const SWING_STEPS: f64 = 6.0;
-/// Counts that an encoder may be off by, from one reading to another.
+/// Largest error of an encoder from one reading to the next [counts].
 const QUICK_COUNTS: f64 = 1.01;
 
-/// One sample of the fits.
+/// One moment of the fits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
-    /// Its sample.
+    /// Index of the moment's sample in the log.
     pub sample: usize,
-    /// [s].
+    /// Time [s].
     pub time: f64,
-    /// Motor over ratio less output [rad].
+    /// Motor angle over the ratio less output angle [rad].
     pub twist: f64,
-    /// Its rate, but for what errors of encoders and teeth have in it [rad/s].
+    /// Rate of the twist, corrected by the errors of encoders and teeth [rad/s].
     pub wind_rate: f64,
-    /// Motor angle [rad] and speed [rad/s].
+    /// Motor angle [rad].
     pub motor: f64,
-    /// [rad/s].
+    /// Motor speed [rad/s].
     pub motor_speed: f64,
-    /// [rad/s^2].
+    /// Motor acceleration [rad/s^2].
     pub motor_acceleration: f64,
-    /// [rad].
+    /// Output angle [rad].
     pub output: f64,
-    /// [rad/s].
+    /// Output speed [rad/s].
     pub output_speed: f64,
-    /// [rad/s^2].
+    /// Output acceleration [rad/s^2].
     pub output_acceleration: f64,
-    /// Motor torque less what accelerates the motor, at the output after the gears' losses [N m].
+    /// Motor torque less the motor's acceleration and viscous torque, referred to the output after the gears' losses [N
+    /// m].
     pub drive: f64,
-    /// Output over motor torque: ratio, after the gears' losses.
+    /// Output torque over motor torque: the ratio after the gears' losses.
     pub leverage: f64,
-    /// Motor torque alone, likewise at the output [N m].
+    /// Motor torque referred to the output after the gears' losses [N m].
     pub motor_torque: f64,
     /// Rate of the motor torque, at the output [N m/s].
     pub drive_rate: f64,
-    /// Measured at the output, if it was [N m].
+    /// Torque measured at the output; `None` if it was not measured [N m].
     pub measured: Option<f64>,
-    /// Which way the motor turns: -1, 1, or 0 if that cannot be told.
+    /// Direction of the motor: -1, 1, or 0 if it is uncertain.
     pub direction: f64,
-    /// Flank that carries: 1 when the motor drives forwards, -1, or 0 near a change and in the gap.
+    /// Flank that carries: 1 when the motor drives forwards, -1 backwards, 0 near a change and in the gap.
     pub side: f64,
 }
 
-/// The samples of a log that the fits use, evenly spaced.
+/// Moments of a log, evenly spaced.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rows {
-    /// All of them, settled or not.
+    /// All moments, carrying or not.
     pub all: Vec<Row>,
-    /// Kernel that smoothed them.
+    /// Kernel of the smoothing.
     pub kernel: Kernel,
-    /// Largest torque at the output, but for the highest twentieth [N m].
+    /// 95 % quantile of the torque's size at the output [N m].
     pub greatest: f64,
-    /// Changes from one carrying flank to the other.
+    /// Changes of the carrying flank.
     pub crossings: usize,
-    /// Time from one moment to the next [s].
+    /// Time between moments [s].
     pub step: f64,
-    /// How far its strokes are alike: 0 where none is, or half of the time at most is in strokes of one kind, 1 where all are.
+    /// Repetition of the strokes: 0 if at most 60 % of the carrying time is in strokes of one kind, 1 from 75 % on.
     pub alike: f64,
-    /// Share of all moments that are left out since samples near them are lost.
+    /// Share of the moments left out because samples near them are lost.
     pub left_out: f64,
 }
 
 impl Rows {
-    /// With a box of the kernel of a length [s].
+    /// Selects the moments of a log, smoothed with boxes of `length` [s].
     pub fn new(log: &Log, prior: &PriorModel, length: f64) -> Self {
         let samples = ((length / log.period).round() as usize).clamp(2, log.time.len() / 50);
         let kernel = Kernel::new(samples, log.period);
@@ -103,7 +103,7 @@ impl Rows {
         let guard = ((half as f64 + LAG / log.period) / samples as f64).ceil() as usize;
         let end = log.time.len().saturating_sub(half);
         let moments = (half..end).step_by(samples);
-        // Near a hole a change of flank may have been lost.
+        // A hole may hide a change of flank.
         let near = half + guard * samples;
         let is_known = |sample: &usize| log.times.is_whole(sample.saturating_sub(near), sample + near + 1);
         let mut all: Vec<Row> =
@@ -140,7 +140,7 @@ impl Rows {
     }
 }
 
-/// A flank that carries, from one change to the next.
+/// One flank carrying, from one change to the next.
 struct Stroke {
     side: f64,
     time: f64,
@@ -166,7 +166,7 @@ impl Stroke {
     }
 }
 
-/// How far strokes are alike.
+/// Repetition of the strokes, 0 to 1.
 fn alike(rows: &[Row]) -> f64 {
     let carrying: Vec<&Row> = rows.iter().filter(|row| row.side != 0.0).collect();
     let strokes: Vec<Stroke> = carrying.chunk_by(|one, next| one.side == next.side).map(Stroke::of).collect();
@@ -181,7 +181,7 @@ fn alike(rows: &[Row]) -> f64 {
     ((share - none) / (all - none)).clamp(0.0, 1.0)
 }
 
-/// Teeth that land bounce for a while: a kernel too long to show it would take their flight for a bend.
+/// Excludes the bouncing after a landing: a kernel too long to resolve it would mistake the flight for a deflection.
 fn leave_out_landings(rows: &mut [Row]) {
     let (mut side, mut landed) = (0.0, f64::NEG_INFINITY);
     for row in rows.iter_mut().filter(|row| row.side != 0.0) {
@@ -195,17 +195,17 @@ fn leave_out_landings(rows: &mut [Row]) {
 }
 
 impl Row {
-    /// Which of the torques of a log this is, either way, of so many up to the largest.
+    /// Level of the motor torque's size, in steps of the largest torque.
     pub fn level(&self, greatest: f64) -> usize {
         (LEVELS * (self.motor_torque.abs() / greatest.max(f64::MIN_POSITIVE)).min(1.0)) as usize
     }
 
-    /// Torque from joint to link as far as it is known before any fit [N m].
+    /// Torque from joint to link, measured or known from the motor before any fit [N m].
     pub fn torque(&self) -> f64 {
         self.measured.unwrap_or(self.drive)
     }
 
-    /// What losses that grow with the load take more, for each part of the load [N m].
+    /// Sensitivity of the torque to losses that grow with the load [N m].
     pub fn loss(&self) -> f64 {
         self.direction * self.torque().abs()
     }
@@ -213,7 +213,7 @@ impl Row {
 
 fn row(log: &Log, prior: &PriorModel, kernel: &Kernel, sample: usize) -> Row {
     let smooth = |signal: &[f64], order: usize| {
-        // Differences to the middle keep their digits after many turns.
+        // Differences to the middle sample keep their digits after many turns.
         let middle = if order == 0 { signal[sample] } else { 0.0 };
         middle + kernel.at(|place| signal[place] - middle, sample, order)
     };
@@ -223,7 +223,7 @@ fn row(log: &Log, prior: &PriorModel, kernel: &Kernel, sample: usize) -> Row {
     let net =
         torque - prior.motor_inertia * motor_acceleration - prior.surroundings.motor_friction.viscous * motor_speed;
     let direction = direction(log, prior, kernel, sample);
-    // Losses that grow with the load: the link gets less than a driving motor gives, and more has to be braked.
+    // Losses that grow with the load: a driving motor passes on less torque, a braking motor has to hold more.
     let efficiency = prior.surroundings.efficiency;
     let leverage = prior.ratio()
         * match net * direction {
@@ -252,8 +252,8 @@ fn row(log: &Log, prior: &PriorModel, kernel: &Kernel, sample: usize) -> Row {
     }
 }
 
-/// The way that the motor turns all the time: over the kernel's length in steps that no swing hides in, or over a longer
-/// time if it is too slow for those.
+/// Direction of the motor throughout the kernel, in steps too short to hide a swing, or over SLOW for a motor too slow
+/// for these steps.
 fn direction(log: &Log, prior: &PriorModel, kernel: &Kernel, sample: usize) -> f64 {
     let count = count_angle(prior.motor_turn);
     let turns = |half: usize, step: usize, way: f64, least: f64| {

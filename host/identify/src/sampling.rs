@@ -1,25 +1,25 @@
-//! Whether a log was sampled evenly, fast and long enough for its joint, with the figures of what is needed.
+//! Checks that a log is sampled evenly, fast and long enough for its joint.
 
 use super::prior::PriorModel;
 use log_reader::columns::{Columns, TIMES};
 use log_reader::even_times::EvenTimes;
 use report::failure::{Failure, Outcome};
 
-/// A shorter log cannot hold reversals and what surrounds them [s].
+/// Least duration, for reversals and their surroundings [s].
 const LEAST_TIME: f64 = 0.5;
-/// Slower samples do not show what a landing does to the torque [Hz]...
+/// Least sampling rate, to resolve the torque of a landing [Hz].
 const LEAST_RATE: f64 = 2000.0;
-/// ... nor do less than so many of them in a swing of the joint on its compliance: with 3 to 6 a tenth of the 95 % intervals of S1
-/// and L1 missed.
+/// Least samples per swing of the joint on its compliance: with 3 to 6, a tenth of the 95 % intervals of S1 and L1
+/// missed.
 const LEAST_IN_A_SWING: f64 = 6.5;
-/// No encoder is read so often: the time is in another unit [Hz].
+/// Largest plausible rate of an encoder; above it the time has another unit [Hz].
 const MOST_RATE: f64 = 1e6;
-/// What drives log, at most [Hz].
+/// Largest common logging rate of drives [Hz].
 const LIKELY_RATE: f64 = 1e5;
-/// Samples of a swing from which its damping can be told.
+/// Least samples per swing for an estimate of the damping.
 pub const SWING_SAMPLES: f64 = 16.0;
 
-/// Even times for a log that is fast, long and whole enough; `time` begins at zero.
+/// Returns the even times of a log that is fast, long and whole enough; `time` begins at zero.
 pub fn sampling(time: &[f64], columns: &Columns, prior: &PriorModel) -> Outcome<EvenTimes> {
     if time.len() < 2 {
         return Err(Failure::new(format!("there are only {} samples", time.len()))
@@ -30,7 +30,7 @@ pub fn sampling(time: &[f64], columns: &Columns, prior: &PriorModel) -> Outcome<
     Ok(times)
 }
 
-/// Refuses a log that is too short, or sampled too slowly for the joint's swing.
+/// Rejects a log that is too short, or sampled too slowly for the joint's swing.
 fn check_time(period: f64, samples: usize, prior: &PriorModel, columns: &Columns) -> Outcome<()> {
     let (rate, time) = (1.0 / period, period * samples as f64);
     let needed = LEAST_RATE.max(LEAST_IN_A_SWING / prior.swing());
@@ -61,7 +61,7 @@ fn check_time(period: f64, samples: usize, prior: &PriorModel, columns: &Columns
     Ok(())
 }
 
-/// The help for a log that is fast enough if its time is in a unit that is so many times less.
+/// Help for a log that is fast enough if its unit of time is smaller by the factor `by`.
 fn finer_unit(columns: &Columns, by: f64, rate: f64) -> String {
     let used = columns.name_of(&TIMES).and_then(|used| TIMES.iter().position(|name| *name == used)).unwrap_or_default();
     let finer = TIMES.get(used + if by > 1e4 { 2 } else { 1 }).filter(|_| !columns.is_stated(TIMES[used]));

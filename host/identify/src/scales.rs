@@ -1,11 +1,12 @@
-//! What a log makes of three scales that a joint file and a drive state and neither knows exactly: the torque's, the motor's
-//! inertia's and the link's. A log of motion cannot tell them all, since twice the torque turns twice the inertia alike; it
-//! tells two ratios, torque over the motor's inertia while the joint rings, and torque over all that turns. What is expected
-//! of each scale and those two ratios together give the likeliest three, and how far they may still be off together.
+//! Scales of torque, motor inertia and link inertia, which neither joint file nor drive knows exactly. A log of motion
+//! cannot determine all three: twice the torque accelerates twice the inertia alike. It determines two ratios: torque
+//! over motor inertia while the joint rings, and torque over total inertia. Expectations and ratios together give the
+//! likeliest scales and their joint covariance.
 //!
-//! With the logarithms t, m and l of true over stated torque, motor's and link's inertia, and the motor's share a of all that
-//! turns, the ratios say t - m = r and t - a m - (1 - a) l = w; expected are t, m and l of zero, each within its deviation. If
-//! what is expected does not fit together, all of it is taken to be less well known, by as much (Birge's ratio).
+//! With the logarithms t, m and l of true over stated torque, motor inertia and link inertia, and the motor's share a
+//! of the total inertia, the ratios are t - m = r and t - a m - (1 - a) l = w. The expected values of t, m and l are
+//! zero, each with its deviation. If expectations and ratios contradict one another, all expected deviations are scaled
+//! up (Birge's ratio).
 
 use nalgebra::{SMatrix, SVector, Vector3, Vector4};
 
@@ -16,54 +17,54 @@ use super::prior::PriorModel;
 use super::regression::Solution;
 use super::rows::Rows;
 
-/// Box of the kernel for the balance of all that turns [s]: long enough for coarse counts, short beside a reversal.
+/// Kernel box for the balance of the total inertia [s]: long enough for coarse counts, short against a reversal.
 const BOX: f64 = 4e-3;
-/// What losses, teeth and the shapes of frictions put into a ratio beside its scatter. On simulated logs of the presets it is
-/// 0.4 % at most.
+/// Systematic error of a ratio by losses, teeth and the shapes of friction; at most 0.4 % on simulated logs of the
+/// presets.
 const BALANCE_SHARE: f64 = 0.004;
-/// Logarithms of ratios that say nothing have this deviation.
+/// Deviation of the logarithm of an undetermined ratio.
 const UNKNOWN: f64 = 10.0;
-/// A torque that is not doubted: keeps the sums finite.
+/// Least deviation of a scale; keeps the sums finite for an exact torque.
 const EXACT: f64 = 1e-6;
-/// How wrong a sensor of the torque at the output may be, as a ratio: a standard deviation, of what data sheets say.
+/// Standard deviation of the scale of a torque sensor at the output; typical of data sheets.
 const SENSOR_ERROR: f64 = 0.005;
-/// From this ratio of Birge on what is expected contradicts itself.
+/// Birge's ratio from which expectations and ratios contradict one another.
 const CONTRADICTION: f64 = 2.0;
 
-/// True over stated values, each as a logarithm with its standard deviation.
+/// True over stated values, as logarithms with standard deviations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scales {
-    /// Of the torque.
+    /// Scale of the torque.
     pub torque: Scale,
-    /// Of the motor's inertia.
+    /// Scale of the motor's inertia.
     pub motor_inertia: Scale,
-    /// Of the link's inertia.
+    /// Scale of the link's inertia.
     pub link_inertia: Scale,
-    /// What is still open of the motor's inertia where the torque's scale is known: standard deviation of its logarithm.
+    /// Standard deviation of the logarithm of the motor's inertia for a known scale of the torque.
     pub motor_inertia_alone: f64,
-    /// What is expected is less well known than stated, by this factor; 1 if it fits together.
+    /// Birge's ratio: factor on the expected deviations, 1 without contradiction.
     pub birge: f64,
-    /// By which share all rates may be off: where both inertias contradict the torque alike, the time step may be what is wrong.
+    /// Relative error of all rates: if both inertias contradict the torque alike, the time step may be wrong.
     pub rates: f64,
 }
 
-/// One of them.
+/// One scale.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
     /// Logarithm of true over stated.
     pub logarithm: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the logarithm.
     pub deviation: f64,
-    /// Half of its interval at the least: where what is expected contradicts itself, what was stated may yet be right.
+    /// Least half of the interval: after a contradiction the stated value may still be right.
     pub least: f64,
 }
 
-/// What stays open of a torque that was not measured behind the gears.
+/// Uncertainty of a torque that was not measured behind the gears.
 #[derive(Debug, Clone, Copy)]
 pub struct Doubt {
-    /// Of torque and inertias together.
+    /// Scales of torque and inertias.
     pub scales: Scales,
-    /// What the motor's inertia, as much as it may still be off beside them, puts into the compliance, as a share of it.
+    /// Relative change of the compliance by the motor's inertia at the end of its interval for a known torque.
     pub by_inertia: f64,
 }
 
@@ -73,35 +74,35 @@ impl Scale {
         self.logarithm.exp()
     }
 
-    /// From a solution.
+    /// Scale of a logarithm with its variance.
     fn of(logarithm: f64, variance: f64, birge: f64) -> Self {
         let least = if birge > CONTRADICTION { logarithm.abs() } else { 0.0 };
         Self { logarithm, deviation: variance.sqrt(), least }
     }
 
-    /// Half of its 95 % interval.
+    /// Half of the 95 % interval.
     pub fn half(self) -> f64 {
         self.least.max(QUANTILE * self.deviation)
     }
 
-    /// Whether it is surely not what was stated.
+    /// Returns true if the stated value is outside of the interval.
     pub fn is_another(self) -> bool {
         self.logarithm.abs() > QUANTILE * self.deviation
     }
 }
 
 impl Scales {
-    /// Of a log, and of a fit that expected nothing of the torque's scale.
+    /// Scales of a log, from a fit with an unknown scale of the torque.
     pub fn new(log: &Log, prior: &PriorModel, free: &Solution) -> Self {
         let ringing = Some(balances::of_the_motor(free));
         let all = balances::of_all(&Rows::new(log, prior, BOX), prior);
         Self::together([prior.torque_error, prior.inertia_error], prior.motor_share(), [ringing, all])
     }
 
-    /// The likeliest, given what is expected of torque and inertias, the motor's share of all that turns, and the logged torque
-    /// over what the motor's inertia and all inertias need.
+    /// Likeliest scales, from the expected deviations of torque and inertias, the motor's share of the total inertia,
+    /// and the logged torque over the torque for the motor's inertia and for the total inertia.
     fn together([torque, inertia]: [f64; 2], share: f64, factors: [Option<Factor>; 2]) -> Self {
-        // Where the log has less torque than the inertias need, the true torque is that much more.
+        // Logged torque below the torque for the inertias means a larger true torque.
         let [of_motor, of_all] = factors.map(Seen::of_factor);
         let (solved, covariance, birge) = likeliest(
             Vector3::from([torque, inertia, inertia]),
@@ -120,8 +121,8 @@ impl Scales {
         }
     }
 
-    /// Likewise where the torque was measured at the output: what `sensor` is its scale, and balances tell the motor's torque, the
-    /// motor's and the link's inertia by it, true over stated. The torque here is the measured one.
+    /// Scales of a log with a torque sensor at the output: `torque` is the sensor's scale, and balances give the scales
+    /// of motor torque, motor inertia and link inertia relative to it.
     pub fn of_measured(prior: &PriorModel, [motor_torque, motor, link]: [Option<Factor>; 3]) -> Self {
         let seen = [motor_torque, motor, link].map(Seen::of_factor);
         let told = |place: usize| {
@@ -150,12 +151,12 @@ impl Scales {
         }
     }
 
-    /// What is known of the joint with the motor's inertia as large as it may be beside the torque's scale.
+    /// Joint with the motor's inertia at the upper end of its interval for a known torque.
     pub fn with_most_of_the_motor(&self, prior: &PriorModel) -> PriorModel {
         with_motor(prior, (QUANTILE * self.motor_inertia_alone).exp())
     }
 
-    /// The log and what is known of the joint, as these scales make them.
+    /// Applies the scales to a log and to the joint.
     pub fn apply(&self, log: &Log, prior: &PriorModel) -> (Log, PriorModel) {
         let mut log = log.clone();
         let torques = log.output_torque.as_mut().unwrap_or(&mut log.torque);
@@ -166,7 +167,7 @@ impl Scales {
     }
 }
 
-/// With so many times the motor's inertia.
+/// Joint with the motor's inertia times `factor`.
 fn with_motor(prior: &PriorModel, factor: f64) -> PriorModel {
     PriorModel {
         sun_inertia: factor * prior.sun_inertia,
@@ -176,7 +177,7 @@ fn with_motor(prior: &PriorModel, factor: f64) -> PriorModel {
     }
 }
 
-/// A logarithm with its deviation.
+/// Logarithm with its standard deviation.
 #[derive(Debug, Clone, Copy)]
 struct Seen {
     logarithm: f64,
@@ -184,7 +185,7 @@ struct Seen {
 }
 
 impl Seen {
-    /// Of a factor, logged over true; nothing where it is not known well.
+    /// Logarithm of a factor of logged over true; undetermined for a factor with a wide interval.
     fn of_factor(factor: Option<Factor>) -> Self {
         factor.filter(|factor| factor.value > 0.0 && factor.is_narrow()).map_or(
             Self { logarithm: 0.0, deviation: UNKNOWN },
@@ -196,8 +197,8 @@ impl Seen {
     }
 }
 
-/// The likeliest logarithms, each expected to be zero within its deviation, by what is seen of sums of them; their covariance,
-/// and Birge's ratio, which is in it.
+/// Likeliest logarithms, expected to be zero within their deviations, given noisy linear combinations; their
+/// covariance, and Birge's ratio, which the covariance includes.
 fn likeliest<const N: usize>(
     expected: SVector<f64, N>,
     seen: &[(SVector<f64, N>, Seen)],
@@ -221,7 +222,7 @@ fn likeliest<const N: usize>(
     (solved, covariance, birge)
 }
 
-/// By which share rates may be off, from the torque over what both inertias need.
+/// Relative error of the rates, from the factors of both inertias.
 fn rates(factors: [Option<Factor>; 2], birge: f64) -> f64 {
     let [Some(one), Some(other)] = factors else { return 0.0 };
     let [one, other] = [one, other].map(|factor| factor.value.max(f64::MIN_POSITIVE).ln());
@@ -233,7 +234,7 @@ mod tests {
     use super::Scales;
     use crate::balances::Factor;
 
-    /// What is found where torque and inertias are so much more than stated.
+    /// Scales found for true over stated torque, motor inertia and link inertia.
     fn found(torque: f64, motor: f64, link: f64) -> Scales {
         let share = 0.06;
         let factor = |inertia: f64| Some(Factor { value: inertia / torque, deviation: 1e-3 });

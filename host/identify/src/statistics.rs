@@ -1,6 +1,6 @@
 //! Means, quantiles, range and Student's quantile.
 
-/// A quantile of sorted values, between neighbours in proportion; not a number of nothing.
+/// Quantile of sorted values, interpolated between neighbours; NaN for an empty slice.
 pub fn quantile(sorted: &[f64], share: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
     let place = share * last as f64;
@@ -9,7 +9,7 @@ pub fn quantile(sorted: &[f64], share: f64) -> f64 {
     sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
 }
 
-/// The same of values in any order.
+/// Quantile of values in any order.
 pub fn quantile_of(values: &[f64], share: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -32,8 +32,8 @@ pub fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Student's 97.5 % quantile: tables for one to three degrees of freedom, between them even in their inverse; beyond, the
-/// first terms of its expansion (Abramowitz and Stegun, 26.7.5).
+/// Student's 97.5 % quantile: tables for one to three degrees of freedom, interpolated linearly in the inverse; beyond,
+/// the first terms of its expansion (Abramowitz and Stegun, 26.7.5).
 pub fn student(freedom: f64) -> f64 {
     const FEW: [f64; 3] = [12.706, 4.303, 3.182];
     const NORMAL: f64 = 1.959_964;

@@ -1,4 +1,4 @@
-//! What a log shows of the encoders: errors that come once and twice a turn, and the age of the output's reading.
+//! Findings of the encoders: errors once and twice a turn, and the age of the output's reading.
 
 use super::feigned;
 use super::finding::{Finding, finding};
@@ -8,24 +8,24 @@ use crate::prior::PriorModel;
 use crate::twist;
 use crate::twist::Twist;
 
-/// An error by angle counts as found if the log narrows it to this share of what is expected anyway.
+/// An error by angle counts as found if the log narrows it to this share of its prior width.
 const NARROWED: f64 = 0.1;
 /// Time over which a speed is taken [s].
 const SPAN: f64 = 0.01;
-/// Radius within which two parts lie in 95 of 100 cases, over the reach within which one does.
+/// Radius that contains two parts in 95 of 100 cases, over the reach that contains one.
 const OF_BOTH: f64 = 1.25;
-/// Part of the motor's viscous friction that is not known.
+/// Unknown share of the motor's viscous friction.
 const VISCOUS: f64 = 0.3;
-/// Degrees in a radian.
+/// Degrees per radian.
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 
-/// What an encoder's error that comes so often a turn is called, and its key in a joint file.
+/// Name of an encoder's error of this order and its key in the joint file.
 pub(crate) fn names(encoder: &str, word: &str) -> (String, String) {
     let key = format!("drive_train.{encoder}_encoder.{word}_per_turn_error_deg");
     (format!("{encoder} encoder: error {word} a turn"), key)
 }
 
-/// Errors that come once and twice a turn of either encoder.
+/// Errors once and twice a turn of either encoder.
 pub(super) fn maps(twist: &Twist, prior: &PriorModel) -> Vec<Finding> {
     let solution = &twist.solution;
     let mut findings = Vec::new();
@@ -38,7 +38,7 @@ pub(super) fn maps(twist: &Twist, prior: &PriorModel) -> Vec<Finding> {
             let [by_sine, by_cosine] = [along / amplitude, across / amplitude];
             let estimate = Estimate::from(solution, amplitude, &[(sine, by_sine), (cosine, by_cosine)]);
             let estimate = estimate.wider_by(feigned::angle(turn));
-            // An amplitude of two parts that scatter is never zero: one that does not stand out of both may well be.
+            // The amplitude of two noisy parts is never zero; it may be zero unless it exceeds the interval of both.
             let both = Estimate { half: OF_BOTH * estimate.half, ..estimate };
             let estimate = if amplitude < both.half { both } else { estimate };
             let narrow = [sine, cosine]
@@ -60,12 +60,11 @@ pub(super) fn maps(twist: &Twist, prior: &PriorModel) -> Vec<Finding> {
     findings
 }
 
-/// How old the output's reading is. What counts and teeth feign of an angle looks like an age the more, the slower the output
-/// turns.
+/// Age of the output's reading. Angle errors mimicked by counts and teeth look like an age, more so for a slow output.
 pub(super) fn skew(log: &Log, twist: &Twist, prior: &PriorModel, rates: f64) -> Finding {
     let speed = usual_speed(log).max(f64::MIN_POSITIVE);
     let skew = Estimate::of(&twist.solution, twist::SKEW).wider_by(feigned::twist(prior) / speed);
-    // By the motor's viscous friction the joint is bent as by an age.
+    // Viscous friction of the motor bends the joint like an age.
     let feigned = prior.compliance * prior.ratio().powi(2) * prior.surroundings.motor_friction.viscous;
     let skew = skew.wider_by(VISCOUS * feigned + rates * skew.value);
     let why = "the joint must turn at different speeds";
@@ -74,7 +73,7 @@ pub(super) fn skew(log: &Log, twist: &Twist, prior: &PriorModel, rates: f64) -> 
         .if_so(narrow, why)
 }
 
-/// Speed of the output, root mean square [rad/s].
+/// Root mean square of the output's speed [rad/s].
 fn usual_speed(log: &Log) -> f64 {
     let samples = ((SPAN / log.period) as usize).max(1);
     let places: Vec<f64> = log.output.iter().copied().step_by(samples).collect();

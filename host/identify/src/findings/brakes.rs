@@ -1,5 +1,5 @@
-//! What a log shows of motor and link friction, and of the error in the torque scale, on which both depend. The torque
-//! balances are fitted in `friction`.
+//! Findings of the friction of motor and link, and of the torque scale, on which both depend. `friction` fits the
+//! torque balances.
 
 use super::finding::{Finding, SHARE, finding};
 use crate::estimate::Estimate;
@@ -11,15 +11,15 @@ use crate::scales::Doubt;
 use crate::twist;
 use crate::twist::Twist;
 
-/// What may be zero counts as found if half of its interval is at most this share of the largest torque.
+/// A friction, possibly zero, counts as found if half of its interval is at most this share of the largest torque.
 const SMALL: f64 = 0.02;
-/// Share of the largest torque that a balance of torques may feign as dry friction.
+/// Dry friction that a torque balance may mimic, as a share of the largest torque.
 const BALANCE_SHARE: f64 = 0.0015;
 
-/// Share of the largest torque that teeth and compliance may feign as dry friction of the motor.
+/// Dry friction of the motor that teeth and compliance may mimic, as a share of the largest torque.
 const MOTOR_SHARE: f64 = 2e-4;
 
-/// Why friction of the motor is not found by the twist of planets that do not touch at once.
+/// Reason for a missing motor friction if planets do not touch at once.
 const OUT_OF_PHASE: &str = "planets mesh out of phase, and errors of the teeth bend the joint as friction does; log the torque at the \
                             output";
 
@@ -85,7 +85,7 @@ pub(super) fn frictions(
     let names = ["dry friction of the link", "viscous friction of the link"];
     let keys = ["drive_train.load_coulomb_friction_N_m", "drive_train.load_viscous_friction_N_m_s_per_rad"];
     let units = ["N m", "N m s/rad"];
-    // Without its own finding the motor's friction is taken from the joint file.
+    // Without a finding, the motor's friction is the joint file's.
     let motor_known = motor_known && (measured || prior.sharing.is_none());
     let (dry, note) = if measured || motor_known {
         (motor_dry, "")
@@ -106,7 +106,7 @@ pub(super) fn frictions(
         );
         return findings;
     };
-    // How far what is still uncertain moves the balance is found by moving it.
+    // The effect of each uncertainty is found by repeating the balance with the changed value.
     let by_torque = balance(MotorSide { torque_error: of_torque, ..as_found });
     let by_delay = balance(MotorSide { delay: delay.value + delay.half, ..as_found });
     let by_dry = balance(MotorSide { dry: dry.value + dry.half, ..as_found });
@@ -116,7 +116,7 @@ pub(super) fn frictions(
             moved.as_ref().map_or(f64::NAN, |moved| moved.values[unknown] - link.values[unknown])
         };
         let per = |moved: &Option<Solution>, half: f64| if half > 0.0 { shift(moved) / half } else { 0.0 };
-        // The motor's friction and losses come out of one fit, in which what one is too large the other is too small.
+        // Motor friction and losses come from one fit with negatively correlated errors.
         let (per_dry, per_loss) = (per(&by_dry, dry.half), per(&by_loss, loss.half));
         let value = per_dry * dry.value + per_loss * loss.value;
         let slopes = [

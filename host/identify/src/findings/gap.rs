@@ -1,4 +1,4 @@
-//! What a log shows of gap, compliance and damping.
+//! Findings of gap, compliance and damping.
 
 use super::feigned;
 use super::finding::{Finding, SHARE, TOGETHER, finding};
@@ -12,13 +12,13 @@ use crate::scales::Doubt;
 use crate::twist;
 use crate::twist::Twist;
 
-/// How well readings of motor and torque are taken at the same time [s]: a delay looks like damping.
+/// Largest time between the readings of motor and torque [s]; a delay looks like damping.
 const SAME_TIME: f64 = 2e-6;
 
-/// Planets that land one after the other damp what rings by this share more or less than those that land at once.
+/// Relative change of the damping by planets that land one after the other.
 const SHARED: f64 = 0.35;
 
-/// The gap, what bends, and how it rings.
+/// Gap, compliance and damping.
 pub(super) fn gap_and_compliance(
     log: &Log,
     rows: &Rows,
@@ -71,7 +71,7 @@ pub(crate) fn static_findings(
             .if_so(width.is_shown, width.why),
         finding("compliance at the output", "urad/(N m)", "", compliance.times(1e6)).if_so(bend.is_shown, bend.why),
     ]);
-    // What the teeth give is known better from the joint file than from the small part that they have in it.
+    // The joint file knows the compliance of the teeth better than the log, in which it is a small part.
     let own = compliance.value - prior.mesh_compliance;
     let Shown { is_shown: bends, why } = bend;
     findings.push(if prior.compliant {
@@ -92,14 +92,14 @@ pub(crate) fn static_findings(
     findings
 }
 
-/// From the time by which the torque runs ahead of the twist to the ratio that the joint file states.
+/// Damping ratio of the joint file, from the time by which the torque leads the twist.
 fn damping(solution: &Solution, prior: &PriorModel, compliance: Estimate, bends: bool) -> Finding {
-    // A motor that is read before the output may be read before the torque as well.
+    // A motor reading older than the output's may be older than the torque as well.
     let lead = -solution.values[twist::SKEW];
     let relaxation = Estimate::of(solution, twist::RELAXATION).times(-1.0).wider_by(SAME_TIME.max(lead));
     let own = compliance.value - prior.mesh_compliance;
     let (name, key, per_ratio) = if prior.compliant {
-        // D = 2 zeta sqrt(J / c), on the part of the twist that is not the teeth's.
+        // D = 2 zeta sqrt(J / c), on the twist beyond the teeth's.
         let per_ratio =
             2.0 * (prior.swinging_inertia() / own.max(f64::MIN_POSITIVE)).sqrt() * own * own / compliance.value;
         ("damping ratio of the compliance", "compliance.damping_ratio", per_ratio)

@@ -1,11 +1,12 @@
-//! What a log makes of the joint file's inertias, for who wrote them.
+//! Findings of the inertias, as a check of the joint file.
 
 use super::finding::{Finding, finding};
 use crate::estimate::Estimate;
 use crate::prior::PriorModel;
 use crate::scales::{Scale, Scales};
 
-/// What turns with the motor and with the link; nothing of it goes into the joint file, which states parts of them.
+/// Inertias that turn with the motor and with the link. The joint file states parts of them, so they are not written to
+/// it.
 pub(super) fn inertias(scales: &Scales, prior: &PriorModel) -> [Finding; 2] {
     let of = |name: &str, inertia: f64, scale: Scale| {
         let estimate = Estimate { value: inertia, half: inertia * scale.half() };

@@ -1,5 +1,5 @@
-//! Identified parameters, each with its 95 % interval in the joint file's unit and the key it belongs to, or the reason
-//! why the log does not determine it: `gap`, `brakes`, `inertias` and `angles`.
+//! Identified parameters, each with its 95 % interval in the joint file's unit and its key, or the reason why the log
+//! does not determine it: `gap`, `brakes`, `inertias` and `angles`.
 
 pub(crate) mod angles;
 mod brakes;
@@ -19,27 +19,27 @@ use super::rows::Rows;
 use super::scales::Doubt;
 use super::twist::Twist;
 
-/// The record of an identification, for JSON and the report.
+/// Record of an identification, for JSON and the report.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Record<'a> {
-    /// Name and version of this form.
+    /// Name and version of the format.
     pub schema: &'static str,
     /// Name of the joint.
     pub joint: &'a str,
     /// Name of the log.
     pub log: &'a str,
-    /// How long it is [s].
+    /// Length of the log [s].
     pub duration_s: f64,
-    /// Changes of the carrying flank in it.
+    /// Changes of the carrying flank.
     pub crossings: usize,
-    /// What the numbers rest on.
+    /// Assumptions behind the numbers.
     pub assumptions: &'a [String],
-    /// What was found.
+    /// Identified parameters.
     pub findings: &'a [Finding],
 }
 
-/// Everything that a log shows of a joint, with what stays open where the motor's torque is what bends it.
+/// All findings of a log; `doubt` is the uncertainty of a torque and inertias that scale each other.
 pub fn gather(
     log: &Log,
     [quick, slow]: [&Rows; 2],

@@ -1,5 +1,6 @@
-//! Cycles of the torque, to one side and back, each with its fit of equation (1). A sample is used where the motor moves on a flank for
-//! sure: beyond the torques that cross the gap, and after a reversal not before friction has changed its sign.
+//! Cycles of the torque, to one side and back, each with its fit of equation (1). A sample is used if the motor
+//! certainly moves on a flank: beyond the torques that cross the gap, and after friction has changed its sign at a
+//! reversal.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -8,58 +9,59 @@ use crate::statistics::{mean, quantile_of};
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 
-/// The torque turns when it then goes back by this share of its range.
+/// The torque turns if it then goes back by this share of its range.
 const TURNED: f64 = 0.5;
-/// A way of the torque begins and ends at this share of the peak at least.
+/// Least torque at both ends of a whole way, over the peak.
 const WHOLE_WAY: f64 = 0.7;
-/// From fewer cycles there is no interval.
+/// Least cycles for an interval.
 const LEAST_CYCLES: usize = 3;
-/// Both sides' peaks are alike within this ratio.
+/// Largest ratio of the peaks of both sides.
 const PEAKS: f64 = 2.0;
-/// Loads below this share of the peak are not used, nor those below so many frictions.
+/// Least load that is used: this share of the peak, and FRICTIONS times the friction.
 const LEAST_LOAD: f64 = 0.3;
 const FRICTIONS: f64 = 3.0;
-/// More than this share of the peak leaves too little to fit a flank.
+/// Largest least load, as a share of the peak; above it too little is left to fit a flank.
 const MOST_LEAST_LOAD: f64 = 0.6;
-/// After a reversal so many times the change that friction makes is passed over, and this share of the peak.
+/// After a reversal, samples are skipped until the torque has changed by STUCK times the change by friction plus
+/// STUCK_SHARE of the peak.
 const STUCK: f64 = 1.3;
 const STUCK_SHARE: f64 = 0.05;
-/// First guess of that change, as a share of the peak.
+/// First guess of the skipped change, as a share of the peak.
 const FIRST_STUCK: f64 = 0.35;
-/// Fits one after the other, each by the friction that the one before found.
+/// Fits in succession, each with the friction found by the previous one.
 const ROUNDS: usize = 4;
-/// Samples of a cycle that are needed on each flank and in each direction.
+/// Least samples of a cycle on each flank and in each direction.
 const LEAST_SAMPLES: usize = 6;
-/// Residual of a fit over the whole way, above which the flanks are no straight lines.
+/// Largest residual over the whole travel; above it the flanks are not straight.
 const LEFT_OVER: f64 = 0.1;
-/// Unknowns: ends of both flanks at no torque, compliance, and what friction and losses put into the angle.
+/// Unknowns: ends of both flanks at zero torque, compliance, and the angle by friction and by losses.
 const UNKNOWNS: usize = 5;
 
 /// Parameters of one cycle, at the output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cycle {
-    /// Ends of both flanks at no torque, the upper and the lower [rad].
+    /// Ends of the upper and the lower flank at zero torque [rad].
     pub ends: [f64; 2],
-    /// Between the two [rad].
+    /// Lost motion: upper end less lower end [rad].
     pub lost_motion: f64,
-    /// [rad/(N m)].
+    /// Compliance [rad/(N m)].
     pub compliance: f64,
-    /// By how much the compliance above the middle of the loads is more than below it [rad/(N m)].
+    /// Compliance above the middle of the loads less compliance below it [rad/(N m)].
     pub bent: f64,
     /// Dry friction of the motor times the ratio [N m].
     pub friction: f64,
     /// Share of the load that is lost.
     pub loss: f64,
-    /// Residual of the fit, root mean square [rad].
+    /// Root mean square of the residuals [rad].
     left_over: f64,
 }
 
 /// All cycles of a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cycles {
-    /// Each one.
+    /// Cycles in order of time.
     pub all: Vec<Cycle>,
-    /// Least and largest torque that is used [N m].
+    /// Least and largest torque of the samples used [N m].
     pub loads: [f64; 2],
     /// Rate of the torque [N m/s].
     pub torque_rate: f64,
@@ -67,7 +69,7 @@ pub struct Cycles {
     pub crossings: usize,
 }
 
-/// A sample that is used: angle, torque, direction of the torque.
+/// A sample used: angle, torque, direction of the torque.
 #[derive(Clone, Copy)]
 struct Moment {
     twist: f64,
@@ -76,7 +78,7 @@ struct Moment {
 }
 
 impl Cycles {
-    /// Finds and fits them.
+    /// Finds and fits the cycles.
     pub fn of(time: &[f64], twist: &[f64], torque: &[f64]) -> Outcome<Self> {
         let [low, high] = [0.005, 0.995].map(|share| quantile_of(torque, share));
         if !(low < 0.0 && high > 0.0) {
@@ -199,7 +201,7 @@ fn row(moment: &Moment) -> SVector<f64, UNKNOWNS> {
     SVector::from([upper, 1.0 - upper, torque, way, way * torque.abs()])
 }
 
-/// Least squares of (1), each unknown in its own scale.
+/// Least squares of (1), with scaled unknowns.
 fn fit(moments: &[Moment]) -> Option<SVector<f64, UNKNOWNS>> {
     let greatest = moments.iter().map(|moment| moment.torque.abs()).fold(0.0, f64::max);
     let scale = SVector::<f64, UNKNOWNS>::from([1.0, 1.0, greatest, 1.0, greatest]);
@@ -217,7 +219,7 @@ fn fit(moments: &[Moment]) -> Option<SVector<f64, UNKNOWNS>> {
 mod tests {
     use super::*;
 
-    /// A gear whose output is held, with friction and losses: angle and torque over four cycles.
+    /// Gear with a clamped output, friction and losses: time, angle and torque over four cycles.
     fn held(friction: f64, loss: f64) -> [Vec<f64>; 3] {
         let (compliance, lost_motion, peak) = (1e-4, 4e-3, 12.0);
         let mut spring = -peak;
@@ -226,7 +228,7 @@ mod tests {
         let twist = torque
             .iter()
             .map(|torque| {
-                // The spring's torque moves only when the motor's is beyond what friction holds.
+                // The spring's torque changes only while the motor's torque exceeds the friction.
                 let upper =
                     if *torque > 0.0 { (torque - friction) * (1.0 - loss) } else { (torque - friction) / (1.0 - loss) };
                 let lower =

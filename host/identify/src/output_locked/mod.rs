@@ -1,14 +1,15 @@
-//! `joint identify --output-locked`: lost motion, stiffness, half-backlash and friction from the motor's angle and torque while the output
-//! is held fast. The torque goes slowly to and fro; on each flank the motor then turns by
+//! `joint identify --output-locked`: lost motion, stiffness, half-backlash and friction from the motor's angle and
+//! torque with a clamped output. The torque alternates slowly; on each flank the motor turns by
 //!
 //! ```text
 //! theta = p_s + c T - c f d - c l d |T|                                                    (1)
 //! ```
 //!
-//! with the angle theta of the motor over the ratio [rad], the motor's torque times the ratio T [N m], the flank s, the direction d in
-//! which the torque goes, the compliance c [rad/(N m)], the dry friction f [N m] and the share l of the load that is lost. The lost
-//! motion is p_+ - p_-. It is fitted to each cycle by least squares; the interval is from how cycles repeat (Student), wider by
-//! what all cycles share: steps and errors of the encoder, cogging, flanks that are bent. `cycles` are the fits.
+//! with the angle theta of the motor over the ratio [rad], the motor's torque times the ratio T [N m], the flank s, the
+//! direction d of the torque's change, the compliance c [rad/(N m)], the dry friction f [N m] and the lost share l of
+//! the load. The lost motion is p_+ - p_-. `cycles` fits (1) to each cycle by least squares. The interval comes from
+//! the scatter between cycles (Student), widened by the errors that all cycles share: steps and errors of the encoder,
+//! cogging, curved flanks.
 
 mod cycles;
 
@@ -35,25 +36,25 @@ use report::plot::mark::Mark;
 use report::plot::panel::Panel;
 use report::plot::unit::{TORQUE, Unit};
 
-/// An output that is held moves by less than this share of the motor's way over the ratio: the gear's own compliance is far above that of
-/// what holds it.
+/// Largest motion of a clamped output over the motor's travel over the ratio: the gear's own compliance is far above
+/// the clamp's.
 const HELD: f64 = 0.2;
-/// Error by angle that any encoder may have [rad]; a joint file that states more is believed.
+/// Encoder error by angle allowed for any encoder [rad]; the joint file may state more.
 const ENCODER_ERROR: f64 = 1e-3;
-/// Share of the largest torque by which a torque may be off by angle; a joint file that states more cogging is believed.
+/// Ripple allowed for any torque, as a share of the largest torque; the joint file may state more cogging.
 const TORQUE_RIPPLE: f64 = 0.01;
-/// A torque may be late by this time, which looks like friction while it changes [s].
+/// Delay allowed for the torque [s]; it looks like friction while the torque changes.
 const TORQUE_LATE: f64 = 1e-3;
 
-/// A log of a joint whose output is held.
+/// Log of a joint with a clamped output.
 struct HeldLog {
-    /// From the first sample on [s].
+    /// Time since the first sample [s].
     time: Vec<f64>,
-    /// Motor over the ratio, less the output where it was logged [rad].
+    /// Motor angle over the ratio, less the output angle if it was logged [rad].
     twist: Vec<f64>,
     /// Motor torque times the ratio [N m].
     torque: Vec<f64>,
-    /// Step of the encoders on that scale [rad].
+    /// Step of the encoders in the twist [rad].
     resolution: f64,
     /// True if the output was logged.
     has_output: bool,
@@ -61,7 +62,7 @@ struct HeldLog {
     told: Vec<String>,
 }
 
-/// Identifies a joint from a log of its held output.
+/// Identifies a joint from a log with a clamped output.
 pub fn identify(arguments: &Arguments, loaded: &Loaded, prior: &PriorModel) -> Outcome<Results> {
     let in_the_file = |failure: Failure| failure.while_doing(arguments.log.display());
     let log = HeldLog::read(arguments, prior)?;
@@ -114,7 +115,7 @@ impl HeldLog {
     }
 }
 
-/// A parameter of the cycles: its mean, with the interval from how they repeat.
+/// Mean of a parameter over the cycles, with the interval from their scatter.
 fn of_cycles(cycles: &Cycles, parameter: impl Fn(&Cycle) -> f64) -> Estimate {
     Estimate::of_repeats(&cycles.all.iter().map(parameter).collect::<Vec<_>>())
 }
@@ -125,7 +126,7 @@ fn findings(log: &HeldLog, cycles: &Cycles, loaded: &Loaded, prior: &PriorModel)
     let compliance = of_cycles(cycles, |cycle| cycle.compliance);
     let bent = mean(&cycles.all.iter().map(|cycle| cycle.bent).collect::<Vec<_>>()).abs();
     let loss = mean(&cycles.all.iter().map(|cycle| cycle.loss).collect::<Vec<_>>());
-    // The slope of an encoder's error over the small way is at most its amplitude times how often it comes in a turn.
+    // The slope of an encoder error over the small travel is at most its amplitude times its periods per turn.
     let encoder = &around.motor_encoder;
     let by_encoder = (encoder.once_per_turn_error.abs() + 2.0 * encoder.twice_per_turn_error.abs()).max(ENCODER_ERROR);
     let ripple = (prior.ratio() * around.cogging_torque.abs()).max(TORQUE_RIPPLE * most);
@@ -140,7 +141,7 @@ fn findings(log: &HeldLog, cycles: &Cycles, loaded: &Loaded, prior: &PriorModel)
         .wider_by(2.0 * compliance.value * ripple * turned.min(1.0) + bent * (least + most))
         .at_least(log.resolution);
     let compliance = compliance.beside(by_scale * compliance.value);
-    // At one place of the turn a mesh is stiffer or softer than its mean, and errors of its teeth take a part of the gap.
+    // At one place of the turn a mesh is stiffer or softer than its mean, and tooth errors reduce the gap.
     let joint = &loaded.file.parameters;
     let (StiffnessWave::Harmonic { stiffness_ratio: wave } | StiffnessWave::Rectangular { stiffness_ratio: wave, .. }) =
         joint.sun_planet.stiffness_wave;
@@ -177,7 +178,7 @@ fn findings(log: &HeldLog, cycles: &Cycles, loaded: &Loaded, prior: &PriorModel)
     findings
 }
 
-/// Assumptions that the numbers rest on.
+/// Assumptions behind the numbers.
 fn assumptions(log: &HeldLog, cycles: &Cycles, prior: &PriorModel) -> Vec<String> {
     let mut list = vec![
         format!(
@@ -207,7 +208,7 @@ fn assumptions(log: &HeldLog, cycles: &Cycles, prior: &PriorModel) -> Vec<String
     list
 }
 
-/// Twist over torque with the flanks that were found.
+/// Twist over torque with the fitted flanks.
 fn picture(log: &HeldLog, cycles: &Cycles) -> Figure {
     let every = thinning(log.time.len());
     let points = log.torque.iter().copied().zip(log.twist.iter().copied()).step_by(every).collect();

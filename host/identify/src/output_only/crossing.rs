@@ -1,16 +1,17 @@
 //! Upper bound of the lost motion from the coasting of the output after a reversal of the torque.
 //!
-//! a is the motor's share of the inertia and g the lost motion. While the motor crosses the gap, the output is ahead of the common centre
-//! of the balance of torques by
+//! a is the motor's share of the inertia and g the lost motion. While the motor crosses the gap, the output is ahead of
+//! the common centre of the balance of torques by
 //!
 //! ```text
 //! r(t) = T t^2 / (2 I),   at most a g                                                            (3)
 //! ```
 //!
-//! Afterwards r is a g less the bouncing of the teeth, plus the bending of the joint. r is averaged over twentieths of the time from the
-//! reversal to the turning point. At the end of the crossing, a time that (3) gives, the mean is at least 0.6 a g: 0.75 a g if the crossing
-//! takes two parts or more; after a shorter crossing the teeth have settled to 0.65 a g within five parts (restitution up to 0.85). The
-//! bound is the largest g that the means allow, among those whose crossing takes less than a quarter of that time.
+//! Afterwards r is a g less the bouncing of the teeth, plus the bending of the joint. r is averaged over twentieths of
+//! the time from the reversal to the turning point. At the end of the crossing, a time that (3) gives, the mean is at
+//! least 0.6 a g: 0.75 a g if the crossing takes two parts or more; after a shorter crossing the teeth have settled to
+//! 0.65 a g within five parts (restitution up to 0.85). The bound is the largest g that the means allow, among those
+//! whose crossing takes less than a quarter of that time.
 
 use super::swing_fit::{COSINE, DRY, Integrals, OFFSET, SINE, STEP, SwingFit, TORQUE};
 use super::swings::Swing;
@@ -22,11 +23,12 @@ const LEAST_REPEATS: usize = 4;
 /// Parts of the time from the reversal to the turning point, and number of parts that are evaluated.
 const PARTS: f64 = 20.0;
 const QUARTER: usize = 5;
-/// Least share of a g that the largest mean shows.
+/// Least share of a g in the largest mean.
 const SHOWN: f64 = 0.6;
 /// Error of the fitted delay over the delay [-]: the crossing looks like a part of the delay. Measured: 0.1 to 0.3 in simulated logs.
 const DELAY_ERROR: f64 = 0.5;
-/// The search for the bound starts at the coasting distance of a crossing of a quarter, and goes down by this ratio to this share of it.
+/// The search for the bound starts at the coasting distance of a crossing of a quarter, and goes down by the ratio
+/// FINER to LEAST of it.
 const FINER: f64 = 0.98;
 const LEAST: f64 = 1e-6;
 

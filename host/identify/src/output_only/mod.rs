@@ -250,7 +250,7 @@ fn gap(
     found.into_iter().map(bounded).collect()
 }
 
-/// Assumptions that the numbers rest on.
+/// Assumptions behind the numbers.
 fn assumptions(log: &OutputLog, swings: &[Swing], fit: &SwingFit, prior: &PriorModel) -> Vec<String> {
     let torques = swings.iter().flat_map(|swing| swing.torque);
     let (least, most) =

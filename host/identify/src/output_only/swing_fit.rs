@@ -53,7 +53,7 @@ pub struct Samples<'s> {
 pub struct SwingFit {
     /// Shared unknowns.
     pub values: SVector<f64, SHARED>,
-    /// Their covariance.
+    /// Covariance of the shared unknowns.
     pub covariance: SMatrix<f64, SHARED, SHARED>,
     /// Half of a 95 % interval in standard deviations.
     pub quantile: f64,
@@ -67,7 +67,7 @@ pub struct SwingFit {
     pub fastest: f64,
 }
 
-/// Speed and angle that an acceleration `rate` gives, integrated over the log.
+/// Speed and angle by integration of an acceleration `rate` over the log.
 struct Integral {
     speed: Vec<f64>,
     angle: Vec<f64>,
@@ -75,7 +75,7 @@ struct Integral {
 }
 
 impl Integral {
-    /// Integrates a rate that each sample holds until the next one.
+    /// Integrates a rate that each sample holds until the next.
     fn new(time: &[f64], rate: Vec<f64>) -> Self {
         let (mut speed, mut angle) = (vec![0.0; time.len()], vec![0.0; time.len()]);
         for sample in 1..time.len() {
@@ -98,7 +98,8 @@ struct SwingEquations {
     /// Left sides, right sides.
     shared: DMatrix<f64>,
     right: DVector<f64>,
-    /// Change of the speed at the reversal, as eliminated: its slopes by the shared unknowns, and its value from the readings.
+    /// Change of the speed at the reversal after elimination: slopes by the shared unknowns, and the value from the
+    /// readings.
     change: (SVector<f64, SHARED>, f64),
     /// Time after the reversal [s].
     after: Vec<f64>,
@@ -120,7 +121,7 @@ pub struct Integrals<'s> {
     sine: Integral,
     cosine: Integral,
     turned: Integral,
-    /// Largest torque at the output, but for a fiftieth of the time [N m].
+    /// 98 % quantile of the torque's size at the output [N m].
     largest: f64,
 }
 
@@ -178,7 +179,7 @@ impl<'s> Integrals<'s> {
 }
 
 impl SwingFit {
-    /// Fits the swings; returns nothing if the swings do not determine the unknowns.
+    /// Fits the swings; returns `None` if the swings do not determine the unknowns.
     pub fn of(integrals: &Integrals<'_>, swings: &[Swing], expected: Expected) -> Option<Self> {
         let largest = integrals.largest;
         let (mut delay, mut inverse) = (0.0, 1.0 / expected.inertia);
@@ -211,7 +212,7 @@ impl SwingFit {
             let usual = quantile_of(&scatter, 0.25);
             weights = scatter.iter().map(|scatter| usual / scatter.max(usual)).collect();
             inverse = fit.values[TORQUE].abs().max(f64::MIN_POSITIVE);
-            // A torque that comes late by D gives a change of speed of D times the change of acceleration.
+            // A torque delayed by D changes the speed by D times the change of acceleration.
             let late: Vec<f64> = swings
                 .iter()
                 .zip(&equations)
@@ -236,13 +237,13 @@ impl SwingFit {
         self.quantile * (all.transpose() * self.covariance * all)[0].max(0.0).sqrt()
     }
 
-    /// A combination of the unknowns, by its slopes.
+    /// Combination of the unknowns, by its slopes.
     pub fn combination(&self, slopes: &[(usize, f64)]) -> Estimate {
         let value = slopes.iter().map(|(unknown, slope)| slope * self.values[*unknown]).sum();
         Estimate { value, half: self.half(slopes) }
     }
 
-    /// An unknown.
+    /// Estimate of one unknown.
     pub fn estimate(&self, unknown: usize) -> Estimate {
         self.combination(&[(unknown, 1.0)])
     }
@@ -285,8 +286,8 @@ impl SwingEquations {
     }
 }
 
-/// Least squares of all swings, with what is expected of the unknowns: the inverse of their variance around zero, but for the step by the
-/// torque, which is expected around a value.
+/// Least squares of all swings with prior terms: `expected` is the inverse variance of each unknown around zero; for
+/// the step by the torque, around `step_by_torque`.
 fn solve(equations: &[SwingEquations], expected: SVector<f64, SHARED>, step_by_torque: f64) -> Option<SwingFit> {
     type Square = SMatrix<f64, SHARED, SHARED>;
     let (mut square, mut right) = (Square::zeros(), SVector::<f64, SHARED>::zeros());
@@ -309,7 +310,7 @@ fn solve(equations: &[SwingEquations], expected: SVector<f64, SHARED>, step_by_t
     let mut solved = None;
     for _ in 0..3 {
         let prior = Square::from_diagonal(&(variance * expected));
-        // One part in 1e12 keeps the first solution apart where no swing does.
+        // A diagonal of 1e-12 makes the first solution unique if no swing does.
         let scaled = scaling * (square + prior) * scaling + Square::identity() * 1e-12;
         let inverse = scaling * scaled.cholesky()?.inverse() * scaling;
         let values = inverse * (right + prior * middle);

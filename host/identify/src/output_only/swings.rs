@@ -8,10 +8,10 @@ const TURNED: f64 = 0.001;
 const TURNED_COUNTS: f64 = 6.0;
 /// Torque beyond which its sign counts, over the largest torque [-].
 const SIGN: f64 = 0.1;
-/// Share of each half of a swing that is left out next to its turning point, where friction sticks [-].
+/// Share of each half of a swing excluded next to its turning point, where friction sticks [-].
 const TURNING: f64 = 0.1;
-/// Share of the half after the reversal that is left out while the motor crosses the gap [-]. Tuned: 0.2 moves no finding by a tenth of
-/// its interval.
+/// Share of the half after the reversal excluded while the motor crosses the gap [-]. Tuned: 0.2 moves no finding by a
+/// tenth of its interval.
 const SETTLING: f64 = 0.1;
 /// Fewest samples, and smallest motion of the output in counts, on either side of a reversal.
 const LEAST_SAMPLES: usize = 8;
@@ -44,7 +44,7 @@ impl Swing {
     }
 }
 
-/// Finds the swings in which a steady torque along the motion steps to one against it.
+/// Finds the swings in which a steady torque along the motion steps to a steady torque against it.
 pub fn swings(angle: &[f64], torque: &[f64], count: f64) -> Vec<Swing> {
     let turns = turning_points(angle, (TURNED * range_of(angle)).max(TURNED_COUNTS * count));
     let largest = quantile_of(&torque.iter().map(|torque| torque.abs()).collect::<Vec<_>>(), 0.98);
@@ -54,7 +54,7 @@ pub fn swings(angle: &[f64], torque: &[f64], count: f64) -> Vec<Swing> {
 fn swing([from, to]: [usize; 2], angle: &[f64], torque: &[f64], [count, least_torque]: [f64; 2]) -> Option<Swing> {
     let direction = (angle[to] - angle[from]).signum();
     let along = |sample: usize| direction * torque[sample];
-    // At its start and its end a swing may still or again have the opposite torque.
+    // The torque may be opposite at the start and the end of a swing.
     let reversal = (from..to)
         .find(|sample| *sample > from && along(*sample) < -least_torque && along(*sample - 1) > -least_torque)?;
     let inside = |samples: usize| ((samples as f64 * TURNING).ceil() as usize).min(samples);

@@ -1,4 +1,4 @@
-//! The motor's passes from one turning point to the next, cut where a half ends and at gaps, without their ends.
+//! Passes of the motor from one turning point to the next, cut at ends of halves and at gaps, without their ends.
 
 use std::ops::Range;
 
@@ -6,33 +6,33 @@ use super::samples::{GAP, Samples, spread};
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 
-/// A turning point counts when the motor then goes back by this share of its travel.
+/// Least return from a turning point, as a share of the motor's travel.
 const TURNED: f64 = 0.25;
-/// At each end of a pass at least this share of the travel is left out.
+/// Least share of the travel excluded at each end of a pass.
 const LEAST_LEFT_OUT: f64 = 0.02;
-/// More than this share cannot be left out at both ends.
+/// Largest share of the travel excluded at each end.
 const MOST_LEFT_OUT: f64 = 0.25;
-/// What is left of a pass is this share of the travel at least.
+/// Least share of the travel left of a pass.
 const LEAST_LEFT: f64 = 0.1;
-/// Around a turning point so many samples to either side are looked at.
+/// Samples examined on either side of a turning point.
 const AROUND: usize = 12;
-/// Readings that are apart by more than so many samples are told by the output about turning points.
+/// Offset between the readings, in the output's usual steps, that the output shows at turning points.
 const APART: f64 = 1.3;
-/// Fewer samples do not show how the difference goes over a pass.
+/// Least samples of a pass that show the course of the difference.
 const LEAST_SAMPLES: usize = 24;
 
-/// Motion of the motor one way.
+/// Motion of the motor in one direction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pass {
-    /// Its samples.
+    /// Samples of the pass.
     pub range: Range<usize>,
-    /// Which way.
+    /// True for forward motion.
     pub forwards: bool,
-    /// The half of the log that it is in, 0 or 1; 0 where none are told.
+    /// Half of the log, 0 or 1; 0 without halves.
     pub half: usize,
 }
 
-/// All passes of a log in their order, with what was left out at each of their ends.
+/// All passes of a log in order of time, and the length excluded at each end.
 pub fn passes(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<(Vec<Pass>, f64)> {
     let travel = samples.travel();
     let turns = turning_points(&samples.motor, TURNED * travel);
@@ -82,8 +82,8 @@ pub fn passes(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<(Vec<Pass>, f
     }
 }
 
-/// Refuses a log whose output goes on the old way after the motor has turned, or turns before it: friction holds an output, and a
-/// gap does too, but neither moves it. Readings of different moments do, and feign a width of the way in between.
+/// Rejects a log whose output continues in the old direction after the motor has turned, or turns first. Friction and a
+/// gap hold an output but never move it; readings at different times do, and mimic a width of the travel in between.
 fn read_together(samples: &Samples, turns: &[usize]) -> Outcome<()> {
     let output = &samples.output;
     let mut steps: Vec<f64> =
@@ -91,7 +91,8 @@ fn read_together(samples: &Samples, turns: &[usize]) -> Outcome<()> {
     steps.sort_by(f64::total_cmp);
     let step = steps.get(steps.len() / 2).copied().unwrap_or(f64::INFINITY);
     let inner = turns.get(1..turns.len().saturating_sub(1)).unwrap_or_default();
-    // So far does the output go on after a turning point and, negative, so far has it come back before it, in usual steps.
+    // Travel of the output beyond its place at the turning point, in usual steps: positive after it, negative before
+    // it.
     let mut went_on: Vec<f64> = Vec::new();
     for &turn in inner {
         let forwards = samples.motor[turn] > samples.motor[turn.saturating_sub(AROUND)];
@@ -123,11 +124,11 @@ fn read_together(samples: &Samples, turns: &[usize]) -> Outcome<()> {
     )))
 }
 
-/// Samples at which the motor turns, the first and the last of the log's motion among them.
+/// Samples at which the motor turns, including the first and the last of its motion.
 pub fn turning_points(motor: &[f64], threshold: f64) -> Vec<usize> {
     let (mut least, mut most) = (0, 0);
     let mut turns: Vec<usize> = Vec::new();
-    // The way since the last turning point; nothing before the first.
+    // Direction since the last turning point; `None` before the first.
     let mut forwards: Option<bool> = None;
     let mut farthest = 0;
     for (sample, place) in motor.iter().enumerate() {
@@ -164,7 +165,7 @@ pub fn turning_points(motor: &[f64], threshold: f64) -> Vec<usize> {
     turns
 }
 
-/// Parts of a stretch that lie in one half each, without gaps.
+/// Parts of a stretch without gaps, each within one half.
 fn cut(samples: &Samples, stretch: Range<usize>, halves: &[(f64, f64)]) -> Vec<(usize, Range<usize>)> {
     let half = |sample: usize| match halves {
         [] => Some(0),
@@ -182,7 +183,7 @@ fn cut(samples: &Samples, stretch: Range<usize>, halves: &[(f64, f64)]) -> Vec<(
     parts
 }
 
-/// A stretch from where the motor has gone some way on to where it has the same way to go.
+/// Stretch without `left_out` of travel at both ends.
 fn without_ends(motor: &[f64], range: Range<usize>, forwards: bool, left_out: f64) -> Range<usize> {
     let sign = if forwards { 1.0 } else { -1.0 };
     let (first, last) = (motor[range.start], motor[range.end - 1]);

@@ -1,4 +1,4 @@
-//! Pictures of what was found: lost motion over the place, difference by direction, error map, and what the model leaves over.
+//! Pictures of the results: lost motion over the place, difference by direction, error map, and residuals of the model.
 
 use super::loading::Loading;
 use super::results::Results;
@@ -8,7 +8,7 @@ use report::plot::mark::Mark;
 use report::plot::panel::Panel;
 use report::plot::unit::{SECONDS, Unit};
 
-/// All of them with the names of their files.
+/// All pictures with their file names.
 pub fn all(results: &Results) -> Vec<(&'static str, Figure)> {
     let Results { profiles, width, map, prediction, groups, levels, loading, hysteresis, .. } = results;
     let unit = match results.scale.degrees() {

@@ -1,17 +1,17 @@
-//! The profile of each pass: means of the difference, and of torques, over bins of the output that the passes share.
+//! Profiles of the passes: means of difference and torques over common bins of the output.
 
 use super::passes::Pass;
 use super::samples::Samples;
 use crate::statistics::{mean, quantile_of};
 use report::failure::{Failure, Outcome};
 
-/// A bin holds so many samples of a usual pass...
+/// Samples of a typical pass per bin.
 const IN_A_BIN: f64 = 6.0;
-/// ... as long as there are not fewer or more bins than these.
+/// Least and largest number of bins.
 const BINS: (f64, f64) = (12.0, 120.0);
-/// Fewer bins that all groups share show no map.
+/// Least number of bins shared by all groups.
 pub const LEAST_BINS: usize = 8;
-/// Passes that a bin needs of each direction.
+/// Least passes of each direction in a bin.
 pub const LEAST_PASSES: usize = 2;
 
 /// One pass over the bins.
@@ -19,17 +19,17 @@ pub const LEAST_PASSES: usize = 2;
 pub struct Profile {
     /// The pass.
     pub pass: Pass,
-    /// Mean difference in each bin; not a number where the pass does not go over the whole bin.
+    /// Mean difference in each bin; NaN unless the pass covers the whole bin.
     pub difference: Vec<f64>,
-    /// Mean motor torque likewise, if there is one [N m].
+    /// Mean motor torque in each bin, if logged [N m].
     pub motor_torque: Option<Vec<f64>>,
-    /// Mean torque of the joint on its link likewise [N m].
+    /// Mean torque of the joint on its link in each bin, if logged [N m].
     pub output_torque: Option<Vec<f64>>,
-    /// First, middle and last moment [s].
+    /// First, middle and last time [s].
     pub time: [f64; 3],
     /// Mean speed of the motor on the output's scale [units/s].
     pub speed: f64,
-    /// Squares of single readings about their bin's mean, and how many are free.
+    /// Sum of squares of single readings about their bin's mean, and its degrees of freedom.
     pub scatter: (f64, f64),
 }
 
@@ -40,12 +40,12 @@ pub struct Profiles {
     pub places: Vec<f64>,
     /// Width of a bin.
     pub width: f64,
-    /// Every pass that goes over bins, in time.
+    /// Every pass that covers a bin, in order of time.
     pub all: Vec<Profile>,
 }
 
 impl Profiles {
-    /// Over the places that passes of each direction, in each half, go over.
+    /// Profiles over the places that passes of each direction, in each half, cover.
     pub fn of(samples: &Samples, passes: &[Pass], halves: usize) -> Outcome<Self> {
         let (mut low, mut high) = (f64::MIN, f64::MAX);
         for half in 0..halves.max(1) {
@@ -74,7 +74,7 @@ impl Profiles {
         Ok(Self { places, width, all })
     }
 
-    /// Only the bins that every group has; in enough of them every group must have been twice.
+    /// Keeps the bins that every group has; every group must have been twice in enough of them.
     pub fn shared(mut self, group: impl Fn(&Profile) -> usize, groups: usize) -> Outcome<Self> {
         let count = |bin: usize, wanted: usize| {
             self.all.iter().filter(|one| group(one) == wanted && one.difference[bin].is_finite()).count()
@@ -106,20 +106,20 @@ impl Profiles {
         (sum / free).sqrt()
     }
 
-    /// Usual speed [units of the output/s].
+    /// Median speed [units of the output/s].
     pub fn speed(&self) -> f64 {
         quantile_of(&self.all.iter().map(|one| one.speed).collect::<Vec<_>>(), 0.5)
     }
 }
 
 impl Profile {
-    /// Mean of what there is.
+    /// Mean of the finite values.
     pub fn mean(values: &[f64]) -> f64 {
         mean(&values.iter().copied().filter(|value| value.is_finite()).collect::<Vec<_>>())
     }
 }
 
-/// Refuses fewer passes than an interval can be taken from.
+/// Rejects too few passes for an interval.
 pub fn check_count(count: usize, half: usize, halves: usize, forwards: bool) -> Outcome<()> {
     if count >= LEAST_PASSES {
         return Ok(());
@@ -154,7 +154,7 @@ fn range(values: &[f64]) -> (f64, f64) {
 fn profile(samples: &Samples, pass: &Pass, bins: &Bins) -> Profile {
     let own = pass.range.clone();
     let (low, high) = range(&samples.output[own.clone()]);
-    // Where noise alone takes a pass to a bin's end, the bin is whole.
+    // Rounding may end a pass just before the end of a bin.
     let slack = 1e-9 * bins.width;
     let whole = |bin: usize| {
         let from = bins.low + bin as f64 * bins.width;

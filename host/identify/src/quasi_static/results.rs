@@ -1,4 +1,4 @@
-//! What a slow log shows: every figure with its interval, the curves behind them, and the test of both.
+//! Results of a slow log: figures with intervals, the curves behind them, and the cross-validation.
 
 use serde::Serialize;
 
@@ -14,28 +14,28 @@ use crate::statistics::{mean, quantile_of, rms, student};
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 
-/// From one sample to the next the joint moves by this share of the width at most.
+/// Largest motion between samples, as a share of the width.
 const QUASI_STATIC: f64 = 0.5;
 
 /// One figure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Quantity {
-    /// Its key.
+    /// Key of the figure.
     pub key: String,
-    /// What it is.
+    /// Name of the figure.
     pub name: String,
     /// Unit of value and interval.
     pub unit: String,
-    /// Best value; absent if the log does not show it.
+    /// Best value; absent if the log does not determine it.
     pub value: Option<f64>,
-    /// Lower and upper end of the 95 % interval, where passes give one.
+    /// Lower and upper end of the 95 % interval, if passes give one.
     pub interval: Option<[f64; 2]>,
-    /// The value in degrees of the output, where a turn is known [deg].
+    /// Value in degrees of the output, if a turn is known [deg].
     pub value_deg: Option<f64>,
-    /// Its interval likewise [deg].
+    /// Interval in degrees of the output [deg].
     pub interval_deg: Option<[f64; 2]>,
-    /// What to know about it; may be empty.
+    /// Remark; may be empty.
     pub note: String,
 }
 
@@ -52,7 +52,7 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// Half of an interval is `least` or more.
+    /// Curve of estimates; half of each interval is at least `least`.
     fn of(estimates: Vec<Estimate>, least: f64) -> Self {
         let mut curve = Self::default();
         for Estimate { value, half } in estimates.into_iter().map(|one| one.at_least(least)) {
@@ -64,34 +64,34 @@ impl Curve {
     }
 }
 
-/// All that was found.
+/// All results.
 pub struct Results {
-    /// How the load is known.
+    /// Source of the load's direction.
     pub loading: Loading,
     /// Unit of the output.
     pub scale: Scale,
     /// Passes over the bins.
     pub profiles: Profiles,
-    /// What is left out at each end of a pass.
+    /// Length excluded at each end of a pass.
     pub left_out: f64,
     /// Mean difference of each group over the bins.
     pub groups: Vec<Vec<f64>>,
-    /// Lost motion or width by direction over the bins.
+    /// Lost motion, or width by direction, over the bins.
     pub width: Curve,
-    /// Hysteresis under each load over the bins, where loads are told.
+    /// Hysteresis under each load over the bins, if loads are known.
     pub hysteresis: Vec<Curve>,
     /// Error map.
     pub map: Map,
-    /// The test.
+    /// Cross-validation.
     pub prediction: Prediction,
-    /// Mean of each pass about its group's, in time [s, units].
+    /// Mean of each pass about its group's mean, over time [s, units].
     pub levels: Vec<(f64, f64)>,
-    /// Every figure.
+    /// All figures.
     pub quantities: Vec<Quantity>,
 }
 
 impl Results {
-    /// Out of samples, and of the halves that were told.
+    /// Evaluates samples and stated halves.
     pub fn of(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<Self> {
         let (passes, left_out) = passes(samples, halves)?;
         let profiles = Profiles::of(samples, &passes, halves.len())?;
@@ -108,8 +108,8 @@ impl Results {
         for (group, passes) in curves.0.iter().enumerate() {
             check_count(passes.len(), group / 2, halves.len(), group % 2 == 0)?;
         }
-        // Lost motion is the first load's less the second's, with the sign that makes it positive where halves do not say
-        // which way they are loaded.
+        // Lost motion is the first load's mean less the second's; positive if halves do not state the directions of
+        // their loads.
         let apart = |means: &[Vec<f64>], place: usize| match loading.groups() {
             4 => 0.5 * (means[2][place] + means[3][place] - means[0][place] - means[1][place]),
             _ => means[1][place] - means[0][place],
@@ -187,7 +187,7 @@ fn signed(values: &[f64], sign: f64) -> Vec<f64> {
     values.iter().map(|value| sign * value).collect()
 }
 
-/// Refuses an output that is ahead of the motor, or ahead under the torque.
+/// Rejects an output ahead of the motor, or ahead in the direction of the torque.
 fn check_sign(loading: Loading, width: &Estimate) -> Outcome<()> {
     if loading == Loading::ByHalf || width.value + width.half >= 0.0 {
         return Ok(());
@@ -201,12 +201,12 @@ fn check_sign(loading: Loading, width: &Estimate) -> Outcome<()> {
         .with_help("the difference, the torque or an encoder counts the other way, or the encoders are read at different moments"))
 }
 
-/// Of the interval, if there is one.
+/// Ends of the interval, if it is finite.
 fn ends(Estimate { value, half }: Estimate) -> Option<[f64; 2]> {
     half.is_finite().then_some([value - half, value + half])
 }
 
-/// Figures as they come.
+/// Collected figures.
 struct Found {
     scale: Scale,
     /// Least half of an interval of an angle [units of the output].
@@ -215,7 +215,7 @@ struct Found {
 }
 
 impl Found {
-    /// A figure in the unit of the output.
+    /// Adds a figure in the unit of the output.
     fn angle(&mut self, key: impl Into<String>, name: impl Into<String>, estimate: Estimate, note: impl Into<String>) {
         let degrees = self.scale.degrees();
         let interval = ends(estimate.at_least(self.resolution));
@@ -231,7 +231,7 @@ impl Found {
         });
     }
 
-    /// A figure in another unit.
+    /// Adds a figure in another unit.
     fn other(&mut self, key: String, name: String, unit: &str, estimate: Estimate, note: &str) {
         self.all.push(Quantity {
             key,
@@ -322,7 +322,7 @@ impl Found {
         );
         let long = curves.estimate(|means| of(means).long_wave_range());
         self.angle("map_long_wave_range", "error map: long wave, least to greatest", long, "");
-        // What the scatter of the passes alone leaves in the mean of them.
+        // Contribution of the passes' scatter to the mean square of the ripple.
         let noise: f64 = curves
             .0
             .iter()
@@ -345,7 +345,7 @@ impl Found {
         self.angle("map_ripple_rms", "error map: ripple, root mean square", ripple, strongest);
     }
 
-    /// Scatter and drift; the mean of each pass about its group's, in time.
+    /// Adds scatter and drift; returns the mean of each pass about its group's mean, over time.
     fn repeatability(
         &mut self,
         curves: &Curves,
@@ -374,7 +374,7 @@ impl Found {
         let mut levels: Vec<(usize, f64, f64)> = Vec::new();
         for one in &profiles.all {
             let own = group(one);
-            // Where it is the only one of its group it is no repeat.
+            // A single pass of a group at a place is no repeat.
             let repeats = |place: usize| curves.0[own].iter().filter(|curve| curve[place].is_finite()).count() > 1;
             let about = one.difference.iter().zip(&means[own]).enumerate().filter(|(place, _)| repeats(*place));
             let about: Vec<f64> = about.map(|(_, (value, mean))| value - mean).collect();
@@ -417,7 +417,7 @@ impl Found {
         levels.into_iter().map(|(_, time, level)| (time, level)).collect()
     }
 
-    /// `least` is the least half of an interval [N m].
+    /// Adds the figures of a torque; half of each interval is at least `least` [N m].
     fn friction(&mut self, key: &str, name: &str, torque: &Curves, loading: Loading, least: f64) {
         let at = |means: &[Vec<f64>], group: usize| Profile::mean(&means[group]);
         for (load, which) in loading.names().iter().enumerate() {

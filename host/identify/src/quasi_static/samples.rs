@@ -1,5 +1,5 @@
-//! A slow log as samples: output, motor on the output's scale and their difference, in the output's unit, with gaps and
-//! jitter as they are.
+//! A slow log as samples: output, motor on the output's scale and their difference, in the output's unit; gaps and
+//! jitter are kept.
 
 use std::f64::consts::TAU;
 
@@ -11,23 +11,23 @@ use log_reader::register::Register;
 use report::failure::{Failure, Outcome};
 use report::number::{ESTIMATE, TYPED};
 
-/// Fewer samples hold no passes.
+/// Least samples of a log with passes.
 const LEAST_SAMPLES: usize = 96;
-/// A longer step of time than so many usual ones is a gap.
+/// Time step, in usual steps, from which it is a gap.
 pub const GAP: f64 = 10.0;
-/// Nothing turns by so much of its whole travel from one sample to the next.
+/// Largest motion between samples, as a share of the whole travel.
 const JUMP_SHARE: f64 = 0.2;
-/// Output for each 1 of the motor, both on one scale.
+/// Tolerated slope of output against motor on one scale.
 const AS_STATED: std::ops::RangeInclusive<f64> = 0.9..=1.1;
-/// Differences that are less than this share of the range are rounding.
+/// Differences below this share of the range are rounding.
 const ROUNDING: f64 = 1e-9;
-/// Below this correlation the output does not follow the motor.
+/// Least correlation of output and motor.
 const FOLLOWS: f64 = 0.8;
 
 /// A slow log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Samples {
-    /// From the first sample on [s].
+    /// Time since the first sample [s].
     pub time: Vec<f64>,
     /// Output as read.
     pub output: Vec<f64>,
@@ -39,31 +39,31 @@ pub struct Samples {
     pub motor_torque: Option<Vec<f64>>,
     /// Torque of the joint on its link [N m].
     pub output_torque: Option<Vec<f64>>,
-    /// What the output is read in.
+    /// Unit of the output.
     pub scale: Scale,
-    /// Least steps of both encoders' readings together, on the output's scale [units of the output].
+    /// Resolution of both encoders together, on the output's scale [units of the output].
     pub resolution: f64,
     /// Changes to the rows of the file, a sentence each.
     pub told: Vec<String>,
-    /// Usual time from one sample to the next [s].
+    /// Median time between samples [s].
     pub period: f64,
-    /// From the 5 to the 95 % quantile of that time [s].
+    /// 5 and 95 % quantile of the time between samples [s].
     pub jitter: [f64; 2],
-    /// Gaps, and the longest step of time [s].
+    /// Number of gaps, and the longest time step [s].
     pub gaps: (usize, f64),
 }
 
 /// Unit of the output's column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
-    /// What it is called.
+    /// Name of the unit.
     pub unit: &'static str,
-    /// How much of it is a turn, if that is known.
+    /// Units per turn, if known.
     pub per_turn: Option<f64>,
 }
 
 impl Scale {
-    /// What makes degrees of it.
+    /// Degrees per unit.
     pub fn degrees(self) -> Option<f64> {
         self.per_turn.map(|turn| 360.0 / turn)
     }
@@ -72,12 +72,12 @@ impl Scale {
 /// A column of angles.
 struct Angles {
     values: Vec<f64>,
-    /// In radians, or in counts of what a turn has not been told.
+    /// Radians, or counts of unknown size.
     scale: Scale,
 }
 
 impl Samples {
-    /// Out of columns with known names.
+    /// Reads columns of known names.
     pub fn of(columns: &mut Columns, options: &Options) -> Outcome<Self> {
         let motor_names: &[&str] = if columns.column(DIFFERENCE).is_some() { &[DIFFERENCE] } else { &MOTOR };
         columns.leave_out_incomplete(&[&TIMES, motor_names, &OUTPUT, &["motor_torque_N_m"], &["output_torque_N_m"]])?;
@@ -138,12 +138,12 @@ impl Samples {
         Ok(samples)
     }
 
-    /// How far the motor goes, but for its last per cents [units of the output].
+    /// Travel of the motor between its 1 % and 99 % quantiles [units of the output].
     pub fn travel(&self) -> f64 {
         spread(&self.motor)
     }
 
-    /// Refuses encoders that are not in one unit after gear ratio and units.
+    /// Rejects encoders that have different units after gear ratio and stated units.
     fn check_scale(&self, options: &Options, columns: &Columns) -> Outcome<()> {
         let count = self.motor.len() as f64;
         let mean = |values: &[f64]| values.iter().sum::<f64>() / count;
@@ -193,7 +193,7 @@ impl Samples {
     }
 }
 
-/// Options on the scale of the encoders that are not stated and have an effect.
+/// Unstated options on the encoders' scale that would have an effect.
 fn open_options(options: &Options, columns: &Columns, ratio: bool) -> Vec<&'static str> {
     let is_difference = columns.column(DIFFERENCE).is_some();
     let counts = |names: [&str; 2]| is_there(columns, names[0]);
@@ -207,7 +207,7 @@ fn open_options(options: &Options, columns: &Columns, ratio: bool) -> Vec<&'stat
     .collect()
 }
 
-/// A torque if it is there, positive when it drives the output forwards.
+/// Torque, if logged, positive when it drives the output forwards.
 fn torque(columns: &Columns, name: &str, sign: f64) -> Outcome<Option<Vec<f64>>> {
     if !is_there(columns, name) {
         return Ok(None);
@@ -216,20 +216,20 @@ fn torque(columns: &Columns, name: &str, sign: f64) -> Outcome<Option<Vec<f64>>>
     Ok(Some(torque.iter().map(|torque| sign * torque).collect()))
 }
 
-/// Whether there is a column, by any of its names.
+/// Returns true if a column exists under any of its names.
 fn is_there(columns: &Columns, name: &str) -> bool {
     let others = KNOWN.iter().find(|(known, _)| *known == name).map_or(&[][..], |(_, others)| *others);
     columns.names().any(|own| own == name || others.contains(&own))
 }
 
-/// From the 1 to the 99 % quantile.
+/// Distance between the 1 % and the 99 % quantile.
 pub fn spread(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     quantile(&sorted, 0.99) - quantile(&sorted, 0.01)
 }
 
-/// Counts or radians, if either is there.
+/// Angles in counts or radians, if either is logged.
 fn angles(columns: &Columns, names: [&str; 2], per_turn: Option<f64>, whose: &str) -> Outcome<Option<Angles>> {
     let Some(wanted) = names.into_iter().find(|name| is_there(columns, name)) else { return Ok(None) };
     let (_, values) = columns.named(&[wanted])?;
@@ -243,7 +243,8 @@ fn angles(columns: &Columns, names: [&str; 2], per_turn: Option<f64>, whose: &st
     Ok(Some(Angles { values, scale: Scale { unit: "rad", per_turn: Some(TAU) } }))
 }
 
-/// The motor on the output's scale, from its own column or from the difference, and what one unit of that column is on this scale.
+/// Motor on the output's scale, from its own column or from the difference, and the size of the column's unit on this
+/// scale.
 fn motor(columns: &mut Columns, options: &Options, scale: Scale, output: &[f64]) -> Outcome<(Vec<f64>, f64)> {
     if let Some(mut difference) = columns.maybe(DIFFERENCE)? {
         let stated = [("--gear-ratio", options.gear_ratio), ("--motor-units-per-turn", options.motor_units_per_turn)];
@@ -262,7 +263,7 @@ fn motor(columns: &mut Columns, options: &Options, scale: Scale, output: &[f64])
     unwrap(&mut values, own, MOTOR[0], columns);
     let factor = match (scale.per_turn, own.per_turn) {
         (Some(output), Some(motor)) => output / motor,
-        // Both in counts of one size.
+        // Both encoders count in units of one size.
         _ if scale.unit == own.unit => 1.0,
         _ => {
             let option = if own.per_turn.is_none() { "--motor-units-per-turn" } else { "--output-units-per-turn" };
@@ -274,7 +275,7 @@ fn motor(columns: &mut Columns, options: &Options, scale: Scale, output: &[f64])
     Ok((values, factor / ratio))
 }
 
-/// Joins counts that begin anew every turn, or in a register that is wider.
+/// Joins counts that wrap every turn, or in a wider register.
 fn unwrap(values: &mut [f64], scale: Scale, name: &str, columns: &mut Columns) {
     let (least, most) =
         values.iter().fold((f64::MAX, f64::MIN), |(least, most), value| (least.min(*value), most.max(*value)));
@@ -286,7 +287,8 @@ fn unwrap(values: &mut [f64], scale: Scale, name: &str, columns: &mut Columns) {
     }
 }
 
-/// Least step of a column's values: 1 for whole numbers, else between different ones; zero for a column of one value.
+/// Resolution of a column: 1 for whole numbers, else the least step between distinct values; zero for a constant
+/// column.
 pub fn resolution(values: &[f64]) -> f64 {
     if values.iter().all(|value| value.fract() == 0.0) {
         return 1.0;
@@ -336,7 +338,7 @@ fn check_jumps(
     )))
 }
 
-/// Other causes of a jump, with the option that joins it where that is not stated.
+/// Other causes of a jump, with the option that joins it if unstated.
 fn begins_anew(name: &str, columns: &Columns, options: &Options) -> String {
     let of_output = name == "output" || columns.column(DIFFERENCE).is_some();
     let (option, stated, names) = if of_output {

@@ -1,10 +1,10 @@
-//! Changes of a file, for text and for bytes alike. A change is data, so that the smallest one that fails can be told.
+//! Mutations of text and binary files. A mutation is data, so that the smallest failing one can be reported.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 
-/// Numbers at which something happens, as a user may type them.
+/// Critical numbers as a user may type them.
 pub const TYPED: [&str; 15] = [
     "1e300",
     "-1e300",
@@ -22,34 +22,34 @@ pub const TYPED: [&str; 15] = [
     "",
     "x",
 ];
-/// The same as they stand in bytes.
+/// Critical numbers as bytes.
 const WHOLE: [u64; 8] = [0, 1, 0x7f, 0xffff, u32::MAX as u64, 1 << 40, u64::MAX, u64::MAX / 2];
-/// What opens something in a text, or is none.
+/// Delimiters, opening and unmatched, and odd characters.
 const PIECES: [&str; 12] =
     ["[", "]", "[[fault]]\n", "\"", "#", "\n", ",", "=", "uint8[0] n\n", "\u{feff}", "[4294967295]", "\0"];
-/// So often a piece may stand behind itself.
+/// Repetitions of a piece.
 const REPEATED: std::ops::Range<usize> = 1..20_000;
 
-/// One change.
+/// One mutation.
 #[derive(Debug, Clone)]
 pub enum Mutation {
-    /// Another number in place of one that is typed.
+    /// Replaces a typed number.
     Number(Index, &'static str),
-    /// Other bits of a byte.
+    /// Flips bits of a byte.
     Bits(Index, u8),
-    /// A whole number of some bytes in place of what is there.
+    /// Overwrites some bytes with a whole number.
     Whole(Index, u64, usize),
-    /// A part is left out.
+    /// Removes a part.
     Without(Index, Index),
-    /// Everything from here on is left out.
+    /// Cuts the file off.
     CutOff(Index),
-    /// A part comes so many times more.
+    /// Repeats a part.
     Again(Index, Index, usize),
-    /// A piece comes so many times.
+    /// Inserts a piece, repeated.
     Piece(Index, &'static str, usize),
 }
 
-/// A few changes, one after the other.
+/// A few mutations in sequence.
 pub fn mutations() -> impl Strategy<Value = Vec<Mutation>> {
     let place = any::<Index>;
     let one = prop_oneof![
@@ -66,7 +66,7 @@ pub fn mutations() -> impl Strategy<Value = Vec<Mutation>> {
     vec(one, 1..4)
 }
 
-/// A file with changes.
+/// Mutated copy of a file.
 pub fn mutated(valid: &[u8], changes: &[Mutation]) -> Vec<u8> {
     changes.iter().fold(valid.to_vec(), |bytes, change| change.made(bytes))
 }
@@ -119,7 +119,7 @@ impl Mutation {
     }
 }
 
-/// Where numbers are typed in a text.
+/// Places of typed numbers in a text.
 fn numbers(bytes: &[u8]) -> Vec<std::ops::Range<usize>> {
     let part = |byte: &u8| byte.is_ascii_digit() || b".-+eE".contains(byte);
     let mut places = Vec::new();

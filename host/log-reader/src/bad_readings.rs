@@ -1,6 +1,6 @@
-//! Bad readings of an encoder: one or a few samples that jump away from the motion and come back to it, as a flipped bit or a
-//! frame that was lost gives them. No encoder moves so: the rows are left out, counted and told, and what is near them is not
-//! used, as with any lost sample. More than a share of the log is refused.
+//! Bad readings of an encoder: up to three samples that jump away from the motion and return, as after a flipped bit or
+//! a lost frame. The rows are removed with a note, and nothing near them is used, as for any lost sample. A log with
+//! too many is rejected.
 
 use std::f64::consts::TAU;
 
@@ -9,17 +9,18 @@ use super::register::Register;
 use super::resolution::count_angle;
 use report::failure::{Failure, Outcome};
 
-/// Share of a log's rows that may be left out for bad readings of one encoder.
+/// Largest share of rows removed for bad readings of one encoder.
 pub const MOST: f64 = 0.01;
-/// Rows in a run that jumps away and comes back.
+/// Longest run of bad readings [rows].
 const RUN: usize = 3;
-/// A reading jumps when it is off the motion by so many times the usual change of a step...
+/// A reading jumps if it deviates from the motion by JUMP times the usual change of a step ...
 const JUMP: f64 = 20.0;
-/// ... which this share of the changes stays below: each bad reading spoils three of them, so that up to 6 % are seen...
+/// ... which is this quantile of the changes: each bad reading spoils three changes, so up to 6 % bad readings are
+/// found ...
 const USUAL: f64 = 0.8;
-/// ... and by so many counts.
+/// ... and by this many counts.
 const LEAST_COUNTS: f64 = 8.0;
-/// Rows that a refusal names.
+/// Rows named in a failure.
 const NAMED: usize = 5;
 
 /// Column of an encoder.
@@ -29,12 +30,12 @@ pub struct EncoderColumn {
     pub name: String,
     /// True for counts, false for angles in rad.
     pub is_counts: bool,
-    /// A turn, in the unit of the column.
+    /// Size of a turn, in the unit of the column.
     pub turn: f64,
 }
 
-/// Leaves out rows with bad readings of an encoder. `names` are its column of counts and its column of angles [rad]. Returns the column
-/// in the log, or nothing if the encoder was not logged.
+/// Removes rows with bad readings of an encoder. `names` are its columns of counts and of angles [rad]. Returns the
+/// column in the log; `None` if the encoder was not logged.
 pub fn leave_out_of(
     columns: &mut Columns,
     names: [&'static str; 2],
@@ -47,7 +48,7 @@ pub fn leave_out_of(
     Ok(Some(EncoderColumn { name, is_counts, turn }))
 }
 
-/// Leaves out rows with bad readings of the encoder in a column. `count` is its resolution, `turn` the size of a turn, if known.
+/// Removes rows with bad readings in a column. `count` is its resolution, `turn` the size of a turn, if known.
 pub fn leave_out(columns: &mut Columns, name: &str, count: f64, turn: Option<f64>) -> Outcome<()> {
     let Some(values) = columns.maybe(name)? else { return Ok(()) };
     let bad = find(&values, Register::of(&values, turn).as_ref(), count);
@@ -78,7 +79,7 @@ pub fn leave_out(columns: &mut Columns, name: &str, count: f64, turn: Option<f64
     Ok(())
 }
 
-/// Rows whose readings jump away and come back.
+/// Rows whose readings jump away and return.
 fn find(values: &[f64], register: Option<&Register>, count: f64) -> Vec<usize> {
     let step = |from: usize, to: usize| {
         let step = values[to] - values[from];
@@ -91,13 +92,13 @@ fn find(values: &[f64], register: Option<&Register>, count: f64) -> Vec<usize> {
     let Some(usual) = changes.get((changes.len() as f64 * USUAL) as usize) else { return Vec::new() };
     let jump = (JUMP * usual).max(LEAST_COUNTS * count);
     let out = |row: usize| register.is_some_and(|register| !register.holds(values[row]));
-    // By how much a row is off what two rows before it make of it, and whether that is a jump.
+    // Returns true if a row is outside of the register, or jumps from the extrapolation of two earlier rows.
     let jumps = |[first, second]: [usize; 2], row: usize| {
         let rate = step(first, second) / (second - first) as f64;
         let ahead = (row - second) as f64;
         out(row) || change(step(second, row) - rate * ahead).abs() > jump
     };
-    // The first row that goes on evenly.
+    // First row from which the motion is even.
     let even = |row: &usize| !out(*row) && !out(row + 1) && !jumps([*row, row + 1], row + 2);
     let start = (0..=RUN.min(values.len() - 3)).find(even).unwrap_or_default();
     let mut bad: Vec<usize> = (0..start).collect();
@@ -118,7 +119,8 @@ fn find(values: &[f64], register: Option<&Register>, count: f64) -> Vec<usize> {
                 bad.extend(row..values.len());
                 break;
             }
-            // It does not come back: the motion goes on from there, or the readings are refused as a whole.
+            // The readings do not return: the motion continues from here, or the readings are rejected as a whole
+            // later.
             None => (good, row) = ([row, (row + 1).min(values.len() - 1)], row + 2),
         }
     }
@@ -131,7 +133,7 @@ mod tests {
 
     const TURN: f64 = 16384.0;
 
-    /// A motion to and fro over turns, in a register of a turn or without one.
+    /// Motion to and fro over turns, in a register of a turn or without one.
     fn motion(wraps: bool) -> Vec<f64> {
         let at = |row: i32| (30_000.0 * (f64::from(row) * 1e-2).sin()).round();
         (0..3000).map(|row| if wraps { at(row).rem_euclid(TURN) } else { at(row) }).collect()

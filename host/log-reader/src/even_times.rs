@@ -1,53 +1,53 @@
-//! Even times for a log whose samples are not: some were lost, or the time between them varies. Derivatives need even steps.
+//! Even times for a log with lost samples or uneven time steps; derivatives need even steps.
 //!
-//! Steps much longer than the usual one are holes: nothing is known there, and no moment near one is used. Between holes either
-//! the samples were taken when their stamps say, and values at even times are interpolated between them; or they were taken
-//! evenly and it is the stamps that vary, as those of a host that receives them do. The motor tells which: its motion is the
-//! smoother in the right one.
+//! Steps much longer than the usual one are holes: no moment near a hole is used. Between holes either the stamps are
+//! right, and values at even times are interpolated; or the samples were taken evenly and only the stamps vary, as
+//! those of a receiving host do. The motor decides: its motion is smoother under the right assumption.
 
 use super::columns::Columns;
 use super::noise::Noise;
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 
-/// A step longer than so many usual ones is a hole.
+/// Step, in usual steps, from which it is a hole.
 const HOLE: f64 = 1.75;
-/// Steps that vary by less than this share of themselves, root mean square, are even: stamps are rounded by more.
+/// Root mean square variation below which steps are even, relative to a step: rounding of stamps is above it.
 const EVEN: f64 = 1e-3;
-/// At least so much of a log must be there.
+/// Least share of a log's samples that are present.
 const THERE: f64 = 0.8;
-/// Samples between two holes that are of any use.
+/// Least samples between two holes for these samples to be used.
 const LEAST: usize = 8;
-/// Interpolation smooths readings, down to this part of their variance; by their stamps the motion must be smoother than that.
+/// Interpolation reduces the variance of readings to no less than this share; stamps are trusted if the motion is
+/// smoother than that.
 const SMOOTHED: f64 = 0.5;
 
-/// Where the values of even times come from.
+/// Source of a value at an even time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Place {
-    /// A sample as it is.
+    /// Sample by its index.
     Sample(usize),
-    /// Four samples from this one on, by these weights.
+    /// Four samples from this index on, with their weights.
     Between(usize, [f64; 4]),
-    /// Lost: so far on from a sample to the next.
+    /// Lost: index of the sample before, and share of the way to the next.
     Lost(usize, f64),
 }
 
-/// Even times, and how values come to them.
+/// Even times, and the source of each value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EvenTimes {
-    /// From one to the next [s].
+    /// Time between even times [s].
     pub period: f64,
     places: Vec<Place>,
-    /// Usual steps before each sample, 1 but behind a hole.
+    /// Usual steps before each sample: 1, or more behind a hole.
     steps: Vec<f64>,
-    /// Lost places before each place, and in all.
+    /// Lost places before each place, and in total.
     lost: Vec<usize>,
-    /// What was done to the samples, if anything.
+    /// Note on changes to the samples.
     pub told: Option<String>,
 }
 
 impl EvenTimes {
-    /// Of the times of samples that begin at zero.
+    /// Even times of samples whose times begin at zero.
     pub fn new(time: &[f64], columns: &Columns) -> Outcome<Self> {
         let steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
         if let Some(row) = steps.iter().position(|&step| step <= 0.0) {
@@ -79,13 +79,13 @@ impl EvenTimes {
         Ok(Self::by_count(period, steps))
     }
 
-    /// So many samples without any hole.
+    /// Even samples without holes.
     #[cfg(test)]
     pub fn of_even(period: f64, samples: usize) -> Self {
         Self::by_count(period, vec![1.0; samples])
     }
 
-    /// Samples that were taken evenly, whatever their stamps say.
+    /// Assumes evenly taken samples, whatever their stamps.
     fn by_count(period: f64, steps: Vec<f64>) -> Self {
         let mut places = Vec::with_capacity(steps.len());
         for (row, &step) in steps.iter().enumerate() {
@@ -96,7 +96,7 @@ impl EvenTimes {
         Self::with(period, places, steps)
     }
 
-    /// The same samples taken when their stamps say; `time` begins at zero.
+    /// Assumes samples taken at their stamps; `time` begins at zero.
     fn by_stamps(&self, time: &[f64]) -> Self {
         let period = self.period;
         let last = time.last().copied().unwrap_or_default();
@@ -107,7 +107,7 @@ impl EvenTimes {
             while row + 2 < time.len() && time[row + 1] <= now {
                 row += 1;
             }
-            // Four samples around it without a hole between them, moved inwards beside one.
+            // Four samples around the time without a hole between them, shifted inwards next to a hole.
             let whole = |from: &usize| self.steps[from + 1..from + 4].iter().all(|step| *step == 1.0);
             let from = [row.saturating_sub(1), row, row.saturating_sub(2)]
                 .into_iter()
@@ -121,7 +121,7 @@ impl EvenTimes {
         Self::with(period, places, self.steps.clone())
     }
 
-    /// Counts what is lost; of a stretch that is too short between holes all is.
+    /// Counts the lost places; short stretches between holes count as lost.
     fn with(period: f64, mut places: Vec<Place>, steps: Vec<f64>) -> Self {
         let mut from = 0;
         while from < places.len() {
@@ -146,7 +146,7 @@ impl EvenTimes {
         Self { period, places, steps, lost, told: None }
     }
 
-    /// These times, or those of the stamps if a motion is smoother by them; `time` begins at zero.
+    /// Chooses evenly taken samples or the stamps, by the smoother motion; `time` begins at zero.
     pub fn smoother(self, time: &[f64], motion: &[f64]) -> Self {
         let within = |pair: &[f64]| (pair[1] - pair[0]) / self.period;
         let usual: Vec<f64> = time.windows(2).map(within).filter(|step| *step <= HOLE).collect();
@@ -167,7 +167,7 @@ impl EvenTimes {
         }
     }
 
-    /// What was done, for the report.
+    /// Note on lost samples and stamps, for the report.
     fn told(&self, jitter: f64, done: Option<&str>) -> Option<String> {
         let lost = self.lost.last().copied().unwrap_or_default();
         let holes = self.steps.iter().filter(|step| **step > 1.0).count();
@@ -183,11 +183,11 @@ impl EvenTimes {
         (0..self.places.len()).map(|place| place as f64 * self.period).collect()
     }
 
-    /// Values of samples, brought to the even times.
+    /// Values at the even times, from values of the samples.
     pub fn bring(&self, values: &[f64]) -> Vec<f64> {
         let bring = |place: &Place| match *place {
             Place::Sample(row) => values[row],
-            // Differences to one of them keep their digits after many turns.
+            // Differences to one sample keep their digits after many turns.
             Place::Between(from, weights) => {
                 let apart = weights.iter().zip(&values[from..]).map(|(weight, value)| weight * (value - values[from]));
                 values[from] + apart.sum::<f64>()
@@ -197,25 +197,25 @@ impl EvenTimes {
         self.places.iter().map(bring).collect()
     }
 
-    /// Whether nothing is lost from one place up to another, that one excluded.
+    /// Returns true if nothing is lost from one place up to another, excluding the latter.
     pub fn is_whole(&self, from: usize, to: usize) -> bool {
         let at = |place: usize| self.lost[place.min(self.places.len())];
         at(from) == at(to)
     }
 
-    /// Usual steps of time before a sample: 1, or more behind a hole.
+    /// Usual time steps before a sample: 1, or more behind a hole.
     pub fn periods_before(&self, row: usize) -> f64 {
         self.steps.get(row).copied().unwrap_or(1.0)
     }
 
-    /// Steps between samples, those over a hole as what they are for a usual step of time.
+    /// Divides the steps over holes by the number of usual time steps.
     pub fn per_period(&self, mut steps: Vec<f64>) -> Vec<f64> {
         steps.iter_mut().enumerate().for_each(|(row, step)| *step /= self.periods_before(row + 1));
         steps
     }
 }
 
-/// Weights of four values at these times for the value at another (Lagrange).
+/// Weights of four values at these times for the value at another time (Lagrange).
 fn weights(times: &[f64], now: f64) -> [f64; 4] {
     std::array::from_fn(|one| {
         let others = (0..4).filter(|other| *other != one);

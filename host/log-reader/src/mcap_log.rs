@@ -1,5 +1,5 @@
-//! Columns out of an MCAP log: the numbers of one topic, each under its path, ROS 2 messages in CDR or JSON. Which topic is
-//! told, or is the one that has what is wanted; topics are not put together.
+//! Columns of an MCAP log: the numbers of one topic, each under its path, from ROS 2 messages in CDR or JSON. The topic
+//! is stated, or is the only one with the wanted columns; topics are not merged.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -13,32 +13,32 @@ use super::numbers::{self, Numbers};
 use super::ros_message::Form;
 use report::failure::{Failure, Outcome};
 
-/// What every MCAP file begins with.
+/// First bytes of every MCAP file.
 const MAGIC: &[u8] = b"\x89MCAP";
-/// Topics and fields that a message names at most.
+/// Topics and fields named in a message at most.
 const NAMED: usize = 12;
-/// Columns may take so many times the file's size and some more: other topics than those of a joint may pack much better.
+/// Memory of columns over the file's size, plus SOME bytes: other topics than a joint's may be packed much tighter.
 const MOST_MEMORY: u64 = 256;
 const SOME: u64 = 64 << 20;
 
-/// Whether a file is one.
+/// Returns true for an MCAP file.
 pub fn is_mcap(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
 }
 
-/// How messages of a channel are read.
+/// Decoder of a channel's messages.
 enum Reader {
     Ros(Rc<Form>),
     Json,
-    /// Not at all, for a reason.
+    /// Unreadable, with the reason.
     Unknown(String),
 }
 
-/// Forms by the number of their schema.
+/// Message definitions by the number of their schema.
 type Forms = BTreeMap<u16, Result<Rc<Form>, String>>;
 
 impl Reader {
-    /// Channels of one schema share the form that is read from it.
+    /// Decoder of a channel; channels of one schema share its definition.
     fn of(channel: &Channel<'_>, forms: &mut Forms) -> Self {
         let schema = channel.schema.as_ref();
         let form = schema.map_or("", |schema| schema.encoding.as_str());
@@ -85,7 +85,8 @@ fn flatten(value: &Value, path: String, numbers: &mut Numbers) -> Result<(), Str
     }
 }
 
-/// Reads the topic that is named, or else the only one whose columns will do; among several the only one that is better.
+/// Reads the stated topic, or else the only one accepted by `will_do`; of several accepted topics the only one
+/// preferred by `is_better`.
 pub fn read(
     bytes: &[u8],
     topic: Option<&str>,
@@ -134,7 +135,7 @@ pub fn read(
                     let one = (*one).clone();
                     topics.remove(&one).ok_or_else(|| Failure::new("the log is empty"))?
                 }
-                // The only topic there is says best itself what it lacks.
+                // A single topic is read anyway: its failure names the missing columns.
                 [] if topics.len() == 1 => {
                     topics.pop_first().map(|(_, topic)| topic).ok_or_else(|| Failure::new("the log is empty"))?
                 }
@@ -157,7 +158,7 @@ pub fn read(
     chosen.finish()
 }
 
-/// Topics with their numbers, as far as there is room.
+/// Topics with their numbers, up to the limit.
 fn list(topics: &BTreeMap<String, Topic>) -> String {
     if topics.is_empty() {
         return "the log has no messages".to_owned();
@@ -169,12 +170,12 @@ fn list(topics: &BTreeMap<String, Topic>) -> String {
     format!("the log has {}", topics.iter().take(NAMED).map(one).collect::<Vec<_>>().join("; "))
 }
 
-/// What was read of a topic.
+/// Content of a topic.
 struct Topic {
     name: String,
     reader: Reader,
     columns: Columns,
-    /// Why it cannot be used.
+    /// Reason why the topic is unusable.
     trouble: Option<String>,
     messages: usize,
 }
@@ -210,7 +211,7 @@ impl Topic {
     }
 }
 
-/// A message without a time of its own has that of its header, or at last the recorder's.
+/// Adds a time to a message without one: its header's, or else the recorder's.
 fn stamp(numbers: &mut Numbers, log_time: u64) -> Result<(), String> {
     if ["time_s", "time_ms", "time_us"].into_iter().any(|name| numbers.value(name).is_some()) {
         return Ok(());

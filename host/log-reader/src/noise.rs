@@ -1,5 +1,5 @@
-//! Noise of an encoder's readings, quantisation included, block by block: from fourth differences, which the joint's
-//! motion does not reach.
+//! Noise of an encoder's readings including quantisation, block by block, from fourth differences, which the joint's
+//! motion hardly affects.
 
 /// Samples of a block.
 const BLOCK_LENGTH: usize = 256;
@@ -11,7 +11,8 @@ const GAIN: f64 = 70.0;
 pub struct Noise(Vec<f64>);
 
 impl Noise {
-    /// Of readings at even times, of which nothing is lost from one place to before another where so it is said.
+    /// Noise of readings at even times; `is_whole(from, to)` is true if nothing is lost from one place to before
+    /// another.
     pub fn of(readings: &[f64], is_whole: impl Fn(usize, usize) -> bool) -> Self {
         let difference = |w: &[f64]| w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4];
         let windows = readings.windows(5).enumerate();
@@ -32,12 +33,12 @@ impl Noise {
         Self(differences.chunks(BLOCK_LENGTH).map(&mut variance).collect())
     }
 
-    /// Of all of them.
+    /// Mean variance of all blocks.
     pub fn mean(&self) -> f64 {
         self.0.iter().sum::<f64>() / self.0.len().max(1) as f64
     }
 
-    /// Around a sample.
+    /// Variance of the block of a sample.
     pub fn at(&self, sample: usize) -> f64 {
         self.0.get(sample / BLOCK_LENGTH).or(self.0.last()).copied().unwrap_or_default()
     }

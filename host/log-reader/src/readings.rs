@@ -1,4 +1,4 @@
-//! What an encoder's readings say: whole counts or angles, made continuous over turns, and refused if no turning encoder gives
+//! Readings of an encoder: whole counts or angles, made continuous over turns, and rejected if no turning encoder gives
 //! them.
 
 use std::f64::consts::TAU;
@@ -10,23 +10,23 @@ use super::resolution::{count_angle, resolution};
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 
-/// Turns that a motor cannot make between two samples.
+/// Largest motion of a motor between two samples [turns].
 const JUMP_TURNS: f64 = 0.5;
-/// Most steps are no longer than that of this part of them...
+/// Quantile of the steps that is the usual largest step.
 const USUAL: (usize, usize) = (995, 1000);
-/// ... and none is so many times as long, unless it is shorter than this part of a turn.
+/// A step is a jump if it exceeds JUMP_STEPS usual steps and JUMP_LEAST of a turn.
 const JUMP_STEPS: f64 = 20.0;
 const JUMP_LEAST: f64 = 0.02;
-/// An angle that begins anew jumps by a turn, but for what it moves meanwhile [turns].
+/// Tolerance of a wrap: an angle that wraps jumps by a turn less the motion [turns].
 const WHOLE_TURN: f64 = 0.2;
-/// A jump is that of a turn if it is so near to it, as a ratio.
+/// Logarithmic tolerance within which a jump equals a turn.
 const SAME_TURN: f64 = 0.03;
-/// Samples over which an encoder is seen to turn.
+/// Samples of a window that shows whether an encoder turns.
 const STALE_WINDOW: usize = 60;
-/// Share of them that may have the last reading once more.
+/// Largest share of repeated readings while the encoder turns.
 const STALE_SHARE: f64 = 0.4;
 
-/// What an encoder's readings are in.
+/// Kind of an encoder's readings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Whole counts of a stated resolution.
@@ -38,14 +38,14 @@ pub enum Kind {
 /// Readings of one encoder.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Readings {
-    /// Counts of turns joined together.
+    /// Counts, joined over turns.
     Counts(Vec<i64>),
-    /// [rad], likewise.
+    /// Angles, joined over turns [rad].
     Angles(Vec<f64>),
 }
 
 impl Readings {
-    /// What they are in.
+    /// Kind of the readings.
     pub fn kind(&self) -> Kind {
         match self {
             Self::Counts(_) => Kind::Counts,
@@ -53,7 +53,7 @@ impl Readings {
         }
     }
 
-    /// As angles, of an encoder with so many counts in a turn [rad].
+    /// Readings as angles of an encoder with `turn` counts per turn [rad].
     pub fn angles(&self, turn: u64) -> Vec<f64> {
         match self {
             Self::Counts(counts) => counts.iter().map(|&count| count as f64 * TAU / turn as f64).collect(),
@@ -62,20 +62,20 @@ impl Readings {
     }
 }
 
-/// Which encoder readings are of, and what a turn of it is.
+/// Encoder of a column, with the size of its turn.
 struct Encoder<'a> {
     /// `motor` or `output`.
     what: &'a str,
-    /// Name of its column.
+    /// Name of the column.
     name: &'a str,
-    /// Its resolution as set: counts in a turn.
+    /// Stated counts per turn.
     counts_per_turn: u64,
-    /// A turn, and a step that is seen at all, in the column's unit.
+    /// Size of a turn, and of the smallest step, in the column's unit.
     turn: f64,
     count: f64,
 }
 
-/// Counts, or else angles.
+/// Reads an encoder's counts, or else its angles.
 pub fn readings(columns: &mut Columns, names: [&str; 2], counts_per_turn: u64, times: &EvenTimes) -> Outcome<Readings> {
     let what = if names[0].starts_with("motor") { "motor" } else { "output" };
     let there = columns.first_of(&names)?;
@@ -101,7 +101,7 @@ pub fn readings(columns: &mut Columns, names: [&str; 2], counts_per_turn: u64, t
     Ok(Readings::Angles(angles))
 }
 
-/// Returns the error of a log that lacks an encoder; its help names the option for such a log.
+/// Failure for a missing encoder; the help names the option for such a log.
 pub fn missing_encoder(columns: &Columns, names: [&str; 2]) -> Failure {
     let (what, option, of) = if names == MOTOR {
         ("motor", "--output-only", "a joint without an encoder at the motor")
@@ -113,8 +113,8 @@ pub fn missing_encoder(columns: &Columns, names: [&str; 2]) -> Failure {
     failure.with_help(format!("{help}; {option} reads a log of {of}"))
 }
 
-/// Refuses readings that no turning encoder gives: single steps beside which all others are small, and readings that are
-/// the last ones again and again although the encoder turns.
+/// Rejects readings that no turning encoder gives: single steps far above all others, and repeated readings while the
+/// encoder turns.
 fn check_steps(steps: &[f64], encoder: &Encoder<'_>, columns: &Columns) -> Outcome<()> {
     let Encoder { name, turn, count, .. } = *encoder;
     let mut sizes: Vec<f64> = steps.iter().map(|step| step.abs()).collect();
@@ -128,7 +128,7 @@ fn check_steps(steps: &[f64], encoder: &Encoder<'_>, columns: &Columns) -> Outco
             format!("`{name}` jumps by {} in {place}, where a turn is {}", ESTIMATE.write(size), ESTIMATE.write(turn));
         return Err(Failure::new(message).with_help(encoder.cause(&jumps)));
     }
-    // Windows in which every sample should have brought a count.
+    // Windows in which every sample should bring a new count.
     let (mut moving, mut same) = (0, 0);
     for window in steps.chunks_exact(STALE_WINDOW) {
         if window.iter().sum::<f64>().abs() > 2.0 * count * STALE_WINDOW as f64 {
@@ -147,7 +147,7 @@ fn check_steps(steps: &[f64], encoder: &Encoder<'_>, columns: &Columns) -> Outco
 }
 
 impl Encoder<'_> {
-    /// The likely cause of jumps, with what to state that is not stated yet.
+    /// Likely cause of jumps, with the option to state.
     fn cause(&self, jumps: &[f64]) -> String {
         let Self { what, name, counts_per_turn, turn: set, .. } = *self;
         let resolution = resolution(counts_per_turn);
@@ -180,17 +180,17 @@ impl Encoder<'_> {
     }
 }
 
-/// Angles that begin anew every turn are taken for continuous ones.
+/// Joins angles that wrap every turn.
 fn unwrapped(mut angles: Vec<f64>, times: &EvenTimes) -> Vec<f64> {
     let mut turns = 0.0;
     let mut last = angles.first().copied().unwrap_or_default();
     let mut before = 0.0;
     for row in 1..angles.len() {
         let read = angles[row];
-        // Over lost samples the encoder is expected to have gone on as it did.
+        // Over lost samples the encoder is assumed to keep its speed.
         let expected = before * (times.periods_before(row) - 1.0);
         let step = read - last - expected;
-        // A step that is nearly a whole turn; others are none of an encoder and refused later.
+        // Only steps of nearly a turn are wraps; other jumps are rejected later.
         if (step.abs() - TAU).abs() < WHOLE_TURN * TAU {
             turns -= step.signum();
         }

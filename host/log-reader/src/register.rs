@@ -1,32 +1,32 @@
-//! Registers that an encoder counts in. A register of M counts begins anew after M: at a turn's end, or after several turns where it
-//! is wider than a turn. Its values are 0 to M - 1, or -M/2 to M/2 - 1 where they are signed. Steps between readings are known
-//! but for multiples of M: the shorter way round is taken.
+//! Registers in which an encoder counts. A register of M counts wraps after M: at the end of a turn, or after several
+//! turns if it is wider than a turn. Its values are 0 to M - 1, or -M/2 to M/2 - 1 if signed. Steps between readings
+//! are known up to multiples of M; the shorter way round is taken.
 
 use std::ops::RangeInclusive;
 
 use report::number::{ESTIMATE, TYPED};
 
-/// Registers wider than a turn have a power of two of counts, from and up to these ones.
+/// Widths of registers wider than a turn, as powers of two of counts.
 const BITS: RangeInclusive<u32> = 10..=32;
-/// This share of a log's readings may lie outside of a register: as many bad readings are left out.
+/// Largest share of readings outside of a register, equal to the share of bad readings that may be removed.
 const OUTSIDE: f64 = 0.01;
-/// Angles that are rounded may lie beyond a register's end by this share of it.
+/// Rounding of angles beyond a register's end, as a share of the register.
 const ROUNDED: f64 = 1e-6;
-/// A step of this share of a register that is wider than a turn is one across its end.
+/// Step, as a share of a register wider than a turn, that crosses its end.
 const ACROSS: f64 = 0.75;
 
 /// Register of an encoder.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Register {
-    /// Counts after which it begins anew.
+    /// Counts per wrap.
     pub counts: f64,
-    /// Its least value is -counts/2 in place of 0.
+    /// True if the least value is -counts/2 instead of 0.
     pub signed: bool,
 }
 
 impl Register {
-    /// Finds the narrowest register that holds the readings and whose end they cross; nothing for readings that go on over turns.
-    /// A register has at least the counts of a turn, if a turn is known. Readings with fractions begin anew at a turn only.
+    /// Finds the narrowest register that holds the readings and whose end they cross; `None` for continuous readings. A
+    /// register has at least the counts of a turn, if a turn is known. Readings with fractions wrap at a turn only.
     pub fn of(values: &[f64], turn: Option<f64>) -> Option<Self> {
         let whole = values.iter().all(|value| value.fract() == 0.0);
         let powers = BITS.map(|bits| f64::from(bits).exp2());
@@ -40,7 +40,7 @@ impl Register {
             .map(|(register, _)| register)
     }
 
-    /// Returns whether the register can hold a value.
+    /// Returns true if the register can hold a value.
     pub fn holds(&self, value: f64) -> bool {
         let (least, rounded) = (if self.signed { -0.5 * self.counts } else { 0.0 }, ROUNDED * self.counts);
         (least - rounded..least + self.counts + rounded).contains(&value)
@@ -51,7 +51,7 @@ impl Register {
         outside as f64 <= OUTSIDE * values.len() as f64
     }
 
-    /// Returns whether readings step across the end of the register.
+    /// Returns true if readings step across the end of the register.
     fn is_crossed(&self, values: &[f64], share: f64) -> bool {
         values
             .windows(2)
@@ -63,7 +63,7 @@ impl Register {
         step - self.counts * (step / self.counts).round()
     }
 
-    /// Says what it is taken for, unless it is a turn's from 0 on; `turn` is that of the encoder, if known.
+    /// Note on the register, unless it is that of a turn from 0 on; `turn` are the encoder's counts per turn, if known.
     pub fn told(&self, name: &str, turn: Option<f64>) -> Option<String> {
         let Self { counts, signed } = *self;
         if turn == Some(counts) && !signed {
@@ -79,8 +79,8 @@ impl Register {
         ))
     }
 
-    /// Joins readings to continuous ones. Over lost samples, by the usual steps of time before each row, the encoder is expected to
-    /// have gone on as before.
+    /// Joins readings to continuous ones. Over lost samples, given as usual time steps before each row, the encoder is
+    /// assumed to keep its speed.
     pub fn join(&self, values: &mut [f64], periods_before: impl Fn(usize) -> f64) {
         let (mut last, mut before) = (values.first().copied().unwrap_or_default(), 0.0);
         for row in 1..values.len() {
@@ -98,7 +98,7 @@ impl Register {
 mod tests {
     use super::*;
 
-    /// Readings of a motion to and fro over several turns in a register.
+    /// True and wrapped readings of a motion to and fro over several turns.
     fn readings(least: f64, counts: f64) -> (Vec<f64>, Vec<f64>) {
         let truth: Vec<f64> = (0..4000).map(|row| (90_000.0 * (f64::from(row) * 2e-3).sin()).round() + 7.0).collect();
         let read = truth.iter().map(|value| (value - least).rem_euclid(counts) + least).collect();

@@ -1,10 +1,9 @@
-//! Columns out of text whose separator is not known beforehand, with a header or without: numbers take the place of names
-//! then.
+//! Columns of a text with an unknown separator, with or without a header; without one, columns are named by numbers.
 
 use super::columns::{Columns, HEADER_HELP};
 use report::failure::{Failure, Outcome};
 
-/// What stands between the cells of a row.
+/// Separator between the cells of a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Separator {
     Letter(char),
@@ -12,13 +11,13 @@ enum Separator {
 }
 
 impl Separator {
-    /// The one of a line.
+    /// Separator of a line.
     fn of(line: &str) -> Self {
         let letter = [';', '\t', ','].into_iter().find(|letter| line.contains(*letter));
         letter.map_or(Self::Blanks, Self::Letter)
     }
 
-    /// A cell's number. Where rows are not separated by commas, a comma is the decimal sign of half the world.
+    /// Number in a cell. Unless commas separate the cells, a comma may be the decimal sign.
     fn number(self, cell: &str) -> Option<f64> {
         let number = cell.parse().ok();
         match self {
@@ -37,25 +36,25 @@ impl Separator {
     }
 }
 
-/// Lines before the header are looked for among so many.
+/// Lines searched for a header.
 const PREAMBLE: usize = 200;
-/// Lines in the middle of the text that tell how many cells a row has.
+/// Lines from the middle of the text that give the number of cells per row.
 const MIDDLE: usize = 9;
 
-/// Cells of a line of units; others stand in brackets.
+/// Cells of a line of units, beside any text in brackets.
 const UNITS: [&str; 20] = [
     "", "-", "s", "ms", "us", "ns", "rad", "mrad", "deg", "turns", "counts", "Nm", "N m", "N_m", "mNm", "A", "V",
     "rpm", "rad/s", "Hz",
 ];
 
-/// A line with its number.
+/// Line with its number.
 type Line<'t> = (usize, &'t str);
 
-/// Columns by the names of the header, or by their numbers from 1 on if there is none. Lines before the header and a line of units
-/// below it are passed over and told. An empty cell is a missing value, not a number; a cell whose text is no number is infinite.
+/// Columns named by the header, or numbered from 1 without one. Lines before the header and a line of units below it
+/// are skipped with a note. An empty cell is NaN, a missing value; a cell with other text is infinite.
 pub fn columns(text: &str) -> Outcome<Columns> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    // A tab at an end may be an empty cell.
+    // A trailing tab may be an empty cell.
     let trimmed = text.lines().map(|line| line.trim_matches(' ').trim_end_matches(['\r', ' ']));
     let all = (1..).zip(trimmed).filter(|(_, line)| !line.trim().is_empty());
     let lines: Vec<Line<'_>> = all.clone().filter(|(_, line)| !line.starts_with('#')).collect();
@@ -93,7 +92,7 @@ pub fn columns(text: &str) -> Outcome<Columns> {
                     "give every row a value for every column, all with the same separator, or cut the log there",
                 ));
             };
-            // A cell that is no number matters only in a column that is used.
+            // Text in a cell matters only if the column is used.
             let missing = if cell.is_empty() { f64::NAN } else { f64::INFINITY };
             *value = separator.number(cell).unwrap_or(missing);
         }
@@ -105,8 +104,8 @@ pub fn columns(text: &str) -> Outcome<Columns> {
     Ok(columns)
 }
 
-/// The line that names the columns, or the first row of a table without names, and what stands between its cells. A header has as many
-/// cells as the rows in the middle of the text, and no number; the last such line before the first row of numbers is taken.
+/// Index of the header, or of the first row of a table without one, and the separator. A header has the number of cells
+/// of the rows in the middle of the text, and no number; the last such line before the first row of numbers is chosen.
 fn header(lines: &[Line<'_>]) -> (usize, Separator) {
     let middle = &lines[lines.len() / 2..];
     let fits = |line: &str| {
@@ -134,10 +133,10 @@ fn header(lines: &[Line<'_>]) -> (usize, Separator) {
     let is_unit = |cell: &str| UNITS.contains(&cell) || cell.starts_with(['[', '(']);
     let names = |line: &usize| !Separator::of(few[*line].1).cells(few[*line].1).all(is_unit);
     let named: Vec<usize> = named.filter(names).collect();
-    // Without a row of numbers, such as with a column of words, the first line of names is the header.
+    // Without a row of numbers, as with a column of words, the first line of names is the header.
     let names = if first_row.is_some() { named.last() } else { named.first() };
     let head = names.copied().or(first_row.filter(|row| fitting.first() == Some(row))).or(fitting.first().copied());
-    // Rows of numbers that are shorter or longer than the others are no lines before a header.
+    // Rows of numbers with another length are no lines before a header.
     let is_row = |line: &Line<'_>| all_numbers(line.1) && numbers(line.1) > 1;
     let head = head.filter(|head| !few[..*head].iter().any(is_row)).unwrap_or_default();
     (head, Separator::of(lines[head].1.trim()))

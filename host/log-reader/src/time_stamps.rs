@@ -1,15 +1,16 @@
-//! Time stamps that repeat, as those of a host that receives several samples at once do. The number of the control period tells the
-//! times, or another column of time does; rows that are repeated as a whole are left out. Nothing else is guessed.
+//! Repeated time stamps, as of a host that receives several samples at once. The number of the control period or
+//! another time column gives the times; repeated rows are removed. Nothing else is guessed.
 
 use super::columns::{Columns, PERIOD, TIMES};
 use report::failure::{Failure, Outcome};
 
-/// Counters begin anew after so many.
+/// Periods after which counters wrap.
 const COUNTERS: [f64; 3] = [256.0, 65_536.0, 4_294_967_296.0];
-/// Stamps may be off evenly counted periods by this share of the log: more is another counter.
+/// Largest deviation of stamps from evenly counted periods, as a share of the log; beyond it the counter counts
+/// something else.
 const OFF: f64 = 0.02;
 
-/// Gives every row a time of its own where stamps repeat; refuses a log in which nothing tells the times.
+/// Gives every row its own time if stamps repeat; rejects a log without a source of the times.
 pub fn resolve(columns: &mut Columns) -> Outcome<()> {
     let time = columns.time()?;
     let repeats = time.windows(2).filter(|pair| pair[1] == pair[0]).count();
@@ -52,7 +53,7 @@ pub fn resolve(columns: &mut Columns) -> Outcome<()> {
     ))
 }
 
-/// Times by the number of the control period, if that counts up evenly.
+/// Times from the number of the control period, if it counts up evenly.
 fn by_periods(columns: &Columns, time: &[f64]) -> Option<Vec<f64>> {
     let counts = |periods: &&[f64]| periods.iter().all(|period| period.fract() == 0.0 && *period >= 0.0);
     let mut periods = columns.column(PERIOD).filter(counts)?.to_vec();
@@ -88,7 +89,7 @@ fn by_periods(columns: &Columns, time: &[f64]) -> Option<Vec<f64>> {
 mod tests {
     use super::*;
 
-    /// Rows that a host stamps in groups of four: columns of a name each, with their values by row.
+    /// Rows stamped in groups of four, with additional columns by row.
     fn log(more: &[(&str, &dyn Fn(usize) -> f64)]) -> Columns {
         let mut columns = Columns::of("line");
         for row in 0..4000 {

@@ -1,5 +1,5 @@
-//! The messages of an MCAP file in their order. A file may be damaged, or made to do harm: lengths are held against the bytes
-//! that are there before anything is reserved for them, and what chunks unpack to against the file's size.
+//! Messages of an MCAP file in order. A file may be damaged or malicious: lengths are checked against the bytes present
+//! before memory is reserved, and the unpacked size of chunks against the file's size.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -10,44 +10,44 @@ use mcap::records::{ChunkHeader, Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{Channel, MAGIC, McapError, parse_record};
 
-/// Opcode and length before a record's content.
+/// Bytes of opcode and length before a record's content.
 const HEAD: usize = 1 + 8;
-/// Chunks may unpack to so many times the file's size and a little more: joint states pack to a tenth at best.
+/// Largest unpacked size over the file's size, plus LITTLE bytes: joint states pack to a tenth at best.
 const MOST_UNPACKED: u64 = 256;
 const LITTLE: u64 = 1 << 20;
-/// Letters that the name of a topic may have.
+/// Longest name of a topic [bytes].
 const LONGEST_TOPIC: usize = 1024;
 
-/// One message.
+/// Message of a file.
 pub struct Message<'m> {
-    /// Where it was sent.
+    /// Channel of the message.
     pub channel: Arc<Channel<'static>>,
-    /// When it was recorded [ns].
+    /// Time of recording [ns].
     pub log_time: u64,
-    /// What was sent.
+    /// Content of the message.
     pub data: &'m [u8],
 }
 
-/// Takes a message; fails with what ends the reading.
+/// Callback for each message; its error ends the reading.
 pub type Take<'t, E> = dyn FnMut(&Message<'_>) -> Result<(), E> + 't;
 
-/// Why a file cannot be read on.
+/// Reason why reading ended early.
 pub enum Broken<E> {
-    /// Where and how it is damaged, in words.
+    /// Place and kind of the damage.
     Damaged(String),
-    /// Whoever takes the messages wants no more.
+    /// Error of the callback.
     Refused(E),
 }
 
-/// A file that is being read.
+/// State of reading a file.
 struct Reading<'r, E> {
     channels: ChannelAccumulator<'static>,
-    /// What chunks may still unpack to [bytes].
+    /// Remaining unpacked size of chunks [bytes].
     room: u64,
     take: &'r mut Take<'r, E>,
 }
 
-/// The metadata of a name, joined if there are several; nothing of a file that is damaged before its end.
+/// Metadata of a name, joined over all records; empty for a file that is damaged before its end.
 pub fn metadata(bytes: &[u8], name: &str) -> BTreeMap<String, String> {
     let options = LinearReaderOptions::default().with_emit_chunks(true).with_record_length_limit(bytes.len());
     let mut found = BTreeMap::new();
@@ -68,7 +68,7 @@ pub fn metadata(bytes: &[u8], name: &str) -> BTreeMap<String, String> {
     if read.is_ok() { found } else { BTreeMap::new() }
 }
 
-/// Passes on all messages of a file.
+/// Passes all messages of a file to `take`.
 pub fn read<'r, E>(bytes: &'r [u8], take: &'r mut Take<'r, E>) -> Result<(), Broken<E>> {
     let room = MOST_UNPACKED.saturating_mul(bytes.len() as u64).saturating_add(LITTLE);
     let mut reading = Reading { channels: ChannelAccumulator::default(), room, take };
@@ -81,7 +81,7 @@ pub fn read<'r, E>(bytes: &'r [u8], take: &'r mut Take<'r, E>) -> Result<(), Bro
     each_record(options, bytes, damaged, |opcode, data| {
         let here = at.get();
         at.set(here + HEAD + data.len());
-        // Behind the data section everything is said once more.
+        // The summary behind the data section repeats records.
         ended |= opcode == op::DATA_END;
         let one = match opcode {
             _ if ended => Ok(()),
@@ -96,7 +96,7 @@ pub fn read<'r, E>(bytes: &'r [u8], take: &'r mut Take<'r, E>) -> Result<(), Bro
 }
 
 impl<E> Reading<'_, E> {
-    /// A record of the file or of a chunk. What says nothing of messages is passed over without a look into it.
+    /// Handles a record of the file or of a chunk; records irrelevant to messages are skipped unread.
     fn record(&mut self, opcode: u8, data: &[u8]) -> Result<(), Broken<E>> {
         if ![op::SCHEMA, op::CHANNEL, op::MESSAGE].contains(&opcode) {
             return Ok(());
@@ -120,7 +120,7 @@ impl<E> Reading<'_, E> {
         Ok(())
     }
 
-    /// A chunk: its content, and all of it as it stands in the file.
+    /// Handles a chunk: its content, and the whole record of the file.
     fn chunk(&mut self, content: &[u8], whole: &[u8]) -> Result<(), Broken<E>> {
         check_texts(op::CHUNK, content).map_err(Broken::Damaged)?;
         let Record::Chunk { header, data } = parse_record(op::CHUNK, content)? else { return Ok(()) };
@@ -146,7 +146,7 @@ impl<E> From<McapError> for Broken<E> {
     }
 }
 
-/// A chunk that is not compressed must hold whole records and nothing else: the library takes that for granted.
+/// Checks that an uncompressed chunk holds whole records and nothing else, which the library assumes.
 fn check_plain(data: &[u8], size: u64) -> Result<(), String> {
     if data.len() as u64 != size {
         return Err(format!("it says that it holds {size} bytes, and it has {}", data.len()));
@@ -160,10 +160,11 @@ fn check_plain(data: &[u8], size: u64) -> Result<(), String> {
     Ok(())
 }
 
-/// Holds the lengths of a record's texts against its bytes: the library reserves what they say before it reads.
+/// Checks the lengths of a record's texts against its bytes: the library reserves memory by these lengths before it
+/// reads.
 fn check_texts(opcode: u8, data: &[u8]) -> Result<(), String> {
     let whole = || {
-        // What stands before the first text, and texts that follow each other.
+        // Bytes before the first text, and number of consecutive texts.
         let (before, texts) = match opcode {
             op::SCHEMA => (2, 2),
             op::CHANNEL => (4, 2),
@@ -176,7 +177,7 @@ fn check_texts(opcode: u8, data: &[u8]) -> Result<(), String> {
             rest = behind_text(rest)?;
         }
         if [op::CHANNEL, op::METADATA].contains(&opcode) {
-            // Pairs of texts, with their number of bytes ahead.
+            // Pairs of texts, preceded by their length in bytes.
             let (length, pairs) = rest.split_first_chunk()?;
             let mut pairs = pairs.get(..usize::try_from(u32::from_le_bytes(*length)).ok()?)?;
             while !pairs.is_empty() {
@@ -188,13 +189,13 @@ fn check_texts(opcode: u8, data: &[u8]) -> Result<(), String> {
     whole().ok_or_else(|| "a text in it goes beyond its end".to_owned())
 }
 
-/// What follows a text with its number of bytes ahead.
+/// Bytes behind a text that is preceded by its length.
 fn behind_text(bytes: &[u8]) -> Option<&[u8]> {
     let (length, text) = bytes.split_first_chunk()?;
     text.get(usize::try_from(u32::from_le_bytes(*length)).ok()?..)
 }
 
-/// Passes on the records of bytes.
+/// Passes the records of the bytes to `take`.
 fn each_record<B>(
     options: LinearReaderOptions,
     mut bytes: &[u8],

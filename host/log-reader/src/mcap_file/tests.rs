@@ -1,4 +1,4 @@
-//! Files by hand from the rules of the format: each with one record that says of itself what is not so.
+//! Files written by hand from the rules of the format, each with one record whose description is false.
 
 use super::*;
 
@@ -29,14 +29,14 @@ fn chunk(compression: &str, unpacked: u64, data: &[u8]) -> Vec<u8> {
     record(op::CHUNK, &[&head, &(data.len() as u64).to_le_bytes()[..], data].concat())
 }
 
-/// A file with these records, between what every file has.
+/// File with these records between the mandatory ones.
 fn file(records: &[&[u8]]) -> Vec<u8> {
     let head = record(op::HEADER, &[text(""), text("by hand")].concat());
     let end = [record(op::DATA_END, &[0; 4]), record(op::FOOTER, &[0; 20])].concat();
     [MAGIC, &head, &records.concat(), &end, MAGIC].concat()
 }
 
-/// How many messages a file has, or why it cannot be read.
+/// Number of messages in a file, or the damage.
 fn messages(file: &[u8]) -> Result<usize, String> {
     let mut count = 0;
     let read = read(file, &mut |_: &Message<'_>| {
@@ -63,7 +63,7 @@ fn whole_files_are_read_with_and_without_chunks() {
     assert_eq!(messages(&file(&plain)), Ok(2));
     let content = records.concat();
     assert_eq!(messages(&file(&[&chunk("", content.len() as u64, &content)])), Ok(2));
-    // What nobody here looks into may be anything, as long as it is as long as it says.
+    // Unused records may have any content of the stated length.
     assert_eq!(messages(&file(&[plain.concat().as_slice(), &record(op::ATTACHMENT, &[1; 7])])), Ok(2));
 }
 
@@ -95,7 +95,7 @@ fn a_chunk_that_is_not_compressed_ends_where_its_last_record_does() {
     let content = [schema(), channel("/a"), message(b"1")].concat();
     let size = content.len() as u64;
     damaged(&file(&[&chunk("", size + 1, &content)]), "and it has");
-    // Its last record would end in what follows the chunk.
+    // The last record would end behind the chunk.
     let short = &content[..content.len() - 1];
     damaged(&file(&[&chunk("", size - 1, short), &[0; 40]]), "a record in it goes beyond its end");
 }
@@ -106,7 +106,7 @@ fn a_chunk_unpacks_to_no_more_than_a_multiple_of_the_file() {
         damaged(&file(&[&chunk(compression, MOST, b"few bytes")]), "far more than such a file holds");
         damaged(&file(&[&chunk(compression, 1 << 19, b"few bytes")]), "chunk at byte");
     }
-    // Two chunks share what there is.
+    // Two chunks share the limit.
     let half = chunk("", 0, &[]);
     let third = chunk("lz4", 2 * LITTLE, b"");
     damaged(&file(&[&half, &third]), "far more");
@@ -122,7 +122,7 @@ fn a_file_cut_off_anywhere_or_with_any_byte_changed_ends_in_words() {
         for bits in [0x01, 0x80, 0xff] {
             let mut changed = whole.clone();
             changed[place] ^= bits;
-            // Not every change does harm; none may end the process.
+            // Not every change is harmful; none may abort the process.
             let _ = messages(&changed);
         }
     }

@@ -1,19 +1,19 @@
-//! Numbers of messages whose form is ROS 2 message text and whose encoding is CDR, each by its path, as in
-//! `header.stamp.sec` or `position[0]`. Text is passed over.
+//! Numbers of messages defined by ROS 2 message text and encoded in CDR, each by its path, such as `header.stamp.sec`
+//! or `position[0]`. Text is skipped.
 
 use std::collections::BTreeMap;
 
 use super::numbers::{self, Numbers};
 
-/// Messages within messages: deeper ones are taken for a mistake.
+/// Deepest nesting of messages; deeper ones are taken for a recursive definition.
 const DEEPEST: usize = 16;
-/// Letters of a line that a message shows at most.
+/// Letters of a line shown in a failure.
 const SHOWN: usize = 80;
 
-/// The form of a message.
+/// Definition of a message.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Form {
-    /// Fields by the type's name; the message itself has none.
+    /// Fields by the type's name; the message itself has an empty name.
     types: BTreeMap<String, Vec<Field>>,
 }
 
@@ -67,7 +67,7 @@ impl Number {
         size
     }
 
-    /// From bits in the lower bytes.
+    /// Value from bits in the lower bytes.
     fn value(self, bits: u64) -> f64 {
         match self {
             Self::Unsigned(_) => bits as f64,
@@ -82,7 +82,7 @@ impl Number {
 }
 
 impl Form {
-    /// Of ROS 2 message text: the message's own fields, then those of the messages in it behind lines of `=`.
+    /// Parses ROS 2 message text: the message's own fields, then those of nested messages behind lines of `=`.
     pub fn read(text: &str) -> Result<Self, String> {
         let (mut types, mut name) = (BTreeMap::new(), String::new());
         types.insert(String::new(), Vec::new());
@@ -98,7 +98,7 @@ impl Form {
                 types.entry(name.clone()).or_insert_with(Vec::new).push(field);
             }
         }
-        // Always there, whether they are written down or not.
+        // Time and Duration are built in.
         for stamp in ["Time", "Duration"] {
             let part = |name: &str, number| Field { name: name.into(), kind: Kind::Number(number), count: Count::One };
             let parts = vec![part("sec", Number::Signed(4)), part("nanosec", Number::Unsigned(4))];
@@ -118,7 +118,7 @@ impl Form {
     }
 }
 
-/// The name of a type without its package.
+/// Name of a type without its package.
 fn last_part(name: &str) -> String {
     name.rsplit('/').next().unwrap_or_default().to_owned()
 }
@@ -127,7 +127,7 @@ fn no_field(line: &str) -> String {
     format!("`{}` is no field of a message", line.chars().take(SHOWN).collect::<String>())
 }
 
-/// A line's field; none for a constant.
+/// Field of a line; `Some(None)` for a constant.
 fn field(line: &str) -> Option<Option<Field>> {
     let (kind, rest) = line.split_once(char::is_whitespace)?;
     let name = rest.trim_start().split([' ', '\t']).next()?;
@@ -138,7 +138,7 @@ fn field(line: &str) -> Option<Option<Field>> {
         None => (kind, Count::One),
         Some((kind, "]")) => (kind, Count::List),
         Some((kind, most)) if most.starts_with("<=") => (kind, Count::List),
-        // As in ROS, no array has no place: whatever is read of a message then takes a byte of it at least.
+        // As in ROS, an array has at least one element: every element then takes at least a byte of the message.
         Some((kind, number)) => {
             let many = number.strip_suffix(']')?.parse().ok()?;
             (kind, Count::Fixed(Some(many).filter(|many| *many > 0)?))
@@ -152,12 +152,12 @@ fn field(line: &str) -> Option<Option<Field>> {
     Some(Some(Field { name: name.to_owned(), kind, count }))
 }
 
-/// A message that is being read.
+/// State of decoding a message.
 struct Reading<'r> {
     form: &'r Form,
     body: &'r [u8],
     at: usize,
-    /// The most significant byte comes first.
+    /// Most significant byte first.
     big: bool,
     numbers: Numbers,
 }
@@ -207,7 +207,7 @@ impl Reading<'_> {
         }
     }
 
-    /// So many bytes on a multiple of their number, the head not counted.
+    /// Reads `size` bytes, aligned to `size` from the end of the header.
     fn bits(&mut self, size: usize) -> Result<u64, String> {
         let from = self.at.next_multiple_of(size);
         let bytes = self.body.get(from..from + size).ok_or("it is cut off")?;

@@ -1,11 +1,11 @@
-//! Forms and messages by hand from the rules of their encoding.
+//! Definitions and messages written by hand from the rules of their encoding.
 
 use super::*;
 
 const FORM: &str = "# a lab's own\nuint8 IDLE=0\nstd_msgs/Header header\nstring[] name\nfloat64[] position\nint16[2] raw 0 # \
                     two\nbool on\nfloat32 current\n===\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n";
 
-/// By hand from the rules: every number on a multiple of its size behind the head.
+/// Written by hand from the rules: every number is aligned to its size behind the header.
 fn message() -> Vec<u8> {
     let mut bytes = vec![0, 1, 0, 0];
     bytes.extend(7_i32.to_le_bytes());
@@ -61,7 +61,7 @@ fn forms_that_cannot_be_are_refused() {
 
 #[test]
 fn a_message_takes_no_longer_than_its_bytes_say() {
-    // Each form has ten of the next one: 10^16 fields, none of which would take a byte.
+    // Each message contains ten of the next one: 10^16 fields, none of which would take a byte.
     let mut text = "M1[10] next\n".to_owned();
     for depth in 1..16 {
         text += &format!("===\nMSG: a/M{depth}\nM{}[10] next\n", depth + 1);

@@ -1,9 +1,9 @@
-//! From the numbers of a data sheet to a joint file. Every line of it says whether it is the sheet's, derived
-//! from it, or assumed, and how far a wrong assumption moves the standard test.
+//! Joint file from the numbers of a data sheet. Every line states whether it comes from the sheet, is derived from it
+//! or is assumed, and how far a wrong assumption moves the standard test.
 //!
-//! `arguments` is the command line, `questions` asks for what is missing, `teeth` finds gears that assemble, `sizes`
-//! derives sizes, masses and stiffnesses of a `material`, `swing` the link that the motor moves, `lines` writes the file,
-//! `standard_test` measures the assumptions.
+//! `arguments` is the command line, `questions` asks for missing numbers, `teeth` finds gears that assemble, `sizes`
+//! derives sizes, masses and stiffnesses of a `material`, `swing` limits the link to what the motor can move, `lines`
+//! writes the file, `standard_test` measures the assumptions.
 
 mod arguments;
 mod lines;
@@ -32,10 +32,10 @@ use lines::{Figures, Line, Origin};
 use sizes::{Gears, Sizes};
 use swing::Swing;
 
-/// Steps a second at which the new joint is tried: what `joint check` and `joint sim` take.
+/// Step rate of the check of the new joint, as in `joint check` and `joint sim` [Hz].
 const RATE: u32 = 20_000;
 
-/// Makes the file; gives what is told of it.
+/// Makes the joint file; returns the printed text.
 pub fn run(arguments: &Arguments) -> Outcome<String> {
     let path = arguments.path();
     free(&path)?;
@@ -48,7 +48,7 @@ pub fn run(arguments: &Arguments) -> Outcome<String> {
     Progress::during(|progress| make(&sheet, &gears, &path, seeds, progress))
 }
 
-/// The file, tried and measured by so many seeds; gives what is told of it.
+/// Writes the checked file, measured with `seeds` seeds; returns the printed text.
 fn make(sheet: &DataSheet, gears: &Gears, path: &Path, seeds: Option<u64>, progress: &Progress) -> Outcome<String> {
     let mut lines = lines::lines(sheet, gears);
     let unmeasured = lines::text(sheet, gears, &lines, None);
@@ -101,7 +101,7 @@ fn make(sheet: &DataSheet, gears: &Gears, path: &Path, seeds: Option<u64>, progr
     if let Some(warning) = swing.warning(loaded.file.parameters.link_inertia) {
         told += &format!("note: {warning}\n");
     }
-    // A board's time is no part of a data sheet: the joint is as it is.
+    // A board's computing time is no part of a data sheet: the joint is kept, with a note.
     if let Err(failure) = OnBoard::plant(&loaded.file.parameters, &Board::load(board_file::DEFAULT)?).refuse(RATE) {
         let help = failure.full_help().map_or(String::new(), |help| format!(" ({help})"));
         told += &format!("note: {}{help}\n", failure.message());
@@ -110,7 +110,7 @@ fn make(sheet: &DataSheet, gears: &Gears, path: &Path, seeds: Option<u64>, progr
     Ok(told)
 }
 
-/// The three assumptions that matter most.
+/// The three most influential assumptions.
 fn most(lines: &[Line]) -> Vec<(String, String)> {
     let mut assumed: Vec<(&Line, f64)> =
         lines.iter().filter_map(|line| Some((line, line.moved.as_ref()?.as_ref().ok().copied()?))).collect();
@@ -118,7 +118,7 @@ fn most(lines: &[Line]) -> Vec<(String, String)> {
     assumed.iter().take(3).map(|(line, moved)| (line.path(), lines::percent(*moved))).collect()
 }
 
-/// Reads the text as every command will, and designs the step of it.
+/// Reads the text like every command, and designs its step.
 fn tried(path: &Path, text: &str) -> Outcome<Loaded> {
     let name = path.display().to_string();
     let file = joint_file::read(text).map_err(|problems| {
@@ -131,7 +131,7 @@ fn tried(path: &Path, text: &str) -> Outcome<Loaded> {
     Ok(loaded)
 }
 
-/// Refuses a path at which there is something.
+/// Rejects an existing path.
 fn free(path: &Path) -> Outcome<()> {
     match path.symlink_metadata() {
         Err(_) => Ok(()),
@@ -141,7 +141,7 @@ fn free(path: &Path) -> Outcome<()> {
 }
 
 impl Arguments {
-    /// Where the file goes: the name with its extension.
+    /// Path of the file: the name with its extension.
     fn path(&self) -> PathBuf {
         match self.name.extension() {
             Some(extension) if extension == "toml" => self.name.clone(),
@@ -151,12 +151,12 @@ impl Arguments {
 }
 
 impl Line {
-    /// The full path of its key.
+    /// Full path of the line's key.
     fn path(&self) -> String {
         if self.section.is_empty() { self.key.to_owned() } else { format!("{}.{}", self.section, self.key) }
     }
 
-    /// Whether a wrong value of it is to be tried.
+    /// Returns true if a wrong value is to be tried.
     fn is_assumed(&self) -> bool {
         matches!(self.origin, Origin::Assumed(_)) && self.moved.is_none()
     }

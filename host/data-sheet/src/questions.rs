@@ -1,5 +1,5 @@
-//! What the command line leaves out is asked for on a terminal, and named anywhere else. Answers and options are held to
-//! the same bounds.
+//! Questions for figures missing on the command line; without a terminal the missing options are named. Answers and
+//! options have the same bounds.
 
 use std::io::{self, BufRead, IsTerminal};
 
@@ -9,7 +9,7 @@ use report::output;
 
 use crate::arguments::{Arguments, DEFAULT_SEEDS, DataSheet};
 
-/// A figure of the sheet.
+/// Figure of the sheet.
 struct Figure {
     option: &'static str,
     question: &'static str,
@@ -21,7 +21,7 @@ const fn figure(option: &'static str, question: &'static str, least: f64, most: 
     Figure { option, question, least, most }
 }
 
-/// What no sheet may leave out, in the order in which it is asked for.
+/// Figures that every sheet needs, in order of the questions.
 const NEEDED: [Figure; 7] = [
     figure("--ratio", "gear ratio, motor turns for one turn of the link, such as 9", 2.2, 14.0),
     figure("--lost-motion-arcmin", "lost motion at the output in arcmin, such as 15", 0.0, 600.0),
@@ -37,14 +37,14 @@ const NEEDED: [Figure; 7] = [
     figure("--efficiency", "efficiency of the gears, such as 0.94", 0.1, 1.0),
 ];
 
-/// The ratio of an equivalent gear, which no teeth bound.
+/// Ratio of an equivalent gear, not bounded by teeth.
 const ANY_RATIO: Figure =
     figure("--ratio", "gear ratio, motor turns for one turn of the link, such as 59", 1.000_001, 99_999.0);
 
-/// What kinds of gears there are, by the words that a user types.
+/// Kinds of gears, as typed by the user.
 const KINDS: [&str; 2] = ["planetary", "equivalent"];
 
-/// What it may leave out.
+/// Optional figures.
 const OPTIONAL: [Figure; 6] = [
     figure("--gear-inertia-kg-cm2", "", 1e-9, 1e10),
     figure("--link-inertia-kg-m2", "", 1e-9, 1e6),
@@ -54,7 +54,7 @@ const OPTIONAL: [Figure; 6] = [
     figure("--ratio-tolerance", "", 0.0, 20.0),
 ];
 
-/// The whole sheet.
+/// Completes the sheet.
 pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
     let stem = match arguments.name.extension() {
         Some(extension) if extension == "toml" => arguments.name.file_stem(),
@@ -80,7 +80,7 @@ pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
         Some(arguments.ratio_tolerance),
     ];
     let stdin = io::stdin();
-    // Where the ratio is asked for as well, teeth may not be known either.
+    // If the ratio is asked for too, the teeth may be unknown as well.
     let asked = arguments.ratio.is_none() && !arguments.says_teeth() && stdin.is_terminal();
     let equivalent = arguments.equivalent || (asked && kind(&mut stdin.lock())? == KINDS[1]);
     let mut needed = NEEDED;
@@ -135,7 +135,7 @@ pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
 
 const HELP: &str = "`joint new --help` says what each is, and its unit";
 
-/// Asks what kind of gears it is until there is an answer.
+/// Asks for the kind of gears until the answer is valid.
 fn kind(answers: &mut impl BufRead) -> Outcome<&'static str> {
     loop {
         output::remark(
@@ -155,7 +155,7 @@ fn kind(answers: &mut impl BufRead) -> Outcome<&'static str> {
 }
 
 impl Arguments {
-    /// Help for gears that no single planetary stage is: the same command for an equivalent gear.
+    /// Help for gears that are not a single planetary stage: the same command for an equivalent gear.
     pub(crate) fn equivalent_in_place(&self) -> String {
         let mut command = format!("joint new {} --equivalent", quoted(&self.name.display().to_string()));
         let numbers = [
@@ -184,13 +184,13 @@ impl Arguments {
         format!("gears of more stages, of other kinds or of unknown teeth are an equivalent gear: {command}")
     }
 
-    /// Whether something was said that only gears with teeth have.
+    /// Returns true if an option that only gears with teeth have was given.
     fn says_teeth(&self) -> bool {
         self.equivalent || self.planets.is_some() || self.material.is_some() || self.outer_diameter_mm.is_some()
     }
 }
 
-/// The reader of joint files takes the same names.
+/// Checks a name by the rules of the joint file.
 fn check_name(name: &str) -> Outcome<()> {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || " -_.+()".contains(letter);
     match !name.trim().is_empty() && name.len() <= 32 && name.chars().all(plain) {
@@ -209,7 +209,7 @@ impl Figure {
         }
     }
 
-    /// Asks until there is an answer that can be.
+    /// Asks until the answer is valid.
     fn ask(&self, answers: &mut impl BufRead) -> Outcome<f64> {
         loop {
             output::remark(&format!("{}:", self.question));

@@ -1,9 +1,9 @@
-//! How far a wrong assumption moves the standard test: motion T2 of `joint hil` on the core's own plant, with a joint that
-//! has half the value, or half as much again, while its controllers believe the file.
+//! Change of the standard test by a wrong assumption: motion T2 of `joint hil` on the core's own plant, with a joint
+//! that has 0.5 or 1.5 times the value while its controllers use the file.
 //!
-//! One run is no measure: where the teeth land is a matter of chance, and a link that is heavier by a thousandth moves the
-//! figure of a run by up to 10 %. The median of a few runs, each against its own noise, moves by some percent. Controllers are
-//! designed once for all runs of a joint that they believe in: a design takes half as long as a run.
+//! A single run is no measure: the landing of the teeth is chaotic, and a link heavier by a thousandth changes the
+//! figure of a run by up to 10 %. The median of a few runs, each against its own noise, changes by some percent.
+//! Controllers are designed once for all runs of a believed joint: a design takes half as long as a run.
 
 use std::time::{Duration, Instant};
 
@@ -21,19 +21,19 @@ use scenario::values::MetricValues;
 
 use crate::lines::{Figures, Line};
 
-/// The motion; controllers begin with the file's own backlash.
+/// Test file of the motion; controllers begin with the file's own backlash.
 const TEST: &str = "profile = \"T2\"\n[controller]\nrivals = []\nwidth_guess_ratio = 1.0\n";
-/// The metric of it, in mrad.
+/// Metric of the test, in mrad.
 const METRIC: &str = "rms_mrad";
-/// What moves nothing but chance, and so tells how much that is.
+/// Key whose change by a thousandth shows the effect of chance.
 const CHANCE: &str = "bodies.link_inertia_kg_m2";
 const A_THOUSANDTH: [f64; 2] = [0.999, 1.001];
-/// A run of six seconds takes about one.
+/// Deadline of a run; a run of six seconds takes about one.
 const LONGEST: Duration = Duration::from_secs(600);
-/// What a controller cannot do without knowing.
+/// Keys that a controller has to know.
 const KNOWN: [&str; 2] = ["bits", "control_rate_Hz"];
 
-/// Measures every assumed line by so many seeds, and gives the figures of the file itself.
+/// Measures every assumed line with `seeds` seeds, and returns the results of the file itself.
 pub fn measure(text: &str, lines: &mut [Line], seeds: u64, progress: &Progress) -> Outcome<Figures> {
     let tried: Vec<&mut Line> = lines.iter_mut().filter(|line| line.is_assumed()).collect();
     progress.run("trying what is assumed", 3 + 2 * tried.len() as u64);
@@ -63,16 +63,16 @@ pub fn measure(text: &str, lines: &mut [Line], seeds: u64, progress: &Progress) 
     }
 }
 
-/// The test with the joint file that controllers believe.
+/// Standard test with the joint file that the controllers use.
 struct StandardTest<'t> {
     text: &'t str,
     seeds: u64,
-    /// Controllers for that file. No assumption changes the lost motion, which a design takes from the true joint.
+    /// Controllers for the file. A design takes the lost motion from the true joint; no assumption changes it.
     designed: Designed,
 }
 
 impl StandardTest<'_> {
-    /// The larger of both moves, over the figure.
+    /// Larger of both relative changes.
     fn moved(&self, line: &Line, of_file: &[f64]) -> Result<f64, String> {
         let values = line.wrong_values().ok_or("it is no number")?;
         let is_known = KNOWN.contains(&line.key);
@@ -89,12 +89,12 @@ impl StandardTest<'_> {
         }
     }
 
-    /// The figures of all seeds with a changed joint [mrad], or why there are none, in one line.
+    /// Results of all seeds with a changed joint [mrad], or the reason for a failure in one line.
     fn figures(&self, changes: &str) -> Result<Vec<f64>, String> {
         self.figures_under(&test_file(changes)?, &self.designed)
     }
 
-    /// The figures of all seeds with a changed joint, and controllers that know of the changes [mrad].
+    /// Results of all seeds with a changed joint known to the controllers [mrad].
     fn figures_of_known(&self, changes: &str) -> Result<Vec<f64>, String> {
         let file = test_file(changes)?;
         let designed = design(&file, self.text)?;
@@ -106,24 +106,23 @@ impl StandardTest<'_> {
     }
 }
 
-/// The test with changes to its joint, or what is wrong with them, in one line.
+/// Test file with changes to its joint, or their fault in one line.
 fn test_file(changes: &str) -> Result<TestFile, String> {
     file::read(&format!("{TEST}{changes}"))
         .map_err(|problems| problems.first().map_or_else(String::new, ToString::to_string))
 }
 
-/// Observer and compensation for the joint that controllers believe in.
+/// Designs observer and compensation for the believed joint.
 fn design(file: &TestFile, text: &str) -> Result<Designed, String> {
     Case::new(file, text, 1, None).and_then(|case| case.design(file)).map_err(|failure| told(&failure))
 }
 
-/// A failure in one line.
+/// First line of a failure.
 fn told(failure: &Failure) -> String {
     failure.message().lines().next().unwrap_or_default().to_owned()
 }
 
-/// How far figures have moved: the median over seeds, each against its own noise, so that a single run that went astray
-/// does not count for the value that was tried [-].
+/// Relative change: the median over seeds, each against its own noise, so that a single outlier does not count [-].
 fn move_of(changed: &[f64], of_file: &[f64]) -> f64 {
     (median(changed.iter().zip(of_file).map(|(changed, before)| changed / before)) - 1.0).abs()
 }
@@ -139,7 +138,7 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
     }
 }
 
-/// The figure of one run [mrad].
+/// Result of one run [mrad].
 fn figure_of_run(file: &TestFile, text: &str, seed: u64, designed: &Designed) -> Result<f64, String> {
     let case = Case::new(file, text, seed, None).map_err(|failure| told(&failure))?;
     let spec = RunSpec { controller: ControllerName::Preview, plant: PlantName::Core, without_gap: false };

@@ -1,20 +1,20 @@
-//! Tooth numbers of a ratio: coaxial (ring = sun + 2 planet), assembling with equal spacing ((sun + ring) / planets is
-//! whole), neighbours clear of each other, and without undercut where that can be had.
+//! Tooth numbers for a ratio: coaxial (ring = sun + 2 planet), assembling with equal spacing ((sun + ring) / planets is
+//! whole), with clearance between neighbours, and without undercut if possible.
 
 use std::f64::consts::PI;
 
 use report::failure::{Failure, Outcome};
 
-/// Fewer teeth are undercut by a rack of 20 degrees: 2 / sin^2(20 deg) = 17.1, in practice 17.
+/// Least teeth without undercut by a rack of 20 degrees: 2 / sin^2(20 deg) = 17.1, in practice 17.
 pub const UNDERCUT: u32 = 17;
-/// Fewer teeth are not made.
+/// Least teeth of a gear, and largest numbers of the sun's and of the ring's teeth.
 const FEWEST: u32 = 9;
 const MOST_OF_SUN: u32 = 80;
 const MOST: u32 = 400;
-/// What neighbouring tips keep from each other, in modules.
+/// Clearance between neighbouring tips [modules].
 const CLEARANCE: f64 = 0.2;
 
-/// Teeth of a joint.
+/// Tooth numbers of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs, reason = "numbers of teeth")]
 pub struct Teeth {
@@ -25,12 +25,12 @@ pub struct Teeth {
 }
 
 impl Teeth {
-    /// 1 + ring / sun.
+    /// Ratio 1 + ring / sun.
     pub fn ratio(&self) -> f64 {
         1.0 + f64::from(self.ring) / f64::from(self.sun)
     }
 
-    /// What is to be said of teeth that are undercut.
+    /// Warning for undercut teeth.
     pub fn undercut(&self) -> Option<String> {
         let (name, teeth) = if self.sun <= self.planet { ("sun", self.sun) } else { ("planets", self.planet) };
         (teeth < UNDERCUT).then(|| {
@@ -40,13 +40,14 @@ impl Teeth {
         })
     }
 
-    /// The axes of neighbours stand further apart than their tips reach.
+    /// Returns true if the tips of neighbouring planets are clear of each other.
     fn neighbours_are_clear(&self) -> bool {
         let spacing = f64::from(self.sun + self.planet) * (PI / f64::from(self.planets)).sin();
         spacing > f64::from(self.planet) + 2.0 + CLEARANCE
     }
 
-    /// Undercut counts for more than anything, then a small ring for as much as a ratio that is off by 2 % of its teeth.
+    /// Cost: undercut first, then the size of the ring, in which a ratio off by 2 % counts as much as doubling the
+    /// ring.
     fn cost(&self, ratio: f64) -> (u32, f64) {
         let smallest = self.sun.min(self.planet);
         let off = (self.ratio() / ratio - 1.0).abs();
@@ -54,7 +55,7 @@ impl Teeth {
     }
 }
 
-/// All teeth that assemble, with so many planets.
+/// All tooth numbers that assemble with `planets` planets.
 fn assembling(planets: u32) -> impl Iterator<Item = Teeth> {
     let suns = FEWEST..=MOST_OF_SUN;
     let all = suns.flat_map(move |sun| {
@@ -63,7 +64,7 @@ fn assembling(planets: u32) -> impl Iterator<Item = Teeth> {
     all.filter(|teeth| (teeth.sun + teeth.ring).is_multiple_of(teeth.planets) && teeth.neighbours_are_clear())
 }
 
-/// The best teeth within a tolerance [percent] of a ratio.
+/// Best tooth numbers within a tolerance [percent] of a ratio.
 pub fn find(ratio: f64, tolerance: f64, planets: u32) -> Outcome<Teeth> {
     let off = |teeth: &Teeth| 100.0 * (teeth.ratio() / ratio - 1.0).abs();
     let by_cost = |one: &Teeth, other: &Teeth| {

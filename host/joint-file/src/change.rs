@@ -1,5 +1,5 @@
-//! Changes single values in the text of a joint file, as a command line may ask for. Only keys are checked here; the
-//! changed text is then read like any other, with the same checks and messages.
+//! Changes single values in the text of a joint file, as for a command line. Only keys are checked here; the changed
+//! text is read like any other, with the same checks and messages.
 
 use std::ops::Range;
 
@@ -11,16 +11,16 @@ use crate::equivalent;
 use crate::keys::{self, KEYS, Key, Kind};
 use crate::spelling;
 
-/// Why a value cannot be set.
+/// Reason why a value cannot be set.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refused {
-    /// What is wrong, in one sentence.
+    /// Problem in one sentence.
     pub message: String,
-    /// The help: what to do about it.
+    /// Remedy.
     pub help: String,
 }
 
-/// Keys that say the same thing in different units or forms: setting one takes the place of the others.
+/// Keys of one quantity in different units or forms: setting one replaces the others.
 const SAME_THING: [&[&str]; 9] = [
     &["half_backlash_um", "backlash_um", "lost_motion_arcmin", "lost_motion_mrad"],
     &["stiffness_N_m_per_rad", "total_stiffness_N_m_per_arcmin"],
@@ -33,18 +33,18 @@ const SAME_THING: [&[&str]; 9] = [
     &["mesh_frequency_rad_per_s", "mesh_frequency_Hz", "mesh_frequency_over_omega_n"],
 ];
 
-/// Keys that take the place of several others together; none of those alone takes theirs.
+/// Keys that replace several others together; none of these alone replaces them.
 const IN_PLACE_OF: [(&str, &[&str]); 2] =
     [(bodies::AT_INPUT, &bodies::EACH), ("ratio", &["motor_turns", "link_turns"])];
 
-/// The full path of a key, as in `mesh.sun_planet.half_backlash_um`. Its last parts are enough where they name one key;
-/// a key of `[mesh]` without a family stands for both. Where the joint is not known yet, a key that an equivalent gear and
-/// gears with teeth share is that of the teeth.
+/// Full path of a key, such as `mesh.sun_planet.half_backlash_um`. Its last parts suffice if they name a single key; a
+/// key of `[mesh]` without a family stands for both. A key shared by equivalent gears and gears with teeth is taken for
+/// the teeth's, as the joint is unknown here.
 pub fn full_key(key: &str) -> Result<String, Refused> {
     find(key, None).map(|(path, _)| path)
 }
 
-/// The full path of a key in the joint file of a text, whose kind of gears says which of two keys a short one names.
+/// Full path of a key in the joint file of a text; the kind of gears decides between two keys with one short name.
 ///
 /// ```
 /// let [q1, c1] = ["q1", "c1"].map(|name| joint_file::preset(name).unwrap());
@@ -57,14 +57,14 @@ pub fn full_key_in(text: &str, key: &str) -> Result<String, Refused> {
     find(key, Gears::of(text)).map(|(path, _)| path)
 }
 
-/// The value of a key as typed, if the text states it in that form.
+/// Value of a key as typed, if the text states the quantity by this key.
 pub fn value<'t>(text: &'t str, key: &str) -> Result<Option<&'t str>, Refused> {
     let (path, _) = find(key, Gears::of(text))?;
     Ok(lookup(text, &path).map(|(_, found)| &text[found]))
 }
 
-/// The text with a key set to a value, as typed after the equals sign; quotes around words may be left out, and an
-/// empty value leaves the key out. What the key meant so far is replaced, in whatever form it was stated.
+/// Returns the text with a key set to a value, as typed after the equals sign. Quotes around words may be omitted; an
+/// empty value removes the key. Other keys of the quantity are replaced.
 ///
 /// ```
 /// let text = joint_file::preset("q1").unwrap();
@@ -79,7 +79,7 @@ pub fn change(text: &str, key: &str, value: &str) -> Result<String, Refused> {
     change_noting(text, key, value, REMARK)
 }
 
-/// The same, with a remark of one line behind the value that says where it comes from.
+/// Returns the text with a key set to a value, followed by a one-line remark on its origin.
 pub fn change_noting(text: &str, key: &str, value: &str, remark: &str) -> Result<String, Refused> {
     let (path, known) = find(key, Gears::of(text))?;
     let remark = format!(" # {}", remark.replace(char::is_control, " "));
@@ -107,7 +107,7 @@ pub fn change_noting(text: &str, key: &str, value: &str, remark: &str) -> Result
     })
 }
 
-/// Stands behind a changed value, in place of the source that the old one had.
+/// Remark behind a changed value, instead of the old value's source.
 const REMARK: &str = "set on the command line";
 
 fn in_the_way(path: &str) -> Refused {
@@ -115,7 +115,8 @@ fn in_the_way(path: &str) -> Refused {
     Refused { message, help: "write every key of the joint file on a line of its own".into() }
 }
 
-/// What setting a key takes the place of: itself, other forms of it, and for both mesh families what one of them has.
+/// Paths replaced by setting a key: the key itself, other forms of it, and for a key of both mesh families the keys of
+/// either.
 fn replaced(section: &str, name: &str) -> Vec<String> {
     let same = SAME_THING.iter().find(|forms| forms.contains(&name)).copied();
     let parts = IN_PLACE_OF.iter().find(|(whole, _)| *whole == name).map(|(_, parts)| *parts);
@@ -129,7 +130,7 @@ fn replaced(section: &str, name: &str) -> Vec<String> {
     forms.flat_map(|form| sections.iter().map(move |section| full(section, form))).collect()
 }
 
-/// Every key that holds a value, by its full path.
+/// Every key with a value, by its full path.
 fn paths() -> impl Iterator<Item = (String, &'static Key)> {
     KEYS.iter().filter(|key| !matches!(key.kind, Kind::Section)).flat_map(|key| {
         let sections: &[&str] = match key.section {
@@ -142,7 +143,7 @@ fn paths() -> impl Iterator<Item = (String, &'static Key)> {
     })
 }
 
-/// Which kind of gears a joint file describes.
+/// Kind of gears of a joint file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Gears {
     Equivalent,
@@ -150,7 +151,7 @@ enum Gears {
 }
 
 impl Gears {
-    /// Kind of gears of a joint file; `None` if the text is no TOML, or describes no gears.
+    /// Kind of gears of a text; `None` if it is no TOML, or describes no gears.
     fn of(text: &str) -> Option<Self> {
         let table = DeTable::parse(text).ok()?;
         let holds = |section: &str| table.get_ref().contains_key(section);
@@ -161,7 +162,7 @@ impl Gears {
         }
     }
 
-    /// Returns whether a joint with these gears may state a key.
+    /// Returns true if a joint with these gears may state a key.
     fn have(self, path: &str) -> bool {
         let top = path.split('.').next().unwrap_or(path);
         match self {
@@ -170,7 +171,7 @@ impl Gears {
         }
     }
 
-    /// Refuses a key that only the other kind of gears has, with the key that says the same of these.
+    /// Rejects a key of the other kind of gears; the help names the corresponding key.
     fn refuse(self, path: &str) -> Refused {
         let (of, has) = match self {
             Self::Equivalent => ("of gears with teeth", "an equivalent gear"),
@@ -206,7 +207,7 @@ fn find(key: &str, gears: Option<Gears>) -> Result<(String, &'static Key), Refus
     let depth = |path: &str| path.matches('.').count();
     let least = found.iter().map(|(path, _)| depth(path)).min();
     found.retain(|(path, _)| Some(depth(path)) == least);
-    // What gears with teeth have too must name an equivalent gear's section.
+    // A key shared with gears with teeth needs the section `equivalent_gear` in front.
     let of_teeth = |path: &str| !path.starts_with("equivalent_gear.");
     if found.iter().any(|(path, _)| of_teeth(path)) {
         found.retain(|(path, _)| of_teeth(path));
@@ -225,7 +226,7 @@ fn find(key: &str, gears: Option<Gears>) -> Result<(String, &'static Key), Refus
 fn unknown(key: &str) -> Refused {
     let message = format!("unknown key `{key}`");
     let all: Vec<(String, &Key)> = paths().collect();
-    // Any run of last parts may have been meant, such as `sun_planet.half_backlash_um`.
+    // The user may have meant any run of last parts, such as `sun_planet.half_backlash_um`.
     let endings = all.iter().flat_map(|(path, _)| {
         std::iter::once(path.as_str()).chain(path.match_indices('.').map(|(dot, _)| &path[dot + 1..]))
     });
@@ -244,7 +245,7 @@ fn unknown(key: &str) -> Refused {
     Refused { message, help }
 }
 
-/// A value as TOML has it: words get their quotes, and numbers that only TOML minds are rewritten.
+/// Value in TOML: words are quoted, and numbers that only TOML rejects are rewritten.
 fn written(value: &str, key: &Key) -> String {
     let is_text = matches!(key.kind, Kind::Text | Kind::Choice(_));
     let quoted = || {
@@ -264,7 +265,7 @@ fn written(value: &str, key: &Key) -> String {
     }
 }
 
-/// Where a key and its value stand.
+/// Spans of a key and its value.
 fn lookup(text: &str, path: &str) -> Option<(Range<usize>, Range<usize>)> {
     let table = DeTable::parse(text).ok()?;
     let (section, name) = path.rsplit_once('.').unwrap_or(("", path));
@@ -273,7 +274,7 @@ fn lookup(text: &str, path: &str) -> Option<(Range<usize>, Range<usize>)> {
     Some((key.span(), value.span()))
 }
 
-/// A table by its path, with where its header stands.
+/// Table by its path, with the span of its header.
 fn table_at<'a, 't>(top: &'a DeTable<'t>, section: &str) -> Option<(Range<usize>, &'a DeTable<'t>)> {
     let mut found = (0..0, top);
     for part in section.split('.').filter(|part| !part.is_empty()) {
@@ -284,7 +285,7 @@ fn table_at<'a, 't>(top: &'a DeTable<'t>, section: &str) -> Option<(Range<usize>
     Some(found)
 }
 
-/// From a value's end to the end of its line, if nothing but a comment follows.
+/// End of a value's line, if only a comment follows the value.
 fn rest_of_line(text: &str, end: usize) -> Option<usize> {
     let rest = text[end..].split('\n').next().unwrap_or_default();
     let remark = rest.trim_start();
@@ -300,7 +301,7 @@ fn replace(text: &str, path: &str, value: &str, remark: &str) -> Option<String> 
     Some(format!("{}{value}{remark}{}", &text[..old.start], &text[end..]))
 }
 
-/// Without a key, if it is there; `None` if it shares its line.
+/// Text without a key; `None` if the key shares its line.
 fn without(text: &str, path: &str) -> Option<String> {
     let Some((key, value)) = lookup(text, path) else { return Some(text.to_owned()) };
     let start = text[..key.start].rfind('\n').map_or(0, |newline| newline + 1);
@@ -313,7 +314,7 @@ fn without(text: &str, path: &str) -> Option<String> {
     (text[start..key.start].trim().is_empty() && lookup(&shorter, path).is_none()).then_some(shorter)
 }
 
-/// As the first key of a section that is there.
+/// Inserts a key as the first of an existing section.
 fn insert(text: &str, section: &str, name: &str, value: &str, remark: &str) -> Option<String> {
     if section.is_empty() {
         return Some(format!("{name} = {value}{remark}\n{text}"));

@@ -1,5 +1,5 @@
-//! Do the gears fit together? Coaxial, assembled, one centre distance, one ratio, and room between the planets. The
-//! file's key `coherence` says whether a misfit is an error or a warning.
+//! Checks that the gears fit together: coaxial, assembling, one centre distance, one ratio, and room between the
+//! planets. The file's key `coherence` makes a misfit an error or a warning.
 
 use model_core::gears::Kinematics;
 use parameters::{Coherence, Geometry};
@@ -7,10 +7,10 @@ use parameters::{Coherence, Geometry};
 use crate::notes::Notes;
 use crate::problem::Severity;
 
-/// Relative distance at which two lengths or ratios count as different.
+/// Relative difference from which two lengths or ratios differ.
 const MISFIT: f64 = 1e-4;
 
-/// Relative distance within which a carrier radius is taken for r_c cos(alpha).
+/// Relative difference within which a carrier radius is taken for r_c cos(alpha).
 const LOOKS_LIKE_LEVER: f64 = 1e-3;
 
 /// Notes every misfit.
@@ -70,7 +70,7 @@ pub(crate) fn check(geometry: &Geometry, notes: &Notes<'_>) {
     room_between_planets(geometry, notes);
 }
 
-/// Planets whose pitch circles meet cannot be mounted whatever the file says; tips that would meet may have been cut.
+/// Planets whose pitch circles meet can never be mounted; tips that meet may have been cut.
 fn room_between_planets(geometry: &Geometry, notes: &Notes<'_>) {
     let pitch_radius = geometry.planet_base_radius / geometry.working_pressure_angle.cos();
     let tip_radius = pitch_radius * (1.0 + 2.0 / f64::from(geometry.planet_teeth));

@@ -1,5 +1,5 @@
-//! Draws what is wrong with a file that users write: every problem at once, each with its place underlined. Colours and line
-//! drawing follow the terminal, as miette decides.
+//! Draws the problems of a user's file, all at once, each with its place underlined. Colours and line drawing follow
+//! the terminal, as miette decides.
 
 use std::borrow::Cow;
 use std::error::Error;
@@ -14,21 +14,21 @@ use report::escape::{escaped, place_in_escaped};
 #[derive(Debug)]
 struct Rejected {
     name: String,
-    /// The text, if it can be drawn.
+    /// Text, if it can be drawn.
     source: Option<NamedSource<String>>,
     places: Vec<Place>,
 }
 
-/// One problem, with its line if the text is not drawn.
+/// Problem, with its line number if the text is not drawn.
 #[derive(Debug)]
 struct Place(Problem, Option<usize>);
 
-/// Letters of a message beside a text that is not drawn.
+/// Longest message beside a text that is not drawn [letters].
 const LONGEST_MESSAGE: usize = 300;
-/// Bytes of the longest line that is drawn: no terminal shows more, and what draws fails at 65,536 columns.
+/// Longest line that is drawn [bytes]: no terminal shows more, and drawing fails at 65,536 columns.
 const LONGEST_DRAWN: usize = 4096;
 
-/// One report over all problems of the file called `name`.
+/// Report of all problems of the file called `name`.
 ///
 /// ```
 /// let text = joint_file::preset("q1").unwrap().replace("planets = 3", "planets = 7");
@@ -53,7 +53,7 @@ pub fn report(name: &str, text: &str, problems: &[Problem]) -> Report {
     })
 }
 
-/// Returns a problem in words that may be shown, at its place in the text that is drawn.
+/// Problem with escaped words, at its place in the escaped text.
 fn shown(problem: &Problem, text: &str) -> Problem {
     let [start, end] = [problem.span.start, problem.span.end].map(|place| place_in_escaped(text, place));
     Problem {
@@ -117,7 +117,7 @@ impl Diagnostic for Place {
     }
 }
 
-/// A message that quotes a very long word, without most of it.
+/// Message cut after the limit, as it may quote a very long word.
 fn shortened(message: &str) -> Cow<'_, str> {
     match message.char_indices().nth(LONGEST_MESSAGE) {
         Some((end, _)) => format!("{} ...", &message[..end]).into(),
@@ -153,7 +153,7 @@ mod tests {
         let (sender, receiver) = std::sync::mpsc::channel();
         std::thread::spawn(move || [unknown, broken].iter().try_for_each(|text| sender.send(shown(text))));
         for what in ["unknown", "broken"] {
-            // Less than a second: what took minutes grew with the square of the file.
+            // Normally below a second; a time that grew with the square of the file would be minutes.
             let shown = receiver.recv_timeout(Duration::from_secs(30)).expect(what);
             assert!(shown.contains("100 problems, and there may be more"), "{what}: {shown}");
         }

@@ -1,27 +1,27 @@
-//! Reads `[equivalent_gear]`, which stands in the place of all sections on teeth, and what `[bodies]` says beside it.
+//! Reads `[equivalent_gear]`, which replaces all sections on teeth, and its keys of `[bodies]`.
 
 use parameters::{EquivalentGear, JointParameters};
 
 use crate::problem::Severity;
 use crate::section::Section;
 
-/// Sections and keys of teeth, which an equivalent gear has none of.
+/// Sections and keys on teeth, invalid for an equivalent gear.
 pub(crate) const OF_TEETH: [&str; 7] =
     ["coherence", "characteristic_length_um", "geometry", "mesh", "compliance", "contact", "excitation"];
 
-/// Keys of `[bodies]` that an equivalent gear has.
+/// Keys of `[bodies]` for an equivalent gear.
 const BODIES: [&str; 3] = ["gear_inertia_at_input_kg_cm2", "rotor_inertia_kg_m2", "link_inertia_kg_m2"];
 
-/// A decimal number with more places is a fraction that was rounded.
+/// Most decimals of an exact ratio; with more it is a rounded fraction.
 const MOST_PLACES: usize = 5;
 
-/// From this many places on it may be one.
+/// Decimals from which a ratio may be a rounded fraction.
 const MANY_PLACES: usize = 3;
 
-/// Greatest whole number of a ratio: the difference of two encoders is counted in units of it.
+/// Largest whole number of a ratio: the difference of two encoders is counted in units of it.
 const GREATEST_WHOLE: u64 = 100_000_000;
 
-/// Ratio and parameters, as far as they are right; what is wrong has been noted.
+/// Ratio and parameters, as far as they are valid; problems are noted.
 pub(crate) fn read(
     top: &Section<'_>,
     section: &Section<'_>,
@@ -81,8 +81,8 @@ fn ratio(section: &Section<'_>) -> Option<[u32; 2]> {
     Some(ratio)
 }
 
-/// A decimal number as a fraction of whole numbers: to the last digit, or with many digits the simplest fraction that is
-/// written so. What else it may stand for is warned of.
+/// Decimal number as a fraction of whole numbers: exact, or with many digits the simplest fraction rounded to it.
+/// Ambiguity is a warning.
 fn decimal(section: &Section<'_>) -> Option<[u32; 2]> {
     let value = section.required_number("ratio")?;
     let typed = value.to_string();
@@ -104,7 +104,7 @@ fn decimal(section: &Section<'_>) -> Option<[u32; 2]> {
         return Some([u32::try_from(over).ok()?, u32::try_from(under).ok()?]);
     }
     let [over, few] = simple;
-    // Of two digits one ratio in six is a fraction that teeth give; a divisor of 100 needs no rounding.
+    // One ratio in six with two decimals may be a fraction of teeth; a divisor of 100 is exact.
     let may_be_rounded = few * few < under && under % few != 0;
     let turns = format!("`motor_turns` = {over} and `link_turns` = {few} in place of `ratio`");
     if places >= MANY_PLACES {
@@ -125,7 +125,7 @@ fn decimal(section: &Section<'_>) -> Option<[u32; 2]> {
     Some([u32::try_from(digits).ok()?, u32::try_from(under).ok()?])
 }
 
-/// The fraction of least divisor from one fraction to a greater one.
+/// Fraction with the least denominator between two fractions.
 fn simplest([a, b]: [u64; 2], [c, d]: [u64; 2]) -> [u64; 2] {
     let whole = a / b;
     if whole * b == a {
@@ -142,7 +142,7 @@ fn divisor(a: u32, b: u32) -> u32 {
     if b == 0 { a } else { divisor(b, a % b) }
 }
 
-/// Inertia of the gear at its input, of the rotor and of the link [kg m^2].
+/// Inertias of the gear at its input, the rotor and the link [kg m^2].
 fn masses(section: &Section<'_>) -> Option<[f64; 3]> {
     for key in section.keys().filter(|key| !BODIES.contains(key)) {
         let message = format!("`{key}` is of gears with teeth, and [equivalent_gear] has none");

@@ -1,11 +1,11 @@
-//! Every key of a joint file: its section, its unit, its bound, and a hint for who got it wrong. The page
-//! docs/reference/joint-file.md lists every key in its tables.
+//! All keys of a joint file: section, unit, bound, and a hint for a wrong value. The page docs/reference/joint-file.md
+//! lists every key in its tables.
 
 use crate::bound::{Bound, Unit};
 use crate::table::{self, Keys};
 use crate::wording::listed;
 
-/// What a key holds.
+/// Type of a key's value.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Kind {
     /// A string.
@@ -16,7 +16,7 @@ pub(crate) enum Kind {
     Whole(u32, u32),
     /// A number.
     Number(Unit, Bound),
-    /// A number for all planets, or a list with one number for each.
+    /// A number for all planets, or a list with a number per planet.
     PerPlanet(Unit, Bound),
     /// A table of its own.
     Section,
@@ -50,7 +50,7 @@ use Bound::{Between, FromToBelow, Inside, ZeroOr};
 use Kind::{Choice, Number, PerPlanet, Text, Whole};
 use Unit::{Arcmin, Degrees, Micro, Milli, PerArcmin, Si, SquareCentimetres};
 
-/// What a typing error may not leave: the board computes in f32.
+/// Bounds of plausible values: the board computes in f32.
 const MASS: Bound = Between(1e-6, 1e6);
 const INERTIA: Bound = Between(1e-12, 1e6);
 const TORQUE: Bound = Between(1e-6, 1e9);
@@ -575,7 +575,7 @@ pub(crate) const KEYS: &[Key] = &[
     ),
 ];
 
-/// Whether a section has that name.
+/// Returns true for the name of a section.
 pub(crate) fn find_section(name: &str) -> bool {
     KEYS.iter().any(|key| matches!(key.kind, Kind::Section) && key.name == name)
 }

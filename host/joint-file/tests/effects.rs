@@ -1,12 +1,12 @@
-//! Keys of what real joints do: each is read in SI, absent by default, and refused by name where it means nothing.
+//! Keys of effects of real joints: each is read in SI, absent by default, and rejected by name without effect.
 
 use joint_file::{change, preset, read};
 use parameters::{Effect, Surroundings};
 
-/// Key, value as typed, value in SI, and where it is read to.
+/// Key, value as typed, value in SI, and accessor.
 type Row = (&'static str, &'static str, f64, fn(&Surroundings) -> f64);
 
-/// Every key with a value and the SI value that it states.
+/// Every key with a value and its SI value.
 const KEYS: [Row; 29] = [
     ("payload_inertia_share", "0.4", 0.4, |of| of.payload.inertia_share),
     ("payload_frequency_Hz", "12", 12.0, |of| of.payload.frequency),
@@ -51,7 +51,7 @@ fn q1_with(keys: &[(&str, &str)]) -> String {
     keys.iter().fold(preset("q1").expect("a preset").to_owned(), set)
 }
 
-/// The only problem of Q1 with these keys set: message and help.
+/// Only problem of Q1 with these keys set: message and help.
 fn refusal(keys: &[(&str, &str)]) -> String {
     let problems = read(&q1_with(keys)).expect_err("it is refused");
     assert_eq!(problems.len(), 1, "{problems:#?}");

@@ -1,5 +1,5 @@
-//! The joint files that come with the program: all are read, warn only of what is known, and give the numbers of the
-//! paper and of the robot joints. What is wrong with bad files is asserted in `bad_input`.
+//! Built-in joint files: all are readable, have only known warnings, and give the numbers of the paper and of the robot
+//! joints. Problems of bad files are in `bad_input`.
 
 use joint_file::{JointFile, PRESETS, preset, read};
 use model_core::gears::{Kinematics, Mechanics, MeshPhasing, Scales};

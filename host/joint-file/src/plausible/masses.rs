@@ -1,8 +1,8 @@
-//! Gears and carrier against their sizes, planets against their own mass, rotor against its torque, link against what
-//! moves it.
+//! Checks of gears and carrier against their sizes, planets against their own mass, rotor against its torque, and link
+//! against the motor.
 //!
-//! A body's inertia is told as the face width that a solid disc of steel of its pitch radius would need for it:
-//! w = 2 I / (rho pi r^4). Hollow bodies and light materials need less, none needs twenty times its radius.
+//! A body's inertia is expressed as the face width of a solid steel disc of its pitch radius: w = 2 I / (rho pi r^4).
+//! Hollow bodies and light materials need less; none needs twenty times its radius.
 
 use std::f64::consts::PI;
 
@@ -13,18 +13,18 @@ use super::units;
 use crate::contents::JointFile;
 use crate::sheet;
 
-/// Of steel [kg/m^3].
+/// Density of steel [kg/m^3].
 const STEEL: f64 = 7850.0;
 
-/// Face width of a gear of solid steel over its pitch radius. The presets lie between 0.1 and 4.6.
+/// Face width of a gear of solid steel over its pitch radius; 0.1 to 4.6 for the presets.
 const WIDTH: Limits = Limits { odd: (5e-3, 10.0), possible: (3e-4, 25.0) };
-/// The same of a carrier, over r_c: presets have 0.08 to 0.9.
+/// Face width of a carrier of solid steel over r_c; 0.08 to 0.9 for the presets.
 const CARRIER_WIDTH: Limits = Limits { odd: (5e-4, 5.0), possible: (1e-5, 25.0) };
-/// What is usual of either.
+/// Usual face width of either over its radius.
 const USUAL_WIDTH: (f64, f64) = (0.02, 5.0);
 
-/// Gears with teeth. A data sheet's inertia at the input is all that turns there, a clamping hub among it: it says nothing of the
-/// widths of discs, beyond that it is not less than that of a foil.
+/// Checks gears with teeth. A data sheet's inertia at the input includes everything that turns there, such as a
+/// clamping hub: it limits the discs' widths only from below.
 pub(super) fn check_gears(file: &JointFile, judge: &Judge<'_>) {
     if judge.notes.holds(AT_INPUT) {
         foil(file, judge);
@@ -35,15 +35,15 @@ pub(super) fn check_gears(file: &JointFile, judge: &Judge<'_>) {
     carrier(file, judge);
 }
 
-/// What is on either side of the gears.
+/// Checks the inertias on either side of the gears.
 pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
     let rotor = rotor(file, judge);
     let gears = judge.notes.holds(AT_INPUT) && at_input(file, judge);
-    // What is wrong on the motor's side makes the link look wrong against it.
+    // A wrong motor side makes the link look wrong.
     link(file, judge, rotor || gears);
 }
 
-/// Width of a disc of steel with such an inertia [m].
+/// Width of a steel disc with this inertia [m].
 fn width(inertia: f64, radius: f64) -> f64 {
     2.0 * inertia / (STEEL * PI * radius.powi(4))
 }
@@ -78,7 +78,7 @@ fn gears(file: &JointFile, judge: &Judge<'_>) {
 
 const AT_INPUT: &str = "bodies.gear_inertia_at_input_kg_cm2";
 
-/// A data sheet's inertia at the input as discs of steel of one thickness.
+/// Checks a data sheet's inertia at the input as steel discs of one thickness.
 fn foil(file: &JointFile, judge: &Judge<'_>) {
     let (geometry, bodies) = (&file.parameters.geometry, &file.parameters.bodies);
     let radius = geometry.sun_base_radius / geometry.working_pressure_angle.cos();
@@ -94,11 +94,12 @@ fn foil(file: &JointFile, judge: &Judge<'_>) {
     });
 }
 
-/// A data sheet's inertia at the input against the rotor and the torque that turn with it. Whether it is odd.
+/// Checks a data sheet's inertia at the input against the rotor and the torque that turns it. Returns true after a
+/// complaint.
 fn at_input(file: &JointFile, judge: &Judge<'_>) -> bool {
-    /// Over the rotor's inertia: gears in front of which a clamping hub sits have up to 30 times that.
+    /// Inertia of the gears over the rotor's; a clamping hub makes it up to 30.
     const OVER_ROTOR: Limits = Limits { odd: (5e-5, 200.0), possible: (0.0, 1e4) };
-    // Too little of gears with teeth is told as a foil.
+    // Too small an inertia of gears with teeth is reported as a foil.
     let equivalent = file.parameters.equivalent_gear().is_some();
     let [over_rotor, accelerated] = match equivalent {
         true => [OVER_ROTOR, ACCELERATION],
@@ -134,7 +135,7 @@ fn at_input(file: &JointFile, judge: &Judge<'_>) -> bool {
 }
 const RADII: &str = "; or the module or radii are wrong";
 
-/// The likely unit of a body's inertia or equivalent mass, by the key that states it.
+/// Likely unit of a body's inertia or equivalent mass, by the key that states it.
 fn mend(key: &str, inertia: f64, mass: f64, wide: f64) -> String {
     let likely = |slips, value, unit| units::likely(slips, value, wide, 1, USUAL_WIDTH, unit);
     let unit = match key {
@@ -144,13 +145,13 @@ fn mend(key: &str, inertia: f64, mass: f64, wide: f64) -> String {
     unit + RADII
 }
 
-/// All of a planet's mass lies within its tip circle: I <= m r_tip^2. And its teeth are part of it.
+/// Checks a planet: all of its mass lies within its tip circle, I <= m r_tip^2, and its teeth are part of the mass.
 fn planets(file: &JointFile, judge: &Judge<'_>) {
-    /// I / r_b^2 over the mass is 0.57 for a solid disc; a heavy pin and bearing make it less.
+    /// I / r_b^2 over the mass: 0.57 for a solid disc, less with a heavy pin and bearing.
     const GYRATION: (f64, f64) = (0.03, 5e-4);
     let (geometry, bodies) = (&file.parameters.geometry, &file.parameters.bodies);
     let (mass, equivalent) = (bodies.planet_mass, bodies.planet_equivalent_mass);
-    // 0 leaves the mass out.
+    // 0 means no stated mass.
     if mass == 0.0 {
         return;
     }
@@ -186,7 +187,7 @@ fn planets(file: &JointFile, judge: &Judge<'_>) {
     });
 }
 
-/// A disc half as wide again as r_c, which reaches over the planets' pins and bearings.
+/// Checks the carrier as a disc of 1.5 r_c, which covers the planets' pins and bearings.
 fn carrier(file: &JointFile, judge: &Judge<'_>) {
     const REACH: f64 = 1.5;
     let geometry = &file.parameters.geometry;
@@ -210,13 +211,13 @@ fn carrier(file: &JointFile, judge: &Judge<'_>) {
     });
 }
 
-/// Motors bring themselves to some 1e3 to 2e5 rad/s^2 by the torque that they can hold.
+/// Acceleration of a rotor by its continuous torque: some 1e3 to 2e5 rad/s^2 for motors.
 const ACCELERATION: Limits = Limits { odd: (50.0, 3e6), possible: (0.05, 3e9) };
 
-/// The rotor against the torque that it has. Whether it is odd.
+/// Checks the rotor against its torque. Returns true after a complaint.
 fn rotor(file: &JointFile, judge: &Judge<'_>) -> bool {
     let inertia = file.parameters.rotor_inertia;
-    // 0 leaves the rotor out.
+    // 0 means no stated rotor.
     if inertia == 0.0 {
         return false;
     }
@@ -231,7 +232,7 @@ fn rotor(file: &JointFile, judge: &Judge<'_>) -> bool {
     })
 }
 
-/// The link, at the motor's side, against all that turns with the motor: joints are built with 0.05 to 50 times.
+/// Checks the link, referred to the motor, against the inertia that turns with the motor: 0.05 to 50 times is built.
 fn link(file: &JointFile, judge: &Judge<'_>, motor_side_is_odd: bool) {
     const RATIO: Limits = Limits { odd: (2e-3, 3e3), possible: (0.0, 1e7) };
     let joint = &file.parameters;
@@ -254,7 +255,7 @@ fn link(file: &JointFile, judge: &Judge<'_>, motor_side_is_odd: bool) {
         let help = units::likely(units::INERTIA, joint.link_inertia, at_motor / motor, 1, (0.05, 100.0), "kg m^2");
         (message, help + "; or `rotor_inertia_kg_m2` is in another unit")
     });
-    // A link may be anything; one that its rated torque cannot bring to speed within half a minute is no link.
+    // A link may be large, but its rated torque must bring it to speed within half a minute.
     let acceleration = joint.rated_output_torque / joint.link_inertia;
     judge.judge(&keys, acceleration, Limits { odd: (0.05, ANY), possible: (1e-5, ANY) }, |_, key| {
         let message = format!(

@@ -1,4 +1,4 @@
-//! Encoders against the gap, and the controller's times and rates.
+//! Checks of the encoders against the gap, and of the controller's times and rates.
 
 use std::f64::consts::TAU;
 
@@ -9,26 +9,26 @@ use super::judge::{ANY, Judge, Limits, figure};
 use crate::contents::JointFile;
 use crate::sheet;
 
-/// Counts or errors of an encoder over the lost motion, both at the link.
+/// Count or error of an encoder over the lost motion, both at the link.
 const AGAINST_GAP: Limits = Limits::above(1.0, ANY);
-/// How old a reading is: no interface is faster than 0.1 us, none slower than 20 ms [s].
+/// Age of a reading: interfaces take 0.1 us to 20 ms [s].
 const SKEW: Limits = Limits { odd: (1e-7, 0.02), possible: (0.0, ANY) };
 /// Time constant of a current loop [s].
 const LAG: Limits = Limits { odd: (2e-6, 0.02), possible: (0.0, ANY) };
 /// Rates of controllers of joints [Hz].
 const RATE: Limits = Limits { odd: (100.0, 2.5e5), possible: (0.0, ANY) };
-/// Control periods from measuring to acting.
+/// Control periods from measurement to torque.
 const DELAY: Limits = Limits::above(20.0, ANY);
-/// Speed at which the rise of friction at rest has decayed [rad/s].
+/// Speed at which the excess friction at rest has decayed [rad/s].
 const STRIBECK: Limits = Limits { odd: (1e-5, 1.0), possible: (0.0, ANY) };
-/// Friction at rest over that in motion, less 1.
+/// Friction at rest over friction in motion, less 1.
 const RISE: Limits = Limits::above(2.0, ANY);
-/// Of torques.
+/// Relative noise of the torque, and error of the torque constant.
 const NOISE: Limits = Limits::above(0.2, ANY);
 const CONSTANT: Limits = Limits { odd: (-0.3, 0.3), possible: (-ANY, ANY) };
-/// Pressure angles of teeth that are cut [rad].
+/// Pressure angles of manufactured teeth [rad].
 const ANGLE: Limits = Limits { odd: (0.17, 0.56), possible: (0.0, ANY) };
-/// The unit of length of dimensionless results [m].
+/// Characteristic length of dimensionless results [m].
 const LENGTH: Limits = Limits { odd: (1e-7, 1e-3), possible: (0.0, ANY) };
 
 pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
@@ -119,7 +119,7 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
         of_angle,
         "20 is usual, 14.5 to 28 are made",
     );
-    // An equivalent gear's follows from its stiffness.
+    // An equivalent gear's length follows from its stiffness.
     let stated = file.parameters.equivalent_gear().is_none();
     let length = if stated { file.parameters.characteristic_length } else { 0.0 };
     let of_length = "is far from the deflections that it scales";

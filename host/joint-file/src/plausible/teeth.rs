@@ -1,4 +1,4 @@
-//! The teeth: backlash and transmission error against the module, deflection under the rated torque, what steel carries,
+//! Checks of the teeth: backlash and transmission error against the module, deflection and stress at rated torque,
 //! damping.
 
 use model_core::gears::Kinematics;
@@ -8,19 +8,20 @@ use super::judge::{ANY, Judge, Limits, figure};
 use super::units;
 use crate::contents::JointFile;
 
-/// Backlash 2b over the module: wear and printed teeth reach 0.3; at 1.5 cos(20 deg) neither tooth is left.
+/// Backlash 2b over the module: worn and printed teeth reach 0.3; at 1.5 cos(20 deg) no tooth is left.
 const BACKLASH: Limits = Limits::above(0.35, 1.4);
-/// Amplitude of the transmission error over the module: the coarsest gears of ISO 1328 reach 0.04.
+/// Amplitude of the transmission error over the module: 0.04 for the coarsest gears of ISO 1328.
 const ERROR: Limits = Limits::above(0.06, 0.5);
-/// Below this a transmission error is finer than any gear's, but for 0 [m].
+/// Least transmission error of real gears, except 0 [m].
 const FINEST_ERROR: f64 = 2e-8;
-/// Deflection of a mesh at rated torque over the module; teeth bend by 1e-4 to 5e-3 of it.
+/// Deflection of a mesh at rated torque over the module: 1e-4 to 5e-3 for teeth.
 const DEFLECTION: Limits = Limits { odd: (2e-6, 0.06), possible: (1e-8, 0.5) };
 /// Mean stiffness over a face width of ten sun radii [N/m^2]: steel teeth have 1.4e10 to 2e10 (ISO 6336-1).
 const STIFFNESS: Limits = Limits::above(2e10, 2e11);
-/// Stress of a tooth, three times its force over module and a face width of ten sun radii [Pa]: none carries 1e9.
+/// Stress of a tooth, three times its force over module and a face width of ten sun radii [Pa]; no material carries
+/// 1e9.
 const STRESS: Limits = Limits::above(3e8, 1e9);
-/// Above this a mesh hardly rings, below it is made of nothing that there is; 0 is no damping on purpose.
+/// Damping ratio of a mesh: above the range it hardly rings, below it no material damps so little; 0 disables damping.
 const DAMPING: Limits = Limits { odd: (5e-4, 0.35), possible: (0.0, 1.0) };
 
 pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
@@ -89,7 +90,7 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
         let named = of("mean_stiffness_N_per_m");
         let named: Vec<&str> = named.iter().map(String::as_str).collect();
         let bent = force / stiffness;
-        // A rated torque of next to nothing bends nothing; the stiffness is judged by itself then.
+        // A tiny rated torque deflects nothing; the stiffness then has its own check.
         let deflection = Limits { odd: (0.0, DEFLECTION.odd.1), possible: (0.0, DEFLECTION.possible.1) };
         judge.judge(&named, bent / module, deflection, |_, key| {
             let message = format!(
@@ -133,7 +134,7 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
     });
 }
 
-/// A key of the meshes of one kind, as it may stand in the file.
+/// Key of the meshes of one kind, in the places where the file may state it.
 fn keys(kind: MeshKind, name: &str) -> Vec<String> {
     let family = match kind {
         MeshKind::SunPlanet => "mesh.sun_planet",

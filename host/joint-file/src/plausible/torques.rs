@@ -1,5 +1,5 @@
-//! Torques against each other: frictions, cogging and weight against what the motor has, drive torque against the rated
-//! one; and the stiffness behind the carrier against the torque that it carries.
+//! Checks of torques: frictions, cogging and weight against the motor, drive torque against rated torque, and the
+//! stiffness behind the carrier against its torque.
 
 use model_core::gears::Kinematics;
 use parameters::{Compliance, EquivalentGear};
@@ -8,23 +8,24 @@ use super::judge::{ANY, Judge, Limits, figure};
 use super::units;
 use crate::contents::JointFile;
 
-/// Wind-up of the compliance at rated torque [rad]: from a tenth of a minute of arc to 3 degrees; past 45 degrees it is
-/// no joint, below 1.5e-6 no part of a machine.
+/// Wind-up of the compliance at rated torque [rad]: a tenth of a minute of arc to 3 degrees; above 45 degrees it is no
+/// joint, below 1.5e-6 no machine part.
 const WIND_UP: Limits = Limits { odd: (2.9e-5, 0.055), possible: (1.5e-6, 0.8) };
-/// What gearheads have [rad]: 0.8 to 35 minutes of arc.
+/// Wind-up of common gearheads [rad]: 0.8 to 35 minutes of arc.
 const USUAL_WIND_UP: (f64, f64) = (2.3e-4, 1e-2);
 /// Dry friction over the torque that must overcome it.
 const FRICTION: Limits = Limits::above(0.5, 1.0);
-/// The same of the link, which a brake may hold: tests of a held link state one of four times the rated torque.
+/// Dry friction of the link over the rated torque; a brake may add to it: tests of a held link state four times the
+/// rated torque.
 const LOAD_FRICTION: Limits = Limits::above(0.5, 10.0);
-/// What the rated torque drives against viscous friction alone, at the link [rad/s].
+/// Speed of the link at which viscous friction alone takes the rated torque [rad/s].
 const TOP_SPEED: Limits = Limits { odd: (3.0, ANY), possible: (0.03, ANY) };
-/// Drive torque, through the ratio, over the rated torque.
+/// Drive torque times the ratio over the rated torque.
 const DRIVE: Limits = Limits { odd: (0.4, 2.5), possible: (0.02, 50.0) };
-/// Drive torque, through the ratio, over the rated torque, where the motor's limit is below what the rated torque takes: gearheads
-/// that are rated for 20 times their motor are sold.
+/// Drive torque times the ratio over the rated torque, for a motor whose limit is below the rated torque: gearheads
+/// rated for 20 times their motor are sold.
 const LIMITED_DRIVE: Limits = Limits { odd: (0.02, 2.5), possible: (5e-4, 50.0) };
-/// The motor's limit over its drive torque.
+/// Torque limit of the motor over its drive torque.
 const LIMIT: Limits = Limits::above(20.0, 500.0);
 
 pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
@@ -79,7 +80,7 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
     }
 }
 
-/// A drive torque within the motor's limit against the rated torque.
+/// Checks a drive torque within the motor's limit against the rated torque.
 fn drive_torque(judge: &Judge<'_>, [drive, ratio, rated]: [f64; 3], over: f64) {
     judge.judge(&["profile.drive_torque_N_m", "rated_output_torque_N_m"], over, DRIVE, |_, key| {
         let message = format!(
@@ -95,7 +96,8 @@ fn drive_torque(judge: &Judge<'_>, [drive, ratio, rated]: [f64; 3], over: f64) {
     });
 }
 
-/// A spring at the output against the rated torque, and its damping; its section and what it does.
+/// Checks a spring at the output against the rated torque, and its damping; `section` and `does` are its section and
+/// verb.
 fn spring(rated: f64, of: &Compliance, (section, does): (&str, &str), keys: &[&str], judge: &Judge<'_>) {
     let turned = rated / of.stiffness;
     judge.judge(keys, turned, WIND_UP, |_, key| {
@@ -162,7 +164,7 @@ fn frictions(file: &JointFile, judge: &Judge<'_>) {
     });
     let all = motor + around.cogging_torque + load / (ratio * around.efficiency);
     let each = motor.max(around.cogging_torque) / drive;
-    // What is told of one of them need not be told of all.
+    // A complaint about one friction needs no complaint about the sum.
     if each <= 1.0 && load <= rated {
         judge.judge(&motor_keys, all / limit, Limits::above(1.0, 1.0), |_, key| {
             let message = format!(

@@ -1,4 +1,4 @@
-//! Gears that do not fit together, and radii stated in more than one way. Single values are in `values`.
+//! Gears that do not fit together, and radii stated twice. Single values are in `values`.
 
 use joint_file::{Severity, preset, read};
 
@@ -73,7 +73,7 @@ fn planets_that_do_not_assemble_are_refused() {
     assert_eq!(help, "these teeth take 3 planets, or choose others");
 }
 
-/// The one problem whose message has `part`.
+/// Only problem whose message has `part`.
 fn only_among(text: &str, part: &str) -> (String, String, String) {
     let found: Vec<_> = problems(text).into_iter().filter(|problem| problem.message.contains(part)).collect();
     assert_eq!(found.len(), 1, "{found:#?}");

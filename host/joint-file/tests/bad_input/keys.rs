@@ -1,5 +1,5 @@
-//! Keys, sections and syntax: unknown, missing, misplaced, of the wrong type, or no TOML at all. Values out of their
-//! bounds are in `values`.
+//! Keys, sections and syntax: unknown, missing, misplaced, of the wrong type, or no TOML. Values out of bounds are in
+//! `values`.
 
 use joint_file::{preset, read};
 

@@ -1,5 +1,5 @@
-//! Values of the right type that no joint can have, most of them typed in another unit. Values that contradict each
-//! other are in `gears` and `meshes`.
+//! Values of the right type that no joint can have, most of them in another unit. Contradicting values are in `gears`
+//! and `meshes`.
 
 use crate::{refused, spoilt};
 

@@ -1,11 +1,10 @@
-//! `joint replay`: runs the observer of a joint, the very code that a board runs, over the counts and torques of a log. A
-//! log of `joint hil TEST` says itself what its observer was told, and whether its run is repeated in every bit is checked;
-//! of any other log the estimates are shown.
+//! `joint replay`: runs a joint's observer, the code that a board runs, over the counts and torques of a log. The log
+//! of a run of `joint hil TEST` contains the observer's inputs, and the replay is compared with the run in every bit.
+//! For any other log the estimates are shown.
 //!
-//! `arguments` is the command line, `samples` makes an observer's samples of columns, `wiring` judges what the log
-//! contradicts, `pass` runs the observer over them,
-//! `recorded` is what a run has said of itself, `history` writes estimates as CSV and MCAP, `record` is the JSON, `page` and
-//! `pictures` show it.
+//! `arguments` is the command line. `samples` converts columns to an observer's samples, `wiring` checks the log
+//! against the joint file, `pass` collects the observer's estimates, `recorded` are the estimates logged by a run.
+//! `history` writes the estimates as CSV and MCAP, `record` is the JSON, `page` and `pictures` show it.
 
 mod arguments;
 mod history;
@@ -42,13 +41,13 @@ use report::folder::{self, Folder};
 use report::output;
 use report::progress::Progress;
 
-/// What is written.
+/// Files of the results.
 const REPORT: &str = "report.html";
 const RECORD: &str = "record.json";
 const CSV: &str = "estimates.csv";
 const LOG: &str = "estimates.mcap";
 
-/// An observer as it was before its first samples.
+/// Observer before its first samples.
 struct Start {
     tables: ObserverTables<f32>,
     memory: Option<Memory>,
@@ -64,7 +63,7 @@ impl Start {
     }
 }
 
-/// Replays a log, writes what comes of it and prints it; fails if a run is not repeated.
+/// Replays a log, writes the results and returns the printed text; fails if a run is not repeated.
 pub fn run(arguments: &ReplayArguments, progress: &Progress) -> Outcome<String> {
     let path = arguments.log.as_path();
     let map =
@@ -115,7 +114,7 @@ pub fn run(arguments: &ReplayArguments, progress: &Progress) -> Outcome<String> 
         .into_iter()
         .map(|(key, value)| (key.to_owned(), value))
         .collect();
-    // An observer repeats itself, so that a long log need not be kept in memory as estimates.
+    // The observer runs again for each file instead of keeping all estimates in memory.
     let observer = start.observer()?;
     folder.write_with(CSV, |out| history::csv(out, &samples, observer, every))?;
     let observer = start.observer()?;
@@ -140,7 +139,7 @@ pub fn run(arguments: &ReplayArguments, progress: &Progress) -> Outcome<String> 
     }
 }
 
-/// The joint file that the observer is designed from.
+/// Loads the joint file of the observer.
 fn load(arguments: &ReplayArguments, origin: Option<&ObserverOrigin>, controller: Option<&String>) -> Outcome<Loaded> {
     if let Some(origin) = origin {
         return named::read_changed(arguments.log.display().to_string(), origin.joint_file.clone(), &[]);
@@ -164,7 +163,7 @@ fn design(loaded: &Loaded, settings: &ObserverSettings) -> Outcome<ObserverTable
         .map_err(|error| Failure::new(format!("no observer can be designed for joint `{}`: {error}", joint.name)))
 }
 
-/// Designs the observer of the joint file at another control rate.
+/// Designs the observer of the joint file for another control rate.
 fn at_rate(arguments: &ReplayArguments, rate: f64) -> Outcome<ObserverTables<f32>> {
     let joint = arguments.joint.as_deref().ok_or_else(|| Failure::new("the rate of a run is that of its log"))?;
     let changes: Vec<String> = arguments.set.iter().cloned().chain([format!("control_rate_Hz={rate:.0}")]).collect();

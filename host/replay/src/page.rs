@@ -1,4 +1,4 @@
-//! A replay as a document: whether the run is repeated, what was learnt, what the estimates stood on, pictures.
+//! A replay as a document: comparison with the run, estimated parameters, sources of the estimates, pictures.
 
 use crate::record::{Difference, ReplayRecord};
 use identify::page::findings;
@@ -9,10 +9,10 @@ use report::document::{
 use report::plot::Figure;
 use report::provenance::VERSION;
 
-/// Values that differ and are shown.
+/// Differing values shown at most.
 const SHOWN: usize = 12;
 
-/// All of it; `file` is the text of the joint file.
+/// Whole report; `file` is the text of the joint file.
 pub fn document(record: &ReplayRecord, file: &str, figures: Vec<Figure>) -> Document {
     let ReplayRecord { joint, log, periods, duration_s, control_rate, repeats, .. } = record;
     let verdict = repeats.as_ref().map(|repeats| match repeats.every_bit {
@@ -44,7 +44,7 @@ pub fn document(record: &ReplayRecord, file: &str, figures: Vec<Figure>) -> Docu
     }
 }
 
-/// Verdicts on the wiring; those that are right in one row.
+/// Verdicts on the wiring; right items share one row.
 fn wiring(record: &ReplayRecord) -> Block {
     let of = |verdict: &str| {
         let items = record.wiring.iter().filter(|finding| finding.verdict == verdict);
@@ -80,7 +80,7 @@ fn standing(record: &ReplayRecord) -> Vec<Block> {
         rows.push((format!("control periods with {notice}").into(), number(*count as f64)));
     }
     let mut blocks = vec![facts(rows)];
-    // The first entry is the start, in which nothing has been heard yet.
+    // The first entry is the start, before any sample.
     if record.sources.len() > 2 {
         let columns = vec![numbers("from").in_unit("s"), words("estimates from"), notes("because")];
         let cells = record.sources.iter().map(|change| {

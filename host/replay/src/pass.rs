@@ -1,4 +1,4 @@
-//! What is kept of an observer's pass over a log: counts of its states, and points for pictures.
+//! Results of an observer's pass over a log: counts of its states, and points for pictures.
 
 use std::collections::BTreeMap;
 
@@ -9,26 +9,26 @@ use serde::Serialize;
 use crate::samples::ReplaySamples;
 use report::contacts::Contact;
 
-/// Points that are kept for pictures.
+/// Points kept for pictures at most.
 const POINTS: usize = 200_000;
-/// Changes of source that are listed.
+/// Changes of source listed at most.
 const CHANGES: usize = 50;
-/// 95 of 100 values lie within so many standard deviations.
+/// Half of a 95 % interval over the standard deviation.
 const REACH: f64 = 1.96;
 
-/// What the estimates stand on from a moment on.
+/// Source of the estimates from a time on.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SourceChange {
-    /// Since the first control period [s].
+    /// Time since the first control period [s].
     pub time_s: f64,
     /// `both`, `motor_only` or `nothing`.
     pub estimates_from: String,
-    /// Why not both, such as `output_frozen`; `none` otherwise.
+    /// Fault of an encoder, such as `output_frozen`; `none` otherwise.
     pub encoder_fault: String,
 }
 
-/// A value with the half of its interval.
+/// Value with half of its interval.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Interval {
     /// Best guess.
@@ -37,42 +37,42 @@ pub struct Interval {
     pub half: f64,
 }
 
-/// A moment for pictures.
+/// Point of the pictures.
 #[derive(Debug, Clone, Copy)]
 pub struct Point {
-    /// [s].
+    /// Time [s].
     pub time: f64,
-    /// Asked of the motor [N m].
+    /// Commanded motor torque [N m].
     pub torque: f64,
     /// Gap coordinate [m].
     pub gap: Interval,
-    /// Whether it may be used.
+    /// True if the gap coordinate is valid.
     pub gap_valid: bool,
-    /// Half-backlash as learnt [m].
+    /// Estimated half-backlash [m].
     pub half_backlash: Interval,
-    /// What brakes the link [N m].
+    /// Load torque [N m].
     pub load_torque: Interval,
-    /// The flank that carries.
+    /// Flank that carries.
     pub side: Contact,
-    /// Whether that may be used.
+    /// True if the flank is valid.
     pub side_valid: bool,
-    /// Both encoders are used.
+    /// True if both encoders are used.
     pub both: bool,
 }
 
-/// A pass.
+/// Pass of an observer over a log.
 pub struct Pass<'s> {
     samples: &'s ReplaySamples,
     every: usize,
-    /// For pictures.
+    /// Points of the pictures.
     pub points: Vec<Point>,
     /// Periods in which both encoders were trusted.
     pub both: usize,
     /// Periods in which the gap was valid.
     pub gap_valid: usize,
-    /// When the source changed, the first ones.
+    /// First changes of source.
     pub sources: Vec<SourceChange>,
-    /// The others.
+    /// Number of further changes.
     pub sources_left_out: usize,
     /// Periods with a notice, by its name.
     pub notices: BTreeMap<&'static str, usize>,
@@ -80,7 +80,7 @@ pub struct Pass<'s> {
 }
 
 impl<'s> Pass<'s> {
-    /// Before the first samples.
+    /// Empty pass, before the first samples.
     pub fn new(samples: &'s ReplaySamples) -> Self {
         Self {
             samples,
@@ -95,7 +95,7 @@ impl<'s> Pass<'s> {
         }
     }
 
-    /// Estimates of the next period.
+    /// Adds the estimates of a period.
     pub fn note(&mut self, index: usize, of: &Estimates<f32>) {
         let time = self.samples.time[index];
         self.both += usize::from(of.source == Source::Both);

@@ -1,4 +1,4 @@
-//! Pictures of a replay: gap, side and validity, learnt width, load and torque over the whole log, and closely around its
+//! Pictures of a replay: gap, flank and validity, estimated width, load and torque, over the whole log and around its
 //! last change of flank.
 
 use crate::pass::{Interval, Pass, Point};
@@ -11,21 +11,20 @@ use report::plot::mark::Mark;
 use report::plot::panel::{Panel, VerticalAxis};
 use report::plot::unit::{SECONDS, TORQUE, Unit};
 
-/// A close-up begins and ends so long before and after the change of flank [s].
+/// Time shown before and after the change of flank [s].
 const CLOSE: f64 = 0.05;
 /// Width of the lines of an interval [px].
 const FINE: f64 = 0.7;
-/// Part of a row's height that is coloured.
+/// Coloured share of a row's height.
 const FILLED: f64 = 0.7;
 /// Rows of states.
 const ROWS: [&str; 3] = ["side", "gap", "encoders"];
-/// Strips over the whole width: more cannot be told apart.
+/// Strips over the whole width; more cannot be distinguished.
 const STRIPS: usize = 600;
-/// What an observer begins with is much wider than what it has learnt: axes reach so many times the last half interval beyond
-/// the values themselves.
+/// Reach of the axes beyond the values, in last half-intervals: the prior intervals are much wider.
 const REACH: f64 = 40.0;
 
-/// All of them.
+/// All pictures.
 pub fn all(pass: &Pass<'_>, record: &ReplayRecord) -> Vec<Figure> {
     let points = &pass.points;
     let end = points.last().map_or(0.0, |point| point.time);
@@ -72,7 +71,7 @@ fn view(points: &[Point], range: (f64, f64), title: String) -> Figure {
     Figure::over_time(title, unit, range, panels)
 }
 
-/// A value between the ends of its 95 % interval, cut off where they are far beyond the values.
+/// Value and the ends of its 95 % interval, clipped far beyond the values.
 fn interval(points: &[Point], of: impl Fn(&Point) -> Interval, ink: Ink, least: Option<f64>) -> Vec<Mark> {
     let last = points.last().map_or(0.0, |point| of(point).half);
     let (low, high) = points
@@ -101,7 +100,7 @@ fn over_time(points: &[Point], value: impl Fn(&Point) -> f64) -> Points {
     points.iter().map(|point| (point.time, value(point))).collect()
 }
 
-/// Side, validity of the gap and trust in the encoders as rows of strips.
+/// Flank, validity of the gap and trust in the encoders as rows of strips.
 fn states(points: &[Point], range: (f64, f64)) -> Panel {
     let side = |wanted: Contact| move |point: &Point| point.side_valid && point.side == wanted;
     let marks = vec![
@@ -120,7 +119,7 @@ fn states(points: &[Point], range: (f64, f64)) -> Panel {
     }
 }
 
-/// Stretches in which something is so, in a row; a strip that stands for many points shows their share by its height.
+/// Boxes of a row for the times at which `is_so` holds; the height of a strip is the share of its points.
 fn strips(
     points: &[Point],
     range: (f64, f64),

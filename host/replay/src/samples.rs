@@ -1,5 +1,5 @@
-//! An observer's samples from the columns of a log: of a run just as its controller got them, of any other log by the time
-//! of each row.
+//! An observer's samples from the columns of a log: of a run as its controller received them, of any other log by the
+//! time of each row.
 
 use std::f64::consts::TAU;
 
@@ -17,31 +17,31 @@ use model_core::gears::Kinematics;
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 
-/// Rows may come at another rate than control periods by this ratio.
+/// Largest relative difference between the rates of rows and of control periods.
 const SAME_RATE: f64 = 0.02;
-/// Rows of estimates that are written in a second.
+/// Rows of estimates written per second.
 const USUAL_RATE: f64 = 1000.0;
 
-/// What only runs of `joint hil TEST` say of themselves.
+/// Remark that only runs of `joint hil TEST` have.
 pub const RUN: &str = "controller";
 
 /// Samples of a log.
 pub struct ReplaySamples {
-    /// Of each row [s].
+    /// Time of each row [s].
     pub time: Vec<f64>,
     /// Control period [s].
     pub period: f64,
-    /// Whether angles were taken for the counts of the joint file's encoders.
+    /// True if counts were computed from angles.
     pub from_angles: bool,
     /// Changes to the rows of the file, a sentence each.
     pub told: Vec<String>,
-    /// Asked of the motor from each row on [N m].
+    /// Commanded motor torque from each row on [N m].
     pub torque: Vec<f64>,
     samples: Vec<Samples<f32>>,
 }
 
 impl ReplaySamples {
-    /// Reads a log; `refuses` says why there is no observer of the joint at another control rate.
+    /// Reads a log; `refuses` returns the reason why the joint has no observer at another control rate.
     pub fn read(
         file: &LogFile,
         topic: Option<&str>,
@@ -65,7 +65,7 @@ impl ReplaySamples {
         read.map_err(|failure| columns.explain(failure).while_doing(file.path().display()))
     }
 
-    /// Just what a controller got.
+    /// Samples as the run's controller received them.
     fn of_run(columns: &Columns, period: f64) -> Outcome<Self> {
         let whole = |name: &str| -> Outcome<Vec<u32>> {
             let (_, values) = columns.named(&[name])?;
@@ -98,7 +98,7 @@ impl ReplaySamples {
         })
     }
 
-    /// Rows of any log, each a control period.
+    /// Samples from the rows of any log, one per control period.
     fn of_any(columns: &mut Columns, settings: &ObserverSettings, period: f64) -> Outcome<Self> {
         let output: &[&str] = if settings.output_encoder.is_some() { &OUTPUT } else { &[] };
         columns.leave_out_incomplete(&[&TIMES, &MOTOR, output, &["motor_torque_N_m"]])?;
@@ -117,13 +117,13 @@ impl ReplaySamples {
         }
         let clock = f64::from(settings.clock_rate);
         let sample = |row: usize| {
-            // The clock wraps, as a controller's does.
+            // The clock wraps like a controller's.
             let now = (time[row] * clock).round() as u64 as u32;
             Samples {
                 time: now,
                 motor: Reading { counts: motor[row], time: now },
                 output: output.as_ref().map(|counts| Reading { counts: counts[row], time: now }),
-                // A row has the torque from then on: that of the row before has acted until now.
+                // A row's torque acts from its time on; until then the torque of the row before acted.
                 torque: row.checked_sub(1).map_or(0.0, |before| torque[before] as f32),
             }
         };
@@ -136,7 +136,7 @@ impl ReplaySamples {
         Ok(read)
     }
 
-    /// Refuses rows that are no control periods.
+    /// Rejects rows whose rate differs from the control rate.
     fn at_the_control_rate(
         self,
         settings: &ObserverSettings,
@@ -168,23 +168,23 @@ impl ReplaySamples {
         Ok(self)
     }
 
-    /// How many there are.
+    /// Number of samples.
     pub fn len(&self) -> usize {
         self.samples.len()
     }
 
-    /// What the observer is shown.
+    /// Samples of a control period.
     pub fn at(&self, index: usize) -> Samples<f32> {
         self.samples[index]
     }
 
-    /// Rows for each that is written, if nothing else is asked for.
+    /// Default thinning of the written rows.
     pub fn usual_thinning(&self) -> usize {
         (1.0 / (USUAL_RATE * self.period)).round().max(1.0) as usize
     }
 }
 
-/// The refusal of a run's log from which no observer can be run.
+/// Failure for a run's log without an observer's samples.
 pub fn without_counts(controller: &str) -> Failure {
     Failure::new(format!("the log of this run of `{controller}` has no observer's samples")).with_help(
         "they are logged of the tested controller, not of rivals, and not by older versions: run the test again, and take \
@@ -192,7 +192,7 @@ pub fn without_counts(controller: &str) -> Failure {
     )
 }
 
-/// Raw counts of an encoder; angles are taken for the counts of one with the joint file's resolution.
+/// Raw counts of an encoder, computed from angles if necessary, and true for angles.
 fn counts(columns: &Columns, what: &str, encoder: EncoderSettings) -> Outcome<(Vec<u32>, bool)> {
     let names = [format!("{what}_counts"), format!("{what}_angle_rad")];
     let there = columns.first_of(&[names[0].as_str(), names[1].as_str()])?;

@@ -1,4 +1,4 @@
-//! The published schema of a replay's record is that of its type. Only tests are here.
+//! Tests: the published schema of a replay's record matches its type.
 
 use report::schema::{assert_explained, assert_published};
 

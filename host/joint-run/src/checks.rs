@@ -1,5 +1,5 @@
-//! The checks of a run: each figure, its bound and where it comes from. A run that broke off is judged by the figures
-//! there are; the other checks are marked as not made.
+//! Checks of a run: each figure with its bound and the bound's source. An interrupted run is judged by the available
+//! figures; the other checks are marked as not run.
 
 use crate::origin::clock_in_words;
 use link::messages::{ClockSource, RunMode, Statistics};
@@ -11,32 +11,32 @@ use board::recording::Recording;
 use board::twin::Agreement;
 use report::checks::{Bound, Check, Source};
 
-/// Steps that the twin must cover, unless a shorter run was asked for.
+/// Least steps covered by the twin, unless a shorter run was requested.
 const STEPS_WANTED: u32 = 100_000;
-/// Flash that the plant's image may take: a quarter of the smallest board's [byte].
+/// Flash budget of the plant's image: a quarter of the smallest board's [byte].
 const FLASH_BUDGET: f64 = 128.0 * 1024.0;
-/// RAM that statics and deepest stack may take together [byte].
+/// RAM budget of statics and deepest stack together [byte].
 const RAM_BUDGET: f64 = 16.0 * 1024.0;
-/// A motion that can be predicted for less than this part of the run is not held against the bounds.
+/// Least predictable part of a run for which the bounds apply.
 const LEAST_PREDICTABLE: f64 = 0.1;
 
-/// All that the checks look at. What could not be had is a reason why not.
+/// Inputs of the checks; missing inputs carry their reason.
 pub struct Evidence<'a> {
-    /// What the session heard.
+    /// Recording of the session.
     pub recording: &'a Recording,
-    /// Ticks that the run was to last.
+    /// Ticks of the planned run.
     pub ticks: u32,
-    /// The comparison with the twin.
+    /// Comparison with the twin.
     pub agreement: &'a Agreement,
-    /// The comparison with the reference.
+    /// Comparison with the reference.
     pub comparison: Result<&'a Comparison, &'a str>,
-    /// The decoded log.
+    /// Decoded log.
     pub log: Result<&'a Log, &'a str>,
-    /// The image.
+    /// Image of the run.
     pub image: Result<&'a Image, &'a str>,
 }
 
-/// Every check, the weightiest first.
+/// All checks, the most important first.
 pub fn checks(evidence: &Evidence<'_>) -> Vec<Check> {
     let mut checks = twin(evidence);
     checks.extend(reference(evidence));

@@ -1,5 +1,5 @@
-//! The reference along a run, as far as the motion can be predicted: a second reference runs beside it with slightly
-//! disturbed torques, and where the two diverge the motion is chaotic.
+//! Reference along a run, while the motion is predictable: a second reference runs with slightly disturbed torques, and
+//! where the two diverge the motion is chaotic.
 
 use model_core::gears::Kinematics;
 use std::collections::VecDeque;
@@ -13,15 +13,15 @@ use reference::joint::{Observation, Reference, ReferenceError};
 use super::row::{QUANTITIES, Row, spread};
 use report::interruption;
 
-/// A second reference gets torques that are wrong by this much, up and down in turn.
+/// Relative error of the second reference's torques, with alternating sign.
 pub const DISTURBANCE: f64 = 1e-6;
-/// Once that moves any compared quantity by more than this part of its standard deviation, the motion is chaotic: what
-/// comes later says nothing about the step any more.
+/// Divergence of a compared quantity, as a share of its standard deviation, from which the motion is chaotic: later
+/// samples say nothing about the step.
 const PREDICTABLE: f64 = 1e-4;
-/// Samples between two looks at whether it still can be predicted.
+/// Samples between tests of the divergence.
 const BLOCK: usize = 100;
 
-/// The reference at the ends of the given ticks, as far as the disturbed one stays with it.
+/// Observations of the reference at the ends of the given ticks, until the disturbed reference diverges.
 pub fn follow(
     mut exact: ReferenceReplay,
     mut disturbed: ReferenceReplay,
@@ -51,7 +51,7 @@ pub fn follow(
     Ok(observations)
 }
 
-/// A reference that is given a run's torques.
+/// Reference driven by a run's torques.
 pub struct ReferenceReplay {
     reference: Reference,
     commands: VecDeque<Command>,
@@ -62,7 +62,7 @@ pub struct ReferenceReplay {
 }
 
 impl ReferenceReplay {
-    /// At rest before the first torque; all torques are wrong by `disturbance`, up and down in turn.
+    /// Reference at rest before the first torque; all torques are wrong by `disturbance`, with alternating sign.
     pub fn new(
         joint: &JointParameters,
         tick_rate: u32,
@@ -99,7 +99,7 @@ impl ReferenceReplay {
     }
 }
 
-/// The first sample, from a place on, at which the disturbed reference has departed from the other.
+/// First sample from `from` on at which the disturbed reference has diverged.
 fn departure(exact: &[Row], disturbed: &[Row], from: usize) -> Option<usize> {
     let spreads: Vec<f64> = (0..QUANTITIES.len()).map(|place| spread(exact, place)).collect();
     let departed = |(exact, disturbed): (&Row, &Row)| {

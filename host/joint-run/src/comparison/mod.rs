@@ -1,5 +1,5 @@
-//! The run against the f64 reference: the same torques through an independent integration, as far as the motion can be
-//! predicted at all. Both are computed beside the run.
+//! Comparison of a run with the f64 reference: the run's torques through an independent integration, while the motion
+//! is predictable. The references are computed in parallel to the run.
 
 mod follow;
 mod row;
@@ -19,9 +19,9 @@ use crate::record::{self, MotionSample};
 use report::contacts::Contact;
 use report::failure::{Failure, Outcome};
 
-/// The reference is followed for so long at most [s]: computing it takes longer than the run itself.
+/// Longest comparison [s]: the reference takes longer than the run itself.
 const LONGEST: f64 = 3.0;
-/// References that are being computed, on threads of their own.
+/// References in computation, on their own threads.
 pub struct PendingReferences {
     joint: JointParameters,
     tick_rate: u32,
@@ -30,27 +30,27 @@ pub struct PendingReferences {
     followed: JoinHandle<Result<Vec<Observation>, ReferenceError>>,
 }
 
-/// How far a run is from the reference.
+/// Distance of a run from the reference.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
-    /// For the report.
+    /// Reference for the report.
     pub reference: record::Reference,
-    /// End of the part that was compared [s].
+    /// End of the compared part [s].
     pub until: f64,
     /// End of the run [s].
     pub of: f64,
-    /// Every quantity's root mean square error over its standard deviation, with its bound.
+    /// Root mean square error of every quantity over its standard deviation, with its bound.
     pub errors: Vec<QuantityError>,
 }
 
 /// One quantity's distance from the reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct QuantityError {
-    /// Which.
+    /// Name of the quantity.
     pub name: &'static str,
     /// Root mean square of the error over the standard deviation of the reference.
     pub error: f64,
-    /// Most that it may be.
+    /// Bound of the error.
     pub limit: f64,
 }
 
@@ -73,7 +73,7 @@ impl PendingReferences {
     /// Ends the references without their result.
     pub fn abandon(self) {
         self.stop.store(true, Ordering::Relaxed);
-        // The result is not needed, so the threads are not joined: they end by themselves within a sample.
+        // The threads end by themselves within a sample, so they are not joined.
     }
 
     /// Waits for the references and compares the samples of the run with them.
@@ -123,7 +123,7 @@ impl PendingReferences {
     }
 }
 
-/// The board's rows by place in the list of ticks; samples that were lost are missing.
+/// Rows of the board at the given ticks; `None` for a lost sample.
 fn rows_of_board(samples: &[Sample], ticks: &[u32], ratio: f64) -> Vec<Option<Row>> {
     let mut samples = samples.iter().peekable();
     let row = |&tick: &u32| {
@@ -169,7 +169,8 @@ mod tests {
         joint_file::read(joint_file::preset(preset).expect("a preset")).expect("a good preset").parameters
     }
 
-    /// The twin in the board's place, through the head of the built-in profile, spoilt by `spoil`.
+    /// Comparison of the twin's run, in place of a board's, through the beginning of a built-in profile, with samples
+    /// changed by `spoil`.
     fn comparison(preset: &str, seconds: f64, spoil: impl Fn(&mut Sample)) -> Comparison {
         let joint = joint(preset);
         let profile = TorqueProfile::load("reversals", &joint, TICK_RATE, Some(seconds)).expect("built in");

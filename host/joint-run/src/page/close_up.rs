@@ -1,19 +1,19 @@
-//! A close-up of the first reversal through the gap: where the teeth leave one flank and land on the other. Drawn at
-//! every tick where the record holds them, else from the samples.
+//! Close-up of the first reversal through the gap, where the teeth leave one flank and land on the other. Drawn at
+//! every tick if the record has them, otherwise from the samples.
 
 use super::motion::View;
 use crate::record::{RunRecord, Samples};
 use report::plot::Figure;
 use report::plot::unit::Unit;
 
-/// Fewer samples than this make no picture.
+/// Least samples of a picture.
 const LEAST_SAMPLES: usize = 12;
-/// Shown before and after the crossing at least [s].
+/// Shortest time shown before and after the crossing [s].
 const LEAST_MARGIN: f64 = 4e-3;
-/// Shown before and after the crossing at most [s].
+/// Longest time shown before and after the crossing [s].
 const GREATEST_MARGIN: f64 = 40e-3;
 
-/// From and to [s] around the first full crossing of the band, if there is one.
+/// Start and end [s] around the first full crossing of the band, if there is one.
 pub fn crossing(samples: &Samples, band: [f64; 2]) -> Option<(f64, f64)> {
     let side = |gap: f32| {
         let gap = f64::from(gap);
@@ -34,7 +34,7 @@ pub fn crossing(samples: &Samples, band: [f64; 2]) -> Option<(f64, f64)> {
     None
 }
 
-/// What to look at: the stretch at every tick, or the samples around the first crossing.
+/// View of the close-up at every tick, or of the samples around the first crossing.
 pub fn view(record: &RunRecord) -> Option<View<'_>> {
     let (samples, range) = match &record.close_up {
         Some(close_up) if close_up.samples.len() >= LEAST_SAMPLES => {

@@ -1,5 +1,4 @@
-//! The published schema of a run is that of its types, and `docs/reference/report-schema.md` tells every key. Only
-//! tests are here.
+//! Tests: the published schema of a run matches its types, and `docs/reference/report-schema.md` explains every key.
 
 use super::RunRecord;
 use report::schema::{assert_explained, assert_published};

@@ -1,4 +1,4 @@
-//! Reports of made-up runs: what a reader must find in them, whatever happened. Real runs are the emulator tests'.
+//! Reports of synthetic runs: required content in every situation. The emulator tests have real runs.
 
 mod synthetic;
 
@@ -13,14 +13,14 @@ use report::contacts::Contact;
 use report::folder::Folder;
 use report::write::{write_record, write_text};
 
-/// Leaves a report where a person can look at it.
+/// Keeps a report for inspection by a person.
 fn keep_for_looking(name: &str, text: &str) {
     if let Some(folder) = std::env::var_os("REPORT_LOOK") {
         fs::write(Path::new(&folder).join(name), text).expect("REPORT_LOOK names a folder");
     }
 }
 
-/// Where a text stands in a page.
+/// Position of a text in a page.
 fn place(page: &str, text: &str) -> usize {
     page.find(text).unwrap_or_else(|| panic!("`{text}` is not in the page"))
 }
@@ -53,7 +53,7 @@ fn a_page_needs_neither_network_nor_script() {
     for text in ["<script", "<link", "@import", "url(", " src=", " href="] {
         assert!(!page.contains(text), "{text}");
     }
-    // The name of the SVG name space is never fetched.
+    // The URL of the SVG name space is never fetched.
     assert!(!page.replace("http://www.w3.org/2000/svg", "").contains("://"));
 }
 
@@ -207,7 +207,7 @@ fn a_write_that_fails_leaves_the_old_file() {
     let (old, link) = (folder.path().join("old.html"), folder.path().join("link.html"));
     fs::write(&old, "old").expect("the folder is writable");
     symlink(&old, &link).expect("links are supported");
-    // The temporary file's name is taken by a folder, so that nothing can be written beside the target.
+    // A folder with the temporary file's name prevents writing beside the target.
     fs::create_dir(folder.path().join(format!(".old.html.joint-{}.tmp", std::process::id())))
         .expect("the name is free");
     write_text(&link, &render(&synthetic::record())).expect_err("the name is taken");

@@ -45,7 +45,7 @@ impl Kernel {
 
     /// Sums of products of the weights of two orders: covariance of the smoothed values for independent errors of
     /// single samples.
-    pub fn products(&self) -> [[f64; 3]; 3] {
+    pub fn weight_products(&self) -> [[f64; 3]; 3] {
         let product = |one: usize, other: usize| -> f64 {
             self.weights[one].iter().zip(&self.weights[other]).map(|(one, other)| one * other).sum()
         };
@@ -53,7 +53,7 @@ impl Kernel {
     }
 
     /// Smoothed derivative of order 0, 1 or 2 at a sample at least `half` away from either end.
-    pub fn at(&self, signal: impl Fn(usize) -> f64, sample: usize, order: usize) -> f64 {
+    pub fn derivative(&self, signal: impl Fn(usize) -> f64, sample: usize, order: usize) -> f64 {
         let from = sample - self.half;
         self.weights[order].iter().enumerate().map(|(place, weight)| weight * signal(from + place)).sum()
     }
@@ -73,9 +73,9 @@ mod tests {
                 3.0 + 5.0 * time + 7.0 * time * time
             };
             let time = 200.0 * period;
-            assert!((kernel.at(signal, 200, 1) - 5.0 - 14.0 * time).abs() < 1e-9);
-            assert!((kernel.at(signal, 200, 2) - 14.0).abs() < 1e-4);
-            assert!((kernel.at(|_| 2.0, 200, 0) - 2.0).abs() < 1e-12);
+            assert!((kernel.derivative(signal, 200, 1) - 5.0 - 14.0 * time).abs() < 1e-9);
+            assert!((kernel.derivative(signal, 200, 2) - 14.0).abs() < 1e-4);
+            assert!((kernel.derivative(|_| 2.0, 200, 0) - 2.0).abs() < 1e-12);
         }
     }
 }

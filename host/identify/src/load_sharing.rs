@@ -17,13 +17,13 @@ use model_core::gears::{Kinematics, MeshPhasing};
 use parameters::{JointParameters, MESH_KINDS};
 
 /// Points per mesh period of the mean.
-const PLACES: usize = 24;
+const PHASES_PER_PERIOD: usize = 24;
 /// Standard deviation of the stated tooth errors: this share of the error, ...
-const UNCERTAIN: f64 = 0.5;
+const ERROR_DEVIATION_SHARE: f64 = 0.5;
 /// ... at least this [m].
-const AT_LEAST: f64 = 1e-6;
+const ERROR_DEVIATION_MIN: f64 = 1e-6;
 /// Reductions below this are neglected [m].
-const NOTHING: f64 = 1e-9;
+const REDUCTION_MIN: f64 = 1e-9;
 
 /// Load sharing of a joint.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,22 +31,22 @@ pub struct LoadSharing {
     /// Lever r_c cos(alpha) [m].
     lever: f64,
     /// Compliance of both meshes of a planet [m/N].
-    give: f64,
+    compliance: f64,
     /// Thresholds t_i at each point of the mesh period, ascending [m].
     as_stated: Vec<Vec<f64>>,
     /// Thresholds for errors one standard deviation larger [m].
-    with_more: Vec<Vec<f64>>,
+    with_excess: Vec<Vec<f64>>,
 }
 
 impl LoadSharing {
     /// Load sharing for these mesh stiffnesses; `None` if all planets touch at once.
-    pub fn of(joint: &JointParameters, stiffnesses: [f64; 2]) -> Option<Self> {
+    pub fn new(joint: &JointParameters, stiffnesses: [f64; 2]) -> Option<Self> {
         let planets = joint.geometry.planets;
         let gap = |planet: usize| MESH_KINDS.iter().map(|kind| joint.mesh(*kind).half_backlash[planet]).sum::<f64>();
         let mean = (0..planets).map(gap).sum::<f64>() / planets as f64;
         let thresholds = |more: &dyn Fn(f64) -> f64| -> Vec<Vec<f64>> {
             let at = |place: usize| {
-                let phase = TAU * place as f64 / PLACES as f64;
+                let phase = TAU * place as f64 / PHASES_PER_PERIOD as f64;
                 let error = |planet: usize| -> f64 {
                     let of = |kind| {
                         more(joint.mesh(kind).transmission_error[planet])
@@ -58,30 +58,30 @@ impl LoadSharing {
                 all.sort_by(f64::total_cmp);
                 all
             };
-            (0..PLACES).map(at).collect()
+            (0..PHASES_PER_PERIOD).map(at).collect()
         };
-        let more = |error: f64| error + (UNCERTAIN * error.abs()).max(AT_LEAST);
+        let more = |error: f64| error + (ERROR_DEVIATION_SHARE * error.abs()).max(ERROR_DEVIATION_MIN);
         let sharing = Self {
             lever: joint.geometry.carrier_base_radius(),
-            give: stiffnesses.iter().map(|stiffness| stiffness.recip()).sum(),
+            compliance: stiffnesses.iter().map(|stiffness| stiffness.recip()).sum(),
             as_stated: thresholds(&|error| error),
-            with_more: thresholds(&more),
+            with_excess: thresholds(&more),
         };
-        (sharing.lever * sharing.taken(0.0).max(sharing.more(0.0)) > NOTHING).then_some(sharing)
+        (sharing.lever * sharing.reduction(0.0).max(sharing.excess_reduction(0.0)) > REDUCTION_MIN).then_some(sharing)
     }
 
     /// Reduction of half of the lost motion under a torque of either sign [rad].
-    pub fn taken(&self, torque: f64) -> f64 {
+    pub fn reduction(&self, torque: f64) -> f64 {
         self.mean(&self.as_stated, torque)
     }
 
     /// Additional reduction by errors one standard deviation larger [rad].
-    pub fn more(&self, torque: f64) -> f64 {
-        self.mean(&self.with_more, torque) - self.taken(torque)
+    pub fn excess_reduction(&self, torque: f64) -> f64 {
+        self.mean(&self.with_excess, torque) - self.reduction(torque)
     }
 
     fn mean(&self, thresholds: &[Vec<f64>], torque: f64) -> f64 {
-        let force = torque.abs() * self.give / (2.0 * self.lever);
+        let force = torque.abs() * self.compliance / (2.0 * self.lever);
         let taken = |thresholds: &Vec<f64>| force / thresholds.len() as f64 - deflection(thresholds, force);
         0.5 * thresholds.iter().map(taken).sum::<f64>() / (thresholds.len() as f64 * self.lever)
     }
@@ -120,14 +120,14 @@ mod tests {
 
     #[test]
     fn planets_in_phase_take_nothing_and_others_less_the_more_they_bear() {
-        assert_eq!(LoadSharing::of(&joint(&[]), [1e8; 2]), None, "75 teeth on three planets");
+        assert_eq!(LoadSharing::new(&joint(&[]), [1e8; 2]), None, "75 teeth on three planets");
         let four = [("planets", "4"), ("sun_teeth", "22"), ("planet_teeth", "34"), ("ring_teeth", "90")];
-        let sharing = LoadSharing::of(&joint(&four), [1e8; 2]).expect("out of phase by a half");
+        let sharing = LoadSharing::new(&joint(&four), [1e8; 2]).expect("out of phase by a half");
         // Two planets against two: mean of |sin| over the sun's and ring's mesh together.
         let expected = 3e-6 * 2.0 / std::f64::consts::PI;
-        let found = sharing.taken(0.0) * sharing.lever;
+        let found = sharing.reduction(0.0) * sharing.lever;
         assert!((found / expected - 1.0).abs() < 0.01, "{found}");
-        assert!(sharing.taken(5.0) < 0.9 * sharing.taken(0.0) && sharing.taken(1e4) < 1e-9);
-        assert!((sharing.more(0.0) / sharing.taken(0.0) - 0.5).abs() < 1e-9);
+        assert!(sharing.reduction(5.0) < 0.9 * sharing.reduction(0.0) && sharing.reduction(1e4) < 1e-9);
+        assert!((sharing.excess_reduction(0.0) / sharing.reduction(0.0) - 0.5).abs() < 1e-9);
     }
 }

@@ -18,11 +18,11 @@ use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 
 /// Least travel of the motor [counts]: a smaller one may be scatter of the encoder.
-const LEAST_TRAVEL: f64 = 8.0;
+const MOTOR_TRAVEL_MIN: f64 = 8.0;
 /// Window on either side for the link's speed [s].
-const SPEED_OVER: f64 = 1e-3;
+const SPEED_WINDOW: f64 = 1e-3;
 /// Quantisation scatters by 1/12 of a count squared; readings with less than this share of it were filtered.
-pub const SMOOTH: f64 = 0.1;
+pub const FILTERED_VARIANCE_SHARE: f64 = 0.1;
 
 /// A recorded test.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,7 +36,7 @@ pub struct Log {
     /// Output angle, corrected by the encoder errors found so far [rad].
     pub output: Vec<f64>,
     /// Motor angle corrected by the errors of the teeth; planets and carrier follow it [rad].
-    pub carried: Vec<f64>,
+    pub motor_without_tooth_errors: Vec<f64>,
     /// Motor angle over the ratio less output angle, uncorrected, exact for counts [rad].
     pub twist: Vec<f64>,
     /// Motor torque [N m].
@@ -46,11 +46,11 @@ pub struct Log {
     /// Variance of motor and output readings [rad^2].
     pub noise: [Noise; 2],
     /// Age of the output's readings relative to the motor's, as far as it is known [s].
-    pub age: f64,
+    pub output_age: f64,
     /// Kind of the motor and output readings.
     pub kinds: [Kind; 2],
     /// Changes made to the rows of the file, a sentence each.
-    pub told: Vec<String>,
+    pub notes: Vec<String>,
     /// Even times, with the gaps between samples.
     pub times: EvenTimes,
 }
@@ -58,10 +58,10 @@ pub struct Log {
 impl Log {
     /// Reads a file.
     pub fn read(arguments: &Arguments, prior: &PriorModel) -> Outcome<Self> {
-        arguments.read_log(prior.ratio(), Columns::will_do, |columns| Self::of(columns, prior))
+        arguments.read_log(prior.ratio(), Columns::will_do, |columns| Self::from_columns(columns, prior))
     }
 
-    fn of(columns: &mut Columns, prior: &PriorModel) -> Outcome<Self> {
+    fn from_columns(columns: &mut Columns, prior: &PriorModel) -> Outcome<Self> {
         columns.leave_out_incomplete(&[&TIMES, &MOTOR, &OUTPUT, &["motor_torque_N_m"], &["output_torque_N_m"]])?;
         time_stamps::resolve(columns)?;
         for (names, turn) in [(MOTOR, prior.motor_turn), (OUTPUT, prior.output_turn)] {
@@ -87,17 +87,17 @@ impl Log {
         let [motor, output, twist, torque] = [motor, output, twist, torque].map(|values| times.bring(&values));
         let log = Self {
             kinds,
-            age: 0.0,
+            output_age: 0.0,
             time: times.times(),
             period: times.period,
             noise: [&motor, &output].map(|angles| Noise::of(angles, |from, to| times.is_whole(from, to))),
-            carried: motor.clone(),
+            motor_without_tooth_errors: motor.clone(),
             motor,
             output,
             twist,
             torque,
             output_torque: output_torque.map(|torque| times.bring(&torque)),
-            told: columns.told().iter().cloned().chain(times.told.clone()).collect(),
+            notes: columns.told().iter().cloned().chain(times.told.clone()).collect(),
             times,
         };
         log.check(prior)?;
@@ -106,7 +106,7 @@ impl Log {
 
     /// Phase of the teeth, one turn per mesh period at the ring, from motor and output angle weighted by their inertias
     /// [rad].
-    pub fn teeth(&self, sample: usize, prior: &PriorModel) -> f64 {
+    pub fn mesh_phase(&self, sample: usize, prior: &PriorModel) -> f64 {
         let share = prior.motor_share();
         let joint = (1.0 - share) * self.output[sample] + share * self.motor[sample] / prior.ratio();
         f64::from(prior.ring_teeth) * joint
@@ -114,41 +114,42 @@ impl Log {
 
     /// Returns the log with encoder and tooth errors, each a function of its angle, subtracted, and the output advanced
     /// to the motor's time. Accelerations and the phase of the teeth are sensitive to both.
-    pub fn without(&self, errors: [&dyn Fn(f64) -> f64; 3], skew: f64, prior: &PriorModel) -> Self {
+    pub fn with_errors_removed(&self, errors: [&dyn Fn(f64) -> f64; 3], skew: f64, prior: &PriorModel) -> Self {
         let [motor, output, teeth] = errors;
         let corrected = |angles: &[f64], error: &dyn Fn(f64) -> f64| -> Vec<f64> {
             angles.iter().map(|angle| angle - error(angle - error(*angle))).collect()
         };
         let (motor, read) = (corrected(&self.motor, motor), corrected(&self.output, output));
         // The motor swings while the link does not, so the skew is applied with the link's own speed.
-        let around = (SPEED_OVER / self.period).ceil() as usize;
+        let around = (SPEED_WINDOW / self.period).ceil() as usize;
         let speed = |sample: usize| {
             let (before, after) = (sample.saturating_sub(around), (sample + around).min(read.len() - 1));
             (read[after] - read[before]) / ((after - before) as f64 * self.period)
         };
         let output: Vec<f64> = (0..read.len()).map(|sample| read[sample] + skew * speed(sample)).collect();
-        let mut log = Self { motor, output, age: skew, carried: Vec::new(), ..self.clone() };
-        let carried = |sample: usize| log.motor[sample] - prior.ratio() * teeth(log.teeth(sample, prior));
-        log.carried = (0..log.motor.len()).map(carried).collect();
+        let mut log = Self { motor, output, output_age: skew, motor_without_tooth_errors: Vec::new(), ..self.clone() };
+        let motor_without_tooth_errors =
+            |sample: usize| log.motor[sample] - prior.ratio() * teeth(log.mesh_phase(sample, prior));
+        log.motor_without_tooth_errors = (0..log.motor.len()).map(motor_without_tooth_errors).collect();
         log
     }
 
     /// Variance of motor and output angles over the variance of their quantisation; `None` unless one of them is
     /// smoother than its encoder can resolve.
-    pub fn smoothness(&self, prior: &PriorModel) -> Option<[f64; 2]> {
+    pub fn variance_shares(&self, prior: &PriorModel) -> Option<[f64; 2]> {
         let share = |place: usize, turn: u64| {
             let count = count_angle(turn);
             if self.kinds[place] == Kind::Angle { 12.0 * self.noise[place].mean() / (count * count) } else { 1.0 }
         };
         let shares = [share(0, prior.motor_turn), share(1, prior.output_turn)];
-        shares.iter().any(|share| *share < SMOOTH).then_some(shares)
+        shares.iter().any(|share| *share < FILTERED_VARIANCE_SHARE).then_some(shares)
     }
 
     fn check(&self, prior: &PriorModel) -> Outcome<()> {
         let counts = range_of(&self.motor) * prior.motor_turn as f64 / TAU;
-        if counts < LEAST_TRAVEL {
+        if counts < MOTOR_TRAVEL_MIN {
             return Err(Failure::new(format!(
-                "the motor does not move in this log: by {counts:.1} counts of its encoder, {LEAST_TRAVEL} are the least"
+                "the motor does not move in this log: by {counts:.1} counts of its encoder, {MOTOR_TRAVEL_MIN} are the least"
             ))
             .with_help("the torque must overcome the friction, and turn the motor through the gap"));
         }

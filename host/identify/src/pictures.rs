@@ -20,10 +20,10 @@ pub fn thinning(points: usize) -> usize {
 
 /// Twist over torque: moments of either flank, those near a change, and the fitted branches.
 pub fn loop_of(log: &Log, rows: &Rows, twist: &Twist, prior: &PriorModel) -> Figure {
-    let cleaned = twist.cleaned(log, rows, prior);
+    let cleaned = twist.gap_and_wind_up(log, rows, prior);
     let every = thinning(cleaned.len());
     let points = |side: f64| -> Vec<(f64, f64)> {
-        let own = cleaned.iter().filter(|(row, _)| row.side == side);
+        let own = cleaned.iter().filter(|(row, _)| row.flank == side);
         own.step_by(every).map(|(row, twist)| (row.torque(), *twist)).collect()
     };
     let [half_gap, compliance] = [twist::HALF_GAP, twist::COMPLIANCE].map(|unknown| twist.solution.values[unknown]);

@@ -9,16 +9,16 @@ use parameters::{AbsoluteEncoder, Mesh, MeshKind, StiffnessWave, Surroundings};
 use report::failure::Outcome;
 
 use super::arguments::{Arguments, INERTIA_ERROR};
-use super::higher::Higher;
+use super::harmonic::Harmonic;
 use super::load_sharing::LoadSharing;
 use joint_file::named::Loaded;
 
 /// Standard deviation of the losses stated by the joint file, relative to the losses.
-const OWN_LOSS: f64 = 0.5;
+const STATED_LOSS_DEVIATION: f64 = 0.5;
 /// Share of the load that a log may mimic as lost.
-const FEIGNED: f64 = 2e-3;
-/// Standard deviations, beside FEIGNED, within which estimated and stated losses agree.
-const AGREES: f64 = 4.0;
+const MIMICKED_LOSS: f64 = 2e-3;
+/// Standard deviations, beside MIMICKED_LOSS, within which estimated and stated losses agree.
+const LOSS_AGREEMENT_SIGMA: f64 = 4.0;
 
 /// Knowledge of the gears' losses; standard deviations are shares of the load.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,9 +26,9 @@ pub enum Losses {
     /// Stated by the joint file, with this standard deviation.
     Stated(f64),
     /// Unknown; to be estimated from the log.
-    Open,
+    Unknown,
     /// Estimated from the log, with this standard deviation.
-    Told(f64),
+    Estimated(f64),
 }
 
 /// A joint as known from its file.
@@ -67,7 +67,7 @@ pub struct PriorModel {
     /// Knowledge of the gears' losses.
     pub losses: Losses,
     /// Encoder errors of more than twice a turn, as far as the log has shown them.
-    pub higher: Vec<Higher>,
+    pub harmonics: Vec<Harmonic>,
     /// The link hangs on its own compliance behind the carrier.
     pub compliant: bool,
     /// Reduction of the gap by errors of the teeth; `None` if all planets touch at once.
@@ -85,7 +85,7 @@ pub struct PriorModel {
 impl PriorModel {
     /// Joint of a file, with the values of the command line.
     pub fn new(loaded: &Loaded, arguments: &Arguments) -> Outcome<Self> {
-        let mut prior = Self::of(&loaded.file);
+        let mut prior = Self::from_file(&loaded.file);
         prior.motor_turn = arguments.motor_bits.map_or(prior.motor_turn, AbsoluteEncoder::counts_of_bits);
         prior.output_turn = arguments.output_bits.map_or(prior.output_turn, AbsoluteEncoder::counts_of_bits);
         prior.torque_error = arguments.torque_error.map_or(prior.torque_error, |percent| percent / 100.0);
@@ -94,7 +94,7 @@ impl PriorModel {
     }
 
     /// Joint of a file alone.
-    pub fn of(file: &JointFile) -> Self {
+    pub fn from_file(file: &JointFile) -> Self {
         let joint = &file.parameters;
         let around = &file.surroundings;
         let geometry = &joint.geometry;
@@ -143,10 +143,10 @@ impl PriorModel {
             mesh_relaxation_per_ratio,
             compliance: mesh_compliance + own,
             lost_motion: 2.0 * half_backlash / lever,
-            losses: Losses::Stated(OWN_LOSS * (1.0 - around.efficiency).abs()),
-            higher: Vec::new(),
+            losses: Losses::Stated(STATED_LOSS_DEVIATION * (1.0 - around.efficiency).abs()),
+            harmonics: Vec::new(),
             compliant,
-            sharing: LoadSharing::of(joint, softened),
+            sharing: LoadSharing::new(joint, softened),
             equivalent: joint.equivalent_gear().is_some(),
             torque_error: around.torque_constant_error_ratio.abs(),
             inertia_error: INERTIA_ERROR,
@@ -166,9 +166,9 @@ impl PriorModel {
 
     /// Returns the joint after an estimate of `more` lost share of the load. If the estimate agrees with the stated
     /// losses, they count as estimated; otherwise the losses grow by `more`, to be estimated again.
-    pub fn with_losses_told(&self, more: f64, deviation: f64) -> Self {
-        if more.abs() < AGREES * deviation + FEIGNED {
-            return self.with_losses(Losses::Told(more.hypot(deviation)));
+    pub fn with_estimated_losses(&self, more: f64, deviation: f64) -> Self {
+        if more.abs() < LOSS_AGREEMENT_SIGMA * deviation + MIMICKED_LOSS {
+            return self.with_losses(Losses::Estimated(more.hypot(deviation)));
         }
         let mut prior = self.clone();
         prior.surroundings.efficiency *= 1.0 - more;
@@ -201,7 +201,7 @@ impl PriorModel {
     }
 
     /// Period of the swing on the compliance, by the joint file [s].
-    pub fn swing(&self) -> f64 {
+    pub fn swing_period(&self) -> f64 {
         TAU * (self.swinging_inertia() * self.compliance).sqrt()
     }
 }

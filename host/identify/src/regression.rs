@@ -6,11 +6,11 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DVector};
 
 /// Rounds of reweighting outliers.
-const ROUNDS: usize = 12;
-/// After TURNED_DOWN rounds, residuals beyond NONE_OF_IT deviations are excluded: they belong to another state, such as
+const REWEIGHTING_ROUNDS: usize = 12;
+/// After ROUNDS_BEFORE_EXCLUSION rounds, residuals beyond EXCLUSION_SIGMA deviations are excluded: they belong to another state, such as
 /// bouncing teeth.
-const TURNED_DOWN: usize = 5;
-const NONE_OF_IT: f64 = 8.0;
+const ROUNDS_BEFORE_EXCLUSION: usize = 5;
+const EXCLUSION_SIGMA: f64 = 8.0;
 /// Residuals beyond this many deviations count less (Huber); the usual constant for 95 % efficiency.
 const HUBER: f64 = 1.345;
 
@@ -18,19 +18,19 @@ const HUBER: f64 = 1.345;
 /// the values if each equation is off by one, with the worst signs. It is 5.5 and less in simulated reversal tests of
 /// the presets; with sines of one strength, where encoder and tooth errors, inertia and compliance are confounded, up
 /// to 10,000.
-const TOLD_APART: f64 = 6.0;
-/// From this amplification on, an unknown is not separated from the others; the threshold falls by SOONER if all
+const AMPLIFICATION_SEPARATED: f64 = 6.0;
+/// From this amplification on, an unknown is not separated from the others; the threshold falls by REPETITION_PENALTY if all
 /// strokes are alike.
-const NOT_TOLD_APART: f64 = 20.0;
-const SOONER: f64 = 14.0;
+const AMPLIFICATION_MAX: f64 = 20.0;
+const REPETITION_PENALTY: f64 = 14.0;
 
 /// Coefficients of an equation that are measured and therefore noisy.
-pub const SCATTERING: usize = 3;
+pub const NOISY_COEFFICIENTS: usize = 3;
 
 /// Covariance of an equation's noisy coefficients and of its value, the value last. Plain least squares would
 /// underestimate unknowns with noisy coefficients.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Scatter(pub [[f64; SCATTERING + 1]; SCATTERING + 1]);
+pub struct NoiseCovariance(pub [[f64; NOISY_COEFFICIENTS + 1]; NOISY_COEFFICIENTS + 1]);
 
 /// System of equations, to be solved by least squares.
 #[derive(Debug, Clone, Default)]
@@ -42,11 +42,11 @@ pub struct Equations {
     /// Group of each equation, independent of time, whose residuals may be correlated; empty without groups.
     groups: Vec<usize>,
     /// Covariance of the coefficients of each equation; empty if all coefficients are exact.
-    scatters: Vec<Scatter>,
+    noise_covariances: Vec<NoiseCovariance>,
     /// Indices of the noisy coefficients.
-    scattering: [usize; SCATTERING],
+    noisy: [usize; NOISY_COEFFICIENTS],
     /// Repetition of the moments, 0 to 1: residuals of repeated moments are not independent.
-    repeated: f64,
+    repetition: f64,
 }
 
 /// Solution of a system.
@@ -57,7 +57,7 @@ pub struct Solution {
     /// Covariance of the unknowns.
     pub covariance: DMatrix<f64>,
     /// Half of a 95 % interval over the standard deviation.
-    pub reach: f64,
+    pub coverage_factor: f64,
     /// Covariance and reach from groups instead of blocks; `None` without groups.
     by_groups: Option<(DMatrix<f64>, f64)>,
     /// Residuals of the equations.
@@ -66,7 +66,7 @@ pub struct Solution {
     pub noise: f64,
     /// Addition to half of an unknown's interval for confounding: residuals may be systematic, and below some size the
     /// weights do not reduce them. Repeated moments count in full, others as far as the amplification exceeds
-    /// TOLD_APART. Infinite if the unknown is not separated from the others.
+    /// AMPLIFICATION_SEPARATED. Infinite if the unknown is not separated from the others.
     pub confounded: DVector<f64>,
     /// Share of the information on the noisy-coefficient unknowns that is not scatter; the lowest of the unknowns.
     pub reliability: f64,
@@ -74,8 +74,8 @@ pub struct Solution {
 
 impl Equations {
     /// Empty system for moments of a repetition of 0 to 1.
-    pub fn of_moments(repeated: f64) -> Self {
-        Self { repeated, ..Self::default() }
+    pub fn with_repetition(repetition: f64) -> Self {
+        Self { repetition, ..Self::default() }
     }
 
     /// Adds an equation.
@@ -86,21 +86,21 @@ impl Equations {
     }
 
     /// Assigns the last equation to a group with correlated residuals; then every equation needs a group.
-    pub fn in_group(&mut self, group: usize) {
+    pub fn set_group(&mut self, group: usize) {
         self.groups.push(group);
     }
 
     /// Adds an equation with noisy coefficients; then every equation must have them.
-    pub fn push_scattering(
+    pub fn push_noisy(
         &mut self,
         row: Vec<f64>,
         value: f64,
         block: usize,
-        scattering: [usize; SCATTERING],
-        scatter: Scatter,
+        noisy: [usize; NOISY_COEFFICIENTS],
+        scatter: NoiseCovariance,
     ) {
-        self.scattering = scattering;
-        self.scatters.push(scatter);
+        self.noisy = noisy;
+        self.noise_covariances.push(scatter);
         self.push(row, value, block);
     }
 
@@ -133,12 +133,12 @@ impl Equations {
         let values = DVector::from_column_slice(&self.values);
         let prior = DVector::from_fn(unknowns, |column, _| (widths[column] * scales[column]).powi(-2));
         let mut weights = DVector::from_element(self.count(), 1.0);
-        let mut noise = spread(&self.values);
+        let mut noise = robust_deviation(&self.values);
         let mut solved = DVector::zeros(unknowns);
         let mut information = DMatrix::zeros(unknowns, unknowns);
         let mut residuals = values.clone();
         let mut reliability = 1.0;
-        for round in 0..ROUNDS {
+        for round in 0..REWEIGHTING_ROUNDS {
             let floor = 1e-12 * (1.0 + values.amax());
             let sharpness = 1.0 / (noise * noise).max(floor * floor);
             let weighted = DMatrix::from_fn(self.count(), unknowns, |row, column| {
@@ -147,32 +147,37 @@ impl Equations {
             let seen = weighted.transpose() * &matrix + DMatrix::from_diagonal(&prior);
             let mut right = weighted.transpose() * &values;
             information = seen.clone();
-            for (scatter, weight) in self.scatters.iter().zip(weights.iter()) {
-                self.take_off(scatter, weight * sharpness, &scales, &mut information, &mut right);
+            for (scatter, weight) in self.noise_covariances.iter().zip(weights.iter()) {
+                self.remove_noise_bias(scatter, weight * sharpness, &scales, &mut information, &mut right);
             }
             solved = information.clone().cholesky()?.solve(&right);
-            if !self.scatters.is_empty() {
+            if !self.noise_covariances.is_empty() {
                 let (seen, true_one) = (seen.cholesky()?.inverse(), information.clone().cholesky()?.inverse());
                 let part = |unknown: &usize| seen[(*unknown, *unknown)] / true_one[(*unknown, *unknown)];
-                reliability = self.scattering.iter().map(part).fold(1.0, f64::min);
+                reliability = self.noisy.iter().map(part).fold(1.0, f64::min);
             }
             residuals = &values - &matrix * &solved;
-            noise = spread(residuals.as_slice()).max(floor);
+            noise = robust_deviation(residuals.as_slice()).max(floor);
             weights = residuals.map(|residual| {
                 let size = residual.abs() / noise.max(1e-300);
-                if round >= TURNED_DOWN && size > NONE_OF_IT { 0.0 } else { (HUBER / size.max(1e-300)).min(1.0) }
+                if round >= ROUNDS_BEFORE_EXCLUSION && size > EXCLUSION_SIGMA {
+                    0.0
+                } else {
+                    (HUBER / size.max(1e-300)).min(1.0)
+                }
             });
         }
         let inverse = information.cholesky()?.inverse();
-        let pulls =
-            Pulls { matrix: &matrix, weights: &weights, residuals: &residuals, solved: &solved, scales: &scales };
-        let [by_blocks, by_groups] = [&self.blocks, &self.groups].map(|labels| self.scatter(labels, &pulls, noise));
-        let pull = &inverse * matrix.transpose();
+        let fit =
+            WeightedFit { matrix: &matrix, weights: &weights, residuals: &residuals, solved: &solved, scales: &scales };
+        let [by_blocks, by_groups] =
+            [&self.blocks, &self.groups].map(|labels| self.score_covariance(labels, &fit, noise));
+        let influence = &inverse * matrix.transpose();
         let confounded = DVector::from_fn(unknowns, |unknown, _| {
-            let pulled = weights.iter().enumerate().map(|(row, weight)| weight * pull[(unknown, row)].abs());
+            let pulled = weights.iter().enumerate().map(|(row, weight)| weight * influence[(unknown, row)].abs());
             let inflation = pulled.sum::<f64>() / (noise * noise);
-            let beyond = if inflation < NOT_TOLD_APART - SOONER * self.repeated {
-                (inflation - TOLD_APART).max(self.repeated * inflation)
+            let beyond = if inflation < AMPLIFICATION_MAX - REPETITION_PENALTY * self.repetition {
+                (inflation - AMPLIFICATION_SEPARATED).max(self.repetition * inflation)
             } else {
                 f64::INFINITY
             };
@@ -191,15 +196,15 @@ impl Equations {
             DMatrix::from_fn(unknowns, unknowns, |a, b| sum[(a, b)] / (scales[a] * scales[b]))
         };
         // Student's 97.5 % quantile, by the first terms of its expansion.
-        let reach = |count: usize, fitted: usize| {
+        let coverage_factor = |count: usize, fitted: usize| {
             let freedom = count.saturating_sub(fitted.min(count / 2)).max(3) as f64;
             1.96 + 2.37 / freedom + 2.82 / (freedom * freedom)
         };
         Some(Solution {
             values: DVector::from_fn(unknowns, |column, _| solved[column] / scales[column]),
             covariance: covariance(&by_blocks.0),
-            reach: reach(by_blocks.1, unknowns),
-            by_groups: (by_groups.1 > 1).then(|| (covariance(&by_groups.0), reach(by_groups.1, 1))),
+            coverage_factor: coverage_factor(by_blocks.1, unknowns),
+            by_groups: (by_groups.1 > 1).then(|| (covariance(&by_groups.0), coverage_factor(by_groups.1, 1))),
             confounded,
             residuals: residuals.as_slice().to_vec(),
             noise,
@@ -208,51 +213,51 @@ impl Equations {
     }
 
     /// Removes the bias by noisy coefficients from the normal equations.
-    fn take_off(
+    fn remove_noise_bias(
         &self,
-        Scatter(scatter): &Scatter,
+        NoiseCovariance(scatter): &NoiseCovariance,
         weight: f64,
         scales: &[f64],
         sums: &mut DMatrix<f64>,
         right: &mut DVector<f64>,
     ) {
-        for (place, &row) in self.scattering.iter().enumerate() {
-            for (other, &column) in self.scattering.iter().enumerate() {
+        for (place, &row) in self.noisy.iter().enumerate() {
+            for (other, &column) in self.noisy.iter().enumerate() {
                 sums[(row, column)] -= weight * scatter[place][other] / (scales[row] * scales[column]);
             }
-            right[row] -= weight * scatter[place][SCATTERING] / scales[row];
+            right[row] -= weight * scatter[place][NOISY_COEFFICIENTS] / scales[row];
         }
     }
 
     /// Sum over the labels of the squared score of each label, and the number of labels.
-    fn scatter(&self, labels: &[usize], pulls: &Pulls<'_>, noise: f64) -> (DMatrix<f64>, usize) {
-        let Pulls { matrix, weights, residuals, solved, scales } = *pulls;
+    fn score_covariance(&self, labels: &[usize], fit: &WeightedFit<'_>, noise: f64) -> (DMatrix<f64>, usize) {
+        let WeightedFit { matrix, weights, residuals, solved, scales } = *fit;
         let unknowns = matrix.ncols();
-        let mut pulls: BTreeMap<usize, DVector<f64>> = BTreeMap::new();
+        let mut scores: BTreeMap<usize, DVector<f64>> = BTreeMap::new();
         for (row, label) in labels.iter().enumerate() {
-            let pull = pulls.entry(*label).or_insert_with(|| DVector::zeros(unknowns));
+            let score = scores.entry(*label).or_insert_with(|| DVector::zeros(unknowns));
             let weight = weights[row] / (noise * noise);
-            *pull += matrix.row(row).transpose() * (weight * residuals[row]);
+            *score += matrix.row(row).transpose() * (weight * residuals[row]);
             // The bias by noisy coefficients is removed here as in the normal equations.
-            let Some(Scatter(scatter)) = self.scatters.get(row) else { continue };
-            for (place, &unknown) in self.scattering.iter().enumerate() {
-                let others = self.scattering.iter().enumerate();
+            let Some(NoiseCovariance(scatter)) = self.noise_covariances.get(row) else { continue };
+            for (place, &unknown) in self.noisy.iter().enumerate() {
+                let others = self.noisy.iter().enumerate();
                 let of_others: f64 =
                     others.map(|(other, &column)| scatter[place][other] * solved[column] / scales[column]).sum();
-                pull[unknown] += weight * (of_others - scatter[place][SCATTERING]) / scales[unknown];
+                score[unknown] += weight * (of_others - scatter[place][NOISY_COEFFICIENTS]) / scales[unknown];
             }
         }
         // Small-sample correction: each block has moved the solution towards itself.
-        let correction = pulls.len() as f64 / (pulls.len() as f64 - 1.0).max(1.0)
+        let correction = scores.len() as f64 / (scores.len() as f64 - 1.0).max(1.0)
             * (self.count() as f64 / (self.count() - unknowns) as f64);
         let mut sum = DMatrix::zeros(unknowns, unknowns);
-        pulls.values().for_each(|pull| sum += pull * pull.transpose() * correction);
-        (sum, pulls.len())
+        scores.values().for_each(|score| sum += score * score.transpose() * correction);
+        (sum, scores.len())
     }
 }
 
 /// Matrix, weights and residuals of a weighted solution.
-struct Pulls<'p> {
+struct WeightedFit<'p> {
     matrix: &'p DMatrix<f64>,
     weights: &'p DVector<f64>,
     residuals: &'p DVector<f64>,
@@ -265,19 +270,21 @@ impl Solution {
     pub fn half(&self, slopes: &[(usize, f64)]) -> f64 {
         let mut slope = DVector::zeros(self.values.len());
         slopes.iter().for_each(|(unknown, by)| slope[*unknown] = *by);
-        let half = |covariance: &DMatrix<f64>, reach: f64| {
-            reach * (slope.transpose() * covariance * &slope)[(0, 0)].max(0.0).sqrt()
+        let half = |covariance: &DMatrix<f64>, coverage_factor: f64| {
+            coverage_factor * (slope.transpose() * covariance * &slope)[(0, 0)].max(0.0).sqrt()
         };
-        let scatter = half(&self.covariance, self.reach);
-        let scatter =
-            self.by_groups.as_ref().map_or(scatter, |(covariance, reach)| scatter.max(half(covariance, *reach)));
+        let scatter = half(&self.covariance, self.coverage_factor);
+        let scatter = self
+            .by_groups
+            .as_ref()
+            .map_or(scatter, |(covariance, coverage_factor)| scatter.max(half(covariance, *coverage_factor)));
         let confounded =
             slopes.iter().filter(|(_, by)| *by != 0.0).map(|(unknown, by)| by.abs() * self.confounded[*unknown]);
         scatter + confounded.sum::<f64>()
     }
 
     /// Returns true if the equations separate an unknown from the others.
-    pub fn tells_apart(&self, unknown: usize) -> bool {
+    pub fn is_separated(&self, unknown: usize) -> bool {
         self.confounded[unknown] == 0.0
     }
 
@@ -288,7 +295,7 @@ impl Solution {
 }
 
 /// Robust standard deviation, from the median of the sizes.
-fn spread(values: &[f64]) -> f64 {
+fn robust_deviation(values: &[f64]) -> f64 {
     let mut sizes: Vec<f64> = values.iter().map(|value| value.abs()).collect();
     sizes.sort_by(f64::total_cmp);
     1.4826 * sizes.get(sizes.len() / 2).copied().unwrap_or_default()
@@ -327,7 +334,7 @@ mod tests {
                 let scatter = 0.01 * ((index * 104_729 % 211) as f64 / 105.0 - 1.0);
                 equations.push(vec![1.0], 1.0 + scatter + if kind == 3 { 0.02 } else { 0.0 }, index / 10);
                 if grouped {
-                    equations.in_group(kind);
+                    equations.set_group(kind);
                 }
             }
             equations.solve(&[f64::INFINITY]).expect("determined").half(&[(0, 1.0)])

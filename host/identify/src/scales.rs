@@ -11,25 +11,25 @@
 use nalgebra::{SMatrix, SVector, Vector3, Vector4};
 
 use super::balances::{self, Factor};
-use super::estimate::QUANTILE;
+use super::estimate::NORMAL_QUANTILE;
 use super::log::Log;
 use super::prior::PriorModel;
 use super::regression::Solution;
 use super::rows::Rows;
 
 /// Kernel box for the balance of the total inertia [s]: long enough for coarse counts, short against a reversal.
-const BOX: f64 = 4e-3;
+const BALANCE_KERNEL_BOX: f64 = 4e-3;
 /// Systematic error of a ratio by losses, teeth and the shapes of friction; at most 0.4 % on simulated logs of the
 /// presets.
-const BALANCE_SHARE: f64 = 0.004;
+const RATIO_SYSTEMATIC: f64 = 0.004;
 /// Deviation of the logarithm of an undetermined ratio.
-const UNKNOWN: f64 = 10.0;
+const UNDETERMINED_DEVIATION: f64 = 10.0;
 /// Least deviation of a scale; keeps the sums finite for an exact torque.
-const EXACT: f64 = 1e-6;
+const DEVIATION_MIN: f64 = 1e-6;
 /// Standard deviation of the scale of a torque sensor at the output; typical of data sheets.
-const SENSOR_ERROR: f64 = 0.005;
+const SENSOR_SCALE_DEVIATION: f64 = 0.005;
 /// Birge's ratio from which expectations and ratios contradict one another.
-const CONTRADICTION: f64 = 2.0;
+const BIRGE_CONTRADICTION: f64 = 2.0;
 
 /// True over stated values, as logarithms with standard deviations.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,7 +45,7 @@ pub struct Scales {
     /// Birge's ratio: factor on the expected deviations, 1 without contradiction.
     pub birge: f64,
     /// Relative error of all rates: if both inertias contradict the torque alike, the time step may be wrong.
-    pub rates: f64,
+    pub rate_error: f64,
 }
 
 /// One scale.
@@ -56,16 +56,16 @@ pub struct Scale {
     /// Standard deviation of the logarithm.
     pub deviation: f64,
     /// Least half of the interval: after a contradiction the stated value may still be right.
-    pub least: f64,
+    pub half_min: f64,
 }
 
 /// Uncertainty of a torque that was not measured behind the gears.
 #[derive(Debug, Clone, Copy)]
-pub struct Doubt {
+pub struct ScaleUncertainty {
     /// Scales of torque and inertias.
     pub scales: Scales,
     /// Relative change of the compliance by the motor's inertia at the end of its interval for a known torque.
-    pub by_inertia: f64,
+    pub compliance_by_inertia: f64,
 }
 
 impl Scale {
@@ -75,40 +75,40 @@ impl Scale {
     }
 
     /// Scale of a logarithm with its variance.
-    fn of(logarithm: f64, variance: f64, birge: f64) -> Self {
-        let least = if birge > CONTRADICTION { logarithm.abs() } else { 0.0 };
-        Self { logarithm, deviation: variance.sqrt(), least }
+    fn from_logarithm(logarithm: f64, variance: f64, birge: f64) -> Self {
+        let half_min = if birge > BIRGE_CONTRADICTION { logarithm.abs() } else { 0.0 };
+        Self { logarithm, deviation: variance.sqrt(), half_min }
     }
 
     /// Half of the 95 % interval.
     pub fn half(self) -> f64 {
-        self.least.max(QUANTILE * self.deviation)
+        self.half_min.max(NORMAL_QUANTILE * self.deviation)
     }
 
     /// Returns true if the stated value is outside of the interval.
-    pub fn is_another(self) -> bool {
-        self.logarithm.abs() > QUANTILE * self.deviation
+    pub fn differs_from_stated(self) -> bool {
+        self.logarithm.abs() > NORMAL_QUANTILE * self.deviation
     }
 }
 
 impl Scales {
     /// Scales of a log, from a fit with an unknown scale of the torque.
     pub fn new(log: &Log, prior: &PriorModel, free: &Solution) -> Self {
-        let ringing = Some(balances::of_the_motor(free));
-        let all = balances::of_all(&Rows::new(log, prior, BOX), prior);
-        Self::together([prior.torque_error, prior.inertia_error], prior.motor_share(), [ringing, all])
+        let ringing = Some(balances::ringing_factor(free));
+        let all = balances::total_factor(&Rows::new(log, prior, BALANCE_KERNEL_BOX), prior);
+        Self::from_expectations([prior.torque_error, prior.inertia_error], prior.motor_share(), [ringing, all])
     }
 
     /// Likeliest scales, from the expected deviations of torque and inertias, the motor's share of the total inertia,
     /// and the logged torque over the torque for the motor's inertia and for the total inertia.
-    fn together([torque, inertia]: [f64; 2], share: f64, factors: [Option<Factor>; 2]) -> Self {
+    fn from_expectations([torque, inertia]: [f64; 2], share: f64, factors: [Option<Factor>; 2]) -> Self {
         // Logged torque below the torque for the inertias means a larger true torque.
-        let [of_motor, of_all] = factors.map(Seen::of_factor);
-        let (solved, covariance, birge) = likeliest(
+        let [of_motor, of_all] = factors.map(MeasuredLogarithm::of_factor);
+        let (solved, covariance, birge) = most_likely(
             Vector3::from([torque, inertia, inertia]),
             &[(Vector3::from([1.0, -1.0, 0.0]), of_motor), (Vector3::from([1.0, -share, share - 1.0]), of_all)],
         );
-        let scale = |place: usize| Scale::of(solved[place], covariance[(place, place)], birge);
+        let scale = |place: usize| Scale::from_logarithm(solved[place], covariance[(place, place)], birge);
         let [of_torque, common, of_motor] = [covariance[(0, 0)], covariance[(0, 1)], covariance[(1, 1)]];
         let motor_inertia_alone = (of_motor - common * common / of_torque).max(0.0).sqrt();
         Self {
@@ -117,14 +117,14 @@ impl Scales {
             link_inertia: scale(2),
             motor_inertia_alone,
             birge,
-            rates: rates(factors, birge),
+            rate_error: rate_error(factors, birge),
         }
     }
 
     /// Scales of a log with a torque sensor at the output: `torque` is the sensor's scale, and balances give the scales
     /// of motor torque, motor inertia and link inertia relative to it.
-    pub fn of_measured(prior: &PriorModel, [motor_torque, motor, link]: [Option<Factor>; 3]) -> Self {
-        let seen = [motor_torque, motor, link].map(Seen::of_factor);
+    pub fn from_sensor(prior: &PriorModel, [motor_torque, motor, link]: [Option<Factor>; 3]) -> Self {
+        let seen = [motor_torque, motor, link].map(MeasuredLogarithm::of_factor);
         let told = |place: usize| {
             Vector4::from_fn(|row, _| {
                 if row == 0 {
@@ -136,24 +136,24 @@ impl Scales {
                 }
             })
         };
-        let (solved, covariance, birge) = likeliest(
-            Vector4::from([SENSOR_ERROR, prior.torque_error, prior.inertia_error, prior.inertia_error]),
+        let (solved, covariance, birge) = most_likely(
+            Vector4::from([SENSOR_SCALE_DEVIATION, prior.torque_error, prior.inertia_error, prior.inertia_error]),
             &[(told(1), seen[0]), (told(2), seen[1]), (told(3), seen[2])],
         );
-        let scale = |place: usize| Scale::of(solved[place], covariance[(place, place)], birge);
+        let scale = |place: usize| Scale::from_logarithm(solved[place], covariance[(place, place)], birge);
         Self {
             torque: scale(0),
             motor_inertia: scale(2),
             link_inertia: scale(3),
             motor_inertia_alone: 0.0,
             birge,
-            rates: rates([motor, link], birge),
+            rate_error: rate_error([motor, link], birge),
         }
     }
 
     /// Joint with the motor's inertia at the upper end of its interval for a known torque.
-    pub fn with_most_of_the_motor(&self, prior: &PriorModel) -> PriorModel {
-        with_motor(prior, (QUANTILE * self.motor_inertia_alone).exp())
+    pub fn with_largest_motor_inertia(&self, prior: &PriorModel) -> PriorModel {
+        with_motor(prior, (NORMAL_QUANTILE * self.motor_inertia_alone).exp())
     }
 
     /// Applies the scales to a log and to the joint.
@@ -179,19 +179,19 @@ fn with_motor(prior: &PriorModel, factor: f64) -> PriorModel {
 
 /// Logarithm with its standard deviation.
 #[derive(Debug, Clone, Copy)]
-struct Seen {
+struct MeasuredLogarithm {
     logarithm: f64,
     deviation: f64,
 }
 
-impl Seen {
+impl MeasuredLogarithm {
     /// Logarithm of a factor of logged over true; undetermined for a factor with a wide interval.
     fn of_factor(factor: Option<Factor>) -> Self {
-        factor.filter(|factor| factor.value > 0.0 && factor.is_narrow()).map_or(
-            Self { logarithm: 0.0, deviation: UNKNOWN },
+        factor.filter(|factor| factor.value > 0.0 && factor.is_determined()).map_or(
+            Self { logarithm: 0.0, deviation: UNDETERMINED_DEVIATION },
             |Factor { value, deviation }| Self {
                 logarithm: -value.ln(),
-                deviation: (deviation / value).hypot(BALANCE_SHARE),
+                deviation: (deviation / value).hypot(RATIO_SYSTEMATIC),
             },
         )
     }
@@ -199,15 +199,15 @@ impl Seen {
 
 /// Likeliest logarithms, expected to be zero within their deviations, given noisy linear combinations; their
 /// covariance, and Birge's ratio, which the covariance includes.
-fn likeliest<const N: usize>(
+fn most_likely<const N: usize>(
     expected: SVector<f64, N>,
-    seen: &[(SVector<f64, N>, Seen)],
+    seen: &[(SVector<f64, N>, MeasuredLogarithm)],
 ) -> (SVector<f64, N>, SMatrix<f64, N, N>, f64) {
     let solve = |birge: f64| {
-        let expected = expected.map(|deviation| (birge * deviation.max(EXACT)).powi(-2));
+        let expected = expected.map(|deviation| (birge * deviation.max(DEVIATION_MIN)).powi(-2));
         let mut information = SMatrix::<f64, N, N>::from_diagonal(&expected);
         let mut right = SVector::<f64, N>::zeros();
-        for (of, Seen { logarithm, deviation }) in seen {
+        for (of, MeasuredLogarithm { logarithm, deviation }) in seen {
             information += of * of.transpose() * deviation.powi(-2);
             right += of * (logarithm * deviation.powi(-2));
         }
@@ -223,10 +223,10 @@ fn likeliest<const N: usize>(
 }
 
 /// Relative error of the rates, from the factors of both inertias.
-fn rates(factors: [Option<Factor>; 2], birge: f64) -> f64 {
+fn rate_error(factors: [Option<Factor>; 2], birge: f64) -> f64 {
     let [Some(one), Some(other)] = factors else { return 0.0 };
     let [one, other] = [one, other].map(|factor| factor.value.max(f64::MIN_POSITIVE).ln());
-    if birge < CONTRADICTION || one * other <= 0.0 { 0.0 } else { 0.5 * one.abs().min(other.abs()) }
+    if birge < BIRGE_CONTRADICTION || one * other <= 0.0 { 0.0 } else { 0.5 * one.abs().min(other.abs()) }
 }
 
 #[cfg(test)]
@@ -238,7 +238,7 @@ mod tests {
     fn found(torque: f64, motor: f64, link: f64) -> Scales {
         let share = 0.06;
         let factor = |inertia: f64| Some(Factor { value: inertia / torque, deviation: 1e-3 });
-        Scales::together([0.03, 0.015], share, [factor(motor), factor(share * motor + (1.0 - share) * link)])
+        Scales::from_expectations([0.03, 0.015], share, [factor(motor), factor(share * motor + (1.0 - share) * link)])
     }
 
     #[test]
@@ -262,15 +262,15 @@ mod tests {
     #[test]
     fn a_torque_that_is_not_doubted_tells_the_inertias() {
         let factor = |value: f64| Some(Factor { value, deviation: 1e-4 });
-        let scales = Scales::together([0.0, 0.015], 0.06, [factor(1.05), factor(0.06 * 1.05 + 0.94)]);
+        let scales = Scales::from_expectations([0.0, 0.015], 0.06, [factor(1.05), factor(0.06 * 1.05 + 0.94)]);
         assert!(scales.torque.logarithm.abs() < 1e-4, "{scales:?}");
         assert!((scales.motor_inertia.factor() - 1.05).abs() < 0.01, "{scales:?}");
-        assert!(scales.motor_inertia.is_another() && !scales.link_inertia.is_another(), "{scales:?}");
+        assert!(scales.motor_inertia.differs_from_stated() && !scales.link_inertia.differs_from_stated(), "{scales:?}");
     }
 
     #[test]
     fn a_log_that_tells_no_ratio_leaves_what_was_expected() {
-        let scales = Scales::together([0.03, 0.015], 0.06, [None, None]);
+        let scales = Scales::from_expectations([0.03, 0.015], 0.06, [None, None]);
         assert!(scales.torque.logarithm.abs() < 1e-6 && (scales.torque.deviation - 0.03).abs() < 1e-4, "{scales:?}");
     }
 }

@@ -3,7 +3,7 @@
 use report::schema::assert_published;
 
 use crate::findings::Record;
-use crate::learnt::Content;
+use crate::memory::Content;
 use crate::quasi_static::SlowRecord;
 
 #[test]

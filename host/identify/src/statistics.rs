@@ -35,12 +35,12 @@ pub fn rms(values: &[f64]) -> f64 {
 /// Student's 97.5 % quantile: tables for one to three degrees of freedom, interpolated linearly in the inverse; beyond,
 /// the first terms of its expansion (Abramowitz and Stegun, 26.7.5).
 pub fn student(freedom: f64) -> f64 {
-    const FEW: [f64; 3] = [12.706, 4.303, 3.182];
+    const QUANTILE_TABLE: [f64; 3] = [12.706, 4.303, 3.182];
     const NORMAL: f64 = 1.959_964;
     let inverse = 1.0 / freedom.max(1.0);
     match freedom {
-        f if f < 2.0 => FEW[1] + (FEW[0] - FEW[1]) * (inverse - 0.5) / 0.5,
-        f if f < 3.0 => FEW[2] + (FEW[1] - FEW[2]) * (inverse - 1.0 / 3.0) * 6.0,
+        f if f < 2.0 => QUANTILE_TABLE[1] + (QUANTILE_TABLE[0] - QUANTILE_TABLE[1]) * (inverse - 0.5) / 0.5,
+        f if f < 3.0 => QUANTILE_TABLE[2] + (QUANTILE_TABLE[1] - QUANTILE_TABLE[2]) * (inverse - 1.0 / 3.0) * 6.0,
         _ => {
             let z = NORMAL;
             let square = z * z;

@@ -14,19 +14,19 @@ use scenario::plant::{PlantName, plant};
 use scenario::surroundings::train;
 
 /// Torques of the quick reversals as shares of the largest; the compliance needs several.
-const SHARES: [f64; 4] = [1.0, 0.7, 0.45, 0.25];
+const QUICK_TORQUE_SHARES: [f64; 4] = [1.0, 0.7, 0.45, 0.25];
 /// Quick reversals per share.
-const REVERSALS: usize = 8;
+const QUICK_REVERSALS: usize = 8;
 /// Time between quick reversals [s].
-const QUICK: f64 = 0.12;
+const QUICK_INTERVAL: f64 = 0.12;
 /// Largest speed of the output by quick reversals [rad/s].
-const FASTEST: f64 = 12.0;
+const QUICK_SPEED_MAX: f64 = 12.0;
 /// Time between slow reversals, which turn the output [s].
-const SLOW: f64 = 1.5;
+const SLOW_INTERVAL: f64 = 1.5;
 /// Travel between slow reversals [rad].
-const SWING: f64 = 7.5;
+const SLOW_TRAVEL: f64 = 7.5;
 /// Shares of the slow torque of the two series of slow reversals.
-const SLOW_SHARES: [f64; 2] = [1.0, 0.7];
+const SLOW_TORQUE_SHARES: [f64; 2] = [1.0, 0.7];
 
 /// One sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,24 +50,26 @@ pub struct VirtualRecording {
 
 /// Torque steps of the test: duration [s] and torque [N m].
 pub fn torque_sequence(file: &JointFile) -> Vec<(f64, f64)> {
-    let prior = PriorModel::of(file);
+    let prior = PriorModel::from_file(file);
     let inertia = prior.total_inertia();
     let dry = prior.surroundings.load_friction.coulomb + prior.ratio() * prior.surroundings.motor_friction.coulomb;
     let at_motor = |acceleration: f64, brake: f64| {
         ((inertia * acceleration + brake) / prior.ratio()).min(file.profile.motor_torque_limit)
     };
-    let strongest = at_motor(2.0 * FASTEST / QUICK, dry).min(file.profile.drive_torque.abs());
+    let strongest = at_motor(2.0 * QUICK_SPEED_MAX / QUICK_INTERVAL, dry).min(file.profile.drive_torque.abs());
     // Between opposite speeds the output describes a parabola.
     let brake = dry + 1.2 * prior.surroundings.gravity_torque.abs();
-    let slow = at_motor(8.0 * SWING / (SLOW * SLOW), brake);
+    let slow = at_motor(8.0 * SLOW_TRAVEL / (SLOW_INTERVAL * SLOW_INTERVAL), brake);
     let mut torque_sequence = vec![(0.05, 0.0)];
     let mut series = |time: f64, torque: f64, reversals: usize| {
         torque_sequence.push((0.5 * time, torque));
         torque_sequence.extend((1..reversals).map(|index| (time, if index % 2 == 1 { -torque } else { torque })));
         torque_sequence.push((0.5 * time, if reversals % 2 == 1 { -torque } else { torque }));
     };
-    SHARES.iter().for_each(|share| series(QUICK, share * strongest, REVERSALS));
-    SLOW_SHARES.iter().for_each(|share| series(SLOW, (share * slow).max(0.3 * slow + brake / prior.ratio()), 3));
+    QUICK_TORQUE_SHARES.iter().for_each(|share| series(QUICK_INTERVAL, share * strongest, QUICK_REVERSALS));
+    SLOW_TORQUE_SHARES
+        .iter()
+        .for_each(|share| series(SLOW_INTERVAL, (share * slow).max(0.3 * slow + brake / prior.ratio()), 3));
     torque_sequence
 }
 

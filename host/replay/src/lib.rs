@@ -30,7 +30,7 @@ use recorded::Recorded;
 use samples::ReplaySamples;
 use scenario::controller_log::{self, ObserverOrigin};
 
-use identify::learnt::Content;
+use identify::memory::Content;
 use joint_file::named::{self, Loaded};
 use joint_file::warned;
 use log_reader::column_map::ColumnMap;
@@ -98,7 +98,7 @@ pub fn run(arguments: &ReplayArguments, progress: &Progress) -> Outcome<String> 
             agreement.note(index, &estimates);
         }
     }
-    let learnt = Content::of(&observer.save(), &loaded).map_or_else(|_| Vec::new(), Content::into_values);
+    let learnt = Content::read(&observer.save(), &loaded).map_or_else(|_| Vec::new(), Content::into_values);
     let repeated = agreement.map(recorded::Agreement::finish);
     let wiring = wiring::judge(&loaded.file.parameters, &settings, &samples)?;
     let record = ReplayRecord::of(&name, &loaded, &samples, &pass, learnt, repeated, wiring);

@@ -7,13 +7,13 @@ use serde::Serialize;
 use crate::estimate::Estimate;
 
 /// A value counts as found if half of its interval is at most this share of the value.
-pub(crate) const SHARE: f64 = 0.5;
+pub(crate) const FOUND_INTERVAL_SHARE: f64 = 0.5;
 /// Reason for an unknown that is confounded with others.
-pub(super) const TOGETHER: &str = "in this motion it goes with something else, as in a sine of one strength; reverse torques of \
+pub(super) const CONFOUNDED: &str = "in this motion it goes with something else, as in a sine of one strength; reverse torques of \
                                    three or four different strengths, and swing slowly too";
 /// Model error of two inertias on a spring, relative; widens every interval. Measured on simulated logs of the presets,
 /// where the scatter alone gave too narrow intervals.
-const MODEL_SHARE: f64 = 0.003;
+const MODEL_ERROR: f64 = 0.003;
 
 /// One parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -39,7 +39,7 @@ pub struct Finding {
 /// Finding of an estimate in the unit of its key.
 pub(crate) fn finding(name: &str, unit: &str, key: &str, estimate: Estimate) -> Finding {
     let Estimate { value, half } = estimate;
-    let half = half + MODEL_SHARE * value.abs();
+    let half = half + MODEL_ERROR * value.abs();
     Finding {
         name: name.into(),
         unit: unit.into(),
@@ -53,7 +53,7 @@ pub(crate) fn finding(name: &str, unit: &str, key: &str, estimate: Estimate) -> 
 
 impl Finding {
     /// Removes the value, with the reason, unless `so` is true and the value is finite.
-    pub(crate) fn if_so(self, so: bool, why: &str) -> Self {
+    pub(crate) fn only_if(self, so: bool, why: &str) -> Self {
         let finite = self.value.is_some_and(f64::is_finite)
             && self.interval.is_some_and(|ends| ends.iter().all(|end| end.is_finite()));
         // A value missing for another reason keeps that reason.
@@ -64,7 +64,7 @@ impl Finding {
     }
 
     /// Adds an upper bound to a missing value.
-    pub(crate) fn at_most(self, bound: f64) -> Self {
+    pub(crate) fn with_upper_bound(self, bound: f64) -> Self {
         if self.value.is_some() || !bound.is_finite() {
             return self;
         }
@@ -72,17 +72,17 @@ impl Finding {
         Self { interval: Some([0.0, bound]), note, ..self }
     }
 
-    pub(crate) fn noted(self, note: impl Into<String>) -> Self {
+    pub(crate) fn with_note(self, note: impl Into<String>) -> Self {
         if self.value.is_none() { self } else { Self { note: note.into(), ..self } }
     }
 
     /// Marks the value as the joint file's, not contradicted by the log.
-    pub(super) fn repeated(self) -> Self {
+    pub(super) fn as_unchanged(self) -> Self {
         Self { repeats: true, ..self }
     }
 
     /// Returns true if the log adds to the joint file.
-    pub(crate) fn is_news(&self) -> bool {
+    pub(crate) fn adds_information(&self) -> bool {
         self.value.is_some() && !self.repeats
     }
 
@@ -102,7 +102,7 @@ impl Finding {
     }
 
     /// Replaces a friction below zero by zero, up to half of its interval; for frictions that chance explains.
-    pub(crate) fn settled(self) -> Self {
+    pub(crate) fn with_clamped_friction(self) -> Self {
         match self.interval {
             Some([low, high]) if high < 0.0 && self.is_friction() => {
                 Self { value: Some(0.0), interval: Some([0.0, 0.5 * (high - low)]), ..self }

@@ -11,11 +11,11 @@ pub(super) fn inertias(scales: &Scales, prior: &PriorModel) -> [Finding; 2] {
     let of = |name: &str, inertia: f64, scale: Scale| {
         let estimate = Estimate { value: inertia, half: inertia * scale.half() };
         let found = finding(name, "kg m^2", "", estimate);
-        if scale.is_another() {
+        if scale.differs_from_stated() {
             let share = 100.0 * (scale.factor() - 1.0);
-            found.noted(format!("{share:+.1} % of the joint file's, which the torque contradicts"))
+            found.with_note(format!("{share:+.1} % of the joint file's, which the torque contradicts"))
         } else {
-            found.noted("as expected of the joint file's").repeated()
+            found.with_note("as expected of the joint file's").as_unchanged()
         }
     };
     [

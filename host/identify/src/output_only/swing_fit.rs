@@ -36,7 +36,7 @@ pub const STEP_BY_TORQUE: usize = 8;
 /// Unknowns of a swing: angle, speed, and change of the speed at the reversal.
 const OWN: usize = 3;
 /// Number of fits; each uses the delay and the weights of the previous fit.
-const ROUNDS: usize = 4;
+const FIT_ROUNDS: usize = 4;
 /// Standard deviation of the expected loss of the gears, over the torque [-].
 const EXPECTED_LOSS: f64 = 0.3;
 
@@ -62,7 +62,7 @@ pub struct SwingFit {
     /// Root mean square of the residuals of a typical swing [rad].
     pub residual: f64,
     /// Residuals: time after the reversal [s] and angle [rad].
-    pub left_over: Vec<(f64, f64)>,
+    pub residuals: Vec<(f64, f64)>,
     /// Fastest swing [rad/s].
     pub fastest: f64,
 }
@@ -180,26 +180,27 @@ impl<'s> Integrals<'s> {
 
 impl SwingFit {
     /// Fits the swings; returns `None` if the swings do not determine the unknowns.
-    pub fn of(integrals: &Integrals<'_>, swings: &[Swing], expected: Expected) -> Option<Self> {
+    pub fn fit(integrals: &Integrals<'_>, swings: &[Swing], expected: Expected) -> Option<Self> {
         let largest = integrals.largest;
         let (mut delay, mut inverse) = (0.0, 1.0 / expected.inertia);
         let mut solved = None;
         let mut weights = vec![1.0; swings.len()];
-        for _ in 0..ROUNDS {
-            let of_swing = |(swing, weight): (&Swing, &f64)| SwingEquations::of(integrals, swing, delay, *weight);
+        for _ in 0..FIT_ROUNDS {
+            let of_swing =
+                |(swing, weight): (&Swing, &f64)| SwingEquations::from_swing(integrals, swing, delay, *weight);
             let equations: Vec<SwingEquations> = swings.iter().zip(&weights).filter_map(of_swing).collect();
             if equations.len() != swings.len() {
                 return None;
             }
-            let by_inertia = |torque: f64| 1.0 / (torque * inverse).powi(2);
+            let compliance_by_inertia = |torque: f64| 1.0 / (torque * inverse).powi(2);
             let fastest =
                 largest * inverse * swings.iter().map(|swing| integrals.time_after(swing)).fold(0.0, f64::max);
             // Prior widths separate unknowns that no swing separates.
             let mut expected_size = SVector::<f64, SHARED>::zeros();
             expected_size[LOSS] = 1.0 / (EXPECTED_LOSS * inverse).powi(2);
-            expected_size[VISCOUS] = by_inertia(largest / fastest.max(f64::MIN_POSITIVE));
+            expected_size[VISCOUS] = compliance_by_inertia(largest / fastest.max(f64::MIN_POSITIVE));
             for unknown in [SINE, COSINE, OFFSET] {
-                expected_size[unknown] = by_inertia(largest);
+                expected_size[unknown] = compliance_by_inertia(largest);
             }
             let late = 0.5 * delay * delay * inverse;
             expected_size[STEP_BY_TORQUE] = 1.0 / (0.5 * expected.step_by_torque + late).powi(2);
@@ -257,7 +258,7 @@ impl SwingFit {
 }
 
 impl SwingEquations {
-    fn of(integrals: &Integrals<'_>, swing: &Swing, delay: f64, weight: f64) -> Option<Self> {
+    fn from_swing(integrals: &Integrals<'_>, swing: &Swing, delay: f64, weight: f64) -> Option<Self> {
         let chosen: Vec<usize> = swing.samples().collect();
         let (mut own, mut shared) = (DMatrix::zeros(chosen.len(), OWN), DMatrix::zeros(chosen.len(), SHARED));
         let mut right = DVector::zeros(chosen.len());
@@ -279,8 +280,8 @@ impl SwingEquations {
         after: Vec<f64>,
         weight: f64,
     ) -> Option<Self> {
-        let take = (own.transpose() * own).cholesky()?.inverse() * own.transpose();
-        let (by_shared, by_right) = (&take * &shared, &take * &right);
+        let elimination = (own.transpose() * own).cholesky()?.inverse() * own.transpose();
+        let (by_shared, by_right) = (&elimination * &shared, &elimination * &right);
         let change = (SVector::from_iterator(by_shared.row(OWN - 1).iter().copied()), by_right[OWN - 1]);
         Some(Self { shared: shared - own * by_shared, right: right - own * by_right, change, after, weight })
     }
@@ -327,7 +328,7 @@ fn solve(equations: &[SwingEquations], expected: SVector<f64, SHARED>, step_by_t
         let score = SVector::<f64, SHARED>::from_iterator(score.iter().copied());
         scatter += few * score * score.transpose();
     }
-    let left_over_swings = equations
+    let all_residuals = equations
         .iter()
         .flat_map(|one| {
             let left = left_over(one, &values);
@@ -340,7 +341,7 @@ fn solve(equations: &[SwingEquations], expected: SVector<f64, SHARED>, step_by_t
         quantile: student(swings_left),
         delay: 0.0,
         residual: variance.sqrt(),
-        left_over: left_over_swings,
+        residuals: all_residuals,
         fastest: 0.0,
     })
 }

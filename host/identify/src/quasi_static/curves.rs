@@ -14,18 +14,22 @@ pub struct Curves(pub Vec<Vec<Vec<f64>>>);
 impl Curves {
     /// Mean curve of each group; places missing in a repeat are NaN and skipped.
     pub fn means(&self) -> Vec<Vec<f64>> {
-        self.0.iter().map(|group| Sums::of(group).means()).collect()
+        self.0.iter().map(|group| Sums::new(group).means()).collect()
     }
 
     /// Returns true if every group has two repeats at every place.
     fn is_repeated(&self) -> bool {
-        self.0.iter().all(|group| Sums::of(group).counts.iter().all(|count| *count >= 2.0))
+        self.0.iter().all(|group| Sums::new(group).counts.iter().all(|count| *count >= 2.0))
     }
 
     /// Figure of the means with its 95 % interval: by the jackknife over repeats or, if some places have a single
     /// repeat, by draws from the scatter of the other places.
     pub fn estimate(&self, figure: impl Fn(&[Vec<f64>]) -> f64) -> Estimate {
-        if self.is_repeated() { self.without_each(figure) } else { Scatter::of(self).estimate(self, figure) }
+        if self.is_repeated() {
+            self.without_each(figure)
+        } else {
+            RepeatScatter::from_curves(self).estimate(self, figure)
+        }
     }
 
     /// Figure at each place with its 95 % interval.
@@ -35,7 +39,7 @@ impl Curves {
             return (0..places).map(|place| self.at(place).without_each(|means| figure(means, 0))).collect();
         }
         let means = self.means();
-        let scatter = Scatter::of(self);
+        let scatter = RepeatScatter::from_curves(self);
         let draws = scatter.draws(self);
         (0..places)
             .map(|place| {
@@ -50,7 +54,7 @@ impl Curves {
         let value = figure(&means);
         let (mut variance, mut over_freedom) = (0.0, 0.0);
         for (index, group) in self.0.iter().enumerate() {
-            let sums = Sums::of(group);
+            let sums = Sums::new(group);
             let without: Vec<f64> = group
                 .iter()
                 .map(|left_out| {
@@ -82,7 +86,7 @@ impl Curves {
     /// place.
     pub fn deviations(&self) -> Self {
         let of = |group: &Vec<Vec<f64>>| {
-            let Sums { sums, counts } = Sums::of(group);
+            let Sums { sums, counts } = Sums::new(group);
             let deviation = |(place, value): (usize, &f64)| {
                 let count = counts[place];
                 (value - sums[place] / count) * (count / (count - 1.0)).sqrt()
@@ -98,8 +102,8 @@ impl Curves {
     }
 }
 
-/// Scatter of repeats, from the places with several.
-struct Scatter {
+/// RepeatScatter of repeats, from the places with several.
+struct RepeatScatter {
     /// Standard deviation of the repeats' means.
     whole: f64,
     /// Standard deviation along a repeat, about its mean.
@@ -110,8 +114,8 @@ struct Scatter {
     freedom: f64,
 }
 
-impl Scatter {
-    fn of(curves: &Curves) -> Self {
+impl RepeatScatter {
+    fn from_curves(curves: &Curves) -> Self {
         let deviations = curves.deviations();
         let (mut means, mut rests, mut products, mut freedom) = (Vec::new(), Vec::new(), Vec::new(), 0.0);
         for group in &deviations.0 {
@@ -143,7 +147,7 @@ impl Scatter {
             groups
                 .map(|(group, means)| {
                     let shifted: Vec<Vec<f64>> = group.iter().map(|curve| self.draw(curve, random)).collect();
-                    Sums::of(&shifted).means().iter().zip(means).map(|(shift, mean)| mean + shift).collect()
+                    Sums::new(&shifted).means().iter().zip(means).map(|(shift, mean)| mean + shift).collect()
                 })
                 .collect()
         };
@@ -181,7 +185,7 @@ struct Sums {
 }
 
 impl Sums {
-    fn of(group: &[Vec<f64>]) -> Self {
+    fn new(group: &[Vec<f64>]) -> Self {
         let places = group.first().map_or(0, Vec::len);
         let (mut sums, mut counts) = (vec![0.0; places], vec![0.0; places]);
         for curve in group {

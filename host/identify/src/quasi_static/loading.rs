@@ -5,13 +5,13 @@ use crate::statistics::{mean, rms};
 use report::failure::{Failure, Outcome};
 
 /// Share of a pass's bins with one sign of the torque from which the pass is loaded one way.
-const ONE_SIGN: f64 = 0.9;
+const SIGN_SHARE_MIN: f64 = 0.9;
 /// Passes of one direction lie on two levels if these differ by LEVELS_APART of the width ...
 const LEVELS_APART: f64 = 0.5;
 /// ... and the widest gap between passes exceeds LEVELS_CLEAR deviations of the passes on one level.
 const LEVELS_CLEAR: f64 = 4.0;
-/// Passes of one direction do not repeat if they differ by UNREPEATED of the width ...
-const UNREPEATED: f64 = 0.5;
+/// Passes of one direction do not repeat if they differ by REPEAT_DISTANCE_MAX of the width ...
+const REPEAT_DISTANCE_MAX: f64 = 0.5;
 /// ... and by ABOVE_ROUGHNESS times the difference between neighbouring places.
 const ABOVE_ROUGHNESS: f64 = 3.0;
 
@@ -33,7 +33,7 @@ pub enum Loading {
 
 impl Loading {
     /// Determines the loading of these passes.
-    pub fn of(profiles: &Profiles, halves: usize) -> Self {
+    pub fn classify(profiles: &Profiles, halves: usize) -> Self {
         if halves > 0 {
             return Self::ByHalf;
         }
@@ -79,7 +79,7 @@ impl Loading {
     }
 
     /// The loading in one sentence.
-    pub fn in_words(self) -> &'static str {
+    pub fn sentence(self) -> &'static str {
         match self {
             Self::ByHalf => "The load is told: one way in the first half, the other way in the second.",
             Self::ByTorque => {
@@ -107,7 +107,7 @@ fn sign(profile: &Profile) -> f64 {
     let Some(torque) = profile.output_torque.as_ref().or(profile.motor_torque.as_ref()) else { return 0.0 };
     let there: Vec<f64> = torque.iter().copied().filter(|value| value.is_finite()).collect();
     let share = |sign: f64| there.iter().filter(|value| *value * sign > 0.0).count() as f64 / there.len() as f64;
-    [1.0, -1.0].into_iter().find(|sign| share(*sign) >= ONE_SIGN).unwrap_or(0.0)
+    [1.0, -1.0].into_iter().find(|sign| share(*sign) >= SIGN_SHARE_MIN).unwrap_or(0.0)
 }
 
 /// Rejects passes of one direction that lie on two levels or do not repeat, as after an unstated change of the load.
@@ -122,7 +122,7 @@ pub fn check_one_load(profiles: &Profiles, means: &[Vec<f64>], width: f64) -> Ou
     check_levels(profiles, &all, width)?;
     let steps: Vec<f64> = all.iter().flat_map(|one| one.windows(2).map(|pair| pair[1] - pair[0])).collect();
     let (apart, rough) = (rms(&all.concat()), rms(&steps) / std::f64::consts::SQRT_2);
-    if apart < UNREPEATED * width.abs() || apart < ABOVE_ROUGHNESS * rough {
+    if apart < REPEAT_DISTANCE_MAX * width.abs() || apart < ABOVE_ROUGHNESS * rough {
         return Ok(());
     }
     Err(Failure::new(format!(

@@ -7,9 +7,9 @@ use nalgebra::{DMatrix, DVector};
 use crate::statistics::{mean, rms};
 
 /// Degree of the polynomial of the long wave.
-const DEGREE: usize = 6;
+const LONG_WAVE_DEGREE: usize = 6;
 /// Least half periods of the ripple over the range, beyond the polynomial's reach.
-const FIRST_RIPPLE: usize = 6;
+const RIPPLE_HALF_PERIODS_MIN: usize = 6;
 
 /// Error map in its parts, each over the bins.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,7 +26,7 @@ pub struct Map {
 
 impl Map {
     /// Map of the mean curves of all groups.
-    pub fn of(places: &[f64], means: &[Vec<f64>]) -> Self {
+    pub fn from_means(places: &[f64], means: &[Vec<f64>]) -> Self {
         let at = |place: usize| means.iter().map(|group| group[place]).sum::<f64>() / means.len() as f64;
         let mut whole: Vec<f64> = (0..places.len()).map(at).collect();
         let middle = mean(&whole);
@@ -36,7 +36,7 @@ impl Map {
         let share = |place: &f64| ((2.0 * place - first - last) / (last - first)).clamp(-1.0, 1.0);
         let basis = |row: usize, column: usize| (column as f64 * share(&places[row]).acos()).cos();
         // At least two bins per unknown: with fewer, the highest terms would be noise.
-        let unknowns = (1 + DEGREE).min(places.len() / 2);
+        let unknowns = (1 + LONG_WAVE_DEGREE).min(places.len() / 2);
         let long_wave = fitted(&DMatrix::from_fn(places.len(), unknowns, basis), &whole).0;
         let line = fitted(&DMatrix::from_fn(places.len(), 2, basis), &whole).1;
         let ripple = whole.iter().zip(&long_wave).map(|(whole, long)| whole - long).collect();
@@ -66,7 +66,7 @@ impl Map {
     }
 
     /// Period and amplitude of the strongest sine in the ripple.
-    pub fn strongest(&self, places: &[f64]) -> Option<(f64, f64)> {
+    pub fn strongest_ripple(&self, places: &[f64]) -> Option<(f64, f64)> {
         let span = places[places.len() - 1] - places[0];
         let sine = |half_periods: usize| {
             let rate = 0.5 * TAU * half_periods as f64 / span;
@@ -78,7 +78,7 @@ impl Map {
             (2.0 * span / half_periods as f64, parts[0].hypot(parts[1]))
         };
         // At least four bins per period.
-        (FIRST_RIPPLE..=places.len() / 2).map(sine).max_by(|a, b| a.1.total_cmp(&b.1))
+        (RIPPLE_HALF_PERIODS_MIN..=places.len() / 2).map(sine).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 }
 
@@ -104,11 +104,11 @@ mod tests {
         let places: Vec<f64> = (0..100).map(|bin| 500.0 + 10.0 * f64::from(bin)).collect();
         let wave = |x: f64| 3.0 * (TAU * (x - 500.0) / 990.0).cos() + 0.01 * x;
         let curve: Vec<f64> = places.iter().map(|x| wave(*x) + 0.5 * (TAU * x / 60.0).sin()).collect();
-        let map = Map::of(&places, &[curve.clone(), curve]);
+        let map = Map::from_means(&places, &[curve.clone(), curve]);
         assert!((map.slope - 0.01).abs() < 1e-3, "{}", map.slope);
         assert!(map.straightness(&places) < 2.0, "a line of 10 beside a wave of 6");
         assert!((map.ripple_rms() - 0.5 / 2f64.sqrt()).abs() < 0.02, "{}", map.ripple_rms());
-        let (period, amplitude) = map.strongest(&places).expect("a ripple");
+        let (period, amplitude) = map.strongest_ripple(&places).expect("a ripple");
         assert!((period - 60.0).abs() < 1.0 && (amplitude - 0.5).abs() < 0.05, "{period} {amplitude}");
     }
 }

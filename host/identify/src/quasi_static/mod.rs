@@ -63,12 +63,12 @@ pub fn run(common: Common<'_>, options: &Options, progress: &Progress) -> Outcom
     let folder = Folder::choose(common.out, "identify", &format!("{name} slow"), &[REPORT, FINDINGS, PICTURES])?;
     progress.stage("reading");
     let ratio = options.gear_ratio.unwrap_or(1.0);
-    let mut columns = log_file::read(path, common.topic, common.map, ratio, has_both)?;
-    let in_the_file = |failure: Failure| failure.while_doing(path.display());
-    let samples = Samples::of(&mut columns, options);
-    let explained = |failure: Failure| in_the_file(columns.explain(failure));
+    let mut columns = log_file::read(path, common.topic, common.map, ratio, has_both_encoders)?;
+    let at_path = |failure: Failure| failure.while_doing(path.display());
+    let samples = Samples::from_columns(&mut columns, options);
+    let explained = |failure: Failure| at_path(columns.explain(failure));
     let samples = samples.map_err(explained)?;
-    let results = Results::of(&samples, &options.halves).map_err(explained)?;
+    let results = Results::evaluate(&samples, &options.halves).map_err(explained)?;
     check_ratio(options.gear_ratio, &results).map_err(explained)?;
     folder.make()?;
     let pictures = pictures::all(&results);
@@ -86,15 +86,15 @@ pub fn run(common: Common<'_>, options: &Options, progress: &Progress) -> Outcom
 }
 
 /// Largest relative error of a stated gear ratio against the log; widths are off by as much.
-const RATIO: f64 = 0.003;
+const RATIO_TOLERANCE: f64 = 0.003;
 /// Rise of an error map over its curvature from which it is no encoder error.
-const STRAIGHT: f64 = 3.0;
+const STRAIGHTNESS_MAX: f64 = 3.0;
 
 /// Compares a stated ratio with the travel of motor and output.
 fn check_ratio(said: Option<f64>, results: &Results) -> Outcome<()> {
     let (map, places) = (&results.map, &results.profiles.places);
     let output_per_motor = map.output_per_motor();
-    let is_other = (output_per_motor - 1.0).abs() > RATIO && map.straightness(places) > STRAIGHT;
+    let is_other = (output_per_motor - 1.0).abs() > RATIO_TOLERANCE && map.straightness(places) > STRAIGHTNESS_MAX;
     let Some(said) = said.filter(|_| is_other) else { return Ok(()) };
     Err(Failure::new(format!(
         "the output turns {output_per_motor:.4} times as far as the motor and the ratio of {said} say: widths would be off by as much"
@@ -116,7 +116,7 @@ fn check_halves(halves: &[(f64, f64)]) -> Outcome<()> {
 }
 
 /// Returns true if the columns contain both encoders.
-fn has_both(columns: &Columns) -> bool {
+fn has_both_encoders(columns: &Columns) -> bool {
     let has = |wanted: &[&str]| columns.names().any(|name| wanted.contains(&name));
     has(&["output_counts", "output_angle_rad", "output_angle"])
         && has(&["motor_counts", "motor_angle_rad", "motor_angle", DIFFERENCE])

@@ -98,7 +98,7 @@ fn assumptions(samples: &Samples, results: &Results) -> Vec<String> {
     let number = |value: f64| ESTIMATE.write(value);
     let (unit, count) = (scale.unit, profiles.all.len());
     let mut all = vec![
-        loading.in_words().to_owned(),
+        loading.sentence().to_owned(),
         match scale.per_turn {
             Some(turn) if unit == "units" => format!("A turn of the output is {} units, as told.", number(turn)),
             Some(_) => "Angles are in radians.".to_owned(),
@@ -128,7 +128,7 @@ fn assumptions(samples: &Samples, results: &Results) -> Vec<String> {
             number(samples.resolution)
         ),
     ];
-    all.extend(samples.told.iter().cloned());
+    all.extend(samples.notes.iter().cloned());
     all
 }
 

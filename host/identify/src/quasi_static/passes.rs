@@ -2,24 +2,24 @@
 
 use std::ops::Range;
 
-use super::samples::{GAP, Samples, spread};
+use super::samples::{GAP_STEPS, Samples, spread};
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 
 /// Least return from a turning point, as a share of the motor's travel.
-const TURNED: f64 = 0.25;
+const TURN_SHARE: f64 = 0.25;
 /// Least share of the travel excluded at each end of a pass.
-const LEAST_LEFT_OUT: f64 = 0.02;
+const EXCLUDED_SHARE_MIN: f64 = 0.02;
 /// Largest share of the travel excluded at each end.
-const MOST_LEFT_OUT: f64 = 0.25;
+const EXCLUDED_SHARE_MAX: f64 = 0.25;
 /// Least share of the travel left of a pass.
-const LEAST_LEFT: f64 = 0.1;
+const PASS_SHARE_MIN: f64 = 0.1;
 /// Samples examined on either side of a turning point.
-const AROUND: usize = 12;
+const TURN_WINDOW: usize = 12;
 /// Offset between the readings, in the output's usual steps, that the output shows at turning points.
-const APART: f64 = 1.3;
+const READING_OFFSET_MAX: f64 = 1.3;
 /// Least samples of a pass that show the course of the difference.
-const LEAST_SAMPLES: usize = 24;
+const PASS_SAMPLES_MIN: usize = 24;
 
 /// Motion of the motor in one direction.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,7 +35,7 @@ pub struct Pass {
 /// All passes of a log in order of time, and the length excluded at each end.
 pub fn passes(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<(Vec<Pass>, f64)> {
     let travel = samples.travel();
-    let turns = turning_points(&samples.motor, TURNED * travel);
+    let turns = turning_points(&samples.motor, TURN_SHARE * travel);
     if turns.len() < 3 {
         return Err(Failure::new(format!(
             "there is no reversal in this log: the motor never goes back by a quarter of its travel of {}",
@@ -43,9 +43,9 @@ pub fn passes(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<(Vec<Pass>, f
         ))
         .with_help("sweep slowly to and fro over the same places, at least twice each way"));
     }
-    read_together(samples, &turns)?;
-    let left_out = (LEAST_LEFT_OUT * travel).max(spread(&samples.difference));
-    if left_out > MOST_LEFT_OUT * travel {
+    check_simultaneous(samples, &turns)?;
+    let left_out = (EXCLUDED_SHARE_MIN * travel).max(spread(&samples.difference));
+    if left_out > EXCLUDED_SHARE_MAX * travel {
         return Err(Failure::new(format!(
             "the passes are too short: the difference of output and motor ranges over {}, the motor travels {}",
             ESTIMATE.write(left_out),
@@ -61,7 +61,7 @@ pub fn passes(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<(Vec<Pass>, f
         for (half, range) in cut(samples, pair[0]..pair[1] + 1, halves) {
             let range = without_ends(&samples.motor, range, forwards, left_out);
             let long = range.len() > 1
-                && (samples.motor[range.end - 1] - samples.motor[range.start]).abs() >= LEAST_LEFT * travel;
+                && (samples.motor[range.end - 1] - samples.motor[range.start]).abs() >= PASS_SHARE_MIN * travel;
             if long {
                 passes.push(Pass { range, forwards, half });
             }
@@ -70,8 +70,8 @@ pub fn passes(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<(Vec<Pass>, f
     let mut lengths: Vec<usize> = passes.iter().map(|pass| pass.range.len()).collect();
     lengths.sort_unstable();
     match lengths.get(lengths.len() / 2) {
-        Some(usual) if *usual < LEAST_SAMPLES => Err(Failure::new(format!(
-            "the motion is too fast for this log: {usual} samples in a pass, {LEAST_SAMPLES} are the least"
+        Some(usual) if *usual < PASS_SAMPLES_MIN => Err(Failure::new(format!(
+            "the motion is too fast for this log: {usual} samples in a pass, {PASS_SAMPLES_MIN} are the least"
         ))
         .with_help("sweep more slowly, or log more often")),
         Some(_) => Ok((passes, left_out)),
@@ -84,7 +84,7 @@ pub fn passes(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<(Vec<Pass>, f
 
 /// Rejects a log whose output continues in the old direction after the motor has turned, or turns first. Friction and a
 /// gap hold an output but never move it; readings at different times do, and mimic a width of the travel in between.
-fn read_together(samples: &Samples, turns: &[usize]) -> Outcome<()> {
+fn check_simultaneous(samples: &Samples, turns: &[usize]) -> Outcome<()> {
     let output = &samples.output;
     let mut steps: Vec<f64> =
         output.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0).collect();
@@ -95,20 +95,20 @@ fn read_together(samples: &Samples, turns: &[usize]) -> Outcome<()> {
     // it.
     let mut went_on: Vec<f64> = Vec::new();
     for &turn in inner {
-        let forwards = samples.motor[turn] > samples.motor[turn.saturating_sub(AROUND)];
+        let forwards = samples.motor[turn] > samples.motor[turn.saturating_sub(TURN_WINDOW)];
         let sign = if forwards { 1.0 } else { -1.0 };
-        let around = &output[turn.saturating_sub(AROUND)..(turn + AROUND + 1).min(output.len())];
+        let around = &output[turn.saturating_sub(TURN_WINDOW)..(turn + TURN_WINDOW + 1).min(output.len())];
         let (farthest, most) = around
             .iter()
             .enumerate()
             .map(|(place, value)| (place, sign * (value - output[turn])))
             .fold((0, f64::NEG_INFINITY), |best, next| if next.1 > best.1 { next } else { best });
-        let after = farthest >= turn - turn.saturating_sub(AROUND);
+        let after = farthest >= turn - turn.saturating_sub(TURN_WINDOW);
         went_on.push(if after { most } else { -most } / step);
     }
     went_on.sort_by(f64::total_cmp);
     let usual = went_on.get(went_on.len() / 2).copied().unwrap_or_default();
-    if usual.abs() < APART {
+    if usual.abs() < READING_OFFSET_MAX {
         return Ok(());
     }
     let (late, early) = if usual > 0.0 { ("output", "motor") } else { ("motor", "output") };
@@ -174,7 +174,8 @@ fn cut(samples: &Samples, stretch: Range<usize>, halves: &[(f64, f64)]) -> Vec<(
     let mut parts: Vec<(usize, Range<usize>)> = Vec::new();
     for sample in stretch.clone() {
         let Some(own) = half(sample) else { continue };
-        let goes_on = sample > stretch.start && samples.time[sample] - samples.time[sample - 1] <= GAP * samples.period;
+        let goes_on =
+            sample > stretch.start && samples.time[sample] - samples.time[sample - 1] <= GAP_STEPS * samples.period;
         match parts.last_mut() {
             Some((last, range)) if *last == own && range.end == sample && goes_on => range.end = sample + 1,
             _ => parts.push((own, sample..sample + 1)),

@@ -73,7 +73,7 @@ pub fn all(results: &Results) -> Vec<(&'static str, Figure)> {
     let ripple = Panel { height: 170, ..Panel::lines("Ripple", unit, vec![line(&map.ripple, Ink::Third, "", 1.6)]) };
     let map = figure("Error map of output against motor", vec![long, ripple]);
 
-    let at = |index: usize| -> Vec<f64> { prediction.left_over.iter().map(|one| one[index]).collect() };
+    let at = |index: usize| -> Vec<f64> { prediction.residuals.iter().map(|one| one[index]).collect() };
     let left = Panel::lines(
         "What a map and one width leave over in unseen passes",
         unit,

@@ -6,7 +6,7 @@ use super::curves::Curves;
 use crate::statistics::{mean, quantile, rms};
 
 /// Alternating fits of map and numbers.
-const ROUNDS: usize = 500;
+const FIT_ROUNDS: usize = 500;
 
 /// Residuals of three models in unseen passes, root mean square over bins [units of the output].
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -26,7 +26,7 @@ pub struct Prediction {
     pub repeatability: f64,
     /// Residual of the map and one number per group: mean, 10 % and 90 % quantile by bin.
     #[serde(skip)]
-    pub left_over: Vec<[f64; 3]>,
+    pub residuals: Vec<[f64; 3]>,
     /// Systematic part of this residual in each group, by bin: known to the curves, not to one number.
     #[serde(skip)]
     pub systematic: Vec<Vec<f64>>,
@@ -34,7 +34,7 @@ pub struct Prediction {
 
 impl Prediction {
     /// Fits and tests the models on groups of passes.
-    pub fn of(curves: &Curves) -> Self {
+    pub fn cross_validate(curves: &Curves) -> Self {
         let every_other = |first: usize| {
             Curves(curves.0.iter().map(|group| group.iter().skip(first).step_by(2).cloned().collect()).collect())
         };
@@ -49,7 +49,7 @@ impl Prediction {
         let map: Vec<f64> = (0..places).map(|place| column(place, &vec![0.0; means.len()])).collect();
         // Least squares of a map and a number per group, for groups with missing places too.
         let (mut levels, mut common) = (vec![0.0; means.len()], map.clone());
-        for _ in 0..ROUNDS {
+        for _ in 0..FIT_ROUNDS {
             for (level, group) in levels.iter_mut().zip(&means) {
                 *level = mean(&finite(group.iter().zip(&common).map(|(own, common)| own - common).collect()));
             }
@@ -87,7 +87,7 @@ impl Prediction {
             map_and_width: of_all(&with_width),
             curves: of_all(&left(&|group, place| means[group][place])),
             repeatability: scatter * (larger.sum::<f64>() / predicted as f64).sqrt(),
-            left_over: (0..places).map(by_bin).collect(),
+            residuals: (0..places).map(by_bin).collect(),
             systematic: means
                 .iter()
                 .zip(&levels)

@@ -6,13 +6,13 @@ use crate::statistics::{mean, quantile_of};
 use report::failure::{Failure, Outcome};
 
 /// Samples of a typical pass per bin.
-const IN_A_BIN: f64 = 6.0;
+const SAMPLES_PER_BIN: f64 = 6.0;
 /// Least and largest number of bins.
-const BINS: (f64, f64) = (12.0, 120.0);
+const BIN_COUNT_RANGE: (f64, f64) = (12.0, 120.0);
 /// Least number of bins shared by all groups.
-pub const LEAST_BINS: usize = 8;
+pub const BINS_MIN: usize = 8;
 /// Least passes of each direction in a bin.
-pub const LEAST_PASSES: usize = 2;
+pub const PASSES_MIN: usize = 2;
 
 /// One pass over the bins.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,7 +46,7 @@ pub struct Profiles {
 
 impl Profiles {
     /// Profiles over the places that passes of each direction, in each half, cover.
-    pub fn of(samples: &Samples, passes: &[Pass], halves: usize) -> Outcome<Self> {
+    pub fn from_passes(samples: &Samples, passes: &[Pass], halves: usize) -> Outcome<Self> {
         let (mut low, mut high) = (f64::MIN, f64::MAX);
         for half in 0..halves.max(1) {
             for forwards in [true, false] {
@@ -65,7 +65,7 @@ impl Profiles {
             places.filter(|place| (low..=high).contains(*place)).count() as f64
         };
         let counts: Vec<f64> = passes.iter().map(inside).collect();
-        let count = (quantile_of(&counts, 0.5) / IN_A_BIN).floor().clamp(BINS.0, BINS.1);
+        let count = (quantile_of(&counts, 0.5) / SAMPLES_PER_BIN).floor().clamp(BIN_COUNT_RANGE.0, BIN_COUNT_RANGE.1);
         let width = (high - low) / count;
         let bins = Bins { low, width, count: count as usize };
         let all: Vec<Profile> = passes.iter().map(|pass| profile(samples, pass, &bins)).collect();
@@ -82,8 +82,8 @@ impl Profiles {
         let keep: Vec<bool> =
             (0..self.places.len()).map(|bin| (0..groups).all(|group| count(bin, group) > 0)).collect();
         let repeated =
-            |group: usize| (0..keep.len()).filter(|bin| keep[*bin] && count(*bin, group) >= LEAST_PASSES).count();
-        if (0..groups).any(|group| repeated(group) < LEAST_BINS) {
+            |group: usize| (0..keep.len()).filter(|bin| keep[*bin] && count(*bin, group) >= PASSES_MIN).count();
+        if (0..groups).any(|group| repeated(group) < BINS_MIN) {
             return Err(no_common_places());
         }
         let kept = |values: &[f64]| -> Vec<f64> {
@@ -121,7 +121,7 @@ impl Profile {
 
 /// Rejects too few passes for an interval.
 pub fn check_count(count: usize, half: usize, halves: usize, forwards: bool) -> Outcome<()> {
-    if count >= LEAST_PASSES {
+    if count >= PASSES_MIN {
         return Ok(());
     }
     let way = if forwards { "forwards" } else { "backwards" };
@@ -129,7 +129,7 @@ pub fn check_count(count: usize, half: usize, halves: usize, forwards: bool) -> 
         0 => String::new(),
         _ => format!(" in the {} half", ["first", "second"][half.min(1)]),
     };
-    Err(Failure::new(format!("too few passes: {count} {way}{place}, {LEAST_PASSES} each way are the least")).with_help(
+    Err(Failure::new(format!("too few passes: {count} {way}{place}, {PASSES_MIN} each way are the least")).with_help(
         "sweep over the same places at least twice each way, slowly; an interval is taken from how passes repeat",
     ))
 }

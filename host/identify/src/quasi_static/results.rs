@@ -15,7 +15,7 @@ use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 
 /// Largest motion between samples, as a share of the width.
-const QUASI_STATIC: f64 = 0.5;
+const STEP_SHARE_MAX: f64 = 0.5;
 
 /// One figure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -53,9 +53,9 @@ pub struct Curve {
 
 impl Curve {
     /// Curve of estimates; half of each interval is at least `least`.
-    fn of(estimates: Vec<Estimate>, least: f64) -> Self {
+    fn from_estimates(estimates: Vec<Estimate>, least: f64) -> Self {
         let mut curve = Self::default();
-        for Estimate { value, half } in estimates.into_iter().map(|one| one.at_least(least)) {
+        for Estimate { value, half } in estimates.into_iter().map(|one| one.with_half_at_least(least)) {
             curve.value.push(value);
             curve.low.push(value - half);
             curve.high.push(value + half);
@@ -92,10 +92,10 @@ pub struct Results {
 
 impl Results {
     /// Evaluates samples and stated halves.
-    pub fn of(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<Self> {
+    pub fn evaluate(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<Self> {
         let (passes, left_out) = passes(samples, halves)?;
-        let profiles = Profiles::of(samples, &passes, halves.len())?;
-        let loading = Loading::of(&profiles, halves.len());
+        let profiles = Profiles::from_passes(samples, &passes, halves.len())?;
+        let loading = Loading::classify(&profiles, halves.len());
         let profiles = profiles.shared(|one| loading.group(one), loading.groups())?;
         let of_groups = |values: &dyn Fn(&Profile) -> Option<Vec<f64>>| -> Option<Curves> {
             let mut groups = vec![Vec::new(); loading.groups()];
@@ -124,8 +124,8 @@ impl Results {
                 mean(&(0..places).map(|place| means[2 * load + 1][place] - means[2 * load][place]).collect::<Vec<_>>())
             })
         };
-        let shares = [0.5, 0.1, 0.9].map(share).map(|one| one.at_least(samples.resolution));
-        let loops = (0..loading.groups() / 2).map(hysteresis).map(|one| one.at_least(samples.resolution));
+        let shares = [0.5, 0.1, 0.9].map(share).map(|one| one.with_half_at_least(samples.resolution));
+        let loops = (0..loading.groups() / 2).map(hysteresis).map(|one| one.with_half_at_least(samples.resolution));
         let loops: Vec<Estimate> = loops.collect();
         let largest = loops.iter().map(|one| one.value.abs()).fold(shares[0].value.abs(), f64::max);
         let step = profiles.speed() * samples.period;
@@ -133,7 +133,7 @@ impl Results {
             check_one_load(&profiles, &groups, shares[0].value)?;
         }
         check_sign(loading, &shares[0])?;
-        if step > QUASI_STATIC * largest {
+        if step > STEP_SHARE_MAX * largest {
             return Err(Failure::new(format!(
                 "the motion is too fast for this log: {} from one sample to the next, where the widths found are {} at most",
                 ESTIMATE.write(step),
@@ -143,7 +143,7 @@ impl Results {
                 "sweep more slowly, or log more often: encoders that are read at different moments would feign such a width",
             ));
         }
-        let mut found = Found { scale: samples.scale, resolution: samples.resolution, all: Vec::new() };
+        let mut found = FigureList { scale: samples.scale, resolution: samples.resolution, all: Vec::new() };
         let heights = if sign < 0.0 { "first" } else { "second" };
         let ranges: Vec<[f64; 2]> = (0..loops.len())
             .map(|load| {
@@ -165,16 +165,19 @@ impl Results {
         }
         let hysteresis = (0..loading.groups() / 2).filter(|_| loading.groups() == 4).map(|load| {
             let loops = curves.estimates(|means, place| means[2 * load + 1][place] - means[2 * load][place]);
-            Curve::of(loops, samples.resolution)
+            Curve::from_estimates(loops, samples.resolution)
         });
         Ok(Self {
             loading,
             scale: samples.scale,
             left_out,
-            width: Curve::of(curves.estimates(|means, place| sign * apart(means, place)), samples.resolution),
+            width: Curve::from_estimates(
+                curves.estimates(|means, place| sign * apart(means, place)),
+                samples.resolution,
+            ),
             hysteresis: hysteresis.collect(),
-            map: Map::of(&profiles.places, &groups),
-            prediction: Prediction::of(&curves),
+            map: Map::from_means(&profiles.places, &groups),
+            prediction: Prediction::cross_validate(&curves),
             groups,
             levels,
             quantities: found.all,
@@ -207,18 +210,18 @@ fn ends(Estimate { value, half }: Estimate) -> Option<[f64; 2]> {
 }
 
 /// Collected figures.
-struct Found {
+struct FigureList {
     scale: Scale,
     /// Least half of an interval of an angle [units of the output].
     resolution: f64,
     all: Vec<Quantity>,
 }
 
-impl Found {
+impl FigureList {
     /// Adds a figure in the unit of the output.
     fn angle(&mut self, key: impl Into<String>, name: impl Into<String>, estimate: Estimate, note: impl Into<String>) {
         let degrees = self.scale.degrees();
-        let interval = ends(estimate.at_least(self.resolution));
+        let interval = ends(estimate.with_half_at_least(self.resolution));
         self.all.push(Quantity {
             key: key.into(),
             name: name.into(),
@@ -311,13 +314,13 @@ impl Found {
 
     fn map(&mut self, curves: &Curves, profiles: &Profiles) {
         let places = &profiles.places;
-        let of = |means: &[Vec<f64>]| Map::of(places, means);
+        let of = |means: &[Vec<f64>]| Map::from_means(places, means);
         let scale = curves.estimate(|means| of(means).output_per_motor());
         self.other(
             "output_per_motor".into(),
             "output for each 1 of the motor".into(),
             "",
-            scale.at_least(self.resolution / (profiles.width * places.len() as f64)),
+            scale.with_half_at_least(self.resolution / (profiles.width * places.len() as f64)),
             "slope of the error map; 1 as stated",
         );
         let long = curves.estimate(|means| of(means).long_wave_range());
@@ -334,7 +337,7 @@ impl Found {
             })
             .sum();
         let ripple = curves.estimate(|means| (of(means).ripple_rms().powi(2) - noise).max(0.0).sqrt());
-        let strongest = of(&curves.means()).strongest(places).map_or(String::new(), |(period, amplitude)| {
+        let strongest = of(&curves.means()).strongest_ripple(places).map_or(String::new(), |(period, amplitude)| {
             format!(
                 "scatter taken off; strongest period {}, amplitude {} {}",
                 ESTIMATE.write(period),
@@ -412,7 +415,7 @@ impl Found {
         let note = "of the passes' means about their group's; a width between halves has it over the time between them";
         let times = levels.iter().map(|level| level.1);
         let duration = times.clone().fold(f64::MIN, f64::max) - times.fold(f64::MAX, f64::min);
-        let drift = Estimate { value: slope, half }.at_least(self.resolution / duration);
+        let drift = Estimate { value: slope, half }.with_half_at_least(self.resolution / duration);
         self.other("drift".into(), "drift".into(), &unit, drift, note);
         levels.into_iter().map(|(_, time, level)| (time, level)).collect()
     }
@@ -444,7 +447,7 @@ impl Found {
                     format!("{key}_torque_{own}{index}"),
                     format!("{name}, {label}{which}"),
                     "N m",
-                    estimate.at_least(least),
+                    estimate.with_half_at_least(least),
                     note,
                 );
             }

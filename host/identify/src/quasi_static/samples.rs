@@ -12,17 +12,17 @@ use report::failure::{Failure, Outcome};
 use report::number::{ESTIMATE, TYPED};
 
 /// Least samples of a log with passes.
-const LEAST_SAMPLES: usize = 96;
+const SAMPLES_MIN: usize = 96;
 /// Time step, in usual steps, from which it is a gap.
-pub const GAP: f64 = 10.0;
+pub const GAP_STEPS: f64 = 10.0;
 /// Largest motion between samples, as a share of the whole travel.
 const JUMP_SHARE: f64 = 0.2;
 /// Tolerated slope of output against motor on one scale.
-const AS_STATED: std::ops::RangeInclusive<f64> = 0.9..=1.1;
+const SLOPE_RANGE: std::ops::RangeInclusive<f64> = 0.9..=1.1;
 /// Differences below this share of the range are rounding.
 const ROUNDING: f64 = 1e-9;
 /// Least correlation of output and motor.
-const FOLLOWS: f64 = 0.8;
+const CORRELATION_MIN: f64 = 0.8;
 
 /// A slow log.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,7 +44,7 @@ pub struct Samples {
     /// Resolution of both encoders together, on the output's scale [units of the output].
     pub resolution: f64,
     /// Changes to the rows of the file, a sentence each.
-    pub told: Vec<String>,
+    pub notes: Vec<String>,
     /// Median time between samples [s].
     pub period: f64,
     /// 5 and 95 % quantile of the time between samples [s].
@@ -78,7 +78,7 @@ struct Angles {
 
 impl Samples {
     /// Reads columns of known names.
-    pub fn of(columns: &mut Columns, options: &Options) -> Outcome<Self> {
+    pub fn from_columns(columns: &mut Columns, options: &Options) -> Outcome<Self> {
         let motor_names: &[&str] = if columns.column(DIFFERENCE).is_some() { &[DIFFERENCE] } else { &MOTOR };
         columns.leave_out_incomplete(&[&TIMES, motor_names, &OUTPUT, &["motor_torque_N_m"], &["output_torque_N_m"]])?;
         let stated = [(motor_names, options.motor_units_per_turn), (&OUTPUT, options.output_units_per_turn)];
@@ -91,8 +91,8 @@ impl Samples {
             bad_readings::leave_out(columns, &name, count, turn)?;
         }
         let time = columns.time_from_start()?;
-        if time.len() < LEAST_SAMPLES {
-            return Err(Failure::new(format!("there are only {} samples, {LEAST_SAMPLES} are the least", time.len()))
+        if time.len() < SAMPLES_MIN {
+            return Err(Failure::new(format!("there are only {} samples, {SAMPLES_MIN} are the least", time.len()))
                 .with_help("record several slow sweeps each way"));
         }
         let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -107,7 +107,7 @@ impl Samples {
                 "check the column: time_s, time_ms and time_us are understood, --column time_s=NAME takes another",
             ));
         }
-        let gaps = steps.iter().filter(|step| **step > GAP * period).count();
+        let gaps = steps.iter().filter(|step| **step > GAP_STEPS * period).count();
         let longest = steps[steps.len() - 1];
         let output = angles(columns, OUTPUT, options.output_units_per_turn, "output")?
             .ok_or_else(|| columns.without_encoder("output"))?;
@@ -123,7 +123,7 @@ impl Samples {
         let samples = Self {
             difference,
             resolution: resolutions[0] + factor.abs() * resolutions[1],
-            told: columns.told().to_vec(),
+            notes: columns.told().to_vec(),
             motor_torque: torque(columns, "motor_torque_N_m", options.gear_ratio.unwrap_or(1.0).signum())?,
             output_torque: torque(columns, "output_torque_N_m", 1.0)?,
             scale,
@@ -161,7 +161,7 @@ impl Samples {
                 .with_help("record slow sweeps to and fro, with both encoders; check --column"));
         }
         let (slope, correlation) = (product / square, product / (square * other).sqrt());
-        if correlation.abs() < FOLLOWS {
+        if correlation.abs() < CORRELATION_MIN {
             return Err(Failure::new(format!(
                 "the output does not follow the motor: their readings correlate by {correlation:.2}"
             ))
@@ -170,7 +170,7 @@ impl Samples {
                 ref open => format!("check --column; counts that begin anew each turn need {}", open.join(" and ")),
             }));
         }
-        if AS_STATED.contains(&slope) {
+        if SLOPE_RANGE.contains(&slope) {
             return Ok(());
         }
         let message = format!(
@@ -196,7 +196,7 @@ impl Samples {
 /// Unstated options on the encoders' scale that would have an effect.
 fn open_options(options: &Options, columns: &Columns, ratio: bool) -> Vec<&'static str> {
     let is_difference = columns.column(DIFFERENCE).is_some();
-    let counts = |names: [&str; 2]| is_there(columns, names[0]);
+    let counts = |names: [&str; 2]| has_column(columns, names[0]);
     [
         ("--gear-ratio", ratio && !is_difference && options.gear_ratio.is_none()),
         ("--output-units-per-turn", counts(OUTPUT) && options.output_units_per_turn.is_none()),
@@ -209,7 +209,7 @@ fn open_options(options: &Options, columns: &Columns, ratio: bool) -> Vec<&'stat
 
 /// Torque, if logged, positive when it drives the output forwards.
 fn torque(columns: &Columns, name: &str, sign: f64) -> Outcome<Option<Vec<f64>>> {
-    if !is_there(columns, name) {
+    if !has_column(columns, name) {
         return Ok(None);
     }
     let (_, torque) = columns.named(&[name])?;
@@ -217,7 +217,7 @@ fn torque(columns: &Columns, name: &str, sign: f64) -> Outcome<Option<Vec<f64>>>
 }
 
 /// Returns true if a column exists under any of its names.
-fn is_there(columns: &Columns, name: &str) -> bool {
+fn has_column(columns: &Columns, name: &str) -> bool {
     let others = KNOWN.iter().find(|(known, _)| *known == name).map_or(&[][..], |(_, others)| *others);
     columns.names().any(|own| own == name || others.contains(&own))
 }
@@ -231,7 +231,7 @@ pub fn spread(values: &[f64]) -> f64 {
 
 /// Angles in counts or radians, if either is logged.
 fn angles(columns: &Columns, names: [&str; 2], per_turn: Option<f64>, whose: &str) -> Outcome<Option<Angles>> {
-    let Some(wanted) = names.into_iter().find(|name| is_there(columns, name)) else { return Ok(None) };
+    let Some(wanted) = names.into_iter().find(|name| has_column(columns, name)) else { return Ok(None) };
     let (_, values) = columns.named(&[wanted])?;
     if wanted == names[0] {
         return Ok(Some(Angles { values, scale: Scale { unit: "units", per_turn } }));
@@ -283,7 +283,7 @@ fn unwrap(values: &mut [f64], scale: Scale, name: &str, columns: &mut Columns) {
         step_over_turns(values, scale);
     } else if let Some(register) = Register::of(values, scale.per_turn) {
         register.join(values, |_| 1.0);
-        register.told(name, scale.per_turn).into_iter().for_each(|told| columns.tell(told));
+        register.told(name, scale.per_turn).into_iter().for_each(|notes| columns.tell(notes));
     }
 }
 
@@ -323,7 +323,7 @@ fn check_jumps(
     let limit = JUMP_SHARE * (most - least);
     let jumps = |row: &usize| {
         (values[row + 1] - values[*row]).abs() > limit.max(f64::MIN_POSITIVE)
-            && time[row + 1] - time[*row] <= GAP * period
+            && time[row + 1] - time[*row] <= GAP_STEPS * period
     };
     let Some(row) = (0..values.len() - 1).find(jumps) else { return Ok(()) };
     let by = ESTIMATE.write((values[row + 1] - values[row]).abs());
@@ -334,12 +334,12 @@ fn check_jumps(
     ))
     .with_help(format!(
         "a reading was lost, the log is too slow for the motion, or {}",
-        begins_anew(name, columns, options)
+        jump_causes(name, columns, options)
     )))
 }
 
 /// Other causes of a jump, with the option that joins it if unstated.
-fn begins_anew(name: &str, columns: &Columns, options: &Options) -> String {
+fn jump_causes(name: &str, columns: &Columns, options: &Options) -> String {
     let of_output = name == "output" || columns.column(DIFFERENCE).is_some();
     let (option, stated, names) = if of_output {
         ("--output-units-per-turn", options.output_units_per_turn, OUTPUT)
@@ -350,7 +350,7 @@ fn begins_anew(name: &str, columns: &Columns, options: &Options) -> String {
         Some(turn) => {
             format!("counts begin anew after another number than the {} that {option} states", TYPED.write(turn))
         }
-        None if is_there(columns, names[0]) => format!("counts begin anew each turn: then state {option}"),
+        None if has_column(columns, names[0]) => format!("counts begin anew each turn: then state {option}"),
         None => format!(
             "an angle begins anew in another unit than rad: name it {} and state its unit by --unit",
             names[1].trim_end_matches("_rad")

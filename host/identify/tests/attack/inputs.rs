@@ -42,7 +42,7 @@ pub enum Kind {
     /// Log as MCAP, in one of the packings.
     McapLog(usize),
     /// Message definition of the MCAP log alone.
-    Form,
+    Definition,
     /// Log of a run, for `joint replay`.
     Run,
 }
@@ -53,7 +53,7 @@ pub type Fault = fn(&[u8]) -> bool;
 /// Every kind of file.
 pub fn all() -> impl Iterator<Item = Kind> {
     let packed = (0..PACKINGS).map(Kind::McapLog);
-    [Kind::Joint, Kind::Test, Kind::Motion, Kind::Torques, Kind::CsvLog, Kind::SlowLog, Kind::Form, Kind::Run]
+    [Kind::Joint, Kind::Test, Kind::Motion, Kind::Torques, Kind::CsvLog, Kind::SlowLog, Kind::Definition, Kind::Run]
         .into_iter()
         .chain(packed)
 }
@@ -69,7 +69,7 @@ const TEST: &str = "title = \"attack\"\njoint = \"q1\"\nseeds = [1, 2]\nduration
                     [[fault]]\nkind = \"encoder_offset\"\nstart_s = 2\ncounts = 40\n\
                     [assert]\nrms_mrad = \"<= 100\"\n";
 const WITH_MOTION: &str = "[profile]\nkind = \"csv\"\nfile = \"motion.csv\"\n";
-const FORM: &str = "std_msgs/Header header\nfloat64[] position\nint64[2] raw\nfloat64 torque\nPart[<=3] parts\n===\n\
+const DEFINITION: &str = "std_msgs/Header header\nfloat64[] position\nint64[2] raw\nfloat64 torque\nPart[<=3] parts\n===\n\
                     MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n===\nMSG: a/Part\nuint8 one\n";
 
 impl Kind {
@@ -82,8 +82,8 @@ impl Kind {
             Self::Torques => TORQUES.into(),
             Self::CsvLog => csv().into(),
             Self::SlowLog => sweeps().into(),
-            Self::McapLog(packing) => mcap(packing, FORM.as_bytes()),
-            Self::Form => FORM.into(),
+            Self::McapLog(packing) => mcap(packing, DEFINITION.as_bytes()),
+            Self::Definition => DEFINITION.into(),
             Self::Run => run_log().unwrap_or_default(),
         }
     }
@@ -98,13 +98,13 @@ impl Kind {
             Ok(path)
         };
         match self {
-            Self::Joint => refused(joint_file::named::load(&file("joint.toml", bytes)?)).map(drop),
+            Self::Joint => accepted(joint_file::named::load(&file("joint.toml", bytes)?)).map(drop),
             Self::Test => {
-                refused(suite::load(&file("test.toml", bytes)?, suite::Choice::Full, PlantName::Core)).map(drop)
+                accepted(suite::load(&file("test.toml", bytes)?, suite::Choice::Full, PlantName::Core)).map(drop)
             }
             Self::Motion => {
                 file("motion.csv", bytes)?;
-                match refused(suite::from_text("test.toml", WITH_MOTION, folder.path(), PlantName::Core))? {
+                match accepted(suite::from_text("test.toml", WITH_MOTION, folder.path(), PlantName::Core))? {
                     Some(test) => followed(&test),
                     None => Ok(()),
                 }
@@ -113,7 +113,7 @@ impl Kind {
                 let joint = joint_file::read(joint_file::preset("q1").unwrap_or_default());
                 let joint = joint.map_err(|_| "the preset cannot be read")?.parameters;
                 let path = file("torques.csv", bytes)?;
-                let profile = refused(TorqueProfile::load(&path.display().to_string(), &joint, 20_000, None))?;
+                let profile = accepted(TorqueProfile::load(&path.display().to_string(), &joint, 20_000, None))?;
                 let finite = |profile: &TorqueProfile| {
                     profile.commands.iter().all(|one| one.drive_torque.is_finite() && one.load_torque.is_finite())
                 };
@@ -121,15 +121,15 @@ impl Kind {
             }
             Self::SlowLog => {
                 let log = file("log.csv", bytes)?;
-                refused(identify::run(&slow(&log, folder.path()), &Progress::new())).map(drop)
+                accepted(identify::run(&slow(&log, folder.path()), &Progress::new())).map(drop)
             }
             Self::CsvLog => identified(&file("log.csv", bytes)?, folder.path()),
             Self::McapLog(_) => identified(&file("log.mcap", bytes)?, folder.path()),
-            Self::Form => identified(&file("log.mcap", &mcap(0, bytes))?, folder.path()),
+            Self::Definition => identified(&file("log.mcap", &mcap(0, bytes))?, folder.path()),
             Self::Run => match replay(&file("log.mcap", bytes)?, folder.path()) {
                 // A differing count or estimate is no rejection: the replay reports that the run is not reproduced.
                 Err(failure) if failure.exit_code() == EXIT_CHECK_FAILED => Ok(()),
-                outcome => refused(outcome).map(drop),
+                outcome => accepted(outcome).map(drop),
             },
         }
     }
@@ -140,7 +140,7 @@ impl Kind {
         let path = folder.path().join("log");
         match self {
             Self::CsvLog | Self::SlowLog | Self::McapLog(_) => fs::write(&path, bytes).ok()?,
-            Self::Form => fs::write(&path, mcap(0, bytes)).ok()?,
+            Self::Definition => fs::write(&path, mcap(0, bytes)).ok()?,
             Self::Run => {
                 fs::write(&path, bytes).ok()?;
                 return replay(&path, folder.path()).err().map(|failure| failure.to_string());
@@ -172,7 +172,7 @@ impl Kind {
 }
 
 /// Accepted content; `None` if it was rejected as bad input.
-fn refused<T>(outcome: Result<T, Failure>) -> Result<Option<T>, String> {
+fn accepted<T>(outcome: Result<T, Failure>) -> Result<Option<T>, String> {
     match outcome {
         Ok(read) => Ok(Some(read)),
         Err(failure) if failure.exit_code() == EXIT_BAD_INPUT && !failure.to_string().is_empty() => Ok(None),
@@ -195,7 +195,7 @@ fn followed(test: &suite::Test) -> Result<(), String> {
 }
 
 fn identified(log: &Path, folder: &Path) -> Result<(), String> {
-    refused(identify::run(&arguments(log, folder), &Progress::new())).map(drop)
+    accepted(identify::run(&arguments(log, folder), &Progress::new())).map(drop)
 }
 
 fn replay(log: &Path, folder: &Path) -> Result<String, Failure> {
@@ -303,7 +303,7 @@ fn csv() -> String {
     text
 }
 
-/// Log with messages of the form `FORM`, under the message definition `form`.
+/// Log with messages of the form `DEFINITION`, under the message definition `form`.
 fn mcap(packing: usize, form: &[u8]) -> Vec<u8> {
     let plain = WriteOptions::new().compression(None);
     // Without checksums a change reaches the reader of messages.

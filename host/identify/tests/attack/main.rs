@@ -20,11 +20,11 @@ use proptest::test_runner::{Config, RngSeed, TestError, TestRunner};
 static ALLOCATOR: Cap<System> = Cap::new(System, usize::MAX);
 
 /// Memory allowed for any file: designs, reports, an hour of torques [bytes].
-const ROOM: usize = 256 << 20;
+const MEMORY_BASE: usize = 256 << 20;
 /// Memory allowed per byte of the file, for chunks and columns of a log.
-const ROOM_FOR_A_BYTE: usize = 2 * 256;
+const MEMORY_PER_BYTE: usize = 2 * 256;
 /// Time limit of a case on a machine under load [ms].
-const TIME: u32 = 20_000;
+const TIME_LIMIT: u32 = 20_000;
 /// Cases of a short run; PROPTEST_CASES overrides them.
 const CASES: u32 = 128;
 /// Cases that find every planted fault for any seed. The rarest fault occurs in one of some 2000 cases; 5000 cases miss
@@ -39,20 +39,20 @@ fn config() -> Config {
 }
 
 /// Configuration with a process and a time limit for each case.
-fn limited() -> Config {
-    Config { fork: true, timeout: TIME, ..config() }
+fn limited_config() -> Config {
+    Config { fork: true, timeout: TIME_LIMIT, ..config() }
 }
 
 /// Reads a mutated file within its memory limit.
 fn attack(kind: Kind, changes: &[Mutation]) -> Result<(), TestCaseError> {
     let bytes = mutated(&kind.valid(), changes);
-    let limit = ALLOCATOR.allocated() + ROOM + ROOM_FOR_A_BYTE * bytes.len();
+    let limit = ALLOCATOR.allocated() + MEMORY_BASE + MEMORY_PER_BYTE * bytes.len();
     ALLOCATOR.set_limit(limit).map_err(|()| TestCaseError::fail("the limit is below what is taken"))?;
     kind.read(&bytes).map_err(TestCaseError::fail)
 }
 
 proptest! {
-    #![proptest_config(limited())]
+    #![proptest_config(limited_config())]
 
     #[test]
     fn joint_files_are_read_or_refused(changes in mutations()) {
@@ -91,7 +91,7 @@ proptest! {
 
     #[test]
     fn forms_of_messages_are_read_or_refused(changes in mutations()) {
-        attack(Kind::Form, &changes)?;
+        attack(Kind::Definition, &changes)?;
     }
 
     #[test]

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use proptest::sample::{Index, select};
 
 /// Critical numbers as a user may type them.
-pub const TYPED: [&str; 15] = [
+pub const CRITICAL_NUMBERS: [&str; 15] = [
     "1e300",
     "-1e300",
     "1e5",
@@ -23,12 +23,12 @@ pub const TYPED: [&str; 15] = [
     "x",
 ];
 /// Critical numbers as bytes.
-const WHOLE: [u64; 8] = [0, 1, 0x7f, 0xffff, u32::MAX as u64, 1 << 40, u64::MAX, u64::MAX / 2];
+const CRITICAL_INTEGERS: [u64; 8] = [0, 1, 0x7f, 0xffff, u32::MAX as u64, 1 << 40, u64::MAX, u64::MAX / 2];
 /// Delimiters, opening and unmatched, and odd characters.
-const PIECES: [&str; 12] =
+const DELIMITERS: [&str; 12] =
     ["[", "]", "[[fault]]\n", "\"", "#", "\n", ",", "=", "uint8[0] n\n", "\u{feff}", "[4294967295]", "\0"];
 /// Repetitions of a piece.
-const REPEATED: std::ops::Range<usize> = 1..20_000;
+const REPETITIONS: std::ops::Range<usize> = 1..20_000;
 
 /// One mutation.
 #[derive(Debug, Clone)]
@@ -38,13 +38,13 @@ pub enum Mutation {
     /// Flips bits of a byte.
     Bits(Index, u8),
     /// Overwrites some bytes with a whole number.
-    Whole(Index, u64, usize),
+    Integer(Index, u64, usize),
     /// Removes a part.
-    Without(Index, Index),
+    Remove(Index, Index),
     /// Cuts the file off.
     CutOff(Index),
     /// Repeats a part.
-    Again(Index, Index, usize),
+    Repeat(Index, Index, usize),
     /// Inserts a piece, repeated.
     Piece(Index, &'static str, usize),
 }
@@ -53,14 +53,14 @@ pub enum Mutation {
 pub fn mutations() -> impl Strategy<Value = Vec<Mutation>> {
     let place = any::<Index>;
     let one = prop_oneof![
-        12 => (place(), select(&TYPED[..])).prop_map(|(place, typed)| Mutation::Number(place, typed)),
+        12 => (place(), select(&CRITICAL_NUMBERS[..])).prop_map(|(place, typed)| Mutation::Number(place, typed)),
         3 => (place(), 1_u8..).prop_map(|(place, bits)| Mutation::Bits(place, bits)),
-        6 => (place(), select(&WHOLE[..]), select(&[2_usize, 4, 8][..]))
-            .prop_map(|(place, number, size)| Mutation::Whole(place, number, size)),
-        1 => (place(), place()).prop_map(|(from, to)| Mutation::Without(from, to)),
+        6 => (place(), select(&CRITICAL_INTEGERS[..]), select(&[2_usize, 4, 8][..]))
+            .prop_map(|(place, number, size)| Mutation::Integer(place, number, size)),
+        1 => (place(), place()).prop_map(|(from, to)| Mutation::Remove(from, to)),
         1 => place().prop_map(Mutation::CutOff),
-        2 => (place(), place(), 1..40_usize).prop_map(|(from, to, times)| Mutation::Again(from, to, times)),
-        3 => (place(), select(&PIECES[..]), REPEATED)
+        2 => (place(), place(), 1..40_usize).prop_map(|(from, to, times)| Mutation::Repeat(from, to, times)),
+        3 => (place(), select(&DELIMITERS[..]), REPETITIONS)
             .prop_map(|(place, piece, times)| Mutation::Piece(place, piece, times)),
     ];
     vec(one, 1..4)
@@ -68,11 +68,11 @@ pub fn mutations() -> impl Strategy<Value = Vec<Mutation>> {
 
 /// Mutated copy of a file.
 pub fn mutated(valid: &[u8], changes: &[Mutation]) -> Vec<u8> {
-    changes.iter().fold(valid.to_vec(), |bytes, change| change.made(bytes))
+    changes.iter().fold(valid.to_vec(), |bytes, change| change.apply(bytes))
 }
 
 impl Mutation {
-    fn made(&self, mut bytes: Vec<u8>) -> Vec<u8> {
+    fn apply(&self, mut bytes: Vec<u8>) -> Vec<u8> {
         if bytes.is_empty() {
             return bytes;
         }
@@ -92,12 +92,12 @@ impl Mutation {
                 let place = at(place, &bytes);
                 bytes[place] ^= bits;
             }
-            Self::Whole(place, number, size) => {
+            Self::Integer(place, number, size) => {
                 let from = at(place, &bytes);
                 let to = (from + size).min(bytes.len());
                 bytes.splice(from..to, number.to_le_bytes()[..*size].iter().copied());
             }
-            Self::Without(from, to) => {
+            Self::Remove(from, to) => {
                 let range = range(from, to, &bytes);
                 bytes.drain(range);
             }
@@ -105,7 +105,7 @@ impl Mutation {
                 let place = at(place, &bytes);
                 bytes.truncate(place);
             }
-            Self::Again(from, to, times) => {
+            Self::Repeat(from, to, times) => {
                 let range = range(from, to, &bytes);
                 let (end, part) = (range.end, bytes[range].repeat(*times));
                 bytes.splice(end..end, part);

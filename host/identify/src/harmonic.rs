@@ -2,7 +2,7 @@
 
 /// Encoder and order of one of its errors.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Higher {
+pub struct Harmonic {
     /// First unknown of the encoder's errors in `twist`.
     pub encoder: usize,
     /// Periods per turn.

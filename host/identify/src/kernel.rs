@@ -63,8 +63,9 @@ impl Kernel {
 mod tests {
     use super::*;
 
+    /// The kernel's derivatives of a parabola are exact for any box.
     #[test]
-    fn derivatives_of_a_parabola_are_exact() {
+    fn kernel_derivatives_of_parabola_exact() {
         let period = 1e-4;
         for samples in [1, 2, 5, 10] {
             let kernel = Kernel::new(samples, period);

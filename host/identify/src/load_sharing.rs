@@ -110,16 +110,18 @@ mod tests {
         joint_file::read(&changed).expect("a joint").parameters
     }
 
+    /// Planets that touch one after the other act as springs with thresholds.
     #[test]
-    fn planets_that_carry_one_after_the_other_bend_as_springs_with_steps() {
+    fn deflection_of_successive_planets() {
         let thresholds = [-2.0, 1.0, 4.0];
         for (force, expected) in [(0.0, -2.0), (1.0, -1.0), (3.0, 1.0), (5.0, 2.0), (9.0, 4.0), (12.0, 5.0)] {
             assert!((deflection(&thresholds, force) - expected).abs() < 1e-12, "{force}");
         }
     }
 
+    /// Planets in phase reduce no gap; out of phase the reduction falls with the load.
     #[test]
-    fn planets_in_phase_take_nothing_and_others_less_the_more_they_bear() {
+    fn gap_reduction_falls_with_load() {
         assert_eq!(LoadSharing::new(&joint(&[]), [1e8; 2]), None, "75 teeth on three planets");
         let four = [("planets", "4"), ("sun_teeth", "22"), ("planet_teeth", "34"), ("ring_teeth", "90")];
         let sharing = LoadSharing::new(&joint(&four), [1e8; 2]).expect("out of phase by a half");

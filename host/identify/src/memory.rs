@@ -217,8 +217,9 @@ fn values(numbers: &Numbers, tables: &ObserverTables<f32>, equivalent: bool) -> 
 mod tests {
     use super::*;
 
+    /// A fresh memory holds the designed inertia with its prior deviation.
     #[test]
-    fn before_anything_moves_inertia_is_as_designed_and_as_doubtful() {
+    fn memory_initial_inertia_is_prior() {
         let loaded = joint_file::named::load(std::path::Path::new("q1")).expect("a preset");
         let settings = observer_settings(&loaded.file.surroundings);
         let tables = design_observer::<f32>(&loaded.file.parameters, &settings).expect("tables");

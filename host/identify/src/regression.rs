@@ -317,15 +317,17 @@ mod tests {
         equations
     }
 
+    /// A few outliers hardly move the solution.
     #[test]
-    fn outliers_hardly_move_the_solution() {
+    fn regression_outliers_are_downweighted() {
         let widths = [f64::INFINITY, f64::INFINITY, 0.5];
         let solution = line(5.0).solve(&widths).expect("determined");
         assert!((solution.values[0] - 2.0).abs() < 0.01 && (solution.values[1] - 3.0).abs() < 0.01, "{solution:?}");
     }
 
+    /// An error common to a group widens the interval.
     #[test]
-    fn what_is_wrong_alike_in_a_group_widens_the_interval() {
+    fn regression_group_error_widens_interval() {
         // Values of one kind are too large, at any time.
         let mean = |grouped: bool| {
             let mut equations = Equations::default();
@@ -343,8 +345,9 @@ mod tests {
         assert!(grouped > 2.0 * alone && grouped < 0.02, "{alone} {grouped}");
     }
 
+    /// The uncertainty of a held unknown appears in the unknowns correlated with it.
     #[test]
-    fn what_is_held_but_uncertain_widens_what_goes_with_it() {
+    fn regression_considered_error_propagates() {
         // The line's slope is held at 3 with a deviation of 0.5, which moves the mean by 0.25.
         let mut equations = line(0.0);
         equations.values.iter_mut().zip(&equations.rows).for_each(|(value, row)| *value -= 3.0 * row[1]);
@@ -356,8 +359,9 @@ mod tests {
         assert!((beside.deviation(1) - 0.5).abs() < 1e-6, "{}", beside.deviation(1));
     }
 
+    /// An unobserved unknown keeps its prior width; without one there is no solution.
     #[test]
-    fn what_the_equations_do_not_hold_keeps_the_width_that_was_expected() {
+    fn regression_unobserved_keeps_prior() {
         let solution = line(0.0).solve(&[f64::INFINITY, f64::INFINITY, 0.5]).expect("determined");
         assert!((solution.deviation(2) - 0.5).abs() < 1e-9, "{}", solution.deviation(2));
         assert!(line(0.0).solve(&[f64::INFINITY; 3]).is_none(), "and without a width there is no solution");

@@ -241,8 +241,9 @@ mod tests {
         Scales::from_expectations([0.03, 0.015], share, [factor(motor), factor(share * motor + (1.0 - share) * link)])
     }
 
+    /// An inertia off by 5 % leaves the true torque scale within its interval.
     #[test]
-    fn one_inertia_off_by_five_percent_is_within_the_interval() {
+    fn scales_wrong_inertia_stays_in_interval() {
         for torque in [0.97, 1.0, 1.03] {
             for (motor, link) in [(1.0, 1.0), (1.05, 1.0), (0.95, 1.0), (1.0, 1.05), (1.0, 0.95)] {
                 let scales = found(torque, motor, link);
@@ -252,15 +253,17 @@ mod tests {
         }
     }
 
+    /// Consistent ratios narrow the interval; contradicting ones widen it by Birge's ratio.
     #[test]
-    fn intervals_are_narrow_where_all_fits_and_wide_where_it_does_not() {
+    fn scales_contradiction_widens_interval() {
         assert!(found(1.03, 1.0, 1.0).torque.half() < 0.025);
         let contradicting = found(1.0, 1.2, 1.0);
         assert!(contradicting.birge > 3.0 && contradicting.torque.half() > 0.06, "{contradicting:?}");
     }
 
+    /// With an exact torque the ratios determine both inertias.
     #[test]
-    fn a_torque_that_is_not_doubted_tells_the_inertias() {
+    fn scales_exact_torque_determines_inertias() {
         let factor = |value: f64| Some(Factor { value, deviation: 1e-4 });
         let scales = Scales::from_expectations([0.0, 0.015], 0.06, [factor(1.05), factor(0.06 * 1.05 + 0.94)]);
         assert!(scales.torque.logarithm.abs() < 1e-4, "{scales:?}");
@@ -268,8 +271,9 @@ mod tests {
         assert!(scales.motor_inertia.differs_from_stated() && !scales.link_inertia.differs_from_stated(), "{scales:?}");
     }
 
+    /// Without ratios the scales keep their expected values and deviations.
     #[test]
-    fn a_log_that_tells_no_ratio_leaves_what_was_expected() {
+    fn scales_without_ratios_keep_expectation() {
         let scales = Scales::from_expectations([0.03, 0.015], 0.06, [None, None]);
         assert!(scales.torque.logarithm.abs() < 1e-6 && (scales.torque.deviation - 0.03).abs() < 1e-4, "{scales:?}");
     }

@@ -7,7 +7,7 @@ use crate::memory::Content;
 use crate::quasi_static::SlowRecord;
 
 #[test]
-fn the_published_schemas_are_those_of_the_types() {
+fn schemas_match_types() {
     assert_published::<Record<'_>>("identify.schema.json");
     assert_published::<SlowRecord<'_>>("identify-quasi-static.schema.json");
     assert_published::<Content>("memory.schema.json");

@@ -55,8 +55,9 @@ pub fn student(freedom: f64) -> f64 {
 mod tests {
     use super::*;
 
+    /// Student's quantile agrees with published tables within 1 %.
     #[test]
-    fn students_quantile_is_that_of_the_tables() {
+    fn student_quantile_matches_tables() {
         for (freedom, quantile) in
             [(1.0, 12.706), (2.0, 4.303), (3.0, 3.182), (4.0, 2.776), (10.0, 2.228), (1e9, 1.960)]
         {
@@ -65,8 +66,9 @@ mod tests {
         assert!(student(1.5) > student(2.5) && student(2.5) > student(3.5));
     }
 
+    /// A quantile is interpolated between neighbouring values.
     #[test]
-    fn a_quantile_lies_between_neighbours() {
+    fn quantile_interpolates_neighbours() {
         assert_eq!(quantile(&[1.0, 2.0, 4.0], 0.75), 3.0);
         assert!(quantile(&[], 0.5).is_nan());
         assert_eq!(quantile_of(&[3.0, 1.0, 2.0], 0.5), 2.0);

@@ -242,8 +242,9 @@ mod tests {
         [(0..8500).map(|row| f64::from(row) * 1e-3).collect(), twist, torque]
     }
 
+    /// Lost motion and compliance are recovered beside friction and losses.
     #[test]
-    fn flanks_are_found_beside_friction_and_losses() {
+    fn cycles_separate_flanks_from_friction() {
         for (friction, loss) in [(0.0, 0.0), (0.5, 0.0), (0.2, 0.04)] {
             let [time, twist, torque] = clamped_gear(friction, loss);
             let cycles = Cycles::fit(&time, &twist, &torque).expect("cycles");
@@ -256,8 +257,9 @@ mod tests {
         }
     }
 
+    /// Rejects a torque of one sign, of two cycles, or within the friction.
     #[test]
-    fn a_torque_of_one_sign_or_of_two_cycles_or_within_friction_is_refused() {
+    fn cycles_unusable_torque_is_rejected() {
         let [time, twist, torque] = clamped_gear(0.2, 0.0);
         let shifted: Vec<f64> = torque.iter().map(|torque| torque + 13.0).collect();
         let refused = |torque: &[f64], count: usize| {

@@ -214,8 +214,9 @@ impl Sums {
 mod tests {
     use super::*;
 
+    /// The interval of a difference of two means is Welch's.
     #[test]
-    fn the_interval_of_a_difference_of_means_is_welchs() {
+    fn jackknife_interval_equals_welch() {
         let group = |values: &[f64]| values.iter().map(|value| vec![*value]).collect::<Vec<_>>();
         let curves = Curves(vec![group(&[1.0, 2.0, 3.0, 4.0]), group(&[10.0, 12.0, 11.0])]);
         let found = curves.estimate(|means| means[1][0] - means[0][0]);
@@ -225,8 +226,9 @@ mod tests {
         assert!((found.half - student(freedom) * 0.75_f64.sqrt()).abs() < 1e-12, "{found:?}");
     }
 
+    /// Places with a single repeat use the scatter of the other places.
     #[test]
-    fn places_with_one_repeat_take_the_scatter_of_the_others() {
+    fn single_repeat_uses_scatter_of_others() {
         let mut random = RandomStream::new(3, "test");
         let mut group = |count: usize| -> Vec<Vec<f64>> { (0..count).map(|_| vec![random.normal(); 40]).collect() };
         let whole = Curves(vec![group(12), group(12)]);

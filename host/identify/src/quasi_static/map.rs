@@ -99,8 +99,9 @@ fn fitted(basis: &DMatrix<f64>, values: &[f64]) -> (Vec<f64>, Vec<f64>) {
 mod tests {
     use super::*;
 
+    /// Line, long wave and ripple of a synthetic map are recovered.
     #[test]
-    fn line_wave_and_ripple_are_told_apart() {
+    fn map_separates_line_wave_and_ripple() {
         let places: Vec<f64> = (0..100).map(|bin| 500.0 + 10.0 * f64::from(bin)).collect();
         let wave = |x: f64| 3.0 * (TAU * (x - 500.0) / 990.0).cos() + 0.01 * x;
         let curve: Vec<f64> = places.iter().map(|x| wave(*x) + 0.5 * (TAU * x / 60.0).sin()).collect();

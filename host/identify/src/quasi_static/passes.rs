@@ -199,8 +199,9 @@ fn without_ends(motor: &[f64], range: Range<usize>, forwards: bool, left_out: f6
 mod tests {
     use super::*;
 
+    /// Reversals below the threshold make no turning point.
     #[test]
-    fn small_reversals_do_not_make_a_turning_point() {
+    fn turning_points_ignore_small_reversals() {
         let motor: Vec<f64> = (0..400)
             .map(|sample: i32| {
                 let sweep = 100 - (sample % 200 - 100).abs();

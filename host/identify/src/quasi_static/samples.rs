@@ -362,8 +362,9 @@ fn jump_causes(name: &str, columns: &Columns, options: &Options) -> String {
 mod tests {
     use super::*;
 
+    /// Counts that wrap every turn are joined, fractions included; continuous counts stay.
     #[test]
-    fn counts_that_begin_anew_are_joined_and_fractions_kept() {
+    fn unwrap_joins_counts_with_fractions() {
         let scale = Scale { unit: "units", per_turn: Some(100.0) };
         let truth: Vec<f64> = (0..400).map(|step| 7.25 * f64::from(step)).collect();
         let mut read: Vec<f64> = truth.iter().map(|value| value.rem_euclid(100.0)).collect();

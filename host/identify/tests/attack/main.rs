@@ -55,53 +55,54 @@ proptest! {
     #![proptest_config(limited_config())]
 
     #[test]
-    fn joint_files_are_read_or_refused(changes in mutations()) {
+    fn mutated_joint_file_is_handled(changes in mutations()) {
         attack(Kind::Joint, &changes)?;
     }
 
     #[test]
-    fn test_files_are_read_or_refused(changes in mutations()) {
+    fn mutated_test_file_is_handled(changes in mutations()) {
         attack(Kind::Test, &changes)?;
     }
 
     #[test]
-    fn recorded_motions_are_read_or_refused(changes in mutations()) {
+    fn mutated_motion_is_handled(changes in mutations()) {
         attack(Kind::Motion, &changes)?;
     }
 
     #[test]
-    fn recorded_torques_are_read_or_refused(changes in mutations()) {
+    fn mutated_torque_profile_is_handled(changes in mutations()) {
         attack(Kind::Torques, &changes)?;
     }
 
     #[test]
-    fn logs_as_csv_are_read_or_refused(changes in mutations()) {
+    fn mutated_csv_log_is_handled(changes in mutations()) {
         attack(Kind::CsvLog, &changes)?;
     }
 
     #[test]
-    fn slow_logs_are_read_or_refused(changes in mutations()) {
+    fn mutated_slow_log_is_handled(changes in mutations()) {
         attack(Kind::SlowLog, &changes)?;
     }
 
     #[test]
-    fn logs_as_mcap_are_read_or_refused(changes in mutations(), packing in 0..inputs::PACKINGS) {
+    fn mutated_mcap_log_is_handled(changes in mutations(), packing in 0..inputs::PACKINGS) {
         attack(Kind::McapLog(packing), &changes)?;
     }
 
     #[test]
-    fn forms_of_messages_are_read_or_refused(changes in mutations()) {
+    fn mutated_message_definition_is_handled(changes in mutations()) {
         attack(Kind::Definition, &changes)?;
     }
 
     #[test]
-    fn logs_of_runs_are_read_or_refused(changes in mutations()) {
+    fn mutated_run_log_is_handled(changes in mutations()) {
         attack(Kind::Run, &changes)?;
     }
 }
 
+/// Every kind of file is valid before it is mutated.
 #[test]
-fn every_kind_of_file_is_valid_before_it_is_changed() {
+fn unmutated_files_are_valid() {
     for kind in inputs::all() {
         kind.read(&kind.valid()).unwrap_or_else(|why| panic!("{kind:?}: {why}"));
         assert_eq!(kind.refusal(&kind.valid()), None, "{kind:?}");
@@ -110,7 +111,7 @@ fn every_kind_of_file_is_valid_before_it_is_changed() {
 
 /// Finds a fault planted into each reader, which only a mutation triggers.
 #[test]
-fn a_fault_in_any_of_the_readers_is_found() {
+fn planted_reader_faults_are_found() {
     for kind in inputs::all() {
         let valid = kind.valid();
         for (what, fault) in kind.planted_faults() {

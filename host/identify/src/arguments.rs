@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::quasi_static::Options;
-use log_reader::column_map::{ColumnMap, renaming};
+use log_reader::column_map::{ColumnMap, parse_renaming};
 use log_reader::columns::Columns;
 use log_reader::log_file;
 use log_reader::units::{self, Unit};
@@ -41,7 +41,7 @@ pub struct Arguments {
     #[arg(long, value_name = "TOPIC")]
     pub topic: Option<String>,
     /// Reads a column under another name, such as motor_counts=pos_raw; may be repeated
-    #[arg(long, value_name = "COLUMN=NAME", value_parser = renaming)]
+    #[arg(long, value_name = "COLUMN=NAME", value_parser = parse_renaming)]
     pub column: Vec<(String, String)>,
     /// Unit of a column that is named by its quantity alone, such as motor_angle=turns, motor_torque=mN_m,
     /// motor_torque=0.06*N_m for a current of 0.06 N m/A, motor_angle=turns@output; may be repeated
@@ -103,18 +103,18 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// Reads the log's columns and converts them to samples with `of`. `ratio` is the gear's ratio; `will_do` accepts a
+    /// Reads the log's columns and converts them to samples with `of`. `ratio` is the gear's ratio; `accepts` accepts a
     /// topic or a file by its columns.
     pub fn read_log<T>(
         &self,
         ratio: f64,
-        will_do: impl Fn(&Columns) -> bool,
+        accepts: impl Fn(&Columns) -> bool,
         of: impl FnOnce(&mut Columns) -> Outcome<T>,
     ) -> Outcome<T> {
         let path = self.log.as_path();
-        let mut columns = log_file::read(path, self.topic.as_deref(), &self.column_map()?, ratio, will_do)?;
+        let mut columns = log_file::read(path, self.topic.as_deref(), &self.column_map()?, ratio, accepts)?;
         let samples = of(&mut columns);
-        samples.map_err(|failure| columns.explain(failure).while_doing(path.display()))
+        samples.map_err(|failure| columns.with_notes(failure).while_doing(path.display()))
     }
 
     /// Names and units of the log's columns, from the map and the command line.

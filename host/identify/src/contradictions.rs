@@ -166,7 +166,7 @@ fn angle_causes(log: &Log, prior: &PriorModel, factor: Factor) -> Causes {
     causes.consider(counts * counts / (ratio * ratio), "motor and output are exchanged");
     causes.consider(-1.0, "one encoder counts down when the joint turns forwards");
     for (kind, name, sign, told) in [(motor, "motor", 1, motor_turn), (output, "output", -1, output_turn)] {
-        if kind == Kind::Angle {
+        if kind == Kind::Angles {
             for (unit, by) in ANGLE_UNITS {
                 causes.consider(by.powi(sign), format!("the {name}'s angle is in {unit}"));
             }
@@ -453,7 +453,7 @@ fn contradiction(log: &Log, prior: &PriorModel, factor: Factor, what: &str, iner
         ESTIMATE.write(inertia)
     );
     let mut causes = Causes::new(factor);
-    if log.kinds == [Kind::Angle; 2] {
+    if log.kinds == [Kind::Angles; 2] {
         for (unit, by) in ANGLE_UNITS {
             causes.consider(1.0 / by, format!("both angles are in {unit}"));
         }

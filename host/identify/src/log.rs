@@ -58,21 +58,21 @@ pub struct Log {
 impl Log {
     /// Reads a file.
     pub fn read(arguments: &Arguments, prior: &PriorModel) -> Outcome<Self> {
-        arguments.read_log(prior.ratio(), Columns::will_do, |columns| Self::from_columns(columns, prior))
+        arguments.read_log(prior.ratio(), Columns::has_required, |columns| Self::from_columns(columns, prior))
     }
 
     fn from_columns(columns: &mut Columns, prior: &PriorModel) -> Outcome<Self> {
-        columns.leave_out_incomplete(&[&TIMES, &MOTOR, &OUTPUT, &["motor_torque_N_m"], &["output_torque_N_m"]])?;
+        columns.remove_incomplete(&[&TIMES, &MOTOR, &OUTPUT, &["motor_torque_N_m"], &["output_torque_N_m"]])?;
         time_stamps::resolve(columns)?;
         for (names, turn) in [(MOTOR, prior.motor_turn), (OUTPUT, prior.output_turn)] {
-            bad_readings::leave_out_of(columns, names, turn)?.ok_or_else(|| missing_encoder(columns, names))?;
+            bad_readings::remove_from_encoder(columns, names, turn)?.ok_or_else(|| missing_encoder(columns, names))?;
         }
         let time = columns.time_from_start()?;
         let times = sampling(&time, columns, prior)?;
         let motor = readings(columns, MOTOR, prior.motor_turn, &times)?;
         let output = readings(columns, OUTPUT, prior.output_turn, &times)?;
         let (_, torque) = columns.named(&["motor_torque_N_m"])?;
-        let output_torque = columns.maybe("output_torque_N_m")?;
+        let output_torque = columns.finite("output_torque_N_m")?;
         for (name, torques) in [("motor_torque_N_m", Some(&torque)), ("output_torque_N_m", output_torque.as_ref())] {
             let torques = torques.into_iter().flatten();
             if let Some((row, torque)) = torques.enumerate().find(|(_, torque)| torque.abs() > MAX_TORQUE) {
@@ -84,20 +84,20 @@ impl Log {
         let kinds = [motor.kind(), output.kind()];
         let (motor, output) = (motor.angles(prior.motor_turn), output.angles(prior.output_turn));
         let times = times.smoother(&time, &motor);
-        let [motor, output, twist, torque] = [motor, output, twist, torque].map(|values| times.bring(&values));
+        let [motor, output, twist, torque] = [motor, output, twist, torque].map(|values| times.resample(&values));
         let log = Self {
             kinds,
             output_age: 0.0,
             time: times.times(),
             period: times.period,
-            noise: [&motor, &output].map(|angles| Noise::of(angles, |from, to| times.is_whole(from, to))),
+            noise: [&motor, &output].map(|angles| Noise::measure(angles, |from, to| times.is_whole(from, to))),
             motor_without_tooth_errors: motor.clone(),
             motor,
             output,
             twist,
             torque,
-            output_torque: output_torque.map(|torque| times.bring(&torque)),
-            notes: columns.told().iter().cloned().chain(times.told.clone()).collect(),
+            output_torque: output_torque.map(|torque| times.resample(&torque)),
+            notes: columns.notes().iter().cloned().chain(times.note.clone()).collect(),
             times,
         };
         log.check(prior)?;
@@ -139,7 +139,7 @@ impl Log {
     pub fn variance_shares(&self, prior: &PriorModel) -> Option<[f64; 2]> {
         let share = |place: usize, turn: u64| {
             let count = count_angle(turn);
-            if self.kinds[place] == Kind::Angle { 12.0 * self.noise[place].mean() / (count * count) } else { 1.0 }
+            if self.kinds[place] == Kind::Angles { 12.0 * self.noise[place].mean() / (count * count) } else { 1.0 }
         };
         let shares = [share(0, prior.motor_turn), share(1, prior.output_turn)];
         shares.iter().any(|share| *share < FILTERED_VARIANCE_SHARE).then_some(shares)

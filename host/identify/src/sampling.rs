@@ -64,7 +64,7 @@ fn check_time(period: f64, samples: usize, prior: &PriorModel, columns: &Columns
 /// Help for a log that is fast enough if its unit of time is smaller by the factor `by`.
 fn finer_unit_help(columns: &Columns, by: f64, rate: f64) -> String {
     let used = columns.name_of(&TIMES).and_then(|used| TIMES.iter().position(|name| *name == used)).unwrap_or_default();
-    let finer = TIMES.get(used + if by > 1e4 { 2 } else { 1 }).filter(|_| !columns.is_stated(TIMES[used]));
+    let finer = TIMES.get(used + if by > 1e4 { 2 } else { 1 }).filter(|_| !columns.is_unit_stated(TIMES[used]));
     match finer {
         Some(name) => {
             format!(

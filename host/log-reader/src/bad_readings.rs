@@ -10,18 +10,18 @@ use super::resolution::count_angle;
 use report::failure::{Failure, Outcome};
 
 /// Largest share of rows removed for bad readings of one encoder.
-pub const MOST: f64 = 0.01;
+pub const BAD_SHARE_MAX: f64 = 0.01;
 /// Longest run of bad readings [rows].
-const RUN: usize = 3;
+const RUN_ROWS_MAX: usize = 3;
 /// A reading jumps if it deviates from the motion by JUMP times the usual change of a step ...
 const JUMP: f64 = 20.0;
 /// ... which is this quantile of the changes: each bad reading spoils three changes, so up to 6 % bad readings are
 /// found ...
-const USUAL: f64 = 0.8;
+const USUAL_CHANGE_QUANTILE: f64 = 0.8;
 /// ... and by this many counts.
-const LEAST_COUNTS: f64 = 8.0;
+const JUMP_COUNTS_MIN: f64 = 8.0;
 /// Rows named in a failure.
-const NAMED: usize = 5;
+const ROWS_NAMED: usize = 5;
 
 /// Column of an encoder.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,7 +36,7 @@ pub struct EncoderColumn {
 
 /// Removes rows with bad readings of an encoder. `names` are its columns of counts and of angles [rad]. Returns the
 /// column in the log; `None` if the encoder was not logged.
-pub fn leave_out_of(
+pub fn remove_from_encoder(
     columns: &mut Columns,
     names: [&'static str; 2],
     counts_per_turn: u64,
@@ -44,38 +44,38 @@ pub fn leave_out_of(
     let Some(name) = columns.name_of(&names).map(str::to_owned) else { return Ok(None) };
     let is_counts = columns.first_of(&names[..1])?.is_some();
     let (count, turn) = if is_counts { (1.0, counts_per_turn as f64) } else { (count_angle(counts_per_turn), TAU) };
-    leave_out(columns, &name, count, Some(turn))?;
+    remove_from_column(columns, &name, count, Some(turn))?;
     Ok(Some(EncoderColumn { name, is_counts, turn }))
 }
 
 /// Removes rows with bad readings in a column. `count` is its resolution, `turn` the size of a turn, if known.
-pub fn leave_out(columns: &mut Columns, name: &str, count: f64, turn: Option<f64>) -> Outcome<()> {
-    let Some(values) = columns.maybe(name)? else { return Ok(()) };
-    let bad = find(&values, Register::of(&values, turn).as_ref(), count);
+pub fn remove_from_column(columns: &mut Columns, name: &str, count: f64, turn: Option<f64>) -> Outcome<()> {
+    let Some(values) = columns.finite(name)? else { return Ok(()) };
+    let bad = find(&values, Register::find(&values, turn).as_ref(), count);
     if bad.is_empty() {
         return Ok(());
     }
     let share = bad.len() as f64 / values.len() as f64;
-    let places: Vec<String> = bad.iter().take(NAMED).map(|row| columns.place(*row)).collect();
-    let more = if bad.len() > NAMED { ", ..." } else { "" };
-    let told = format!(
+    let places: Vec<String> = bad.iter().take(ROWS_NAMED).map(|row| columns.place(*row)).collect();
+    let more = if bad.len() > ROWS_NAMED { ", ..." } else { "" };
+    let note = format!(
         "{} of {} readings of `{name}` ({:.2} %) jump away from the motion and come back: {}{more}",
         bad.len(),
         values.len(),
         100.0 * share,
         places.join(", ")
     );
-    if share > MOST {
-        return Err(Failure::new(told).with_help(format!(
+    if share > BAD_SHARE_MAX {
+        return Err(Failure::new(note).with_help(format!(
             "up to {:.0} % are left out; beyond, look for flipped bits or lost frames: the encoder's cable and supply, its parity \
              or checksum, and whether the column is what `{name}` stands for",
-            100.0 * MOST
+            100.0 * BAD_SHARE_MAX
         )));
     }
     let mut keep = vec![true; values.len()];
     bad.iter().for_each(|row| keep[*row] = false);
-    columns.keep(&keep);
-    columns.tell(format!("{told}; left out."));
+    columns.retain_rows(&keep);
+    columns.add_note(format!("{note}; left out."));
     Ok(())
 }
 
@@ -89,8 +89,8 @@ fn find(values: &[f64], register: Option<&Register>, count: f64) -> Vec<usize> {
     let mut changes: Vec<f64> =
         (2..values.len()).map(|row| change(step(row - 1, row) - step(row - 2, row - 1)).abs()).collect();
     changes.sort_by(f64::total_cmp);
-    let Some(usual) = changes.get((changes.len() as f64 * USUAL) as usize) else { return Vec::new() };
-    let jump = (JUMP * usual).max(LEAST_COUNTS * count);
+    let Some(usual) = changes.get((changes.len() as f64 * USUAL_CHANGE_QUANTILE) as usize) else { return Vec::new() };
+    let jump = (JUMP * usual).max(JUMP_COUNTS_MIN * count);
     let out = |row: usize| register.is_some_and(|register| !register.holds(values[row]));
     // Returns true if a row is outside of the register, or jumps from the extrapolation of two earlier rows.
     let jumps = |[first, second]: [usize; 2], row: usize| {
@@ -100,7 +100,7 @@ fn find(values: &[f64], register: Option<&Register>, count: f64) -> Vec<usize> {
     };
     // First row from which the motion is even.
     let even = |row: &usize| !out(*row) && !out(row + 1) && !jumps([*row, row + 1], row + 2);
-    let start = (0..=RUN.min(values.len() - 3)).find(even).unwrap_or_default();
+    let start = (0..=RUN_ROWS_MAX.min(values.len() - 3)).find(even).unwrap_or_default();
     let mut bad: Vec<usize> = (0..start).collect();
     let mut good = [start, start + 1];
     let mut row = start + 2;
@@ -110,12 +110,12 @@ fn find(values: &[f64], register: Option<&Register>, count: f64) -> Vec<usize> {
             continue;
         }
         let back = |to: &usize| !jumps(good, *to) && (to + 1 == values.len() || !jumps([good[1], *to], to + 1));
-        match (row + 1..(row + RUN + 1).min(values.len())).find(back) {
+        match (row + 1..(row + RUN_ROWS_MAX + 1).min(values.len())).find(back) {
             Some(to) => {
                 bad.extend(row..to);
                 (good, row) = ([good[1], to], to + 1);
             }
-            None if row + RUN >= values.len() => {
+            None if row + RUN_ROWS_MAX >= values.len() => {
                 bad.extend(row..values.len());
                 break;
             }
@@ -140,7 +140,7 @@ mod tests {
     }
 
     fn found(values: &[f64]) -> Vec<usize> {
-        find(values, Register::of(values, Some(TURN)).as_ref(), 1.0)
+        find(values, Register::find(values, Some(TURN)).as_ref(), 1.0)
     }
 
     #[test]

@@ -71,7 +71,7 @@ impl ColumnMap {
     pub fn new(map: Option<&Path>, joint: Option<&str>, columns: &[(String, String)], units: &[Unit]) -> Outcome<Self> {
         let mut all = Self { columns: columns.to_vec(), units: units.to_vec() };
         let Some(path) = map else { return Ok(all) };
-        let map = of(&text(path)?, joint).map_err(|failure| failure.while_doing(path.display()))?;
+        let map = parse_joint(&text(path)?, joint).map_err(|failure| failure.while_doing(path.display()))?;
         let said = |own: &str| columns.iter().any(|(name, _)| units::quantity_of(name) == units::quantity_of(own));
         all.columns.extend(map.columns.into_iter().filter(|(own, _)| !said(own)));
         // A column renamed with a unit in its name needs no unit of the map.
@@ -83,7 +83,7 @@ impl ColumnMap {
 }
 
 /// Parses a value of `--column`.
-pub fn renaming(text: &str) -> Result<(String, String), String> {
+pub fn parse_renaming(text: &str) -> Result<(String, String), String> {
     let (own, theirs) = text.split_once('=').ok_or("write COLUMN=NAME, as in motor_counts=pos_raw")?;
     let mut names = KNOWN.iter().map(|(name, _)| *name).chain(units::bare_names()).chain([DIFFERENCE]);
     if names.any(|name| name == own) && !theirs.is_empty() {
@@ -139,7 +139,7 @@ fn parse(text: &str) -> Outcome<MapFile> {
 }
 
 /// Map from its text, of one of its joints if it has several; that joint's entries override the common ones.
-fn of(text: &str, joint: Option<&str>) -> Outcome<ColumnMap> {
+fn parse_joint(text: &str, joint: Option<&str>) -> Outcome<ColumnMap> {
     let mut file = parse(text)?;
     let names: Vec<&str> = file.joints.keys().map(String::as_str).collect();
     let names = names.join(", ");
@@ -160,7 +160,7 @@ fn of(text: &str, joint: Option<&str>) -> Outcome<ColumnMap> {
     };
     file.columns.extend(own.columns);
     file.units.extend(own.units);
-    let columns = file.columns.iter().map(|(own, theirs)| renaming(&format!("{own}={theirs}")));
+    let columns = file.columns.iter().map(|(own, theirs)| parse_renaming(&format!("{own}={theirs}")));
     let units = file.units.iter().map(|(quantity, unit)| units::parse(&format!("{quantity}={unit}")));
     Ok(ColumnMap {
         columns: columns.collect::<Result<_, _>>().map_err(|why| refused(&format!("[columns]: {why}")))?,
@@ -176,7 +176,7 @@ mod tests {
     fn every_map_that_comes_along_can_be_read_and_is_documented() {
         let page = include_str!("../../../docs/reference/identify.md");
         for (name, text) in PRESETS {
-            let map = of(text, None).unwrap_or_else(|failure| panic!("{name}: {failure}"));
+            let map = parse_joint(text, None).unwrap_or_else(|failure| panic!("{name}: {failure}"));
             assert!(map.columns.iter().any(|(own, _)| own == "motor_angle"), "{name}");
             assert!(text.contains("# Source: "), "{name}");
             assert!(page.contains(&format!("`{name}`")), "{name}");
@@ -202,7 +202,7 @@ mod tests {
             ("[column]\n", "line 1"),
             ("", "columns"),
         ] {
-            let refused = of(text, None).expect_err(text);
+            let refused = parse_joint(text, None).expect_err(text);
             assert!(refused.message().contains(why), "{text}: {refused}");
         }
     }
@@ -211,12 +211,14 @@ mod tests {
     fn a_joint_of_several_has_its_own_columns_and_those_of_all() {
         let text = "[columns]\ntime_s = \"t\"\n[joints.knee.columns]\nmotor_counts = \"position[0]\"\n[joints.hip.columns]\nmotor_counts \
                     = \"position[2]\"\n";
-        let map = of(text, Some("hip")).expect("a joint");
+        let map = parse_joint(text, Some("hip")).expect("a joint");
         let pair = |own: &str, theirs: &str| (own.to_owned(), theirs.to_owned());
         assert_eq!(map.columns, [pair("motor_counts", "position[2]"), pair("time_s", "t")]);
-        assert!(of(text, None).expect_err("two joints").message().contains("several joints: hip, knee"));
-        assert!(of(text, Some("toe")).expect_err("no toe").help().is_some_and(|help| help.contains("hip, knee")));
-        let outside = of("[joints.\"../x\".columns]\nmotor_counts = \"a\"\n", Some("../x"));
+        assert!(parse_joint(text, None).expect_err("two joints").message().contains("several joints: hip, knee"));
+        assert!(
+            parse_joint(text, Some("toe")).expect_err("no toe").help().is_some_and(|help| help.contains("hip, knee"))
+        );
+        let outside = parse_joint("[joints.\"../x\".columns]\nmotor_counts = \"a\"\n", Some("../x"));
         assert!(outside.expect_err("a folder elsewhere").message().contains("may have letters"));
     }
 }

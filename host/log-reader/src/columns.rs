@@ -46,20 +46,20 @@ pub struct Columns {
     /// Word for a row.
     row: &'static str,
     /// Changes to the rows, a sentence each.
-    told: Vec<String>,
+    notes: Vec<String>,
     /// Columns with a stated unit.
     stated: Vec<String>,
 }
 
 impl Columns {
     /// Empty columns; `row` is the word for a row in messages.
-    pub fn of(row: &'static str) -> Self {
-        Self { names: Vec::new(), values: Vec::new(), places: Vec::new(), row, told: Vec::new(), stated: Vec::new() }
+    pub fn new(row: &'static str) -> Self {
+        Self { names: Vec::new(), values: Vec::new(), places: Vec::new(), row, notes: Vec::new(), stated: Vec::new() }
     }
 
     /// Names of the columns, without rows.
-    pub fn heads(&self) -> Self {
-        Self { names: self.names.clone(), ..Self::of(self.row) }
+    pub fn without_rows(&self) -> Self {
+        Self { names: self.names.clone(), ..Self::new(self.row) }
     }
 
     /// Memory of names and values [bytes].
@@ -106,31 +106,31 @@ impl Columns {
     }
 
     /// Returns true if the unit of a column was stated.
-    pub fn is_stated(&self, name: &str) -> bool {
+    pub fn is_unit_stated(&self, name: &str) -> bool {
         self.stated.iter().any(|stated| stated == name)
     }
 
     /// Adds a note on a change to the rows, for the report.
-    pub fn tell(&mut self, what: String) {
-        self.told.push(what);
+    pub fn add_note(&mut self, what: String) {
+        self.notes.push(what);
     }
 
     /// Notes on changes to the rows.
-    pub fn told(&self) -> &[String] {
-        &self.told
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     /// Adds the notes on the rows to a failure, as possible causes.
-    pub fn explain(&self, failure: Failure) -> Failure {
-        if self.told.is_empty() {
+    pub fn with_notes(&self, failure: Failure) -> Failure {
+        if self.notes.is_empty() {
             return failure;
         }
         let help = failure.full_help().map_or_else(String::new, |help| format!("{help}\n"));
-        failure.with_help(format!("{help}before that: {}", self.told.join(" ")))
+        failure.with_help(format!("{help}before that: {}", self.notes.join(" ")))
     }
 
     /// Keeps the rows marked true.
-    pub fn keep(&mut self, keep: &[bool]) {
+    pub fn retain_rows(&mut self, keep: &[bool]) {
         let kept = |row: usize| keep.get(row).copied().unwrap_or_default();
         for values in &mut self.values {
             let mut row = 0;
@@ -147,7 +147,7 @@ impl Columns {
     }
 
     /// Sets the values of a column, replacing those of a column with this name.
-    pub fn put(&mut self, name: &str, values: Vec<f64>) {
+    pub fn set(&mut self, name: &str, values: Vec<f64>) {
         match self.names.iter().position(|known| known == name) {
             Some(place) => self.values[place] = values,
             None => {
@@ -158,7 +158,7 @@ impl Columns {
     }
 
     /// Hides a column by renaming it.
-    pub fn remove(&mut self, name: &str) {
+    pub fn hide(&mut self, name: &str) {
         self.names.iter_mut().filter(|known| *known == name).for_each(|known| known.insert(0, '~'));
     }
 
@@ -171,13 +171,13 @@ impl Columns {
 
     /// Removes rows with an empty value in a needed column. Of each list of columns the first one present, if any, is
     /// needed.
-    pub fn leave_out_incomplete(&mut self, needed: &[&[&str]]) -> Outcome<()> {
+    pub fn remove_incomplete(&mut self, needed: &[&[&str]]) -> Outcome<()> {
         let places: Vec<usize> =
-            needed.iter().filter_map(|columns| self.place_of(columns).map(|(_, place)| place)).collect();
+            needed.iter().filter_map(|columns| self.first_index(columns).map(|(_, place)| place)).collect();
         // Text that is no number is an error, not a missing value.
         for place in &places {
             if let Some(row) = self.values[*place].iter().position(|value| value.is_infinite()) {
-                return Err(self.no_number(row, &self.names[*place]));
+                return Err(self.not_finite(row, &self.names[*place]));
             }
         }
         let is_empty = |place: usize, row: usize| self.values[place][row].is_nan();
@@ -198,22 +198,22 @@ impl Columns {
                  times; values are not carried over from other times, which would feign lost motion",
             ));
         }
-        self.tell(format!(
+        self.add_note(format!(
             "{} of {rows} rows were left out, since a value is missing: {}.",
             rows - left,
             empty.join(", ")
         ));
-        self.keep(&keep);
+        self.retain_rows(&keep);
         Ok(())
     }
 
     /// Returns true if motor, output and torque are present.
-    pub fn will_do(&self) -> bool {
-        self.will_do_with([true; 2])
+    pub fn has_required(&self) -> bool {
+        self.has_required_of([true; 2])
     }
 
     /// Returns true if the torque and the needed ones of motor and output are present.
-    pub fn will_do_with(&self, [motor, output]: [bool; 2]) -> bool {
+    pub fn has_required_of(&self, [motor, output]: [bool; 2]) -> bool {
         let has = |wanted: &[&str]| {
             let all = KNOWN.iter().filter(|(name, _)| wanted.contains(name));
             all.flat_map(|(name, others)| others.iter().chain([name])).any(|name| self.names().any(|own| own == *name))
@@ -266,14 +266,14 @@ impl Columns {
 
     /// Canonical name and values of the first of these columns present; `None` without one.
     pub fn first_of<'n>(&self, columns: &[&'n str]) -> Outcome<Option<(&'n str, Vec<f64>)>> {
-        match self.place_of(columns) {
-            Some((column, place)) => Ok(self.maybe(&self.names[place])?.map(|values| (column, values))),
+        match self.first_index(columns) {
+            Some((column, place)) => Ok(self.finite(&self.names[place])?.map(|values| (column, values))),
             None => Ok(None),
         }
     }
 
     /// Canonical name and index of the first of these columns present, under any alias.
-    fn place_of<'n>(&self, columns: &[&'n str]) -> Option<(&'n str, usize)> {
+    fn first_index<'n>(&self, columns: &[&'n str]) -> Option<(&'n str, usize)> {
         columns.iter().find_map(|&column| {
             let others = KNOWN.iter().find(|(name, _)| *name == column).map_or(&[][..], |(_, others)| *others);
             let mut names = std::iter::once(column).chain(others.iter().copied());
@@ -283,11 +283,11 @@ impl Columns {
 
     /// Name in the log of the first of these columns present.
     pub fn name_of(&self, columns: &[&str]) -> Option<&str> {
-        self.place_of(columns).map(|(_, place)| self.names[place].as_str())
+        self.first_index(columns).map(|(_, place)| self.names[place].as_str())
     }
 
     /// Failure for a log with a single encoder, with the limits of such a log.
-    pub fn without_encoder(&self, what: &str) -> Failure {
+    pub fn missing_encoder(&self, what: &str) -> Failure {
         let counts = format!("{what}_counts");
         // A column of the other encoder is not a misspelling of this one.
         let strangers =
@@ -326,16 +326,16 @@ impl Columns {
     }
 
     /// Values under a name; fails unless all are finite.
-    pub fn maybe(&self, name: &str) -> Outcome<Option<Vec<f64>>> {
+    pub fn finite(&self, name: &str) -> Outcome<Option<Vec<f64>>> {
         let Some(place) = self.names.iter().position(|known| known == name) else { return Ok(None) };
         let values = &self.values[place];
         match values.iter().position(|value| !value.is_finite()) {
-            Some(row) => Err(self.no_number(row, name)),
+            Some(row) => Err(self.not_finite(row, name)),
             None => Ok(Some(values.clone())),
         }
     }
 
-    fn no_number(&self, row: usize, name: &str) -> Failure {
+    fn not_finite(&self, row: usize, name: &str) -> Failure {
         Failure::new(format!("{} has no finite number for `{name}`", self.place(row)))
             .with_help("write a number with a point in every row, or cut the log there")
     }

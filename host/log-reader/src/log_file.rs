@@ -10,15 +10,15 @@ use report::failure::{Failure, Outcome};
 use report::input;
 use report::log::REMARKS;
 
-/// Reads a log of any kind; `will_do` accepts its columns, `ratio` is motor over output.
+/// Reads a log of any kind; `accepts` accepts its columns, `ratio` is motor over output.
 pub fn read(
     path: &Path,
     topic: Option<&str>,
     map: &ColumnMap,
     ratio: f64,
-    will_do: impl Fn(&Columns) -> bool,
+    accepts: impl Fn(&Columns) -> bool,
 ) -> Outcome<Columns> {
-    LogFile::open(path)?.columns(topic, map, ratio, will_do)
+    LogFile::open(path)?.columns(topic, map, ratio, accepts)
 }
 
 /// File of a log.
@@ -55,13 +55,13 @@ impl LogFile {
         topic: Option<&str>,
         map: &ColumnMap,
         ratio: f64,
-        will_do: impl Fn(&Columns) -> bool,
+        accepts: impl Fn(&Columns) -> bool,
     ) -> Outcome<Columns> {
         let path = self.path.as_path();
         let columns = if mcap_log::is_mcap(&self.bytes) {
-            let heads = |columns: &Columns| columns.heads().renamed(&map.columns);
+            let heads = |columns: &Columns| columns.without_rows().renamed(&map.columns);
             let [has_what_is_wanted, has_counts]: [&dyn Fn(&Columns) -> bool; 2] = [
-                &|columns| heads(columns).is_ok_and(|own| will_do(&own)),
+                &|columns| heads(columns).is_ok_and(|own| accepts(&own)),
                 // A simulated run also logs the true angles; a topic with encoder counts takes precedence.
                 &|columns| heads(columns).is_ok_and(|own| own.have_counts()),
             ];

@@ -8,18 +8,18 @@ use mcap::Channel;
 use serde_json::Value;
 
 use super::columns::Columns;
-use super::mcap_file::{self, Broken, Message};
+use super::mcap_file::{self, Message, ReadEnd};
 use super::numbers::{self, Numbers};
-use super::ros_message::Form;
+use super::ros_message::MessageDefinition;
 use report::failure::{Failure, Outcome};
 
 /// First bytes of every MCAP file.
 const MAGIC: &[u8] = b"\x89MCAP";
 /// Topics and fields named in a message at most.
-const NAMED: usize = 12;
-/// Memory of columns over the file's size, plus SOME bytes: other topics than a joint's may be packed much tighter.
-const MOST_MEMORY: u64 = 256;
-const SOME: u64 = 64 << 20;
+const NAMES_SHOWN: usize = 12;
+/// Memory of columns over the file's size, plus MEMORY_BASE bytes: other topics than a joint's may be packed much tighter.
+const MEMORY_FACTOR_MAX: u64 = 256;
+const MEMORY_BASE: u64 = 64 << 20;
 
 /// Returns true for an MCAP file.
 pub fn is_mcap(bytes: &[u8]) -> bool {
@@ -28,25 +28,25 @@ pub fn is_mcap(bytes: &[u8]) -> bool {
 
 /// Decoder of a channel's messages.
 enum Reader {
-    Ros(Rc<Form>),
+    Ros(Rc<MessageDefinition>),
     Json,
     /// Unreadable, with the reason.
     Unknown(String),
 }
 
 /// Message definitions by the number of their schema.
-type Forms = BTreeMap<u16, Result<Rc<Form>, String>>;
+type MessageDefinitions = BTreeMap<u16, Result<Rc<MessageDefinition>, String>>;
 
 impl Reader {
     /// Decoder of a channel; channels of one schema share its definition.
-    fn of(channel: &Channel<'_>, forms: &mut Forms) -> Self {
+    fn for_channel(channel: &Channel<'_>, forms: &mut MessageDefinitions) -> Self {
         let schema = channel.schema.as_ref();
         let form = schema.map_or("", |schema| schema.encoding.as_str());
         match (channel.message_encoding.as_str(), form) {
             ("json", _) => Self::Json,
             ("cdr", "ros2msg") => {
                 let (id, text) = schema.map_or((0, &[][..]), |schema| (schema.id, &schema.data));
-                let read = || Form::read(&String::from_utf8_lossy(text)).map(Rc::new);
+                let read = || MessageDefinition::read(&String::from_utf8_lossy(text)).map(Rc::new);
                 match forms.entry(id).or_insert_with(read) {
                     Ok(form) => Self::Ros(Rc::clone(form)),
                     Err(why) => Self::Unknown(why.clone()),
@@ -76,7 +76,7 @@ fn flatten(value: &Value, path: String, numbers: &mut Numbers) -> Result<(), Str
         Value::Bool(set) => numbers.push(path, f64::from(u8::from(*set))),
         Value::Array(list) => {
             let mut places = list.iter().enumerate();
-            places.try_for_each(|(place, value)| flatten(value, numbers::place(&path, place)?, numbers))
+            places.try_for_each(|(place, value)| flatten(value, numbers::element(&path, place)?, numbers))
         }
         Value::Object(map) => {
             map.iter().try_for_each(|(name, value)| flatten(value, numbers::field(&path, name)?, numbers))
@@ -85,18 +85,18 @@ fn flatten(value: &Value, path: String, numbers: &mut Numbers) -> Result<(), Str
     }
 }
 
-/// Reads the stated topic, or else the only one accepted by `will_do`; of several accepted topics the only one
+/// Reads the stated topic, or else the only one accepted by `accepts`; of several accepted topics the only one
 /// preferred by `is_better`.
 pub fn read(
     bytes: &[u8],
     topic: Option<&str>,
-    will_do: impl Fn(&Columns) -> bool,
+    accepts: impl Fn(&Columns) -> bool,
     is_better: impl Fn(&Columns) -> bool,
 ) -> Outcome<Columns> {
     let mut topics: BTreeMap<String, Topic> = BTreeMap::new();
-    let (mut forms, mut messages) = (Forms::new(), 0);
-    let mut room = MOST_MEMORY.saturating_mul(bytes.len() as u64).saturating_add(SOME);
-    let mut take = |message: &Message<'_>| {
+    let (mut forms, mut messages) = (MessageDefinitions::new(), 0);
+    let mut room = MEMORY_FACTOR_MAX.saturating_mul(bytes.len() as u64).saturating_add(MEMORY_BASE);
+    let mut on_message = |message: &Message<'_>| {
         messages += 1;
         let name = &message.channel.topic;
         if !topics.contains_key(name) {
@@ -106,19 +106,21 @@ pub fn read(
         }
         let Some(known) = topics.get_mut(name) else { return Ok(()) };
         let before = known.columns.size();
-        known.take(message);
+        known.add_message(message);
         room = room.checked_sub(known.columns.size() - before).ok_or_else(|| {
-            Failure::new(format!("the numbers of its topics take more than {MOST_MEMORY} times the log's own size"))
-                .with_help("name the topic with --topic, or write a log of that topic alone")
+            Failure::new(format!(
+                "the numbers of its topics take more than {MEMORY_FACTOR_MAX} times the log's own size"
+            ))
+            .with_help("name the topic with --topic, or write a log of that topic alone")
         })?;
         Ok(())
     };
-    mcap_file::read(bytes, &mut take).map_err(|broken| match broken {
-        Broken::Damaged(why) => {
+    mcap_file::read(bytes, &mut on_message).map_err(|broken| match broken {
+        ReadEnd::Damaged(why) => {
             Failure::new(format!("the MCAP log is damaged or cut off after {messages} messages: {why}"))
                 .with_help("`mcap recover` keeps what can be read of it")
         }
-        Broken::Refused(failure) => failure,
+        ReadEnd::Callback(failure) => failure,
     })?;
     let chosen = match topic {
         Some(name) => topics.remove(name).ok_or_else(|| {
@@ -128,7 +130,7 @@ pub fn read(
         })?,
         None => {
             let good: Vec<&String> =
-                topics.iter().filter(|(_, topic)| will_do(&topic.columns)).map(|(name, _)| name).collect();
+                topics.iter().filter(|(_, topic)| accepts(&topic.columns)).map(|(name, _)| name).collect();
             let better: Vec<&String> = good.iter().copied().filter(|name| is_better(&topics[*name].columns)).collect();
             match if better.len() == 1 { better } else { good }.as_slice() {
                 [one] => {
@@ -155,7 +157,7 @@ pub fn read(
             }
         }
     };
-    chosen.finish()
+    chosen.into_columns()
 }
 
 /// Topics with their numbers, up to the limit.
@@ -163,11 +165,11 @@ fn list(topics: &BTreeMap<String, Topic>) -> String {
     if topics.is_empty() {
         return "the log has no messages".to_owned();
     }
-    let one = |(name, topic): (&String, &Topic)| match &topic.trouble {
+    let one = |(name, topic): (&String, &Topic)| match &topic.defect {
         Some(why) => format!("{name} (cannot be read: {why})"),
-        None => format!("{name} ({})", topic.columns.names().take(NAMED).collect::<Vec<_>>().join(", ")),
+        None => format!("{name} ({})", topic.columns.names().take(NAMES_SHOWN).collect::<Vec<_>>().join(", ")),
     };
-    format!("the log has {}", topics.iter().take(NAMED).map(one).collect::<Vec<_>>().join("; "))
+    format!("the log has {}", topics.iter().take(NAMES_SHOWN).map(one).collect::<Vec<_>>().join("; "))
 }
 
 /// Content of a topic.
@@ -176,19 +178,25 @@ struct Topic {
     reader: Reader,
     columns: Columns,
     /// Reason why the topic is unusable.
-    trouble: Option<String>,
+    defect: Option<String>,
     messages: usize,
 }
 
 impl Topic {
-    fn new(channel: &Channel<'_>, forms: &mut Forms) -> Self {
+    fn new(channel: &Channel<'_>, forms: &mut MessageDefinitions) -> Self {
         let name = channel.topic.clone();
-        Self { reader: Reader::of(channel, forms), name, columns: Columns::of("message"), trouble: None, messages: 0 }
+        Self {
+            reader: Reader::for_channel(channel, forms),
+            name,
+            columns: Columns::new("message"),
+            defect: None,
+            messages: 0,
+        }
     }
 
-    fn take(&mut self, message: &Message<'_>) {
+    fn add_message(&mut self, message: &Message<'_>) {
         self.messages += 1;
-        if self.trouble.is_some() {
+        if self.defect.is_some() {
             return;
         }
         let stamped = self.reader.numbers(message.data).and_then(|mut numbers| {
@@ -197,13 +205,13 @@ impl Topic {
         });
         match stamped {
             Ok(numbers) if self.columns.push(self.messages, numbers.as_slice()) => {}
-            Ok(_) => self.trouble = Some(format!("message {} has other fields than those before it", self.messages)),
-            Err(why) => self.trouble = Some(format!("message {}: {why}", self.messages)),
+            Ok(_) => self.defect = Some(format!("message {} has other fields than those before it", self.messages)),
+            Err(why) => self.defect = Some(format!("message {}: {why}", self.messages)),
         }
     }
 
-    fn finish(self) -> Outcome<Columns> {
-        match self.trouble {
+    fn into_columns(self) -> Outcome<Columns> {
+        match self.defect {
             None => Ok(self.columns),
             Some(why) => Err(Failure::new(format!("topic `{}` cannot be read: {why}", self.name))
                 .with_help("ROS 2 messages in CDR and JSON are understood; export anything else as CSV")),

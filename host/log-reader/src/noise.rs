@@ -4,7 +4,7 @@
 /// Samples of a block.
 const BLOCK_LENGTH: usize = 256;
 /// Sum of the squares of 1, -4, 6, -4, 1.
-const GAIN: f64 = 70.0;
+const DIFFERENCE_GAIN: f64 = 70.0;
 
 /// Variance of readings by block.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,7 +13,7 @@ pub struct Noise(Vec<f64>);
 impl Noise {
     /// Noise of readings at even times; `is_whole(from, to)` is true if nothing is lost from one place to before
     /// another.
-    pub fn of(readings: &[f64], is_whole: impl Fn(usize, usize) -> bool) -> Self {
+    pub fn measure(readings: &[f64], is_whole: impl Fn(usize, usize) -> bool) -> Self {
         let difference = |w: &[f64]| w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4];
         let windows = readings.windows(5).enumerate();
         let differences: Vec<Option<f64>> =
@@ -26,7 +26,7 @@ impl Noise {
                 count += 1;
             }
             if count > 0 {
-                last = sum / (GAIN * f64::from(count));
+                last = sum / (DIFFERENCE_GAIN * f64::from(count));
             }
             last
         };
@@ -52,9 +52,9 @@ mod tests {
     fn whole_counts_of_a_motion_scatter_by_a_twelfth_of_a_count_squared() {
         let angle = |sample: usize| 40.0 * (1e-2 * sample as f64).sin() + 0.7 * sample as f64;
         let counts: Vec<f64> = (0..4096).map(|sample| angle(sample).round()).collect();
-        let mean = (0..16).map(|block| Noise::of(&counts, |_, _| true).at(256 * block)).sum::<f64>() / 16.0;
+        let mean = (0..16).map(|block| Noise::measure(&counts, |_, _| true).at(256 * block)).sum::<f64>() / 16.0;
         assert!((12.0 * mean - 1.0).abs() < 0.1, "{mean}");
         let smooth: Vec<f64> = (0..4096).map(angle).collect();
-        assert!(Noise::of(&smooth, |_, _| true).at(1000) < 1e-6);
+        assert!(Noise::measure(&smooth, |_, _| true).at(1000) < 1e-6);
     }
 }

@@ -2,9 +2,9 @@
 //! messages such as pictures are not unpacked.
 
 /// Largest number of numbers in a message; a joint's message has some tens.
-const MOST: usize = 4096;
+const NUMBERS_MAX: usize = 4096;
 /// Longest path of a number [bytes].
-const LONGEST_PATH: usize = 256;
+const PATH_LENGTH_MAX: usize = 256;
 
 /// Numbers by their paths, in the message's order.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -13,8 +13,8 @@ pub struct Numbers(Vec<(String, f64)>);
 impl Numbers {
     /// Adds a number.
     pub fn push(&mut self, path: String, value: f64) -> Result<(), String> {
-        if self.0.len() == MOST {
-            return Err(format!("it has more than {MOST} numbers"));
+        if self.0.len() == NUMBERS_MAX {
+            return Err(format!("it has more than {NUMBERS_MAX} numbers"));
         }
         self.0.push((path, value));
         Ok(())
@@ -39,14 +39,14 @@ pub fn field(message: &str, name: &str) -> Result<String, String> {
 }
 
 /// Path of an element of a list.
-pub fn place(list: &str, place: usize) -> Result<String, String> {
+pub fn element(list: &str, place: usize) -> Result<String, String> {
     check_path(list.len())?;
     Ok(format!("{list}[{place}]"))
 }
 
 fn check_path(length: usize) -> Result<(), String> {
-    if length <= LONGEST_PATH {
+    if length <= PATH_LENGTH_MAX {
         return Ok(());
     }
-    Err(format!("the path of a number in it has more than {LONGEST_PATH} letters"))
+    Err(format!("the path of a number in it has more than {PATH_LENGTH_MAX} letters"))
 }

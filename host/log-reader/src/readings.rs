@@ -11,20 +11,20 @@ use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 
 /// Largest motion of a motor between two samples [turns].
-const JUMP_TURNS: f64 = 0.5;
+const STEP_TURNS_MAX: f64 = 0.5;
 /// Quantile of the steps that is the usual largest step.
-const USUAL: (usize, usize) = (995, 1000);
+const USUAL_STEP_QUANTILE: (usize, usize) = (995, 1000);
 /// A step is a jump if it exceeds JUMP_STEPS usual steps and JUMP_LEAST of a turn.
 const JUMP_STEPS: f64 = 20.0;
 const JUMP_LEAST: f64 = 0.02;
 /// Tolerance of a wrap: an angle that wraps jumps by a turn less the motion [turns].
-const WHOLE_TURN: f64 = 0.2;
+const WRAP_TOLERANCE: f64 = 0.2;
 /// Logarithmic tolerance within which a jump equals a turn.
-const SAME_TURN: f64 = 0.03;
+const TURN_TOLERANCE: f64 = 0.03;
 /// Samples of a window that shows whether an encoder turns.
 const STALE_WINDOW: usize = 60;
 /// Largest share of repeated readings while the encoder turns.
-const STALE_SHARE: f64 = 0.4;
+const STALE_SHARE_MAX: f64 = 0.4;
 
 /// Kind of an encoder's readings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,7 +32,7 @@ pub enum Kind {
     /// Whole counts of a stated resolution.
     Counts,
     /// Angles.
-    Angle,
+    Angles,
 }
 
 /// Readings of one encoder.
@@ -49,7 +49,7 @@ impl Readings {
     pub fn kind(&self) -> Kind {
         match self {
             Self::Counts(_) => Kind::Counts,
-            Self::Angles(_) => Kind::Angle,
+            Self::Angles(_) => Kind::Angles,
         }
     }
 
@@ -86,16 +86,16 @@ pub fn readings(columns: &mut Columns, names: [&str; 2], counts_per_turn: u64, t
             return Err(Failure::new(format!("{} of `{name}` is no whole number of counts", columns.place(line)))
                 .with_help("angles are understood in a column such as motor_angle_rad"));
         }
-        if let Some(register) = Register::of(&values, Some(turn)) {
+        if let Some(register) = Register::find(&values, Some(turn)) {
             register.join(&mut values, |row| times.periods_before(row));
-            register.told(name, Some(turn)).into_iter().for_each(|told| columns.tell(told));
+            register.note(name, Some(turn)).into_iter().for_each(|told| columns.add_note(told));
         }
-        let steps = times.per_period(values.windows(2).map(|pair| pair[1] - pair[0]).collect());
+        let steps = times.per_period_steps(values.windows(2).map(|pair| pair[1] - pair[0]).collect());
         check_steps(&steps, &Encoder { what, name, counts_per_turn, turn, count: 1.0 }, columns)?;
         return Ok(Readings::Counts(values.into_iter().map(|value| value as i64).collect()));
     }
-    let angles = unwrapped(values, times);
-    let steps = times.per_period(angles.windows(2).map(|pair| pair[1] - pair[0]).collect());
+    let angles = unwrap_angles(values, times);
+    let steps = times.per_period_steps(angles.windows(2).map(|pair| pair[1] - pair[0]).collect());
     let count = count_angle(counts_per_turn);
     check_steps(&steps, &Encoder { what, name, counts_per_turn, turn: TAU, count }, columns)?;
     Ok(Readings::Angles(angles))
@@ -108,7 +108,7 @@ pub fn missing_encoder(columns: &Columns, names: [&str; 2]) -> Failure {
     } else {
         ("output", "--output-locked", "a joint whose output is held")
     };
-    let failure = columns.without_encoder(what);
+    let failure = columns.missing_encoder(what);
     let help = failure.full_help().unwrap_or_default();
     failure.with_help(format!("{help}; {option} reads a log of {of}"))
 }
@@ -119,14 +119,15 @@ fn check_steps(steps: &[f64], encoder: &Encoder<'_>, columns: &Columns) -> Outco
     let Encoder { name, turn, count, .. } = *encoder;
     let mut sizes: Vec<f64> = steps.iter().map(|step| step.abs()).collect();
     sizes.sort_by(f64::total_cmp);
-    let usual = sizes.get(sizes.len() * USUAL.0 / USUAL.1).copied().unwrap_or_default().max(count);
-    let jump = (JUMP_TURNS * turn).min((JUMP_STEPS * usual).max(JUMP_LEAST * turn));
+    let usual =
+        sizes.get(sizes.len() * USUAL_STEP_QUANTILE.0 / USUAL_STEP_QUANTILE.1).copied().unwrap_or_default().max(count);
+    let jump = (STEP_TURNS_MAX * turn).min((JUMP_STEPS * usual).max(JUMP_LEAST * turn));
     let jumps: Vec<f64> = steps.iter().map(|step| step.abs()).filter(|step| *step >= jump).collect();
     if let Some(row) = steps.iter().position(|step| step.abs() >= jump) {
         let (size, place) = (steps[row].abs(), columns.place(row + 1));
         let message =
             format!("`{name}` jumps by {} in {place}, where a turn is {}", ESTIMATE.write(size), ESTIMATE.write(turn));
-        return Err(Failure::new(message).with_help(encoder.cause(&jumps)));
+        return Err(Failure::new(message).with_help(encoder.jump_cause(&jumps)));
     }
     // Windows in which every sample should bring a new count.
     let (mut moving, mut same) = (0, 0);
@@ -136,7 +137,7 @@ fn check_steps(steps: &[f64], encoder: &Encoder<'_>, columns: &Columns) -> Outco
             same += window.iter().filter(|step| step.abs() < 0.5 * count).count();
         }
     }
-    if same > (STALE_SHARE * moving as f64) as usize && moving > 0 {
+    if same > (STALE_SHARE_MAX * moving as f64) as usize && moving > 0 {
         let every = (moving as f64 / (moving - same).max(1) as f64).round();
         return Err(Failure::new(format!(
             "`{name}` brings a new reading in about one of {every} samples, and repeats it in between"
@@ -148,10 +149,10 @@ fn check_steps(steps: &[f64], encoder: &Encoder<'_>, columns: &Columns) -> Outco
 
 impl Encoder<'_> {
     /// Likely cause of jumps, with the option to state.
-    fn cause(&self, jumps: &[f64]) -> String {
+    fn jump_cause(&self, jumps: &[f64]) -> String {
         let Self { what, name, counts_per_turn, turn: set, .. } = *self;
         let resolution = resolution(counts_per_turn);
-        let whole = |turn: f64| jumps.iter().all(|jump| (jump / turn).ln().abs() < SAME_TURN);
+        let whole = |turn: f64| jumps.iter().all(|jump| (jump / turn).ln().abs() < TURN_TOLERANCE);
         if self.count < 1.0 {
             let units = [(1.0, "turns"), (360.0, "degrees"), (1e3 * TAU, "mrad")];
             if let Some((_, unit)) = units.iter().find(|(turn, _)| whole(*turn)) {
@@ -181,7 +182,7 @@ impl Encoder<'_> {
 }
 
 /// Joins angles that wrap every turn.
-fn unwrapped(mut angles: Vec<f64>, times: &EvenTimes) -> Vec<f64> {
+fn unwrap_angles(mut angles: Vec<f64>, times: &EvenTimes) -> Vec<f64> {
     let mut turns = 0.0;
     let mut last = angles.first().copied().unwrap_or_default();
     let mut before = 0.0;
@@ -191,7 +192,7 @@ fn unwrapped(mut angles: Vec<f64>, times: &EvenTimes) -> Vec<f64> {
         let expected = before * (times.periods_before(row) - 1.0);
         let step = read - last - expected;
         // Only steps of nearly a turn are wraps; other jumps are rejected later.
-        if (step.abs() - TAU).abs() < WHOLE_TURN * TAU {
+        if (step.abs() - TAU).abs() < WRAP_TOLERANCE * TAU {
             turns -= step.signum();
         }
         last = read;

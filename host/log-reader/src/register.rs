@@ -7,13 +7,13 @@ use std::ops::RangeInclusive;
 use report::number::{ESTIMATE, TYPED};
 
 /// Widths of registers wider than a turn, as powers of two of counts.
-const BITS: RangeInclusive<u32> = 10..=32;
+const WIDTHS: RangeInclusive<u32> = 10..=32;
 /// Largest share of readings outside of a register, equal to the share of bad readings that may be removed.
-const OUTSIDE: f64 = 0.01;
+const OUTSIDE_SHARE_MAX: f64 = 0.01;
 /// Rounding of angles beyond a register's end, as a share of the register.
-const ROUNDED: f64 = 1e-6;
+const ROUNDING: f64 = 1e-6;
 /// Step, as a share of a register wider than a turn, that crosses its end.
-const ACROSS: f64 = 0.75;
+const CROSSING_SHARE: f64 = 0.75;
 
 /// Register of an encoder.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,14 +27,14 @@ pub struct Register {
 impl Register {
     /// Finds the narrowest register that holds the readings and whose end they cross; `None` for continuous readings. A
     /// register has at least the counts of a turn, if a turn is known. Readings with fractions wrap at a turn only.
-    pub fn of(values: &[f64], turn: Option<f64>) -> Option<Self> {
+    pub fn find(values: &[f64], turn: Option<f64>) -> Option<Self> {
         let whole = values.iter().all(|value| value.fract() == 0.0);
-        let powers = BITS.map(|bits| f64::from(bits).exp2());
+        let powers = WIDTHS.map(|bits| f64::from(bits).exp2());
         let wider = powers.filter(|counts| whole && turn.is_none_or(|turn| *counts > turn));
         let of_a_turn = turn.map(|turn| (turn, 0.5));
         of_a_turn
             .into_iter()
-            .chain(wider.map(|counts| (counts, ACROSS)))
+            .chain(wider.map(|counts| (counts, CROSSING_SHARE)))
             .flat_map(|(counts, across)| [false, true].map(|signed| (Self { counts, signed }, across)))
             .find(|(register, across)| register.holds_most(values) && register.is_crossed(values, *across))
             .map(|(register, _)| register)
@@ -42,13 +42,13 @@ impl Register {
 
     /// Returns true if the register can hold a value.
     pub fn holds(&self, value: f64) -> bool {
-        let (least, rounded) = (if self.signed { -0.5 * self.counts } else { 0.0 }, ROUNDED * self.counts);
+        let (least, rounded) = (if self.signed { -0.5 * self.counts } else { 0.0 }, ROUNDING * self.counts);
         (least - rounded..least + self.counts + rounded).contains(&value)
     }
 
     fn holds_most(&self, values: &[f64]) -> bool {
         let outside = values.iter().filter(|value| !self.holds(**value)).count();
-        outside as f64 <= OUTSIDE * values.len() as f64
+        outside as f64 <= OUTSIDE_SHARE_MAX * values.len() as f64
     }
 
     /// Returns true if readings step across the end of the register.
@@ -64,7 +64,7 @@ impl Register {
     }
 
     /// Note on the register, unless it is that of a turn from 0 on; `turn` are the encoder's counts per turn, if known.
-    pub fn told(&self, name: &str, turn: Option<f64>) -> Option<String> {
+    pub fn note(&self, name: &str, turn: Option<f64>) -> Option<String> {
         let Self { counts, signed } = *self;
         if turn == Some(counts) && !signed {
             return None;
@@ -111,7 +111,7 @@ mod tests {
             [(0.0, 16384.0, false), (-8192.0, 16384.0, true), (0.0, 65536.0, false), (-32768.0, 65536.0, true)]
         {
             let (truth, mut read) = readings(least, counts);
-            let register = Register::of(&read, Some(16384.0)).expect("it begins anew");
+            let register = Register::find(&read, Some(16384.0)).expect("it begins anew");
             assert_eq!(register, Register { counts, signed });
             register.join(&mut read, |_| 1.0);
             let apart: Vec<f64> = truth.iter().zip(&read).map(|(truth, read)| truth - read).collect();
@@ -122,8 +122,8 @@ mod tests {
     #[test]
     fn readings_that_go_on_over_turns_have_no_register() {
         let (truth, _) = readings(0.0, 16384.0);
-        assert_eq!(Register::of(&truth, Some(16384.0)), None);
+        assert_eq!(Register::find(&truth, Some(16384.0)), None);
         let narrow: Vec<f64> = truth.iter().map(|value| (value / 40.0).round()).collect();
-        assert_eq!(Register::of(&narrow, Some(16384.0)), None);
+        assert_eq!(Register::find(&narrow, Some(16384.0)), None);
     }
 }

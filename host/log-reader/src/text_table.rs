@@ -12,7 +12,7 @@ enum Separator {
 
 impl Separator {
     /// Separator of a line.
-    fn of(line: &str) -> Self {
+    fn detect(line: &str) -> Self {
         let letter = [';', '\t', ','].into_iter().find(|letter| line.contains(*letter));
         letter.map_or(Self::Blanks, Self::Letter)
     }
@@ -37,9 +37,9 @@ impl Separator {
 }
 
 /// Lines searched for a header.
-const PREAMBLE: usize = 200;
+const HEADER_LINES_MAX: usize = 200;
 /// Lines from the middle of the text that give the number of cells per row.
-const MIDDLE: usize = 9;
+const MIDDLE_LINES: usize = 9;
 
 /// Cells of a line of units, beside any text in brackets.
 const UNITS: [&str; 20] = [
@@ -70,16 +70,16 @@ pub fn columns(text: &str) -> Outcome<Columns> {
         .map(|(index, cell)| if has_names { cell.trim_matches('"').to_owned() } else { (index + 1).to_string() });
     let mut row: Vec<(String, f64)> = names.map(|name| (name, f64::NAN)).collect();
     let mut body = if has_names { head + 1 } else { head };
-    let mut columns = Columns::of("line");
+    let mut columns = Columns::new("line");
     let before: Vec<usize> = all.map(|(line, _)| line).take_while(|line| *line < head_line).collect();
     if let [first, .., last] | [first @ last] = before[..] {
         let lines = if first == last { format!("Line {first}") } else { format!("Lines {first} to {last}") };
-        columns.tell(format!("{lines} before the header passed over."));
+        columns.add_note(format!("{lines} before the header passed over."));
     }
     let has_numbers = |line: &str| separator.cells(line).any(|cell| separator.number(cell).is_some());
     let is_full = |line: &str| separator.cells(line).all(|cell| !cell.is_empty());
     if has_names && lines.len() > body + 1 && !has_numbers(lines[body].1) && is_full(lines[body].1) {
-        columns.tell(format!("Line {} below the header has no number: passed over.", lines[body].0));
+        columns.add_note(format!("Line {} below the header has no number: passed over.", lines[body].0));
         body += 1;
     }
     let count = row.len();
@@ -109,29 +109,29 @@ pub fn columns(text: &str) -> Outcome<Columns> {
 fn header(lines: &[Line<'_>]) -> (usize, Separator) {
     let middle = &lines[lines.len() / 2..];
     let fits = |line: &str| {
-        let separator = Separator::of(line.trim());
+        let separator = Separator::detect(line.trim());
         let count = separator.cells(line.trim()).count();
         let as_many = |row: &&Line<'_>| {
             let cells = separator.cells(row.1).count();
             cells == count || (cells == count + 1 && separator.cells(row.1).last().is_some_and(str::is_empty))
         };
-        count > 1 && middle.iter().take(MIDDLE).filter(as_many).count() * 2 > middle.len().min(MIDDLE)
+        count > 1 && middle.iter().take(MIDDLE_LINES).filter(as_many).count() * 2 > middle.len().min(MIDDLE_LINES)
     };
     let numbers = |line: &str| {
-        let separator = Separator::of(line);
+        let separator = Separator::detect(line);
         separator.cells(line).filter(|cell| separator.number(cell).is_some()).count()
     };
     let all_numbers = |line: &str| {
-        let separator = Separator::of(line);
+        let separator = Separator::detect(line);
         numbers(line) > 0 && separator.cells(line).all(|cell| cell.is_empty() || separator.number(cell).is_some())
     };
-    let few = &lines[..lines.len().min(PREAMBLE)];
+    let few = &lines[..lines.len().min(HEADER_LINES_MAX)];
     let fitting: Vec<usize> = (0..few.len()).filter(|line| fits(few[*line].1)).collect();
     let first_row = fitting.iter().copied().find(|line| all_numbers(few[*line].1));
     let named =
         fitting.iter().copied().filter(|line| first_row.is_none_or(|row| *line < row) && numbers(few[*line].1) == 0);
     let is_unit = |cell: &str| UNITS.contains(&cell) || cell.starts_with(['[', '(']);
-    let names = |line: &usize| !Separator::of(few[*line].1).cells(few[*line].1).all(is_unit);
+    let names = |line: &usize| !Separator::detect(few[*line].1).cells(few[*line].1).all(is_unit);
     let named: Vec<usize> = named.filter(names).collect();
     // Without a row of numbers, as with a column of words, the first line of names is the header.
     let names = if first_row.is_some() { named.last() } else { named.first() };
@@ -139,7 +139,7 @@ fn header(lines: &[Line<'_>]) -> (usize, Separator) {
     // Rows of numbers with another length are no lines before a header.
     let is_row = |line: &Line<'_>| all_numbers(line.1) && numbers(line.1) > 1;
     let head = head.filter(|head| !few[..*head].iter().any(is_row)).unwrap_or_default();
-    (head, Separator::of(lines[head].1.trim()))
+    (head, Separator::detect(lines[head].1.trim()))
 }
 
 #[cfg(test)]
@@ -152,17 +152,17 @@ mod tests {
             let rows = ["1.5", "2", "-3e0"].join(separator) + "\n" + &["2", "4", "6"].join(separator) + "\n";
             let bare = columns(&format!("# a remark\n{rows}")).expect("numbers");
             assert_eq!(bare.names().collect::<Vec<_>>(), ["1", "2", "3"], "{separator:?}");
-            assert_eq!(bare.maybe("3").expect("numbers"), Some(vec![-3.0, 6.0]), "{separator:?}");
+            assert_eq!(bare.finite("3").expect("numbers"), Some(vec![-3.0, 6.0]), "{separator:?}");
             let named = columns(&format!("{}\n{rows}", ["a", "b", "c"].join(separator))).expect("names");
-            assert_eq!(named.maybe("b").expect("numbers"), Some(vec![2.0, 4.0]), "{separator:?}");
+            assert_eq!(named.finite("b").expect("numbers"), Some(vec![2.0, 4.0]), "{separator:?}");
         }
     }
 
     #[test]
     fn a_decimal_comma_is_a_number_where_commas_separate_nothing() {
         let columns = columns("time_s;a\n0,001;-1,5e-3\n0.002;7\n0,003;1,2,3\n").expect("numbers");
-        assert_eq!(columns.maybe("time_s").expect("numbers"), Some(vec![0.001, 0.002, 0.003]));
-        assert!(columns.maybe("a").is_err(), "two commas make no number");
+        assert_eq!(columns.finite("time_s").expect("numbers"), Some(vec![0.001, 0.002, 0.003]));
+        assert!(columns.finite("a").is_err(), "two commas make no number");
     }
 
     #[test]
@@ -171,8 +171,8 @@ mod tests {
         let text = format!("time_s{}\n{}", ",x".repeat(40_000), "1\n".repeat(40_000));
         assert_eq!(columns(&text).expect_err("short rows").message(), "line 2 has 1 values, the first one has 40001");
         let more = columns("time_s,motor_counts\n0,1,\n1,,\n").expect("a comma at the end is no harm");
-        assert_eq!(more.maybe("time_s").expect("numbers"), Some(vec![0.0, 1.0]));
-        assert!(more.maybe("motor_counts").is_err(), "an empty cell is no number");
+        assert_eq!(more.finite("time_s").expect("numbers"), Some(vec![0.0, 1.0]));
+        assert!(more.finite("motor_counts").is_err(), "an empty cell is no number");
     }
 
     #[test]
@@ -186,12 +186,16 @@ mod tests {
         ] {
             let columns = columns(&format!("{before}time_s,motor_counts,x\n{units}{rows}")).expect("a table");
             assert_eq!(columns.names().collect::<Vec<_>>(), ["time_s", "motor_counts", "x"], "{before}");
-            assert_eq!(columns.maybe("time_s").expect("numbers"), Some(vec![0.1, 0.2, 0.3, 0.4]), "{before}");
-            assert_eq!(columns.told().len(), told.len(), "{:?}", columns.told());
-            assert!(columns.told().iter().zip(told).all(|(told, word)| told.starts_with(word)), "{:?}", columns.told());
+            assert_eq!(columns.finite("time_s").expect("numbers"), Some(vec![0.1, 0.2, 0.3, 0.4]), "{before}");
+            assert_eq!(columns.notes().len(), told.len(), "{:?}", columns.notes());
+            assert!(
+                columns.notes().iter().zip(told).all(|(told, word)| told.starts_with(word)),
+                "{:?}",
+                columns.notes()
+            );
         }
         let words = columns("Drive\ntime_s,mode,x\n0.1,idle,6\n0.2,run,7\n").expect("a table");
-        assert_eq!(words.maybe("x").expect("numbers"), Some(vec![6.0, 7.0]));
+        assert_eq!(words.finite("x").expect("numbers"), Some(vec![6.0, 7.0]));
         let tabs = columns("time_s\ta\tb\n0.1\t5\t\n0.2\t\t\n\t6\t7\n").expect("empty cells at both ends");
         assert!(tabs.column("b").is_some_and(|b| b[0].is_nan() && b[1].is_nan() && b[2] == 7.0));
     }
@@ -199,13 +203,13 @@ mod tests {
     #[test]
     fn rows_without_a_needed_value_are_left_out_and_text_in_a_cell_is_refused() {
         let mut columns = columns("time_s,motor_counts,x\n0.1,5,\n0.2,,7\n0.3,8,none\n").expect("a table");
-        columns.leave_out_incomplete(&[&["time_s"], &["motor_counts"], &["output_counts"]]).expect("some are whole");
-        assert_eq!(columns.maybe("motor_counts").expect("numbers"), Some(vec![5.0, 8.0]));
+        columns.remove_incomplete(&[&["time_s"], &["motor_counts"], &["output_counts"]]).expect("some are whole");
+        assert_eq!(columns.finite("motor_counts").expect("numbers"), Some(vec![5.0, 8.0]));
         assert!(
-            columns.told()[0].contains("1 of 3 rows") && columns.told()[0].contains("`motor_counts` is empty in 1")
+            columns.notes()[0].contains("1 of 3 rows") && columns.notes()[0].contains("`motor_counts` is empty in 1")
         );
         let refused =
-            columns.leave_out_incomplete(&[&["x"]]).and_then(|()| columns.maybe("x").map(drop)).expect_err("a word");
+            columns.remove_incomplete(&[&["x"]]).and_then(|()| columns.finite("x").map(drop)).expect_err("a word");
         assert!(refused.message().contains("line 4 has no finite number"), "{refused}");
     }
 

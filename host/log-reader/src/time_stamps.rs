@@ -5,10 +5,10 @@ use super::columns::{Columns, PERIOD, TIMES};
 use report::failure::{Failure, Outcome};
 
 /// Periods after which counters wrap.
-const COUNTERS: [f64; 3] = [256.0, 65_536.0, 4_294_967_296.0];
+const COUNTER_PERIODS: [f64; 3] = [256.0, 65_536.0, 4_294_967_296.0];
 /// Largest deviation of stamps from evenly counted periods, as a share of the log; beyond it the counter counts
 /// something else.
-const OFF: f64 = 0.02;
+const STAMP_DEVIATION_MAX: f64 = 0.02;
 
 /// Gives every row its own time if stamps repeat; rejects a log without a source of the times.
 pub fn resolve(columns: &mut Columns) -> Outcome<()> {
@@ -19,24 +19,24 @@ pub fn resolve(columns: &mut Columns) -> Outcome<()> {
     }
     let told = format!("{repeats} of {} rows have the time of the row before", time.len());
     if let Some(counted) = by_periods(columns, &time) {
-        columns.put(TIMES[0], counted);
-        columns.tell(format!("{told}: times are those of the control periods that `{PERIOD}` counts."));
+        columns.set(TIMES[0], counted);
+        columns.add_note(format!("{told}: times are those of the control periods that `{PERIOD}` counts."));
         return Ok(());
     }
     let used = columns.first_of(&TIMES)?.map_or(TIMES[0], |(name, _)| name);
     for other in TIMES.into_iter().filter(|name| *name != used) {
         let Some((_, values)) = columns.first_of(&[other])? else { continue };
         if values.windows(2).all(|pair| pair[1] > pair[0]) {
-            columns.remove(used);
-            columns.tell(format!("{told} in `{used}`: times are those of `{other}`."));
+            columns.hide(used);
+            columns.add_note(format!("{told} in `{used}`: times are those of `{other}`."));
             return Ok(());
         }
     }
     let keep: Vec<bool> = (0..time.len()).map(|row| row == 0 || !columns.is_repeated(row)).collect();
     let identical = keep.iter().filter(|keep| !**keep).count();
     if identical == repeats {
-        columns.keep(&keep);
-        columns.tell(format!("{told} and all its values: left out."));
+        columns.retain_rows(&keep);
+        columns.add_note(format!("{told} and all its values: left out."));
         return Ok(());
     }
     let first = (1..time.len()).find(|row| time[*row] == time[row - 1] && keep[*row]).unwrap_or_default();
@@ -59,7 +59,7 @@ fn by_periods(columns: &Columns, time: &[f64]) -> Option<Vec<f64>> {
     let mut periods = columns.column(PERIOD).filter(counts)?.to_vec();
     if periods.windows(2).any(|pair| pair[1] < pair[0]) {
         let most = periods.iter().copied().fold(0.0, f64::max);
-        let wraps = COUNTERS.into_iter().find(|wraps| most < *wraps)?;
+        let wraps = COUNTER_PERIODS.into_iter().find(|wraps| most < *wraps)?;
         let mut last = periods[0];
         for row in 1..periods.len() {
             let step = (periods[row] - last).rem_euclid(wraps);
@@ -82,7 +82,7 @@ fn by_periods(columns: &Columns, time: &[f64]) -> Option<Vec<f64>> {
     let counted: Vec<f64> = periods.iter().map(|period| of_time + length * (period - of_periods)).collect();
     let off = counted.iter().zip(time).map(|(counted, time)| (counted - time).abs()).fold(0.0, f64::max);
     let duration = time.last().zip(time.first()).map_or(0.0, |(last, first)| last - first);
-    (length > 0.0 && off < OFF * duration).then_some(counted)
+    (length > 0.0 && off < STAMP_DEVIATION_MAX * duration).then_some(counted)
 }
 
 #[cfg(test)]
@@ -91,7 +91,7 @@ mod tests {
 
     /// Rows stamped in groups of four, with additional columns by row.
     fn log(more: &[(&str, &dyn Fn(usize) -> f64)]) -> Columns {
-        let mut columns = Columns::of("line");
+        let mut columns = Columns::new("line");
         for row in 0..4000 {
             let mut numbers =
                 vec![("time_s".to_owned(), (row / 4) as f64 * 4e-4), ("motor_counts".to_owned(), 3.0 * row as f64)];
@@ -108,7 +108,7 @@ mod tests {
             resolve(&mut columns).expect("resolved");
             let time = columns.time().expect("numbers");
             assert!(time.windows(2).all(|pair| ((pair[1] - pair[0]) / 1e-4 - 1.0).abs() < 1e-3), "{:?}", &time[..3]);
-            assert!(columns.told()[0].contains("3000 of 4000 rows"), "{:?}", columns.told());
+            assert!(columns.notes()[0].contains("3000 of 4000 rows"), "{:?}", columns.notes());
         }
         let refused = resolve(&mut log(&[(PERIOD, &|row| (row % 1000) as f64)])).expect_err("it restarts");
         assert!(refused.help().is_some_and(|help| help.contains("does not count control periods")), "{refused}");
@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn repeated_rows_are_left_out_and_other_values_refused() {
-        let mut columns = Columns::of("line");
+        let mut columns = Columns::new("line");
         for row in [0, 1, 1, 2, 3, 3, 3] {
             assert!(
                 columns.push(row, &[("time_s".to_owned(), row as f64), ("motor_counts".to_owned(), 5.0 * row as f64)])

@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     fn columns() -> Columns {
-        let mut columns = Columns::of("line");
+        let mut columns = Columns::new("line");
         assert!(columns.push(1, &[("motor_angle".to_owned(), 2.0), ("motor_torque".to_owned(), 3.0)]));
         columns
     }
@@ -146,8 +146,8 @@ mod tests {
     fn a_unit_that_is_said_makes_si_of_a_column() {
         let units = ["motor_angle=turns@output", "motor_torque=0.06*N_m"].map(|text| parse(text).expect("a unit"));
         let columns = convert(columns(), &units, 6.0).expect("both are there");
-        assert_eq!(columns.maybe("motor_angle_rad").expect("a number"), Some(vec![12.0 * TAU]));
-        assert_eq!(columns.maybe("motor_torque_N_m").expect("a number"), Some(vec![0.06 * 3.0]));
+        assert_eq!(columns.finite("motor_angle_rad").expect("a number"), Some(vec![12.0 * TAU]));
+        assert_eq!(columns.finite("motor_torque_N_m").expect("a number"), Some(vec![0.06 * 3.0]));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::num::NonZeroU16;
 use std::path::PathBuf;
 
-use log_reader::column_map::renaming;
+use log_reader::column_map::parse_renaming;
 use log_reader::units::{self, Unit};
 
 /// Arguments of `joint replay`.
@@ -37,7 +37,7 @@ pub struct ReplayArguments {
     #[arg(long, value_name = "TOPIC", requires = "joint")]
     pub topic: Option<String>,
     /// Reads a column under another name, such as motor_counts=pos_raw; may be repeated
-    #[arg(long, value_name = "COLUMN=NAME", value_parser = renaming, requires = "joint")]
+    #[arg(long, value_name = "COLUMN=NAME", value_parser = parse_renaming, requires = "joint")]
     pub column: Vec<(String, String)>,
     /// Unit of a column that is named by its quantity alone, such as motor_angle=turns; may be repeated
     #[arg(long, value_name = "QUANTITY=UNIT", value_parser = units::parse, requires = "joint")]

@@ -52,8 +52,8 @@ impl ReplaySamples {
     ) -> Outcome<Self> {
         let period = 1.0 / f64::from(settings.control_rate);
         let motor_only = settings.output_encoder.is_none();
-        let will_do = |columns: &Columns| columns.will_do_with([true, !motor_only]);
-        let mut columns = file.columns(topic, map, loaded.file.parameters.geometry.ratio_by_teeth(), will_do)?;
+        let accepts = |columns: &Columns| columns.has_required_of([true, !motor_only]);
+        let mut columns = file.columns(topic, map, loaded.file.parameters.geometry.ratio_by_teeth(), accepts)?;
         let read = if columns.names().any(|name| name == SAMPLES[0]) {
             Self::of_run(&columns, period)
         } else if let Some(controller) = file.remarks().get(RUN) {
@@ -62,7 +62,7 @@ impl ReplaySamples {
             Self::of_any(&mut columns, settings, period)
         };
         let read = read.and_then(|read| read.at_the_control_rate(settings, refuses));
-        read.map_err(|failure| columns.explain(failure).while_doing(file.path().display()))
+        read.map_err(|failure| columns.with_notes(failure).while_doing(file.path().display()))
     }
 
     /// Samples as the run's controller received them.
@@ -101,7 +101,7 @@ impl ReplaySamples {
     /// Samples from the rows of any log, one per control period.
     fn of_any(columns: &mut Columns, settings: &ObserverSettings, period: f64) -> Outcome<Self> {
         let output: &[&str] = if settings.output_encoder.is_some() { &OUTPUT } else { &[] };
-        columns.leave_out_incomplete(&[&TIMES, &MOTOR, output, &["motor_torque_N_m"]])?;
+        columns.remove_incomplete(&[&TIMES, &MOTOR, output, &["motor_torque_N_m"]])?;
         time_stamps::resolve(columns)?;
         let columns = &*columns;
         let time = columns.time_from_start()?;
@@ -128,7 +128,7 @@ impl ReplaySamples {
             }
         };
         let samples = (0..time.len()).map(sample).collect();
-        let read = Self { period, from_angles, samples, torque, time, told: columns.told().to_vec() };
+        let read = Self { period, from_angles, samples, torque, time, told: columns.notes().to_vec() };
         if let Some(row) = read.time.windows(2).position(|pair| pair[1] <= pair[0]) {
             return Err(Failure::new(format!("the time does not rise in {}", columns.place(row + 1)))
                 .with_help("samples must be in the order in which they were taken, each with its own time"));
@@ -197,7 +197,7 @@ fn counts(columns: &Columns, what: &str, encoder: EncoderSettings) -> Outcome<(V
     let names = [format!("{what}_counts"), format!("{what}_angle_rad")];
     let there = columns.first_of(&[names[0].as_str(), names[1].as_str()])?;
     let (name, values) = there.ok_or_else(|| {
-        let of_identify = columns.without_encoder(what);
+        let of_identify = columns.missing_encoder(what);
         let help = of_identify.help().unwrap_or_default().to_owned();
         Failure::new(format!("an observer needs counts, and there is no column for the {what}")).with_help(help)
     })?;

@@ -84,15 +84,15 @@ pub fn identify(arguments: &Arguments, loaded: &Loaded, prior: &PriorModel) -> O
 
 impl ClampedLog {
     fn read(arguments: &Arguments, prior: &PriorModel) -> Outcome<Self> {
-        let will_do = |columns: &Columns| columns.will_do_with([true, false]);
-        arguments.read_log(prior.ratio(), will_do, |columns| Self::from_columns(columns, prior))
+        let accepts = |columns: &Columns| columns.has_required_of([true, false]);
+        arguments.read_log(prior.ratio(), accepts, |columns| Self::from_columns(columns, prior))
     }
 
     fn from_columns(columns: &mut Columns, prior: &PriorModel) -> Outcome<Self> {
-        columns.leave_out_incomplete(&[&TIMES, &MOTOR, &OUTPUT, &["motor_torque_N_m"]])?;
+        columns.remove_incomplete(&[&TIMES, &MOTOR, &OUTPUT, &["motor_torque_N_m"]])?;
         time_stamps::resolve(columns)?;
         let (motor, motor_count) =
-            one_encoder::angle(columns, MOTOR, prior.motor_turn)?.ok_or_else(|| columns.without_encoder("motor"))?;
+            one_encoder::angle(columns, MOTOR, prior.motor_turn)?.ok_or_else(|| columns.missing_encoder("motor"))?;
         let output = one_encoder::angle(columns, OUTPUT, prior.output_turn)?;
         let time = one_encoder::rising_time(columns)?;
         let torque = one_encoder::torque_at_output(columns, prior.ratio())?;
@@ -111,7 +111,7 @@ impl ClampedLog {
             twist.iter_mut().zip(output).for_each(|(twist, angle)| *twist -= angle - output[0]);
             resolution += count;
         }
-        Ok(Self { torque, notes: columns.told().to_vec(), has_output: output.is_some(), time, twist, resolution })
+        Ok(Self { torque, notes: columns.notes().to_vec(), has_output: output.is_some(), time, twist, resolution })
     }
 }
 

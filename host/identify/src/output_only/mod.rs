@@ -77,18 +77,18 @@ pub fn identify(arguments: &Arguments, loaded: &Loaded, prior: &PriorModel) -> O
 
 impl OutputLog {
     fn read(arguments: &Arguments, prior: &PriorModel) -> Outcome<Self> {
-        let will_do = |columns: &Columns| columns.will_do_with([false, true]);
-        arguments.read_log(prior.ratio(), will_do, |columns| Self::from_columns(columns, prior))
+        let accepts = |columns: &Columns| columns.has_required_of([false, true]);
+        arguments.read_log(prior.ratio(), accepts, |columns| Self::from_columns(columns, prior))
     }
 
     fn from_columns(columns: &mut Columns, prior: &PriorModel) -> Outcome<Self> {
-        columns.leave_out_incomplete(&[&TIMES, &OUTPUT, &["motor_torque_N_m"]])?;
+        columns.remove_incomplete(&[&TIMES, &OUTPUT, &["motor_torque_N_m"]])?;
         time_stamps::resolve(columns)?;
         let (angle, resolution) =
-            one_encoder::angle(columns, OUTPUT, prior.output_turn)?.ok_or_else(|| columns.without_encoder("output"))?;
+            one_encoder::angle(columns, OUTPUT, prior.output_turn)?.ok_or_else(|| columns.missing_encoder("output"))?;
         let time = one_encoder::rising_time(columns)?;
         let torque = one_encoder::torque_at_output(columns, prior.ratio())?;
-        Ok(Self { time, angle, torque, resolution, notes: columns.told().to_vec() })
+        Ok(Self { time, angle, torque, resolution, notes: columns.notes().to_vec() })
     }
 
     fn swings(&self) -> Outcome<Vec<Swing>> {

@@ -66,7 +66,7 @@ pub fn run(common: Common<'_>, options: &Options, progress: &Progress) -> Outcom
     let mut columns = log_file::read(path, common.topic, common.map, ratio, has_both_encoders)?;
     let at_path = |failure: Failure| failure.while_doing(path.display());
     let samples = Samples::from_columns(&mut columns, options);
-    let explained = |failure: Failure| at_path(columns.explain(failure));
+    let explained = |failure: Failure| at_path(columns.with_notes(failure));
     let samples = samples.map_err(explained)?;
     let results = Results::evaluate(&samples, &options.halves).map_err(explained)?;
     check_ratio(options.gear_ratio, &results).map_err(explained)?;

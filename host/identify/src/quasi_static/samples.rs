@@ -80,7 +80,7 @@ impl Samples {
     /// Reads columns of known names.
     pub fn from_columns(columns: &mut Columns, options: &Options) -> Outcome<Self> {
         let motor_names: &[&str] = if columns.column(DIFFERENCE).is_some() { &[DIFFERENCE] } else { &MOTOR };
-        columns.leave_out_incomplete(&[&TIMES, motor_names, &OUTPUT, &["motor_torque_N_m"], &["output_torque_N_m"]])?;
+        columns.remove_incomplete(&[&TIMES, motor_names, &OUTPUT, &["motor_torque_N_m"], &["output_torque_N_m"]])?;
         let stated = [(motor_names, options.motor_units_per_turn), (&OUTPUT, options.output_units_per_turn)];
         for (names, per_turn) in stated {
             let Some(name) = columns.name_of(names).map(str::to_owned) else { continue };
@@ -88,7 +88,7 @@ impl Samples {
             let per_turn = if names == [DIFFERENCE] { options.output_units_per_turn } else { per_turn };
             let turn = if counts { per_turn } else { Some(TAU) };
             let count = columns.column(&name).map_or(0.0, resolution);
-            bad_readings::leave_out(columns, &name, count, turn)?;
+            bad_readings::remove_from_column(columns, &name, count, turn)?;
         }
         let time = columns.time_from_start()?;
         if time.len() < SAMPLES_MIN {
@@ -110,7 +110,7 @@ impl Samples {
         let gaps = steps.iter().filter(|step| **step > GAP_STEPS * period).count();
         let longest = steps[steps.len() - 1];
         let output = angles(columns, OUTPUT, options.output_units_per_turn, "output")?
-            .ok_or_else(|| columns.without_encoder("output"))?;
+            .ok_or_else(|| columns.missing_encoder("output"))?;
         let Angles { values: mut output, scale } = output;
         let resolutions = [columns.name_of(&OUTPUT), columns.name_of(motor_names)]
             .map(|name| name.and_then(|name| columns.column(name)).map_or(0.0, resolution));
@@ -123,7 +123,7 @@ impl Samples {
         let samples = Self {
             difference,
             resolution: resolutions[0] + factor.abs() * resolutions[1],
-            notes: columns.told().to_vec(),
+            notes: columns.notes().to_vec(),
             motor_torque: torque(columns, "motor_torque_N_m", options.gear_ratio.unwrap_or(1.0).signum())?,
             output_torque: torque(columns, "output_torque_N_m", 1.0)?,
             scale,
@@ -246,7 +246,7 @@ fn angles(columns: &Columns, names: [&str; 2], per_turn: Option<f64>, whose: &st
 /// Motor on the output's scale, from its own column or from the difference, and the size of the column's unit on this
 /// scale.
 fn motor(columns: &mut Columns, options: &Options, scale: Scale, output: &[f64]) -> Outcome<(Vec<f64>, f64)> {
-    if let Some(mut difference) = columns.maybe(DIFFERENCE)? {
+    if let Some(mut difference) = columns.finite(DIFFERENCE)? {
         let stated = [("--gear-ratio", options.gear_ratio), ("--motor-units-per-turn", options.motor_units_per_turn)];
         if let Some((option, _)) = stated.iter().find(|(_, value)| value.is_some()) {
             return Err(Failure::new(format!(
@@ -258,7 +258,7 @@ fn motor(columns: &mut Columns, options: &Options, scale: Scale, output: &[f64])
         return Ok((output.iter().zip(&difference).map(|(output, difference)| output - difference).collect(), 1.0));
     }
     let motor = angles(columns, MOTOR, options.motor_units_per_turn, "motor")?;
-    let Angles { mut values, scale: own } = motor.ok_or_else(|| columns.without_encoder("motor"))?;
+    let Angles { mut values, scale: own } = motor.ok_or_else(|| columns.missing_encoder("motor"))?;
     let ratio = options.gear_ratio.unwrap_or(1.0);
     unwrap(&mut values, own, MOTOR[0], columns);
     let factor = match (scale.per_turn, own.per_turn) {
@@ -281,9 +281,9 @@ fn unwrap(values: &mut [f64], scale: Scale, name: &str, columns: &mut Columns) {
         values.iter().fold((f64::MAX, f64::MIN), |(least, most), value| (least.min(*value), most.max(*value)));
     if scale.per_turn.is_some_and(|turn| most - least <= turn * (1.0 + 1e-9)) {
         step_over_turns(values, scale);
-    } else if let Some(register) = Register::of(values, scale.per_turn) {
+    } else if let Some(register) = Register::find(values, scale.per_turn) {
         register.join(values, |_| 1.0);
-        register.told(name, scale.per_turn).into_iter().for_each(|notes| columns.tell(notes));
+        register.note(name, scale.per_turn).into_iter().for_each(|notes| columns.add_note(notes));
     }
 }
 
@@ -368,10 +368,10 @@ mod tests {
         let scale = Scale { unit: "units", per_turn: Some(100.0) };
         let truth: Vec<f64> = (0..400).map(|step| 7.25 * f64::from(step)).collect();
         let mut read: Vec<f64> = truth.iter().map(|value| value.rem_euclid(100.0)).collect();
-        unwrap(&mut read, scale, "", &mut Columns::of("line"));
+        unwrap(&mut read, scale, "", &mut Columns::new("line"));
         assert!(read.iter().zip(&truth).all(|(read, truth)| (read - truth).abs() < 1e-9));
         let mut many_turns: Vec<f64> = truth.clone();
-        unwrap(&mut many_turns, scale, "", &mut Columns::of("line"));
+        unwrap(&mut many_turns, scale, "", &mut Columns::new("line"));
         assert_eq!(many_turns, truth);
     }
 }

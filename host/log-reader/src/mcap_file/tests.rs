@@ -2,7 +2,7 @@
 
 use super::*;
 
-const MOST: u64 = u64::MAX;
+const LENGTH_MAX: u64 = u64::MAX;
 
 fn record(opcode: u8, content: &[u8]) -> Vec<u8> {
     [&[opcode], &(content.len() as u64).to_le_bytes()[..], content].concat()
@@ -45,8 +45,8 @@ fn messages(file: &[u8]) -> Result<usize, String> {
     });
     match read {
         Ok(()) => Ok(count),
-        Err(Broken::Damaged(why)) => Err(why),
-        Err(Broken::Refused(())) => Err("nobody has refused".to_owned()),
+        Err(ReadEnd::Damaged(why)) => Err(why),
+        Err(ReadEnd::Callback(())) => Err("nobody has refused".to_owned()),
     }
 }
 
@@ -78,14 +78,14 @@ fn a_text_longer_than_its_record_is_not_reserved_room_for() {
     pairs[end - 4..].copy_from_slice(&u32::MAX.to_le_bytes());
     damaged(&file(&[&schema(), &pairs]), "channel at byte");
     let mut compression = chunk("", 0, &[]);
-    compression[HEAD + 28..HEAD + 32].copy_from_slice(&u32::MAX.to_le_bytes());
+    compression[RECORD_HEADER_SIZE + 28..RECORD_HEADER_SIZE + 32].copy_from_slice(&u32::MAX.to_le_bytes());
     damaged(&file(&[&compression]), "chunk at byte");
     damaged(&file(&[&schema(), &channel(&"a".repeat(2000))]), "the name of a topic has 2000 letters");
 }
 
 #[test]
 fn a_record_longer_than_the_file_is_named_by_its_place() {
-    for length in [MOST, MOST - 5, 1 << 45, 1000] {
+    for length in [LENGTH_MAX, LENGTH_MAX - 5, 1 << 45, 1000] {
         damaged(&file(&[&[op::MESSAGE], &length.to_le_bytes()]), "record at byte");
     }
 }
@@ -103,12 +103,12 @@ fn a_chunk_that_is_not_compressed_ends_where_its_last_record_does() {
 #[test]
 fn a_chunk_unpacks_to_no_more_than_a_multiple_of_the_file() {
     for compression in ["lz4", "zstd"] {
-        damaged(&file(&[&chunk(compression, MOST, b"few bytes")]), "far more than such a file holds");
+        damaged(&file(&[&chunk(compression, LENGTH_MAX, b"few bytes")]), "far more than such a file holds");
         damaged(&file(&[&chunk(compression, 1 << 19, b"few bytes")]), "chunk at byte");
     }
     // Two chunks share the limit.
     let half = chunk("", 0, &[]);
-    let third = chunk("lz4", 2 * LITTLE, b"");
+    let third = chunk("lz4", 2 * UNPACKED_BASE, b"");
     damaged(&file(&[&half, &third]), "far more");
 }
 

@@ -24,7 +24,7 @@ fn message() -> Vec<u8> {
 
 #[test]
 fn every_number_of_a_message_has_its_path() {
-    let form = Form::read(FORM).expect("a form");
+    let form = MessageDefinition::read(FORM).expect("a form");
     let numbers = form.numbers(&message()).expect("a message");
     let wanted = [
         ("header.stamp.sec", 7.0),
@@ -41,7 +41,7 @@ fn every_number_of_a_message_has_its_path() {
 
 #[test]
 fn a_message_that_is_cut_off_anywhere_is_refused() {
-    let form = Form::read(FORM).expect("a form");
+    let form = MessageDefinition::read(FORM).expect("a form");
     let whole = message();
     for length in 0..whole.len() {
         assert!(form.numbers(&whole[..length]).is_err(), "{length}");
@@ -53,10 +53,10 @@ fn a_message_that_is_cut_off_anywhere_is_refused() {
 
 #[test]
 fn forms_that_cannot_be_are_refused() {
-    assert!(Form::read("float64").is_err() && Form::read("float64[x] a").is_err());
-    let own = Form::read("Own next\n===\nMSG: a/Own\nOwn next\n").expect("a form");
+    assert!(MessageDefinition::read("float64").is_err() && MessageDefinition::read("float64[x] a").is_err());
+    let own = MessageDefinition::read("Own next\n===\nMSG: a/Own\nOwn next\n").expect("a form");
     assert!(own.numbers(&[0, 1, 0, 0]).is_err());
-    assert!(Form::read("a/Other other\n").expect("a form").numbers(&[0, 1, 0, 0]).is_err());
+    assert!(MessageDefinition::read("a/Other other\n").expect("a form").numbers(&[0, 1, 0, 0]).is_err());
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn a_message_takes_no_longer_than_its_bytes_say() {
         text += &format!("===\nMSG: a/M{depth}\nM{}[10] next\n", depth + 1);
     }
     let read = |last: &str| {
-        let form = Form::read(&format!("{text}===\nMSG: a/M16\n{last}\n"))?;
+        let form = MessageDefinition::read(&format!("{text}===\nMSG: a/M16\n{last}\n"))?;
         form.numbers(&[[0, 1, 0, 0].as_slice(), &[0; 10_000]].concat())
     };
     assert_eq!(read("uint8[0] none"), Err("`uint8[0] none` is no field of a message".to_owned()));
@@ -78,7 +78,7 @@ fn a_message_takes_no_longer_than_its_bytes_say() {
 
 #[test]
 fn paths_do_not_grow_beyond_what_a_joint_has() {
-    let form = Form::read(&format!("uint8[] {}\n", "n".repeat(100_000))).expect("a form");
+    let form = MessageDefinition::read(&format!("uint8[] {}\n", "n".repeat(100_000))).expect("a form");
     let message = [[0, 1, 0, 0].as_slice(), &100_000_u32.to_le_bytes(), &[0; 100_000]].concat();
     assert_eq!(form.numbers(&message), Err("the path of a number in it has more than 256 letters".to_owned()));
 }

@@ -143,8 +143,9 @@ mod tests {
         find(values, Register::find(values, Some(TURN)).as_ref(), 1.0)
     }
 
+    /// Readings that jump away and return are found anywhere in the log.
     #[test]
-    fn readings_that_jump_and_come_back_are_found_wherever_they_stand() {
+    fn bad_readings_are_found_anywhere() {
         for wraps in [false, true] {
             assert_eq!(found(&motion(wraps)), Vec::<usize>::new(), "{wraps}: nothing in a good log");
             for (rows, by) in [
@@ -164,8 +165,9 @@ mod tests {
         }
     }
 
+    /// An impact, a slip and repeated readings are not bad readings.
     #[test]
-    fn a_blow_a_slip_and_readings_that_are_repeated_are_no_bad_readings() {
+    fn impact_slip_and_repeats_are_kept() {
         for every in [2, 5, 10] {
             let stale: Vec<f64> = (0..3000).map(|row| motion(false)[row / every * every]).collect();
             assert_eq!(found(&stale), Vec::<usize>::new(), "{every}");

@@ -172,8 +172,9 @@ fn parse_joint(text: &str, joint: Option<&str>) -> Outcome<ColumnMap> {
 mod tests {
     use super::*;
 
+    /// Every built-in map is readable and documented.
     #[test]
-    fn every_map_that_comes_along_can_be_read_and_is_documented() {
+    fn preset_maps_are_read_and_documented() {
         let page = include_str!("../../../docs/reference/identify.md");
         for (name, text) in PRESETS {
             let map = parse_joint(text, None).unwrap_or_else(|failure| panic!("{name}: {failure}"));
@@ -183,8 +184,9 @@ mod tests {
         }
     }
 
+    /// The command line overrides a map.
     #[test]
-    fn the_command_line_goes_before_a_map() {
+    fn command_line_overrides_map() {
         let columns = [("output_counts".to_owned(), "raw".to_owned())];
         let units = [units::parse("motor_angle=deg").expect("a unit")];
         let map = ColumnMap::new(Some(Path::new("moteus")), None, &columns, &units).expect("a preset");
@@ -193,8 +195,9 @@ mod tests {
         assert!(map.units.iter().all(|unit| unit.name() != "output_angle"));
     }
 
+    /// An invalid map is rejected with the place of the fault.
     #[test]
-    fn a_map_that_is_none_is_refused_with_its_place() {
+    fn invalid_map_is_rejected_with_place() {
         for (text, why) in [
             ("[columns]\nspeed = \"v\"\n", "[columns]: `speed` is none of"),
             ("[columns]\nmotor_angle = 3\n", "line 2"),
@@ -207,8 +210,9 @@ mod tests {
         }
     }
 
+    /// A joint of a map has its own and the common columns.
     #[test]
-    fn a_joint_of_several_has_its_own_columns_and_those_of_all() {
+    fn map_joint_inherits_common_columns() {
         let text = "[columns]\ntime_s = \"t\"\n[joints.knee.columns]\nmotor_counts = \"position[0]\"\n[joints.hip.columns]\nmotor_counts \
                     = \"position[2]\"\n";
         let map = parse_joint(text, Some("hip")).expect("a joint");

@@ -247,8 +247,9 @@ mod tests {
         EvenTimes::assuming_even(PERIOD, steps).smoother(time, motion)
     }
 
+    /// Samples with true stamps are interpolated to even times.
     #[test]
-    fn samples_that_were_taken_when_their_stamps_say_are_interpolated() {
+    fn true_stamps_are_interpolated() {
         let time = jittering(2000);
         let motion: Vec<f64> = time.iter().map(|time| self::motion(*time)).collect();
         let times = even(&time, &motion);
@@ -258,16 +259,18 @@ mod tests {
         }
     }
 
+    /// Evenly taken samples stay unchanged under jittered stamps.
     #[test]
-    fn samples_that_were_taken_evenly_stay_as_they_are_whatever_their_stamps_say() {
+    fn jittered_stamps_are_ignored() {
         let motion: Vec<f64> = (0..2000).map(|row| self::motion(row as f64 * PERIOD)).collect();
         let times = even(&jittering(2000), &motion);
         assert!(times.note.as_deref().is_some_and(|note| note.contains("taken for even")), "{:?}", times.note);
         assert_eq!(times.resample(&motion), motion);
     }
 
+    /// A hole keeps its length and is marked as lost.
     #[test]
-    fn a_hole_keeps_its_length_and_is_known_as_one() {
+    fn hole_keeps_its_length() {
         let mut steps = vec![1.0; 100];
         steps[50] = 4.0;
         let times = EvenTimes::assuming_even(PERIOD, steps);

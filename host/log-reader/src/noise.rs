@@ -48,8 +48,9 @@ impl Noise {
 mod tests {
     use super::*;
 
+    /// Whole counts of a motion scatter by 1/12 of a count squared.
     #[test]
-    fn whole_counts_of_a_motion_scatter_by_a_twelfth_of_a_count_squared() {
+    fn quantisation_noise_is_a_twelfth() {
         let angle = |sample: usize| 40.0 * (1e-2 * sample as f64).sin() + 0.7 * sample as f64;
         let counts: Vec<f64> = (0..4096).map(|sample| angle(sample).round()).collect();
         let mean = (0..16).map(|block| Noise::measure(&counts, |_, _| true).at(256 * block)).sum::<f64>() / 16.0;

@@ -105,8 +105,9 @@ mod tests {
         (truth, read)
     }
 
+    /// Registers of one or several turns, signed or not, are found and joined.
     #[test]
-    fn registers_of_a_turn_or_several_are_recognised_and_joined() {
+    fn register_is_found_and_joined() {
         for (least, counts, signed) in
             [(0.0, 16384.0, false), (-8192.0, 16384.0, true), (0.0, 65536.0, false), (-32768.0, 65536.0, true)]
         {
@@ -119,8 +120,9 @@ mod tests {
         }
     }
 
+    /// Continuous readings over several turns have no register.
     #[test]
-    fn readings_that_go_on_over_turns_have_no_register() {
+    fn continuous_readings_have_no_register() {
         let (truth, _) = readings(0.0, 16384.0);
         assert_eq!(Register::find(&truth, Some(16384.0)), None);
         let narrow: Vec<f64> = truth.iter().map(|value| (value / 40.0).round()).collect();

@@ -146,8 +146,9 @@ fn header(lines: &[Line<'_>]) -> (usize, Separator) {
 mod tests {
     use super::*;
 
+    /// Every separator is detected, with and without a header.
     #[test]
-    fn every_separator_is_understood_with_a_header_and_without() {
+    fn text_separators_are_detected() {
         for separator in [",", ";", "\t", " ", "   ", ", "] {
             let rows = ["1.5", "2", "-3e0"].join(separator) + "\n" + &["2", "4", "6"].join(separator) + "\n";
             let bare = columns(&format!("# a remark\n{rows}")).expect("numbers");
@@ -158,15 +159,17 @@ mod tests {
         }
     }
 
+    /// A decimal comma is read unless commas separate the cells.
     #[test]
-    fn a_decimal_comma_is_a_number_where_commas_separate_nothing() {
+    fn text_decimal_comma_is_read() {
         let columns = columns("time_s;a\n0,001;-1,5e-3\n0.002;7\n0,003;1,2,3\n").expect("numbers");
         assert_eq!(columns.finite("time_s").expect("numbers"), Some(vec![0.001, 0.002, 0.003]));
         assert!(columns.finite("a").is_err(), "two commas make no number");
     }
 
+    /// Rows far shorter than the header are rejected before memory is filled.
     #[test]
-    fn a_row_is_not_filled_up_to_a_header_that_is_much_longer() {
+    fn text_short_rows_are_rejected_early() {
         // 40,000 rows of two bytes under 40,000 names would take 13 GB.
         let text = format!("time_s{}\n{}", ",x".repeat(40_000), "1\n".repeat(40_000));
         assert_eq!(columns(&text).expect_err("short rows").message(), "line 2 has 1 values, the first one has 40001");
@@ -175,8 +178,9 @@ mod tests {
         assert!(more.finite("motor_counts").is_err(), "an empty cell is no number");
     }
 
+    /// Lines before the header and a line of units below it are skipped with a note.
     #[test]
-    fn lines_before_the_header_and_units_below_it_are_passed_over_and_told() {
+    fn text_preamble_and_units_are_noted() {
         let rows = "0.1,5,6\n0.2,,7\n0.3,8,9\n0.4,1,2\n";
         for (before, units, told) in [
             ("", "", &[][..]),
@@ -200,8 +204,9 @@ mod tests {
         assert!(tabs.column("b").is_some_and(|b| b[0].is_nan() && b[1].is_nan() && b[2] == 7.0));
     }
 
+    /// Rows without a needed value are removed; text in a needed cell is rejected.
     #[test]
-    fn rows_without_a_needed_value_are_left_out_and_text_in_a_cell_is_refused() {
+    fn incomplete_rows_are_removed() {
         let mut columns = columns("time_s,motor_counts,x\n0.1,5,\n0.2,,7\n0.3,8,none\n").expect("a table");
         columns.remove_incomplete(&[&["time_s"], &["motor_counts"], &["output_counts"]]).expect("some are whole");
         assert_eq!(columns.finite("motor_counts").expect("numbers"), Some(vec![5.0, 8.0]));
@@ -213,8 +218,9 @@ mod tests {
         assert!(refused.message().contains("line 4 has no finite number"), "{refused}");
     }
 
+    /// A short row and a log without rows are rejected.
     #[test]
-    fn a_short_row_and_a_log_without_rows_are_refused() {
+    fn text_short_row_or_no_rows_rejected() {
         assert_eq!(columns("1 2 3\n4 5\n").expect_err("short").message(), "line 2 has 2 values, the first one has 3");
         for text in ["", "# nothing\n", "time_s;output_counts\n"] {
             assert!(columns(text).expect_err("no rows").help().is_some());

@@ -101,8 +101,9 @@ mod tests {
         columns
     }
 
+    /// A period counter gives the times of repeated stamps, even if it wraps.
     #[test]
-    fn a_counter_of_periods_tells_the_times_even_if_it_begins_anew() {
+    fn period_counter_gives_times() {
         for counter in [&(|row: usize| (row + 7) as f64) as &dyn Fn(usize) -> f64, &|row| (row % 256) as f64] {
             let mut columns = log(&[(PERIOD, counter)]);
             resolve(&mut columns).expect("resolved");
@@ -114,15 +115,17 @@ mod tests {
         assert!(refused.help().is_some_and(|help| help.contains("does not count control periods")), "{refused}");
     }
 
+    /// Another time column gives the times of repeated stamps.
     #[test]
-    fn another_column_of_time_tells_the_times() {
+    fn other_time_column_gives_times() {
         let mut columns = log(&[("time_us", &|row| 100.0 * row as f64)]);
         resolve(&mut columns).expect("resolved");
         assert!((columns.time().expect("numbers")[3] - 3e-4).abs() < 1e-12);
     }
 
+    /// Repeated rows are removed; repeated stamps with other values are rejected.
     #[test]
-    fn repeated_rows_are_left_out_and_other_values_refused() {
+    fn repeated_rows_are_removed() {
         let mut columns = Columns::new("line");
         for row in [0, 1, 1, 2, 3, 3, 3] {
             assert!(

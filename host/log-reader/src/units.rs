@@ -142,16 +142,18 @@ mod tests {
         columns
     }
 
+    /// A stated unit converts a column to SI.
     #[test]
-    fn a_unit_that_is_said_makes_si_of_a_column() {
+    fn stated_unit_converts_to_si() {
         let units = ["motor_angle=turns@output", "motor_torque=0.06*N_m"].map(|text| parse(text).expect("a unit"));
         let columns = convert(columns(), &units, 6.0).expect("both are there");
         assert_eq!(columns.finite("motor_angle_rad").expect("a number"), Some(vec![12.0 * TAU]));
         assert_eq!(columns.finite("motor_torque_N_m").expect("a number"), Some(vec![0.06 * 3.0]));
     }
 
+    /// A missing unit, an unused unit and a malformed one are rejected.
     #[test]
-    fn a_unit_is_not_guessed_and_not_said_in_vain() {
+    fn missing_or_unused_unit_is_rejected() {
         let torque = parse("motor_torque=N_cm").expect("a unit");
         let refused = convert(columns(), &[torque], 6.0).expect_err("no unit of the angle");
         assert_eq!(refused.message(), "the unit of the column `motor_angle` is not said");

@@ -56,8 +56,9 @@ fn damaged(file: &[u8], words: &str) {
     assert!(why.contains(words), "`{words}` is not in: {why}");
 }
 
+/// Valid files are read, with and without chunks.
 #[test]
-fn whole_files_are_read_with_and_without_chunks() {
+fn valid_mcap_is_read() {
     let records = [schema(), channel("/a"), message(b"1"), message(b"2")];
     let plain: Vec<&[u8]> = records.iter().map(Vec::as_slice).collect();
     assert_eq!(messages(&file(&plain)), Ok(2));
@@ -67,8 +68,9 @@ fn whole_files_are_read_with_and_without_chunks() {
     assert_eq!(messages(&file(&[plain.concat().as_slice(), &record(op::ATTACHMENT, &[1; 7])])), Ok(2));
 }
 
+/// A text longer than its record is rejected before memory is reserved.
 #[test]
-fn a_text_longer_than_its_record_is_not_reserved_room_for() {
+fn text_length_is_checked_first() {
     let endless = [&[1, 0, 1, 0], &u32::MAX.to_le_bytes()[..], b"/a"].concat();
     for opcode in [op::CHANNEL, op::SCHEMA] {
         damaged(&file(&[&schema(), &record(opcode, &endless)]), "a text in it goes beyond its end");
@@ -83,15 +85,17 @@ fn a_text_longer_than_its_record_is_not_reserved_room_for() {
     damaged(&file(&[&schema(), &channel(&"a".repeat(2000))]), "the name of a topic has 2000 letters");
 }
 
+/// A record longer than the file is reported with its place.
 #[test]
-fn a_record_longer_than_the_file_is_named_by_its_place() {
+fn long_record_is_named_by_place() {
     for length in [LENGTH_MAX, LENGTH_MAX - 5, 1 << 45, 1000] {
         damaged(&file(&[&[op::MESSAGE], &length.to_le_bytes()]), "record at byte");
     }
 }
 
+/// An uncompressed chunk must end with its last record.
 #[test]
-fn a_chunk_that_is_not_compressed_ends_where_its_last_record_does() {
+fn plain_chunk_holds_whole_records() {
     let content = [schema(), channel("/a"), message(b"1")].concat();
     let size = content.len() as u64;
     damaged(&file(&[&chunk("", size + 1, &content)]), "and it has");
@@ -100,8 +104,9 @@ fn a_chunk_that_is_not_compressed_ends_where_its_last_record_does() {
     damaged(&file(&[&chunk("", size - 1, short), &[0; 40]]), "a record in it goes beyond its end");
 }
 
+/// Chunks may unpack to a limited multiple of the file's size.
 #[test]
-fn a_chunk_unpacks_to_no_more_than_a_multiple_of_the_file() {
+fn unpacked_chunk_size_is_limited() {
     for compression in ["lz4", "zstd"] {
         damaged(&file(&[&chunk(compression, LENGTH_MAX, b"few bytes")]), "far more than such a file holds");
         damaged(&file(&[&chunk(compression, 1 << 19, b"few bytes")]), "chunk at byte");
@@ -112,8 +117,9 @@ fn a_chunk_unpacks_to_no_more_than_a_multiple_of_the_file() {
     damaged(&file(&[&half, &third]), "far more");
 }
 
+/// A file cut at any byte is rejected; a changed byte never aborts the process.
 #[test]
-fn a_file_cut_off_anywhere_or_with_any_byte_changed_ends_in_words() {
+fn damaged_mcap_never_panics() {
     let content = [schema(), channel("/a"), message(b"1")].concat();
     let whole = file(&[&schema(), &channel("/a"), &message(b"0"), &chunk("", content.len() as u64, &content)]);
     assert_eq!(messages(&whole), Ok(2));

@@ -22,8 +22,9 @@ fn message() -> Vec<u8> {
     bytes
 }
 
+/// Every number of a message has its path.
 #[test]
-fn every_number_of_a_message_has_its_path() {
+fn message_numbers_have_paths() {
     let form = MessageDefinition::read(FORM).expect("a form");
     let numbers = form.numbers(&message()).expect("a message");
     let wanted = [
@@ -39,8 +40,9 @@ fn every_number_of_a_message_has_its_path() {
     assert_eq!(numbers.as_slice(), wanted.map(|(path, value)| (path.to_owned(), value)));
 }
 
+/// A message cut at any byte, or with an endless list, is rejected.
 #[test]
-fn a_message_that_is_cut_off_anywhere_is_refused() {
+fn message_cut_anywhere_is_rejected() {
     let form = MessageDefinition::read(FORM).expect("a form");
     let whole = message();
     for length in 0..whole.len() {
@@ -51,16 +53,18 @@ fn a_message_that_is_cut_off_anywhere_is_refused() {
     assert!(form.numbers(&endless).is_err());
 }
 
+/// Invalid, recursive and incomplete definitions are rejected.
 #[test]
-fn forms_that_cannot_be_are_refused() {
+fn invalid_definitions_are_rejected() {
     assert!(MessageDefinition::read("float64").is_err() && MessageDefinition::read("float64[x] a").is_err());
     let own = MessageDefinition::read("Own next\n===\nMSG: a/Own\nOwn next\n").expect("a form");
     assert!(own.numbers(&[0, 1, 0, 0]).is_err());
     assert!(MessageDefinition::read("a/Other other\n").expect("a form").numbers(&[0, 1, 0, 0]).is_err());
 }
 
+/// Nested lists take time in proportion to the message's bytes.
 #[test]
-fn a_message_takes_no_longer_than_its_bytes_say() {
+fn nested_lists_take_bounded_time() {
     // Each message contains ten of the next one: 10^16 fields, none of which would take a byte.
     let mut text = "M1[10] next\n".to_owned();
     for depth in 1..16 {
@@ -76,8 +80,9 @@ fn a_message_takes_no_longer_than_its_bytes_say() {
     assert_eq!(read("uint8 ONLY=1"), Err("it is cut off".to_owned()), "a message without fields takes a byte");
 }
 
+/// The path of a number has a limited length.
 #[test]
-fn paths_do_not_grow_beyond_what_a_joint_has() {
+fn path_length_is_limited() {
     let form = MessageDefinition::read(&format!("uint8[] {}\n", "n".repeat(100_000))).expect("a form");
     let message = [[0, 1, 0, 0].as_slice(), &100_000_u32.to_le_bytes(), &[0; 100_000]].concat();
     assert_eq!(form.numbers(&message), Err("the path of a number in it has more than 256 letters".to_owned()));

@@ -62,7 +62,7 @@ pub struct ReplayArguments {
 
 impl ReplayArguments {
     /// Returns true if the log's own run is to be repeated.
-    pub fn asks_for_the_run(&self) -> bool {
+    pub fn repeats_run(&self) -> bool {
         self.joint.is_none()
     }
 }

@@ -15,7 +15,7 @@ const TOPIC: &str = "/joint/estimates";
 const SCHEMA_NAME: &str = "joint_msgs/msg/Estimates";
 
 /// Writes one of `every` rows as CSV.
-pub fn csv(
+pub fn write_csv(
     out: &mut impl Write,
     samples: &ReplaySamples,
     mut observer: Observer<'_, f32, MAPPED>,
@@ -43,7 +43,7 @@ pub fn csv(
 }
 
 /// Writes one of `every` rows as MCAP.
-pub fn mcap(
+pub fn write_mcap(
     out: &mut impl Write,
     samples: &ReplaySamples,
     mut observer: Observer<'_, f32, MAPPED>,

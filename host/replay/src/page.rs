@@ -10,7 +10,7 @@ use report::plot::Figure;
 use report::provenance::VERSION;
 
 /// Differing values shown at most.
-const SHOWN: usize = 12;
+const VALUES_SHOWN: usize = 12;
 
 /// Whole report; `file` is the text of the joint file.
 pub fn document(record: &ReplayRecord, file: &str, figures: Vec<Figure>) -> Document {
@@ -28,7 +28,7 @@ pub fn document(record: &ReplayRecord, file: &str, figures: Vec<Figure>) -> Docu
         blocks.push(differences(difference));
     }
     blocks.push(section_everywhere("Wiring", vec![wiring(record)]));
-    blocks.push(section_everywhere("What the estimates stand on", standing(record)));
+    blocks.push(section_everywhere("What the estimates stand on", estimate_sources(record)));
     blocks.push(section_bare("What was learnt", findings(&record.learnt, file)));
     blocks.push(section("The estimates", figures.into_iter().map(|figure| picture(figure, Text::default())).collect()));
     Document {
@@ -67,7 +67,7 @@ fn wiring(record: &ReplayRecord) -> Block {
     table(columns, bad.chain(rest).collect())
 }
 
-fn standing(record: &ReplayRecord) -> Vec<Block> {
+fn estimate_sources(record: &ReplayRecord) -> Vec<Block> {
     let mut rows: Vec<(Text, Text)> = vec![
         ("both encoders trusted [%]".into(), number(record.both_encoders_percent)),
         ("gap coordinate valid [%]".into(), number(record.gap_valid_percent)),
@@ -104,7 +104,7 @@ fn differences(of: &Difference) -> Block {
     let mut blocks = vec![bad_notice(heading)];
     if let Some(time) = of.values_time_s {
         let columns = vec![words("value"), numbers("in the log"), numbers("here")];
-        let cells = of.values.iter().take(SHOWN).map(|value| {
+        let cells = of.values.iter().take(VALUES_SHOWN).map(|value| {
             row([text(&value.name), text(format!("{:e}", value.recorded)), text(format!("{:e}", value.replayed))])
         });
         blocks.push(Block::Lead(format!("The first values that were logged after it, at t = {time:.4} s:").into()));

@@ -10,11 +10,11 @@ use crate::samples::ReplaySamples;
 use report::contacts::Contact;
 
 /// Points kept for pictures at most.
-const POINTS: usize = 200_000;
+const POINTS_MAX: usize = 200_000;
 /// Changes of source listed at most.
-const CHANGES: usize = 50;
+const CHANGES_MAX: usize = 50;
 /// Half of a 95 % interval over the standard deviation.
-const REACH: f64 = 1.96;
+const NORMAL_QUANTILE: f64 = 1.96;
 
 /// Source of the estimates from a time on.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -84,7 +84,7 @@ impl<'s> Pass<'s> {
     pub fn new(samples: &'s ReplaySamples) -> Self {
         Self {
             samples,
-            every: samples.len().div_ceil(POINTS).max(1),
+            every: samples.len().div_ceil(POINTS_MAX).max(1),
             points: Vec::new(),
             both: 0,
             gap_valid: 0,
@@ -96,7 +96,7 @@ impl<'s> Pass<'s> {
     }
 
     /// Adds the estimates of a period.
-    pub fn note(&mut self, index: usize, of: &Estimates<f32>) {
+    pub fn add(&mut self, index: usize, of: &Estimates<f32>) {
         let time = self.samples.time[index];
         self.both += usize::from(of.source == Source::Both);
         self.gap_valid += usize::from(of.gap.valid);
@@ -104,7 +104,7 @@ impl<'s> Pass<'s> {
         if self.source.replace(of.source) != Some(of.source) {
             let [estimates_from, encoder_fault] =
                 ["estimates_from", "encoder_fault"].map(|name| word(name, of).to_owned());
-            if self.sources.len() < CHANGES {
+            if self.sources.len() < CHANGES_MAX {
                 self.sources.push(SourceChange { time_s: time, estimates_from, encoder_fault });
             } else {
                 self.sources_left_out += 1;
@@ -131,5 +131,5 @@ fn word(name: &str, of: &Estimates<f32>) -> &'static str {
 }
 
 fn interval(of: Estimate<f32>) -> Interval {
-    Interval { value: of.value.into(), half: REACH * f64::from(of.variance.max(0.0)).sqrt() }
+    Interval { value: of.value.into(), half: NORMAL_QUANTILE * f64::from(of.variance.max(0.0)).sqrt() }
 }

@@ -97,7 +97,7 @@ pub struct ValueDifference {
 
 impl ReplayRecord {
     /// Record of a pass.
-    pub fn of(
+    pub fn new(
         log: &str,
         loaded: &Loaded,
         samples: &ReplaySamples,
@@ -116,7 +116,7 @@ impl ReplayRecord {
             control_rate: 1.0 / samples.period,
             duration_s: samples.time.last().copied().unwrap_or_default(),
             counts_from_angles: samples.from_angles,
-            log_notes: samples.told.clone(),
+            log_notes: samples.log_notes.clone(),
             repeats,
             both_encoders_percent: percent(pass.both),
             gap_valid_percent: percent(pass.gap_valid),

@@ -47,7 +47,7 @@ impl Recorded {
     }
 
     /// Begins a comparison.
-    pub fn compare(&self) -> Agreement<'_> {
+    pub fn comparison(&self) -> Agreement<'_> {
         Agreement { recorded: self, periods: 0, differing: 0, first: None, values: None }
     }
 
@@ -76,7 +76,7 @@ pub struct Agreement<'r> {
 
 impl Agreement<'_> {
     /// Compares the estimates of a period.
-    pub fn note(&mut self, period: usize, estimates: &Estimates<f32>) {
+    pub fn compare(&mut self, period: usize, estimates: &Estimates<f32>) {
         self.periods += 1;
         let differs = self.recorded.digests.get(period) != Some(&digest_of(estimates));
         if differs {
@@ -97,7 +97,7 @@ impl Agreement<'_> {
     }
 
     /// Result of the comparison.
-    pub fn finish(self) -> Repeats {
+    pub fn result(self) -> Repeats {
         let time = |period: usize| self.recorded.time.get(period).copied().unwrap_or_default();
         let missing = self.recorded.digests.len().saturating_sub(self.periods);
         let (values_period, values) = self.values.unwrap_or_default();

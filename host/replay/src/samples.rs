@@ -18,12 +18,12 @@ use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 
 /// Largest relative difference between the rates of rows and of control periods.
-const SAME_RATE: f64 = 0.02;
+const RATE_TOLERANCE: f64 = 0.02;
 /// Rows of estimates written per second.
-const USUAL_RATE: f64 = 1000.0;
+const WRITTEN_RATE: f64 = 1000.0;
 
 /// Remark that only runs of `joint hil TEST` have.
-pub const RUN: &str = "controller";
+pub const RUN_REMARK: &str = "controller";
 
 /// Samples of a log.
 pub struct ReplaySamples {
@@ -34,7 +34,7 @@ pub struct ReplaySamples {
     /// True if counts were computed from angles.
     pub from_angles: bool,
     /// Changes to the rows of the file, a sentence each.
-    pub told: Vec<String>,
+    pub log_notes: Vec<String>,
     /// Commanded motor torque from each row on [N m].
     pub torque: Vec<f64>,
     samples: Vec<Samples<f32>>,
@@ -55,18 +55,18 @@ impl ReplaySamples {
         let accepts = |columns: &Columns| columns.has_required_of([true, !motor_only]);
         let mut columns = file.columns(topic, map, loaded.file.parameters.geometry.ratio_by_teeth(), accepts)?;
         let read = if columns.names().any(|name| name == SAMPLES[0]) {
-            Self::of_run(&columns, period)
-        } else if let Some(controller) = file.remarks().get(RUN) {
-            Err(without_counts(controller))
+            Self::from_run(&columns, period)
+        } else if let Some(controller) = file.remarks().get(RUN_REMARK) {
+            Err(missing_samples(controller))
         } else {
-            Self::of_any(&mut columns, settings, period)
+            Self::from_columns(&mut columns, settings, period)
         };
-        let read = read.and_then(|read| read.at_the_control_rate(settings, refuses));
+        let read = read.and_then(|read| read.check_control_rate(settings, refuses));
         read.map_err(|failure| columns.with_notes(failure).while_doing(file.path().display()))
     }
 
     /// Samples as the run's controller received them.
-    fn of_run(columns: &Columns, period: f64) -> Outcome<Self> {
+    fn from_run(columns: &Columns, period: f64) -> Outcome<Self> {
         let whole = |name: &str| -> Outcome<Vec<u32>> {
             let (_, values) = columns.named(&[name])?;
             let bad = |value: &f64| value.fract() != 0.0 || !(0.0..=f64::from(u32::MAX)).contains(value);
@@ -94,12 +94,12 @@ impl ReplaySamples {
             from_angles: false,
             torque,
             samples: samples.collect(),
-            told: Vec::new(),
+            log_notes: Vec::new(),
         })
     }
 
     /// Samples from the rows of any log, one per control period.
-    fn of_any(columns: &mut Columns, settings: &ObserverSettings, period: f64) -> Outcome<Self> {
+    fn from_columns(columns: &mut Columns, settings: &ObserverSettings, period: f64) -> Outcome<Self> {
         let output: &[&str] = if settings.output_encoder.is_some() { &OUTPUT } else { &[] };
         columns.remove_incomplete(&[&TIMES, &MOTOR, output, &["motor_torque_N_m"]])?;
         time_stamps::resolve(columns)?;
@@ -128,7 +128,7 @@ impl ReplaySamples {
             }
         };
         let samples = (0..time.len()).map(sample).collect();
-        let read = Self { period, from_angles, samples, torque, time, told: columns.notes().to_vec() };
+        let read = Self { period, from_angles, samples, torque, time, log_notes: columns.notes().to_vec() };
         if let Some(row) = read.time.windows(2).position(|pair| pair[1] <= pair[0]) {
             return Err(Failure::new(format!("the time does not rise in {}", columns.place(row + 1)))
                 .with_help("samples must be in the order in which they were taken, each with its own time"));
@@ -137,7 +137,7 @@ impl ReplaySamples {
     }
 
     /// Rejects rows whose rate differs from the control rate.
-    fn at_the_control_rate(
+    fn check_control_rate(
         self,
         settings: &ObserverSettings,
         refuses: &dyn Fn(f64) -> Option<Failure>,
@@ -148,7 +148,7 @@ impl ReplaySamples {
             return Err(Failure::new(format!("there are only {} samples", self.time.len()))
                 .with_help("an observer follows a motion over many control periods"));
         };
-        if (usual / self.period - 1.0).abs() > SAME_RATE {
+        if (usual / self.period - 1.0).abs() > RATE_TOLERANCE {
             let rate = 1.0 / usual;
             let message = format!(
                 "its rows come at {rate:.0} Hz, the control periods of this joint at {} Hz",
@@ -179,13 +179,13 @@ impl ReplaySamples {
     }
 
     /// Default thinning of the written rows.
-    pub fn usual_thinning(&self) -> usize {
-        (1.0 / (USUAL_RATE * self.period)).round().max(1.0) as usize
+    pub fn default_thinning(&self) -> usize {
+        (1.0 / (WRITTEN_RATE * self.period)).round().max(1.0) as usize
     }
 }
 
 /// Failure for a run's log without an observer's samples.
-pub fn without_counts(controller: &str) -> Failure {
+pub fn missing_samples(controller: &str) -> Failure {
     Failure::new(format!("the log of this run of `{controller}` has no observer's samples")).with_help(
         "they are logged of the tested controller, not of rivals, and not by older versions: run the test again, and take \
          the log of its own controller, if that has an observer",

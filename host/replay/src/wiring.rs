@@ -36,7 +36,7 @@ impl WiringFinding {
 }
 
 /// Checks the wiring by the motion of a log.
-pub fn judge(
+pub fn check(
     joint: &JointParameters,
     settings: &ObserverSettings,
     samples: &ReplaySamples,
@@ -63,7 +63,7 @@ pub fn judge(
 }
 
 /// Rejects a log whose wiring contradicts the joint file.
-pub fn refuse(findings: &[WiringFinding]) -> Outcome<()> {
+pub fn reject_contradictions(findings: &[WiringFinding]) -> Outcome<()> {
     let wrong: Vec<&WiringFinding> = findings.iter().filter(|finding| finding.contradicts()).collect();
     let Some(first) = wrong.first() else { return Ok(()) };
     let named: Vec<String> = wrong

@@ -33,35 +33,41 @@ use sizes::{Gears, Sizes};
 use swing::Swing;
 
 /// Step rate of the check of the new joint, as in `joint check` and `joint sim` [Hz].
-const RATE: u32 = 20_000;
+const CHECK_RATE: u32 = 20_000;
 
 /// Makes the joint file; returns the printed text.
 pub fn run(arguments: &Arguments) -> Outcome<String> {
     let path = arguments.path();
-    free(&path)?;
+    check_free(&path)?;
     let sheet = questions::complete(arguments)?;
-    let gears = Gears::of(&sheet).map_err(|failure| {
+    let gears = Gears::derive(&sheet).map_err(|failure| {
         let help = failure.help().unwrap_or_default().to_owned();
-        failure.with_help(format!("{help}\n{}", arguments.equivalent_in_place()))
+        failure.with_help(format!("{help}\n{}", arguments.equivalent_gear_help()))
     })?;
     let seeds = (!arguments.no_measure).then_some(arguments.seeds);
-    Progress::during(|progress| make(&sheet, &gears, &path, seeds, progress))
+    Progress::during(|progress| write_file(&sheet, &gears, &path, seeds, progress))
 }
 
 /// Writes the checked file, measured with `seeds` seeds; returns the printed text.
-fn make(sheet: &DataSheet, gears: &Gears, path: &Path, seeds: Option<u64>, progress: &Progress) -> Outcome<String> {
+fn write_file(
+    sheet: &DataSheet,
+    gears: &Gears,
+    path: &Path,
+    seeds: Option<u64>,
+    progress: &Progress,
+) -> Outcome<String> {
     let mut lines = lines::lines(sheet, gears);
     let unmeasured = lines::text(sheet, gears, &lines, None);
-    tried(path, &unmeasured)?;
+    check_text(path, &unmeasured)?;
     let measure = |seeds| standard_test::measure(&unmeasured, &mut lines, seeds, progress);
     let figures = seeds.map(measure).transpose()?;
     let text = lines::text(sheet, gears, &lines, figures.as_ref());
-    let loaded = tried(path, &text)?;
-    free(path)?;
+    let loaded = check_text(path, &text)?;
+    check_free(path)?;
     write_text(path, &text)?;
     progress.clear();
     warned::tell(&loaded);
-    let mut told = match gears {
+    let mut printed = match gears {
         Gears::Planetary(Sizes { teeth, module_mm, .. }) => format!(
             "{}: {} planets, teeth {}, {}, {}, module {module_mm} mm, ratio {:.4} ({:+.2} %)\n",
             path.display(),
@@ -75,43 +81,44 @@ fn make(sheet: &DataSheet, gears: &Gears, path: &Path, seeds: Option<u64>, progr
         Gears::Equivalent => format!("{}: an equivalent gear, ratio {}\n", path.display(), sheet.ratio),
     };
     if let Some(undercut) = gears.undercut() {
-        told += &format!("{undercut}\n");
+        printed += &format!("{undercut}\n");
     }
     if let Some(Figures { of_file, chance, .. }) = figures {
         let chance = lines::percent(chance);
-        told += &format!(
+        printed += &format!(
             "standard test: {of_file:.4} mrad rms, which chance moves by {chance}; assumptions move it most by\n"
         );
-        for (key, moved) in most(&lines) {
-            told += &format!("  {key:<55} {moved}\n");
+        for (key, moved) in most_influential(&lines) {
+            printed += &format!("  {key:<55} {moved}\n");
         }
     }
     if let Some(bandwidth) = Bandwidth::of(&loaded.file.parameters, &loaded.file.surroundings) {
         let (usual, widest) = (bandwidth.usual_rad_per_s, bandwidth.widest_in_words());
-        told += &format!("bandwidth: {usual} rad/s if none is asked for, at most {widest}\n");
+        printed += &format!("bandwidth: {usual} rad/s if none is asked for, at most {widest}\n");
     }
     let swing = Swing::new(sheet, gears);
     let [limit, balancing] = [swing.limit, sheet.rated_torque / gears.ratio(sheet)];
     if limit < balancing {
-        told += &format!(
+        printed += &format!(
             "note: --motor-peak-torque-Nm {limit} acts before --rated-torque-Nm {}: that takes {balancing:.3} N m at the motor\n",
             sheet.rated_torque
         );
     }
     if let Some(warning) = swing.warning(loaded.file.parameters.link_inertia) {
-        told += &format!("note: {warning}\n");
+        printed += &format!("note: {warning}\n");
     }
     // A board's computing time is no part of a data sheet: the joint is kept, with a note.
-    if let Err(failure) = OnBoard::plant(&loaded.file.parameters, &Board::load(board_file::DEFAULT)?).refuse(RATE) {
+    if let Err(failure) = OnBoard::plant(&loaded.file.parameters, &Board::load(board_file::DEFAULT)?).refuse(CHECK_RATE)
+    {
         let help = failure.full_help().map_or(String::new(), |help| format!(" ({help})"));
-        told += &format!("note: {}{help}\n", failure.message());
+        printed += &format!("note: {}{help}\n", failure.message());
     }
-    told += &format!("next: joint check {0}; joint sim {0}; joint budget {0}\n", path.display());
-    Ok(told)
+    printed += &format!("next: joint check {0}; joint sim {0}; joint budget {0}\n", path.display());
+    Ok(printed)
 }
 
 /// The three most influential assumptions.
-fn most(lines: &[Line]) -> Vec<(String, String)> {
+fn most_influential(lines: &[Line]) -> Vec<(String, String)> {
     let mut assumed: Vec<(&Line, f64)> =
         lines.iter().filter_map(|line| Some((line, line.moved.as_ref()?.as_ref().ok().copied()?))).collect();
     assumed.sort_by(|one, other| other.1.total_cmp(&one.1));
@@ -119,7 +126,7 @@ fn most(lines: &[Line]) -> Vec<(String, String)> {
 }
 
 /// Reads the text like every command, and designs its step.
-fn tried(path: &Path, text: &str) -> Outcome<Loaded> {
+fn check_text(path: &Path, text: &str) -> Outcome<Loaded> {
     let name = path.display().to_string();
     let file = joint_file::read(text).map_err(|problems| {
         let failure = Failure::from_report(diagnostic::report(&name, text, &problems));
@@ -127,12 +134,12 @@ fn tried(path: &Path, text: &str) -> Outcome<Loaded> {
         failure.with_help(format!("{name} was not written{options}"))
     })?;
     let loaded = Loaded { name, text: text.to_owned(), file };
-    check::summary(&loaded, &Board::load(board_file::DEFAULT)?, RATE, None)?;
+    check::summary(&loaded, &Board::load(board_file::DEFAULT)?, CHECK_RATE, None)?;
     Ok(loaded)
 }
 
 /// Rejects an existing path.
-fn free(path: &Path) -> Outcome<()> {
+fn check_free(path: &Path) -> Outcome<()> {
     match path.symlink_metadata() {
         Err(_) => Ok(()),
         Ok(_) => Err(Failure::new(format!("{} is there already, and would be lost", path.display()))

@@ -22,7 +22,7 @@ const fn figure(option: &'static str, question: &'static str, least: f64, most: 
 }
 
 /// Figures that every sheet needs, in order of the questions.
-const NEEDED: [Figure; 7] = [
+const REQUIRED_FIGURES: [Figure; 7] = [
     figure("--ratio", "gear ratio, motor turns for one turn of the link, such as 9", 2.2, 14.0),
     figure("--lost-motion-arcmin", "lost motion at the output in arcmin, such as 15", 0.0, 600.0),
     figure("--stiffness-Nm-per-arcmin", "torsional stiffness at the output in N m/arcmin, such as 1.8", 1e-4, 1e6),
@@ -38,14 +38,14 @@ const NEEDED: [Figure; 7] = [
 ];
 
 /// Ratio of an equivalent gear, not bounded by teeth.
-const ANY_RATIO: Figure =
+const EQUIVALENT_RATIO: Figure =
     figure("--ratio", "gear ratio, motor turns for one turn of the link, such as 59", 1.000_001, 99_999.0);
 
 /// Kinds of gears, as typed by the user.
-const KINDS: [&str; 2] = ["planetary", "equivalent"];
+const GEAR_KINDS: [&str; 2] = ["planetary", "equivalent"];
 
 /// Optional figures.
-const OPTIONAL: [Figure; 6] = [
+const OPTIONAL_FIGURES: [Figure; 6] = [
     figure("--gear-inertia-kg-cm2", "", 1e-9, 1e10),
     figure("--link-inertia-kg-m2", "", 1e-9, 1e6),
     figure("--gravity-torque-Nm", "", -1e6, 1e6),
@@ -81,17 +81,18 @@ pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
     ];
     let stdin = io::stdin();
     // If the ratio is asked for too, the teeth may be unknown as well.
-    let asked = arguments.ratio.is_none() && !arguments.says_teeth() && stdin.is_terminal();
-    let equivalent = arguments.equivalent || (asked && kind(&mut stdin.lock())? == KINDS[1]);
-    let mut needed = NEEDED;
+    let asked = arguments.ratio.is_none() && !arguments.states_teeth() && stdin.is_terminal();
+    let equivalent = arguments.equivalent || (asked && ask_kind(&mut stdin.lock())? == GEAR_KINDS[1]);
+    let mut needed = REQUIRED_FIGURES;
     if equivalent {
-        needed[0] = ANY_RATIO;
+        needed[0] = EQUIVALENT_RATIO;
     }
-    for (figure, value) in needed.iter().zip(given).chain(OPTIONAL.iter().zip(optional)) {
+    for (figure, value) in needed.iter().zip(given).chain(OPTIONAL_FIGURES.iter().zip(optional)) {
         if let Some(value) = value {
             figure.check(value).map_err(|why| {
-                let other_gears = figure.option == NEEDED[0].option && !equivalent && ANY_RATIO.check(value).is_ok();
-                let help = if other_gears { arguments.equivalent_in_place() } else { HELP.to_owned() };
+                let other_gears =
+                    figure.option == REQUIRED_FIGURES[0].option && !equivalent && EQUIVALENT_RATIO.check(value).is_ok();
+                let help = if other_gears { arguments.equivalent_gear_help() } else { HELP.to_owned() };
                 Failure::new(format!("{}: {why}", figure.option)).with_help(help)
             })?;
         }
@@ -102,7 +103,7 @@ pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
         return Err(Failure::new(format!("{name}: the data sheet lacks {}", missing.join(", ")))
             .with_help("give each with its figure; on a terminal they are asked for"));
     }
-    let mut figures = [0.0; NEEDED.len()];
+    let mut figures = [0.0; REQUIRED_FIGURES.len()];
     for ((figure, value), place) in needed.iter().zip(given).zip(&mut figures) {
         *place = match value {
             Some(value) => value,
@@ -136,7 +137,7 @@ pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
 const HELP: &str = "`joint new --help` says what each is, and its unit";
 
 /// Asks for the kind of gears until the answer is valid.
-fn kind(answers: &mut impl BufRead) -> Outcome<&'static str> {
+fn ask_kind(answers: &mut impl BufRead) -> Outcome<&'static str> {
     loop {
         output::remark(
             "planetary, a stage whose teeth are found, or equivalent, gears without teeth such as a spur train, a cycloid or a belt:",
@@ -147,7 +148,7 @@ fn kind(answers: &mut impl BufRead) -> Outcome<&'static str> {
             return Err(Failure::new("no answer for the kind of gears").with_help("give --equivalent, or --ratio"));
         }
         let answer = line.trim();
-        match KINDS.into_iter().find(|kind| !answer.is_empty() && kind.starts_with(answer)) {
+        match GEAR_KINDS.into_iter().find(|kind| !answer.is_empty() && kind.starts_with(answer)) {
             Some(kind) => return Ok(kind),
             None => output::remark(&format!("`{answer}` is neither planetary nor equivalent; once more")),
         }
@@ -156,7 +157,7 @@ fn kind(answers: &mut impl BufRead) -> Outcome<&'static str> {
 
 impl Arguments {
     /// Help for gears that are not a single planetary stage: the same command for an equivalent gear.
-    pub(crate) fn equivalent_in_place(&self) -> String {
+    pub(crate) fn equivalent_gear_help(&self) -> String {
         let mut command = format!("joint new {} --equivalent", quoted(&self.name.display().to_string()));
         let numbers = [
             ("ratio", self.ratio),
@@ -185,7 +186,7 @@ impl Arguments {
     }
 
     /// Returns true if an option that only gears with teeth have was given.
-    fn says_teeth(&self) -> bool {
+    fn states_teeth(&self) -> bool {
         self.equivalent || self.planets.is_some() || self.material.is_some() || self.outer_diameter_mm.is_some()
     }
 }
@@ -238,8 +239,8 @@ mod tests {
     #[test]
     fn an_answer_that_is_none_is_asked_for_again() {
         let mut answers = Cursor::new("nine\n-9\nNaN\n9\n");
-        assert_eq!(NEEDED[0].ask(&mut answers).expect("an answer"), 9.0);
-        let failure = NEEDED[0].ask(&mut answers).expect_err("no more answers");
+        assert_eq!(REQUIRED_FIGURES[0].ask(&mut answers).expect("an answer"), 9.0);
+        let failure = REQUIRED_FIGURES[0].ask(&mut answers).expect_err("no more answers");
         assert!(failure.message().contains("--ratio"), "{failure}");
     }
 }

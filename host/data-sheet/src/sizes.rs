@@ -13,13 +13,13 @@ const MODULES: [f64; 26] = [
     4.0, 5.0, 6.0, 8.0, 10.0,
 ];
 /// Face widths in modules, the usual one first; wider ones if the teeth alone would be softer than the sheet's joint.
-const WIDTHS: [f64; 4] = [10.0, 12.0, 15.0, 20.0];
+const FACE_WIDTHS: [f64; 4] = [10.0, 12.0, 15.0, 20.0];
 /// Modules from the ring's pitch circle to its outside, both sides together: root of 1.25 and rim of 2.
-const RIM: f64 = 6.5;
+const RIM_MODULES: f64 = 6.5;
 /// Form factor: root stress over force by module and face width; 3 holds for 17 teeth and more.
 const FORM_FACTOR: f64 = 3.0;
 /// Thickness of the carrier's disc over the face width.
-const CARRIER: f64 = 0.5;
+const CARRIER_THICKNESS: f64 = 0.5;
 
 /// Sizes of a joint.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,7 +53,7 @@ pub enum Gears {
 
 impl Gears {
     /// Finds teeth, sizes and stiffnesses of a planetary stage.
-    pub fn of(sheet: &DataSheet) -> Outcome<Self> {
+    pub fn derive(sheet: &DataSheet) -> Outcome<Self> {
         if sheet.equivalent { Ok(Self::Equivalent) } else { sizes(sheet).map(Self::Planetary) }
     }
 
@@ -101,9 +101,9 @@ fn sizes(sheet: &DataSheet) -> Outcome<Sizes> {
         let teeth_share = total * sheet::teeth_compliance(&geometry, [mean_stiffness; 2]);
         (width, mean_stiffness, teeth_share)
     };
-    let stiff = WIDTHS.into_iter().map(of_width).find(|(_, _, share)| *share < 1.0);
+    let stiff = FACE_WIDTHS.into_iter().map(of_width).find(|(_, _, share)| *share < 1.0);
     let Some((width, mean_stiffness, teeth_share)) = stiff else {
-        let (_, _, share) = of_width(WIDTHS[WIDTHS.len() - 1]);
+        let (_, _, share) = of_width(FACE_WIDTHS[FACE_WIDTHS.len() - 1]);
         let message = format!(
             "teeth of {} of module {module_mm} mm alone give {:.3} N m/arcmin, and the sheet says {}",
             material.word(),
@@ -121,8 +121,8 @@ fn sizes(sheet: &DataSheet) -> Outcome<Sizes> {
         module_from,
         width_mm: 1e3 * width,
         mean_stiffness,
-        bodies: sheet::discs(&geometry, [of_metre, of_metre, CARRIER * of_metre]),
-        carrier_mm: 1e3 * CARRIER * width,
+        bodies: sheet::discs(&geometry, [of_metre, of_metre, CARRIER_THICKNESS * of_metre]),
+        carrier_mm: 1e3 * CARRIER_THICKNESS * width,
         teeth_share,
     })
 }
@@ -147,7 +147,7 @@ fn geometry(teeth: &Teeth, module_mm: f64) -> Geometry {
 /// Largest module that fits the outer diameter, or smallest that carries the rated torque.
 fn module(sheet: &DataSheet, teeth: &Teeth) -> Outcome<(f64, String)> {
     if let Some(diameter) = sheet.outer_diameter_mm {
-        let outside = f64::from(teeth.ring) + RIM;
+        let outside = f64::from(teeth.ring) + RIM_MODULES;
         let fits = MODULES.into_iter().rev().find(|module| module * outside <= diameter);
         let from = format!("{diameter} mm outer diameter over {outside} modules of ring and rim");
         return fits.map(|module| (module, from)).ok_or_else(|| {
@@ -159,7 +159,7 @@ fn module(sheet: &DataSheet, teeth: &Teeth) -> Outcome<(f64, String)> {
     let stress = |module: f64| {
         let geometry = geometry(teeth, module);
         let force = sheet.rated_torque * sheet::force_per_torque(&geometry);
-        FORM_FACTOR * force / (WIDTHS[0] * (1e-3 * module).powi(2))
+        FORM_FACTOR * force / (FACE_WIDTHS[0] * (1e-3 * module).powi(2))
     };
     let allowed = sheet.material().stress();
     let carries = MODULES.into_iter().find(|module| stress(*module) <= allowed);
@@ -167,7 +167,7 @@ fn module(sheet: &DataSheet, teeth: &Teeth) -> Outcome<(f64, String)> {
         "the rated torque: at most {} MPa at the root of a {} tooth of {} modules face width",
         allowed / 1e6,
         sheet.material().word(),
-        WIDTHS[0]
+        FACE_WIDTHS[0]
     );
     carries.map(|module| (module, from)).ok_or_else(|| {
         let what = format!("no module carries {} N m with teeth of {}", sheet.rated_torque, sheet.material().word());

@@ -16,11 +16,11 @@ use crate::sizes::Gears;
 const ACCELERATION: f64 = 0.5 * TAU * TAU;
 /// Largest share of the motor's limit for the standard test with an assumed link; the rest is for flank changes, which
 /// cross the gap at the limit, and for errors of the model.
-const SHARE: f64 = 0.5;
+const LIMIT_SHARE_MAX: f64 = 0.5;
 /// Inertia of an assumed link over the rotor's inertia at the link, if the motor can swing it.
-const TIMES_ROTOR: f64 = 10.0;
+const LINK_OVER_ROTOR: f64 = 10.0;
 /// Least inertia of an assumed link over the rotor's inertia at the link: a joint needs a link.
-const LEAST_TIMES_ROTOR: f64 = 0.1;
+const LINK_OVER_ROTOR_MIN: f64 = 0.1;
 
 /// Motor torque of the standard test.
 pub struct Swing {
@@ -59,13 +59,13 @@ impl Swing {
 
     /// Inertia of an unstated link [kg m^2], and its origin.
     pub fn assumed_link(&self) -> (f64, &'static str) {
-        let usual = TIMES_ROTOR * self.rotor;
-        if self.torque(usual) <= SHARE * self.limit {
+        let usual = LINK_OVER_ROTOR * self.rotor;
+        if self.torque(usual) <= LIMIT_SHARE_MAX * self.limit {
             return (usual, "ten times the rotor's, at the link");
         }
-        let left = (SHARE * self.limit - self.without_link) * self.ratio * self.efficiency - self.weight;
+        let left = (LIMIT_SHARE_MAX * self.limit - self.without_link) * self.ratio * self.efficiency - self.weight;
         let swung = left / ACCELERATION;
-        let least = LEAST_TIMES_ROTOR * self.rotor;
+        let least = LINK_OVER_ROTOR_MIN * self.rotor;
         if swung > least {
             (swung, "what half of the motor's limit swings in the standard test")
         } else {

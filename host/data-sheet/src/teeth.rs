@@ -6,13 +6,13 @@ use std::f64::consts::PI;
 use report::failure::{Failure, Outcome};
 
 /// Least teeth without undercut by a rack of 20 degrees: 2 / sin^2(20 deg) = 17.1, in practice 17.
-pub const UNDERCUT: u32 = 17;
+pub const UNDERCUT_TEETH: u32 = 17;
 /// Least teeth of a gear, and largest numbers of the sun's and of the ring's teeth.
-const FEWEST: u32 = 9;
-const MOST_OF_SUN: u32 = 80;
-const MOST: u32 = 400;
+const TEETH_MIN: u32 = 9;
+const SUN_TEETH_MAX: u32 = 80;
+const RING_TEETH_MAX: u32 = 400;
 /// Clearance between neighbouring tips [modules].
-const CLEARANCE: f64 = 0.2;
+const TIP_CLEARANCE: f64 = 0.2;
 
 /// Tooth numbers of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,9 +33,9 @@ impl Teeth {
     /// Warning for undercut teeth.
     pub fn undercut(&self) -> Option<String> {
         let (name, teeth) = if self.sun <= self.planet { ("sun", self.sun) } else { ("planets", self.planet) };
-        (teeth < UNDERCUT).then(|| {
+        (teeth < UNDERCUT_TEETH).then(|| {
             format!(
-                "{teeth} teeth of the {name} are fewer than {UNDERCUT}: at 20 deg they are undercut, unless their profile is shifted"
+                "{teeth} teeth of the {name} are fewer than {UNDERCUT_TEETH}: at 20 deg they are undercut, unless their profile is shifted"
             )
         })
     }
@@ -43,7 +43,7 @@ impl Teeth {
     /// Returns true if the tips of neighbouring planets are clear of each other.
     fn neighbours_are_clear(&self) -> bool {
         let spacing = f64::from(self.sun + self.planet) * (PI / f64::from(self.planets)).sin();
-        spacing > f64::from(self.planet) + 2.0 + CLEARANCE
+        spacing > f64::from(self.planet) + 2.0 + TIP_CLEARANCE
     }
 
     /// Cost: undercut first, then the size of the ring, in which a ratio off by 2 % counts as much as doubling the
@@ -51,15 +51,20 @@ impl Teeth {
     fn cost(&self, ratio: f64) -> (u32, f64) {
         let smallest = self.sun.min(self.planet);
         let off = (self.ratio() / ratio - 1.0).abs();
-        (UNDERCUT.saturating_sub(smallest), f64::from(self.ring) * (1.0 + 50.0 * off))
+        (UNDERCUT_TEETH.saturating_sub(smallest), f64::from(self.ring) * (1.0 + 50.0 * off))
     }
 }
 
 /// All tooth numbers that assemble with `planets` planets.
-fn assembling(planets: u32) -> impl Iterator<Item = Teeth> {
-    let suns = FEWEST..=MOST_OF_SUN;
+fn all_assembling(planets: u32) -> impl Iterator<Item = Teeth> {
+    let suns = TEETH_MIN..=SUN_TEETH_MAX;
     let all = suns.flat_map(move |sun| {
-        (FEWEST..=(MOST - sun) / 2).map(move |planet| Teeth { planets, sun, planet, ring: sun + 2 * planet })
+        (TEETH_MIN..=(RING_TEETH_MAX - sun) / 2).map(move |planet| Teeth {
+            planets,
+            sun,
+            planet,
+            ring: sun + 2 * planet,
+        })
     });
     all.filter(|teeth| (teeth.sun + teeth.ring).is_multiple_of(teeth.planets) && teeth.neighbours_are_clear())
 }
@@ -70,11 +75,11 @@ pub fn find(ratio: f64, tolerance: f64, planets: u32) -> Outcome<Teeth> {
     let by_cost = |one: &Teeth, other: &Teeth| {
         one.cost(ratio).partial_cmp(&other.cost(ratio)).unwrap_or(std::cmp::Ordering::Equal)
     };
-    if let Some(teeth) = assembling(planets).filter(|teeth| off(teeth) <= tolerance + 1e-9).min_by(by_cost) {
+    if let Some(teeth) = all_assembling(planets).filter(|teeth| off(teeth) <= tolerance + 1e-9).min_by(by_cost) {
         return Ok(teeth);
     }
     let message = format!("no teeth of ratio {ratio} within {tolerance} % assemble with {planets} planets");
-    let nearest = assembling(planets).min_by(|one, other| off(one).total_cmp(&off(other)));
+    let nearest = all_assembling(planets).min_by(|one, other| off(one).total_cmp(&off(other)));
     let near = nearest.map_or(String::new(), |teeth| {
         format!("the nearest ratio is {:.4} ({}, {}, {} teeth): ", teeth.ratio(), teeth.sun, teeth.planet, teeth.ring)
     });

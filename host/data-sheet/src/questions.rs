@@ -236,8 +236,9 @@ mod tests {
 
     use super::*;
 
+    /// An invalid answer is asked for again, until the input ends.
     #[test]
-    fn an_answer_that_is_none_is_asked_for_again() {
+    fn invalid_answer_is_asked_again() {
         let mut answers = Cursor::new("nine\n-9\nNaN\n9\n");
         assert_eq!(REQUIRED_FIGURES[0].ask(&mut answers).expect("an answer"), 9.0);
         let failure = REQUIRED_FIGURES[0].ask(&mut answers).expect_err("no more answers");

@@ -94,8 +94,9 @@ mod tests {
     const SERVO: Swing =
         Swing { ratio: 353.5, efficiency: 0.6, without_link: 0.0047, weight: 0.0, rotor: 0.05, limit: 0.016 };
 
+    /// An assumed link takes at most half of the motor's limit in the standard test.
     #[test]
-    fn an_assumed_link_takes_half_of_the_limit_at_most() {
+    fn assumed_link_takes_half_the_limit() {
         let (link, why) = SERVO.assumed_link();
         assert!((SERVO.torque(link) / (0.5 * SERVO.limit) - 1.0).abs() < 1e-12, "{link}: {}", SERVO.torque(link));
         assert!(why.contains("half of the motor's limit") && SERVO.warning(link).is_none());

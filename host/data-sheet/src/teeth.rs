@@ -91,8 +91,9 @@ pub fn find(ratio: f64, tolerance: f64, planets: u32) -> Outcome<Teeth> {
 mod tests {
     use super::*;
 
+    /// Every ratio from 3 to 12 has teeth that assemble, unless the planets leave no room.
     #[test]
-    fn every_ratio_from_3_to_12_has_teeth_that_assemble() {
+    fn teeth_assemble_for_ratios_3_to_12() {
         for hundredth in 300..=1200 {
             let ratio = f64::from(hundredth) / 100.0;
             for planets in 3..=5 {
@@ -114,8 +115,9 @@ mod tests {
         }
     }
 
+    /// A ratio without room for the planets is rejected with the nearest possible ratio.
     #[test]
-    fn a_ratio_that_leaves_the_planets_no_room_is_refused_with_the_nearest() {
+    fn impossible_ratio_names_the_nearest() {
         let failure = find(9.0, 1.0, 5).expect_err("no room");
         assert!(failure.message().contains("5 planets"), "{failure}");
         assert!(
@@ -123,8 +125,9 @@ mod tests {
         );
     }
 
+    /// Common ratios are met exactly, and undercut teeth give a warning.
     #[test]
-    fn whole_ratios_are_met_exactly_and_undercut_is_said() {
+    fn common_ratios_are_met_exactly() {
         for ratio in [4.5, 6.0, 6.25, 9.0] {
             assert_eq!(find(ratio, 1.0, 3).expect("teeth").ratio(), ratio);
         }

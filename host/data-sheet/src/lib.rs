@@ -20,7 +20,7 @@ pub use arguments::Arguments;
 use board::device::board::Board;
 use board::device::tick_time::OnBoard;
 use joint_file::named::Loaded;
-use joint_file::{diagnostic, warned};
+use joint_file::{diagnostic, warnings};
 use report::failure::{Failure, Outcome};
 use report::progress::Progress;
 use report::write::write_text;
@@ -66,7 +66,7 @@ fn write_file(
     check_free(path)?;
     write_text(path, &text)?;
     progress.clear();
-    warned::tell(&loaded);
+    warnings::print(&loaded);
     let mut printed = match gears {
         Gears::Planetary(Sizes { teeth, module_mm, .. }) => format!(
             "{}: {} planets, teeth {}, {}, {}, module {module_mm} mm, ratio {:.4} ({:+.2} %)\n",

@@ -53,7 +53,7 @@ use scales::{ScaleUncertainty, Scales};
 use twist::Twist;
 
 use joint_file::named::{self, Loaded};
-use joint_file::warned;
+use joint_file::warnings;
 use std::path::Path;
 
 use log_reader::column_map::{self, MappedJoint};
@@ -155,7 +155,7 @@ fn run_one(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
             .with_help("add --quasi-static for a slow log, or name the motor's own column"));
     }
     let loaded = named::load_with(&arguments.joint, &arguments.set)?;
-    warned::tell(&loaded);
+    warnings::print(&loaded);
     if arguments.simulate {
         return simulate(arguments, &loaded, progress);
     }

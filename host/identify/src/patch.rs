@@ -41,6 +41,6 @@ pub fn patch(loaded: &Loaded, prior: &PriorModel, findings: &[Finding], log: &st
 }
 
 fn set(text: &str, key: &str, value: &str, remark: &str) -> Outcome<String> {
-    joint_file::change_noting(text, key, value, remark)
+    joint_file::change_with_remark(text, key, value, remark)
         .map_err(|refused| Failure::new(format!("{key}: {}", refused.message)).with_help(refused.help))
 }

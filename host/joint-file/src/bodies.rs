@@ -17,15 +17,16 @@ pub(crate) struct Masses {
 pub(crate) fn read(section: &Section<'_>, geometry: Option<&Geometry>) -> Option<Masses> {
     let rotor_inertia = optional(section, "rotor_inertia_kg_m2", 0.0);
     let link_inertia = optional(section, "link_inertia_kg_m2", 0.0);
-    let bodies = if section.has(AT_INPUT) { read_at_input(section, geometry) } else { read_each(section, geometry) };
+    let bodies =
+        if section.has(COMBINED_KEY) { read_at_input(section, geometry) } else { read_each(section, geometry) };
     Some(Masses { bodies: bodies?, rotor_inertia: rotor_inertia?, link_inertia: link_inertia? })
 }
 
 /// Key of a data sheet's inertia of gears and carrier together; ...
-pub(crate) const AT_INPUT: &str = "gear_inertia_at_input_kg_cm2";
+pub(crate) const COMBINED_KEY: &str = "gear_inertia_at_input_kg_cm2";
 
 /// ... it replaces these keys.
-pub(crate) const EACH: [&str; 8] = [
+pub(crate) const SEPARATE_KEYS: [&str; 8] = [
     "sun_equivalent_mass_kg",
     "sun_inertia_kg_m2",
     "planet_equivalent_mass_kg",
@@ -38,12 +39,12 @@ pub(crate) const EACH: [&str; 8] = [
 
 /// Gears and carrier from their inertia at the input, shared as by discs of one thickness.
 fn read_at_input(section: &Section<'_>, geometry: Option<&Geometry>) -> Option<Bodies> {
-    for key in EACH.into_iter().filter(|key| section.has(key)) {
-        let message = format!("`{key}` is part of `{AT_INPUT}`: both say what gears and carrier weigh");
-        let help = format!("keep `{AT_INPUT}`, or the masses of sun, planets and carrier");
+    for key in SEPARATE_KEYS.into_iter().filter(|key| section.has(key)) {
+        let message = format!("`{key}` is part of `{COMBINED_KEY}`: both say what gears and carrier weigh");
+        let help = format!("keep `{COMBINED_KEY}`, or the masses of sun, planets and carrier");
         section.notes.error(section.place(key), message, help);
     }
-    let inertia = section.number(AT_INPUT)?;
+    let inertia = section.number(COMBINED_KEY)?;
     geometry.map(|geometry| sheet::bodies(inertia, geometry))
 }
 

@@ -21,7 +21,7 @@ pub struct Refused {
 }
 
 /// Keys of one quantity in different units or forms: setting one replaces the others.
-const SAME_THING: [&[&str]; 9] = [
+const QUANTITY_FORMS: [&[&str]; 9] = [
     &["half_backlash_um", "backlash_um", "lost_motion_arcmin", "lost_motion_mrad"],
     &["stiffness_N_m_per_rad", "total_stiffness_N_m_per_arcmin"],
     &["motor_coulomb_friction_N_m", "no_load_torque_N_m"],
@@ -34,8 +34,8 @@ const SAME_THING: [&[&str]; 9] = [
 ];
 
 /// Keys that replace several others together; none of these alone replaces them.
-const IN_PLACE_OF: [(&str, &[&str]); 2] =
-    [(bodies::AT_INPUT, &bodies::EACH), ("ratio", &["motor_turns", "link_turns"])];
+const COMBINED_KEYS: [(&str, &[&str]); 2] =
+    [(bodies::COMBINED_KEY, &bodies::SEPARATE_KEYS), ("ratio", &["motor_turns", "link_turns"])];
 
 /// Full path of a key, such as `mesh.sun_planet.half_backlash_um`. Its last parts suffice if they name a single key; a
 /// key of `[mesh]` without a family stands for both. A key shared by equivalent gears and gears with teeth is taken for
@@ -54,12 +54,12 @@ pub fn full_key(key: &str) -> Result<String, Refused> {
 /// assert!(refused.help.contains("equivalent_gear.lost_motion_arcmin"));
 /// ```
 pub fn full_key_in(text: &str, key: &str) -> Result<String, Refused> {
-    find(key, Gears::of(text)).map(|(path, _)| path)
+    find(key, Gears::of_text(text)).map(|(path, _)| path)
 }
 
 /// Value of a key as typed, if the text states the quantity by this key.
 pub fn value<'t>(text: &'t str, key: &str) -> Result<Option<&'t str>, Refused> {
-    let (path, _) = find(key, Gears::of(text))?;
+    let (path, _) = find(key, Gears::of_text(text))?;
     Ok(lookup(text, &path).map(|(_, found)| &text[found]))
 }
 
@@ -76,24 +76,24 @@ pub fn value<'t>(text: &'t str, key: &str) -> Result<Option<&'t str>, Refused> {
 /// assert!(joint_file::change(text, "mesh.backlsh_um", "55").is_err());
 /// ```
 pub fn change(text: &str, key: &str, value: &str) -> Result<String, Refused> {
-    change_noting(text, key, value, REMARK)
+    change_with_remark(text, key, value, DEFAULT_REMARK)
 }
 
 /// Returns the text with a key set to a value, followed by a one-line remark on its origin.
-pub fn change_noting(text: &str, key: &str, value: &str, remark: &str) -> Result<String, Refused> {
-    let (path, known) = find(key, Gears::of(text))?;
+pub fn change_with_remark(text: &str, key: &str, value: &str, remark: &str) -> Result<String, Refused> {
+    let (path, known) = find(key, Gears::of_text(text))?;
     let remark = format!(" # {}", remark.replace(char::is_control, " "));
     let (section, name) = path.rsplit_once('.').unwrap_or(("", &path));
     let mut text = text.to_owned();
     for other in replaced(section, name) {
         if other != path || value.trim().is_empty() {
-            text = without(&text, &other).ok_or_else(|| in_the_way(&other))?;
+            text = without(&text, &other).ok_or_else(|| cannot_remove(&other))?;
         }
     }
     if value.trim().is_empty() {
         return Ok(text);
     }
-    let value = written(value.trim(), known);
+    let value = as_toml(value.trim(), known);
     let candidates = [
         replace(&text, &path, &value, &remark),
         insert(&text, section, name, &value, &remark),
@@ -108,9 +108,9 @@ pub fn change_noting(text: &str, key: &str, value: &str, remark: &str) -> Result
 }
 
 /// Remark behind a changed value, instead of the old value's source.
-const REMARK: &str = "set on the command line";
+const DEFAULT_REMARK: &str = "set on the command line";
 
-fn in_the_way(path: &str) -> Refused {
+fn cannot_remove(path: &str) -> Refused {
     let message = format!("`{path}` is in the way, and cannot be taken out by itself");
     Refused { message, help: "write every key of the joint file on a line of its own".into() }
 }
@@ -118,8 +118,8 @@ fn in_the_way(path: &str) -> Refused {
 /// Paths replaced by setting a key: the key itself, other forms of it, and for a key of both mesh families the keys of
 /// either.
 fn replaced(section: &str, name: &str) -> Vec<String> {
-    let same = SAME_THING.iter().find(|forms| forms.contains(&name)).copied();
-    let parts = IN_PLACE_OF.iter().find(|(whole, _)| *whole == name).map(|(_, parts)| *parts);
+    let same = QUANTITY_FORMS.iter().find(|forms| forms.contains(&name)).copied();
+    let parts = COMBINED_KEYS.iter().find(|(whole, _)| *whole == name).map(|(_, parts)| *parts);
     let forms = [same, parts].into_iter().flatten().flatten();
     let forms = forms.copied().filter(|form| *form != name).chain([name]);
     let sections: &[&str] = match section {
@@ -152,7 +152,7 @@ enum Gears {
 
 impl Gears {
     /// Kind of gears of a text; `None` if it is no TOML, or describes no gears.
-    fn of(text: &str) -> Option<Self> {
+    fn of_text(text: &str) -> Option<Self> {
         let table = DeTable::parse(text).ok()?;
         let holds = |section: &str| table.get_ref().contains_key(section);
         match (holds(EQUIVALENT), holds("geometry")) {
@@ -163,25 +163,25 @@ impl Gears {
     }
 
     /// Returns true if a joint with these gears may state a key.
-    fn have(self, path: &str) -> bool {
+    fn may_state(self, path: &str) -> bool {
         let top = path.split('.').next().unwrap_or(path);
         match self {
-            Self::Equivalent => !equivalent::OF_TEETH.contains(&top),
+            Self::Equivalent => !equivalent::TEETH_KEYS.contains(&top),
             Self::WithTeeth => top != EQUIVALENT,
         }
     }
 
     /// Rejects a key of the other kind of gears; the help names the corresponding key.
-    fn refuse(self, path: &str) -> Refused {
+    fn reject(self, path: &str) -> Refused {
         let (of, has) = match self {
             Self::Equivalent => ("of gears with teeth", "an equivalent gear"),
             Self::WithTeeth => ("of an equivalent gear", "gears with teeth"),
         };
         let name = path.rsplit('.').next().unwrap_or(path);
-        let forms = SAME_THING.iter().find(|forms| forms.contains(&name)).copied().unwrap_or_default();
+        let forms = QUANTITY_FORMS.iter().find(|forms| forms.contains(&name)).copied().unwrap_or_default();
         let same = [name].into_iter().chain(forms.iter().copied()).find_map(|form| {
             let of_form = |path: &String| path.rsplit('.').next() == Some(form);
-            paths().map(|(path, _)| path).find(|path| self.have(path) && of_form(path))
+            paths().map(|(path, _)| path).find(|path| self.may_state(path) && of_form(path))
         });
         let help = match same {
             Some(same) => format!("write {same}"),
@@ -195,13 +195,13 @@ const EQUIVALENT: &str = "equivalent_gear";
 
 fn find(key: &str, gears: Option<Gears>) -> Result<(String, &'static Key), Refused> {
     let key = key.trim();
-    let ends_so = |path: &str| path == key || path.strip_suffix(key).is_some_and(|rest| rest.ends_with('.'));
-    let mut found: Vec<_> = paths().filter(|(path, _)| ends_so(path)).collect();
+    let matches_end = |path: &str| path == key || path.strip_suffix(key).is_some_and(|rest| rest.ends_with('.'));
+    let mut found: Vec<_> = paths().filter(|(path, _)| matches_end(path)).collect();
     if let Some(gears) = gears {
         let other = found.first().map(|(path, _)| path.clone());
-        found.retain(|(path, _)| gears.have(path));
+        found.retain(|(path, _)| gears.may_state(path));
         if let (true, Some(other)) = (found.is_empty(), other) {
-            return Err(gears.refuse(&other));
+            return Err(gears.reject(&other));
         }
     }
     let depth = |path: &str| path.matches('.').count();
@@ -235,7 +235,7 @@ fn unknown(key: &str) -> Refused {
         spelling::nearest(name, all.iter().map(|(_, known)| known.name))
     });
     let help = match near {
-        _ if keys::find_section(key) => format!("[{key}] is a section: name one of its keys, as in {key}.KEY"),
+        _ if keys::is_section(key) => format!("[{key}] is a section: name one of its keys, as in {key}.KEY"),
         Some(near) => {
             let hint = all.iter().find(|(path, _)| path.ends_with(near)).map_or("", |(_, known)| known.hint);
             format!("did you mean `{near}`? {hint}")
@@ -246,7 +246,7 @@ fn unknown(key: &str) -> Refused {
 }
 
 /// Value in TOML: words are quoted, and numbers that only TOML rejects are rewritten.
-fn written(value: &str, key: &Key) -> String {
+fn as_toml(value: &str, key: &Key) -> String {
     let is_text = matches!(key.kind, Kind::Text | Kind::Choice(_));
     let quoted = || {
         let escaped = value.chars().map(|letter| match letter {

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use std::error::Error;
 use std::fmt;
 
-use crate::notes::MOST_PROBLEMS;
+use crate::notes::PROBLEMS_MAX;
 use crate::{Problem, Severity};
 use miette::{Diagnostic, LabeledSpan, NamedSource, Report};
 use report::escape::{escaped, place_in_escaped};
@@ -24,9 +24,9 @@ struct Rejected {
 struct Place(Problem, Option<usize>);
 
 /// Longest message beside a text that is not drawn [letters].
-const LONGEST_MESSAGE: usize = 300;
+const MESSAGE_LETTERS_MAX: usize = 300;
 /// Longest line that is drawn [bytes]: no terminal shows more, and drawing fails at 65,536 columns.
-const LONGEST_DRAWN: usize = 4096;
+const LINE_BYTES_MAX: usize = 4096;
 
 /// Report of all problems of the file called `name`.
 ///
@@ -39,7 +39,7 @@ const LONGEST_DRAWN: usize = 4096;
 /// assert!(shown.contains("3, 4 or 5") || shown.contains("3 to 5"), "{shown}");
 /// ```
 pub fn report(name: &str, text: &str, problems: &[Problem]) -> Report {
-    let drawn = text.split('\n').all(|line| line.len() <= LONGEST_DRAWN);
+    let drawn = text.split('\n').all(|line| line.len() <= LINE_BYTES_MAX);
     let line = |problem: &Problem| {
         let before = text.as_bytes().iter().take(problem.span.start);
         1 + before.filter(|byte| **byte == b'\n').count()
@@ -69,7 +69,7 @@ impl fmt::Display for Rejected {
         let errors = self.places.iter().filter(|place| place.0.severity == Severity::Error).count();
         let count = match errors {
             1 => "one problem".to_owned(),
-            _ if self.places.len() >= MOST_PROBLEMS => format!("{errors} problems, and there may be more"),
+            _ if self.places.len() >= PROBLEMS_MAX => format!("{errors} problems, and there may be more"),
             _ => format!("{errors} problems"),
         };
         write!(formatter, "{} cannot be used: {count}", self.name)
@@ -119,7 +119,7 @@ impl Diagnostic for Place {
 
 /// Message cut after the limit, as it may quote a very long word.
 fn shortened(message: &str) -> Cow<'_, str> {
-    match message.char_indices().nth(LONGEST_MESSAGE) {
+    match message.char_indices().nth(MESSAGE_LETTERS_MAX) {
         Some((end, _)) => format!("{} ...", &message[..end]).into(),
         None => message.into(),
     }

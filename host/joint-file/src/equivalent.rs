@@ -6,20 +6,20 @@ use crate::problem::Severity;
 use crate::section::Section;
 
 /// Sections and keys on teeth, invalid for an equivalent gear.
-pub(crate) const OF_TEETH: [&str; 7] =
+pub(crate) const TEETH_KEYS: [&str; 7] =
     ["coherence", "characteristic_length_um", "geometry", "mesh", "compliance", "contact", "excitation"];
 
 /// Keys of `[bodies]` for an equivalent gear.
-const BODIES: [&str; 3] = ["gear_inertia_at_input_kg_cm2", "rotor_inertia_kg_m2", "link_inertia_kg_m2"];
+const BODY_KEYS: [&str; 3] = ["gear_inertia_at_input_kg_cm2", "rotor_inertia_kg_m2", "link_inertia_kg_m2"];
 
 /// Most decimals of an exact ratio; with more it is a rounded fraction.
-const MOST_PLACES: usize = 5;
+const EXACT_DECIMALS_MAX: usize = 5;
 
 /// Decimals from which a ratio may be a rounded fraction.
-const MANY_PLACES: usize = 3;
+const AMBIGUOUS_DECIMALS: usize = 3;
 
 /// Largest whole number of a ratio: the difference of two encoders is counted in units of it.
-const GREATEST_WHOLE: u64 = 100_000_000;
+const WHOLE_NUMBER_MAX: u64 = 100_000_000;
 
 /// Ratio and parameters, as far as they are valid; problems are noted.
 pub(crate) fn read(
@@ -28,7 +28,7 @@ pub(crate) fn read(
     name: Option<heapless::String<32>>,
     rated_output_torque: Option<f64>,
 ) -> (Option<f64>, Option<JointParameters>) {
-    for word in OF_TEETH.into_iter().filter(|word| top.has(word)) {
+    for word in TEETH_KEYS.into_iter().filter(|word| top.has(word)) {
         let message = format!("`{word}` is of gears with teeth, and [equivalent_gear] has none");
         let help = "leave one of the two out: [equivalent_gear] alone says ratio, lost motion, stiffness and damping";
         top.notes.error(top.place(word), message, help);
@@ -95,7 +95,7 @@ fn decimal(section: &Section<'_>) -> Option<[u32; 2]> {
     let note = |message: String, help: String| {
         section.notes.problem(section.place("ratio"), message, help, Severity::Warning);
     };
-    if places > MOST_PLACES || digits > GREATEST_WHOLE {
+    if places > EXACT_DECIMALS_MAX || digits > WHOLE_NUMBER_MAX {
         let [over, under] = simple;
         note(
             format!("`ratio` = {typed} is a fraction that was rounded, and is taken as {over}/{under}"),
@@ -107,7 +107,7 @@ fn decimal(section: &Section<'_>) -> Option<[u32; 2]> {
     // One ratio in six with two decimals may be a fraction of teeth; a divisor of 100 is exact.
     let may_be_rounded = few * few < under && under % few != 0;
     let turns = format!("`motor_turns` = {over} and `link_turns` = {few} in place of `ratio`");
-    if places >= MANY_PLACES {
+    if places >= AMBIGUOUS_DECIMALS {
         let help = match may_be_rounded {
             true => format!("give {turns} if the teeth do so; else the whole turns after which both are back"),
             false => "give `motor_turns` and `link_turns` in place of `ratio`: whole numbers of turns after which both are back"
@@ -144,20 +144,20 @@ fn divisor(a: u32, b: u32) -> u32 {
 
 /// Inertias of the gear at its input, the rotor and the link [kg m^2].
 fn masses(section: &Section<'_>) -> Option<[f64; 3]> {
-    for key in section.keys().filter(|key| !BODIES.contains(key)) {
+    for key in section.keys().filter(|key| !BODY_KEYS.contains(key)) {
         let message = format!("`{key}` is of gears with teeth, and [equivalent_gear] has none");
         let help = "give the gear's inertia at its input: gear_inertia_at_input_kg_cm2, rotor and link left out";
         section.notes.error(section.place(key), message, help);
     }
-    let [gear, rotor, link] = BODIES.map(|key| if section.has(key) { section.number(key) } else { Some(0.0) });
+    let [gear, rotor, link] = BODY_KEYS.map(|key| if section.has(key) { section.number(key) } else { Some(0.0) });
     let [gear, rotor, link] = [gear?, rotor?, link?];
     if link == 0.0 {
         let help = "give `link_inertia_kg_m2` in [bodies], in kg m^2 about the joint's axis";
-        section.notes.error(section.place(BODIES[2]), "an equivalent gear needs a link behind it", help);
+        section.notes.error(section.place(BODY_KEYS[2]), "an equivalent gear needs a link behind it", help);
     }
     if gear + rotor == 0.0 {
         let help = "give `gear_inertia_at_input_kg_cm2`, `rotor_inertia_kg_m2` or both in [bodies]";
-        section.notes.error(section.place(BODIES[1]), "nothing turns at the motor's side of the gear", help);
+        section.notes.error(section.place(BODY_KEYS[1]), "nothing turns at the motor's side of the gear", help);
     }
     (link > 0.0 && gear + rotor > 0.0).then_some([gear, rotor, link])
 }

@@ -54,7 +54,7 @@ use Unit::{Arcmin, Degrees, Micro, Milli, PerArcmin, Si, SquareCentimetres};
 const MASS: Bound = Between(1e-6, 1e6);
 const INERTIA: Bound = Between(1e-12, 1e6);
 const TORQUE: Bound = Between(1e-6, 1e9);
-const MAY_BE_ABSENT: Bound = Between(0.0, 1e6);
+const ZERO_OR_MORE: Bound = Between(0.0, 1e6);
 const RADIUS: Kind = Number(Milli, Between(0.5, 5000.0));
 const RADIUS_HINT: &str = "base radius in mm (40 mm is 40, not 0.04); or give `module_mm` and leave all radii out";
 const MASS_HINT: &str = "equivalent mass I / r^2 in kg along the line of action: \"Inertia\" in the paper's Table 1";
@@ -181,7 +181,7 @@ pub(crate) const KEYS: &[Key] = &[
     key(
         "bodies",
         "planet_mass_kg",
-        Number(Si, MAY_BE_ABSENT),
+        Number(Si, ZERO_OR_MORE),
         "mass of one planet in kg, which orbits with the carrier",
     ),
     key(
@@ -211,13 +211,13 @@ pub(crate) const KEYS: &[Key] = &[
     key(
         "bodies",
         "rotor_inertia_kg_m2",
-        Number(Si, MAY_BE_ABSENT),
+        Number(Si, ZERO_OR_MORE),
         "inertia of the motor rotor on the sun shaft in kg m^2; default 0",
     ),
     key(
         "bodies",
         "link_inertia_kg_m2",
-        Number(Si, MAY_BE_ABSENT),
+        Number(Si, ZERO_OR_MORE),
         "inertia of the link on the carrier in kg m^2; default 0",
     ),
     // Compliance
@@ -342,27 +342,27 @@ pub(crate) const KEYS: &[Key] = &[
         "torque limit of the motor; default: twice the drive torque",
     ),
     // Drive train
-    key("drive_train", "motor_coulomb_friction_N_m", Number(Si, MAY_BE_ABSENT), FRICTION_HINT),
+    key("drive_train", "motor_coulomb_friction_N_m", Number(Si, ZERO_OR_MORE), FRICTION_HINT),
     key(
         "drive_train",
         "no_load_torque_N_m",
-        Number(Si, MAY_BE_ABSENT),
+        Number(Si, ZERO_OR_MORE),
         "torque at the input that turns the joint without a load, all dry friction together, from the data sheet",
     ),
     key(
         "drive_train",
         "motor_viscous_friction_N_m_s_per_rad",
-        Number(Si, MAY_BE_ABSENT),
+        Number(Si, ZERO_OR_MORE),
         "viscous friction in N m s/rad of motor speed",
     ),
-    key("drive_train", "cogging_torque_N_m", Number(Si, MAY_BE_ABSENT), "amplitude of the cogging torque"),
+    key("drive_train", "cogging_torque_N_m", Number(Si, ZERO_OR_MORE), "amplitude of the cogging torque"),
     key(
         "drive_train",
         "cogging_periods_per_turn",
         Whole(1, 10_000),
         "cogging periods in a turn: least common multiple of slots and poles",
     ),
-    key("drive_train", "load_coulomb_friction_N_m", Number(Si, MAY_BE_ABSENT), FRICTION_HINT),
+    key("drive_train", "load_coulomb_friction_N_m", Number(Si, ZERO_OR_MORE), FRICTION_HINT),
     key(
         "drive_train",
         "load_stribeck_rise_ratio",
@@ -378,7 +378,7 @@ pub(crate) const KEYS: &[Key] = &[
     key(
         "drive_train",
         "load_viscous_friction_N_m_s_per_rad",
-        Number(Si, MAY_BE_ABSENT),
+        Number(Si, ZERO_OR_MORE),
         "viscous friction in N m s/rad of link speed",
     ),
     key(
@@ -576,7 +576,7 @@ pub(crate) const KEYS: &[Key] = &[
 ];
 
 /// Returns true for the name of a section.
-pub(crate) fn find_section(name: &str) -> bool {
+pub(crate) fn is_section(name: &str) -> bool {
     KEYS.iter().any(|key| matches!(key.kind, Kind::Section) && key.name == name)
 }
 

@@ -31,10 +31,10 @@ pub mod sheet;
 mod spelling;
 mod table;
 #[cfg(feature = "diagnostics")]
-pub mod warned;
+pub mod warnings;
 pub mod wording;
 
-pub use change::{Refused, change, change_noting, full_key, full_key_in, value};
+pub use change::{Refused, change, change_with_remark, full_key, full_key_in, value};
 pub use contents::JointFile;
 pub use motion::Profile;
 pub use notes::{DERIVED, Notes, Source};

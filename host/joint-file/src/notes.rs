@@ -20,7 +20,7 @@ pub struct Source {
 pub const DERIVED: &str = "derived from";
 
 /// Problems reported at most; after so many fixes the user runs the command again.
-pub(crate) const MOST_PROBLEMS: usize = 100;
+pub(crate) const PROBLEMS_MAX: usize = 100;
 
 /// Problems and remarks of one file, collected section by section.
 pub struct Notes<'t> {
@@ -46,7 +46,7 @@ impl<'t> Notes<'t> {
         let problem = Problem { span, message: message.into(), help: help.into(), severity };
         let mut problems = self.problems.borrow_mut();
         // [mesh] is read once per mesh family and would report its problems twice.
-        if problems.len() < MOST_PROBLEMS && !problems.contains(&problem) {
+        if problems.len() < PROBLEMS_MAX && !problems.contains(&problem) {
             problems.push(problem);
         }
     }
@@ -62,7 +62,7 @@ impl<'t> Notes<'t> {
 
     /// Returns true once the limit of problems is reached.
     pub(crate) fn is_full(&self) -> bool {
-        self.problems.borrow().len() == MOST_PROBLEMS
+        self.problems.borrow().len() == PROBLEMS_MAX
     }
 
     /// Returns true if any problem is an error.

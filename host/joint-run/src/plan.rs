@@ -13,7 +13,7 @@ use board::twin;
 use clap::ValueEnum;
 use joint_file::JointFile;
 use joint_file::named::{self, Loaded};
-use joint_file::warned;
+use joint_file::warnings;
 use link::messages::{Role, RunMode, RunSettings};
 use model_core::gears::certificate::Substeps;
 use report::command_line::quoted;
@@ -75,7 +75,7 @@ impl RunPlan {
     /// Reads and designs everything that a run needs.
     pub fn new(request: &RunRequest<'_>) -> Outcome<Self> {
         let loaded = named::load(request.file)?;
-        warned::tell(&loaded);
+        warnings::print(&loaded);
         let path = image::joint_file(request.file, &loaded.name);
         let Loaded { name, file: joint, .. } = loaded;
         let parameters = &joint.parameters;

@@ -32,7 +32,7 @@ use scenario::controller_log::{self, ObserverOrigin};
 
 use identify::memory::Content;
 use joint_file::named::{self, Loaded};
-use joint_file::warned;
+use joint_file::warnings;
 use log_reader::column_map::ColumnMap;
 use log_reader::log_file::LogFile;
 use report::document::{html, terminal};
@@ -154,7 +154,7 @@ fn load(arguments: &ReplayArguments, origin: Option<&ObserverOrigin>, controller
             .with_help(format!("name a joint file or preset: joint replay {log} JOINT")));
     };
     let loaded = named::load_with(joint, &arguments.set)?;
-    warned::tell(&loaded);
+    warnings::print(&loaded);
     Ok(loaded)
 }
 

@@ -18,12 +18,12 @@ pub(super) struct Limits {
 }
 
 /// No limit.
-pub(super) const ANY: f64 = f64::INFINITY;
+pub(super) const UNLIMITED: f64 = f64::INFINITY;
 
 impl Limits {
     /// Limits a figure from above.
     pub(super) const fn above(odd: f64, possible: f64) -> Self {
-        Self { odd: (-ANY, odd), possible: (-ANY, possible) }
+        Self { odd: (-UNLIMITED, odd), possible: (-UNLIMITED, possible) }
     }
 
     /// Severity of a figure; `None` within both ranges.
@@ -41,7 +41,7 @@ impl Judge<'_> {
     /// Judges a figure of the first of `keys` in the file; `complaint` gives message and help from the excess (true if
     /// too large) and the key's name. A derived value is no typing error: the help names its origin instead. Returns
     /// true after a complaint.
-    pub(super) fn judge(
+    pub(super) fn check_figure(
         &self,
         keys: &[&str],
         figure: f64,

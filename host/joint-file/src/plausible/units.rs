@@ -6,15 +6,15 @@ use super::judge::figure;
 pub(super) struct Slip {
     pub unit: &'static str,
     pub factor: f64,
-    pub far_fetched: f64,
+    pub improbability: f64,
 }
 
-const fn slip(unit: &'static str, factor: f64, far_fetched: f64) -> Slip {
-    Slip { unit, factor, far_fetched }
+const fn slip(unit: &'static str, factor: f64, improbability: f64) -> Slip {
+    Slip { unit, factor, improbability }
 }
 
 /// Slips of torsional stiffness, from N m/rad, as in data sheets and drawings.
-pub(super) const STIFFNESS: &[Slip] = &[
+pub(super) const STIFFNESS_SLIPS: &[Slip] = &[
     slip("N m/arcmin", 3437.75, 0.0),
     slip("N m/deg", 57.295_78, 0.5),
     slip("kN m/rad", 1e3, 0.5),
@@ -31,7 +31,7 @@ pub(super) const STIFFNESS: &[Slip] = &[
 /// the figure goes with its `power`. Without one, names the key's unit.
 pub(super) fn likely(slips: &[Slip], value: f64, judged: f64, power: i32, usual: (f64, f64), key_unit: &str) -> String {
     let middle = (usual.0 * usual.1).sqrt();
-    let score = |slip: &&Slip| (judged * slip.factor.powi(power) / middle).ln().abs() + slip.far_fetched;
+    let score = |slip: &&Slip| (judged * slip.factor.powi(power) / middle).ln().abs() + slip.improbability;
     let fits = slips.iter().filter(|slip| {
         let figure = judged * slip.factor.powi(power);
         usual.0 <= figure && figure <= usual.1
@@ -49,10 +49,10 @@ pub(super) fn likely(slips: &[Slip], value: f64, judged: f64, power: i32, usual:
 }
 
 /// Slips of masses.
-pub(super) const MASS: &[Slip] = &[slip("g", 1e-3, 0.0), slip("t", 1e3, 1.0)];
+pub(super) const MASS_SLIPS: &[Slip] = &[slip("g", 1e-3, 0.0), slip("t", 1e3, 1.0)];
 
 /// Slips of moments of inertia.
-pub(super) const INERTIA: &[Slip] = &[
+pub(super) const INERTIA_SLIPS: &[Slip] = &[
     slip("kg cm^2", 1e-4, 0.0),
     slip("g cm^2", 1e-7, 0.0),
     slip("g m^2", 1e-3, 0.5),
@@ -62,7 +62,7 @@ pub(super) const INERTIA: &[Slip] = &[
 ];
 
 /// Slips of moments of inertia at the input, in kg cm^2.
-pub(super) const INERTIA_AT_INPUT: &[Slip] = &[
+pub(super) const INERTIA_AT_INPUT_SLIPS: &[Slip] = &[
     slip("g cm^2", 1e-3, 0.0),
     slip("g mm^2", 1e-5, 0.2),
     slip("kg mm^2", 1e-2, 0.2),
@@ -71,9 +71,9 @@ pub(super) const INERTIA_AT_INPUT: &[Slip] = &[
 ];
 
 /// Slips of torques.
-pub(super) const TORQUE: &[Slip] =
+pub(super) const TORQUE_SLIPS: &[Slip] =
     &[slip("mN m", 1e-3, 0.0), slip("N cm", 1e-2, 0.2), slip("kN m", 1e3, 0.2), slip("N mm once too often", 1e3, 0.5)];
 
 /// Slips of stiffness along the line of action.
-pub(super) const MESH_STIFFNESS: &[Slip] =
+pub(super) const MESH_STIFFNESS_SLIPS: &[Slip] =
     &[slip("N/mm", 1e3, 0.0), slip("N/um", 1e6, 0.0), slip("kN/m", 1e3, 1.0), slip("mN/m", 1e-3, 0.5)];

@@ -17,7 +17,7 @@ use model_core::observer::{MEMORY_BYTES, Memory, MemoryError};
 
 use board::session::Session;
 use joint_file::named::{self, Loaded};
-use joint_file::warned;
+use joint_file::warnings;
 use report::failure::{Failure, Outcome};
 use report::input;
 use report::output;
@@ -43,7 +43,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
 /// A joint file, whose warnings are told.
 fn load_joint(file: &Path) -> Outcome<Loaded> {
     let loaded = named::load(file)?;
-    warned::tell(&loaded);
+    warnings::print(&loaded);
     Ok(loaded)
 }
 

@@ -7,7 +7,7 @@ use crate::named::Loaded;
 use crate::problem::Severity;
 
 /// Prints each warning with its file and line.
-pub fn tell(loaded: &Loaded) {
+pub fn print(loaded: &Loaded) {
     for warning in lines(loaded) {
         output::remark(&warning);
     }

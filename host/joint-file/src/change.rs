@@ -345,8 +345,9 @@ mod tests {
         [joint.sun_planet.half_backlash[1], joint.ring_planet.half_backlash[1]]
     }
 
+    /// Setting every key of every preset to its stated value leaves the joint unchanged.
     #[test]
-    fn every_key_of_every_preset_can_be_set_to_what_it_is_without_changing_the_joint() {
+    fn setting_the_stated_value_changes_nothing() {
         for name in PRESETS {
             let text = preset(name).expect("a preset");
             let before = read(text).expect("a good preset");
@@ -360,23 +361,26 @@ mod tests {
         }
     }
 
+    /// A key of one mesh family gets its own section.
     #[test]
-    fn a_key_of_one_mesh_family_gets_a_section_of_its_own() {
+    fn family_key_gets_own_section() {
         let changed = change(q1(), "sun_planet.half_backlash_um", "60").expect("a known key");
         assert_eq!(half_backlash(&changed), [60e-6, 40e-6]);
         let again = change(&changed, "mesh.sun_planet.half_backlash_um", "70").expect("a known key");
         assert_eq!(half_backlash(&again), [70e-6, 40e-6]);
     }
 
+    /// A key of both mesh families replaces the key of one.
     #[test]
-    fn a_key_of_both_families_replaces_what_one_of_them_had() {
+    fn common_key_replaces_family_key() {
         let own = change(q1(), "ring_planet.half_backlash_um", "60").expect("a known key");
         let both = change(&own, "half_backlash_um", "10").expect("a known key");
         assert_eq!(half_backlash(&both), [10e-6, 10e-6]);
     }
 
+    /// Another form of a quantity replaces the stated form.
     #[test]
-    fn another_form_of_the_same_quantity_takes_its_place() {
+    fn other_form_replaces_quantity() {
         let changed = change(q1(), "backlash_um", "30").expect("a known key");
         assert_eq!(half_backlash(&changed), [15e-6, 15e-6]);
         let own = change(q1(), "sun_planet.backlash_um", "30").expect("a known key");
@@ -385,8 +389,9 @@ mod tests {
         assert!(read(&mass).is_ok(), "{mass}");
     }
 
+    /// An empty value removes the key, and words need no quotes.
     #[test]
-    fn an_empty_value_leaves_the_key_out_and_words_need_no_quotes() {
+    fn empty_value_removes_the_key() {
         let paper = preset("paper").expect("a preset");
         let still = change(paper, "mesh_frequency_over_omega_n", "").expect("a known key");
         let angle = change(&still, "excitation.mode", "angle").expect("a known key");
@@ -394,16 +399,18 @@ mod tests {
         assert_eq!(joint.excitation, parameters::Excitation::Angle);
     }
 
+    /// Numbers may be written as in any programming language.
     #[test]
-    fn numbers_may_be_written_as_any_language_writes_them() {
+    fn common_number_formats_are_accepted() {
         for (text, value) in [("60", 60e-6), ("60.", 60e-6), (".5e2", 50e-6), ("[60, 60.0, 6e1]", 60e-6)] {
             let changed = change(q1(), "mesh.half_backlash_um", text).expect("a known key");
             assert_eq!(half_backlash(&changed), [value, value], "{text}");
         }
     }
 
+    /// Bad values are left to the reader's checks and cannot inject lines.
     #[test]
-    fn bad_values_are_left_to_the_reader_and_cannot_smuggle_in_lines() {
+    fn bad_values_cannot_inject_lines() {
         for value in ["6000", "NaN", "inf", "sixty", "-1", "60 um", "60\n[x]\ny=1", "[1, 2]", "\"60\""] {
             let changed = change(q1(), "mesh.half_backlash_um", value).expect("a known key");
             let problems = read(&changed).expect_err(value);
@@ -412,8 +419,9 @@ mod tests {
         }
     }
 
+    /// An unknown key is rejected with the nearest known one.
     #[test]
-    fn an_unknown_key_is_answered_with_the_nearest_one() {
+    fn unknown_key_suggests_nearest() {
         let refused = |key| change(q1(), key, "1").expect_err(key);
         assert!(refused("half_backlsh_um").help.contains("`half_backlash_um`"));
         assert!(refused("sun_planet.half_backlash").help.contains("`sun_planet.half_backlash_um`"));
@@ -428,8 +436,9 @@ mod tests {
         assert!(refused("bits").message.contains("more than one"));
     }
 
+    /// Sections in one line or with dotted keys can be changed too.
     #[test]
-    fn sections_written_in_one_line_or_with_dots_can_be_changed_too() {
+    fn inline_sections_can_be_changed() {
         let inline = "name = \"x\"\ncontact = { dead_zone = \"sharp\" }\n";
         let changed = change(inline, "damping_law", "paper").expect("a known key");
         assert!(changed.contains("{ damping_law = \"paper\", dead_zone"), "{changed}");

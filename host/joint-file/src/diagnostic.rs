@@ -136,8 +136,9 @@ mod tests {
         format!("{:?}", report("my_joint.toml", text, &problems))
     }
 
+    /// A problem in a line too long to draw is reported with the line's number.
     #[test]
-    fn a_line_too_long_to_be_drawn_is_told_by_its_number() {
+    fn long_line_is_reported_by_number() {
         let preset = crate::preset("q1").expect("a preset");
         let shown = shown(&format!("{preset}\n# {}\nnonsense_{} = 1\n", "x".repeat(70_000), "y".repeat(70_000)));
         let line = preset.lines().count() + 3;
@@ -146,8 +147,9 @@ mod tests {
         assert!(shown.len() < 5000, "{} letters", shown.len());
     }
 
+    /// A file with very many problems is reported quickly, up to the limit.
     #[test]
-    fn a_file_full_of_problems_is_told_the_first_of_them() {
+    fn report_stops_at_problem_limit() {
         let unknown: String = (0..50_000).map(|number| format!("nonsense_{number} = 1\n")).collect();
         let broken = "a=\n".repeat(200_000);
         let (sender, receiver) = std::sync::mpsc::channel();

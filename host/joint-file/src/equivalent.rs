@@ -166,8 +166,9 @@ fn masses(section: &Section<'_>) -> Option<[f64; 3]> {
 mod tests {
     use super::simplest;
 
+    /// The simplest fraction that rounds to a decimal number is found.
     #[test]
-    fn the_simplest_fraction_of_a_rounded_number_is_found() {
+    fn simplest_fraction_is_found() {
         let of = |digits: u64, under: u64| simplest([2 * digits - 1, 2 * under], [2 * digits + 1, 2 * under]);
         assert_eq!(of(9_333_333, 1_000_000), [28, 3]);
         assert_eq!(of(933, 100), [28, 3]);

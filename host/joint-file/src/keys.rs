@@ -585,7 +585,7 @@ mod tests {
     use super::{KEYS, Kind};
 
     #[test]
-    fn every_key_is_documented_with_its_bound() {
+    fn keys_are_documented_with_bounds() {
         let document = include_str!("../../../docs/reference/joint-file.md");
         for key in KEYS {
             let value = match key.kind {
@@ -605,7 +605,7 @@ mod tests {
     }
 
     #[test]
-    fn every_section_is_documented() {
+    fn sections_are_documented() {
         let document = include_str!("../../../docs/reference/joint-file.md");
         for key in KEYS.iter().filter(|key| matches!(key.kind, Kind::Section)) {
             let path =

@@ -79,19 +79,21 @@ mod tests {
     const KEYS: [&str; 3] = ["half_backlash_um", "mean_stiffness_N_per_m", "stiffness_ratio"];
 
     #[test]
-    fn a_letter_lost_is_found() {
+    fn lost_letter_is_found() {
         assert_eq!(nearest("half_backlsh_um", KEYS), Some("half_backlash_um"));
     }
 
+    /// A key with another unit or none is found.
     #[test]
-    fn a_key_with_another_unit_or_none_is_found() {
+    fn other_unit_is_found() {
         assert_eq!(nearest("half_backlash_mm", KEYS), Some("half_backlash_um"));
         assert_eq!(nearest("half_backlash", KEYS), Some("half_backlash_um"));
         assert_eq!(nearest("mean_stiffness_N_per_um", KEYS), Some("mean_stiffness_N_per_m"));
     }
 
+    /// Parts common to many keys do not make two keys near.
     #[test]
-    fn what_many_keys_share_makes_none_of_them_another() {
+    fn common_parts_do_not_count() {
         let drive_train = ["cogging_torque_N_m", "load_coulomb_friction_N_m", "link_inertia_kg_m2", "sun_teeth"];
         for word in ["no_load_torque_N_m", "coulomb_friction_N_m", "sun_inertia_kg_m2", "ring_teeth"] {
             assert_eq!(nearest(word, drive_train), None, "{word}");
@@ -101,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stranger_is_not_guessed_at() {
+    fn strange_word_has_no_suggestion() {
         assert_eq!(nearest("colour", KEYS), None);
     }
 }

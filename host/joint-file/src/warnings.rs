@@ -29,8 +29,9 @@ mod tests {
     use super::lines;
     use crate::named::load;
 
+    /// Each warning names file, line and help.
     #[test]
-    fn each_warning_is_told_with_file_line_and_help() {
+    fn warning_has_file_line_and_help() {
         let paper = load(Path::new("paper")).expect("a preset");
         let told: Vec<String> = lines(&paper).collect();
         assert_eq!(told.len(), 2);

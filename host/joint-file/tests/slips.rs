@@ -107,8 +107,9 @@ fn said(text: &str) -> Vec<Problem> {
     read(text).map_or_else(|problems| problems.0, |file| file.warnings)
 }
 
+/// Every slip is reported with the severity and the words of its row.
 #[test]
-fn every_slip_is_named_with_the_likely_mend() {
+fn slips_are_named_with_likely_unit() {
     assert!(SLIPS.len() >= 40);
     let mut missed = Vec::new();
     for (name, key, slip, severity, words) in SLIPS {
@@ -124,15 +125,16 @@ fn every_slip_is_named_with_the_likely_mend() {
     assert!(missed.is_empty(), "{} slips pass:\n{}", missed.len(), missed.join("\n"));
 }
 
+/// The file's `coherence = "warn"` turns an impossible figure into a warning.
 #[test]
-fn a_joint_that_cannot_be_is_used_all_the_same_where_the_file_says_so() {
+fn coherence_warn_accepts_impossible() {
     let text = slipped("q1", "planet_mass_kg", Times(1e3));
     let file = read(&format!("coherence = \"warn\"\n{text}")).expect("warnings only");
     assert!(file.warnings.iter().any(|warning| warning.message.contains("planet_mass_kg")), "{:?}", file.warnings);
 }
 
 #[test]
-fn joints_that_come_with_the_program_raise_no_alarm() {
+fn presets_raise_no_alarm() {
     for name in PRESETS {
         let file = read(preset(name).expect("a preset")).expect("a joint");
         let known =
@@ -229,8 +231,9 @@ fn plausible(random: &mut Random) -> String {
     )
 }
 
+/// A thousand random realistic joints give no warning.
 #[test]
-fn a_thousand_joints_as_they_are_built_raise_no_alarm() {
+fn random_realistic_joints_raise_no_alarm() {
     let mut random = Random(1);
     let mut alarms = Vec::new();
     for index in 0..1000 {

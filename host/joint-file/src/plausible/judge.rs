@@ -77,7 +77,7 @@ mod tests {
     use super::figure;
 
     #[test]
-    fn figures_have_three_digits() {
+    fn figure_has_three_digits() {
         let shown = [0.0, 12345.6, 1.2345, 0.01234, 1.5e-7, 2e9].map(figure);
         assert_eq!(shown, ["0", "12346", "1.23", "0.0123", "1.50e-7", "2.00e9"]);
     }

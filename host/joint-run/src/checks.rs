@@ -1,7 +1,7 @@
 //! Checks of a run: each figure with its bound and the bound's source. An interrupted run is judged by the available
 //! figures; the other checks are marked as not run.
 
-use crate::origin::clock_in_words;
+use crate::origin::clock_text;
 use link::messages::{ClockSource, RunMode, Statistics};
 
 use super::comparison::Comparison;
@@ -12,13 +12,13 @@ use board::twin::Agreement;
 use report::checks::{Bound, Check, Source};
 
 /// Least steps covered by the twin, unless a shorter run was requested.
-const STEPS_WANTED: u32 = 100_000;
+const TWIN_STEPS_MIN: u32 = 100_000;
 /// Flash budget of the plant's image: a quarter of the smallest board's [byte].
 const FLASH_BUDGET: f64 = 128.0 * 1024.0;
 /// RAM budget of statics and deepest stack together [byte].
 const RAM_BUDGET: f64 = 16.0 * 1024.0;
 /// Least predictable part of a run for which the bounds apply.
-const LEAST_PREDICTABLE: f64 = 0.1;
+const PREDICTABLE_SHARE_MIN: f64 = 0.1;
 
 /// Inputs of the checks; missing inputs carry their reason.
 pub struct Evidence<'a> {
@@ -58,7 +58,7 @@ fn zero(name: &str, figure: u32, source: Source) -> Check {
 fn twin(evidence: &Evidence<'_>) -> Vec<Check> {
     let agreement = evidence.agreement;
     let decimation = evidence.recording.settings.map_or(1, |settings| u32::from(settings.decimation));
-    let wanted = STEPS_WANTED.min(evidence.ticks - evidence.ticks % decimation);
+    let wanted = TWIN_STEPS_MIN.min(evidence.ticks - evidence.ticks % decimation);
     let note = match &agreement.first {
         None => "digest of the whole state at every step, samples in every bit".to_owned(),
         Some(first) => format!("first at tick {}: {} is {}, not {}", first.tick, first.field, first.board, first.twin),
@@ -80,7 +80,7 @@ fn reference(evidence: &Evidence<'_>) -> Vec<Check> {
         Ok(comparison) => comparison,
         Err(why) => return vec![Check::not_run("motion off the f64 reference", "%", Bound::None, why)],
     };
-    let chaotic = comparison.until < LEAST_PREDICTABLE * comparison.of;
+    let chaotic = comparison.until < PREDICTABLE_SHARE_MIN * comparison.of;
     let part =
         format!("of the motion's standard deviation, over the first {:.2} of {:.2} s", comparison.until, comparison.of);
     let note = match (chaotic, comparison.until < comparison.of) {
@@ -140,7 +140,7 @@ fn timing(evidence: &Evidence<'_>) -> Vec<Check> {
     checks.extend(queue(recording.settings.map(|settings| settings.mode), statistics));
     let clock_runs = u32::from(hello.clock.source != ClockSource::Failed);
     let clock = count("core clock as stated", clock_runs, Bound::Exactly(1.0), Source::Board);
-    checks.push(clock.note(clock_in_words(hello.clock)));
+    checks.push(clock.note(clock_text(hello.clock)));
     checks
 }
 

@@ -17,7 +17,7 @@ use board::{trip, twin};
 use report::failure::Outcome;
 
 /// Longest close-up [ticks].
-const CLOSE_UP: u32 = 4000;
+const CLOSE_UP_TICKS: u32 = 4000;
 
 /// Run that has ended, complete or not.
 pub struct FinishedRun<'a> {
@@ -126,7 +126,7 @@ fn close_up(record: &RunRecord, finished: &FinishedRun<'_>) -> Outcome<Option<Cl
     let tick = |time: f64| (time * f64::from(tick_rate)).max(0.0) as u32;
     let last = finished.recording.last_tick();
     let first = tick(from).min(last);
-    let ticks: Vec<u32> = (first..=tick(to).min(last).min(first + CLOSE_UP)).collect();
+    let ticks: Vec<u32> = (first..=tick(to).min(last).min(first + CLOSE_UP_TICKS)).collect();
     let parameters = &finished.plan.joint.parameters;
     let motion: Vec<Sample> =
         twin::replay(parameters, finished.plan.board.chip(), tick_rate, &finished.recording.accepted, &ticks)?;

@@ -16,7 +16,7 @@ const RECORD: &str = "record.json";
 const LOG: &str = "log.txt";
 const SAMPLES: &str = "run.mcap";
 /// Names of all files of a run.
-pub const ALL: [&str; 4] = [REPORT, RECORD, LOG, SAMPLES];
+pub const ALL_FILES: [&str; 4] = [REPORT, RECORD, LOG, SAMPLES];
 
 /// Writes all files, and the record to a named file if requested; returns the path of the report.
 pub fn write(folder: &Folder, json: Option<&Path>, record: &RunRecord) -> Outcome<PathBuf> {
@@ -25,16 +25,16 @@ pub fn write(folder: &Folder, json: Option<&Path>, record: &RunRecord) -> Outcom
     match (kept, asked) {
         (Ok(report), Ok(())) => Ok(report),
         (Ok(_), Err(failure)) => Err(failure.with_help(format!("the record is in {}", folder.file(RECORD).display()))),
-        (Err(failure), _) => Err(elsewhere(failure, record)),
+        (Err(failure), _) => Err(write_to_temporary(failure, record)),
     }
 }
 
 /// Writes the record, which cannot be measured again, to the temporary folder.
-fn elsewhere(failure: Failure, record: &RunRecord) -> Failure {
+fn write_to_temporary(failure: Failure, record: &RunRecord) -> Failure {
     let folder = std::env::temp_dir().join(format!("joint-hil-{}", std::process::id()));
     // Only a folder created here is removed again.
     let new = fs::create_dir(&folder).is_ok();
-    let written = Folder::prepare(Some(&folder), "hil", "", &ALL).and_then(|folder| write_to(&folder, record));
+    let written = Folder::prepare(Some(&folder), "hil", "", &ALL_FILES).and_then(|folder| write_to(&folder, record));
     let help = if written.is_ok() || folder.join(RECORD).exists() {
         format!("what was recorded is in {}; for the next run name another folder by --out DIR", folder.display())
     } else {
@@ -53,7 +53,7 @@ pub fn write_to(folder: &Folder, record: &RunRecord) -> Outcome<PathBuf> {
     folder.write_text(LOG, &logs::text(&record.log))?;
     let kept = folder.write_record(RECORD, record);
     let shown = folder.write_text(REPORT, &page::render(record));
-    let logged = folder.write_with(SAMPLES, |file| log_file::fill(file, record));
+    let logged = folder.write_with(SAMPLES, |file| log_file::write(file, record));
     kept.and(shown).and(logged)?;
     Ok(folder.file(REPORT))
 }

@@ -38,7 +38,7 @@ pub fn run(request: &RunRequest<'_>, progress: &Progress) -> Outcome<()> {
     let plan = RunPlan::new(request)?;
     let wanted = [("json", request.json), ("picture", request.picture)];
     folder::check_files(&wanted, &[&plan.path, Path::new(request.profile)])?;
-    let folder = Folder::prepare(request.out, "hil", &plan.expected.joint, &files::ALL)?;
+    let folder = Folder::prepare(request.out, "hil", &plan.expected.joint, &files::ALL_FILES)?;
     let connection = prepare(request, &plan, progress)?;
     // A run stopped by the user is kept and reported up to that point.
     let _in_order = InOrder::begin();
@@ -46,7 +46,7 @@ pub fn run(request: &RunRequest<'_>, progress: &Progress) -> Outcome<()> {
     let image = connection.image.clone();
     record.identity.image = image.as_ref().map(origin::image);
     let references = (!request.no_reference).then(|| evaluation::start_references(&plan));
-    let (outcome, recording) = converse(connection, &plan, progress);
+    let (outcome, recording) = run_session(connection, &plan, progress);
     progress.stage("comparing with twin and reference");
     let finished = FinishedRun { plan: &plan, recording: &recording, image: image.as_ref(), outcome: &outcome };
     let evaluated = evaluation::evaluate(&mut record, &finished, references);
@@ -54,7 +54,7 @@ pub fn run(request: &RunRequest<'_>, progress: &Progress) -> Outcome<()> {
     let report = files::write(&folder, request.json, &record);
     progress.clear();
     evaluated?;
-    show(&record)?;
+    print_checks(&record)?;
     match (outcome, report) {
         (Ok(()), Ok(report)) => {
             output::print(&format!("report: {}\n", report.display()))?;
@@ -75,7 +75,7 @@ pub fn run(request: &RunRequest<'_>, progress: &Progress) -> Outcome<()> {
 }
 
 /// Whole session with the board; returns the recording after a failure too.
-fn converse(connection: Connection, plan: &RunPlan, progress: &Progress) -> (Outcome<()>, Recording) {
+fn run_session(connection: Connection, plan: &RunPlan, progress: &Progress) -> (Outcome<()>, Recording) {
     let Connection { line, supervisor, timeout, .. } = connection;
     let mut session = Session::new(line, supervisor);
     progress.stage("calling the board");
@@ -92,7 +92,7 @@ fn converse(connection: Connection, plan: &RunPlan, progress: &Progress) -> (Out
 }
 
 /// Prints the checks, unless nothing was run.
-fn show(record: &RunRecord) -> Outcome<()> {
+fn print_checks(record: &RunRecord) -> Outcome<()> {
     if record.samples.is_empty() {
         return Ok(());
     }

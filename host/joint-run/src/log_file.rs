@@ -30,7 +30,7 @@ const LISTS: [(&str, &str, &str); 2] =
     [("float64[]", "deflection_m", "[m]"), ("string[]", "contact", "separated, drive_side or back_side")];
 
 /// Writes all samples of the board.
-pub fn fill(out: &mut impl Write, record: &RunRecord) -> io::Result<()> {
+pub fn write(out: &mut impl Write, record: &RunRecord) -> io::Result<()> {
     let numbers = NUMBERS.iter().map(|(name, meaning)| field("float64", name, meaning));
     let planets = record.samples.deflection_m.len() / 2;
     let of_each = if planets == 1 { "of the one contact" } else { "one for each planet" };

@@ -32,7 +32,7 @@ pub fn note_board(identity: &mut Identity, hello: &Hello) {
     identity.role = image::word(hello.role).to_owned();
     identity.board = hello.board.to_string();
     identity.firmware_version = format!("{major}.{minor}.{patch}");
-    identity.clock = clock_in_words(hello.clock);
+    identity.clock = clock_text(hello.clock);
     identity.emulated |= hello.clock.source == ClockSource::NotModelled;
     identity.last_panic = hello.last_panic.as_ref().map(ToString::to_string);
     identity.watchdog_reset = hello.watchdog_reset;
@@ -40,7 +40,7 @@ pub fn note_board(identity: &mut Identity, hello: &Hello) {
 }
 
 /// Text on the board's core clock.
-pub fn clock_in_words(clock: Clock) -> String {
+pub fn clock_text(clock: Clock) -> String {
     let source = match clock.source {
         ClockSource::Crystal => "crystal and PLL, measured before use".to_owned(),
         ClockSource::Signal => "clock from elsewhere and PLL, measured before use".to_owned(),

@@ -10,16 +10,16 @@ use link::messages::Command;
 use parameters::JointParameters;
 use reference::joint::{Observation, Reference, ReferenceError};
 
-use super::row::{QUANTITIES, Row, spread};
+use super::row::{QUANTITIES, Row, standard_deviation};
 use report::interruption;
 
 /// Relative error of the second reference's torques, with alternating sign.
 pub const DISTURBANCE: f64 = 1e-6;
 /// Divergence of a compared quantity, as a share of its standard deviation, from which the motion is chaotic: later
 /// samples say nothing about the step.
-const PREDICTABLE: f64 = 1e-4;
+const DIVERGENCE_MAX: f64 = 1e-4;
 /// Samples between tests of the divergence.
-const BLOCK: usize = 100;
+const BLOCK_SAMPLES: usize = 100;
 
 /// Observations of the reference at the ends of the given ticks, until the disturbed reference diverges.
 pub fn follow(
@@ -30,7 +30,7 @@ pub fn follow(
 ) -> Result<Vec<Observation>, ReferenceError> {
     let mut observations = Vec::with_capacity(ticks.len());
     let mut rows: [Vec<Row>; 2] = Default::default();
-    for block in ticks.chunks(BLOCK) {
+    for block in ticks.chunks(BLOCK_SAMPLES) {
         if stop.load(Ordering::Relaxed) || interruption::requested() {
             break;
         }
@@ -43,8 +43,8 @@ pub fn follow(
         exact_rows.extend(here.iter().map(|observation| Row::of_reference(observation, exact.ratio)));
         disturbed_rows.extend(there.iter().map(|observation| Row::of_reference(observation, exact.ratio)));
         observations.extend(here);
-        if let Some(departure) = departure(exact_rows, disturbed_rows, observations.len() - block.len()) {
-            observations.truncate(departure);
+        if let Some(divergence) = divergence(exact_rows, disturbed_rows, observations.len() - block.len()) {
+            observations.truncate(divergence);
             break;
         }
     }
@@ -100,10 +100,13 @@ impl ReferenceReplay {
 }
 
 /// First sample from `from` on at which the disturbed reference has diverged.
-fn departure(exact: &[Row], disturbed: &[Row], from: usize) -> Option<usize> {
-    let spreads: Vec<f64> = (0..QUANTITIES.len()).map(|place| spread(exact, place)).collect();
+fn divergence(exact: &[Row], disturbed: &[Row], from: usize) -> Option<usize> {
+    let spreads: Vec<f64> = (0..QUANTITIES.len()).map(|place| standard_deviation(exact, place)).collect();
     let departed = |(exact, disturbed): (&Row, &Row)| {
-        spreads.iter().enumerate().any(|(place, spread)| disturbed.distance(exact, place).abs() > PREDICTABLE * spread)
+        spreads
+            .iter()
+            .enumerate()
+            .any(|(place, spread)| disturbed.distance(exact, place).abs() > DIVERGENCE_MAX * spread)
     };
     let later = exact.iter().zip(disturbed).skip(from).position(departed);
     later.map(|place| from + place).or((disturbed.len() < exact.len()).then_some(disturbed.len()))

@@ -13,14 +13,14 @@ use follow::{DISTURBANCE, ReferenceReplay, follow};
 use link::messages::{Command, Sample};
 use parameters::{ContactState, JointParameters};
 use reference::joint::{Observation, ReferenceError};
-use row::{QUANTITIES, Row, spread};
+use row::{QUANTITIES, Row, standard_deviation};
 
 use crate::record::{self, MotionSample};
 use report::contacts::Contact;
 use report::failure::{Failure, Outcome};
 
 /// Longest comparison [s]: the reference takes longer than the run itself.
-const LONGEST: f64 = 3.0;
+const COMPARISON_TIME_MAX: f64 = 3.0;
 /// References in computation, on their own threads.
 pub struct PendingReferences {
     joint: JointParameters,
@@ -57,7 +57,7 @@ pub struct QuantityError {
 /// Starts two references on the torques of a run, one of them disturbed.
 pub fn start(joint: &JointParameters, tick_rate: u32, decimation: u32, run: (&[Command], u32)) -> PendingReferences {
     let (commands, ticks) = run;
-    let last = ticks.min((LONGEST * f64::from(tick_rate)) as u32);
+    let last = ticks.min((COMPARISON_TIME_MAX * f64::from(tick_rate)) as u32);
     let ticks: Vec<u32> = (1..=last / decimation).map(|sample| sample * decimation).collect();
     let stop = Arc::new(AtomicBool::new(false));
     let follower = |disturbance: f64| ReferenceReplay::new(joint, tick_rate, commands, disturbance);
@@ -94,10 +94,10 @@ impl PendingReferences {
         let mut errors = Vec::new();
         let mut series = Vec::new();
         for (place, quantity) in QUANTITIES.iter().enumerate() {
-            let spread = spread(&exact_rows, place);
+            let deviation = standard_deviation(&exact_rows, place);
             let distances = || {
                 board.iter().zip(&exact_rows).enumerate().filter_map(move |(index, (board, exact))| {
-                    board.as_ref().map(|board| (index, board.distance(exact, place) / spread))
+                    board.as_ref().map(|board| (index, board.distance(exact, place) / deviation))
                 })
             };
             let count = distances().count();
@@ -174,12 +174,12 @@ mod tests {
     fn comparison(preset: &str, seconds: f64, spoil: impl Fn(&mut Sample)) -> Comparison {
         let joint = joint(preset);
         let profile = TorqueProfile::load("reversals", &joint, TICK_RATE, Some(seconds)).expect("built in");
-        let under_way = start(&joint, TICK_RATE, DECIMATION, (&profile.commands, profile.ticks));
+        let pending = start(&joint, TICK_RATE, DECIMATION, (&profile.commands, profile.ticks));
         let ticks: Vec<u32> = (1..=profile.ticks / DECIMATION).map(|sample| sample * DECIMATION).collect();
         let mut samples =
             twin::replay(&joint, Chip::Stm32f405, TICK_RATE, &profile.commands, &ticks).expect("a good joint");
         samples.iter_mut().for_each(spoil);
-        under_way.finish(&samples, joint.geometry.ratio_by_radii()).expect("a joint for the reference")
+        pending.finish(&samples, joint.geometry.ratio_by_radii()).expect("a joint for the reference")
     }
 
     fn failed(comparison: &Comparison) -> Vec<&'static str> {

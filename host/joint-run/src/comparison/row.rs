@@ -58,7 +58,7 @@ impl Row {
 }
 
 /// Standard deviation of one quantity over time, as a root mean square over its values.
-pub fn spread(rows: &[Row], place: usize) -> f64 {
+pub fn standard_deviation(rows: &[Row], place: usize) -> f64 {
     let values = rows.first().map_or(0, |row| row.0[place].len());
     let count = rows.len() as f64;
     let variance = |value: usize| {

@@ -7,11 +7,11 @@ use report::plot::Figure;
 use report::plot::unit::Unit;
 
 /// Least samples of a picture.
-const LEAST_SAMPLES: usize = 12;
+const SAMPLES_MIN: usize = 12;
 /// Shortest time shown before and after the crossing [s].
-const LEAST_MARGIN: f64 = 4e-3;
+const MARGIN_MIN: f64 = 4e-3;
 /// Longest time shown before and after the crossing [s].
-const GREATEST_MARGIN: f64 = 40e-3;
+const MARGIN_MAX: f64 = 40e-3;
 
 /// Start and end [s] around the first full crossing of the band, if there is one.
 pub fn crossing(samples: &Samples, band: [f64; 2]) -> Option<(f64, f64)> {
@@ -25,7 +25,7 @@ pub fn crossing(samples: &Samples, band: [f64; 2]) -> Option<(f64, f64)> {
             (0, _) => {}
             (now, Some((before, last))) if now != before => {
                 let (from, to) = (samples.time_s[last], samples.time_s[index]);
-                let margin = (to - from).clamp(LEAST_MARGIN, GREATEST_MARGIN);
+                let margin = (to - from).clamp(MARGIN_MIN, MARGIN_MAX);
                 return Some(((from - margin).max(0.0), to + 2.0 * margin));
             }
             (now, _) => left = Some((now, index)),
@@ -37,7 +37,7 @@ pub fn crossing(samples: &Samples, band: [f64; 2]) -> Option<(f64, f64)> {
 /// View of the close-up at every tick, or of the samples around the first crossing.
 pub fn view(record: &RunRecord) -> Option<View<'_>> {
     let (samples, range) = match &record.close_up {
-        Some(close_up) if close_up.samples.len() >= LEAST_SAMPLES => {
+        Some(close_up) if close_up.samples.len() >= SAMPLES_MIN => {
             let times = &close_up.samples.time_s;
             (&close_up.samples, (times[0], times[times.len() - 1]))
         }
@@ -45,7 +45,7 @@ pub fn view(record: &RunRecord) -> Option<View<'_>> {
     };
     let inside = samples.time_s.iter().filter(|time| (range.0..=range.1).contains(*time)).count();
     let unit = Unit::of_time(range.1 - range.0);
-    (inside >= LEAST_SAMPLES && range.1 > range.0).then_some(View { record, samples, range, unit })
+    (inside >= SAMPLES_MIN && range.1 > range.0).then_some(View { record, samples, range, unit })
 }
 
 /// Torque, gap, deflections and contact in one picture.

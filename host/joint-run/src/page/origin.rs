@@ -7,7 +7,7 @@ use report::document::{Block, Row, Table, Tone, facts, row, section, text, words
 use report::number::PAGE;
 
 /// Log lines shown at most; the JSON has all.
-const MOST_LOG_LINES: usize = 200;
+const LOG_LINES_MAX: usize = 200;
 
 /// Identity of the run, and the command that repeats it.
 pub fn identity(record: &RunRecord) -> Block {
@@ -59,7 +59,7 @@ pub fn in_one_line(record: &RunRecord) -> String {
 
 /// Log of the board.
 pub fn log(record: &RunRecord) -> Option<Block> {
-    let rows = record.log.iter().take(MOST_LOG_LINES).map(|line| Row {
+    let rows = record.log.iter().take(LOG_LINES_MAX).map(|line| Row {
         tone: match line.level.as_str() {
             "error" => Tone::Failed,
             "warn" => Tone::Open,
@@ -69,7 +69,7 @@ pub fn log(record: &RunRecord) -> Option<Block> {
     });
     let table = Table { columns: ["", "", ""].map(words).into(), rows: rows.collect(), log: true };
     let mut blocks = vec![Block::Table(table)];
-    let more = record.log.len().saturating_sub(MOST_LOG_LINES);
+    let more = record.log.len().saturating_sub(LOG_LINES_MAX);
     if more > 0 {
         blocks.push(Block::Paragraph(format!("{more} more lines are in the JSON file.").into()));
     }

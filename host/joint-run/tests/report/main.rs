@@ -170,7 +170,7 @@ fn a_record_comes_back_from_its_json() {
 fn a_report_that_cannot_be_written_costs_no_record() {
     let record = synthetic::record();
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let prepared = Folder::prepare(Some(folder.path()), "hil", "Q1", &files::ALL).expect("an empty folder");
+    let prepared = Folder::prepare(Some(folder.path()), "hil", "Q1", &files::ALL_FILES).expect("an empty folder");
     fs::create_dir(prepared.file("report.html")).expect("the folder is writable");
     let failure = write_to(&prepared, &record).expect_err("a folder stands in the way");
     assert!(failure.message().contains("report.html"), "{failure}");

@@ -188,15 +188,17 @@ mod tests {
         over.map(|quantity| quantity.name).collect()
     }
 
+    /// The twin stays within every bound over the followed part.
     #[test]
-    fn the_step_is_within_every_bound_for_as_long_as_is_followed() {
+    fn twin_is_within_every_bound() {
         let comparison = comparison("l1", 0.3, |_| {});
         assert_eq!(failed(&comparison), [""; 0]);
         assert_eq!((comparison.until, comparison.of), (0.3, 0.3));
     }
 
+    /// An error of 2 % in one quantity exceeds the bound of that quantity alone.
     #[test]
-    fn two_percent_of_error_in_one_quantity_are_over_its_bound_alone() {
+    fn error_of_2_percent_fails_its_bound() {
         let gap = comparison("l1", 0.1, |sample| sample.gap *= 1.02);
         assert_eq!(failed(&gap), ["gap"]);
         let meshes = comparison("l1", 0.1, |sample| sample.deflections.iter_mut().for_each(|mesh| *mesh *= 1.02));
@@ -205,15 +207,16 @@ mod tests {
         assert_eq!(failed(&turned), ["link angle"]);
     }
 
+    /// A chaotic motion is compared only while it is predictable.
     #[test]
-    fn a_chaotic_motion_is_compared_only_while_it_can_be_predicted() {
+    fn chaotic_motion_ends_comparison() {
         let comparison = comparison("paper", 0.5, |_| {});
         assert!(comparison.until < 0.05, "{}", comparison.until);
         assert!(comparison.reference.samples.len() < 100);
     }
 
     #[test]
-    fn a_lost_sample_is_left_out() {
+    fn lost_sample_is_skipped() {
         let rows = rows_of_board(&[], &[20, 40], 6.0);
         assert_eq!(rows, [None, None]);
     }

@@ -68,14 +68,14 @@ mod tests {
     }
 
     #[test]
-    fn a_crossing_is_found_from_flank_to_flank() {
+    fn crossing_spans_flank_to_flank() {
         let ramp = samples((0..200).map(|i| 2e-4 - 2e-6 * i as f32));
         let (from, to) = crossing(&ramp, [-8e-5, 8e-5]).expect("the ramp crosses");
         assert!(from < 0.060 && to > 0.140, "{from} to {to}");
     }
 
     #[test]
-    fn coming_back_to_the_same_flank_is_no_crossing() {
+    fn return_to_flank_is_no_crossing() {
         let dip = samples((0..200).map(|i| 1e-6 * (i as f32 - 100.0).abs()));
         assert_eq!(crossing(&dip, [-8e-5, 8e-5]), None);
     }

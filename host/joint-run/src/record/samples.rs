@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sample_of_the_line_comes_out_in_si() {
+    fn board_sample_is_in_si() {
         let mut samples = Samples::new(4);
         samples.push(&MotionSample::from_board(&board_sample(), 168_000_000), 20_000, 6.0);
         let carrier = -1.75 * core::f64::consts::TAU;
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_stay_of_one_length_whatever_a_board_sends() {
+    fn columns_keep_one_length() {
         let mut samples = Samples::new(6);
         samples.push(&MotionSample::from_board(&board_sample(), 168_000_000), 20_000, 6.0);
         assert!(samples.deflection_m.iter().all(|column| column.len() == 1));

@@ -4,11 +4,11 @@ use super::RunRecord;
 use report::schema::{assert_explained, assert_published};
 
 #[test]
-fn the_published_schema_is_that_of_the_types() {
+fn schema_matches_types() {
     assert_published::<RunRecord>("run.schema.json");
 }
 
 #[test]
-fn every_key_of_the_schema_is_explained() {
+fn schema_keys_are_documented() {
     assert_explained::<RunRecord>("report-schema.md", [], 60);
 }

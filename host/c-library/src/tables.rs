@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use board::device::board::Board;
 use joint_file::JointFile;
-use joint_file::{named, warned};
+use joint_file::{named, warnings};
 use model_core::controller::design::{ControlRequest, NominalPlant};
 use report::failure::{Failure, Outcome};
 use report::folder::{Folder, file_part};
@@ -73,7 +73,7 @@ pub struct CTables {
 /// Writes them; gives what is told of it.
 pub fn run(arguments: &Arguments) -> Outcome<String> {
     let loaded = named::load(&arguments.file)?;
-    warned::tell(&loaded);
+    warnings::print(&loaded);
     let told = arguments.told.as_deref().map(named::load).transpose()?;
     let [mut joint, mut nominal] =
         [&loaded.file, told.as_ref().map_or(&loaded.file, |told| &told.file)].map(Clone::clone);

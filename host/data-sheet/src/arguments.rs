@@ -1,10 +1,10 @@
-//! What `joint new` may be told on the command line, and the data sheet that comes of it.
+//! Command line of `joint new`, and the data sheet built from it.
 
 use std::path::PathBuf;
 
 use crate::material::Material;
 
-/// Seeds that assumptions are measured with: of three runs the median is right where one goes astray.
+/// Seeds per assumption: the median of three runs is right even if one run is an outlier.
 pub const DEFAULT_SEEDS: u64 = 3;
 
 /// Arguments of `joint new`.
@@ -20,10 +20,10 @@ pub struct Arguments {
     /// Name of the joint, or path of its file: NAME.toml
     #[arg(value_name = "NAME")]
     pub name: PathBuf,
-    /// Makes an equivalent gear, without teeth: of a spur train, a cycloid, a belt, of any ratio above 1
+    /// Makes an equivalent gear without teeth, for a spur train, a cycloid or a belt of any ratio above 1
     #[arg(long)]
     pub equivalent: bool,
-    /// Gear ratio, motor turns for one turn of the link
+    /// Gear ratio, motor turns per turn of the link
     #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
     pub ratio: Option<f64>,
     /// Lost motion at the output in minutes of arc
@@ -38,35 +38,35 @@ pub struct Arguments {
     /// Inertia of the motor's rotor in kg cm^2
     #[arg(long = "rotor-inertia-kg-cm2", value_name = "KG CM2", allow_negative_numbers = true)]
     pub rotor_inertia: Option<f64>,
-    /// Torque at the input that turns the joint without a load, in N m
+    /// Torque at the input that turns the unloaded joint, in N m
     #[arg(long = "no-load-torque-Nm", value_name = "NM", allow_negative_numbers = true)]
     pub no_load_torque: Option<f64>,
     /// Efficiency of the gears: 94 % is 0.94
     #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
     pub efficiency: Option<f64>,
-    /// Inertia of the gears at the input in kg cm^2 [default: derived from size and material; of an equivalent gear half of the
-    /// rotor's]
+    /// Inertia of the gears at the input in kg cm^2 [default: derived from size and material; for an equivalent gear
+    /// half of the rotor's]
     #[arg(long = "gear-inertia-kg-cm2", value_name = "KG CM2", allow_negative_numbers = true)]
     pub gear_inertia: Option<f64>,
-    /// Inertia of the link in kg m^2 [default: ten times the rotor's, at the link]
+    /// Inertia of the link in kg m^2 [default: ten times the rotor's, referred to the link]
     #[arg(long = "link-inertia-kg-m2", value_name = "KG M2", allow_negative_numbers = true)]
     pub link_inertia: Option<f64>,
-    /// Torque of the link's weight in N m, when it is level [default: none]
+    /// Torque of the link's weight in N m, with the link level [default: none]
     #[arg(long = "gravity-torque-Nm", value_name = "NM", allow_negative_numbers = true)]
     pub gravity_torque: Option<f64>,
-    /// Peak torque of the motor in N m [default: twice what the rated torque takes]
+    /// Peak torque of the motor in N m [default: twice the motor torque for the rated torque]
     #[arg(long = "motor-peak-torque-Nm", value_name = "NM", allow_negative_numbers = true)]
     pub motor_peak_torque: Option<f64>,
-    /// Outer diameter of the ring in mm: the largest module that fits is taken [default: a module by the rated torque]
+    /// Outer diameter of the ring in mm; the largest module that fits is used [default: a module by the rated torque]
     #[arg(long, value_name = "MM", allow_negative_numbers = true, conflicts_with = "equivalent")]
     pub outer_diameter_mm: Option<f64>,
-    /// What the gears are made of [default: steel, assumed]
+    /// Material of the gears [default: steel, assumed]
     #[arg(long, value_enum, conflicts_with = "equivalent")]
     pub material: Option<Material>,
     /// Planets, 3 to 5
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(3..=5), conflicts_with = "equivalent")]
     pub planets: Option<u32>,
-    /// How far the ratio of the teeth may be off, in percent
+    /// Tolerance of the teeth's ratio, in percent
     #[arg(
         long,
         value_name = "PERCENT",
@@ -81,16 +81,15 @@ pub struct Arguments {
     /// Resolution of the output encoder [default: 17, assumed]
     #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(8..=32))]
     pub output_bits: Option<u32>,
-    /// Does not measure what a wrong assumption does: a moment in place of half a minute
+    /// Skips the measurement of wrong assumptions: takes a moment instead of half a minute
     #[arg(long)]
     pub no_measure: bool,
-    /// Seeds of noise that each assumption is measured with: 8 take three times as long, and hardly one assumption is
-    /// misjudged by chance
+    /// Seeds of noise per assumption; 8 take three times as long and rarely misjudge an assumption by chance
     #[arg(long, value_name = "N", default_value_t = DEFAULT_SEEDS, value_parser = clap::value_parser!(u64).range(1..=100), conflicts_with = "no_measure")]
     pub seeds: u64,
 }
 
-/// The sheet, complete. Figures are in the units of its options.
+/// Complete data sheet, in the units of the options.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs, reason = "as the options")]
 pub struct DataSheet {
@@ -116,7 +115,7 @@ pub struct DataSheet {
 }
 
 impl DataSheet {
-    /// Steel, unless it says otherwise.
+    /// Material of the gears; steel unless stated.
     pub fn material(&self) -> Material {
         self.material.unwrap_or_default()
     }

@@ -1,9 +1,9 @@
-//! From the numbers of a data sheet to a joint file. Every line of it says whether it is the sheet's, derived
-//! from it, or assumed, and how far a wrong assumption moves the standard test.
+//! Joint file from the numbers of a data sheet. Every line states whether it comes from the sheet, is derived from it
+//! or is assumed, and how far a wrong assumption moves the standard test.
 //!
-//! `arguments` is the command line, `questions` asks for what is missing, `teeth` finds gears that assemble, `sizes`
-//! derives sizes, masses and stiffnesses of a `material`, `swing` the link that the motor moves, `lines` writes the file,
-//! `standard_test` measures the assumptions.
+//! `arguments` is the command line, `questions` asks for missing numbers, `teeth` finds gears that assemble, `sizes`
+//! derives sizes, masses and stiffnesses of a `material`, `swing` limits the link to what the motor can move, `lines`
+//! writes the file, `standard_test` measures the assumptions.
 
 mod arguments;
 mod lines;
@@ -20,7 +20,7 @@ pub use arguments::Arguments;
 use board::device::board::Board;
 use board::device::tick_time::OnBoard;
 use joint_file::named::Loaded;
-use joint_file::{diagnostic, warned};
+use joint_file::{diagnostic, warnings};
 use report::failure::{Failure, Outcome};
 use report::progress::Progress;
 use report::write::write_text;
@@ -32,36 +32,42 @@ use lines::{Figures, Line, Origin};
 use sizes::{Gears, Sizes};
 use swing::Swing;
 
-/// Steps a second at which the new joint is tried: what `joint check` and `joint sim` take.
-const RATE: u32 = 20_000;
+/// Step rate of the check of the new joint, as in `joint check` and `joint sim` [Hz].
+const CHECK_RATE: u32 = 20_000;
 
-/// Makes the file; gives what is told of it.
+/// Makes the joint file; returns the printed text.
 pub fn run(arguments: &Arguments) -> Outcome<String> {
     let path = arguments.path();
-    free(&path)?;
+    check_free(&path)?;
     let sheet = questions::complete(arguments)?;
-    let gears = Gears::of(&sheet).map_err(|failure| {
+    let gears = Gears::derive(&sheet).map_err(|failure| {
         let help = failure.help().unwrap_or_default().to_owned();
-        failure.with_help(format!("{help}\n{}", arguments.equivalent_in_place()))
+        failure.with_help(format!("{help}\n{}", arguments.equivalent_gear_help()))
     })?;
     let seeds = (!arguments.no_measure).then_some(arguments.seeds);
-    Progress::during(|progress| make(&sheet, &gears, &path, seeds, progress))
+    Progress::during(|progress| write_file(&sheet, &gears, &path, seeds, progress))
 }
 
-/// The file, tried and measured by so many seeds; gives what is told of it.
-fn make(sheet: &DataSheet, gears: &Gears, path: &Path, seeds: Option<u64>, progress: &Progress) -> Outcome<String> {
+/// Writes the checked file, measured with `seeds` seeds; returns the printed text.
+fn write_file(
+    sheet: &DataSheet,
+    gears: &Gears,
+    path: &Path,
+    seeds: Option<u64>,
+    progress: &Progress,
+) -> Outcome<String> {
     let mut lines = lines::lines(sheet, gears);
     let unmeasured = lines::text(sheet, gears, &lines, None);
-    tried(path, &unmeasured)?;
+    check_text(path, &unmeasured)?;
     let measure = |seeds| standard_test::measure(&unmeasured, &mut lines, seeds, progress);
     let figures = seeds.map(measure).transpose()?;
     let text = lines::text(sheet, gears, &lines, figures.as_ref());
-    let loaded = tried(path, &text)?;
-    free(path)?;
+    let loaded = check_text(path, &text)?;
+    check_free(path)?;
     write_text(path, &text)?;
     progress.clear();
-    warned::tell(&loaded);
-    let mut told = match gears {
+    warnings::print(&loaded);
+    let mut printed = match gears {
         Gears::Planetary(Sizes { teeth, module_mm, .. }) => format!(
             "{}: {} planets, teeth {}, {}, {}, module {module_mm} mm, ratio {:.4} ({:+.2} %)\n",
             path.display(),
@@ -75,51 +81,52 @@ fn make(sheet: &DataSheet, gears: &Gears, path: &Path, seeds: Option<u64>, progr
         Gears::Equivalent => format!("{}: an equivalent gear, ratio {}\n", path.display(), sheet.ratio),
     };
     if let Some(undercut) = gears.undercut() {
-        told += &format!("{undercut}\n");
+        printed += &format!("{undercut}\n");
     }
     if let Some(Figures { of_file, chance, .. }) = figures {
         let chance = lines::percent(chance);
-        told += &format!(
+        printed += &format!(
             "standard test: {of_file:.4} mrad rms, which chance moves by {chance}; assumptions move it most by\n"
         );
-        for (key, moved) in most(&lines) {
-            told += &format!("  {key:<55} {moved}\n");
+        for (key, moved) in most_influential(&lines) {
+            printed += &format!("  {key:<55} {moved}\n");
         }
     }
     if let Some(bandwidth) = Bandwidth::of(&loaded.file.parameters, &loaded.file.surroundings) {
         let (usual, widest) = (bandwidth.usual_rad_per_s, bandwidth.widest_in_words());
-        told += &format!("bandwidth: {usual} rad/s if none is asked for, at most {widest}\n");
+        printed += &format!("bandwidth: {usual} rad/s if none is asked for, at most {widest}\n");
     }
     let swing = Swing::new(sheet, gears);
     let [limit, balancing] = [swing.limit, sheet.rated_torque / gears.ratio(sheet)];
     if limit < balancing {
-        told += &format!(
+        printed += &format!(
             "note: --motor-peak-torque-Nm {limit} acts before --rated-torque-Nm {}: that takes {balancing:.3} N m at the motor\n",
             sheet.rated_torque
         );
     }
     if let Some(warning) = swing.warning(loaded.file.parameters.link_inertia) {
-        told += &format!("note: {warning}\n");
+        printed += &format!("note: {warning}\n");
     }
-    // A board's time is no part of a data sheet: the joint is as it is.
-    if let Err(failure) = OnBoard::plant(&loaded.file.parameters, &Board::load(board_file::DEFAULT)?).refuse(RATE) {
+    // A board's computing time is no part of a data sheet: the joint is kept, with a note.
+    if let Err(failure) = OnBoard::plant(&loaded.file.parameters, &Board::load(board_file::DEFAULT)?).refuse(CHECK_RATE)
+    {
         let help = failure.full_help().map_or(String::new(), |help| format!(" ({help})"));
-        told += &format!("note: {}{help}\n", failure.message());
+        printed += &format!("note: {}{help}\n", failure.message());
     }
-    told += &format!("next: joint check {0}; joint sim {0}; joint budget {0}\n", path.display());
-    Ok(told)
+    printed += &format!("next: joint check {0}; joint sim {0}; joint budget {0}\n", path.display());
+    Ok(printed)
 }
 
-/// The three assumptions that matter most.
-fn most(lines: &[Line]) -> Vec<(String, String)> {
+/// The three most influential assumptions.
+fn most_influential(lines: &[Line]) -> Vec<(String, String)> {
     let mut assumed: Vec<(&Line, f64)> =
         lines.iter().filter_map(|line| Some((line, line.moved.as_ref()?.as_ref().ok().copied()?))).collect();
     assumed.sort_by(|one, other| other.1.total_cmp(&one.1));
     assumed.iter().take(3).map(|(line, moved)| (line.path(), lines::percent(*moved))).collect()
 }
 
-/// Reads the text as every command will, and designs the step of it.
-fn tried(path: &Path, text: &str) -> Outcome<Loaded> {
+/// Reads the text like every command, and designs its step.
+fn check_text(path: &Path, text: &str) -> Outcome<Loaded> {
     let name = path.display().to_string();
     let file = joint_file::read(text).map_err(|problems| {
         let failure = Failure::from_report(diagnostic::report(&name, text, &problems));
@@ -127,12 +134,12 @@ fn tried(path: &Path, text: &str) -> Outcome<Loaded> {
         failure.with_help(format!("{name} was not written{options}"))
     })?;
     let loaded = Loaded { name, text: text.to_owned(), file };
-    check::summary(&loaded, &Board::load(board_file::DEFAULT)?, RATE, None)?;
+    check::summary(&loaded, &Board::load(board_file::DEFAULT)?, CHECK_RATE, None)?;
     Ok(loaded)
 }
 
-/// Refuses a path at which there is something.
-fn free(path: &Path) -> Outcome<()> {
+/// Rejects an existing path.
+fn check_free(path: &Path) -> Outcome<()> {
     match path.symlink_metadata() {
         Err(_) => Ok(()),
         Ok(_) => Err(Failure::new(format!("{} is there already, and would be lost", path.display()))
@@ -141,7 +148,7 @@ fn free(path: &Path) -> Outcome<()> {
 }
 
 impl Arguments {
-    /// Where the file goes: the name with its extension.
+    /// Path of the file: the name with its extension.
     fn path(&self) -> PathBuf {
         match self.name.extension() {
             Some(extension) if extension == "toml" => self.name.clone(),
@@ -151,12 +158,12 @@ impl Arguments {
 }
 
 impl Line {
-    /// The full path of its key.
+    /// Full path of the line's key.
     fn path(&self) -> String {
         if self.section.is_empty() { self.key.to_owned() } else { format!("{}.{}", self.section, self.key) }
     }
 
-    /// Whether a wrong value of it is to be tried.
+    /// Returns true if a wrong value is to be tried.
     fn is_assumed(&self) -> bool {
         matches!(self.origin, Origin::Assumed(_)) && self.moved.is_none()
     }

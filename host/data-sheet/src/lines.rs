@@ -1,4 +1,4 @@
-//! The joint file, line by line: each value with the source that stands behind it.
+//! Joint file line by line: each value with its origin.
 
 use joint_file::DERIVED;
 use report::provenance;
@@ -7,33 +7,34 @@ use crate::arguments::DataSheet;
 use crate::sizes::{Gears, PRESSURE_ANGLE_DEG, Sizes, rounded};
 use crate::swing::Swing;
 
-/// Where a value comes from.
+/// Origin of a value.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Origin {
-    /// The sheet's own figure.
+    /// Figure of the sheet.
     Sheet(String),
-    /// It follows.
+    /// Derived from other values.
     Derived(String),
-    /// Nobody has said it.
+    /// Assumed.
     Assumed(String),
 }
 
 /// One line of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
-    /// Its section.
+    /// Section of the file.
     pub section: &'static str,
-    /// Its key.
+    /// Key.
     pub key: &'static str,
-    /// Its value, as typed.
+    /// Value, as typed.
     pub value: String,
-    /// Where that comes from.
+    /// Origin of the value.
     pub origin: Origin,
-    /// How far it moves the standard test when it is wrong by half [-], or why that cannot be said; `None` until measured.
+    /// Relative change of the standard test for a value wrong by half [-], or the reason for a missing one; `None`
+    /// until measured.
     pub moved: Option<Result<f64, String>>,
 }
 
-/// A number as a person would write it; TOML wants a point or an exponent in it.
+/// Number as a person would write it; TOML needs a point or an exponent in it.
 fn number(value: f64) -> String {
     match value.abs() {
         size if size != 0.0 && !(1e-3..1e6).contains(&size) => format!("{value:e}"),
@@ -41,18 +42,18 @@ fn number(value: f64) -> String {
     }
 }
 
-/// Of whole turns, teeth, bits.
+/// Returns true for whole numbers: turns, teeth, bits.
 fn is_whole(line: &Line) -> bool {
     !line.value.contains(['.', 'e', '"'])
 }
 
 impl Line {
-    /// The value, where it is a number.
+    /// Value as a number, if it is one.
     pub fn number(&self) -> Option<f64> {
         self.value.parse().ok()
     }
 
-    /// Both wrong values that are tried, as typed: half and half as much again, a bit less and more.
+    /// Both wrong values to be tried, as typed: 0.5 and 1.5 times the value, or one bit less and more.
     pub fn wrong_values(&self) -> Option<[String; 2]> {
         let value = self.number()?;
         Some(match self.key {
@@ -76,7 +77,7 @@ impl Line {
     }
 }
 
-/// Keys of the file with the options of the command that they come from.
+/// Keys of the file with the options that set them.
 const OPTIONS: [(&str, &str); 16] = [
     ("rated_output_torque_N_m", "--rated-torque-Nm"),
     ("lost_motion_arcmin", "--lost-motion-arcmin"),
@@ -96,13 +97,13 @@ const OPTIONS: [(&str, &str); 16] = [
     ("bits", "--motor-bits or --output-bits"),
 ];
 
-/// Options behind the keys that a message names, as the rest of a sentence.
+/// Options of the keys named in a message, as the end of a sentence.
 pub fn options_in(message: &str) -> String {
     let named = OPTIONS.iter().filter(|(key, _)| message.contains(&format!("`{key}`")));
     named.map(|(key, option)| format!("; `{key}` is {option}")).collect()
 }
 
-/// A share as percent, with two digits.
+/// Share as percent, with two digits.
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     match percent {
@@ -112,7 +113,7 @@ pub fn percent(share: f64) -> String {
     }
 }
 
-/// Lines as they come, each in the section of the one before unless it names another.
+/// Lines in order; a line without a section continues the section before it.
 #[derive(Default)]
 struct Lines(Vec<Line>);
 
@@ -141,7 +142,7 @@ fn round(value: f64) -> String {
     number(rounded(value))
 }
 
-/// Every line, in the order of the file.
+/// All lines, in order of the file.
 pub fn lines(sheet: &DataSheet, gears: &Gears) -> Vec<Line> {
     let mut lines = Lines::default();
     let ratio = gears.ratio(sheet);
@@ -170,7 +171,7 @@ pub fn lines(sheet: &DataSheet, gears: &Gears) -> Vec<Line> {
     lines.0
 }
 
-/// What an equivalent gear is, and its inertia.
+/// Equivalent gear and its inertia.
 fn equivalent_gear(lines: &mut Lines, sheet: &DataSheet) {
     lines.add(Some("equivalent_gear"), "ratio", number(sheet.ratio), data("gear ratio"));
     lines.add(None, "lost_motion_arcmin", number(sheet.lost_motion_arcmin), data("lost motion at the output"));
@@ -184,7 +185,7 @@ fn equivalent_gear(lines: &mut Lines, sheet: &DataSheet) {
     lines.add(Some("bodies"), "gear_inertia_at_input_kg_cm2", inertia, origin);
 }
 
-/// Teeth, and what they weigh.
+/// Teeth and their masses.
 fn teeth(lines: &mut Lines, sheet: &DataSheet, sizes: &Sizes) {
     let teeth = &sizes.teeth;
     let ratio = teeth.ratio();
@@ -267,7 +268,7 @@ fn motor_and_link(lines: &mut Lines, sheet: &DataSheet, gears: &Gears) {
     }
 }
 
-/// What bends behind the teeth, and the teeth themselves.
+/// Compliance behind the teeth, and the teeth.
 fn compliance_and_meshes(lines: &mut Lines, sheet: &DataSheet, sizes: &Sizes) {
     let material = sheet.material().word();
     let total = format!(
@@ -290,7 +291,7 @@ fn compliance_and_meshes(lines: &mut Lines, sheet: &DataSheet, sizes: &Sizes) {
     lines.add(None, "transmission_error_um", number(error), assumed("amplitude, quality 6 of ISO 1328 for this size"));
 }
 
-/// The drive around the gears.
+/// Drive train around the gears.
 fn surroundings(lines: &mut Lines, sheet: &DataSheet, ratio: f64) {
     let balancing = sheet.rated_torque / ratio;
     let (rated, drive) = (sheet.rated_torque, sheet.motor_peak_torque.map_or(balancing, |peak| peak.min(balancing)));
@@ -346,18 +347,18 @@ fn surroundings(lines: &mut Lines, sheet: &DataSheet, ratio: f64) {
     lines.add(None, "skew_us", number(50.0), assumed("serial read-out"));
 }
 
-/// What the standard test gives.
+/// Results of the standard test.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Figures {
-    /// Its figure of the file [mrad].
+    /// Result for the file [mrad].
     pub of_file: f64,
-    /// How far a thousandth of the link's inertia moves that [-].
+    /// Relative change of the result by a thousandth of the link's inertia [-].
     pub chance: f64,
-    /// Noises of which the figure is the median.
+    /// Seeds of the median.
     pub seeds: u64,
 }
 
-/// The file, with the figures of the standard test once they are known.
+/// Text of the file, with the results of the standard test once they are known.
 pub fn text(sheet: &DataSheet, gears: &Gears, lines: &[Line], figures: Option<&Figures>) -> String {
     let kind = match gears {
         Gears::Planetary(_) => format!(

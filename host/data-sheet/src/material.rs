@@ -1,6 +1,6 @@
-//! What gears are made of, and what follows from that.
+//! Materials of gears and their properties.
 
-/// What gears are made of.
+/// Material of the gears.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Material {
     /// Hardened steel
@@ -11,7 +11,7 @@ pub enum Material {
 }
 
 impl Material {
-    /// Its word.
+    /// Name of the material.
     pub fn word(self) -> &'static str {
         match self {
             Self::Steel => "steel",
@@ -19,7 +19,7 @@ impl Material {
         }
     }
 
-    /// [kg/m^3]
+    /// Density [kg/m^3].
     pub fn density(self) -> f64 {
         match self {
             Self::Steel => 7850.0,
@@ -27,7 +27,7 @@ impl Material {
         }
     }
 
-    /// Mean stiffness of a mesh for a metre of face width [N/m^2]: 14 N/(mm um) by ISO 6336-1 for steel, and by Young's
+    /// Mean stiffness of a mesh per face width [N/m^2]: 14 N/(mm um) by ISO 6336-1 for steel, scaled by Young's
     /// modulus, 2.9 over 206 GPa, for POM.
     pub fn stiffness_per_width(self) -> f64 {
         match self {
@@ -36,7 +36,7 @@ impl Material {
         }
     }
 
-    /// Stress at the root of a tooth at rated torque that a joint is laid out for [Pa].
+    /// Design stress at the root of a tooth at rated torque [Pa].
     pub fn stress(self) -> f64 {
         match self {
             Self::Steel => 100e6,

@@ -1,5 +1,5 @@
-//! What the command line leaves out is asked for on a terminal, and named anywhere else. Answers and options are held to
-//! the same bounds.
+//! Questions for figures missing on the command line; without a terminal the missing options are named. Answers and
+//! options have the same bounds.
 
 use std::io::{self, BufRead, IsTerminal};
 
@@ -9,7 +9,7 @@ use report::output;
 
 use crate::arguments::{Arguments, DEFAULT_SEEDS, DataSheet};
 
-/// A figure of the sheet.
+/// Figure of the sheet.
 struct Figure {
     option: &'static str,
     question: &'static str,
@@ -21,8 +21,8 @@ const fn figure(option: &'static str, question: &'static str, least: f64, most: 
     Figure { option, question, least, most }
 }
 
-/// What no sheet may leave out, in the order in which it is asked for.
-const NEEDED: [Figure; 7] = [
+/// Figures that every sheet needs, in order of the questions.
+const REQUIRED_FIGURES: [Figure; 7] = [
     figure("--ratio", "gear ratio, motor turns for one turn of the link, such as 9", 2.2, 14.0),
     figure("--lost-motion-arcmin", "lost motion at the output in arcmin, such as 15", 0.0, 600.0),
     figure("--stiffness-Nm-per-arcmin", "torsional stiffness at the output in N m/arcmin, such as 1.8", 1e-4, 1e6),
@@ -37,15 +37,15 @@ const NEEDED: [Figure; 7] = [
     figure("--efficiency", "efficiency of the gears, such as 0.94", 0.1, 1.0),
 ];
 
-/// The ratio of an equivalent gear, which no teeth bound.
-const ANY_RATIO: Figure =
+/// Ratio of an equivalent gear, not bounded by teeth.
+const EQUIVALENT_RATIO: Figure =
     figure("--ratio", "gear ratio, motor turns for one turn of the link, such as 59", 1.000_001, 99_999.0);
 
-/// What kinds of gears there are, by the words that a user types.
-const KINDS: [&str; 2] = ["planetary", "equivalent"];
+/// Kinds of gears, as typed by the user.
+const GEAR_KINDS: [&str; 2] = ["planetary", "equivalent"];
 
-/// What it may leave out.
-const OPTIONAL: [Figure; 6] = [
+/// Optional figures.
+const OPTIONAL_FIGURES: [Figure; 6] = [
     figure("--gear-inertia-kg-cm2", "", 1e-9, 1e10),
     figure("--link-inertia-kg-m2", "", 1e-9, 1e6),
     figure("--gravity-torque-Nm", "", -1e6, 1e6),
@@ -54,7 +54,7 @@ const OPTIONAL: [Figure; 6] = [
     figure("--ratio-tolerance", "", 0.0, 20.0),
 ];
 
-/// The whole sheet.
+/// Completes the sheet.
 pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
     let stem = match arguments.name.extension() {
         Some(extension) if extension == "toml" => arguments.name.file_stem(),
@@ -80,18 +80,19 @@ pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
         Some(arguments.ratio_tolerance),
     ];
     let stdin = io::stdin();
-    // Where the ratio is asked for as well, teeth may not be known either.
-    let asked = arguments.ratio.is_none() && !arguments.says_teeth() && stdin.is_terminal();
-    let equivalent = arguments.equivalent || (asked && kind(&mut stdin.lock())? == KINDS[1]);
-    let mut needed = NEEDED;
+    // If the ratio is asked for too, the teeth may be unknown as well.
+    let asked = arguments.ratio.is_none() && !arguments.states_teeth() && stdin.is_terminal();
+    let equivalent = arguments.equivalent || (asked && ask_kind(&mut stdin.lock())? == GEAR_KINDS[1]);
+    let mut needed = REQUIRED_FIGURES;
     if equivalent {
-        needed[0] = ANY_RATIO;
+        needed[0] = EQUIVALENT_RATIO;
     }
-    for (figure, value) in needed.iter().zip(given).chain(OPTIONAL.iter().zip(optional)) {
+    for (figure, value) in needed.iter().zip(given).chain(OPTIONAL_FIGURES.iter().zip(optional)) {
         if let Some(value) = value {
             figure.check(value).map_err(|why| {
-                let other_gears = figure.option == NEEDED[0].option && !equivalent && ANY_RATIO.check(value).is_ok();
-                let help = if other_gears { arguments.equivalent_in_place() } else { HELP.to_owned() };
+                let other_gears =
+                    figure.option == REQUIRED_FIGURES[0].option && !equivalent && EQUIVALENT_RATIO.check(value).is_ok();
+                let help = if other_gears { arguments.equivalent_gear_help() } else { HELP.to_owned() };
                 Failure::new(format!("{}: {why}", figure.option)).with_help(help)
             })?;
         }
@@ -102,7 +103,7 @@ pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
         return Err(Failure::new(format!("{name}: the data sheet lacks {}", missing.join(", ")))
             .with_help("give each with its figure; on a terminal they are asked for"));
     }
-    let mut figures = [0.0; NEEDED.len()];
+    let mut figures = [0.0; REQUIRED_FIGURES.len()];
     for ((figure, value), place) in needed.iter().zip(given).zip(&mut figures) {
         *place = match value {
             Some(value) => value,
@@ -135,8 +136,8 @@ pub fn complete(arguments: &Arguments) -> Outcome<DataSheet> {
 
 const HELP: &str = "`joint new --help` says what each is, and its unit";
 
-/// Asks what kind of gears it is until there is an answer.
-fn kind(answers: &mut impl BufRead) -> Outcome<&'static str> {
+/// Asks for the kind of gears until the answer is valid.
+fn ask_kind(answers: &mut impl BufRead) -> Outcome<&'static str> {
     loop {
         output::remark(
             "planetary, a stage whose teeth are found, or equivalent, gears without teeth such as a spur train, a cycloid or a belt:",
@@ -147,7 +148,7 @@ fn kind(answers: &mut impl BufRead) -> Outcome<&'static str> {
             return Err(Failure::new("no answer for the kind of gears").with_help("give --equivalent, or --ratio"));
         }
         let answer = line.trim();
-        match KINDS.into_iter().find(|kind| !answer.is_empty() && kind.starts_with(answer)) {
+        match GEAR_KINDS.into_iter().find(|kind| !answer.is_empty() && kind.starts_with(answer)) {
             Some(kind) => return Ok(kind),
             None => output::remark(&format!("`{answer}` is neither planetary nor equivalent; once more")),
         }
@@ -155,8 +156,8 @@ fn kind(answers: &mut impl BufRead) -> Outcome<&'static str> {
 }
 
 impl Arguments {
-    /// Help for gears that no single planetary stage is: the same command for an equivalent gear.
-    pub(crate) fn equivalent_in_place(&self) -> String {
+    /// Help for gears that are not a single planetary stage: the same command for an equivalent gear.
+    pub(crate) fn equivalent_gear_help(&self) -> String {
         let mut command = format!("joint new {} --equivalent", quoted(&self.name.display().to_string()));
         let numbers = [
             ("ratio", self.ratio),
@@ -184,13 +185,13 @@ impl Arguments {
         format!("gears of more stages, of other kinds or of unknown teeth are an equivalent gear: {command}")
     }
 
-    /// Whether something was said that only gears with teeth have.
-    fn says_teeth(&self) -> bool {
+    /// Returns true if an option that only gears with teeth have was given.
+    fn states_teeth(&self) -> bool {
         self.equivalent || self.planets.is_some() || self.material.is_some() || self.outer_diameter_mm.is_some()
     }
 }
 
-/// The reader of joint files takes the same names.
+/// Checks a name by the rules of the joint file.
 fn check_name(name: &str) -> Outcome<()> {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || " -_.+()".contains(letter);
     match !name.trim().is_empty() && name.len() <= 32 && name.chars().all(plain) {
@@ -209,7 +210,7 @@ impl Figure {
         }
     }
 
-    /// Asks until there is an answer that can be.
+    /// Asks until the answer is valid.
     fn ask(&self, answers: &mut impl BufRead) -> Outcome<f64> {
         loop {
             output::remark(&format!("{}:", self.question));
@@ -235,11 +236,12 @@ mod tests {
 
     use super::*;
 
+    /// An invalid answer is asked for again, until the input ends.
     #[test]
-    fn an_answer_that_is_none_is_asked_for_again() {
+    fn invalid_answer_is_asked_again() {
         let mut answers = Cursor::new("nine\n-9\nNaN\n9\n");
-        assert_eq!(NEEDED[0].ask(&mut answers).expect("an answer"), 9.0);
-        let failure = NEEDED[0].ask(&mut answers).expect_err("no more answers");
+        assert_eq!(REQUIRED_FIGURES[0].ask(&mut answers).expect("an answer"), 9.0);
+        let failure = REQUIRED_FIGURES[0].ask(&mut answers).expect_err("no more answers");
         assert!(failure.message().contains("--ratio"), "{failure}");
     }
 }

@@ -1,4 +1,4 @@
-//! Sizes, masses and stiffnesses that follow from a data sheet, a material and the teeth.
+//! Sizes, masses and stiffnesses derived from a data sheet, a material and the teeth.
 
 use joint_file::sheet::{self, ARCMIN};
 use parameters::{Bodies, Coherence, Geometry};
@@ -12,52 +12,52 @@ const MODULES: [f64; 26] = [
     0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.7, 0.8, 0.9, 1.0, 1.125, 1.25, 1.5, 1.75, 2.0, 2.25, 2.5, 3.0,
     4.0, 5.0, 6.0, 8.0, 10.0,
 ];
-/// Face widths in modules, the usual one first; wider where the teeth alone would be softer than the sheet's joint.
-const WIDTHS: [f64; 4] = [10.0, 12.0, 15.0, 20.0];
-/// Modules from the ring's pitch circle to its outside on both sides: root of 1.25 and rim of 2.
-const RIM: f64 = 6.5;
-/// Root stress over force by module and face width; 3 is that of 17 teeth and more.
+/// Face widths in modules, the usual one first; wider ones if the teeth alone would be softer than the sheet's joint.
+const FACE_WIDTHS: [f64; 4] = [10.0, 12.0, 15.0, 20.0];
+/// Modules from the ring's pitch circle to its outside, both sides together: root of 1.25 and rim of 2.
+const RIM_MODULES: f64 = 6.5;
+/// Form factor: root stress over force by module and face width; 3 holds for 17 teeth and more.
 const FORM_FACTOR: f64 = 3.0;
-/// The carrier's disc over the face width.
-const CARRIER: f64 = 0.5;
+/// Thickness of the carrier's disc over the face width.
+const CARRIER_THICKNESS: f64 = 0.5;
 
-/// A joint of a data sheet.
+/// Sizes of a joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sizes {
     /// Teeth and planets.
     pub teeth: Teeth,
     /// Module [mm].
     pub module_mm: f64,
-    /// Where the module comes from.
+    /// Origin of the module.
     pub module_from: String,
     /// Face width [mm].
     pub width_mm: f64,
     /// Mean stiffness of a mesh [N/m].
     pub mean_stiffness: f64,
-    /// What sun, planets and carrier weigh by size and material.
+    /// Masses of sun, planets and carrier by size and material.
     pub bodies: Bodies,
     /// Carrier's thickness [mm].
     pub carrier_mm: f64,
-    /// The part of the compliance at the output that is the teeth's [-].
+    /// Share of the teeth in the compliance at the output [-].
     pub teeth_share: f64,
 }
 
-/// The gears of a data sheet.
+/// Gears of a data sheet.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Gears {
     /// A planetary stage.
     Planetary(Sizes),
-    /// Gears without teeth, all of which is in the sheet.
+    /// Gears without teeth, described by the sheet alone.
     Equivalent,
 }
 
 impl Gears {
-    /// Finds teeth, sizes and stiffnesses where there are any.
-    pub fn of(sheet: &DataSheet) -> Outcome<Self> {
+    /// Finds teeth, sizes and stiffnesses of a planetary stage.
+    pub fn derive(sheet: &DataSheet) -> Outcome<Self> {
         if sheet.equivalent { Ok(Self::Equivalent) } else { sizes(sheet).map(Self::Planetary) }
     }
 
-    /// Motor turns for one turn of the link.
+    /// Motor turns per turn of the link.
     pub fn ratio(&self, sheet: &DataSheet) -> f64 {
         match self {
             Self::Planetary(sizes) => sizes.teeth.ratio(),
@@ -65,7 +65,7 @@ impl Gears {
         }
     }
 
-    /// Inertia of the gears at their input: the sheet's, that of sizes and material, or half of the rotor's [kg m^2].
+    /// Inertia of the gears at their input: from the sheet, from sizes and material, or half of the rotor's [kg m^2].
     pub fn inertia_at_input(&self, sheet: &DataSheet) -> f64 {
         match (sheet.gear_inertia, self) {
             (Some(inertia), _) => 1e-4 * inertia,
@@ -76,7 +76,7 @@ impl Gears {
         }
     }
 
-    /// What is to be said of teeth that are undercut.
+    /// Warning for undercut teeth.
     pub fn undercut(&self) -> Option<String> {
         match self {
             Self::Planetary(sizes) => sizes.teeth.undercut(),
@@ -85,7 +85,7 @@ impl Gears {
     }
 }
 
-/// Pressure angle of all of it [deg].
+/// Pressure angle of all gears [deg].
 pub const PRESSURE_ANGLE_DEG: f64 = 20.0;
 
 /// Finds teeth, sizes and stiffnesses.
@@ -101,9 +101,9 @@ fn sizes(sheet: &DataSheet) -> Outcome<Sizes> {
         let teeth_share = total * sheet::teeth_compliance(&geometry, [mean_stiffness; 2]);
         (width, mean_stiffness, teeth_share)
     };
-    let stiff = WIDTHS.into_iter().map(of_width).find(|(_, _, share)| *share < 1.0);
+    let stiff = FACE_WIDTHS.into_iter().map(of_width).find(|(_, _, share)| *share < 1.0);
     let Some((width, mean_stiffness, teeth_share)) = stiff else {
-        let (_, _, share) = of_width(WIDTHS[WIDTHS.len() - 1]);
+        let (_, _, share) = of_width(FACE_WIDTHS[FACE_WIDTHS.len() - 1]);
         let message = format!(
             "teeth of {} of module {module_mm} mm alone give {:.3} N m/arcmin, and the sheet says {}",
             material.word(),
@@ -121,13 +121,13 @@ fn sizes(sheet: &DataSheet) -> Outcome<Sizes> {
         module_from,
         width_mm: 1e3 * width,
         mean_stiffness,
-        bodies: sheet::discs(&geometry, [of_metre, of_metre, CARRIER * of_metre]),
-        carrier_mm: 1e3 * CARRIER * width,
+        bodies: sheet::discs(&geometry, [of_metre, of_metre, CARRIER_THICKNESS * of_metre]),
+        carrier_mm: 1e3 * CARRIER_THICKNESS * width,
         teeth_share,
     })
 }
 
-/// The geometry as the reader of joint files makes it of a module.
+/// Geometry as the reader of joint files derives it from a module.
 fn geometry(teeth: &Teeth, module_mm: f64) -> Geometry {
     let angle = PRESSURE_ANGLE_DEG.to_radians();
     let radius = |teeth: u32| 0.5e-3 * module_mm * f64::from(teeth);
@@ -144,10 +144,10 @@ fn geometry(teeth: &Teeth, module_mm: f64) -> Geometry {
     }
 }
 
-/// The largest module that fits the outer diameter, or the smallest that carries the rated torque.
+/// Largest module that fits the outer diameter, or smallest that carries the rated torque.
 fn module(sheet: &DataSheet, teeth: &Teeth) -> Outcome<(f64, String)> {
     if let Some(diameter) = sheet.outer_diameter_mm {
-        let outside = f64::from(teeth.ring) + RIM;
+        let outside = f64::from(teeth.ring) + RIM_MODULES;
         let fits = MODULES.into_iter().rev().find(|module| module * outside <= diameter);
         let from = format!("{diameter} mm outer diameter over {outside} modules of ring and rim");
         return fits.map(|module| (module, from)).ok_or_else(|| {
@@ -159,7 +159,7 @@ fn module(sheet: &DataSheet, teeth: &Teeth) -> Outcome<(f64, String)> {
     let stress = |module: f64| {
         let geometry = geometry(teeth, module);
         let force = sheet.rated_torque * sheet::force_per_torque(&geometry);
-        FORM_FACTOR * force / (WIDTHS[0] * (1e-3 * module).powi(2))
+        FORM_FACTOR * force / (FACE_WIDTHS[0] * (1e-3 * module).powi(2))
     };
     let allowed = sheet.material().stress();
     let carries = MODULES.into_iter().find(|module| stress(*module) <= allowed);
@@ -167,7 +167,7 @@ fn module(sheet: &DataSheet, teeth: &Teeth) -> Outcome<(f64, String)> {
         "the rated torque: at most {} MPa at the root of a {} tooth of {} modules face width",
         allowed / 1e6,
         sheet.material().word(),
-        WIDTHS[0]
+        FACE_WIDTHS[0]
     );
     carries.map(|module| (module, from)).ok_or_else(|| {
         let what = format!("no module carries {} N m with teeth of {}", sheet.rated_torque, sheet.material().word());
@@ -175,7 +175,7 @@ fn module(sheet: &DataSheet, teeth: &Teeth) -> Outcome<(f64, String)> {
     })
 }
 
-/// With four digits: what is derived or assumed is not known better.
+/// Value with four digits: derived and assumed values are not known better.
 pub fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }

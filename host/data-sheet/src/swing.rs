@@ -1,44 +1,44 @@
-//! Torque that the standard test takes of the motor, and the heaviest link that leaves it a reserve.
+//! Motor torque of the standard test, and the heaviest link that leaves a reserve.
 //!
 //! Motion T2 swings the link by A sin(2 pi f t), A = 0.5 rad, f = 1 Hz. At its turning points the motor gives
 //!
-//! T = T_0 + i alpha (J_r + J_g) + (alpha J_l + T_w) / (i eta),    alpha = A (2 pi f)^2 = 19.7 rad/s^2
+//! T = T_0 + i alpha (J_r + J_g) + (alpha J_l + T_w) / (i eta), alpha = A (2 pi f)^2 = 19.7 rad/s^2
 //!
-//! with the no-load torque T_0, ratio i, efficiency eta, inertias of rotor J_r, gears at the input J_g and link J_l, and the
-//! torque of the link's weight T_w.
+//! with the no-load torque T_0, ratio i, efficiency eta, inertias of rotor J_r, gears at the input J_g and link J_l,
+//! and the torque of the link's weight T_w.
 
 use std::f64::consts::TAU;
 
 use crate::arguments::DataSheet;
 use crate::sizes::Gears;
 
-/// Greatest acceleration of the link in motion T2 [rad/s^2].
+/// Largest acceleration of the link in motion T2 [rad/s^2].
 const ACCELERATION: f64 = 0.5 * TAU * TAU;
-/// Share of the motor's limit that the standard test may take on an assumed link: the rest is for flank changes, which cross
-/// the gap at the limit, and for errors of the model.
-const SHARE: f64 = 0.5;
-/// An assumed link has so many times the rotor's inertia, at the link, if the motor swings that.
-const TIMES_ROTOR: f64 = 10.0;
-/// It has at least so many times the rotor's: a joint without a link is no joint.
-const LEAST_TIMES_ROTOR: f64 = 0.1;
+/// Largest share of the motor's limit for the standard test with an assumed link; the rest is for flank changes, which
+/// cross the gap at the limit, and for errors of the model.
+const LIMIT_SHARE_MAX: f64 = 0.5;
+/// Inertia of an assumed link over the rotor's inertia at the link, if the motor can swing it.
+const LINK_OVER_ROTOR: f64 = 10.0;
+/// Least inertia of an assumed link over the rotor's inertia at the link: a joint needs a link.
+const LINK_OVER_ROTOR_MIN: f64 = 0.1;
 
-/// Torque that the standard test asks of a motor.
+/// Motor torque of the standard test.
 pub struct Swing {
-    /// Motor turns for one turn of the link.
+    /// Motor turns per turn of the link.
     ratio: f64,
     efficiency: f64,
-    /// Torque of the motor that turns the joint without load, and that swings rotor and gears [N m].
+    /// Motor torque that overcomes the no-load torque and swings rotor and gears [N m].
     without_link: f64,
     /// Torque of the link's weight [N m].
     weight: f64,
-    /// Inertia of the rotor, at the link [kg m^2].
+    /// Inertia of the rotor, referred to the link [kg m^2].
     rotor: f64,
-    /// The motor's limit [N m].
+    /// Torque limit of the motor [N m].
     pub limit: f64,
 }
 
 impl Swing {
-    /// Of a data sheet and its gears.
+    /// Torques for a data sheet and its gears.
     pub fn new(sheet: &DataSheet, gears: &Gears) -> Self {
         let ratio = gears.ratio(sheet);
         let rotor = 1e-4 * sheet.rotor_inertia;
@@ -52,20 +52,20 @@ impl Swing {
         }
     }
 
-    /// Torque of the motor at the turning points of the standard test, with a link of this inertia [kg m^2] [N m].
+    /// Motor torque at the turning points of the standard test [N m], with a link of this inertia [kg m^2].
     pub fn torque(&self, link: f64) -> f64 {
         self.without_link + (ACCELERATION * link + self.weight) / (self.ratio * self.efficiency)
     }
 
-    /// Inertia of a link that nobody has stated [kg m^2], and where it comes from.
+    /// Inertia of an unstated link [kg m^2], and its origin.
     pub fn assumed_link(&self) -> (f64, &'static str) {
-        let usual = TIMES_ROTOR * self.rotor;
-        if self.torque(usual) <= SHARE * self.limit {
+        let usual = LINK_OVER_ROTOR * self.rotor;
+        if self.torque(usual) <= LIMIT_SHARE_MAX * self.limit {
             return (usual, "ten times the rotor's, at the link");
         }
-        let left = (SHARE * self.limit - self.without_link) * self.ratio * self.efficiency - self.weight;
+        let left = (LIMIT_SHARE_MAX * self.limit - self.without_link) * self.ratio * self.efficiency - self.weight;
         let swung = left / ACCELERATION;
-        let least = LEAST_TIMES_ROTOR * self.rotor;
+        let least = LINK_OVER_ROTOR_MIN * self.rotor;
         if swung > least {
             (swung, "what half of the motor's limit swings in the standard test")
         } else {
@@ -94,8 +94,9 @@ mod tests {
     const SERVO: Swing =
         Swing { ratio: 353.5, efficiency: 0.6, without_link: 0.0047, weight: 0.0, rotor: 0.05, limit: 0.016 };
 
+    /// An assumed link takes at most half of the motor's limit in the standard test.
     #[test]
-    fn an_assumed_link_takes_half_of_the_limit_at_most() {
+    fn assumed_link_takes_half_the_limit() {
         let (link, why) = SERVO.assumed_link();
         assert!((SERVO.torque(link) / (0.5 * SERVO.limit) - 1.0).abs() < 1e-12, "{link}: {}", SERVO.torque(link));
         assert!(why.contains("half of the motor's limit") && SERVO.warning(link).is_none());

@@ -1,15 +1,15 @@
-//! What `joint identify` may be asked for on the command line.
+//! Command line of `joint identify`.
 
 use std::path::PathBuf;
 
 use super::quasi_static::Options;
-use log_reader::column_map::{ColumnMap, renaming};
+use log_reader::column_map::{ColumnMap, parse_renaming};
 use log_reader::columns::Columns;
 use log_reader::log_file;
 use log_reader::units::{self, Unit};
 use report::failure::Outcome;
 
-/// How wrong an inertia of a joint file is expected to be, as a ratio: one standard deviation, of what drawings give.
+/// Standard deviation of an inertia in a joint file, relative; typical of inertias from drawings.
 pub const INERTIA_ERROR: f64 = 0.015;
 
 /// Arguments of `joint identify`.
@@ -34,26 +34,26 @@ Examples:
 Exit code: 0 if something could be identified, 2 for bad input or a log that cannot tell, 130 after Ctrl-C."
 )]
 pub struct Arguments {
-    /// Recorded reversal test; with --simulate the new file that is to be written
+    /// Recorded reversal test; with --simulate, the new file to be written
     #[arg(value_name = "LOG")]
     pub log: PathBuf,
-    /// Topic of an MCAP log [default: the one that has motor, output and torque]
+    /// Topic of an MCAP log [default: the only one with motor, output and torque]
     #[arg(long, value_name = "TOPIC")]
     pub topic: Option<String>,
-    /// Takes a column of another name, such as motor_counts=pos_raw; may be repeated
-    #[arg(long, value_name = "COLUMN=NAME", value_parser = renaming)]
+    /// Reads a column under another name, such as motor_counts=pos_raw; may be repeated
+    #[arg(long, value_name = "COLUMN=NAME", value_parser = parse_renaming)]
     pub column: Vec<(String, String)>,
-    /// Unit of a column that is called by its quantity alone, such as motor_angle=turns, motor_torque=mN_m,
+    /// Unit of a column that is named by its quantity alone, such as motor_angle=turns, motor_torque=mN_m,
     /// motor_torque=0.06*N_m for a current of 0.06 N m/A, motor_angle=turns@output; may be repeated
     #[arg(long, value_name = "QUANTITY=UNIT", value_parser = units::parse)]
     pub unit: Vec<Unit>,
     /// Names and units of a maker's columns: a file, or ros2-joint-states, moteus, odrive, vesc-tool, feetech
     #[arg(long, value_name = "MAP")]
     pub map: Option<PathBuf>,
-    /// Joint of a map that has several [default: each of them, a report each]
+    /// Joint of a map with several joints [default: every joint, a report each]
     #[arg(long, value_name = "NAME", requires = "map")]
     pub map_joint: Option<String>,
-    /// Joint file (TOML) or preset that gives teeth, levers and inertias, and that is patched
+    /// Joint file (TOML) or preset that gives teeth, levers and inertias; the patched copy is written from it
     #[arg(long, value_name = "FILE", default_value = "q1")]
     pub joint: PathBuf,
     /// Changes a value of the joint file first, such as link_inertia_kg_m2=0.2; may be repeated
@@ -65,33 +65,36 @@ pub struct Arguments {
     /// Resolution of the output encoder [default: as in the joint file]
     #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(8..=30))]
     pub output_bits: Option<u32>,
-    /// How wrong the motor's torque may be, in percent of it (one standard deviation) [default: torque_constant_error_ratio of the joint file]
+    /// Standard deviation of the motor's torque scale, in percent [default: torque_constant_error_ratio of the joint
+    /// file]
     #[arg(long, value_name = "PERCENT", value_parser = percent)]
     pub torque_error: Option<f64>,
-    /// How wrong the joint file's inertia of motor and link may each be, in percent of it (one standard deviation)
+    /// Standard deviation of each inertia of the joint file (motor, link), in percent
     #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * INERTIA_ERROR, value_parser = percent)]
     pub inertia_error: f64,
-    /// Writes LOG instead of reading it: the recommended test, done by the f64 reference of the joint file
+    /// Writes LOG instead of reading it: the recommended test, simulated by the f64 reference of the joint file
     #[arg(long, conflicts_with_all = ["topic", "column", "unit", "map", "map_joint", "torque_error", "inertia_error", "out", "json"])]
     pub simulate: bool,
     /// Seed of a simulated test's noise and encoder phases
     #[arg(long, value_name = "N", default_value_t = 1, requires = "simulate")]
     pub seed: u64,
-    /// Has a simulated test record the torque at the output too
+    /// Adds the torque at the output to a simulated test
     #[arg(long, requires = "simulate")]
     pub with_output_torque: bool,
-    /// Folder for report.html, joint.toml and findings.json; a file that this command did not write is refused [default: joint-out/identify/<joint>]
+    /// Folder for report.html, joint.toml and findings.json; files that this command did not write are not overwritten
+    /// [default: joint-out/identify/<joint>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Writes the findings as JSON to this file too ("-" is standard output, and all else on standard error)
+    /// Writes the findings as JSON to this file too ("-" is standard output; everything else then goes to standard
+    /// error)
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
-    /// Reads a log of a joint whose output is held while the torque goes slowly to and fro: lost motion, stiffness, half-backlash and
-    /// friction from the motor's angle and torque
+    /// Reads a log of a joint with a clamped output and a slowly alternating torque: lost motion, stiffness,
+    /// half-backlash and friction from the motor's angle and torque
     #[arg(long, conflicts_with_all = ["quasi_static", "simulate", "inertia_error"])]
     pub output_locked: bool,
-    /// Reads a log of a joint without an encoder at the motor, whose torque steps to and fro: inertia, friction, weight of the link and an
-    /// upper bound of the lost motion from the output's angle and the motor's torque
+    /// Reads a log of a joint without a motor encoder and with alternating torque steps: inertia, friction, weight of
+    /// the link and an upper bound of the lost motion from the output's angle and the motor's torque
     #[arg(long, conflicts_with_all = ["quasi_static", "simulate", "output_locked"])]
     pub output_only: bool,
     /// Slow logs.
@@ -100,21 +103,21 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// Reads the log's columns into samples by `of`. `ratio` is the gear's; `will_do` tells whether a topic or a file has the columns
-    /// that are needed.
+    /// Reads the log's columns and converts them to samples with `of`. `ratio` is the gear's ratio; `accepts` accepts a
+    /// topic or a file by its columns.
     pub fn read_log<T>(
         &self,
         ratio: f64,
-        will_do: impl Fn(&Columns) -> bool,
+        accepts: impl Fn(&Columns) -> bool,
         of: impl FnOnce(&mut Columns) -> Outcome<T>,
     ) -> Outcome<T> {
         let path = self.log.as_path();
-        let mut columns = log_file::read(path, self.topic.as_deref(), &self.column_map()?, ratio, will_do)?;
+        let mut columns = log_file::read(path, self.topic.as_deref(), &self.column_map()?, ratio, accepts)?;
         let samples = of(&mut columns);
-        samples.map_err(|failure| columns.explain(failure).while_doing(path.display()))
+        samples.map_err(|failure| columns.with_notes(failure).while_doing(path.display()))
     }
 
-    /// Columns and units of the log, as the map and the command line name them.
+    /// Names and units of the log's columns, from the map and the command line.
     pub fn column_map(&self) -> Outcome<ColumnMap> {
         ColumnMap::new(self.map.as_deref(), self.map_joint.as_deref(), &self.column, &self.unit)
     }

@@ -1,12 +1,12 @@
-//! What a log contradicts: the joint file, or itself. The two angles of a geared joint turn by its ratio, and a torque
-//! accelerates an inertia. Where the numbers say otherwise, a unit, a sign, a resolution or the time step is not what it was
-//! taken for, and all that would be found were wrong by as much. Such a log is refused with its likely causes.
+//! Rejection of logs that contradict the joint file or themselves. The angles of a geared joint turn by its ratio, and
+//! a torque accelerates an inertia. If the numbers contradict this, a unit, a sign, a resolution or the time step is
+//! wrong, and every result would be wrong by as much. The failure names the likely causes.
 
 use std::f64::consts::TAU;
 
-use super::balances::{self, Factor, SURE};
+use super::balances::{self, CERTAINTY_SIGMA, Factor};
 use super::findings::Finding;
-use super::log::{Log, SMOOTH};
+use super::log::{FILTERED_VARIANCE_SHARE, Log};
 use super::prior::PriorModel;
 use super::regression::{Equations, Solution};
 use super::rows::Rows;
@@ -17,108 +17,116 @@ use log_reader::resolution::{count_angle, resolution};
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 
-/// So many moments are enough to hold angle against angle.
-const MOMENTS: usize = 4000;
-/// Over a whole turn and more an encoder's own error cancels, and teeth do not slip: the ratio holds within this.
-const RATIO_OVER_TURNS: f64 = 2e-3;
-/// Errors of both encoders, at both ends of what the output turns [rad].
-const ENCODER_ERRORS: f64 = 0.01;
-/// Over less than a turn an encoder's error of 0.2 degrees feigns this much.
-const RATIO_WITHIN_A_TURN: f64 = 1e-2;
-/// What gap and wind-up feign of a ratio where the joint hardly moves: so many times what the joint file says of them.
-const SLACK: f64 = 3.0;
-/// Error by angle that is always possible [rad].
-const ANY_ERROR: f64 = 1e-3;
-/// An output that turns by less than this share of what the motor does stands.
-const STANDS: f64 = 1e-3;
-/// Box of the kernel for the balance of torques: longer than a swing on the compliance, shorter than a reversal [s].
+/// Moments compared at most, angle against angle.
+const MOMENTS_MAX: usize = 4000;
+/// Tolerance of the ratio over a whole turn and more: encoder errors cancel, and teeth do not slip.
+const RATIO_TOLERANCE_OVER_TURNS: f64 = 2e-3;
+/// Errors of both encoders, at both ends of the output's travel [rad].
+const ENCODER_ERROR_SUM: f64 = 0.01;
+/// Tolerance of the ratio within a turn: an encoder error of 0.2 degrees mimics this much.
+const RATIO_TOLERANCE_WITHIN_A_TURN: f64 = 1e-2;
+/// Multiple of the joint file's gap and wind-up that may mimic another ratio while the joint hardly moves.
+const SLACK_FACTOR: f64 = 3.0;
+/// Error by angle allowed for any encoder [rad].
+const ANGLE_ERROR_MIN: f64 = 1e-3;
+/// Share of the motor's travel below which the output stands.
+const STANDING_TRAVEL_SHARE: f64 = 1e-3;
+/// Kernel box of the torque balances: longer than a swing on the compliance, shorter than a reversal [s].
 const BALANCE_BOX: f64 = 8e-3;
-/// What turns in all is known within this factor, or the file is not this joint's.
-const INERTIA_FACTOR: f64 = 1.6;
-/// The motor's own inertia stands in a data sheet: it is known better.
-const MOTOR_FACTOR: f64 = 1.25;
-/// Torques before and behind the gears differ by ratio and losses, and by no more than this factor.
-const GEARS_FACTOR: f64 = 1.5;
-/// A cause is likely if it gives the factor within this ratio; those that come nearest are named first, and so many.
-const LIKELY: f64 = 0.2;
-const NAMED: usize = 4;
-/// Bits by which both encoders may be told wrong.
-const BITS: i32 = 5;
-/// Inertias of motor and link that a torque at the output makes other than the joint file's by more than this, both the same way,
-/// are no error of both but of the time step.
-const BOTH_INERTIAS: f64 = 1.08;
-/// An offset between the encoders that steps by more than this share of the lost motion, and surely, is no scatter.
-const STEP: f64 = 0.03;
-/// The swing on the compliance may turn by so much in the output's age [rad]: beyond, its reading says little of the twist.
-const AGE: f64 = 0.35;
-/// Angles that scatter by less than this share of what an encoder does, squared, were never read by one.
-const READ: f64 = 1e-6;
-/// Motor readings that are older than the output's by this part of the swing do not go with the torque.
-const LEAD: f64 = 0.2;
-/// A friction below zero by so many halves of its interval contradicts the log.
-const BELOW_ZERO: f64 = 3.0;
-/// A constant torque of this share of the largest one is not weight or friction.
-const OFFSET: f64 = 0.08;
-/// The torque that goes one way may be other than that the other way by this factor.
-const ONE_WAY: f64 = 1.2;
-/// What torques beyond six tenths of the largest need may grow by this share faster or slower than below.
-const BENT: f64 = 0.3;
-/// Torques before and behind the gears that are alike within this share, whatever the motor's acceleration and friction, are one.
-const THE_SAME: f64 = 0.01;
+/// Largest ratio between the log's and the joint file's total inertia.
+const TOTAL_INERTIA_FACTOR_MAX: f64 = 1.6;
+/// Largest ratio between the log's and the joint file's motor inertia, which a data sheet states.
+const MOTOR_INERTIA_FACTOR_MAX: f64 = 1.25;
+/// Largest ratio between the torques before and behind the gears, beside the gear ratio.
+const GEAR_TORQUE_FACTOR_MAX: f64 = 1.5;
+/// A cause is likely within this logarithm of the factor; the CAUSES_NAMED nearest causes are named.
+const CAUSE_DISTANCE_MAX: f64 = 0.2;
+const CAUSES_NAMED: usize = 4;
+/// Bits by which both encoders may be stated wrong.
+const BITS_TRIED: i32 = 5;
+/// If a torque sensor at the output gives both inertias this much larger, or this much smaller, the time step is wrong
+/// rather than both inertias.
+const BOTH_INERTIAS_FACTOR_MAX: f64 = 1.08;
+/// Largest step of the offset between the encoders, as a share of the lost motion.
+const OFFSET_STEP_MAX: f64 = 0.03;
+/// Largest phase of the swing during the output's age [rad]; beyond, the reading says little of the twist.
+const OUTPUT_AGE_MAX: f64 = 0.35;
+/// Variance, as a share of the quantisation's, below which angles were never read by an encoder.
+const SIMULATED_VARIANCE_SHARE: f64 = 1e-6;
+/// Largest age of the motor's readings relative to the output's, as a phase of the swing [rad]; beyond, they do not go
+/// with the torque.
+const MOTOR_AGE_MAX: f64 = 0.2;
+/// Half-intervals below zero from which a friction contradicts the log.
+const NEGATIVE_FRICTION_HALVES: f64 = 3.0;
+/// Largest constant torque, as a share of the largest torque.
+const CONSTANT_TORQUE_MAX: f64 = 0.08;
+/// Largest ratio between the torque scales of both directions.
+const DIRECTION_FACTOR_MAX: f64 = 1.2;
+/// Largest relative change of the torque scale above 0.6 of the largest torque.
+const NONLINEARITY_MAX: f64 = 0.3;
+/// Relative difference below which the torques before and behind the gears are copies of each other.
+const COPY_DIFFERENCE: f64 = 0.01;
 
 const DEGREES: f64 = 360.0 / TAU;
-/// Units that an angle may be in instead, and how many of them are a radian.
-const ANGLES: [(&str, f64); 3] = [("turns", 1.0 / TAU), ("degrees", DEGREES), ("mrad", 1e3)];
-/// Units that a torque may be in instead, and how many of them are 1 N m.
-const TORQUES: [(&str, f64); 5] =
+/// Angle units that may be mistaken for radians, per radian.
+const ANGLE_UNITS: [(&str, f64); 3] = [("turns", 1.0 / TAU), ("degrees", DEGREES), ("mrad", 1e3)];
+/// Torque units that may be mistaken for N m, per N m.
+const TORQUE_UNITS: [(&str, f64); 5] =
     [("mN m", 1e3), ("N cm", 1e2), ("kgf cm", 10.197), ("ozf in", 141.61), ("lbf in", 8.8507)];
-/// Ratios by which a time step is wrong: another prescaler, or every so many-th sample.
-const STEPS: [f64; 6] = [2.0, 3.0, 4.0, 5.0, 8.0, 10.0];
-/// Constants of motors that there are [N m/A].
+/// Ratios by which a time step may be wrong: another prescaler, or every n-th sample.
+const TIME_STEP_FACTORS: [f64; 6] = [2.0, 3.0, 4.0, 5.0, 8.0, 10.0];
+/// Range of plausible torque constants [N m/A].
 const TORQUE_CONSTANTS: [f64; 2] = [0.002, 20.0];
 
-/// What may explain a factor, each with how far it is from doing so.
+/// Possible causes of a factor, each with its logarithmic distance from the factor.
 struct Causes {
     factor: f64,
     list: Vec<(f64, String)>,
 }
 
 impl Causes {
-    fn of(factor: Factor) -> Self {
+    fn new(factor: Factor) -> Self {
         Self { factor: factor.value, list: Vec::new() }
     }
 
-    /// Something that would make the factor so much.
+    /// Adds a cause that gives the factor `by`, if it is close enough.
     fn consider(&mut self, by: f64, text: impl Into<String>) {
         let apart = (self.factor / by).ln().abs();
-        if self.factor * by > 0.0 && apart < LIKELY {
+        if self.factor * by > 0.0 && apart < CAUSE_DISTANCE_MAX {
             self.list.push((apart, text.into()));
         }
     }
 
-    /// The likeliest, and what to look at in any case; `otherwise` stands at the end of them.
+    /// Help text: the likeliest causes, then `otherwise`, then what to check in any case.
     fn help(mut self, otherwise: Option<String>, check: &str) -> String {
         self.list.sort_by(|one, other| one.0.total_cmp(&other.0));
-        let mut causes: Vec<String> = self.list.into_iter().take(NAMED).map(|(_, text)| text).collect();
+        let mut causes: Vec<String> = self.list.into_iter().take(CAUSES_NAMED).map(|(_, text)| text).collect();
         causes.extend(otherwise);
         if causes.is_empty() { check.to_owned() } else { format!("perhaps {}; {check}", causes.join(", or ")) }
     }
 }
 
-/// Refuses a log whose angles do not turn by the joint's ratio.
-pub fn angles(log: &Log, prior: &PriorModel) -> Outcome<()> {
+/// Rejects a log whose angles do not turn by the joint's ratio.
+pub fn check_angles(log: &Log, prior: &PriorModel) -> Outcome<()> {
     let [motor, output] = [&log.motor, &log.output].map(|angles| range_of(angles));
     let of_motor = motor / prior.ratio();
-    let slack = SLACK * (prior.lost_motion + 2.0 * prior.compliance * strongest(log, prior) + ANY_ERROR);
-    if output < STANDS * of_motor && of_motor > slack {
+    let slack =
+        SLACK_FACTOR * (prior.lost_motion + 2.0 * prior.compliance * largest_torque(log, prior) + ANGLE_ERROR_MIN);
+    if output < STANDING_TRAVEL_SHARE * of_motor && of_motor > slack {
         return Err(Failure::new(format!(
             "the output does not turn in this log: by {output:.6} rad, the motor over its ratio by {of_motor:.4} rad"
         ))
         .with_help("check the output encoder and its column"));
     }
-    let Some(factor) = angle_by_angle(log, prior) else { return Ok(()) };
-    let least = if output > TAU { RATIO_OVER_TURNS.min(ENCODER_ERRORS / output) } else { RATIO_WITHIN_A_TURN };
-    if (factor.value - 1.0).abs() < least.max(SURE * factor.deviation).max(slack / output.max(f64::MIN_POSITIVE)) {
+    let Some(factor) = angle_factor(log, prior) else { return Ok(()) };
+    let least = if output > TAU {
+        RATIO_TOLERANCE_OVER_TURNS.min(ENCODER_ERROR_SUM / output)
+    } else {
+        RATIO_TOLERANCE_WITHIN_A_TURN
+    };
+    if (factor.value - 1.0).abs()
+        < least.max(CERTAINTY_SIGMA * factor.deviation).max(slack / output.max(f64::MIN_POSITIVE))
+    {
         return Ok(());
     }
     let message = format!(
@@ -135,31 +143,31 @@ pub fn angles(log: &Log, prior: &PriorModel) -> Outcome<()> {
     Err(Failure::new(message).with_help(causes.help(otherwise, check)))
 }
 
-/// What the motor turns over the ratio for what the output turns, but for what goes with the flank.
-fn angle_by_angle(log: &Log, prior: &PriorModel) -> Option<Factor> {
+/// Travel of the motor over the ratio per travel of the output, separated from the change by flank.
+fn angle_factor(log: &Log, prior: &PriorModel) -> Option<Factor> {
     let mut equations = Equations::default();
-    for sample in (0..log.time.len()).step_by((log.time.len() / MOMENTS).max(1)) {
+    for sample in (0..log.time.len()).step_by((log.time.len() / MOMENTS_MAX).max(1)) {
         let torque = log.torque[sample];
         let side = if torque == 0.0 { 0.0 } else { torque.signum() };
         let block = (log.time[sample] / BLOCK_LENGTH) as usize;
         equations.push(vec![1.0, side, log.output[sample]], log.motor[sample] / prior.ratio(), block);
     }
-    Some(Factor::of(&equations.solve(&[f64::INFINITY; 3])?, 2))
+    Some(Factor::of_unknown(&equations.solve(&[f64::INFINITY; 3])?, 2))
 }
 
 fn angle_causes(log: &Log, prior: &PriorModel, factor: Factor) -> Causes {
     let ratio = prior.ratio();
     let [motor, output] = log.kinds;
     let [motor_turn, output_turn] = [prior.motor_turn, prior.output_turn];
-    let mut causes = Causes::of(factor);
+    let mut causes = Causes::new(factor);
     causes.consider(1.0 / ratio, "the motor's angle is taken behind the gears");
     causes.consider(ratio, "the output's angle is the motor's");
     let counts = if log.kinds == [Kind::Counts; 2] { output_turn as f64 / motor_turn as f64 } else { 1.0 };
     causes.consider(counts * counts / (ratio * ratio), "motor and output are exchanged");
     causes.consider(-1.0, "one encoder counts down when the joint turns forwards");
     for (kind, name, sign, told) in [(motor, "motor", 1, motor_turn), (output, "output", -1, output_turn)] {
-        if kind == Kind::Angle {
-            for (unit, by) in ANGLES {
+        if kind == Kind::Angles {
+            for (unit, by) in ANGLE_UNITS {
                 causes.consider(by.powi(sign), format!("the {name}'s angle is in {unit}"));
             }
             causes.consider((told as f64 / TAU).powi(sign), format!("the {name}'s angle is in counts"));
@@ -174,20 +182,23 @@ fn angle_causes(log: &Log, prior: &PriorModel, factor: Factor) -> Causes {
     causes
 }
 
-/// Refuses a log whose torque does not go with the acceleration of what it turns, or with the torque behind the gears.
+/// Rejects a log whose torque does not fit the acceleration of the inertias, or the torque behind the gears.
 ///
-/// Moments of ringing are looked at by a kernel with a box as short as this [s].
-pub fn torques(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<()> {
+/// The ringing is evaluated with a kernel box of `shortest` [s].
+pub fn check_torques(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<()> {
     let rows = Rows::new(log, prior, BALANCE_BOX);
-    behind_the_gears(prior, &rows)?;
-    let Some(whole) = balances::of_all(&rows, prior) else { return Ok(()) };
-    if !whole.is_narrow() || !whole.is_beyond(INERTIA_FACTOR) {
+    check_gear_torque(prior, &rows)?;
+    let Some(whole) = balances::total_factor(&rows, prior) else { return Ok(()) };
+    if !whole.is_determined() || !whole.is_certainly_outside(TOTAL_INERTIA_FACTOR_MAX) {
         return Ok(());
     }
-    // Where the motor's own inertia agrees, it is the link's that does not.
+    // If the motor's own inertia agrees, the link's inertia is wrong.
     let rows = Rows::new(log, prior, shortest);
-    let of_motor = twist::fit_with_any_torque(log, &rows, prior).map(|free| balances::of_the_motor(&free.solution));
-    if whole.value > 0.0 && of_motor.is_some_and(|factor| factor.is_narrow() && !factor.is_beyond(MOTOR_FACTOR)) {
+    let of_motor = twist::fit_free_torque(log, &rows, prior).map(|free| balances::ringing_factor(&free.solution));
+    if whole.value > 0.0
+        && of_motor
+            .is_some_and(|factor| factor.is_determined() && !factor.is_certainly_outside(MOTOR_INERTIA_FACTOR_MAX))
+    {
         let link = (whole.value * prior.total_inertia() - prior.motor_at_output()).max(0.0);
         let message = format!(
             "the link of this log has an inertia of about {} kg m^2, that of the joint file {}",
@@ -203,21 +214,20 @@ pub fn torques(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<()> {
     Err(contradiction(log, prior, whole, "all that turns", prior.total_inertia()))
 }
 
-/// Refuses a log whose ringing asks for another inertia of the motor than its own: `free` is a fit that expected nothing of
-/// the torque's scale.
-pub fn ringing(log: &Log, prior: &PriorModel, free: &Solution) -> Outcome<()> {
-    let factor = balances::of_the_motor(free);
-    if !factor.is_narrow() || !factor.is_beyond(MOTOR_FACTOR) {
+/// Rejects a log whose ringing needs another motor inertia; `free` is a fit with an unknown torque scale.
+pub fn check_ringing(log: &Log, prior: &PriorModel, free: &Solution) -> Outcome<()> {
+    let factor = balances::ringing_factor(free);
+    if !factor.is_determined() || !factor.is_certainly_outside(MOTOR_INERTIA_FACTOR_MAX) {
         return Ok(());
     }
     Err(contradiction(log, prior, factor, "the motor", prior.motor_inertia))
 }
 
-/// Refuses a log whose encoders do not keep their offset: a slip, lost counts, or two logs in one.
-pub fn offsets(log: &Log, rows: &Rows, prior: &PriorModel) -> Outcome<()> {
-    let Some(steps) = twist::steps_of_the_offset(log, rows, prior) else { return Ok(()) };
-    let least = (STEP * prior.lost_motion).max(2.0 * counts(prior));
-    let is_sure = |(value, deviation): &(f64, f64)| value.abs() > least + SURE * deviation;
+/// Rejects a log whose encoders change their offset: a slip, lost counts, or two logs in one.
+pub fn check_offsets(log: &Log, rows: &Rows, prior: &PriorModel) -> Outcome<()> {
+    let Some(steps) = twist::offset_steps(log, rows, prior) else { return Ok(()) };
+    let least = (OFFSET_STEP_MAX * prior.lost_motion).max(2.0 * counts(prior));
+    let is_sure = |(value, deviation): &(f64, f64)| value.abs() > least + CERTAINTY_SIGMA * deviation;
     let Some(place) = steps.iter().position(is_sure) else { return Ok(()) };
     let length = log.time.last().copied().unwrap_or_default() / twist::STRETCHES as f64;
     let [from, to] = [place, place + 2].map(|place| ESTIMATE.write(place as f64 * length));
@@ -233,31 +243,34 @@ pub fn offsets(log: &Log, rows: &Rows, prior: &PriorModel) -> Outcome<()> {
     ))
 }
 
-/// One count of either encoder, at the output [rad].
+/// One count of both encoders, at the output [rad].
 fn counts(prior: &PriorModel) -> f64 {
     count_angle(prior.motor_turn) / prior.ratio() + count_angle(prior.output_turn)
 }
 
-/// Counts in a turn, doubled so many times, or halved; nothing where they are not whole.
+/// Counts per turn times 2^times; `None` unless whole.
 fn doubled(turn: u64, times: i32) -> Option<u64> {
     let factor = 1_u64.checked_shl(times.unsigned_abs())?;
     if times < 0 { turn.is_multiple_of(factor).then(|| turn / factor) } else { turn.checked_mul(factor) }
 }
 
-/// Refuses a log whose output is read so much later or earlier than the motor that the swing turns meanwhile.
-pub fn age(twist: &Twist, prior: &PriorModel) -> Outcome<()> {
+/// Rejects a log in which motor and output are read so far apart that the swing turns in between.
+pub fn check_age(twist: &Twist, prior: &PriorModel) -> Outcome<()> {
     let age = twist.solution.values[twist::SKEW];
     let scatter = twist.solution.half(&[(twist::SKEW, 1.0)]);
-    let radian = prior.swing() / TAU;
-    let (most, older, newer) =
-        if age > 0.0 { (AGE * radian, "output's", "motor's") } else { (LEAD * radian, "motor's", "output's") };
+    let radian = prior.swing_period() / TAU;
+    let (most, older, newer) = if age > 0.0 {
+        (OUTPUT_AGE_MAX * radian, "output's", "motor's")
+    } else {
+        (MOTOR_AGE_MAX * radian, "motor's", "output's")
+    };
     if age.abs() - scatter < most {
         return Ok(());
     }
     Err(Failure::new(format!(
         "the {older} readings are {} ms older than the {newer}, and a joint that swings at {:.0} Hz wants them within {} ms",
         ESTIMATE.write(1e3 * age.abs()),
-        1.0 / prior.swing(),
+        1.0 / prior.swing_period(),
         ESTIMATE.write(1e3 * most)
     ))
     .with_help(format!(
@@ -266,16 +279,17 @@ pub fn age(twist: &Twist, prior: &PriorModel) -> Outcome<()> {
     )))
 }
 
-/// Refuses a log of filtered angles: they scatter less than their encoders, and more than angles that no encoder has read, as a
-/// simulation writes them; or else they follow the torque so late that the swing turns meanwhile.
-pub fn filter(log: &Log, twist: &Twist, prior: &PriorModel) -> Outcome<()> {
-    let Some(shares) = log.smoothness(prior) else { return Ok(()) };
-    let most = AGE * prior.swing() / TAU;
-    // Behind a torque that was measured at the output it is the swing's damping that grows, behind the motor's its delay.
+/// Rejects a log of filtered angles: their scatter is below the encoders' and above that of simulated angles, or they
+/// follow the torque so late that the swing turns in between.
+pub fn check_filter(log: &Log, twist: &Twist, prior: &PriorModel) -> Outcome<()> {
+    let Some(shares) = log.variance_shares(prior) else { return Ok(()) };
+    let most = OUTPUT_AGE_MAX * prior.swing_period() / TAU;
+    // With a torque measured at the output the delay shows as damping of the swing, otherwise as delay of the motor's
+    // torque.
     let is_late = [(twist::RELAXATION, -1.0), (twist::DELAY, 1.0)]
         .into_iter()
         .any(|(unknown, sign)| sign * twist.solution.values[unknown] - twist.solution.half(&[(unknown, 1.0)]) > most);
-    if !is_late && !shares.iter().any(|share| (READ..SMOOTH).contains(share)) {
+    if !is_late && !shares.iter().any(|share| (SIMULATED_VARIANCE_SHARE..FILTERED_VARIANCE_SHARE).contains(share)) {
         return Ok(());
     }
     let [motor, output] = shares.map(|share| ESTIMATE.write(share.sqrt()));
@@ -288,11 +302,12 @@ pub fn filter(log: &Log, twist: &Twist, prior: &PriorModel) -> Outcome<()> {
     .with_help("perhaps a filter or an observer smoothed them: log raw readings, or say --motor-bits and --output-bits as they are"))
 }
 
-/// Refuses a log whose torque at the output makes inertias other than they can be.
-pub fn sensor(prior: &PriorModel, [_, motor, link]: [Option<Factor>; 3]) -> Outcome<()> {
-    let sure =
-        |factor: &Option<Factor>, most: f64| factor.filter(|factor| factor.is_narrow() && factor.is_beyond(most));
-    if let (Some(motor), Some(link)) = (sure(&motor, BOTH_INERTIAS), sure(&link, BOTH_INERTIAS))
+/// Rejects a log whose torque at the output gives implausible inertias.
+pub fn check_sensor(prior: &PriorModel, [_, motor, link]: [Option<Factor>; 3]) -> Outcome<()> {
+    let sure = |factor: &Option<Factor>, most: f64| {
+        factor.filter(|factor| factor.is_determined() && factor.is_certainly_outside(most))
+    };
+    if let (Some(motor), Some(link)) = (sure(&motor, BOTH_INERTIAS_FACTOR_MAX), sure(&link, BOTH_INERTIAS_FACTOR_MAX))
         && (motor.value > 1.0) == (link.value > 1.0)
     {
         let step = (motor.value * link.value).powf(0.25);
@@ -307,7 +322,7 @@ pub fn sensor(prior: &PriorModel, [_, motor, link]: [Option<Factor>; 3]) -> Outc
             ESTIMATE.write(step)
         )));
     }
-    let Some(motor) = sure(&motor, MOTOR_FACTOR) else { return Ok(()) };
+    let Some(motor) = sure(&motor, MOTOR_INERTIA_FACTOR_MAX) else { return Ok(()) };
     let inertia = motor.value * prior.motor_inertia;
     Err(Failure::new(format!(
         "by the torque at the output what turns with the motor has an inertia of {} kg m^2, that of the joint file {}",
@@ -317,11 +332,11 @@ pub fn sensor(prior: &PriorModel, [_, motor, link]: [Option<Factor>; 3]) -> Outc
     .with_help("check rotor_inertia_kg_m2 and the gears' inertia, units and signs of both torques"))
 }
 
-/// Refuses a log by which a friction drives.
-pub fn frictions(findings: &[Finding]) -> Outcome<()> {
+/// Rejects a log with a negative friction.
+pub fn check_frictions(findings: &[Finding]) -> Outcome<()> {
     let drives = |finding: &&Finding| {
         let (Some(value), Some([low, high])) = (finding.value, finding.interval) else { return false };
-        value + BELOW_ZERO * 0.5 * (high - low) < 0.0 && finding.is_friction()
+        value + NEGATIVE_FRICTION_HALVES * 0.5 * (high - low) < 0.0 && finding.is_friction()
     };
     let Some(finding) = findings.iter().find(drives) else { return Ok(()) };
     Err(Failure::new(format!(
@@ -333,15 +348,17 @@ pub fn frictions(findings: &[Finding]) -> Outcome<()> {
     .with_help("perhaps time runs backwards, signs of torque and angles are exchanged, or the efficiency of the joint file is too low"))
 }
 
-/// Refuses a log whose torque is larger one way than the other, or holds against a constant one.
-pub fn one_as_the_other(log: &Log, prior: &PriorModel) -> Outcome<()> {
+/// Rejects a log whose torque differs by direction, is not proportional, or has a large constant part.
+pub fn check_symmetry(log: &Log, prior: &PriorModel) -> Outcome<()> {
     let rows = &Rows::new(log, prior, BALANCE_BOX);
-    // Where the whole balance says nothing, parts of it say less.
-    if !balances::of_all(rows, prior).is_some_and(Factor::is_narrow) {
+    // If the whole balance is undetermined, so are its parts.
+    if !balances::total_factor(rows, prior).is_some_and(Factor::is_determined) {
         return Ok(());
     }
-    let constant = balances::constant(rows, prior);
-    if constant.is_some_and(|Factor { value, deviation }| value.abs() - SURE * deviation > OFFSET * rows.greatest) {
+    let constant = balances::constant_torque(rows, prior);
+    if constant.is_some_and(|Factor { value, deviation }| {
+        value.abs() - CERTAINTY_SIGMA * deviation > CONSTANT_TORQUE_MAX * rows.largest_torque
+    }) {
         let value = constant.map_or(f64::NAN, |constant| constant.value);
         return Err(Failure::new(format!(
             "a constant torque of {} N m at the output is in this log, beside weight and friction, or {} N m at the motor",
@@ -351,9 +368,9 @@ pub fn one_as_the_other(log: &Log, prior: &PriorModel) -> Outcome<()> {
         .with_help("set the zero of the torque's measurement, see that it is as large one way as the other, or take the load off that pulls one \
              way"));
     }
-    if let Some([small, more]) = balances::small_and_large(rows, prior)
-        && small.is_narrow()
-        && more.value.abs() - SURE * more.deviation > BENT * small.value.abs()
+    if let Some([small, more]) = balances::factors_by_size(rows, prior)
+        && small.is_determined()
+        && more.value.abs() - CERTAINTY_SIGMA * more.deviation > NONLINEARITY_MAX * small.value.abs()
     {
         let ratio = (small.value + more.value) / small.value;
         return Err(Failure::new(format!(
@@ -363,13 +380,17 @@ pub fn one_as_the_other(log: &Log, prior: &PriorModel) -> Outcome<()> {
         ))
         .with_help("perhaps it is clipped, or the drive gives less than it is asked for: log the torque from measured currents"));
     }
-    let Some([forwards, backwards]) = balances::one_way_and_the_other(rows, prior) else { return Ok(()) };
+    let Some([forwards, backwards]) = balances::factors_by_direction(rows, prior) else { return Ok(()) };
     let (value, deviation) = (
         forwards.value / backwards.value,
         (forwards.deviation / forwards.value).hypot(backwards.deviation / backwards.value),
     );
     let both = Factor { value, deviation: deviation * value.abs() };
-    if !forwards.is_narrow() || !backwards.is_narrow() || value <= 0.0 || !both.is_beyond(ONE_WAY) {
+    if !forwards.is_determined()
+        || !backwards.is_determined()
+        || value <= 0.0
+        || !both.is_certainly_outside(DIRECTION_FACTOR_MAX)
+    {
         return Ok(());
     }
     Err(Failure::new(format!(
@@ -379,33 +400,34 @@ pub fn one_as_the_other(log: &Log, prior: &PriorModel) -> Outcome<()> {
     .with_help("perhaps it is clipped or scaled one way: check how the torque is measured, and its zero"))
 }
 
-/// What stands behind the gears is what the motor gives, less what it takes for itself.
-fn behind_the_gears(prior: &PriorModel, rows: &Rows) -> Outcome<()> {
-    let mut equations = Equations::of_moments(rows.alike);
-    let mut alone = Equations::of_moments(rows.alike);
+/// Rejects a torque behind the gears that differs from the motor's torque less the torque for its own acceleration and
+/// friction.
+fn check_gear_torque(prior: &PriorModel, rows: &Rows) -> Outcome<()> {
+    let mut equations = Equations::with_repetition(rows.repetition);
+    let mut alone = Equations::with_repetition(rows.repetition);
     for row in rows.all.iter().filter(|row| row.direction != 0.0) {
         let Some(measured) = row.measured else { continue };
         let block = (row.time / BLOCK_LENGTH) as usize;
-        equations.push(vec![row.drive, row.direction, 1.0], measured, block);
+        equations.push(vec![row.drive_torque, row.direction, 1.0], measured, block);
         alone.push(vec![row.motor_torque / row.leverage, 1.0], measured, block);
     }
     let same = alone.solve(&[f64::INFINITY; 2]);
-    let Some(factor) = equations.solve(&[f64::INFINITY; 3]).map(|solution| Factor::of(&solution, 0)) else {
+    let Some(factor) = equations.solve(&[f64::INFINITY; 3]).map(|solution| Factor::of_unknown(&solution, 0)) else {
         return Ok(());
     };
     let measured: Vec<f64> = rows.all.iter().filter_map(|row| row.measured).collect();
-    if same.is_some_and(|same| same.noise < THE_SAME * root_mean_square(&measured)) {
+    if same.is_some_and(|same| same.noise < COPY_DIFFERENCE * root_mean_square(&measured)) {
         return Err(Failure::new(format!(
             "the torque at the output is {} times the motor's in every moment: it was not measured there",
             ESTIMATE.write(factor.value)
         ))
         .with_help("leave the column out that was reckoned from the other"));
     }
-    if !factor.is_narrow() || !factor.is_beyond(GEARS_FACTOR) {
+    if !factor.is_determined() || !factor.is_certainly_outside(GEAR_TORQUE_FACTOR_MAX) {
         return Ok(());
     }
-    let mut causes = Causes::of(factor);
-    for (unit, by) in TORQUES {
+    let mut causes = Causes::new(factor);
+    for (unit, by) in TORQUE_UNITS {
         causes.consider(by, format!("the torque at the output is in {unit}"));
         causes.consider(1.0 / by, format!("the motor's torque is in {unit}"));
     }
@@ -430,25 +452,25 @@ fn contradiction(log: &Log, prior: &PriorModel, factor: Factor, what: &str, iner
         ESTIMATE.write(factor.value),
         ESTIMATE.write(inertia)
     );
-    let mut causes = Causes::of(factor);
-    if log.kinds == [Kind::Angle; 2] {
-        for (unit, by) in ANGLES {
+    let mut causes = Causes::new(factor);
+    if log.kinds == [Kind::Angles; 2] {
+        for (unit, by) in ANGLE_UNITS {
             causes.consider(1.0 / by, format!("both angles are in {unit}"));
         }
     }
     if log.kinds == [Kind::Counts; 2] {
-        for more in (-BITS..=BITS).filter(|more| *more != 0) {
+        for more in (-BITS_TRIED..=BITS_TRIED).filter(|more| *more != 0) {
             let [motor, output] = [prior.motor_turn, prior.output_turn].map(|turn| doubled(turn, -more));
             let (Some(motor), Some(output)) = (motor, output) else { continue };
             let text = format!("the encoders have {} (motor) and {} (output)", resolution(motor), resolution(output));
             causes.consider(f64::from(more).exp2(), text);
         }
     }
-    for (unit, by) in TORQUES {
+    for (unit, by) in TORQUE_UNITS {
         causes.consider(by, format!("the torque is in {unit}"));
     }
     causes.consider(prior.ratio(), "the torque is the output's");
-    for by in STEPS {
+    for by in TIME_STEP_FACTORS {
         causes.consider(by * by, format!("samples are {by} times as far apart in the log as in truth"));
         causes.consider(1.0 / (by * by), format!("samples are {by} times as close in the log as in truth"));
     }
@@ -460,12 +482,12 @@ fn contradiction(log: &Log, prior: &PriorModel, factor: Factor, what: &str, iner
     Failure::new(message).with_help(causes.help(Some(otherwise), "check units, bits and the time"))
 }
 
-/// Of values about zero.
+/// Root mean square of the values.
 fn root_mean_square(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
 /// Largest torque of the log, at the output [N m].
-fn strongest(log: &Log, prior: &PriorModel) -> f64 {
+fn largest_torque(log: &Log, prior: &PriorModel) -> f64 {
     prior.ratio() * log.torque.iter().fold(0.0_f64, |most, torque| most.max(torque.abs()))
 }

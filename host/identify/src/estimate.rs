@@ -1,12 +1,12 @@
-//! A value with half of its 95 % interval, out of a solution.
+//! A value with half of its 95 % interval.
 
 use super::regression::Solution;
 use super::statistics::{mean, student};
 
 /// Half of a 95 % interval over the standard deviation of a normal distribution.
-pub(super) const QUANTILE: f64 = 1.96;
+pub(super) const NORMAL_QUANTILE: f64 = 1.96;
 
-/// A value and half of its interval.
+/// A value and half of its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Estimate {
     pub value: f64,
@@ -14,8 +14,8 @@ pub(super) struct Estimate {
 }
 
 impl Estimate {
-    /// An unknown of a solution.
-    pub fn of(solution: &Solution, unknown: usize) -> Self {
+    /// Estimate of one unknown of a solution.
+    pub fn of_unknown(solution: &Solution, unknown: usize) -> Self {
         Self { value: solution.values[unknown], half: solution.half(&[(unknown, 1.0)]) }
     }
 
@@ -26,29 +26,29 @@ impl Estimate {
         Self { value, half: student(count - 1.0) * (variance / count).sqrt() }
     }
 
-    /// Any smooth function of a solution, by its slopes.
-    pub fn from(solution: &Solution, value: f64, slopes: &[(usize, f64)]) -> Self {
+    /// Estimate of a smooth function of a solution, by its slopes.
+    pub fn of_function(solution: &Solution, value: f64, slopes: &[(usize, f64)]) -> Self {
         Self { value, half: solution.half(slopes) }
     }
 
-    /// With a systematic part beside the scatter.
-    pub fn wider_by(self, systematic: f64) -> Self {
+    /// Widens the interval by a systematic error.
+    pub fn widened_by(self, systematic: f64) -> Self {
         Self { half: self.half + systematic.abs(), ..self }
     }
 
-    /// With an error beside the scatter that has nothing to do with it, half of its 95 % interval given.
-    pub fn beside(self, independent: f64) -> Self {
+    /// Widens the interval by an independent error, given as half of its 95 % interval.
+    pub fn with_independent_error(self, independent: f64) -> Self {
         Self { half: self.half.hypot(independent), ..self }
     }
 
-    /// With an interval whose half is no less than what readings resolve.
-    pub fn at_least(self, least: f64) -> Self {
-        // Without an interval there is none to widen.
+    /// Limits half of the interval from below by the resolution of the readings.
+    pub fn with_half_at_least(self, least: f64) -> Self {
+        // An infinite interval stays infinite.
         Self { half: if self.half.is_finite() { self.half.max(least) } else { self.half }, ..self }
     }
 
-    /// In another unit.
-    pub fn times(self, factor: f64) -> Self {
+    /// Converts to another unit.
+    pub fn scaled(self, factor: f64) -> Self {
         Self { value: self.value * factor, half: self.half * factor.abs() }
     }
 }

@@ -1,16 +1,16 @@
-//! One smoothing kernel for everything that enters a fit, and its exact derivatives: a linear relation between signals
-//! holds between their smoothed forms too.
+//! Smoothing kernel of all signals of a fit, with its exact derivatives: a linear relation between signals holds
+//! between their smoothed forms too.
 
 /// Four boxes of equal width convolved, and its first and second difference.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Kernel {
-    /// For the value, the first and the second derivative; all of the same odd length.
+    /// Weights of the value, the first and the second derivative, of one odd length.
     weights: [Vec<f64>; 3],
     half: usize,
 }
 
 impl Kernel {
-    /// Boxes of so many samples of a period [s].
+    /// Kernel of boxes of `samples` samples, `period` apart [s].
     pub fn new(samples: usize, period: f64) -> Self {
         let samples = samples.max(1);
         let mut smooth = vec![1.0];
@@ -21,14 +21,14 @@ impl Kernel {
             }
             smooth = wider;
         }
-        // Of even boxes the fourfold one still has an odd length: 4 (n - 1) + 1.
+        // Four convolved boxes have an odd length, 4 (n - 1) + 1, for even n as well.
         let padded = [&[0.0], &smooth[..], &[0.0]].concat();
         let around = |place: usize, offset: isize| {
             place.checked_add_signed(offset).and_then(|place| padded.get(place)).copied().unwrap_or(0.0)
         };
         let first = |place: usize| (around(place, -1) - around(place, 1)) / (2.0 * period);
         let second = |place: usize| (around(place, -1) - 2.0 * padded[place] + around(place, 1)) / (period * period);
-        // Second differences smooth by themselves; with this the value is smoothed as much (Numerov).
+        // Second differences smooth by themselves; these weights smooth the value alike (Numerov).
         let value = |place: usize| (around(place, -1) + 10.0 * padded[place] + around(place, 1)) / 12.0;
         let weights = [
             (0..padded.len()).map(value).collect(),
@@ -38,21 +38,22 @@ impl Kernel {
         Self { half: padded.len() / 2, weights }
     }
 
-    /// Samples on either side that a smoothed value depends on.
+    /// Samples on either side of a smoothed value.
     pub fn half(&self) -> usize {
         self.half
     }
 
-    /// Products of the weights of two orders, summed: how errors of single samples show in smoothed values, and together.
-    pub fn products(&self) -> [[f64; 3]; 3] {
+    /// Sums of products of the weights of two orders: covariance of the smoothed values for independent errors of
+    /// single samples.
+    pub fn weight_products(&self) -> [[f64; 3]; 3] {
         let product = |one: usize, other: usize| -> f64 {
             self.weights[one].iter().zip(&self.weights[other]).map(|(one, other)| one * other).sum()
         };
         [0, 1, 2].map(|one| [0, 1, 2].map(|other| product(one, other)))
     }
 
-    /// The smoothed derivative of an order (0, 1, 2) at a sample; the sample must be `half` away from either end.
-    pub fn at(&self, signal: impl Fn(usize) -> f64, sample: usize, order: usize) -> f64 {
+    /// Smoothed derivative of order 0, 1 or 2 at a sample at least `half` away from either end.
+    pub fn derivative(&self, signal: impl Fn(usize) -> f64, sample: usize, order: usize) -> f64 {
         let from = sample - self.half;
         self.weights[order].iter().enumerate().map(|(place, weight)| weight * signal(from + place)).sum()
     }
@@ -62,8 +63,9 @@ impl Kernel {
 mod tests {
     use super::*;
 
+    /// The kernel's derivatives of a parabola are exact for any box.
     #[test]
-    fn derivatives_of_a_parabola_are_exact() {
+    fn kernel_derivatives_of_parabola_exact() {
         let period = 1e-4;
         for samples in [1, 2, 5, 10] {
             let kernel = Kernel::new(samples, period);
@@ -72,9 +74,9 @@ mod tests {
                 3.0 + 5.0 * time + 7.0 * time * time
             };
             let time = 200.0 * period;
-            assert!((kernel.at(signal, 200, 1) - 5.0 - 14.0 * time).abs() < 1e-9);
-            assert!((kernel.at(signal, 200, 2) - 14.0).abs() < 1e-4);
-            assert!((kernel.at(|_| 2.0, 200, 0) - 2.0).abs() < 1e-12);
+            assert!((kernel.derivative(signal, 200, 1) - 5.0 - 14.0 * time).abs() < 1e-9);
+            assert!((kernel.derivative(signal, 200, 2) - 14.0).abs() < 1e-4);
+            assert!((kernel.derivative(|_| 2.0, 200, 0) - 2.0).abs() < 1e-12);
         }
     }
 }

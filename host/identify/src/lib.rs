@@ -1,13 +1,14 @@
-//! `joint identify`: from a recorded reversal test to a joint's backlash, compliance, damping, friction and encoder
-//! errors, each with its interval, and to a patched joint file.
+//! `joint identify`: estimates a joint's backlash, compliance, damping, friction and encoder errors from a recorded
+//! reversal test, each with its interval, and writes a patched joint file.
 //!
-//! Logs are read into columns and angles at even times by the crate `log-reader`. `log` turns them into samples, checked by `sampling`.
-//! `prior` says what the joint file knows; `rows`
-//! are the moments at which a flank carries, smoothed by `kernel`; `load_sharing` is what planets out of phase take of the gap; `twist` and `friction` are fitted to them by `regression`;
-//! `balances` hold torque against inertias, for `contradictions` and for `scales`. `findings` is what comes of it, with its
-//! `estimate`s; `page`, `pictures` and `patch` show it. `virtual_test` makes a log without hardware.
-//! `quasi_static` reads slow logs by itself, `output_locked` those of a joint whose output is held, `output_only` those
-//! without the motor's angle; the latter two read their columns by `one_encoder`.
+//! The crate `log-reader` reads logs into columns and resamples angles at even times. `log` turns columns into samples,
+//! `sampling` checks their rate. `prior` holds the values of the joint file. `rows` selects the moments at which a
+//! flank carries, smoothed by `kernel`. `twist` and `friction` are fitted to these moments by `regression`;
+//! `load_sharing` models the reduction of the gap by planets out of phase. `balances` compare torque with inertias for
+//! `contradictions` and `scales`. `findings` are the results, made of `estimate`s; `page`, `pictures` and `patch` write
+//! them. `virtual_test` simulates a log without hardware. `quasi_static` handles slow logs, `output_locked` logs of a
+//! joint with a clamped output, `output_only` logs without the motor's angle; the last two read their columns through
+//! `one_encoder`.
 
 mod arguments;
 mod balances;
@@ -15,11 +16,11 @@ mod contradictions;
 mod estimate;
 pub mod findings;
 mod friction;
-mod higher;
+mod harmonic;
 mod kernel;
-pub mod learnt;
 mod load_sharing;
 mod log;
+pub mod memory;
 mod one_encoder;
 mod output_locked;
 mod output_only;
@@ -48,11 +49,11 @@ use prior::{Losses, PriorModel};
 pub use quasi_static::Options;
 use results::Results;
 use rows::Rows;
-use scales::{Doubt, Scales};
+use scales::{ScaleUncertainty, Scales};
 use twist::Twist;
 
 use joint_file::named::{self, Loaded};
-use joint_file::warned;
+use joint_file::warnings;
 use std::path::Path;
 
 use log_reader::column_map::{self, MappedJoint};
@@ -67,26 +68,27 @@ use report::output;
 use report::progress::Progress;
 use report::write::write_text;
 
-/// Box of the kernel for frictions, which need no quick motion but exact accelerations [s].
-const SLOW_BOX: f64 = 4e-3;
+/// Kernel box for the friction fit, which needs exact accelerations and no bandwidth [s].
+const FRICTION_BOX: f64 = 4e-3;
 
-/// Box of the kernel for everything else: at most this long [s], and a sixth of the swing's period...
-const QUICK_BOX: f64 = 1e-3;
-const SWING_PARTS: f64 = 6.0;
-/// ... but longer, step by step, if the encoders' counts then are most of what an acceleration shows.
-const LONGER: f64 = 1.4;
+/// Shortest kernel box of the twist fit [s]; at most 1/BOXES_PER_SWING of the swing's period.
+const SHORTEST_BOX: f64 = 1e-3;
+const BOXES_PER_SWING: f64 = 6.0;
+/// The box grows by BOX_GROWTH up to LONGEST_BOX [s] until the reliability of the fit exceeds RELIABILITY_TARGET: with a short box,
+/// encoder quantisation dominates the accelerations.
+const BOX_GROWTH: f64 = 1.4;
 const LONGEST_BOX: f64 = 8e-3;
-const RELIABLE: f64 = 0.9;
-/// Below this they are most of it.
-const LEAST_RELIABLE: f64 = 0.5;
+const RELIABILITY_TARGET: f64 = 0.9;
+/// Least reliability of a fit that is used.
+const RELIABILITY_MIN: f64 = 0.5;
 
-/// Fits one after the other, each with the errors by angle of the last taken off the accelerations.
-const ROUNDS: usize = 4;
+/// Fits in succession; each removes the angle errors of the previous one from the accelerations.
+const CORRECTION_ROUNDS: usize = 4;
 
-/// What a log has shown.
+/// Result of the fits of one log.
 struct Identified {
     log: Log,
-    /// What was known before, with the inertias that were found.
+    /// Values of the joint file, with the inertias corrected by the log.
     prior: PriorModel,
     rows: Rows,
     twist: Twist,
@@ -107,10 +109,10 @@ impl Identified {
     }
 }
 
-/// Folder of the results of several joints, each in a folder of its own below that of the log.
-const SEVERAL: &str = "joint-out/identify";
+/// Folder above the results of several joints: one folder per log, one below it per joint.
+const RESULTS_FOLDER: &str = "joint-out/identify";
 
-/// Identifies the joint of a log, or each of several by a map, or makes a log of one, and prints the result.
+/// Identifies the joint of a log, or every joint of a column map, or simulates a log; returns the printed result.
 pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     let joints = column_map::joints(arguments.map.as_deref())?;
     if joints.is_empty() || arguments.map_joint.is_some() {
@@ -122,7 +124,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
         ));
     }
     let log = arguments.log.file_stem().unwrap_or_default();
-    let out = arguments.out.clone().unwrap_or_else(|| Path::new(SEVERAL).join(log));
+    let out = arguments.out.clone().unwrap_or_else(|| Path::new(RESULTS_FOLDER).join(log));
     let (mut text, mut refused): (String, Vec<(String, Failure)>) = (String::new(), Vec::new());
     for MappedJoint { name, file } in joints {
         let joint = file.unwrap_or_else(|| arguments.joint.clone());
@@ -136,7 +138,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     if refused.is_empty() {
         return Ok(text);
     }
-    // What was found of the others is not lost.
+    // Findings of the other joints are printed before the failure.
     output::print(&text)?;
     let messages: Vec<String> =
         refused.iter().map(|(name, failure)| format!("{name}: {}", failure.message())).collect();
@@ -153,7 +155,7 @@ fn run_one(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
             .with_help("add --quasi-static for a slow log, or name the motor's own column"));
     }
     let loaded = named::load_with(&arguments.joint, &arguments.set)?;
-    warned::tell(&loaded);
+    warnings::print(&loaded);
     if arguments.simulate {
         return simulate(arguments, &loaded, progress);
     }
@@ -202,9 +204,9 @@ fn slow_log(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
 fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
     let path = arguments.log.as_path();
     let read = Log::read(arguments, prior)?;
-    let in_the_file = |failure: Failure| failure.while_doing(path.display());
+    let at_path = |failure: Failure| failure.while_doing(path.display());
     if prior.equivalent && read.output_torque.is_none() {
-        return Err(in_the_file(Failure::new(
+        return Err(at_path(Failure::new(
             "an equivalent gear is not identified by its motor's torque: intervals missed in simulated logs",
         ))
         .with_help(
@@ -212,22 +214,22 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
              motion, hysteresis and friction",
         ));
     }
-    let shortest = QUICK_BOX.min(prior.swing() / SWING_PARTS);
-    contradictions::angles(&read, prior)
-        .and_then(|()| contradictions::torques(&read, prior, shortest))
-        .map_err(in_the_file)?;
-    let (length, mut rows, mut twist) = first_fit(&read, prior, shortest).map_err(in_the_file)?;
+    let shortest = SHORTEST_BOX.min(prior.swing_period() / BOXES_PER_SWING);
+    contradictions::check_angles(&read, prior)
+        .and_then(|()| contradictions::check_torques(&read, prior, shortest))
+        .map_err(at_path)?;
+    let (length, mut rows, mut twist) = first_fit(&read, prior, shortest).map_err(at_path)?;
     let mut log = read.clone();
     let mut known = prior.clone();
-    for round in 0..ROUNDS {
-        // An error that comes often a turn is looked for once the others are taken off.
-        while let Some(higher) = (round > 0).then(|| twist.more_often_a_turn(&log, &known)).flatten() {
-            known.higher.push(higher);
+    for round in 0..CORRECTION_ROUNDS {
+        // Higher harmonics of the encoder errors are sought after the low ones are removed.
+        while let Some(harmonic) = (round > 0).then(|| twist.strongest_harmonic(&log, &known)).flatten() {
+            known.harmonics.push(harmonic);
             let Some(better) = twist::fit(&log, &rows, &known) else { break };
             twist = better;
         }
-        if let Some((open, told)) = told_losses(&log, &rows, &known) {
-            (known, twist) = (open, told);
+        if let Some((open, with_losses)) = fit_losses(&log, &rows, &known) {
+            (known, twist) = (open, with_losses);
         }
         let prior = &known;
         let errors: [&dyn Fn(f64) -> f64; 3] = [
@@ -235,81 +237,81 @@ fn identify(arguments: &Arguments, prior: &PriorModel) -> Outcome<Identified> {
             &|angle| twist.error(twist::OUTPUT_MAP, angle, prior),
             &|angle| twist.error(twist::TEETH, angle, prior),
         ];
-        let corrected = read.without(errors, twist.solution.values[twist::SKEW], prior);
+        let corrected = read.with_errors_removed(errors, twist.solution.values[twist::SKEW], prior);
         let mut seen = Rows::new(&corrected, prior, length);
-        twist.leave_out_flights(&corrected, &mut seen, prior);
+        twist.exclude_flights(&corrected, &mut seen, prior);
         let Some(better) = twist::fit(&corrected, &seen, prior) else { break };
         (log, rows, twist) = (corrected, seen, better);
     }
-    // What is told goes into the joint's model until the log agrees with it.
+    // The estimated losses enter the joint's model until model and log agree.
     let mut prior = known;
-    for _ in 0..ROUNDS {
-        if prior.losses != Losses::Open {
+    for _ in 0..CORRECTION_ROUNDS {
+        if prior.losses != Losses::Unknown {
             break;
         }
-        let (more, deviation) = twist.loss(&prior);
-        prior = prior.with_losses_told(more, deviation);
+        let (more, deviation) = twist.excess_loss(&prior);
+        prior = prior.with_estimated_losses(more, deviation);
         rows = Rows::new(&log, &prior, length);
-        twist.leave_out_flights(&log, &mut rows, &prior);
+        twist.exclude_flights(&log, &mut rows, &prior);
         twist = twist::fit(&log, &rows, &prior).unwrap_or(twist);
     }
-    contradictions::offsets(&log, &rows, &prior)
-        .and_then(|()| contradictions::age(&twist, &prior))
-        .and_then(|()| contradictions::filter(&log, &twist, &prior))
-        .map_err(in_the_file)?;
-    let mut doubt = None;
+    contradictions::check_offsets(&log, &rows, &prior)
+        .and_then(|()| contradictions::check_age(&twist, &prior))
+        .and_then(|()| contradictions::check_filter(&log, &twist, &prior))
+        .map_err(at_path)?;
+    let mut uncertainty = None;
     if log.output_torque.is_some() {
-        let factors = balances::by_the_sensor([&rows, &Rows::new(&log, &prior, SLOW_BOX)], &prior);
-        contradictions::sensor(&prior, factors)
-            .and_then(|()| contradictions::one_as_the_other(&log, &prior))
-            .map_err(in_the_file)?;
-        let found = Scales::of_measured(&prior, factors);
+        let factors = balances::sensor_factors([&rows, &Rows::new(&log, &prior, FRICTION_BOX)], &prior);
+        contradictions::check_sensor(&prior, factors)
+            .and_then(|()| contradictions::check_symmetry(&log, &prior))
+            .map_err(at_path)?;
+        let found = Scales::from_sensor(&prior, factors);
         (log, prior) = found.apply(&log, &prior);
         rows = Rows::new(&log, &prior, length);
-        twist.leave_out_flights(&log, &mut rows, &prior);
-        twist = twist::fit_with_this_torque(&log, &rows, &prior).unwrap_or(twist);
-        doubt = Some(Doubt { scales: found, by_inertia: 0.0 });
+        twist.exclude_flights(&log, &mut rows, &prior);
+        twist = twist::fit_exact_torque(&log, &rows, &prior).unwrap_or(twist);
+        uncertainty = Some(ScaleUncertainty { scales: found, compliance_by_inertia: 0.0 });
     }
-    if let Some(free) = twist::fit_with_any_torque(&log, &rows, &prior) {
-        contradictions::ringing(&log, &prior, &free.solution)
-            .and_then(|()| contradictions::one_as_the_other(&log, &prior))
-            .map_err(in_the_file)?;
+    if let Some(free) = twist::fit_free_torque(&log, &rows, &prior) {
+        contradictions::check_ringing(&log, &prior, &free.solution)
+            .and_then(|()| contradictions::check_symmetry(&log, &prior))
+            .map_err(at_path)?;
         let found = Scales::new(&log, &prior, &free.solution);
         (log, prior) = found.apply(&log, &prior);
         rows = Rows::new(&log, &prior, length);
-        twist.leave_out_flights(&log, &mut rows, &prior);
-        twist = twist::fit_with_this_torque(&log, &rows, &prior).unwrap_or(twist);
-        let heavier = found.with_most_of_the_motor(&prior);
-        let mut seen = Rows::new(&log, &heavier, length);
-        twist.leave_out_flights(&log, &mut seen, &heavier);
-        let moved = twist::fit_with_this_torque(&log, &seen, &heavier);
-        let by_inertia = moved.map_or(f64::NAN, |moved| moved.compliance() / twist.compliance() - 1.0);
-        doubt = Some(Doubt { scales: found, by_inertia });
+        twist.exclude_flights(&log, &mut rows, &prior);
+        twist = twist::fit_exact_torque(&log, &rows, &prior).unwrap_or(twist);
+        let with_larger_motor = found.with_largest_motor_inertia(&prior);
+        let mut seen = Rows::new(&log, &with_larger_motor, length);
+        twist.exclude_flights(&log, &mut seen, &with_larger_motor);
+        let moved = twist::fit_exact_torque(&log, &seen, &with_larger_motor);
+        let compliance_by_inertia = moved.map_or(f64::NAN, |moved| moved.compliance() / twist.compliance() - 1.0);
+        uncertainty = Some(ScaleUncertainty { scales: found, compliance_by_inertia });
     }
-    let slow = Rows::new(&log, &prior, SLOW_BOX);
-    let findings = findings::gather(&log, [&rows, &slow], &twist, &prior, doubt.as_ref());
-    contradictions::frictions(&findings).map_err(in_the_file)?;
-    let findings: Vec<Finding> = findings.into_iter().map(Finding::settled).collect();
-    if !findings.iter().any(Finding::is_news) {
-        return Err(in_the_file(Failure::new("nothing is identifiable from this log"))
+    let slow = Rows::new(&log, &prior, FRICTION_BOX);
+    let findings = findings::gather(&log, [&rows, &slow], &twist, &prior, uncertainty.as_ref());
+    contradictions::check_frictions(&findings).map_err(at_path)?;
+    let findings: Vec<Finding> = findings.into_iter().map(Finding::with_clamped_friction).collect();
+    if !findings.iter().any(Finding::adds_information) {
+        return Err(at_path(Failure::new("nothing is identifiable from this log"))
             .with_help("record more reversals, with torques well above the friction and of different strength"));
     }
     Ok(Identified { log, prior, rows, twist, findings })
 }
 
-/// The fit in which losses are unknown, if they are known by the joint file only and the log tells them. A joint without
-/// any friction and losses is an ideal one, and stays it.
-fn told_losses(log: &Log, rows: &Rows, known: &PriorModel) -> Option<(PriorModel, Twist)> {
-    if known.losses == Losses::Open || known.is_ideal() {
+/// Fits with unknown losses; `None` unless the joint file alone stated the losses and the log determines them. A joint
+/// without friction and losses is ideal and stays ideal.
+fn fit_losses(log: &Log, rows: &Rows, known: &PriorModel) -> Option<(PriorModel, Twist)> {
+    if known.losses == Losses::Unknown || known.is_ideal() {
         return None;
     }
-    let open = known.with_losses(Losses::Open);
-    let told = twist::fit(log, rows, &open).filter(|told| told.tells_losses(&open))?;
-    Some((open, told))
+    let open = known.with_losses(Losses::Unknown);
+    let with_losses = twist::fit(log, rows, &open).filter(|with_losses| with_losses.determines_losses(&open))?;
+    Some((open, with_losses))
 }
 
-/// The fit with the shortest box of the kernel at which encoder counts are not most of what an acceleration shows; the best
-/// there is if they always are.
+/// Fits with the shortest kernel box at which encoder quantisation does not dominate the accelerations, or else with
+/// the most reliable box.
 fn first_fit(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<(f64, Rows, Twist)> {
     let mut best: Option<(f64, Rows, Twist)> = None;
     let mut refused = None;
@@ -323,16 +325,17 @@ fn first_fit(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<(f64, Rows
                 if best.as_ref().is_none_or(|(_, _, best)| reliability > best.solution.reliability) {
                     best = fitted.map(|twist| (length, rows, twist)).or(best);
                 }
-                if reliability > RELIABLE {
+                if reliability > RELIABILITY_TARGET {
                     break;
                 }
             }
-            // A longer box may see what quantisation hides; the reason for the shortest is the one that a user can act on.
+            // A longer box may succeed where quantisation hides the reversals. The refusal of the shortest box is kept:
+            // the user can act on it.
             Err(failure) => refused = refused.or(Some(failure)),
         }
-        length *= LONGER;
+        length *= BOX_GROWTH;
     }
-    best.filter(|(_, _, best)| best.solution.reliability > LEAST_RELIABLE).ok_or_else(|| {
+    best.filter(|(_, _, best)| best.solution.reliability > RELIABILITY_MIN).ok_or_else(|| {
         refused.unwrap_or_else(|| {
             Failure::new("the moments at which a flank carries do not determine a fit")
                 .with_help("record more reversals with torques of different strength, or take finer encoders")
@@ -340,7 +343,7 @@ fn first_fit(log: &Log, prior: &PriorModel, shortest: f64) -> Outcome<(f64, Rows
     })
 }
 
-/// What the numbers take for granted.
+/// Assumptions behind the numbers, a sentence each.
 fn assumptions(identified: &Identified) -> Vec<String> {
     let Identified { log, prior, twist, .. } = identified;
     let mut list = vec![
@@ -358,13 +361,16 @@ fn assumptions(identified: &Identified) -> Vec<String> {
             "Half-backlash is the mean over all meshes: a log cannot tell sun and ring apart.".to_owned()
         },
     ];
-    list.extend(log.told.iter().cloned());
-    list.extend(prior.higher.iter().enumerate().map(|(place, higher)| {
-        let encoder = if higher.encoder == twist::MOTOR_MAP { "motor" } else { "output" };
-        let size = ESTIMATE.write(twist.higher(place).to_degrees());
-        format!("The {encoder} encoder has an error of {size} deg that comes {} times a turn: taken out.", higher.order)
+    list.extend(log.notes.iter().cloned());
+    list.extend(prior.harmonics.iter().enumerate().map(|(place, harmonic)| {
+        let encoder = if harmonic.encoder == twist::MOTOR_MAP { "motor" } else { "output" };
+        let size = ESTIMATE.write(twist.harmonic_amplitude(place).to_degrees());
+        format!(
+            "The {encoder} encoder has an error of {size} deg that comes {} times a turn: taken out.",
+            harmonic.order
+        )
     }));
-    if log.smoothness(prior).is_some() {
+    if log.variance_shares(prior).is_some() {
         list.push("Angles that no encoder has read, as a simulation writes them: taken as exact.".to_owned());
     }
     if prior.sharing.is_some() {
@@ -394,7 +400,7 @@ fn assumptions(identified: &Identified) -> Vec<String> {
 
 fn simulate(arguments: &Arguments, loaded: &Loaded, progress: &Progress) -> Outcome<String> {
     folder::check_file("simulate", &arguments.log, &[&arguments.joint])?;
-    // What lies there may be a recorded test, which nobody can make again.
+    // The existing file may be a recorded test that cannot be repeated.
     if arguments.log.exists() {
         return Err(Failure::new(format!("--simulate would write over {}", arguments.log.display()))
             .with_help("name a new file, or remove this one if it is not needed"));

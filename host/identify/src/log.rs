@@ -1,5 +1,5 @@
-//! A recorded test as samples: read from columns by their names, checked, encoders as angles and their difference from
-//! whole counts.
+//! A recorded test as samples: reads and checks the columns, converts encoder readings to angles, and computes the
+//! twist from whole counts.
 
 use std::f64::consts::TAU;
 
@@ -17,62 +17,62 @@ use log_reader::{bad_readings, time_stamps};
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 
-/// Fewer counts of the motor may be its encoder's own scatter.
-const LEAST_TRAVEL: f64 = 8.0;
-/// The link's speed is taken over this time to either side [s].
-const SPEED_OVER: f64 = 1e-3;
-/// Readings scatter by the twelfth of a count squared; what scatters by less than this share of it was filtered.
-pub const SMOOTH: f64 = 0.1;
+/// Least travel of the motor [counts]: a smaller one may be scatter of the encoder.
+const MOTOR_TRAVEL_MIN: f64 = 8.0;
+/// Window on either side for the link's speed [s].
+const SPEED_WINDOW: f64 = 1e-3;
+/// Quantisation scatters by 1/12 of a count squared; readings with less than this share of it were filtered.
+pub const FILTERED_VARIANCE_SHARE: f64 = 0.1;
 
 /// A recorded test.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Log {
-    /// From the first sample on [s].
+    /// Time since the first sample [s].
     pub time: Vec<f64>,
     /// Sampling period [s].
     pub period: f64,
-    /// Motor angle, as far as the encoder's errors are known [rad].
+    /// Motor angle, corrected by the encoder errors found so far [rad].
     pub motor: Vec<f64>,
-    /// Output angle, likewise [rad].
+    /// Output angle, corrected by the encoder errors found so far [rad].
     pub output: Vec<f64>,
-    /// Motor angle as it would be without errors of the teeth: planets and carrier follow it [rad].
-    pub carried: Vec<f64>,
-    /// Motor over the ratio less output, as the encoders read, exact on counts [rad].
+    /// Motor angle corrected by the errors of the teeth; planets and carrier follow it [rad].
+    pub motor_without_tooth_errors: Vec<f64>,
+    /// Motor angle over the ratio less output angle, uncorrected, exact for counts [rad].
     pub twist: Vec<f64>,
     /// Motor torque [N m].
     pub torque: Vec<f64>,
-    /// Torque of the joint on its link, if it was measured [N m].
+    /// Torque of the joint on its link; `None` if it was not measured [N m].
     pub output_torque: Option<Vec<f64>>,
-    /// How much motor and output readings scatter [rad^2].
+    /// Variance of motor and output readings [rad^2].
     pub noise: [Noise; 2],
-    /// By how much the output's readings are older than the motor's, as far as that is known [s].
-    pub age: f64,
-    /// What motor and output were read as.
+    /// Age of the output's readings relative to the motor's, as far as it is known [s].
+    pub output_age: f64,
+    /// Kind of the motor and output readings.
     pub kinds: [Kind; 2],
-    /// Changes to the rows of the file, a sentence each.
-    pub told: Vec<String>,
-    /// What is lost between samples.
+    /// Changes made to the rows of the file, a sentence each.
+    pub notes: Vec<String>,
+    /// Even times, with the gaps between samples.
     pub times: EvenTimes,
 }
 
 impl Log {
     /// Reads a file.
     pub fn read(arguments: &Arguments, prior: &PriorModel) -> Outcome<Self> {
-        arguments.read_log(prior.ratio(), Columns::will_do, |columns| Self::of(columns, prior))
+        arguments.read_log(prior.ratio(), Columns::has_required, |columns| Self::from_columns(columns, prior))
     }
 
-    fn of(columns: &mut Columns, prior: &PriorModel) -> Outcome<Self> {
-        columns.leave_out_incomplete(&[&TIMES, &MOTOR, &OUTPUT, &["motor_torque_N_m"], &["output_torque_N_m"]])?;
+    fn from_columns(columns: &mut Columns, prior: &PriorModel) -> Outcome<Self> {
+        columns.remove_incomplete(&[&TIMES, &MOTOR, &OUTPUT, &["motor_torque_N_m"], &["output_torque_N_m"]])?;
         time_stamps::resolve(columns)?;
         for (names, turn) in [(MOTOR, prior.motor_turn), (OUTPUT, prior.output_turn)] {
-            bad_readings::leave_out_of(columns, names, turn)?.ok_or_else(|| missing_encoder(columns, names))?;
+            bad_readings::remove_from_encoder(columns, names, turn)?.ok_or_else(|| missing_encoder(columns, names))?;
         }
         let time = columns.time_from_start()?;
         let times = sampling(&time, columns, prior)?;
         let motor = readings(columns, MOTOR, prior.motor_turn, &times)?;
         let output = readings(columns, OUTPUT, prior.output_turn, &times)?;
         let (_, torque) = columns.named(&["motor_torque_N_m"])?;
-        let output_torque = columns.maybe("output_torque_N_m")?;
+        let output_torque = columns.finite("output_torque_N_m")?;
         for (name, torques) in [("motor_torque_N_m", Some(&torque)), ("output_torque_N_m", output_torque.as_ref())] {
             let torques = torques.into_iter().flatten();
             if let Some((row, torque)) = torques.enumerate().find(|(_, torque)| torque.abs() > MAX_TORQUE) {
@@ -84,70 +84,72 @@ impl Log {
         let kinds = [motor.kind(), output.kind()];
         let (motor, output) = (motor.angles(prior.motor_turn), output.angles(prior.output_turn));
         let times = times.smoother(&time, &motor);
-        let [motor, output, twist, torque] = [motor, output, twist, torque].map(|values| times.bring(&values));
+        let [motor, output, twist, torque] = [motor, output, twist, torque].map(|values| times.resample(&values));
         let log = Self {
             kinds,
-            age: 0.0,
+            output_age: 0.0,
             time: times.times(),
             period: times.period,
-            noise: [&motor, &output].map(|angles| Noise::of(angles, |from, to| times.is_whole(from, to))),
-            carried: motor.clone(),
+            noise: [&motor, &output].map(|angles| Noise::measure(angles, |from, to| times.is_whole(from, to))),
+            motor_without_tooth_errors: motor.clone(),
             motor,
             output,
             twist,
             torque,
-            output_torque: output_torque.map(|torque| times.bring(&torque)),
-            told: columns.told().iter().cloned().chain(times.told.clone()).collect(),
+            output_torque: output_torque.map(|torque| times.resample(&torque)),
+            notes: columns.notes().iter().cloned().chain(times.note.clone()).collect(),
             times,
         };
         log.check(prior)?;
         Ok(log)
     }
 
-    /// Phase of the teeth: whole periods at the ring, by the joint's angle as the inertias on either side weigh it [rad].
-    pub fn teeth(&self, sample: usize, prior: &PriorModel) -> f64 {
+    /// Phase of the teeth, one turn per mesh period at the ring, from motor and output angle weighted by their inertias
+    /// [rad].
+    pub fn mesh_phase(&self, sample: usize, prior: &PriorModel) -> f64 {
         let share = prior.motor_share();
         let joint = (1.0 - share) * self.output[sample] + share * self.motor[sample] / prior.ratio();
         f64::from(prior.ring_teeth) * joint
     }
 
-    /// The same with errors of both encoders and of the teeth, each by its angle, taken off the angles, and with the output
-    /// at the motor's time: accelerations and the phase of the teeth are sensitive to them.
-    pub fn without(&self, errors: [&dyn Fn(f64) -> f64; 3], skew: f64, prior: &PriorModel) -> Self {
+    /// Returns the log with encoder and tooth errors, each a function of its angle, subtracted, and the output advanced
+    /// to the motor's time. Accelerations and the phase of the teeth are sensitive to both.
+    pub fn with_errors_removed(&self, errors: [&dyn Fn(f64) -> f64; 3], skew: f64, prior: &PriorModel) -> Self {
         let [motor, output, teeth] = errors;
         let corrected = |angles: &[f64], error: &dyn Fn(f64) -> f64| -> Vec<f64> {
             angles.iter().map(|angle| angle - error(angle - error(*angle))).collect()
         };
         let (motor, read) = (corrected(&self.motor, motor), corrected(&self.output, output));
-        // The motor swings where the link does not: the link's own speed is what counts.
-        let around = (SPEED_OVER / self.period).ceil() as usize;
+        // The motor swings while the link does not, so the skew is applied with the link's own speed.
+        let around = (SPEED_WINDOW / self.period).ceil() as usize;
         let speed = |sample: usize| {
             let (before, after) = (sample.saturating_sub(around), (sample + around).min(read.len() - 1));
             (read[after] - read[before]) / ((after - before) as f64 * self.period)
         };
         let output: Vec<f64> = (0..read.len()).map(|sample| read[sample] + skew * speed(sample)).collect();
-        let mut log = Self { motor, output, age: skew, carried: Vec::new(), ..self.clone() };
-        let carried = |sample: usize| log.motor[sample] - prior.ratio() * teeth(log.teeth(sample, prior));
-        log.carried = (0..log.motor.len()).map(carried).collect();
+        let mut log = Self { motor, output, output_age: skew, motor_without_tooth_errors: Vec::new(), ..self.clone() };
+        let motor_without_tooth_errors =
+            |sample: usize| log.motor[sample] - prior.ratio() * teeth(log.mesh_phase(sample, prior));
+        log.motor_without_tooth_errors = (0..log.motor.len()).map(motor_without_tooth_errors).collect();
         log
     }
 
-    /// By which share of what their encoders do angles scatter: motor and output; nothing where none is smoother than its encoder can
-    /// read it.
-    pub fn smoothness(&self, prior: &PriorModel) -> Option<[f64; 2]> {
+    /// Variance of motor and output angles over the variance of their quantisation; `None` unless one of them is
+    /// smoother than its encoder can resolve.
+    pub fn variance_shares(&self, prior: &PriorModel) -> Option<[f64; 2]> {
         let share = |place: usize, turn: u64| {
             let count = count_angle(turn);
-            if self.kinds[place] == Kind::Angle { 12.0 * self.noise[place].mean() / (count * count) } else { 1.0 }
+            if self.kinds[place] == Kind::Angles { 12.0 * self.noise[place].mean() / (count * count) } else { 1.0 }
         };
         let shares = [share(0, prior.motor_turn), share(1, prior.output_turn)];
-        shares.iter().any(|share| *share < SMOOTH).then_some(shares)
+        shares.iter().any(|share| *share < FILTERED_VARIANCE_SHARE).then_some(shares)
     }
 
     fn check(&self, prior: &PriorModel) -> Outcome<()> {
         let counts = range_of(&self.motor) * prior.motor_turn as f64 / TAU;
-        if counts < LEAST_TRAVEL {
+        if counts < MOTOR_TRAVEL_MIN {
             return Err(Failure::new(format!(
-                "the motor does not move in this log: by {counts:.1} counts of its encoder, {LEAST_TRAVEL} are the least"
+                "the motor does not move in this log: by {counts:.1} counts of its encoder, {MOTOR_TRAVEL_MIN} are the least"
             ))
             .with_help("the torque must overcome the friction, and turn the motor through the gap"));
         }
@@ -155,7 +157,7 @@ impl Log {
     }
 }
 
-/// Motor over ratio less output: in whole numbers as long as both are counts, so that turns cost no digit.
+/// Motor angle over the ratio less output angle; in whole numbers for counts, so that many turns lose no digits.
 fn twist(motor: &Readings, output: &Readings, prior: &PriorModel) -> Vec<f64> {
     if let (Readings::Counts(motor), Readings::Counts(output)) = (motor, output) {
         let [sun, both] = prior.teeth.map(i128::from);

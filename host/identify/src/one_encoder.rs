@@ -1,4 +1,4 @@
-//! Columns of a log with one encoder and the motor's torque: the output is held, or the motor has no encoder.
+//! Columns of a log with one encoder and the motor's torque: the output is clamped, or the motor has no encoder.
 
 use board::profile::MAX_TORQUE;
 use log_reader::bad_readings::{self, EncoderColumn};
@@ -8,16 +8,16 @@ use log_reader::resolution::count_angle;
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 
-/// Returns the angles of an encoder and the angle of a count [rad], or nothing if the encoder was not logged. The angles are continuous over
-/// turns; rows with bad readings are left out.
+/// Returns the angles of an encoder and the angle of a count [rad]; `None` if the encoder was not logged. The angles
+/// are continuous over turns; rows with bad readings are removed.
 pub fn angle(columns: &mut Columns, names: [&'static str; 2], turn: u64) -> Outcome<Option<(Vec<f64>, f64)>> {
     let count = count_angle(turn);
-    let Some(column) = bad_readings::leave_out_of(columns, names, turn)? else { return Ok(None) };
+    let Some(column) = bad_readings::remove_from_encoder(columns, names, turn)? else { return Ok(None) };
     let EncoderColumn { name, is_counts, turn } = column;
-    let Some(mut values) = columns.maybe(&name)? else { return Ok(None) };
-    if let Some(register) = Register::of(&values, Some(turn)) {
+    let Some(mut values) = columns.finite(&name)? else { return Ok(None) };
+    if let Some(register) = Register::find(&values, Some(turn)) {
         register.join(&mut values, |_| 1.0);
-        register.told(&name, Some(turn)).into_iter().for_each(|told| columns.tell(told));
+        register.note(&name, Some(turn)).into_iter().for_each(|told| columns.add_note(told));
     }
     if is_counts {
         values.iter_mut().for_each(|value| *value *= count);

@@ -10,14 +10,14 @@ use report::number::ESTIMATE;
 use report::plot::Figure;
 use report::provenance::VERSION;
 
-/// File of the page.
+/// Name of the report.
 pub const REPORT: &str = "report.html";
-/// File of the joint with the values that were found.
+/// Name of the patched joint file.
 pub const JOINT: &str = "joint.toml";
-/// File of the findings.
+/// Name of the findings.
 pub const FINDINGS: &str = "findings.json";
 
-/// All of it: findings beside what a joint file says, whose text is given, and pictures, first the most telling.
+/// Whole report: findings beside the values of the joint file, given as text, and pictures, the most telling first.
 pub fn document(record: &Record<'_>, file: &str, figures: Vec<Figure>) -> Document {
     let Record { joint, log, duration_s, crossings, findings, .. } = record;
     let figures = figures.into_iter().map(|figure| picture(figure, Text::default()));
@@ -36,7 +36,7 @@ pub fn document(record: &Record<'_>, file: &str, figures: Vec<Figure>) -> Docume
     }
 }
 
-/// Findings with their intervals beside what the joint file says, whose text is given.
+/// Findings with their intervals beside the values of the joint file, given as text.
 pub fn findings(findings: &[Finding], file: &str) -> Vec<Block> {
     let columns = vec![
         words("Parameter"),
@@ -71,24 +71,24 @@ pub fn findings(findings: &[Finding], file: &str) -> Vec<Block> {
     blocks
 }
 
-/// What a joint file says for a finding, written as the findings are.
+/// Value of the joint file for a finding, written like the findings.
 pub fn stated(file: &str, finding: &Finding) -> Option<String> {
     let value = joint_file::value(file, finding.key.as_deref()?).ok()??;
     Some(value.replace('_', "").parse().map_or_else(|_| value.to_owned(), |value| ESTIMATE.write(value)))
 }
 
-/// Whether a stated value is outside of the interval.
+/// Returns true if a stated value is outside of the interval.
 fn differs(finding: &Finding, stated: &str) -> bool {
     let stated: Option<f64> = stated.replace('_', "").parse().ok();
     stated.zip(finding.interval).is_some_and(|(stated, [low, high])| !(low..=high).contains(&stated))
 }
 
-/// Signs that the findings' own text, which is written to files, does without.
+/// Typographic signs, which the text of written findings avoids.
 fn typeset(text: &str) -> String {
     text.replace("+- ", "± ").replace(" us", " µs")
 }
 
-/// As it is written where there are Greek letters.
+/// Unit with Greek letters and centred dots.
 fn unit(unit: &str) -> String {
     let micro = unit.strip_prefix('u').map_or(unit.to_owned(), |rest| format!("µ{rest}"));
     micro.replace(' ', "·")

@@ -1,4 +1,4 @@
-//! The joint file with identified values in place of its own. Keys without an identified value stay as they are.
+//! The joint file with identified values. Keys without an identified value stay unchanged.
 
 use super::findings::Finding;
 use super::prior::PriorModel;
@@ -9,7 +9,8 @@ use report::number::ESTIMATE;
 /// Keys that may be negative.
 const SIGNED: [&str; 1] = ["drive_train.torque_constant_error_ratio"];
 
-/// The changed text; it can be read again. What may well be zero stays out of a file that does not speak of it.
+/// Returns the changed text, which the reader accepts. A value whose interval contains zero is not added to a file
+/// without its key.
 pub fn patch(loaded: &Loaded, prior: &PriorModel, findings: &[Finding], log: &str) -> Outcome<String> {
     let log: String = log.chars().filter(|letter| !letter.is_control()).collect();
     let mut text = loaded.text.clone();
@@ -24,7 +25,7 @@ pub fn patch(loaded: &Loaded, prior: &PriorModel, findings: &[Finding], log: &st
         let value = if SIGNED.contains(&key.as_str()) { value } else { value.max(0.0) };
         let remark = format!("identified from {log}: {} to {} (95 %)", ESTIMATE.write(low), ESTIMATE.write(high));
         for (encoder, turn) in [("motor", prior.motor_turn), ("output", prior.output_turn)] {
-            // An encoder that the file does not speak of yet begins with its resolution.
+            // The section of an encoder missing in the file begins with its resolution.
             let section = format!("drive_train.{encoder}_encoder.");
             let [bits, counts] = ["bits", "counts_per_turn"].map(|name| format!("{section}{name}"));
             let is_missing = |key: &str| matches!(joint_file::value(&text, key), Ok(None));
@@ -40,6 +41,6 @@ pub fn patch(loaded: &Loaded, prior: &PriorModel, findings: &[Finding], log: &st
 }
 
 fn set(text: &str, key: &str, value: &str, remark: &str) -> Outcome<String> {
-    joint_file::change_noting(text, key, value, remark)
+    joint_file::change_with_remark(text, key, value, remark)
         .map_err(|refused| Failure::new(format!("{key}: {}", refused.message)).with_help(refused.help))
 }

@@ -10,7 +10,7 @@ use report::plot::mark::Mark;
 use report::plot::panel::Panel;
 use report::plot::unit::{SECONDS, TORQUE, Unit};
 
-/// More points than this do not make a picture clearer.
+/// Largest number of points in a picture.
 const POINTS: usize = 6000;
 
 /// Returns the step by which points are thinned out for a picture.
@@ -20,10 +20,10 @@ pub fn thinning(points: usize) -> usize {
 
 /// Twist over torque: moments of either flank, those near a change, and the fitted branches.
 pub fn loop_of(log: &Log, rows: &Rows, twist: &Twist, prior: &PriorModel) -> Figure {
-    let cleaned = twist.cleaned(log, rows, prior);
+    let cleaned = twist.gap_and_wind_up(log, rows, prior);
     let every = thinning(cleaned.len());
     let points = |side: f64| -> Vec<(f64, f64)> {
-        let own = cleaned.iter().filter(|(row, _)| row.side == side);
+        let own = cleaned.iter().filter(|(row, _)| row.flank == side);
         own.step_by(every).map(|(row, twist)| (row.torque(), *twist)).collect()
     };
     let [half_gap, compliance] = [twist::HALF_GAP, twist::COMPLIANCE].map(|unknown| twist.solution.values[unknown]);
@@ -49,7 +49,7 @@ pub fn loop_of(log: &Log, rows: &Rows, twist: &Twist, prior: &PriorModel) -> Fig
     Figure { note, ..Figure::new("Twist over torque", "torque at the output", TORQUE, (-reach, reach), vec![panel]) }
 }
 
-/// Torque and what the fit leaves over, in time.
+/// Torque and residuals of the fit over time.
 pub fn time_history(log: &Log, twist: &Twist) -> Figure {
     let every = thinning(log.time.len());
     let torque = log.time.iter().copied().zip(log.torque.iter().copied()).step_by(every).collect();

@@ -1,5 +1,5 @@
-//! What is known of the joint before a log is read, from its joint file: ratio in whole teeth, lever arms, inertias on
-//! either side of the gap, the expected compliance.
+//! Values of the joint file before a log is read: ratio in whole teeth, lever, inertias on either side of the gap,
+//! expected compliance.
 
 use std::f64::consts::TAU;
 
@@ -9,84 +9,83 @@ use parameters::{AbsoluteEncoder, Mesh, MeshKind, StiffnessWave, Surroundings};
 use report::failure::Outcome;
 
 use super::arguments::{Arguments, INERTIA_ERROR};
-use super::higher::Higher;
+use super::harmonic::Harmonic;
 use super::load_sharing::LoadSharing;
 use joint_file::named::Loaded;
 
-/// How well losses are known by what the joint file states of them, as a share: one standard deviation.
-const OWN_LOSS: f64 = 0.5;
-/// Share of the load that a log may feign as lost.
-const FEIGNED: f64 = 2e-3;
-/// What a log tells of losses agrees with what is stated within so many deviations, beside that.
-const AGREES: f64 = 4.0;
+/// Standard deviation of the losses stated by the joint file, relative to the losses.
+const STATED_LOSS_DEVIATION: f64 = 0.5;
+/// Share of the load that a log may mimic as lost.
+const MIMICKED_LOSS: f64 = 2e-3;
+/// Standard deviations, beside MIMICKED_LOSS, within which estimated and stated losses agree.
+const LOSS_AGREEMENT_SIGMA: f64 = 4.0;
 
-/// What is known of the gears' losses, by standard deviations that are shares of the load.
+/// Knowledge of the gears' losses; standard deviations are shares of the load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Losses {
-    /// They are what the joint file states, within so much.
+    /// Stated by the joint file, with this standard deviation.
     Stated(f64),
-    /// They are unknown: the log is to tell them.
-    Open,
-    /// The log has told them, within so much.
-    Told(f64),
+    /// Unknown; to be estimated from the log.
+    Unknown,
+    /// Estimated from the log, with this standard deviation.
+    Estimated(f64),
 }
 
-/// The joint as known from its file.
+/// A joint as known from its file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PriorModel {
     /// Name of the joint.
     pub name: String,
-    /// Sun's teeth, and sun's and ring's together: the ratio is the second over the first.
+    /// Teeth of the sun, and of sun and ring together: the ratio is the second over the first.
     pub teeth: [u32; 2],
-    /// Ring's teeth: mesh periods in a turn of the output.
+    /// Teeth of the ring: mesh periods in a turn of the output.
     pub ring_teeth: u32,
-    /// Counts of the motor encoder in a turn.
+    /// Counts of the motor encoder per turn.
     pub motor_turn: u64,
-    /// Counts of the output encoder in a turn.
+    /// Counts of the output encoder per turn.
     pub output_turn: u64,
-    /// r_c cos(alpha) [m].
+    /// Base radius of the carrier r_c cos(alpha) [m].
     pub lever: f64,
-    /// Rotor and sun [kg m^2].
+    /// Inertia of rotor and sun [kg m^2].
     pub sun_inertia: f64,
-    /// Planets and carrier, at the motor, as far as they bend the joint: their torque passes the teeth's compliance only
-    /// [kg m^2].
+    /// Inertia of planets and carrier, referred to the motor, times the share of the compliance behind them [kg m^2].
     pub carrier_inertia: f64,
-    /// All that turns with the motor, at the motor [kg m^2].
+    /// Inertia that turns with the motor, referred to the motor [kg m^2].
     pub motor_inertia: f64,
-    /// What turns with the link [kg m^2].
+    /// Inertia that turns with the link [kg m^2].
     pub link_inertia: f64,
     /// Compliance of the teeth alone, at the output [rad/(N m)].
     pub mesh_compliance: f64,
     /// Mean stiffness of a mesh [N/m].
     pub mesh_stiffness: f64,
-    /// How far the torque of the teeth runs ahead of their twist, for a damping ratio of 1 [s].
+    /// Time by which the torque of the teeth leads their twist, for a damping ratio of 1 [s].
     pub mesh_relaxation_per_ratio: f64,
     /// Compliance from motor to link that the joint file states [rad/(N m)].
     pub compliance: f64,
-    /// What the output moves freely while the motor stands [rad].
+    /// Free motion of the output with the motor standing [rad].
     pub lost_motion: f64,
-    /// What is known of the gears' losses.
+    /// Knowledge of the gears' losses.
     pub losses: Losses,
-    /// Errors of encoders that come more than twice a turn, as far as the log has shown them.
-    pub higher: Vec<Higher>,
-    /// The link hangs on a compliance of its own behind the carrier.
+    /// Encoder errors of more than twice a turn, as far as the log has shown them.
+    pub harmonics: Vec<Harmonic>,
+    /// The link hangs on its own compliance behind the carrier.
     pub compliant: bool,
-    /// What errors of the teeth take of the gap; nothing where all planets touch at once.
+    /// Reduction of the gap by errors of the teeth; `None` if all planets touch at once.
     pub sharing: Option<LoadSharing>,
-    /// The gear is an equivalent one: it has no teeth whose errors could show.
+    /// The gear is an equivalent gear, without teeth whose errors could show.
     pub equivalent: bool,
-    /// What surrounds the gears.
+    /// Drive train around the gears.
     pub surroundings: Surroundings,
-    /// How wrong the motor's torque may be, as a ratio: one standard deviation.
+    /// Standard deviation of the motor's torque scale, relative.
     pub torque_error: f64,
-    /// How wrong each inertia may be, likewise.
+    /// Standard deviation of each inertia, relative.
     pub inertia_error: f64,
 }
 
 impl PriorModel {
-    /// Of a joint file and the command line.
+    /// Joint of a file, with the values of the command line.
     pub fn new(loaded: &Loaded, arguments: &Arguments) -> Outcome<Self> {
-        let mut prior = Self::of(&loaded.file);
+        let mut prior = Self::from_file(&loaded.file);
         prior.motor_turn = arguments.motor_bits.map_or(prior.motor_turn, AbsoluteEncoder::counts_of_bits);
         prior.output_turn = arguments.output_bits.map_or(prior.output_turn, AbsoluteEncoder::counts_of_bits);
         prior.torque_error = arguments.torque_error.map_or(prior.torque_error, |percent| percent / 100.0);
@@ -94,15 +93,15 @@ impl PriorModel {
         Ok(prior)
     }
 
-    /// Of a joint file alone.
-    pub fn of(file: &JointFile) -> Self {
+    /// Joint of a file alone.
+    pub fn from_file(file: &JointFile) -> Self {
         let joint = &file.parameters;
         let around = &file.surroundings;
         let geometry = &joint.geometry;
         let lever = geometry.carrier_base_radius();
         let planets = geometry.planets as f64;
         let ratio = geometry.ratio_by_teeth();
-        // One planet after the other carries 1/n; softening by the ripple is that of a mean over 1/k.
+        // Each planet in turn carries 1/n; the ripple softens a mesh as the mean of 1/k does.
         let softened = |mesh: &Mesh| {
             let (StiffnessWave::Harmonic { stiffness_ratio: ripple }
             | StiffnessWave::Rectangular { stiffness_ratio: ripple, .. }) = mesh.stiffness_wave;
@@ -111,7 +110,7 @@ impl PriorModel {
         let softened = [&joint.sun_planet, &joint.ring_planet].map(softened);
         let soft = softened.map(f64::recip);
         let mesh_compliance = sheet::teeth_compliance(geometry, softened);
-        // In series each kind takes its part of the twist, and of its rate.
+        // The mesh kinds are in series: each contributes its share of the twist and of its rate.
         let relaxation = |kind: MeshKind| joint.damping_coefficient(kind) / joint.mesh(kind).damping_ratio;
         let relaxations = [MeshKind::SunPlanet, MeshKind::RingPlanet].map(relaxation);
         let mesh_relaxation_per_ratio =
@@ -124,7 +123,7 @@ impl PriorModel {
         let gaps = [&joint.sun_planet, &joint.ring_planet].map(|mesh| &mesh.half_backlash[..geometry.planets]);
         let half_backlash = gaps.iter().copied().flatten().sum::<f64>() / (2.0 * planets);
         let compliant = joint.compliance.is_some();
-        // Without a compliance the teeth are the spring: planets stand in its middle, the carrier behind it.
+        // Without a separate compliance the teeth are the spring: the planets are in its middle, the carrier behind it.
         let [before, behind] =
             if compliant { [sun + gears + carrier, 0.0] } else { [sun + 0.5 * gears, 0.5 * gears + carrier] };
         Self {
@@ -144,10 +143,10 @@ impl PriorModel {
             mesh_relaxation_per_ratio,
             compliance: mesh_compliance + own,
             lost_motion: 2.0 * half_backlash / lever,
-            losses: Losses::Stated(OWN_LOSS * (1.0 - around.efficiency).abs()),
-            higher: Vec::new(),
+            losses: Losses::Stated(STATED_LOSS_DEVIATION * (1.0 - around.efficiency).abs()),
+            harmonics: Vec::new(),
             compliant,
-            sharing: LoadSharing::of(joint, softened),
+            sharing: LoadSharing::new(joint, softened),
             equivalent: joint.equivalent_gear().is_some(),
             torque_error: around.torque_constant_error_ratio.abs(),
             inertia_error: INERTIA_ERROR,
@@ -155,21 +154,21 @@ impl PriorModel {
         }
     }
 
-    /// Whether nothing brakes its motor's side.
+    /// Returns true if losses and dry friction of the motor's side are zero.
     pub fn is_ideal(&self) -> bool {
         self.surroundings.efficiency >= 1.0 && self.surroundings.motor_friction.coulomb == 0.0
     }
 
-    /// The same with other knowledge of the losses.
+    /// Returns the joint with other knowledge of the losses.
     pub fn with_losses(&self, losses: Losses) -> Self {
         Self { losses, ..self.clone() }
     }
 
-    /// Where a log says, with this deviation, that so much more of the load is lost than is stated, as a share: what it has
-    /// told if the two agree, else with losses that are as much larger, to be told again.
-    pub fn with_losses_told(&self, more: f64, deviation: f64) -> Self {
-        if more.abs() < AGREES * deviation + FEIGNED {
-            return self.with_losses(Losses::Told(more.hypot(deviation)));
+    /// Returns the joint after an estimate of `more` lost share of the load. If the estimate agrees with the stated
+    /// losses, they count as estimated; otherwise the losses grow by `more`, to be estimated again.
+    pub fn with_estimated_losses(&self, more: f64, deviation: f64) -> Self {
+        if more.abs() < LOSS_AGREEMENT_SIGMA * deviation + MIMICKED_LOSS {
+            return self.with_losses(Losses::Estimated(more.hypot(deviation)));
         }
         let mut prior = self.clone();
         prior.surroundings.efficiency *= 1.0 - more;
@@ -196,13 +195,13 @@ impl PriorModel {
         self.motor_at_output() / self.total_inertia()
     }
 
-    /// Inertia that swings against the compliance: motor and link in series, at the output [kg m^2].
+    /// Inertia of the swing on the compliance: motor and link in series, referred to the output [kg m^2].
     pub fn swinging_inertia(&self) -> f64 {
         self.motor_at_output() * self.link_inertia / self.total_inertia()
     }
 
-    /// Period of the swing that the joint file promises [s].
-    pub fn swing(&self) -> f64 {
+    /// Period of the swing on the compliance, by the joint file [s].
+    pub fn swing_period(&self) -> f64 {
         TAU * (self.swinging_inertia() * self.compliance).sqrt()
     }
 }

@@ -1,24 +1,24 @@
-//! Logs from which nothing can be identified, each with the reason and the help. A reason that concerns one parameter
-//! only is given with that parameter.
+//! Rejection of logs without a usable reversal test, with reason and remedy. A reason for one parameter only is part of
+//! that parameter's finding.
 
 use super::log::Log;
 use super::prior::PriorModel;
 use super::rows::Rows;
 use report::failure::{Failure, Outcome};
 
-/// Changes of flank that are needed: from fewer the gap is a guess.
-const LEAST_CROSSINGS: usize = 4;
-/// Moments near lost samples are left out; more than so many of them, and the rest is no test.
-const MOST_LEFT_OUT: f64 = 0.7;
-/// Time that each flank must carry in all [s].
-const LEAST_CARRIED: f64 = 0.1;
+/// Least changes of flank for an estimate of the gap.
+const CROSSINGS_MIN: usize = 4;
+/// Largest share of moments that may be excluded near lost samples.
+const EXCLUDED_SHARE_MAX: f64 = 0.7;
+/// Least time that each flank carries [s].
+const CARRYING_TIME_MIN: f64 = 0.1;
 
-/// Refuses a log without a usable reversal test in it.
+/// Rejects a log without a usable reversal test.
 pub fn check(log: &Log, rows: &Rows, prior: &PriorModel) -> Outcome<()> {
-    if rows.left_out > MOST_LEFT_OUT {
+    if rows.excluded_share > EXCLUDED_SHARE_MAX {
         return Err(Failure::new(format!(
             "samples are lost so often that {:.0} % of this log's moments have one near them",
-            100.0 * rows.left_out
+            100.0 * rows.excluded_share
         ))
         .with_help("record so that samples arrive, or log every second one of them"));
     }
@@ -38,20 +38,20 @@ pub fn check(log: &Log, rows: &Rows, prior: &PriorModel) -> Outcome<()> {
         ))
         .with_help("let the torque reach several times the motor's friction to both sides"));
     }
-    if rows.crossings < LEAST_CROSSINGS {
+    if rows.crossings < CROSSINGS_MIN {
         return Err(Failure::new(format!(
-            "too few crossings: the carrying flank changes {} times in this log, {LEAST_CROSSINGS} are needed",
+            "too few crossings: the carrying flank changes {} times in this log, {CROSSINGS_MIN} are needed",
             rows.crossings
         ))
         .with_help("reverse the torque more often, and hold it for some hundredths of a second each time"));
     }
     for (side, name) in [(1.0, "drive"), (-1.0, "back")] {
-        let carried = rows.carrying().filter(|row| row.side == side).count() as f64 * rows.step;
-        if carried < LEAST_CARRIED {
+        let carried = rows.carrying().filter(|row| row.flank == side).count() as f64 * rows.step;
+        if carried < CARRYING_TIME_MIN {
             return Err(Failure::new(format!(
                 "the {name} flank carries for {:.0} ms only, {:.0} ms are needed",
                 1e3 * carried,
-                1e3 * LEAST_CARRIED
+                1e3 * CARRYING_TIME_MIN
             ))
             .with_help("hold the torque longer after each reversal, to both sides"));
         }

@@ -1,127 +1,129 @@
-//! Linear least squares with robust weights, prior widths for parameters that a log may not determine, and intervals
-//! from blocks of time, since residuals within a block are correlated.
+//! Linear least squares with robust weights, prior widths for unknowns that a log may not determine, and intervals from
+//! blocks of time, because residuals within a block are correlated.
 
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-/// Rounds of turning down outliers.
-const ROUNDS: usize = 12;
-/// After so many of them what lies so many deviations beyond is taken for none of what the equations are about, such as teeth
-/// that bounce on.
-const TURNED_DOWN: usize = 5;
-const NONE_OF_IT: f64 = 8.0;
+/// Rounds of reweighting outliers.
+const REWEIGHTING_ROUNDS: usize = 12;
+/// After ROUNDS_BEFORE_EXCLUSION rounds, residuals beyond EXCLUSION_SIGMA deviations are excluded: they belong to another state, such as
+/// bouncing teeth.
+const ROUNDS_BEFORE_EXCLUSION: usize = 5;
+const EXCLUSION_SIGMA: f64 = 8.0;
 /// Residuals beyond this many deviations count less (Huber); the usual constant for 95 % efficiency.
 const HUBER: f64 = 1.345;
 
-/// What every equation is off by, each by one and with the worst sign, moves the part that an unknown has in the values by so
-/// much at most in a log that tells the unknowns apart. In simulated reversal tests of the presets it is 5.5 and less, and with
-/// sines of one strength, where errors of encoders and teeth, inertia and compliance go with one another, up to 10,000.
-const TOLD_APART: f64 = 6.0;
-/// From here on an unknown is not told apart from the others; so much sooner where all strokes are alike.
-const NOT_TOLD_APART: f64 = 20.0;
-const SOONER: f64 = 14.0;
+/// Error amplification of an unknown in a log that separates the unknowns: the change of the unknown's contribution to
+/// the values if each equation is off by one, with the worst signs. It is 5.5 and less in simulated reversal tests of
+/// the presets; with sines of one strength, where encoder and tooth errors, inertia and compliance are confounded, up
+/// to 10,000.
+const AMPLIFICATION_SEPARATED: f64 = 6.0;
+/// From this amplification on, an unknown is not separated from the others; the threshold falls by REPETITION_PENALTY if all
+/// strokes are alike.
+const AMPLIFICATION_MAX: f64 = 20.0;
+const REPETITION_PENALTY: f64 = 14.0;
 
-/// Coefficients of an equation that are measured and therefore scatter.
-pub const SCATTERING: usize = 3;
+/// Coefficients of an equation that are measured and therefore noisy.
+pub const NOISY_COEFFICIENTS: usize = 3;
 
-/// How some coefficients of an equation and its value scatter: their covariance, the value last. Least squares alone would
-/// find unknowns with scattering coefficients too small.
+/// Covariance of an equation's noisy coefficients and of its value, the value last. Plain least squares would
+/// underestimate unknowns with noisy coefficients.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Scatter(pub [[f64; SCATTERING + 1]; SCATTERING + 1]);
+pub struct NoiseCovariance(pub [[f64; NOISY_COEFFICIENTS + 1]; NOISY_COEFFICIENTS + 1]);
 
-/// A system of equations to be solved in the least-squares sense.
+/// System of equations, to be solved by least squares.
 #[derive(Debug, Clone, Default)]
 pub struct Equations {
     rows: Vec<Vec<f64>>,
     values: Vec<f64>,
-    /// Block of time that an equation belongs to.
+    /// Block of time of each equation.
     blocks: Vec<usize>,
-    /// Group of equations, whenever they were, whose residuals may be alike; nothing if there are none.
+    /// Group of each equation, independent of time, whose residuals may be correlated; empty without groups.
     groups: Vec<usize>,
-    /// How coefficients scatter; nothing if none do.
-    scatters: Vec<Scatter>,
-    /// Which coefficients these are.
-    scattering: [usize; SCATTERING],
-    /// How far their moments repeat one another, 0 to 1: what they leave over is then no scatter.
-    repeated: f64,
+    /// Covariance of the coefficients of each equation; empty if all coefficients are exact.
+    noise_covariances: Vec<NoiseCovariance>,
+    /// Indices of the noisy coefficients.
+    noisy: [usize; NOISY_COEFFICIENTS],
+    /// Repetition of the moments, 0 to 1: residuals of repeated moments are not independent.
+    repetition: f64,
 }
 
-/// Their solution.
+/// Solution of a system.
 #[derive(Debug, Clone)]
 pub struct Solution {
-    /// The unknowns.
+    /// Unknowns.
     pub values: DVector<f64>,
-    /// Their covariance.
+    /// Covariance of the unknowns.
     pub covariance: DMatrix<f64>,
-    /// Half of a 95 % interval is this times a standard deviation.
-    pub reach: f64,
-    /// Likewise where it is groups whose residuals are alike, with its reach; nothing without groups.
+    /// Half of a 95 % interval over the standard deviation.
+    pub coverage_factor: f64,
+    /// Covariance and reach from groups instead of blocks; `None` without groups.
     by_groups: Option<(DMatrix<f64>, f64)>,
-    /// What the equations leave over.
+    /// Residuals of the equations.
     pub residuals: Vec<f64>,
-    /// Its standard deviation, outliers apart.
+    /// Standard deviation of the residuals, outliers excluded.
     pub noise: f64,
-    /// Half of an interval that is to be added to that of an unknown that goes with others: what the equations leave over may be
-    /// no scatter, and is not turned down up to some size. Where their moments repeat one another that counts whole, elsewhere
-    /// as far as it moves an unknown by more than it might where unknowns are told apart. Infinite if this one is not.
+    /// Addition to half of an unknown's interval for confounding: residuals may be systematic, and below some size the
+    /// weights do not reduce them. Repeated moments count in full, others as far as the amplification exceeds
+    /// AMPLIFICATION_SEPARATED. Infinite if the unknown is not separated from the others.
     pub confounded: DVector<f64>,
-    /// Part of what the equations seem to say of an unknown with scattering coefficients that is no scatter; of the worst.
+    /// Share of the information on the noisy-coefficient unknowns that is not scatter; the lowest of the unknowns.
     pub reliability: f64,
 }
 
 impl Equations {
-    /// None yet, of moments that repeat one another so far, 0 to 1.
-    pub fn of_moments(repeated: f64) -> Self {
-        Self { repeated, ..Self::default() }
+    /// Empty system for moments of a repetition of 0 to 1.
+    pub fn with_repetition(repetition: f64) -> Self {
+        Self { repetition, ..Self::default() }
     }
 
-    /// One more equation.
+    /// Adds an equation.
     pub fn push(&mut self, row: Vec<f64>, value: f64, block: usize) {
         self.rows.push(row);
         self.values.push(value);
         self.blocks.push(block);
     }
 
-    /// The last equation is one of a group whose residuals may be alike; all must be in one then.
-    pub fn in_group(&mut self, group: usize) {
+    /// Assigns the last equation to a group with correlated residuals; then every equation needs a group.
+    pub fn set_group(&mut self, group: usize) {
         self.groups.push(group);
     }
 
-    /// One more equation whose coefficients of these unknowns scatter; all equations must be of this kind then.
-    pub fn push_scattering(
+    /// Adds an equation with noisy coefficients; then every equation must have them.
+    pub fn push_noisy(
         &mut self,
         row: Vec<f64>,
         value: f64,
         block: usize,
-        scattering: [usize; SCATTERING],
-        scatter: Scatter,
+        noisy: [usize; NOISY_COEFFICIENTS],
+        scatter: NoiseCovariance,
     ) {
-        self.scattering = scattering;
-        self.scatters.push(scatter);
+        self.noisy = noisy;
+        self.noise_covariances.push(scatter);
         self.push(row, value, block);
     }
 
-    /// How many there are.
+    /// Number of equations.
     pub fn count(&self) -> usize {
         self.rows.len()
     }
 
-    /// Solves them; each unknown is expected near zero within its width, which may be infinite.
+    /// Solves the system; each unknown is expected near zero within its width, which may be infinite.
     ///
-    /// `None` if there are too few, or if they do not determine the unknowns.
+    /// Returns `None` if the equations are too few, or do not determine the unknowns.
     pub fn solve(&self, widths: &[f64]) -> Option<Solution> {
         self.solve_considering(widths, &[])
     }
 
-    /// The same where some unknowns are held near zero by their widths, but are uncertain by a standard deviation that these
-    /// equations are not trusted to better: what that moves is in the covariance (Schmidt's considered parameters).
+    /// Solves the system with some unknowns held near zero by their widths but uncertain by a standard deviation; the
+    /// covariance includes their effect (Schmidt's considered parameters).
     pub fn solve_considering(&self, widths: &[f64], considered: &[(usize, f64)]) -> Option<Solution> {
         let unknowns = widths.len();
         if self.count() < 2 * unknowns {
             return None;
         }
-        // Columns of equal size, so that the solution does not depend on units.
+        // Columns are scaled to equal size, so that the solution does not depend on units.
         let scale = |column: usize| {
             let sum: f64 = self.rows.iter().map(|row| row[column] * row[column]).sum();
             if sum > 0.0 { (sum / self.count() as f64).sqrt() } else { 1.0 }
@@ -131,12 +133,12 @@ impl Equations {
         let values = DVector::from_column_slice(&self.values);
         let prior = DVector::from_fn(unknowns, |column, _| (widths[column] * scales[column]).powi(-2));
         let mut weights = DVector::from_element(self.count(), 1.0);
-        let mut noise = spread(&self.values);
+        let mut noise = robust_deviation(&self.values);
         let mut solved = DVector::zeros(unknowns);
         let mut information = DMatrix::zeros(unknowns, unknowns);
         let mut residuals = values.clone();
         let mut reliability = 1.0;
-        for round in 0..ROUNDS {
+        for round in 0..REWEIGHTING_ROUNDS {
             let floor = 1e-12 * (1.0 + values.amax());
             let sharpness = 1.0 / (noise * noise).max(floor * floor);
             let weighted = DMatrix::from_fn(self.count(), unknowns, |row, column| {
@@ -145,32 +147,37 @@ impl Equations {
             let seen = weighted.transpose() * &matrix + DMatrix::from_diagonal(&prior);
             let mut right = weighted.transpose() * &values;
             information = seen.clone();
-            for (scatter, weight) in self.scatters.iter().zip(weights.iter()) {
-                self.take_off(scatter, weight * sharpness, &scales, &mut information, &mut right);
+            for (scatter, weight) in self.noise_covariances.iter().zip(weights.iter()) {
+                self.remove_noise_bias(scatter, weight * sharpness, &scales, &mut information, &mut right);
             }
             solved = information.clone().cholesky()?.solve(&right);
-            if !self.scatters.is_empty() {
+            if !self.noise_covariances.is_empty() {
                 let (seen, true_one) = (seen.cholesky()?.inverse(), information.clone().cholesky()?.inverse());
                 let part = |unknown: &usize| seen[(*unknown, *unknown)] / true_one[(*unknown, *unknown)];
-                reliability = self.scattering.iter().map(part).fold(1.0, f64::min);
+                reliability = self.noisy.iter().map(part).fold(1.0, f64::min);
             }
             residuals = &values - &matrix * &solved;
-            noise = spread(residuals.as_slice()).max(floor);
+            noise = robust_deviation(residuals.as_slice()).max(floor);
             weights = residuals.map(|residual| {
                 let size = residual.abs() / noise.max(1e-300);
-                if round >= TURNED_DOWN && size > NONE_OF_IT { 0.0 } else { (HUBER / size.max(1e-300)).min(1.0) }
+                if round >= ROUNDS_BEFORE_EXCLUSION && size > EXCLUSION_SIGMA {
+                    0.0
+                } else {
+                    (HUBER / size.max(1e-300)).min(1.0)
+                }
             });
         }
         let inverse = information.cholesky()?.inverse();
-        let pulls =
-            Pulls { matrix: &matrix, weights: &weights, residuals: &residuals, solved: &solved, scales: &scales };
-        let [by_blocks, by_groups] = [&self.blocks, &self.groups].map(|labels| self.scatter(labels, &pulls, noise));
-        let pull = &inverse * matrix.transpose();
+        let fit =
+            WeightedFit { matrix: &matrix, weights: &weights, residuals: &residuals, solved: &solved, scales: &scales };
+        let [by_blocks, by_groups] =
+            [&self.blocks, &self.groups].map(|labels| self.score_covariance(labels, &fit, noise));
+        let influence = &inverse * matrix.transpose();
         let confounded = DVector::from_fn(unknowns, |unknown, _| {
-            let pulled = weights.iter().enumerate().map(|(row, weight)| weight * pull[(unknown, row)].abs());
+            let pulled = weights.iter().enumerate().map(|(row, weight)| weight * influence[(unknown, row)].abs());
             let inflation = pulled.sum::<f64>() / (noise * noise);
-            let beyond = if inflation < NOT_TOLD_APART - SOONER * self.repeated {
-                (inflation - TOLD_APART).max(self.repeated * inflation)
+            let beyond = if inflation < AMPLIFICATION_MAX - REPETITION_PENALTY * self.repetition {
+                (inflation - AMPLIFICATION_SEPARATED).max(self.repetition * inflation)
             } else {
                 f64::INFINITY
             };
@@ -189,15 +196,15 @@ impl Equations {
             DMatrix::from_fn(unknowns, unknowns, |a, b| sum[(a, b)] / (scales[a] * scales[b]))
         };
         // Student's 97.5 % quantile, by the first terms of its expansion.
-        let reach = |count: usize, fitted: usize| {
+        let coverage_factor = |count: usize, fitted: usize| {
             let freedom = count.saturating_sub(fitted.min(count / 2)).max(3) as f64;
             1.96 + 2.37 / freedom + 2.82 / (freedom * freedom)
         };
         Some(Solution {
             values: DVector::from_fn(unknowns, |column, _| solved[column] / scales[column]),
             covariance: covariance(&by_blocks.0),
-            reach: reach(by_blocks.1, unknowns),
-            by_groups: (by_groups.1 > 1).then(|| (covariance(&by_groups.0), reach(by_groups.1, 1))),
+            coverage_factor: coverage_factor(by_blocks.1, unknowns),
+            by_groups: (by_groups.1 > 1).then(|| (covariance(&by_groups.0), coverage_factor(by_groups.1, 1))),
             confounded,
             residuals: residuals.as_slice().to_vec(),
             noise,
@@ -205,52 +212,52 @@ impl Equations {
         })
     }
 
-    /// Takes what scatter alone puts into the sums out of them.
-    fn take_off(
+    /// Removes the bias by noisy coefficients from the normal equations.
+    fn remove_noise_bias(
         &self,
-        Scatter(scatter): &Scatter,
+        NoiseCovariance(scatter): &NoiseCovariance,
         weight: f64,
         scales: &[f64],
         sums: &mut DMatrix<f64>,
         right: &mut DVector<f64>,
     ) {
-        for (place, &row) in self.scattering.iter().enumerate() {
-            for (other, &column) in self.scattering.iter().enumerate() {
+        for (place, &row) in self.noisy.iter().enumerate() {
+            for (other, &column) in self.noisy.iter().enumerate() {
                 sums[(row, column)] -= weight * scatter[place][other] / (scales[row] * scales[column]);
             }
-            right[row] -= weight * scatter[place][SCATTERING] / scales[row];
+            right[row] -= weight * scatter[place][NOISY_COEFFICIENTS] / scales[row];
         }
     }
 
-    /// Sum over what has the same label of the square of what it pulls, and how many labels there are.
-    fn scatter(&self, labels: &[usize], pulls: &Pulls<'_>, noise: f64) -> (DMatrix<f64>, usize) {
-        let Pulls { matrix, weights, residuals, solved, scales } = *pulls;
+    /// Sum over the labels of the squared score of each label, and the number of labels.
+    fn score_covariance(&self, labels: &[usize], fit: &WeightedFit<'_>, noise: f64) -> (DMatrix<f64>, usize) {
+        let WeightedFit { matrix, weights, residuals, solved, scales } = *fit;
         let unknowns = matrix.ncols();
-        let mut pulls: BTreeMap<usize, DVector<f64>> = BTreeMap::new();
+        let mut scores: BTreeMap<usize, DVector<f64>> = BTreeMap::new();
         for (row, label) in labels.iter().enumerate() {
-            let pull = pulls.entry(*label).or_insert_with(|| DVector::zeros(unknowns));
+            let score = scores.entry(*label).or_insert_with(|| DVector::zeros(unknowns));
             let weight = weights[row] / (noise * noise);
-            *pull += matrix.row(row).transpose() * (weight * residuals[row]);
-            // As in the sums, what scatter alone puts in is taken out.
-            let Some(Scatter(scatter)) = self.scatters.get(row) else { continue };
-            for (place, &unknown) in self.scattering.iter().enumerate() {
-                let others = self.scattering.iter().enumerate();
+            *score += matrix.row(row).transpose() * (weight * residuals[row]);
+            // The bias by noisy coefficients is removed here as in the normal equations.
+            let Some(NoiseCovariance(scatter)) = self.noise_covariances.get(row) else { continue };
+            for (place, &unknown) in self.noisy.iter().enumerate() {
+                let others = self.noisy.iter().enumerate();
                 let of_others: f64 =
                     others.map(|(other, &column)| scatter[place][other] * solved[column] / scales[column]).sum();
-                pull[unknown] += weight * (of_others - scatter[place][SCATTERING]) / scales[unknown];
+                score[unknown] += weight * (of_others - scatter[place][NOISY_COEFFICIENTS]) / scales[unknown];
             }
         }
-        // Each has pulled the solution towards itself.
-        let correction = pulls.len() as f64 / (pulls.len() as f64 - 1.0).max(1.0)
+        // Small-sample correction: each block has moved the solution towards itself.
+        let correction = scores.len() as f64 / (scores.len() as f64 - 1.0).max(1.0)
             * (self.count() as f64 / (self.count() - unknowns) as f64);
         let mut sum = DMatrix::zeros(unknowns, unknowns);
-        pulls.values().for_each(|pull| sum += pull * pull.transpose() * correction);
-        (sum, pulls.len())
+        scores.values().for_each(|score| sum += score * score.transpose() * correction);
+        (sum, scores.len())
     }
 }
 
-/// What single equations pull with.
-struct Pulls<'p> {
+/// Matrix, weights and residuals of a weighted solution.
+struct WeightedFit<'p> {
     matrix: &'p DMatrix<f64>,
     weights: &'p DVector<f64>,
     residuals: &'p DVector<f64>,
@@ -259,23 +266,25 @@ struct Pulls<'p> {
 }
 
 impl Solution {
-    /// Half of the 95 % interval of any smooth function of the unknowns, by its slopes.
+    /// Half of the 95 % interval of a smooth function of the unknowns, by its slopes.
     pub fn half(&self, slopes: &[(usize, f64)]) -> f64 {
         let mut slope = DVector::zeros(self.values.len());
         slopes.iter().for_each(|(unknown, by)| slope[*unknown] = *by);
-        let half = |covariance: &DMatrix<f64>, reach: f64| {
-            reach * (slope.transpose() * covariance * &slope)[(0, 0)].max(0.0).sqrt()
+        let half = |covariance: &DMatrix<f64>, coverage_factor: f64| {
+            coverage_factor * (slope.transpose() * covariance * &slope)[(0, 0)].max(0.0).sqrt()
         };
-        let scatter = half(&self.covariance, self.reach);
-        let scatter =
-            self.by_groups.as_ref().map_or(scatter, |(covariance, reach)| scatter.max(half(covariance, *reach)));
+        let scatter = half(&self.covariance, self.coverage_factor);
+        let scatter = self
+            .by_groups
+            .as_ref()
+            .map_or(scatter, |(covariance, coverage_factor)| scatter.max(half(covariance, *coverage_factor)));
         let confounded =
             slopes.iter().filter(|(_, by)| *by != 0.0).map(|(unknown, by)| by.abs() * self.confounded[*unknown]);
         scatter + confounded.sum::<f64>()
     }
 
-    /// Whether the equations tell an unknown apart from the others.
-    pub fn tells_apart(&self, unknown: usize) -> bool {
+    /// Returns true if the equations separate an unknown from the others.
+    pub fn is_separated(&self, unknown: usize) -> bool {
         self.confounded[unknown] == 0.0
     }
 
@@ -285,8 +294,8 @@ impl Solution {
     }
 }
 
-/// Standard deviation of most of them, from the median of their sizes.
-fn spread(values: &[f64]) -> f64 {
+/// Robust standard deviation, from the median of the sizes.
+fn robust_deviation(values: &[f64]) -> f64 {
     let mut sizes: Vec<f64> = values.iter().map(|value| value.abs()).collect();
     sizes.sort_by(f64::total_cmp);
     1.4826 * sizes.get(sizes.len() / 2).copied().unwrap_or_default()
@@ -296,7 +305,7 @@ fn spread(values: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A line through points that scatter, a few of them far off.
+    /// Line through noisy points, a few of them far off.
     fn line(wild: f64) -> Equations {
         let mut equations = Equations::default();
         for index in 0..400_usize {
@@ -308,16 +317,18 @@ mod tests {
         equations
     }
 
+    /// A few outliers hardly move the solution.
     #[test]
-    fn outliers_hardly_move_the_solution() {
+    fn regression_outliers_are_downweighted() {
         let widths = [f64::INFINITY, f64::INFINITY, 0.5];
         let solution = line(5.0).solve(&widths).expect("determined");
         assert!((solution.values[0] - 2.0).abs() < 0.01 && (solution.values[1] - 3.0).abs() < 0.01, "{solution:?}");
     }
 
+    /// An error common to a group widens the interval.
     #[test]
-    fn what_is_wrong_alike_in_a_group_widens_the_interval() {
-        // Values of one kind are too large wherever in time they come.
+    fn regression_group_error_widens_interval() {
+        // Values of one kind are too large, at any time.
         let mean = |grouped: bool| {
             let mut equations = Equations::default();
             for index in 0..400_usize {
@@ -325,7 +336,7 @@ mod tests {
                 let scatter = 0.01 * ((index * 104_729 % 211) as f64 / 105.0 - 1.0);
                 equations.push(vec![1.0], 1.0 + scatter + if kind == 3 { 0.02 } else { 0.0 }, index / 10);
                 if grouped {
-                    equations.in_group(kind);
+                    equations.set_group(kind);
                 }
             }
             equations.solve(&[f64::INFINITY]).expect("determined").half(&[(0, 1.0)])
@@ -334,9 +345,10 @@ mod tests {
         assert!(grouped > 2.0 * alone && grouped < 0.02, "{alone} {grouped}");
     }
 
+    /// The uncertainty of a held unknown appears in the unknowns correlated with it.
     #[test]
-    fn what_is_held_but_uncertain_widens_what_goes_with_it() {
-        // The line's slope, held at three but known within a half, moves the mean by half as much.
+    fn regression_considered_error_propagates() {
+        // The line's slope is held at 3 with a deviation of 0.5, which moves the mean by 0.25.
         let mut equations = line(0.0);
         equations.values.iter_mut().zip(&equations.rows).for_each(|(value, row)| *value -= 3.0 * row[1]);
         let widths = [f64::INFINITY, 1e-9, 1e-9];
@@ -347,8 +359,9 @@ mod tests {
         assert!((beside.deviation(1) - 0.5).abs() < 1e-6, "{}", beside.deviation(1));
     }
 
+    /// An unobserved unknown keeps its prior width; without one there is no solution.
     #[test]
-    fn what_the_equations_do_not_hold_keeps_the_width_that_was_expected() {
+    fn regression_unobserved_keeps_prior() {
         let solution = line(0.0).solve(&[f64::INFINITY, f64::INFINITY, 0.5]).expect("determined");
         assert!((solution.deviation(2) - 0.5).abs() < 1e-9, "{}", solution.deviation(2));
         assert!(line(0.0).solve(&[f64::INFINITY; 3]).is_none(), "and without a width there is no solution");

@@ -1,4 +1,4 @@
-//! Results of a log, however it was recorded: what report, joint file and JSON are made of.
+//! Results of a log of any kind: the source of report, joint file and JSON.
 
 use super::findings::Finding;
 use report::plot::Figure;
@@ -9,10 +9,10 @@ pub struct Results {
     pub duration: f64,
     /// Crossings of the gap.
     pub crossings: usize,
-    /// Assumptions that the numbers rest on.
+    /// Assumptions behind the numbers.
     pub assumptions: Vec<String>,
-    /// Parameters, each with its interval or why it has none.
+    /// Parameters, each with its interval or the reason for a missing one.
     pub findings: Vec<Finding>,
-    /// Pictures, first the most telling.
+    /// Pictures, the most telling first.
     pub figures: Vec<Figure>,
 }

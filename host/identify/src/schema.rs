@@ -1,13 +1,13 @@
-//! The published schemas of what the commands of this crate write as JSON are those of their types. Only tests are here.
+//! Test: the published schemas of this crate's JSON match its types.
 
 use report::schema::assert_published;
 
 use crate::findings::Record;
-use crate::learnt::Content;
+use crate::memory::Content;
 use crate::quasi_static::SlowRecord;
 
 #[test]
-fn the_published_schemas_are_those_of_the_types() {
+fn schemas_match_types() {
     assert_published::<Record<'_>>("identify.schema.json");
     assert_published::<SlowRecord<'_>>("identify-quasi-static.schema.json");
     assert_published::<Content>("memory.schema.json");

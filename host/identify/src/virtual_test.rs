@@ -1,5 +1,5 @@
-//! The recommended test without hardware: the f64 reference of a joint file in its drive train, reversed by a torque that
-//! steps to and fro, recorded as a drive would. It shares nothing with the fits but the joint file.
+//! The recommended test, simulated: the f64 reference of a joint file in its drive train, reversed by torque steps,
+//! recorded as by a drive. It shares only the joint file with the fits.
 
 use model_core::gears::Kinematics;
 use std::fmt::Write as _;
@@ -13,65 +13,67 @@ use report::interruption;
 use scenario::plant::{PlantName, plant};
 use scenario::surroundings::train;
 
-/// Shares of the strongest torque for quick reversals: the compliance needs several.
-const SHARES: [f64; 4] = [1.0, 0.7, 0.45, 0.25];
-/// Quick reversals for each share.
-const REVERSALS: usize = 8;
-/// Time between two of them [s].
-const QUICK: f64 = 0.12;
-/// Speed that the output is not to exceed by quick reversals [rad/s].
-const FASTEST: f64 = 12.0;
-/// Time between two slow reversals, which turn the output [s].
-const SLOW: f64 = 1.5;
-/// Swing from one slow reversal to the next [rad].
-const SWING: f64 = 7.5;
-/// Speeds of the two series of slow reversals.
-const SLOW_SHARES: [f64; 2] = [1.0, 0.7];
+/// Torques of the quick reversals as shares of the largest; the compliance needs several.
+const QUICK_TORQUE_SHARES: [f64; 4] = [1.0, 0.7, 0.45, 0.25];
+/// Quick reversals per share.
+const QUICK_REVERSALS: usize = 8;
+/// Time between quick reversals [s].
+const QUICK_INTERVAL: f64 = 0.12;
+/// Largest speed of the output by quick reversals [rad/s].
+const QUICK_SPEED_MAX: f64 = 12.0;
+/// Time between slow reversals, which turn the output [s].
+const SLOW_INTERVAL: f64 = 1.5;
+/// Travel between slow reversals [rad].
+const SLOW_TRAVEL: f64 = 7.5;
+/// Shares of the slow torque of the two series of slow reversals.
+const SLOW_TORQUE_SHARES: [f64; 2] = [1.0, 0.7];
 
 /// One sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     /// Motor and output counts.
     pub seen: Measurement,
-    /// Torque that the motor is asked for [N m].
+    /// Commanded motor torque [N m].
     pub torque: f64,
     /// Torque from the joint to its link [N m].
     pub output_torque: f64,
 }
 
-/// A recorded test.
+/// Recording of a simulated test.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VirtualRecording {
-    /// Samples in their order.
+    /// Samples in order of time.
     pub samples: Vec<Sample>,
-    /// Samples a second [Hz].
+    /// Sampling rate [Hz].
     pub rate: f64,
 }
 
-/// Torques of the test: how long [s] and how much [N m].
+/// Torque steps of the test: duration [s] and torque [N m].
 pub fn torque_sequence(file: &JointFile) -> Vec<(f64, f64)> {
-    let prior = PriorModel::of(file);
+    let prior = PriorModel::from_file(file);
     let inertia = prior.total_inertia();
     let dry = prior.surroundings.load_friction.coulomb + prior.ratio() * prior.surroundings.motor_friction.coulomb;
     let at_motor = |acceleration: f64, brake: f64| {
         ((inertia * acceleration + brake) / prior.ratio()).min(file.profile.motor_torque_limit)
     };
-    let strongest = at_motor(2.0 * FASTEST / QUICK, dry).min(file.profile.drive_torque.abs());
-    // From speed to opposite speed the output goes out and back by a parabola.
+    let strongest = at_motor(2.0 * QUICK_SPEED_MAX / QUICK_INTERVAL, dry).min(file.profile.drive_torque.abs());
+    // Between opposite speeds the output describes a parabola.
     let brake = dry + 1.2 * prior.surroundings.gravity_torque.abs();
-    let slow = at_motor(8.0 * SWING / (SLOW * SLOW), brake);
+    let slow = at_motor(8.0 * SLOW_TRAVEL / (SLOW_INTERVAL * SLOW_INTERVAL), brake);
     let mut torque_sequence = vec![(0.05, 0.0)];
     let mut series = |time: f64, torque: f64, reversals: usize| {
         torque_sequence.push((0.5 * time, torque));
         torque_sequence.extend((1..reversals).map(|index| (time, if index % 2 == 1 { -torque } else { torque })));
         torque_sequence.push((0.5 * time, if reversals % 2 == 1 { -torque } else { torque }));
     };
-    SHARES.iter().for_each(|share| series(QUICK, share * strongest, REVERSALS));
-    SLOW_SHARES.iter().for_each(|share| series(SLOW, (share * slow).max(0.3 * slow + brake / prior.ratio()), 3));
+    QUICK_TORQUE_SHARES.iter().for_each(|share| series(QUICK_INTERVAL, share * strongest, QUICK_REVERSALS));
+    SLOW_TORQUE_SHARES
+        .iter()
+        .for_each(|share| series(SLOW_INTERVAL, (share * slow).max(0.3 * slow + brake / prior.ratio()), 3));
     torque_sequence
 }
 
-/// Does the test.
+/// Simulates the test.
 pub fn record(file: &JointFile, seed: u64, at: &dyn Fn(f64)) -> Outcome<VirtualRecording> {
     let train = train(&file.surroundings, seed);
     let rate = f64::from(file.surroundings.control_rate);
@@ -102,7 +104,7 @@ pub fn record(file: &JointFile, seed: u64, at: &dyn Fn(f64)) -> Outcome<VirtualR
 }
 
 impl VirtualRecording {
-    /// As a log.
+    /// Log as CSV.
     pub fn csv(&self, with_output_torque: bool) -> String {
         let more = if with_output_torque { ",output_torque_N_m" } else { "" };
         let mut text = format!("time_s,motor_counts,output_counts,motor_torque_N_m{more}\n");

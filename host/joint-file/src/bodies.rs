@@ -1,4 +1,4 @@
-//! Reads `[bodies]` and `[compliance]`. Both readings of the paper's Table 1 are accepted, I / r^2 in kg and I in kg
+//! Reads `[bodies]` and `[compliance]`. Both readings of the paper's Table 1 are accepted: I / r^2 in kg and I in kg
 //! m^2.
 
 use parameters::{Bodies, Compliance, Geometry, Mesh};
@@ -13,19 +13,20 @@ pub(crate) struct Masses {
     pub link_inertia: f64,
 }
 
-/// The masses, or `None` once what is wrong has been noted. Inertias need the geometry's radii.
+/// Reads the masses; `None` after a noted problem. Inertias need the geometry's radii.
 pub(crate) fn read(section: &Section<'_>, geometry: Option<&Geometry>) -> Option<Masses> {
     let rotor_inertia = optional(section, "rotor_inertia_kg_m2", 0.0);
     let link_inertia = optional(section, "link_inertia_kg_m2", 0.0);
-    let bodies = if section.has(AT_INPUT) { read_at_input(section, geometry) } else { read_each(section, geometry) };
+    let bodies =
+        if section.has(COMBINED_KEY) { read_at_input(section, geometry) } else { read_each(section, geometry) };
     Some(Masses { bodies: bodies?, rotor_inertia: rotor_inertia?, link_inertia: link_inertia? })
 }
 
-/// What a data sheet says of gears and carrier together...
-pub(crate) const AT_INPUT: &str = "gear_inertia_at_input_kg_cm2";
+/// Key of a data sheet's inertia of gears and carrier together; ...
+pub(crate) const COMBINED_KEY: &str = "gear_inertia_at_input_kg_cm2";
 
-/// ... in place of all of these.
-pub(crate) const EACH: [&str; 8] = [
+/// ... it replaces these keys.
+pub(crate) const SEPARATE_KEYS: [&str; 8] = [
     "sun_equivalent_mass_kg",
     "sun_inertia_kg_m2",
     "planet_equivalent_mass_kg",
@@ -36,18 +37,18 @@ pub(crate) const EACH: [&str; 8] = [
     "carrier_inertia_kg_m2",
 ];
 
-/// Gears and carrier of their inertia at the input, by the shares that discs of one thickness have in it.
+/// Gears and carrier from their inertia at the input, shared as by discs of one thickness.
 fn read_at_input(section: &Section<'_>, geometry: Option<&Geometry>) -> Option<Bodies> {
-    for key in EACH.into_iter().filter(|key| section.has(key)) {
-        let message = format!("`{key}` is part of `{AT_INPUT}`: both say what gears and carrier weigh");
-        let help = format!("keep `{AT_INPUT}`, or the masses of sun, planets and carrier");
+    for key in SEPARATE_KEYS.into_iter().filter(|key| section.has(key)) {
+        let message = format!("`{key}` is part of `{COMBINED_KEY}`: both say what gears and carrier weigh");
+        let help = format!("keep `{COMBINED_KEY}`, or the masses of sun, planets and carrier");
         section.notes.error(section.place(key), message, help);
     }
-    let inertia = section.number(AT_INPUT)?;
+    let inertia = section.number(COMBINED_KEY)?;
     geometry.map(|geometry| sheet::bodies(inertia, geometry))
 }
 
-/// Gears and carrier one by one.
+/// Gears and carrier from their own keys.
 fn read_each(section: &Section<'_>, geometry: Option<&Geometry>) -> Option<Bodies> {
     let sun = equivalent_mass(
         section,
@@ -69,7 +70,8 @@ fn read_each(section: &Section<'_>, geometry: Option<&Geometry>) -> Option<Bodie
     })
 }
 
-/// The torsion spring between carrier and link. Of a data sheet's stiffness at the output it has what the teeth leave.
+/// Reads the torsion spring between carrier and link. A data sheet's stiffness at the output includes the teeth, whose
+/// compliance is subtracted.
 pub(crate) fn read_compliance(
     section: &Section<'_>,
     geometry: Option<&Geometry>,
@@ -98,14 +100,14 @@ pub(crate) fn read_compliance(
     Some(Compliance { stiffness: stiffness?, damping_ratio: damping_ratio? })
 }
 
-/// I / r^2, stated as such (first key) or by I (second key).
+/// I / r^2, stated directly (first key) or as I (second key).
 fn equivalent_mass(section: &Section<'_>, keys: [&'static str; 2], radius: Option<f64>) -> Option<f64> {
     let key = section.one_of(&keys, true)?;
     let value = section.number(key)?;
     if key == keys[0] { Some(value) } else { radius.map(|radius| value / (radius * radius)) }
 }
 
-/// I_c / r_c^2 in any of its three forms.
+/// I_c / r_c^2 from any of its three keys.
 fn carrier_mass(section: &Section<'_>, geometry: Option<&Geometry>) -> Option<f64> {
     const STATED: &str = "carrier_inertia_over_radius_squared_kg";
     const ON_LINE_OF_ACTION: &str = "carrier_equivalent_mass_kg";
@@ -119,7 +121,7 @@ fn carrier_mass(section: &Section<'_>, geometry: Option<&Geometry>) -> Option<f6
     }
 }
 
-/// A key with a default; `None` only if it is there and wrong.
+/// Value of a key with a default; `None` only for a wrong value.
 fn optional(section: &Section<'_>, key: &str, default: f64) -> Option<f64> {
     if section.has(key) { section.number(key) } else { Some(default) }
 }

@@ -1,11 +1,11 @@
-//! Units that keys are typed in and the range that a value must lie in, in that unit. Which key has which is in `keys`.
+//! Units of keys, and the range of a value in the key's unit. `keys` assigns both to the keys.
 
 use crate::sheet::ARCMIN;
 
-/// The unit in a key's name, with its conversion to SI.
+/// Unit in a key's name, with its conversion to SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Unit {
-    /// Already SI, or a pure number.
+    /// SI, or a pure number.
     Si,
     /// mm or ms.
     Milli,
@@ -15,14 +15,14 @@ pub(crate) enum Unit {
     Degrees,
     /// Minutes of arc.
     Arcmin,
-    /// Of a torque for each minute of arc.
+    /// Torque per minute of arc.
     PerArcmin,
     /// kg cm^2.
     SquareCentimetres,
 }
 
 impl Unit {
-    /// The value in SI. Division keeps 40 um the double that is nearest to 40e-6 m.
+    /// Converts to SI. Division makes 40 um the double nearest to 40e-6 m.
     pub(crate) fn to_si(self, value: f64) -> f64 {
         match self {
             Self::Si => value,
@@ -43,14 +43,14 @@ pub(crate) enum Bound {
     Between(f64, f64),
     /// Neither end allowed.
     Inside(f64, f64),
-    /// The lower end allowed, the upper not.
+    /// Lower end allowed, upper end not.
     FromToBelow(f64, f64),
     /// 0, or within the range with both ends.
     ZeroOr(f64, f64),
 }
 
 impl Bound {
-    /// Whether the value is within; NaN never is.
+    /// Returns true if the value is within the range; false for NaN.
     pub(crate) fn holds(self, value: f64) -> bool {
         match self {
             Self::Between(low, high) => low <= value && value <= high,
@@ -60,7 +60,7 @@ impl Bound {
         }
     }
 
-    /// Completes the sentence "... must be".
+    /// Text that completes the sentence "... must be".
     pub(crate) fn text(self) -> String {
         match self {
             Self::Between(low, high) => format!("between {} and {}", plain(low), plain(high)),
@@ -71,7 +71,7 @@ impl Bound {
     }
 }
 
-/// A bound as a person would write it.
+/// Number as a person would write it.
 fn plain(value: f64) -> String {
     if value != 0.0 && !(1e-3..1e4).contains(&value.abs()) { format!("{value:e}") } else { format!("{value}") }
 }

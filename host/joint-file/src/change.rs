@@ -1,5 +1,5 @@
-//! Changes single values in the text of a joint file, as a command line may ask for. Only keys are checked here; the
-//! changed text is then read like any other, with the same checks and messages.
+//! Changes single values in the text of a joint file, as for a command line. Only keys are checked here; the changed
+//! text is read like any other, with the same checks and messages.
 
 use std::ops::Range;
 
@@ -11,17 +11,17 @@ use crate::equivalent;
 use crate::keys::{self, KEYS, Key, Kind};
 use crate::spelling;
 
-/// Why a value cannot be set.
+/// Reason why a value cannot be set.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refused {
-    /// What is wrong, in one sentence.
+    /// Problem in one sentence.
     pub message: String,
-    /// The help: what to do about it.
+    /// Remedy.
     pub help: String,
 }
 
-/// Keys that say the same thing in different units or forms: setting one takes the place of the others.
-const SAME_THING: [&[&str]; 9] = [
+/// Keys of one quantity in different units or forms: setting one replaces the others.
+const QUANTITY_FORMS: [&[&str]; 9] = [
     &["half_backlash_um", "backlash_um", "lost_motion_arcmin", "lost_motion_mrad"],
     &["stiffness_N_m_per_rad", "total_stiffness_N_m_per_arcmin"],
     &["motor_coulomb_friction_N_m", "no_load_torque_N_m"],
@@ -33,18 +33,18 @@ const SAME_THING: [&[&str]; 9] = [
     &["mesh_frequency_rad_per_s", "mesh_frequency_Hz", "mesh_frequency_over_omega_n"],
 ];
 
-/// Keys that take the place of several others together; none of those alone takes theirs.
-const IN_PLACE_OF: [(&str, &[&str]); 2] =
-    [(bodies::AT_INPUT, &bodies::EACH), ("ratio", &["motor_turns", "link_turns"])];
+/// Keys that replace several others together; none of these alone replaces them.
+const COMBINED_KEYS: [(&str, &[&str]); 2] =
+    [(bodies::COMBINED_KEY, &bodies::SEPARATE_KEYS), ("ratio", &["motor_turns", "link_turns"])];
 
-/// The full path of a key, as in `mesh.sun_planet.half_backlash_um`. Its last parts are enough where they name one key;
-/// a key of `[mesh]` without a family stands for both. Where the joint is not known yet, a key that an equivalent gear and
-/// gears with teeth share is that of the teeth.
+/// Full path of a key, such as `mesh.sun_planet.half_backlash_um`. Its last parts suffice if they name a single key; a
+/// key of `[mesh]` without a family stands for both. A key shared by equivalent gears and gears with teeth is taken for
+/// the teeth's, as the joint is unknown here.
 pub fn full_key(key: &str) -> Result<String, Refused> {
     find(key, None).map(|(path, _)| path)
 }
 
-/// The full path of a key in the joint file of a text, whose kind of gears says which of two keys a short one names.
+/// Full path of a key in the joint file of a text; the kind of gears decides between two keys with one short name.
 ///
 /// ```
 /// let [q1, c1] = ["q1", "c1"].map(|name| joint_file::preset(name).unwrap());
@@ -54,17 +54,17 @@ pub fn full_key(key: &str) -> Result<String, Refused> {
 /// assert!(refused.help.contains("equivalent_gear.lost_motion_arcmin"));
 /// ```
 pub fn full_key_in(text: &str, key: &str) -> Result<String, Refused> {
-    find(key, Gears::of(text)).map(|(path, _)| path)
+    find(key, Gears::of_text(text)).map(|(path, _)| path)
 }
 
-/// The value of a key as typed, if the text states it in that form.
+/// Value of a key as typed, if the text states the quantity by this key.
 pub fn value<'t>(text: &'t str, key: &str) -> Result<Option<&'t str>, Refused> {
-    let (path, _) = find(key, Gears::of(text))?;
+    let (path, _) = find(key, Gears::of_text(text))?;
     Ok(lookup(text, &path).map(|(_, found)| &text[found]))
 }
 
-/// The text with a key set to a value, as typed after the equals sign; quotes around words may be left out, and an
-/// empty value leaves the key out. What the key meant so far is replaced, in whatever form it was stated.
+/// Returns the text with a key set to a value, as typed after the equals sign. Quotes around words may be omitted; an
+/// empty value removes the key. Other keys of the quantity are replaced.
 ///
 /// ```
 /// let text = joint_file::preset("q1").unwrap();
@@ -76,24 +76,24 @@ pub fn value<'t>(text: &'t str, key: &str) -> Result<Option<&'t str>, Refused> {
 /// assert!(joint_file::change(text, "mesh.backlsh_um", "55").is_err());
 /// ```
 pub fn change(text: &str, key: &str, value: &str) -> Result<String, Refused> {
-    change_noting(text, key, value, REMARK)
+    change_with_remark(text, key, value, DEFAULT_REMARK)
 }
 
-/// The same, with a remark of one line behind the value that says where it comes from.
-pub fn change_noting(text: &str, key: &str, value: &str, remark: &str) -> Result<String, Refused> {
-    let (path, known) = find(key, Gears::of(text))?;
+/// Returns the text with a key set to a value, followed by a one-line remark on its origin.
+pub fn change_with_remark(text: &str, key: &str, value: &str, remark: &str) -> Result<String, Refused> {
+    let (path, known) = find(key, Gears::of_text(text))?;
     let remark = format!(" # {}", remark.replace(char::is_control, " "));
     let (section, name) = path.rsplit_once('.').unwrap_or(("", &path));
     let mut text = text.to_owned();
     for other in replaced(section, name) {
         if other != path || value.trim().is_empty() {
-            text = without(&text, &other).ok_or_else(|| in_the_way(&other))?;
+            text = without(&text, &other).ok_or_else(|| cannot_remove(&other))?;
         }
     }
     if value.trim().is_empty() {
         return Ok(text);
     }
-    let value = written(value.trim(), known);
+    let value = as_toml(value.trim(), known);
     let candidates = [
         replace(&text, &path, &value, &remark),
         insert(&text, section, name, &value, &remark),
@@ -107,18 +107,19 @@ pub fn change_noting(text: &str, key: &str, value: &str, remark: &str) -> Result
     })
 }
 
-/// Stands behind a changed value, in place of the source that the old one had.
-const REMARK: &str = "set on the command line";
+/// Remark behind a changed value, instead of the old value's source.
+const DEFAULT_REMARK: &str = "set on the command line";
 
-fn in_the_way(path: &str) -> Refused {
+fn cannot_remove(path: &str) -> Refused {
     let message = format!("`{path}` is in the way, and cannot be taken out by itself");
     Refused { message, help: "write every key of the joint file on a line of its own".into() }
 }
 
-/// What setting a key takes the place of: itself, other forms of it, and for both mesh families what one of them has.
+/// Paths replaced by setting a key: the key itself, other forms of it, and for a key of both mesh families the keys of
+/// either.
 fn replaced(section: &str, name: &str) -> Vec<String> {
-    let same = SAME_THING.iter().find(|forms| forms.contains(&name)).copied();
-    let parts = IN_PLACE_OF.iter().find(|(whole, _)| *whole == name).map(|(_, parts)| *parts);
+    let same = QUANTITY_FORMS.iter().find(|forms| forms.contains(&name)).copied();
+    let parts = COMBINED_KEYS.iter().find(|(whole, _)| *whole == name).map(|(_, parts)| *parts);
     let forms = [same, parts].into_iter().flatten().flatten();
     let forms = forms.copied().filter(|form| *form != name).chain([name]);
     let sections: &[&str] = match section {
@@ -129,7 +130,7 @@ fn replaced(section: &str, name: &str) -> Vec<String> {
     forms.flat_map(|form| sections.iter().map(move |section| full(section, form))).collect()
 }
 
-/// Every key that holds a value, by its full path.
+/// Every key with a value, by its full path.
 fn paths() -> impl Iterator<Item = (String, &'static Key)> {
     KEYS.iter().filter(|key| !matches!(key.kind, Kind::Section)).flat_map(|key| {
         let sections: &[&str] = match key.section {
@@ -142,7 +143,7 @@ fn paths() -> impl Iterator<Item = (String, &'static Key)> {
     })
 }
 
-/// Which kind of gears a joint file describes.
+/// Kind of gears of a joint file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Gears {
     Equivalent,
@@ -150,8 +151,8 @@ enum Gears {
 }
 
 impl Gears {
-    /// Kind of gears of a joint file; `None` if the text is no TOML, or describes no gears.
-    fn of(text: &str) -> Option<Self> {
+    /// Kind of gears of a text; `None` if it is no TOML, or describes no gears.
+    fn of_text(text: &str) -> Option<Self> {
         let table = DeTable::parse(text).ok()?;
         let holds = |section: &str| table.get_ref().contains_key(section);
         match (holds(EQUIVALENT), holds("geometry")) {
@@ -161,26 +162,26 @@ impl Gears {
         }
     }
 
-    /// Returns whether a joint with these gears may state a key.
-    fn have(self, path: &str) -> bool {
+    /// Returns true if a joint with these gears may state a key.
+    fn may_state(self, path: &str) -> bool {
         let top = path.split('.').next().unwrap_or(path);
         match self {
-            Self::Equivalent => !equivalent::OF_TEETH.contains(&top),
+            Self::Equivalent => !equivalent::TEETH_KEYS.contains(&top),
             Self::WithTeeth => top != EQUIVALENT,
         }
     }
 
-    /// Refuses a key that only the other kind of gears has, with the key that says the same of these.
-    fn refuse(self, path: &str) -> Refused {
+    /// Rejects a key of the other kind of gears; the help names the corresponding key.
+    fn reject(self, path: &str) -> Refused {
         let (of, has) = match self {
             Self::Equivalent => ("of gears with teeth", "an equivalent gear"),
             Self::WithTeeth => ("of an equivalent gear", "gears with teeth"),
         };
         let name = path.rsplit('.').next().unwrap_or(path);
-        let forms = SAME_THING.iter().find(|forms| forms.contains(&name)).copied().unwrap_or_default();
+        let forms = QUANTITY_FORMS.iter().find(|forms| forms.contains(&name)).copied().unwrap_or_default();
         let same = [name].into_iter().chain(forms.iter().copied()).find_map(|form| {
             let of_form = |path: &String| path.rsplit('.').next() == Some(form);
-            paths().map(|(path, _)| path).find(|path| self.have(path) && of_form(path))
+            paths().map(|(path, _)| path).find(|path| self.may_state(path) && of_form(path))
         });
         let help = match same {
             Some(same) => format!("write {same}"),
@@ -194,19 +195,19 @@ const EQUIVALENT: &str = "equivalent_gear";
 
 fn find(key: &str, gears: Option<Gears>) -> Result<(String, &'static Key), Refused> {
     let key = key.trim();
-    let ends_so = |path: &str| path == key || path.strip_suffix(key).is_some_and(|rest| rest.ends_with('.'));
-    let mut found: Vec<_> = paths().filter(|(path, _)| ends_so(path)).collect();
+    let matches_end = |path: &str| path == key || path.strip_suffix(key).is_some_and(|rest| rest.ends_with('.'));
+    let mut found: Vec<_> = paths().filter(|(path, _)| matches_end(path)).collect();
     if let Some(gears) = gears {
         let other = found.first().map(|(path, _)| path.clone());
-        found.retain(|(path, _)| gears.have(path));
+        found.retain(|(path, _)| gears.may_state(path));
         if let (true, Some(other)) = (found.is_empty(), other) {
-            return Err(gears.refuse(&other));
+            return Err(gears.reject(&other));
         }
     }
     let depth = |path: &str| path.matches('.').count();
     let least = found.iter().map(|(path, _)| depth(path)).min();
     found.retain(|(path, _)| Some(depth(path)) == least);
-    // What gears with teeth have too must name an equivalent gear's section.
+    // A key shared with gears with teeth needs the section `equivalent_gear` in front.
     let of_teeth = |path: &str| !path.starts_with("equivalent_gear.");
     if found.iter().any(|(path, _)| of_teeth(path)) {
         found.retain(|(path, _)| of_teeth(path));
@@ -225,7 +226,7 @@ fn find(key: &str, gears: Option<Gears>) -> Result<(String, &'static Key), Refus
 fn unknown(key: &str) -> Refused {
     let message = format!("unknown key `{key}`");
     let all: Vec<(String, &Key)> = paths().collect();
-    // Any run of last parts may have been meant, such as `sun_planet.half_backlash_um`.
+    // The user may have meant any run of last parts, such as `sun_planet.half_backlash_um`.
     let endings = all.iter().flat_map(|(path, _)| {
         std::iter::once(path.as_str()).chain(path.match_indices('.').map(|(dot, _)| &path[dot + 1..]))
     });
@@ -234,7 +235,7 @@ fn unknown(key: &str) -> Refused {
         spelling::nearest(name, all.iter().map(|(_, known)| known.name))
     });
     let help = match near {
-        _ if keys::find_section(key) => format!("[{key}] is a section: name one of its keys, as in {key}.KEY"),
+        _ if keys::is_section(key) => format!("[{key}] is a section: name one of its keys, as in {key}.KEY"),
         Some(near) => {
             let hint = all.iter().find(|(path, _)| path.ends_with(near)).map_or("", |(_, known)| known.hint);
             format!("did you mean `{near}`? {hint}")
@@ -244,8 +245,8 @@ fn unknown(key: &str) -> Refused {
     Refused { message, help }
 }
 
-/// A value as TOML has it: words get their quotes, and numbers that only TOML minds are rewritten.
-fn written(value: &str, key: &Key) -> String {
+/// Value in TOML: words are quoted, and numbers that only TOML rejects are rewritten.
+fn as_toml(value: &str, key: &Key) -> String {
     let is_text = matches!(key.kind, Kind::Text | Kind::Choice(_));
     let quoted = || {
         let escaped = value.chars().map(|letter| match letter {
@@ -264,7 +265,7 @@ fn written(value: &str, key: &Key) -> String {
     }
 }
 
-/// Where a key and its value stand.
+/// Spans of a key and its value.
 fn lookup(text: &str, path: &str) -> Option<(Range<usize>, Range<usize>)> {
     let table = DeTable::parse(text).ok()?;
     let (section, name) = path.rsplit_once('.').unwrap_or(("", path));
@@ -273,7 +274,7 @@ fn lookup(text: &str, path: &str) -> Option<(Range<usize>, Range<usize>)> {
     Some((key.span(), value.span()))
 }
 
-/// A table by its path, with where its header stands.
+/// Table by its path, with the span of its header.
 fn table_at<'a, 't>(top: &'a DeTable<'t>, section: &str) -> Option<(Range<usize>, &'a DeTable<'t>)> {
     let mut found = (0..0, top);
     for part in section.split('.').filter(|part| !part.is_empty()) {
@@ -284,7 +285,7 @@ fn table_at<'a, 't>(top: &'a DeTable<'t>, section: &str) -> Option<(Range<usize>
     Some(found)
 }
 
-/// From a value's end to the end of its line, if nothing but a comment follows.
+/// End of a value's line, if only a comment follows the value.
 fn rest_of_line(text: &str, end: usize) -> Option<usize> {
     let rest = text[end..].split('\n').next().unwrap_or_default();
     let remark = rest.trim_start();
@@ -300,7 +301,7 @@ fn replace(text: &str, path: &str, value: &str, remark: &str) -> Option<String> 
     Some(format!("{}{value}{remark}{}", &text[..old.start], &text[end..]))
 }
 
-/// Without a key, if it is there; `None` if it shares its line.
+/// Text without a key; `None` if the key shares its line.
 fn without(text: &str, path: &str) -> Option<String> {
     let Some((key, value)) = lookup(text, path) else { return Some(text.to_owned()) };
     let start = text[..key.start].rfind('\n').map_or(0, |newline| newline + 1);
@@ -313,7 +314,7 @@ fn without(text: &str, path: &str) -> Option<String> {
     (text[start..key.start].trim().is_empty() && lookup(&shorter, path).is_none()).then_some(shorter)
 }
 
-/// As the first key of a section that is there.
+/// Inserts a key as the first of an existing section.
 fn insert(text: &str, section: &str, name: &str, value: &str, remark: &str) -> Option<String> {
     if section.is_empty() {
         return Some(format!("{name} = {value}{remark}\n{text}"));
@@ -344,8 +345,9 @@ mod tests {
         [joint.sun_planet.half_backlash[1], joint.ring_planet.half_backlash[1]]
     }
 
+    /// Setting every key of every preset to its stated value leaves the joint unchanged.
     #[test]
-    fn every_key_of_every_preset_can_be_set_to_what_it_is_without_changing_the_joint() {
+    fn setting_the_stated_value_changes_nothing() {
         for name in PRESETS {
             let text = preset(name).expect("a preset");
             let before = read(text).expect("a good preset");
@@ -359,23 +361,26 @@ mod tests {
         }
     }
 
+    /// A key of one mesh family gets its own section.
     #[test]
-    fn a_key_of_one_mesh_family_gets_a_section_of_its_own() {
+    fn family_key_gets_own_section() {
         let changed = change(q1(), "sun_planet.half_backlash_um", "60").expect("a known key");
         assert_eq!(half_backlash(&changed), [60e-6, 40e-6]);
         let again = change(&changed, "mesh.sun_planet.half_backlash_um", "70").expect("a known key");
         assert_eq!(half_backlash(&again), [70e-6, 40e-6]);
     }
 
+    /// A key of both mesh families replaces the key of one.
     #[test]
-    fn a_key_of_both_families_replaces_what_one_of_them_had() {
+    fn common_key_replaces_family_key() {
         let own = change(q1(), "ring_planet.half_backlash_um", "60").expect("a known key");
         let both = change(&own, "half_backlash_um", "10").expect("a known key");
         assert_eq!(half_backlash(&both), [10e-6, 10e-6]);
     }
 
+    /// Another form of a quantity replaces the stated form.
     #[test]
-    fn another_form_of_the_same_quantity_takes_its_place() {
+    fn other_form_replaces_quantity() {
         let changed = change(q1(), "backlash_um", "30").expect("a known key");
         assert_eq!(half_backlash(&changed), [15e-6, 15e-6]);
         let own = change(q1(), "sun_planet.backlash_um", "30").expect("a known key");
@@ -384,8 +389,9 @@ mod tests {
         assert!(read(&mass).is_ok(), "{mass}");
     }
 
+    /// An empty value removes the key, and words need no quotes.
     #[test]
-    fn an_empty_value_leaves_the_key_out_and_words_need_no_quotes() {
+    fn empty_value_removes_the_key() {
         let paper = preset("paper").expect("a preset");
         let still = change(paper, "mesh_frequency_over_omega_n", "").expect("a known key");
         let angle = change(&still, "excitation.mode", "angle").expect("a known key");
@@ -393,16 +399,18 @@ mod tests {
         assert_eq!(joint.excitation, parameters::Excitation::Angle);
     }
 
+    /// Numbers may be written as in any programming language.
     #[test]
-    fn numbers_may_be_written_as_any_language_writes_them() {
+    fn common_number_formats_are_accepted() {
         for (text, value) in [("60", 60e-6), ("60.", 60e-6), (".5e2", 50e-6), ("[60, 60.0, 6e1]", 60e-6)] {
             let changed = change(q1(), "mesh.half_backlash_um", text).expect("a known key");
             assert_eq!(half_backlash(&changed), [value, value], "{text}");
         }
     }
 
+    /// Bad values are left to the reader's checks and cannot inject lines.
     #[test]
-    fn bad_values_are_left_to_the_reader_and_cannot_smuggle_in_lines() {
+    fn bad_values_cannot_inject_lines() {
         for value in ["6000", "NaN", "inf", "sixty", "-1", "60 um", "60\n[x]\ny=1", "[1, 2]", "\"60\""] {
             let changed = change(q1(), "mesh.half_backlash_um", value).expect("a known key");
             let problems = read(&changed).expect_err(value);
@@ -411,8 +419,9 @@ mod tests {
         }
     }
 
+    /// An unknown key is rejected with the nearest known one.
     #[test]
-    fn an_unknown_key_is_answered_with_the_nearest_one() {
+    fn unknown_key_suggests_nearest() {
         let refused = |key| change(q1(), key, "1").expect_err(key);
         assert!(refused("half_backlsh_um").help.contains("`half_backlash_um`"));
         assert!(refused("sun_planet.half_backlash").help.contains("`sun_planet.half_backlash_um`"));
@@ -427,8 +436,9 @@ mod tests {
         assert!(refused("bits").message.contains("more than one"));
     }
 
+    /// Sections in one line or with dotted keys can be changed too.
     #[test]
-    fn sections_written_in_one_line_or_with_dots_can_be_changed_too() {
+    fn inline_sections_can_be_changed() {
         let inline = "name = \"x\"\ncontact = { dead_zone = \"sharp\" }\n";
         let changed = change(inline, "damping_law", "paper").expect("a known key");
         assert!(changed.contains("{ damping_law = \"paper\", dead_zone"), "{changed}");

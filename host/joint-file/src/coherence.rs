@@ -1,5 +1,5 @@
-//! Do the gears fit together? Coaxial, assembled, one centre distance, one ratio, and room between the planets. The
-//! file's key `coherence` says whether a misfit is an error or a warning.
+//! Checks that the gears fit together: coaxial, assembling, one centre distance, one ratio, and room between the
+//! planets. The file's key `coherence` makes a misfit an error or a warning.
 
 use model_core::gears::Kinematics;
 use parameters::{Coherence, Geometry};
@@ -7,11 +7,11 @@ use parameters::{Coherence, Geometry};
 use crate::notes::Notes;
 use crate::problem::Severity;
 
-/// Relative distance at which two lengths or ratios count as different.
-const MISFIT: f64 = 1e-4;
+/// Relative difference from which two lengths or ratios differ.
+const MISFIT_TOLERANCE: f64 = 1e-4;
 
-/// Relative distance within which a carrier radius is taken for r_c cos(alpha).
-const LOOKS_LIKE_LEVER: f64 = 1e-3;
+/// Relative difference within which a carrier radius is taken for r_c cos(alpha).
+const LEVER_TOLERANCE: f64 = 1e-3;
 
 /// Notes every misfit.
 pub(crate) fn check(geometry: &Geometry, notes: &Notes<'_>) {
@@ -44,11 +44,11 @@ pub(crate) fn check(geometry: &Geometry, notes: &Notes<'_>) {
 
     let lever = geometry.carrier_base_radius();
     let base_radii = geometry.sun_base_radius + geometry.planet_base_radius;
-    if differ(lever, base_radii, MISFIT) {
+    if differ(lever, base_radii, MISFIT_TOLERANCE) {
         let keys = ["geometry.carrier_radius_mm", "geometry.carrier_base_radius_mm"];
         let wanted = 1e3 * base_radii / geometry.working_pressure_angle.cos();
         let (have, need) = (1e3 * lever, 1e3 * base_radii);
-        if differ(geometry.carrier_radius, base_radii, LOOKS_LIKE_LEVER) {
+        if differ(geometry.carrier_radius, base_radii, LEVER_TOLERANCE) {
             let message =
                 format!("r_c cos(alpha) = {have:.4} mm, but the base radii of sun and planet sum to {need:.4} mm");
             note(&keys, message, format!("at this working pressure angle r_c is {wanted:.4} mm"));
@@ -60,7 +60,7 @@ pub(crate) fn check(geometry: &Geometry, notes: &Notes<'_>) {
     }
 
     let (by_radii, by_teeth) = (2.0 * base_radii / geometry.sun_base_radius, geometry.ratio_by_teeth());
-    if differ(by_radii, by_teeth, MISFIT) {
+    if differ(by_radii, by_teeth, MISFIT_TOLERANCE) {
         let keys = ["geometry.planet_base_radius_mm", "geometry.sun_base_radius_mm", "geometry.ring_teeth"];
         let message = format!("the ratio is {by_radii:.5} by base radii and {by_teeth:.5} by teeth");
         let help = "r_bp / r_bs must be planet_teeth / sun_teeth, and ring_teeth = sun_teeth + 2 planet_teeth";
@@ -70,7 +70,7 @@ pub(crate) fn check(geometry: &Geometry, notes: &Notes<'_>) {
     room_between_planets(geometry, notes);
 }
 
-/// Planets whose pitch circles meet cannot be mounted whatever the file says; tips that would meet may have been cut.
+/// Planets whose pitch circles meet can never be mounted; tips that meet may have been cut.
 fn room_between_planets(geometry: &Geometry, notes: &Notes<'_>) {
     let pitch_radius = geometry.planet_base_radius / geometry.working_pressure_angle.cos();
     let tip_radius = pitch_radius * (1.0 + 2.0 / f64::from(geometry.planet_teeth));

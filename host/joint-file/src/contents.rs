@@ -1,4 +1,4 @@
-//! What a joint file says, once it has been read.
+//! Content of a joint file.
 
 use parameters::{JointParameters, PlantParameters, Surroundings};
 
@@ -9,17 +9,17 @@ use crate::problem::Problem;
 /// A valid joint file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointFile {
-    /// The joint, in SI.
+    /// Joint, in SI.
     pub parameters: JointParameters,
-    /// A sentence for reports; may be empty.
+    /// Description for reports; may be empty.
     pub description: String,
     /// Torques for motion profiles.
     pub profile: Profile,
-    /// What surrounds the gears; what the file says nothing of is ideal.
+    /// Drive train around the gears; effects without a key are ideal.
     pub surroundings: Surroundings,
-    /// What is odd but can be used.
+    /// Warnings: odd values that are usable.
     pub warnings: Vec<Problem>,
-    /// Where each number comes from, by the comment behind it.
+    /// Source of each number, from the comment behind it.
     pub sources: Vec<Source>,
 }
 

@@ -1,11 +1,11 @@
-//! Draws what is wrong with a file that users write: every problem at once, each with its place underlined. Colours and line
-//! drawing follow the terminal, as miette decides.
+//! Draws the problems of a user's file, all at once, each with its place underlined. Colours and line drawing follow
+//! the terminal, as miette decides.
 
 use std::borrow::Cow;
 use std::error::Error;
 use std::fmt;
 
-use crate::notes::MOST_PROBLEMS;
+use crate::notes::PROBLEMS_MAX;
 use crate::{Problem, Severity};
 use miette::{Diagnostic, LabeledSpan, NamedSource, Report};
 use report::escape::{escaped, place_in_escaped};
@@ -14,21 +14,21 @@ use report::escape::{escaped, place_in_escaped};
 #[derive(Debug)]
 struct Rejected {
     name: String,
-    /// The text, if it can be drawn.
+    /// Text, if it can be drawn.
     source: Option<NamedSource<String>>,
     places: Vec<Place>,
 }
 
-/// One problem, with its line if the text is not drawn.
+/// Problem, with its line number if the text is not drawn.
 #[derive(Debug)]
 struct Place(Problem, Option<usize>);
 
-/// Letters of a message beside a text that is not drawn.
-const LONGEST_MESSAGE: usize = 300;
-/// Bytes of the longest line that is drawn: no terminal shows more, and what draws fails at 65,536 columns.
-const LONGEST_DRAWN: usize = 4096;
+/// Longest message beside a text that is not drawn [letters].
+const MESSAGE_LETTERS_MAX: usize = 300;
+/// Longest line that is drawn [bytes]: no terminal shows more, and drawing fails at 65,536 columns.
+const LINE_BYTES_MAX: usize = 4096;
 
-/// One report over all problems of the file called `name`.
+/// Report of all problems of the file called `name`.
 ///
 /// ```
 /// let text = joint_file::preset("q1").unwrap().replace("planets = 3", "planets = 7");
@@ -39,7 +39,7 @@ const LONGEST_DRAWN: usize = 4096;
 /// assert!(shown.contains("3, 4 or 5") || shown.contains("3 to 5"), "{shown}");
 /// ```
 pub fn report(name: &str, text: &str, problems: &[Problem]) -> Report {
-    let drawn = text.split('\n').all(|line| line.len() <= LONGEST_DRAWN);
+    let drawn = text.split('\n').all(|line| line.len() <= LINE_BYTES_MAX);
     let line = |problem: &Problem| {
         let before = text.as_bytes().iter().take(problem.span.start);
         1 + before.filter(|byte| **byte == b'\n').count()
@@ -53,7 +53,7 @@ pub fn report(name: &str, text: &str, problems: &[Problem]) -> Report {
     })
 }
 
-/// Returns a problem in words that may be shown, at its place in the text that is drawn.
+/// Problem with escaped words, at its place in the escaped text.
 fn shown(problem: &Problem, text: &str) -> Problem {
     let [start, end] = [problem.span.start, problem.span.end].map(|place| place_in_escaped(text, place));
     Problem {
@@ -69,7 +69,7 @@ impl fmt::Display for Rejected {
         let errors = self.places.iter().filter(|place| place.0.severity == Severity::Error).count();
         let count = match errors {
             1 => "one problem".to_owned(),
-            _ if self.places.len() >= MOST_PROBLEMS => format!("{errors} problems, and there may be more"),
+            _ if self.places.len() >= PROBLEMS_MAX => format!("{errors} problems, and there may be more"),
             _ => format!("{errors} problems"),
         };
         write!(formatter, "{} cannot be used: {count}", self.name)
@@ -117,9 +117,9 @@ impl Diagnostic for Place {
     }
 }
 
-/// A message that quotes a very long word, without most of it.
+/// Message cut after the limit, as it may quote a very long word.
 fn shortened(message: &str) -> Cow<'_, str> {
-    match message.char_indices().nth(LONGEST_MESSAGE) {
+    match message.char_indices().nth(MESSAGE_LETTERS_MAX) {
         Some((end, _)) => format!("{} ...", &message[..end]).into(),
         None => message.into(),
     }
@@ -136,8 +136,9 @@ mod tests {
         format!("{:?}", report("my_joint.toml", text, &problems))
     }
 
+    /// A problem in a line too long to draw is reported with the line's number.
     #[test]
-    fn a_line_too_long_to_be_drawn_is_told_by_its_number() {
+    fn long_line_is_reported_by_number() {
         let preset = crate::preset("q1").expect("a preset");
         let shown = shown(&format!("{preset}\n# {}\nnonsense_{} = 1\n", "x".repeat(70_000), "y".repeat(70_000)));
         let line = preset.lines().count() + 3;
@@ -146,14 +147,15 @@ mod tests {
         assert!(shown.len() < 5000, "{} letters", shown.len());
     }
 
+    /// A file with very many problems is reported quickly, up to the limit.
     #[test]
-    fn a_file_full_of_problems_is_told_the_first_of_them() {
+    fn report_stops_at_problem_limit() {
         let unknown: String = (0..50_000).map(|number| format!("nonsense_{number} = 1\n")).collect();
         let broken = "a=\n".repeat(200_000);
         let (sender, receiver) = std::sync::mpsc::channel();
         std::thread::spawn(move || [unknown, broken].iter().try_for_each(|text| sender.send(shown(text))));
         for what in ["unknown", "broken"] {
-            // Less than a second: what took minutes grew with the square of the file.
+            // Normally below a second; a time that grew with the square of the file would be minutes.
             let shown = receiver.recv_timeout(Duration::from_secs(30)).expect(what);
             assert!(shown.contains("100 problems, and there may be more"), "{what}: {shown}");
         }

@@ -1,5 +1,5 @@
-//! Reads `[drive_train]`: what surrounds the gears in a real joint, as plain data in SI. The reference and the virtual
-//! joint model it; the fixed step does not use it.
+//! Reads `[drive_train]`: the drive train around the gears, as plain data in SI. The reference and the virtual joint
+//! model it; the fixed step does not use it.
 
 use parameters::{
     AbsoluteEncoder, Drift, Effect, Friction, Hysteresis, JointParameters, Payload, PayloadStep, Presliding,
@@ -11,12 +11,11 @@ use crate::problem::Severity;
 use crate::section::Section;
 use crate::sheet;
 
-/// Speed of the Stribeck rise at the link where a file gives none [rad/s].
+/// Default speed of the Stribeck rise at the link [rad/s].
 const STRIBECK_SPEED: f64 = 0.05;
 
-/// What surrounds the gears, the motor's torque limit aside, which is the profile's. Keys left out are ideal, and so are
-/// wrong ones once they have been noted, and so is everything without the section.
-/// `ratio` is the joint's, where it is known.
+/// Reads the drive train, except the motor's torque limit, which is the profile's. Missing keys, wrong keys after a
+/// note, and a missing section are ideal. `ratio` is the joint's, if known.
 pub(crate) fn read(section: Option<&Section<'_>>, ratio: Option<f64>) -> Surroundings {
     let ideal = Surroundings {
         load_friction: Friction { stribeck_speed: STRIBECK_SPEED, ..Friction::default() },
@@ -53,7 +52,7 @@ pub(crate) fn read(section: Option<&Section<'_>>, ratio: Option<f64>) -> Surroun
     }
 }
 
-/// Effects of the drive train that are absent unless stated. A key that means nothing without another one is refused without it.
+/// Effects of the drive train, absent unless stated. A key without effect on its own is rejected.
 fn effects(section: &Section<'_>, ideal: Surroundings) -> Surroundings {
     let number = |key: &str| section.number(key).unwrap_or(0.0);
     let needs = |key: &str, other: &str| {
@@ -109,7 +108,7 @@ fn effects(section: &Section<'_>, ideal: Surroundings) -> Surroundings {
     }
 }
 
-/// Refuses effects of parts that the joint does not have.
+/// Rejects effects of parts that the joint does not have.
 pub(crate) fn check(joint: &JointParameters, around: &Surroundings, notes: &Notes<'_>) {
     let refuse = |key: &str, message: &str, help: &str| {
         let place = notes.first_place(&[&format!("drive_train.{key}")]);
@@ -127,7 +126,7 @@ pub(crate) fn check(joint: &JointParameters, around: &Surroundings, notes: &Note
     }
 }
 
-/// Dry friction at the motor, stated or as the rest of a data sheet's no-load torque.
+/// Dry friction at the motor, stated or as the motor's part of a data sheet's no-load torque.
 fn motor_friction(section: &Section<'_>, ratio: Option<f64>) -> Option<f64> {
     const NO_LOAD: &str = "no_load_torque_N_m";
     match section.one_of(&["motor_coulomb_friction_N_m", NO_LOAD], false)? {
@@ -149,7 +148,7 @@ fn motor_friction(section: &Section<'_>, ratio: Option<f64>) -> Option<f64> {
     }
 }
 
-/// Whole control periods a second; what is left of a period is dropped, and said to be.
+/// Whole control periods per second; a fraction is dropped with a warning.
 fn control_rate(section: &Section<'_>) -> Option<u32> {
     let key = "control_rate_Hz";
     let stated = section.number(key)?;
@@ -178,7 +177,7 @@ fn encoder(section: &Section<'_>, name: &str) -> AbsoluteEncoder {
     }
 }
 
-/// Resolution, in bits or in counts; exactly one of both is stated.
+/// Resolution from bits or counts; exactly one of them is stated.
 fn counts_per_turn(section: &Section<'_>) -> Option<u64> {
     const COUNTS: &str = "counts_per_turn";
     match section.one_of(&["bits", COUNTS], true)? {
@@ -187,7 +186,7 @@ fn counts_per_turn(section: &Section<'_>) -> Option<u64> {
     }
 }
 
-/// Error within a period of the scale; absent if no amplitude is stated.
+/// Error within a period of the scale; absent without an amplitude.
 fn subdivision(section: &Section<'_>) -> SubdivisionalError {
     const PERIODS: &str = "subdivisional_periods_per_turn";
     let (first, second) = ("subdivisional_error_deg", "subdivisional_second_error_deg");

@@ -1,34 +1,34 @@
-//! Reads `[equivalent_gear]`, which stands in the place of all sections on teeth, and what `[bodies]` says beside it.
+//! Reads `[equivalent_gear]`, which replaces all sections on teeth, and its keys of `[bodies]`.
 
 use parameters::{EquivalentGear, JointParameters};
 
 use crate::problem::Severity;
 use crate::section::Section;
 
-/// Sections and keys of teeth, which an equivalent gear has none of.
-pub(crate) const OF_TEETH: [&str; 7] =
+/// Sections and keys on teeth, invalid for an equivalent gear.
+pub(crate) const TEETH_KEYS: [&str; 7] =
     ["coherence", "characteristic_length_um", "geometry", "mesh", "compliance", "contact", "excitation"];
 
-/// Keys of `[bodies]` that an equivalent gear has.
-const BODIES: [&str; 3] = ["gear_inertia_at_input_kg_cm2", "rotor_inertia_kg_m2", "link_inertia_kg_m2"];
+/// Keys of `[bodies]` for an equivalent gear.
+const BODY_KEYS: [&str; 3] = ["gear_inertia_at_input_kg_cm2", "rotor_inertia_kg_m2", "link_inertia_kg_m2"];
 
-/// A decimal number with more places is a fraction that was rounded.
-const MOST_PLACES: usize = 5;
+/// Most decimals of an exact ratio; with more it is a rounded fraction.
+const EXACT_DECIMALS_MAX: usize = 5;
 
-/// From this many places on it may be one.
-const MANY_PLACES: usize = 3;
+/// Decimals from which a ratio may be a rounded fraction.
+const AMBIGUOUS_DECIMALS: usize = 3;
 
-/// Greatest whole number of a ratio: the difference of two encoders is counted in units of it.
-const GREATEST_WHOLE: u64 = 100_000_000;
+/// Largest whole number of a ratio: the difference of two encoders is counted in units of it.
+const WHOLE_NUMBER_MAX: u64 = 100_000_000;
 
-/// Ratio and parameters, as far as they are right; what is wrong has been noted.
+/// Ratio and parameters, as far as they are valid; problems are noted.
 pub(crate) fn read(
     top: &Section<'_>,
     section: &Section<'_>,
     name: Option<heapless::String<32>>,
     rated_output_torque: Option<f64>,
 ) -> (Option<f64>, Option<JointParameters>) {
-    for word in OF_TEETH.into_iter().filter(|word| top.has(word)) {
+    for word in TEETH_KEYS.into_iter().filter(|word| top.has(word)) {
         let message = format!("`{word}` is of gears with teeth, and [equivalent_gear] has none");
         let help = "leave one of the two out: [equivalent_gear] alone says ratio, lost motion, stiffness and damping";
         top.notes.error(top.place(word), message, help);
@@ -81,8 +81,8 @@ fn ratio(section: &Section<'_>) -> Option<[u32; 2]> {
     Some(ratio)
 }
 
-/// A decimal number as a fraction of whole numbers: to the last digit, or with many digits the simplest fraction that is
-/// written so. What else it may stand for is warned of.
+/// Decimal number as a fraction of whole numbers: exact, or with many digits the simplest fraction rounded to it.
+/// Ambiguity is a warning.
 fn decimal(section: &Section<'_>) -> Option<[u32; 2]> {
     let value = section.required_number("ratio")?;
     let typed = value.to_string();
@@ -95,7 +95,7 @@ fn decimal(section: &Section<'_>) -> Option<[u32; 2]> {
     let note = |message: String, help: String| {
         section.notes.problem(section.place("ratio"), message, help, Severity::Warning);
     };
-    if places > MOST_PLACES || digits > GREATEST_WHOLE {
+    if places > EXACT_DECIMALS_MAX || digits > WHOLE_NUMBER_MAX {
         let [over, under] = simple;
         note(
             format!("`ratio` = {typed} is a fraction that was rounded, and is taken as {over}/{under}"),
@@ -104,10 +104,10 @@ fn decimal(section: &Section<'_>) -> Option<[u32; 2]> {
         return Some([u32::try_from(over).ok()?, u32::try_from(under).ok()?]);
     }
     let [over, few] = simple;
-    // Of two digits one ratio in six is a fraction that teeth give; a divisor of 100 needs no rounding.
+    // One ratio in six with two decimals may be a fraction of teeth; a divisor of 100 is exact.
     let may_be_rounded = few * few < under && under % few != 0;
     let turns = format!("`motor_turns` = {over} and `link_turns` = {few} in place of `ratio`");
-    if places >= MANY_PLACES {
+    if places >= AMBIGUOUS_DECIMALS {
         let help = match may_be_rounded {
             true => format!("give {turns} if the teeth do so; else the whole turns after which both are back"),
             false => "give `motor_turns` and `link_turns` in place of `ratio`: whole numbers of turns after which both are back"
@@ -125,7 +125,7 @@ fn decimal(section: &Section<'_>) -> Option<[u32; 2]> {
     Some([u32::try_from(digits).ok()?, u32::try_from(under).ok()?])
 }
 
-/// The fraction of least divisor from one fraction to a greater one.
+/// Fraction with the least denominator between two fractions.
 fn simplest([a, b]: [u64; 2], [c, d]: [u64; 2]) -> [u64; 2] {
     let whole = a / b;
     if whole * b == a {
@@ -142,22 +142,22 @@ fn divisor(a: u32, b: u32) -> u32 {
     if b == 0 { a } else { divisor(b, a % b) }
 }
 
-/// Inertia of the gear at its input, of the rotor and of the link [kg m^2].
+/// Inertias of the gear at its input, the rotor and the link [kg m^2].
 fn masses(section: &Section<'_>) -> Option<[f64; 3]> {
-    for key in section.keys().filter(|key| !BODIES.contains(key)) {
+    for key in section.keys().filter(|key| !BODY_KEYS.contains(key)) {
         let message = format!("`{key}` is of gears with teeth, and [equivalent_gear] has none");
         let help = "give the gear's inertia at its input: gear_inertia_at_input_kg_cm2, rotor and link left out";
         section.notes.error(section.place(key), message, help);
     }
-    let [gear, rotor, link] = BODIES.map(|key| if section.has(key) { section.number(key) } else { Some(0.0) });
+    let [gear, rotor, link] = BODY_KEYS.map(|key| if section.has(key) { section.number(key) } else { Some(0.0) });
     let [gear, rotor, link] = [gear?, rotor?, link?];
     if link == 0.0 {
         let help = "give `link_inertia_kg_m2` in [bodies], in kg m^2 about the joint's axis";
-        section.notes.error(section.place(BODIES[2]), "an equivalent gear needs a link behind it", help);
+        section.notes.error(section.place(BODY_KEYS[2]), "an equivalent gear needs a link behind it", help);
     }
     if gear + rotor == 0.0 {
         let help = "give `gear_inertia_at_input_kg_cm2`, `rotor_inertia_kg_m2` or both in [bodies]";
-        section.notes.error(section.place(BODIES[1]), "nothing turns at the motor's side of the gear", help);
+        section.notes.error(section.place(BODY_KEYS[1]), "nothing turns at the motor's side of the gear", help);
     }
     (link > 0.0 && gear + rotor > 0.0).then_some([gear, rotor, link])
 }
@@ -166,8 +166,9 @@ fn masses(section: &Section<'_>) -> Option<[f64; 3]> {
 mod tests {
     use super::simplest;
 
+    /// The simplest fraction that rounds to a decimal number is found.
     #[test]
-    fn the_simplest_fraction_of_a_rounded_number_is_found() {
+    fn simplest_fraction_is_found() {
         let of = |digits: u64, under: u64| simplest([2 * digits - 1, 2 * under], [2 * digits + 1, 2 * under]);
         assert_eq!(of(9_333_333, 1_000_000), [28, 3]);
         assert_eq!(of(933, 100), [28, 3]);

@@ -1,5 +1,5 @@
-//! Reads `[geometry]`: teeth, angles, and radii either stated or derived from module and teeth. Whether they fit
-//! together is asked in `coherence`.
+//! Reads `[geometry]`: teeth, angles, and radii, either stated or derived from module and teeth. `coherence` checks
+//! that they fit together.
 
 use parameters::{Coherence, Geometry};
 
@@ -7,7 +7,7 @@ use crate::section::Section;
 
 const RADII: [&str; 4] = ["sun_base_radius_mm", "planet_base_radius_mm", "carrier_radius_mm", "carrier_base_radius_mm"];
 
-/// The geometry, or `None` once what is wrong has been noted.
+/// Reads the geometry; `None` after a noted problem.
 pub(crate) fn read(section: &Section<'_>, coherence: Coherence) -> Option<Geometry> {
     let planets = section.required_whole("planets");
     let sun_teeth = section.required_whole("sun_teeth");
@@ -24,7 +24,7 @@ pub(crate) fn read(section: &Section<'_>, coherence: Coherence) -> Option<Geomet
         let half_module = section.number("module_mm").map(|module| module / 2.0);
         let base = |teeth: Option<u32>| Some(half_module? * f64::from(teeth?) * reference?.cos());
         let (sun, planet) = (base(sun_teeth), base(planet_teeth));
-        // The only centre distance at which the pair works at this angle.
+        // Only centre distance at which the pair works at this angle.
         let carrier = || Some((sun? + planet?) / working?.cos());
         (sun, planet, carrier())
     } else {

@@ -1,11 +1,11 @@
-//! Every key of a joint file: its section, its unit, its bound, and a hint for who got it wrong. The page
-//! docs/reference/joint-file.md lists every key in its tables.
+//! All keys of a joint file: section, unit, bound, and a hint for a wrong value. The page docs/reference/joint-file.md
+//! lists every key in its tables.
 
 use crate::bound::{Bound, Unit};
 use crate::table::{self, Keys};
 use crate::wording::listed;
 
-/// What a key holds.
+/// Type of a key's value.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Kind {
     /// A string.
@@ -16,7 +16,7 @@ pub(crate) enum Kind {
     Whole(u32, u32),
     /// A number.
     Number(Unit, Bound),
-    /// A number for all planets, or a list with one number for each.
+    /// A number for all planets, or a list with a number per planet.
     PerPlanet(Unit, Bound),
     /// A table of its own.
     Section,
@@ -50,11 +50,11 @@ use Bound::{Between, FromToBelow, Inside, ZeroOr};
 use Kind::{Choice, Number, PerPlanet, Text, Whole};
 use Unit::{Arcmin, Degrees, Micro, Milli, PerArcmin, Si, SquareCentimetres};
 
-/// What a typing error may not leave: the board computes in f32.
+/// Bounds of plausible values: the board computes in f32.
 const MASS: Bound = Between(1e-6, 1e6);
 const INERTIA: Bound = Between(1e-12, 1e6);
 const TORQUE: Bound = Between(1e-6, 1e9);
-const MAY_BE_ABSENT: Bound = Between(0.0, 1e6);
+const ZERO_OR_MORE: Bound = Between(0.0, 1e6);
 const RADIUS: Kind = Number(Milli, Between(0.5, 5000.0));
 const RADIUS_HINT: &str = "base radius in mm (40 mm is 40, not 0.04); or give `module_mm` and leave all radii out";
 const MASS_HINT: &str = "equivalent mass I / r^2 in kg along the line of action: \"Inertia\" in the paper's Table 1";
@@ -181,7 +181,7 @@ pub(crate) const KEYS: &[Key] = &[
     key(
         "bodies",
         "planet_mass_kg",
-        Number(Si, MAY_BE_ABSENT),
+        Number(Si, ZERO_OR_MORE),
         "mass of one planet in kg, which orbits with the carrier",
     ),
     key(
@@ -211,13 +211,13 @@ pub(crate) const KEYS: &[Key] = &[
     key(
         "bodies",
         "rotor_inertia_kg_m2",
-        Number(Si, MAY_BE_ABSENT),
+        Number(Si, ZERO_OR_MORE),
         "inertia of the motor rotor on the sun shaft in kg m^2; default 0",
     ),
     key(
         "bodies",
         "link_inertia_kg_m2",
-        Number(Si, MAY_BE_ABSENT),
+        Number(Si, ZERO_OR_MORE),
         "inertia of the link on the carrier in kg m^2; default 0",
     ),
     // Compliance
@@ -342,27 +342,27 @@ pub(crate) const KEYS: &[Key] = &[
         "torque limit of the motor; default: twice the drive torque",
     ),
     // Drive train
-    key("drive_train", "motor_coulomb_friction_N_m", Number(Si, MAY_BE_ABSENT), FRICTION_HINT),
+    key("drive_train", "motor_coulomb_friction_N_m", Number(Si, ZERO_OR_MORE), FRICTION_HINT),
     key(
         "drive_train",
         "no_load_torque_N_m",
-        Number(Si, MAY_BE_ABSENT),
+        Number(Si, ZERO_OR_MORE),
         "torque at the input that turns the joint without a load, all dry friction together, from the data sheet",
     ),
     key(
         "drive_train",
         "motor_viscous_friction_N_m_s_per_rad",
-        Number(Si, MAY_BE_ABSENT),
+        Number(Si, ZERO_OR_MORE),
         "viscous friction in N m s/rad of motor speed",
     ),
-    key("drive_train", "cogging_torque_N_m", Number(Si, MAY_BE_ABSENT), "amplitude of the cogging torque"),
+    key("drive_train", "cogging_torque_N_m", Number(Si, ZERO_OR_MORE), "amplitude of the cogging torque"),
     key(
         "drive_train",
         "cogging_periods_per_turn",
         Whole(1, 10_000),
         "cogging periods in a turn: least common multiple of slots and poles",
     ),
-    key("drive_train", "load_coulomb_friction_N_m", Number(Si, MAY_BE_ABSENT), FRICTION_HINT),
+    key("drive_train", "load_coulomb_friction_N_m", Number(Si, ZERO_OR_MORE), FRICTION_HINT),
     key(
         "drive_train",
         "load_stribeck_rise_ratio",
@@ -378,7 +378,7 @@ pub(crate) const KEYS: &[Key] = &[
     key(
         "drive_train",
         "load_viscous_friction_N_m_s_per_rad",
-        Number(Si, MAY_BE_ABSENT),
+        Number(Si, ZERO_OR_MORE),
         "viscous friction in N m s/rad of link speed",
     ),
     key(
@@ -575,8 +575,8 @@ pub(crate) const KEYS: &[Key] = &[
     ),
 ];
 
-/// Whether a section has that name.
-pub(crate) fn find_section(name: &str) -> bool {
+/// Returns true for the name of a section.
+pub(crate) fn is_section(name: &str) -> bool {
     KEYS.iter().any(|key| matches!(key.kind, Kind::Section) && key.name == name)
 }
 
@@ -585,7 +585,7 @@ mod tests {
     use super::{KEYS, Kind};
 
     #[test]
-    fn every_key_is_documented_with_its_bound() {
+    fn keys_are_documented_with_bounds() {
         let document = include_str!("../../../docs/reference/joint-file.md");
         for key in KEYS {
             let value = match key.kind {
@@ -605,7 +605,7 @@ mod tests {
     }
 
     #[test]
-    fn every_section_is_documented() {
+    fn sections_are_documented() {
         let document = include_str!("../../../docs/reference/joint-file.md");
         for key in KEYS.iter().filter(|key| matches!(key.kind, Kind::Section)) {
             let path =

@@ -1,11 +1,10 @@
-//! Joint files: TOML with the unit in every key's name, read into `JointParameters` with all problems of a file found
+//! Joint files: TOML with the unit in every key's name, read into `JointParameters`. All problems of a file are found
 //! at once, each with its place in the text.
 //!
-//! `keys` lists every key with its unit, bound and meaning; `table` finds values by such a list and `notes` keeps what is
-//! wrong with them, here and for other files that users write; `section` takes a joint's values; one file for each section
-//! of a joint file turns them into parameters; `coherence` asks whether the gears fit together and
-//! `plausible` whether there can be such a joint; `sheet` converts what data sheets state. `wording` is what their
-//! complaints share. `change` sets single values in a file's text.
+//! `keys` lists every key with its unit, bound and meaning. `table` finds values by such a list and `notes` collects
+//! problems, for joint files and other user files. `section` reads a joint's values; one file per section turns them
+//! into parameters. `coherence` checks that the gears fit together and `plausible` that the joint can exist. `sheet`
+//! converts data-sheet figures. `wording` holds phrases of the messages. `change` sets single values in a file's text.
 
 mod bodies;
 mod bound;
@@ -32,10 +31,10 @@ pub mod sheet;
 mod spelling;
 mod table;
 #[cfg(feature = "diagnostics")]
-pub mod warned;
+pub mod warnings;
 pub mod wording;
 
-pub use change::{Refused, change, change_noting, full_key, full_key_in, value};
+pub use change::{Refused, change, change_with_remark, full_key, full_key_in, value};
 pub use contents::JointFile;
 pub use motion::Profile;
 pub use notes::{DERIVED, Notes, Source};

@@ -1,5 +1,5 @@
-//! Reads `[mesh]` with `[mesh.sun_planet]` and `[mesh.ring_planet]`: what both families share stands in `[mesh]`, what
-//! differs in its own section.
+//! Reads `[mesh]` with `[mesh.sun_planet]` and `[mesh.ring_planet]`: common values stand in `[mesh]`, differing values
+//! in the family's section.
 
 use model_core::gears::StiffnessSeries;
 use parameters::{Geometry, Mesh, MeshPhases, PerPlanet, StiffnessWave};
@@ -7,7 +7,7 @@ use parameters::{Geometry, Mesh, MeshPhases, PerPlanet, StiffnessWave};
 use crate::section::{PerPlanetValue, Section};
 use crate::sheet;
 
-/// The section of one mesh family over the section that both share.
+/// Section of one mesh family, with the common section as fallback.
 struct Layers<'s, 'a> {
     own: Option<&'s Section<'a>>,
     shared: &'s Section<'a>,
@@ -15,7 +15,7 @@ struct Layers<'s, 'a> {
     geometry: Option<&'s Geometry>,
 }
 
-/// Sun-planet and ring-planet meshes, or `None` once what is wrong has been noted.
+/// Reads sun-planet and ring-planet meshes; `None` after a noted problem.
 pub(crate) fn read(shared: &Section<'_>, planets: Option<usize>, geometry: Option<&Geometry>) -> Option<[Mesh; 2]> {
     let own = ["sun_planet", "ring_planet"].map(|name| shared.section(name, "mesh"));
     let [sun_planet, ring_planet] = own.map(|own| Layers { own: own.as_ref(), shared, planets, geometry }.read());
@@ -40,7 +40,7 @@ impl Layers<'_, '_> {
         })
     }
 
-    /// The section that holds any of the keys, the family's own before the shared one.
+    /// Section that holds any of the keys, the family's own first.
     fn holder(&self, keys: &[&str]) -> &Section<'_> {
         self.own.filter(|own| keys.iter().any(|key| own.has(key))).unwrap_or(self.shared)
     }
@@ -66,7 +66,7 @@ impl Layers<'_, '_> {
         }
     }
 
-    /// b, from itself, from the whole backlash 2b, or from the lost motion of all meshes together.
+    /// Half-backlash b, stated, from the backlash 2b, or from the lost motion of all meshes together.
     fn half_backlash(&self) -> Option<PerPlanet> {
         const LOST_MOTION: &str = "lost_motion_arcmin";
         let keys = ["half_backlash_um", "backlash_um"];
@@ -127,7 +127,8 @@ impl Layers<'_, '_> {
         Some(wave)
     }
 
-    /// Lists state every planet's phase, single numbers that of planet 0. One list makes both a list.
+    /// Lists state every planet's phase, single numbers the phase of planet 0. Stiffness and error phase must have the
+    /// same form.
     fn phases(&self) -> Option<MeshPhases> {
         let keys = ["stiffness_phase_rad", "error_phase_rad"];
         let [stiffness, error] = keys.map(|key| {
@@ -157,7 +158,7 @@ impl Layers<'_, '_> {
     }
 }
 
-/// The sum of the harmonics' amplitudes, which K / K_m cannot leave 1 by more than. The fixed step asks for the same.
+/// Sum of the harmonics' amplitudes, the largest deviation of K / K_m from 1. The fixed step has the same requirement.
 fn largest_swing(wave: &StiffnessWave) -> f64 {
     (1..=wave.order()).map(|harmonic| wave.coefficients(harmonic)).map(|(sine, cosine)| sine.hypot(cosine)).sum()
 }

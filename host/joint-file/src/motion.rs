@@ -1,5 +1,5 @@
-//! Reads `[contact]`, `[excitation]` and `[profile]`: how teeth meet, what drives the mesh phase, and the torques that
-//! a motion profile scales with.
+//! Reads `[contact]`, `[excitation]` and `[profile]`: the contact law of teeth, the source of the mesh phase, and the
+//! torques that scale a motion profile.
 
 use parameters::{DampingLaw, DeadZone, Excitation};
 
@@ -8,13 +8,13 @@ use crate::section::Section;
 /// Torques for motion profiles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Profile {
-    /// Rated motor torque; it balances the rated output torque, or is the motor's limit where that is less [N m].
+    /// Rated motor torque: balances the rated output torque, at most the motor's limit [N m].
     pub drive_torque: f64,
-    /// The motor gives no more than this, either way [N m].
+    /// Largest motor torque in either direction [N m].
     pub motor_torque_limit: f64,
 }
 
-/// How teeth meet: `[contact]`, with its defaults if the section is absent.
+/// Contact law of `[contact]`, with defaults without the section.
 pub(crate) fn read_contact(section: Option<&Section<'_>>) -> Option<(DampingLaw, DeadZone)> {
     let Some(section) = section else { return Some((DampingLaw::Contact, DeadZone::Sharp)) };
     let law = if section.has("damping_law") { section.choice("damping_law") } else { Some("contact") };
@@ -32,7 +32,7 @@ pub(crate) fn read_contact(section: Option<&Section<'_>>) -> Option<(DampingLaw,
     Some((if law? == "paper" { DampingLaw::Paper } else { DampingLaw::Contact }, zone))
 }
 
-/// What drives the mesh phase: `[excitation]`; the joint's own angle if the section is absent. A frequency may be stated
+/// Source of the mesh phase, from `[excitation]`; the joint's own angle without the section. A frequency may be stated
 /// in units of `omega_n` (eq. 18), which is unknown while the rest of the file is wrong.
 pub(crate) fn read_excitation(section: Option<&Section<'_>>, omega_n: Option<f64>) -> Option<Excitation> {
     const FREQUENCIES: [&str; 3] = ["mesh_frequency_rad_per_s", "mesh_frequency_Hz", "mesh_frequency_over_omega_n"];
@@ -56,8 +56,8 @@ pub(crate) fn read_excitation(section: Option<&Section<'_>>, omega_n: Option<f64
     Some(Excitation::Angle)
 }
 
-/// Torques for profiles: `[profile]`. A drive torque that is not stated balances the rated output torque, as far as a stated
-/// limit of the motor lets it: gearheads are often rated for more than the motor in front of them gives.
+/// Torques of `[profile]`. An unstated drive torque balances the rated output torque, limited by a stated motor limit:
+/// gearheads are often rated above the motor in front of them.
 pub(crate) fn read_profile(
     section: Option<&Section<'_>>,
     ratio: Option<f64>,

@@ -1,4 +1,4 @@
-//! Finds a joint file, by path or as a preset, and reads it. What is wrong with it is drawn by `diagnostic`.
+//! Finds a joint file by path or preset, and reads it. `diagnostic` draws its problems.
 
 use std::path::Path;
 
@@ -8,18 +8,18 @@ use super::diagnostic;
 use report::failure::{Failure, Outcome};
 use report::input;
 
-/// A joint file and where it was found.
+/// Joint file with its name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loaded {
-    /// Its path, or the name of the preset.
+    /// Path, or name of the preset.
     pub name: String,
-    /// Its text.
+    /// Text of the file.
     pub text: String,
-    /// What it says.
+    /// Content of the file.
     pub file: JointFile,
 }
 
-/// Reads a path or a preset. A file of that name goes before a preset.
+/// Reads a path or a preset; an existing file takes precedence.
 pub fn load(file: &Path) -> Outcome<Loaded> {
     load_with(file, &[])
 }
@@ -30,7 +30,7 @@ pub fn load_with(file: &Path, changes: &[String]) -> Outcome<Loaded> {
     read_changed(name, text, changes)
 }
 
-/// Reads a text that was found under a name, with values changed. The text of the result has the changes.
+/// Reads a text under a name, with changed values. The text of the result contains the changes.
 pub fn read_changed(name: String, mut text: String, changes: &[String]) -> Outcome<Loaded> {
     for assignment in changes {
         let Some((key, value)) = assignment.split_once('=') else {

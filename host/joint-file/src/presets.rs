@@ -1,9 +1,9 @@
-//! The joint files that come with the program. Each carries the source of its numbers, or the word "assumed".
+//! Built-in joint files. Each number carries its source, or the word "assumed".
 
 /// Names of the presets, the default first.
 pub const PRESETS: [&str; 7] = ["q1", "s1", "d2", "l1", "c1", "paper", "paper_printed"];
 
-/// The text of a preset, by its name.
+/// Text of a preset, by its name.
 pub fn preset(name: &str) -> Option<&'static str> {
     Some(match name {
         "q1" => include_str!("../../../joints/q1.toml"),

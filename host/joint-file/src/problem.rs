@@ -1,21 +1,21 @@
-//! One problem in a joint file: where, what, and the help.
+//! Problem of a joint file: place, message and help.
 
 use std::ops::Range;
 
-/// One problem of a joint file.
+/// Problem of a joint file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problem {
-    /// Bytes of the text that the problem is about.
+    /// Place in the text [bytes].
     pub span: Range<usize>,
-    /// What is wrong, in one sentence.
+    /// Problem in one sentence.
     pub message: String,
-    /// The help: what to do about it.
+    /// Remedy.
     pub help: String,
-    /// Whether the file can be used all the same.
+    /// Severity: an error, or a warning for a usable file.
     pub severity: Severity,
 }
 
-/// How bad a problem is.
+/// Severity of a problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// The file cannot be used.
@@ -30,7 +30,7 @@ impl std::fmt::Display for Problem {
     }
 }
 
-/// All problems of a file, each with its place, in the order in which they stand there.
+/// All problems of a file, each with its place, in order of the text.
 ///
 /// ```
 /// fn name(text: &str) -> Result<String, Box<dyn std::error::Error>> {
@@ -65,7 +65,7 @@ impl From<Vec<Problem>> for Problems {
     }
 }
 
-/// One problem in each line.
+/// One problem per line.
 impl std::fmt::Display for Problems {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         for (index, problem) in self.0.iter().enumerate() {

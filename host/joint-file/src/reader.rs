@@ -1,5 +1,5 @@
-//! Reads a whole joint file: parses, hands each section to its reader, checks that the gears fit, and gives either the
-//! joint with its warnings or everything that is wrong at once.
+//! Reads a whole joint file: parses it, hands each section to its reader, checks that the gears fit, and returns either
+//! the joint with its warnings or all problems.
 
 use std::ops::Range;
 
@@ -14,7 +14,7 @@ use crate::problem::Problems;
 use crate::section::Section;
 use crate::{bodies, coherence, drive_train, equivalent, geometry, meshes, plausible};
 
-/// Reads the text of a joint file. On failure gives every problem, warnings among them, in the order of the text.
+/// Reads the text of a joint file. Returns all problems on failure, including warnings, in order of the text.
 ///
 /// ```
 /// let text = joint_file::preset("q1").unwrap();
@@ -39,13 +39,13 @@ pub fn read(text: &str) -> Result<JointFile, Problems> {
             break;
         }
         let at = error.span().unwrap_or(notes.top()).start;
-        // One slip makes the parser stumble on for the rest of its line.
+        // After one slip the parser reports errors for the rest of the line.
         if !blamed_lines.iter().any(|line| line.contains(&at)) {
             blamed_lines.push(line_around(text, at));
             notes.syntax(error);
         }
     }
-    // What was recovered from broken syntax would be blamed for what the parser dropped.
+    // A table recovered from broken syntax would be blamed for the dropped parts.
     let joint = if syntax.is_empty() { read_table(&Section::top(table.get_ref(), &notes)) } else { None };
     let failed = notes.has_errors();
     let (problems, sources) = notes.into_parts();
@@ -55,7 +55,7 @@ pub fn read(text: &str) -> Result<JointFile, Problems> {
     }
 }
 
-/// The line of a place, its end included: an error may stand there, too.
+/// Line of a place including its end, where an error may stand too.
 fn line_around(text: &str, at: usize) -> Range<usize> {
     let (before, after) = text.as_bytes().split_at(at.min(text.len()));
     let start = before.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
@@ -83,14 +83,14 @@ fn read_table(top: &Section<'_>) -> Option<JointFile> {
         sources: Vec::new(),
     };
     drive_train::check(&file.parameters, &file.surroundings, top.notes);
-    // What is wrong by itself contradicts everything.
+    // A value wrong by itself contradicts everything.
     if !top.notes.has_errors() {
         plausible::check(&file, top.notes);
     }
     Some(file)
 }
 
-/// A planetary gear: its ratio and the joint's parameters, as far as they are right; what is wrong has been noted.
+/// Planetary gear: ratio and parameters, as far as they are valid; problems are noted.
 fn read_planetary(
     top: &Section<'_>,
     name: Option<heapless::String<32>>,
@@ -105,7 +105,7 @@ fn read_planetary(
 
     let geometry_section = top.required_section("geometry", "geometry");
     let geometry = geometry_section.as_ref().and_then(|section| geometry::read(section, coherence));
-    // Meshes can be read as soon as the number of planets is known.
+    // The meshes need only the number of planets.
     let planets = geometry_section.as_ref().and_then(|section| section.whole("planets")).map(|count| count as usize);
     let masses = top.required_section("bodies", "bodies").and_then(|section| bodies::read(&section, geometry.as_ref()));
     let meshes =
@@ -155,7 +155,7 @@ fn read_planetary(
     (ratio, parameters.map(|(parameters, excitation)| JointParameters { excitation, ..parameters }))
 }
 
-/// The name, short and plain enough for the board's hello.
+/// Reads the name, short and plain enough for the board's identity message.
 fn read_name(top: &Section<'_>) -> Option<heapless::String<32>> {
     if !top.has("name") {
         top.missing("name");

@@ -1,4 +1,4 @@
-//! Takes values out of one table of a joint file by the list of keys: right type, finite, within bounds, in SI.
+//! Reads values of one table of a joint file by the list of keys: right type, finite, within bounds, in SI.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -20,12 +20,12 @@ pub(crate) enum PerPlanetValue {
 }
 
 impl<'a> Section<'a> {
-    /// The top of the file.
+    /// Top of the file.
     pub(crate) fn top(table: &'a DeTable<'a>, notes: &'a Notes<'a>) -> Self {
         Self::new(String::new(), "", notes.top(), table, notes)
     }
 
-    /// The table `name` with the keys of `schema`; `None` if it is absent or no table.
+    /// Table `name` with the keys of `schema`; `None` if it is absent or no table.
     pub(crate) fn section(&self, name: &str, schema: &'static str) -> Option<Section<'a>> {
         let value = self.table.get(name)?;
         let DeValue::Table(table) = value.get_ref() else {
@@ -37,7 +37,7 @@ impl<'a> Section<'a> {
         Some(Self::new(self.full(name), schema, value.span(), table, self.notes))
     }
 
-    /// The table `name`, which must be there.
+    /// Table `name`, noted if missing.
     pub(crate) fn required_section(&self, name: &str, schema: &'static str) -> Option<Section<'a>> {
         if self.table.get(name).is_none() {
             let hint = Kind::find(self.schema, name).map_or("", |key| key.hint);
@@ -46,7 +46,7 @@ impl<'a> Section<'a> {
         self.section(name, schema)
     }
 
-    /// The one of two or three keys that the section holds. More than one is an error, and so is none if `needed`.
+    /// One of two or three keys in the section. Several of them are an error, and none as well if `needed`.
     pub(crate) fn one_of(&self, names: &[&'static str], needed: bool) -> Option<&'static str> {
         let mut held = names.iter().copied().filter(|name| self.has(name));
         let first = held.next();
@@ -73,7 +73,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// One of the words that the key may hold.
+    /// One of the allowed words of the key.
     pub(crate) fn choice(&self, name: &str) -> Option<&'static str> {
         let (value, key) = self.value(name)?;
         let Kind::Choice(words) = key.kind else { return None };
@@ -94,7 +94,7 @@ impl<'a> Section<'a> {
         within.or_else(|| self.refuse(value, key, format!("`{name}` must be between {low} and {high}, not {integer}")))
     }
 
-    /// A number in SI.
+    /// Number in SI.
     pub(crate) fn number(&self, name: &str) -> Option<f64> {
         let (value, key) = self.value(name)?;
         let Kind::Number(unit, bound) = key.kind else { return None };
@@ -102,7 +102,7 @@ impl<'a> Section<'a> {
         self.bounded(value, key, unit, bound)
     }
 
-    /// A number in SI that must be there.
+    /// Number in SI, noted if missing.
     pub(crate) fn required_number(&self, name: &str) -> Option<f64> {
         if !self.has(name) {
             self.missing(name);
@@ -110,7 +110,7 @@ impl<'a> Section<'a> {
         self.number(name)
     }
 
-    /// A whole number that must be there.
+    /// Whole number, noted if missing.
     pub(crate) fn required_whole(&self, name: &str) -> Option<u32> {
         if !self.has(name) {
             self.missing(name);
@@ -118,7 +118,7 @@ impl<'a> Section<'a> {
         self.whole(name)
     }
 
-    /// One number, or a list of as many as there are planets, in SI. With `planets` unknown any length will do.
+    /// One number, or a list with a number per planet, in SI. Any length is accepted while `planets` is unknown.
     pub(crate) fn per_planet(&self, name: &str, planets: Option<usize>) -> Option<PerPlanetValue> {
         let (value, key) = self.value(name)?;
         let Kind::PerPlanet(unit, bound) = key.kind else { return None };

@@ -1,6 +1,6 @@
-//! Finds the known word that a misspelt one probably stands for.
+//! Finds the known word nearest to a misspelt one.
 
-/// The candidate nearest to `word`, if any is near enough to be worth suggesting.
+/// Candidate nearest to `word`, if it is near enough for a suggestion.
 pub fn nearest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     candidates
         .into_iter()
@@ -9,14 +9,14 @@ pub fn nearest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) ->
         .map(|(_, candidate)| candidate)
 }
 
-/// Edits between the words, if they are few for the words' length and for that of the parts that differ; a word that only
-/// lost or changed its unit (`half_backlash`, `half_backlash_mm`) counts as near.
+/// Edits between the words, if they are few for the length of the words and of their differing parts; a word with a
+/// missing or another unit (`half_backlash`, `half_backlash_mm`) is near.
 fn cost(word: &str, candidate: &str) -> Option<usize> {
     let (word, candidate) = (word.to_lowercase(), candidate.to_lowercase());
     let stem = |text: &str| text.rsplit_once('_').map_or(text.to_owned(), |(stem, _)| stem.to_owned());
     let pairs =
         [(word.clone(), candidate.clone(), 0), (word.clone(), stem(&candidate), 1), (stem(&word), stem(&candidate), 1)];
-    // Words whose lengths alone are too far apart are not compared letter by letter: one of them may be very long.
+    // Words with very different lengths are not compared letter by letter; one may be very long.
     let may_be_near = |(from, to, more): &&(String, String, usize)| {
         is_near(from.chars().count().abs_diff(to.chars().count()) + more, from.len().max(to.len()))
     };
@@ -30,10 +30,10 @@ fn cost(word: &str, candidate: &str) -> Option<usize> {
         .min()
 }
 
-/// Whether what is left of two words without the parts that they share is as near as whole words must be. What many keys
-/// have in common says nothing: `no_load_torque_N_m` is no misspelt `cogging_torque_N_m`.
+/// Returns true if two words without their common parts are near. Parts common to many keys do not count:
+/// `no_load_torque_N_m` is no misspelt `cogging_torque_N_m`.
 fn parts_are_near(from: &str, to: &str) -> bool {
-    // A name whose unit was left out, all parts of it.
+    // Complete name without its unit.
     if to.strip_prefix(from).is_some_and(|rest| rest.starts_with('_')) {
         return true;
     }
@@ -51,12 +51,12 @@ fn parts_are_near(from: &str, to: &str) -> bool {
     is_near(from.chars().count().abs_diff(to.chars().count()), longest) && is_near(edits(&from, &to), longest)
 }
 
-/// Whether so many edits are few for a length.
+/// Returns true if the edits are few for the length.
 fn is_near(cost: usize, length: usize) -> bool {
     3 * cost <= length + 2
 }
 
-/// Insertions, deletions and exchanges of one letter.
+/// Insertions, deletions and substitutions of one letter.
 fn edits(from: &str, to: &str) -> usize {
     let to: Vec<char> = to.chars().collect();
     let mut row: Vec<usize> = (0..=to.len()).collect();
@@ -79,19 +79,21 @@ mod tests {
     const KEYS: [&str; 3] = ["half_backlash_um", "mean_stiffness_N_per_m", "stiffness_ratio"];
 
     #[test]
-    fn a_letter_lost_is_found() {
+    fn lost_letter_is_found() {
         assert_eq!(nearest("half_backlsh_um", KEYS), Some("half_backlash_um"));
     }
 
+    /// A key with another unit or none is found.
     #[test]
-    fn a_key_with_another_unit_or_none_is_found() {
+    fn other_unit_is_found() {
         assert_eq!(nearest("half_backlash_mm", KEYS), Some("half_backlash_um"));
         assert_eq!(nearest("half_backlash", KEYS), Some("half_backlash_um"));
         assert_eq!(nearest("mean_stiffness_N_per_um", KEYS), Some("mean_stiffness_N_per_m"));
     }
 
+    /// Parts common to many keys do not make two keys near.
     #[test]
-    fn what_many_keys_share_makes_none_of_them_another() {
+    fn common_parts_do_not_count() {
         let drive_train = ["cogging_torque_N_m", "load_coulomb_friction_N_m", "link_inertia_kg_m2", "sun_teeth"];
         for word in ["no_load_torque_N_m", "coulomb_friction_N_m", "sun_inertia_kg_m2", "ring_teeth"] {
             assert_eq!(nearest(word, drive_train), None, "{word}");
@@ -101,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stranger_is_not_guessed_at() {
+    fn strange_word_has_no_suggestion() {
         assert_eq!(nearest("colour", KEYS), None);
     }
 }

@@ -1,5 +1,4 @@
-//! One table of a file that users write, by the list of keys that such a file may hold: where its values stand, what is
-//! missing, what nobody knows.
+//! One table of a user's file, checked against the list of its keys: places of values, missing keys, unknown keys.
 
 use std::ops::Range;
 
@@ -12,37 +11,37 @@ use crate::spelling;
 /// One key of a file.
 #[derive(Debug)]
 pub struct Key<K> {
-    /// The section that it stands in; empty at the top of the file.
+    /// Section of the key; empty at the top of the file.
     pub section: &'static str,
-    /// Its name.
+    /// Name of the key.
     pub name: &'static str,
-    /// What it holds.
+    /// Type of its value.
     pub kind: K,
-    /// Shown when the value is refused or missing.
+    /// Hint for a wrong or missing value.
     pub hint: &'static str,
 }
 
-/// What the keys of a kind of file hold, and which keys there are.
+/// Keys of a kind of file, and the types of their values.
 pub trait Keys: 'static + Sized {
-    /// How a reader calls such a file.
+    /// Name of the kind of file in messages.
     const FILE: &'static str;
     /// All keys, in the order of the documentation.
     const ALL: &'static [Key<Self>];
 
-    /// What to say to a key of a section that is none and looks like none.
+    /// Help for an unknown key without a similar known key.
     fn stray(section: &str, word: &str) -> String;
 
-    /// The keys of one section.
+    /// Keys of one section.
     fn of(section: &str) -> impl Iterator<Item = &'static Key<Self>> {
         Self::ALL.iter().filter(move |key| key.section == section)
     }
 
-    /// The key of that name; readers ask for listed keys only.
+    /// Key by its name; readers ask for listed keys only.
     fn find(section: &str, name: &str) -> Option<&'static Key<Self>> {
         Self::ALL.iter().find(|key| key.section == section && key.name == name)
     }
 
-    /// Where a key of another section belongs.
+    /// Help for a key of another section.
     fn belongs(word: &str) -> Option<String> {
         let key = Self::ALL.iter().find(|key| key.name == word)?;
         Some(match key.section {
@@ -54,21 +53,21 @@ pub trait Keys: 'static + Sized {
 
 /// One table of the file.
 pub struct Table<'a, K> {
-    /// As typed between brackets; empty at the top of the file.
+    /// Path as typed between brackets; empty at the top of the file.
     pub path: String,
-    /// Whose keys it has, as in [`Key::section`].
+    /// Section whose keys the table has, as in [`Key::section`].
     pub schema: &'static str,
-    /// Where it begins.
+    /// Place of the header.
     pub header: Range<usize>,
-    /// What it holds.
+    /// Content of the table.
     pub table: &'a DeTable<'a>,
-    /// Where what is wrong with it is noted.
+    /// Notes for its problems.
     pub notes: &'a Notes<'a>,
     kinds: std::marker::PhantomData<K>,
 }
 
 impl<'a, K: Keys> Table<'a, K> {
-    /// A table; reports unknown keys as problems.
+    /// Table of the file; notes unknown keys as problems.
     pub fn new(
         path: String,
         schema: &'static str,
@@ -95,32 +94,32 @@ impl<'a, K: Keys> Table<'a, K> {
         section
     }
 
-    /// How a reader calls it.
+    /// Name of the table in messages.
     pub fn called(&self) -> String {
         if self.path.is_empty() { K::FILE.to_owned() } else { format!("[{}]", self.path) }
     }
 
-    /// The names of all that it holds.
+    /// Names of all keys in the table.
     pub fn keys(&self) -> impl Iterator<Item = &'a str> {
         self.table.keys().map(|name| name.get_ref().as_ref())
     }
 
-    /// Whether a key is there.
+    /// Returns true if the key is present.
     pub fn has(&self, name: &str) -> bool {
         self.table.get(name).is_some()
     }
 
-    /// Where a key's value stands; the section's header if it does not.
+    /// Place of a key's value, or of the header without one.
     pub fn place(&self, name: &str) -> Range<usize> {
         self.table.get(name).map_or(self.header.clone(), Spanned::span)
     }
 
-    /// The full path of a key.
+    /// Full path of a key.
     pub fn full(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
 
-    /// A value with its key, if it is there.
+    /// Value with its key, if present.
     pub fn value(&self, name: &str) -> Option<(&'a Spanned<DeValue<'a>>, &'static Key<K>)> {
         let value = self.table.get(name)?;
         self.notes.place(self.full(name), value.span());
@@ -129,14 +128,14 @@ impl<'a, K: Keys> Table<'a, K> {
         Some((value, key?))
     }
 
-    /// Complains that a key is missing.
+    /// Notes a missing key.
     pub fn missing(&self, name: &str) {
         let hint = K::find(self.schema, name).map_or("", |key| key.hint);
         let place = if self.path.is_empty() { "the top of the file".to_owned() } else { format!("[{}]", self.path) };
         self.notes.error(self.header.clone(), format!("`{name}` is missing from {place}"), hint);
     }
 
-    /// Complains about what a key holds.
+    /// Notes a wrong value.
     pub fn refuse<T>(&self, value: &Spanned<DeValue<'_>>, key: &Key<K>, message: String) -> Option<T> {
         self.notes.error(value.span(), message, key.hint);
         None

@@ -1,9 +1,9 @@
-//! How messages put what stands in a file: the type of a value, a number as it was typed, names in a row.
+//! Phrases of messages: the type of a value, a number as typed, lists of names.
 
 use toml::Spanned;
 use toml::de::DeValue;
 
-/// The type of a value, for "must be a number, not ...".
+/// Type of a value, for "must be a number, not ...".
 pub fn kind(value: &Spanned<DeValue<'_>>) -> &'static str {
     match value.get_ref() {
         DeValue::String(_) => "a string",
@@ -16,7 +16,7 @@ pub fn kind(value: &Spanned<DeValue<'_>>) -> &'static str {
     }
 }
 
-/// A number as it was typed.
+/// Number as typed.
 pub fn shown(value: &Spanned<DeValue<'_>>) -> String {
     match value.get_ref() {
         DeValue::Integer(integer) => integer.to_string(),
@@ -25,12 +25,12 @@ pub fn shown(value: &Spanned<DeValue<'_>>) -> String {
     }
 }
 
-/// Names in a row: "`a`, `b` and `c`".
+/// List of names: "`a`, `b` and `c`".
 pub fn listed(names: &[&str]) -> String {
     listed_as(names, '`', "and")
 }
 
-/// Words in a row, quoted as stated, with `last` before the last one.
+/// List of words in the given quotes, with `last` before the last one.
 pub fn listed_as(names: &[&str], quote: char, last: &str) -> String {
     let quoted: Vec<String> = names.iter().map(|name| format!("{quote}{name}{quote}")).collect();
     match quoted.split_last() {

@@ -1,4 +1,4 @@
-//! Keys that take a data sheet's numbers: what they become, what they exclude, what they refuse.
+//! Keys with data-sheet figures: their conversion, exclusions and rejections.
 
 use joint_file::sheet::{self, ARCMIN};
 use joint_file::{JointFile, change, preset, read};
@@ -8,7 +8,7 @@ fn q1() -> &'static str {
     preset("q1").expect("a preset")
 }
 
-/// Q1 with keys set, each in place of what meant the same.
+/// Q1 with keys set, each replacing other forms of its quantity.
 fn with(changes: &[(&str, &str)]) -> String {
     changes.iter().fold(q1().to_owned(), |text, (key, value)| change(&text, key, value).expect("a known key"))
 }
@@ -33,7 +33,7 @@ fn assert_close(value: f64, expected: f64) {
 }
 
 #[test]
-fn lost_motion_at_the_output_becomes_the_half_backlash_of_every_mesh() {
+fn lost_motion_sets_half_backlash() {
     let file = joint(&with(&[("mesh.lost_motion_arcmin", "15")]));
     let joint = &file.parameters;
     assert_close(sheet::lost_motion(joint), 15.0 * ARCMIN);
@@ -44,11 +44,11 @@ fn lost_motion_at_the_output_becomes_the_half_backlash_of_every_mesh() {
 }
 
 #[test]
-fn the_stiffness_at_the_output_is_that_of_teeth_and_shafts_in_series() {
+fn total_stiffness_is_teeth_and_shafts() {
     let file = joint(&with(&[("total_stiffness_N_m_per_arcmin", "2.5")]));
     let joint = &file.parameters;
     let teeth = sheet::teeth_compliance(&joint.geometry, [1e8; 2]);
-    // Three planets, two meshes of 1e8 N/m each on twice the lever: by hand.
+    // Computed by hand: three planets, two meshes of 1e8 N/m each, on twice the lever.
     let lever = joint.geometry.carrier_base_radius();
     assert_close(teeth, 2.0 / 1e8 / (4.0 * 3.0 * lever * lever));
     let shafts = joint.compliance.expect("a compliance").stiffness;
@@ -57,19 +57,19 @@ fn the_stiffness_at_the_output_is_that_of_teeth_and_shafts_in_series() {
 }
 
 #[test]
-fn teeth_that_are_softer_than_the_stated_stiffness_are_refused() {
+fn teeth_softer_than_total_are_rejected() {
     let text = with(&[("total_stiffness_N_m_per_arcmin", "2.5"), ("mesh.mean_stiffness_N_per_m", "2e6")]);
     refused(&text, &["`total_stiffness_N_m_per_arcmin` is 2.5000", "the teeth alone give 1.56", "N m/arcmin"]);
-    // A sheet's number in N m/rad would be stiffer than any teeth.
+    // A figure in N m/rad would be stiffer than any teeth.
     refused(&with(&[("total_stiffness_N_m_per_arcmin", "10.3e3")]), &["the teeth alone give 78.", "mean_stiffness"]);
 }
 
 #[test]
-fn the_inertia_at_the_input_is_that_of_sun_planets_and_carrier() {
+fn input_inertia_is_sun_planets_carrier() {
     let file = joint(&with(&[("gear_inertia_at_input_kg_cm2", "0.05")]));
     let (geometry, bodies) = (&file.parameters.geometry, &file.parameters.bodies);
     assert_close(sheet::inertia_at_input(bodies, geometry), 0.05e-4);
-    // By the kinetic energy at one radian a second of the input, in the plain terms of a planetary gear.
+    // Kinetic energy at 1 rad/s of the input, with the textbook terms of a planetary gear.
     let cosine = geometry.working_pressure_angle.cos();
     let carrier_speed = 1.0 / geometry.ratio_by_teeth();
     let along_line = geometry.carrier_base_radius() * carrier_speed;
@@ -79,7 +79,7 @@ fn the_inertia_at_the_input_is_that_of_sun_planets_and_carrier() {
         + 0.5 * planets * bodies.planet_mass * (along_line / cosine).powi(2)
         + 0.5 * bodies.carrier_inertia_over_radius_squared * (along_line / cosine).powi(2);
     assert_close(2.0 * energy, 0.05e-4);
-    // Discs of one thickness: masses as the squares of the radii, inertias as their fourth powers.
+    // Discs of one thickness: masses go with the squares of the radii, inertias with their fourth powers.
     let [sun, planet] = [geometry.sun_base_radius, geometry.planet_base_radius];
     let inertia = |mass: f64, radius: f64| mass * radius * radius;
     let over = inertia(bodies.planet_equivalent_mass, planet) / inertia(bodies.sun_equivalent_mass, sun);
@@ -88,7 +88,7 @@ fn the_inertia_at_the_input_is_that_of_sun_planets_and_carrier() {
 }
 
 #[test]
-fn the_no_load_torque_is_the_motors_friction_and_the_loads_through_the_gears() {
+fn no_load_torque_splits_into_frictions() {
     let file = joint(&with(&[("no_load_torque_N_m", "0.09")]));
     assert_close(file.surroundings.motor_friction.coulomb, 0.09 - 0.3 / (6.0 * 0.97));
     refused(
@@ -97,8 +97,9 @@ fn the_no_load_torque_is_the_motors_friction_and_the_loads_through_the_gears() {
     );
 }
 
+/// A data sheet's key beside the key it replaces is rejected with both names.
 #[test]
-fn a_data_sheets_key_beside_the_one_that_it_replaces_is_refused_by_both_names() {
+fn duplicate_quantity_names_both_keys() {
     let beside = |from: &str, line: &str| {
         assert_eq!(q1().matches(from).count(), 1, "{from}");
         q1().replace(from, &format!("{line}\n{from}"))
@@ -135,7 +136,7 @@ fn a_data_sheets_key_beside_the_one_that_it_replaces_is_refused_by_both_names() 
 }
 
 #[test]
-fn what_was_found_takes_the_place_of_what_the_sheet_said() {
+fn found_values_replace_sheet_values() {
     let sheet = with(&[
         ("mesh.lost_motion_arcmin", "15"),
         ("total_stiffness_N_m_per_arcmin", "2.5"),
@@ -150,7 +151,7 @@ fn what_was_found_takes_the_place_of_what_the_sheet_said() {
 }
 
 #[test]
-fn slips_in_a_data_sheets_keys_are_named_by_them() {
+fn slips_name_data_sheet_keys() {
     let warned = |key: &str, value: &str, words: &[&str]| {
         let all: Vec<String> = match read(&with(&[(key, value)])) {
             Ok(file) => file.warnings.iter().map(ToString::to_string).collect(),
@@ -164,7 +165,7 @@ fn slips_in_a_data_sheets_keys_are_named_by_them() {
 }
 
 #[test]
-fn an_inertia_at_the_input_in_another_unit_is_named_by_its_key() {
+fn input_inertia_slip_names_its_key() {
     // Q1's own masses are 0.061 kg cm^2 at the input.
     let own = joint(q1()).parameters;
     assert!((1e4 * sheet::inertia_at_input(&own.bodies, &own.geometry) - 0.0608).abs() < 5e-5);
@@ -180,7 +181,7 @@ fn an_inertia_at_the_input_in_another_unit_is_named_by_its_key() {
     }
 }
 
-/// C1 with one line in place of another.
+/// C1 with one line replaced.
 fn c1(line: &str, by: &str) -> String {
     let text = preset("c1").expect("a preset");
     assert!(text.contains(line), "{line}");
@@ -188,7 +189,7 @@ fn c1(line: &str, by: &str) -> String {
 }
 
 #[test]
-fn an_equivalent_gear_has_the_data_sheets_numbers_and_an_exact_ratio() {
+fn equivalent_gear_matches_data_sheet() {
     let joint = joint(preset("c1").expect("a preset")).parameters;
     let gear = joint.equivalent_gear().expect("an equivalent gear");
     assert_eq!(gear.ratio, [59, 1]);
@@ -206,7 +207,7 @@ fn an_equivalent_gear_has_the_data_sheets_numbers_and_an_exact_ratio() {
 }
 
 #[test]
-fn a_ratio_that_was_rounded_is_warned_of() {
+fn rounded_ratio_warns() {
     let warned = joint(&c1("ratio = 59", "ratio = 58.333"));
     assert!(warned.warnings[0].message.contains("58333/1000"), "{:?}", warned.warnings);
     let read_as = |typed: &str| {
@@ -215,14 +216,14 @@ fn a_ratio_that_was_rounded_is_warned_of() {
         let said = of_ratio.map(ToString::to_string).collect::<String>();
         (file.parameters.equivalent_gear().expect("an equivalent gear").ratio, said)
     };
-    // Six decimals are a fraction that was rounded; the simplest one that is written so is taken.
+    // Six decimals are a rounded fraction; the simplest matching fraction is taken.
     for (typed, ratio) in
         [("58.3333333", [175, 3]), ("9.333333", [28, 3]), ("1296.714286", [9077, 7]), ("6.142857", [43, 7])]
     {
         let (read, said) = read_as(typed);
         assert!(read == ratio && said.contains(&format!("is taken as {}/{}", ratio[0], ratio[1])), "{read:?}: {said}");
     }
-    // Two decimals are taken as they are, with a word where a fraction of few teeth is rounded so.
+    // Two decimals are taken as typed, with a warning if a fraction of few teeth rounds to them.
     let (ratio, said) = read_as("9.33");
     assert_eq!(ratio, [933, 100]);
     assert!(said.contains("28/3") && said.contains("`motor_turns` = 28 and `link_turns` = 3"), "{said}");
@@ -237,7 +238,7 @@ fn a_ratio_that_was_rounded_is_warned_of() {
 }
 
 #[test]
-fn teeth_beside_an_equivalent_gear_are_refused() {
+fn equivalent_gear_rejects_teeth() {
     let with = |section: &str| format!("{}\n{section}\n", preset("c1").expect("a preset"));
     refused(&with("[mesh]\nmean_stiffness_N_per_m = 1e8"), &["`mesh`", "[equivalent_gear] has none"]);
     refused(&with("[contact]\ndamping_law = \"paper\""), &["`contact`", "leave one of the two out"]);
@@ -248,14 +249,14 @@ fn teeth_beside_an_equivalent_gear_are_refused() {
 }
 
 #[test]
-fn keys_of_an_equivalent_gear_are_set_by_their_section() {
+fn equivalent_gear_keys_are_set() {
     let text = preset("c1").expect("a preset");
     let set = |key, value| change(text, key, value).expect("a known key");
     let wide = read(&set("equivalent_gear.lost_motion_mrad", "2")).expect("another form takes its place").parameters;
     assert_close(sheet::lost_motion(&wide), 2e-3);
     let geared = read(&set("ratio", "45.5")).expect("a ratio").parameters;
     assert_close(geared.geometry.ratio_by_teeth(), 45.5);
-    // Without the section the key is the one of the gears that the joint has.
+    // Without a section the short key is the one of the joint's kind of gears.
     let narrow = read(&set("lost_motion_arcmin", "2")).expect("the gear's own").parameters;
     assert_close(sheet::lost_motion(&narrow), 2.0 * ARCMIN);
     let refused = change(text, "mesh.lost_motion_arcmin", "2").expect_err("of teeth");
@@ -264,18 +265,18 @@ fn keys_of_an_equivalent_gear_are_set_by_their_section() {
 }
 
 #[test]
-fn a_motor_weaker_than_its_gearhead_drives_with_its_limit() {
+fn weak_motor_drives_with_its_limit() {
     let rated = |limit: &str| c1("motor_torque_limit_N_m = 4.0", &format!("motor_torque_limit_N_m = {limit}"));
     let file = joint(&rated("0.6"));
     assert_eq!((file.profile.drive_torque, file.profile.motor_torque_limit), (0.6, 0.6));
     assert_eq!((file.parameters.rated_output_torque, file.warnings), (100.0, vec![]));
-    // A motor of a hundredth of what the gears carry is in another unit.
+    // A motor with a hundredth of the gears' torque has another unit.
     let said = read(&rated("0.02")).expect_err("frictions alone take more");
     assert!(said.iter().any(|problem| problem.message.contains("1.18 N m at the link")), "{said:#?}");
 }
 
 #[test]
-fn an_inertia_at_the_input_in_another_unit_is_blamed_by_its_own_key() {
+fn input_inertia_slip_blames_one_key() {
     let said = |value: &str| {
         let text = c1("gear_inertia_at_input_kg_cm2 = 0.25", &format!("gear_inertia_at_input_kg_cm2 = {value}"));
         read(&text).map_or_else(|problems| problems.0, |file| file.warnings)
@@ -285,7 +286,7 @@ fn an_inertia_at_the_input_in_another_unit_is_blamed_by_its_own_key() {
     assert!(text.contains("`gear_inertia_at_input_kg_cm2` = 30600: 30600 times the inertia of the rotor"), "{text}");
     assert!(!text.contains("`link_inertia_kg_m2`"), "{text}");
     assert!(said("900").iter().any(|problem| problem.help.contains("typed in g cm^2")), "{:?}", said("900"));
-    // A clamping hub of ten times the rotor's inertia is no slip, with teeth behind it or without.
+    // A clamping hub with ten times the rotor's inertia is no slip, with or without teeth behind it.
     assert_eq!(said("10"), []);
     let hub = joint(&with(&[("gear_inertia_at_input_kg_cm2", "0.9")]));
     assert_eq!(hub.warnings, []);
@@ -294,7 +295,7 @@ fn an_inertia_at_the_input_in_another_unit_is_blamed_by_its_own_key() {
 }
 
 #[test]
-fn counts_in_a_turn_stand_in_place_of_bits() {
+fn counts_per_turn_replace_bits() {
     let counts = |by: &str| c1("[drive_train.motor_encoder]\nbits = 17", &format!("[drive_train.motor_encoder]\n{by}"));
     for turn in [4000, 7200, 24] {
         let file = read(&counts(&format!("counts_per_turn = {turn}"))).expect("counts in a turn");

@@ -1,12 +1,12 @@
-//! Keys of what real joints do: each is read in SI, absent by default, and refused by name where it means nothing.
+//! Keys of effects of real joints: each is read in SI, absent by default, and rejected by name without effect.
 
 use joint_file::{change, preset, read};
 use parameters::{Effect, Surroundings};
 
-/// Key, value as typed, value in SI, and where it is read to.
+/// Key, value as typed, value in SI, and accessor.
 type Row = (&'static str, &'static str, f64, fn(&Surroundings) -> f64);
 
-/// Every key with a value and the SI value that it states.
+/// Every key with a value and its SI value.
 const KEYS: [Row; 29] = [
     ("payload_inertia_share", "0.4", 0.4, |of| of.payload.inertia_share),
     ("payload_frequency_Hz", "12", 12.0, |of| of.payload.frequency),
@@ -51,7 +51,7 @@ fn q1_with(keys: &[(&str, &str)]) -> String {
     keys.iter().fold(preset("q1").expect("a preset").to_owned(), set)
 }
 
-/// The only problem of Q1 with these keys set: message and help.
+/// Only problem of Q1 with these keys set: message and help.
 fn refusal(keys: &[(&str, &str)]) -> String {
     let problems = read(&q1_with(keys)).expect_err("it is refused");
     assert_eq!(problems.len(), 1, "{problems:#?}");
@@ -59,7 +59,7 @@ fn refusal(keys: &[(&str, &str)]) -> String {
 }
 
 #[test]
-fn every_key_is_read_in_si() {
+fn effect_keys_are_read_in_si() {
     let text = q1_with(&KEYS.map(|(key, value, ..)| (key, value)));
     let around = read(&text).expect("a joint").surroundings;
     for (key, _, si, of) in KEYS {
@@ -68,7 +68,7 @@ fn every_key_is_read_in_si() {
 }
 
 #[test]
-fn presets_have_none_of_the_effects() {
+fn presets_have_no_effects() {
     for name in joint_file::PRESETS {
         let around = read(preset(name).expect("a preset")).expect("a joint").surroundings;
         assert_eq!(around.effects().count(), 0, "{name}");
@@ -76,15 +76,16 @@ fn presets_have_none_of_the_effects() {
 }
 
 #[test]
-fn names_of_effects_are_keys_of_joint_files() {
+fn effect_names_are_keys() {
     for effect in Effect::ALL {
         let of_encoder = joint_file::full_key(&format!("motor_encoder.{}", effect.key()));
         assert!(joint_file::full_key(effect.key()).is_ok() || of_encoder.is_ok(), "{}", effect.key());
     }
 }
 
+/// A key without effect on its own is rejected with the missing key.
 #[test]
-fn a_key_that_means_nothing_alone_is_refused() {
+fn key_without_its_partner_is_rejected() {
     for (key, value, other) in [
         ("payload_inertia_share", "0.4", "payload_frequency_Hz"),
         ("payload_frequency_Hz", "12", "payload_inertia_share"),
@@ -104,13 +105,13 @@ fn a_key_that_means_nothing_alone_is_refused() {
 }
 
 #[test]
-fn a_backlash_that_would_be_negative_is_refused() {
+fn negative_backlash_is_rejected() {
     let refused = refusal(&[("width_once_per_link_turn_ratio", "0.6"), ("width_once_per_motor_turn_ratio", "0.5")]);
     assert!(refused.contains("a backlash is never negative"), "{refused}");
 }
 
 #[test]
-fn an_effect_of_a_part_that_is_not_there_is_refused() {
+fn effect_of_missing_part_is_rejected() {
     let l1 = preset("l1").expect("a preset");
     let l1 = change(l1, "hysteresis_stiffness_share", "0.2").expect("a key");
     let l1 = change(&l1, "hysteresis_torque_N_m", "2").expect("a key");
@@ -119,7 +120,7 @@ fn an_effect_of_a_part_that_is_not_there_is_refused() {
 }
 
 #[test]
-fn values_out_of_range_name_the_range() {
+fn out_of_range_value_names_range() {
     for (key, value) in [
         ("payload_step_ratio", "0"),
         ("motor_presliding_mrad", "0.0001"),

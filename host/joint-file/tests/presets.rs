@@ -1,5 +1,5 @@
-//! The joint files that come with the program: all are read, warn only of what is known, and give the numbers of the
-//! paper and of the robot joints. What is wrong with bad files is asserted in `bad_input`.
+//! Built-in joint files: all are readable, have only known warnings, and give the numbers of the paper and of the robot
+//! joints. Problems of bad files are in `bad_input`.
 
 use joint_file::{JointFile, PRESETS, preset, read};
 use model_core::gears::{Kinematics, Mechanics, MeshPhasing, Scales};
@@ -18,22 +18,23 @@ fn assert_close(value: f64, expected: f64, relative: f64) {
 }
 
 #[test]
-fn every_preset_is_read_and_carries_its_name() {
+fn presets_are_read_with_their_names() {
     for name in PRESETS {
         assert!(file(name).parameters.name.eq_ignore_ascii_case(name), "{name}");
     }
 }
 
 #[test]
-fn robot_joints_are_read_without_a_warning() {
+fn robot_joints_have_no_warning() {
     for name in ["q1", "s1", "d2", "l1", "c1"] {
         assert_eq!(file(name).warnings, [], "{name}");
         assert!(file(name).parameters.geometry.coherence == parameters::Coherence::Required);
     }
 }
 
+/// The paper's gears give the known warnings on their fit.
 #[test]
-fn the_paper_warns_that_its_gears_are_not_coaxial() {
+fn paper_warns_not_coaxial() {
     let messages: Vec<_> = file("paper").warnings.into_iter().map(|warning| warning.message).collect();
     assert_eq!(
         messages,
@@ -44,16 +45,18 @@ fn the_paper_warns_that_its_gears_are_not_coaxial() {
     );
 }
 
+/// The paper as printed gives a third warning, on its carrier radius.
 #[test]
-fn the_paper_as_printed_warns_of_its_carrier_radius_too() {
+fn printed_paper_warns_carrier_radius() {
     let messages: Vec<_> = file("paper_printed").warnings.into_iter().map(|warning| warning.message).collect();
     assert_eq!(messages.len(), 3, "{messages:#?}");
     assert_eq!(messages[1], "the ratio is 4.59259 by base radii and 4.66667 by teeth");
     assert_eq!(messages[2], "r_c cos(alpha) = 84.1043 mm, but the base radii of sun and planet sum to 84.5590 mm");
 }
 
+/// Masses, radii and omega_n of the paper follow from its Table 1.
 #[test]
-fn the_paper_has_the_masses_and_the_frequency_that_follow_from_table_1() {
+fn paper_masses_follow_from_table_1() {
     let paper = file("paper").parameters;
     assert_close(paper.carrier_equivalent_mass(), 10.0035, 1e-5);
     assert_close(file("paper_printed").parameters.carrier_equivalent_mass(), 6.0239, 1e-5);
@@ -65,14 +68,14 @@ fn the_paper_has_the_masses_and_the_frequency_that_follow_from_table_1() {
 }
 
 #[test]
-fn the_papers_mesh_frequency_is_2_1_times_omega_n() {
+fn paper_mesh_frequency_is_2_1_omega_n() {
     let paper = file("paper").parameters;
     let omega_n = Scales::new(&paper).frequency;
     assert_eq!(paper.excitation, parameters::Excitation::Time { mesh_frequency: 2.1 * omega_n });
 }
 
 #[test]
-fn the_papers_meshes_are_all_in_phase() {
+fn paper_meshes_are_in_phase() {
     let paper = file("paper").parameters;
     for kind in parameters::MESH_KINDS {
         for planet in 0..3 {
@@ -81,8 +84,9 @@ fn the_papers_meshes_are_all_in_phase() {
     }
 }
 
+/// Q1 has the radii, ratio and lost motion of its data sheet.
 #[test]
-fn q1_has_the_radii_ratio_and_lost_motion_of_its_data_sheet() {
+fn q1_matches_its_data_sheet() {
     let q1 = file("q1").parameters;
     assert_close(q1.geometry.sun_base_radius, 7.0477e-3, 1e-5);
     assert_close(q1.geometry.planet_base_radius, 14.0954e-3, 1e-5);
@@ -95,7 +99,7 @@ fn q1_has_the_radii_ratio_and_lost_motion_of_its_data_sheet() {
 }
 
 #[test]
-fn lost_motions_are_those_that_the_descriptions_claim() {
+fn presets_have_described_lost_motion() {
     let arcmin = std::f64::consts::PI / 180.0 / 60.0;
     for (name, lost) in [("s1", 3.0 * arcmin), ("d2", 7.0 * arcmin), ("l1", 1.329e-3)] {
         let joint = file(name).parameters;
@@ -104,7 +108,7 @@ fn lost_motions_are_those_that_the_descriptions_claim() {
 }
 
 #[test]
-fn ratios_by_radii_are_those_by_teeth() {
+fn ratio_by_radii_equals_by_teeth() {
     for (name, ratio) in [("q1", 6.0), ("s1", 5.0), ("d2", 6.0), ("l1", 14.0 / 3.0)] {
         let geometry = file(name).parameters.geometry;
         assert_close(geometry.ratio_by_radii(), ratio, 1e-12);
@@ -112,8 +116,9 @@ fn ratios_by_radii_are_those_by_teeth() {
     }
 }
 
+/// Every number of every preset states its source.
 #[test]
-fn every_number_of_every_preset_says_where_it_comes_from() {
+fn preset_numbers_have_sources() {
     for name in PRESETS {
         let sources = file(name).sources;
         assert!(sources.len() > 15, "{name}: {}", sources.len());
@@ -123,7 +128,7 @@ fn every_number_of_every_preset_says_where_it_comes_from() {
 }
 
 #[test]
-fn q1_has_its_drive_train_in_si() {
+fn q1_drive_train_is_in_si() {
     let around = file("q1").surroundings;
     assert_eq!(around.current_lag, 0.2e-3);
     assert_eq!(around.output_encoder.skew, 50e-6);
@@ -133,7 +138,7 @@ fn q1_has_its_drive_train_in_si() {
 }
 
 #[test]
-fn the_documented_example_is_a_joint() {
+fn documented_example_is_valid() {
     let document = include_str!("../../../docs/reference/joint-file.md");
     let example = document.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("an example");
     let file = read(example).expect("the example is good");
@@ -145,8 +150,9 @@ fn the_documented_example_is_a_joint() {
     assert_close(file.profile.motor_torque_limit, 4.0, 1e-12);
 }
 
+/// The fraction of a control rate is dropped with a warning.
 #[test]
-fn a_part_of_a_control_period_is_dropped_and_said_to_be() {
+fn fractional_control_rate_warns() {
     let text = preset("q1").expect("a preset").replace("control_rate_Hz = 10e3", "control_rate_Hz = 9999.5");
     let file = read(&text).expect("still a joint");
     assert_eq!(file.surroundings.control_rate, 9999);

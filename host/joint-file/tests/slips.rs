@@ -1,10 +1,10 @@
-//! Slips that every bound of a single key lets pass: units, thousandths, a factor too many. Each is refused or warned of
-//! with words that lead to it. What cannot be seen is argued in docs/reference/joint-file.md. And joints as they are built
-//! raise no alarm.
+//! Slips within the bounds of each single key: units, thousandths, an extra factor. Each gives an error or a warning
+//! that leads to it. Undetectable slips are discussed in docs/reference/joint-file.md. Realistic joints give no
+//! warning.
 
 use joint_file::{PRESETS, Problem, Severity, change, preset, read, value};
 
-/// What is done to a value.
+/// Change of a value.
 #[derive(Debug, Clone, Copy)]
 enum Slip {
     Times(f64),
@@ -13,7 +13,7 @@ enum Slip {
 use Severity::{Error, Warning};
 use Slip::{Set, Times};
 
-/// Preset, changed key, what is done to it, how bad it is, and what the message with its help must say.
+/// Preset, changed key, change, severity, and words of message and help.
 type Row = (&'static str, &'static str, Slip, Severity, &'static [&'static str]);
 
 const SLIPS: &[Row] = &[
@@ -102,13 +102,14 @@ fn slipped(name: &str, key: &str, slip: Slip) -> String {
     change(text, key, &new).expect("a known key")
 }
 
-/// Everything that is said of a text.
+/// All problems and warnings of a text.
 fn said(text: &str) -> Vec<Problem> {
     read(text).map_or_else(|problems| problems.0, |file| file.warnings)
 }
 
+/// Every slip is reported with the severity and the words of its row.
 #[test]
-fn every_slip_is_named_with_the_likely_mend() {
+fn slips_are_named_with_likely_unit() {
     assert!(SLIPS.len() >= 40);
     let mut missed = Vec::new();
     for (name, key, slip, severity, words) in SLIPS {
@@ -124,15 +125,16 @@ fn every_slip_is_named_with_the_likely_mend() {
     assert!(missed.is_empty(), "{} slips pass:\n{}", missed.len(), missed.join("\n"));
 }
 
+/// The file's `coherence = "warn"` turns an impossible figure into a warning.
 #[test]
-fn a_joint_that_cannot_be_is_used_all_the_same_where_the_file_says_so() {
+fn coherence_warn_accepts_impossible() {
     let text = slipped("q1", "planet_mass_kg", Times(1e3));
     let file = read(&format!("coherence = \"warn\"\n{text}")).expect("warnings only");
     assert!(file.warnings.iter().any(|warning| warning.message.contains("planet_mass_kg")), "{:?}", file.warnings);
 }
 
 #[test]
-fn joints_that_come_with_the_program_raise_no_alarm() {
+fn presets_raise_no_alarm() {
     for name in PRESETS {
         let file = read(preset(name).expect("a preset")).expect("a joint");
         let known =
@@ -141,7 +143,7 @@ fn joints_that_come_with_the_program_raise_no_alarm() {
     }
 }
 
-/// Numbers that look random, the same ones each time (Knuth's MMIX).
+/// Reproducible pseudo-random numbers (Knuth's MMIX).
 struct Random(u64);
 
 impl Random {
@@ -154,7 +156,7 @@ impl Random {
         low + (high - low) * self.part()
     }
 
-    /// Evenly over orders of magnitude.
+    /// Uniform over orders of magnitude.
     fn about(&mut self, low: f64, high: f64) -> f64 {
         low * (high / low).powf(self.part())
     }
@@ -164,7 +166,7 @@ impl Random {
     }
 }
 
-/// A joint as it might be built: 3 to 5 planets, module 0.3 to 3 mm, steel, aluminium or plastic, bored light or solid.
+/// Realistic joint: 3 to 5 planets, module 0.3 to 3 mm, steel, aluminium or plastic, bored or solid.
 fn plausible(random: &mut Random) -> String {
     let (planets, sun, planet) = loop {
         let (planets, sun, planet) = (random.whole(3, 5), random.whole(12, 40), random.whole(12, 60));
@@ -175,7 +177,7 @@ fn plausible(random: &mut Random) -> String {
     };
     let ring = sun + 2 * planet;
     let module = random.about(0.3, 3.0);
-    // Density, stiffness of teeth over face width, and stress that they carry.
+    // Density, tooth stiffness per face width, and allowed stress.
     let (density, stiffness, stress) =
         [(7850.0, 1.4e10, 2e8), (2700.0, 5e9, 6e7), (1400.0, 2.5e8, 2e7), (1050.0, 1.5e8, 1e7)]
             [random.whole(0, 3) as usize];
@@ -185,7 +187,7 @@ fn plausible(random: &mut Random) -> String {
     let width = random.between(4.0, 15.0) * 1e-3 * module;
     let cosine = 20_f64.to_radians().cos();
     let disc = |radius: f64, width: f64| 0.5 * density * pi * width * radius.powi(4);
-    // Bored: the rim stays, a third to all of the inertia and of the mass.
+    // Bored: a third to all of the inertia and mass remains in the rim.
     let solid = random.between(0.35, 1.0);
     let sun_inertia = disc(r_sun, width * random.between(1.0, 3.0)) * random.between(0.5, 1.0);
     let planet_inertia = disc(r_planet, width) * solid;
@@ -196,7 +198,7 @@ fn plausible(random: &mut Random) -> String {
     let rated = force * 2.0 * f64::from(planets) * carrier * cosine;
     let ratio = 1.0 + f64::from(ring) / f64::from(sun);
     let drive = rated / ratio;
-    // The shafts twist by 1 to 40 minutes of arc; the rotor comes to speed as motors do.
+    // The shafts twist by 1 to 40 minutes of arc; the rotor accelerates like a motor's.
     let shafts = rated / (random.about(1.0, 40.0) * pi / 10_800.0);
     let rotor = drive / random.about(1e3, 1e5);
     let link = rotor * ratio * ratio * random.about(0.1, 30.0);
@@ -229,8 +231,9 @@ fn plausible(random: &mut Random) -> String {
     )
 }
 
+/// A thousand random realistic joints give no warning.
 #[test]
-fn a_thousand_joints_as_they_are_built_raise_no_alarm() {
+fn random_realistic_joints_raise_no_alarm() {
     let mut random = Random(1);
     let mut alarms = Vec::new();
     for index in 0..1000 {

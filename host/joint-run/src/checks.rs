@@ -1,7 +1,7 @@
-//! The checks of a run: each figure, its bound and where it comes from. A run that broke off is judged by the figures
-//! there are; the other checks are marked as not made.
+//! Checks of a run: each figure with its bound and the bound's source. An interrupted run is judged by the available
+//! figures; the other checks are marked as not run.
 
-use crate::origin::clock_in_words;
+use crate::origin::clock_text;
 use link::messages::{ClockSource, RunMode, Statistics};
 
 use super::comparison::Comparison;
@@ -11,32 +11,32 @@ use board::recording::Recording;
 use board::twin::Agreement;
 use report::checks::{Bound, Check, Source};
 
-/// Steps that the twin must cover, unless a shorter run was asked for.
-const STEPS_WANTED: u32 = 100_000;
-/// Flash that the plant's image may take: a quarter of the smallest board's [byte].
+/// Least steps covered by the twin, unless a shorter run was requested.
+const TWIN_STEPS_MIN: u32 = 100_000;
+/// Flash budget of the plant's image: a quarter of the smallest board's [byte].
 const FLASH_BUDGET: f64 = 128.0 * 1024.0;
-/// RAM that statics and deepest stack may take together [byte].
+/// RAM budget of statics and deepest stack together [byte].
 const RAM_BUDGET: f64 = 16.0 * 1024.0;
-/// A motion that can be predicted for less than this part of the run is not held against the bounds.
-const LEAST_PREDICTABLE: f64 = 0.1;
+/// Least predictable part of a run for which the bounds apply.
+const PREDICTABLE_SHARE_MIN: f64 = 0.1;
 
-/// All that the checks look at. What could not be had is a reason why not.
+/// Inputs of the checks; missing inputs carry their reason.
 pub struct Evidence<'a> {
-    /// What the session heard.
+    /// Recording of the session.
     pub recording: &'a Recording,
-    /// Ticks that the run was to last.
+    /// Ticks of the planned run.
     pub ticks: u32,
-    /// The comparison with the twin.
+    /// Comparison with the twin.
     pub agreement: &'a Agreement,
-    /// The comparison with the reference.
+    /// Comparison with the reference.
     pub comparison: Result<&'a Comparison, &'a str>,
-    /// The decoded log.
+    /// Decoded log.
     pub log: Result<&'a Log, &'a str>,
-    /// The image.
+    /// Image of the run.
     pub image: Result<&'a Image, &'a str>,
 }
 
-/// Every check, the weightiest first.
+/// All checks, the most important first.
 pub fn checks(evidence: &Evidence<'_>) -> Vec<Check> {
     let mut checks = twin(evidence);
     checks.extend(reference(evidence));
@@ -58,7 +58,7 @@ fn zero(name: &str, figure: u32, source: Source) -> Check {
 fn twin(evidence: &Evidence<'_>) -> Vec<Check> {
     let agreement = evidence.agreement;
     let decimation = evidence.recording.settings.map_or(1, |settings| u32::from(settings.decimation));
-    let wanted = STEPS_WANTED.min(evidence.ticks - evidence.ticks % decimation);
+    let wanted = TWIN_STEPS_MIN.min(evidence.ticks - evidence.ticks % decimation);
     let note = match &agreement.first {
         None => "digest of the whole state at every step, samples in every bit".to_owned(),
         Some(first) => format!("first at tick {}: {} is {}, not {}", first.tick, first.field, first.board, first.twin),
@@ -80,7 +80,7 @@ fn reference(evidence: &Evidence<'_>) -> Vec<Check> {
         Ok(comparison) => comparison,
         Err(why) => return vec![Check::not_run("motion off the f64 reference", "%", Bound::None, why)],
     };
-    let chaotic = comparison.until < LEAST_PREDICTABLE * comparison.of;
+    let chaotic = comparison.until < PREDICTABLE_SHARE_MIN * comparison.of;
     let part =
         format!("of the motion's standard deviation, over the first {:.2} of {:.2} s", comparison.until, comparison.of);
     let note = match (chaotic, comparison.until < comparison.of) {
@@ -140,7 +140,7 @@ fn timing(evidence: &Evidence<'_>) -> Vec<Check> {
     checks.extend(queue(recording.settings.map(|settings| settings.mode), statistics));
     let clock_runs = u32::from(hello.clock.source != ClockSource::Failed);
     let clock = count("core clock as stated", clock_runs, Bound::Exactly(1.0), Source::Board);
-    checks.push(clock.note(clock_in_words(hello.clock)));
+    checks.push(clock.note(clock_text(hello.clock)));
     checks
 }
 

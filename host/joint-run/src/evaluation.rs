@@ -1,5 +1,5 @@
-//! From what a session heard to the record of a run: SI units, the host's own computations of the same run, and the
-//! verdicts. Nothing here talks to a board or writes a file.
+//! Evaluation of a session into the record of a run: SI units, the host's computations of the run, and the verdicts.
+//! This module neither talks to a board nor writes files.
 
 use link::messages::Sample;
 
@@ -16,18 +16,18 @@ use board::recording::Recording;
 use board::{trip, twin};
 use report::failure::Outcome;
 
-/// Longest stretch that is shown at every tick [ticks].
-const CLOSE_UP: u32 = 4000;
+/// Longest close-up [ticks].
+const CLOSE_UP_TICKS: u32 = 4000;
 
-/// A run that has ended, complete or not.
+/// Run that has ended, complete or not.
 pub struct FinishedRun<'a> {
-    /// What was to be done.
+    /// Plan of the run.
     pub plan: &'a RunPlan,
-    /// What was received from the board.
+    /// Recording of the board.
     pub recording: &'a Recording,
-    /// The image, if it was built here.
+    /// Image, if it was built here.
     pub image: Option<&'a Image>,
-    /// How it ended.
+    /// Result of the session.
     pub outcome: &'a Outcome<()>,
 }
 
@@ -119,14 +119,14 @@ fn compare(
     references.finish(&finished.recording.samples, ratio).map_err(|failure| failure.message().to_owned())
 }
 
-/// The first crossing of the gap at every tick, as the twin has it.
+/// First crossing of the gap at every tick, by the twin.
 fn close_up(record: &RunRecord, finished: &FinishedRun<'_>) -> Outcome<Option<CloseUp>> {
     let Some((from, to)) = page::crossing(&record.samples, record.joint.gap_band_m) else { return Ok(None) };
     let tick_rate = finished.plan.expected.tick_rate;
     let tick = |time: f64| (time * f64::from(tick_rate)).max(0.0) as u32;
     let last = finished.recording.last_tick();
     let first = tick(from).min(last);
-    let ticks: Vec<u32> = (first..=tick(to).min(last).min(first + CLOSE_UP)).collect();
+    let ticks: Vec<u32> = (first..=tick(to).min(last).min(first + CLOSE_UP_TICKS)).collect();
     let parameters = &finished.plan.joint.parameters;
     let motion: Vec<Sample> =
         twin::replay(parameters, finished.plan.board.chip(), tick_rate, &finished.recording.accepted, &ticks)?;

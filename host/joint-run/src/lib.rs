@@ -1,8 +1,8 @@
-//! A joint run on a board: driven through a torque profile, held against twin and reference, judged and reported.
+//! Run of a joint on a board: driven through a torque profile, compared with twin and reference, judged and reported.
 //!
-//! The order of a run: `plan` finds everything that is wrong with the request, and the folder is tried; the image is built
-//! and the board found, driven and heard by `board`; `comparison` computes the same run by the f64 reference, `evaluation`
-//! fills the `record`, `checks` judges, `page` shows it, `files` writes it.
+//! Order of a run: `plan` checks the request, and the folder is tested. `board` builds the image, finds the board,
+//! drives it and receives its samples. `comparison` computes the run by the f64 reference, `evaluation` fills the
+//! `record`, `checks` judges it, `page` shows it, `files` writes it.
 
 pub mod checks;
 pub mod comparison;
@@ -33,20 +33,20 @@ use report::interruption::InOrder;
 use report::output;
 use report::progress::Progress;
 
-/// Runs a joint on a board; succeeds only if every check held.
+/// Runs a joint on a board; succeeds only if every check holds.
 pub fn run(request: &RunRequest<'_>, progress: &Progress) -> Outcome<()> {
     let plan = RunPlan::new(request)?;
     let wanted = [("json", request.json), ("picture", request.picture)];
     folder::check_files(&wanted, &[&plan.path, Path::new(request.profile)])?;
-    let folder = Folder::prepare(request.out, "hil", &plan.expected.joint, &files::ALL)?;
+    let folder = Folder::prepare(request.out, "hil", &plan.expected.joint, &files::ALL_FILES)?;
     let connection = prepare(request, &plan, progress)?;
-    // What the board has done until the user stops is kept and reported.
+    // A run stopped by the user is kept and reported up to that point.
     let _in_order = InOrder::begin();
     let mut record = origin::record(request, &plan, &connection.transport);
     let image = connection.image.clone();
     record.identity.image = image.as_ref().map(origin::image);
     let references = (!request.no_reference).then(|| evaluation::start_references(&plan));
-    let (outcome, recording) = converse(connection, &plan, progress);
+    let (outcome, recording) = run_session(connection, &plan, progress);
     progress.stage("comparing with twin and reference");
     let finished = FinishedRun { plan: &plan, recording: &recording, image: image.as_ref(), outcome: &outcome };
     let evaluated = evaluation::evaluate(&mut record, &finished, references);
@@ -54,7 +54,7 @@ pub fn run(request: &RunRequest<'_>, progress: &Progress) -> Outcome<()> {
     let report = files::write(&folder, request.json, &record);
     progress.clear();
     evaluated?;
-    show(&record)?;
+    print_checks(&record)?;
     match (outcome, report) {
         (Ok(()), Ok(report)) => {
             output::print(&format!("report: {}\n", report.display()))?;
@@ -74,8 +74,8 @@ pub fn run(request: &RunRequest<'_>, progress: &Progress) -> Outcome<()> {
     }
 }
 
-/// The whole session with the board; the recording is returned on failure too.
-fn converse(connection: Connection, plan: &RunPlan, progress: &Progress) -> (Outcome<()>, Recording) {
+/// Whole session with the board; returns the recording after a failure too.
+fn run_session(connection: Connection, plan: &RunPlan, progress: &Progress) -> (Outcome<()>, Recording) {
     let Connection { line, supervisor, timeout, .. } = connection;
     let mut session = Session::new(line, supervisor);
     progress.stage("calling the board");
@@ -91,15 +91,15 @@ fn converse(connection: Connection, plan: &RunPlan, progress: &Progress) -> (Out
     (outcome, std::mem::take(&mut session.recording))
 }
 
-/// The table, unless nothing has been run.
-fn show(record: &RunRecord) -> Outcome<()> {
+/// Prints the checks, unless nothing was run.
+fn print_checks(record: &RunRecord) -> Outcome<()> {
     if record.samples.is_empty() {
         return Ok(());
     }
     output::print(&(page::render_lines(record) + "\n"))
 }
 
-/// Builds the image and finds the board. A port is opened first: what is wrong with it should not wait for a build.
+/// Builds the image and finds the board. A port is opened first, so that its faults appear before a build.
 fn prepare(request: &RunRequest<'_>, plan: &RunPlan, progress: &Progress) -> Outcome<Connection> {
     match &request.line.port {
         None => Connection::emulated(progress, |board| build(request, plan, board, progress)),

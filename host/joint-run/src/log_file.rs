@@ -1,5 +1,5 @@
-//! The samples of a run as a log, which viewers of robot data open: the same names, units and states as in the record, with
-//! the torques of the profile.
+//! Samples of a run as a log for viewers of robot data, with the names, units and states of the record, and the torques
+//! of the profile.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -11,9 +11,9 @@ use crate::record::RunRecord;
 
 /// Topic of the motion.
 const TOPIC: &str = "/joint/run";
-/// Name of its schema.
+/// Name of the topic's schema.
 const SCHEMA_NAME: &str = "joint_msgs/msg/Run";
-/// Fields that are numbers, with what they mean.
+/// Numeric fields with their meanings.
 const NUMBERS: [(&str, &str); 9] = [
     ("time_s", "board time since the reset [s]"),
     ("motor_angle_rad", "[rad]"),
@@ -25,12 +25,12 @@ const NUMBERS: [(&str, &str); 9] = [
     ("drive_torque_Nm", "that drives the gears at the motor, as the profile has it in this tick [N m]"),
     ("load_torque_Nm", "that brakes the link, likewise [N m]"),
 ];
-/// Fields of both families of meshes, each with an entry for each planet.
+/// Fields of both families of meshes, with an entry per planet.
 const LISTS: [(&str, &str, &str); 2] =
     [("float64[]", "deflection_m", "[m]"), ("string[]", "contact", "separated, drive_side or back_side")];
 
 /// Writes all samples of the board.
-pub fn fill(out: &mut impl Write, record: &RunRecord) -> io::Result<()> {
+pub fn write(out: &mut impl Write, record: &RunRecord) -> io::Result<()> {
     let numbers = NUMBERS.iter().map(|(name, meaning)| field("float64", name, meaning));
     let planets = record.samples.deflection_m.len() / 2;
     let of_each = if planets == 1 { "of the one contact" } else { "one for each planet" };

@@ -1,5 +1,4 @@
-//! Provenance of a run, the head of its record: who ran which joint with which image and settings. All of it is known
-//! before the run.
+//! Provenance of a run, the head of its record: joint, image, settings and host, all known before the run.
 
 use link::messages::{Clock, ClockSource, Hello, RunMode};
 use model_core::gears::Kinematics;
@@ -9,7 +8,7 @@ use crate::record::{Identity, Image, JointFigures, RunRecord, Settings};
 use board::device::image;
 use report::provenance;
 
-/// A record in which nothing has happened yet.
+/// Record before the run.
 pub fn record(request: &RunRequest<'_>, plan: &RunPlan, transport: &str) -> RunRecord {
     let emulated = request.line.port.is_none();
     let identity = Identity {
@@ -27,21 +26,21 @@ pub fn record(request: &RunRequest<'_>, plan: &RunPlan, transport: &str) -> RunR
     RunRecord::new(identity, joint_figures(plan), settings(request, plan))
 }
 
-/// Notes what the board says of itself.
+/// Notes the board's statements about itself.
 pub fn note_board(identity: &mut Identity, hello: &Hello) {
     let [major, minor, patch] = hello.firmware_version;
     identity.role = image::word(hello.role).to_owned();
     identity.board = hello.board.to_string();
     identity.firmware_version = format!("{major}.{minor}.{patch}");
-    identity.clock = clock_in_words(hello.clock);
+    identity.clock = clock_text(hello.clock);
     identity.emulated |= hello.clock.source == ClockSource::NotModelled;
     identity.last_panic = hello.last_panic.as_ref().map(ToString::to_string);
     identity.watchdog_reset = hello.watchdog_reset;
     identity.forced = hello.forced;
 }
 
-/// What the board says of its core clock.
-pub fn clock_in_words(clock: Clock) -> String {
+/// Text on the board's core clock.
+pub fn clock_text(clock: Clock) -> String {
     let source = match clock.source {
         ClockSource::Crystal => "crystal and PLL, measured before use".to_owned(),
         ClockSource::Signal => "clock from elsewhere and PLL, measured before use".to_owned(),
@@ -60,7 +59,7 @@ pub fn clock_in_words(clock: Clock) -> String {
     }
 }
 
-/// The image as the record keeps it.
+/// Image for the record.
 pub fn image(image: &image::Image) -> Image {
     Image {
         file: image.elf.file_name().unwrap_or_default().to_string_lossy().into_owned(),
@@ -78,7 +77,7 @@ fn joint_figures(plan: &RunPlan) -> JointFigures {
         .into_iter()
         .flat_map(|mesh| mesh.half_backlash.clone())
         .collect();
-    // Every mesh is free while the gap is within the sum of both meshes' half-backlash of every planet.
+    // Every mesh is free while the gap is within the sum of both meshes' half-backlash for every planet.
     let planets = parameters.geometry.planets;
     let reach = (0..planets).map(|planet| half_backlash_m[planet] + half_backlash_m[planets + planet]);
     let reach = reach.fold(f64::INFINITY, f64::min);

@@ -1,4 +1,4 @@
-//! A validated request to run a joint on a board: joint, profile and rates are checked before anything is built or
+//! Validated request to run a joint on a board: joint, profile and rates are checked before anything is built or
 //! started.
 
 use std::path::{Path, PathBuf};
@@ -13,69 +13,69 @@ use board::twin;
 use clap::ValueEnum;
 use joint_file::JointFile;
 use joint_file::named::{self, Loaded};
-use joint_file::warned;
+use joint_file::warnings;
 use link::messages::{Role, RunMode, RunSettings};
 use model_core::gears::certificate::Substeps;
 use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
 
-/// A run as it was asked for.
+/// Requested run.
 #[derive(Debug, Clone)]
 pub struct RunRequest<'a> {
     /// Joint file, or the name of a preset.
     pub file: &'a Path,
-    /// Which board, and how it is reached.
+    /// Board, and the line to it.
     pub line: &'a LineOptions,
     /// Lockstep (the board waits for the host) or real time; by default lockstep on the emulated board, real time on a real one.
     pub mode: Option<Mode>,
-    /// Steps a second, part of the image [Hz].
+    /// Step rate, part of the image [Hz].
     pub rate: u32,
     /// Name of a built-in torque profile, or a CSV file.
     pub profile: &'a str,
-    /// Length of the run; by default that of the profile [s].
+    /// Length of the run; the profile's length by default [s].
     pub duration: Option<f64>,
-    /// A sample every so many steps.
+    /// Steps per sample.
     pub decimation: u16,
-    /// The board has its image already.
+    /// True if the board already has its image.
     pub no_build: bool,
-    /// What the board has no time for is built and run all the same.
+    /// True to build and run even if the worst-case tick exceeds the period.
     pub force: bool,
-    /// The f64 reference is not computed.
+    /// True to skip the f64 reference.
     pub no_reference: bool,
-    /// Folder for everything that stays.
+    /// Folder of the results.
     pub out: Option<&'a Path>,
-    /// The record as JSON, too.
+    /// File for a copy of the record as JSON.
     pub json: Option<&'a Path>,
-    /// The first reversal through the gap as a picture, too.
+    /// File for a picture of the first reversal through the gap.
     pub picture: Option<&'a Path>,
 }
 
-/// A validated run.
+/// Validated run.
 #[derive(Debug, Clone)]
 pub struct RunPlan {
-    /// The joint file as the user named it.
+    /// Joint file as named by the user.
     pub name: String,
-    /// The joint file for the firmware's build.
+    /// Joint file for the firmware's build.
     pub path: PathBuf,
-    /// What it says.
+    /// Content of the joint file.
     pub joint: JointFile,
-    /// The board that its image is for.
+    /// Board of the image.
     pub board: Board,
-    /// What the board must be.
+    /// Expected identity of the board.
     pub expected: Expected,
-    /// The sub-steps of a tick in which contacts change.
+    /// Sub-steps of a tick with a change of contact.
     pub substeps: Substeps,
-    /// The torques.
+    /// Torques.
     pub profile: TorqueProfile,
-    /// How the run goes.
+    /// Settings of the run.
     pub settings: RunSettings,
 }
 
 impl RunPlan {
-    /// Reads and designs all that a run needs.
+    /// Reads and designs everything that a run needs.
     pub fn new(request: &RunRequest<'_>) -> Outcome<Self> {
         let loaded = named::load(request.file)?;
-        warned::tell(&loaded);
+        warnings::print(&loaded);
         let path = image::joint_file(request.file, &loaded.name);
         let Loaded { name, file: joint, .. } = loaded;
         let parameters = &joint.parameters;
@@ -108,7 +108,7 @@ impl RunPlan {
 }
 
 impl RunRequest<'_> {
-    /// What to do about a board that is another one.
+    /// Remedy for a board with another identity.
     fn help(&self) -> BoardHelp {
         if self.line.port.is_none() {
             return BoardHelp::Rebuild;
@@ -119,7 +119,7 @@ impl RunRequest<'_> {
         if self.no_build { BoardHelp::Flash(command) } else { BoardHelp::FlashBuilt(command) }
     }
 
-    /// The command that makes this run again.
+    /// Command that repeats the run.
     pub fn replay_command(&self) -> String {
         let mut command = format!("cargo joint hil {}{}", quoted(&self.file.display().to_string()), self.line.again());
         let mut option = |name: &str, value: Option<String>| {

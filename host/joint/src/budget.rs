@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use board::device::board::Board;
 use board::device::image;
 use board::device::tick_time::OnBoard;
-use joint_file::{named, warned};
+use joint_file::{named, warnings};
 use report::failure::{Failure, Outcome};
 use report::output;
 use report::progress::Progress;
@@ -48,7 +48,7 @@ pub struct Arguments {
 /// Prints the certificate with its verdict.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     let loaded = named::load(&arguments.file)?;
-    warned::tell(&loaded);
+    warnings::print(&loaded);
     let parameters = &loaded.file.parameters;
     let (board, role, rate) = (&arguments.board, arguments.role.role(), arguments.rate);
     let wanted = arguments.accuracy.unwrap_or(ACCURACY);

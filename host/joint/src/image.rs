@@ -10,7 +10,7 @@ use board::device::image;
 use board::device::prediction::{ORIGIN, Prediction};
 use board::device::tick_time;
 use board::device::toolchain::Toolchain;
-use joint_file::{named, warned};
+use joint_file::{named, warnings};
 use parameters::JointParameters;
 use report::failure::Outcome;
 use report::progress::Progress;
@@ -100,7 +100,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
 /// Builds an image, with a line that tells how far it is.
 pub fn build(arguments: &Image, board: &Board) -> Outcome<image::Image> {
     let loaded = named::load(&arguments.file)?;
-    warned::tell(&loaded);
+    warnings::print(&loaded);
     let file = image::joint_file(&arguments.file, &loaded.name);
     let (parameters, role) = (&loaded.file.parameters, arguments.role);
     let rate = arguments.rate.unwrap_or_else(|| role.usual_rate(parameters, board));

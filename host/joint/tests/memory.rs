@@ -11,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use command::{Ended, folder, joint, text};
-use identify::learnt::Content;
+use identify::memory::Content;
 use learning::learnt;
 use model_core::observer::{MEMORY_BYTES, Memory};
 use tempfile::TempDir;
@@ -89,7 +89,7 @@ fn what_is_shown_is_what_the_observer_says() {
     let q1 = learning::joint(&[]);
     let (memory, said) = learnt(&q1, &learning::joint(&[("mesh.half_backlash_um", "55")]), PERIODS);
     let loaded = joint_file::named::load(Path::new("q1")).expect("a preset");
-    let content = Content::of(&memory, &loaded).expect("its own");
+    let content = Content::read(&memory, &loaded).expect("its own");
     let near = |name: &str, factor: f64, said: f32| {
         let shown = content.value(name).expect("learnt");
         let said = factor * f64::from(said);

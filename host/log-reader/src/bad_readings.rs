@@ -1,6 +1,6 @@
-//! Bad readings of an encoder: one or a few samples that jump away from the motion and come back to it, as a flipped bit or a
-//! frame that was lost gives them. No encoder moves so: the rows are left out, counted and told, and what is near them is not
-//! used, as with any lost sample. More than a share of the log is refused.
+//! Bad readings of an encoder: up to three samples that jump away from the motion and return, as after a flipped bit or
+//! a lost frame. The rows are removed with a note, and nothing near them is used, as for any lost sample. A log with
+//! too many is rejected.
 
 use std::f64::consts::TAU;
 
@@ -9,18 +9,19 @@ use super::register::Register;
 use super::resolution::count_angle;
 use report::failure::{Failure, Outcome};
 
-/// Share of a log's rows that may be left out for bad readings of one encoder.
-pub const MOST: f64 = 0.01;
-/// Rows in a run that jumps away and comes back.
-const RUN: usize = 3;
-/// A reading jumps when it is off the motion by so many times the usual change of a step...
+/// Largest share of rows removed for bad readings of one encoder.
+pub const BAD_SHARE_MAX: f64 = 0.01;
+/// Longest run of bad readings [rows].
+const RUN_ROWS_MAX: usize = 3;
+/// A reading jumps if it deviates from the motion by JUMP times the usual change of a step ...
 const JUMP: f64 = 20.0;
-/// ... which this share of the changes stays below: each bad reading spoils three of them, so that up to 6 % are seen...
-const USUAL: f64 = 0.8;
-/// ... and by so many counts.
-const LEAST_COUNTS: f64 = 8.0;
-/// Rows that a refusal names.
-const NAMED: usize = 5;
+/// ... which is this quantile of the changes: each bad reading spoils three changes, so up to 6 % bad readings are
+/// found ...
+const USUAL_CHANGE_QUANTILE: f64 = 0.8;
+/// ... and by this many counts.
+const JUMP_COUNTS_MIN: f64 = 8.0;
+/// Rows named in a failure.
+const ROWS_NAMED: usize = 5;
 
 /// Column of an encoder.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,13 +30,13 @@ pub struct EncoderColumn {
     pub name: String,
     /// True for counts, false for angles in rad.
     pub is_counts: bool,
-    /// A turn, in the unit of the column.
+    /// Size of a turn, in the unit of the column.
     pub turn: f64,
 }
 
-/// Leaves out rows with bad readings of an encoder. `names` are its column of counts and its column of angles [rad]. Returns the column
-/// in the log, or nothing if the encoder was not logged.
-pub fn leave_out_of(
+/// Removes rows with bad readings of an encoder. `names` are its columns of counts and of angles [rad]. Returns the
+/// column in the log; `None` if the encoder was not logged.
+pub fn remove_from_encoder(
     columns: &mut Columns,
     names: [&'static str; 2],
     counts_per_turn: u64,
@@ -43,42 +44,42 @@ pub fn leave_out_of(
     let Some(name) = columns.name_of(&names).map(str::to_owned) else { return Ok(None) };
     let is_counts = columns.first_of(&names[..1])?.is_some();
     let (count, turn) = if is_counts { (1.0, counts_per_turn as f64) } else { (count_angle(counts_per_turn), TAU) };
-    leave_out(columns, &name, count, Some(turn))?;
+    remove_from_column(columns, &name, count, Some(turn))?;
     Ok(Some(EncoderColumn { name, is_counts, turn }))
 }
 
-/// Leaves out rows with bad readings of the encoder in a column. `count` is its resolution, `turn` the size of a turn, if known.
-pub fn leave_out(columns: &mut Columns, name: &str, count: f64, turn: Option<f64>) -> Outcome<()> {
-    let Some(values) = columns.maybe(name)? else { return Ok(()) };
-    let bad = find(&values, Register::of(&values, turn).as_ref(), count);
+/// Removes rows with bad readings in a column. `count` is its resolution, `turn` the size of a turn, if known.
+pub fn remove_from_column(columns: &mut Columns, name: &str, count: f64, turn: Option<f64>) -> Outcome<()> {
+    let Some(values) = columns.finite(name)? else { return Ok(()) };
+    let bad = find(&values, Register::find(&values, turn).as_ref(), count);
     if bad.is_empty() {
         return Ok(());
     }
     let share = bad.len() as f64 / values.len() as f64;
-    let places: Vec<String> = bad.iter().take(NAMED).map(|row| columns.place(*row)).collect();
-    let more = if bad.len() > NAMED { ", ..." } else { "" };
-    let told = format!(
+    let places: Vec<String> = bad.iter().take(ROWS_NAMED).map(|row| columns.place(*row)).collect();
+    let more = if bad.len() > ROWS_NAMED { ", ..." } else { "" };
+    let note = format!(
         "{} of {} readings of `{name}` ({:.2} %) jump away from the motion and come back: {}{more}",
         bad.len(),
         values.len(),
         100.0 * share,
         places.join(", ")
     );
-    if share > MOST {
-        return Err(Failure::new(told).with_help(format!(
+    if share > BAD_SHARE_MAX {
+        return Err(Failure::new(note).with_help(format!(
             "up to {:.0} % are left out; beyond, look for flipped bits or lost frames: the encoder's cable and supply, its parity \
              or checksum, and whether the column is what `{name}` stands for",
-            100.0 * MOST
+            100.0 * BAD_SHARE_MAX
         )));
     }
     let mut keep = vec![true; values.len()];
     bad.iter().for_each(|row| keep[*row] = false);
-    columns.keep(&keep);
-    columns.tell(format!("{told}; left out."));
+    columns.retain_rows(&keep);
+    columns.add_note(format!("{note}; left out."));
     Ok(())
 }
 
-/// Rows whose readings jump away and come back.
+/// Rows whose readings jump away and return.
 fn find(values: &[f64], register: Option<&Register>, count: f64) -> Vec<usize> {
     let step = |from: usize, to: usize| {
         let step = values[to] - values[from];
@@ -88,18 +89,18 @@ fn find(values: &[f64], register: Option<&Register>, count: f64) -> Vec<usize> {
     let mut changes: Vec<f64> =
         (2..values.len()).map(|row| change(step(row - 1, row) - step(row - 2, row - 1)).abs()).collect();
     changes.sort_by(f64::total_cmp);
-    let Some(usual) = changes.get((changes.len() as f64 * USUAL) as usize) else { return Vec::new() };
-    let jump = (JUMP * usual).max(LEAST_COUNTS * count);
+    let Some(usual) = changes.get((changes.len() as f64 * USUAL_CHANGE_QUANTILE) as usize) else { return Vec::new() };
+    let jump = (JUMP * usual).max(JUMP_COUNTS_MIN * count);
     let out = |row: usize| register.is_some_and(|register| !register.holds(values[row]));
-    // By how much a row is off what two rows before it make of it, and whether that is a jump.
+    // Returns true if a row is outside of the register, or jumps from the extrapolation of two earlier rows.
     let jumps = |[first, second]: [usize; 2], row: usize| {
         let rate = step(first, second) / (second - first) as f64;
         let ahead = (row - second) as f64;
         out(row) || change(step(second, row) - rate * ahead).abs() > jump
     };
-    // The first row that goes on evenly.
+    // First row from which the motion is even.
     let even = |row: &usize| !out(*row) && !out(row + 1) && !jumps([*row, row + 1], row + 2);
-    let start = (0..=RUN.min(values.len() - 3)).find(even).unwrap_or_default();
+    let start = (0..=RUN_ROWS_MAX.min(values.len() - 3)).find(even).unwrap_or_default();
     let mut bad: Vec<usize> = (0..start).collect();
     let mut good = [start, start + 1];
     let mut row = start + 2;
@@ -109,16 +110,17 @@ fn find(values: &[f64], register: Option<&Register>, count: f64) -> Vec<usize> {
             continue;
         }
         let back = |to: &usize| !jumps(good, *to) && (to + 1 == values.len() || !jumps([good[1], *to], to + 1));
-        match (row + 1..(row + RUN + 1).min(values.len())).find(back) {
+        match (row + 1..(row + RUN_ROWS_MAX + 1).min(values.len())).find(back) {
             Some(to) => {
                 bad.extend(row..to);
                 (good, row) = ([good[1], to], to + 1);
             }
-            None if row + RUN >= values.len() => {
+            None if row + RUN_ROWS_MAX >= values.len() => {
                 bad.extend(row..values.len());
                 break;
             }
-            // It does not come back: the motion goes on from there, or the readings are refused as a whole.
+            // The readings do not return: the motion continues from here, or the readings are rejected as a whole
+            // later.
             None => (good, row) = ([row, (row + 1).min(values.len() - 1)], row + 2),
         }
     }
@@ -131,18 +133,19 @@ mod tests {
 
     const TURN: f64 = 16384.0;
 
-    /// A motion to and fro over turns, in a register of a turn or without one.
+    /// Motion to and fro over turns, in a register of a turn or without one.
     fn motion(wraps: bool) -> Vec<f64> {
         let at = |row: i32| (30_000.0 * (f64::from(row) * 1e-2).sin()).round();
         (0..3000).map(|row| if wraps { at(row).rem_euclid(TURN) } else { at(row) }).collect()
     }
 
     fn found(values: &[f64]) -> Vec<usize> {
-        find(values, Register::of(values, Some(TURN)).as_ref(), 1.0)
+        find(values, Register::find(values, Some(TURN)).as_ref(), 1.0)
     }
 
+    /// Readings that jump away and return are found anywhere in the log.
     #[test]
-    fn readings_that_jump_and_come_back_are_found_wherever_they_stand() {
+    fn bad_readings_are_found_anywhere() {
         for wraps in [false, true] {
             assert_eq!(found(&motion(wraps)), Vec::<usize>::new(), "{wraps}: nothing in a good log");
             for (rows, by) in [
@@ -162,8 +165,9 @@ mod tests {
         }
     }
 
+    /// An impact, a slip and repeated readings are not bad readings.
     #[test]
-    fn a_blow_a_slip_and_readings_that_are_repeated_are_no_bad_readings() {
+    fn impact_slip_and_repeats_are_kept() {
         for every in [2, 5, 10] {
             let stale: Vec<f64> = (0..3000).map(|row| motion(false)[row / every * every]).collect();
             assert_eq!(found(&stale), Vec::<usize>::new(), "{every}");

@@ -1,5 +1,5 @@
-//! Maps: which columns of a maker's log are which quantities, and in what units. A map says what `--column` and `--unit` say,
-//! once for all logs of a kind; what is said on the command line goes before it.
+//! Column maps: quantity and unit of the columns of a manufacturer's log. A map stands for `--column` and `--unit` in
+//! all logs of a kind; the command line overrides it.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use super::units::{self, Unit};
 use report::failure::{Failure, Outcome};
 use report::input;
 
-/// The maps that come with the program.
+/// Built-in maps.
 const PRESETS: [(&str, &str); 5] = [
     ("ros2-joint-states", include_str!("../../../maps/ros2-joint-states.toml")),
     ("moteus", include_str!("../../../maps/moteus.toml")),
@@ -20,61 +20,61 @@ const PRESETS: [(&str, &str); 5] = [
     ("feetech", include_str!("../../../maps/feetech.toml")),
 ];
 
-/// A map as it stands in a file.
+/// Content of a map's file.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct MapFile {
-    /// Name in the log by name here.
+    /// Name in the log by canonical name.
     #[serde(default)]
     columns: BTreeMap<String, String>,
     /// Unit by quantity.
     #[serde(default)]
     units: BTreeMap<String, String>,
-    /// Several joints in one log, by name; the columns above are of all of them.
+    /// Several joints in one log, by name; the columns above belong to each of them.
     #[serde(default)]
     joints: BTreeMap<String, JointColumns>,
 }
 
-/// One of several joints in a log.
+/// Map of one of several joints in a log.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct JointColumns {
-    /// Its joint file or preset.
+    /// Joint file or preset.
     joint: Option<PathBuf>,
-    /// Name in the log by name here.
+    /// Name in the log by canonical name.
     columns: BTreeMap<String, String>,
     /// Unit by quantity.
     #[serde(default)]
     units: BTreeMap<String, String>,
 }
 
-/// A joint of a map with several.
+/// Joint of a map with several joints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MappedJoint {
-    /// Its name in the map.
+    /// Name in the map.
     pub name: String,
-    /// Its joint file or preset, if the map says it.
+    /// Joint file or preset, if the map states one.
     pub file: Option<PathBuf>,
 }
 
-/// Columns with their names in a log, and units.
+/// Column names and units of a log.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ColumnMap {
-    /// Pairs of a name here and one in the log.
+    /// Pairs of canonical name and name in the log.
     pub columns: Vec<(String, String)>,
-    /// Of columns under bare names.
+    /// Units of columns with bare names.
     pub units: Vec<Unit>,
 }
 
 impl ColumnMap {
-    /// Columns and units of the command line, and of a map where the command line has none; `joint` names one of its joints.
+    /// Columns and units of the command line, completed by a map; `joint` selects one of the map's joints.
     pub fn new(map: Option<&Path>, joint: Option<&str>, columns: &[(String, String)], units: &[Unit]) -> Outcome<Self> {
         let mut all = Self { columns: columns.to_vec(), units: units.to_vec() };
         let Some(path) = map else { return Ok(all) };
-        let map = of(&text(path)?, joint).map_err(|failure| failure.while_doing(path.display()))?;
+        let map = parse_joint(&text(path)?, joint).map_err(|failure| failure.while_doing(path.display()))?;
         let said = |own: &str| columns.iter().any(|(name, _)| units::quantity_of(name) == units::quantity_of(own));
         all.columns.extend(map.columns.into_iter().filter(|(own, _)| !said(own)));
-        // A column that is named with a unit of its own needs none of the map.
+        // A column renamed with a unit in its name needs no unit of the map.
         let is_there = |unit: &Unit| all.columns.iter().any(|(own, _)| own == unit.name());
         let told = |unit: &Unit| units.iter().any(|other| other.name() == unit.name());
         all.units.extend(map.units.into_iter().filter(|unit| is_there(unit) && !told(unit)));
@@ -82,8 +82,8 @@ impl ColumnMap {
     }
 }
 
-/// Reads what `--column` was given.
-pub fn renaming(text: &str) -> Result<(String, String), String> {
+/// Parses a value of `--column`.
+pub fn parse_renaming(text: &str) -> Result<(String, String), String> {
     let (own, theirs) = text.split_once('=').ok_or("write COLUMN=NAME, as in motor_counts=pos_raw")?;
     let mut names = KNOWN.iter().map(|(name, _)| *name).chain(units::bare_names()).chain([DIFFERENCE]);
     if names.any(|name| name == own) && !theirs.is_empty() {
@@ -93,7 +93,7 @@ pub fn renaming(text: &str) -> Result<(String, String), String> {
     Err(format!("`{own}` is none of {}", names.join(", ")))
 }
 
-/// The joints of a map, in the order of their names; none of a map of one joint.
+/// Joints of a map in order of their names; empty for a map of one joint.
 pub fn joints(map: Option<&Path>) -> Outcome<Vec<MappedJoint>> {
     let Some(path) = map else { return Ok(Vec::new()) };
     let file = parse(&text(path)?).map_err(|failure| failure.while_doing(path.display()))?;
@@ -124,11 +124,11 @@ fn parse(text: &str) -> Outcome<MapFile> {
         let line = error.span().map_or(0, |span| text[..span.start].lines().count().max(1));
         refused(&format!("line {line}: {}", error.message()))
     })?;
-    // Columns may stand on the command line.
+    // The columns may be on the command line.
     if file.columns.is_empty() && file.units.is_empty() && file.joints.is_empty() {
         return Err(refused("it has neither [columns] nor [joints.NAME.columns]"));
     }
-    // A name becomes that of a folder.
+    // The name becomes a folder's name.
     let is_name = |name: &str| {
         !name.is_empty() && name.chars().all(|letter| letter.is_ascii_alphanumeric() || "_-".contains(letter))
     };
@@ -138,8 +138,8 @@ fn parse(text: &str) -> Outcome<MapFile> {
     }
 }
 
-/// A map out of its text, of one of its joints if it has several: what is said of that one goes before what is said of all.
-fn of(text: &str, joint: Option<&str>) -> Outcome<ColumnMap> {
+/// Map from its text, of one of its joints if it has several; that joint's entries override the common ones.
+fn parse_joint(text: &str, joint: Option<&str>) -> Outcome<ColumnMap> {
     let mut file = parse(text)?;
     let names: Vec<&str> = file.joints.keys().map(String::as_str).collect();
     let names = names.join(", ");
@@ -160,7 +160,7 @@ fn of(text: &str, joint: Option<&str>) -> Outcome<ColumnMap> {
     };
     file.columns.extend(own.columns);
     file.units.extend(own.units);
-    let columns = file.columns.iter().map(|(own, theirs)| renaming(&format!("{own}={theirs}")));
+    let columns = file.columns.iter().map(|(own, theirs)| parse_renaming(&format!("{own}={theirs}")));
     let units = file.units.iter().map(|(quantity, unit)| units::parse(&format!("{quantity}={unit}")));
     Ok(ColumnMap {
         columns: columns.collect::<Result<_, _>>().map_err(|why| refused(&format!("[columns]: {why}")))?,
@@ -172,19 +172,21 @@ fn of(text: &str, joint: Option<&str>) -> Outcome<ColumnMap> {
 mod tests {
     use super::*;
 
+    /// Every built-in map is readable and documented.
     #[test]
-    fn every_map_that_comes_along_can_be_read_and_is_documented() {
+    fn preset_maps_are_read_and_documented() {
         let page = include_str!("../../../docs/reference/identify.md");
         for (name, text) in PRESETS {
-            let map = of(text, None).unwrap_or_else(|failure| panic!("{name}: {failure}"));
+            let map = parse_joint(text, None).unwrap_or_else(|failure| panic!("{name}: {failure}"));
             assert!(map.columns.iter().any(|(own, _)| own == "motor_angle"), "{name}");
             assert!(text.contains("# Source: "), "{name}");
             assert!(page.contains(&format!("`{name}`")), "{name}");
         }
     }
 
+    /// The command line overrides a map.
     #[test]
-    fn the_command_line_goes_before_a_map() {
+    fn command_line_overrides_map() {
         let columns = [("output_counts".to_owned(), "raw".to_owned())];
         let units = [units::parse("motor_angle=deg").expect("a unit")];
         let map = ColumnMap::new(Some(Path::new("moteus")), None, &columns, &units).expect("a preset");
@@ -193,8 +195,9 @@ mod tests {
         assert!(map.units.iter().all(|unit| unit.name() != "output_angle"));
     }
 
+    /// An invalid map is rejected with the place of the fault.
     #[test]
-    fn a_map_that_is_none_is_refused_with_its_place() {
+    fn invalid_map_is_rejected_with_place() {
         for (text, why) in [
             ("[columns]\nspeed = \"v\"\n", "[columns]: `speed` is none of"),
             ("[columns]\nmotor_angle = 3\n", "line 2"),
@@ -202,21 +205,24 @@ mod tests {
             ("[column]\n", "line 1"),
             ("", "columns"),
         ] {
-            let refused = of(text, None).expect_err(text);
+            let refused = parse_joint(text, None).expect_err(text);
             assert!(refused.message().contains(why), "{text}: {refused}");
         }
     }
 
+    /// A joint of a map has its own and the common columns.
     #[test]
-    fn a_joint_of_several_has_its_own_columns_and_those_of_all() {
+    fn map_joint_inherits_common_columns() {
         let text = "[columns]\ntime_s = \"t\"\n[joints.knee.columns]\nmotor_counts = \"position[0]\"\n[joints.hip.columns]\nmotor_counts \
                     = \"position[2]\"\n";
-        let map = of(text, Some("hip")).expect("a joint");
+        let map = parse_joint(text, Some("hip")).expect("a joint");
         let pair = |own: &str, theirs: &str| (own.to_owned(), theirs.to_owned());
         assert_eq!(map.columns, [pair("motor_counts", "position[2]"), pair("time_s", "t")]);
-        assert!(of(text, None).expect_err("two joints").message().contains("several joints: hip, knee"));
-        assert!(of(text, Some("toe")).expect_err("no toe").help().is_some_and(|help| help.contains("hip, knee")));
-        let outside = of("[joints.\"../x\".columns]\nmotor_counts = \"a\"\n", Some("../x"));
+        assert!(parse_joint(text, None).expect_err("two joints").message().contains("several joints: hip, knee"));
+        assert!(
+            parse_joint(text, Some("toe")).expect_err("no toe").help().is_some_and(|help| help.contains("hip, knee"))
+        );
+        let outside = parse_joint("[joints.\"../x\".columns]\nmotor_counts = \"a\"\n", Some("../x"));
         assert!(outside.expect_err("a folder elsewhere").message().contains("may have letters"));
     }
 }

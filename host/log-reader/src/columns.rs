@@ -2,11 +2,11 @@
 
 use report::failure::{Failure, Outcome};
 
-/// Names to write in the first line.
+/// Help on the first line of a log.
 pub const HEADER_HELP: &str = "the first line names the columns: time_s,motor_counts,output_counts,motor_torque_N_m and, if it \
                            was measured, output_torque_N_m; --column motor_counts=NAME takes another name";
 
-/// The name of each column, and the names it may have in a log.
+/// Names of each column: the canonical one, and its aliases in logs.
 pub const KNOWN: [(&str, &[&str]); 10] = [
     ("time_s", &[]),
     ("time_ms", &[]),
@@ -20,55 +20,55 @@ pub const KNOWN: [(&str, &[&str]); 10] = [
     ("output_torque_N_m", &[]),
 ];
 
-/// Columns of time; the first one that is there is used.
+/// Columns of time; the first one present is used.
 pub const TIMES: [&str; 3] = ["time_s", "time_ms", "time_us"];
 
 /// Columns of the motor's encoder, counts before angles.
 pub const MOTOR: [&str; 2] = ["motor_counts", "motor_angle_rad"];
 
-/// Columns of the output's encoder, likewise.
+/// Columns of the output's encoder, counts before angles.
 pub const OUTPUT: [&str; 2] = ["output_counts", "output_angle_rad"];
 
-/// Column of the control period's number, which tells the times of rows whose stamps repeat.
+/// Column of the number of the control period; gives the times of rows with repeated stamps.
 pub const PERIOD: &str = "period";
 
-/// Column of the output less the motor, which slow logs may have in place of the motor's.
+/// Column of the output less the motor, a replacement for the motor's column in slow logs.
 pub const DIFFERENCE: &str = "output_less_motor_counts";
 
 /// Columns by name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Columns {
     names: Vec<String>,
-    /// One list for each name.
+    /// Values of each column.
     values: Vec<Vec<f64>>,
-    /// Number of each row's line or message.
+    /// Line or message number of each row.
     places: Vec<usize>,
     /// Word for a row.
     row: &'static str,
     /// Changes to the rows, a sentence each.
-    told: Vec<String>,
-    /// Columns whose unit was stated.
+    notes: Vec<String>,
+    /// Columns with a stated unit.
     stated: Vec<String>,
 }
 
 impl Columns {
-    /// Nothing yet, in rows that are called so.
-    pub fn of(row: &'static str) -> Self {
-        Self { names: Vec::new(), values: Vec::new(), places: Vec::new(), row, told: Vec::new(), stated: Vec::new() }
+    /// Empty columns; `row` is the word for a row in messages.
+    pub fn new(row: &'static str) -> Self {
+        Self { names: Vec::new(), values: Vec::new(), places: Vec::new(), row, notes: Vec::new(), stated: Vec::new() }
     }
 
-    /// The same columns without their values.
-    pub fn heads(&self) -> Self {
-        Self { names: self.names.clone(), ..Self::of(self.row) }
+    /// Names of the columns, without rows.
+    pub fn without_rows(&self) -> Self {
+        Self { names: self.names.clone(), ..Self::new(self.row) }
     }
 
-    /// Memory that its names and values take [bytes].
+    /// Memory of names and values [bytes].
     pub fn size(&self) -> u64 {
         let names: usize = self.names.iter().map(|name| name.len() + size_of::<String>() + size_of::<Vec<f64>>()).sum();
         (names + size_of::<f64>() * (1 + self.names.len()) * self.places.len()) as u64
     }
 
-    /// One more row, the first of which gives the names; `false` if it has other ones.
+    /// Adds a row; the first row gives the names. Returns false for a row with other names.
     pub fn push(&mut self, place: usize, numbers: &[(String, f64)]) -> bool {
         if self.places.is_empty() {
             self.names = numbers.iter().map(|(name, _)| name.clone()).collect();
@@ -82,20 +82,20 @@ impl Columns {
         true
     }
 
-    /// Under the names that are known here.
+    /// Renames columns of the log to canonical names.
     pub fn renamed(mut self, renamed: &[(String, String)]) -> Outcome<Self> {
         for (own, theirs) in renamed {
             let Some(place) = self.names.iter().position(|name| name == theirs) else {
                 return Err(self.missing(theirs));
             };
-            // A column of that name in the log is not the one that was meant.
+            // A column of that name in the log is hidden: another column was chosen for it.
             self.names.iter_mut().filter(|name| *name == own).for_each(|name| name.insert(0, '~'));
             self.names[place].clone_from(own);
         }
         Ok(self)
     }
 
-    /// Multiplies a column and gives it another name, in place of one that has it.
+    /// Multiplies a column and renames it, in place of a column with the new name.
     pub fn scale(&mut self, name: &str, new_name: &str, by: f64) {
         self.names.iter_mut().filter(|known| *known == new_name).for_each(|known| known.insert(0, '~'));
         if let Some(place) = self.names.iter().position(|known| known == name) {
@@ -105,32 +105,32 @@ impl Columns {
         }
     }
 
-    /// Whether the unit of a column was stated.
-    pub fn is_stated(&self, name: &str) -> bool {
+    /// Returns true if the unit of a column was stated.
+    pub fn is_unit_stated(&self, name: &str) -> bool {
         self.stated.iter().any(|stated| stated == name)
     }
 
-    /// Notes what was done to the rows, for the report.
-    pub fn tell(&mut self, what: String) {
-        self.told.push(what);
+    /// Adds a note on a change to the rows, for the report.
+    pub fn add_note(&mut self, what: String) {
+        self.notes.push(what);
     }
 
-    /// Sentences on what was done to the rows.
-    pub fn told(&self) -> &[String] {
-        &self.told
+    /// Notes on changes to the rows.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
-    /// A failure with what was done to the rows before, which may be its cause.
-    pub fn explain(&self, failure: Failure) -> Failure {
-        if self.told.is_empty() {
+    /// Adds the notes on the rows to a failure, as possible causes.
+    pub fn with_notes(&self, failure: Failure) -> Failure {
+        if self.notes.is_empty() {
             return failure;
         }
         let help = failure.full_help().map_or_else(String::new, |help| format!("{help}\n"));
-        failure.with_help(format!("{help}before that: {}", self.told.join(" ")))
+        failure.with_help(format!("{help}before that: {}", self.notes.join(" ")))
     }
 
-    /// Keeps some of the rows.
-    pub fn keep(&mut self, keep: &[bool]) {
+    /// Keeps the rows marked true.
+    pub fn retain_rows(&mut self, keep: &[bool]) {
         let kept = |row: usize| keep.get(row).copied().unwrap_or_default();
         for values in &mut self.values {
             let mut row = 0;
@@ -146,8 +146,8 @@ impl Columns {
         });
     }
 
-    /// Puts values under a name, in place of those that have it.
-    pub fn put(&mut self, name: &str, values: Vec<f64>) {
+    /// Sets the values of a column, replacing those of a column with this name.
+    pub fn set(&mut self, name: &str, values: Vec<f64>) {
         match self.names.iter().position(|known| known == name) {
             Some(place) => self.values[place] = values,
             None => {
@@ -157,26 +157,27 @@ impl Columns {
         }
     }
 
-    /// Takes the name away from a column.
-    pub fn remove(&mut self, name: &str) {
+    /// Hides a column by renaming it.
+    pub fn hide(&mut self, name: &str) {
         self.names.iter_mut().filter(|known| *known == name).for_each(|known| known.insert(0, '~'));
     }
 
-    /// Returns whether a row has all values of the row before.
+    /// Returns true if a row equals the row before in all columns.
     pub fn is_repeated(&self, row: usize) -> bool {
         let same =
             |values: &Vec<f64>| values[row] == values[row - 1] || (values[row].is_nan() && values[row - 1].is_nan());
         self.values.iter().all(same)
     }
 
-    /// Leaves out rows in which a needed column is empty. Of each list of columns the first that is there is needed, if there is any.
-    pub fn leave_out_incomplete(&mut self, needed: &[&[&str]]) -> Outcome<()> {
+    /// Removes rows with an empty value in a needed column. Of each list of columns the first one present, if any, is
+    /// needed.
+    pub fn remove_incomplete(&mut self, needed: &[&[&str]]) -> Outcome<()> {
         let places: Vec<usize> =
-            needed.iter().filter_map(|columns| self.place_of(columns).map(|(_, place)| place)).collect();
-        // Text that is no number is no missing value.
+            needed.iter().filter_map(|columns| self.first_index(columns).map(|(_, place)| place)).collect();
+        // Text that is no number is an error, not a missing value.
         for place in &places {
             if let Some(row) = self.values[*place].iter().position(|value| value.is_infinite()) {
-                return Err(self.no_number(row, &self.names[*place]));
+                return Err(self.not_finite(row, &self.names[*place]));
             }
         }
         let is_empty = |place: usize, row: usize| self.values[place][row].is_nan();
@@ -197,22 +198,22 @@ impl Columns {
                  times; values are not carried over from other times, which would feign lost motion",
             ));
         }
-        self.tell(format!(
+        self.add_note(format!(
             "{} of {rows} rows were left out, since a value is missing: {}.",
             rows - left,
             empty.join(", ")
         ));
-        self.keep(&keep);
+        self.retain_rows(&keep);
         Ok(())
     }
 
-    /// Whether motor, output and torque are there.
-    pub fn will_do(&self) -> bool {
-        self.will_do_with([true; 2])
+    /// Returns true if motor, output and torque are present.
+    pub fn has_required(&self) -> bool {
+        self.has_required_of([true; 2])
     }
 
-    /// The same, with motor and output as far as each is needed.
-    pub fn will_do_with(&self, [motor, output]: [bool; 2]) -> bool {
+    /// Returns true if the torque and the needed ones of motor and output are present.
+    pub fn has_required_of(&self, [motor, output]: [bool; 2]) -> bool {
         let has = |wanted: &[&str]| {
             let all = KNOWN.iter().filter(|(name, _)| wanted.contains(name));
             all.flat_map(|(name, others)| others.iter().chain([name])).any(|name| self.names().any(|own| own == *name))
@@ -223,12 +224,12 @@ impl Columns {
             && (has(&["motor_torque_N_m"]) || bare("motor_torque"))
     }
 
-    /// Whether both encoders are there as counts.
+    /// Returns true if both encoders are present as counts.
     pub fn have_counts(&self) -> bool {
         ["motor_counts", "output_counts"].iter().all(|wanted| self.names().any(|own| own == *wanted))
     }
 
-    /// Names in their order.
+    /// Names in order of the columns.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.names.iter().map(String::as_str)
     }
@@ -238,7 +239,7 @@ impl Columns {
         format!("{} {}", self.row, self.places.get(row).copied().unwrap_or_default())
     }
 
-    /// Time in seconds, in whichever unit it stands.
+    /// Time, converted from its unit [s].
     pub fn time(&self) -> Outcome<Vec<f64>> {
         let (name, mut values) = self.named(&TIMES)?;
         let second = match name {
@@ -250,7 +251,7 @@ impl Columns {
         Ok(values)
     }
 
-    /// Time from the first row on [s].
+    /// Time since the first row [s].
     pub fn time_from_start(&self) -> Outcome<Vec<f64>> {
         let mut time = self.time()?;
         let start = time.first().copied().unwrap_or_default();
@@ -258,21 +259,21 @@ impl Columns {
         Ok(time)
     }
 
-    /// The values of the first of these columns that is there, by whichever of its names, and which one it is.
+    /// Canonical name and values of the first of these columns present, under any alias.
     pub fn named<'n>(&self, columns: &[&'n str]) -> Outcome<(&'n str, Vec<f64>)> {
         self.first_of(columns)?.ok_or_else(|| self.missing(columns.first().copied().unwrap_or_default()))
     }
 
-    /// The same; nothing if none of them is there.
+    /// Canonical name and values of the first of these columns present; `None` without one.
     pub fn first_of<'n>(&self, columns: &[&'n str]) -> Outcome<Option<(&'n str, Vec<f64>)>> {
-        match self.place_of(columns) {
-            Some((column, place)) => Ok(self.maybe(&self.names[place])?.map(|values| (column, values))),
+        match self.first_index(columns) {
+            Some((column, place)) => Ok(self.finite(&self.names[place])?.map(|values| (column, values))),
             None => Ok(None),
         }
     }
 
-    /// The first of these columns that is there, by whichever of its names, and where it stands.
-    fn place_of<'n>(&self, columns: &[&'n str]) -> Option<(&'n str, usize)> {
+    /// Canonical name and index of the first of these columns present, under any alias.
+    fn first_index<'n>(&self, columns: &[&'n str]) -> Option<(&'n str, usize)> {
         columns.iter().find_map(|&column| {
             let others = KNOWN.iter().find(|(name, _)| *name == column).map_or(&[][..], |(_, others)| *others);
             let mut names = std::iter::once(column).chain(others.iter().copied());
@@ -280,15 +281,15 @@ impl Columns {
         })
     }
 
-    /// The name under which the first of these columns stands in the log.
+    /// Name in the log of the first of these columns present.
     pub fn name_of(&self, columns: &[&str]) -> Option<&str> {
-        self.place_of(columns).map(|(_, place)| self.names[place].as_str())
+        self.first_index(columns).map(|(_, place)| self.names[place].as_str())
     }
 
-    /// The refusal of a log with one encoder only, with what that one can tell.
-    pub fn without_encoder(&self, what: &str) -> Failure {
+    /// Failure for a log with a single encoder, with the limits of such a log.
+    pub fn missing_encoder(&self, what: &str) -> Failure {
         let counts = format!("{what}_counts");
-        // A column of the other encoder is no misspelt one of this.
+        // A column of the other encoder is not a misspelling of this one.
         let strangers =
             self.names().filter(|name| KNOWN.iter().all(|(known, others)| known != name && !others.contains(name)));
         if joint_file::nearest(&counts, strangers).is_some() {
@@ -318,23 +319,23 @@ impl Columns {
         Failure::new(format!("there is no column `{wanted}`{there}")).with_help(HEADER_HELP)
     }
 
-    /// The values under a name as they are.
+    /// Values under a name, unchecked.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         let place = self.names.iter().position(|known| known == name)?;
         self.values.get(place).map(Vec::as_slice)
     }
 
-    /// The values under a name, all of them finite.
-    pub fn maybe(&self, name: &str) -> Outcome<Option<Vec<f64>>> {
+    /// Values under a name; fails unless all are finite.
+    pub fn finite(&self, name: &str) -> Outcome<Option<Vec<f64>>> {
         let Some(place) = self.names.iter().position(|known| known == name) else { return Ok(None) };
         let values = &self.values[place];
         match values.iter().position(|value| !value.is_finite()) {
-            Some(row) => Err(self.no_number(row, name)),
+            Some(row) => Err(self.not_finite(row, name)),
             None => Ok(Some(values.clone())),
         }
     }
 
-    fn no_number(&self, row: usize, name: &str) -> Failure {
+    fn not_finite(&self, row: usize, name: &str) -> Failure {
         Failure::new(format!("{} has no finite number for `{name}`", self.place(row)))
             .with_help("write a number with a point in every row, or cut the log there")
     }

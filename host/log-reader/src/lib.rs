@@ -1,9 +1,9 @@
-//! Logs of joints as users bring them: text and MCAP files as columns of numbers in SI, row by row.
+//! Logs of joints in users' formats: text and MCAP files as columns of numbers in SI, row by row.
 //!
-//! `log_file` reads a file into `columns`, text by `text_table`, an MCAP log by `mcap_file`, `mcap_log` and `ros_message`,
-//! message by message as `numbers`; `units` and `column_map` say what the columns are. `time_stamps` gives rows times of their
-//! own, `bad_readings` leaves out what no encoder gives, and a `register` joins counts that begin anew. `readings` are an encoder's counts or
-//! angles at `even_times`, whose scatter is `noise`.
+//! `log_file` reads a file into `columns`: text through `text_table`, an MCAP log through `mcap_file`, `mcap_log` and
+//! `ros_message`, message by message as `numbers`. `units` and `column_map` name the columns and their units.
+//! `time_stamps` gives each row its own time, `bad_readings` removes readings that no encoder gives, and a `register`
+//! joins wrapped counts. `readings` are an encoder's counts or angles at `even_times`; `noise` is their variance.
 
 pub mod bad_readings;
 pub mod column_map;

@@ -1,4 +1,4 @@
-//! A log's file, text in columns or MCAP, read into columns under the names that are known here, in SI.
+//! File of a log, text in columns or MCAP, read into canonical columns in SI.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -10,59 +10,59 @@ use report::failure::{Failure, Outcome};
 use report::input;
 use report::log::REMARKS;
 
-/// Reads a file by what it is; `will_do` says whether columns are those that are wanted, `ratio` is motor over output.
+/// Reads a log of any kind; `accepts` accepts its columns, `ratio` is motor over output.
 pub fn read(
     path: &Path,
     topic: Option<&str>,
     map: &ColumnMap,
     ratio: f64,
-    will_do: impl Fn(&Columns) -> bool,
+    accepts: impl Fn(&Columns) -> bool,
 ) -> Outcome<Columns> {
-    LogFile::open(path)?.columns(topic, map, ratio, will_do)
+    LogFile::open(path)?.columns(topic, map, ratio, accepts)
 }
 
-/// A log's file.
+/// File of a log.
 pub struct LogFile {
     path: PathBuf,
     bytes: Vec<u8>,
 }
 
 impl LogFile {
-    /// Reads it.
+    /// Reads the file's bytes.
     pub fn open(path: &Path) -> Outcome<Self> {
         let bytes = input::bytes(path, input::LARGEST_RECORDED).map_err(|why| unreadable(path, &why))?;
         Ok(Self { path: path.to_owned(), bytes })
     }
 
-    /// Where it is.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// What the program that wrote it said of it, if it is one of ours.
+    /// Remarks of the program that wrote the log; empty unless it is one of ours.
     pub fn remarks(&self) -> BTreeMap<String, String> {
         if mcap_log::is_mcap(&self.bytes) { mcap_file::metadata(&self.bytes, REMARKS) } else { BTreeMap::new() }
     }
 
-    /// The columns of a topic of MCAP just as it has them.
+    /// Columns of an MCAP topic under their own names.
     pub fn topic(&self, topic: &str) -> Outcome<Columns> {
         mcap_log::read(&self.bytes, Some(topic), |_| true, |_| true)
     }
 
-    /// Columns by what it is, under the names that are known here.
+    /// Canonical columns of the file.
     pub fn columns(
         &self,
         topic: Option<&str>,
         map: &ColumnMap,
         ratio: f64,
-        will_do: impl Fn(&Columns) -> bool,
+        accepts: impl Fn(&Columns) -> bool,
     ) -> Outcome<Columns> {
         let path = self.path.as_path();
         let columns = if mcap_log::is_mcap(&self.bytes) {
-            let heads = |columns: &Columns| columns.heads().renamed(&map.columns);
+            let heads = |columns: &Columns| columns.without_rows().renamed(&map.columns);
             let [has_what_is_wanted, has_counts]: [&dyn Fn(&Columns) -> bool; 2] = [
-                &|columns| heads(columns).is_ok_and(|own| will_do(&own)),
-                // The truth of a simulated run is logged too: what encoders gave goes before it.
+                &|columns| heads(columns).is_ok_and(|own| accepts(&own)),
+                // A simulated run also logs the true angles; a topic with encoder counts takes precedence.
                 &|columns| heads(columns).is_ok_and(|own| own.have_counts()),
             ];
             mcap_log::read(&self.bytes, topic, has_what_is_wanted, has_counts)
@@ -86,7 +86,7 @@ fn unreadable(path: &Path, why: &str) -> Failure {
 }
 
 fn under_known_names(columns: Columns, map: &ColumnMap, ratio: f64) -> Outcome<Columns> {
-    // Without a header columns are called by their numbers.
+    // Without a header the columns' names are their numbers.
     if map.columns.is_empty() && columns.names().all(|name| name.parse::<usize>().is_ok()) {
         let message = format!("the log has no header: which of its {} columns are what?", columns.names().count());
         return Err(Failure::new(message).with_help(

@@ -1,5 +1,5 @@
-//! Columns out of an MCAP log: the numbers of one topic, each under its path, ROS 2 messages in CDR or JSON. Which topic is
-//! told, or is the one that has what is wanted; topics are not put together.
+//! Columns of an MCAP log: the numbers of one topic, each under its path, from ROS 2 messages in CDR or JSON. The topic
+//! is stated, or is the only one with the wanted columns; topics are not merged.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -8,45 +8,45 @@ use mcap::Channel;
 use serde_json::Value;
 
 use super::columns::Columns;
-use super::mcap_file::{self, Broken, Message};
+use super::mcap_file::{self, Message, ReadEnd};
 use super::numbers::{self, Numbers};
-use super::ros_message::Form;
+use super::ros_message::MessageDefinition;
 use report::failure::{Failure, Outcome};
 
-/// What every MCAP file begins with.
+/// First bytes of every MCAP file.
 const MAGIC: &[u8] = b"\x89MCAP";
-/// Topics and fields that a message names at most.
-const NAMED: usize = 12;
-/// Columns may take so many times the file's size and some more: other topics than those of a joint may pack much better.
-const MOST_MEMORY: u64 = 256;
-const SOME: u64 = 64 << 20;
+/// Topics and fields named in a message at most.
+const NAMES_SHOWN: usize = 12;
+/// Memory of columns over the file's size, plus MEMORY_BASE bytes: other topics than a joint's may be packed much tighter.
+const MEMORY_FACTOR_MAX: u64 = 256;
+const MEMORY_BASE: u64 = 64 << 20;
 
-/// Whether a file is one.
+/// Returns true for an MCAP file.
 pub fn is_mcap(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
 }
 
-/// How messages of a channel are read.
+/// Decoder of a channel's messages.
 enum Reader {
-    Ros(Rc<Form>),
+    Ros(Rc<MessageDefinition>),
     Json,
-    /// Not at all, for a reason.
+    /// Unreadable, with the reason.
     Unknown(String),
 }
 
-/// Forms by the number of their schema.
-type Forms = BTreeMap<u16, Result<Rc<Form>, String>>;
+/// Message definitions by the number of their schema.
+type MessageDefinitions = BTreeMap<u16, Result<Rc<MessageDefinition>, String>>;
 
 impl Reader {
-    /// Channels of one schema share the form that is read from it.
-    fn of(channel: &Channel<'_>, forms: &mut Forms) -> Self {
+    /// Decoder of a channel; channels of one schema share its definition.
+    fn for_channel(channel: &Channel<'_>, forms: &mut MessageDefinitions) -> Self {
         let schema = channel.schema.as_ref();
         let form = schema.map_or("", |schema| schema.encoding.as_str());
         match (channel.message_encoding.as_str(), form) {
             ("json", _) => Self::Json,
             ("cdr", "ros2msg") => {
                 let (id, text) = schema.map_or((0, &[][..]), |schema| (schema.id, &schema.data));
-                let read = || Form::read(&String::from_utf8_lossy(text)).map(Rc::new);
+                let read = || MessageDefinition::read(&String::from_utf8_lossy(text)).map(Rc::new);
                 match forms.entry(id).or_insert_with(read) {
                     Ok(form) => Self::Ros(Rc::clone(form)),
                     Err(why) => Self::Unknown(why.clone()),
@@ -76,7 +76,7 @@ fn flatten(value: &Value, path: String, numbers: &mut Numbers) -> Result<(), Str
         Value::Bool(set) => numbers.push(path, f64::from(u8::from(*set))),
         Value::Array(list) => {
             let mut places = list.iter().enumerate();
-            places.try_for_each(|(place, value)| flatten(value, numbers::place(&path, place)?, numbers))
+            places.try_for_each(|(place, value)| flatten(value, numbers::element(&path, place)?, numbers))
         }
         Value::Object(map) => {
             map.iter().try_for_each(|(name, value)| flatten(value, numbers::field(&path, name)?, numbers))
@@ -85,17 +85,18 @@ fn flatten(value: &Value, path: String, numbers: &mut Numbers) -> Result<(), Str
     }
 }
 
-/// Reads the topic that is named, or else the only one whose columns will do; among several the only one that is better.
+/// Reads the stated topic, or else the only one accepted by `accepts`; of several accepted topics the only one
+/// preferred by `is_better`.
 pub fn read(
     bytes: &[u8],
     topic: Option<&str>,
-    will_do: impl Fn(&Columns) -> bool,
+    accepts: impl Fn(&Columns) -> bool,
     is_better: impl Fn(&Columns) -> bool,
 ) -> Outcome<Columns> {
     let mut topics: BTreeMap<String, Topic> = BTreeMap::new();
-    let (mut forms, mut messages) = (Forms::new(), 0);
-    let mut room = MOST_MEMORY.saturating_mul(bytes.len() as u64).saturating_add(SOME);
-    let mut take = |message: &Message<'_>| {
+    let (mut forms, mut messages) = (MessageDefinitions::new(), 0);
+    let mut room = MEMORY_FACTOR_MAX.saturating_mul(bytes.len() as u64).saturating_add(MEMORY_BASE);
+    let mut on_message = |message: &Message<'_>| {
         messages += 1;
         let name = &message.channel.topic;
         if !topics.contains_key(name) {
@@ -105,19 +106,21 @@ pub fn read(
         }
         let Some(known) = topics.get_mut(name) else { return Ok(()) };
         let before = known.columns.size();
-        known.take(message);
+        known.add_message(message);
         room = room.checked_sub(known.columns.size() - before).ok_or_else(|| {
-            Failure::new(format!("the numbers of its topics take more than {MOST_MEMORY} times the log's own size"))
-                .with_help("name the topic with --topic, or write a log of that topic alone")
+            Failure::new(format!(
+                "the numbers of its topics take more than {MEMORY_FACTOR_MAX} times the log's own size"
+            ))
+            .with_help("name the topic with --topic, or write a log of that topic alone")
         })?;
         Ok(())
     };
-    mcap_file::read(bytes, &mut take).map_err(|broken| match broken {
-        Broken::Damaged(why) => {
+    mcap_file::read(bytes, &mut on_message).map_err(|broken| match broken {
+        ReadEnd::Damaged(why) => {
             Failure::new(format!("the MCAP log is damaged or cut off after {messages} messages: {why}"))
                 .with_help("`mcap recover` keeps what can be read of it")
         }
-        Broken::Refused(failure) => failure,
+        ReadEnd::Callback(failure) => failure,
     })?;
     let chosen = match topic {
         Some(name) => topics.remove(name).ok_or_else(|| {
@@ -127,14 +130,14 @@ pub fn read(
         })?,
         None => {
             let good: Vec<&String> =
-                topics.iter().filter(|(_, topic)| will_do(&topic.columns)).map(|(name, _)| name).collect();
+                topics.iter().filter(|(_, topic)| accepts(&topic.columns)).map(|(name, _)| name).collect();
             let better: Vec<&String> = good.iter().copied().filter(|name| is_better(&topics[*name].columns)).collect();
             match if better.len() == 1 { better } else { good }.as_slice() {
                 [one] => {
                     let one = (*one).clone();
                     topics.remove(&one).ok_or_else(|| Failure::new("the log is empty"))?
                 }
-                // The only topic there is says best itself what it lacks.
+                // A single topic is read anyway: its failure names the missing columns.
                 [] if topics.len() == 1 => {
                     topics.pop_first().map(|(_, topic)| topic).ok_or_else(|| Failure::new("the log is empty"))?
                 }
@@ -154,40 +157,46 @@ pub fn read(
             }
         }
     };
-    chosen.finish()
+    chosen.into_columns()
 }
 
-/// Topics with their numbers, as far as there is room.
+/// Topics with their numbers, up to the limit.
 fn list(topics: &BTreeMap<String, Topic>) -> String {
     if topics.is_empty() {
         return "the log has no messages".to_owned();
     }
-    let one = |(name, topic): (&String, &Topic)| match &topic.trouble {
+    let one = |(name, topic): (&String, &Topic)| match &topic.defect {
         Some(why) => format!("{name} (cannot be read: {why})"),
-        None => format!("{name} ({})", topic.columns.names().take(NAMED).collect::<Vec<_>>().join(", ")),
+        None => format!("{name} ({})", topic.columns.names().take(NAMES_SHOWN).collect::<Vec<_>>().join(", ")),
     };
-    format!("the log has {}", topics.iter().take(NAMED).map(one).collect::<Vec<_>>().join("; "))
+    format!("the log has {}", topics.iter().take(NAMES_SHOWN).map(one).collect::<Vec<_>>().join("; "))
 }
 
-/// What was read of a topic.
+/// Content of a topic.
 struct Topic {
     name: String,
     reader: Reader,
     columns: Columns,
-    /// Why it cannot be used.
-    trouble: Option<String>,
+    /// Reason why the topic is unusable.
+    defect: Option<String>,
     messages: usize,
 }
 
 impl Topic {
-    fn new(channel: &Channel<'_>, forms: &mut Forms) -> Self {
+    fn new(channel: &Channel<'_>, forms: &mut MessageDefinitions) -> Self {
         let name = channel.topic.clone();
-        Self { reader: Reader::of(channel, forms), name, columns: Columns::of("message"), trouble: None, messages: 0 }
+        Self {
+            reader: Reader::for_channel(channel, forms),
+            name,
+            columns: Columns::new("message"),
+            defect: None,
+            messages: 0,
+        }
     }
 
-    fn take(&mut self, message: &Message<'_>) {
+    fn add_message(&mut self, message: &Message<'_>) {
         self.messages += 1;
-        if self.trouble.is_some() {
+        if self.defect.is_some() {
             return;
         }
         let stamped = self.reader.numbers(message.data).and_then(|mut numbers| {
@@ -196,13 +205,13 @@ impl Topic {
         });
         match stamped {
             Ok(numbers) if self.columns.push(self.messages, numbers.as_slice()) => {}
-            Ok(_) => self.trouble = Some(format!("message {} has other fields than those before it", self.messages)),
-            Err(why) => self.trouble = Some(format!("message {}: {why}", self.messages)),
+            Ok(_) => self.defect = Some(format!("message {} has other fields than those before it", self.messages)),
+            Err(why) => self.defect = Some(format!("message {}: {why}", self.messages)),
         }
     }
 
-    fn finish(self) -> Outcome<Columns> {
-        match self.trouble {
+    fn into_columns(self) -> Outcome<Columns> {
+        match self.defect {
             None => Ok(self.columns),
             Some(why) => Err(Failure::new(format!("topic `{}` cannot be read: {why}", self.name))
                 .with_help("ROS 2 messages in CDR and JSON are understood; export anything else as CSV")),
@@ -210,7 +219,7 @@ impl Topic {
     }
 }
 
-/// A message without a time of its own has that of its header, or at last the recorder's.
+/// Adds a time to a message without one: its header's, or else the recorder's.
 fn stamp(numbers: &mut Numbers, log_time: u64) -> Result<(), String> {
     if ["time_s", "time_ms", "time_us"].into_iter().any(|name| numbers.value(name).is_some()) {
         return Ok(());

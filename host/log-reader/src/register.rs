@@ -1,57 +1,57 @@
-//! Registers that an encoder counts in. A register of M counts begins anew after M: at a turn's end, or after several turns where it
-//! is wider than a turn. Its values are 0 to M - 1, or -M/2 to M/2 - 1 where they are signed. Steps between readings are known
-//! but for multiples of M: the shorter way round is taken.
+//! Registers in which an encoder counts. A register of M counts wraps after M: at the end of a turn, or after several
+//! turns if it is wider than a turn. Its values are 0 to M - 1, or -M/2 to M/2 - 1 if signed. Steps between readings
+//! are known up to multiples of M; the shorter way round is taken.
 
 use std::ops::RangeInclusive;
 
 use report::number::{ESTIMATE, TYPED};
 
-/// Registers wider than a turn have a power of two of counts, from and up to these ones.
-const BITS: RangeInclusive<u32> = 10..=32;
-/// This share of a log's readings may lie outside of a register: as many bad readings are left out.
-const OUTSIDE: f64 = 0.01;
-/// Angles that are rounded may lie beyond a register's end by this share of it.
-const ROUNDED: f64 = 1e-6;
-/// A step of this share of a register that is wider than a turn is one across its end.
-const ACROSS: f64 = 0.75;
+/// Widths of registers wider than a turn, as powers of two of counts.
+const WIDTHS: RangeInclusive<u32> = 10..=32;
+/// Largest share of readings outside of a register, equal to the share of bad readings that may be removed.
+const OUTSIDE_SHARE_MAX: f64 = 0.01;
+/// Rounding of angles beyond a register's end, as a share of the register.
+const ROUNDING: f64 = 1e-6;
+/// Step, as a share of a register wider than a turn, that crosses its end.
+const CROSSING_SHARE: f64 = 0.75;
 
 /// Register of an encoder.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Register {
-    /// Counts after which it begins anew.
+    /// Counts per wrap.
     pub counts: f64,
-    /// Its least value is -counts/2 in place of 0.
+    /// True if the least value is -counts/2 instead of 0.
     pub signed: bool,
 }
 
 impl Register {
-    /// Finds the narrowest register that holds the readings and whose end they cross; nothing for readings that go on over turns.
-    /// A register has at least the counts of a turn, if a turn is known. Readings with fractions begin anew at a turn only.
-    pub fn of(values: &[f64], turn: Option<f64>) -> Option<Self> {
+    /// Finds the narrowest register that holds the readings and whose end they cross; `None` for continuous readings. A
+    /// register has at least the counts of a turn, if a turn is known. Readings with fractions wrap at a turn only.
+    pub fn find(values: &[f64], turn: Option<f64>) -> Option<Self> {
         let whole = values.iter().all(|value| value.fract() == 0.0);
-        let powers = BITS.map(|bits| f64::from(bits).exp2());
+        let powers = WIDTHS.map(|bits| f64::from(bits).exp2());
         let wider = powers.filter(|counts| whole && turn.is_none_or(|turn| *counts > turn));
         let of_a_turn = turn.map(|turn| (turn, 0.5));
         of_a_turn
             .into_iter()
-            .chain(wider.map(|counts| (counts, ACROSS)))
+            .chain(wider.map(|counts| (counts, CROSSING_SHARE)))
             .flat_map(|(counts, across)| [false, true].map(|signed| (Self { counts, signed }, across)))
             .find(|(register, across)| register.holds_most(values) && register.is_crossed(values, *across))
             .map(|(register, _)| register)
     }
 
-    /// Returns whether the register can hold a value.
+    /// Returns true if the register can hold a value.
     pub fn holds(&self, value: f64) -> bool {
-        let (least, rounded) = (if self.signed { -0.5 * self.counts } else { 0.0 }, ROUNDED * self.counts);
+        let (least, rounded) = (if self.signed { -0.5 * self.counts } else { 0.0 }, ROUNDING * self.counts);
         (least - rounded..least + self.counts + rounded).contains(&value)
     }
 
     fn holds_most(&self, values: &[f64]) -> bool {
         let outside = values.iter().filter(|value| !self.holds(**value)).count();
-        outside as f64 <= OUTSIDE * values.len() as f64
+        outside as f64 <= OUTSIDE_SHARE_MAX * values.len() as f64
     }
 
-    /// Returns whether readings step across the end of the register.
+    /// Returns true if readings step across the end of the register.
     fn is_crossed(&self, values: &[f64], share: f64) -> bool {
         values
             .windows(2)
@@ -63,8 +63,8 @@ impl Register {
         step - self.counts * (step / self.counts).round()
     }
 
-    /// Says what it is taken for, unless it is a turn's from 0 on; `turn` is that of the encoder, if known.
-    pub fn told(&self, name: &str, turn: Option<f64>) -> Option<String> {
+    /// Note on the register, unless it is that of a turn from 0 on; `turn` are the encoder's counts per turn, if known.
+    pub fn note(&self, name: &str, turn: Option<f64>) -> Option<String> {
         let Self { counts, signed } = *self;
         if turn == Some(counts) && !signed {
             return None;
@@ -79,8 +79,8 @@ impl Register {
         ))
     }
 
-    /// Joins readings to continuous ones. Over lost samples, by the usual steps of time before each row, the encoder is expected to
-    /// have gone on as before.
+    /// Joins readings to continuous ones. Over lost samples, given as usual time steps before each row, the encoder is
+    /// assumed to keep its speed.
     pub fn join(&self, values: &mut [f64], periods_before: impl Fn(usize) -> f64) {
         let (mut last, mut before) = (values.first().copied().unwrap_or_default(), 0.0);
         for row in 1..values.len() {
@@ -98,20 +98,21 @@ impl Register {
 mod tests {
     use super::*;
 
-    /// Readings of a motion to and fro over several turns in a register.
+    /// True and wrapped readings of a motion to and fro over several turns.
     fn readings(least: f64, counts: f64) -> (Vec<f64>, Vec<f64>) {
         let truth: Vec<f64> = (0..4000).map(|row| (90_000.0 * (f64::from(row) * 2e-3).sin()).round() + 7.0).collect();
         let read = truth.iter().map(|value| (value - least).rem_euclid(counts) + least).collect();
         (truth, read)
     }
 
+    /// Registers of one or several turns, signed or not, are found and joined.
     #[test]
-    fn registers_of_a_turn_or_several_are_recognised_and_joined() {
+    fn register_is_found_and_joined() {
         for (least, counts, signed) in
             [(0.0, 16384.0, false), (-8192.0, 16384.0, true), (0.0, 65536.0, false), (-32768.0, 65536.0, true)]
         {
             let (truth, mut read) = readings(least, counts);
-            let register = Register::of(&read, Some(16384.0)).expect("it begins anew");
+            let register = Register::find(&read, Some(16384.0)).expect("it begins anew");
             assert_eq!(register, Register { counts, signed });
             register.join(&mut read, |_| 1.0);
             let apart: Vec<f64> = truth.iter().zip(&read).map(|(truth, read)| truth - read).collect();
@@ -119,11 +120,12 @@ mod tests {
         }
     }
 
+    /// Continuous readings over several turns have no register.
     #[test]
-    fn readings_that_go_on_over_turns_have_no_register() {
+    fn continuous_readings_have_no_register() {
         let (truth, _) = readings(0.0, 16384.0);
-        assert_eq!(Register::of(&truth, Some(16384.0)), None);
+        assert_eq!(Register::find(&truth, Some(16384.0)), None);
         let narrow: Vec<f64> = truth.iter().map(|value| (value / 40.0).round()).collect();
-        assert_eq!(Register::of(&narrow, Some(16384.0)), None);
+        assert_eq!(Register::find(&narrow, Some(16384.0)), None);
     }
 }

@@ -1,15 +1,16 @@
-//! Time stamps that repeat, as those of a host that receives several samples at once do. The number of the control period tells the
-//! times, or another column of time does; rows that are repeated as a whole are left out. Nothing else is guessed.
+//! Repeated time stamps, as of a host that receives several samples at once. The number of the control period or
+//! another time column gives the times; repeated rows are removed. Nothing else is guessed.
 
 use super::columns::{Columns, PERIOD, TIMES};
 use report::failure::{Failure, Outcome};
 
-/// Counters begin anew after so many.
-const COUNTERS: [f64; 3] = [256.0, 65_536.0, 4_294_967_296.0];
-/// Stamps may be off evenly counted periods by this share of the log: more is another counter.
-const OFF: f64 = 0.02;
+/// Periods after which counters wrap.
+const COUNTER_PERIODS: [f64; 3] = [256.0, 65_536.0, 4_294_967_296.0];
+/// Largest deviation of stamps from evenly counted periods, as a share of the log; beyond it the counter counts
+/// something else.
+const STAMP_DEVIATION_MAX: f64 = 0.02;
 
-/// Gives every row a time of its own where stamps repeat; refuses a log in which nothing tells the times.
+/// Gives every row its own time if stamps repeat; rejects a log without a source of the times.
 pub fn resolve(columns: &mut Columns) -> Outcome<()> {
     let time = columns.time()?;
     let repeats = time.windows(2).filter(|pair| pair[1] == pair[0]).count();
@@ -18,24 +19,24 @@ pub fn resolve(columns: &mut Columns) -> Outcome<()> {
     }
     let told = format!("{repeats} of {} rows have the time of the row before", time.len());
     if let Some(counted) = by_periods(columns, &time) {
-        columns.put(TIMES[0], counted);
-        columns.tell(format!("{told}: times are those of the control periods that `{PERIOD}` counts."));
+        columns.set(TIMES[0], counted);
+        columns.add_note(format!("{told}: times are those of the control periods that `{PERIOD}` counts."));
         return Ok(());
     }
     let used = columns.first_of(&TIMES)?.map_or(TIMES[0], |(name, _)| name);
     for other in TIMES.into_iter().filter(|name| *name != used) {
         let Some((_, values)) = columns.first_of(&[other])? else { continue };
         if values.windows(2).all(|pair| pair[1] > pair[0]) {
-            columns.remove(used);
-            columns.tell(format!("{told} in `{used}`: times are those of `{other}`."));
+            columns.hide(used);
+            columns.add_note(format!("{told} in `{used}`: times are those of `{other}`."));
             return Ok(());
         }
     }
     let keep: Vec<bool> = (0..time.len()).map(|row| row == 0 || !columns.is_repeated(row)).collect();
     let identical = keep.iter().filter(|keep| !**keep).count();
     if identical == repeats {
-        columns.keep(&keep);
-        columns.tell(format!("{told} and all its values: left out."));
+        columns.retain_rows(&keep);
+        columns.add_note(format!("{told} and all its values: left out."));
         return Ok(());
     }
     let first = (1..time.len()).find(|row| time[*row] == time[row - 1] && keep[*row]).unwrap_or_default();
@@ -52,13 +53,13 @@ pub fn resolve(columns: &mut Columns) -> Outcome<()> {
     ))
 }
 
-/// Times by the number of the control period, if that counts up evenly.
+/// Times from the number of the control period, if it counts up evenly.
 fn by_periods(columns: &Columns, time: &[f64]) -> Option<Vec<f64>> {
     let counts = |periods: &&[f64]| periods.iter().all(|period| period.fract() == 0.0 && *period >= 0.0);
     let mut periods = columns.column(PERIOD).filter(counts)?.to_vec();
     if periods.windows(2).any(|pair| pair[1] < pair[0]) {
         let most = periods.iter().copied().fold(0.0, f64::max);
-        let wraps = COUNTERS.into_iter().find(|wraps| most < *wraps)?;
+        let wraps = COUNTER_PERIODS.into_iter().find(|wraps| most < *wraps)?;
         let mut last = periods[0];
         for row in 1..periods.len() {
             let step = (periods[row] - last).rem_euclid(wraps);
@@ -81,16 +82,16 @@ fn by_periods(columns: &Columns, time: &[f64]) -> Option<Vec<f64>> {
     let counted: Vec<f64> = periods.iter().map(|period| of_time + length * (period - of_periods)).collect();
     let off = counted.iter().zip(time).map(|(counted, time)| (counted - time).abs()).fold(0.0, f64::max);
     let duration = time.last().zip(time.first()).map_or(0.0, |(last, first)| last - first);
-    (length > 0.0 && off < OFF * duration).then_some(counted)
+    (length > 0.0 && off < STAMP_DEVIATION_MAX * duration).then_some(counted)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Rows that a host stamps in groups of four: columns of a name each, with their values by row.
+    /// Rows stamped in groups of four, with additional columns by row.
     fn log(more: &[(&str, &dyn Fn(usize) -> f64)]) -> Columns {
-        let mut columns = Columns::of("line");
+        let mut columns = Columns::new("line");
         for row in 0..4000 {
             let mut numbers =
                 vec![("time_s".to_owned(), (row / 4) as f64 * 4e-4), ("motor_counts".to_owned(), 3.0 * row as f64)];
@@ -100,29 +101,32 @@ mod tests {
         columns
     }
 
+    /// A period counter gives the times of repeated stamps, even if it wraps.
     #[test]
-    fn a_counter_of_periods_tells_the_times_even_if_it_begins_anew() {
+    fn period_counter_gives_times() {
         for counter in [&(|row: usize| (row + 7) as f64) as &dyn Fn(usize) -> f64, &|row| (row % 256) as f64] {
             let mut columns = log(&[(PERIOD, counter)]);
             resolve(&mut columns).expect("resolved");
             let time = columns.time().expect("numbers");
             assert!(time.windows(2).all(|pair| ((pair[1] - pair[0]) / 1e-4 - 1.0).abs() < 1e-3), "{:?}", &time[..3]);
-            assert!(columns.told()[0].contains("3000 of 4000 rows"), "{:?}", columns.told());
+            assert!(columns.notes()[0].contains("3000 of 4000 rows"), "{:?}", columns.notes());
         }
         let refused = resolve(&mut log(&[(PERIOD, &|row| (row % 1000) as f64)])).expect_err("it restarts");
         assert!(refused.help().is_some_and(|help| help.contains("does not count control periods")), "{refused}");
     }
 
+    /// Another time column gives the times of repeated stamps.
     #[test]
-    fn another_column_of_time_tells_the_times() {
+    fn other_time_column_gives_times() {
         let mut columns = log(&[("time_us", &|row| 100.0 * row as f64)]);
         resolve(&mut columns).expect("resolved");
         assert!((columns.time().expect("numbers")[3] - 3e-4).abs() < 1e-12);
     }
 
+    /// Repeated rows are removed; repeated stamps with other values are rejected.
     #[test]
-    fn repeated_rows_are_left_out_and_other_values_refused() {
-        let mut columns = Columns::of("line");
+    fn repeated_rows_are_removed() {
+        let mut columns = Columns::new("line");
         for row in [0, 1, 1, 2, 3, 3, 3] {
             assert!(
                 columns.push(row, &[("time_s".to_owned(), row as f64), ("motor_counts".to_owned(), 5.0 * row as f64)])

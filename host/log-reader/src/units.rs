@@ -1,24 +1,25 @@
-//! Units of a log's columns, as they are said on the command line: never guessed. A column whose name says its unit needs
-//! nothing; one under a bare name, such as `motor_angle`, needs `--unit motor_angle=turns`.
+//! Units of a log's columns, as stated on the command line; units are never guessed. A column with a unit in its name
+//! needs no statement; a bare name such as `motor_angle` needs `--unit motor_angle=turns`.
 
 use std::f64::consts::{PI, TAU};
 
 use super::columns::Columns;
 use report::failure::{Failure, Outcome};
 
-/// A quantity: its bare name, the column that it becomes, and its units with what one of them is.
+/// Quantity: bare name, canonical column, and units with their factors to SI.
 struct Quantity {
     name: &'static str,
     column: &'static str,
     units: &'static [(&'static str, f64)],
-    /// What a unit behind the gears is multiplied by, as a power of their ratio; nothing where that has no meaning.
+    /// Power of the gear ratio that converts a quantity from the output to the motor; `None` for quantities without
+    /// one.
     over_gears: Option<i32>,
 }
 
 const TIMES: &[(&str, f64)] = &[("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)];
 const ANGLES: &[(&str, f64)] =
     &[("rad", 1.0), ("mrad", 1e-3), ("deg", PI / 180.0), ("arcmin", PI / 10_800.0), ("turns", TAU)];
-/// By the standard acceleration of free fall and the inch of 25.4 mm.
+/// Standard acceleration of free fall, inch of 25.4 mm.
 const TORQUES: &[(&str, f64)] = &[
     ("N_m", 1.0),
     ("mN_m", 1e-3),
@@ -36,28 +37,28 @@ const QUANTITIES: [Quantity; 5] = [
     Quantity { name: "output_torque", column: "output_torque_N_m", units: TORQUES, over_gears: None },
 ];
 
-/// What is behind a unit of the motor's that is taken at the output.
+/// Suffix of a motor's quantity measured at the output.
 const AT_OUTPUT: &str = "@output";
 
-/// What a column is in.
+/// Unit of a column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unit {
-    /// Place of its quantity.
+    /// Index of the quantity.
     quantity: usize,
-    /// One of it in SI.
+    /// Factor to SI.
     factor: f64,
-    /// The motor's quantity as the gears make it at the output.
+    /// True for a motor's quantity measured at the output.
     at_output: bool,
 }
 
 impl Unit {
-    /// Bare name of its quantity.
+    /// Bare name of the quantity.
     pub fn name(self) -> &'static str {
         QUANTITIES[self.quantity].name
     }
 }
 
-/// The quantity that a column is of, by what its name begins with; counts are an angle.
+/// Quantity of a column by the beginning of its name; counts are an angle.
 pub fn quantity_of(column: &str) -> &str {
     let name = column.strip_suffix("_counts").map(|encoder| match encoder {
         "motor" => "motor_angle",
@@ -66,12 +67,12 @@ pub fn quantity_of(column: &str) -> &str {
     name.or_else(|| bare_names().find(|name| column.starts_with(name))).unwrap_or(column)
 }
 
-/// Bare names of columns, whose unit must be said.
+/// Bare names of columns, which need a stated unit.
 pub fn bare_names() -> impl Iterator<Item = &'static str> {
     QUANTITIES.iter().map(|quantity| quantity.name)
 }
 
-/// Reads what `--unit` was given, such as `motor_angle=turns`, `motor_torque=0.06*N_m` or `motor_angle=turns@output`.
+/// Parses a value of `--unit`, such as `motor_angle=turns`, `motor_torque=0.06*N_m` or `motor_angle=turns@output`.
 pub fn parse(text: &str) -> Result<Unit, String> {
     let names: Vec<&str> = bare_names().collect();
     let (name, unit) = text.split_once('=').ok_or("write QUANTITY=UNIT, as in motor_angle=turns")?;
@@ -99,7 +100,7 @@ pub fn parse(text: &str) -> Result<Unit, String> {
     Ok(Unit { quantity: place, factor: times * factor, at_output })
 }
 
-/// Columns with bare names under those of SI, their values in it; `ratio` is motor over output.
+/// Converts columns with bare names to canonical columns in SI; `ratio` is motor over output.
 pub fn convert(mut columns: Columns, units: &[Unit], ratio: f64) -> Outcome<Columns> {
     for (place, Quantity { name, column, over_gears, .. }) in QUANTITIES.iter().enumerate() {
         let mut told = units.iter().filter(|unit| unit.quantity == place);
@@ -136,21 +137,23 @@ mod tests {
     use super::*;
 
     fn columns() -> Columns {
-        let mut columns = Columns::of("line");
+        let mut columns = Columns::new("line");
         assert!(columns.push(1, &[("motor_angle".to_owned(), 2.0), ("motor_torque".to_owned(), 3.0)]));
         columns
     }
 
+    /// A stated unit converts a column to SI.
     #[test]
-    fn a_unit_that_is_said_makes_si_of_a_column() {
+    fn stated_unit_converts_to_si() {
         let units = ["motor_angle=turns@output", "motor_torque=0.06*N_m"].map(|text| parse(text).expect("a unit"));
         let columns = convert(columns(), &units, 6.0).expect("both are there");
-        assert_eq!(columns.maybe("motor_angle_rad").expect("a number"), Some(vec![12.0 * TAU]));
-        assert_eq!(columns.maybe("motor_torque_N_m").expect("a number"), Some(vec![0.06 * 3.0]));
+        assert_eq!(columns.finite("motor_angle_rad").expect("a number"), Some(vec![12.0 * TAU]));
+        assert_eq!(columns.finite("motor_torque_N_m").expect("a number"), Some(vec![0.06 * 3.0]));
     }
 
+    /// A missing unit, an unused unit and a malformed one are rejected.
     #[test]
-    fn a_unit_is_not_guessed_and_not_said_in_vain() {
+    fn missing_or_unused_unit_is_rejected() {
         let torque = parse("motor_torque=N_cm").expect("a unit");
         let refused = convert(columns(), &[torque], 6.0).expect_err("no unit of the angle");
         assert_eq!(refused.message(), "the unit of the column `motor_angle` is not said");

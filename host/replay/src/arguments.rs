@@ -1,9 +1,9 @@
-//! What `joint replay` may be asked for on the command line.
+//! Command line of `joint replay`.
 
 use std::num::NonZeroU16;
 use std::path::PathBuf;
 
-use log_reader::column_map::renaming;
+use log_reader::column_map::parse_renaming;
 use log_reader::units::{self, Unit};
 
 /// Arguments of `joint replay`.
@@ -21,47 +21,48 @@ Examples:
 Exit code: 0 if a run is repeated, or of a log that is none; 1 if a run is not repeated; 2 for bad input or a wiring that is not the joint file's, 130 after Ctrl-C."
 )]
 pub struct ReplayArguments {
-    /// A run's log, or a recorded test
+    /// Log of a run, or a recorded test
     #[arg(value_name = "LOG")]
     pub log: PathBuf,
-    /// Joint file (TOML) or preset that the observer is designed from [default: what the log of a run says]
+    /// Joint file (TOML) or preset of the observer [default: the joint file in the log of a run]
     #[arg(value_name = "JOINT")]
     pub joint: Option<PathBuf>,
     /// Changes a value of the joint file first, such as control_rate_Hz=1000; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE", requires = "joint")]
     pub set: Vec<String>,
-    /// Shows the observer the motor's encoder alone
+    /// Gives the observer the motor's encoder alone
     #[arg(long, requires = "joint")]
     pub motor_only: bool,
-    /// Topic of an MCAP log [default: the one that has motor, output and torque]
+    /// Topic of an MCAP log [default: the only one with motor, output and torque]
     #[arg(long, value_name = "TOPIC", requires = "joint")]
     pub topic: Option<String>,
-    /// Takes a column of another name, such as motor_counts=pos_raw; may be repeated
-    #[arg(long, value_name = "COLUMN=NAME", value_parser = renaming, requires = "joint")]
+    /// Reads a column under another name, such as motor_counts=pos_raw; may be repeated
+    #[arg(long, value_name = "COLUMN=NAME", value_parser = parse_renaming, requires = "joint")]
     pub column: Vec<(String, String)>,
-    /// Unit of a column that is called by its quantity alone, such as motor_angle=turns; may be repeated
+    /// Unit of a column that is named by its quantity alone, such as motor_angle=turns; may be repeated
     #[arg(long, value_name = "QUANTITY=UNIT", value_parser = units::parse, requires = "joint")]
     pub unit: Vec<Unit>,
     /// Names and units of a maker's columns: a file, or ros2-joint-states, moteus, odrive, vesc-tool, feetech
     #[arg(long, value_name = "MAP", requires = "joint")]
     pub map: Option<PathBuf>,
-    /// Joint of a map that has several
+    /// Joint of a map with several joints
     #[arg(long, value_name = "NAME", requires = "map")]
     pub map_joint: Option<String>,
     /// Writes one of N control periods to estimates.csv and estimates.mcap [default: about a thousand a second]
     #[arg(long, value_name = "N")]
     pub every: Option<NonZeroU16>,
-    /// Folder for report.html, record.json, estimates.csv and estimates.mcap; a file that this command did not write is refused [default: joint-out/replay/<log>]
+    /// Folder for report.html, record.json, estimates.csv and estimates.mcap; files that this command did not write are
+    /// not overwritten [default: joint-out/replay/<log>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Writes the record as JSON to this file too ("-" is standard output, and all else on standard error)
+    /// Writes the record as JSON to this file too ("-" is standard output; everything else then goes to standard error)
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
 }
 
 impl ReplayArguments {
-    /// Whether the log's own observer is wanted.
-    pub fn asks_for_the_run(&self) -> bool {
+    /// Returns true if the log's own run is to be repeated.
+    pub fn repeats_run(&self) -> bool {
         self.joint.is_none()
     }
 }

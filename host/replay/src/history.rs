@@ -1,4 +1,4 @@
-//! The estimates of a replay as CSV and as MCAP: the same names, units and words as in the log of a run.
+//! Estimates of a replay as CSV and as MCAP, with the names, units and words of a run's log.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -11,11 +11,11 @@ use report::log::{Channel, Message, field};
 
 /// Topic of the estimates.
 const TOPIC: &str = "/joint/estimates";
-/// Name of its schema.
+/// Name of the topic's schema.
 const SCHEMA_NAME: &str = "joint_msgs/msg/Estimates";
 
-/// One of `every` rows as CSV.
-pub fn csv(
+/// Writes one of `every` rows as CSV.
+pub fn write_csv(
     out: &mut impl Write,
     samples: &ReplaySamples,
     mut observer: Observer<'_, f32, MAPPED>,
@@ -42,8 +42,8 @@ pub fn csv(
     out.flush()
 }
 
-/// The same as MCAP.
-pub fn mcap(
+/// Writes one of `every` rows as MCAP.
+pub fn write_mcap(
     out: &mut impl Write,
     samples: &ReplaySamples,
     mut observer: Observer<'_, f32, MAPPED>,

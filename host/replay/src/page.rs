@@ -1,4 +1,4 @@
-//! A replay as a document: whether the run is repeated, what was learnt, what the estimates stood on, pictures.
+//! A replay as a document: comparison with the run, estimated parameters, sources of the estimates, pictures.
 
 use crate::record::{Difference, ReplayRecord};
 use identify::page::findings;
@@ -9,10 +9,10 @@ use report::document::{
 use report::plot::Figure;
 use report::provenance::VERSION;
 
-/// Values that differ and are shown.
-const SHOWN: usize = 12;
+/// Differing values shown at most.
+const VALUES_SHOWN: usize = 12;
 
-/// All of it; `file` is the text of the joint file.
+/// Whole report; `file` is the text of the joint file.
 pub fn document(record: &ReplayRecord, file: &str, figures: Vec<Figure>) -> Document {
     let ReplayRecord { joint, log, periods, duration_s, control_rate, repeats, .. } = record;
     let verdict = repeats.as_ref().map(|repeats| match repeats.every_bit {
@@ -28,7 +28,7 @@ pub fn document(record: &ReplayRecord, file: &str, figures: Vec<Figure>) -> Docu
         blocks.push(differences(difference));
     }
     blocks.push(section_everywhere("Wiring", vec![wiring(record)]));
-    blocks.push(section_everywhere("What the estimates stand on", standing(record)));
+    blocks.push(section_everywhere("What the estimates stand on", estimate_sources(record)));
     blocks.push(section_bare("What was learnt", findings(&record.learnt, file)));
     blocks.push(section("The estimates", figures.into_iter().map(|figure| picture(figure, Text::default())).collect()));
     Document {
@@ -44,7 +44,7 @@ pub fn document(record: &ReplayRecord, file: &str, figures: Vec<Figure>) -> Docu
     }
 }
 
-/// Verdicts on the wiring; those that are right in one row.
+/// Verdicts on the wiring; right items share one row.
 fn wiring(record: &ReplayRecord) -> Block {
     let of = |verdict: &str| {
         let items = record.wiring.iter().filter(|finding| finding.verdict == verdict);
@@ -67,7 +67,7 @@ fn wiring(record: &ReplayRecord) -> Block {
     table(columns, bad.chain(rest).collect())
 }
 
-fn standing(record: &ReplayRecord) -> Vec<Block> {
+fn estimate_sources(record: &ReplayRecord) -> Vec<Block> {
     let mut rows: Vec<(Text, Text)> = vec![
         ("both encoders trusted [%]".into(), number(record.both_encoders_percent)),
         ("gap coordinate valid [%]".into(), number(record.gap_valid_percent)),
@@ -80,7 +80,7 @@ fn standing(record: &ReplayRecord) -> Vec<Block> {
         rows.push((format!("control periods with {notice}").into(), number(*count as f64)));
     }
     let mut blocks = vec![facts(rows)];
-    // The first entry is the start, in which nothing has been heard yet.
+    // The first entry is the start, before any sample.
     if record.sources.len() > 2 {
         let columns = vec![numbers("from").in_unit("s"), words("estimates from"), notes("because")];
         let cells = record.sources.iter().map(|change| {
@@ -104,7 +104,7 @@ fn differences(of: &Difference) -> Block {
     let mut blocks = vec![bad_notice(heading)];
     if let Some(time) = of.values_time_s {
         let columns = vec![words("value"), numbers("in the log"), numbers("here")];
-        let cells = of.values.iter().take(SHOWN).map(|value| {
+        let cells = of.values.iter().take(VALUES_SHOWN).map(|value| {
             row([text(&value.name), text(format!("{:e}", value.recorded)), text(format!("{:e}", value.replayed))])
         });
         blocks.push(Block::Lead(format!("The first values that were logged after it, at t = {time:.4} s:").into()));

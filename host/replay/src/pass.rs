@@ -1,4 +1,4 @@
-//! What is kept of an observer's pass over a log: counts of its states, and points for pictures.
+//! Results of an observer's pass over a log: counts of its states, and points for pictures.
 
 use std::collections::BTreeMap;
 
@@ -9,26 +9,26 @@ use serde::Serialize;
 use crate::samples::ReplaySamples;
 use report::contacts::Contact;
 
-/// Points that are kept for pictures.
-const POINTS: usize = 200_000;
-/// Changes of source that are listed.
-const CHANGES: usize = 50;
-/// 95 of 100 values lie within so many standard deviations.
-const REACH: f64 = 1.96;
+/// Points kept for pictures at most.
+const POINTS_MAX: usize = 200_000;
+/// Changes of source listed at most.
+const CHANGES_MAX: usize = 50;
+/// Half of a 95 % interval over the standard deviation.
+const NORMAL_QUANTILE: f64 = 1.96;
 
-/// What the estimates stand on from a moment on.
+/// Source of the estimates from a time on.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SourceChange {
-    /// Since the first control period [s].
+    /// Time since the first control period [s].
     pub time_s: f64,
     /// `both`, `motor_only` or `nothing`.
     pub estimates_from: String,
-    /// Why not both, such as `output_frozen`; `none` otherwise.
+    /// Fault of an encoder, such as `output_frozen`; `none` otherwise.
     pub encoder_fault: String,
 }
 
-/// A value with the half of its interval.
+/// Value with half of its interval.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Interval {
     /// Best guess.
@@ -37,42 +37,42 @@ pub struct Interval {
     pub half: f64,
 }
 
-/// A moment for pictures.
+/// Point of the pictures.
 #[derive(Debug, Clone, Copy)]
 pub struct Point {
-    /// [s].
+    /// Time [s].
     pub time: f64,
-    /// Asked of the motor [N m].
+    /// Commanded motor torque [N m].
     pub torque: f64,
     /// Gap coordinate [m].
     pub gap: Interval,
-    /// Whether it may be used.
+    /// True if the gap coordinate is valid.
     pub gap_valid: bool,
-    /// Half-backlash as learnt [m].
+    /// Estimated half-backlash [m].
     pub half_backlash: Interval,
-    /// What brakes the link [N m].
+    /// Load torque [N m].
     pub load_torque: Interval,
-    /// The flank that carries.
+    /// Flank that carries.
     pub side: Contact,
-    /// Whether that may be used.
+    /// True if the flank is valid.
     pub side_valid: bool,
-    /// Both encoders are used.
+    /// True if both encoders are used.
     pub both: bool,
 }
 
-/// A pass.
+/// Pass of an observer over a log.
 pub struct Pass<'s> {
     samples: &'s ReplaySamples,
     every: usize,
-    /// For pictures.
+    /// Points of the pictures.
     pub points: Vec<Point>,
     /// Periods in which both encoders were trusted.
     pub both: usize,
     /// Periods in which the gap was valid.
     pub gap_valid: usize,
-    /// When the source changed, the first ones.
+    /// First changes of source.
     pub sources: Vec<SourceChange>,
-    /// The others.
+    /// Number of further changes.
     pub sources_left_out: usize,
     /// Periods with a notice, by its name.
     pub notices: BTreeMap<&'static str, usize>,
@@ -80,11 +80,11 @@ pub struct Pass<'s> {
 }
 
 impl<'s> Pass<'s> {
-    /// Before the first samples.
+    /// Empty pass, before the first samples.
     pub fn new(samples: &'s ReplaySamples) -> Self {
         Self {
             samples,
-            every: samples.len().div_ceil(POINTS).max(1),
+            every: samples.len().div_ceil(POINTS_MAX).max(1),
             points: Vec::new(),
             both: 0,
             gap_valid: 0,
@@ -95,8 +95,8 @@ impl<'s> Pass<'s> {
         }
     }
 
-    /// Estimates of the next period.
-    pub fn note(&mut self, index: usize, of: &Estimates<f32>) {
+    /// Adds the estimates of a period.
+    pub fn add(&mut self, index: usize, of: &Estimates<f32>) {
         let time = self.samples.time[index];
         self.both += usize::from(of.source == Source::Both);
         self.gap_valid += usize::from(of.gap.valid);
@@ -104,7 +104,7 @@ impl<'s> Pass<'s> {
         if self.source.replace(of.source) != Some(of.source) {
             let [estimates_from, encoder_fault] =
                 ["estimates_from", "encoder_fault"].map(|name| word(name, of).to_owned());
-            if self.sources.len() < CHANGES {
+            if self.sources.len() < CHANGES_MAX {
                 self.sources.push(SourceChange { time_s: time, estimates_from, encoder_fault });
             } else {
                 self.sources_left_out += 1;
@@ -131,5 +131,5 @@ fn word(name: &str, of: &Estimates<f32>) -> &'static str {
 }
 
 fn interval(of: Estimate<f32>) -> Interval {
-    Interval { value: of.value.into(), half: REACH * f64::from(of.variance.max(0.0)).sqrt() }
+    Interval { value: of.value.into(), half: NORMAL_QUANTILE * f64::from(of.variance.max(0.0)).sqrt() }
 }

@@ -1,4 +1,4 @@
-//! Pictures of a replay: gap, side and validity, learnt width, load and torque over the whole log, and closely around its
+//! Pictures of a replay: gap, flank and validity, estimated width, load and torque, over the whole log and around its
 //! last change of flank.
 
 use crate::pass::{Interval, Pass, Point};
@@ -11,21 +11,20 @@ use report::plot::mark::Mark;
 use report::plot::panel::{Panel, VerticalAxis};
 use report::plot::unit::{SECONDS, TORQUE, Unit};
 
-/// A close-up begins and ends so long before and after the change of flank [s].
-const CLOSE: f64 = 0.05;
+/// Time shown before and after the change of flank [s].
+const CLOSE_UP_TIME: f64 = 0.05;
 /// Width of the lines of an interval [px].
-const FINE: f64 = 0.7;
-/// Part of a row's height that is coloured.
-const FILLED: f64 = 0.7;
+const INTERVAL_LINE_WIDTH: f64 = 0.7;
+/// Coloured share of a row's height.
+const STRIP_HEIGHT: f64 = 0.7;
 /// Rows of states.
-const ROWS: [&str; 3] = ["side", "gap", "encoders"];
-/// Strips over the whole width: more cannot be told apart.
-const STRIPS: usize = 600;
-/// What an observer begins with is much wider than what it has learnt: axes reach so many times the last half interval beyond
-/// the values themselves.
-const REACH: f64 = 40.0;
+const STATE_ROWS: [&str; 3] = ["side", "gap", "encoders"];
+/// Strips over the whole width; more cannot be distinguished.
+const STRIPS_MAX: usize = 600;
+/// Reach of the axes beyond the values, in last half-intervals: the prior intervals are much wider.
+const AXIS_REACH: f64 = 40.0;
 
-/// All of them.
+/// All pictures.
 pub fn all(pass: &Pass<'_>, record: &ReplayRecord) -> Vec<Figure> {
     let points = &pass.points;
     let end = points.last().map_or(0.0, |point| point.time);
@@ -33,7 +32,7 @@ pub fn all(pass: &Pass<'_>, record: &ReplayRecord) -> Vec<Figure> {
     let landed = |pair: &[Point]| pair[0].side != pair[1].side && pair[1].side != Contact::Separated;
     if let Some(place) = points.windows(2).rposition(landed) {
         let time = points[place].time;
-        let range = ((time - CLOSE).max(0.0), (time + CLOSE).min(end));
+        let range = ((time - CLOSE_UP_TIME).max(0.0), (time + CLOSE_UP_TIME).min(end));
         let from = points.partition_point(|point| point.time < range.0);
         let to = points.partition_point(|point| point.time <= range.1);
         if to > from + 10 {
@@ -72,14 +71,14 @@ fn view(points: &[Point], range: (f64, f64), title: String) -> Figure {
     Figure::over_time(title, unit, range, panels)
 }
 
-/// A value between the ends of its 95 % interval, cut off where they are far beyond the values.
+/// Value and the ends of its 95 % interval, clipped far beyond the values.
 fn interval(points: &[Point], of: impl Fn(&Point) -> Interval, ink: Ink, least: Option<f64>) -> Vec<Mark> {
     let last = points.last().map_or(0.0, |point| of(point).half);
     let (low, high) = points
         .iter()
         .map(|point| of(point).value)
         .fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(value), high.max(value)));
-    let beyond = (REACH * last).min(2.0 * (high - low).max(last)).max(0.0);
+    let beyond = (AXIS_REACH * last).min(2.0 * (high - low).max(last)).max(0.0);
     let (low, high) = match least {
         Some(least) => (low.min(-least), high.max(least)),
         None => (low - beyond, high + beyond),
@@ -91,8 +90,8 @@ fn interval(points: &[Point], of: impl Fn(&Point) -> Interval, ink: Ink, least: 
         })
     };
     vec![
-        Mark::line(end(1.0), Ink::Reference, "95 % interval", FINE),
-        Mark::line(end(-1.0), Ink::Reference, "", FINE),
+        Mark::line(end(1.0), Ink::Reference, "95 % interval", INTERVAL_LINE_WIDTH),
+        Mark::line(end(-1.0), Ink::Reference, "", INTERVAL_LINE_WIDTH),
         line(over_time(points, |point| of(point).value), ink, "estimate"),
     ]
 }
@@ -101,7 +100,7 @@ fn over_time(points: &[Point], value: impl Fn(&Point) -> f64) -> Points {
     points.iter().map(|point| (point.time, value(point))).collect()
 }
 
-/// Side, validity of the gap and trust in the encoders as rows of strips.
+/// Flank, validity of the gap and trust in the encoders as rows of strips.
 fn states(points: &[Point], range: (f64, f64)) -> Panel {
     let side = |wanted: Contact| move |point: &Point| point.side_valid && point.side == wanted;
     let marks = vec![
@@ -114,30 +113,30 @@ fn states(points: &[Point], range: (f64, f64)) -> Panel {
     Panel {
         title: "Side and validity".into(),
         unit: Unit { factor: 1.0, name: "" },
-        height: 44 + 24 * ROWS.len() as i32,
+        height: 44 + 24 * STATE_ROWS.len() as i32,
         marks,
-        axis: VerticalAxis::Rows(ROWS.map(str::to_owned).to_vec()),
+        axis: VerticalAxis::Rows(STATE_ROWS.map(str::to_owned).to_vec()),
     }
 }
 
-/// Stretches in which something is so, in a row; a strip that stands for many points shows their share by its height.
+/// Boxes of a row for the times at which `holds` holds; the height of a strip is the share of its points.
 fn strips(
     points: &[Point],
     range: (f64, f64),
     row: usize,
-    is_so: impl Fn(&Point) -> bool,
+    holds: impl Fn(&Point) -> bool,
     ink: Ink,
     label: &str,
 ) -> Mark {
-    let bottom = (ROWS.len() - 1 - row) as f64 + 0.5 * (1.0 - FILLED);
-    let width = (range.1 - range.0) / STRIPS as f64;
+    let bottom = (STATE_ROWS.len() - 1 - row) as f64 + 0.5 * (1.0 - STRIP_HEIGHT);
+    let width = (range.1 - range.0) / STRIPS_MAX as f64;
     let column = |point: &Point| ((point.time - range.0) / width).floor();
     let mut boxes: Vec<[f64; 4]> = Vec::new();
     let mut from = range.0;
     for group in points.chunk_by(|a, b| column(a) == column(b)) {
         let to = group.last().map_or(from, |point| point.time);
-        let share = group.iter().filter(|point| is_so(point)).count() as f64 / group.len() as f64;
-        let top = bottom + FILLED * share;
+        let share = group.iter().filter(|point| holds(point)).count() as f64 / group.len() as f64;
+        let top = bottom + STRIP_HEIGHT * share;
         match boxes.last_mut() {
             Some(last) if last[1] == from && last[3] == top => last[1] = to,
             _ if share > 0.0 => boxes.push([from, to, bottom, top]),

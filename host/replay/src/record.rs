@@ -9,95 +9,95 @@ use identify::findings::Finding;
 use joint_file::named::Loaded;
 use report::provenance;
 
-/// Name and version of the form.
+/// Name and version of the format.
 const SCHEMA: &str = "joint-replay/1";
 
-/// A replay.
+/// Record of a replay.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ReplayRecord {
-    /// Name and version of this form.
+    /// Name and version of the format.
     pub schema: String,
     /// Version of the host command.
     pub host_version: String,
-    /// Name of the joint whose observer it is.
+    /// Name of the observer's joint.
     pub joint: String,
     /// Name of the log.
     pub log: String,
-    /// Control periods in it.
+    /// Control periods of the log.
     pub periods: usize,
     /// Control periods a second [Hz].
     #[serde(rename = "control_rate_Hz")]
     pub control_rate: f64,
-    /// From the first to the last of them [s].
+    /// Time from the first to the last control period [s].
     pub duration_s: f64,
-    /// Angles were taken for counts of the joint file's encoders.
+    /// True if counts were computed from angles, by the resolution of the joint file's encoders.
     pub counts_from_angles: bool,
     /// Changes to the rows of the log, a sentence each.
     pub log_notes: Vec<String>,
-    /// Whether the estimates are those of the run that wrote the log; absent for any other log.
+    /// Comparison with the run that wrote the log; absent for any other log.
     pub repeats: Option<Repeats>,
-    /// Share of the time in which both encoders were trusted [%].
+    /// Share of the time with both encoders trusted [%].
     pub both_encoders_percent: f64,
-    /// Share in which the gap coordinate was valid [%].
+    /// Share of the time with a valid gap coordinate [%].
     pub gap_valid_percent: f64,
-    /// Times at which what the estimates stand on changed.
+    /// Changes of the estimates' source.
     pub sources: Vec<SourceChange>,
-    /// Changes of it that are not in the list.
+    /// Changes missing in the list.
     pub sources_left_out: usize,
-    /// Control periods with a notice about their samples, by its name.
+    /// Control periods with a notice on their samples, by its name.
     pub notices: std::collections::BTreeMap<String, usize>,
-    /// Whether signs, counts, ratio, torque, rate and clock are those of the joint file.
+    /// Agreement of signs, counts, ratio, torque, rate and clock with the joint file.
     pub wiring: Vec<WiringFinding>,
-    /// What was learnt at the end.
+    /// Estimated parameters at the end.
     pub learnt: Vec<Finding>,
 }
 
-/// Whether a run is repeated.
+/// Comparison of a replay with its run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Repeats {
-    /// All estimates of all control periods are the same in every bit.
+    /// True if all estimates of all control periods agree in every bit.
     pub every_bit: bool,
-    /// Control periods that were compared.
+    /// Control periods compared.
     pub periods: usize,
-    /// Those that differ.
+    /// Control periods that differ.
     pub differing_periods: usize,
-    /// The first of them.
+    /// First difference.
     pub first_difference: Option<Difference>,
 }
 
-/// Where a replay departs from its run.
+/// First difference between a replay and its run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Difference {
-    /// The first control period that differs in any bit.
+    /// First control period that differs in any bit.
     pub period: usize,
-    /// Its beginning [s].
+    /// Start of this control period [s].
     pub time_s: f64,
-    /// The first control period whose values were logged and differ.
+    /// First control period with logged values that differ.
     pub values_period: Option<usize>,
-    /// Its beginning [s].
+    /// Start of that control period [s].
     pub values_time_s: Option<f64>,
-    /// Those values.
+    /// Values that differ.
     pub values: Vec<ValueDifference>,
 }
 
-/// A value that differs.
+/// Value that differs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ValueDifference {
-    /// Its name in the log.
+    /// Name in the log.
     pub name: String,
-    /// As the run has it.
+    /// Value in the log.
     pub recorded: f64,
-    /// As the replay has it.
+    /// Value of the replay.
     pub replayed: f64,
 }
 
 impl ReplayRecord {
-    /// What came of a pass.
-    pub fn of(
+    /// Record of a pass.
+    pub fn new(
         log: &str,
         loaded: &Loaded,
         samples: &ReplaySamples,
@@ -116,7 +116,7 @@ impl ReplayRecord {
             control_rate: 1.0 / samples.period,
             duration_s: samples.time.last().copied().unwrap_or_default(),
             counts_from_angles: samples.from_angles,
-            log_notes: samples.told.clone(),
+            log_notes: samples.log_notes.clone(),
             repeats,
             both_encoders_percent: percent(pass.both),
             gap_valid_percent: percent(pass.gap_valid),
@@ -130,7 +130,7 @@ impl ReplayRecord {
 }
 
 impl Repeats {
-    /// In words.
+    /// The comparison in one sentence.
     pub fn sentence(&self) -> String {
         let Some(first) = &self.first_difference else {
             return match self.every_bit {

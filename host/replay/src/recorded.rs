@@ -1,5 +1,5 @@
-//! What the log of a run says of its own estimates, and whether a replay repeats it: the digest of every control period,
-//! and the values of those that are logged with them.
+//! Estimates logged by a run and their comparison with a replay: the digest of every control period, and the logged
+//! values.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use log_reader::columns::Columns;
 use log_reader::log_file::LogFile;
 use report::failure::{Failure, Outcome};
 
-/// What a run has logged of its estimates.
+/// Estimates logged by a run.
 pub struct Recorded {
     digests: Vec<u32>,
     time: Vec<f64>,
@@ -23,7 +23,7 @@ pub struct Recorded {
 }
 
 impl Recorded {
-    /// Out of the log of a run.
+    /// Reads the log of a run.
     pub fn read(file: &LogFile) -> Outcome<Self> {
         let controller = file.topic(TOPIC)?;
         let whole = |columns: &Columns, name: &str| -> Outcome<Vec<u32>> {
@@ -46,12 +46,12 @@ impl Recorded {
         Ok(Self { digests: whole(&controller, DIGEST)?, time: controller.time()?, rows, values })
     }
 
-    /// Begins to compare.
-    pub fn compare(&self) -> Agreement<'_> {
+    /// Begins a comparison.
+    pub fn comparison(&self) -> Agreement<'_> {
         Agreement { recorded: self, periods: 0, differing: 0, first: None, values: None }
     }
 
-    /// Values of a period that are not the recorded ones; nothing where none were recorded.
+    /// Values of a period that differ from the recorded ones; `None` without recorded values.
     fn differences(&self, period: usize, estimates: &Estimates<f32>) -> Option<Vec<ValueDifference>> {
         let row = *self.rows.get(&u32::try_from(period).ok()?)?;
         let of = |field: scenario::estimate_fields::EstimateField| {
@@ -64,19 +64,19 @@ impl Recorded {
     }
 }
 
-/// A comparison on its way.
+/// Comparison in progress.
 pub struct Agreement<'r> {
     recorded: &'r Recorded,
     periods: usize,
     differing: usize,
     first: Option<usize>,
-    /// The first values that were logged and differ.
+    /// First logged values that differ.
     values: Option<(usize, Vec<ValueDifference>)>,
 }
 
 impl Agreement<'_> {
-    /// The estimates of the next period.
-    pub fn note(&mut self, period: usize, estimates: &Estimates<f32>) {
+    /// Compares the estimates of a period.
+    pub fn compare(&mut self, period: usize, estimates: &Estimates<f32>) {
         self.periods += 1;
         let differs = self.recorded.digests.get(period) != Some(&digest_of(estimates));
         if differs {
@@ -87,7 +87,7 @@ impl Agreement<'_> {
             && self.values.is_none()
             && let Some(values) = self.recorded.differences(period, estimates).filter(|values| !values.is_empty())
         {
-            // A value that differs under a digest that does not was changed in the log itself.
+            // A value that differs under an equal digest was changed in the log itself.
             if !differs {
                 self.differing += 1;
                 self.first = self.first.or(Some(period));
@@ -96,8 +96,8 @@ impl Agreement<'_> {
         }
     }
 
-    /// What came of it.
-    pub fn finish(self) -> Repeats {
+    /// Result of the comparison.
+    pub fn result(self) -> Repeats {
         let time = |period: usize| self.recorded.time.get(period).copied().unwrap_or_default();
         let missing = self.recorded.digests.len().saturating_sub(self.periods);
         let (values_period, values) = self.values.unwrap_or_default();

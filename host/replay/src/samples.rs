@@ -1,5 +1,5 @@
-//! An observer's samples from the columns of a log: of a run just as its controller got them, of any other log by the time
-//! of each row.
+//! An observer's samples from the columns of a log: of a run as its controller received them, of any other log by the
+//! time of each row.
 
 use std::f64::consts::TAU;
 
@@ -17,31 +17,31 @@ use model_core::gears::Kinematics;
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 
-/// Rows may come at another rate than control periods by this ratio.
-const SAME_RATE: f64 = 0.02;
-/// Rows of estimates that are written in a second.
-const USUAL_RATE: f64 = 1000.0;
+/// Largest relative difference between the rates of rows and of control periods.
+const RATE_TOLERANCE: f64 = 0.02;
+/// Rows of estimates written per second.
+const WRITTEN_RATE: f64 = 1000.0;
 
-/// What only runs of `joint hil TEST` say of themselves.
-pub const RUN: &str = "controller";
+/// Remark that only runs of `joint hil TEST` have.
+pub const RUN_REMARK: &str = "controller";
 
 /// Samples of a log.
 pub struct ReplaySamples {
-    /// Of each row [s].
+    /// Time of each row [s].
     pub time: Vec<f64>,
     /// Control period [s].
     pub period: f64,
-    /// Whether angles were taken for the counts of the joint file's encoders.
+    /// True if counts were computed from angles.
     pub from_angles: bool,
     /// Changes to the rows of the file, a sentence each.
-    pub told: Vec<String>,
-    /// Asked of the motor from each row on [N m].
+    pub log_notes: Vec<String>,
+    /// Commanded motor torque from each row on [N m].
     pub torque: Vec<f64>,
     samples: Vec<Samples<f32>>,
 }
 
 impl ReplaySamples {
-    /// Reads a log; `refuses` says why there is no observer of the joint at another control rate.
+    /// Reads a log; `refuses` returns the reason why the joint has no observer at another control rate.
     pub fn read(
         file: &LogFile,
         topic: Option<&str>,
@@ -52,21 +52,21 @@ impl ReplaySamples {
     ) -> Outcome<Self> {
         let period = 1.0 / f64::from(settings.control_rate);
         let motor_only = settings.output_encoder.is_none();
-        let will_do = |columns: &Columns| columns.will_do_with([true, !motor_only]);
-        let mut columns = file.columns(topic, map, loaded.file.parameters.geometry.ratio_by_teeth(), will_do)?;
+        let accepts = |columns: &Columns| columns.has_required_of([true, !motor_only]);
+        let mut columns = file.columns(topic, map, loaded.file.parameters.geometry.ratio_by_teeth(), accepts)?;
         let read = if columns.names().any(|name| name == SAMPLES[0]) {
-            Self::of_run(&columns, period)
-        } else if let Some(controller) = file.remarks().get(RUN) {
-            Err(without_counts(controller))
+            Self::from_run(&columns, period)
+        } else if let Some(controller) = file.remarks().get(RUN_REMARK) {
+            Err(missing_samples(controller))
         } else {
-            Self::of_any(&mut columns, settings, period)
+            Self::from_columns(&mut columns, settings, period)
         };
-        let read = read.and_then(|read| read.at_the_control_rate(settings, refuses));
-        read.map_err(|failure| columns.explain(failure).while_doing(file.path().display()))
+        let read = read.and_then(|read| read.check_control_rate(settings, refuses));
+        read.map_err(|failure| columns.with_notes(failure).while_doing(file.path().display()))
     }
 
-    /// Just what a controller got.
-    fn of_run(columns: &Columns, period: f64) -> Outcome<Self> {
+    /// Samples as the run's controller received them.
+    fn from_run(columns: &Columns, period: f64) -> Outcome<Self> {
         let whole = |name: &str| -> Outcome<Vec<u32>> {
             let (_, values) = columns.named(&[name])?;
             let bad = |value: &f64| value.fract() != 0.0 || !(0.0..=f64::from(u32::MAX)).contains(value);
@@ -94,14 +94,14 @@ impl ReplaySamples {
             from_angles: false,
             torque,
             samples: samples.collect(),
-            told: Vec::new(),
+            log_notes: Vec::new(),
         })
     }
 
-    /// Rows of any log, each a control period.
-    fn of_any(columns: &mut Columns, settings: &ObserverSettings, period: f64) -> Outcome<Self> {
+    /// Samples from the rows of any log, one per control period.
+    fn from_columns(columns: &mut Columns, settings: &ObserverSettings, period: f64) -> Outcome<Self> {
         let output: &[&str] = if settings.output_encoder.is_some() { &OUTPUT } else { &[] };
-        columns.leave_out_incomplete(&[&TIMES, &MOTOR, output, &["motor_torque_N_m"]])?;
+        columns.remove_incomplete(&[&TIMES, &MOTOR, output, &["motor_torque_N_m"]])?;
         time_stamps::resolve(columns)?;
         let columns = &*columns;
         let time = columns.time_from_start()?;
@@ -117,18 +117,18 @@ impl ReplaySamples {
         }
         let clock = f64::from(settings.clock_rate);
         let sample = |row: usize| {
-            // The clock wraps, as a controller's does.
+            // The clock wraps like a controller's.
             let now = (time[row] * clock).round() as u64 as u32;
             Samples {
                 time: now,
                 motor: Reading { counts: motor[row], time: now },
                 output: output.as_ref().map(|counts| Reading { counts: counts[row], time: now }),
-                // A row has the torque from then on: that of the row before has acted until now.
+                // A row's torque acts from its time on; until then the torque of the row before acted.
                 torque: row.checked_sub(1).map_or(0.0, |before| torque[before] as f32),
             }
         };
         let samples = (0..time.len()).map(sample).collect();
-        let read = Self { period, from_angles, samples, torque, time, told: columns.told().to_vec() };
+        let read = Self { period, from_angles, samples, torque, time, log_notes: columns.notes().to_vec() };
         if let Some(row) = read.time.windows(2).position(|pair| pair[1] <= pair[0]) {
             return Err(Failure::new(format!("the time does not rise in {}", columns.place(row + 1)))
                 .with_help("samples must be in the order in which they were taken, each with its own time"));
@@ -136,8 +136,8 @@ impl ReplaySamples {
         Ok(read)
     }
 
-    /// Refuses rows that are no control periods.
-    fn at_the_control_rate(
+    /// Rejects rows whose rate differs from the control rate.
+    fn check_control_rate(
         self,
         settings: &ObserverSettings,
         refuses: &dyn Fn(f64) -> Option<Failure>,
@@ -148,7 +148,7 @@ impl ReplaySamples {
             return Err(Failure::new(format!("there are only {} samples", self.time.len()))
                 .with_help("an observer follows a motion over many control periods"));
         };
-        if (usual / self.period - 1.0).abs() > SAME_RATE {
+        if (usual / self.period - 1.0).abs() > RATE_TOLERANCE {
             let rate = 1.0 / usual;
             let message = format!(
                 "its rows come at {rate:.0} Hz, the control periods of this joint at {} Hz",
@@ -168,36 +168,36 @@ impl ReplaySamples {
         Ok(self)
     }
 
-    /// How many there are.
+    /// Number of samples.
     pub fn len(&self) -> usize {
         self.samples.len()
     }
 
-    /// What the observer is shown.
+    /// Samples of a control period.
     pub fn at(&self, index: usize) -> Samples<f32> {
         self.samples[index]
     }
 
-    /// Rows for each that is written, if nothing else is asked for.
-    pub fn usual_thinning(&self) -> usize {
-        (1.0 / (USUAL_RATE * self.period)).round().max(1.0) as usize
+    /// Default thinning of the written rows.
+    pub fn default_thinning(&self) -> usize {
+        (1.0 / (WRITTEN_RATE * self.period)).round().max(1.0) as usize
     }
 }
 
-/// The refusal of a run's log from which no observer can be run.
-pub fn without_counts(controller: &str) -> Failure {
+/// Failure for a run's log without an observer's samples.
+pub fn missing_samples(controller: &str) -> Failure {
     Failure::new(format!("the log of this run of `{controller}` has no observer's samples")).with_help(
         "they are logged of the tested controller, not of rivals, and not by older versions: run the test again, and take \
          the log of its own controller, if that has an observer",
     )
 }
 
-/// Raw counts of an encoder; angles are taken for the counts of one with the joint file's resolution.
+/// Raw counts of an encoder, computed from angles if necessary, and true for angles.
 fn counts(columns: &Columns, what: &str, encoder: EncoderSettings) -> Outcome<(Vec<u32>, bool)> {
     let names = [format!("{what}_counts"), format!("{what}_angle_rad")];
     let there = columns.first_of(&[names[0].as_str(), names[1].as_str()])?;
     let (name, values) = there.ok_or_else(|| {
-        let of_identify = columns.without_encoder(what);
+        let of_identify = columns.missing_encoder(what);
         let help = of_identify.help().unwrap_or_default().to_owned();
         Failure::new(format!("an observer needs counts, and there is no column for the {what}")).with_help(help)
     })?;

@@ -1,15 +1,15 @@
-//! The published schema of a replay's record is that of its type. Only tests are here.
+//! Tests: the published schema of a replay's record matches its type.
 
 use report::schema::{assert_explained, assert_published};
 
 use crate::ReplayRecord;
 
 #[test]
-fn the_published_schema_is_that_of_the_type() {
+fn schema_matches_type() {
     assert_published::<ReplayRecord>("replay.schema.json");
 }
 
 #[test]
-fn every_key_of_a_replay_is_explained() {
+fn schema_keys_are_documented() {
     assert_explained::<ReplayRecord>("replay.md", [], 30);
 }

@@ -1,5 +1,5 @@
-//! Wiring of the joint that a log was recorded from: whether signs, counts, ratio, torque, rate and clock are those of the
-//! joint file. The judge is the core's own, in f64.
+//! Wiring check of a log against the joint file: signs, counts, ratio, torque, rate and clock, by the core's own check
+//! in f64.
 
 use model_core::observer::Samples;
 use model_core::observer::design::ObserverSettings;
@@ -20,23 +20,23 @@ pub struct WiringFinding {
     pub item: String,
     /// `right`, `wrong`, `suspect` (it or another suspect is wrong) or `not_seen`.
     pub verdict: String,
-    /// Found instead: counts in a turn, ratio, -1 for a direction, a factor for torque, rate and clock.
+    /// Value found instead: counts per turn, ratio, -1 for a direction, a factor for torque, rate and clock.
     pub found: Option<f64>,
-    /// What to do.
+    /// Remedy.
     pub help: Option<String>,
 }
 
 impl WiringFinding {
-    /// Whether a log is refused for it. A torque scale depends on what else pushes at the link, and a log without motion is
-    /// no wrong one.
+    /// Returns true if the log is rejected for this item. A torque scale depends on unknown loads, and a log without
+    /// motion is not wrong.
     fn contradicts(&self) -> bool {
         let doubtful = [WiringItem::TorqueScale, WiringItem::Motion].map(WiringItem::name);
         self.verdict == "wrong" && !doubtful.contains(&self.item.as_str())
     }
 }
 
-/// Judges the wiring by the motion of a log.
-pub fn judge(
+/// Checks the wiring by the motion of a log.
+pub fn check(
     joint: &JointParameters,
     settings: &ObserverSettings,
     samples: &ReplaySamples,
@@ -62,8 +62,8 @@ pub fn judge(
     Ok(judge.wiring().iter().map(finding).collect())
 }
 
-/// Refuses a log whose wiring is not that of the joint file.
-pub fn refuse(findings: &[WiringFinding]) -> Outcome<()> {
+/// Rejects a log whose wiring contradicts the joint file.
+pub fn reject_contradictions(findings: &[WiringFinding]) -> Outcome<()> {
     let wrong: Vec<&WiringFinding> = findings.iter().filter(|finding| finding.contradicts()).collect();
     let Some(first) = wrong.first() else { return Ok(()) };
     let named: Vec<String> = wrong

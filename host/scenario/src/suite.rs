@@ -17,7 +17,7 @@ use super::recorded::RecordedMotion;
 use board::profile::check_length;
 use joint_file::diagnostic;
 use joint_file::named::{self, Loaded};
-use joint_file::warned;
+use joint_file::warnings;
 use report::failure::{Failure, Outcome};
 use report::input;
 
@@ -193,7 +193,7 @@ fn test_of(name: String, text: String, file: TestFile, folder: &Path, plant: Pla
 fn joint(name: &str, folder: &Path) -> Outcome<Loaded> {
     let beside = folder.join(name);
     let loaded = named::load(if beside.is_file() { &beside } else { Path::new(name) })?;
-    warned::tell(&loaded);
+    warnings::print(&loaded);
     Ok(loaded)
 }
 

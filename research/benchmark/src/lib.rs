@@ -22,7 +22,7 @@ use comparison::catalogue;
 
 use board::device::emulator;
 use board::device::toolchain::Toolchain;
-use joint_file::{named, warned};
+use joint_file::{named, warnings};
 use report::document::{Medium, html, markdown};
 use report::failure::{Failure, Outcome};
 use report::progress::Progress;
@@ -125,7 +125,7 @@ fn gather(arguments: &Arguments, progress: &Progress) -> Outcome<BenchmarkRecord
 fn cases(arguments: &Arguments) -> Outcome<Vec<Case>> {
     if let Some(file) = &arguments.file {
         let loaded = named::load(file)?;
-        warned::tell(&loaded);
+        warnings::print(&loaded);
         if loaded.file.parameters.equivalent_gear().is_some() {
             return Err(Failure::new(format!(
                 "{} is an equivalent gear: the methods compared are for the meshes of planets",

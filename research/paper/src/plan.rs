@@ -10,7 +10,7 @@ use super::{expectation, grid};
 use crate::numerics::attractor::Class;
 use crate::numerics::system::{StudyError, System};
 use joint_file::named::{self, Loaded};
-use joint_file::warned;
+use joint_file::warnings;
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 
@@ -125,7 +125,7 @@ impl StudyPlan {
         };
         let subjects: Vec<StudyJoint> =
             files.iter().map(|file| StudyJoint::new(named::load(file)?, arguments.omega)).collect::<Outcome<_>>()?;
-        subjects.iter().for_each(|subject| warned::tell(&subject.loaded));
+        subjects.iter().for_each(|subject| warnings::print(&subject.loaded));
         let own = subjects[0].half_backlash();
         if own == 0.0 && (arguments.half_backlash.is_none() || arguments.grid.is_none()) {
             return Err(Failure::new(format!("{} has no backlash to scale the study by", subjects[0].loaded.name))

@@ -1,39 +1,42 @@
-//! What a log shows of gap, compliance and damping.
+//! Findings of gap, compliance and damping.
 
-use super::feigned;
-use super::finding::{Finding, SHARE, TOGETHER, finding};
+use super::finding::{CONFOUNDED, FOUND_INTERVAL_SHARE, Finding, finding};
+use super::quantisation;
 use crate::estimate::Estimate;
 use crate::log::Log;
 use crate::prior::PriorModel;
 use crate::regression::Solution;
 use crate::rows::Rows;
-use crate::sampling::SWING_SAMPLES;
-use crate::scales::Doubt;
+use crate::sampling::DAMPING_SAMPLES_PER_SWING;
+use crate::scales::ScaleUncertainty;
 use crate::twist;
 use crate::twist::Twist;
 
-/// How well readings of motor and torque are taken at the same time [s]: a delay looks like damping.
-const SAME_TIME: f64 = 2e-6;
+/// Largest time between the readings of motor and torque [s]; a delay looks like damping.
+const READING_SKEW_MAX: f64 = 2e-6;
 
-/// Planets that land one after the other damp what rings by this share more or less than those that land at once.
-const SHARED: f64 = 0.35;
+/// Relative change of the damping by planets that land one after the other.
+const SHARING_DAMPING_SHARE: f64 = 0.35;
 
-/// The gap, what bends, and how it rings.
+/// Gap, compliance and damping.
 pub(super) fn gap_and_compliance(
     log: &Log,
     rows: &Rows,
     twist: &Twist,
     prior: &PriorModel,
-    doubt: Option<&Doubt>,
+    uncertainty: Option<&ScaleUncertainty>,
 ) -> Vec<Finding> {
     let solution = &twist.solution;
-    let half_gap = Estimate::of(solution, twist::HALF_GAP);
-    let compliance = Estimate::of(solution, twist::COMPLIANCE);
-    let open = doubt.map_or(0.0, |doubt| doubt.scales.torque.half().hypot(doubt.by_inertia));
-    let compliance = compliance.beside(open * compliance.value).beside(feigned::twist(prior) / rows.greatest);
-    let has_gap = half_gap.value > 0.0 && half_gap.half < SHARE * half_gap.value;
-    let bends = compliance.value > 0.0 && compliance.half < SHARE * compliance.value;
-    let or_together = |unknown: usize, why| if solution.tells_apart(unknown) { why } else { TOGETHER };
+    let half_gap = Estimate::of_unknown(solution, twist::HALF_GAP);
+    let compliance = Estimate::of_unknown(solution, twist::COMPLIANCE);
+    let open = uncertainty
+        .map_or(0.0, |uncertainty| uncertainty.scales.torque.half().hypot(uncertainty.compliance_by_inertia));
+    let compliance = compliance
+        .with_independent_error(open * compliance.value)
+        .with_independent_error(quantisation::twist(prior) / rows.largest_torque);
+    let has_gap = half_gap.value > 0.0 && half_gap.half < FOUND_INTERVAL_SHARE * half_gap.value;
+    let bends = compliance.value > 0.0 && compliance.half < FOUND_INTERVAL_SHARE * compliance.value;
+    let or_together = |unknown: usize, why| if solution.is_separated(unknown) { why } else { CONFOUNDED };
     let why_gap =
         "both flanks must carry torques well above the friction, and the gap must be wider than what the encoders tell";
     let why_bends = "the torque on one flank must change by much, so that it bends the joint by several counts";
@@ -42,7 +45,12 @@ pub(super) fn gap_and_compliance(
     let width = Shown { why: why_gap, is_shown: has_gap };
     let bend = Shown { why: why_bends, is_shown: bends };
     let mut findings = static_findings(prior, [half_gap, twist.half_lost_motion(prior), compliance], [width, bend]);
-    findings.push(damping(solution, prior, compliance, bends && prior.swing() > SWING_SAMPLES * log.period));
+    findings.push(damping(
+        solution,
+        prior,
+        compliance,
+        bends && prior.swing_period() > DAMPING_SAMPLES_PER_SWING * log.period,
+    ));
     findings
 }
 
@@ -61,45 +69,46 @@ pub(crate) fn static_findings(
 ) -> Vec<Finding> {
     let mut findings = Vec::new();
     if !prior.equivalent {
-        let half_backlash = half_gap.times(1e6 * prior.lever);
+        let half_backlash = half_gap.scaled(1e6 * prior.lever);
         let found = finding("half-backlash b", "um", "mesh.half_backlash_um", half_backlash);
-        findings.push(found.if_so(width.is_shown, width.why));
+        findings.push(found.only_if(width.is_shown, width.why));
     }
     let lost_motion_key = if prior.equivalent { "equivalent_gear.lost_motion_mrad" } else { "" };
     findings.extend([
-        finding("lost motion at the output", "mrad", lost_motion_key, half_lost_motion.times(2e3))
-            .if_so(width.is_shown, width.why),
-        finding("compliance at the output", "urad/(N m)", "", compliance.times(1e6)).if_so(bend.is_shown, bend.why),
+        finding("lost motion at the output", "mrad", lost_motion_key, half_lost_motion.scaled(2e3))
+            .only_if(width.is_shown, width.why),
+        finding("compliance at the output", "urad/(N m)", "", compliance.scaled(1e6)).only_if(bend.is_shown, bend.why),
     ]);
-    // What the teeth give is known better from the joint file than from the small part that they have in it.
+    // The joint file knows the compliance of the teeth better than the log, in which it is a small part.
     let own = compliance.value - prior.mesh_compliance;
     let Shown { is_shown: bends, why } = bend;
     findings.push(if prior.compliant {
         let stiffness = Estimate { value: 1.0 / own, half: compliance.half / (own * own) };
-        let bends = bends && own > 0.0 && compliance.half < SHARE * own;
+        let bends = bends && own > 0.0 && compliance.half < FOUND_INTERVAL_SHARE * own;
         finding("stiffness behind the carrier", "N m/rad", "compliance.stiffness_N_m_per_rad", stiffness)
-            .if_so(bends, why)
+            .only_if(bends, why)
     } else if prior.equivalent {
         let stiffness = compliance.value.recip();
         let estimate = Estimate { value: stiffness, half: stiffness * compliance.half / compliance.value };
         finding("stiffness at the output", "N m/rad", "equivalent_gear.stiffness_N_m_per_rad", estimate)
-            .if_so(bends, why)
+            .only_if(bends, why)
     } else {
         let stiffness = prior.mesh_stiffness * prior.mesh_compliance / compliance.value;
         let estimate = Estimate { value: stiffness, half: stiffness * compliance.half / compliance.value };
-        finding("mean stiffness of a mesh", "N/m", "mesh.mean_stiffness_N_per_m", estimate).if_so(bends, why)
+        finding("mean stiffness of a mesh", "N/m", "mesh.mean_stiffness_N_per_m", estimate).only_if(bends, why)
     });
     findings
 }
 
-/// From the time by which the torque runs ahead of the twist to the ratio that the joint file states.
+/// Damping ratio of the joint file, from the time by which the torque leads the twist.
 fn damping(solution: &Solution, prior: &PriorModel, compliance: Estimate, bends: bool) -> Finding {
-    // A motor that is read before the output may be read before the torque as well.
+    // A motor reading older than the output's may be older than the torque as well.
     let lead = -solution.values[twist::SKEW];
-    let relaxation = Estimate::of(solution, twist::RELAXATION).times(-1.0).wider_by(SAME_TIME.max(lead));
+    let relaxation =
+        Estimate::of_unknown(solution, twist::RELAXATION).scaled(-1.0).widened_by(READING_SKEW_MAX.max(lead));
     let own = compliance.value - prior.mesh_compliance;
     let (name, key, per_ratio) = if prior.compliant {
-        // D = 2 zeta sqrt(J / c), on the part of the twist that is not the teeth's.
+        // D = 2 zeta sqrt(J / c), on the twist beyond the teeth's.
         let per_ratio =
             2.0 * (prior.swinging_inertia() / own.max(f64::MIN_POSITIVE)).sqrt() * own * own / compliance.value;
         ("damping ratio of the compliance", "compliance.damping_ratio", per_ratio)
@@ -110,11 +119,15 @@ fn damping(solution: &Solution, prior: &PriorModel, compliance: Estimate, bends:
     } else {
         ("damping ratio of the meshes", "mesh.damping_ratio", prior.mesh_relaxation_per_ratio)
     };
-    let mut ratio = relaxation.times(1.0 / per_ratio);
+    let mut ratio = relaxation.scaled(1.0 / per_ratio);
     if prior.sharing.is_some() {
-        ratio = ratio.beside(SHARED * ratio.value);
+        ratio = ratio.with_independent_error(SHARING_DAMPING_SHARE * ratio.value);
     }
-    let known = ratio.value < 1.0 && bends && per_ratio > 0.0 && ratio.value > 0.0 && ratio.half < SHARE * ratio.value;
+    let known = ratio.value < 1.0
+        && bends
+        && per_ratio > 0.0
+        && ratio.value > 0.0
+        && ratio.half < FOUND_INTERVAL_SHARE * ratio.value;
     finding(name, "-", key, ratio)
-        .if_so(known, "flanks must land so hard that the joint rings, and samples must follow the ringing")
+        .only_if(known, "flanks must land so hard that the joint rings, and samples must follow the ringing")
 }

@@ -1,20 +1,21 @@
-//! What a log makes of the joint file's inertias, for who wrote them.
+//! Findings of the inertias, as a check of the joint file.
 
 use super::finding::{Finding, finding};
 use crate::estimate::Estimate;
 use crate::prior::PriorModel;
 use crate::scales::{Scale, Scales};
 
-/// What turns with the motor and with the link; nothing of it goes into the joint file, which states parts of them.
+/// Inertias that turn with the motor and with the link. The joint file states parts of them, so they are not written to
+/// it.
 pub(super) fn inertias(scales: &Scales, prior: &PriorModel) -> [Finding; 2] {
     let of = |name: &str, inertia: f64, scale: Scale| {
         let estimate = Estimate { value: inertia, half: inertia * scale.half() };
         let found = finding(name, "kg m^2", "", estimate);
-        if scale.is_another() {
+        if scale.differs_from_stated() {
             let share = 100.0 * (scale.factor() - 1.0);
-            found.noted(format!("{share:+.1} % of the joint file's, which the torque contradicts"))
+            found.with_note(format!("{share:+.1} % of the joint file's, which the torque contradicts"))
         } else {
-            found.noted("as expected of the joint file's").repeated()
+            found.with_note("as expected of the joint file's").as_unchanged()
         }
     };
     [

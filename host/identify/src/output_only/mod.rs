@@ -8,9 +8,9 @@ mod swing_fit;
 mod swings;
 
 use super::arguments::Arguments;
-use super::estimate::{Estimate, QUANTILE};
+use super::estimate::{Estimate, NORMAL_QUANTILE};
 use super::findings::gap::{Shown, static_findings};
-use super::findings::{Finding, SHARE, finding};
+use super::findings::{FOUND_INTERVAL_SHARE, Finding, finding};
 use super::one_encoder;
 use super::pictures::thinning;
 use super::prior::PriorModel;
@@ -30,10 +30,10 @@ use swing_fit::{Expected, Integrals, SHARED, Samples, SwingFit};
 use swings::{Swing, swings};
 
 /// Fewest swings: the scatter needs four swings beyond the number of shared unknowns.
-const LEAST_SWINGS: usize = SHARED + 4;
+const SWINGS_MIN: usize = SHARED + 4;
 /// Bias of friction and weight that the simplified balance of torques may cause, over the largest torque [-]. Measured on simulated logs;
 /// twice the share for logs of both encoders.
-const BALANCE_SHARE: f64 = 0.003;
+const BALANCE_BIAS: f64 = 0.003;
 
 /// Log of the output's angle and the motor's torque.
 struct OutputLog {
@@ -46,26 +46,26 @@ struct OutputLog {
     /// Step of the encoder [rad].
     resolution: f64,
     /// Changes to the rows, a sentence each.
-    told: Vec<String>,
+    notes: Vec<String>,
 }
 
 /// Identifies a joint from a log of its output and the motor's torque.
 pub fn identify(arguments: &Arguments, loaded: &Loaded, prior: &PriorModel) -> Outcome<Results> {
-    let in_the_file = |failure: Failure| failure.while_doing(arguments.log.display());
+    let at_path = |failure: Failure| failure.while_doing(arguments.log.display());
     let log = OutputLog::read(arguments, prior)?;
-    let swings = log.swings().map_err(in_the_file)?;
+    let swings = log.swings().map_err(at_path)?;
     let expected = Expected {
         step_by_torque: prior.motor_share() * (1.0 - prior.motor_share()) * prior.compliance,
         inertia: prior.total_inertia(),
     };
     let integrals = Integrals::new(Samples { time: &log.time, angle: &log.angle, torque: &log.torque });
-    let fit = SwingFit::of(&integrals, &swings, expected).ok_or_else(|| {
-        in_the_file(
+    let fit = SwingFit::fit(&integrals, &swings, expected).ok_or_else(|| {
+        at_path(
             Failure::new("the swings of this log do not determine a balance of torques")
                 .with_help("let the torque step to and fro with three strengths, and log more samples a swing"),
         )
     })?;
-    check(&fit, prior.motor_at_output()).map_err(in_the_file)?;
+    check(&fit, prior.motor_at_output()).map_err(at_path)?;
     Ok(Results {
         duration: log.time.last().copied().unwrap_or_default(),
         crossings: swings.len(),
@@ -77,34 +77,34 @@ pub fn identify(arguments: &Arguments, loaded: &Loaded, prior: &PriorModel) -> O
 
 impl OutputLog {
     fn read(arguments: &Arguments, prior: &PriorModel) -> Outcome<Self> {
-        let will_do = |columns: &Columns| columns.will_do_with([false, true]);
-        arguments.read_log(prior.ratio(), will_do, |columns| Self::of(columns, prior))
+        let accepts = |columns: &Columns| columns.has_required_of([false, true]);
+        arguments.read_log(prior.ratio(), accepts, |columns| Self::from_columns(columns, prior))
     }
 
-    fn of(columns: &mut Columns, prior: &PriorModel) -> Outcome<Self> {
-        columns.leave_out_incomplete(&[&TIMES, &OUTPUT, &["motor_torque_N_m"]])?;
+    fn from_columns(columns: &mut Columns, prior: &PriorModel) -> Outcome<Self> {
+        columns.remove_incomplete(&[&TIMES, &OUTPUT, &["motor_torque_N_m"]])?;
         time_stamps::resolve(columns)?;
         let (angle, resolution) =
-            one_encoder::angle(columns, OUTPUT, prior.output_turn)?.ok_or_else(|| columns.without_encoder("output"))?;
+            one_encoder::angle(columns, OUTPUT, prior.output_turn)?.ok_or_else(|| columns.missing_encoder("output"))?;
         let time = one_encoder::rising_time(columns)?;
         let torque = one_encoder::torque_at_output(columns, prior.ratio())?;
-        Ok(Self { time, angle, torque, resolution, told: columns.told().to_vec() })
+        Ok(Self { time, angle, torque, resolution, notes: columns.notes().to_vec() })
     }
 
     fn swings(&self) -> Outcome<Vec<Swing>> {
         let found = swings(&self.angle, &self.torque, self.resolution);
-        if found.len() >= LEAST_SWINGS {
+        if found.len() >= SWINGS_MIN {
             return Ok(found);
         }
         let turned: Vec<f64> = self.torque.iter().map(|torque| -torque).collect();
-        if swings(&self.angle, &turned, self.resolution).len() >= LEAST_SWINGS {
+        if swings(&self.angle, &turned, self.resolution).len() >= SWINGS_MIN {
             return Err(Failure::new(
                 "the torque brakes where it should drive: torque and output have different signs",
             )
             .with_help("reverse the sign of one of them, so that the output counts up under positive torque"));
         }
         Err(Failure::new(format!(
-            "too few reversals: the torque steps from driving to braking in {} swings of the output; {LEAST_SWINGS} are needed",
+            "too few reversals: the torque steps from driving to braking in {} swings of the output; {SWINGS_MIN} are needed",
             found.len()
         ))
         .with_help(
@@ -145,32 +145,34 @@ fn findings(
     let largest = swings.iter().flat_map(|swing| swing.torque).fold(0.0, f64::max);
     // The loss of the gears differs between driving and braking, which biases the torque scale by 2 loss^2. Friction and weight change the
     // torque through the teeth, and the loss with it.
-    let scale = (QUANTILE * prior.torque_error).hypot(inverse.half / inverse.value) + 2.0 * loss * loss;
-    let scaled = |estimate: Estimate| estimate.beside(scale * estimate.value);
+    let scale = (NORMAL_QUANTILE * prior.torque_error).hypot(inverse.half / inverse.value) + 2.0 * loss * loss;
+    let scaled = |estimate: Estimate| estimate.with_independent_error(scale * estimate.value);
     let inertia = scaled(Estimate { value: 1.0 / inverse.value, half: 0.0 });
     let beside = prior.total_inertia() - loaded.file.parameters.link_inertia;
-    let link = Estimate { value: inertia.value - beside, ..inertia }.beside(QUANTILE * prior.inertia_error * beside);
-    let of_balance = BALANCE_SHARE * largest;
+    let link = Estimate { value: inertia.value - beside, ..inertia }
+        .with_independent_error(NORMAL_QUANTILE * prior.inertia_error * beside);
+    let of_balance = BALANCE_BIAS * largest;
     let dry = fit.torque_of(swing_fit::DRY);
-    let dry = scaled(dry).wider_by(loss * dry.value).wider_by(of_balance);
+    let dry = scaled(dry).widened_by(loss * dry.value).widened_by(of_balance);
     let fastest = fit.fastest;
     let viscous = scaled(fit.torque_of(swing_fit::VISCOUS));
-    let viscous = viscous.wider_by(loss * viscous.value).wider_by(of_balance / fastest);
-    let found = |estimate: Estimate, least: f64| estimate.half < (SHARE * estimate.value.abs()).max(least);
+    let viscous = viscous.widened_by(loss * viscous.value).widened_by(of_balance / fastest);
+    let found =
+        |estimate: Estimate, least: f64| estimate.half < (FOUND_INTERVAL_SHARE * estimate.value.abs()).max(least);
     let why = "the output must swing with torques of three strengths that are well above the friction";
     let mut findings = gap(integrals, swings, fit, prior, inertia);
     findings.push(
-        finding("inertia of motor and link at the output", "kg m^2", "", inertia).if_so(found(inertia, 0.0), why),
+        finding("inertia of motor and link at the output", "kg m^2", "", inertia).only_if(found(inertia, 0.0), why),
     );
     findings.push(
         finding("inertia of the link", "kg m^2", "bodies.link_inertia_kg_m2", link)
-            .if_so(link.value > 0.0 && found(link, 0.0), "the motor's inertia is most of what turns")
-            .noted("with the rotor's as stated"),
+            .only_if(link.value > 0.0 && found(link, 0.0), "the motor's inertia is most of what turns")
+            .with_note("with the rotor's as stated"),
     );
     let small = 4.0 * of_balance;
     findings.push(
         finding("dry friction of motor and link at the output", "N m", "", dry)
-            .if_so(found(dry, small), why)
+            .only_if(found(dry, small), why)
             .not_negative(),
     );
     let around = &prior.surroundings;
@@ -181,38 +183,38 @@ fn findings(
     let why_link = "the motor's friction as the joint file states it is most of what is found, or more";
     findings.push(
         finding("dry friction of the link", "N m", "drive_train.load_coulomb_friction_N_m", dry_of_link)
-            .if_so(of_link(dry_of_link, small), why_link)
+            .only_if(of_link(dry_of_link, small), why_link)
             .not_negative()
-            .noted(note),
+            .with_note(note),
     );
     let why_viscous = "the output must move for a while, in both directions and at different speeds";
     let small = small / fastest;
     findings.push(
         finding("viscous friction of motor and link at the output", "N m s/rad", "", viscous)
-            .if_so(found(viscous, small), why_viscous)
+            .only_if(found(viscous, small), why_viscous)
             .not_negative(),
     );
     let viscous_of_link = Estimate { value: viscous.value - ratio * ratio * around.motor_friction.viscous, ..viscous };
     let key = "drive_train.load_viscous_friction_N_m_s_per_rad";
     findings.push(
         finding("viscous friction of the link", "N m s/rad", key, viscous_of_link)
-            .if_so(of_link(viscous_of_link, small), why_link)
+            .only_if(of_link(viscous_of_link, small), why_link)
             .not_negative()
-            .noted(note),
+            .with_note(note),
     );
     let [sine, cosine] = [swing_fit::SINE, swing_fit::COSINE].map(|unknown| fit.torque_of(unknown).value);
     let weight = sine.hypot(cosine);
     let slopes = [(swing_fit::SINE, sine / weight), (swing_fit::COSINE, cosine / weight)];
     let half = fit.half(&slopes.map(|(unknown, slope)| (unknown, slope / inverse.value)));
-    let weight = scaled(Estimate { value: weight, half }).wider_by(loss * weight).wider_by(of_balance);
+    let weight = scaled(Estimate { value: weight, half }).widened_by(loss * weight).widened_by(of_balance);
     let hangs = (-cosine).atan2(sine).to_degrees();
     findings.push(
         finding("weight of the link", "N m", "drive_train.gravity_torque_N_m", weight)
-            .if_so(
-                weight.half < SHARE * weight.value,
+            .only_if(
+                weight.half < FOUND_INTERVAL_SHARE * weight.value,
                 "the link must turn far, with its weight well above the friction",
             )
-            .noted(format!("the link hangs down at {hangs:.0} deg of the log's angle")),
+            .with_note(format!("the link hangs down at {hangs:.0} deg of the log's angle")),
     );
     findings
 }
@@ -226,7 +228,7 @@ fn gap(
     inertia: Estimate,
 ) -> Vec<Finding> {
     // The inertia before the gap lies between the sun's side alone and everything that turns with the motor.
-    let wrong = QUANTILE * prior.inertia_error;
+    let wrong = NORMAL_QUANTILE * prior.inertia_error;
     let sun = prior.sun_inertia * prior.ratio() * prior.ratio();
     let least = (sun * (1.0 - wrong) / (inertia.value + inertia.half)).min(1.0);
     let most = (prior.motor_at_output() * (1.0 + wrong) / (inertia.value - inertia.half)).min(1.0);
@@ -243,14 +245,14 @@ fn gap(
     let bend = Shown { is_shown: false, why: "the output alone does not show the twist" };
     let found = static_findings(prior, [unknown; 3], [Shown { is_shown: false, why: &why }, bend]);
     let bounded = |one: Finding| match (bound, one.unit.as_str()) {
-        (Ok(most), "um") => one.at_most(1e6 * prior.lever * 0.5 * most),
-        (Ok(most), "mrad") => one.at_most(1e3 * most),
+        (Ok(most), "um") => one.with_upper_bound(1e6 * prior.lever * 0.5 * most),
+        (Ok(most), "mrad") => one.with_upper_bound(1e3 * most),
         _ => one,
     };
     found.into_iter().map(bounded).collect()
 }
 
-/// Assumptions that the numbers rest on.
+/// Assumptions behind the numbers.
 fn assumptions(log: &OutputLog, swings: &[Swing], fit: &SwingFit, prior: &PriorModel) -> Vec<String> {
     let torques = swings.iter().flat_map(|swing| swing.torque);
     let (least, most) =
@@ -279,14 +281,14 @@ fn assumptions(log: &OutputLog, swings: &[Swing], fit: &SwingFit, prior: &PriorM
         ),
         format!("Ratio {} / {}; output encoder of {}.", prior.teeth[1], prior.teeth[0], resolution(prior.output_turn)),
     ];
-    list.extend(log.told.iter().cloned());
+    list.extend(log.notes.iter().cloned());
     list
 }
 
 /// Residuals of the fit over the time since the reversal.
 fn picture(fit: &SwingFit) -> Figure {
-    let every = thinning(fit.left_over.len());
-    let points: Vec<(f64, f64)> = fit.left_over.iter().copied().step_by(every).collect();
+    let every = thinning(fit.residuals.len());
+    let points: Vec<(f64, f64)> = fit.residuals.iter().copied().step_by(every).collect();
     let range = points.iter().fold((0.0_f64, 0.0_f64), |(from, to), (time, _)| (from.min(*time), to.max(*time)));
     let marks = vec![Mark::Points { points, ink: Ink::First, label: "samples".into(), size: 2.0 }];
     let unit = Unit::of_angle(6.0 * fit.residual);

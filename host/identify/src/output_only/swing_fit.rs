@@ -36,7 +36,7 @@ pub const STEP_BY_TORQUE: usize = 8;
 /// Unknowns of a swing: angle, speed, and change of the speed at the reversal.
 const OWN: usize = 3;
 /// Number of fits; each uses the delay and the weights of the previous fit.
-const ROUNDS: usize = 4;
+const FIT_ROUNDS: usize = 4;
 /// Standard deviation of the expected loss of the gears, over the torque [-].
 const EXPECTED_LOSS: f64 = 0.3;
 
@@ -53,7 +53,7 @@ pub struct Samples<'s> {
 pub struct SwingFit {
     /// Shared unknowns.
     pub values: SVector<f64, SHARED>,
-    /// Their covariance.
+    /// Covariance of the shared unknowns.
     pub covariance: SMatrix<f64, SHARED, SHARED>,
     /// Half of a 95 % interval in standard deviations.
     pub quantile: f64,
@@ -62,12 +62,12 @@ pub struct SwingFit {
     /// Root mean square of the residuals of a typical swing [rad].
     pub residual: f64,
     /// Residuals: time after the reversal [s] and angle [rad].
-    pub left_over: Vec<(f64, f64)>,
+    pub residuals: Vec<(f64, f64)>,
     /// Fastest swing [rad/s].
     pub fastest: f64,
 }
 
-/// Speed and angle that an acceleration `rate` gives, integrated over the log.
+/// Speed and angle by integration of an acceleration `rate` over the log.
 struct Integral {
     speed: Vec<f64>,
     angle: Vec<f64>,
@@ -75,7 +75,7 @@ struct Integral {
 }
 
 impl Integral {
-    /// Integrates a rate that each sample holds until the next one.
+    /// Integrates a rate that each sample holds until the next.
     fn new(time: &[f64], rate: Vec<f64>) -> Self {
         let (mut speed, mut angle) = (vec![0.0; time.len()], vec![0.0; time.len()]);
         for sample in 1..time.len() {
@@ -98,7 +98,8 @@ struct SwingEquations {
     /// Left sides, right sides.
     shared: DMatrix<f64>,
     right: DVector<f64>,
-    /// Change of the speed at the reversal, as eliminated: its slopes by the shared unknowns, and its value from the readings.
+    /// Change of the speed at the reversal after elimination: slopes by the shared unknowns, and the value from the
+    /// readings.
     change: (SVector<f64, SHARED>, f64),
     /// Time after the reversal [s].
     after: Vec<f64>,
@@ -120,7 +121,7 @@ pub struct Integrals<'s> {
     sine: Integral,
     cosine: Integral,
     turned: Integral,
-    /// Largest torque at the output, but for a fiftieth of the time [N m].
+    /// 98 % quantile of the torque's size at the output [N m].
     largest: f64,
 }
 
@@ -178,27 +179,28 @@ impl<'s> Integrals<'s> {
 }
 
 impl SwingFit {
-    /// Fits the swings; returns nothing if the swings do not determine the unknowns.
-    pub fn of(integrals: &Integrals<'_>, swings: &[Swing], expected: Expected) -> Option<Self> {
+    /// Fits the swings; returns `None` if the swings do not determine the unknowns.
+    pub fn fit(integrals: &Integrals<'_>, swings: &[Swing], expected: Expected) -> Option<Self> {
         let largest = integrals.largest;
         let (mut delay, mut inverse) = (0.0, 1.0 / expected.inertia);
         let mut solved = None;
         let mut weights = vec![1.0; swings.len()];
-        for _ in 0..ROUNDS {
-            let of_swing = |(swing, weight): (&Swing, &f64)| SwingEquations::of(integrals, swing, delay, *weight);
+        for _ in 0..FIT_ROUNDS {
+            let of_swing =
+                |(swing, weight): (&Swing, &f64)| SwingEquations::from_swing(integrals, swing, delay, *weight);
             let equations: Vec<SwingEquations> = swings.iter().zip(&weights).filter_map(of_swing).collect();
             if equations.len() != swings.len() {
                 return None;
             }
-            let by_inertia = |torque: f64| 1.0 / (torque * inverse).powi(2);
+            let compliance_by_inertia = |torque: f64| 1.0 / (torque * inverse).powi(2);
             let fastest =
                 largest * inverse * swings.iter().map(|swing| integrals.time_after(swing)).fold(0.0, f64::max);
             // Prior widths separate unknowns that no swing separates.
             let mut expected_size = SVector::<f64, SHARED>::zeros();
             expected_size[LOSS] = 1.0 / (EXPECTED_LOSS * inverse).powi(2);
-            expected_size[VISCOUS] = by_inertia(largest / fastest.max(f64::MIN_POSITIVE));
+            expected_size[VISCOUS] = compliance_by_inertia(largest / fastest.max(f64::MIN_POSITIVE));
             for unknown in [SINE, COSINE, OFFSET] {
-                expected_size[unknown] = by_inertia(largest);
+                expected_size[unknown] = compliance_by_inertia(largest);
             }
             let late = 0.5 * delay * delay * inverse;
             expected_size[STEP_BY_TORQUE] = 1.0 / (0.5 * expected.step_by_torque + late).powi(2);
@@ -211,7 +213,7 @@ impl SwingFit {
             let usual = quantile_of(&scatter, 0.25);
             weights = scatter.iter().map(|scatter| usual / scatter.max(usual)).collect();
             inverse = fit.values[TORQUE].abs().max(f64::MIN_POSITIVE);
-            // A torque that comes late by D gives a change of speed of D times the change of acceleration.
+            // A torque delayed by D changes the speed by D times the change of acceleration.
             let late: Vec<f64> = swings
                 .iter()
                 .zip(&equations)
@@ -236,13 +238,13 @@ impl SwingFit {
         self.quantile * (all.transpose() * self.covariance * all)[0].max(0.0).sqrt()
     }
 
-    /// A combination of the unknowns, by its slopes.
+    /// Combination of the unknowns, by its slopes.
     pub fn combination(&self, slopes: &[(usize, f64)]) -> Estimate {
         let value = slopes.iter().map(|(unknown, slope)| slope * self.values[*unknown]).sum();
         Estimate { value, half: self.half(slopes) }
     }
 
-    /// An unknown.
+    /// Estimate of one unknown.
     pub fn estimate(&self, unknown: usize) -> Estimate {
         self.combination(&[(unknown, 1.0)])
     }
@@ -256,7 +258,7 @@ impl SwingFit {
 }
 
 impl SwingEquations {
-    fn of(integrals: &Integrals<'_>, swing: &Swing, delay: f64, weight: f64) -> Option<Self> {
+    fn from_swing(integrals: &Integrals<'_>, swing: &Swing, delay: f64, weight: f64) -> Option<Self> {
         let chosen: Vec<usize> = swing.samples().collect();
         let (mut own, mut shared) = (DMatrix::zeros(chosen.len(), OWN), DMatrix::zeros(chosen.len(), SHARED));
         let mut right = DVector::zeros(chosen.len());
@@ -278,15 +280,15 @@ impl SwingEquations {
         after: Vec<f64>,
         weight: f64,
     ) -> Option<Self> {
-        let take = (own.transpose() * own).cholesky()?.inverse() * own.transpose();
-        let (by_shared, by_right) = (&take * &shared, &take * &right);
+        let elimination = (own.transpose() * own).cholesky()?.inverse() * own.transpose();
+        let (by_shared, by_right) = (&elimination * &shared, &elimination * &right);
         let change = (SVector::from_iterator(by_shared.row(OWN - 1).iter().copied()), by_right[OWN - 1]);
         Some(Self { shared: shared - own * by_shared, right: right - own * by_right, change, after, weight })
     }
 }
 
-/// Least squares of all swings, with what is expected of the unknowns: the inverse of their variance around zero, but for the step by the
-/// torque, which is expected around a value.
+/// Least squares of all swings with prior terms: `expected` is the inverse variance of each unknown around zero; for
+/// the step by the torque, around `step_by_torque`.
 fn solve(equations: &[SwingEquations], expected: SVector<f64, SHARED>, step_by_torque: f64) -> Option<SwingFit> {
     type Square = SMatrix<f64, SHARED, SHARED>;
     let (mut square, mut right) = (Square::zeros(), SVector::<f64, SHARED>::zeros());
@@ -309,7 +311,7 @@ fn solve(equations: &[SwingEquations], expected: SVector<f64, SHARED>, step_by_t
     let mut solved = None;
     for _ in 0..3 {
         let prior = Square::from_diagonal(&(variance * expected));
-        // One part in 1e12 keeps the first solution apart where no swing does.
+        // A diagonal of 1e-12 makes the first solution unique if no swing does.
         let scaled = scaling * (square + prior) * scaling + Square::identity() * 1e-12;
         let inverse = scaling * scaled.cholesky()?.inverse() * scaling;
         let values = inverse * (right + prior * middle);
@@ -326,7 +328,7 @@ fn solve(equations: &[SwingEquations], expected: SVector<f64, SHARED>, step_by_t
         let score = SVector::<f64, SHARED>::from_iterator(score.iter().copied());
         scatter += few * score * score.transpose();
     }
-    let left_over_swings = equations
+    let all_residuals = equations
         .iter()
         .flat_map(|one| {
             let left = left_over(one, &values);
@@ -339,7 +341,7 @@ fn solve(equations: &[SwingEquations], expected: SVector<f64, SHARED>, step_by_t
         quantile: student(swings_left),
         delay: 0.0,
         residual: variance.sqrt(),
-        left_over: left_over_swings,
+        residuals: all_residuals,
         fastest: 0.0,
     })
 }

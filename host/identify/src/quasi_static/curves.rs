@@ -1,41 +1,45 @@
-//! Groups of repeated curves, and the interval of any figure that is computed from their means.
+//! Groups of repeated curves, and intervals of figures of their means.
 
 use crate::estimate::Estimate;
 use crate::statistics::{mean, rms, student};
 use scenario::random::RandomStream;
 
-/// Draws from which an interval is taken where some places have one repeat only.
+/// Random draws for an interval if some places have a single repeat.
 const DRAWS: usize = 400;
 
-/// Groups of repeats, each a curve over the same places: group, repeat, place.
+/// Curves over common places: group, repeat, place.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Curves(pub Vec<Vec<Vec<f64>>>);
 
 impl Curves {
-    /// Mean curve of each group. Places that a repeat does not have are no numbers and left out.
+    /// Mean curve of each group; places missing in a repeat are NaN and skipped.
     pub fn means(&self) -> Vec<Vec<f64>> {
-        self.0.iter().map(|group| Sums::of(group).means()).collect()
+        self.0.iter().map(|group| Sums::new(group).means()).collect()
     }
 
-    /// Whether every group has two repeats at every place.
+    /// Returns true if every group has two repeats at every place.
     fn is_repeated(&self) -> bool {
-        self.0.iter().all(|group| Sums::of(group).counts.iter().all(|count| *count >= 2.0))
+        self.0.iter().all(|group| Sums::new(group).counts.iter().all(|count| *count >= 2.0))
     }
 
-    /// A figure of the means with its 95 % interval: computed anew without each repeat in turn; where some places have one
-    /// repeat only, with the scatter of the others.
+    /// Figure of the means with its 95 % interval: by the jackknife over repeats or, if some places have a single
+    /// repeat, by draws from the scatter of the other places.
     pub fn estimate(&self, figure: impl Fn(&[Vec<f64>]) -> f64) -> Estimate {
-        if self.is_repeated() { self.without_each(figure) } else { Scatter::of(self).estimate(self, figure) }
+        if self.is_repeated() {
+            self.without_each(figure)
+        } else {
+            RepeatScatter::from_curves(self).estimate(self, figure)
+        }
     }
 
-    /// The same of a figure at each place.
+    /// Figure at each place with its 95 % interval.
     pub fn estimates(&self, figure: impl Fn(&[Vec<f64>], usize) -> f64) -> Vec<Estimate> {
         let places = self.0.iter().flatten().next().map_or(0, Vec::len);
         if self.is_repeated() {
             return (0..places).map(|place| self.at(place).without_each(|means| figure(means, 0))).collect();
         }
         let means = self.means();
-        let scatter = Scatter::of(self);
+        let scatter = RepeatScatter::from_curves(self);
         let draws = scatter.draws(self);
         (0..places)
             .map(|place| {
@@ -50,7 +54,7 @@ impl Curves {
         let value = figure(&means);
         let (mut variance, mut over_freedom) = (0.0, 0.0);
         for (index, group) in self.0.iter().enumerate() {
-            let sums = Sums::of(group);
+            let sums = Sums::new(group);
             let without: Vec<f64> = group
                 .iter()
                 .map(|left_out| {
@@ -70,7 +74,7 @@ impl Curves {
         Estimate { value, half: student(freedom) * variance.sqrt() }
     }
 
-    /// The same at one place only, of the repeats that have it.
+    /// Curves at one place, from the repeats that have it.
     fn at(&self, place: usize) -> Self {
         let own = |group: &Vec<Vec<f64>>| {
             group.iter().map(|curve| curve[place]).filter(|value| value.is_finite()).map(|value| vec![value]).collect()
@@ -78,10 +82,11 @@ impl Curves {
         Self(self.0.iter().map(own).collect())
     }
 
-    /// Deviations of every repeat from its group's mean, made larger for the mean being of so few: group, repeat, place.
+    /// Deviations of every repeat from its group's mean, scaled up for the few repeats in the mean: group, repeat,
+    /// place.
     pub fn deviations(&self) -> Self {
         let of = |group: &Vec<Vec<f64>>| {
-            let Sums { sums, counts } = Sums::of(group);
+            let Sums { sums, counts } = Sums::new(group);
             let deviation = |(place, value): (usize, &f64)| {
                 let count = counts[place];
                 (value - sums[place] / count) * (count / (count - 1.0)).sqrt()
@@ -91,26 +96,26 @@ impl Curves {
         Self(self.0.iter().map(of).collect())
     }
 
-    /// All values that there are.
+    /// All finite values.
     pub fn values(&self) -> Vec<f64> {
         self.0.iter().flatten().flatten().copied().filter(|value| value.is_finite()).collect()
     }
 }
 
-/// How repeats scatter, from the places that have several.
-struct Scatter {
-    /// Of whole repeats.
+/// RepeatScatter of repeats, from the places with several.
+struct RepeatScatter {
+    /// Standard deviation of the repeats' means.
     whole: f64,
-    /// About that, along a repeat.
+    /// Standard deviation along a repeat, about its mean.
     along: f64,
-    /// How much of the latter one place has in common with the next.
+    /// Correlation between neighbouring places of a repeat.
     common: f64,
     /// Degrees of freedom.
     freedom: f64,
 }
 
-impl Scatter {
-    fn of(curves: &Curves) -> Self {
+impl RepeatScatter {
+    fn from_curves(curves: &Curves) -> Self {
         let deviations = curves.deviations();
         let (mut means, mut rests, mut products, mut freedom) = (Vec::new(), Vec::new(), Vec::new(), 0.0);
         for group in &deviations.0 {
@@ -133,7 +138,7 @@ impl Scatter {
         Self { whole: rms(&means), along, common, freedom }
     }
 
-    /// Means of groups as they might have been.
+    /// Random means of the groups.
     fn draws(&self, curves: &Curves) -> Vec<Vec<Vec<f64>>> {
         let mut random = RandomStream::new(1, "repeats");
         let means = curves.means();
@@ -142,14 +147,14 @@ impl Scatter {
             groups
                 .map(|(group, means)| {
                     let shifted: Vec<Vec<f64>> = group.iter().map(|curve| self.draw(curve, random)).collect();
-                    Sums::of(&shifted).means().iter().zip(means).map(|(shift, mean)| mean + shift).collect()
+                    Sums::new(&shifted).means().iter().zip(means).map(|(shift, mean)| mean + shift).collect()
                 })
                 .collect()
         };
         (0..DRAWS).map(|_| one(&mut random)).collect()
     }
 
-    /// The deviation of one repeat where it has places.
+    /// Random deviation of one repeat, at the places it has.
     fn draw(&self, curve: &[f64], random: &mut RandomStream) -> Vec<f64> {
         let whole = self.whole * random.normal();
         let mut along = self.along * random.normal();
@@ -173,14 +178,14 @@ impl Scatter {
     }
 }
 
-/// Sums by place over the repeats that have it.
+/// Sums and counts by place, over the repeats that have it.
 struct Sums {
     sums: Vec<f64>,
     counts: Vec<f64>,
 }
 
 impl Sums {
-    fn of(group: &[Vec<f64>]) -> Self {
+    fn new(group: &[Vec<f64>]) -> Self {
         let places = group.first().map_or(0, Vec::len);
         let (mut sums, mut counts) = (vec![0.0; places], vec![0.0; places]);
         for curve in group {
@@ -209,8 +214,9 @@ impl Sums {
 mod tests {
     use super::*;
 
+    /// The interval of a difference of two means is Welch's.
     #[test]
-    fn the_interval_of_a_difference_of_means_is_welchs() {
+    fn jackknife_interval_equals_welch() {
         let group = |values: &[f64]| values.iter().map(|value| vec![*value]).collect::<Vec<_>>();
         let curves = Curves(vec![group(&[1.0, 2.0, 3.0, 4.0]), group(&[10.0, 12.0, 11.0])]);
         let found = curves.estimate(|means| means[1][0] - means[0][0]);
@@ -220,8 +226,9 @@ mod tests {
         assert!((found.half - student(freedom) * 0.75_f64.sqrt()).abs() < 1e-12, "{found:?}");
     }
 
+    /// Places with a single repeat use the scatter of the other places.
     #[test]
-    fn places_with_one_repeat_take_the_scatter_of_the_others() {
+    fn single_repeat_uses_scatter_of_others() {
         let mut random = RandomStream::new(3, "test");
         let mut group = |count: usize| -> Vec<Vec<f64>> { (0..count).map(|_| vec![random.normal(); 40]).collect() };
         let whole = Curves(vec![group(12), group(12)]);
@@ -231,7 +238,7 @@ mod tests {
         holed.0[0].iter_mut().skip(1).for_each(|curve| curve[0] = f64::NAN);
         let taken = holed.estimate(figure);
         assert!((taken.half / known.half - 1.0).abs() < 0.2, "{known:?} {taken:?}");
-        // One repeat of the first group in place of twelve: its own scatter counts.
+        // With one repeat instead of twelve in the first group, its own scatter counts.
         holed.0[0].iter_mut().skip(1).for_each(|curve| curve[1..].fill(f64::NAN));
         let single = holed.estimate(figure);
         assert!((single.half / (13.0 / 2.0_f64).sqrt() / known.half - 1.0).abs() < 0.35, "{known:?} {single:?}");

@@ -1,30 +1,30 @@
-//! Which way the output is loaded in each pass, as far as the log or its user says: by halves, by torque, or not at all.
+//! Direction of the output's load in each pass: stated by halves, shown by the torque, or unknown.
 
 use super::profiles::{Profile, Profiles};
 use crate::statistics::{mean, rms};
 use report::failure::{Failure, Outcome};
 
-/// A pass is loaded one way if the torque has that sign in this share of its bins.
-const ONE_SIGN: f64 = 0.9;
-/// Levels of one direction are apart by this share of the width...
+/// Share of a pass's bins with one sign of the torque from which the pass is loaded one way.
+const SIGN_SHARE_MIN: f64 = 0.9;
+/// Passes of one direction lie on two levels if these differ by LEVELS_APART of the width ...
 const LEVELS_APART: f64 = 0.5;
-/// ... and the widest gap between passes is so many deviations of those on one level.
+/// ... and the widest gap between passes exceeds LEVELS_CLEAR deviations of the passes on one level.
 const LEVELS_CLEAR: f64 = 4.0;
-/// Passes of one direction that differ by this share of the width...
-const UNREPEATED: f64 = 0.5;
-/// ... and by so many times what neighbouring places differ by, do not repeat.
+/// Passes of one direction do not repeat if they differ by REPEAT_DISTANCE_MAX of the width ...
+const REPEAT_DISTANCE_MAX: f64 = 0.5;
+/// ... and by ABOVE_ROUGHNESS times the difference between neighbouring places.
 const ABOVE_ROUGHNESS: f64 = 3.0;
 
-/// How the load is known.
+/// Source of the load's direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Loading {
-    /// Told by `--half`.
+    /// Stated by `--half`.
     ByHalf,
-    /// The torque keeps its sign within passes, and has either sign in both directions.
+    /// The torque keeps its sign within each pass, and has both signs in both directions.
     ByTorque,
-    /// Not known: direction of motion is all there is. Whether a measured output torque reverses with the direction.
+    /// Unknown; only the direction of motion is known.
     ByDirection {
-        /// It does.
+        /// True if a measured output torque reverses with the direction of motion.
         reverses: bool,
     },
     /// The torque has one sign in all passes: one flank carries throughout.
@@ -32,8 +32,8 @@ pub enum Loading {
 }
 
 impl Loading {
-    /// The one of these passes.
-    pub fn of(profiles: &Profiles, halves: usize) -> Self {
+    /// Determines the loading of these passes.
+    pub fn classify(profiles: &Profiles, halves: usize) -> Self {
         if halves > 0 {
             return Self::ByHalf;
         }
@@ -53,13 +53,13 @@ impl Loading {
         }
     }
 
-    /// How many groups there are: by direction, and by load if that is known to have been either way.
+    /// Number of groups: by direction, and by load if loads of both signs are known.
     pub fn groups(self) -> usize {
         if matches!(self, Self::ByHalf | Self::ByTorque) { 4 } else { 2 }
     }
 
-    /// The group of a pass: forwards and backwards under the first load, then under the second. The first half, or positive
-    /// torque, is the first load.
+    /// Group of a pass: forwards and backwards under the first load, then under the second. The first half, or a
+    /// positive torque, is the first load.
     pub fn group(self, profile: &Profile) -> usize {
         let load = match self {
             Self::ByHalf => profile.pass.half,
@@ -69,7 +69,7 @@ impl Loading {
         2 * load + usize::from(!profile.pass.forwards)
     }
 
-    /// What the loads are called.
+    /// Names of the loads.
     pub fn names(self) -> &'static [&'static str] {
         match self {
             Self::ByHalf => &["first half", "second half"],
@@ -78,8 +78,8 @@ impl Loading {
         }
     }
 
-    /// The same in one sentence.
-    pub fn in_words(self) -> &'static str {
+    /// The loading in one sentence.
+    pub fn sentence(self) -> &'static str {
         match self {
             Self::ByHalf => "The load is told: one way in the first half, the other way in the second.",
             Self::ByTorque => {
@@ -102,16 +102,16 @@ impl Loading {
     }
 }
 
-/// The sign of the torque in nearly all of a pass, as measured at the output or else at the motor; 0 if there is none.
+/// Sign of the torque in nearly all of a pass, measured at the output or else at the motor; 0 without one.
 fn sign(profile: &Profile) -> f64 {
     let Some(torque) = profile.output_torque.as_ref().or(profile.motor_torque.as_ref()) else { return 0.0 };
     let there: Vec<f64> = torque.iter().copied().filter(|value| value.is_finite()).collect();
     let share = |sign: f64| there.iter().filter(|value| *value * sign > 0.0).count() as f64 / there.len() as f64;
-    [1.0, -1.0].into_iter().find(|sign| share(*sign) >= ONE_SIGN).unwrap_or(0.0)
+    [1.0, -1.0].into_iter().find(|sign| share(*sign) >= SIGN_SHARE_MIN).unwrap_or(0.0)
 }
 
-/// Refuses passes of one direction that lie on two levels, or that do not repeat, as those do whose load has changed untold.
-/// Given are the means of both directions by place, and how far apart they are.
+/// Rejects passes of one direction that lie on two levels or do not repeat, as after an unstated change of the load.
+/// `means` are both directions' means by place, `width` is their distance.
 pub fn check_one_load(profiles: &Profiles, means: &[Vec<f64>], width: f64) -> Outcome<()> {
     let deviations = |one: &Profile| -> Vec<f64> {
         let own = &means[usize::from(!one.pass.forwards)];
@@ -122,7 +122,7 @@ pub fn check_one_load(profiles: &Profiles, means: &[Vec<f64>], width: f64) -> Ou
     check_levels(profiles, &all, width)?;
     let steps: Vec<f64> = all.iter().flat_map(|one| one.windows(2).map(|pair| pair[1] - pair[0])).collect();
     let (apart, rough) = (rms(&all.concat()), rms(&steps) / std::f64::consts::SQRT_2);
-    if apart < UNREPEATED * width.abs() || apart < ABOVE_ROUGHNESS * rough {
+    if apart < REPEAT_DISTANCE_MAX * width.abs() || apart < ABOVE_ROUGHNESS * rough {
         return Ok(());
     }
     Err(Failure::new(format!(
@@ -159,7 +159,7 @@ fn check_levels(profiles: &Profiles, deviations: &[Vec<f64>], width: f64) -> Out
     if apart < LEVELS_APART * width.abs() || gap(widest) < LEVELS_CLEAR * rms(&scatter) {
         return Ok(());
     }
-    // Stretches of passes on one level.
+    // Stretches of consecutive passes on one level.
     let mut stretches: Vec<(bool, f64, f64)> = Vec::new();
     for (one, level) in profiles.all.iter().zip(&levels) {
         let (upper, [from, _, to]) = (*level > limit, one.time);

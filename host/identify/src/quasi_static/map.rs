@@ -1,4 +1,4 @@
-//! The error map: what output less motor has by place, whatever the load: a long wave and ripple.
+//! Error map: output less motor by place, averaged over loads; a long wave and a ripple.
 
 use std::f64::consts::TAU;
 
@@ -6,54 +6,54 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::statistics::{mean, rms};
 
-/// The long wave: a polynomial of this degree.
-const DEGREE: usize = 6;
-/// Ripple has at least so many half periods over the range, what the polynomial cannot follow.
-const FIRST_RIPPLE: usize = 6;
+/// Degree of the polynomial of the long wave.
+const LONG_WAVE_DEGREE: usize = 6;
+/// Least half periods of the ripple over the range, beyond the polynomial's reach.
+const RIPPLE_HALF_PERIODS_MIN: usize = 6;
 
-/// An error map in its parts, each over the bins.
+/// Error map in its parts, each over the bins.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Map {
-    /// All of it, without its mean.
+    /// Whole map, without its mean.
     pub whole: Vec<f64>,
-    /// Its long wave, with the straight line.
+    /// Long wave, with the straight line.
     pub long_wave: Vec<f64>,
-    /// The rest.
+    /// Map less long wave.
     pub ripple: Vec<f64>,
-    /// Slope of a straight line through it.
+    /// Slope of a straight line through the map.
     pub slope: f64,
 }
 
 impl Map {
-    /// Of the mean curves of all groups.
-    pub fn of(places: &[f64], means: &[Vec<f64>]) -> Self {
+    /// Map of the mean curves of all groups.
+    pub fn from_means(places: &[f64], means: &[Vec<f64>]) -> Self {
         let at = |place: usize| means.iter().map(|group| group[place]).sum::<f64>() / means.len() as f64;
         let mut whole: Vec<f64> = (0..places.len()).map(at).collect();
         let middle = mean(&whole);
         whole.iter_mut().for_each(|value| *value -= middle);
         let (first, last) = (places[0], places[places.len() - 1]);
-        // Chebyshev's polynomials, which least squares tells well apart.
+        // Chebyshev polynomials are well conditioned for least squares.
         let share = |place: &f64| ((2.0 * place - first - last) / (last - first)).clamp(-1.0, 1.0);
         let basis = |row: usize, column: usize| (column as f64 * share(&places[row]).acos()).cos();
-        // With few bins the last of them would be noise: at least two bins for each unknown.
-        let unknowns = (1 + DEGREE).min(places.len() / 2);
+        // At least two bins per unknown: with fewer, the highest terms would be noise.
+        let unknowns = (1 + LONG_WAVE_DEGREE).min(places.len() / 2);
         let long_wave = fitted(&DMatrix::from_fn(places.len(), unknowns, basis), &whole).0;
         let line = fitted(&DMatrix::from_fn(places.len(), 2, basis), &whole).1;
         let ripple = whole.iter().zip(&long_wave).map(|(whole, long)| whole - long).collect();
         Self { whole, long_wave, ripple, slope: 2.0 * line[1] / (last - first) }
     }
 
-    /// From the least to the greatest value of the long wave.
+    /// Range of the long wave.
     pub fn long_wave_range(&self) -> f64 {
         range(self.long_wave.iter().copied())
     }
 
-    /// How far the output turns for each 1 of the motor.
+    /// Travel of the output per travel of the motor.
     pub fn output_per_motor(&self) -> f64 {
         1.0 / (1.0 - self.slope)
     }
 
-    /// How far the straight line goes over the range, over how far the long wave goes off it.
+    /// Rise of the straight line over the range of the long wave about the line.
     pub fn straightness(&self, places: &[f64]) -> f64 {
         let line = self.slope * (places[places.len() - 1] - places[0]);
         let bent = range(self.long_wave.iter().zip(places).map(|(wave, place)| wave - self.slope * place));
@@ -66,7 +66,7 @@ impl Map {
     }
 
     /// Period and amplitude of the strongest sine in the ripple.
-    pub fn strongest(&self, places: &[f64]) -> Option<(f64, f64)> {
+    pub fn strongest_ripple(&self, places: &[f64]) -> Option<(f64, f64)> {
         let span = places[places.len() - 1] - places[0];
         let sine = |half_periods: usize| {
             let rate = 0.5 * TAU * half_periods as f64 / span;
@@ -77,18 +77,18 @@ impl Map {
             let parts = fitted(&DMatrix::from_fn(places.len(), 2, column), &self.ripple).1;
             (2.0 * span / half_periods as f64, parts[0].hypot(parts[1]))
         };
-        // Four bins a period at the least.
-        (FIRST_RIPPLE..=places.len() / 2).map(sine).max_by(|a, b| a.1.total_cmp(&b.1))
+        // At least four bins per period.
+        (RIPPLE_HALF_PERIODS_MIN..=places.len() / 2).map(sine).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 }
 
-/// From the least to the greatest value.
+/// Largest less least value.
 fn range(values: impl Iterator<Item = f64>) -> f64 {
     let (low, high) = values.fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(value), high.max(value)));
     high - low
 }
 
-/// Least squares: the fitted curve and its coefficients.
+/// Least squares: fitted curve and coefficients.
 fn fitted(basis: &DMatrix<f64>, values: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let solved = basis.clone().svd(true, true).solve(&DVector::from_column_slice(values), 1e-9);
     let solved = solved.unwrap_or_else(|_| DVector::zeros(basis.ncols()));
@@ -99,16 +99,17 @@ fn fitted(basis: &DMatrix<f64>, values: &[f64]) -> (Vec<f64>, Vec<f64>) {
 mod tests {
     use super::*;
 
+    /// Line, long wave and ripple of a synthetic map are recovered.
     #[test]
-    fn line_wave_and_ripple_are_told_apart() {
+    fn map_separates_line_wave_and_ripple() {
         let places: Vec<f64> = (0..100).map(|bin| 500.0 + 10.0 * f64::from(bin)).collect();
         let wave = |x: f64| 3.0 * (TAU * (x - 500.0) / 990.0).cos() + 0.01 * x;
         let curve: Vec<f64> = places.iter().map(|x| wave(*x) + 0.5 * (TAU * x / 60.0).sin()).collect();
-        let map = Map::of(&places, &[curve.clone(), curve]);
+        let map = Map::from_means(&places, &[curve.clone(), curve]);
         assert!((map.slope - 0.01).abs() < 1e-3, "{}", map.slope);
         assert!(map.straightness(&places) < 2.0, "a line of 10 beside a wave of 6");
         assert!((map.ripple_rms() - 0.5 / 2f64.sqrt()).abs() < 0.02, "{}", map.ripple_rms());
-        let (period, amplitude) = map.strongest(&places).expect("a ripple");
+        let (period, amplitude) = map.strongest_ripple(&places).expect("a ripple");
         assert!((period - 60.0).abs() < 1.0 && (amplitude - 0.5).abs() < 0.05, "{period} {amplitude}");
     }
 }

@@ -1,9 +1,9 @@
-//! `joint identify --quasi-static`: from a slow log of sweeps to and fro to lost motion, hysteresis, error map and friction,
-//! without a joint file. docs/reference/identify.md defines each of them.
+//! `joint identify --quasi-static`: lost motion, hysteresis, error map and friction from a log of slow sweeps, without
+//! a joint file. docs/reference/identify.md defines each figure.
 //!
-//! `options` are its own; `samples` puts both encoders on one scale; `passes`
-//! are the motor's ways between turning points, `profiles` their means by place; `loading` says which flank carries;
-//! `results` are figures by the crate's `statistics`, with the error `map` and the `prediction`; `page` and `pictures` show them.
+//! `options` are the command line's options. `samples` puts both encoders on one scale. `passes` are the motor's
+//! motions between turning points, `profiles` their means by place. `loading` determines the flank that carries.
+//! `results` are the figures, with the error `map` and the `prediction`; `page` and `pictures` write them.
 
 mod curves;
 mod loading;
@@ -34,15 +34,15 @@ use report::write::write_text;
 use results::Results;
 use samples::Samples;
 
-/// What is written.
+/// Files of the results.
 const REPORT: &str = "report.html";
 const FINDINGS: &str = "findings.json";
 const PICTURES: &str = "*.svg";
 
-/// What all modes of the command have in common.
+/// Arguments common to all modes of the command.
 #[derive(Debug, Clone, Copy)]
 pub struct Common<'a> {
-    /// The log.
+    /// Path of the log.
     pub log: &'a Path,
     /// Topic of an MCAP log.
     pub topic: Option<&'a str>,
@@ -50,11 +50,11 @@ pub struct Common<'a> {
     pub map: &'a ColumnMap,
     /// Folder for the results.
     pub out: Option<&'a Path>,
-    /// Where the findings go too.
+    /// File for a copy of the findings.
     pub json: Option<&'a PathBuf>,
 }
 
-/// Reads a slow log, writes what it shows and prints it.
+/// Reads a slow log, writes the results and returns the printed text.
 pub fn run(common: Common<'_>, options: &Options, progress: &Progress) -> Outcome<String> {
     let path = common.log;
     check_halves(&options.halves)?;
@@ -63,12 +63,12 @@ pub fn run(common: Common<'_>, options: &Options, progress: &Progress) -> Outcom
     let folder = Folder::choose(common.out, "identify", &format!("{name} slow"), &[REPORT, FINDINGS, PICTURES])?;
     progress.stage("reading");
     let ratio = options.gear_ratio.unwrap_or(1.0);
-    let mut columns = log_file::read(path, common.topic, common.map, ratio, has_both)?;
-    let in_the_file = |failure: Failure| failure.while_doing(path.display());
-    let samples = Samples::of(&mut columns, options);
-    let explained = |failure: Failure| in_the_file(columns.explain(failure));
+    let mut columns = log_file::read(path, common.topic, common.map, ratio, has_both_encoders)?;
+    let at_path = |failure: Failure| failure.while_doing(path.display());
+    let samples = Samples::from_columns(&mut columns, options);
+    let explained = |failure: Failure| at_path(columns.with_notes(failure));
     let samples = samples.map_err(explained)?;
-    let results = Results::of(&samples, &options.halves).map_err(explained)?;
+    let results = Results::evaluate(&samples, &options.halves).map_err(explained)?;
     check_ratio(options.gear_ratio, &results).map_err(explained)?;
     folder.make()?;
     let pictures = pictures::all(&results);
@@ -85,16 +85,16 @@ pub fn run(common: Common<'_>, options: &Options, progress: &Progress) -> Outcom
     Ok(format!("{}\nreport: {}\n", terminal(&document), folder.file(REPORT).display()))
 }
 
-/// By how much of itself a ratio that was said may differ from that of the log: widths are off by as much.
-const RATIO: f64 = 0.003;
-/// How many times as far as it is bent an error map may be sloped: more is no encoder's error.
-const STRAIGHT: f64 = 3.0;
+/// Largest relative error of a stated gear ratio against the log; widths are off by as much.
+const RATIO_TOLERANCE: f64 = 0.003;
+/// Rise of an error map over its curvature from which it is no encoder error.
+const STRAIGHTNESS_MAX: f64 = 3.0;
 
-/// Holds a ratio that was said against how far motor and output turned.
+/// Compares a stated ratio with the travel of motor and output.
 fn check_ratio(said: Option<f64>, results: &Results) -> Outcome<()> {
     let (map, places) = (&results.map, &results.profiles.places);
     let output_per_motor = map.output_per_motor();
-    let is_other = (output_per_motor - 1.0).abs() > RATIO && map.straightness(places) > STRAIGHT;
+    let is_other = (output_per_motor - 1.0).abs() > RATIO_TOLERANCE && map.straightness(places) > STRAIGHTNESS_MAX;
     let Some(said) = said.filter(|_| is_other) else { return Ok(()) };
     Err(Failure::new(format!(
         "the output turns {output_per_motor:.4} times as far as the motor and the ratio of {said} say: widths would be off by as much"
@@ -115,8 +115,8 @@ fn check_halves(halves: &[(f64, f64)]) -> Outcome<()> {
     }
 }
 
-/// Whether both encoders are among the columns.
-fn has_both(columns: &Columns) -> bool {
+/// Returns true if the columns contain both encoders.
+fn has_both_encoders(columns: &Columns) -> bool {
     let has = |wanted: &[&str]| columns.names().any(|name| wanted.contains(&name));
     has(&["output_counts", "output_angle_rad", "output_angle"])
         && has(&["motor_counts", "motor_angle_rad", "motor_angle", DIFFERENCE])

@@ -1,13 +1,13 @@
-//! What `joint identify --quasi-static` may be asked for on the command line.
+//! Command line of `joint identify --quasi-static`.
 
 /// Options of the quasi-static mode.
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(next_help_heading = "Slow logs")]
 pub struct Options {
-    /// Reads a slow log of sweeps to and fro, without a joint file: lost motion, hysteresis, error map, friction
+    /// Reads a log of slow sweeps, without a joint file: lost motion, hysteresis, error map, friction
     #[arg(long, conflicts_with_all = ["joint", "set", "motor_bits", "output_bits", "torque_error", "inertia_error", "simulate"])]
     pub quasi_static: bool,
-    /// Seconds of the log in which the output is loaded one way, such as 0..60; again for those of the other way
+    /// Seconds of the log with the output loaded one way, such as 0..60; given a second time for the other way
     #[arg(long = "half", value_name = "FROM..TO", requires = "quasi_static", value_parser = stretch)]
     pub halves: Vec<(f64, f64)>,
     /// Units of the output's column in a turn of the output
@@ -16,7 +16,7 @@ pub struct Options {
     /// Units of the motor's column in a turn of the motor
     #[arg(long, value_name = "N", requires = "quasi_static", value_parser = positive)]
     pub motor_units_per_turn: Option<f64>,
-    /// Turns of the motor for one of the output, negative if they count against each other [default: 1]
+    /// Turns of the motor per turn of the output, negative if they count in opposite directions [default: 1]
     #[arg(long, value_name = "R", requires = "quasi_static", allow_hyphen_values = true, value_parser = ratio)]
     pub gear_ratio: Option<f64>,
 }

@@ -1,4 +1,4 @@
-//! What a slow log shows as a document, and as a record for JSON.
+//! Results of a slow log as a document, and as a record for JSON.
 
 use serde::Serialize;
 
@@ -15,7 +15,7 @@ use report::provenance::VERSION;
 /// Name and version of the record.
 pub const SCHEMA: &str = "joint-identify-quasi-static/1";
 
-/// The record of a slow log.
+/// Record of a slow log.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Record<'a> {
@@ -26,7 +26,7 @@ pub struct Record<'a> {
     duration_s: f64,
     samples: usize,
     period_s: f64,
-    /// From the 5 to the 95 % quantile of the time between samples.
+    /// 5 and 95 % quantile of the time between samples.
     jitter_s: [f64; 2],
     /// Steps of more than ten periods.
     gaps: usize,
@@ -57,7 +57,7 @@ struct Pass {
 }
 
 impl<'a> Record<'a> {
-    /// Of a log's results.
+    /// Record of a log's results.
     pub fn of(log: &'a str, samples: &Samples, results: &'a Results) -> Self {
         let pass = |one: &super::profiles::Profile| Pass {
             forwards: one.pass.forwards,
@@ -98,7 +98,7 @@ fn assumptions(samples: &Samples, results: &Results) -> Vec<String> {
     let number = |value: f64| ESTIMATE.write(value);
     let (unit, count) = (scale.unit, profiles.all.len());
     let mut all = vec![
-        loading.in_words().to_owned(),
+        loading.sentence().to_owned(),
         match scale.per_turn {
             Some(turn) if unit == "units" => format!("A turn of the output is {} units, as told.", number(turn)),
             Some(_) => "Angles are in radians.".to_owned(),
@@ -128,11 +128,11 @@ fn assumptions(samples: &Samples, results: &Results) -> Vec<String> {
             number(samples.resolution)
         ),
     ];
-    all.extend(samples.told.iter().cloned());
+    all.extend(samples.notes.iter().cloned());
     all
 }
 
-/// The page, with pictures in their order.
+/// Whole report, with pictures in the given order.
 pub fn document(log: &str, samples: &Samples, results: &Results, figures: Vec<Figure>) -> Document {
     let figures = figures.into_iter().map(|figure| picture(figure, Text::default()));
     let seconds = samples.time.last().copied().unwrap_or_default();

@@ -1,41 +1,41 @@
-//! The motor's passes from one turning point to the next, cut where a half ends and at gaps, without their ends.
+//! Passes of the motor from one turning point to the next, cut at ends of halves and at gaps, without their ends.
 
 use std::ops::Range;
 
-use super::samples::{GAP, Samples, spread};
+use super::samples::{GAP_STEPS, Samples, spread};
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 
-/// A turning point counts when the motor then goes back by this share of its travel.
-const TURNED: f64 = 0.25;
-/// At each end of a pass at least this share of the travel is left out.
-const LEAST_LEFT_OUT: f64 = 0.02;
-/// More than this share cannot be left out at both ends.
-const MOST_LEFT_OUT: f64 = 0.25;
-/// What is left of a pass is this share of the travel at least.
-const LEAST_LEFT: f64 = 0.1;
-/// Around a turning point so many samples to either side are looked at.
-const AROUND: usize = 12;
-/// Readings that are apart by more than so many samples are told by the output about turning points.
-const APART: f64 = 1.3;
-/// Fewer samples do not show how the difference goes over a pass.
-const LEAST_SAMPLES: usize = 24;
+/// Least return from a turning point, as a share of the motor's travel.
+const TURN_SHARE: f64 = 0.25;
+/// Least share of the travel excluded at each end of a pass.
+const EXCLUDED_SHARE_MIN: f64 = 0.02;
+/// Largest share of the travel excluded at each end.
+const EXCLUDED_SHARE_MAX: f64 = 0.25;
+/// Least share of the travel left of a pass.
+const PASS_SHARE_MIN: f64 = 0.1;
+/// Samples examined on either side of a turning point.
+const TURN_WINDOW: usize = 12;
+/// Offset between the readings, in the output's usual steps, that the output shows at turning points.
+const READING_OFFSET_MAX: f64 = 1.3;
+/// Least samples of a pass that show the course of the difference.
+const PASS_SAMPLES_MIN: usize = 24;
 
-/// Motion of the motor one way.
+/// Motion of the motor in one direction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pass {
-    /// Its samples.
+    /// Samples of the pass.
     pub range: Range<usize>,
-    /// Which way.
+    /// True for forward motion.
     pub forwards: bool,
-    /// The half of the log that it is in, 0 or 1; 0 where none are told.
+    /// Half of the log, 0 or 1; 0 without halves.
     pub half: usize,
 }
 
-/// All passes of a log in their order, with what was left out at each of their ends.
+/// All passes of a log in order of time, and the length excluded at each end.
 pub fn passes(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<(Vec<Pass>, f64)> {
     let travel = samples.travel();
-    let turns = turning_points(&samples.motor, TURNED * travel);
+    let turns = turning_points(&samples.motor, TURN_SHARE * travel);
     if turns.len() < 3 {
         return Err(Failure::new(format!(
             "there is no reversal in this log: the motor never goes back by a quarter of its travel of {}",
@@ -43,9 +43,9 @@ pub fn passes(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<(Vec<Pass>, f
         ))
         .with_help("sweep slowly to and fro over the same places, at least twice each way"));
     }
-    read_together(samples, &turns)?;
-    let left_out = (LEAST_LEFT_OUT * travel).max(spread(&samples.difference));
-    if left_out > MOST_LEFT_OUT * travel {
+    check_simultaneous(samples, &turns)?;
+    let left_out = (EXCLUDED_SHARE_MIN * travel).max(spread(&samples.difference));
+    if left_out > EXCLUDED_SHARE_MAX * travel {
         return Err(Failure::new(format!(
             "the passes are too short: the difference of output and motor ranges over {}, the motor travels {}",
             ESTIMATE.write(left_out),
@@ -61,7 +61,7 @@ pub fn passes(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<(Vec<Pass>, f
         for (half, range) in cut(samples, pair[0]..pair[1] + 1, halves) {
             let range = without_ends(&samples.motor, range, forwards, left_out);
             let long = range.len() > 1
-                && (samples.motor[range.end - 1] - samples.motor[range.start]).abs() >= LEAST_LEFT * travel;
+                && (samples.motor[range.end - 1] - samples.motor[range.start]).abs() >= PASS_SHARE_MIN * travel;
             if long {
                 passes.push(Pass { range, forwards, half });
             }
@@ -70,8 +70,8 @@ pub fn passes(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<(Vec<Pass>, f
     let mut lengths: Vec<usize> = passes.iter().map(|pass| pass.range.len()).collect();
     lengths.sort_unstable();
     match lengths.get(lengths.len() / 2) {
-        Some(usual) if *usual < LEAST_SAMPLES => Err(Failure::new(format!(
-            "the motion is too fast for this log: {usual} samples in a pass, {LEAST_SAMPLES} are the least"
+        Some(usual) if *usual < PASS_SAMPLES_MIN => Err(Failure::new(format!(
+            "the motion is too fast for this log: {usual} samples in a pass, {PASS_SAMPLES_MIN} are the least"
         ))
         .with_help("sweep more slowly, or log more often")),
         Some(_) => Ok((passes, left_out)),
@@ -82,32 +82,33 @@ pub fn passes(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<(Vec<Pass>, f
     }
 }
 
-/// Refuses a log whose output goes on the old way after the motor has turned, or turns before it: friction holds an output, and a
-/// gap does too, but neither moves it. Readings of different moments do, and feign a width of the way in between.
-fn read_together(samples: &Samples, turns: &[usize]) -> Outcome<()> {
+/// Rejects a log whose output continues in the old direction after the motor has turned, or turns first. Friction and a
+/// gap hold an output but never move it; readings at different times do, and mimic a width of the travel in between.
+fn check_simultaneous(samples: &Samples, turns: &[usize]) -> Outcome<()> {
     let output = &samples.output;
     let mut steps: Vec<f64> =
         output.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0).collect();
     steps.sort_by(f64::total_cmp);
     let step = steps.get(steps.len() / 2).copied().unwrap_or(f64::INFINITY);
     let inner = turns.get(1..turns.len().saturating_sub(1)).unwrap_or_default();
-    // So far does the output go on after a turning point and, negative, so far has it come back before it, in usual steps.
+    // Travel of the output beyond its place at the turning point, in usual steps: positive after it, negative before
+    // it.
     let mut went_on: Vec<f64> = Vec::new();
     for &turn in inner {
-        let forwards = samples.motor[turn] > samples.motor[turn.saturating_sub(AROUND)];
+        let forwards = samples.motor[turn] > samples.motor[turn.saturating_sub(TURN_WINDOW)];
         let sign = if forwards { 1.0 } else { -1.0 };
-        let around = &output[turn.saturating_sub(AROUND)..(turn + AROUND + 1).min(output.len())];
+        let around = &output[turn.saturating_sub(TURN_WINDOW)..(turn + TURN_WINDOW + 1).min(output.len())];
         let (farthest, most) = around
             .iter()
             .enumerate()
             .map(|(place, value)| (place, sign * (value - output[turn])))
             .fold((0, f64::NEG_INFINITY), |best, next| if next.1 > best.1 { next } else { best });
-        let after = farthest >= turn - turn.saturating_sub(AROUND);
+        let after = farthest >= turn - turn.saturating_sub(TURN_WINDOW);
         went_on.push(if after { most } else { -most } / step);
     }
     went_on.sort_by(f64::total_cmp);
     let usual = went_on.get(went_on.len() / 2).copied().unwrap_or_default();
-    if usual.abs() < APART {
+    if usual.abs() < READING_OFFSET_MAX {
         return Ok(());
     }
     let (late, early) = if usual > 0.0 { ("output", "motor") } else { ("motor", "output") };
@@ -123,11 +124,11 @@ fn read_together(samples: &Samples, turns: &[usize]) -> Outcome<()> {
     )))
 }
 
-/// Samples at which the motor turns, the first and the last of the log's motion among them.
+/// Samples at which the motor turns, including the first and the last of its motion.
 pub fn turning_points(motor: &[f64], threshold: f64) -> Vec<usize> {
     let (mut least, mut most) = (0, 0);
     let mut turns: Vec<usize> = Vec::new();
-    // The way since the last turning point; nothing before the first.
+    // Direction since the last turning point; `None` before the first.
     let mut forwards: Option<bool> = None;
     let mut farthest = 0;
     for (sample, place) in motor.iter().enumerate() {
@@ -164,7 +165,7 @@ pub fn turning_points(motor: &[f64], threshold: f64) -> Vec<usize> {
     turns
 }
 
-/// Parts of a stretch that lie in one half each, without gaps.
+/// Parts of a stretch without gaps, each within one half.
 fn cut(samples: &Samples, stretch: Range<usize>, halves: &[(f64, f64)]) -> Vec<(usize, Range<usize>)> {
     let half = |sample: usize| match halves {
         [] => Some(0),
@@ -173,7 +174,8 @@ fn cut(samples: &Samples, stretch: Range<usize>, halves: &[(f64, f64)]) -> Vec<(
     let mut parts: Vec<(usize, Range<usize>)> = Vec::new();
     for sample in stretch.clone() {
         let Some(own) = half(sample) else { continue };
-        let goes_on = sample > stretch.start && samples.time[sample] - samples.time[sample - 1] <= GAP * samples.period;
+        let goes_on =
+            sample > stretch.start && samples.time[sample] - samples.time[sample - 1] <= GAP_STEPS * samples.period;
         match parts.last_mut() {
             Some((last, range)) if *last == own && range.end == sample && goes_on => range.end = sample + 1,
             _ => parts.push((own, sample..sample + 1)),
@@ -182,7 +184,7 @@ fn cut(samples: &Samples, stretch: Range<usize>, halves: &[(f64, f64)]) -> Vec<(
     parts
 }
 
-/// A stretch from where the motor has gone some way on to where it has the same way to go.
+/// Stretch without `left_out` of travel at both ends.
 fn without_ends(motor: &[f64], range: Range<usize>, forwards: bool, left_out: f64) -> Range<usize> {
     let sign = if forwards { 1.0 } else { -1.0 };
     let (first, last) = (motor[range.start], motor[range.end - 1]);
@@ -197,8 +199,9 @@ fn without_ends(motor: &[f64], range: Range<usize>, forwards: bool, left_out: f6
 mod tests {
     use super::*;
 
+    /// Reversals below the threshold make no turning point.
     #[test]
-    fn small_reversals_do_not_make_a_turning_point() {
+    fn turning_points_ignore_small_reversals() {
         let motor: Vec<f64> = (0..400)
             .map(|sample: i32| {
                 let sweep = 100 - (sample % 200 - 100).abs();

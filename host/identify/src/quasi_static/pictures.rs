@@ -1,4 +1,4 @@
-//! Pictures of what was found: lost motion over the place, difference by direction, error map, and what the model leaves over.
+//! Pictures of the results: lost motion over the place, difference by direction, error map, and residuals of the model.
 
 use super::loading::Loading;
 use super::results::Results;
@@ -8,7 +8,7 @@ use report::plot::mark::Mark;
 use report::plot::panel::Panel;
 use report::plot::unit::{SECONDS, Unit};
 
-/// All of them with the names of their files.
+/// All pictures with their file names.
 pub fn all(results: &Results) -> Vec<(&'static str, Figure)> {
     let Results { profiles, width, map, prediction, groups, levels, loading, hysteresis, .. } = results;
     let unit = match results.scale.degrees() {
@@ -73,7 +73,7 @@ pub fn all(results: &Results) -> Vec<(&'static str, Figure)> {
     let ripple = Panel { height: 170, ..Panel::lines("Ripple", unit, vec![line(&map.ripple, Ink::Third, "", 1.6)]) };
     let map = figure("Error map of output against motor", vec![long, ripple]);
 
-    let at = |index: usize| -> Vec<f64> { prediction.left_over.iter().map(|one| one[index]).collect() };
+    let at = |index: usize| -> Vec<f64> { prediction.residuals.iter().map(|one| one[index]).collect() };
     let left = Panel::lines(
         "What a map and one width leave over in unseen passes",
         unit,

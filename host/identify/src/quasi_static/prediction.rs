@@ -1,14 +1,14 @@
-//! The test of what was found: fitted on every other pass of each group, tried on the rest.
+//! Cross-validation: fitted on every other pass of each group, tested on the rest.
 
 use serde::Serialize;
 
 use super::curves::Curves;
 use crate::statistics::{mean, quantile, rms};
 
-/// Rounds in which map and numbers are fitted one after the other.
-const ROUNDS: usize = 500;
+/// Alternating fits of map and numbers.
+const FIT_ROUNDS: usize = 500;
 
-/// What three models leave over in passes that they have not seen, root mean square over bins [units of the output].
+/// Residuals of three models in unseen passes, root mean square over bins [units of the output].
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Prediction {
@@ -16,25 +16,25 @@ pub struct Prediction {
     pub fitted: usize,
     /// Passes that were predicted.
     pub predicted: usize,
-    /// A map alone.
+    /// Residual of a map alone.
     pub map: f64,
-    /// A map and one number for each group: one width, one hysteresis for each load.
+    /// Residual of a map and one number per group: one width, one hysteresis for each load.
     pub map_and_width: f64,
-    /// A curve for each group.
+    /// Residual of a curve per group.
     pub curves: f64,
-    /// What curves would leave over if nothing but the scatter between passes were in it.
+    /// Residual of the curves expected from the scatter between passes alone.
     pub repeatability: f64,
-    /// Residual of the map and one number for each group: mean and 10 to 90 % by bin.
+    /// Residual of the map and one number per group: mean, 10 % and 90 % quantile by bin.
     #[serde(skip)]
-    pub left_over: Vec<[f64; 3]>,
-    /// The systematic part of it in each group, by bin: what curves know and one number does not.
+    pub residuals: Vec<[f64; 3]>,
+    /// Systematic part of this residual in each group, by bin: known to the curves, not to one number.
     #[serde(skip)]
     pub systematic: Vec<Vec<f64>>,
 }
 
 impl Prediction {
-    /// Of groups of passes.
-    pub fn of(curves: &Curves) -> Self {
+    /// Fits and tests the models on groups of passes.
+    pub fn cross_validate(curves: &Curves) -> Self {
         let every_other = |first: usize| {
             Curves(curves.0.iter().map(|group| group.iter().skip(first).step_by(2).cloned().collect()).collect())
         };
@@ -47,9 +47,9 @@ impl Prediction {
             mean(&finite(own.collect()))
         };
         let map: Vec<f64> = (0..places).map(|place| column(place, &vec![0.0; means.len()])).collect();
-        // Least squares of a map and a number for each group, also where not every group has every place.
+        // Least squares of a map and a number per group, for groups with missing places too.
         let (mut levels, mut common) = (vec![0.0; means.len()], map.clone());
-        for _ in 0..ROUNDS {
+        for _ in 0..FIT_ROUNDS {
             for (level, group) in levels.iter_mut().zip(&means) {
                 *level = mean(&finite(group.iter().zip(&common).map(|(own, common)| own - common).collect()));
             }
@@ -57,7 +57,7 @@ impl Prediction {
         }
         let left = |predicted: &dyn Fn(usize, usize) -> f64| -> Vec<Vec<f64>> {
             let of = |group: usize, pass: &Vec<f64>| -> Vec<f64> {
-                // Only where a curve was fitted: all models are tried at the same places.
+                // All models are tested at the places of the fitted curves.
                 let own = |(place, value): (usize, &f64)| {
                     if means[group][place].is_finite() { value - predicted(group, place) } else { f64::NAN }
                 };
@@ -75,7 +75,7 @@ impl Prediction {
             own.sort_by(f64::total_cmp);
             [mean(&own), quantile(&own, 0.1), quantile(&own, 0.9)]
         };
-        // The mean of so few fitted passes scatters too.
+        // The mean of a few fitted passes scatters too.
         let scatter = rms(&curves.deviations().values());
         let larger =
             seen.0.iter().zip(&unseen.0).map(|(seen, unseen)| unseen.len() as f64 * (1.0 + 1.0 / seen.len() as f64));
@@ -87,7 +87,7 @@ impl Prediction {
             map_and_width: of_all(&with_width),
             curves: of_all(&left(&|group, place| means[group][place])),
             repeatability: scatter * (larger.sum::<f64>() / predicted as f64).sqrt(),
-            left_over: (0..places).map(by_bin).collect(),
+            residuals: (0..places).map(by_bin).collect(),
             systematic: means
                 .iter()
                 .zip(&levels)
@@ -96,7 +96,7 @@ impl Prediction {
         }
     }
 
-    /// What a curve for each group knows beyond a map and one number for each.
+    /// Residual explained by a curve per group beyond a map and one number per group.
     pub fn unexplained(&self) -> f64 {
         (self.map_and_width.powi(2) - self.curves.powi(2)).max(0.0).sqrt()
     }

@@ -1,35 +1,35 @@
-//! The profile of each pass: means of the difference, and of torques, over bins of the output that the passes share.
+//! Profiles of the passes: means of difference and torques over common bins of the output.
 
 use super::passes::Pass;
 use super::samples::Samples;
 use crate::statistics::{mean, quantile_of};
 use report::failure::{Failure, Outcome};
 
-/// A bin holds so many samples of a usual pass...
-const IN_A_BIN: f64 = 6.0;
-/// ... as long as there are not fewer or more bins than these.
-const BINS: (f64, f64) = (12.0, 120.0);
-/// Fewer bins that all groups share show no map.
-pub const LEAST_BINS: usize = 8;
-/// Passes that a bin needs of each direction.
-pub const LEAST_PASSES: usize = 2;
+/// Samples of a typical pass per bin.
+const SAMPLES_PER_BIN: f64 = 6.0;
+/// Least and largest number of bins.
+const BIN_COUNT_RANGE: (f64, f64) = (12.0, 120.0);
+/// Least number of bins shared by all groups.
+pub const BINS_MIN: usize = 8;
+/// Least passes of each direction in a bin.
+pub const PASSES_MIN: usize = 2;
 
 /// One pass over the bins.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
     /// The pass.
     pub pass: Pass,
-    /// Mean difference in each bin; not a number where the pass does not go over the whole bin.
+    /// Mean difference in each bin; NaN unless the pass covers the whole bin.
     pub difference: Vec<f64>,
-    /// Mean motor torque likewise, if there is one [N m].
+    /// Mean motor torque in each bin, if logged [N m].
     pub motor_torque: Option<Vec<f64>>,
-    /// Mean torque of the joint on its link likewise [N m].
+    /// Mean torque of the joint on its link in each bin, if logged [N m].
     pub output_torque: Option<Vec<f64>>,
-    /// First, middle and last moment [s].
+    /// First, middle and last time [s].
     pub time: [f64; 3],
     /// Mean speed of the motor on the output's scale [units/s].
     pub speed: f64,
-    /// Squares of single readings about their bin's mean, and how many are free.
+    /// Sum of squares of single readings about their bin's mean, and its degrees of freedom.
     pub scatter: (f64, f64),
 }
 
@@ -40,13 +40,13 @@ pub struct Profiles {
     pub places: Vec<f64>,
     /// Width of a bin.
     pub width: f64,
-    /// Every pass that goes over bins, in time.
+    /// Every pass that covers a bin, in order of time.
     pub all: Vec<Profile>,
 }
 
 impl Profiles {
-    /// Over the places that passes of each direction, in each half, go over.
-    pub fn of(samples: &Samples, passes: &[Pass], halves: usize) -> Outcome<Self> {
+    /// Profiles over the places that passes of each direction, in each half, cover.
+    pub fn from_passes(samples: &Samples, passes: &[Pass], halves: usize) -> Outcome<Self> {
         let (mut low, mut high) = (f64::MIN, f64::MAX);
         for half in 0..halves.max(1) {
             for forwards in [true, false] {
@@ -65,7 +65,7 @@ impl Profiles {
             places.filter(|place| (low..=high).contains(*place)).count() as f64
         };
         let counts: Vec<f64> = passes.iter().map(inside).collect();
-        let count = (quantile_of(&counts, 0.5) / IN_A_BIN).floor().clamp(BINS.0, BINS.1);
+        let count = (quantile_of(&counts, 0.5) / SAMPLES_PER_BIN).floor().clamp(BIN_COUNT_RANGE.0, BIN_COUNT_RANGE.1);
         let width = (high - low) / count;
         let bins = Bins { low, width, count: count as usize };
         let all: Vec<Profile> = passes.iter().map(|pass| profile(samples, pass, &bins)).collect();
@@ -74,7 +74,7 @@ impl Profiles {
         Ok(Self { places, width, all })
     }
 
-    /// Only the bins that every group has; in enough of them every group must have been twice.
+    /// Keeps the bins that every group has; every group must have been twice in enough of them.
     pub fn shared(mut self, group: impl Fn(&Profile) -> usize, groups: usize) -> Outcome<Self> {
         let count = |bin: usize, wanted: usize| {
             self.all.iter().filter(|one| group(one) == wanted && one.difference[bin].is_finite()).count()
@@ -82,8 +82,8 @@ impl Profiles {
         let keep: Vec<bool> =
             (0..self.places.len()).map(|bin| (0..groups).all(|group| count(bin, group) > 0)).collect();
         let repeated =
-            |group: usize| (0..keep.len()).filter(|bin| keep[*bin] && count(*bin, group) >= LEAST_PASSES).count();
-        if (0..groups).any(|group| repeated(group) < LEAST_BINS) {
+            |group: usize| (0..keep.len()).filter(|bin| keep[*bin] && count(*bin, group) >= PASSES_MIN).count();
+        if (0..groups).any(|group| repeated(group) < BINS_MIN) {
             return Err(no_common_places());
         }
         let kept = |values: &[f64]| -> Vec<f64> {
@@ -106,22 +106,22 @@ impl Profiles {
         (sum / free).sqrt()
     }
 
-    /// Usual speed [units of the output/s].
+    /// Median speed [units of the output/s].
     pub fn speed(&self) -> f64 {
         quantile_of(&self.all.iter().map(|one| one.speed).collect::<Vec<_>>(), 0.5)
     }
 }
 
 impl Profile {
-    /// Mean of what there is.
+    /// Mean of the finite values.
     pub fn mean(values: &[f64]) -> f64 {
         mean(&values.iter().copied().filter(|value| value.is_finite()).collect::<Vec<_>>())
     }
 }
 
-/// Refuses fewer passes than an interval can be taken from.
+/// Rejects too few passes for an interval.
 pub fn check_count(count: usize, half: usize, halves: usize, forwards: bool) -> Outcome<()> {
-    if count >= LEAST_PASSES {
+    if count >= PASSES_MIN {
         return Ok(());
     }
     let way = if forwards { "forwards" } else { "backwards" };
@@ -129,7 +129,7 @@ pub fn check_count(count: usize, half: usize, halves: usize, forwards: bool) -> 
         0 => String::new(),
         _ => format!(" in the {} half", ["first", "second"][half.min(1)]),
     };
-    Err(Failure::new(format!("too few passes: {count} {way}{place}, {LEAST_PASSES} each way are the least")).with_help(
+    Err(Failure::new(format!("too few passes: {count} {way}{place}, {PASSES_MIN} each way are the least")).with_help(
         "sweep over the same places at least twice each way, slowly; an interval is taken from how passes repeat",
     ))
 }
@@ -154,7 +154,7 @@ fn range(values: &[f64]) -> (f64, f64) {
 fn profile(samples: &Samples, pass: &Pass, bins: &Bins) -> Profile {
     let own = pass.range.clone();
     let (low, high) = range(&samples.output[own.clone()]);
-    // Where noise alone takes a pass to a bin's end, the bin is whole.
+    // Rounding may end a pass just before the end of a bin.
     let slack = 1e-9 * bins.width;
     let whole = |bin: usize| {
         let from = bins.low + bin as f64 * bins.width;

@@ -1,4 +1,4 @@
-//! What a slow log shows: every figure with its interval, the curves behind them, and the test of both.
+//! Results of a slow log: figures with intervals, the curves behind them, and the cross-validation.
 
 use serde::Serialize;
 
@@ -14,28 +14,28 @@ use crate::statistics::{mean, quantile_of, rms, student};
 use report::failure::{Failure, Outcome};
 use report::number::ESTIMATE;
 
-/// From one sample to the next the joint moves by this share of the width at most.
-const QUASI_STATIC: f64 = 0.5;
+/// Largest motion between samples, as a share of the width.
+const STEP_SHARE_MAX: f64 = 0.5;
 
 /// One figure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Quantity {
-    /// Its key.
+    /// Key of the figure.
     pub key: String,
-    /// What it is.
+    /// Name of the figure.
     pub name: String,
     /// Unit of value and interval.
     pub unit: String,
-    /// Best value; absent if the log does not show it.
+    /// Best value; absent if the log does not determine it.
     pub value: Option<f64>,
-    /// Lower and upper end of the 95 % interval, where passes give one.
+    /// Lower and upper end of the 95 % interval, if passes give one.
     pub interval: Option<[f64; 2]>,
-    /// The value in degrees of the output, where a turn is known [deg].
+    /// Value in degrees of the output, if a turn is known [deg].
     pub value_deg: Option<f64>,
-    /// Its interval likewise [deg].
+    /// Interval in degrees of the output [deg].
     pub interval_deg: Option<[f64; 2]>,
-    /// What to know about it; may be empty.
+    /// Remark; may be empty.
     pub note: String,
 }
 
@@ -52,10 +52,10 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// Half of an interval is `least` or more.
-    fn of(estimates: Vec<Estimate>, least: f64) -> Self {
+    /// Curve of estimates; half of each interval is at least `least`.
+    fn from_estimates(estimates: Vec<Estimate>, least: f64) -> Self {
         let mut curve = Self::default();
-        for Estimate { value, half } in estimates.into_iter().map(|one| one.at_least(least)) {
+        for Estimate { value, half } in estimates.into_iter().map(|one| one.with_half_at_least(least)) {
             curve.value.push(value);
             curve.low.push(value - half);
             curve.high.push(value + half);
@@ -64,38 +64,38 @@ impl Curve {
     }
 }
 
-/// All that was found.
+/// All results.
 pub struct Results {
-    /// How the load is known.
+    /// Source of the load's direction.
     pub loading: Loading,
     /// Unit of the output.
     pub scale: Scale,
     /// Passes over the bins.
     pub profiles: Profiles,
-    /// What is left out at each end of a pass.
+    /// Length excluded at each end of a pass.
     pub left_out: f64,
     /// Mean difference of each group over the bins.
     pub groups: Vec<Vec<f64>>,
-    /// Lost motion or width by direction over the bins.
+    /// Lost motion, or width by direction, over the bins.
     pub width: Curve,
-    /// Hysteresis under each load over the bins, where loads are told.
+    /// Hysteresis under each load over the bins, if loads are known.
     pub hysteresis: Vec<Curve>,
     /// Error map.
     pub map: Map,
-    /// The test.
+    /// Cross-validation.
     pub prediction: Prediction,
-    /// Mean of each pass about its group's, in time [s, units].
+    /// Mean of each pass about its group's mean, over time [s, units].
     pub levels: Vec<(f64, f64)>,
-    /// Every figure.
+    /// All figures.
     pub quantities: Vec<Quantity>,
 }
 
 impl Results {
-    /// Out of samples, and of the halves that were told.
-    pub fn of(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<Self> {
+    /// Evaluates samples and stated halves.
+    pub fn evaluate(samples: &Samples, halves: &[(f64, f64)]) -> Outcome<Self> {
         let (passes, left_out) = passes(samples, halves)?;
-        let profiles = Profiles::of(samples, &passes, halves.len())?;
-        let loading = Loading::of(&profiles, halves.len());
+        let profiles = Profiles::from_passes(samples, &passes, halves.len())?;
+        let loading = Loading::classify(&profiles, halves.len());
         let profiles = profiles.shared(|one| loading.group(one), loading.groups())?;
         let of_groups = |values: &dyn Fn(&Profile) -> Option<Vec<f64>>| -> Option<Curves> {
             let mut groups = vec![Vec::new(); loading.groups()];
@@ -108,8 +108,8 @@ impl Results {
         for (group, passes) in curves.0.iter().enumerate() {
             check_count(passes.len(), group / 2, halves.len(), group % 2 == 0)?;
         }
-        // Lost motion is the first load's less the second's, with the sign that makes it positive where halves do not say
-        // which way they are loaded.
+        // Lost motion is the first load's mean less the second's; positive if halves do not state the directions of
+        // their loads.
         let apart = |means: &[Vec<f64>], place: usize| match loading.groups() {
             4 => 0.5 * (means[2][place] + means[3][place] - means[0][place] - means[1][place]),
             _ => means[1][place] - means[0][place],
@@ -124,8 +124,8 @@ impl Results {
                 mean(&(0..places).map(|place| means[2 * load + 1][place] - means[2 * load][place]).collect::<Vec<_>>())
             })
         };
-        let shares = [0.5, 0.1, 0.9].map(share).map(|one| one.at_least(samples.resolution));
-        let loops = (0..loading.groups() / 2).map(hysteresis).map(|one| one.at_least(samples.resolution));
+        let shares = [0.5, 0.1, 0.9].map(share).map(|one| one.with_half_at_least(samples.resolution));
+        let loops = (0..loading.groups() / 2).map(hysteresis).map(|one| one.with_half_at_least(samples.resolution));
         let loops: Vec<Estimate> = loops.collect();
         let largest = loops.iter().map(|one| one.value.abs()).fold(shares[0].value.abs(), f64::max);
         let step = profiles.speed() * samples.period;
@@ -133,7 +133,7 @@ impl Results {
             check_one_load(&profiles, &groups, shares[0].value)?;
         }
         check_sign(loading, &shares[0])?;
-        if step > QUASI_STATIC * largest {
+        if step > STEP_SHARE_MAX * largest {
             return Err(Failure::new(format!(
                 "the motion is too fast for this log: {} from one sample to the next, where the widths found are {} at most",
                 ESTIMATE.write(step),
@@ -143,7 +143,7 @@ impl Results {
                 "sweep more slowly, or log more often: encoders that are read at different moments would feign such a width",
             ));
         }
-        let mut found = Found { scale: samples.scale, resolution: samples.resolution, all: Vec::new() };
+        let mut found = FigureList { scale: samples.scale, resolution: samples.resolution, all: Vec::new() };
         let heights = if sign < 0.0 { "first" } else { "second" };
         let ranges: Vec<[f64; 2]> = (0..loops.len())
             .map(|load| {
@@ -165,16 +165,19 @@ impl Results {
         }
         let hysteresis = (0..loading.groups() / 2).filter(|_| loading.groups() == 4).map(|load| {
             let loops = curves.estimates(|means, place| means[2 * load + 1][place] - means[2 * load][place]);
-            Curve::of(loops, samples.resolution)
+            Curve::from_estimates(loops, samples.resolution)
         });
         Ok(Self {
             loading,
             scale: samples.scale,
             left_out,
-            width: Curve::of(curves.estimates(|means, place| sign * apart(means, place)), samples.resolution),
+            width: Curve::from_estimates(
+                curves.estimates(|means, place| sign * apart(means, place)),
+                samples.resolution,
+            ),
             hysteresis: hysteresis.collect(),
-            map: Map::of(&profiles.places, &groups),
-            prediction: Prediction::of(&curves),
+            map: Map::from_means(&profiles.places, &groups),
+            prediction: Prediction::cross_validate(&curves),
             groups,
             levels,
             quantities: found.all,
@@ -187,7 +190,7 @@ fn signed(values: &[f64], sign: f64) -> Vec<f64> {
     values.iter().map(|value| sign * value).collect()
 }
 
-/// Refuses an output that is ahead of the motor, or ahead under the torque.
+/// Rejects an output ahead of the motor, or ahead in the direction of the torque.
 fn check_sign(loading: Loading, width: &Estimate) -> Outcome<()> {
     if loading == Loading::ByHalf || width.value + width.half >= 0.0 {
         return Ok(());
@@ -201,24 +204,24 @@ fn check_sign(loading: Loading, width: &Estimate) -> Outcome<()> {
         .with_help("the difference, the torque or an encoder counts the other way, or the encoders are read at different moments"))
 }
 
-/// Of the interval, if there is one.
+/// Ends of the interval, if it is finite.
 fn ends(Estimate { value, half }: Estimate) -> Option<[f64; 2]> {
     half.is_finite().then_some([value - half, value + half])
 }
 
-/// Figures as they come.
-struct Found {
+/// Collected figures.
+struct FigureList {
     scale: Scale,
     /// Least half of an interval of an angle [units of the output].
     resolution: f64,
     all: Vec<Quantity>,
 }
 
-impl Found {
-    /// A figure in the unit of the output.
+impl FigureList {
+    /// Adds a figure in the unit of the output.
     fn angle(&mut self, key: impl Into<String>, name: impl Into<String>, estimate: Estimate, note: impl Into<String>) {
         let degrees = self.scale.degrees();
-        let interval = ends(estimate.at_least(self.resolution));
+        let interval = ends(estimate.with_half_at_least(self.resolution));
         self.all.push(Quantity {
             key: key.into(),
             name: name.into(),
@@ -231,7 +234,7 @@ impl Found {
         });
     }
 
-    /// A figure in another unit.
+    /// Adds a figure in another unit.
     fn other(&mut self, key: String, name: String, unit: &str, estimate: Estimate, note: &str) {
         self.all.push(Quantity {
             key,
@@ -311,18 +314,18 @@ impl Found {
 
     fn map(&mut self, curves: &Curves, profiles: &Profiles) {
         let places = &profiles.places;
-        let of = |means: &[Vec<f64>]| Map::of(places, means);
+        let of = |means: &[Vec<f64>]| Map::from_means(places, means);
         let scale = curves.estimate(|means| of(means).output_per_motor());
         self.other(
             "output_per_motor".into(),
             "output for each 1 of the motor".into(),
             "",
-            scale.at_least(self.resolution / (profiles.width * places.len() as f64)),
+            scale.with_half_at_least(self.resolution / (profiles.width * places.len() as f64)),
             "slope of the error map; 1 as stated",
         );
         let long = curves.estimate(|means| of(means).long_wave_range());
         self.angle("map_long_wave_range", "error map: long wave, least to greatest", long, "");
-        // What the scatter of the passes alone leaves in the mean of them.
+        // Contribution of the passes' scatter to the mean square of the ripple.
         let noise: f64 = curves
             .0
             .iter()
@@ -334,7 +337,7 @@ impl Found {
             })
             .sum();
         let ripple = curves.estimate(|means| (of(means).ripple_rms().powi(2) - noise).max(0.0).sqrt());
-        let strongest = of(&curves.means()).strongest(places).map_or(String::new(), |(period, amplitude)| {
+        let strongest = of(&curves.means()).strongest_ripple(places).map_or(String::new(), |(period, amplitude)| {
             format!(
                 "scatter taken off; strongest period {}, amplitude {} {}",
                 ESTIMATE.write(period),
@@ -345,7 +348,7 @@ impl Found {
         self.angle("map_ripple_rms", "error map: ripple, root mean square", ripple, strongest);
     }
 
-    /// Scatter and drift; the mean of each pass about its group's, in time.
+    /// Adds scatter and drift; returns the mean of each pass about its group's mean, over time.
     fn repeatability(
         &mut self,
         curves: &Curves,
@@ -374,7 +377,7 @@ impl Found {
         let mut levels: Vec<(usize, f64, f64)> = Vec::new();
         for one in &profiles.all {
             let own = group(one);
-            // Where it is the only one of its group it is no repeat.
+            // A single pass of a group at a place is no repeat.
             let repeats = |place: usize| curves.0[own].iter().filter(|curve| curve[place].is_finite()).count() > 1;
             let about = one.difference.iter().zip(&means[own]).enumerate().filter(|(place, _)| repeats(*place));
             let about: Vec<f64> = about.map(|(_, (value, mean))| value - mean).collect();
@@ -412,12 +415,12 @@ impl Found {
         let note = "of the passes' means about their group's; a width between halves has it over the time between them";
         let times = levels.iter().map(|level| level.1);
         let duration = times.clone().fold(f64::MIN, f64::max) - times.fold(f64::MAX, f64::min);
-        let drift = Estimate { value: slope, half }.at_least(self.resolution / duration);
+        let drift = Estimate { value: slope, half }.with_half_at_least(self.resolution / duration);
         self.other("drift".into(), "drift".into(), &unit, drift, note);
         levels.into_iter().map(|(_, time, level)| (time, level)).collect()
     }
 
-    /// `least` is the least half of an interval [N m].
+    /// Adds the figures of a torque; half of each interval is at least `least` [N m].
     fn friction(&mut self, key: &str, name: &str, torque: &Curves, loading: Loading, least: f64) {
         let at = |means: &[Vec<f64>], group: usize| Profile::mean(&means[group]);
         for (load, which) in loading.names().iter().enumerate() {
@@ -444,7 +447,7 @@ impl Found {
                     format!("{key}_torque_{own}{index}"),
                     format!("{name}, {label}{which}"),
                     "N m",
-                    estimate.at_least(least),
+                    estimate.with_half_at_least(least),
                     note,
                 );
             }

@@ -1,5 +1,5 @@
-//! A slow log as samples: output, motor on the output's scale and their difference, in the output's unit, with gaps and
-//! jitter as they are.
+//! A slow log as samples: output, motor on the output's scale and their difference, in the output's unit; gaps and
+//! jitter are kept.
 
 use std::f64::consts::TAU;
 
@@ -11,23 +11,23 @@ use log_reader::register::Register;
 use report::failure::{Failure, Outcome};
 use report::number::{ESTIMATE, TYPED};
 
-/// Fewer samples hold no passes.
-const LEAST_SAMPLES: usize = 96;
-/// A longer step of time than so many usual ones is a gap.
-pub const GAP: f64 = 10.0;
-/// Nothing turns by so much of its whole travel from one sample to the next.
+/// Least samples of a log with passes.
+const SAMPLES_MIN: usize = 96;
+/// Time step, in usual steps, from which it is a gap.
+pub const GAP_STEPS: f64 = 10.0;
+/// Largest motion between samples, as a share of the whole travel.
 const JUMP_SHARE: f64 = 0.2;
-/// Output for each 1 of the motor, both on one scale.
-const AS_STATED: std::ops::RangeInclusive<f64> = 0.9..=1.1;
-/// Differences that are less than this share of the range are rounding.
+/// Tolerated slope of output against motor on one scale.
+const SLOPE_RANGE: std::ops::RangeInclusive<f64> = 0.9..=1.1;
+/// Differences below this share of the range are rounding.
 const ROUNDING: f64 = 1e-9;
-/// Below this correlation the output does not follow the motor.
-const FOLLOWS: f64 = 0.8;
+/// Least correlation of output and motor.
+const CORRELATION_MIN: f64 = 0.8;
 
 /// A slow log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Samples {
-    /// From the first sample on [s].
+    /// Time since the first sample [s].
     pub time: Vec<f64>,
     /// Output as read.
     pub output: Vec<f64>,
@@ -39,31 +39,31 @@ pub struct Samples {
     pub motor_torque: Option<Vec<f64>>,
     /// Torque of the joint on its link [N m].
     pub output_torque: Option<Vec<f64>>,
-    /// What the output is read in.
+    /// Unit of the output.
     pub scale: Scale,
-    /// Least steps of both encoders' readings together, on the output's scale [units of the output].
+    /// Resolution of both encoders together, on the output's scale [units of the output].
     pub resolution: f64,
     /// Changes to the rows of the file, a sentence each.
-    pub told: Vec<String>,
-    /// Usual time from one sample to the next [s].
+    pub notes: Vec<String>,
+    /// Median time between samples [s].
     pub period: f64,
-    /// From the 5 to the 95 % quantile of that time [s].
+    /// 5 and 95 % quantile of the time between samples [s].
     pub jitter: [f64; 2],
-    /// Gaps, and the longest step of time [s].
+    /// Number of gaps, and the longest time step [s].
     pub gaps: (usize, f64),
 }
 
 /// Unit of the output's column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
-    /// What it is called.
+    /// Name of the unit.
     pub unit: &'static str,
-    /// How much of it is a turn, if that is known.
+    /// Units per turn, if known.
     pub per_turn: Option<f64>,
 }
 
 impl Scale {
-    /// What makes degrees of it.
+    /// Degrees per unit.
     pub fn degrees(self) -> Option<f64> {
         self.per_turn.map(|turn| 360.0 / turn)
     }
@@ -72,15 +72,15 @@ impl Scale {
 /// A column of angles.
 struct Angles {
     values: Vec<f64>,
-    /// In radians, or in counts of what a turn has not been told.
+    /// Radians, or counts of unknown size.
     scale: Scale,
 }
 
 impl Samples {
-    /// Out of columns with known names.
-    pub fn of(columns: &mut Columns, options: &Options) -> Outcome<Self> {
+    /// Reads columns of known names.
+    pub fn from_columns(columns: &mut Columns, options: &Options) -> Outcome<Self> {
         let motor_names: &[&str] = if columns.column(DIFFERENCE).is_some() { &[DIFFERENCE] } else { &MOTOR };
-        columns.leave_out_incomplete(&[&TIMES, motor_names, &OUTPUT, &["motor_torque_N_m"], &["output_torque_N_m"]])?;
+        columns.remove_incomplete(&[&TIMES, motor_names, &OUTPUT, &["motor_torque_N_m"], &["output_torque_N_m"]])?;
         let stated = [(motor_names, options.motor_units_per_turn), (&OUTPUT, options.output_units_per_turn)];
         for (names, per_turn) in stated {
             let Some(name) = columns.name_of(names).map(str::to_owned) else { continue };
@@ -88,11 +88,11 @@ impl Samples {
             let per_turn = if names == [DIFFERENCE] { options.output_units_per_turn } else { per_turn };
             let turn = if counts { per_turn } else { Some(TAU) };
             let count = columns.column(&name).map_or(0.0, resolution);
-            bad_readings::leave_out(columns, &name, count, turn)?;
+            bad_readings::remove_from_column(columns, &name, count, turn)?;
         }
         let time = columns.time_from_start()?;
-        if time.len() < LEAST_SAMPLES {
-            return Err(Failure::new(format!("there are only {} samples, {LEAST_SAMPLES} are the least", time.len()))
+        if time.len() < SAMPLES_MIN {
+            return Err(Failure::new(format!("there are only {} samples, {SAMPLES_MIN} are the least", time.len()))
                 .with_help("record several slow sweeps each way"));
         }
         let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -107,10 +107,10 @@ impl Samples {
                 "check the column: time_s, time_ms and time_us are understood, --column time_s=NAME takes another",
             ));
         }
-        let gaps = steps.iter().filter(|step| **step > GAP * period).count();
+        let gaps = steps.iter().filter(|step| **step > GAP_STEPS * period).count();
         let longest = steps[steps.len() - 1];
         let output = angles(columns, OUTPUT, options.output_units_per_turn, "output")?
-            .ok_or_else(|| columns.without_encoder("output"))?;
+            .ok_or_else(|| columns.missing_encoder("output"))?;
         let Angles { values: mut output, scale } = output;
         let resolutions = [columns.name_of(&OUTPUT), columns.name_of(motor_names)]
             .map(|name| name.and_then(|name| columns.column(name)).map_or(0.0, resolution));
@@ -123,7 +123,7 @@ impl Samples {
         let samples = Self {
             difference,
             resolution: resolutions[0] + factor.abs() * resolutions[1],
-            told: columns.told().to_vec(),
+            notes: columns.notes().to_vec(),
             motor_torque: torque(columns, "motor_torque_N_m", options.gear_ratio.unwrap_or(1.0).signum())?,
             output_torque: torque(columns, "output_torque_N_m", 1.0)?,
             scale,
@@ -138,12 +138,12 @@ impl Samples {
         Ok(samples)
     }
 
-    /// How far the motor goes, but for its last per cents [units of the output].
+    /// Travel of the motor between its 1 % and 99 % quantiles [units of the output].
     pub fn travel(&self) -> f64 {
         spread(&self.motor)
     }
 
-    /// Refuses encoders that are not in one unit after gear ratio and units.
+    /// Rejects encoders that have different units after gear ratio and stated units.
     fn check_scale(&self, options: &Options, columns: &Columns) -> Outcome<()> {
         let count = self.motor.len() as f64;
         let mean = |values: &[f64]| values.iter().sum::<f64>() / count;
@@ -161,7 +161,7 @@ impl Samples {
                 .with_help("record slow sweeps to and fro, with both encoders; check --column"));
         }
         let (slope, correlation) = (product / square, product / (square * other).sqrt());
-        if correlation.abs() < FOLLOWS {
+        if correlation.abs() < CORRELATION_MIN {
             return Err(Failure::new(format!(
                 "the output does not follow the motor: their readings correlate by {correlation:.2}"
             ))
@@ -170,7 +170,7 @@ impl Samples {
                 ref open => format!("check --column; counts that begin anew each turn need {}", open.join(" and ")),
             }));
         }
-        if AS_STATED.contains(&slope) {
+        if SLOPE_RANGE.contains(&slope) {
             return Ok(());
         }
         let message = format!(
@@ -193,10 +193,10 @@ impl Samples {
     }
 }
 
-/// Options on the scale of the encoders that are not stated and have an effect.
+/// Unstated options on the encoders' scale that would have an effect.
 fn open_options(options: &Options, columns: &Columns, ratio: bool) -> Vec<&'static str> {
     let is_difference = columns.column(DIFFERENCE).is_some();
-    let counts = |names: [&str; 2]| is_there(columns, names[0]);
+    let counts = |names: [&str; 2]| has_column(columns, names[0]);
     [
         ("--gear-ratio", ratio && !is_difference && options.gear_ratio.is_none()),
         ("--output-units-per-turn", counts(OUTPUT) && options.output_units_per_turn.is_none()),
@@ -207,31 +207,31 @@ fn open_options(options: &Options, columns: &Columns, ratio: bool) -> Vec<&'stat
     .collect()
 }
 
-/// A torque if it is there, positive when it drives the output forwards.
+/// Torque, if logged, positive when it drives the output forwards.
 fn torque(columns: &Columns, name: &str, sign: f64) -> Outcome<Option<Vec<f64>>> {
-    if !is_there(columns, name) {
+    if !has_column(columns, name) {
         return Ok(None);
     }
     let (_, torque) = columns.named(&[name])?;
     Ok(Some(torque.iter().map(|torque| sign * torque).collect()))
 }
 
-/// Whether there is a column, by any of its names.
-fn is_there(columns: &Columns, name: &str) -> bool {
+/// Returns true if a column exists under any of its names.
+fn has_column(columns: &Columns, name: &str) -> bool {
     let others = KNOWN.iter().find(|(known, _)| *known == name).map_or(&[][..], |(_, others)| *others);
     columns.names().any(|own| own == name || others.contains(&own))
 }
 
-/// From the 1 to the 99 % quantile.
+/// Distance between the 1 % and the 99 % quantile.
 pub fn spread(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     quantile(&sorted, 0.99) - quantile(&sorted, 0.01)
 }
 
-/// Counts or radians, if either is there.
+/// Angles in counts or radians, if either is logged.
 fn angles(columns: &Columns, names: [&str; 2], per_turn: Option<f64>, whose: &str) -> Outcome<Option<Angles>> {
-    let Some(wanted) = names.into_iter().find(|name| is_there(columns, name)) else { return Ok(None) };
+    let Some(wanted) = names.into_iter().find(|name| has_column(columns, name)) else { return Ok(None) };
     let (_, values) = columns.named(&[wanted])?;
     if wanted == names[0] {
         return Ok(Some(Angles { values, scale: Scale { unit: "units", per_turn } }));
@@ -243,9 +243,10 @@ fn angles(columns: &Columns, names: [&str; 2], per_turn: Option<f64>, whose: &st
     Ok(Some(Angles { values, scale: Scale { unit: "rad", per_turn: Some(TAU) } }))
 }
 
-/// The motor on the output's scale, from its own column or from the difference, and what one unit of that column is on this scale.
+/// Motor on the output's scale, from its own column or from the difference, and the size of the column's unit on this
+/// scale.
 fn motor(columns: &mut Columns, options: &Options, scale: Scale, output: &[f64]) -> Outcome<(Vec<f64>, f64)> {
-    if let Some(mut difference) = columns.maybe(DIFFERENCE)? {
+    if let Some(mut difference) = columns.finite(DIFFERENCE)? {
         let stated = [("--gear-ratio", options.gear_ratio), ("--motor-units-per-turn", options.motor_units_per_turn)];
         if let Some((option, _)) = stated.iter().find(|(_, value)| value.is_some()) {
             return Err(Failure::new(format!(
@@ -257,12 +258,12 @@ fn motor(columns: &mut Columns, options: &Options, scale: Scale, output: &[f64])
         return Ok((output.iter().zip(&difference).map(|(output, difference)| output - difference).collect(), 1.0));
     }
     let motor = angles(columns, MOTOR, options.motor_units_per_turn, "motor")?;
-    let Angles { mut values, scale: own } = motor.ok_or_else(|| columns.without_encoder("motor"))?;
+    let Angles { mut values, scale: own } = motor.ok_or_else(|| columns.missing_encoder("motor"))?;
     let ratio = options.gear_ratio.unwrap_or(1.0);
     unwrap(&mut values, own, MOTOR[0], columns);
     let factor = match (scale.per_turn, own.per_turn) {
         (Some(output), Some(motor)) => output / motor,
-        // Both in counts of one size.
+        // Both encoders count in units of one size.
         _ if scale.unit == own.unit => 1.0,
         _ => {
             let option = if own.per_turn.is_none() { "--motor-units-per-turn" } else { "--output-units-per-turn" };
@@ -274,19 +275,20 @@ fn motor(columns: &mut Columns, options: &Options, scale: Scale, output: &[f64])
     Ok((values, factor / ratio))
 }
 
-/// Joins counts that begin anew every turn, or in a register that is wider.
+/// Joins counts that wrap every turn, or in a wider register.
 fn unwrap(values: &mut [f64], scale: Scale, name: &str, columns: &mut Columns) {
     let (least, most) =
         values.iter().fold((f64::MAX, f64::MIN), |(least, most), value| (least.min(*value), most.max(*value)));
     if scale.per_turn.is_some_and(|turn| most - least <= turn * (1.0 + 1e-9)) {
         step_over_turns(values, scale);
-    } else if let Some(register) = Register::of(values, scale.per_turn) {
+    } else if let Some(register) = Register::find(values, scale.per_turn) {
         register.join(values, |_| 1.0);
-        register.told(name, scale.per_turn).into_iter().for_each(|told| columns.tell(told));
+        register.note(name, scale.per_turn).into_iter().for_each(|notes| columns.add_note(notes));
     }
 }
 
-/// Least step of a column's values: 1 for whole numbers, else between different ones; zero for a column of one value.
+/// Resolution of a column: 1 for whole numbers, else the least step between distinct values; zero for a constant
+/// column.
 pub fn resolution(values: &[f64]) -> f64 {
     if values.iter().all(|value| value.fract() == 0.0) {
         return 1.0;
@@ -321,7 +323,7 @@ fn check_jumps(
     let limit = JUMP_SHARE * (most - least);
     let jumps = |row: &usize| {
         (values[row + 1] - values[*row]).abs() > limit.max(f64::MIN_POSITIVE)
-            && time[row + 1] - time[*row] <= GAP * period
+            && time[row + 1] - time[*row] <= GAP_STEPS * period
     };
     let Some(row) = (0..values.len() - 1).find(jumps) else { return Ok(()) };
     let by = ESTIMATE.write((values[row + 1] - values[row]).abs());
@@ -332,12 +334,12 @@ fn check_jumps(
     ))
     .with_help(format!(
         "a reading was lost, the log is too slow for the motion, or {}",
-        begins_anew(name, columns, options)
+        jump_causes(name, columns, options)
     )))
 }
 
-/// Other causes of a jump, with the option that joins it where that is not stated.
-fn begins_anew(name: &str, columns: &Columns, options: &Options) -> String {
+/// Other causes of a jump, with the option that joins it if unstated.
+fn jump_causes(name: &str, columns: &Columns, options: &Options) -> String {
     let of_output = name == "output" || columns.column(DIFFERENCE).is_some();
     let (option, stated, names) = if of_output {
         ("--output-units-per-turn", options.output_units_per_turn, OUTPUT)
@@ -348,7 +350,7 @@ fn begins_anew(name: &str, columns: &Columns, options: &Options) -> String {
         Some(turn) => {
             format!("counts begin anew after another number than the {} that {option} states", TYPED.write(turn))
         }
-        None if is_there(columns, names[0]) => format!("counts begin anew each turn: then state {option}"),
+        None if has_column(columns, names[0]) => format!("counts begin anew each turn: then state {option}"),
         None => format!(
             "an angle begins anew in another unit than rad: name it {} and state its unit by --unit",
             names[1].trim_end_matches("_rad")
@@ -360,15 +362,16 @@ fn begins_anew(name: &str, columns: &Columns, options: &Options) -> String {
 mod tests {
     use super::*;
 
+    /// Counts that wrap every turn are joined, fractions included; continuous counts stay.
     #[test]
-    fn counts_that_begin_anew_are_joined_and_fractions_kept() {
+    fn unwrap_joins_counts_with_fractions() {
         let scale = Scale { unit: "units", per_turn: Some(100.0) };
         let truth: Vec<f64> = (0..400).map(|step| 7.25 * f64::from(step)).collect();
         let mut read: Vec<f64> = truth.iter().map(|value| value.rem_euclid(100.0)).collect();
-        unwrap(&mut read, scale, "", &mut Columns::of("line"));
+        unwrap(&mut read, scale, "", &mut Columns::new("line"));
         assert!(read.iter().zip(&truth).all(|(read, truth)| (read - truth).abs() < 1e-9));
         let mut many_turns: Vec<f64> = truth.clone();
-        unwrap(&mut many_turns, scale, "", &mut Columns::of("line"));
+        unwrap(&mut many_turns, scale, "", &mut Columns::new("line"));
         assert_eq!(many_turns, truth);
     }
 }

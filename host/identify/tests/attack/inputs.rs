@@ -1,4 +1,4 @@
-//! Valid files of every kind, and what reads them.
+//! Valid files of every kind, and their readers.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -17,43 +17,43 @@ use report::seeds::Seeds;
 use scenario::plant::PlantName;
 use scenario::{TestGroup, TestRequest, suite};
 
-/// Ways in which a log may be packed.
+/// Number of MCAP packings.
 pub const PACKINGS: usize = 5;
-/// Rows of a log: few enough to be refused for that, once they have been read.
+/// Rows of a log: few enough to be rejected as too short after reading.
 const ROWS: usize = 40;
-/// Why that is.
+/// Reason for the rejection of the valid logs.
 const TOO_SHORT: &str = "the log is too short";
 
-/// What a file is.
+/// Kind of a file.
 #[derive(Debug, Clone, Copy)]
 pub enum Kind {
-    /// A joint file.
+    /// Joint file.
     Joint,
-    /// A test file.
+    /// Test file.
     Test,
-    /// A motion beside a test file.
+    /// Motion beside a test file.
     Motion,
-    /// A torque profile.
+    /// Torque profile.
     Torques,
-    /// A log for `joint identify`.
+    /// Log for `joint identify`.
     CsvLog,
-    /// A slow log for its quasi-static mode.
+    /// Log for the quasi-static mode of `joint identify`.
     SlowLog,
-    /// The log as MCAP, packed in one of the ways.
+    /// Log as MCAP, in one of the packings.
     McapLog(usize),
-    /// The form of such a log's messages alone.
-    Form,
-    /// The log of a run, for `joint replay`.
+    /// Message definition of the MCAP log alone.
+    Definition,
+    /// Log of a run, for `joint replay`.
     Run,
 }
 
-/// Whether bytes have something that a reader with a fault would stumble over.
+/// Returns true for bytes that a faulty reader would fail on.
 pub type Fault = fn(&[u8]) -> bool;
 
 /// Every kind of file.
 pub fn all() -> impl Iterator<Item = Kind> {
     let packed = (0..PACKINGS).map(Kind::McapLog);
-    [Kind::Joint, Kind::Test, Kind::Motion, Kind::Torques, Kind::CsvLog, Kind::SlowLog, Kind::Form, Kind::Run]
+    [Kind::Joint, Kind::Test, Kind::Motion, Kind::Torques, Kind::CsvLog, Kind::SlowLog, Kind::Definition, Kind::Run]
         .into_iter()
         .chain(packed)
 }
@@ -69,11 +69,11 @@ const TEST: &str = "title = \"attack\"\njoint = \"q1\"\nseeds = [1, 2]\nduration
                     [[fault]]\nkind = \"encoder_offset\"\nstart_s = 2\ncounts = 40\n\
                     [assert]\nrms_mrad = \"<= 100\"\n";
 const WITH_MOTION: &str = "[profile]\nkind = \"csv\"\nfile = \"motion.csv\"\n";
-const FORM: &str = "std_msgs/Header header\nfloat64[] position\nint64[2] raw\nfloat64 torque\nPart[<=3] parts\n===\n\
+const DEFINITION: &str = "std_msgs/Header header\nfloat64[] position\nint64[2] raw\nfloat64 torque\nPart[<=3] parts\n===\n\
                     MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n===\nMSG: a/Part\nuint8 one\n";
 
 impl Kind {
-    /// A valid one.
+    /// Valid file of this kind.
     pub fn valid(self) -> Vec<u8> {
         match self {
             Self::Joint => joint_file::preset("q1").unwrap_or_default().into(),
@@ -82,14 +82,14 @@ impl Kind {
             Self::Torques => TORQUES.into(),
             Self::CsvLog => csv().into(),
             Self::SlowLog => sweeps().into(),
-            Self::McapLog(packing) => mcap(packing, FORM.as_bytes()),
-            Self::Form => FORM.into(),
+            Self::McapLog(packing) => mcap(packing, DEFINITION.as_bytes()),
+            Self::Definition => DEFINITION.into(),
             Self::Run => run_log().unwrap_or_default(),
         }
     }
 
-    /// Reads a file as a command does. A failure must be one of bad input, with words for it; what is read must keep what
-    /// everything behind it takes for granted.
+    /// Reads a file as a command does. A failure must be bad input with a message; accepted content must satisfy the
+    /// assumptions of the code behind the reader.
     pub fn read(self, bytes: &[u8]) -> Result<(), String> {
         let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
         let file = |name: &str, bytes: &[u8]| -> Result<PathBuf, String> {
@@ -98,13 +98,13 @@ impl Kind {
             Ok(path)
         };
         match self {
-            Self::Joint => refused(joint_file::named::load(&file("joint.toml", bytes)?)).map(drop),
+            Self::Joint => accepted(joint_file::named::load(&file("joint.toml", bytes)?)).map(drop),
             Self::Test => {
-                refused(suite::load(&file("test.toml", bytes)?, suite::Choice::Full, PlantName::Core)).map(drop)
+                accepted(suite::load(&file("test.toml", bytes)?, suite::Choice::Full, PlantName::Core)).map(drop)
             }
             Self::Motion => {
                 file("motion.csv", bytes)?;
-                match refused(suite::from_text("test.toml", WITH_MOTION, folder.path(), PlantName::Core))? {
+                match accepted(suite::from_text("test.toml", WITH_MOTION, folder.path(), PlantName::Core))? {
                     Some(test) => followed(&test),
                     None => Ok(()),
                 }
@@ -113,7 +113,7 @@ impl Kind {
                 let joint = joint_file::read(joint_file::preset("q1").unwrap_or_default());
                 let joint = joint.map_err(|_| "the preset cannot be read")?.parameters;
                 let path = file("torques.csv", bytes)?;
-                let profile = refused(TorqueProfile::load(&path.display().to_string(), &joint, 20_000, None))?;
+                let profile = accepted(TorqueProfile::load(&path.display().to_string(), &joint, 20_000, None))?;
                 let finite = |profile: &TorqueProfile| {
                     profile.commands.iter().all(|one| one.drive_torque.is_finite() && one.load_torque.is_finite())
                 };
@@ -121,26 +121,26 @@ impl Kind {
             }
             Self::SlowLog => {
                 let log = file("log.csv", bytes)?;
-                refused(identify::run(&slow(&log, folder.path()), &Progress::new())).map(drop)
+                accepted(identify::run(&slow(&log, folder.path()), &Progress::new())).map(drop)
             }
             Self::CsvLog => identified(&file("log.csv", bytes)?, folder.path()),
             Self::McapLog(_) => identified(&file("log.mcap", bytes)?, folder.path()),
-            Self::Form => identified(&file("log.mcap", &mcap(0, bytes))?, folder.path()),
+            Self::Definition => identified(&file("log.mcap", &mcap(0, bytes))?, folder.path()),
             Self::Run => match replay(&file("log.mcap", bytes)?, folder.path()) {
-                // Another count or estimate is no refusal: the run is not repeated, and that is said.
+                // A differing count or estimate is no rejection: the replay reports that the run is not reproduced.
                 Err(failure) if failure.exit_code() == EXIT_CHECK_FAILED => Ok(()),
-                outcome => refused(outcome).map(drop),
+                outcome => accepted(outcome).map(drop),
             },
         }
     }
 
-    /// Why a file is refused, but for the shortness that all logs have here.
+    /// Reason for a rejection, except the shortness that all logs have here.
     pub fn refusal(self, bytes: &[u8]) -> Option<String> {
         let folder = tempfile::tempdir().ok()?;
         let path = folder.path().join("log");
         match self {
             Self::CsvLog | Self::SlowLog | Self::McapLog(_) => fs::write(&path, bytes).ok()?,
-            Self::Form => fs::write(&path, mcap(0, bytes)).ok()?,
+            Self::Definition => fs::write(&path, mcap(0, bytes)).ok()?,
             Self::Run => {
                 fs::write(&path, bytes).ok()?;
                 return replay(&path, folder.path()).err().map(|failure| failure.to_string());
@@ -152,7 +152,7 @@ impl Kind {
         (!why.contains(TOO_SHORT)).then_some(why)
     }
 
-    /// Faults that a reader of such files may have, by what brings them to light.
+    /// Faults that a reader of this kind of file may have, by their triggers.
     pub fn planted_faults(self) -> Vec<(&'static str, Fault)> {
         match self {
             Self::McapLog(_) | Self::Run => vec![
@@ -171,8 +171,8 @@ impl Kind {
     }
 }
 
-/// What was read, or nothing if it was refused as it should be.
-fn refused<T>(outcome: Result<T, Failure>) -> Result<Option<T>, String> {
+/// Accepted content; `None` if it was rejected as bad input.
+fn accepted<T>(outcome: Result<T, Failure>) -> Result<Option<T>, String> {
     match outcome {
         Ok(read) => Ok(Some(read)),
         Err(failure) if failure.exit_code() == EXIT_BAD_INPUT && !failure.to_string().is_empty() => Ok(None),
@@ -195,7 +195,7 @@ fn followed(test: &suite::Test) -> Result<(), String> {
 }
 
 fn identified(log: &Path, folder: &Path) -> Result<(), String> {
-    refused(identify::run(&arguments(log, folder), &Progress::new())).map(drop)
+    accepted(identify::run(&arguments(log, folder), &Progress::new())).map(drop)
 }
 
 fn replay(log: &Path, folder: &Path) -> Result<String, Failure> {
@@ -216,7 +216,7 @@ fn replay(log: &Path, folder: &Path) -> Result<String, Failure> {
     replay::run(&arguments, &Progress::new())
 }
 
-/// The log of a very short run: made once for all the processes of cases, and anew when this program is.
+/// Log of a very short run; cached for the processes of all cases, and made again after a build.
 fn run_log() -> Option<Vec<u8>> {
     let kept = Path::new(env!("CARGO_TARGET_TMPDIR")).join("attacked-run.mcap");
     let changed = |path: &Path| fs::metadata(path).and_then(|file| file.modified()).ok();
@@ -224,7 +224,7 @@ fn run_log() -> Option<Vec<u8>> {
         return fs::read(&kept).ok();
     }
     let bytes = new_run_log()?;
-    // Whole under its name, whoever else makes it now.
+    // A rename keeps the file whole while other processes write it too.
     let growing = kept.with_extension(std::process::id().to_string());
     fs::write(&growing, &bytes).and_then(|()| fs::rename(&growing, &kept)).ok()?;
     Some(bytes)
@@ -303,7 +303,7 @@ fn csv() -> String {
     text
 }
 
-/// A log whose messages have the form `FORM`, as another form may say.
+/// Log with messages of the form `DEFINITION`, under the message definition `form`.
 fn mcap(packing: usize, form: &[u8]) -> Vec<u8> {
     let plain = WriteOptions::new().compression(None);
     // Without checksums a change reaches the reader of messages.
@@ -330,12 +330,12 @@ fn mcap(packing: usize, form: &[u8]) -> Vec<u8> {
     written.map(|_| out.into_inner()).unwrap_or_default()
 }
 
-/// By hand from the rules: every number on a multiple of its size behind the head.
+/// Written by hand from the rules: every number is aligned to its size behind the header.
 fn message(row: usize) -> Vec<u8> {
     let mut bytes = vec![0, 1, 0, 0];
     bytes.extend(0_i32.to_le_bytes());
     bytes.extend((100_000 * row as u32).to_le_bytes());
-    // A frame of four letters; one position on a multiple of eight.
+    // Frame of four letters; one position, aligned to eight.
     bytes.extend([4, 0, 0, 0, b'b', b'a', b's', 0, 1, 0, 0, 0]);
     bytes.extend([0; 4]);
     bytes.extend(0.25_f64.to_le_bytes());

@@ -1,8 +1,8 @@
-//! Damaged and hostile files: whatever a reader is given, it ends soon, takes memory by the file's size and refuses in words.
-//! Valid files are changed at random; each case has a limit of time and of memory, and runs in a process of its own, so that a
-//! loop without end or an abort is a failure like any other, told with its seed and made smaller.
+//! Damaged and hostile files: every reader ends soon, takes memory in proportion to the file's size, and rejects with a
+//! message. Valid files are mutated at random. Each case has a limit of time and of memory and a process of its own, so
+//! that an endless loop or an abort is reported like any failure, with its seed, and shrunk.
 //!
-//! `inputs` are the valid files and what reads them, `mutation` changes them. `PROPTEST_CASES=20000` makes the run a long one.
+//! `inputs` are the valid files and their readers, `mutation` changes them. `PROPTEST_CASES=20000` makes a long run.
 
 mod inputs;
 mod mutation;
@@ -15,102 +15,103 @@ use mutation::{Mutation, mutated, mutations};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestError, TestRunner};
 
-/// Refuses memory beyond a limit, which ends the process of the case.
+/// Allocator that fails beyond a limit, which ends the process of the case.
 #[global_allocator]
 static ALLOCATOR: Cap<System> = Cap::new(System, usize::MAX);
 
-/// Memory that any file may take: designs, reports, an hour of torques [bytes].
-const ROOM: usize = 256 << 20;
-/// Memory that a file may take beside, for each of its bytes: what chunks and columns of a log may.
-const ROOM_FOR_A_BYTE: usize = 2 * 256;
-/// Time that any of these small files may take on a machine under load [ms].
-const TIME: u32 = 20_000;
-/// Cases of a short run; the variable PROPTEST_CASES has another number.
+/// Memory allowed for any file: designs, reports, an hour of torques [bytes].
+const MEMORY_BASE: usize = 256 << 20;
+/// Memory allowed per byte of the file, for chunks and columns of a log.
+const MEMORY_PER_BYTE: usize = 2 * 256;
+/// Time limit of a case on a machine under load [ms].
+const TIME_LIMIT: u32 = 20_000;
+/// Cases of a short run; PROPTEST_CASES overrides them.
 const CASES: u32 = 128;
-/// Cases in which a planted fault is found, whatever the seed. The rarest, of which one case in some 2000 has it, is missed
-/// by 5000 of them once in ten times; the search ends at the first, so that more cost nothing.
+/// Cases that find every planted fault for any seed. The rarest fault occurs in one of some 2000 cases; 5000 cases miss
+/// it once in ten times. The search ends at the first hit.
 const CASES_TO_FIND: u32 = 100_000;
 
 fn config() -> Config {
     let asked = std::env::var_os("PROPTEST_CASES").is_some();
     let usual = Config { failure_persistence: None, ..Config::default() };
-    // The short run is the same every time; a long one is another every time.
+    // A short run has a fixed seed, a long run a random one.
     if asked { usual } else { Config { cases: CASES, rng_seed: RngSeed::Fixed(1), ..usual } }
 }
 
-/// The same with a process and a limit of time for each case.
-fn limited() -> Config {
-    Config { fork: true, timeout: TIME, ..config() }
+/// Configuration with a process and a time limit for each case.
+fn limited_config() -> Config {
+    Config { fork: true, timeout: TIME_LIMIT, ..config() }
 }
 
-/// Reads a changed file within its limit of memory.
+/// Reads a mutated file within its memory limit.
 fn attack(kind: Kind, changes: &[Mutation]) -> Result<(), TestCaseError> {
     let bytes = mutated(&kind.valid(), changes);
-    let limit = ALLOCATOR.allocated() + ROOM + ROOM_FOR_A_BYTE * bytes.len();
+    let limit = ALLOCATOR.allocated() + MEMORY_BASE + MEMORY_PER_BYTE * bytes.len();
     ALLOCATOR.set_limit(limit).map_err(|()| TestCaseError::fail("the limit is below what is taken"))?;
     kind.read(&bytes).map_err(TestCaseError::fail)
 }
 
 proptest! {
-    #![proptest_config(limited())]
+    #![proptest_config(limited_config())]
 
     #[test]
-    fn joint_files_are_read_or_refused(changes in mutations()) {
+    fn mutated_joint_file_is_handled(changes in mutations()) {
         attack(Kind::Joint, &changes)?;
     }
 
     #[test]
-    fn test_files_are_read_or_refused(changes in mutations()) {
+    fn mutated_test_file_is_handled(changes in mutations()) {
         attack(Kind::Test, &changes)?;
     }
 
     #[test]
-    fn recorded_motions_are_read_or_refused(changes in mutations()) {
+    fn mutated_motion_is_handled(changes in mutations()) {
         attack(Kind::Motion, &changes)?;
     }
 
     #[test]
-    fn recorded_torques_are_read_or_refused(changes in mutations()) {
+    fn mutated_torque_profile_is_handled(changes in mutations()) {
         attack(Kind::Torques, &changes)?;
     }
 
     #[test]
-    fn logs_as_csv_are_read_or_refused(changes in mutations()) {
+    fn mutated_csv_log_is_handled(changes in mutations()) {
         attack(Kind::CsvLog, &changes)?;
     }
 
     #[test]
-    fn slow_logs_are_read_or_refused(changes in mutations()) {
+    fn mutated_slow_log_is_handled(changes in mutations()) {
         attack(Kind::SlowLog, &changes)?;
     }
 
     #[test]
-    fn logs_as_mcap_are_read_or_refused(changes in mutations(), packing in 0..inputs::PACKINGS) {
+    fn mutated_mcap_log_is_handled(changes in mutations(), packing in 0..inputs::PACKINGS) {
         attack(Kind::McapLog(packing), &changes)?;
     }
 
     #[test]
-    fn forms_of_messages_are_read_or_refused(changes in mutations()) {
-        attack(Kind::Form, &changes)?;
+    fn mutated_message_definition_is_handled(changes in mutations()) {
+        attack(Kind::Definition, &changes)?;
     }
 
     #[test]
-    fn logs_of_runs_are_read_or_refused(changes in mutations()) {
+    fn mutated_run_log_is_handled(changes in mutations()) {
         attack(Kind::Run, &changes)?;
     }
 }
 
+/// Every kind of file is valid before it is mutated.
 #[test]
-fn every_kind_of_file_is_valid_before_it_is_changed() {
+fn unmutated_files_are_valid() {
     for kind in inputs::all() {
         kind.read(&kind.valid()).unwrap_or_else(|why| panic!("{kind:?}: {why}"));
         assert_eq!(kind.refusal(&kind.valid()), None, "{kind:?}");
     }
 }
 
-/// A fault that was put into each reader: it fails at what only a change brings into a file.
+/// Finds a fault planted into each reader, which only a mutation triggers.
 #[test]
-fn a_fault_in_any_of_the_readers_is_found() {
+fn planted_reader_faults_are_found() {
     for kind in inputs::all() {
         let valid = kind.valid();
         for (what, fault) in kind.planted_faults() {

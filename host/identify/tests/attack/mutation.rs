@@ -1,11 +1,11 @@
-//! Changes of a file, for text and for bytes alike. A change is data, so that the smallest one that fails can be told.
+//! Mutations of text and binary files. A mutation is data, so that the smallest failing one can be reported.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 
-/// Numbers at which something happens, as a user may type them.
-pub const TYPED: [&str; 15] = [
+/// Critical numbers as a user may type them.
+pub const CRITICAL_NUMBERS: [&str; 15] = [
     "1e300",
     "-1e300",
     "1e5",
@@ -22,57 +22,57 @@ pub const TYPED: [&str; 15] = [
     "",
     "x",
 ];
-/// The same as they stand in bytes.
-const WHOLE: [u64; 8] = [0, 1, 0x7f, 0xffff, u32::MAX as u64, 1 << 40, u64::MAX, u64::MAX / 2];
-/// What opens something in a text, or is none.
-const PIECES: [&str; 12] =
+/// Critical numbers as bytes.
+const CRITICAL_INTEGERS: [u64; 8] = [0, 1, 0x7f, 0xffff, u32::MAX as u64, 1 << 40, u64::MAX, u64::MAX / 2];
+/// Delimiters, opening and unmatched, and odd characters.
+const DELIMITERS: [&str; 12] =
     ["[", "]", "[[fault]]\n", "\"", "#", "\n", ",", "=", "uint8[0] n\n", "\u{feff}", "[4294967295]", "\0"];
-/// So often a piece may stand behind itself.
-const REPEATED: std::ops::Range<usize> = 1..20_000;
+/// Repetitions of a piece.
+const REPETITIONS: std::ops::Range<usize> = 1..20_000;
 
-/// One change.
+/// One mutation.
 #[derive(Debug, Clone)]
 pub enum Mutation {
-    /// Another number in place of one that is typed.
+    /// Replaces a typed number.
     Number(Index, &'static str),
-    /// Other bits of a byte.
+    /// Flips bits of a byte.
     Bits(Index, u8),
-    /// A whole number of some bytes in place of what is there.
-    Whole(Index, u64, usize),
-    /// A part is left out.
-    Without(Index, Index),
-    /// Everything from here on is left out.
+    /// Overwrites some bytes with a whole number.
+    Integer(Index, u64, usize),
+    /// Removes a part.
+    Remove(Index, Index),
+    /// Cuts the file off.
     CutOff(Index),
-    /// A part comes so many times more.
-    Again(Index, Index, usize),
-    /// A piece comes so many times.
+    /// Repeats a part.
+    Repeat(Index, Index, usize),
+    /// Inserts a piece, repeated.
     Piece(Index, &'static str, usize),
 }
 
-/// A few changes, one after the other.
+/// A few mutations in sequence.
 pub fn mutations() -> impl Strategy<Value = Vec<Mutation>> {
     let place = any::<Index>;
     let one = prop_oneof![
-        12 => (place(), select(&TYPED[..])).prop_map(|(place, typed)| Mutation::Number(place, typed)),
+        12 => (place(), select(&CRITICAL_NUMBERS[..])).prop_map(|(place, typed)| Mutation::Number(place, typed)),
         3 => (place(), 1_u8..).prop_map(|(place, bits)| Mutation::Bits(place, bits)),
-        6 => (place(), select(&WHOLE[..]), select(&[2_usize, 4, 8][..]))
-            .prop_map(|(place, number, size)| Mutation::Whole(place, number, size)),
-        1 => (place(), place()).prop_map(|(from, to)| Mutation::Without(from, to)),
+        6 => (place(), select(&CRITICAL_INTEGERS[..]), select(&[2_usize, 4, 8][..]))
+            .prop_map(|(place, number, size)| Mutation::Integer(place, number, size)),
+        1 => (place(), place()).prop_map(|(from, to)| Mutation::Remove(from, to)),
         1 => place().prop_map(Mutation::CutOff),
-        2 => (place(), place(), 1..40_usize).prop_map(|(from, to, times)| Mutation::Again(from, to, times)),
-        3 => (place(), select(&PIECES[..]), REPEATED)
+        2 => (place(), place(), 1..40_usize).prop_map(|(from, to, times)| Mutation::Repeat(from, to, times)),
+        3 => (place(), select(&DELIMITERS[..]), REPETITIONS)
             .prop_map(|(place, piece, times)| Mutation::Piece(place, piece, times)),
     ];
     vec(one, 1..4)
 }
 
-/// A file with changes.
+/// Mutated copy of a file.
 pub fn mutated(valid: &[u8], changes: &[Mutation]) -> Vec<u8> {
-    changes.iter().fold(valid.to_vec(), |bytes, change| change.made(bytes))
+    changes.iter().fold(valid.to_vec(), |bytes, change| change.apply(bytes))
 }
 
 impl Mutation {
-    fn made(&self, mut bytes: Vec<u8>) -> Vec<u8> {
+    fn apply(&self, mut bytes: Vec<u8>) -> Vec<u8> {
         if bytes.is_empty() {
             return bytes;
         }
@@ -92,12 +92,12 @@ impl Mutation {
                 let place = at(place, &bytes);
                 bytes[place] ^= bits;
             }
-            Self::Whole(place, number, size) => {
+            Self::Integer(place, number, size) => {
                 let from = at(place, &bytes);
                 let to = (from + size).min(bytes.len());
                 bytes.splice(from..to, number.to_le_bytes()[..*size].iter().copied());
             }
-            Self::Without(from, to) => {
+            Self::Remove(from, to) => {
                 let range = range(from, to, &bytes);
                 bytes.drain(range);
             }
@@ -105,7 +105,7 @@ impl Mutation {
                 let place = at(place, &bytes);
                 bytes.truncate(place);
             }
-            Self::Again(from, to, times) => {
+            Self::Repeat(from, to, times) => {
                 let range = range(from, to, &bytes);
                 let (end, part) = (range.end, bytes[range].repeat(*times));
                 bytes.splice(end..end, part);
@@ -119,7 +119,7 @@ impl Mutation {
     }
 }
 
-/// Where numbers are typed in a text.
+/// Places of typed numbers in a text.
 fn numbers(bytes: &[u8]) -> Vec<std::ops::Range<usize>> {
     let part = |byte: &u8| byte.is_ascii_digit() || b".-+eE".contains(byte);
     let mut places = Vec::new();

@@ -1,32 +1,32 @@
-//! How one figure is judged: against limits beyond which a joint is odd, and others beyond which it cannot be.
+//! Judgement of a figure by two ranges: outside of the inner one a joint is odd, outside of the outer one impossible.
 
 use crate::notes::Notes;
 use crate::problem::Severity;
 
-/// Takes complaints.
+/// Collects complaints.
 pub(super) struct Judge<'n> {
     pub notes: &'n Notes<'n>,
-    /// What cannot be is used all the same.
+    /// True if impossible figures are accepted with a warning.
     pub lenient: bool,
 }
 
-/// What may be said of a figure. Outside of `odd` it is warned of, outside of `possible` it is refused.
+/// Ranges of a figure: outside of `odd` it gives a warning, outside of `possible` an error.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limits {
     pub odd: (f64, f64),
     pub possible: (f64, f64),
 }
 
-/// Nothing is too large, or too small.
-pub(super) const ANY: f64 = f64::INFINITY;
+/// No limit.
+pub(super) const UNLIMITED: f64 = f64::INFINITY;
 
 impl Limits {
-    /// Too much is odd, and far too much impossible.
+    /// Limits a figure from above.
     pub(super) const fn above(odd: f64, possible: f64) -> Self {
-        Self { odd: (-ANY, odd), possible: (-ANY, possible) }
+        Self { odd: (-UNLIMITED, odd), possible: (-UNLIMITED, possible) }
     }
 
-    /// How bad a figure is.
+    /// Severity of a figure; `None` within both ranges.
     fn severity(self, figure: f64) -> Option<Severity> {
         let outside = |(low, high): (f64, f64)| figure < low || high < figure;
         match figure {
@@ -38,10 +38,10 @@ impl Limits {
 }
 
 impl Judge<'_> {
-    /// Judges a figure of the first of `keys` that the file holds; `complaint` gives message and help, and is told
-    /// whether the figure is too large and how the key is called. A value that was derived, by what stands behind it, is no
-    /// typing error: the help names what it was derived from. Returns whether there was a complaint.
-    pub(super) fn judge(
+    /// Judges a figure of the first of `keys` in the file; `complaint` gives message and help from the excess (true if
+    /// too large) and the key's name. A derived value is no typing error: the help names its origin instead. Returns
+    /// true after a complaint.
+    pub(super) fn check_figure(
         &self,
         keys: &[&str],
         figure: f64,
@@ -62,7 +62,7 @@ impl Judge<'_> {
     }
 }
 
-/// A figure with three digits, as a person would write it.
+/// Figure with three digits, as a person would write it.
 pub(super) fn figure(value: f64) -> String {
     let size = value.abs();
     if value == 0.0 || !(1e-3..1e5).contains(&size) {
@@ -77,7 +77,7 @@ mod tests {
     use super::figure;
 
     #[test]
-    fn figures_have_three_digits() {
+    fn figure_has_three_digits() {
         let shown = [0.0, 12345.6, 1.2345, 0.01234, 1.5e-7, 2e9].map(figure);
         assert_eq!(shown, ["0", "12346", "1.23", "0.0123", "1.50e-7", "2.00e9"]);
     }

@@ -1,10 +1,10 @@
-//! Can there be such a joint? Every value by itself lies within the bounds of its key; here they are held against each
-//! other: masses against sizes, frictions and weight against torques, the teeth's errors against the module, stiffness
-//! against the torque that it carries, encoders against the gap. What no joint can be is an error with the likely mend,
-//! what is odd but can be is a warning. The file's `coherence = "warn"` makes warnings of the errors.
+//! Checks that the joint can exist. Each value lies within the bounds of its key; here values are checked against each
+//! other: masses against sizes, frictions and weight against torques, tooth errors against the module, stiffness
+//! against its torque, encoders against the gap. An impossible joint is an error with the likely remedy, an odd one a
+//! warning. The file's `coherence = "warn"` turns the errors into warnings.
 //!
-//! Limits lie far out on purpose, since a good file that is refused costs more than a slip that passes. The page
-//! docs/reference/joint-file.md lists them, with what cannot be seen.
+//! Limits are wide on purpose: rejecting a good file costs more than accepting a slip. The page
+//! docs/reference/joint-file.md lists them, with the undetectable slips.
 
 mod judge;
 mod masses;
@@ -19,7 +19,7 @@ use crate::contents::JointFile;
 use crate::notes::Notes;
 use judge::Judge;
 
-/// Notes everything that contradicts the rest of the file.
+/// Notes every contradiction within the file.
 pub(crate) fn check(file: &JointFile, notes: &Notes<'_>) {
     let judge = Judge { notes, lenient: file.parameters.geometry.coherence == Coherence::Warned };
     if file.parameters.equivalent_gear().is_none() {

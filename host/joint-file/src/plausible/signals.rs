@@ -1,35 +1,35 @@
-//! Encoders against the gap, and the controller's times and rates.
+//! Checks of the encoders against the gap, and of the controller's times and rates.
 
 use std::f64::consts::TAU;
 
 use model_core::gears::Kinematics;
 use parameters::AbsoluteEncoder;
 
-use super::judge::{ANY, Judge, Limits, figure};
+use super::judge::{Judge, Limits, UNLIMITED, figure};
 use crate::contents::JointFile;
 use crate::sheet;
 
-/// Counts or errors of an encoder over the lost motion, both at the link.
-const AGAINST_GAP: Limits = Limits::above(1.0, ANY);
-/// How old a reading is: no interface is faster than 0.1 us, none slower than 20 ms [s].
-const SKEW: Limits = Limits { odd: (1e-7, 0.02), possible: (0.0, ANY) };
+/// Count or error of an encoder over the lost motion, both at the link.
+const OVER_GAP_LIMITS: Limits = Limits::above(1.0, UNLIMITED);
+/// Age of a reading: interfaces take 0.1 us to 20 ms [s].
+const SKEW_LIMITS: Limits = Limits { odd: (1e-7, 0.02), possible: (0.0, UNLIMITED) };
 /// Time constant of a current loop [s].
-const LAG: Limits = Limits { odd: (2e-6, 0.02), possible: (0.0, ANY) };
+const CURRENT_LAG_LIMITS: Limits = Limits { odd: (2e-6, 0.02), possible: (0.0, UNLIMITED) };
 /// Rates of controllers of joints [Hz].
-const RATE: Limits = Limits { odd: (100.0, 2.5e5), possible: (0.0, ANY) };
-/// Control periods from measuring to acting.
-const DELAY: Limits = Limits::above(20.0, ANY);
-/// Speed at which the rise of friction at rest has decayed [rad/s].
-const STRIBECK: Limits = Limits { odd: (1e-5, 1.0), possible: (0.0, ANY) };
-/// Friction at rest over that in motion, less 1.
-const RISE: Limits = Limits::above(2.0, ANY);
-/// Of torques.
-const NOISE: Limits = Limits::above(0.2, ANY);
-const CONSTANT: Limits = Limits { odd: (-0.3, 0.3), possible: (-ANY, ANY) };
-/// Pressure angles of teeth that are cut [rad].
-const ANGLE: Limits = Limits { odd: (0.17, 0.56), possible: (0.0, ANY) };
-/// The unit of length of dimensionless results [m].
-const LENGTH: Limits = Limits { odd: (1e-7, 1e-3), possible: (0.0, ANY) };
+const CONTROL_RATE_LIMITS: Limits = Limits { odd: (100.0, 2.5e5), possible: (0.0, UNLIMITED) };
+/// Control periods from measurement to torque.
+const DELAY_LIMITS: Limits = Limits::above(20.0, UNLIMITED);
+/// Speed at which the excess friction at rest has decayed [rad/s].
+const STRIBECK_SPEED_LIMITS: Limits = Limits { odd: (1e-5, 1.0), possible: (0.0, UNLIMITED) };
+/// Friction at rest over friction in motion, less 1.
+const STRIBECK_RISE_LIMITS: Limits = Limits::above(2.0, UNLIMITED);
+/// Relative noise of the torque, and error of the torque constant.
+const TORQUE_NOISE_LIMITS: Limits = Limits::above(0.2, UNLIMITED);
+const TORQUE_CONSTANT_LIMITS: Limits = Limits { odd: (-0.3, 0.3), possible: (-UNLIMITED, UNLIMITED) };
+/// Pressure angles of manufactured teeth [rad].
+const PRESSURE_ANGLE_LIMITS: Limits = Limits { odd: (0.17, 0.56), possible: (0.0, UNLIMITED) };
+/// Characteristic length of dimensionless results [m].
+const CHARACTERISTIC_LENGTH_LIMITS: Limits = Limits { odd: (1e-7, 1e-3), possible: (0.0, UNLIMITED) };
 
 pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
     let around = &file.surroundings;
@@ -39,18 +39,26 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
 
     let only_if = |value: f64, limits: Limits, key: &str, unit: &str, scale: f64, what: &str, help: &str| {
         if value != 0.0 {
-            judge.judge(&[key], value, limits, |_, key| {
+            judge.check_figure(&[key], value, limits, |_, key| {
                 (format!("`{key}`: {} {unit} {what}", figure(scale * value)), help.to_owned())
             });
         }
     };
     let rate = f64::from(around.control_rate);
     let of_rate = "is no rate of a joint's controller";
-    only_if(rate, RATE, "drive_train.control_rate_Hz", "Hz", 1.0, of_rate, "it is in Hz: 10 kHz are 10e3 Hz");
+    only_if(
+        rate,
+        CONTROL_RATE_LIMITS,
+        "drive_train.control_rate_Hz",
+        "Hz",
+        1.0,
+        of_rate,
+        "it is in Hz: 10 kHz are 10e3 Hz",
+    );
     let of_lag = "is no time constant of a current loop";
     only_if(
         around.current_lag,
-        LAG,
+        CURRENT_LAG_LIMITS,
         "drive_train.current_lag_ms",
         "ms",
         1e3,
@@ -60,7 +68,7 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
     let of_delay = "from measuring to acting";
     only_if(
         around.delay,
-        DELAY,
+        DELAY_LIMITS,
         "drive_train.control_delay_periods",
         "control periods",
         1.0,
@@ -71,7 +79,7 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
     let of_speed = "is no speed at which the rise of dry friction decays";
     only_if(
         friction.stribeck_speed,
-        STRIBECK,
+        STRIBECK_SPEED_LIMITS,
         "drive_train.load_stribeck_speed_rad_per_s",
         "rad/s",
         1.0,
@@ -81,7 +89,7 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
     let of_rise = "of friction more at rest than in motion";
     only_if(
         friction.stribeck_rise_ratio,
-        RISE,
+        STRIBECK_RISE_LIMITS,
         "drive_train.load_stribeck_rise_ratio",
         "times",
         1.0,
@@ -91,7 +99,7 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
     let of_noise = "of the torque is noise";
     only_if(
         around.torque_noise_ratio,
-        NOISE,
+        TORQUE_NOISE_LIMITS,
         "drive_train.torque_noise_ratio",
         "part",
         1.0,
@@ -101,7 +109,7 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
     let of_constant = "is how far the torque constant is off";
     only_if(
         around.torque_constant_error_ratio,
-        CONSTANT,
+        TORQUE_CONSTANT_LIMITS,
         "drive_train.torque_constant_error_ratio",
         "part",
         1.0,
@@ -112,18 +120,18 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
     let of_angle = "is no pressure angle that teeth are cut with";
     only_if(
         angle,
-        ANGLE,
+        PRESSURE_ANGLE_LIMITS,
         "geometry.working_pressure_angle_deg",
         "deg",
         180.0 / std::f64::consts::PI,
         of_angle,
         "20 is usual, 14.5 to 28 are made",
     );
-    // An equivalent gear's follows from its stiffness.
+    // An equivalent gear's length follows from its stiffness.
     let stated = file.parameters.equivalent_gear().is_none();
     let length = if stated { file.parameters.characteristic_length } else { 0.0 };
     let of_length = "is far from the deflections that it scales";
-    only_if(length, LENGTH, "characteristic_length_um", "um", 1e6, of_length, "10 is usual");
+    only_if(length, CHARACTERISTIC_LENGTH_LIMITS, "characteristic_length_um", "um", 1e6, of_length, "10 is usual");
 }
 
 fn encoder(file: &JointFile, judge: &Judge<'_>, side: &str, encoder: &AbsoluteEncoder, ratio: f64) {
@@ -132,7 +140,7 @@ fn encoder(file: &JointFile, judge: &Judge<'_>, side: &str, encoder: &AbsoluteEn
     let at_link = |angle: f64| angle / ratio;
     if gap > 0.0 {
         let count = at_link(TAU / encoder.counts_per_turn as f64);
-        judge.judge(&[&key("bits"), &key("counts_per_turn")], count / gap, AGAINST_GAP, |_, name| {
+        judge.check_figure(&[&key("bits"), &key("counts_per_turn")], count / gap, OVER_GAP_LIMITS, |_, name| {
             let stated = if name == "bits" { encoder.bits().map(u64::from) } else { None };
             let message = format!(
                 "`{name}` = {} of the {side} encoder: one count is {} mrad at the link, more than the lost motion of {} mrad",
@@ -147,7 +155,7 @@ fn encoder(file: &JointFile, judge: &Judge<'_>, side: &str, encoder: &AbsoluteEn
             ("twice_per_turn_error_deg", encoder.twice_per_turn_error),
         ];
         for (name, error) in errors {
-            judge.judge(&[&key(name)], at_link(error) / gap, Limits::above(3.0, ANY), |_, name| {
+            judge.check_figure(&[&key(name)], at_link(error) / gap, Limits::above(3.0, UNLIMITED), |_, name| {
                 let message = format!(
                     "`{name}` of the {side} encoder: {} mrad at the link, more than three times the lost motion of {} mrad",
                     figure(1e3 * at_link(error)),
@@ -158,7 +166,7 @@ fn encoder(file: &JointFile, judge: &Judge<'_>, side: &str, encoder: &AbsoluteEn
         }
     }
     if encoder.skew != 0.0 {
-        judge.judge(&[&key("skew_us")], encoder.skew, SKEW, |_, name| {
+        judge.check_figure(&[&key("skew_us")], encoder.skew, SKEW_LIMITS, |_, name| {
             let message =
                 format!("`{name}` of the {side} encoder: {} us is no age of a reading", figure(1e6 * encoder.skew));
             (message, "it is in us: 0.05 ms and 5e-5 s are 50 us".into())

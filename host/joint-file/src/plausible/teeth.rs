@@ -1,27 +1,28 @@
-//! The teeth: backlash and transmission error against the module, deflection under the rated torque, what steel carries,
+//! Checks of the teeth: backlash and transmission error against the module, deflection and stress at rated torque,
 //! damping.
 
 use model_core::gears::Kinematics;
 use parameters::{MESH_KINDS, MeshKind};
 
-use super::judge::{ANY, Judge, Limits, figure};
+use super::judge::{Judge, Limits, UNLIMITED, figure};
 use super::units;
 use crate::contents::JointFile;
 
-/// Backlash 2b over the module: wear and printed teeth reach 0.3; at 1.5 cos(20 deg) neither tooth is left.
-const BACKLASH: Limits = Limits::above(0.35, 1.4);
-/// Amplitude of the transmission error over the module: the coarsest gears of ISO 1328 reach 0.04.
-const ERROR: Limits = Limits::above(0.06, 0.5);
-/// Below this a transmission error is finer than any gear's, but for 0 [m].
-const FINEST_ERROR: f64 = 2e-8;
-/// Deflection of a mesh at rated torque over the module; teeth bend by 1e-4 to 5e-3 of it.
-const DEFLECTION: Limits = Limits { odd: (2e-6, 0.06), possible: (1e-8, 0.5) };
+/// Backlash 2b over the module: worn and printed teeth reach 0.3; at 1.5 cos(20 deg) no tooth is left.
+const BACKLASH_LIMITS: Limits = Limits::above(0.35, 1.4);
+/// Amplitude of the transmission error over the module: 0.04 for the coarsest gears of ISO 1328.
+const TRANSMISSION_ERROR_LIMITS: Limits = Limits::above(0.06, 0.5);
+/// Least transmission error of real gears, except 0 [m].
+const TRANSMISSION_ERROR_MIN: f64 = 2e-8;
+/// Deflection of a mesh at rated torque over the module: 1e-4 to 5e-3 for teeth.
+const DEFLECTION_LIMITS: Limits = Limits { odd: (2e-6, 0.06), possible: (1e-8, 0.5) };
 /// Mean stiffness over a face width of ten sun radii [N/m^2]: steel teeth have 1.4e10 to 2e10 (ISO 6336-1).
-const STIFFNESS: Limits = Limits::above(2e10, 2e11);
-/// Stress of a tooth, three times its force over module and a face width of ten sun radii [Pa]: none carries 1e9.
-const STRESS: Limits = Limits::above(3e8, 1e9);
-/// Above this a mesh hardly rings, below it is made of nothing that there is; 0 is no damping on purpose.
-const DAMPING: Limits = Limits { odd: (5e-4, 0.35), possible: (0.0, 1.0) };
+const STIFFNESS_LIMITS: Limits = Limits::above(2e10, 2e11);
+/// Stress of a tooth, three times its force over module and a face width of ten sun radii [Pa]; no material carries
+/// 1e9.
+const STRESS_LIMITS: Limits = Limits::above(3e8, 1e9);
+/// Damping ratio of a mesh: above the range it hardly rings, below it no material damps so little; 0 disables damping.
+const DAMPING_LIMITS: Limits = Limits { odd: (5e-4, 0.35), possible: (0.0, 1.0) };
 
 pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
     let geometry = &file.parameters.geometry;
@@ -36,13 +37,13 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
         let backlash = 2.0 * mesh.half_backlash.iter().copied().fold(0.0, f64::max);
         let named = [of("half_backlash_um"), of("backlash_um"), of("lost_motion_arcmin")].concat();
         let named: Vec<&str> = named.iter().map(String::as_str).collect();
-        judge.judge(&named, backlash / module, BACKLASH, |_, key| {
+        judge.check_figure(&named, backlash / module, BACKLASH_LIMITS, |_, key| {
             let message = format!(
                 "`{key}`: a backlash 2b of {} mm is {} of the module of {} mm; {} of it leaves no tooth",
                 figure(1e3 * backlash),
                 figure(backlash / module),
                 figure(1e3 * module),
-                figure(BACKLASH.possible.1)
+                figure(BACKLASH_LIMITS.possible.1)
             );
             let help = match key {
                 "lost_motion_arcmin" => {
@@ -56,7 +57,7 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
         let error = mesh.transmission_error.iter().map(|error| error.abs()).fold(0.0, f64::max);
         let named = of("transmission_error_um");
         let named: Vec<&str> = named.iter().map(String::as_str).collect();
-        judge.judge(&named, error / module, ERROR, |_, key| {
+        judge.check_figure(&named, error / module, TRANSMISSION_ERROR_LIMITS, |_, key| {
             let message = format!(
                 "`{key}`: an amplitude of {} mm is {} of the module of {} mm",
                 figure(1e3 * error),
@@ -66,13 +67,22 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
             (message, "gears have 0.001 to 0.02 of the module; it is in um: 3 um are 0.003 mm".into())
         });
         if error > 0.0 {
-            judge.judge(&named, error, Limits { odd: (FINEST_ERROR, ANY), possible: (0.0, ANY) }, |_, key| {
-                let message = format!("`{key}`: an amplitude of {} um is finer than any gear's", figure(1e6 * error));
-                (message, format!("likely typed in mm: {0} mm are {0}e3 um; 0 if there is none", figure(1e6 * error)))
-            });
+            judge.check_figure(
+                &named,
+                error,
+                Limits { odd: (TRANSMISSION_ERROR_MIN, UNLIMITED), possible: (0.0, UNLIMITED) },
+                |_, key| {
+                    let message =
+                        format!("`{key}`: an amplitude of {} um is finer than any gear's", figure(1e6 * error));
+                    (
+                        message,
+                        format!("likely typed in mm: {0} mm are {0}e3 um; 0 if there is none", figure(1e6 * error)),
+                    )
+                },
+            );
         }
         if backlash > 0.0 {
-            judge.judge(&named, error / backlash, Limits::above(4.0, ANY), |_, key| {
+            judge.check_figure(&named, error / backlash, Limits::above(4.0, UNLIMITED), |_, key| {
                 let message = format!(
                     "`{key}`: an amplitude of {} um takes a backlash 2b of {} um up and beyond as the gears turn",
                     figure(1e6 * error),
@@ -89,31 +99,31 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
         let named = of("mean_stiffness_N_per_m");
         let named: Vec<&str> = named.iter().map(String::as_str).collect();
         let bent = force / stiffness;
-        // A rated torque of next to nothing bends nothing; the stiffness is judged by itself then.
-        let deflection = Limits { odd: (0.0, DEFLECTION.odd.1), possible: (0.0, DEFLECTION.possible.1) };
-        judge.judge(&named, bent / module, deflection, |_, key| {
+        // A tiny rated torque deflects nothing; the stiffness then has its own check.
+        let deflection = Limits { odd: (0.0, DEFLECTION_LIMITS.odd.1), possible: (0.0, DEFLECTION_LIMITS.possible.1) };
+        judge.check_figure(&named, bent / module, deflection, |_, key| {
             let message = format!(
                 "`{key}`: at rated torque the teeth give by {} mm, and the module is {} mm",
                 figure(1e3 * bent),
                 figure(1e3 * module)
             );
-            (message, units::likely(units::MESH_STIFFNESS, stiffness, bent / module, -1, (1e-5, 0.02), "N/m"))
+            (message, units::likely(units::MESH_STIFFNESS_SLIPS, stiffness, bent / module, -1, (1e-5, 0.02), "N/m"))
         });
-        judge.judge(&named, stiffness / widest, STIFFNESS, |_, key| {
+        judge.check_figure(&named, stiffness / widest, STIFFNESS_LIMITS, |_, key| {
             let message = format!(
                 "`{key}`: steel teeth have 2e10 N/m for each metre of face width; {} N/m would need {} mm on a sun of \
                  {} mm pitch radius",
                 figure(stiffness),
-                figure(1e3 * stiffness / STIFFNESS.odd.1),
+                figure(1e3 * stiffness / STIFFNESS_LIMITS.odd.1),
                 figure(1e3 * pitch_radius)
             );
-            (message, units::likely(units::MESH_STIFFNESS, stiffness, stiffness / widest, 1, (1e8, 1e10), "N/m"))
+            (message, units::likely(units::MESH_STIFFNESS_SLIPS, stiffness, stiffness / widest, 1, (1e8, 1e10), "N/m"))
         });
 
         let named = of("damping_ratio");
         let named: Vec<&str> = named.iter().map(String::as_str).collect();
         if mesh.damping_ratio > 0.0 {
-            judge.judge(&named, mesh.damping_ratio, DAMPING, |too_much, key| {
+            judge.check_figure(&named, mesh.damping_ratio, DAMPING_LIMITS, |too_much, key| {
                 let what = if too_much { "teeth that hardly ring" } else { "teeth that ring for ever" };
                 let message = format!("`{key}` of [mesh] = {}: {what}", mesh.damping_ratio);
                 (message, "0.03 to 0.1 is usual of gear meshes: 5 % is 0.05; 0 if there shall be none".into())
@@ -121,7 +131,7 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
         }
     }
     let stress = 3.0 * force / (module * widest);
-    judge.judge(&["rated_output_torque_N_m", "geometry.module_mm"], stress, STRESS, |_, key| {
+    judge.check_figure(&["rated_output_torque_N_m", "geometry.module_mm"], stress, STRESS_LIMITS, |_, key| {
         let message = format!(
             "`{key}` = {}: {} N on a tooth of module {} mm, more than steel carries at any face width",
             figure(file.parameters.rated_output_torque),
@@ -129,11 +139,11 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
             figure(1e3 * module)
         );
         let torque = file.parameters.rated_output_torque;
-        (message, units::likely(units::TORQUE, torque, stress, 1, (1e5, 3e8), "N m"))
+        (message, units::likely(units::TORQUE_SLIPS, torque, stress, 1, (1e5, 3e8), "N m"))
     });
 }
 
-/// A key of the meshes of one kind, as it may stand in the file.
+/// Key of the meshes of one kind, in the places where the file may state it.
 fn keys(kind: MeshKind, name: &str) -> Vec<String> {
     let family = match kind {
         MeshKind::SunPlanet => "mesh.sun_planet",

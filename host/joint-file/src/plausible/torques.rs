@@ -1,31 +1,32 @@
-//! Torques against each other: frictions, cogging and weight against what the motor has, drive torque against the rated
-//! one; and the stiffness behind the carrier against the torque that it carries.
+//! Checks of torques: frictions, cogging and weight against the motor, drive torque against rated torque, and the
+//! stiffness behind the carrier against its torque.
 
 use model_core::gears::Kinematics;
 use parameters::{Compliance, EquivalentGear};
 
-use super::judge::{ANY, Judge, Limits, figure};
+use super::judge::{Judge, Limits, UNLIMITED, figure};
 use super::units;
 use crate::contents::JointFile;
 
-/// Wind-up of the compliance at rated torque [rad]: from a tenth of a minute of arc to 3 degrees; past 45 degrees it is
-/// no joint, below 1.5e-6 no part of a machine.
-const WIND_UP: Limits = Limits { odd: (2.9e-5, 0.055), possible: (1.5e-6, 0.8) };
-/// What gearheads have [rad]: 0.8 to 35 minutes of arc.
+/// Wind-up of the compliance at rated torque [rad]: a tenth of a minute of arc to 3 degrees; above 45 degrees it is no
+/// joint, below 1.5e-6 no machine part.
+const WIND_UP_LIMITS: Limits = Limits { odd: (2.9e-5, 0.055), possible: (1.5e-6, 0.8) };
+/// Wind-up of common gearheads [rad]: 0.8 to 35 minutes of arc.
 const USUAL_WIND_UP: (f64, f64) = (2.3e-4, 1e-2);
 /// Dry friction over the torque that must overcome it.
-const FRICTION: Limits = Limits::above(0.5, 1.0);
-/// The same of the link, which a brake may hold: tests of a held link state one of four times the rated torque.
-const LOAD_FRICTION: Limits = Limits::above(0.5, 10.0);
-/// What the rated torque drives against viscous friction alone, at the link [rad/s].
-const TOP_SPEED: Limits = Limits { odd: (3.0, ANY), possible: (0.03, ANY) };
-/// Drive torque, through the ratio, over the rated torque.
-const DRIVE: Limits = Limits { odd: (0.4, 2.5), possible: (0.02, 50.0) };
-/// Drive torque, through the ratio, over the rated torque, where the motor's limit is below what the rated torque takes: gearheads
-/// that are rated for 20 times their motor are sold.
-const LIMITED_DRIVE: Limits = Limits { odd: (0.02, 2.5), possible: (5e-4, 50.0) };
-/// The motor's limit over its drive torque.
-const LIMIT: Limits = Limits::above(20.0, 500.0);
+const FRICTION_LIMITS: Limits = Limits::above(0.5, 1.0);
+/// Dry friction of the link over the rated torque; a brake may add to it: tests of a held link state four times the
+/// rated torque.
+const LOAD_FRICTION_LIMITS: Limits = Limits::above(0.5, 10.0);
+/// Speed of the link at which viscous friction alone takes the rated torque [rad/s].
+const TOP_SPEED_LIMITS: Limits = Limits { odd: (3.0, UNLIMITED), possible: (0.03, UNLIMITED) };
+/// Drive torque times the ratio over the rated torque.
+const DRIVE_TORQUE_LIMITS: Limits = Limits { odd: (0.4, 2.5), possible: (0.02, 50.0) };
+/// Drive torque times the ratio over the rated torque, for a motor whose limit is below the rated torque: gearheads
+/// rated for 20 times their motor are sold.
+const LIMITED_DRIVE_LIMITS: Limits = Limits { odd: (0.02, 2.5), possible: (5e-4, 50.0) };
+/// Torque limit of the motor over its drive torque.
+const MOTOR_LIMIT_LIMITS: Limits = Limits::above(20.0, 500.0);
 
 pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
     let joint = &file.parameters;
@@ -37,35 +38,35 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
     let over = drive * ratio / rated;
     if limit <= drive && over < 1.0 {
         let keys = ["profile.motor_torque_limit_N_m", "rated_output_torque_N_m"];
-        judge.judge(&keys, over, LIMITED_DRIVE, |_, key| {
+        judge.check_figure(&keys, over, LIMITED_DRIVE_LIMITS, |_, key| {
             let message = format!(
                 "`{key}`: the motor's limit of {} N m gives {} N m at the link, and the rated torque is {} N m",
                 figure(limit),
                 figure(limit * ratio),
                 figure(rated)
             );
-            (message, units::likely(units::TORQUE, limit, over, 1, (0.05, 5.0), "N m"))
+            (message, units::likely(units::TORQUE_SLIPS, limit, over, 1, (0.05, 5.0), "N m"))
         });
     } else {
         drive_torque(judge, [drive, ratio, rated], over);
     }
-    judge.judge(&["profile.motor_torque_limit_N_m"], limit / drive, LIMIT, |_, key| {
+    judge.check_figure(&["profile.motor_torque_limit_N_m"], limit / drive, MOTOR_LIMIT_LIMITS, |_, key| {
         let message = format!("`{key}` is {} times the drive torque of {} N m", figure(limit / drive), figure(drive));
-        (message, units::likely(units::TORQUE, limit, limit / drive, 1, (1.0, 6.0), "N m"))
+        (message, units::likely(units::TORQUE_SLIPS, limit, limit / drive, 1, (1.0, 6.0), "N m"))
     });
     frictions(file, judge);
 
     let weight = around.gravity_torque.abs();
     let most = limit * ratio * around.efficiency;
     let limits = Limits::above(rated.min(most), most.max(rated));
-    judge.judge(&["drive_train.gravity_torque_N_m"], weight, limits, |_, key| {
+    judge.check_figure(&["drive_train.gravity_torque_N_m"], weight, limits, |_, key| {
         let message = format!(
             "`{key}`: a weight of {} N m against a rated torque of {} N m, and the motor lifts {} N m at its limit",
             figure(weight),
             figure(rated),
             figure(most)
         );
-        let help = units::likely(units::TORQUE, weight, weight / rated, 1, (0.02, 0.8), "N m");
+        let help = units::likely(units::TORQUE_SLIPS, weight, weight / rated, 1, (0.02, 0.8), "N m");
         (message, help + "; it is mass times 9.81 times lever")
     });
     if let Some(compliance) = joint.compliance {
@@ -79,26 +80,35 @@ pub(super) fn check(file: &JointFile, judge: &Judge<'_>) {
     }
 }
 
-/// A drive torque within the motor's limit against the rated torque.
+/// Checks a drive torque within the motor's limit against the rated torque.
 fn drive_torque(judge: &Judge<'_>, [drive, ratio, rated]: [f64; 3], over: f64) {
-    judge.judge(&["profile.drive_torque_N_m", "rated_output_torque_N_m"], over, DRIVE, |_, key| {
-        let message = format!(
-            "`{key}`: {} N m at the motor are {} N m at the link, and the rated torque is {} N m",
-            figure(drive),
-            figure(drive * ratio),
-            figure(rated)
-        );
-        (
-            message,
-            format!("drive_torque_N_m = {} balances the rated torque; or the ratio is another", figure(rated / ratio)),
-        )
-    });
+    judge.check_figure(
+        &["profile.drive_torque_N_m", "rated_output_torque_N_m"],
+        over,
+        DRIVE_TORQUE_LIMITS,
+        |_, key| {
+            let message = format!(
+                "`{key}`: {} N m at the motor are {} N m at the link, and the rated torque is {} N m",
+                figure(drive),
+                figure(drive * ratio),
+                figure(rated)
+            );
+            (
+                message,
+                format!(
+                    "drive_torque_N_m = {} balances the rated torque; or the ratio is another",
+                    figure(rated / ratio)
+                ),
+            )
+        },
+    );
 }
 
-/// A spring at the output against the rated torque, and its damping; its section and what it does.
+/// Checks a spring at the output against the rated torque, and its damping; `section` and `does` are its section and
+/// verb.
 fn spring(rated: f64, of: &Compliance, (section, does): (&str, &str), keys: &[&str], judge: &Judge<'_>) {
     let turned = rated / of.stiffness;
-    judge.judge(keys, turned, WIND_UP, |_, key| {
+    judge.check_figure(keys, turned, WIND_UP_LIMITS, |_, key| {
         let message = format!(
             "`{key}`: at the rated torque of {} N m the {does} by {} deg ({} arcmin)",
             figure(rated),
@@ -107,14 +117,14 @@ fn spring(rated: f64, of: &Compliance, (section, does): (&str, &str), keys: &[&s
         );
         let help = match key {
             "total_stiffness_N_m_per_arcmin" => "it is in N m/arcmin: 10.3e3 N m/rad are 3 N m/arcmin".to_owned(),
-            _ => units::likely(units::STIFFNESS, of.stiffness, turned, -1, USUAL_WIND_UP, "N m/rad"),
+            _ => units::likely(units::STIFFNESS_SLIPS, of.stiffness, turned, -1, USUAL_WIND_UP, "N m/rad"),
         };
         (message, help)
     });
     let damping = of.damping_ratio;
     if damping > 0.0 {
         let limits = Limits { odd: (2e-4, 0.4), possible: (0.0, 1.0) };
-        judge.judge(&[&format!("{section}.damping_ratio")], damping, limits, |too_much, key| {
+        judge.check_figure(&[&format!("{section}.damping_ratio")], damping, limits, |too_much, key| {
             let what = if too_much { "a joint that hardly swings" } else { "a joint that swings for ever" };
             let message = format!("`{key}` of [{section}] = {damping}: {what}");
             (message, "0.01 to 0.05 is usual of bolted steel: 2 % is 0.02; 0 if there shall be none".into())
@@ -129,10 +139,10 @@ fn frictions(file: &JointFile, judge: &Judge<'_>) {
     let (drive, limit) = (file.profile.drive_torque, file.profile.motor_torque_limit);
     let motor = around.motor_friction.coulomb;
     let load = around.load_friction.coulomb * (1.0 + around.load_friction.stribeck_rise_ratio);
-    let help = |value: f64, over: f64| units::likely(units::TORQUE, value, over, 1, (1e-3, 0.2), "N m");
+    let help = |value: f64, over: f64| units::likely(units::TORQUE_SLIPS, value, over, 1, (1e-3, 0.2), "N m");
 
     let motor_keys = ["drive_train.motor_coulomb_friction_N_m", "drive_train.no_load_torque_N_m"];
-    judge.judge(&motor_keys, motor / drive, FRICTION, |_, key| {
+    judge.check_figure(&motor_keys, motor / drive, FRICTION_LIMITS, |_, key| {
         let message = format!(
             "`{key}`: dry friction of {} N m at the motor takes {} % of the drive torque of {} N m",
             figure(motor),
@@ -141,17 +151,22 @@ fn frictions(file: &JointFile, judge: &Judge<'_>) {
         );
         (message, help(motor, motor / drive))
     });
-    judge.judge(&["drive_train.cogging_torque_N_m"], around.cogging_torque / drive, FRICTION, |_, key| {
-        let message = format!(
-            "`{key}`: an amplitude of {} N m is {} % of the drive torque of {} N m",
-            figure(around.cogging_torque),
-            figure(100.0 * around.cogging_torque / drive),
-            figure(drive)
-        );
-        (message, help(around.cogging_torque, around.cogging_torque / drive))
-    });
+    judge.check_figure(
+        &["drive_train.cogging_torque_N_m"],
+        around.cogging_torque / drive,
+        FRICTION_LIMITS,
+        |_, key| {
+            let message = format!(
+                "`{key}`: an amplitude of {} N m is {} % of the drive torque of {} N m",
+                figure(around.cogging_torque),
+                figure(100.0 * around.cogging_torque / drive),
+                figure(drive)
+            );
+            (message, help(around.cogging_torque, around.cogging_torque / drive))
+        },
+    );
     let load_keys = ["drive_train.load_coulomb_friction_N_m", "drive_train.load_stribeck_rise_ratio"];
-    judge.judge(&load_keys, load / rated, LOAD_FRICTION, |_, key| {
+    judge.check_figure(&load_keys, load / rated, LOAD_FRICTION_LIMITS, |_, key| {
         let message = format!(
             "`{key}`: dry friction of {} N m at rest takes {} % of the rated torque of {} N m",
             figure(load),
@@ -162,9 +177,9 @@ fn frictions(file: &JointFile, judge: &Judge<'_>) {
     });
     let all = motor + around.cogging_torque + load / (ratio * around.efficiency);
     let each = motor.max(around.cogging_torque) / drive;
-    // What is told of one of them need not be told of all.
+    // A complaint about one friction needs no complaint about the sum.
     if each <= 1.0 && load <= rated {
-        judge.judge(&motor_keys, all / limit, Limits::above(1.0, 1.0), |_, key| {
+        judge.check_figure(&motor_keys, all / limit, Limits::above(1.0, 1.0), |_, key| {
             let message = format!(
                 "`{key}`: frictions and cogging take {} N m at the motor, whose limit is {} N m: nothing moves",
                 figure(all),
@@ -178,7 +193,7 @@ fn frictions(file: &JointFile, judge: &Judge<'_>) {
     for (side, viscous, torque, over) in sides {
         let key = format!("drive_train.{side}_viscous_friction_N_m_s_per_rad");
         let speed = torque / (viscous * over);
-        judge.judge(&[&key], speed, TOP_SPEED, |_, key| {
+        judge.check_figure(&[&key], speed, TOP_SPEED_LIMITS, |_, key| {
             let message = format!(
                 "`{key}`: {} N m turn the link no faster than {} rad/s against this friction alone",
                 figure(torque),
@@ -188,17 +203,22 @@ fn frictions(file: &JointFile, judge: &Judge<'_>) {
         });
     }
     let efficiency = around.efficiency;
-    judge.judge(&["drive_train.efficiency"], efficiency, Limits { odd: (0.4, ANY), possible: (0.0, ANY) }, |_, key| {
-        let message = format!(
-            "`{key}` = {efficiency}: {} % of the torque is lost in one stage",
-            figure(100.0 * (1.0 - efficiency))
-        );
-        (
-            message,
-            format!(
-                "a stage of gears has 0.9 to 0.98; a loss of {efficiency} is an efficiency of {}",
-                figure(1.0 - efficiency)
-            ),
-        )
-    });
+    judge.check_figure(
+        &["drive_train.efficiency"],
+        efficiency,
+        Limits { odd: (0.4, UNLIMITED), possible: (0.0, UNLIMITED) },
+        |_, key| {
+            let message = format!(
+                "`{key}` = {efficiency}: {} % of the torque is lost in one stage",
+                figure(100.0 * (1.0 - efficiency))
+            );
+            (
+                message,
+                format!(
+                    "a stage of gears has 0.9 to 0.98; a loss of {efficiency} is an efficiency of {}",
+                    figure(1.0 - efficiency)
+                ),
+            )
+        },
+    );
 }

@@ -1,11 +1,11 @@
-//! Gears that do not fit together, and radii stated in more than one way. Single values are in `values`.
+//! Gears that do not fit together, and radii stated twice. Single values are in `values`.
 
 use joint_file::{Severity, preset, read};
 
 use crate::{problems, refused, spoilt};
 
 #[test]
-fn module_and_radii_exclude_each_other() {
+fn module_and_radii_conflict() {
     let text = spoilt("module_mm = 1.0", "module_mm = 1.0\ncarrier_radius_mm = 22.5");
     refused(&text, "`carrier_radius_mm` and `module_mm` both set the radii", "22.5", "keep the module, or all radii");
 }
@@ -17,7 +17,7 @@ fn by_radii(carrier: &str) -> String {
 }
 
 #[test]
-fn radii_and_module_give_the_same_joint() {
+fn radii_equal_module() {
     let stated = read(&by_radii("carrier_radius_mm = 22.5")).expect("coherent radii").parameters.geometry;
     let lever = read(&by_radii("carrier_base_radius_mm = 21.143084")).expect("coherent radii").parameters.geometry;
     let derived = read(preset("q1").expect("a preset")).expect("q1").parameters.geometry;
@@ -27,35 +27,36 @@ fn radii_and_module_give_the_same_joint() {
     }
 }
 
+/// A lever given as carrier radius would count the cosine twice.
 #[test]
-fn a_carrier_radius_that_is_the_lever_would_count_the_cosine_twice() {
+fn lever_as_carrier_radius_is_rejected() {
     let text = by_radii("carrier_radius_mm = 21.143");
     let message = "this carrier radius is r_c cos(alpha) = 21.1431 mm: cos(alpha) would count twice";
     refused(&text, message, "21.143", "write carrier_base_radius_mm for it, or carrier_radius_mm = 22.5000");
 }
 
 #[test]
-fn a_carrier_radius_that_fits_nothing_is_refused() {
+fn misfit_carrier_radius_is_rejected() {
     let text = by_radii("carrier_radius_mm = 23.0");
     let message = "r_c cos(alpha) = 21.6129 mm, but the base radii of sun and planet sum to 21.1431 mm";
     refused(&text, message, "23.0", "r_c is 22.5000 mm");
 }
 
 #[test]
-fn a_radius_in_metres_is_refused() {
+fn radius_in_metres_is_rejected() {
     let text = by_radii("carrier_radius_mm = 0.0225");
     let message = "`carrier_radius_mm` must be between 0.5 and 5000, not 0.0225";
     refused(&text, message, "0.0225", "in mm");
 }
 
 #[test]
-fn a_missing_carrier_radius_names_both_forms() {
+fn missing_carrier_radius_names_both() {
     let message = "[geometry] needs one of `carrier_radius_mm` and `carrier_base_radius_mm`";
     refused(&by_radii(""), message, "[geometry]", "not r_c cos(alpha)");
 }
 
 #[test]
-fn gears_that_are_not_coaxial_are_refused_with_the_teeth_that_fit() {
+fn not_coaxial_names_fitting_teeth() {
     let text = spoilt("ring_teeth = 75", "ring_teeth = 78");
     let found: Vec<_> = problems(&text).into_iter().map(|p| (p.message, text[p.span].to_owned(), p.help)).collect();
     let message = "not coaxial: the ring has 78 teeth, sun and planets need 15 + 2 x 30 = 75";
@@ -65,7 +66,7 @@ fn gears_that_are_not_coaxial_are_refused_with_the_teeth_that_fit() {
 }
 
 #[test]
-fn planets_that_do_not_assemble_are_refused() {
+fn not_assembling_is_rejected() {
     let text = spoilt("planets = 3", "planets = 4");
     let message = "4 equally spaced planets do not assemble: (15 + 75) / 4 is not whole";
     let (found, place, help) = only_among(&text, "assemble");
@@ -73,7 +74,7 @@ fn planets_that_do_not_assemble_are_refused() {
     assert_eq!(help, "these teeth take 3 planets, or choose others");
 }
 
-/// The one problem whose message has `part`.
+/// Only problem whose message has `part`.
 fn only_among(text: &str, part: &str) -> (String, String, String) {
     let found: Vec<_> = problems(text).into_iter().filter(|problem| problem.message.contains(part)).collect();
     assert_eq!(found.len(), 1, "{found:#?}");
@@ -81,7 +82,7 @@ fn only_among(text: &str, part: &str) -> (String, String, String) {
 }
 
 #[test]
-fn planets_that_collide_are_refused() {
+fn colliding_planets_are_rejected() {
     let text = spoilt("planets = 3", "planets = 5");
     let (message, place, _) = only_among(&text, "collide");
     assert_eq!(
@@ -92,7 +93,7 @@ fn planets_that_collide_are_refused() {
 }
 
 #[test]
-fn planets_that_touch_at_the_tips_are_warned_of() {
+fn touching_tips_warn() {
     let text = preset("q1").expect("a preset").replace("planets = 3 ", "planets = 5 ");
     let text = text.replace("sun_teeth = 15", "sun_teeth = 25").replace("planet_teeth = 30", "planet_teeth = 35");
     let text =
@@ -105,7 +106,7 @@ fn planets_that_touch_at_the_tips_are_warned_of() {
 }
 
 #[test]
-fn radii_that_contradict_the_teeth_are_refused() {
+fn radii_against_teeth_are_rejected() {
     let text =
         by_radii("carrier_radius_mm = 22.5").replace("7.0476947", "8.0476947").replace("14.0953893", "13.0953893");
     let message = "the ratio is 5.25444 by base radii and 6.00000 by teeth";
@@ -113,7 +114,7 @@ fn radii_that_contradict_the_teeth_are_refused() {
 }
 
 #[test]
-fn misfits_only_warn_when_the_file_says_so() {
+fn coherence_warn_downgrades_misfits() {
     let text =
         spoilt("ring_teeth = 75", "ring_teeth = 78").replace("description =", "coherence = \"warn\"\ndescription =");
     let file = read(&text).expect("only warnings");

@@ -1,19 +1,20 @@
-//! Keys, sections and syntax: unknown, missing, misplaced, of the wrong type, or no TOML at all. Values out of their
-//! bounds are in `values`.
+//! Keys, sections and syntax: unknown, missing, misplaced, of the wrong type, or no TOML. Values out of bounds are in
+//! `values`.
 
 use joint_file::{preset, read};
 
 use crate::{only, problems, refused, spoilt};
 
 #[test]
-fn an_unknown_key_is_guessed_at() {
+fn misspelt_key_gets_suggestion() {
     let text = spoilt("cogging_torque_N_m", "coging_torque_N_m");
     let message = "unknown key `coging_torque_N_m` in [drive_train]";
     refused(&text, message, "coging_torque_N_m", "did you mean `cogging_torque_N_m`?");
 }
 
+/// A key in another unit gets a suggestion, and the missing key is named.
 #[test]
-fn a_key_in_another_unit_is_guessed_at_and_the_missing_one_named() {
+fn key_in_other_unit_gets_suggestion() {
     let text = spoilt("half_backlash_um = 40.0", "half_backlash_mm = 0.04");
     let found: Vec<_> = problems(&text).into_iter().map(|p| (p.message, text[p.span].to_owned(), p.help)).collect();
     assert_eq!(found[0].0, "[mesh] needs one of `half_backlash_um` and `backlash_um`");
@@ -26,31 +27,31 @@ fn a_key_in_another_unit_is_guessed_at_and_the_missing_one_named() {
 }
 
 #[test]
-fn a_key_in_the_wrong_section_is_sent_to_the_right_one() {
+fn misplaced_key_names_its_section() {
     let text = spoilt("[excitation]", "[excitation]\nlink_inertia_kg_m2 = 0.2");
     refused(&text, "unknown key `link_inertia_kg_m2` in [excitation]", "link_inertia_kg_m2", "it belongs in [bodies]");
 }
 
 #[test]
-fn an_unknown_key_without_a_likeness_is_told_what_is_known() {
+fn strange_key_lists_known_keys() {
     let text = spoilt("[excitation]", "[excitation]\ncolour = 1");
     refused(&text, "unknown key `colour` in [excitation]", "colour", "known here: `mode`, `mesh_frequency_rad_per_s`");
 }
 
 #[test]
-fn an_unknown_section_is_guessed_at() {
+fn misspelt_section_gets_suggestion() {
     let text = spoilt("[contact]", "[contacts]");
     refused(&text, "unknown key `contacts` in a joint file", "contacts", "did you mean `contact`?");
 }
 
 #[test]
-fn a_missing_key_underlines_its_section() {
+fn missing_key_underlines_section() {
     let text = spoilt("mean_stiffness_N_per_m = 1e8", "");
     refused(&text, "`mean_stiffness_N_per_m` is missing from [mesh]", "[mesh]", "K_m in N/m");
 }
 
 #[test]
-fn a_missing_section_underlines_the_first_line_that_says_anything() {
+fn missing_section_underlines_first_line() {
     let text = preset("q1").expect("a preset");
     let (start, end) = (text.find("[bodies]").expect("bodies"), text.find("[compliance]").expect("compliance"));
     let text = format!("{}{}", &text[..start], &text[end..]);
@@ -58,7 +59,7 @@ fn a_missing_section_underlines_the_first_line_that_says_anything() {
 }
 
 #[test]
-fn an_empty_file_misses_everything_at_once() {
+fn empty_file_lists_all_missing() {
     let messages: Vec<_> = problems("").into_iter().map(|problem| problem.message).collect();
     assert_eq!(
         messages,
@@ -73,7 +74,7 @@ fn an_empty_file_misses_everything_at_once() {
 }
 
 #[test]
-fn a_wrong_type_names_both_types() {
+fn wrong_type_names_both_types() {
     let text = spoilt("planets = 3", "planets = \"3\"");
     refused(&text, "`planets` must be a whole number, not a string", "\"3\"", "3, 4 or 5");
     let text = spoilt("sun_teeth = 15", "sun_teeth = 15.0");
@@ -85,14 +86,15 @@ fn a_wrong_type_names_both_types() {
 }
 
 #[test]
-fn a_section_given_as_a_value_is_refused() {
+fn section_as_value_is_rejected() {
     let text =
         "contact = 3\n".to_owned() + &spoilt("[contact]\ndamping_law = \"contact\"\ndead_zone = \"sharp\"\n", "");
     refused(&text, "`contact` must be a section, not a whole number", "3", "[contact]");
 }
 
+/// Mass and inertia exclude each other, and one is needed.
 #[test]
-fn mass_and_inertia_exclude_each_other_and_one_is_needed() {
+fn mass_and_inertia_conflict() {
     let text = spoilt("sun_equivalent_mass_kg = 0.02", "sun_equivalent_mass_kg = 0.02\nsun_inertia_kg_m2 = 1e-6");
     let message = "`sun_equivalent_mass_kg` and `sun_inertia_kg_m2` say the same thing twice";
     refused(&text, message, "1e-6", "keep one");
@@ -102,7 +104,7 @@ fn mass_and_inertia_exclude_each_other_and_one_is_needed() {
 }
 
 #[test]
-fn names_that_a_board_cannot_say_are_refused() {
+fn invalid_names_are_rejected() {
     let long = "a joint with a name that is much too long";
     let text = spoilt("name = \"Q1\"", &format!("name = \"{long}\""));
     refused(&text, "`name` has 41 letters", &format!("\"{long}\""), "up to 32");
@@ -113,7 +115,7 @@ fn names_that_a_board_cannot_say_are_refused() {
 }
 
 #[test]
-fn broken_syntax_is_underlined() {
+fn syntax_error_is_underlined() {
     let text = spoilt("planets = 3", "planets == 3");
     let (message, place, help) = only(&text);
     assert!(message.starts_with("not TOML: "), "{message}");
@@ -125,7 +127,7 @@ fn broken_syntax_is_underlined() {
 }
 
 #[test]
-fn all_problems_of_a_file_are_found_at_once_in_the_order_of_the_text() {
+fn all_problems_in_order_of_text() {
     let text = spoilt("planets = 3", "planets = 2")
         .replace("planet_mass_kg = 0.05", "planet_mas_kg = 0.05")
         .replace("mean_stiffness_N_per_m = 1e8", "mean_stiffness_N_per_m = nan")
@@ -144,7 +146,7 @@ fn all_problems_of_a_file_are_found_at_once_in_the_order_of_the_text() {
 }
 
 #[test]
-fn no_file_makes_the_reader_panic() {
+fn reader_never_panics() {
     let text = preset("q1").expect("a preset");
     for end in (0..text.len()).filter(|end| text.is_char_boundary(*end)) {
         let _ = read(&text[..end]);
@@ -157,7 +159,7 @@ fn no_file_makes_the_reader_panic() {
 }
 
 #[test]
-fn a_compliance_without_a_link_is_refused() {
+fn compliance_without_link_is_rejected() {
     let text = spoilt("link_inertia_kg_m2 = 0.15", "link_inertia_kg_m2 = 0.0");
     refused(&text, "a compliance needs a link behind it", "[compliance]", "give `link_inertia_kg_m2` in [bodies]");
 }

@@ -1,5 +1,5 @@
-//! What is wrong with a joint file: each case asserts the message, the text that it underlines and the help.
-//! Every case is Q1's file with one thing spoilt, so that nothing else can be the cause.
+//! Problems of joint files: each case asserts message, underlined text and help. Every case is Q1's file with one
+//! change, which is therefore the only cause.
 
 mod gears;
 mod keys;
@@ -8,7 +8,7 @@ mod values;
 
 use joint_file::{Problem, Severity, preset, read};
 
-/// Q1's file with one piece of text exchanged.
+/// Q1's file with one piece of text replaced.
 fn spoilt(from: &str, to: &str) -> String {
     let text = preset("q1").expect("a preset");
     assert_eq!(text.matches(from).count(), 1, "`{from}` is not in the file exactly once");
@@ -19,7 +19,7 @@ fn problems(text: &str) -> Vec<Problem> {
     read(text).expect_err("the file is spoilt").0
 }
 
-/// The only problem, by its message, the text that it underlines, and its help.
+/// Only problem: message, underlined text, and help.
 fn only(text: &str) -> (String, String, String) {
     let problems = problems(text);
     assert_eq!(problems.len(), 1, "{problems:#?}");
@@ -28,7 +28,7 @@ fn only(text: &str) -> (String, String, String) {
     (message, text[span].to_owned(), help)
 }
 
-/// Asserts message and underlined text of the only problem, and that its help says `wanted`.
+/// Asserts message and underlined text of the only problem, and that its help contains `wanted`.
 #[track_caller]
 fn refused(text: &str, message: &str, underlined: &str, wanted: &str) {
     let (found, place, help) = only(text);

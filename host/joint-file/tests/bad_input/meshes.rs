@@ -5,14 +5,15 @@ use joint_file::read;
 use crate::{only, problems, refused, spoilt};
 
 #[test]
-fn half_and_whole_backlash_exclude_each_other() {
+fn half_and_whole_backlash_conflict() {
     let text = spoilt("half_backlash_um = 40.0", "half_backlash_um = 40.0\nbacklash_um = 80.0");
     let message = "`half_backlash_um` and `backlash_um` say the same thing twice";
     refused(&text, message, "80.0", "keep one of `half_backlash_um` and `backlash_um`");
 }
 
+/// A stiffness ratio that lets the stiffness vanish is rejected.
 #[test]
-fn a_stiffness_ratio_that_lets_the_stiffness_vanish_is_refused() {
+fn vanishing_stiffness_is_rejected() {
     let text = spoilt("stiffness_ratio = 0.15", "stiffness_ratio = 1.0");
     refused(&text, "`stiffness_ratio` must be at least 0 and less than 1, not 1.0", "1.0", "10 % is 0.1");
     let wave = "stiffness_ratio = 0.7\nstiffness_wave = \"rectangular\"\ncontact_ratio = 1.9\norder = 5";
@@ -24,7 +25,7 @@ fn a_stiffness_ratio_that_lets_the_stiffness_vanish_is_refused() {
 }
 
 #[test]
-fn the_largest_stiffness_ratio_that_the_help_names_is_accepted() {
+fn suggested_stiffness_ratio_is_accepted() {
     let wave = "stiffness_ratio = RATIO\nstiffness_wave = \"rectangular\"\ncontact_ratio = 1.9\norder = 5";
     let spoilt = spoilt("stiffness_ratio = 0.15", wave);
     let (_, _, help) = only(&spoilt.replace("RATIO", "0.9"));
@@ -32,8 +33,9 @@ fn the_largest_stiffness_ratio_that_the_help_names_is_accepted() {
     assert!(read(&spoilt.replace("RATIO", named)).is_ok(), "{help}");
 }
 
+/// The rectangular wave needs contact ratio and order within their bounds.
 #[test]
-fn the_rectangular_wave_needs_its_contact_ratio_and_order() {
+fn rectangular_wave_needs_its_keys() {
     let text = spoilt("stiffness_ratio = 0.15", "stiffness_ratio = 0.15\nstiffness_wave = \"rectangular\"");
     let messages: Vec<_> = problems(&text).into_iter().map(|problem| problem.message).collect();
     assert_eq!(messages, ["`contact_ratio` is missing from [mesh]", "`order` is missing from [mesh]"]);
@@ -51,21 +53,21 @@ fn the_rectangular_wave_needs_its_contact_ratio_and_order() {
 }
 
 #[test]
-fn keys_of_the_rectangular_wave_are_refused_for_the_harmonic_one() {
+fn harmonic_wave_rejects_order() {
     let text = spoilt("stiffness_ratio = 0.15", "stiffness_ratio = 0.15\norder = 5");
     let message = "`order` belongs to the rectangular wave, and this one is harmonic";
     refused(&text, message, "5", "stiffness_wave = \"rectangular\"");
 }
 
 #[test]
-fn a_list_of_the_wrong_length_is_refused() {
+fn wrong_list_length_is_rejected() {
     let text = spoilt("half_backlash_um = 40.0", "half_backlash_um = [40.0, 41.0]");
     let message = "`half_backlash_um` lists 2 values for 3 planets";
     refused(&text, message, "[40.0, 41.0]", "give 3 values, or one number for all planets");
 }
 
 #[test]
-fn a_wrong_value_in_a_list_is_underlined_alone() {
+fn wrong_list_item_is_underlined() {
     let text = spoilt("half_backlash_um = 40.0", "half_backlash_um = [40.0, -41.0, 42.0]");
     refused(&text, "`half_backlash_um` must be 0, or between 0.5 and 1000, not -41.0", "-41.0", "2b");
     let text = spoilt("half_backlash_um = 40.0", "half_backlash_um = [40.0, \"x\", 42.0]");
@@ -73,35 +75,37 @@ fn a_wrong_value_in_a_list_is_underlined_alone() {
 }
 
 #[test]
-fn lists_and_single_phases_do_not_mix() {
+fn list_and_single_phase_conflict() {
     let text = spoilt("[contact]", "[mesh.sun_planet]\nerror_phase_rad = [0.0, 2.0, 4.0]\n\n[contact]");
     let message = "`error_phase_rad` is a list and `stiffness_phase_rad` is not";
     refused(&text, message, "[0.0, 2.0, 4.0]", "state every planet's phase for both");
 }
 
 #[test]
-fn a_phase_in_degrees_is_refused() {
+fn phase_in_degrees_is_rejected() {
     let text = spoilt("[contact]", "[mesh.sun_planet]\nerror_phase_rad = 120\n\n[contact]");
     refused(&text, "`error_phase_rad` must be between -6.3 and 6.3, not 120", "120", "in rad");
 }
 
 #[test]
-fn a_word_that_is_no_choice_names_the_choices() {
+fn unknown_choice_lists_choices() {
     let text = spoilt("damping_law = \"contact\"", "damping_law = \"viscous\"");
     let message = "`damping_law` must be \"contact\" or \"paper\", not \"viscous\"";
     refused(&text, message, "\"viscous\"", "teeth only push");
 }
 
+/// The tanh dead zone needs a sharpness; the sharp one rejects it.
 #[test]
-fn the_tanh_dead_zone_needs_a_sharpness_and_the_sharp_one_has_none() {
+fn sharpness_belongs_to_tanh() {
     let text = spoilt("dead_zone = \"sharp\"", "dead_zone = \"tanh\"");
     refused(&text, "`sharpness` is missing from [contact]", "[contact]", "eq. 13");
     let text = spoilt("dead_zone = \"sharp\"", "dead_zone = \"sharp\"\nsharpness = 20.0");
     refused(&text, "`sharpness` belongs to the tanh dead zone, and this one is sharp", "20.0", "dead_zone = \"tanh\"");
 }
 
+/// Mode "time" needs one frequency; mode "angle" rejects it.
 #[test]
-fn time_mode_needs_one_frequency_and_angle_mode_none() {
+fn mesh_frequency_belongs_to_time_mode() {
     let text = spoilt("mode = \"angle\"", "mode = \"time\"");
     let message =
         "[excitation] needs one of `mesh_frequency_rad_per_s`, `mesh_frequency_Hz` and `mesh_frequency_over_omega_n`";

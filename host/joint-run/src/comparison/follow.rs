@@ -1,5 +1,5 @@
-//! The reference along a run, as far as the motion can be predicted: a second reference runs beside it with slightly
-//! disturbed torques, and where the two diverge the motion is chaotic.
+//! Reference along a run, while the motion is predictable: a second reference runs with slightly disturbed torques, and
+//! where the two diverge the motion is chaotic.
 
 use model_core::gears::Kinematics;
 use std::collections::VecDeque;
@@ -10,18 +10,18 @@ use link::messages::Command;
 use parameters::JointParameters;
 use reference::joint::{Observation, Reference, ReferenceError};
 
-use super::row::{QUANTITIES, Row, spread};
+use super::row::{QUANTITIES, Row, standard_deviation};
 use report::interruption;
 
-/// A second reference gets torques that are wrong by this much, up and down in turn.
+/// Relative error of the second reference's torques, with alternating sign.
 pub const DISTURBANCE: f64 = 1e-6;
-/// Once that moves any compared quantity by more than this part of its standard deviation, the motion is chaotic: what
-/// comes later says nothing about the step any more.
-const PREDICTABLE: f64 = 1e-4;
-/// Samples between two looks at whether it still can be predicted.
-const BLOCK: usize = 100;
+/// Divergence of a compared quantity, as a share of its standard deviation, from which the motion is chaotic: later
+/// samples say nothing about the step.
+const DIVERGENCE_MAX: f64 = 1e-4;
+/// Samples between tests of the divergence.
+const BLOCK_SAMPLES: usize = 100;
 
-/// The reference at the ends of the given ticks, as far as the disturbed one stays with it.
+/// Observations of the reference at the ends of the given ticks, until the disturbed reference diverges.
 pub fn follow(
     mut exact: ReferenceReplay,
     mut disturbed: ReferenceReplay,
@@ -30,7 +30,7 @@ pub fn follow(
 ) -> Result<Vec<Observation>, ReferenceError> {
     let mut observations = Vec::with_capacity(ticks.len());
     let mut rows: [Vec<Row>; 2] = Default::default();
-    for block in ticks.chunks(BLOCK) {
+    for block in ticks.chunks(BLOCK_SAMPLES) {
         if stop.load(Ordering::Relaxed) || interruption::requested() {
             break;
         }
@@ -43,15 +43,15 @@ pub fn follow(
         exact_rows.extend(here.iter().map(|observation| Row::of_reference(observation, exact.ratio)));
         disturbed_rows.extend(there.iter().map(|observation| Row::of_reference(observation, exact.ratio)));
         observations.extend(here);
-        if let Some(departure) = departure(exact_rows, disturbed_rows, observations.len() - block.len()) {
-            observations.truncate(departure);
+        if let Some(divergence) = divergence(exact_rows, disturbed_rows, observations.len() - block.len()) {
+            observations.truncate(divergence);
             break;
         }
     }
     Ok(observations)
 }
 
-/// A reference that is given a run's torques.
+/// Reference driven by a run's torques.
 pub struct ReferenceReplay {
     reference: Reference,
     commands: VecDeque<Command>,
@@ -62,7 +62,7 @@ pub struct ReferenceReplay {
 }
 
 impl ReferenceReplay {
-    /// At rest before the first torque; all torques are wrong by `disturbance`, up and down in turn.
+    /// Reference at rest before the first torque; all torques are wrong by `disturbance`, with alternating sign.
     pub fn new(
         joint: &JointParameters,
         tick_rate: u32,
@@ -99,11 +99,14 @@ impl ReferenceReplay {
     }
 }
 
-/// The first sample, from a place on, at which the disturbed reference has departed from the other.
-fn departure(exact: &[Row], disturbed: &[Row], from: usize) -> Option<usize> {
-    let spreads: Vec<f64> = (0..QUANTITIES.len()).map(|place| spread(exact, place)).collect();
+/// First sample from `from` on at which the disturbed reference has diverged.
+fn divergence(exact: &[Row], disturbed: &[Row], from: usize) -> Option<usize> {
+    let spreads: Vec<f64> = (0..QUANTITIES.len()).map(|place| standard_deviation(exact, place)).collect();
     let departed = |(exact, disturbed): (&Row, &Row)| {
-        spreads.iter().enumerate().any(|(place, spread)| disturbed.distance(exact, place).abs() > PREDICTABLE * spread)
+        spreads
+            .iter()
+            .enumerate()
+            .any(|(place, spread)| disturbed.distance(exact, place).abs() > DIVERGENCE_MAX * spread)
     };
     let later = exact.iter().zip(disturbed).skip(from).position(departed);
     later.map(|place| from + place).or((disturbed.len() < exact.len()).then_some(disturbed.len()))

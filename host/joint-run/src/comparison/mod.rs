@@ -1,5 +1,5 @@
-//! The run against the f64 reference: the same torques through an independent integration, as far as the motion can be
-//! predicted at all. Both are computed beside the run.
+//! Comparison of a run with the f64 reference: the run's torques through an independent integration, while the motion
+//! is predictable. The references are computed in parallel to the run.
 
 mod follow;
 mod row;
@@ -13,15 +13,15 @@ use follow::{DISTURBANCE, ReferenceReplay, follow};
 use link::messages::{Command, Sample};
 use parameters::{ContactState, JointParameters};
 use reference::joint::{Observation, ReferenceError};
-use row::{QUANTITIES, Row, spread};
+use row::{QUANTITIES, Row, standard_deviation};
 
 use crate::record::{self, MotionSample};
 use report::contacts::Contact;
 use report::failure::{Failure, Outcome};
 
-/// The reference is followed for so long at most [s]: computing it takes longer than the run itself.
-const LONGEST: f64 = 3.0;
-/// References that are being computed, on threads of their own.
+/// Longest comparison [s]: the reference takes longer than the run itself.
+const COMPARISON_TIME_MAX: f64 = 3.0;
+/// References in computation, on their own threads.
 pub struct PendingReferences {
     joint: JointParameters,
     tick_rate: u32,
@@ -30,34 +30,34 @@ pub struct PendingReferences {
     followed: JoinHandle<Result<Vec<Observation>, ReferenceError>>,
 }
 
-/// How far a run is from the reference.
+/// Distance of a run from the reference.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
-    /// For the report.
+    /// Reference for the report.
     pub reference: record::Reference,
-    /// End of the part that was compared [s].
+    /// End of the compared part [s].
     pub until: f64,
     /// End of the run [s].
     pub of: f64,
-    /// Every quantity's root mean square error over its standard deviation, with its bound.
+    /// Root mean square error of every quantity over its standard deviation, with its bound.
     pub errors: Vec<QuantityError>,
 }
 
 /// One quantity's distance from the reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct QuantityError {
-    /// Which.
+    /// Name of the quantity.
     pub name: &'static str,
     /// Root mean square of the error over the standard deviation of the reference.
     pub error: f64,
-    /// Most that it may be.
+    /// Bound of the error.
     pub limit: f64,
 }
 
 /// Starts two references on the torques of a run, one of them disturbed.
 pub fn start(joint: &JointParameters, tick_rate: u32, decimation: u32, run: (&[Command], u32)) -> PendingReferences {
     let (commands, ticks) = run;
-    let last = ticks.min((LONGEST * f64::from(tick_rate)) as u32);
+    let last = ticks.min((COMPARISON_TIME_MAX * f64::from(tick_rate)) as u32);
     let ticks: Vec<u32> = (1..=last / decimation).map(|sample| sample * decimation).collect();
     let stop = Arc::new(AtomicBool::new(false));
     let follower = |disturbance: f64| ReferenceReplay::new(joint, tick_rate, commands, disturbance);
@@ -73,7 +73,7 @@ impl PendingReferences {
     /// Ends the references without their result.
     pub fn abandon(self) {
         self.stop.store(true, Ordering::Relaxed);
-        // The result is not needed, so the threads are not joined: they end by themselves within a sample.
+        // The threads end by themselves within a sample, so they are not joined.
     }
 
     /// Waits for the references and compares the samples of the run with them.
@@ -94,10 +94,10 @@ impl PendingReferences {
         let mut errors = Vec::new();
         let mut series = Vec::new();
         for (place, quantity) in QUANTITIES.iter().enumerate() {
-            let spread = spread(&exact_rows, place);
+            let deviation = standard_deviation(&exact_rows, place);
             let distances = || {
                 board.iter().zip(&exact_rows).enumerate().filter_map(move |(index, (board, exact))| {
-                    board.as_ref().map(|board| (index, board.distance(exact, place) / spread))
+                    board.as_ref().map(|board| (index, board.distance(exact, place) / deviation))
                 })
             };
             let count = distances().count();
@@ -123,7 +123,7 @@ impl PendingReferences {
     }
 }
 
-/// The board's rows by place in the list of ticks; samples that were lost are missing.
+/// Rows of the board at the given ticks; `None` for a lost sample.
 fn rows_of_board(samples: &[Sample], ticks: &[u32], ratio: f64) -> Vec<Option<Row>> {
     let mut samples = samples.iter().peekable();
     let row = |&tick: &u32| {
@@ -169,16 +169,17 @@ mod tests {
         joint_file::read(joint_file::preset(preset).expect("a preset")).expect("a good preset").parameters
     }
 
-    /// The twin in the board's place, through the head of the built-in profile, spoilt by `spoil`.
+    /// Comparison of the twin's run, in place of a board's, through the beginning of a built-in profile, with samples
+    /// changed by `spoil`.
     fn comparison(preset: &str, seconds: f64, spoil: impl Fn(&mut Sample)) -> Comparison {
         let joint = joint(preset);
         let profile = TorqueProfile::load("reversals", &joint, TICK_RATE, Some(seconds)).expect("built in");
-        let under_way = start(&joint, TICK_RATE, DECIMATION, (&profile.commands, profile.ticks));
+        let pending = start(&joint, TICK_RATE, DECIMATION, (&profile.commands, profile.ticks));
         let ticks: Vec<u32> = (1..=profile.ticks / DECIMATION).map(|sample| sample * DECIMATION).collect();
         let mut samples =
             twin::replay(&joint, Chip::Stm32f405, TICK_RATE, &profile.commands, &ticks).expect("a good joint");
         samples.iter_mut().for_each(spoil);
-        under_way.finish(&samples, joint.geometry.ratio_by_radii()).expect("a joint for the reference")
+        pending.finish(&samples, joint.geometry.ratio_by_radii()).expect("a joint for the reference")
     }
 
     fn failed(comparison: &Comparison) -> Vec<&'static str> {
@@ -187,15 +188,17 @@ mod tests {
         over.map(|quantity| quantity.name).collect()
     }
 
+    /// The twin stays within every bound over the followed part.
     #[test]
-    fn the_step_is_within_every_bound_for_as_long_as_is_followed() {
+    fn twin_is_within_every_bound() {
         let comparison = comparison("l1", 0.3, |_| {});
         assert_eq!(failed(&comparison), [""; 0]);
         assert_eq!((comparison.until, comparison.of), (0.3, 0.3));
     }
 
+    /// An error of 2 % in one quantity exceeds the bound of that quantity alone.
     #[test]
-    fn two_percent_of_error_in_one_quantity_are_over_its_bound_alone() {
+    fn error_of_2_percent_fails_its_bound() {
         let gap = comparison("l1", 0.1, |sample| sample.gap *= 1.02);
         assert_eq!(failed(&gap), ["gap"]);
         let meshes = comparison("l1", 0.1, |sample| sample.deflections.iter_mut().for_each(|mesh| *mesh *= 1.02));
@@ -204,15 +207,16 @@ mod tests {
         assert_eq!(failed(&turned), ["link angle"]);
     }
 
+    /// A chaotic motion is compared only while it is predictable.
     #[test]
-    fn a_chaotic_motion_is_compared_only_while_it_can_be_predicted() {
+    fn chaotic_motion_ends_comparison() {
         let comparison = comparison("paper", 0.5, |_| {});
         assert!(comparison.until < 0.05, "{}", comparison.until);
         assert!(comparison.reference.samples.len() < 100);
     }
 
     #[test]
-    fn a_lost_sample_is_left_out() {
+    fn lost_sample_is_skipped() {
         let rows = rows_of_board(&[], &[20, 40], 6.0);
         assert_eq!(rows, [None, None]);
     }

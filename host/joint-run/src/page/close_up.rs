@@ -1,19 +1,19 @@
-//! A close-up of the first reversal through the gap: where the teeth leave one flank and land on the other. Drawn at
-//! every tick where the record holds them, else from the samples.
+//! Close-up of the first reversal through the gap, where the teeth leave one flank and land on the other. Drawn at
+//! every tick if the record has them, otherwise from the samples.
 
 use super::motion::View;
 use crate::record::{RunRecord, Samples};
 use report::plot::Figure;
 use report::plot::unit::Unit;
 
-/// Fewer samples than this make no picture.
-const LEAST_SAMPLES: usize = 12;
-/// Shown before and after the crossing at least [s].
-const LEAST_MARGIN: f64 = 4e-3;
-/// Shown before and after the crossing at most [s].
-const GREATEST_MARGIN: f64 = 40e-3;
+/// Least samples of a picture.
+const SAMPLES_MIN: usize = 12;
+/// Shortest time shown before and after the crossing [s].
+const MARGIN_MIN: f64 = 4e-3;
+/// Longest time shown before and after the crossing [s].
+const MARGIN_MAX: f64 = 40e-3;
 
-/// From and to [s] around the first full crossing of the band, if there is one.
+/// Start and end [s] around the first full crossing of the band, if there is one.
 pub fn crossing(samples: &Samples, band: [f64; 2]) -> Option<(f64, f64)> {
     let side = |gap: f32| {
         let gap = f64::from(gap);
@@ -25,7 +25,7 @@ pub fn crossing(samples: &Samples, band: [f64; 2]) -> Option<(f64, f64)> {
             (0, _) => {}
             (now, Some((before, last))) if now != before => {
                 let (from, to) = (samples.time_s[last], samples.time_s[index]);
-                let margin = (to - from).clamp(LEAST_MARGIN, GREATEST_MARGIN);
+                let margin = (to - from).clamp(MARGIN_MIN, MARGIN_MAX);
                 return Some(((from - margin).max(0.0), to + 2.0 * margin));
             }
             (now, _) => left = Some((now, index)),
@@ -34,10 +34,10 @@ pub fn crossing(samples: &Samples, band: [f64; 2]) -> Option<(f64, f64)> {
     None
 }
 
-/// What to look at: the stretch at every tick, or the samples around the first crossing.
+/// View of the close-up at every tick, or of the samples around the first crossing.
 pub fn view(record: &RunRecord) -> Option<View<'_>> {
     let (samples, range) = match &record.close_up {
-        Some(close_up) if close_up.samples.len() >= LEAST_SAMPLES => {
+        Some(close_up) if close_up.samples.len() >= SAMPLES_MIN => {
             let times = &close_up.samples.time_s;
             (&close_up.samples, (times[0], times[times.len() - 1]))
         }
@@ -45,7 +45,7 @@ pub fn view(record: &RunRecord) -> Option<View<'_>> {
     };
     let inside = samples.time_s.iter().filter(|time| (range.0..=range.1).contains(*time)).count();
     let unit = Unit::of_time(range.1 - range.0);
-    (inside >= LEAST_SAMPLES && range.1 > range.0).then_some(View { record, samples, range, unit })
+    (inside >= SAMPLES_MIN && range.1 > range.0).then_some(View { record, samples, range, unit })
 }
 
 /// Torque, gap, deflections and contact in one picture.
@@ -68,14 +68,14 @@ mod tests {
     }
 
     #[test]
-    fn a_crossing_is_found_from_flank_to_flank() {
+    fn crossing_spans_flank_to_flank() {
         let ramp = samples((0..200).map(|i| 2e-4 - 2e-6 * i as f32));
         let (from, to) = crossing(&ramp, [-8e-5, 8e-5]).expect("the ramp crosses");
         assert!(from < 0.060 && to > 0.140, "{from} to {to}");
     }
 
     #[test]
-    fn coming_back_to_the_same_flank_is_no_crossing() {
+    fn return_to_flank_is_no_crossing() {
         let dip = samples((0..200).map(|i| 1e-6 * (i as f32 - 100.0).abs()));
         assert_eq!(crossing(&dip, [-8e-5, 8e-5]), None);
     }

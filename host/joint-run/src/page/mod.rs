@@ -1,5 +1,5 @@
-//! The report of a recorded run, as HTML page, terminal lines or a picture for a document. Blocks and plots come from
-//! the crate `report`; nothing is measured or judged here.
+//! Report of a recorded run, as HTML page, terminal lines or a picture for a document. Blocks and plots come from the
+//! crate `report`; nothing is measured or judged here.
 
 mod close_up;
 mod motion;
@@ -19,17 +19,17 @@ use report::document;
 use report::failure::{Failure, Outcome};
 use report::write::write_text;
 
-/// The report as one HTML page that needs neither network nor scripts.
+/// Report as one HTML page without network access or scripts.
 pub fn render(record: &RunRecord) -> String {
     document::html(&whole::document(record))
 }
 
-/// The checks as lines for a terminal, below a line that says what ran.
+/// Checks as lines for a terminal, below a line that names the run.
 pub fn render_lines(record: &RunRecord) -> String {
     document::terminal(&whole::document(record))
 }
 
-/// One picture for a document: a reversal through the gap. None if the run has none.
+/// Picture of a reversal through the gap for a document; `None` if the run has no reversal.
 pub fn picture(record: &RunRecord) -> Option<String> {
     let view = close_up::view(record)?;
     let note = origin::in_one_line(record);

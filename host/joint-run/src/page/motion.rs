@@ -1,5 +1,5 @@
-//! Pictures of the motion: torques, angles, the gap, deflections with contact, and the error against the reference. The
-//! close-up of a crossing has a module of its own.
+//! Pictures of the motion: torques, angles, the gap, deflections with contact, and the error against the reference.
+//! `close_up` draws the close-up of a crossing.
 
 use crate::record::{ErrorSeries, RunRecord, Samples, TorqueCommand};
 use report::contacts;
@@ -11,19 +11,19 @@ use report::plot::mark::Mark;
 use report::plot::panel::Panel;
 use report::plot::unit::{PERCENT, SECONDS, Unit, greatest};
 
-/// A range of samples and the time over which it is shown.
+/// Range of samples and the time over which it is shown.
 pub struct View<'a> {
-    /// Whose run.
+    /// Record of the run.
     pub record: &'a RunRecord,
-    /// Its motion.
+    /// Motion shown.
     pub samples: &'a Samples,
-    /// From and to [s].
+    /// Start and end [s].
     pub range: (f64, f64),
     /// Unit of time.
     pub unit: Unit,
 }
 
-/// The whole run.
+/// View of the whole run.
 pub fn whole(record: &RunRecord) -> View<'_> {
     let last = record.samples.time_s.last().copied().unwrap_or(0.0);
     let end = if last > 0.0 { last } else { 1.0 };
@@ -31,7 +31,7 @@ pub fn whole(record: &RunRecord) -> View<'_> {
 }
 
 impl View<'_> {
-    /// A figure over the time of this view.
+    /// Figure over the time of this view.
     pub fn figure(&self, title: &str, panels: Vec<Panel>) -> Figure {
         Figure::over_time(format!("{title} of joint {}", self.record.identity.joint), self.unit, self.range, panels)
     }
@@ -56,7 +56,7 @@ impl View<'_> {
         panels::torques(steps(|command| command.drive_torque), steps(|command| command.load_torque))
     }
 
-    /// Motor and link angle, and what is between them.
+    /// Motor and link angle, and the twist between them.
     pub fn angles(&self) -> Vec<Panel> {
         let samples = self.samples;
         let unit = Unit::of_angle(greatest(samples.motor_angle_rad.iter().copied()));
@@ -71,13 +71,13 @@ impl View<'_> {
         ]
     }
 
-    /// The gap coordinate over its band.
+    /// Gap coordinate over its band.
     pub fn gap(&self) -> Panel {
         let [low, high] = self.record.joint.gap_band_m;
         panels::gap((low, high), self.beside_reference(|samples| wide(&samples.gap_m)))
     }
 
-    /// Wind-up between carrier and link; none for a rigid joint.
+    /// Wind-up between carrier and link; `None` for a rigid joint.
     pub fn wind_up(&self) -> Option<Panel> {
         panels::wind_up(self.points(self.samples, &wide(&self.samples.wind_up_m)))
     }
@@ -94,8 +94,8 @@ impl View<'_> {
         panels
     }
 
-    /// The board's line, above the reference's where there is one. Beside samples at every tick the straight lines
-    /// between its sparse ones would look like errors.
+    /// Line of the board, above the reference's if there is one. Beside samples at every tick, the straight lines
+    /// between the reference's sparse samples would look like errors.
     fn beside_reference(&self, values: impl Fn(&Samples) -> Vec<f64>) -> Vec<Mark> {
         let sparse = std::ptr::eq(self.samples, &self.record.samples);
         let reference = self.record.reference.as_ref().filter(|_| sparse).map(|reference| &reference.samples);
@@ -111,7 +111,7 @@ impl View<'_> {
     }
 }
 
-/// Distance of every compared quantity from the reference, a panel for each: they differ by orders of magnitude.
+/// Errors of all compared quantities against the reference, a panel each: they differ by orders of magnitude.
 pub fn errors(record: &RunRecord) -> Option<Figure> {
     let series = &record.reference.as_ref()?.errors;
     let panels: Vec<Panel> = series.iter().map(error_panel).collect();

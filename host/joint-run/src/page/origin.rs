@@ -1,15 +1,15 @@
-//! Where a run comes from: who ran what, how to run it again, and what the board said meanwhile. All of it is text; no
-//! figure is judged here.
+//! Provenance of a run: joint, board and image, the command that repeats it, and the board's log. This module judges no
+//! figure.
 
 use super::sections::mark;
 use crate::record::RunRecord;
 use report::document::{Block, Row, Table, Tone, facts, row, section, text, words};
 use report::number::PAGE;
 
-/// Log lines shown; the JSON has all.
-const MOST_LOG_LINES: usize = 200;
+/// Log lines shown at most; the JSON has all.
+const LOG_LINES_MAX: usize = 200;
 
-/// Who ran what, and how to run it again.
+/// Identity of the run, and the command that repeats it.
 pub fn identity(record: &RunRecord) -> Block {
     let (identity, settings) = (&record.identity, &record.settings);
     let image = identity.image.as_ref();
@@ -40,7 +40,7 @@ pub fn identity(record: &RunRecord) -> Block {
     section(text("What ran") + mark(record), vec![facts(rows), Block::Again(settings.replay.clone())])
 }
 
-/// What ran, short enough to stand below a picture.
+/// Identity of the run in one line, for below a picture.
 pub fn in_one_line(record: &RunRecord) -> String {
     let identity = &record.identity;
     let mut parts = vec![format!("Joint {} on {}", identity.joint, identity.board)];
@@ -51,15 +51,15 @@ pub fn in_one_line(record: &RunRecord) -> String {
         let until = |text: &str, end: &str| text.split(end).next().unwrap_or_default().to_owned();
         parts.push(format!("ELF {}", image.elf_sha256.chars().take(12).collect::<String>()));
         parts.push(until(&image.compiler, " ("));
-        // The profile and what it sets; the rest is in the report.
+        // Only the profile and its settings; the report has the rest.
         parts.push(until(&image.flags, ", --"));
     }
     parts.join(" · ")
 }
 
-/// The board's log.
+/// Log of the board.
 pub fn log(record: &RunRecord) -> Option<Block> {
-    let rows = record.log.iter().take(MOST_LOG_LINES).map(|line| Row {
+    let rows = record.log.iter().take(LOG_LINES_MAX).map(|line| Row {
         tone: match line.level.as_str() {
             "error" => Tone::Failed,
             "warn" => Tone::Open,
@@ -69,7 +69,7 @@ pub fn log(record: &RunRecord) -> Option<Block> {
     });
     let table = Table { columns: ["", "", ""].map(words).into(), rows: rows.collect(), log: true };
     let mut blocks = vec![Block::Table(table)];
-    let more = record.log.len().saturating_sub(MOST_LOG_LINES);
+    let more = record.log.len().saturating_sub(LOG_LINES_MAX);
     if more > 0 {
         blocks.push(Block::Paragraph(format!("{more} more lines are in the JSON file.").into()));
     }

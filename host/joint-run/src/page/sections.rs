@@ -1,4 +1,4 @@
-//! The report's sections of figures: key figures, motion and timing. Pictures come from `motion`, `close_up` and
+//! Sections of the report with figures: key figures, motion and timing. The pictures come from `motion`, `close_up` and
 //! `timing`.
 
 use super::{close_up, motion, timing};
@@ -12,7 +12,7 @@ use report::number::PAGE;
 use report::panels;
 use report::plot::Figure;
 
-/// The mark on everything that an emulator measured.
+/// Mark of figures measured by an emulator.
 pub fn mark(record: &RunRecord) -> Text {
     Text::from(record.identity.emulated.then_some(" ")) + emulated(record.identity.emulated)
 }
@@ -88,7 +88,7 @@ pub fn motion(record: &RunRecord) -> Block {
     section(text("Motion") + mark(record), blocks)
 }
 
-/// How the board's time was spent.
+/// Timing of the board.
 pub fn timing(record: &RunRecord) -> Block {
     let Some(figures) = &record.timing else {
         return section("Timing", vec![Block::Paragraph("The board could not be asked for its figures.".into())]);
@@ -139,7 +139,7 @@ fn counts(record: &RunRecord, figures: &TimingFigures) -> Block {
     table(columns, rows.collect())
 }
 
-/// Seconds in microseconds.
+/// Converts seconds to microseconds.
 fn micro(seconds: f64) -> Text {
     number(seconds * 1e6)
 }

@@ -1,5 +1,4 @@
-//! How the board spent its time: the histogram with its deadline and the figures beside it. Checks on them are in the
-//! table of checks.
+//! Timing of the board: the histogram with its deadline, and the counters. The table of checks has the checks of both.
 
 use crate::record::TimingFigures;
 use report::number::PAGE;
@@ -9,7 +8,7 @@ use report::plot::mark::Mark;
 use report::plot::panel::{Panel, VerticalAxis};
 use report::plot::unit::{MICROSECONDS, Unit};
 
-/// Computation times over what the deadline allows.
+/// Histogram of the computation times, with the deadline.
 pub fn histogram(timing: &TimingFigures) -> Option<Figure> {
     let width = timing.histogram.get(1).map(|bin| bin.from_s)?;
     let filled = || timing.histogram.iter().filter(|bin| bin.steps > 0);
@@ -31,7 +30,7 @@ pub fn histogram(timing: &TimingFigures) -> Option<Figure> {
     Some(Figure::new(title, "computation time", MICROSECONDS, (0.0, end), vec![panel]))
 }
 
-/// Rows of the table of counts: name, figure, whether anything but zero is bad, what it means.
+/// Rows of the table of counts: name, count, true if only zero is good, meaning.
 pub fn counts(timing: &TimingFigures) -> Vec<(&'static str, u32, bool, &'static str)> {
     let counters = &timing.counters;
     vec![

@@ -1,5 +1,5 @@
-//! The report of a run as a document: head, verdict, notices and the order of the sections. A terminal shows the checks.
-//! What stands in a section is in `sections` and `origin`.
+//! Report of a run as a document: head, verdict, notices and the order of the sections. A terminal shows the checks
+//! only. `sections` and `origin` fill the sections.
 
 use super::{origin, sections};
 use crate::record::{Completeness, RunRecord};
@@ -9,7 +9,7 @@ use report::document::{
 };
 use report::number::PAGE;
 
-/// The whole report of a run.
+/// Whole report of a run.
 pub fn document(record: &RunRecord) -> Document {
     let identity = &record.identity;
     let checks = Checks { checks: record.checks.clone(), emulated: identity.emulated, keys: false };

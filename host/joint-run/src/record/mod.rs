@@ -1,4 +1,4 @@
-//! The record of one run, in SI units: who ran what and how, the commands, the measurements and the checks.
+//! Record of one run, in SI units: identity and settings, commands, measurements and checks.
 
 mod sample;
 mod samples;
@@ -15,7 +15,7 @@ use board::trip::FaultEntry;
 use report::checks::{Check, Verdict};
 use serde::{Deserialize, Serialize};
 
-/// Version of the JSON form; raised with every change that a reader could trip over.
+/// Version of the JSON format; raised with every change that may break a reader.
 pub const SCHEMA_VERSION: u32 = 1;
 
 /// One run, complete or not.
@@ -24,62 +24,62 @@ pub const SCHEMA_VERSION: u32 = 1;
 pub struct RunRecord {
     /// [`SCHEMA_VERSION`] of the writer.
     pub schema_version: u32,
-    /// Who ran and what.
+    /// Identity of joint, board, image and host.
     pub identity: Identity,
     /// Figures of the joint that the plots need.
     pub joint: JointFigures,
-    /// How it ran.
+    /// Settings of the run.
     pub settings: Settings,
-    /// Whether it ran to its end.
+    /// Completeness of the run.
     pub completeness: Completeness,
     /// Torques by tick number, in rising order; each holds until the next.
     pub schedule: Vec<TorqueCommand>,
     /// Measured motion.
     pub samples: Samples,
-    /// A short stretch of the same run at every tick, if the host could recompute it.
+    /// Short stretch of the run at every tick, if the host could recompute it.
     pub close_up: Option<CloseUp>,
-    /// The f64 reference for the same torques, if it was computed.
+    /// f64 reference for the run's torques, if it was computed.
     pub reference: Option<Reference>,
-    /// How the board's time was spent, if the board could still be asked.
+    /// Timing of the board, if the board could still be asked.
     pub timing: Option<TimingFigures>,
     /// Faults that the board reported, in order.
     pub faults: Vec<FaultEntry>,
     /// Log lines of the board, in order.
     pub log: Vec<LogLine>,
-    /// What was checked, in any order; the report puts failed ones first.
+    /// Checks, in any order; the report puts failed ones first.
     pub checks: Vec<Check>,
 }
 
-/// Who ran and what.
+/// Identity of joint, board, image and host.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Identity {
     /// Name of the joint.
     pub joint: String,
-    /// The joint file as the user named it, or the name of the built-in one.
+    /// Joint file as named by the user, or the name of the preset.
     pub joint_file: String,
     /// Digest over parameters and tables, 16 hexadecimal digits.
     pub joint_digest: String,
-    /// What the image is for, such as `plant`.
+    /// Role of the image, such as `plant`.
     pub role: String,
-    /// Board that the image was built for, by the name in its board file, such as `olimex-h405`.
+    /// Board of the image, by the name in its board file, such as `olimex-h405`.
     pub board: String,
-    /// The board was an emulator: no timing figure says anything about silicon.
+    /// True for an emulated board: its timing figures say nothing about silicon.
     pub emulated: bool,
     /// The emulator's own version line, or the port of a real board.
     pub transport: String,
     /// Firmware version, such as `0.1.0`.
     pub firmware_version: String,
-    /// Where the core clock comes from.
+    /// Source of the core clock.
     pub clock: String,
-    /// What a panic before the last reset left behind.
+    /// Message of a panic before the last reset.
     pub last_panic: Option<String>,
-    /// The last reset came from the watchdog.
+    /// True if the last reset came from the watchdog.
     pub watchdog_reset: bool,
-    /// The board has no time for its worst tick: the image was built by force.
+    /// True if the worst-case tick exceeds the period and the image was built by force.
     #[serde(default)]
     pub forced: bool,
-    /// The image, where this host built or was given it.
+    /// Image, if this host built it or was given it.
     pub image: Option<Image>,
     /// Commit of the sources, if they were under git; with ` (changed)` if they differ from it.
     pub git_commit: Option<String>,
@@ -91,7 +91,7 @@ pub struct Identity {
     pub date: String,
 }
 
-/// The firmware image.
+/// Firmware image.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Image {
@@ -121,51 +121,52 @@ pub struct JointFigures {
     pub half_backlash_m: Vec<f64>,
     /// Gap coordinate within which every mesh can be free at once, lower and upper end [m]: 4b wide.
     pub gap_band_m: [f64; 2],
-    /// The same band as an angle of the link [rad].
+    /// Width of this band as an angle of the link, the lost motion [rad].
     pub lost_motion_rad: f64,
 }
 
-/// How it ran.
+/// Settings of the run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Settings {
     /// `lockstep` or `realtime`.
     pub mode: String,
-    /// Fixed steps a second [Hz].
+    /// Fixed steps per second [Hz].
     #[serde(rename = "tick_rate_Hz")]
     pub tick_rate_hz: u32,
-    /// Method of the sub-steps of a tick in which contacts change: `corrected` or `leapfrog`.
+    /// Method of the sub-steps of a tick with a change of contact: `corrected` or `leapfrog`.
     #[serde(default)]
     pub method: String,
-    /// How many of them.
+    /// Sub-steps of a tick with a change of contact.
     #[serde(default)]
     pub substeps: u32,
-    /// A sample every so many ticks.
+    /// Ticks per sample.
     pub decimation: u32,
-    /// Ticks that the run was meant to last.
+    /// Ticks of the planned run.
     pub ticks: u32,
-    /// Ticks without a word of the host before the safe state; absent on the emulated board, which has no timeout to speak of.
+    /// Ticks without a message of the host until the safe state; absent on the emulated board, whose timeout is
+    /// practically unlimited.
     pub command_timeout_ticks: Option<u32>,
     /// Name of the built-in profile or path of the CSV.
     pub profile: String,
-    /// Seed of everything random in the profile.
+    /// Seed of the random parts of the profile.
     pub seed: u64,
-    /// Command line that runs exactly this again.
+    /// Command line that repeats the run.
     pub replay: String,
 }
 
-/// Whether a run came to its end.
+/// Completeness of a run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(tag = "state", rename_all = "snake_case")]
 pub enum Completeness {
-    /// To its end.
+    /// Complete.
     Complete,
-    /// It broke off; what was recorded so far is here.
+    /// Interrupted; the record holds the run up to that point.
     Interrupted {
-        /// Why, as the user was told.
+        /// Reason, as reported to the user.
         reason: String,
-        /// Last tick that is known.
+        /// Last known tick.
         tick: u32,
     },
 }
@@ -185,7 +186,7 @@ pub struct TorqueCommand {
 }
 
 impl RunRecord {
-    /// A record in which nothing has happened yet: interrupted at tick 0 until the session says otherwise.
+    /// Record before the run: interrupted at tick 0 until the session reports otherwise.
     pub fn new(identity: Identity, joint: JointFigures, settings: Settings) -> Self {
         let samples = Samples::new(2 * joint.planets);
         Self {
@@ -205,7 +206,7 @@ impl RunRecord {
         }
     }
 
-    /// Whether the run is complete and no check failed.
+    /// Returns true if the run is complete and no check failed.
     pub fn passed(&self) -> bool {
         self.completeness == Completeness::Complete && self.checks.iter().all(|check| check.verdict != Verdict::Failed)
     }

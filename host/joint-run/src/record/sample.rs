@@ -1,14 +1,14 @@
-//! One sample on its way from the line, or from a simulation, into the columns of `samples`. Raw counts of turns and of
-//! the timer are converted to SI here.
+//! One sample from the line or a simulation, before it enters the columns of `samples`. Raw counts of turns and of the
+//! timer are converted to SI here.
 
 use link::messages::Sample;
 
 use report::contacts::Contact;
 
-/// One sample on its way into [`Samples`].
+/// One sample before it enters [`Samples`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionSample {
-    /// Steps done since the reset.
+    /// Steps since the reset.
     pub tick: u32,
     /// Rigid-body carrier angle [rad].
     pub carrier_angle: f64,
@@ -24,16 +24,16 @@ pub struct MotionSample {
     pub wind_up: f32,
     /// Deflections [m], sun-planet first.
     pub deflections: Vec<f32>,
-    /// Contact states in the same order.
+    /// Contact states in the order of the deflections.
     pub contacts: Vec<Contact>,
-    /// Running digest over the whole state, where there is one.
+    /// Running digest over the whole state, if there is one.
     pub state_digest: Option<u64>,
-    /// Computation time [s], on a board.
+    /// Computation time on a board [s].
     pub computation: Option<f64>,
 }
 
 impl MotionSample {
-    /// A board's sample in SI; `timer_rate` is the board's own [Hz].
+    /// Sample of a board in SI; `timer_rate` is the board's timer rate [Hz].
     pub fn from_board(sample: &Sample, timer_rate: u32) -> Self {
         let turns = f64::from(sample.carrier_turns) + f64::from(sample.carrier_fraction) / 4_294_967_296.0;
         Self {

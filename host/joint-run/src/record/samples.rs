@@ -6,11 +6,11 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::sample::MotionSample;
 
-/// Sampled motion; all columns are of one length. Values that are not finite are `null` in JSON.
+/// Sampled motion; all columns have one length. Non-finite values are `null` in JSON.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Samples {
-    /// Steps done since the reset.
+    /// Steps since the reset.
     pub tick: Vec<u32>,
     /// Board time [s].
     #[serde(deserialize_with = "null_is_nan")]
@@ -24,7 +24,7 @@ pub struct Samples {
     #[serde(deserialize_with = "null_is_nan")]
     #[cfg_attr(test, schemars(with = "Vec<Option<f64>>"))]
     pub link_angle_rad: Vec<f64>,
-    /// Motor angle over the ratio, less the link angle, from the small remainders, so nothing cancels [rad].
+    /// Motor angle over the ratio, less the link angle, from the small remainders, so that nothing cancels [rad].
     #[serde(deserialize_with = "null_is_nan")]
     #[cfg_attr(test, schemars(with = "Vec<Option<f64>>"))]
     pub twist_rad: Vec<f64>,
@@ -40,11 +40,11 @@ pub struct Samples {
     #[serde(deserialize_with = "null_is_nan")]
     #[cfg_attr(test, schemars(with = "Vec<Option<f32>>"))]
     pub wind_up_m: Vec<f32>,
-    /// Mesh deflections [m], one column a mesh: sun-planet of every planet, then ring-planet.
+    /// Mesh deflections [m], one column per mesh: sun-planet of every planet, then ring-planet.
     #[serde(deserialize_with = "columns_null_is_nan")]
     #[cfg_attr(test, schemars(with = "Vec<Vec<Option<f32>>>"))]
     pub deflection_m: Vec<Vec<f32>>,
-    /// Contact states in the same order.
+    /// Contact states in the order of the deflections.
     pub contact: Vec<Vec<Contact>>,
     /// Running digest over the whole state after every step so far, 16 hexadecimal digits; empty for a reference.
     pub state_digest: Vec<String>,
@@ -54,33 +54,33 @@ pub struct Samples {
     pub computation_s: Vec<f64>,
 }
 
-/// A stretch of the run at every tick, which the line is too slow to carry.
+/// Stretch of the run at every tick, beyond the capacity of the line.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct CloseUp {
-    /// Who computed it and why it may be trusted, such as "host twin, equal to the board bit for bit".
+    /// Method of the computation and reason to trust it, such as "host twin, equal to the board bit for bit".
     pub method: String,
-    /// The motion.
+    /// Motion of the stretch.
     pub samples: Samples,
 }
 
-/// The f64 reference for the same torques.
+/// f64 reference for the run's torques.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Reference {
-    /// What computed it, and how tightly.
+    /// Method of the computation and its tolerance.
     pub method: String,
-    /// Its motion; columns that it does not give are empty.
+    /// Motion of the reference; columns without values are empty.
     pub samples: Samples,
-    /// Distances of the board's samples from it.
+    /// Distances of the board's samples from the reference.
     pub errors: Vec<ErrorSeries>,
 }
 
-/// Distance of one quantity from the reference, against the quantity's own spread.
+/// Distance of one quantity from the reference, relative to the quantity's standard deviation.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ErrorSeries {
-    /// Which quantity, such as `gap`.
+    /// Name of the quantity, such as `gap`.
     pub quantity: String,
     /// Times of the values [s].
     pub time_s: Vec<f64>,
@@ -88,17 +88,17 @@ pub struct ErrorSeries {
     #[serde(deserialize_with = "null_is_nan")]
     #[cfg_attr(test, schemars(with = "Vec<Option<f64>>"))]
     pub error_percent: Vec<f64>,
-    /// Bound on its root mean square [%].
+    /// Bound on the root mean square [%].
     pub bound_percent: f64,
 }
 
 impl Samples {
-    /// No samples yet of a joint with so many meshes.
+    /// Empty samples of a joint with this number of meshes.
     pub fn new(meshes: usize) -> Self {
         Self { deflection_m: vec![Vec::new(); meshes], contact: vec![Vec::new(); meshes], ..Self::default() }
     }
 
-    /// Adds a sample. Meshes that it lacks become NaN and separated, so that columns stay of one length.
+    /// Adds a sample. Missing meshes become NaN and separated, so that all columns keep one length.
     pub fn push(&mut self, sample: &MotionSample, tick_rate: u32, ratio: f64) {
         self.tick.push(sample.tick);
         self.time_s.push(f64::from(sample.tick) / f64::from(tick_rate));
@@ -122,18 +122,18 @@ impl Samples {
         }
     }
 
-    /// How many there are.
+    /// Number of samples.
     pub fn len(&self) -> usize {
         self.tick.len()
     }
 
-    /// Whether there is none.
+    /// Returns true without samples.
     pub fn is_empty(&self) -> bool {
         self.tick.is_empty()
     }
 }
 
-/// JSON has no NaN: it is written as null, and read back here.
+/// Reads null as NaN, which JSON lacks.
 fn null_is_nan<'de, D: Deserializer<'de>, F: Deserialize<'de> + From<f32>>(
     deserializer: D,
 ) -> Result<Vec<F>, D::Error> {
@@ -141,7 +141,7 @@ fn null_is_nan<'de, D: Deserializer<'de>, F: Deserialize<'de> + From<f32>>(
     Ok(values.into_iter().map(|value| value.unwrap_or_else(|| F::from(f32::NAN))).collect())
 }
 
-/// [`null_is_nan`] for every column.
+/// Reads null as NaN in every column.
 fn columns_null_is_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Vec<f32>>, D::Error> {
     let columns = Vec::<Vec<Option<f32>>>::deserialize(deserializer)?;
     let filled = |column: Vec<Option<f32>>| column.into_iter().map(|value| value.unwrap_or(f32::NAN)).collect();
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sample_of_the_line_comes_out_in_si() {
+    fn board_sample_is_in_si() {
         let mut samples = Samples::new(4);
         samples.push(&MotionSample::from_board(&board_sample(), 168_000_000), 20_000, 6.0);
         let carrier = -1.75 * core::f64::consts::TAU;
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_stay_of_one_length_whatever_a_board_sends() {
+    fn columns_keep_one_length() {
         let mut samples = Samples::new(6);
         samples.push(&MotionSample::from_board(&board_sample(), 168_000_000), 20_000, 6.0);
         assert!(samples.deflection_m.iter().all(|column| column.len() == 1));

@@ -1,15 +1,14 @@
-//! The published schema of a run is that of its types, and `docs/reference/report-schema.md` tells every key. Only
-//! tests are here.
+//! Tests: the published schema of a run matches its types, and `docs/reference/report-schema.md` explains every key.
 
 use super::RunRecord;
 use report::schema::{assert_explained, assert_published};
 
 #[test]
-fn the_published_schema_is_that_of_the_types() {
+fn schema_matches_types() {
     assert_published::<RunRecord>("run.schema.json");
 }
 
 #[test]
-fn every_key_of_the_schema_is_explained() {
+fn schema_keys_are_documented() {
     assert_explained::<RunRecord>("report-schema.md", [], 60);
 }

@@ -1,14 +1,14 @@
-//! How the board's time was spent, in SI, made from the raw counts of the line.
+//! Timing of the board in SI, from the raw counts of the line.
 
 use serde::{Deserialize, Serialize};
 
 use link::messages::{Statistics, Timing};
 
-/// The board's timing monitor.
+/// Timing monitor of the board.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TimingFigures {
-    /// Timer counts a second, which the raw counts were divided by [Hz].
+    /// Timer rate, the divisor of the raw counts [Hz].
     #[serde(rename = "timer_rate_Hz")]
     pub timer_rate_hz: u32,
     /// Steps that the figures cover.
@@ -17,17 +17,17 @@ pub struct TimingFigures {
     pub period_s: f64,
     /// Computation time of the tick.
     pub computation: MinMeanMax,
-    /// From the timer's expiry to the first instruction of the tick.
+    /// Time from the timer's expiry to the first instruction of the tick.
     pub lateness: MinMeanMax,
     /// Computation times; the last bin holds everything above its lower end.
     pub histogram: Vec<HistogramBin>,
-    /// Share of time with nothing to do [%].
+    /// Share of idle time [%].
     pub idle_percent: f64,
-    /// What should be zero, and other counts.
+    /// Counters of faults and other events.
     pub counters: Counters,
-    /// RAM in use by statics, as the board knows it [byte].
+    /// RAM used by statics, as reported by the board [byte].
     pub static_ram_bytes: u32,
-    /// Deepest stack seen [byte].
+    /// Deepest stack [byte].
     pub stack_used_bytes: u32,
 }
 
@@ -49,7 +49,7 @@ pub struct MinMeanMax {
 pub struct HistogramBin {
     /// Lower end [s].
     pub from_s: f64,
-    /// Steps in it.
+    /// Steps in the bin.
     pub steps: u32,
 }
 
@@ -69,7 +69,7 @@ pub struct Counters {
     pub lost_schedules: u32,
     /// Frames that the board dropped for a bad CRC, length or content.
     pub bad_frames_board: u32,
-    /// Frames that the host dropped for the same.
+    /// Frames that the host dropped for a bad CRC, length or content.
     pub bad_frames_host: u32,
     /// Sample batches that never reached the host, by sequence number.
     pub lost_batches_host: u32,
@@ -84,7 +84,7 @@ pub struct Counters {
 }
 
 impl TimingFigures {
-    /// The board's statistics in SI. What only the host can count is left at zero for it to fill in.
+    /// Statistics of the board in SI. Counters of the host are zero, to be filled in by the caller.
     pub fn from_board(raw: &Statistics, timer_rate: u32) -> Self {
         let seconds = |counts: u32| f64::from(counts) / f64::from(timer_rate);
         let timing =

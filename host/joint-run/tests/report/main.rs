@@ -1,4 +1,4 @@
-//! Reports of made-up runs: what a reader must find in them, whatever happened. Real runs are the emulator tests'.
+//! Reports of synthetic runs: required content in every situation. The emulator tests have real runs.
 
 mod synthetic;
 
@@ -13,20 +13,20 @@ use report::contacts::Contact;
 use report::folder::Folder;
 use report::write::{write_record, write_text};
 
-/// Leaves a report where a person can look at it.
+/// Keeps a report for inspection by a person.
 fn keep_for_looking(name: &str, text: &str) {
     if let Some(folder) = std::env::var_os("REPORT_LOOK") {
         fs::write(Path::new(&folder).join(name), text).expect("REPORT_LOOK names a folder");
     }
 }
 
-/// Where a text stands in a page.
+/// Position of a text in a page.
 fn place(page: &str, text: &str) -> usize {
     page.find(text).unwrap_or_else(|| panic!("`{text}` is not in the page"))
 }
 
 #[test]
-fn a_good_run_shows_everything() {
+fn complete_run_shows_everything() {
     let page = render(&synthetic::record());
     keep_for_looking("good.html", &page);
     for text in
@@ -48,17 +48,17 @@ fn a_good_run_shows_everything() {
 }
 
 #[test]
-fn a_page_needs_neither_network_nor_script() {
+fn page_needs_no_network_or_script() {
     let page = render(&synthetic::record());
     for text in ["<script", "<link", "@import", "url(", " src=", " href="] {
         assert!(!page.contains(text), "{text}");
     }
-    // The name of the SVG name space is never fetched.
+    // The URL of the SVG name space is never fetched.
     assert!(!page.replace("http://www.w3.org/2000/svg", "").contains("://"));
 }
 
 #[test]
-fn a_page_stays_small_enough_to_send() {
+fn page_size_is_limited() {
     let mut record = synthetic::record();
     let noisy = |index: usize| if index.is_multiple_of(3) { Contact::BackSide } else { Contact::DriveSide };
     for (mesh, column) in record.samples.contact.iter_mut().enumerate() {
@@ -69,7 +69,7 @@ fn a_page_stays_small_enough_to_send() {
 }
 
 #[test]
-fn failed_checks_lead() {
+fn failed_checks_come_first() {
     let mut record = synthetic::record();
     record.checks.push(Check::not_run("Reference", "%", Bound::AtMost(1.0), "the run was cut short"));
     record.checks.push(Check::judge("Lost samples of the line", 3.0, "", Bound::Exactly(0.0), Source::Board));
@@ -82,7 +82,7 @@ fn failed_checks_lead() {
 }
 
 #[test]
-fn every_timing_figure_of_an_emulator_says_so() {
+fn emulated_timing_is_marked() {
     let mark = "<span class=\"emulated\">EMULATED</span>";
     let mut record = synthetic::record();
     let page = render(&record);
@@ -99,7 +99,7 @@ fn every_timing_figure_of_an_emulator_says_so() {
 }
 
 #[test]
-fn a_run_that_broke_off_says_so_first() {
+fn interrupted_run_says_so_first() {
     let mut record = synthetic::record();
     record.completeness = Completeness::Interrupted { reason: "the port was closed".into(), tick: 41_220 };
     record.timing = None;
@@ -112,7 +112,7 @@ fn a_run_that_broke_off_says_so_first() {
 }
 
 #[test]
-fn a_run_without_samples_still_gives_a_page() {
+fn run_without_samples_gives_page() {
     let page = render(&synthetic::empty());
     keep_for_looking("empty.html", &page);
     assert!(page.contains("No sample was received") && page.contains("INCOMPLETE") && page.ends_with("</html>"));
@@ -120,7 +120,7 @@ fn a_run_without_samples_still_gives_a_page() {
 }
 
 #[test]
-fn a_state_that_is_not_finite_leaves_the_pictures_whole() {
+fn non_finite_state_keeps_pictures() {
     let mut record = synthetic::record();
     for index in (0..record.samples.len()).step_by(5) {
         record.samples.gap_m[index] = f32::NAN;
@@ -138,7 +138,7 @@ fn a_state_that_is_not_finite_leaves_the_pictures_whole() {
 }
 
 #[test]
-fn what_a_user_named_cannot_become_markup() {
+fn user_text_is_escaped() {
     let mut record = synthetic::record();
     let nasty = "<script>alert(1)</script>&\"'";
     record.identity.joint = nasty.into();
@@ -155,7 +155,7 @@ fn what_a_user_named_cannot_become_markup() {
 }
 
 #[test]
-fn a_record_comes_back_from_its_json() {
+fn record_survives_json() {
     let record = synthetic::record();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("run.json");
@@ -166,11 +166,12 @@ fn a_record_comes_back_from_its_json() {
     assert_eq!(fs::read_dir(folder.path()).expect("it is there").count(), 1, "no temporary file is left");
 }
 
+/// A report that cannot be written does not affect the record.
 #[test]
-fn a_report_that_cannot_be_written_costs_no_record() {
+fn failed_report_keeps_record() {
     let record = synthetic::record();
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let prepared = Folder::prepare(Some(folder.path()), "hil", "Q1", &files::ALL).expect("an empty folder");
+    let prepared = Folder::prepare(Some(folder.path()), "hil", "Q1", &files::ALL_FILES).expect("an empty folder");
     fs::create_dir(prepared.file("report.html")).expect("the folder is writable");
     let failure = write_to(&prepared, &record).expect_err("a folder stands in the way");
     assert!(failure.message().contains("report.html"), "{failure}");
@@ -180,7 +181,7 @@ fn a_report_that_cannot_be_written_costs_no_record() {
 
 #[test]
 #[cfg(unix)]
-fn what_is_no_file_is_never_replaced() {
+fn special_file_is_not_replaced() {
     use std::os::unix::fs::FileTypeExt;
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("socket");
@@ -190,7 +191,7 @@ fn what_is_no_file_is_never_replaced() {
 }
 
 #[test]
-fn a_folder_in_the_way_is_named_and_stays() {
+fn folder_in_the_way_is_named() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("run.json");
     fs::create_dir(&path).expect("the folder is writable");
@@ -201,13 +202,13 @@ fn a_folder_in_the_way_is_named_and_stays() {
 
 #[test]
 #[cfg(unix)]
-fn a_write_that_fails_leaves_the_old_file() {
+fn failed_write_keeps_old_file() {
     use std::os::unix::fs::symlink;
     let folder = tempfile::tempdir().expect("a temporary folder");
     let (old, link) = (folder.path().join("old.html"), folder.path().join("link.html"));
     fs::write(&old, "old").expect("the folder is writable");
     symlink(&old, &link).expect("links are supported");
-    // The temporary file's name is taken by a folder, so that nothing can be written beside the target.
+    // A folder with the temporary file's name prevents writing beside the target.
     fs::create_dir(folder.path().join(format!(".old.html.joint-{}.tmp", std::process::id())))
         .expect("the name is free");
     write_text(&link, &render(&synthetic::record())).expect_err("the name is taken");
@@ -219,7 +220,7 @@ fn a_write_that_fails_leaves_the_old_file() {
 }
 
 #[test]
-fn a_document_gets_a_small_picture_of_its_own() {
+fn picture_is_small_and_standalone() {
     let svg = picture(&synthetic::record()).expect("the made-up run crosses the gap");
     keep_for_looking("joint.svg", &svg);
     assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>") && svg.contains("<style>"));
@@ -230,7 +231,7 @@ fn a_document_gets_a_small_picture_of_its_own() {
 }
 
 #[test]
-fn every_compared_quantity_is_drawn() {
+fn compared_quantities_are_drawn() {
     let mut record = synthetic::record();
     let errors = &mut record.reference.as_mut().expect("the made-up run has one").errors;
     let one = errors[0].clone();
@@ -241,7 +242,7 @@ fn every_compared_quantity_is_drawn() {
 }
 
 #[test]
-fn verdicts_follow_from_figures() {
+fn synthetic_run_passes() {
     assert!(synthetic::record().passed());
     assert!(synthetic::record().checks.iter().all(|check| check.verdict != Verdict::Failed));
 }

@@ -1,5 +1,5 @@
-//! A made-up run that looks like a real one: two masses with a gap between them under torque reversals. It serves to
-//! look at reports and to test them; no figure in it was measured.
+//! Synthetic run that looks like a real one: two masses with a gap between them under torque reversals. It serves the
+//! tests and the inspection of reports; no figure was measured.
 
 use board::logs::LogLine;
 use joint_run::record::{
@@ -22,7 +22,7 @@ const DAMPING: f64 = 2.0e3;
 const SUN_MASS: f64 = 2.5e-4 / (SUN_RADIUS * SUN_RADIUS);
 const LINK_MASS: f64 = 0.15 / (CARRIER_RADIUS * CARRIER_RADIUS);
 
-/// A complete run of an emulated board on which every check holds.
+/// Complete run of an emulated board on which every check holds.
 pub fn record() -> RunRecord {
     let mut record = RunRecord::new(identity(), joint(), settings());
     record.completeness = Completeness::Complete;
@@ -34,7 +34,7 @@ pub fn record() -> RunRecord {
     record
 }
 
-/// The same with nothing in it: a board that answered and was then lost.
+/// Empty run: a board that answered and was then lost.
 pub fn empty() -> RunRecord {
     let mut record = RunRecord::new(identity(), joint(), settings());
     record.completeness = Completeness::Interrupted { reason: "the emulator ended".into(), tick: 0 };
@@ -105,7 +105,7 @@ fn schedule() -> Vec<TorqueCommand> {
     (0..TICKS / 20).map(command).collect()
 }
 
-/// Explicit steps of the two masses, ten for every tick.
+/// Explicit steps of the two masses, ten per tick.
 fn simulate(record: &mut RunRecord) {
     let (mut sun, mut sun_speed, mut link, mut link_speed) = (0.0, 0.0, 0.0, 0.0);
     let step = 0.1 / f64::from(TICK_RATE);

@@ -11,13 +11,13 @@ use std::path::Path;
 use answering_board::AnsweringBoard;
 pub use arguments::Arguments;
 use arguments::{BoardArguments, Command};
-use identify::learnt::Content;
+use identify::memory::Content;
 use link::messages::{MemoryOutcome, MemoryState};
 use model_core::observer::{MEMORY_BYTES, Memory, MemoryError};
 
 use board::session::Session;
 use joint_file::named::{self, Loaded};
-use joint_file::warned;
+use joint_file::warnings;
 use report::failure::{Failure, Outcome};
 use report::input;
 use report::output;
@@ -43,13 +43,13 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
 /// A joint file, whose warnings are told.
 fn load_joint(file: &Path) -> Outcome<Loaded> {
     let loaded = named::load(file)?;
-    warned::tell(&loaded);
+    warnings::print(&loaded);
     Ok(loaded)
 }
 
 fn show(file: &Path, joint: &Path, json: Option<&Path>) -> Outcome<()> {
     let (memory, loaded) = (load(file)?, load_joint(joint)?);
-    let content = Content::of(&memory, &loaded).map_err(|error| refused(&file.display().to_string(), error))?;
+    let content = Content::read(&memory, &loaded).map_err(|error| refused(&file.display().to_string(), error))?;
     let text = content.text(&file.display().to_string(), &loaded);
     output::deliver(&content, &text, json, &[file, joint])
 }
@@ -62,7 +62,7 @@ fn read(file: &Path, place: &BoardArguments, progress: &Progress) -> Outcome<()>
     if memory.iter().all(|byte| *byte == 0xff) {
         return Err(found.keeps_nothing());
     }
-    let content = Content::of(&memory, &loaded);
+    let content = Content::read(&memory, &loaded);
     if let Err(error) = &content
         && *error != MemoryError::OtherJoint
     {
@@ -85,7 +85,7 @@ fn write(file: &Path, place: &BoardArguments, progress: &Progress) -> Outcome<()
     let (memory, loaded) = (load(file)?, load_joint(&place.joint)?);
     let name = file.display().to_string();
     // What is no memory at all is known before a board is asked.
-    match Content::of(&memory, &loaded) {
+    match Content::read(&memory, &loaded) {
         Err(error) if error != MemoryError::OtherJoint => return Err(refused(&name, error)),
         _ => {}
     }

@@ -1,5 +1,5 @@
-//! The messages of an MCAP file in their order. A file may be damaged, or made to do harm: lengths are held against the bytes
-//! that are there before anything is reserved for them, and what chunks unpack to against the file's size.
+//! Messages of an MCAP file in order. A file may be damaged or malicious: lengths are checked against the bytes present
+//! before memory is reserved, and the unpacked size of chunks against the file's size.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -10,44 +10,44 @@ use mcap::records::{ChunkHeader, Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{Channel, MAGIC, McapError, parse_record};
 
-/// Opcode and length before a record's content.
-const HEAD: usize = 1 + 8;
-/// Chunks may unpack to so many times the file's size and a little more: joint states pack to a tenth at best.
-const MOST_UNPACKED: u64 = 256;
-const LITTLE: u64 = 1 << 20;
-/// Letters that the name of a topic may have.
-const LONGEST_TOPIC: usize = 1024;
+/// Bytes of opcode and length before a record's content.
+const RECORD_HEADER_SIZE: usize = 1 + 8;
+/// Largest unpacked size over the file's size, plus UNPACKED_BASE bytes: joint states pack to a tenth at best.
+const UNPACKED_FACTOR_MAX: u64 = 256;
+const UNPACKED_BASE: u64 = 1 << 20;
+/// Longest name of a topic [bytes].
+const TOPIC_LENGTH_MAX: usize = 1024;
 
-/// One message.
+/// Message of a file.
 pub struct Message<'m> {
-    /// Where it was sent.
+    /// Channel of the message.
     pub channel: Arc<Channel<'static>>,
-    /// When it was recorded [ns].
+    /// Time of recording [ns].
     pub log_time: u64,
-    /// What was sent.
+    /// Content of the message.
     pub data: &'m [u8],
 }
 
-/// Takes a message; fails with what ends the reading.
-pub type Take<'t, E> = dyn FnMut(&Message<'_>) -> Result<(), E> + 't;
+/// Callback for each message; its error ends the reading.
+pub type MessageCallback<'t, E> = dyn FnMut(&Message<'_>) -> Result<(), E> + 't;
 
-/// Why a file cannot be read on.
-pub enum Broken<E> {
-    /// Where and how it is damaged, in words.
+/// Reason why reading ended early.
+pub enum ReadEnd<E> {
+    /// Place and kind of the damage.
     Damaged(String),
-    /// Whoever takes the messages wants no more.
-    Refused(E),
+    /// Error of the callback.
+    Callback(E),
 }
 
-/// A file that is being read.
-struct Reading<'r, E> {
+/// State of reading a file.
+struct FileReader<'r, E> {
     channels: ChannelAccumulator<'static>,
-    /// What chunks may still unpack to [bytes].
+    /// Remaining unpacked size of chunks [bytes].
     room: u64,
-    take: &'r mut Take<'r, E>,
+    on_message: &'r mut MessageCallback<'r, E>,
 }
 
-/// The metadata of a name, joined if there are several; nothing of a file that is damaged before its end.
+/// Metadata of a name, joined over all records; empty for a file that is damaged before its end.
 pub fn metadata(bytes: &[u8], name: &str) -> BTreeMap<String, String> {
     let options = LinearReaderOptions::default().with_emit_chunks(true).with_record_length_limit(bytes.len());
     let mut found = BTreeMap::new();
@@ -68,102 +68,104 @@ pub fn metadata(bytes: &[u8], name: &str) -> BTreeMap<String, String> {
     if read.is_ok() { found } else { BTreeMap::new() }
 }
 
-/// Passes on all messages of a file.
-pub fn read<'r, E>(bytes: &'r [u8], take: &'r mut Take<'r, E>) -> Result<(), Broken<E>> {
-    let room = MOST_UNPACKED.saturating_mul(bytes.len() as u64).saturating_add(LITTLE);
-    let mut reading = Reading { channels: ChannelAccumulator::default(), room, take };
+/// Passes all messages of a file to `on_message`.
+pub fn read<'r, E>(bytes: &'r [u8], on_message: &'r mut MessageCallback<'r, E>) -> Result<(), ReadEnd<E>> {
+    let room = UNPACKED_FACTOR_MAX.saturating_mul(bytes.len() as u64).saturating_add(UNPACKED_BASE);
+    let mut reading = FileReader { channels: ChannelAccumulator::default(), room, on_message };
     let options = LinearReaderOptions::default()
         .with_emit_chunks(true)
         .with_validate_data_section_crc(true)
         .with_record_length_limit(bytes.len());
     let (at, mut ended) = (Cell::new(MAGIC.len()), false);
-    let damaged = |error: McapError| Broken::Damaged(format!("record at byte {}: {error}", at.get()));
+    let damaged = |error: McapError| ReadEnd::Damaged(format!("record at byte {}: {error}", at.get()));
     each_record(options, bytes, damaged, |opcode, data| {
         let here = at.get();
-        at.set(here + HEAD + data.len());
-        // Behind the data section everything is said once more.
+        at.set(here + RECORD_HEADER_SIZE + data.len());
+        // The summary behind the data section repeats records.
         ended |= opcode == op::DATA_END;
         let one = match opcode {
             _ if ended => Ok(()),
-            op::CHUNK => reading.chunk(data, bytes.get(here..at.get()).unwrap_or_default()),
-            _ => reading.record(opcode, data),
+            op::CHUNK => reading.read_chunk(data, bytes.get(here..at.get()).unwrap_or_default()),
+            _ => reading.read_record(opcode, data),
         };
         one.map_err(|broken| match broken {
-            Broken::Damaged(why) => Broken::Damaged(format!("{} at byte {here}: {why}", word(opcode))),
+            ReadEnd::Damaged(why) => ReadEnd::Damaged(format!("{} at byte {here}: {why}", word(opcode))),
             refused => refused,
         })
     })
 }
 
-impl<E> Reading<'_, E> {
-    /// A record of the file or of a chunk. What says nothing of messages is passed over without a look into it.
-    fn record(&mut self, opcode: u8, data: &[u8]) -> Result<(), Broken<E>> {
+impl<E> FileReader<'_, E> {
+    /// Handles a record of the file or of a chunk; records irrelevant to messages are skipped unread.
+    fn read_record(&mut self, opcode: u8, data: &[u8]) -> Result<(), ReadEnd<E>> {
         if ![op::SCHEMA, op::CHANNEL, op::MESSAGE].contains(&opcode) {
             return Ok(());
         }
-        check_texts(opcode, data).map_err(Broken::Damaged)?;
+        check_texts(opcode, data).map_err(ReadEnd::Damaged)?;
         match parse_record(opcode, data)? {
             Record::Schema { header, data } => self.channels.add_schema_from_slice(header, &data)?,
-            Record::Channel(channel) if channel.topic.len() > LONGEST_TOPIC => {
+            Record::Channel(channel) if channel.topic.len() > TOPIC_LENGTH_MAX => {
                 let why = format!("the name of a topic has {} letters", channel.topic.len());
-                return Err(Broken::Damaged(why));
+                return Err(ReadEnd::Damaged(why));
             }
             Record::Channel(channel) => self.channels.add_channel(channel)?,
             Record::Message { header, data } => {
                 let known = self.channels.get(header.channel_id);
                 let channel = known.ok_or(McapError::UnknownChannel(header.sequence, header.channel_id))?;
                 let message = Message { channel, log_time: header.log_time, data: &data };
-                (self.take)(&message).map_err(Broken::Refused)?;
+                (self.on_message)(&message).map_err(ReadEnd::Callback)?;
             }
             _ => {}
         }
         Ok(())
     }
 
-    /// A chunk: its content, and all of it as it stands in the file.
-    fn chunk(&mut self, content: &[u8], whole: &[u8]) -> Result<(), Broken<E>> {
-        check_texts(op::CHUNK, content).map_err(Broken::Damaged)?;
+    /// Handles a chunk: its content, and the whole record of the file.
+    fn read_chunk(&mut self, content: &[u8], whole: &[u8]) -> Result<(), ReadEnd<E>> {
+        check_texts(op::CHUNK, content).map_err(ReadEnd::Damaged)?;
         let Record::Chunk { header, data } = parse_record(op::CHUNK, content)? else { return Ok(()) };
         let ChunkHeader { uncompressed_size: size, compression, .. } = header;
         self.room = self.room.checked_sub(size).ok_or_else(|| {
-            Broken::Damaged(format!("it says that it unpacks to {size} bytes, far more than such a file holds"))
+            ReadEnd::Damaged(format!("it says that it unpacks to {size} bytes, far more than such a file holds"))
         })?;
         if compression.is_empty() {
-            check_plain(&data, size).map_err(Broken::Damaged)?;
+            check_plain(&data, size).map_err(ReadEnd::Damaged)?;
         }
         let options = LinearReaderOptions::default()
             .with_skip_start_magic(true)
             .with_skip_end_magic(true)
             .with_validate_chunk_crcs(true)
             .with_record_length_limit(usize::try_from(size).unwrap_or(usize::MAX).max(whole.len()));
-        each_record(options, whole, Broken::from, |opcode, data| self.record(opcode, data))
+        each_record(options, whole, ReadEnd::from, |opcode, data| self.read_record(opcode, data))
     }
 }
 
-impl<E> From<McapError> for Broken<E> {
+impl<E> From<McapError> for ReadEnd<E> {
     fn from(error: McapError) -> Self {
         Self::Damaged(error.to_string())
     }
 }
 
-/// A chunk that is not compressed must hold whole records and nothing else: the library takes that for granted.
+/// Checks that an uncompressed chunk holds whole records and nothing else, which the library assumes.
 fn check_plain(data: &[u8], size: u64) -> Result<(), String> {
     if data.len() as u64 != size {
         return Err(format!("it says that it holds {size} bytes, and it has {}", data.len()));
     }
     let mut rest = data;
     while !rest.is_empty() {
-        let length = rest.get(1..HEAD).and_then(|length| Some(u64::from_le_bytes(length.try_into().ok()?)));
-        let whole = length.and_then(|length| usize::try_from(length).ok()?.checked_add(HEAD));
+        let length =
+            rest.get(1..RECORD_HEADER_SIZE).and_then(|length| Some(u64::from_le_bytes(length.try_into().ok()?)));
+        let whole = length.and_then(|length| usize::try_from(length).ok()?.checked_add(RECORD_HEADER_SIZE));
         rest = whole.and_then(|whole| rest.get(whole..)).ok_or("a record in it goes beyond its end")?;
     }
     Ok(())
 }
 
-/// Holds the lengths of a record's texts against its bytes: the library reserves what they say before it reads.
+/// Checks the lengths of a record's texts against its bytes: the library reserves memory by these lengths before it
+/// reads.
 fn check_texts(opcode: u8, data: &[u8]) -> Result<(), String> {
     let whole = || {
-        // What stands before the first text, and texts that follow each other.
+        // Bytes before the first text, and number of consecutive texts.
         let (before, texts) = match opcode {
             op::SCHEMA => (2, 2),
             op::CHANNEL => (4, 2),
@@ -176,7 +178,7 @@ fn check_texts(opcode: u8, data: &[u8]) -> Result<(), String> {
             rest = behind_text(rest)?;
         }
         if [op::CHANNEL, op::METADATA].contains(&opcode) {
-            // Pairs of texts, with their number of bytes ahead.
+            // Pairs of texts, preceded by their length in bytes.
             let (length, pairs) = rest.split_first_chunk()?;
             let mut pairs = pairs.get(..usize::try_from(u32::from_le_bytes(*length)).ok()?)?;
             while !pairs.is_empty() {
@@ -188,18 +190,18 @@ fn check_texts(opcode: u8, data: &[u8]) -> Result<(), String> {
     whole().ok_or_else(|| "a text in it goes beyond its end".to_owned())
 }
 
-/// What follows a text with its number of bytes ahead.
+/// Bytes behind a text that is preceded by its length.
 fn behind_text(bytes: &[u8]) -> Option<&[u8]> {
     let (length, text) = bytes.split_first_chunk()?;
     text.get(usize::try_from(u32::from_le_bytes(*length)).ok()?..)
 }
 
-/// Passes on the records of bytes.
+/// Passes the records of the bytes to `on_message`.
 fn each_record<B>(
     options: LinearReaderOptions,
     mut bytes: &[u8],
     damaged: impl Fn(McapError) -> B,
-    mut take: impl FnMut(u8, &[u8]) -> Result<(), B>,
+    mut on_message: impl FnMut(u8, &[u8]) -> Result<(), B>,
 ) -> Result<(), B> {
     let mut reader = LinearReader::new_with_options(options);
     while let Some(event) = reader.next_event() {
@@ -210,7 +212,7 @@ fn each_record<B>(
                 reader.notify_read(now.len());
                 bytes = later;
             }
-            LinearReadEvent::Record { opcode, data } => take(opcode, data)?,
+            LinearReadEvent::Record { opcode, data } => on_message(opcode, data)?,
         }
     }
     Ok(())

@@ -1,19 +1,19 @@
-//! Numbers of messages whose form is ROS 2 message text and whose encoding is CDR, each by its path, as in
-//! `header.stamp.sec` or `position[0]`. Text is passed over.
+//! Numbers of messages defined by ROS 2 message text and encoded in CDR, each by its path, such as `header.stamp.sec`
+//! or `position[0]`. Text is skipped.
 
 use std::collections::BTreeMap;
 
 use super::numbers::{self, Numbers};
 
-/// Messages within messages: deeper ones are taken for a mistake.
-const DEEPEST: usize = 16;
-/// Letters of a line that a message shows at most.
-const SHOWN: usize = 80;
+/// Deepest nesting of messages; deeper ones are taken for a recursive definition.
+const DEPTH_MAX: usize = 16;
+/// Letters of a line shown in a failure.
+const LETTERS_SHOWN: usize = 80;
 
-/// The form of a message.
+/// Definition of a message.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Form {
-    /// Fields by the type's name; the message itself has none.
+pub struct MessageDefinition {
+    /// Fields by the type's name; the message itself has an empty name.
     types: BTreeMap<String, Vec<Field>>,
 }
 
@@ -46,7 +46,7 @@ enum Number {
 }
 
 impl Number {
-    fn of(word: &str) -> Option<Self> {
+    fn parse(word: &str) -> Option<Self> {
         Some(match word {
             "bool" | "byte" | "char" | "uint8" => Self::Unsigned(1),
             "uint16" => Self::Unsigned(2),
@@ -67,7 +67,7 @@ impl Number {
         size
     }
 
-    /// From bits in the lower bytes.
+    /// Value from bits in the lower bytes.
     fn value(self, bits: u64) -> f64 {
         match self {
             Self::Unsigned(_) => bits as f64,
@@ -81,8 +81,8 @@ impl Number {
     }
 }
 
-impl Form {
-    /// Of ROS 2 message text: the message's own fields, then those of the messages in it behind lines of `=`.
+impl MessageDefinition {
+    /// Parses ROS 2 message text: the message's own fields, then those of nested messages behind lines of `=`.
     pub fn read(text: &str) -> Result<Self, String> {
         let (mut types, mut name) = (BTreeMap::new(), String::new());
         types.insert(String::new(), Vec::new());
@@ -98,7 +98,7 @@ impl Form {
                 types.entry(name.clone()).or_insert_with(Vec::new).push(field);
             }
         }
-        // Always there, whether they are written down or not.
+        // Time and Duration are built in.
         for stamp in ["Time", "Duration"] {
             let part = |name: &str, number| Field { name: name.into(), kind: Kind::Number(number), count: Count::One };
             let parts = vec![part("sec", Number::Signed(4)), part("nanosec", Number::Unsigned(4))];
@@ -112,22 +112,22 @@ impl Form {
         let [0, kind @ (0 | 1), _, _, body @ ..] = message else {
             return Err("it is not in plain CDR".to_owned());
         };
-        let mut reading = Reading { form: self, body, at: 0, big: *kind == 0, numbers: Numbers::default() };
-        reading.message("", "", 0)?;
+        let mut reading = Decoder { definition: self, body, at: 0, big: *kind == 0, numbers: Numbers::default() };
+        reading.read_message("", "", 0)?;
         Ok(reading.numbers)
     }
 }
 
-/// The name of a type without its package.
+/// Name of a type without its package.
 fn last_part(name: &str) -> String {
     name.rsplit('/').next().unwrap_or_default().to_owned()
 }
 
 fn no_field(line: &str) -> String {
-    format!("`{}` is no field of a message", line.chars().take(SHOWN).collect::<String>())
+    format!("`{}` is no field of a message", line.chars().take(LETTERS_SHOWN).collect::<String>())
 }
 
-/// A line's field; none for a constant.
+/// Field of a line; `Some(None)` for a constant.
 fn field(line: &str) -> Option<Option<Field>> {
     let (kind, rest) = line.split_once(char::is_whitespace)?;
     let name = rest.trim_start().split([' ', '\t']).next()?;
@@ -138,7 +138,7 @@ fn field(line: &str) -> Option<Option<Field>> {
         None => (kind, Count::One),
         Some((kind, "]")) => (kind, Count::List),
         Some((kind, most)) if most.starts_with("<=") => (kind, Count::List),
-        // As in ROS, no array has no place: whatever is read of a message then takes a byte of it at least.
+        // As in ROS, an array has at least one element: every element then takes at least a byte of the message.
         Some((kind, number)) => {
             let many = number.strip_suffix(']')?.parse().ok()?;
             (kind, Count::Fixed(Some(many).filter(|many| *many > 0)?))
@@ -147,68 +147,68 @@ fn field(line: &str) -> Option<Option<Field>> {
     let kind = match kind.split("<=").next()? {
         "string" => Kind::Text,
         "wstring" => return None,
-        word => Number::of(word).map_or_else(|| Kind::Message(last_part(word)), Kind::Number),
+        word => Number::parse(word).map_or_else(|| Kind::Message(last_part(word)), Kind::Number),
     };
     Some(Some(Field { name: name.to_owned(), kind, count }))
 }
 
-/// A message that is being read.
-struct Reading<'r> {
-    form: &'r Form,
+/// State of decoding a message.
+struct Decoder<'r> {
+    definition: &'r MessageDefinition,
     body: &'r [u8],
     at: usize,
-    /// The most significant byte comes first.
+    /// Most significant byte first.
     big: bool,
     numbers: Numbers,
 }
 
-impl Reading<'_> {
-    fn message(&mut self, kind: &str, path: &str, depth: usize) -> Result<(), String> {
-        let form = self.form;
+impl Decoder<'_> {
+    fn read_message(&mut self, kind: &str, path: &str, depth: usize) -> Result<(), String> {
+        let form = self.definition;
         let fields = form.types.get(kind).ok_or_else(|| format!("the form of `{kind}` is not written down"))?;
-        if depth > DEEPEST {
+        if depth > DEPTH_MAX {
             return Err(format!("`{kind}` has itself in it"));
         }
         for field in fields {
             let name = numbers::field(path, &field.name)?;
             let many = match field.count {
                 Count::One => {
-                    self.one(&field.kind, name, depth)?;
+                    self.element(&field.kind, name, depth)?;
                     continue;
                 }
                 Count::Fixed(many) => many,
-                Count::List => self.bits(4)? as u32,
+                Count::List => self.read_aligned(4)? as u32,
             };
             if many as usize > self.body.len() {
                 return Err("it is cut off".to_owned());
             }
             for place in 0..many as usize {
-                self.one(&field.kind, numbers::place(&name, place)?, depth)?;
+                self.element(&field.kind, numbers::element(&name, place)?, depth)?;
             }
         }
         if fields.is_empty() {
-            self.bits(1)?;
+            self.read_aligned(1)?;
         }
         Ok(())
     }
 
-    fn one(&mut self, kind: &Kind, name: String, depth: usize) -> Result<(), String> {
+    fn element(&mut self, kind: &Kind, name: String, depth: usize) -> Result<(), String> {
         match kind {
             Kind::Number(number) => {
-                let bits = self.bits(number.size())?;
+                let bits = self.read_aligned(number.size())?;
                 self.numbers.push(name, number.value(bits))
             }
             Kind::Text => {
-                let length = self.bits(4)? as usize;
+                let length = self.read_aligned(4)? as usize;
                 self.at = self.at.saturating_add(length);
                 if self.at <= self.body.len() { Ok(()) } else { Err("it is cut off".to_owned()) }
             }
-            Kind::Message(kind) => self.message(kind, &name, depth + 1),
+            Kind::Message(kind) => self.read_message(kind, &name, depth + 1),
         }
     }
 
-    /// So many bytes on a multiple of their number, the head not counted.
-    fn bits(&mut self, size: usize) -> Result<u64, String> {
+    /// Reads `size` bytes, aligned to `size` from the end of the header.
+    fn read_aligned(&mut self, size: usize) -> Result<u64, String> {
         let from = self.at.next_multiple_of(size);
         let bytes = self.body.get(from..from + size).ok_or("it is cut off")?;
         self.at = from + size;

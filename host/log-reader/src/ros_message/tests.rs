@@ -1,11 +1,11 @@
-//! Forms and messages by hand from the rules of their encoding.
+//! Definitions and messages written by hand from the rules of their encoding.
 
 use super::*;
 
 const FORM: &str = "# a lab's own\nuint8 IDLE=0\nstd_msgs/Header header\nstring[] name\nfloat64[] position\nint16[2] raw 0 # \
                     two\nbool on\nfloat32 current\n===\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n";
 
-/// By hand from the rules: every number on a multiple of its size behind the head.
+/// Written by hand from the rules: every number is aligned to its size behind the header.
 fn message() -> Vec<u8> {
     let mut bytes = vec![0, 1, 0, 0];
     bytes.extend(7_i32.to_le_bytes());
@@ -22,9 +22,10 @@ fn message() -> Vec<u8> {
     bytes
 }
 
+/// Every number of a message has its path.
 #[test]
-fn every_number_of_a_message_has_its_path() {
-    let form = Form::read(FORM).expect("a form");
+fn message_numbers_have_paths() {
+    let form = MessageDefinition::read(FORM).expect("a form");
     let numbers = form.numbers(&message()).expect("a message");
     let wanted = [
         ("header.stamp.sec", 7.0),
@@ -39,9 +40,10 @@ fn every_number_of_a_message_has_its_path() {
     assert_eq!(numbers.as_slice(), wanted.map(|(path, value)| (path.to_owned(), value)));
 }
 
+/// A message cut at any byte, or with an endless list, is rejected.
 #[test]
-fn a_message_that_is_cut_off_anywhere_is_refused() {
-    let form = Form::read(FORM).expect("a form");
+fn message_cut_anywhere_is_rejected() {
+    let form = MessageDefinition::read(FORM).expect("a form");
     let whole = message();
     for length in 0..whole.len() {
         assert!(form.numbers(&whole[..length]).is_err(), "{length}");
@@ -51,23 +53,25 @@ fn a_message_that_is_cut_off_anywhere_is_refused() {
     assert!(form.numbers(&endless).is_err());
 }
 
+/// Invalid, recursive and incomplete definitions are rejected.
 #[test]
-fn forms_that_cannot_be_are_refused() {
-    assert!(Form::read("float64").is_err() && Form::read("float64[x] a").is_err());
-    let own = Form::read("Own next\n===\nMSG: a/Own\nOwn next\n").expect("a form");
+fn invalid_definitions_are_rejected() {
+    assert!(MessageDefinition::read("float64").is_err() && MessageDefinition::read("float64[x] a").is_err());
+    let own = MessageDefinition::read("Own next\n===\nMSG: a/Own\nOwn next\n").expect("a form");
     assert!(own.numbers(&[0, 1, 0, 0]).is_err());
-    assert!(Form::read("a/Other other\n").expect("a form").numbers(&[0, 1, 0, 0]).is_err());
+    assert!(MessageDefinition::read("a/Other other\n").expect("a form").numbers(&[0, 1, 0, 0]).is_err());
 }
 
+/// Nested lists take time in proportion to the message's bytes.
 #[test]
-fn a_message_takes_no_longer_than_its_bytes_say() {
-    // Each form has ten of the next one: 10^16 fields, none of which would take a byte.
+fn nested_lists_take_bounded_time() {
+    // Each message contains ten of the next one: 10^16 fields, none of which would take a byte.
     let mut text = "M1[10] next\n".to_owned();
     for depth in 1..16 {
         text += &format!("===\nMSG: a/M{depth}\nM{}[10] next\n", depth + 1);
     }
     let read = |last: &str| {
-        let form = Form::read(&format!("{text}===\nMSG: a/M16\n{last}\n"))?;
+        let form = MessageDefinition::read(&format!("{text}===\nMSG: a/M16\n{last}\n"))?;
         form.numbers(&[[0, 1, 0, 0].as_slice(), &[0; 10_000]].concat())
     };
     assert_eq!(read("uint8[0] none"), Err("`uint8[0] none` is no field of a message".to_owned()));
@@ -76,9 +80,10 @@ fn a_message_takes_no_longer_than_its_bytes_say() {
     assert_eq!(read("uint8 ONLY=1"), Err("it is cut off".to_owned()), "a message without fields takes a byte");
 }
 
+/// The path of a number has a limited length.
 #[test]
-fn paths_do_not_grow_beyond_what_a_joint_has() {
-    let form = Form::read(&format!("uint8[] {}\n", "n".repeat(100_000))).expect("a form");
+fn path_length_is_limited() {
+    let form = MessageDefinition::read(&format!("uint8[] {}\n", "n".repeat(100_000))).expect("a form");
     let message = [[0, 1, 0, 0].as_slice(), &100_000_u32.to_le_bytes(), &[0; 100_000]].concat();
     assert_eq!(form.numbers(&message), Err("the path of a number in it has more than 256 letters".to_owned()));
 }

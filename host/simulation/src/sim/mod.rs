@@ -37,7 +37,7 @@ use scheme::{Choice, SchemeName};
 use stepping::RunEnd;
 use summary::SimulationSummary;
 
-use joint_file::{named, warned};
+use joint_file::{named, warnings};
 use report::command_line::quoted;
 use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};
@@ -69,7 +69,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
     arguments.motion.check_for(arguments.scheme.shown())?;
     let loaded = named::load_with(&arguments.file, &arguments.motion.set)?;
     arguments.scheme.shown().check_joint(&loaded.file.parameters)?;
-    warned::tell(&loaded);
+    warnings::print(&loaded);
     let plan = SimulationPlan::new(loaded, &arguments.motion)?;
     let every = every(&plan, arguments.every)?;
     let scheme = arguments.scheme.shown();

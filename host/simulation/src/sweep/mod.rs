@@ -30,7 +30,7 @@ use crate::sim::arguments::MotionArguments;
 use crate::sim::scheme::{Choice, SchemeName};
 use board::profile::BUILTIN;
 use joint_file::named::{self, Loaded};
-use joint_file::warned;
+use joint_file::warnings;
 use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
 use report::input;
@@ -84,7 +84,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     let base = named::load_with(&arguments.file, &arguments.motion.set)?;
     scheme.check_joint(&base.file.parameters)?;
     let grid = Grid::parse(&arguments.vary, Some(&base.text))?;
-    warned::tell(&base);
+    warnings::print(&base);
     grid.try_out(&base)?;
     let metrics = if arguments.metric.is_empty() { all_metrics() } else { arguments.metric.clone() };
     // The changes of the command line are in the joint file already.

@@ -1,19 +1,19 @@
-//! What is odd about a joint file, told by every command that uses one: `joint check` lists it among its figures, all
-//! others say it on standard error before they begin.
+//! Warnings of a joint file: `joint check` lists them among its figures; all other commands print them on standard
+//! error before they begin.
 
 use report::output;
 
 use crate::named::Loaded;
 use crate::problem::Severity;
 
-/// Says each warning with its file and line.
-pub fn tell(loaded: &Loaded) {
+/// Prints each warning with its file and line.
+pub fn print(loaded: &Loaded) {
     for warning in lines(loaded) {
         output::remark(&warning);
     }
 }
 
-/// The same as lines.
+/// Each warning as a line.
 fn lines(loaded: &Loaded) -> impl Iterator<Item = String> {
     let warnings = loaded.file.warnings.iter().filter(|warning| warning.severity == Severity::Warning);
     warnings.map(|warning| {
@@ -29,8 +29,9 @@ mod tests {
     use super::lines;
     use crate::named::load;
 
+    /// Each warning names file, line and help.
     #[test]
-    fn each_warning_is_told_with_file_line_and_help() {
+    fn warning_has_file_line_and_help() {
         let paper = load(Path::new("paper")).expect("a preset");
         let told: Vec<String> = lines(&paper).collect();
         assert_eq!(told.len(), 2);

@@ -1,25 +1,25 @@
-//! What a log shows of motor and link friction, and of the error in the torque scale, on which both depend. The torque
-//! balances are fitted in `friction`.
+//! Findings of the friction of motor and link, and of the torque scale, on which both depend. `friction` fits the
+//! torque balances.
 
-use super::finding::{Finding, SHARE, finding};
+use super::finding::{FOUND_INTERVAL_SHARE, Finding, finding};
 use crate::estimate::Estimate;
 use crate::friction::{self, MotorSide};
 use crate::prior::PriorModel;
 use crate::regression::Solution;
 use crate::rows::{Row, Rows};
-use crate::scales::Doubt;
+use crate::scales::ScaleUncertainty;
 use crate::twist;
 use crate::twist::Twist;
 
-/// What may be zero counts as found if half of its interval is at most this share of the largest torque.
-const SMALL: f64 = 0.02;
-/// Share of the largest torque that a balance of torques may feign as dry friction.
-const BALANCE_SHARE: f64 = 0.0015;
+/// A friction, possibly zero, counts as found if half of its interval is at most this share of the largest torque.
+const ZERO_FRICTION_SHARE: f64 = 0.02;
+/// Dry friction that a torque balance may mimic, as a share of the largest torque.
+const MIMICKED_FRICTION: f64 = 0.0015;
 
-/// Share of the largest torque that teeth and compliance may feign as dry friction of the motor.
-const MOTOR_SHARE: f64 = 2e-4;
+/// Dry friction of the motor that teeth and compliance may mimic, as a share of the largest torque.
+const MIMICKED_MOTOR_FRICTION: f64 = 2e-4;
 
-/// Why friction of the motor is not found by the twist of planets that do not touch at once.
+/// Reason for a missing motor friction if planets do not touch at once.
 const OUT_OF_PHASE: &str = "planets mesh out of phase, and errors of the teeth bend the joint as friction does; log the torque at the \
                             output";
 
@@ -28,56 +28,61 @@ pub(super) fn frictions(
     [quick, slow]: [&Rows; 2],
     twist: &Twist,
     prior: &PriorModel,
-    doubt: Option<&Doubt>,
+    uncertainty: Option<&ScaleUncertainty>,
 ) -> Vec<Finding> {
     let solution = &twist.solution;
     let measured = quick.all.iter().any(|row| row.measured.is_some());
-    let small = SMALL * quick.greatest;
-    let found = |estimate: Estimate, least: f64| estimate.half < (SHARE * estimate.value.abs()).max(least);
-    let motor = if measured { friction::of_the_motor(quick, prior) } else { None };
+    let small = ZERO_FRICTION_SHARE * quick.largest_torque;
+    let found =
+        |estimate: Estimate, least: f64| estimate.half < (FOUND_INTERVAL_SHARE * estimate.value.abs()).max(least);
+    let motor = if measured { friction::fit_motor(quick, prior) } else { None };
     let compliance = solution.values[twist::COMPLIANCE];
-    let of_torque = doubt.map_or(0.0, |doubt| doubt.scales.torque.half());
-    let of_rates = doubt.map_or(0.0, |doubt| doubt.scales.rates);
-    let feigned = MOTOR_SHARE * quick.greatest / prior.ratio();
+    let of_torque = uncertainty.map_or(0.0, |uncertainty| uncertainty.scales.torque.half());
+    let of_rates = uncertainty.map_or(0.0, |uncertainty| uncertainty.scales.rate_error);
+    let mimicked = MIMICKED_MOTOR_FRICTION * quick.largest_torque / prior.ratio();
     let motor_dry = match &motor {
         Some(balance) => {
-            let dry = Estimate::of(balance, friction::MOTOR_DRY);
-            dry.beside(of_torque * dry.value)
+            let dry = Estimate::of_unknown(balance, friction::MOTOR_DRY);
+            dry.with_independent_error(of_torque * dry.value)
         }
         None => {
             let value = -solution.values[twist::MOTOR_FRICTION] / compliance;
             let slopes = [(twist::MOTOR_FRICTION, -1.0 / compliance), (twist::COMPLIANCE, -value / compliance)];
-            Estimate::from(solution, value, &slopes).beside(of_torque * value).wider_by(feigned)
+            Estimate::of_function(solution, value, &slopes)
+                .with_independent_error(of_torque * value)
+                .widened_by(mimicked)
         }
     };
-    let excess = match (&motor, doubt) {
+    let excess = match (&motor, uncertainty) {
         (Some(balance), _) => {
-            let excess = Estimate::of(balance, friction::TORQUE_ERROR);
-            excess.beside(of_torque * (1.0 + excess.value))
+            let excess = Estimate::of_unknown(balance, friction::MOTOR_TORQUE_ERROR);
+            excess.with_independent_error(of_torque * (1.0 + excess.value))
         }
-        (None, Some(doubt)) => Estimate { value: doubt.scales.torque.factor() - 1.0, half: of_torque },
+        (None, Some(uncertainty)) => Estimate { value: uncertainty.scales.torque.factor() - 1.0, half: of_torque },
         (None, None) => Estimate { value: f64::NAN, half: f64::NAN },
     };
     let motor_known = found(motor_dry, small / prior.ratio());
     let why_motor = "the motor must turn both ways on each flank, and bend the joint by several counts as it does";
     let key = "drive_train.motor_coulomb_friction_N_m";
     let motor_dry_found = finding("dry friction of the motor", "N m", key, motor_dry)
-        .if_so(motor_known, why_motor)
-        .if_so(measured || prior.sharing.is_none(), OUT_OF_PHASE);
+        .only_if(motor_known, why_motor)
+        .only_if(measured || prior.sharing.is_none(), OUT_OF_PHASE);
     let mut findings = vec![motor_dry_found.not_negative()];
     let narrower = excess.half < prior.torque_error;
     let key = "drive_train.torque_constant_error_ratio";
     let why = "flanks must land so hard that the motor's inertia shows";
-    let share = finding("true torque over the logged one, less 1", "-", key, excess).if_so(narrower, why);
-    findings.push(share.noted("by the inertias of the joint file"));
+    let share = finding("true torque over the logged one, less 1", "-", key, excess).only_if(narrower, why);
+    findings.push(share.with_note("by the inertias of the joint file"));
     if let Some(balance) = &motor {
-        let viscous = Estimate::of(balance, friction::MOTOR_VISCOUS);
-        let viscous = viscous.beside(of_torque * viscous.value).wider_by(of_rates * viscous.value);
+        let viscous = Estimate::of_unknown(balance, friction::MOTOR_VISCOUS);
+        let viscous = viscous.with_independent_error(of_torque * viscous.value).widened_by(of_rates * viscous.value);
         let fastest = fastest(quick, |row| row.motor_speed);
         let key = "drive_train.motor_viscous_friction_N_m_s_per_rad";
         let known = found(viscous, small / prior.ratio() / fastest);
         findings.push(
-            finding("viscous friction of the motor", "N m s/rad", key, viscous).if_so(known, why_motor).not_negative(),
+            finding("viscous friction of the motor", "N m s/rad", key, viscous)
+                .only_if(known, why_motor)
+                .not_negative(),
         );
     }
     let why_link =
@@ -85,28 +90,29 @@ pub(super) fn frictions(
     let names = ["dry friction of the link", "viscous friction of the link"];
     let keys = ["drive_train.load_coulomb_friction_N_m", "drive_train.load_viscous_friction_N_m_s_per_rad"];
     let units = ["N m", "N m s/rad"];
-    // Without its own finding the motor's friction is taken from the joint file.
+    // Without a finding, the motor's friction is the joint file's.
     let motor_known = motor_known && (measured || prior.sharing.is_none());
     let (dry, note) = if measured || motor_known {
         (motor_dry, "")
     } else {
         (Estimate { value: prior.surroundings.motor_friction.coulomb, half: 0.0 }, "if the motor's is as stated")
     };
-    let delay = if measured { Estimate { value: 0.0, half: 0.0 } } else { Estimate::of(solution, twist::DELAY) };
+    let delay =
+        if measured { Estimate { value: 0.0, half: 0.0 } } else { Estimate::of_unknown(solution, twist::DELAY) };
     let loss = match measured {
         true => Estimate { value: 0.0, half: 0.0 },
-        false => Estimate::of(solution, twist::LOSS).times(-1.0 / compliance),
+        false => Estimate::of_unknown(solution, twist::LOSS).scaled(-1.0 / compliance),
     };
     let as_found = MotorSide { torque_error: 0.0, dry: dry.value, delay: delay.value, loss: loss.value };
-    let balance = |motor: MotorSide| friction::of_the_link(slow, prior, motor);
+    let balance = |motor: MotorSide| friction::fit_link(slow, prior, motor);
     let Some(link) = balance(as_found) else {
         let nothing = Estimate { value: f64::NAN, half: f64::NAN };
         findings.extend(
-            [0, 1].map(|place| finding(names[place], units[place], keys[place], nothing).if_so(false, why_link)),
+            [0, 1].map(|place| finding(names[place], units[place], keys[place], nothing).only_if(false, why_link)),
         );
         return findings;
     };
-    // How far what is still uncertain moves the balance is found by moving it.
+    // The effect of each uncertainty is found by repeating the balance with the changed value.
     let by_torque = balance(MotorSide { torque_error: of_torque, ..as_found });
     let by_delay = balance(MotorSide { delay: delay.value + delay.half, ..as_found });
     let by_dry = balance(MotorSide { dry: dry.value + dry.half, ..as_found });
@@ -116,7 +122,7 @@ pub(super) fn frictions(
             moved.as_ref().map_or(f64::NAN, |moved| moved.values[unknown] - link.values[unknown])
         };
         let per = |moved: &Option<Solution>, half: f64| if half > 0.0 { shift(moved) / half } else { 0.0 };
-        // The motor's friction and losses come out of one fit, in which what one is too large the other is too small.
+        // Motor friction and losses come from one fit with negatively correlated errors.
         let (per_dry, per_loss) = (per(&by_dry, dry.half), per(&by_loss, loss.half));
         let value = per_dry * dry.value + per_loss * loss.value;
         let slopes = [
@@ -124,23 +130,25 @@ pub(super) fn frictions(
             (twist::LOSS, -per_loss / compliance),
             (twist::COMPLIANCE, -value / compliance),
         ];
-        let together = if measured { 0.0 } else { Estimate::from(solution, value, &slopes).half };
-        Estimate::of(&link, unknown)
-            .beside(shift(&by_torque))
-            .beside(shift(&by_delay))
-            .beside(together)
-            .beside(per_dry * of_torque * dry.value)
-            .wider_by(per_dry * feigned)
+        let together = if measured { 0.0 } else { Estimate::of_function(solution, value, &slopes).half };
+        Estimate::of_unknown(&link, unknown)
+            .with_independent_error(shift(&by_torque))
+            .with_independent_error(shift(&by_delay))
+            .with_independent_error(together)
+            .with_independent_error(per_dry * of_torque * dry.value)
+            .widened_by(per_dry * mimicked)
     };
-    let dry = of_link(friction::DRY).wider_by(BALANCE_SHARE * quick.greatest);
-    let viscous = of_link(friction::VISCOUS);
-    let viscous = viscous.wider_by(of_rates * viscous.value);
+    let dry = of_link(friction::LINK_DRY).widened_by(MIMICKED_FRICTION * quick.largest_torque);
+    let viscous = of_link(friction::LINK_VISCOUS);
+    let viscous = viscous.widened_by(of_rates * viscous.value);
     let viscous_known = found(viscous, small / fastest(slow, |row| row.output_speed));
-    findings
-        .push(finding(names[0], units[0], keys[0], dry).if_so(found(dry, small), why_link).not_negative().noted(note));
+    findings.push(
+        finding(names[0], units[0], keys[0], dry).only_if(found(dry, small), why_link).not_negative().with_note(note),
+    );
     let note = if measured { "" } else { "if the motor's is as stated" };
-    findings
-        .push(finding(names[1], units[1], keys[1], viscous).if_so(viscous_known, why_link).not_negative().noted(note));
+    findings.push(
+        finding(names[1], units[1], keys[1], viscous).only_if(viscous_known, why_link).not_negative().with_note(note),
+    );
     findings
 }
 

@@ -63,7 +63,7 @@ fn estimates() -> Estimates<f32> {
 }
 
 #[test]
-fn samples_and_set_points_come_out_as_they_went_in() {
+fn samples_and_set_points_round_trip() {
     let commands = [
         Command::Position { now: MOTION, ahead: None },
         Command::Position { now: MOTION, ahead: Some(Motion { speed: 9.0, ..MOTION }) },
@@ -89,7 +89,7 @@ fn probes() -> Vec<Option<Progress<f32>>> {
 }
 
 #[test]
-fn answers_come_out_as_they_went_in() {
+fn answers_round_trip() {
     for stage in [Stage::Touching, Stage::Crossing, Stage::Landing, Stage::Plain, Stage::Off, Stage::Reversed] {
         let shaped = Shaped {
             torque: 1.0,
@@ -125,7 +125,7 @@ fn answers_come_out_as_they_went_in() {
 }
 
 #[test]
-fn motions_come_out_as_they_went_in() {
+fn motions_round_trip() {
     let segment = Segment { turns: -3, powers: [0.1, 0.2, 0.3, 0.4, 0.5, 0.6] };
     let trajectories = [
         Trajectory::Position { now: segment, ahead: None },
@@ -138,7 +138,7 @@ fn motions_come_out_as_they_went_in() {
 }
 
 #[test]
-fn a_knot_with_a_number_that_is_none_is_told() {
+fn non_finite_knot_is_reported() {
     let segment = Segment { turns: 0, powers: [0.0; 6] };
     let good = Knot { tick: 0, load_torque: 0.0, trajectory: WireTrajectory::Position((0, segment.powers), None) };
     assert!(good.is_finite());
@@ -152,7 +152,7 @@ fn a_knot_with_a_number_that_is_none_is_told() {
 }
 
 #[test]
-fn the_longest_forms_fit_into_a_frame() {
+fn longest_forms_fit_into_a_frame() {
     let exchange = Exchange {
         tick: u32::MAX,
         ..Exchange::new(0, &samples(), &Command::Position { now: MOTION, ahead: Some(MOTION) })

@@ -20,7 +20,7 @@ const HEAD: [u8; 18] =
     [0x08, 0xb0, 0xea, 0x01, 0xff, 0xff, 0xff, 0xff, 0x0f, 0xef, 0x9b, 0xaf, 0xcd, 0xf8, 0xac, 0xd1, 0x91, 0x01];
 
 #[test]
-fn every_kind_of_fault_has_the_bytes_that_it_always_had() {
+fn fault_bytes_are_unchanged() {
     let kinds: [(FaultKind<FixedPoint<f32>>, &[u8]); 9] = [
         (FaultKind::Frozen(Shaft::Motor), &[0x00, 0x00]),
         (FaultKind::Frozen(Shaft::Link), &[0x00, 0x01]),
@@ -43,14 +43,14 @@ fn every_kind_of_fault_has_the_bytes_that_it_always_had() {
 }
 
 #[test]
-fn a_fault_that_no_board_knows_is_no_message() {
+fn unknown_fault_is_no_message() {
     for tail in [[0x08, 0x00], [0x09, 0x00], [0x00, 0x02]] {
         assert!(from_bytes::<ToBoard>(&[&HEAD[..], &tail].concat()).is_err(), "{tail:?}");
     }
 }
 
 #[test]
-fn every_trip_has_the_bytes_that_it_always_had() {
+fn trip_bytes_are_unchanged() {
     let tick = 300;
     let trips: [(Trip, &[u8]); 11] = [
         (Trip::CommandLoss { tick }, &[0x04, 0x00, 0xac, 0x02]),

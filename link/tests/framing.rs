@@ -39,7 +39,7 @@ fn message() -> impl Strategy<Value = ToBoard> {
 
 proptest! {
     #[test]
-    fn messages_arrive_in_order_whatever_the_portions(messages in vec(message(), 1..8)) {
+    fn messages_arrive_in_order(messages in vec(message(), 1..8)) {
         let mut receiver = Receiver::new();
         let bytes: Vec<u8> = messages.iter().flat_map(|message| encode(message).unwrap()).collect();
         prop_assert_eq!(receive(&mut receiver, &bytes), messages);
@@ -47,14 +47,14 @@ proptest! {
     }
 
     #[test]
-    fn a_frame_has_one_zero_byte_and_that_is_its_last(message in message()) {
+    fn only_last_byte_of_frame_is_zero(message in message()) {
         let frame = encode(&message).unwrap();
         prop_assert_eq!(frame.iter().position(|&byte| byte == 0), Some(frame.len() - 1));
         prop_assert!(frame.len() <= MAX_FRAME);
     }
 
     #[test]
-    fn after_garbage_the_receiver_is_in_step_at_the_next_zero(
+    fn receiver_resynchronises_at_zero(
         garbage in vec(any::<u8>(), 0..2 * MAX_FRAME),
         message in message(),
     ) {
@@ -67,7 +67,7 @@ proptest! {
     }
 
     #[test]
-    fn a_changed_byte_is_never_taken_for_the_message(message in message(), place in any::<prop::sample::Index>(), change in 1_u8..) {
+    fn changed_byte_is_rejected(message in message(), place in any::<prop::sample::Index>(), change in 1_u8..) {
         let mut frame = encode(&message).unwrap();
         let last = frame.len() - 1;
         let place = place.index(last);
@@ -78,7 +78,7 @@ proptest! {
     }
 
     #[test]
-    fn half_a_frame_costs_that_frame_only(first in message(), second in message(), place in any::<prop::sample::Index>()) {
+    fn half_frame_costs_one_frame(first in message(), second in message(), place in any::<prop::sample::Index>()) {
         let frame = encode(&first).unwrap();
         let missing = 1 + place.index(frame.len() - 1);
         let mut receiver = Receiver::new();
@@ -88,7 +88,7 @@ proptest! {
     }
 
     #[test]
-    fn the_scanner_tells_the_same_frames_as_the_receiver_takes_and_every_stop(
+    fn scanner_agrees_with_receiver(
         pieces in vec((message(), vec(any::<u8>(), 0..4), any::<prop::sample::Index>(), any::<Option<u8>>()), 1..12)
     ) {
         let (mut receiver, mut scanner) = (Receiver::new(), Scanner::new());
@@ -108,7 +108,7 @@ proptest! {
     }
 
     #[test]
-    fn a_lost_end_costs_two_frames_and_no_more(first in message(), second in message(), third in message()) {
+    fn lost_end_costs_two_frames(first in message(), second in message(), third in message()) {
         let frame = encode(&first).unwrap();
         let mut bytes = frame[..frame.len() - 1].to_vec();
         bytes.extend(encode(&second).unwrap());
@@ -120,7 +120,7 @@ proptest! {
 }
 
 #[test]
-fn a_frame_that_is_too_long_is_counted_once() {
+fn overlong_frame_is_counted_once() {
     let mut receiver = Receiver::new();
     let mut bytes = vec![7; 10 * MAX_FRAME];
     bytes.push(0);
@@ -130,7 +130,7 @@ fn a_frame_that_is_too_long_is_counted_once() {
 }
 
 #[test]
-fn the_scanner_passes_over_a_frame_that_is_too_long_and_one_with_runs_of_254_bytes_is_good() {
+fn scanner_skips_overlong_frames() {
     let mut scanner = Scanner::new();
     assert!((0..10 * MAX_FRAME).all(|_| scanner.push(7).is_none()) && scanner.push(0).is_none());
     let long = encode(&([[1_u8; 20]; 20])).unwrap();
@@ -139,7 +139,7 @@ fn the_scanner_passes_over_a_frame_that_is_too_long_and_one_with_runs_of_254_byt
 }
 
 #[test]
-fn a_checksum_alone_is_no_frame() {
+fn checksum_alone_is_no_frame() {
     // COBS of four zero bytes: the valid checksum of an empty message.
     let (mut receiver, mut scanner) = (Receiver::new(), Scanner::new());
     for byte in [1, 1, 1, 1, 1, 0] {
@@ -149,14 +149,14 @@ fn a_checksum_alone_is_no_frame() {
 }
 
 #[test]
-fn zero_bytes_between_frames_are_no_errors() {
+fn zero_bytes_between_frames_are_ignored() {
     let mut receiver = Receiver::new();
     assert!(receive(&mut receiver, &[0; 100]).is_empty());
     assert_eq!(receiver.dropped().frames, 0);
 }
 
 #[test]
-fn a_number_that_is_filled_up_makes_a_bad_frame() {
+fn padded_number_is_a_bad_frame() {
     // A hello is its variant number, 0, and the protocol version: 7 as one byte, or padded with zero bits.
     for (short, long) in [(&[0, 7][..], &[0, 0x87, 0][..]), (&[0, 7], &[0x80, 0, 7]), (&[0, 7], &[0, 0x87, 0x80, 0])] {
         let mut receiver = Receiver::new();
@@ -168,7 +168,7 @@ fn a_number_that_is_filled_up_makes_a_bad_frame() {
 }
 
 #[test]
-fn a_number_that_is_filled_up_makes_a_bad_frame_of_fixed_length() {
+fn padded_number_is_bad_in_fixed_length() {
     for (bytes, good) in
         [(&[0, 7][..], true), (&[0, 0x87, 0], false), (&[0x80, 0, 7], false), (&[0, 0x87, 0x80, 0], false)]
     {
@@ -180,7 +180,7 @@ fn a_number_that_is_filled_up_makes_a_bad_frame_of_fixed_length() {
 }
 
 #[test]
-fn what_is_not_zero_behind_a_message_makes_a_bad_frame_of_fixed_length() {
+fn trailing_nonzero_is_bad_in_fixed_length() {
     for (bytes, good) in [(&[0, 7, 0][..], true), (&[0, 7, 1], false), (&[0, 7, 0, 0, 1], false)] {
         let mut frame = [0; 32];
         sealed(&Raw(bytes), &mut frame).unwrap();
@@ -202,7 +202,7 @@ impl serde::Serialize for Raw<'_> {
 }
 
 #[test]
-fn more_behind_a_message_makes_it_a_bad_frame() {
+fn trailing_bytes_are_a_bad_frame() {
     let stop_and_more = encode(&(ToBoard::Stop, 7_u32)).unwrap();
     let mut receiver = Receiver::new();
     assert!(receive(&mut receiver, &stop_and_more).is_empty());

@@ -22,7 +22,7 @@ fn arrives(message: FromBoard) {
 }
 
 #[test]
-fn the_longest_hello_arrives() {
+fn longest_hello_arrives() {
     arrives(FromBoard::Hello(Hello {
         protocol: u16::MAX,
         firmware_version: [u8::MAX; 3],
@@ -45,7 +45,7 @@ fn the_longest_hello_arrives() {
 }
 
 #[test]
-fn the_longest_batch_arrives() {
+fn longest_batch_arrives() {
     let sample = Sample {
         tick: u32::MAX,
         state_digest: u64::MAX,
@@ -64,7 +64,7 @@ fn the_longest_batch_arrives() {
 }
 
 #[test]
-fn the_longest_statistics_arrive() {
+fn longest_statistics_arrive() {
     arrives(FromBoard::Statistics(Statistics {
         ticks: u32::MAX,
         computation: TIMING,
@@ -88,14 +88,14 @@ fn the_longest_statistics_arrive() {
 }
 
 #[test]
-fn the_longest_log_acceptance_and_fault_arrive() {
+fn longest_log_acceptance_and_fault_arrive() {
     arrives(FromBoard::Log(Log { sequence: u16::MAX, bytes: full(u8::MAX) }));
     arrives(FromBoard::Accepted(Accepted { sequence: u16::MAX, queue_free: u16::MAX, tick: u32::MAX }));
     arrives(FromBoard::Tripped(Trip::LateCommand { tick: u32::MAX }));
 }
 
 #[test]
-fn a_part_of_a_memory_arrives_both_ways() {
+fn memory_part_arrives_both_ways() {
     let part = MemoryPart { part: u8::MAX, bytes: full(u8::MAX) };
     arrives(FromBoard::Memory(part.clone()));
     arrives(FromBoard::MemoryChecked(MemoryState::OutOfRange));
@@ -105,7 +105,7 @@ fn a_part_of_a_memory_arrives_both_ways() {
 }
 
 #[test]
-fn the_longest_schedule_arrives() {
+fn longest_schedule_arrives() {
     let command = Command { tick: u32::MAX, drive_torque: f32::MAX, load_torque: f32::MAX };
     let message = ToBoard::Schedule(Schedule { sequence: u16::MAX, horizon: u32::MAX, commands: full(command) });
     let mut receiver = Receiver::new();

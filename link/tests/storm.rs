@@ -74,7 +74,7 @@ impl Draw {
 }
 
 #[test]
-fn what_is_taken_from_a_storm_of_bytes_is_what_was_sent() {
+fn storm_of_bytes_yields_sent_messages() {
     let bytes = std::env::var("DECODER_BYTES").map_or(SHORT, |count| count.parse().expect("a number of bytes"));
     let (mut draw, mut receiver, mut scanner) = (Draw(1), Receiver::new(), Scanner::new());
     let (mut sent, mut frame) = (HashSet::new(), Vec::new());

@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn each_effect_is_listed_once_when_it_is_stated() {
+    fn stated_effects_are_listed_once() {
         let mut around = Surroundings::ideal();
         around.payload.inertia_share = 0.3;
         around.payload_step.ratio = 0.5;

@@ -59,7 +59,7 @@ fn whole(joint: &JointParameters, link_inertia: f64) -> f64 {
 }
 
 #[test]
-fn noise_has_the_stated_deviation_and_is_white() {
+fn noise_is_white_with_stated_deviation() {
     let mut around = Surroundings::ideal();
     around.output_encoder = AbsoluteEncoder { noise_counts: 1.5, ..AbsoluteEncoder::ideal(17) };
     let mut train = train(0.0, around);
@@ -79,7 +79,7 @@ fn noise_has_the_stated_deviation_and_is_white() {
 }
 
 #[test]
-fn noises_of_the_encoders_are_independent() {
+fn encoder_noises_are_independent() {
     let mut around = Surroundings::ideal();
     around.motor_encoder = AbsoluteEncoder { noise_counts: 3.0, ..AbsoluteEncoder::ideal(14) };
     around.output_encoder = AbsoluteEncoder { noise_counts: 3.0, ..AbsoluteEncoder::ideal(17) };
@@ -97,7 +97,7 @@ fn noises_of_the_encoders_are_independent() {
 }
 
 #[test]
-fn the_error_within_a_scale_period_has_its_amplitudes_at_its_harmonics() {
+fn scale_period_error_has_its_harmonics() {
     let mut around = Surroundings::ideal();
     let subdivision = SubdivisionalError { periods_per_turn: 4, first: 0.1e-3, second: 0.05e-3 };
     around.output_encoder = AbsoluteEncoder { subdivision, ..AbsoluteEncoder::ideal(22) };
@@ -127,7 +127,7 @@ fn the_error_within_a_scale_period_has_its_amplitudes_at_its_harmonics() {
 }
 
 #[test]
-fn a_jittering_age_is_drawn_evenly_up_to_its_limit() {
+fn jittering_age_is_uniform() {
     let mut around = Surroundings::ideal();
     around.output_encoder = AbsoluteEncoder { age_jitter: PERIOD, skew: 50e-6, ..AbsoluteEncoder::ideal(24) };
     let mut train = train(30.0, around);
@@ -146,7 +146,7 @@ fn a_jittering_age_is_drawn_evenly_up_to_its_limit() {
 }
 
 #[test]
-fn an_effect_that_is_added_leaves_the_random_numbers_of_the_others() {
+fn added_effect_keeps_other_random_numbers() {
     let base = Surroundings {
         torque_noise_ratio: 0.015,
         motor_encoder: AbsoluteEncoder { noise_counts: 2.0, ..AbsoluteEncoder::ideal(14) },
@@ -188,7 +188,7 @@ fn held() -> Surroundings {
 }
 
 #[test]
-fn the_backlash_varies_around_the_turn_of_the_link() {
+fn backlash_varies_with_link_angle() {
     let joint = q1();
     let width = 4.0 * joint.sun_planet.half_backlash[0];
     for (phase, expected) in [(0.5 * PI, 1.3), (-0.5 * PI, 0.7), (0.0, 1.0)] {
@@ -201,7 +201,7 @@ fn the_backlash_varies_around_the_turn_of_the_link() {
 }
 
 #[test]
-fn the_backlash_varies_around_the_turn_of_the_motor() {
+fn backlash_varies_with_motor_angle() {
     let around =
         Surroundings { width: WidthVariation { per_link_turn: 0.0, per_motor_turn: 0.2 }, ..Surroundings::ideal() };
     let mut train = train(1.0, around);
@@ -234,7 +234,7 @@ fn backlash_and_friction_drift_linearly() {
 }
 
 #[test]
-fn presliding_creeps_exponentially_towards_break_away() {
+fn presliding_creeps_to_break_away() {
     let friction = Friction { coulomb: 0.3, ..Friction::default() };
     let displacement = 0.2e-3;
     let around = Surroundings {
@@ -295,7 +295,7 @@ fn swing(values: &[f64], step: f64) -> [f64; 2] {
 }
 
 #[test]
-fn a_payload_swings_against_the_link_as_two_masses_do() {
+fn payload_swings_like_two_masses() {
     let joint = q1();
     for (share, frequency, damping_ratio) in [(0.2, 40.0, 0.05), (0.5, 8.0, 0.02), (0.65, 25.0, 0.01)] {
         let around = Surroundings {
@@ -323,7 +323,7 @@ fn a_payload_swings_against_the_link_as_two_masses_do() {
 }
 
 #[test]
-fn a_payload_step_changes_inertia_and_weight() {
+fn payload_step_changes_inertia_and_weight() {
     let joint = q1();
     for ratio in [3.0, 1.0 / 3.0] {
         let step = PayloadStep { time: 0.2, ratio };
@@ -384,7 +384,7 @@ fn wind_up_cycle(hysteresis: Hysteresis, stepping: Stepping) -> [f64; 3] {
 }
 
 #[test]
-fn hysteresis_loses_the_energy_of_its_loop() {
+fn hysteresis_loses_its_loop_energy() {
     let stiffness = q1().compliance.expect("Q1 is compliant").stiffness;
     let [damper, amplitude, _] = wind_up_cycle(Hysteresis::default(), Stepping::Fixed);
     for (stiffness_share, torque) in [(0.2, 0.3), (0.5, 2.0)] {
@@ -402,7 +402,7 @@ fn hysteresis_loses_the_energy_of_its_loop() {
 }
 
 #[test]
-fn torque_ripples_in_proportion_to_itself() {
+fn torque_ripple_is_proportional() {
     let errors = TorqueErrors { ripple_ratio: 0.02, ripple_periods_per_turn: 6, ..TorqueErrors::default() };
     let around = Surroundings { torque_errors: errors, torque_limit: 3.0, ..held() };
     for command in [0.5, -1.0] {
@@ -420,7 +420,7 @@ fn torque_ripples_in_proportion_to_itself() {
 }
 
 #[test]
-fn torque_comes_in_steps_and_saturates() {
+fn torque_is_quantised_and_saturates() {
     let given = |errors: TorqueErrors, command: f64| {
         let around = Surroundings { torque_errors: errors, torque_limit: 2.0, ..Surroundings::ideal() };
         let mut train = train(0.0, around);
@@ -438,7 +438,7 @@ fn torque_comes_in_steps_and_saturates() {
 }
 
 #[test]
-fn control_periods_begin_late_by_up_to_the_jitter() {
+fn control_periods_start_within_jitter() {
     let mut train = train(0.0, Surroundings { control_jitter_ratio: 0.05, ..Surroundings::ideal() });
     let mut lateness = Vec::new();
     for period in 1..=4000 {
@@ -455,7 +455,7 @@ fn control_periods_begin_late_by_up_to_the_jitter() {
 }
 
 #[test]
-fn effects_out_of_range_are_refused_by_name() {
+fn effects_out_of_range_are_rejected() {
     let refusal = |change: fn(&mut Surroundings)| {
         let mut around = Surroundings::ideal();
         change(&mut around);
@@ -486,7 +486,7 @@ fn effects_out_of_range_are_refused_by_name() {
 /// A gear with an efficiency below 1/2 is self-locking: a pull at the link crosses the gap, and the motor does not
 /// move. Above 1/2 the pull turns the motor, which receives the torque less the losses.
 #[test]
-fn a_self_locking_gear_holds_the_link_with_the_motor_off() {
+fn self_locking_gear_holds_the_link() {
     let joint = q1();
     let lost_motion = 4.0 * 40e-6 / (2.0 * joint.geometry.carrier_radius * joint.geometry.working_pressure_angle.cos());
     let pull = 5.0;

@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn a_self_locking_gear_holds_the_link_with_the_motor_off() {
+    fn self_locking_gear_holds_the_link() {
         // Gap of 3 arcmin, twice the wind-up of 20 N m at 20 N m/arcmin as the link swings into the teeth, and an
         // encoder error.
         let most = (3.0 + 2.0 + 1.0) / (360.0 * 60.0);

@@ -24,10 +24,10 @@ pub struct Clock<T> {
 }
 
 /// Steps by which a prescribed phase is rotated before it is recomputed: rounding is still below a millionth.
-const FRESH: u32 = 8;
+const RECOMPUTE_STEPS: u32 = 8;
 
 /// Mesh phase in the middle and at the end of a step.
-pub struct Ahead<T> {
+pub struct StepPhases<T> {
     /// In the middle.
     pub middle: Rotor<T>,
     /// At the end.
@@ -47,7 +47,7 @@ impl<T: Real> Clock<T> {
         };
         if clock.angle {
             clock.place = place;
-            clock.rotor = carried(plant, place, speed);
+            clock.rotor = rotor_at(plant, place, speed);
         }
         clock
     }
@@ -69,40 +69,40 @@ impl<T: Real> Clock<T> {
 
     /// Advances by a step. Without `MIDDLE` the middle of the result is meaningless.
     #[inline(always)]
-    pub fn advance<const MIDDLE: bool, const N: usize>(&mut self, plant: &Plant<T, N>) -> Ahead<T> {
+    pub fn advance<const MIDDLE: bool, const N: usize>(&mut self, plant: &Plant<T, N>) -> StepPhases<T> {
         let phase = &plant.phase;
         let start = self.rotor;
         if !self.angle {
             self.place = self.place.wrapping_add(phase.step);
-            let middle = if MIDDLE { turned(&start, phase.half_turn) } else { start };
+            let middle = if MIDDLE { rotated(&start, phase.half_turn) } else { start };
             self.since += 1;
-            if self.since < FRESH {
-                self.rotor = turned(&start, phase.turn);
+            if self.since < RECOMPUTE_STEPS {
+                self.rotor = rotated(&start, phase.turn);
             } else {
                 self.since = 0;
                 let (sine, cosine) = sine_cosine((self.place >> 32) as u32);
                 self.rotor = Rotor { sine, cosine, rate: phase.rate };
             }
-            return Ahead { middle, end: self.rotor };
+            return StepPhases { middle, end: self.rotor };
         }
         let half = (self.speed >> 1).wrapping_add(self.change >> 3);
         let mid_place = self.place.wrapping_add(half as u64);
         let way = self.speed.wrapping_add(self.change >> 1);
         self.place = self.place.wrapping_add(way as u64);
         self.speed = self.speed.wrapping_add(self.change);
-        self.rotor = carried(plant, self.place, self.speed);
+        self.rotor = rotor_at(plant, self.place, self.speed);
         if !MIDDLE {
-            return Ahead { middle: self.rotor, end: self.rotor };
+            return StepPhases { middle: self.rotor, end: self.rotor };
         }
         let (sine, cosine) = at(plant, mid_place);
         let middle = Rotor { sine, cosine, rate: T::HALF * (start.rate + self.rotor.rate) };
-        Ahead { middle, end: self.rotor }
+        StepPhases { middle, end: self.rotor }
     }
 }
 
 /// Rotor advanced by an angle given by its sine and cosine.
 #[inline(always)]
-fn turned<T: Real>(rotor: &Rotor<T>, [sine, cosine]: [T; 2]) -> Rotor<T> {
+fn rotated<T: Real>(rotor: &Rotor<T>, [sine, cosine]: [T; 2]) -> Rotor<T> {
     Rotor {
         sine: rotor.sine * cosine + rotor.cosine * sine,
         cosine: rotor.cosine * cosine - rotor.sine * sine,
@@ -118,7 +118,7 @@ fn at<T: Real, const N: usize>(plant: &Plant<T, N>, place: u64) -> (T, T) {
 
 /// Rotor at an angle and a speed of the rigid carrier.
 #[inline(always)]
-fn carried<T: Real, const N: usize>(plant: &Plant<T, N>, place: u64, speed: i64) -> Rotor<T> {
+fn rotor_at<T: Real, const N: usize>(plant: &Plant<T, N>, place: u64, speed: i64) -> Rotor<T> {
     let (sine, cosine) = at(plant, place);
     Rotor { sine, cosine, rate: rate(plant, speed) }
 }

@@ -49,7 +49,8 @@ impl<T: Real, const N: usize> Scheme<T, N> for Etd1<T> {
                 sharpness: plant.sharpness,
             };
             let deflection = displacement - now.error[kind][i];
-            flow.stiffness[kind] * displacement - L::beyond_damping(&spring, deflection, speed, now.error_rate[kind][i])
+            flow.stiffness[kind] * displacement
+                - L::force_less_damping(&spring, deflection, speed, now.error_rate[kind][i])
         };
         let (mut sun_sum, mut ring_sum, mut mean, mut mean_rate) = (T::ZERO, T::ZERO, T::ZERO, T::ZERO);
         let mut apart = [T::ZERO; N];

@@ -28,7 +28,7 @@ pub trait ForceLaw<T: Real> {
 
     /// Force less the damping of the displacement's speed, from deflection, speed and rate of the error.
     #[inline(always)]
-    fn beyond_damping(spring: &Spring<T>, deflection: T, speed: T, error_rate: T) -> T {
+    fn force_less_damping(spring: &Spring<T>, deflection: T, speed: T, error_rate: T) -> T {
         Self::force(spring, deflection, speed - error_rate) - spring.damping * speed
     }
 }
@@ -58,7 +58,7 @@ impl<T: Real> ForceLaw<T> for Always {
     const PUSHES_ONLY: bool = false;
 
     #[inline(always)]
-    fn beyond_damping(spring: &Spring<T>, deflection: T, _: T, error_rate: T) -> T {
+    fn force_less_damping(spring: &Spring<T>, deflection: T, _: T, error_rate: T) -> T {
         Self::force(spring, deflection, -error_rate)
     }
 

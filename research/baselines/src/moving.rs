@@ -37,7 +37,7 @@ pub struct GearedJoint<'a, T: Real, const N: usize, S> {
 }
 
 /// Two-mass gap model.
-pub struct Gap<'a, T: Real> {
+pub struct GapModel<'a, T: Real> {
     /// The model.
     pub peer: TwoMassPeer<'a, T>,
     model: &'a TwoMass<T>,
@@ -60,7 +60,7 @@ impl<'a, T: Real, const N: usize, S: Scheme<T, N>> GearedJoint<'a, T, N, S> {
     }
 }
 
-impl<'a, T: Real> Gap<'a, T> {
+impl<'a, T: Real> GapModel<'a, T> {
     /// Model at the first of its starts: displacements and their rates.
     pub fn new(model: &'a TwoMass<T>, starts: &'a [[T; 2]]) -> Self {
         let mut gap = Self { peer: TwoMassPeer::new(model, T::ZERO, T::ZERO), model, starts };
@@ -111,7 +111,7 @@ impl<T: Real, const N: usize, S: Scheme<T, N>> SteppedModel<T> for GearedJoint<'
     }
 }
 
-impl<T: Real> SteppedModel<T> for Gap<'_, T> {
+impl<T: Real> SteppedModel<T> for GapModel<'_, T> {
     fn restart(&mut self, count: usize) {
         if let Some([place, rate]) = self.starts.get(count) {
             self.peer = TwoMassPeer::new(self.model, *place, *rate);

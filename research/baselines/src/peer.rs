@@ -4,7 +4,7 @@ use core::array;
 
 use model_core::numbers::Real;
 
-use crate::clock::{Ahead, Clock};
+use crate::clock::{Clock, StepPhases};
 use crate::forces::{Always, ForceLaw, Push, PushOnly, Smooth, SmoothPush};
 use crate::instant::{Instant, PerMesh};
 use crate::motion::{Coordinates, PeerState};
@@ -73,7 +73,7 @@ impl<'a, T: Real, const N: usize, S: Scheme<T, N>> Peer<'a, T, N, S> {
     #[inline(always)]
     fn step_under<L: ForceLaw<T>, const COMPLIANT: bool>(&mut self) {
         let start = *self.clock.now();
-        let Ahead { middle, end } = match S::MIDDLE {
+        let StepPhases { middle, end } = match S::MIDDLE {
             true => self.clock.advance::<true, N>(self.plant),
             false => self.clock.advance::<false, N>(self.plant),
         };

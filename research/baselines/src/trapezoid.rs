@@ -11,7 +11,7 @@ use crate::plant::Plant;
 use crate::scheme::{Phases, Scheme};
 
 /// Largest number of guesses in a step: the remaining error is a contact about to change anyway.
-const GUESSES: usize = 4;
+const GUESSES_MAX: usize = 4;
 
 /// The method with the data kept for the next step.
 #[derive(Debug, Clone, Copy)]
@@ -26,7 +26,7 @@ pub struct Trapezoid<T, const N: usize> {
 
 /// One mesh at the end of the step: force = given + per_acceleration * its acceleration.
 #[derive(Clone, Copy)]
-struct Linear<T> {
+struct LinearForce<T> {
     given: T,
     per_acceleration: T,
 }
@@ -35,7 +35,7 @@ struct Linear<T> {
 struct Carrier<T> {
     given: T,
     per_force: T,
-    wind_up: Linear<T>,
+    wind_up: LinearForce<T>,
 }
 
 impl<T: Real, const N: usize> Scheme<T, N> for Trapezoid<T, N> {
@@ -70,7 +70,7 @@ impl<T: Real, const N: usize> Scheme<T, N> for Trapezoid<T, N> {
         // x + h (v + v1) / 2 with v1 = v + h (a + a1) / 2, without the share of a1.
         let position = motion.position.plus::<COMPLIANT>(half, &motion.rate).plus::<COMPLIANT>(half, &rate);
         let predicted = PeerState { position, rate };
-        for _ in 0..GUESSES {
+        for _ in 0..GUESSES_MAX {
             let after = self.solve::<L, COMPLIANT>(plant, push, &now, &predicted);
             *motion = PeerState {
                 position: position.plus::<COMPLIANT>(half * half, &after),
@@ -100,7 +100,7 @@ impl<T: Real, const N: usize> Trapezoid<T, N> {
             let stiffness = closed * now.stiffness[kind][i];
             let damping = if L::PUSHES_ONLY { closed * plant.damping[kind] } else { plant.damping[kind] };
             let overlap = position - now.error[kind][i] - self.offset[kind][i];
-            Linear {
+            LinearForce {
                 given: stiffness * overlap + damping * (rate - now.error_rate[kind][i]),
                 per_acceleration: half * (half * stiffness + damping),
             }
@@ -162,7 +162,7 @@ impl<T: Real, const N: usize> Trapezoid<T, N> {
     #[inline(always)]
     fn carrier<const COMPLIANT: bool>(plant: &Plant<T, N>, push: &Push<T>, predicted: &PeerState<T, N>) -> Carrier<T> {
         if !COMPLIANT {
-            let wind_up = Linear { given: T::ZERO, per_acceleration: T::ZERO };
+            let wind_up = LinearForce { given: T::ZERO, per_acceleration: T::ZERO };
             return Carrier { given: push.carrier, per_force: plant.carrier, wind_up };
         }
         let half = plant.step * T::HALF;
@@ -170,7 +170,7 @@ impl<T: Real, const N: usize> Trapezoid<T, N> {
         let per_acceleration = half * (half * stiffness + damping);
         let given = stiffness * predicted.position.wind_up + damping * predicted.rate.wind_up;
         let inverse = T::ONE.over(T::ONE + per_acceleration * (plant.carrier + plant.link));
-        let wind_up = Linear {
+        let wind_up = LinearForce {
             given: inverse * (given + per_acceleration * (push.carrier - push.link)),
             per_acceleration: inverse * per_acceleration * plant.carrier,
         };

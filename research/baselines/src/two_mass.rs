@@ -115,9 +115,9 @@ impl<'a, T: Real> TwoMassPeer<'a, T> {
             self.engaged = false;
         }
         self.force = T::ZERO;
-        let coasting = self.rate + model.step * self.push;
-        self.place += model.step * T::HALF * (self.rate + coasting);
-        self.rate = coasting;
+        let coasting_rate = self.rate + model.step * self.push;
+        self.place += model.step * T::HALF * (self.rate + coasting_rate);
+        self.rate = coasting_rate;
         let front = self.place > T::ZERO;
         let end = if front { model.half_backlash } else { -model.half_backlash };
         let beyond = if front { self.place > end } else { self.place < end };

@@ -10,7 +10,7 @@ use baselines::two_mass::{Contact, TwoMass};
 use comparison::case::Case;
 use comparison::method::Method;
 use comparison::run;
-use comparison::start::Deflected;
+use comparison::start::InitialState;
 use comparison::trajectory::Restart;
 
 use board::device::cross_build::cannot_write;
@@ -36,7 +36,7 @@ pub struct Job<'a> {
 
 /// Instructions of a job on the emulated core.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Count {
+pub struct InstructionCount {
     /// Mean instructions a step.
     pub mean: f64,
     /// Largest number of instructions of a step.
@@ -47,10 +47,10 @@ pub struct Count {
 
 /// Largest flash for the numbers of one image besides the torques of a case, which its jobs share: the rest is code, most of it for five
 /// planets [bytes].
-const ROOM: usize = 250_000;
+const IMAGE_DATA_MAX: usize = 250_000;
 
 /// Runs all jobs; results in their order.
-pub fn run(jobs: &[Job<'_>], toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<Count>> {
+pub fn run(jobs: &[Job<'_>], toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<InstructionCount>> {
     let mut counts = Vec::with_capacity(jobs.len());
     let mut rest = jobs;
     while !rest.is_empty() {
@@ -58,10 +58,10 @@ pub fn run(jobs: &[Job<'_>], toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec
         let mut size = 0;
         let fitting = rest.iter().take_while(|job| {
             size += bytes(job);
-            size <= ROOM
+            size <= IMAGE_DATA_MAX
         });
         let (now, later) = rest.split_at(fitting.count().max(1));
-        counts.extend(image_of(now, toolchain, say)?);
+        counts.extend(run_image(now, toolchain, say)?);
         rest = later;
     }
     Ok(counts)
@@ -78,13 +78,13 @@ fn bytes(job: &Job<'_>) -> usize {
     }
 }
 
-fn image_of(jobs: &[Job<'_>], toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<Count>> {
+fn run_image(jobs: &[Job<'_>], toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<InstructionCount>> {
     let source = source(jobs)?;
     let file = write(toolchain.target_directory(), &source)?;
     let elf = measuring::build_other(toolchain, "board-comparison", &[("COMPARISON_JOBS", file.as_os_str())], say)?;
     say(&format!("running {} jobs on the emulated core", jobs.len()));
     let lines = measuring::run(&elf)?;
-    let mut found: BTreeMap<usize, (Count, u64)> = lines.iter().filter_map(|line| parse(line)).collect();
+    let mut found: BTreeMap<usize, (InstructionCount, u64)> = lines.iter().filter_map(|line| parse(line)).collect();
     let one = |(index, job): (usize, &Job<'_>)| {
         let what = || format!("case {}, {}, {} Hz x {}", job.case.key, job.method.name(), job.rate, job.substeps);
         let (count, digest) = found
@@ -99,11 +99,11 @@ fn image_of(jobs: &[Job<'_>], toolchain: &Toolchain, say: Say<'_>) -> Outcome<Ve
 }
 
 /// Index, count and digest of a line.
-fn parse(line: &str) -> Option<(usize, (Count, u64))> {
+fn parse(line: &str) -> Option<(usize, (InstructionCount, u64))> {
     let fields: Vec<&str> = line.split(',').collect();
     let [job, steps, sum, most, slow, middle, fast, digest] = fields[..] else { return None };
     let whole = |field: &str| field.parse::<u32>().ok();
-    let count = Count {
+    let count = InstructionCount {
         mean: sum.parse::<f64>().ok()? / f64::from(whole(steps)?).max(1.0),
         most: whole(most)?,
         samples: [whole(slow)?, whole(middle)?, whole(fast)?],
@@ -170,7 +170,7 @@ fn lists(index: usize, case: &Case) -> String {
 /// Statics of a job, and its call without the schedule.
 fn numbers<const N: usize>(index: usize, job: &Job<'_>) -> Outcome<(String, String)> {
     let joint = &job.case.joint;
-    let starts = Deflected::<N>::all(joint, &job.case.start, job.restarts);
+    let starts = InitialState::<N>::all(joint, &job.case.start, job.restarts);
     let count = starts.len();
     let peer = |scheme: &str| {
         let plant = run::plant::<f32, N>(joint, job.method, job.rate);
@@ -187,7 +187,7 @@ fn numbers<const N: usize>(index: usize, job: &Job<'_>) -> Outcome<(String, Stri
     };
     let two_mass = |contact: Contact| {
         let model = TwoMass::<f32>::new(joint, f64::from(job.rate), contact);
-        let start = |start: &Deflected<N>| {
+        let start = |start: &InitialState<N>| {
             let (place, speed) = start.two_mass(joint);
             [place as f32, speed as f32]
         };

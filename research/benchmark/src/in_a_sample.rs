@@ -13,7 +13,7 @@ pub const SAMPLE_RATE: u32 = 10_000;
 /// Largest mean number of instructions a sample.
 pub const INSTRUCTIONS: f64 = 2_000.0;
 /// Required errors of the link angle over the lost motion, RMS and worst, and of the largest mesh force.
-pub const ASKED: [f64; 3] = [1e-3, 1e-2, 0.1];
+pub const REQUIRED: [f64; 3] = [1e-3, 1e-2, 0.1];
 
 /// One method at its best within the cost.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -49,8 +49,8 @@ pub struct Best {
 
 impl Best {
     /// Returns true if all required errors are met.
-    pub fn does(&self) -> bool {
-        [self.link_rms, self.link_worst, self.peak_force].iter().zip(ASKED).all(|(found, asked)| *found <= asked)
+    pub fn meets_requirements(&self) -> bool {
+        [self.link_rms, self.link_worst, self.peak_force].iter().zip(REQUIRED).all(|(found, asked)| *found <= asked)
     }
 }
 
@@ -115,16 +115,16 @@ mod tests {
 
     /// The best step has the least error among those that fit.
     #[test]
-    fn the_best_step_is_the_one_with_the_least_error_of_those_that_fit() {
+    fn best_step_has_the_least_error() {
         let found = best(&entry(vec![mark(1, 600.0, 0.1), mark(3, 600.0, 1e-3), mark(4, 600.0, 1e-4)])).unwrap();
         assert_eq!(found.steps, Some(3));
         assert_eq!(found.instructions_most, 2700);
-        assert!(found.does());
+        assert!(found.meets_requirements());
     }
 
     /// A method that diverges at every step that fits has no best step.
     #[test]
-    fn a_method_that_gets_lost_at_every_step_that_fits_has_no_best_step() {
+    fn diverging_method_has_no_best_step() {
         let lost = StepResult { link_rms: None, ..mark(1, 600.0, 1.0) };
         assert_eq!(best(&entry(vec![lost, mark(4, 600.0, 1e-4)])), None);
     }

@@ -38,27 +38,27 @@ pub const ABOUT: &str =
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   joint bench                                 all named cases, board and host
-  joint bench --case A,Q --html bench.html    two of them, with pictures
+  joint bench --case A,Q --html bench.html    two cases, with pictures
   joint bench joints/l1.toml --json -         a joint from a file, figures as JSON
   joint bench --random 1-30                   random joints by seed: 3 to 5 planets, light and heavy
   joint bench --document docs/reference/error-against-cost.md
                                               rewrites the comparison in that file
 
 Error is that of the mesh deflections (RMS over their standard deviation), the worst over 8 phases of the
-excitation; where single meshes rattle without rule, that of the link angle over the lost motion, in windows:
-wherever torques jump, every method is put back into the reference's state.
+excitation; where meshes rattle chaotically, that of the link angle over the lost motion, in windows:
+wherever a torque jumps, every method restarts from the reference's state.
 Instructions are counted exactly on the emulated Cortex-M4F; host times are processor time of one process.")]
 pub struct Arguments {
-    /// Joint file (TOML) or preset to compare on, in place of the named cases
+    /// Joint file (TOML) or preset to compare on, instead of the named cases
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
-    /// Named cases, in place of all: A, Q, R, B, F, L
+    /// Named cases to run, all by default: A, Q, R, B, F, L
     #[arg(long, value_name = "KEYS", value_delimiter = ',', conflicts_with = "file")]
     case: Vec<String>,
-    /// Random joints of these seeds, in place of the named cases; equivalent gears among them are left out
+    /// Random joints of these seeds, instead of the named cases; equivalent gears among them are skipped
     #[arg(long, value_name = "N|FROM-TO", conflicts_with_all = ["file", "case"])]
     random: Option<Seeds>,
-    /// Leaves out the host libraries, which take no joint file anyway
+    /// Skips the host libraries; a joint file never runs on them
     #[arg(long, conflicts_with = "file")]
     no_libraries: bool,
     /// Writes all figures as JSON ("-" is standard output, in place of the tables)
@@ -128,15 +128,15 @@ fn cases(arguments: &Arguments) -> Outcome<Vec<Case>> {
         warnings::print(&loaded);
         if loaded.file.parameters.equivalent_gear().is_some() {
             return Err(Failure::new(format!(
-                "{} is an equivalent gear: the methods compared are for the meshes of planets",
+                "{} is an equivalent gear: the comparison needs planet meshes",
                 loaded.name
             ))
             .with_help("name a joint with teeth; `joint budget` says what the step of an equivalent gear costs"));
         }
-        return Ok(vec![catalogue::of_joint(&loaded.file.parameters)]);
+        return Ok(vec![catalogue::for_joint(&loaded.file.parameters)]);
     }
     if let Some(seeds) = arguments.random {
-        let cases: Vec<Case> = seeds.each().filter_map(catalogue::of_seed).collect();
+        let cases: Vec<Case> = seeds.each().filter_map(catalogue::for_seed).collect();
         let none =
             || Failure::new(format!("--random {seeds}: all of these joints are equivalent gears, without meshes"));
         return if cases.is_empty() { Err(none().with_help("name more seeds, as in 1-30")) } else { Ok(cases) };

@@ -45,11 +45,11 @@ pub fn run(cases: &[String], say: Say<'_>) -> Outcome<Times> {
     if without_cvode.is_none() {
         match time(cases, "cvode", say) {
             Ok(times) => return Ok(Times { times, without_cvode: None }),
-            Err(failure) => say(&format!("CVODE left out: {}", failure.message())),
+            Err(failure) => say(&format!("CVODE skipped: {}", failure.message())),
         }
     }
     let times = time(cases, "libraries", say)?;
-    let reason = without_cvode.unwrap_or_else(|| format!("what {SUNDIALS} installs could not be linked"));
+    let reason = without_cvode.unwrap_or_else(|| format!("the library installed by {SUNDIALS} cannot be linked"));
     Ok(Times { times, without_cvode: Some(reason) })
 }
 

@@ -7,7 +7,7 @@ use comparison::run::AS_DESIGNED;
 use comparison::trajectory::Errors;
 use serde::Serialize;
 
-use super::emulated_runs::{self, Count, Job};
+use super::emulated_runs::{self, InstructionCount, Job};
 use board::device::Say;
 use board::device::toolchain::Toolchain;
 use report::failure::{Failure, Outcome};
@@ -138,7 +138,7 @@ pub fn run(
             duration_s: case.duration(),
             phases,
             windows: 1 + case.restarts.len(),
-            sensitivity: of_measure(&case, &sensitivity),
+            sensitivity: case_error(&case, &sensitivity),
         });
         progress.stage(&format!("case {}: methods on the host", case.key));
         let found = points(&envelope);
@@ -200,7 +200,7 @@ fn measure(case: &Case) -> &'static str {
     }
 }
 
-fn of_measure(case: &Case, errors: &Errors) -> f64 {
+fn case_error(case: &Case, errors: &Errors) -> f64 {
     match case.measure {
         Measure::Deflections => errors.deflections,
         Measure::LinkAngle => errors.link_rms,
@@ -212,13 +212,13 @@ fn finite(error: f64) -> Option<f64> {
     (error.is_finite() && error < 1e6).then_some(error)
 }
 
-fn mark(case: &Case, point: &Point, double: Option<&Point>, count: &Count) -> StepResult {
+fn mark(case: &Case, point: &Point, double: Option<&Point>, count: &InstructionCount) -> StepResult {
     StepResult {
         rate_Hz: point.rate,
         substeps: point.substeps,
         step: point.step,
-        error: finite(of_measure(case, &point.errors)),
-        error_f64: double.and_then(|double| finite(of_measure(case, &double.errors))),
+        error: finite(case_error(case, &point.errors)),
+        error_f64: double.and_then(|double| finite(case_error(case, &double.errors))),
         link_rms: finite(point.errors.link_rms),
         link_worst: finite(point.errors.link_worst),
         peak_force: finite(point.errors.peak_force),

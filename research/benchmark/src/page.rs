@@ -5,10 +5,10 @@ use comparison::method::Method;
 use comparison::run::AS_DESIGNED;
 
 use super::BenchmarkRecord;
-use super::in_a_sample::{ASKED, Best, INSTRUCTIONS, InASample, SAMPLE_RATE};
+use super::in_a_sample::{Best, INSTRUCTIONS, InASample, REQUIRED, SAMPLE_RATE};
 use super::method_results::{CaseRecord, MethodResult, StepResult};
 use super::pictures;
-use super::verdicts::{AtError, CLOCK, CYCLES, InBudget, LEVELS, front};
+use super::verdicts::{AtError, CLOCK_RATE, CYCLES_PER_INSTRUCTION, ERROR_LEVELS, InBudget, pareto_front};
 use report::document::{
     Block, Details, Document, Medium, PAGES, Picture, Row, Text, facts, indexed, notice, numbers, row, section, strong,
     table, text, words,
@@ -25,7 +25,7 @@ const LINES: &[Medium] = &[Medium::Terminal, Medium::Markdown];
 /// The whole document.
 pub fn document(figures: &BenchmarkRecord) -> Document {
     let mut blocks = vec![Block::Only(LINES, vec![Block::Paragraph(provenance(figures))])];
-    blocks.extend(figures.cases.iter().map(|case| one(figures, case)));
+    blocks.extend(figures.cases.iter().map(|case| case_section(figures, case)));
     blocks.extend([budget(figures), rounding(figures)]);
     blocks.extend(host(figures));
     blocks.push(Block::Only(PAGES, vec![origin(figures)]));
@@ -52,13 +52,13 @@ fn provenance(figures: &BenchmarkRecord) -> Text {
         + strong("EMULATED")
         + format!(
             " Cortex-M4F ({}), counted exactly, call of the step included; {}, {}.\n\
-             Cycles: {CYCLES} an instruction, budgets of a {:.0} MHz core; nothing here was measured on silicon.\n\
+             Cycles: {CYCLES_PER_INSTRUCTION} an instruction, budgets of a {:.0} MHz core; nothing here was measured on silicon.\n\
              Every method came to the same bits on the emulated core as on the host, where its error was measured.\n\
              Host times: processor time on {}. Commit {}, {}.",
             origin.emulator,
             origin.compiler,
             origin.flags,
-            CLOCK / 1e6,
+            CLOCK_RATE / 1e6,
             origin.host,
             origin.commit,
             origin.date
@@ -74,7 +74,7 @@ fn drawn(figure: Option<Figure>, file: String) -> Option<Block> {
     Some(Block::Picture(Picture { figures: vec![figure?], caption: Text::default(), file }))
 }
 
-fn one(figures: &BenchmarkRecord, case: &CaseRecord) -> Block {
+fn case_section(figures: &BenchmarkRecord, case: &CaseRecord) -> Block {
     let lead = format!(
         "Error: {}; worst of {} phases, {:.4} s. A start moved by a millionth of b_c moves the reference itself by {}.{}",
         case.measure,
@@ -119,7 +119,7 @@ fn steps(figures: &BenchmarkRecord, case: &CaseRecord) -> Block {
         ["kHz", "h omega_n", "error", "link RMS", "link worst", "peak force", "instr/step", "worst", "M instr/s"];
     let columns = [words("method")].into_iter().chain(heads.map(numbers)).collect();
     let entries = figures.methods.iter().filter(|entry| entry.case == case.key);
-    let rows = entries.flat_map(|entry| shown(entry).into_iter().map(|mark| step(entry, mark)));
+    let rows = entries.flat_map(|entry| displayed_steps(entry).into_iter().map(|mark| step(entry, mark)));
     table(columns, rows.collect())
 }
 
@@ -143,8 +143,8 @@ fn step(entry: &MethodResult, mark: &StepResult) -> Row {
 }
 
 /// Steps shown in a table: for this step the Pareto front, otherwise every other step of a long list, with the coarsest and the finest.
-fn shown(entry: &MethodResult) -> Vec<&StepResult> {
-    let best = front(entry.series().into_iter().flatten().collect());
+fn displayed_steps(entry: &MethodResult) -> Vec<&StepResult> {
+    let best = pareto_front(entry.series().into_iter().flatten().collect());
     let last = entry.marks.len().saturating_sub(1);
     let every = if entry.marks.len() > 8 { 2 } else { 1 };
     let wanted = |(index, mark): &(usize, &StepResult)| match entry.method {
@@ -158,7 +158,7 @@ fn shown(entry: &MethodResult) -> Vec<&StepResult> {
 
 /// Results of all methods within one sample.
 fn in_a_sample(found: &[&InASample]) -> [Block; 2] {
-    let [rms, worst, peak] = ASKED;
+    let [rms, worst, peak] = REQUIRED;
     let lead = format!(
         "Every method at its best in at most {INSTRUCTIONS:.0} instructions a sample, on average, at {} kHz. Asked for: \
          link angle within {} RMS and {} worst of the lost motion, peak mesh force of every part of the motion within \
@@ -182,7 +182,7 @@ fn in_a_sample(found: &[&InASample]) -> [Block; 2] {
             of(&|best| format!("{} %", fixed(1).write(100.0 * best.peak_force))),
             of(&|best| fixed(0).write(best.instructions)),
             of(&|best| best.instructions_most.to_string()),
-            of(&|best| if best.does() { "yes" } else { "no" }.into()),
+            of(&|best| if best.meets_requirements() { "yes" } else { "no" }.into()),
             one.at_equal_error.map_or_else(|| "not reached".into(), |cost| fixed(0).write(cost)),
         ])
     });
@@ -202,7 +202,7 @@ fn equal(found: &[&AtError], cost: impl Fn(f64) -> String) -> Block {
             None => rows.push(std::iter::once(at.name.clone()).chain(cells).collect()),
         }
     }
-    let levels = LEVELS.map(|level| [numbers(format!("at {}", powers_of_ten(0).write(level))), numbers("ratio")]);
+    let levels = ERROR_LEVELS.map(|level| [numbers(format!("at {}", powers_of_ten(0).write(level))), numbers("ratio")]);
     let columns = [words("method")].into_iter().chain(levels.into_iter().flatten()).collect();
     table(columns, rows.into_iter().map(row).collect())
 }
@@ -234,7 +234,7 @@ fn budget(figures: &BenchmarkRecord) -> Block {
     ];
     let lead = Block::Lead("The worst sample may take 1.5 times the budget.".into());
     section(
-        format!("Least error within half a {:.0} MHz core", CLOCK / 1e6),
+        format!("Least error within half a {:.0} MHz core", CLOCK_RATE / 1e6),
         vec![lead, table(columns, rows.into_iter().map(row).collect())],
     )
 }

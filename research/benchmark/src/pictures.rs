@@ -5,7 +5,7 @@ use comparison::method::Method;
 
 use super::libraries::Time;
 use super::method_results::{CaseRecord, MethodResult};
-use super::verdicts::{CLOCK, CYCLES, curve, front};
+use super::verdicts::{CLOCK_RATE, CYCLES_PER_INSTRUCTION, curve, pareto_front};
 use report::plot::ink::Ink;
 use report::plot::mark::Mark;
 use report::plot::panel::{Panel, VerticalAxis};
@@ -70,14 +70,14 @@ pub fn board(case: &CaseRecord, entries: &[MethodResult]) -> Option<Figure> {
         .iter()
         .filter(own)
         .map(|entry| {
-            let points = front(entry.series().into_iter().flatten().collect());
+            let points = pareto_front(entry.series().into_iter().flatten().collect());
             Curve { points, ink: ink(entry.method), name: entry.name, own: entry.method == Method::Realtime }
         })
         .collect();
-    let half = 0.5 * CLOCK / CYCLES;
+    let half = 0.5 * CLOCK_RATE / CYCLES_PER_INSTRUCTION;
     let note = format!(
-        "Instructions for a second of the joint. Vertical: half a {:.0} MHz core at {CYCLES} cycles each.",
-        CLOCK / 1e6
+        "Instructions for a second of the joint. Vertical: half a {:.0} MHz core at {CYCLES_PER_INSTRUCTION} cycles each.",
+        CLOCK_RATE / 1e6
     );
     figure(format!("Case {}: {}", case.key, case.title), "instructions", MEGA, curves, Some(half), note)
 }
@@ -165,7 +165,7 @@ mod tests {
 
     /// Without points there is no picture.
     #[test]
-    fn nothing_to_draw_is_no_picture() {
+    fn no_points_give_no_picture() {
         assert!(figure(String::new(), "", MEGA, vec![curve(&[], true)], None, String::new()).is_none());
     }
 }

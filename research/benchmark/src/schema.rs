@@ -6,6 +6,6 @@ use crate::BenchmarkRecord;
 
 /// The published schema equals the type's.
 #[test]
-fn the_published_schema_is_that_of_the_type() {
+fn published_schema_equals_the_type() {
     assert_published::<BenchmarkRecord>("bench.schema.json");
 }

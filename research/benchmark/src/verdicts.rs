@@ -7,15 +7,15 @@ use super::libraries::Time;
 use super::method_results::{MethodResult, StepResult};
 
 /// Cycles per instruction where no trace weighs them: a Cortex-M4F without wait states on similar code.
-pub const CYCLES: f64 = 1.4;
+pub const CYCLES_PER_INSTRUCTION: f64 = 1.4;
 /// Clock of the board for which budgets are stated [Hz].
-pub const CLOCK: f64 = 168e6;
+pub const CLOCK_RATE: f64 = 168e6;
 /// Share of the processor available to the joint.
-const SHARE: f64 = 0.5;
+const PROCESSOR_SHARE: f64 = 0.5;
 /// Largest ratio of the worst sample to the budget.
-const WORST: f64 = 1.5;
+const WORST_SAMPLE_RATIO: f64 = 1.5;
 /// Error levels of the comparison.
-pub const LEVELS: [f64; 2] = [1e-3, 1e-4];
+pub const ERROR_LEVELS: [f64; 2] = [1e-3, 1e-4];
 
 /// Cost of reaching an error.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -66,7 +66,7 @@ pub fn at_equal_error(entries: &[MethodResult]) -> Vec<AtError> {
     };
     let levels = |entry: &'_ MethodResult| {
         let (case, name) = (entry.case.clone(), entry.name.to_owned());
-        LEVELS.map(|level| ratio(case.clone(), name.clone(), level, cost(entry, level), of_step(&case, level)))
+        ERROR_LEVELS.map(|level| ratio(case.clone(), name.clone(), level, cost(entry, level), of_step(&case, level)))
     };
     entries.iter().filter(|entry| entry.method.has_meshes()).flat_map(levels).collect()
 }
@@ -88,13 +88,13 @@ pub fn host_at_equal_error(times: &[Time]) -> Vec<AtError> {
     let level = |(case, name): &(&str, &str), level: f64| {
         ratio((*case).into(), (*name).into(), level, cost_at(&curve(case, name), level), own(case, level))
     };
-    names.iter().flat_map(|name| LEVELS.map(|error| level(name, error))).collect()
+    names.iter().flat_map(|name| ERROR_LEVELS.map(|error| level(name, error))).collect()
 }
 
 /// Cost and error of a method on the host.
 pub fn curve(times: &[Time], case: &str, name: &str) -> Vec<(f64, f64)> {
     let of = times.iter().filter(|time| time.case == case && time.name == name);
-    front(of.filter_map(|time| Some((time.cost, time.error?))).collect())
+    pareto_front(of.filter_map(|time| Some((time.cost, time.error?))).collect())
 }
 
 fn ratio(case: String, name: String, error: f64, cost: Option<f64>, own: Option<f64>) -> AtError {
@@ -102,7 +102,7 @@ fn ratio(case: String, name: String, error: f64, cost: Option<f64>, own: Option<
 }
 
 /// Pareto front: points that no other point undercuts in both cost and error, from cheap to expensive.
-pub fn front(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+pub fn pareto_front(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut least = f64::INFINITY;
     points.retain(|point| {
@@ -131,12 +131,14 @@ fn cost_at(curve: &[(f64, f64)], error: f64) -> Option<f64> {
 pub fn in_budget(entries: &[MethodResult]) -> Vec<InBudget> {
     let one = |entry: &MethodResult, index: usize| {
         let sample_rate = SAMPLE_RATES[index];
-        let budget = SHARE * CLOCK / f64::from(sample_rate);
+        let budget = PROCESSOR_SHARE * CLOCK_RATE / f64::from(sample_rate);
         let ticks = |mark: &StepResult| mark.rate_Hz / sample_rate;
-        let cycles = |mark: &StepResult| CYCLES * mark.instructions * f64::from(ticks(mark));
-        let most = |mark: &StepResult| CYCLES * f64::from(mark.sample_instructions_most[index]);
+        let cycles = |mark: &StepResult| CYCLES_PER_INSTRUCTION * mark.instructions * f64::from(ticks(mark));
+        let most = |mark: &StepResult| CYCLES_PER_INSTRUCTION * f64::from(mark.sample_instructions_most[index]);
         let fitting = entry.marks.iter().filter(|mark| {
-            mark.rate_Hz.is_multiple_of(sample_rate) && cycles(mark) <= budget && most(mark) <= WORST * budget
+            mark.rate_Hz.is_multiple_of(sample_rate)
+                && cycles(mark) <= budget
+                && most(mark) <= WORST_SAMPLE_RATIO * budget
         });
         let with_error = fitting.filter_map(|mark| Some((mark, mark.error?)));
         let best = with_error.min_by(|a, b| a.1.total_cmp(&b.1));
@@ -171,7 +173,7 @@ pub struct Rounding {
 }
 
 /// Steps at which rounding is evaluated: at coarser steps the method's own error hides it.
-const ROUNDED_STEPS: (f64, f64) = (0.04, 0.3);
+const ROUNDING_STEPS: (f64, f64) = (0.04, 0.3);
 
 /// Rounding of this step; steps with the motion of another step, since contact held, appear once.
 pub fn rounding(entries: &[MethodResult]) -> Vec<Rounding> {
@@ -182,7 +184,7 @@ pub fn rounding(entries: &[MethodResult]) -> Vec<Rounding> {
         let series = |rate: &u32| stated().filter(|mark| mark.rate_Hz == *rate).count() > 1;
         let ticks = stated().map(|mark| mark.rate_Hz).filter(series).max().unwrap_or_default();
         let inside =
-            |mark: &&StepResult| mark.rate_Hz == ticks && (ROUNDED_STEPS.0..=ROUNDED_STEPS.1).contains(&mark.step);
+            |mark: &&StepResult| mark.rate_Hz == ticks && (ROUNDING_STEPS.0..=ROUNDING_STEPS.1).contains(&mark.step);
         for mark in entry.marks.iter().filter(inside) {
             let (Some(single), Some(double)) = (mark.error, mark.error_f64) else { continue };
             let like = |other: &Rounding| other.case == entry.case && (other.double / double - 1.0).abs() < 0.01;
@@ -201,7 +203,7 @@ mod tests {
 
     /// Cost at an error is interpolated in logarithms.
     #[test]
-    fn the_cost_at_an_error_is_interpolated_in_powers_of_ten() {
+    fn cost_is_interpolated_in_logarithms() {
         let curve = [(1.0, 1e-2), (10.0, 1e-4), (100.0, 1e-6)];
         let cost = cost_at(&curve, 1e-3).unwrap();
         assert!((cost - 10f64.sqrt()).abs() < 1e-12, "{cost}");
@@ -211,13 +213,13 @@ mod tests {
 
     /// A point that another point undercuts is not on the front.
     #[test]
-    fn a_point_that_another_undercuts_is_left_out() {
-        assert_eq!(front(vec![(3.0, 1.0), (1.0, 9.0), (2.0, 10.0), (4.0, 2.0)]), [(1.0, 9.0), (3.0, 1.0)]);
+    fn undercut_points_leave_the_front() {
+        assert_eq!(pareto_front(vec![(3.0, 1.0), (1.0, 9.0), (2.0, 10.0), (4.0, 2.0)]), [(1.0, 9.0), (3.0, 1.0)]);
     }
 
     /// An unreached error has no cost.
     #[test]
-    fn an_error_that_is_not_reached_has_no_cost() {
+    fn unreached_error_has_no_cost() {
         assert_eq!(cost_at(&[(1.0, 1e-2)], 1e-3), None);
         assert_eq!(cost_at(&[(1.0, 1e-4)], 1e-3), Some(1.0));
     }

@@ -24,7 +24,7 @@ fn text(path: &Path) -> &str {
 
 /// An unknown case is named together with the known ones.
 #[test]
-fn a_case_that_is_not_known_is_named_with_those_that_are() {
+fn unknown_case_lists_the_known_ones() {
     let ended = bench(&["--case", "A,Z"]);
     assert_eq!(ended.status.code(), Some(2));
     assert!(err(&ended).contains("--case Z") && err(&ended).contains("A, Q, R"), "{}", err(&ended));
@@ -32,14 +32,14 @@ fn a_case_that_is_not_known_is_named_with_those_that_are() {
 
 /// Empty seed ranges and joints without teeth are rejected.
 #[test]
-fn seeds_that_are_none_and_joints_without_teeth_are_told() {
+fn unusable_seeds_are_rejected() {
     refused(&["--random", "9-8"], &["--random", "no seed is from 9 to 8"]);
     refused(&["--random", "7005"], &["--random 7005", "equivalent gears", "help:"]);
 }
 
 /// A missing joint file is named.
 #[test]
-fn a_joint_file_that_is_not_there_is_named() {
+fn missing_joint_file_is_named() {
     let ended = bench(&["no/such/joint.toml"]);
     assert_eq!(ended.status.code(), Some(2));
     assert!(err(&ended).contains("no/such/joint.toml"), "{}", err(&ended));
@@ -50,13 +50,16 @@ fn a_joint_file_that_is_not_there_is_named() {
 fn refused(arguments: &[&str], words: &[&str]) {
     let ended = bench(arguments);
     assert_eq!(ended.status.code(), Some(2), "{arguments:?}: {}", err(&ended));
-    let said = err(&ended).replace(['│', '╰', '─', '├', '▶'], " ").split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(words.iter().all(|word| said.contains(word)) && !said.contains("panicked"), "{arguments:?}: {said}");
+    let printed = err(&ended).replace(['│', '╰', '─', '├', '▶'], " ").split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        words.iter().all(|word| printed.contains(word)) && !printed.contains("panicked"),
+        "{arguments:?}: {printed}"
+    );
 }
 
 /// Unreadable joint files are named.
 #[test]
-fn a_file_that_is_nothing_is_refused_by_its_name() {
+fn unreadable_file_is_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let all_bytes: Vec<u8> = (0..=255).collect();
     let inputs: [(&str, &[u8]); 3] = [("empty", b""), ("garbage", &all_bytes), ("no-utf8", b"name = \"\xff\"\n")];
@@ -70,7 +73,7 @@ fn a_file_that_is_nothing_is_refused_by_its_name() {
 
 /// Outputs that cannot be written are rejected before the work.
 #[test]
-fn a_result_that_cannot_be_written_is_known_before_the_work() {
+fn unwritable_output_is_rejected_early() {
     let folder = tempfile::tempdir().expect("a folder");
     let nowhere = folder.path().join("none/x");
     for option in ["--json", "--html", "--document"] {
@@ -86,7 +89,7 @@ fn a_result_that_cannot_be_written_is_known_before_the_work() {
 /// Each method takes at most the instructions of a dedicated prototype.
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn the_peers_are_as_lean_as_their_advocates_would_have_them() {
+fn baselines_are_as_lean_as_prototypes() {
     let folder = tempfile::tempdir().expect("a folder");
     let document = folder.path().join("budget.md");
     std::fs::write(&document, "# Before\n").expect("written");

@@ -6,7 +6,7 @@
 mod comparison {
     use core::hint::black_box;
 
-    use baselines::moving::{self, Core, Gap, GearedJoint, SteppedModel};
+    use baselines::moving::{self, Core, GapModel, GearedJoint, SteppedModel};
     use baselines::peer::Start;
     use baselines::plant::Plant;
     use baselines::scheme::Scheme;
@@ -103,7 +103,7 @@ mod comparison {
 
         /// Runs the two-mass model from displacements and their rates.
         pub fn two_mass(&self, job: u32, model: &TwoMass<f32>, starts: &[[f32; 2]], schedule: &StepSchedule) {
-            self.run(job, schedule, &mut Gap::new(black_box(model), black_box(starts)));
+            self.run(job, schedule, &mut GapModel::new(black_box(model), black_box(starts)));
         }
 
         fn run<M: SteppedModel<f32>>(&self, job: u32, schedule: &StepSchedule, moving: &mut M) {

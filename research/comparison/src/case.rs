@@ -63,7 +63,7 @@ pub fn at_rest(joint: &JointParameters) -> RelativeState {
 
 impl Case {
     /// Scenario whose deflections are all evaluated from a time [s] on.
-    pub fn of_scenario(key: &str, title: &str, scenario: Scenario, sample_rate: u32, counts_from: f64) -> Self {
+    pub fn from_scenario(key: &str, title: &str, scenario: Scenario, sample_rate: u32, counts_from: f64) -> Self {
         Self {
             key: key.into(),
             title: title.into(),
@@ -81,7 +81,7 @@ impl Case {
     }
 
     /// Motion of a robot joint.
-    pub fn of_robot_joint(key: &str, title: &str, case: CaseR) -> Self {
+    pub fn from_robot_joint(key: &str, title: &str, case: CaseR) -> Self {
         let mut torques: Vec<TorqueSegment> = Vec::new();
         for (tick, [drive, load]) in case.torques.iter().enumerate() {
             if torques.last().is_none_or(|last| (last.drive_torque, last.load_torque) != (*drive, *load)) {
@@ -116,7 +116,7 @@ impl Case {
     }
 
     /// Start with the sun displaced by a part of b_c.
-    pub fn moved_start(&self, part: f64) -> Start {
+    pub fn displaced_start(&self, part: f64) -> Start {
         let by = part * self.joint.characteristic_length;
         let mut start = match &self.start {
             Start::Relative(start) => start.clone(),

@@ -23,27 +23,27 @@ const SAMPLE_RATE: u32 = 40_000;
 pub fn cases() -> Vec<Case> {
     let settled = SETTLED / paper_natural_frequency();
     let paper =
-        |key: &str, title: &str, scenario: Scenario| Case::of_scenario(key, title, scenario, SAMPLE_RATE, settled);
+        |key: &str, title: &str, scenario: Scenario| Case::from_scenario(key, title, scenario, SAMPLE_RATE, settled);
     let mut all = vec![
         paper("A", "meshes part and hit eleven times a mesh period", case("A", CASE_A_OMEGA)),
         paper("Q", "contact holds", case("Q", CASE_Q_OMEGA)),
-        Case::of_robot_joint("R", "what a robot joint does", case_r::case_r()),
+        Case::from_robot_joint("R", "what a robot joint does", case_r::case_r()),
         paper("B", "both flanks hit", both_flanks()),
         paper("F", "five planets, meshes part and hit", five_planets()),
     ];
     let reversal = motions().into_iter().find(|scenario| scenario.name == "L1 contact, reversal through the gap");
     all.extend(reversal.map(|scenario| {
-        Case::of_scenario("L", "a large joint reversed through its gap, phase by angle", scenario, SAMPLE_RATE, 0.0)
+        Case::from_scenario("L", "a large joint reversed through its gap, phase by angle", scenario, SAMPLE_RATE, 0.0)
     }));
     all
 }
 
 /// Case of a joint from a file: the motion of a robot joint if its angle determines the mesh phase; steady running under half the rated
 /// torque if the phase is prescribed.
-pub fn of_joint(joint: &JointParameters) -> Case {
+pub fn for_joint(joint: &JointParameters) -> Case {
     let key = joint.name.as_str();
     if joint.excitation == Excitation::Angle {
-        return Case::of_robot_joint(key, "what a robot joint does", case_r::on(joint.clone()));
+        return Case::from_robot_joint(key, "what a robot joint does", case_r::on(joint.clone()));
     }
     let geometry = &joint.geometry;
     let load = 0.5 * joint.rated_output_torque;
@@ -81,10 +81,10 @@ pub fn of_joint(joint: &JointParameters) -> Case {
 }
 
 /// Motion of a robot joint, a fifth as long, on the random joint of a seed; `None` for an equivalent gear, which has no meshes.
-pub fn of_seed(seed: u64) -> Option<Case> {
+pub fn for_seed(seed: u64) -> Option<Case> {
     let joint = random_joint(seed);
     let (key, has_teeth) = (joint.name.to_string(), joint.equivalent_gear().is_none());
-    has_teeth.then(|| Case::of_robot_joint(&key, "what a robot joint does, in brief", case_r::brief(joint)))
+    has_teeth.then(|| Case::from_robot_joint(&key, "what a robot joint does, in brief", case_r::brief(joint)))
 }
 
 /// Case A with a narrow gap and a small torque, at a frequency at which the motion is not chaotic.

@@ -73,7 +73,7 @@ impl PhaseEnvelope {
     /// precision.
     pub fn sensitivity(&self) -> Result<Errors, ReferenceError> {
         let (case, trajectory) = &self.phases[0];
-        let moved = ReferenceTrajectory::from(case, &case.moved_start(1e-6))?;
+        let moved = ReferenceTrajectory::from(case, &case.displaced_start(1e-6))?;
         let samples: Vec<_> = moved.samples().iter().cloned().enumerate().collect();
         Ok(trajectory.errors(&samples))
     }
@@ -92,7 +92,7 @@ impl PhaseEnvelope {
             })
             .collect();
         let runs = runs?;
-        let errors = runs.iter().fold(Errors::NONE, |worst, (errors, _)| worst.or_worse(errors));
+        let errors = runs.iter().fold(Errors::NONE, |worst, (errors, _)| worst.worst_of(errors));
         let step = Scales::new(&self.case.joint).frequency / (f64::from(rate) * f64::from(substeps.max(1)));
         Ok(Point { rate, substeps, step, errors, digest: runs.first().map_or(0, |run| run.1) })
     }

@@ -21,7 +21,7 @@ pub struct Reading {
 }
 
 /// Readings of motions of a joint.
-pub struct Gauge<const N: usize> {
+pub struct ReadingModel<const N: usize> {
     plant: Plant<f64, N>,
     /// Rigid coordinate along the line of action per planet, gap and wind-up, negated: the carrier is at zero.
     rigid: [f64; 3],
@@ -30,7 +30,7 @@ pub struct Gauge<const N: usize> {
     force: f64,
 }
 
-impl<const N: usize> Gauge<N> {
+impl<const N: usize> ReadingModel<N> {
     /// Readings for a joint.
     pub fn new(joint: &JointParameters) -> Self {
         let masses = MovingMasses::new(joint);

@@ -8,7 +8,7 @@ use baselines::etd1::Etd1;
 use baselines::euler::SemiImplicitEuler;
 use baselines::instant::Rotor;
 use baselines::motion::{Coordinates, PeerState};
-use baselines::moving::{self, Core, Gap, GearedJoint, StepSchedule, SteppedModel};
+use baselines::moving::{self, Core, GapModel, GearedJoint, StepSchedule, SteppedModel};
 use baselines::peer::Start;
 use baselines::plant::Plant;
 use baselines::runge_kutta::RungeKutta4;
@@ -22,8 +22,8 @@ use parameters::{Excitation, JointParameters};
 
 use crate::case::Case;
 use crate::method::{Method, SHARPNESS};
-use crate::reading::{Gauge, Reading};
-use crate::start::Deflected;
+use crate::reading::{Reading, ReadingModel};
+use crate::start::InitialState;
 use crate::trajectory::Restart;
 
 /// Result of a run.
@@ -88,13 +88,13 @@ pub fn run<T: Real, const N: usize>(
     (rate, substeps): (u32, u32),
     clock: &dyn Fn() -> f64,
 ) -> Result<Run, DesignError> {
-    let starts = Deflected::<N>::all(&case.joint, &case.start, restarts);
+    let starts = InitialState::<N>::all(&case.joint, &case.start, restarts);
     Ok(match method {
         Method::Realtime => {
             let tables: Tables<T, N> = tables(&case.joint, rate, substeps)?;
             let starts: Vec<_> = starts.iter().map(|start| start.state(&case.joint, &tables)).collect();
-            let gauge = Gauge::new(&case.joint);
-            let read = |state: &State<T, N>| read_core(case, rate, &gauge, state);
+            let reading_model = ReadingModel::new(&case.joint);
+            let read = |state: &State<T, N>| read_core(case, rate, &reading_model, state);
             let mut core = Core::new(Model::new(&tables), &starts);
             follow(case, rate, clock, &mut core, |core| *core.model.state(), read)
         }
@@ -114,11 +114,11 @@ fn whole<T: Real, const N: usize, S: PeerScheme<T, N>>(
     method: Method,
     rate: u32,
     clock: &dyn Fn() -> f64,
-    starts: &[Deflected<N>],
+    starts: &[InitialState<N>],
 ) -> Run {
     let plant = plant(&case.joint, method, rate);
     let starts: Vec<Start<T, N>> = starts.iter().map(|start| start.peer(&case.joint, f64::from(rate))).collect();
-    let gauge = Gauge::new(&case.joint);
+    let reading_model = ReadingModel::new(&case.joint);
     // Angle of the rigid carrier with whole turns, and the clock's place at the last reading.
     let (mut carrier, mut last) = (0.0, 0_u64);
     let read = |(motion, clock): &(PeerState<T, N>, Clock<T>)| {
@@ -134,7 +134,7 @@ fn whole<T: Real, const N: usize, S: PeerScheme<T, N>>(
         }
         let now = clock.now();
         let phase = Rotor { sine: now.sine.to_f64(), cosine: now.cosine.to_f64(), rate: now.rate.to_f64() };
-        gauge.read(&motion, &phase, carrier)
+        reading_model.read(&motion, &phase, carrier)
     };
     let mut whole = GearedJoint::<T, N, S>::new(&plant, &starts).expect("a case has a start");
     follow(case, rate, clock, &mut whole, |whole| (*whole.peer.motion(), *whole.peer.clock()), read)
@@ -145,17 +145,18 @@ fn two_mass<T: Real, const N: usize>(
     contact: Contact,
     rate: u32,
     clock: &dyn Fn() -> f64,
-    starts: &[Deflected<N>],
+    starts: &[InitialState<N>],
 ) -> Run {
     let model = TwoMass::<T>::new(&case.joint, f64::from(rate), contact);
     let carriers: Vec<_> =
         starts.iter().map(|start| RigidCarrier::new(&case.joint, TAU * start.turns, start.speed, rate)).collect();
-    let place_and_rate = |start: &Deflected<N>| <[f64; 2]>::from(start.two_mass(&case.joint)).map(T::from_f64);
+    let place_and_rate = |start: &InitialState<N>| <[f64; 2]>::from(start.two_mass(&case.joint)).map(T::from_f64);
     let starts: Vec<[T; 2]> = starts.iter().map(place_and_rate).collect();
-    let mut carried = Carried { gap: Gap::new(&model, &starts), carrier: carriers[0].clone(), carriers };
+    let mut carried =
+        TwoMassWithCarrier { gap: GapModel::new(&model, &starts), carrier: carriers[0].clone(), carriers };
     // Link angle and mesh force.
-    let moment = |it: &Carried<'_, T>| {
-        let Carried { gap: Gap { peer, .. }, carrier, .. } = it;
+    let moment = |it: &TwoMassWithCarrier<'_, T>| {
+        let TwoMassWithCarrier { gap: GapModel { peer, .. }, carrier, .. } = it;
         (carrier.angle + peer.link_offset().to_f64(), peer.mesh_force().to_f64().abs())
     };
     let read = |&(link_angle, mesh_force): &(f64, f64)| Reading { deflections: Vec::new(), link_angle, mesh_force };
@@ -179,7 +180,7 @@ fn follow<T: Real, M: SteppedModel<T>, X>(
             .map(|(step, drive, load)| (step, T::from_f64(drive), T::from_f64(load))),
     };
     // Steps that coincide with a sample of the reference.
-    let divisor = greatest_divisor(rate, case.sample_rate);
+    let divisor = greatest_common_divisor(rate, case.sample_rate);
     let (every, stride) = (u64::from(rate / divisor), (case.sample_rate / divisor) as usize);
     let mut moments = Vec::with_capacity((schedule.steps / every) as usize + 1);
     let mut until_sample = 0;
@@ -197,12 +198,17 @@ fn follow<T: Real, M: SteppedModel<T>, X>(
     Run { readings, digest, seconds }
 }
 
-fn greatest_divisor(a: u32, b: u32) -> u32 {
-    if b == 0 { a } else { greatest_divisor(b, a % b) }
+fn greatest_common_divisor(a: u32, b: u32) -> u32 {
+    if b == 0 { a } else { greatest_common_divisor(b, a % b) }
 }
 
 /// Reading of a state of the core.
-fn read_core<T: Real, const N: usize>(case: &Case, rate: u32, gauge: &Gauge<N>, state: &State<T, N>) -> Reading {
+fn read_core<T: Real, const N: usize>(
+    case: &Case,
+    rate: u32,
+    reading_model: &ReadingModel<N>,
+    state: &State<T, N>,
+) -> Reading {
     let wide = |values: &Relative<T, N>| Coordinates {
         planets: values.planets.map(Real::to_f64),
         gap: values.gap.to_f64(),
@@ -221,20 +227,20 @@ fn read_core<T: Real, const N: usize>(case: &Case, rate: u32, gauge: &Gauge<N>, 
         }
     };
     let (sine, cosine) = angle.sin_cos();
-    gauge.read(&motion, &Rotor { sine, cosine, rate: rate / frequency }, carrier)
+    reading_model.read(&motion, &Rotor { sine, cosine, rate: rate / frequency }, carrier)
 }
 
 /// One turn, 2^64.
 const TURN: f64 = 18_446_744_073_709_551_616.0;
 
 /// Two-mass model with the rigid carrier that it lacks, and the carrier's state at each restart.
-struct Carried<'a, T: Real> {
-    gap: Gap<'a, T>,
+struct TwoMassWithCarrier<'a, T: Real> {
+    gap: GapModel<'a, T>,
     carrier: RigidCarrier,
     carriers: Vec<RigidCarrier>,
 }
 
-impl<T: Real> SteppedModel<f64> for Carried<'_, T> {
+impl<T: Real> SteppedModel<f64> for TwoMassWithCarrier<'_, T> {
     fn restart(&mut self, count: usize) {
         self.gap.restart(count);
         self.carrier = self.carriers[count].clone();

@@ -17,7 +17,7 @@ use crate::trajectory::Restart;
 const TURN: f64 = 18_446_744_073_709_551_616.0;
 
 /// Sun-planet deflections (errors subtracted), gap and wind-up [m], their rates [m/s], and the rigid carrier.
-pub struct Deflected<const N: usize> {
+pub struct InitialState<const N: usize> {
     /// Coordinates.
     pub position: Coordinates<f64, N>,
     /// Rates.
@@ -28,7 +28,7 @@ pub struct Deflected<const N: usize> {
     pub speed: f64,
 }
 
-impl<const N: usize> Deflected<N> {
+impl<const N: usize> InitialState<N> {
     /// State of a joint at a start.
     pub fn new(joint: &JointParameters, start: &Start) -> Self {
         match start {
@@ -51,13 +51,13 @@ impl<const N: usize> Deflected<N> {
     }
 
     /// State at a restart.
-    pub fn again(joint: &JointParameters, restart: &Restart) -> Self {
+    pub fn at_restart(joint: &JointParameters, restart: &Restart) -> Self {
         Self { turns: restart.turns, ..Self::new(joint, &Start::Relative(restart.state.clone())) }
     }
 
     /// States at the start of a case and at each of its restarts.
     pub fn all(joint: &JointParameters, start: &Start, restarts: &[Restart]) -> Vec<Self> {
-        std::iter::once(Self::new(joint, start)).chain(restarts.iter().map(|at| Self::again(joint, at))).collect()
+        std::iter::once(Self::new(joint, start)).chain(restarts.iter().map(|at| Self::at_restart(joint, at))).collect()
     }
 
     /// Fraction of the rigid carrier's turns [2^-64 turns].

@@ -52,7 +52,7 @@ impl Errors {
     pub const NONE: Self = Self { deflections: 0.0, link_rms: 0.0, link_worst: 0.0, peak_force: 0.0 };
 
     /// Worse of both, figure by figure; NaN is worst.
-    pub fn or_worse(&self, other: &Self) -> Self {
+    pub fn worst_of(&self, other: &Self) -> Self {
         let worse = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) };
         Self {
             deflections: worse(self.deflections, other.deflections),

@@ -14,7 +14,7 @@ fn envelope(key: &str) -> PhaseEnvelope {
 
 /// The Jacobian equals the numerical derivative of the rates.
 #[test]
-fn the_jacobian_is_the_derivative_of_the_rates() {
+fn jacobian_is_derivative_of_rates() {
     let envelope = envelope("A");
     let equations: Equations<3, 8> = Equations::new(&envelope.case).expect("a case that libraries can take");
     let state = [6.5, 5.0, 7.5, 13.0, 0.3, -0.2, 0.1, 0.4];
@@ -37,7 +37,7 @@ fn the_jacobian_is_the_derivative_of_the_rates() {
 
 /// Every library converges to the reference's motion.
 #[test]
-fn every_library_comes_to_the_reference_s_motion() {
+fn libraries_converge_to_the_reference() {
     let envelope = envelope("A");
     let case = &envelope.case;
     let equations: Equations<3, 8> = Equations::new(case).expect("a case that libraries can take");

@@ -28,14 +28,14 @@ fn order(envelope: &PhaseEnvelope, method: Method, rates: [u32; 2]) -> f64 {
 
 /// Runge-Kutta is of fourth order in contact.
 #[test]
-fn runge_kutta_is_of_fourth_order_where_contact_holds() {
+fn runge_kutta_is_of_fourth_order() {
     let order = order(&envelope("Q"), Method::RungeKutta4, [40_000, 160_000]);
     assert!((order - 4.0).abs() < 0.3, "{order}");
 }
 
 /// The trapezoid is of second order and Euler of first in contact.
 #[test]
-fn the_trapezoid_is_of_second_order_and_euler_of_first_where_contact_holds() {
+fn trapezoid_and_euler_have_their_orders() {
     let envelope = envelope("Q");
     let trapezoid = order(&envelope, Method::Trapezoid, [80_000, 320_000]);
     let euler = order(&envelope, Method::Euler, [80_000, 320_000]);
@@ -45,7 +45,7 @@ fn the_trapezoid_is_of_second_order_and_euler_of_first_where_contact_holds() {
 
 /// The paper's scheme is of first order, and exact where nothing varies.
 #[test]
-fn the_paper_s_scheme_is_of_first_order_and_exact_where_nothing_varies() {
+fn paper_scheme_is_of_first_order() {
     let varying = order(&envelope("Q"), Method::PaperEtd1, [80_000, 320_000]);
     assert!((varying - 1.0).abs() < 0.1, "{varying}");
     let mut still = named("Q");
@@ -63,7 +63,7 @@ fn the_paper_s_scheme_is_of_first_order_and_exact_where_nothing_varies() {
 
 /// All methods with meshes converge to the reference's motion through kinks.
 #[test]
-fn all_methods_with_meshes_come_to_the_reference_s_motion_through_kinks() {
+fn methods_converge_through_kinks() {
     for key in ["A", "B", "F", "L"] {
         let envelope = envelope(key);
         for (method, greatest) in [
@@ -82,7 +82,7 @@ fn all_methods_with_meshes_come_to_the_reference_s_motion_through_kinks() {
 
 /// Single precision adds at most a few millionths to the error.
 #[test]
-fn single_precision_costs_no_method_more_than_a_few_millionths() {
+fn single_precision_adds_millionths() {
     let envelope = envelope("A");
     for method in [Method::RungeKutta4, Method::Trapezoid, Method::Euler] {
         let single = envelope.point(method, Scalar::Single, 200_000, 1).unwrap().errors.deflections;
@@ -93,7 +93,7 @@ fn single_precision_costs_no_method_more_than_a_few_millionths() {
 
 /// The two-mass models settle at the link angle of the whole joint.
 #[test]
-fn the_two_mass_models_come_to_rest_at_the_link_angle_of_the_whole_joint() {
+fn two_mass_models_settle_at_the_link_angle() {
     let envelope = envelope("L");
     for method in [Method::TwoMassSpring, Method::TwoMassRestitution] {
         let errors = envelope.point(method, Scalar::Double, 160_000, 1).unwrap().errors;
@@ -103,7 +103,7 @@ fn the_two_mass_models_come_to_rest_at_the_link_angle_of_the_whole_joint() {
 
 /// A phase shift by a whole period changes nothing.
 #[test]
-fn a_shift_of_the_phase_by_a_whole_period_changes_nothing() {
+fn whole_period_shift_changes_nothing() {
     let case = named("A");
     let envelope = PhaseEnvelope::new(case.shifted(1.0), 1).unwrap();
     let samples: Vec<_> = envelope.trajectory().samples().iter().cloned().enumerate().collect();
@@ -113,7 +113,7 @@ fn a_shift_of_the_phase_by_a_whole_period_changes_nothing() {
 
 /// A phase shift by half a period changes the motion.
 #[test]
-fn another_phase_is_another_motion() {
+fn half_period_shift_changes_the_motion() {
     let case = named("A");
     let envelope = PhaseEnvelope::new(case.shifted(0.5), 1).unwrap();
     let samples: Vec<_> = envelope.trajectory().samples().iter().cloned().enumerate().collect();

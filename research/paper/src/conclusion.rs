@@ -157,15 +157,15 @@ fn starts(reading: &Reading) -> Option<Finding> {
             )
         })
     };
-    let told: Vec<String> = others.iter().filter_map(differing).collect();
-    if told.is_empty() {
+    let starts_apart: Vec<String> = others.iter().filter_map(differing).collect();
+    if starts_apart.is_empty() {
         let text =
             "Several attractors share a half-backlash in places: carried upward or downward from the last state \
                     (--sweep all) the inner windows move."
                 .to_owned();
         return (others.is_empty() && is_papers(reading)).then(|| finding("Windows depend on the start.", text));
     }
-    let text = format!("Another attractor than from rest is reached {}.", told.join("; "));
+    let text = format!("Another attractor than from rest is reached {}.", starts_apart.join("; "));
     Some(finding("Windows depend on the start.", text))
 }
 

@@ -63,7 +63,7 @@ mod tests {
 
     /// The error of the corrected form falls with sharpness, that of the printed one does not.
     #[test]
-    fn the_corrected_form_nears_the_sharp_one_and_the_printed_one_does_not() {
+    fn only_corrected_form_converges() {
         let figure = figure();
         for error in figure.errors.iter().filter(|error| error.sharpness >= 2.0) {
             let scaled = error.sharpness * error.corrected;

@@ -46,7 +46,7 @@ mod tests {
 
     /// The list must have one class for each half-backlash.
     #[test]
-    fn expectations_are_as_many_as_half_backlashes() {
+    fn expectations_match_half_backlashes() {
         let read = list("1,1,3,chaos", 4).expect("four classes");
         assert_eq!(read, [Class::Periodic(1), Class::Periodic(1), Class::Periodic(3), Class::Chaotic]);
         for (text, count) in [("1,1,3,chaos", 3), ("0", 1), ("order", 1), ("", 1), ("-1", 1)] {

@@ -3,13 +3,13 @@
 use report::failure::{Failure, Outcome};
 
 /// Largest number of points of a diagram, limited by time and by the picture's resolution.
-const MOST_POINTS: f64 = 20_000.0;
+const POINTS_MAX: f64 = 20_000.0;
 
 /// Largest number of attractors in a report.
-const MOST_VALUES: usize = 24;
+const VALUES_MAX: usize = 24;
 
 /// Largest half-backlash of any gear [um].
-const GREATEST: f64 = 10_000.0;
+const HALF_BACKLASH_MAX: f64 = 10_000.0;
 
 /// Micrometres in a metre: dividing by it gives the number nearest to the text, multiplying by 1e-6 would not.
 const MICROMETRES: f64 = 1e6;
@@ -22,8 +22,8 @@ pub fn list(text: &str) -> Outcome<Vec<f64>> {
     };
     let values: Vec<f64> =
         text.split(',').map(|part| value(part).map(|b| b / MICROMETRES).map_err(failed)).collect::<Outcome<_>>()?;
-    if values.len() > MOST_VALUES {
-        return Err(failed(format!("{} values, and a report has room for {MOST_VALUES}", values.len())));
+    if values.len() > VALUES_MAX {
+        return Err(failed(format!("{} values; a report holds at most {VALUES_MAX}", values.len())));
     }
     Ok(values)
 }
@@ -38,12 +38,12 @@ pub fn grid(text: &str) -> Outcome<Vec<f64>> {
     let [from, to, step] = parts[..] else { return Err(failed("not of the form from:to:step".to_owned())) };
     let [from, to, step] = [value(from).map_err(failed)?, value(to).map_err(failed)?, value(step).map_err(failed)?];
     if step == 0.0 || to < from {
-        return Err(failed("there is no point in it".to_owned()));
+        return Err(failed("it contains no point".to_owned()));
     }
     // The margin keeps the last point of a step that divides the range in decimals.
     let steps = ((to - from) / step + 1e-9).floor();
-    if steps + 1.0 > MOST_POINTS {
-        return Err(failed(format!("{:.0} points, and at most {MOST_POINTS} can be shown", steps + 1.0)));
+    if steps + 1.0 > POINTS_MAX {
+        return Err(failed(format!("{:.0} points; at most {POINTS_MAX} can be shown", steps + 1.0)));
     }
     Ok((0..=steps as u32).map(|index| (from + f64::from(index) * step) / MICROMETRES).collect())
 }
@@ -52,8 +52,10 @@ pub fn grid(text: &str) -> Outcome<Vec<f64>> {
 fn value(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(value) if value.is_finite() && value < 0.0 => Err(format!("`{}` is negative", text.trim())),
-        Ok(value) if value <= GREATEST => Ok(value),
-        Ok(value) if value > GREATEST => Err(format!("`{}` um is more than any gear's backlash", text.trim())),
+        Ok(value) if value <= HALF_BACKLASH_MAX => Ok(value),
+        Ok(value) if value > HALF_BACKLASH_MAX => {
+            Err(format!("`{}` um is above the limit of {HALF_BACKLASH_MAX} um", text.trim()))
+        }
         _ => Err(format!("`{}` is not a number", text.trim())),
     }
 }
@@ -64,7 +66,7 @@ mod tests {
 
     /// A grid includes both ends.
     #[test]
-    fn a_grid_has_both_its_ends() {
+    fn grid_includes_both_ends() {
         let grid = grid("0:150:0.5").expect("a good grid");
         assert_eq!(grid.len(), 301);
         assert!((grid[300] - 150e-6).abs() < 1e-15);
@@ -73,7 +75,7 @@ mod tests {
 
     /// Invalid grids are rejected with a remedy.
     #[test]
-    fn what_is_no_grid_is_refused_with_the_mend() {
+    fn invalid_grid_is_rejected() {
         for text in
             ["0:150:0", "150:0:1", "0:150:-1", "0:150", "0:150:0.5:1", "a:b:c", "0:150:1e-9", "0:nan:1", "0:1e9:1"]
         {
@@ -86,7 +88,7 @@ mod tests {
 
     /// Invalid lists are rejected with a remedy.
     #[test]
-    fn what_is_no_list_is_refused_with_the_mend() {
+    fn invalid_list_is_rejected() {
         assert_eq!(list("0, 10,60").expect("a good list").len(), 3);
         for text in ["", "1,,2", "-1", "inf", "1;2", &["1"; 25].join(",")] {
             assert!(list(text).expect_err(text).help().is_some());

@@ -149,7 +149,7 @@ fn attractor(reading: &Reading, known: &Known, found: &AttractorRecord, checks: 
     );
     if !known.points.is_empty() {
         let nearest = |point: &[f64; 4]| {
-            let distances = found.poincare_points.iter().map(|other| far(point, other));
+            let distances = found.poincare_points.iter().map(|other| largest_difference(point, other));
             distances.fold(f64::INFINITY, f64::min)
         };
         let worst = known.points.iter().map(nearest).fold(0.0, f64::max);
@@ -167,7 +167,7 @@ fn attractor(reading: &Reading, known: &Known, found: &AttractorRecord, checks: 
     }
 }
 
-fn far(one: &[f64; 4], other: &[f64; 4]) -> f64 {
+fn largest_difference(one: &[f64; 4], other: &[f64; 4]) -> f64 {
     one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 

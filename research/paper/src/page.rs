@@ -74,7 +74,7 @@ fn class(class: Class) -> Text {
 
 fn findings(record: &StudyRecord) -> Block {
     let findings = conclusion::findings(record).into_iter().map(|finding| strong(finding.head) + " " + finding.text);
-    section("What came out", vec![Block::List(findings.collect())])
+    section("Findings", vec![Block::List(findings.collect())])
 }
 
 fn attractors(reading: &Reading) -> Block {
@@ -166,7 +166,7 @@ fn ingredients(record: &StudyRecord) -> Block {
            x − 1 in the gap, a force between teeth that do not touch. Right: corrected, the largest error falls as \
            0.139/σ; as printed no sharpness removes it. The study uses the sharp dead zone and locates every contact.";
     section(
-        "What the model is made of",
+        "Model elements",
         vec![
             picture(pictures::stiffness(record).figure, strong("Fig. 3. ") + indexed(&stiffness)),
             beside(pictures::dead_zone(record), dead_zone),

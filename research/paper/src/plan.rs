@@ -15,7 +15,7 @@ use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 
 /// Half-backlashes of Figs 5-8 over that of the joint file: 0, 10, 60, 120 um where the file has 60.
-const FIGURES: [f64; 4] = [0.0, 1.0 / 6.0, 1.0, 2.0];
+const FIGURE_FACTORS: [f64; 4] = [0.0, 1.0 / 6.0, 1.0, 2.0];
 
 /// End of the bifurcation diagram over the half-backlash of the joint file: 150 um where it has 60.
 const DIAGRAM_END: f64 = 2.5;
@@ -133,7 +133,7 @@ impl StudyPlan {
         }
         let values = match &arguments.half_backlash {
             Some(text) => grid::list(text)?,
-            None => FIGURES.map(|factor| factor * own).to_vec(),
+            None => FIGURE_FACTORS.map(|factor| factor * own).to_vec(),
         };
         let grid = match &arguments.grid {
             Some(text) => grid::grid(text)?,
@@ -166,7 +166,7 @@ impl StudyJoint {
     fn new(loaded: Loaded, omega: Option<f64>) -> Outcome<Self> {
         if loaded.file.parameters.equivalent_gear().is_some() {
             return Err(Failure::new(format!(
-                "{} is an equivalent gear: it has no teeth, so no mesh frequency that could excite it",
+                "{} is an equivalent gear: it has no teeth and therefore no mesh frequency",
                 loaded.name
             ))
             .with_help("the paper's study is of planetary gears: name a joint file with [geometry] and [mesh]"));
@@ -174,8 +174,11 @@ impl StudyJoint {
         let mut parameters = loaded.file.parameters.clone();
         if let Some(omega) = omega {
             if !(1e-3..=100.0).contains(&omega) {
-                return Err(Failure::new(format!("--omega {}: no mesh frequency over omega_n", TYPED.write(omega)))
-                    .with_help("give a ratio between 0.001 and 100, such as --omega 2.1, the paper's"));
+                return Err(Failure::new(format!(
+                    "--omega {} is not a usable mesh frequency over omega_n",
+                    TYPED.write(omega)
+                ))
+                .with_help("give a ratio between 0.001 and 100, such as --omega 2.1, the paper's"));
             }
             parameters.excitation = Excitation::Time { mesh_frequency: omega * Scales::new(&parameters).frequency };
         }
@@ -220,7 +223,7 @@ impl StudyJoint {
             }
             StudyError::TooStiff => "raise the mesh frequency: --omega",
             StudyError::NotFinite => {
-                "a ripple near twice a natural frequency can do that: more damping, or another --omega"
+                "a ripple near twice a natural frequency can cause this: raise the damping or change --omega"
             }
         };
         Failure::new(format!("{} cannot be studied: {error}", self.loaded.name)).with_help(help)

@@ -5,11 +5,11 @@ use super::record::StudyRecord;
 use report::schema::{assert_explained, assert_published};
 
 #[test]
-fn the_published_schema_of_a_study_is_that_of_the_types() {
+fn published_study_schema_equals_types() {
     assert_published::<StudyRecord>("paper-study.schema.json");
 }
 
 #[test]
-fn every_key_of_a_study_is_explained() {
+fn every_study_key_is_explained() {
     assert_explained::<StudyRecord>("paper-study.md", [], 40);
 }

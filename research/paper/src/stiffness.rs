@@ -88,13 +88,13 @@ mod tests {
     }
 
     #[test]
-    fn the_paper_s_teeth_have_their_contact_ratio() {
+    fn paper_teeth_have_known_contact_ratio() {
         // Tip radii 43.5 and 55.5 mm, centres 93.0 mm apart, base pitch 8.5694 mm.
         assert!((contact_ratio(&paper()) - 1.4886).abs() < 2e-4, "{}", contact_ratio(&paper()));
     }
 
     #[test]
-    fn the_first_harmonic_is_that_of_the_rectangle_drawn() {
+    fn first_harmonic_matches_the_rectangle() {
         let figure = figure(&paper());
         assert!((figure.first_harmonic_ratio - 0.1).abs() < 1e-12);
         // The Fourier integral of what is drawn, over one period.

@@ -18,11 +18,11 @@ use report::progress::Progress;
 use report::spectrum::{Mean, Window, amplitudes};
 
 /// For attractors of the table: exponents of chaos come to about 0.0012 (one standard deviation).
-const TABLE: Effort =
+const TABLE_EFFORT: Effort =
     Effort { transient: 300, longest_transient: 1000, alignment: 60, points: 1000, chaotic_periods: 12_000 };
 
 /// For points of a diagram.
-const DIAGRAM: Effort =
+const DIAGRAM_EFFORT: Effort =
     Effort { transient: 200, longest_transient: 600, alignment: 40, points: 200, chaotic_periods: 400 };
 
 /// Poincare points of an attractor without a period that are kept, and among which distinct ones are counted.
@@ -35,10 +35,10 @@ const LONG_SIGNAL: u32 = 512;
 const SHORT_SIGNAL: u32 = 48;
 
 /// Periods of history that are kept.
-const HISTORY: usize = 36;
+const HISTORY_PERIODS: usize = 36;
 
 /// Of the samples of the history one in so many is kept.
-const THINNED: usize = 2;
+const HISTORY_STRIDE: usize = 2;
 
 /// Spectra are kept up to this multiple of the mesh frequency.
 const HIGHEST_LINE: f64 = 6.0;
@@ -60,7 +60,7 @@ fn reading(subject: &StudyJoint, plan: &StudyPlan, progress: &Progress) -> Outco
     let scales = Scales::new(parameters);
     let sweep = |start: &SweepStart| sweep(subject, *start, &plan.grid, progress);
     let attractor = |half_backlash: &f64| {
-        stop_if_asked()?;
+        stop_if_interrupted()?;
         let attractor = attractor_at(subject, *half_backlash)?;
         progress.done(ATTRACTOR_WORK);
         Ok(attractor)
@@ -97,7 +97,7 @@ fn reading(subject: &StudyJoint, plan: &StudyPlan, progress: &Progress) -> Outco
 /// One diagram. Points from rest are shared out; a chain of points cannot be split.
 fn sweep(subject: &StudyJoint, start: SweepStart, grid: &[f64], progress: &Progress) -> Outcome<Sweep> {
     let from_rest = |half_backlash: &f64| {
-        stop_if_asked()?;
+        stop_if_interrupted()?;
         let system = subject.system(*half_backlash)?;
         let point = point(subject, *half_backlash, &mut EventIntegrator::from_rest(&system))?;
         progress.done(1);
@@ -110,7 +110,7 @@ fn sweep(subject: &StudyJoint, start: SweepStart, grid: &[f64], progress: &Progr
     Ok(Sweep { start: start.word().to_owned(), windows: windows::windows(&points), points })
 }
 
-fn stop_if_asked() -> Outcome<()> {
+fn stop_if_interrupted() -> Outcome<()> {
     if interruption::requested() {
         Err(Failure::interrupted("stopped by the user; nothing was written"))
     } else {
@@ -120,7 +120,7 @@ fn stop_if_asked() -> Outcome<()> {
 
 /// One point of a diagram.
 fn point(subject: &StudyJoint, half_backlash: f64, motion: &mut EventIntegrator<'_>) -> Outcome<SweepPoint> {
-    let found = attractor::find(motion, &DIAGRAM).map_err(|error| at(subject, half_backlash, error))?;
+    let found = attractor::find(motion, &DIAGRAM_EFFORT).map_err(|error| at(subject, half_backlash, error))?;
     let x_sp = found.cycle().iter().map(|point| rounded(point[0])).collect();
     Ok(SweepPoint { half_backlash_m: half_backlash, class: found.class, exponent: found.exponent, x_sp })
 }
@@ -134,7 +134,7 @@ fn carried(subject: &StudyJoint, start: SweepStart, grid: &[f64], progress: &Pro
     let mut state = None;
     let mut points = Vec::with_capacity(order.len());
     for half_backlash in order {
-        stop_if_asked()?;
+        stop_if_interrupted()?;
         let system = subject.system(half_backlash)?;
         let mut motion = match state {
             None => EventIntegrator::from_rest(&system),
@@ -155,9 +155,9 @@ fn attractor_at(subject: &StudyJoint, half_backlash: f64) -> Outcome<AttractorRe
     let failed = |error| at(subject, half_backlash, error);
     let system = subject.system(half_backlash)?;
     let mut motion = EventIntegrator::from_rest(&system);
-    let mut found = attractor::find(&mut motion, &TABLE).map_err(failed)?;
-    let two = attractor::by_two_trajectories(&system, &found, &TABLE).map_err(failed)?;
-    let between = attractor::between_planets(&motion, &TABLE).map_err(failed)?;
+    let mut found = attractor::find(&mut motion, &TABLE_EFFORT).map_err(failed)?;
+    let two = attractor::by_two_trajectories(&system, &found, &TABLE_EFFORT).map_err(failed)?;
+    let between = attractor::between_planets(&motion, &TABLE_EFFORT).map_err(failed)?;
     found.points.truncate(KEPT_POINTS);
     let reference_distance = oracle::distance(subject, half_backlash, &motion, found.class);
     let (periods, window) = match found.class {
@@ -190,10 +190,10 @@ fn at(subject: &StudyJoint, half_backlash: f64, error: crate::numerics::system::
 }
 
 fn history(signal: &Signal) -> History {
-    let kept = (HISTORY * SAMPLES).min(signal.position.len());
-    let thinned = |values: &[f64]| values[..kept].iter().step_by(THINNED).map(|value| rounded(*value)).collect();
+    let kept = (HISTORY_PERIODS * SAMPLES).min(signal.position.len());
+    let thinned = |values: &[f64]| values[..kept].iter().step_by(HISTORY_STRIDE).map(|value| rounded(*value)).collect();
     History {
-        periods: (0..kept).step_by(THINNED).map(|index| rounded(index as f64 / SAMPLES as f64)).collect(),
+        periods: (0..kept).step_by(HISTORY_STRIDE).map(|index| rounded(index as f64 / SAMPLES as f64)).collect(),
         x_sp: thinned(&signal.position),
         x_sp_rate: thinned(&signal.rate),
     }

@@ -33,7 +33,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_class_is_told_within_a_window_and_not_between_two() {
+    fn class_is_known_within_windows_only() {
         let window = |from_m, to_m, class| ClassWindow { from_m, to_m, class };
         let windows = [window(0.0, 10e-6, Class::Periodic(1)), window(20e-6, 20e-6, Class::Chaotic)];
         let classes = [0.0, 5e-6, 10e-6, 15e-6, 20e-6, 25e-6].map(|b| class_at(&windows, b));
@@ -42,7 +42,7 @@ mod tests {
     }
 
     #[test]
-    fn neighbours_of_one_class_are_one_window() {
+    fn neighbours_of_one_class_form_a_window() {
         use Class::{Chaotic, Periodic};
         let classes = [Periodic(1), Periodic(1), Periodic(2), Chaotic, Chaotic, Periodic(1)];
         let points: Vec<SweepPoint> = classes

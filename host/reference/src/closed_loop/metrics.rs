@@ -3,10 +3,10 @@
 use super::{Run, Sample};
 
 /// Share of the half-gap from which a flank counts as touching; below 1 by mesh deflection and transmission error.
-const NEAR: f64 = 0.9;
+const TOUCH_SHARE: f64 = 0.9;
 
 /// Share of the half-gap below which a flank counts as left: a shorter bounce belongs to the strike before it. Chosen.
-const LEFT: f64 = 0.8;
+const RELEASE_SHARE: f64 = 0.8;
 
 /// Figures of merit of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -63,7 +63,7 @@ impl Figures {
     fn count_crossings(&mut self, samples: &[Sample]) {
         let mut touched: Option<(f64, f64)> = None;
         let mut total = 0.0;
-        for sample in samples.iter().filter(|sample| sample.gap.abs() > NEAR) {
+        for sample in samples.iter().filter(|sample| sample.gap.abs() > TOUCH_SHARE) {
             let side = sample.gap.signum();
             if let Some((before, since)) = touched
                 && before != side
@@ -87,10 +87,10 @@ fn strikes(samples: &[Sample]) -> usize {
     let (mut free, mut strikes) = (false, 0);
     for sample in samples {
         let gap = sample.gap.abs();
-        if free && gap > NEAR {
+        if free && gap > TOUCH_SHARE {
             (free, strikes) = (false, strikes + 1);
         }
-        free |= gap < LEFT;
+        free |= gap < RELEASE_SHARE;
     }
     strikes
 }
@@ -115,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_strike_is_a_landing_after_the_flank_was_left() {
+    fn strike_is_landing_after_leaving_flank() {
         let of = |gaps: &[f64]| {
             let samples: Vec<Sample> = gaps.iter().map(|gap| Sample { gap: *gap, ..Sample::default() }).collect();
             (strikes(&samples), Figures::of(&Run { samples, period: 1.0 }, 0.0).crossings)

@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn the_friction_is_that_of_an_independent_integration() {
+    fn friction_matches_independent_integration() {
         let friction = Friction { coulomb: 0.3, viscous: 0.1, stribeck_rise_ratio: 0.2, stribeck_speed: 0.05 };
         // Slow enough that sigma_1 is never limited, far enough to break away.
         let speed = |time: f64| 0.001 * TAU * 2.0 * (TAU * 2.0 * time).cos();
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slow_cycle_loses_the_energy_of_the_presliding_loop() {
+    fn slow_cycle_loses_presliding_energy() {
         let friction = coulomb();
         for amplitude in [0.1e-3, 0.3e-3, 2e-3] {
             let mut bristles = bristles(&friction);
@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn small_displacements_meet_the_presliding_stiffness() {
+    fn small_displacement_has_presliding_stiffness() {
         let friction = coulomb();
         let mut bristles = bristles(&friction);
         let torque = (0..1000).map(|_| bristles.friction(&shaft(1e-4), &friction, 0.0)).last().expect("some");
@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fast_reversal_never_takes_more_than_three_times_the_dry_friction() {
+    fn fast_reversal_stays_below_triple_friction() {
         let friction = coulomb();
         let mut bristles = bristles(&friction);
         for part in 0..1000 {
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn no_bristles_without_dry_friction_or_presliding() {
+    fn no_bristles_without_dry_friction() {
         assert!(Bristles::new(&Friction::default(), PRESLIDING, INERTIA).is_none());
         assert!(Bristles::new(&coulomb(), 0.0, INERTIA).is_none());
     }

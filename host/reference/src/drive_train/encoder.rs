@@ -97,7 +97,7 @@ impl Encoder {
 
     /// Returns counts since angle zero, whole turns included.
     pub fn counts(&self) -> i64 {
-        let angle = self.angle_then();
+        let angle = self.delayed_angle();
         let once = self.parameters.once_per_turn_error * (angle + self.phases.once_per_turn).sin();
         let twice = self.parameters.twice_per_turn_error * (2.0 * angle + self.phases.twice_per_turn).sin();
         let of_scale = self.parameters.subdivision;
@@ -110,7 +110,7 @@ impl Encoder {
     }
 
     /// Angle at the time of the reading, by a cubic between the two nearest points.
-    fn angle_then(&self) -> f64 {
+    fn delayed_angle(&self) -> f64 {
         let Some(last) = self.past.back() else { return 0.0 };
         let then = last.time - self.parameters.skew - self.age;
         let after = self.past.partition_point(|point| point.time <= then);

@@ -39,11 +39,11 @@ pub struct Counters {
     pub unguarded_steps: u64,
 }
 
-/// Number of events within [`GRAZE`] that count as one graze: the guard stays near zero, where both modes agree.
-const EVENTS_IN_A_GRAZE: u32 = 32;
+/// Number of events within [`GRAZE_STEP`] that count as one graze: the guard stays near zero, where both modes agree.
+const GRAZE_EVENTS: u32 = 32;
 
 /// Duration of a graze, and of the unguarded step that ends it, relative to the longest step.
-const GRAZE: f64 = 1e-5;
+const GRAZE_STEP: f64 = 1e-5;
 
 /// State and step size of a running integration.
 #[derive(Debug, Clone)]
@@ -93,9 +93,9 @@ impl Integrator {
         self.restart(system, &mut rates);
         let longest = system.longest_step();
         while self.time < end {
-            let unguarded = sliver.1 >= EVENTS_IN_A_GRAZE;
+            let unguarded = sliver.1 >= GRAZE_EVENTS;
             let remaining = end - self.time;
-            let wanted = if unguarded { GRAZE * longest } else { self.step.min(longest) };
+            let wanted = if unguarded { GRAZE_STEP * longest } else { self.step.min(longest) };
             // Two equal steps instead of a full one and a tiny rest.
             let step = if wanted >= remaining { remaining } else { wanted.min(0.5 * remaining) };
             let whole = trial(system, self.time, &self.state, &rates, step);
@@ -126,7 +126,8 @@ impl Integrator {
             }
             if event.is_some() {
                 self.counters.events += 1;
-                sliver = if self.time - sliver.0 > GRAZE * longest { (self.time, 1) } else { (sliver.0, sliver.1 + 1) };
+                sliver =
+                    if self.time - sliver.0 > GRAZE_STEP * longest { (self.time, 1) } else { (sliver.0, sliver.1 + 1) };
                 self.restart(system, &mut rates);
             } else if unguarded {
                 self.counters.unguarded_steps += 1;

@@ -31,7 +31,7 @@ impl<S: SwitchedSystem> Search<'_, S> {
             let to = self.reading(&end, index);
             let crossed = if to.guard.value < 0.0 { Some((from, end)) } else { self.hidden_crossing(index, from, to) };
             if let Some((from, beyond)) = crossed {
-                end = self.narrow(index, from, beyond);
+                end = self.refine_crossing(index, from, beyond);
                 found = true;
             }
         }
@@ -68,7 +68,7 @@ impl<S: SwitchedSystem> Search<'_, S> {
     }
 
     /// Newton's method on the guard within its bracket, until the guard is negative by less than the resolution.
-    fn narrow(&self, index: usize, from: Reading, beyond: Trial) -> Trial {
+    fn refine_crossing(&self, index: usize, from: Reading, beyond: Trial) -> Trial {
         let resolution = self.system.guard_resolution();
         let aim = -0.5 * resolution;
         let (mut low, mut end) = (from, beyond);

@@ -55,7 +55,8 @@ impl JointEquations {
             constants(joint, &joint.sun_planet, sun_reduced, i64::from(geometry.sun_teeth)),
             constants(joint, &joint.ring_planet, planet, -i64::from(geometry.ring_teeth)),
         ];
-        let carried = geometry.planets as f64 * (crest(&joint.sun_planet) + crest(&joint.ring_planet));
+        let carried =
+            geometry.planets as f64 * (peak_stiffness(&joint.sun_planet) + peak_stiffness(&joint.ring_planet));
         let highest_frequency = highest_frequency(joint, &masses, compliance.map_or(0.0, |(stiffness, _)| stiffness));
         Ok(Self {
             planets: geometry.planets,
@@ -110,7 +111,7 @@ impl JointEquations {
             equivalent: true,
             sun_lever,
             carrier_lever: lever,
-            ring_teeth: PARTS_OF_A_TURN,
+            ring_teeth: DEFAULT_TURN_DIVISION,
             length: joint.characteristic_length,
             masses: Vec::from_iter([motor_inertia / (sun_lever * sun_lever), joint.link_inertia / arm]),
             link_mass: joint.link_inertia / arm,
@@ -131,7 +132,7 @@ impl JointEquations {
 
 /// Substitute for the number of ring teeth in a joint without teeth: whole parts of a turn are taken off the
 /// coordinates; any number works that keeps them small.
-const PARTS_OF_A_TURN: f64 = 16384.0;
+const DEFAULT_TURN_DIVISION: f64 = 16384.0;
 
 fn constants(
     joint: &JointParameters,
@@ -170,7 +171,7 @@ fn harmonics(mesh: &Mesh) -> f64 {
 }
 
 /// Stiffness of a mesh at the crest of its wave [N/m].
-fn crest(mesh: &Mesh) -> f64 {
+fn peak_stiffness(mesh: &Mesh) -> f64 {
     let ratio = match mesh.stiffness_wave {
         StiffnessWave::Harmonic { stiffness_ratio } => stiffness_ratio,
         StiffnessWave::Rectangular { stiffness_ratio, .. } => 2.0 * stiffness_ratio,
@@ -181,7 +182,7 @@ fn crest(mesh: &Mesh) -> f64 {
 /// Upper bound of the highest natural frequency (Gershgorin, row by row) at crest stiffness [rad/s].
 fn highest_frequency(joint: &JointParameters, masses: &[f64], compliance: f64) -> f64 {
     let planets = joint.geometry.planets as f64;
-    let (sun_planet, ring_planet) = (crest(&joint.sun_planet), crest(&joint.ring_planet));
+    let (sun_planet, ring_planet) = (peak_stiffness(&joint.sun_planet), peak_stiffness(&joint.ring_planet));
     let carrier = joint.geometry.planets + 1;
     let rows = masses.iter().enumerate().map(|(body, mass)| {
         let row = match body {

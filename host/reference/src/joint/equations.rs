@@ -11,7 +11,7 @@ use super::mesh_law::{MeshConstants, MeshState, Phase, Zone};
 use crate::integrator::{Entries, Guards, MAX_ENTRIES, SwitchedSystem};
 
 /// Work entries at the end of the state: supplied, dissipated, done against transmission errors, by changing stiffness.
-pub(super) const WORKS: usize = 4;
+pub(super) const WORK_ENTRIES: usize = 4;
 
 const SUN_PLANET: usize = 0;
 const RING_PLANET: usize = 1;
@@ -120,7 +120,7 @@ impl JointEquations {
     }
 
     /// Displacement across a mesh (eq. 4 without its error), of positions, speeds or accelerations alike.
-    pub fn across(&self, kind: usize, planet: usize, values: &[f64]) -> f64 {
+    pub fn mesh_displacement(&self, kind: usize, planet: usize, values: &[f64]) -> f64 {
         let carrier = values[self.carrier()];
         if self.equivalent {
             return 0.5 * values[0] - carrier;
@@ -145,7 +145,7 @@ impl JointEquations {
 
     /// Index of the slipping part's deflection in the state.
     pub fn slip_entry(&self) -> usize {
-        2 * self.bodies() + WORKS
+        2 * self.bodies() + WORK_ENTRIES
     }
 
     pub fn internal_forces(&self, time: f64, state: &Entries) -> InternalForces {
@@ -154,7 +154,8 @@ impl JointEquations {
         let mut meshes = [[MeshState::default(); MAX_PLANETS]; 2];
         for (kind, family) in self.meshes.iter().enumerate() {
             for (planet, mesh) in family.iter().enumerate() {
-                let (position, speed) = (self.across(kind, planet, state), self.across(kind, planet, speeds));
+                let (position, speed) =
+                    (self.mesh_displacement(kind, planet, state), self.mesh_displacement(kind, planet, speeds));
                 meshes[kind][planet] = mesh.state(self.zones[kind][planet], position, speed, phase);
             }
         }
@@ -208,7 +209,12 @@ impl SwitchedSystem for JointEquations {
             rates[bodies + body] = forces[body] / self.masses[body];
         }
         let supplied = self.drive_force * speeds[0] - self.load_force * speeds[link];
-        rates[2 * bodies..2 * bodies + WORKS].copy_from_slice(&[supplied, dissipated, against_errors, by_stiffness]);
+        rates[2 * bodies..2 * bodies + WORK_ENTRIES].copy_from_slice(&[
+            supplied,
+            dissipated,
+            against_errors,
+            by_stiffness,
+        ]);
     }
 
     fn select_mode(&mut self, time: f64, state: &Entries) {
@@ -219,8 +225,8 @@ impl SwitchedSystem for JointEquations {
             for planet in 0..self.planets {
                 let mesh = &self.meshes[kind][planet];
                 let [error, error_rate, _] = mesh.transmission_error(phase);
-                let deflection = self.across(kind, planet, state) - error;
-                let rate = self.across(kind, planet, speeds) - error_rate;
+                let deflection = self.mesh_displacement(kind, planet, state) - error;
+                let rate = self.mesh_displacement(kind, planet, speeds) - error_rate;
                 self.zones[kind][planet] = mesh.zone(deflection, rate, mesh.stiffness(phase).0);
             }
         }
@@ -232,7 +238,8 @@ impl SwitchedSystem for JointEquations {
         let accelerations = &rates[self.bodies()..];
         for (kind, family) in self.meshes.iter().enumerate() {
             for (planet, mesh) in family.iter().enumerate() {
-                let acceleration = self.across(kind, planet, accelerations) - mesh.transmission_error(phase)[2];
+                let acceleration =
+                    self.mesh_displacement(kind, planet, accelerations) - mesh.transmission_error(phase)[2];
                 mesh.watch(self.zones[kind][planet], &internal.meshes[kind][planet], acceleration, guards);
             }
         }
@@ -260,4 +267,4 @@ impl SwitchedSystem for JointEquations {
     }
 }
 
-const _: () = assert!(2 * (MAX_PLANETS + 3) + WORKS < MAX_ENTRIES);
+const _: () = assert!(2 * (MAX_PLANETS + 3) + WORK_ENTRIES < MAX_ENTRIES);

@@ -62,10 +62,10 @@ impl Reference {
         let slipped = &mut rest[slip_entry - 2 * bodies];
         for index in 0..steps as u64 {
             drift(positions, speeds, 0.5 * step);
-            slide(equations, speeds, slipped, 0.5 * step);
+            advance_slip(equations, speeds, slipped, 0.5 * step);
             kick(equations, &excited, (positions, *slipped), speeds, (index as f64 + 0.5) * step, step);
             drift(positions, speeds, 0.5 * step);
-            slide(equations, speeds, slipped, 0.5 * step);
+            advance_slip(equations, speeds, slipped, 0.5 * step);
         }
         self.integrator.move_time(time);
         // The next observation uses the zones.
@@ -80,7 +80,7 @@ fn drift(positions: &mut [f64], speeds: &[f64], step: f64) {
 }
 
 /// Advances the slipping part of the compliance.
-fn slide(equations: &JointEquations, speeds: &[f64], slipped: &mut f64, step: f64) {
+fn advance_slip(equations: &JointEquations, speeds: &[f64], slipped: &mut f64, step: f64) {
     if let Some(slip) = equations.hysteresis {
         *slipped = slip.after(*slipped, step * (speeds[equations.carrier()] - speeds[equations.link()]));
     }
@@ -99,8 +99,8 @@ fn kick(
     let mut forces = [0.0; MAX_PLANETS + 3];
     forces[0] = equations.drive_force;
     let force = |kind: usize, planet: usize| {
-        let displacement = equations.across(kind, planet, positions);
-        let rate = equations.across(kind, planet, speeds);
+        let displacement = equations.mesh_displacement(kind, planet, positions);
+        let rate = equations.mesh_displacement(kind, planet, speeds);
         excited[kind][planet].force(&equations.meshes[kind][planet], displacement, rate, since)
     };
     for planet in 0..equations.planets {

@@ -17,7 +17,7 @@ use super::joints::{q1, same};
 pub const TICK_RATE: u32 = 10_000;
 
 /// Rated torque at the link [N m].
-const RATED: f64 = 12.0;
+const RATED_TORQUE: f64 = 12.0;
 
 /// Speed of the run [rad/s].
 const RUN_SPEED: f64 = TAU;
@@ -36,13 +36,13 @@ const PAUSE: f64 = 0.1;
 const BRIEF_PAUSE: f64 = 0.05;
 
 /// Length of an impact [s].
-const IMPACT: f64 = 0.01;
+const IMPACT_DURATION: f64 = 0.01;
 
 /// Torques of the reversals relative to the rated torque.
-const SHARES: [f64; 3] = [1.0, 0.2, 0.05];
+const TORQUE_SHARES: [f64; 3] = [1.0, 0.2, 0.05];
 
 /// Change from tick to tick that counts as a jump, relative to the largest torque.
-const JUMP: f64 = 0.1;
+const JUMP_SHARE: f64 = 0.1;
 
 /// Joint, torques per tick, and limits of the parts of the motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,7 +70,7 @@ pub struct Part {
 pub fn case_r() -> CaseR {
     let mut joint = q1();
     joint.damping_law = DampingLaw::Contact;
-    joint.rated_output_torque = RATED;
+    joint.rated_output_torque = RATED_TORQUE;
     for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
         mesh.stiffness_wave = StiffnessWave::Harmonic { stiffness_ratio: 0.15 };
         mesh.transmission_error = same(joint.geometry.planets, 3e-6);
@@ -81,15 +81,15 @@ pub fn case_r() -> CaseR {
 
 /// Case R on another joint: torques relative to its rated torque, the run at an equal speed.
 pub fn on(joint: JointParameters) -> CaseR {
-    moved(joint, &REVERSALS, PAUSE)
+    with_reversals(joint, &REVERSALS, PAUSE)
 }
 
 /// Case R with fewer reversals and shorter pauses, a fifth of its length.
 pub fn brief(joint: JointParameters) -> CaseR {
-    moved(joint, &BRIEF_REVERSALS, BRIEF_PAUSE)
+    with_reversals(joint, &BRIEF_REVERSALS, BRIEF_PAUSE)
 }
 
-fn moved(joint: JointParameters, reversals: &[(f64, f64)], pause: f64) -> CaseR {
+fn with_reversals(joint: JointParameters, reversals: &[(f64, f64)], pause: f64) -> CaseR {
     let ratio = ratio(&joint);
     let rated = joint.rated_output_torque;
     let mut case = CaseR { torques: Vec::new(), parts: Vec::new(), windows: Vec::new(), joint };
@@ -97,7 +97,7 @@ fn moved(joint: JointParameters, reversals: &[(f64, f64)], pause: f64) -> CaseR 
     let run = PI * RUN_SPEED * case.inertia() / RUN_TIME;
     case.part("run up and down", RUN_TIME, |time| [run * (TAU * time / RUN_TIME).sin() / ratio, 0.0]);
     for (frequency, periods) in reversals {
-        for share in SHARES {
+        for share in TORQUE_SHARES {
             let name = format!("reversals of {:.0} % at {frequency:.0} Hz", 100.0 * share);
             let torque = share * rated / ratio;
             // Square wave by the sign of a cosine: the joint is at rest again after each period.
@@ -108,7 +108,7 @@ fn moved(joint: JointParameters, reversals: &[(f64, f64)], pause: f64) -> CaseR 
     let held = 0.5 * rated;
     case.part("held at half torque", pause, |_| [held / ratio, held]);
     for (name, impact) in [("impact against the drive", 3.0 * rated), ("impact along the drive", -3.0 * rated)] {
-        case.part(name, pause, |time| [held / ratio, if time < IMPACT { held + impact } else { held }]);
+        case.part(name, pause, |time| [held / ratio, if time < IMPACT_DURATION { held + impact } else { held }]);
     }
     case.part("free flight", pause, |_| [0.0, 0.0]);
     case
@@ -146,7 +146,8 @@ impl CaseR {
         let first = self.ticks();
         let ticks = (duration * f64::from(TICK_RATE)).round() as usize;
         let added: Vec<[f64; 2]> = (0..ticks).map(|tick| torques((tick as f64 + 0.5) / f64::from(TICK_RATE))).collect();
-        let least = [0, 1].map(|which| JUMP * added.iter().fold(0.0, |most: f64, pair| most.max(pair[which].abs())));
+        let least =
+            [0, 1].map(|which| JUMP_SHARE * added.iter().fold(0.0, |most: f64, pair| most.max(pair[which].abs())));
         let jumps = |pair: &[[f64; 2]]| (0..2).any(|which| (pair[1][which] - pair[0][which]).abs() > least[which]);
         self.windows.push(first);
         self.windows.extend((1..ticks).filter(|tick| jumps(&added[tick - 1..=*tick])).map(|tick| first + tick));

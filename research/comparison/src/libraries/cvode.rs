@@ -9,7 +9,7 @@ use super::Equations;
 const ADAMS: c_int = 1;
 const NORMAL: c_int = 1;
 const ROOT_RETURN: c_int = 2;
-const MOST_STEPS: c_long = 10_000_000;
+const STEPS_MAX: c_long = 10_000_000;
 
 type Opaque = *mut c_void;
 type Rates = unsafe extern "C" fn(f64, Opaque, Opaque, Opaque) -> c_int;
@@ -109,7 +109,7 @@ pub(super) fn solve<const N: usize, const D: usize>(
         check("data", CVodeSetUserData(session.memory, ptr::from_ref(equations).cast_mut().cast()))?;
         check("tolerances", CVodeSStolerances(session.memory, tolerance, tolerance))?;
         check("iteration", CVodeSetNonlinearSolver(session.memory, session.solver))?;
-        check("steps", CVodeSetMaxNumSteps(session.memory, MOST_STEPS))?;
+        check("steps", CVodeSetMaxNumSteps(session.memory, STEPS_MAX))?;
         if restarted {
             check("roots", CVodeRootInit(session.memory, 4 * N as c_int, roots::<N, D>))?;
             check("roots", CVodeSetNoInactiveRootWarn(session.memory))?;

@@ -11,14 +11,14 @@ use model_core::gears::Scales;
 use parameters::Excitation;
 
 use crate::case::Case;
-use crate::reading::{Gauge, Reading};
-use crate::start::Deflected;
+use crate::reading::{Reading, ReadingModel};
+use crate::start::InitialState;
 
 /// Case with a prescribed phase, one pair of torques and no compliance.
 pub struct Equations<const N: usize, const D: usize> {
     plant: Plant<f64, N>,
     push: Push<f64>,
-    gauge: Gauge<N>,
+    reading_model: ReadingModel<N>,
     /// Mesh frequency over omega_n.
     omega: f64,
     start: [f64; D],
@@ -38,7 +38,7 @@ impl<const N: usize, const D: usize> Equations<N, D> {
         let gains = &plant.gains;
         let push =
             Push { sun: gains.sun * torques.drive_torque, carrier: -gains.carrier * torques.load_torque, link: 0.0 };
-        let deflected = Deflected::<N>::new(&case.joint, &case.start);
+        let deflected = InitialState::<N>::new(&case.joint, &case.start);
         let omega = mesh_frequency / scales.frequency;
         let error = Instant::at(&plant, &rotor(omega, 0.0));
         let speed = scales.length * scales.frequency;
@@ -50,7 +50,7 @@ impl<const N: usize, const D: usize> Equations<N, D> {
             let index = entry % (N + 1);
             if index < N { values.planets[index] / unit + imposed[index] } else { values.gap / unit }
         });
-        Some(Self { plant, push, gauge: Gauge::new(&case.joint), omega, start })
+        Some(Self { plant, push, reading_model: ReadingModel::new(&case.joint), omega, start })
     }
 
     /// State at time zero.
@@ -129,7 +129,7 @@ impl<const N: usize, const D: usize> Equations<N, D> {
     /// Reading of a state.
     pub fn read(&self, time: f64, state: &[f64]) -> Reading {
         let (position, rate) = split::<N>(state);
-        self.gauge.read(&PeerState { position, rate }, &rotor(self.omega, time), 0.0)
+        self.reading_model.read(&PeerState { position, rate }, &rotor(self.omega, time), 0.0)
     }
 }
 

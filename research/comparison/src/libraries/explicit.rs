@@ -14,7 +14,7 @@ impl<const N: usize, const D: usize> ODE<f64, [f64; D]> for Equations<N, D> {
 }
 
 /// Largest number of steps of a run.
-const MOST_STEPS: usize = 10_000_000;
+const STEPS_MAX: usize = 10_000_000;
 
 pub(super) fn solve<const N: usize, const D: usize>(
     library: Library,
@@ -26,12 +26,12 @@ pub(super) fn solve<const N: usize, const D: usize>(
     let problem = IVP::ode(equations, 0.0, end, *equations.start()).t_eval(times);
     let solution = match library {
         Library::Dop853 => {
-            problem.method(ExplicitRungeKutta::dop853().rtol(tolerance).atol(tolerance).max_steps(MOST_STEPS)).solve()
+            problem.method(ExplicitRungeKutta::dop853().rtol(tolerance).atol(tolerance).max_steps(STEPS_MAX)).solve()
         }
-        Library::CashKarp => problem
-            .method(ExplicitRungeKutta::cash_karp().rtol(tolerance).atol(tolerance).max_steps(MOST_STEPS))
-            .solve(),
-        _ => problem.method(ExplicitRungeKutta::dopri5().rtol(tolerance).atol(tolerance).max_steps(MOST_STEPS)).solve(),
+        Library::CashKarp => {
+            problem.method(ExplicitRungeKutta::cash_karp().rtol(tolerance).atol(tolerance).max_steps(STEPS_MAX)).solve()
+        }
+        _ => problem.method(ExplicitRungeKutta::dopri5().rtol(tolerance).atol(tolerance).max_steps(STEPS_MAX)).solve(),
     };
     solution.map(|solution| solution.y).map_err(|error| format!("{error:?}"))
 }

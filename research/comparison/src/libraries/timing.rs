@@ -91,7 +91,7 @@ fn timed(case: &Case, name: &str, setting: f64, phases: usize, work: impl Fn(usi
     for _ in 0..ROUNDS {
         let round: Option<(f64, Errors)> = (0..phases).try_fold((0.0, Errors::NONE), |(spent, worst), phase| {
             let (seconds, errors) = work(phase)?;
-            Some((spent + seconds, worst.or_worse(&errors)))
+            Some((spent + seconds, worst.worst_of(&errors)))
         });
         let Some((spent, worst)) = round else { break };
         least = least.min(spent);

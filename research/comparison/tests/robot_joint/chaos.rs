@@ -47,7 +47,7 @@ fn noise_stays_small_in_a_window() {
 /// Without windows the noise moves the joint within its gap, on all of case R.
 #[test]
 #[ignore = "a minute: the reference three times through all of case R"]
-fn noise_of_a_billionth_ends_elsewhere_in_the_gap_unless_windows_stop_it() {
+fn noise_grows_without_windows() {
     let [alone, in_windows] = growth(&case_r());
     NOISE_IN_WINDOWS.check(in_windows);
     assert!(alone > 1e4 * in_windows, "{alone:.1e} against {in_windows:.1e}");

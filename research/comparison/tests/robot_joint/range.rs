@@ -25,14 +25,14 @@ fn check_far(joint: JointParameters) {
 
 /// Other mesh phases follow the reference.
 #[test]
-fn other_mesh_phases_stay_with_the_reference() {
+fn other_mesh_phases_follow_reference() {
     check(joint(), 0.3);
     check(joint(), 0.6);
 }
 
 /// Other teeth and backlash follow the reference.
 #[test]
-fn other_teeth_and_backlash_stay_with_the_reference() {
+fn other_teeth_follow_reference() {
     check(with_teeth(joint(), 3, [27, 36, 99]), 0.0);
     check(with_meshes(|mesh| mesh.half_backlash = same(3, 20e-6)), 0.0);
     check(with_meshes(|mesh| mesh.half_backlash = same(3, 80e-6)), 0.0);
@@ -40,7 +40,7 @@ fn other_teeth_and_backlash_stay_with_the_reference() {
 
 /// A softer spring follows the reference.
 #[test]
-fn other_springs_stay_with_the_reference() {
+fn softer_spring_follows_reference() {
     let mut soft = joint();
     if let Some(compliance) = &mut soft.compliance {
         compliance.stiffness /= 3.0;
@@ -50,7 +50,7 @@ fn other_springs_stay_with_the_reference() {
 
 /// The damping law `paper` follows the reference.
 #[test]
-fn the_other_damping_law_stays_with_the_reference() {
+fn paper_damping_law_follows_reference() {
     let mut joint = joint();
     joint.damping_law = DampingLaw::Paper;
     check(joint, 0.0);
@@ -58,7 +58,7 @@ fn the_other_damping_law_stays_with_the_reference() {
 
 /// Planets out of phase or heavy beside the link stay near the reference.
 #[test]
-fn planets_that_move_one_by_one_or_are_heavy_beside_the_link_stay_near_the_reference() {
+fn unusual_planets_stay_near_reference() {
     // 25 / 5 is whole, 16 / 3 is not.
     check_far(with_teeth(joint(), 5, [25, 25, 75]));
     check_far(with_teeth(joint(), 3, [16, 29, 74]));

@@ -13,7 +13,7 @@ use crate::variants::joint;
 
 /// Errors over a motion with all mesh phases advanced by a number of periods.
 pub fn errors(motion: CaseR, shift: f64) -> Errors {
-    let case = Case::of_robot_joint("R", "what a robot joint does", motion).shifted(shift);
+    let case = Case::from_robot_joint("R", "what a robot joint does", motion).shifted(shift);
     let envelope = PhaseEnvelope::new(case, 1).expect("the reference follows");
     let point = envelope.point(Method::Realtime, Scalar::Single, TICK_RATE, AS_DESIGNED).expect("a sound joint");
     println!("{:?}", point.errors);
@@ -28,13 +28,13 @@ fn check(errors: &Errors) {
 
 /// Output angle and peak mesh force follow the reference in every window, on the short form.
 #[test]
-fn output_angle_and_peak_mesh_force_stay_with_the_reference_in_every_window() {
+fn short_form_follows_reference() {
     check(&errors(case_r::brief(joint()), 0.0));
 }
 
 /// Output angle and peak mesh force follow the reference in every window of case R.
 #[test]
 #[ignore = "half a minute: the reference through all of case R"]
-fn the_whole_of_case_r_stays_with_the_reference_in_every_window() {
+fn case_r_follows_reference() {
     check(&errors(case_r::case_r(), 0.0));
 }

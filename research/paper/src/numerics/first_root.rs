@@ -91,7 +91,7 @@ mod tests {
 
     /// The first of two falls is found.
     #[test]
-    fn the_first_of_two_falls_is_found() {
+    fn first_of_two_falls_is_found() {
         // -(s - 0.2)(s - 0.5)(s - 0.9) falls at 0.2 and at 0.9.
         let found = first_fall(&[0.09, -0.73, 1.6, -1.0], 1.0).expect("it falls");
         assert!((found - 0.2).abs() < 1e-14, "{found}");
@@ -99,7 +99,7 @@ mod tests {
 
     /// A dip between two positive ends is found.
     #[test]
-    fn a_dip_between_two_positive_ends_is_found() {
+    fn dip_between_positive_ends_is_found() {
         // (s - 0.4)(s - 0.41) is negative over a hundredth of the interval.
         let found = first_fall(&[0.164, -0.81, 1.0], 1.0).expect("it falls");
         assert!((found - 0.4).abs() < 1e-13, "{found}");
@@ -107,7 +107,7 @@ mod tests {
 
     /// A root at the start is not found again.
     #[test]
-    fn a_root_at_the_start_is_not_found_again() {
+    fn root_at_the_start_is_not_repeated() {
         assert_eq!(first_fall(&[0.0, 1.0, 1.0], 1.0), None);
         assert_eq!(first_fall(&[-1e-16, 1.0], 1.0), None);
         let found = first_fall(&[1e-16, 1.0, -2.0], 1.0).expect("it falls after half a unit");
@@ -116,13 +116,13 @@ mod tests {
 
     /// A polynomial that falls at the start falls at zero.
     #[test]
-    fn what_falls_at_once_falls_at_zero() {
+    fn immediate_fall_is_at_zero() {
         assert_eq!(first_fall(&[1e-17, -1.0, 5.0], 1.0), Some(0.0));
     }
 
     /// A graze from above is not a fall.
     #[test]
-    fn a_graze_from_above_is_no_fall() {
+    fn graze_from_above_is_no_fall() {
         assert_eq!(first_fall(&[0.25 + 1e-9, -1.0, 1.0], 1.0), None);
     }
 }

@@ -16,19 +16,19 @@ const TOLERANCE: f64 = 1e-12;
 const LONGEST_STEP: f64 = 0.6;
 
 /// Shortest step that counts as progress, in periods.
-const SLIVER: f64 = 1e-12;
+const SHORTEST_PROGRESS: f64 = 1e-12;
 
 /// Number of events without progress that count as one graze, which a short step without guards leaves behind.
-const EVENTS_IN_A_GRAZE: u32 = 32;
+const GRAZE_EVENTS: u32 = 32;
 
 /// Length of the step out of a graze over the longest step.
-const GRAZE: f64 = 1e-5;
+const GRAZE_STEP: f64 = 1e-5;
 
 /// Largest number of steps in one period, above that of any motion of gears.
-const MOST_STEPS: u32 = 1_000_000;
+const STEPS_MAX: u32 = 1_000_000;
 
 /// Largest position of any motion of gears, over b_c.
-const FARTHEST: f64 = 1e9;
+const POSITION_MAX: f64 = 1e9;
 
 /// Joint with its present state, integrated forwards.
 #[derive(Debug, Clone)]
@@ -130,15 +130,15 @@ impl<'a> EventIntegrator<'a> {
         let (mut steps, mut idle) = (0, 0);
         while self.time < end {
             steps += 1;
-            if steps > MOST_STEPS {
+            if steps > STEPS_MAX {
                 return Err(StudyError::TooStiff);
             }
             let moment = Moment::new(self.system, &self.zones, self.time);
             let series = Series::motion(self.system, &moment, &self.state);
             let remaining = end - self.time;
             let wanted = series.step(coordinates, TOLERANCE).min(LONGEST_STEP);
-            let blind = idle >= EVENTS_IN_A_GRAZE;
-            let wanted = if blind { wanted.min(GRAZE * LONGEST_STEP) } else { wanted };
+            let blind = idle >= GRAZE_EVENTS;
+            let wanted = if blind { wanted.min(GRAZE_STEP * LONGEST_STEP) } else { wanted };
             // Two equal parts replace a full step and a tiny rest.
             let whole = if wanted >= remaining { remaining } else { wanted.min(0.5 * remaining) };
             let event = if blind { None } else { self.first_event(&series, whole) };
@@ -152,11 +152,11 @@ impl<'a> EventIntegrator<'a> {
                 self.state = series.at(coordinates, step);
                 self.time = to;
             }
-            let size = self.state.position[..coordinates].iter().fold(0.0, farther);
-            if size.is_nan() || size > FARTHEST {
+            let size = self.state.position[..coordinates].iter().fold(0.0, greater_magnitude);
+            if size.is_nan() || size > POSITION_MAX {
                 return Err(StudyError::NotFinite);
             }
-            idle = if step > SLIVER * end { 0 } else { idle + 1 };
+            idle = if step > SHORTEST_PROGRESS * end { 0 } else { idle + 1 };
             if let Some(event) = event {
                 self.events += 1;
                 self.change(&event);
@@ -253,7 +253,7 @@ pub fn contact(system: &System, mesh: usize, deflection: f64) -> ContactState {
 }
 
 /// Greater magnitude; unlike with `max`, NaN is kept.
-fn farther(most: f64, value: &f64) -> f64 {
+fn greater_magnitude(most: f64, value: &f64) -> f64 {
     if most.is_nan() || value.abs() <= most { most } else { value.abs() }
 }
 

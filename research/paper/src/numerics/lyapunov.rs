@@ -110,7 +110,7 @@ mod tests {
 
     /// Uniform growth has its exponent.
     #[test]
-    fn growth_by_the_same_factor_has_its_exponent() {
+    fn uniform_growth_has_its_exponent() {
         let mut growth = Growth::default();
         (0..50).for_each(|_| growth.add(0.5));
         assert!((growth.exponent(2.0) - 0.5_f64.ln() / 2.0).abs() < 1e-14);
@@ -119,7 +119,7 @@ mod tests {
 
     /// The exponent of a turning vector follows its trend.
     #[test]
-    fn a_turning_vector_is_judged_by_its_trend() {
+    fn turning_vector_has_the_trend_exponent() {
         let mut growth = Growth::default();
         let wave = |k: u32| (1.0 + 0.9 * (f64::from(k) * 1.3).cos()).ln();
         (0..300).for_each(|k| growth.add((-0.1 + wave(k + 1) - wave(k)).exp()));

@@ -11,7 +11,7 @@ const ROUNDS: u32 = 12;
 const CLOSED: f64 = 1e-9;
 
 /// Longest cycle considered: longer cycles seldom decay slowly, and each costs its length in periods per iteration.
-const LONGEST: usize = 6;
+const LONGEST_CYCLE: usize = 6;
 
 /// State on a periodic motion near the present state of `motion`, if there is one.
 pub fn periodic_state(motion: &EventIntegrator<'_>) -> Result<Option<State>, StudyError> {
@@ -28,7 +28,7 @@ fn candidates(motion: &EventIntegrator<'_>) -> Result<Vec<usize>, StudyError> {
     let mut follower = EventIntegrator::new(motion.system(), motion.state());
     let start = entries(motion, &motion.state());
     let mut distances = Vec::new();
-    for periods in 1..=LONGEST {
+    for periods in 1..=LONGEST_CYCLE {
         follower.period()?;
         let end = entries(&follower, &follower.state());
         let distance = start.iter().zip(&end).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -120,7 +120,7 @@ mod tests {
 
     /// A system that needs pivots is solved, a singular one is not.
     #[test]
-    fn a_system_that_needs_pivots_is_solved_and_a_singular_one_is_not() {
+    fn solver_pivots_and_rejects_singular() {
         let solution = solve(vec![vec![0.0, 2.0, 4.0], vec![1.0, 1.0, 5.0]]).expect("regular");
         assert!((solution[0] - 3.0).abs() < 1e-14 && (solution[1] - 2.0).abs() < 1e-14, "{solution:?}");
         assert_eq!(solve(vec![vec![1.0, 2.0, 1.0], vec![2.0, 4.0, 1.0]]), None);

@@ -99,7 +99,7 @@ mod tests {
 
     /// Content outside the mesh frequency is related to the content at the mesh frequency.
     #[test]
-    fn what_is_beside_the_mesh_frequency_is_measured_against_it() {
+    fn ratio_of_other_content_is_exact() {
         // Amplitude 2 at the mesh frequency, 1 at a third of it, and a mean.
         let phase = |index: usize| TAU * index as f64 / SAMPLES as f64;
         let position = (0..3 * SAMPLES).map(|i| 4.0 + 2.0 * phase(i).cos() + (phase(i) / 3.0).sin()).collect();

@@ -32,15 +32,11 @@ pub enum StudyError {
 impl fmt::Display for StudyError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(match self {
-            Self::SmoothDeadZone => {
-                "the dead zone is smoothed by tanh, and the study locates contacts of the sharp one"
-            }
-            Self::NoFrequency => {
-                "the mesh phase follows the joint's angle, and the study needs a stated mesh frequency"
-            }
-            Self::Standstill => "the mesh frequency is zero, and the study samples once each mesh period",
+            Self::SmoothDeadZone => "the dead zone is smoothed by tanh; the study needs the sharp one",
+            Self::NoFrequency => "the mesh phase follows the joint's angle; the study needs a stated mesh frequency",
+            Self::Standstill => "the mesh frequency is zero; the study samples once per mesh period",
             Self::TooStiff => "one mesh period takes more than a million steps",
-            Self::NotFinite => "the motion grows beyond all bounds",
+            Self::NotFinite => "the motion grows without bound",
         })
     }
 }

@@ -17,7 +17,7 @@ fn stderr(output: &Output) -> String {
 
 /// A small study writes report, record, pictures and tables.
 #[test]
-fn a_small_study_leaves_report_record_pictures_and_tables() {
+fn small_study_writes_all_files() {
     let folder = tempfile::tempdir().expect("a folder");
     let words =
         ["paper", "--b", "10,60", "--grid", "58:62:2", "--expect", "1,3", "--out", "out", "--json", "study.json"];
@@ -64,7 +64,7 @@ fn a_small_study_leaves_report_record_pictures_and_tables() {
 
 /// Files that the user has put into the folder are not overwritten.
 #[test]
-fn what_the_user_has_put_into_the_folder_is_not_written_over() {
+fn user_files_are_not_overwritten() {
     for name in ["report.html", "study.json", "stiffness.csv", "bifurcation-mine.svg", "attractor-mine.svg"] {
         let folder = tempfile::tempdir().expect("a folder");
         fs::write(folder.path().join(name), "mine").expect("room");
@@ -78,7 +78,7 @@ fn what_the_user_has_put_into_the_folder_is_not_written_over() {
 
 /// An unexpected attractor is reported, and the report is kept.
 #[test]
-fn chaos_where_a_period_was_asked_for_is_said_and_the_report_kept() {
+fn unexpected_chaos_is_reported() {
     let folder = tempfile::tempdir().expect("a folder");
     let words = ["paper", "--b", "120", "--grid", "120:120:1", "--expect", "3", "--out", "out"];
     let output = joint_paper(folder.path(), &words);
@@ -90,7 +90,7 @@ fn chaos_where_a_period_was_asked_for_is_said_and_the_report_kept() {
 
 /// Bad input is rejected before anything is written.
 #[test]
-fn bad_input_is_refused_before_anything_is_written() {
+fn bad_input_is_rejected_early() {
     let folder = tempfile::tempdir().expect("a folder");
     let smooth = joint_file::preset("paper").expect("a preset").replace("\"sharp\"", "\"tanh\"\nsharpness = 1000.0");
     fs::write(folder.path().join("smooth.toml"), smooth).expect("a file");
@@ -135,7 +135,7 @@ fn bad_input_is_refused_before_anything_is_written() {
 
 /// Only the paper's own settings are compared with known numbers.
 #[test]
-fn the_paper_alone_is_judged_by_known_numbers() {
+fn only_set_p_has_known_numbers() {
     assert!(plan(&[]).expect("a good plan").is_set_p);
     for words in [&["paper"][..], &["--omega", "2.0"], &["--b", "1"], &["--grid", "0:1:1"]] {
         assert!(!plan(words).expect("a good plan").is_set_p, "{words:?}");

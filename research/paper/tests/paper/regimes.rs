@@ -28,7 +28,7 @@ fn distance(one: &[f64; 4], other: &[f64; 4]) -> f64 {
 
 /// Set P has four regimes with known points and exponents.
 #[test]
-fn set_p_has_its_four_regimes_with_their_points_and_exponents() {
+fn set_p_has_four_known_regimes() {
     let paper = subject("paper", None);
     let known: [(f64, usize, f64, &[[f64; 4]]); 3] = [
         (0.0, 1, -0.0324, &[[-0.0678, 0.8675, -11.5051, -5.0495]]),
@@ -60,7 +60,7 @@ fn set_p_has_its_four_regimes_with_their_points_and_exponents() {
 
 /// The carrier as printed has the same regimes with other exponents.
 #[test]
-fn the_carrier_as_printed_has_the_same_regimes_with_its_own_exponents() {
+fn printed_carrier_has_the_same_regimes() {
     let printed = subject("paper_printed", None);
     for (half_backlash, period, exponent) in [(0.0, 1, -0.0374), (10.0, 1, -0.0374), (60.0, 3, -0.0371)] {
         let found = from_rest(&printed, half_backlash, &SHORT);
@@ -74,7 +74,7 @@ fn the_carrier_as_printed_has_the_same_regimes_with_its_own_exponents() {
 
 /// The exponent of a linear joint is the real part of its slowest eigenvalue.
 #[test]
-fn without_backlash_and_ripple_the_exponent_is_the_slowest_eigenvalue() {
+fn linear_exponent_is_slowest_eigenvalue() {
     let mut linear = subject("paper", None);
     for mesh in [&mut linear.parameters.sun_planet, &mut linear.parameters.ring_planet] {
         mesh.stiffness_wave = StiffnessWave::Harmonic { stiffness_ratio: 0.0 };
@@ -86,7 +86,7 @@ fn without_backlash_and_ripple_the_exponent_is_the_slowest_eigenvalue() {
 
 /// The motion of a linear joint is the known ellipse.
 #[test]
-fn without_backlash_and_ripple_the_motion_is_the_exact_ellipse() {
+fn linear_motion_is_the_known_ellipse() {
     let mut linear = subject("paper", None);
     for mesh in [&mut linear.parameters.sun_planet, &mut linear.parameters.ring_planet] {
         mesh.stiffness_wave = StiffnessWave::Harmonic { stiffness_ratio: 0.0 };
@@ -102,7 +102,7 @@ fn without_backlash_and_ripple_the_motion_is_the_exact_ellipse() {
 
 /// Content outside the mesh frequency shows the period of three.
 #[test]
-fn the_period_of_three_hides_from_whole_harmonics_but_not_from_the_rest() {
+fn period_three_shows_outside_harmonics() {
     let paper = subject("paper", None);
     for (half_backlash, periods, ratio, peak_to_peak) in [(10.0, 3, 0.005, 8.961), (60.0, 3, 2.66, 20.021)] {
         let system = paper.system(half_backlash / 1e6).expect("it can be studied");
@@ -122,7 +122,7 @@ fn both(system: &System, effort: &Effort) -> (f64, f64) {
 
 /// Both methods agree for periodic motion and for chaos.
 #[test]
-fn a_tangent_vector_and_two_trajectories_give_one_exponent() {
+fn both_methods_give_one_exponent() {
     let paper = subject("paper", None);
     for half_backlash in [60e-6, 120e-6] {
         let (tangent, two) = both(&paper.system(half_backlash).expect("it can be studied"), &SHORT);
@@ -132,7 +132,7 @@ fn a_tangent_vector_and_two_trajectories_give_one_exponent() {
 
 /// Both methods agree with the law `contact`, where tangent vectors jump.
 #[test]
-fn tangent_vectors_jump_with_the_force_where_teeth_only_push() {
+fn contact_law_exponents_agree() {
     // Joint l1 has the damping law `contact`: its force jumps by C d' when teeth meet.
     let l1 = subject("l1", Some("0.8"));
     let (tangent, two) = both(&l1.system(60e-6).expect("it can be studied"), &SHORT);
@@ -146,7 +146,7 @@ fn tangent_vectors_jump_with_the_force_where_teeth_only_push() {
 
 /// Disturbances between planets in phase decay, even in chaos.
 #[test]
-fn planets_in_phase_stay_in_phase_in_chaos_too() {
+fn planets_stay_in_phase_in_chaos() {
     let paper = subject("paper", None);
     let system = paper.system(120e-6).expect("it can be studied");
     let mut motion = EventIntegrator::from_rest(&system);
@@ -161,7 +161,7 @@ fn planets_in_phase_stay_in_phase_in_chaos_too() {
 
 /// A slowly settling motion is found by Newton's method.
 #[test]
-fn what_settles_too_slowly_to_wait_for_is_found_by_newtons_method() {
+fn slow_motion_is_found_by_newton() {
     // The link of q1 swings on its compliance for tens of thousands of mesh periods.
     let q1 = subject("q1", Some("2.1"));
     let found = from_rest(&q1, 40.0, &SHORT);
@@ -170,7 +170,7 @@ fn what_settles_too_slowly_to_wait_for_is_found_by_newtons_method() {
 
 /// The independent integrator finds the same motion.
 #[test]
-fn an_independent_integrator_finds_the_same_motion() {
+fn independent_integrator_agrees() {
     for words in [
         &["paper", "--b", "0,60,120", "--grid", "0:0:1"][..],
         &["l1", "--b", "0,60", "--grid", "0:0:1", "--omega", "0.8"],

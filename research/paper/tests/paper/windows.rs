@@ -8,7 +8,7 @@ use super::{SHORT, from_rest, plan, subject};
 
 /// Classes from rest match the known windows.
 #[test]
-fn windows_from_rest_end_where_they_are_known_to() {
+fn windows_from_rest_match_known_edges() {
     let paper = subject("paper", None);
     // One micrometre to either side of every known edge.
     let known = [
@@ -40,7 +40,7 @@ fn studied(words: &[&str], threads: usize) -> StudyRecord {
 
 /// Carried upward, period two holds longer than from rest.
 #[test]
-fn carried_upward_the_period_of_two_holds_longer_than_from_rest() {
+fn carried_period_two_lasts_longer() {
     let record = studied(&["paper", "--b", "60", "--grid", "30:42:1", "--sweep", "all"], 2);
     let last_of_two = |start: &str| {
         let sweep = record.readings[0].sweeps.iter().find(|sweep| sweep.start == start).expect("a sweep");
@@ -53,7 +53,7 @@ fn carried_upward_the_period_of_two_holds_longer_than_from_rest() {
 
 /// Records do not depend on the number of threads.
 #[test]
-fn the_number_of_threads_changes_nothing() {
+fn thread_count_changes_nothing() {
     let words = ["paper_printed", "--b", "60", "--grid", "100:104:1", "--sweep", "all"];
     let (one, two) = (studied(&words, 1), studied(&words, 2));
     assert!(one == two, "records differ");

@@ -21,8 +21,11 @@ impl LoadCascade {
     /// Cascade of a bandwidth [rad/s].
     pub fn new(knowledge: Knowledge, bandwidth: f64) -> Self {
         let motor = tracker(&knowledge, bandwidth);
-        let link =
-            LinkTracker::new(knowledge.counts_per_turn[1], super::motor_pid::TRACKER * bandwidth, knowledge.period);
+        let link = LinkTracker::new(
+            knowledge.counts_per_turn[1],
+            super::motor_pid::TRACKER_POLE * bandwidth,
+            knowledge.period,
+        );
         Self { knowledge, bandwidth, motor, link, integral: 0.0, torque: 0.0 }
     }
 }

@@ -2,7 +2,7 @@
 //! link. The torque ignores the gap.
 
 use super::Knowledge;
-use super::motor_pid::TRACKER;
+use super::motor_pid::TRACKER_POLE;
 use crate::closed_loop::{Controller, LinkTracker, MotorTracker, SetPoint};
 use crate::drive_train::Measurement;
 
@@ -31,7 +31,7 @@ impl Impedance {
     /// Impedance law; `bandwidth` sets the speed filters only [rad/s].
     pub fn new(knowledge: Knowledge, law: ImpedanceLaw, bandwidth: f64) -> Self {
         let motor = super::motor_pid::tracker(&knowledge, bandwidth);
-        let link = LinkTracker::new(knowledge.counts_per_turn[1], TRACKER * bandwidth, knowledge.period);
+        let link = LinkTracker::new(knowledge.counts_per_turn[1], TRACKER_POLE * bandwidth, knowledge.period);
         Self { knowledge, law, motor, link, torque: 0.0 }
     }
 }

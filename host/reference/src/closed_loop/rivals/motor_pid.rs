@@ -6,7 +6,7 @@ use crate::closed_loop::{Controller, Motion, MotorTracker, SetPoint};
 use crate::drive_train::Measurement;
 
 /// Poles of the speed filter relative to the bandwidth: fast enough for the loop's phase, slow enough for 14 bits.
-pub(super) const TRACKER: f64 = 30.0;
+pub(super) const TRACKER_POLE: f64 = 30.0;
 
 /// PID on the motor.
 #[derive(Debug, Clone)]
@@ -49,7 +49,7 @@ impl MotorPid {
 
 /// Motor speed filter of all rivals.
 pub(super) fn tracker(knowledge: &Knowledge, bandwidth: f64) -> MotorTracker {
-    MotorTracker::new(knowledge.counts_per_turn[0], knowledge.motor_inertia, TRACKER * bandwidth, knowledge.period)
+    MotorTracker::new(knowledge.counts_per_turn[0], knowledge.motor_inertia, TRACKER_POLE * bandwidth, knowledge.period)
 }
 
 /// Motion of the motor shaft for a motion of the link.

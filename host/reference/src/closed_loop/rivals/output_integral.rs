@@ -8,7 +8,7 @@ use crate::closed_loop::{Controller, LinkTracker, SetPoint};
 use crate::drive_train::Measurement;
 
 /// Share of the weight in the feedforward.
-const KNOWN_GRAVITY: f64 = 0.85;
+const GRAVITY_SHARE: f64 = 0.85;
 
 /// Speed at which the friction feedforward saturates [rad/s].
 const FRICTION_SPEED: f64 = 0.01;
@@ -29,8 +29,11 @@ pub struct OutputIntegral {
 impl OutputIntegral {
     /// Controller of a bandwidth [rad/s].
     pub fn new(knowledge: Knowledge, bandwidth: f64) -> Self {
-        let link =
-            LinkTracker::new(knowledge.counts_per_turn[1], super::motor_pid::TRACKER * bandwidth, knowledge.period);
+        let link = LinkTracker::new(
+            knowledge.counts_per_turn[1],
+            super::motor_pid::TRACKER_POLE * bandwidth,
+            knowledge.period,
+        );
         Self { pid: MotorPid::new(knowledge, bandwidth), link, rate: INTEGRAL_RATE * bandwidth, side: 0.0, trim: 0.0 }
     }
 }
@@ -44,7 +47,7 @@ impl Controller for OutputIntegral {
         let knowledge = self.pid.knowledge();
         let load_inertia = (knowledge.total_inertia - knowledge.motor_inertia) * ratio * ratio;
         let direction = (motion.speed / FRICTION_SPEED).clamp(-1.0, 1.0);
-        let load = load_friction * direction + KNOWN_GRAVITY * gravity * motion.position.sin();
+        let load = load_friction * direction + GRAVITY_SHARE * gravity * motion.position.sin();
         let planned = load_inertia * motion.acceleration + load;
         if planned != 0.0 {
             self.side = planned.signum();

@@ -19,6 +19,8 @@ use report::provenance::VERSION;
 
 /// All but Markdown files, which have the conclusions only.
 const WITH_STEPS: &[Medium] = &[Medium::Page, Medium::Terminal];
+/// Markdown files, which have one table for all cases.
+const FILES: &[Medium] = &[Medium::Markdown];
 /// All but pages, which say it elsewhere.
 const LINES: &[Medium] = &[Medium::Terminal, Medium::Markdown];
 
@@ -26,7 +28,9 @@ const LINES: &[Medium] = &[Medium::Terminal, Medium::Markdown];
 pub fn document(figures: &BenchmarkRecord) -> Document {
     let mut blocks = vec![Block::Only(LINES, vec![Block::Paragraph(provenance(figures))])];
     blocks.extend(figures.cases.iter().map(|case| one(figures, case)));
-    blocks.extend([budget(figures), rounding(figures)]);
+    let instructions = by_case(&figures.cases, &figures.at_equal_error, million);
+    blocks.push(Block::Only(FILES, vec![section("Instructions for a second of the joint", instructions)]));
+    blocks.push(Block::Only(WITH_STEPS, vec![budget(figures), rounding(figures)]));
     blocks.extend(host(figures));
     blocks.push(Block::Only(PAGES, vec![origin(figures)]));
     Document {
@@ -95,8 +99,8 @@ fn one(figures: &BenchmarkRecord, case: &CaseRecord) -> Block {
     let reached: Vec<&AtError> = figures.at_equal_error.iter().filter(|at| at.case == case.key).collect();
     if reached.iter().any(|at| at.cost.is_some()) {
         let lead = "Instructions for a second of the joint at equal error, and over those of this step:";
-        blocks.push(Block::Paragraph(lead.into()));
-        blocks.push(equal(&reached, |cost| format!("{} M", fixed(1).write(cost / 1e6))));
+        let table = equal(&reached, million);
+        blocks.push(Block::Only(WITH_STEPS, vec![Block::Paragraph(lead.into()), table]));
     }
     section(format!("Case {}: {}", case.key, case.title), blocks)
 }
@@ -190,6 +194,44 @@ fn in_a_sample(found: &[&InASample]) -> [Block; 2] {
     [Block::Paragraph(lead.into()), table(columns, rows.collect())]
 }
 
+/// Millions of instructions.
+fn million(cost: f64) -> String {
+    format!("{} M", fixed(1).write(cost / 1e6))
+}
+
+/// Milliseconds of a time in seconds.
+fn milliseconds(cost: f64) -> String {
+    format!("{} ms", fixed(2).write(1e3 * cost))
+}
+
+/// One table a level of error, one column a case: costs of this step, ratios to it of the others.
+fn by_case(cases: &[CaseRecord], found: &[AtError], cost: impl Fn(f64) -> String) -> Vec<Block> {
+    let mut names: Vec<&str> = Vec::new();
+    for at in found {
+        if !names.contains(&at.name.as_str()) {
+            names.push(&at.name);
+        }
+    }
+    let keys: Vec<&str> =
+        cases.iter().map(|case| case.key.as_str()).filter(|key| found.iter().any(|at| at.case == *key)).collect();
+    let cell = |name: &str, key: &str, level: f64| {
+        let at = found.iter().find(|at| at.name == name && at.case == key && at.error.total_cmp(&level).is_eq());
+        match at.and_then(|at| Some((at.cost?, at.ratio))) {
+            Some((_, Some(ratio))) if !name.starts_with("this step") => fixed(2).write(ratio),
+            Some((found, _)) => cost(found),
+            None => "not reached".into(),
+        }
+    };
+    let level = |level: f64| {
+        let lead = format!("Error {}, other methods over this step:", powers_of_ten(0).write(level));
+        let columns = [words("method")].into_iter().chain(keys.iter().map(|key| numbers(*key))).collect();
+        let line =
+            |name: &&str| row([(*name).to_owned()].into_iter().chain(keys.iter().map(|key| cell(name, key, level))));
+        [Block::Paragraph(lead.into()), table(columns, names.iter().map(line).collect())]
+    };
+    LEVELS.map(level).into_iter().flatten().collect()
+}
+
 /// One row a contestant, two columns a level of error.
 fn equal(found: &[&AtError], cost: impl Fn(f64) -> String) -> Block {
     let mut rows: Vec<Vec<String>> = Vec::new();
@@ -258,16 +300,19 @@ fn host(figures: &BenchmarkRecord) -> Option<Block> {
     if let Some(reason) = &host.without_cvode {
         blocks.push(notice(strong("CVODE is not among them") + ": " + reason + "."));
     }
+    blocks.push(Block::Only(FILES, by_case(&figures.cases, &figures.host_at_equal_error, milliseconds)));
     for case in &figures.cases {
         let found: Vec<&AtError> = figures.host_at_equal_error.iter().filter(|at| at.case == case.key).collect();
         let picture = drawn(pictures::host(case, &host.times), String::new());
+        let mut parts = Vec::new();
         if !found.is_empty() || picture.is_some() {
-            blocks.push(Block::Paragraph(format!("Case {}:", case.key).into()));
+            parts.push(Block::Paragraph(format!("Case {}:", case.key).into()));
         }
-        blocks.extend(picture);
+        parts.extend(picture);
         if !found.is_empty() {
-            blocks.push(equal(&found, |cost| format!("{} ms", fixed(2).write(1e3 * cost))));
+            parts.push(equal(&found, milliseconds));
         }
+        blocks.push(Block::Only(WITH_STEPS, parts));
     }
     Some(section("Host: processor time at equal error", blocks))
 }

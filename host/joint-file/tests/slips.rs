@@ -1,5 +1,5 @@
 //! Slips that every bound of a single key lets pass: units, thousandths, a factor too many. Each is refused or warned of
-//! with words that lead to it. What cannot be seen is argued in docs/reference/joint-file.md. And joints as they are built
+//! with words that lead to it. What cannot be seen is listed in docs/reference/joint-file.md. And joints as they are built
 //! raise no alarm.
 
 use joint_file::{PRESETS, Problem, Severity, change, preset, read, value};

@@ -4,7 +4,7 @@
 //! what is odd but can be is a warning. The file's `coherence = "warn"` makes warnings of the errors.
 //!
 //! Limits lie far out on purpose, since a good file that is refused costs more than a slip that passes. The page
-//! docs/reference/joint-file.md lists them, with what cannot be seen.
+//! docs/reference/joint-file.md names the values that are compared, and slips that cannot be detected.
 
 mod judge;
 mod masses;

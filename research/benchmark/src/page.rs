@@ -28,7 +28,7 @@ const LINES: &[Medium] = &[Medium::Terminal, Medium::Markdown];
 pub fn document(figures: &BenchmarkRecord) -> Document {
     let mut blocks = vec![Block::Only(LINES, vec![Block::Paragraph(provenance(figures))])];
     blocks.extend(figures.cases.iter().map(|case| one(figures, case)));
-    let instructions = by_case(&figures.cases, &figures.at_equal_error, million);
+    let instructions = by_case(&figures.cases, &figures.at_equal_error, &LEVELS, million);
     blocks.push(Block::Only(FILES, vec![section("Instructions for a second of the joint", instructions)]));
     blocks.push(Block::Only(WITH_STEPS, vec![budget(figures), rounding(figures)]));
     blocks.extend(host(figures));
@@ -205,7 +205,10 @@ fn milliseconds(cost: f64) -> String {
 }
 
 /// One table a level of error, one column a case: costs of this step, ratios to it of the others.
-fn by_case(cases: &[CaseRecord], found: &[AtError], cost: impl Fn(f64) -> String) -> Vec<Block> {
+fn by_case(cases: &[CaseRecord], found: &[AtError], levels: &[f64], cost: impl Fn(f64) -> String) -> Vec<Block> {
+    if found.is_empty() {
+        return Vec::new();
+    }
     let mut names: Vec<&str> = Vec::new();
     for at in found {
         if !names.contains(&at.name.as_str()) {
@@ -222,14 +225,14 @@ fn by_case(cases: &[CaseRecord], found: &[AtError], cost: impl Fn(f64) -> String
             None => "not reached".into(),
         }
     };
-    let level = |level: f64| {
+    let level = |&level: &f64| {
         let lead = format!("Error {}, other methods over this step:", powers_of_ten(0).write(level));
         let columns = [words("method")].into_iter().chain(keys.iter().map(|key| numbers(*key))).collect();
         let line =
             |name: &&str| row([(*name).to_owned()].into_iter().chain(keys.iter().map(|key| cell(name, key, level))));
         [Block::Paragraph(lead.into()), table(columns, names.iter().map(line).collect())]
     };
-    LEVELS.map(level).into_iter().flatten().collect()
+    levels.iter().flat_map(level).collect()
 }
 
 /// One row a contestant, two columns a level of error.
@@ -300,7 +303,7 @@ fn host(figures: &BenchmarkRecord) -> Option<Block> {
     if let Some(reason) = &host.without_cvode {
         blocks.push(notice(strong("CVODE is not among them") + ": " + reason + "."));
     }
-    blocks.push(Block::Only(FILES, by_case(&figures.cases, &figures.host_at_equal_error, milliseconds)));
+    blocks.push(Block::Only(FILES, by_case(&figures.cases, &figures.host_at_equal_error, &LEVELS[..1], milliseconds)));
     for case in &figures.cases {
         let found: Vec<&AtError> = figures.host_at_equal_error.iter().filter(|at| at.case == case.key).collect();
         let picture = drawn(pictures::host(case, &host.times), String::new());

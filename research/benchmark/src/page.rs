@@ -80,7 +80,7 @@ fn drawn(figure: Option<Figure>, file: String) -> Option<Block> {
 
 fn one(figures: &BenchmarkRecord, case: &CaseRecord) -> Block {
     let lead = format!(
-        "Error: {}; worst of {} phases, {:.4} s. A start moved by a millionth of b_c moves the reference itself by {}.{}",
+        "Error: {}; worst of {} phases, {:.4} s. A start moved by a millionth of b_c moves the reference by {}.{}",
         case.measure,
         case.phases,
         case.duration_s,
@@ -111,8 +111,7 @@ fn windows(case: &CaseRecord) -> String {
         return String::new();
     }
     format!(
-        " The motion is judged in {} windows: wherever torques jump, every method is put back into the reference's state, as \
-         else the smallest error decides in the end where in its gap the joint goes on.",
+        " Judged in {} windows: where torques jump, every method restarts from the reference's state.",
         case.windows
     )
 }
@@ -165,9 +164,9 @@ fn shown(entry: &MethodResult) -> Vec<&StepResult> {
 fn in_a_sample(found: &[&InASample]) -> [Block; 2] {
     let [rms, worst, peak] = ASKED;
     let lead = format!(
-        "Every method at its best in at most {INSTRUCTIONS:.0} instructions a sample, on average, at {} kHz. Asked for: \
-         link angle within {} RMS and {} worst of the lost motion, peak mesh force of every part of the motion within \
-         {:.0} %. Last column: instructions a sample that bring a method down to the RMS error of this step.",
+        "Every method at its best in at most {INSTRUCTIONS:.0} instructions a sample (mean) at {} kHz. Required: link angle \
+         within {} RMS and {} worst of the lost motion, peak mesh force within {:.0} %. Last column: instructions a sample \
+         at the RMS error of this step.",
         SAMPLE_RATE / 1000,
         powers_of_ten(0).write(rms),
         powers_of_ten(0).write(worst),

@@ -127,7 +127,10 @@ fn costs_are_those_of_docs_and_header() {
         let library = library::build(target, "library", &say).expect("a library");
         let machine = costs::machine(target).expect("a machine");
         let counted = Costs::of(&library, &joint, machine).expect("costs");
-        costs += &format!("\n### Target {}\n{}", target.name(), costs::section(&counted, &joint, machine));
+        // The page has one target; the archive of each has its own costs.
+        if target == Target::M4f {
+            costs += &format!("\n### Target {}\n{}", target.name(), costs::section(&counted, &joint, machine));
+        }
         assert_eq!(counted.stacks.len(), bounds.len(), "every call has a bound of its stack");
         for stack in counted.stacks {
             let (_, most) = bounds.iter().find(|(name, _)| *name == stack.name).expect("a bound");

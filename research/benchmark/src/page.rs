@@ -19,14 +19,17 @@ use report::provenance::VERSION;
 
 /// All media except Markdown files, which show the conclusions only.
 const WITH_STEPS: &[Medium] = &[Medium::Page, Medium::Terminal];
+/// Markdown files, which have one table for all cases.
+const FILES: &[Medium] = &[Medium::Markdown];
 /// All media except pages, which show the provenance elsewhere.
 const LINES: &[Medium] = &[Medium::Terminal, Medium::Markdown];
 
 /// The whole document.
 pub fn document(figures: &BenchmarkRecord) -> Document {
     let mut blocks = vec![Block::Only(LINES, vec![Block::Paragraph(provenance(figures))])];
-    blocks.extend(figures.cases.iter().map(|case| case_section(figures, case)));
-    blocks.extend([budget(figures), rounding(figures)]);
+/// Markdown files, which have one table for all cases.
+const FILES: &[Medium] = &[Medium::Markdown];
+/// All media except pages, which show the provenance elsewhere.
     blocks.extend(host(figures));
     blocks.push(Block::Only(PAGES, vec![origin(figures)]));
     Document {
@@ -76,7 +79,7 @@ fn drawn(figure: Option<Figure>, file: String) -> Option<Block> {
 
 fn case_section(figures: &BenchmarkRecord, case: &CaseRecord) -> Block {
     let lead = format!(
-        "Error: {}; worst of {} phases, {:.4} s. A start moved by a millionth of b_c moves the reference itself by {}.{}",
+        "Error: {}; worst of {} phases, {:.4} s. A start moved by a millionth of b_c moves the reference by {}.{}",
         case.measure,
         case.phases,
         case.duration_s,
@@ -95,8 +98,8 @@ fn case_section(figures: &BenchmarkRecord, case: &CaseRecord) -> Block {
     let reached: Vec<&AtError> = figures.at_equal_error.iter().filter(|at| at.case == case.key).collect();
     if reached.iter().any(|at| at.cost.is_some()) {
         let lead = "Instructions for a second of the joint at equal error, and over those of this step:";
-        blocks.push(Block::Paragraph(lead.into()));
-        blocks.push(equal(&reached, |cost| format!("{} M", fixed(1).write(cost / 1e6))));
+        let table = equal(&reached, million);
+        blocks.push(Block::Only(WITH_STEPS, vec![Block::Paragraph(lead.into()), table]));
     }
     section(format!("Case {}: {}", case.key, case.title), blocks)
 }
@@ -107,8 +110,7 @@ fn windows(case: &CaseRecord) -> String {
         return String::new();
     }
     format!(
-        " The motion is judged in {} windows: wherever torques jump, every method is put back into the reference's state, as \
-         else the smallest error decides in the end where in its gap the joint goes on.",
+        " Judged in {} windows: where torques jump, every method restarts from the reference's state.",
         case.windows
     )
 }
@@ -160,9 +162,9 @@ fn displayed_steps(entry: &MethodResult) -> Vec<&StepResult> {
 fn in_a_sample(found: &[&InASample]) -> [Block; 2] {
     let [rms, worst, peak] = REQUIRED;
     let lead = format!(
-        "Every method at its best in at most {INSTRUCTIONS:.0} instructions a sample, on average, at {} kHz. Asked for: \
-         link angle within {} RMS and {} worst of the lost motion, peak mesh force of every part of the motion within \
-         {:.0} %. Last column: instructions a sample that bring a method down to the RMS error of this step.",
+        "Every method at its best in at most {INSTRUCTIONS:.0} instructions a sample (mean) at {} kHz. Required: link angle \
+         within {} RMS and {} worst of the lost motion, peak mesh force within {:.0} %. Last column: instructions a sample \
+         at the RMS error of this step.",
         SAMPLE_RATE / 1000,
         powers_of_ten(0).write(rms),
         powers_of_ten(0).write(worst),
@@ -189,7 +191,9 @@ fn in_a_sample(found: &[&InASample]) -> [Block; 2] {
     [Block::Paragraph(lead.into()), table(columns, rows.collect())]
 }
 
-/// Table with one row a method and two columns for each error level.
+/// Markdown files, which have one table for all cases.
+const FILES: &[Medium] = &[Medium::Markdown];
+/// All media except pages, which show the provenance elsewhere.
 fn equal(found: &[&AtError], cost: impl Fn(f64) -> String) -> Block {
     let mut rows: Vec<Vec<String>> = Vec::new();
     for at in found {
@@ -257,16 +261,19 @@ fn host(figures: &BenchmarkRecord) -> Option<Block> {
     if let Some(reason) = &host.without_cvode {
         blocks.push(notice(strong("CVODE is not among them") + ": " + reason + "."));
     }
+    blocks.push(Block::Only(FILES, by_case(&figures.cases, &figures.host_at_equal_error, &LEVELS[..1], milliseconds)));
     for case in &figures.cases {
         let found: Vec<&AtError> = figures.host_at_equal_error.iter().filter(|at| at.case == case.key).collect();
         let picture = drawn(pictures::host(case, &host.times), String::new());
+        let mut parts = Vec::new();
         if !found.is_empty() || picture.is_some() {
-            blocks.push(Block::Paragraph(format!("Case {}:", case.key).into()));
+            parts.push(Block::Paragraph(format!("Case {}:", case.key).into()));
         }
-        blocks.extend(picture);
+        parts.extend(picture);
         if !found.is_empty() {
-            blocks.push(equal(&found, |cost| format!("{} ms", fixed(2).write(1e3 * cost))));
+            parts.push(equal(&found, milliseconds));
         }
+        blocks.push(Block::Only(WITH_STEPS, parts));
     }
     Some(section("Host: processor time at equal error", blocks))
 }

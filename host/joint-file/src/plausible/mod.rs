@@ -4,7 +4,7 @@
 //! warning. The file's `coherence = "warn"` turns the errors into warnings.
 //!
 //! Limits are wide on purpose: rejecting a good file costs more than accepting a slip. The page
-//! docs/reference/joint-file.md lists them, with the undetectable slips.
+//! docs/reference/joint-file.md names the compared values and the undetectable slips.
 
 mod judge;
 mod masses;

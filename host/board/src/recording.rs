@@ -1,32 +1,32 @@
-//! What a session received from the board, and which commands the board has acknowledged, both unprocessed. Gaps in
-//! sequence numbers are counted here; conversion to SI units and verdicts are in `joint-run`.
+//! Messages of a session as received, and the commands that the board has acknowledged. Gaps in sequence numbers are
+//! counted here; conversion to SI units and verdicts are in `joint-run`.
 
 use link::messages::{Accepted, Command, FromBoard, Hello, Log, RunSettings, Sample, SampleBatch, Statistics, Trip};
 
-/// Everything of one session.
+/// Messages and counters of one session.
 #[derive(Debug, Clone, Default)]
 pub struct Recording {
-    /// Who the board said it was.
+    /// Identity of the board.
     pub hello: Option<Hello>,
-    /// What the run was started with.
+    /// Settings of the run.
     pub settings: Option<RunSettings>,
-    /// Commands in schedules that the board said it took, in the order sent.
+    /// Commands in acknowledged schedules, in the order sent.
     pub accepted: Vec<Command>,
-    /// Samples in the order in which they came.
+    /// Samples in order of arrival.
     pub samples: Vec<Sample>,
-    /// The last statistics.
+    /// Most recent statistics.
     pub statistics: Option<Statistics>,
-    /// Faults in the order in which they came.
+    /// Trips in order of arrival.
     pub trips: Vec<Trip>,
-    /// Encoded log, with the gaps left out.
+    /// Encoded log, with lost frames left out.
     pub log: Vec<u8>,
-    /// What went over the line and what was lost on it.
+    /// Traffic on the line.
     pub traffic: Traffic,
     next_batch: u16,
     next_log: Option<u16>,
 }
 
-/// What went over the line and what was lost on it, seen from the host.
+/// Traffic and losses on the line, counted on the host.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Traffic {
     /// Bytes to the board.
@@ -35,11 +35,11 @@ pub struct Traffic {
     pub received_bytes: u64,
     /// Good messages from the board.
     pub messages: u64,
-    /// Frames dropped here during the run for a bad CRC, length or content.
+    /// Frames dropped on the host during the run for a bad CRC, length or content.
     pub bad_frames: u32,
-    /// Sample batches missing by sequence number.
+    /// Sample batches missing in the sequence.
     pub lost_batches: u32,
-    /// Log frames missing by sequence number.
+    /// Log frames missing in the sequence.
     pub lost_logs: u32,
 }
 
@@ -52,7 +52,7 @@ impl Recording {
             FromBoard::Accepted(_) => {}
             FromBoard::Samples(batch) => self.take_samples(batch),
             FromBoard::Statistics(statistics) => self.statistics = Some(statistics),
-            // Schedules that were under way when a run stopped are refused: that says nothing new.
+            // Schedules in flight when a run stops are refused; the refusal repeats the trip.
             FromBoard::Tripped(Trip::NotRunning) if !self.trips.is_empty() => {}
             FromBoard::Tripped(trip) => self.trips.push(trip),
             FromBoard::Log(log) => self.take_log(&log),
@@ -66,7 +66,7 @@ impl Recording {
         }
     }
 
-    /// A run starts: only the log and the board's name go on.
+    /// Starts a run: clears everything but the log and the board's identity.
     pub fn start_run(&mut self, settings: RunSettings) {
         let log = std::mem::take(&mut self.log);
         let lost_logs = self.traffic.lost_logs;
@@ -80,12 +80,12 @@ impl Recording {
         };
     }
 
-    /// Forgets samples after a tick.
+    /// Drops samples after a tick.
     pub fn keep_until(&mut self, tick: u32) {
         self.samples.retain(|sample| sample.tick <= tick);
     }
 
-    /// Last tick that the board is known to have done.
+    /// Tick of the last received sample.
     pub fn last_tick(&self) -> u32 {
         self.samples.last().map_or(0, |sample| sample.tick)
     }
@@ -105,32 +105,32 @@ impl Recording {
     }
 }
 
-/// How many numbers are missing before one that has come; none if that one comes once more, as on a line that says a frame
-/// twice: numbers rise, so that one far ahead is one from behind.
+/// Number of frames missing before `sequence`, or `None` for a repeated frame. Sequence numbers rise, so a number more
+/// than half the range ahead is an old one.
 pub fn missing(next: u16, sequence: u16) -> Option<u32> {
     let gap = sequence.wrapping_sub(next);
     (gap <= u16::MAX / 2).then_some(gap.into())
 }
 
-/// Schedules that were sent and not yet answered for.
+/// Schedules sent and not yet acknowledged.
 #[derive(Debug, Default)]
 pub struct UnacknowledgedSchedules {
     schedules: Vec<(u16, Vec<Command>)>,
 }
 
 impl UnacknowledgedSchedules {
-    /// A schedule has been sent.
+    /// Records a schedule as sent.
     pub fn sent(&mut self, sequence: u16, commands: &[Command]) {
         self.schedules.push((sequence, commands.to_vec()));
     }
 
-    /// The board took one: its commands; none if it was not asked.
+    /// Removes an acknowledged schedule and returns its commands; empty if no such schedule was sent.
     pub fn acknowledged(&mut self, accepted: Accepted) -> Vec<Command> {
         let place = self.schedules.iter().position(|(sequence, _)| *sequence == accepted.sequence);
         place.map(|place| self.schedules.remove(place).1).unwrap_or_default()
     }
 
-    /// How many are under way.
+    /// Number of schedules in flight.
     pub fn count(&self) -> usize {
         self.schedules.len()
     }

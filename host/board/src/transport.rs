@@ -9,18 +9,18 @@ use serialport::{ErrorKind, SerialPort};
 
 use report::failure::{Failure, Outcome};
 
-/// Longest wait of one [`Line::receive`]; a session looks at its deadlines and at Ctrl-C this often.
+/// Longest wait of one [`Line::receive`], and interval at which a session checks its deadlines and Ctrl-C.
 pub const RECEIVE_TIMEOUT: Duration = Duration::from_millis(20);
-/// Longest wait for the other end to take what is sent.
+/// Longest wait for the other end to accept sent bytes.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// A byte stream in both directions.
+/// Byte stream in both directions.
 pub trait Line {
     /// Sends everything, or fails.
     fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
     /// Waits for up to [`RECEIVE_TIMEOUT`]; 0 bytes mean that nothing came, an error that the line is gone.
     fn receive(&mut self, buffer: &mut [u8]) -> io::Result<usize>;
-    /// The line as a user knows it.
+    /// Name of the line, as shown to the user.
     fn name(&self) -> &str;
 }
 
@@ -31,7 +31,7 @@ pub struct Socket {
 }
 
 impl Socket {
-    /// Takes over a connected socket.
+    /// Wraps a connected socket.
     pub fn new(stream: UnixStream, name: impl Into<String>) -> io::Result<Self> {
         stream.set_read_timeout(Some(RECEIVE_TIMEOUT))?;
         stream.set_write_timeout(Some(WRITE_TIMEOUT))?;
@@ -63,7 +63,7 @@ pub struct Port {
 }
 
 impl Port {
-    /// Opens a port for this process alone.
+    /// Opens a port for exclusive use.
     pub fn open(path: &str, baud: u32) -> Outcome<Self> {
         let opened = serialport::new(path, baud).timeout(RECEIVE_TIMEOUT).exclusive(true).open();
         match opened {
@@ -75,7 +75,7 @@ impl Port {
 
 impl Line for Port {
     fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        // The port's one timeout is the short one for reading: a driver that is merely busy is asked again.
+        // The port has one timeout, the short one for reading: a busy driver is tried again.
         let deadline = std::time::Instant::now() + WRITE_TIMEOUT;
         let mut rest = bytes;
         while !rest.is_empty() {
@@ -89,7 +89,8 @@ impl Line for Port {
 
     fn receive(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         match self.port.read(buffer) {
-            // Silence is a timeout; nothing without one is a port that has hung up, as an unplugged adapter does.
+            // Silence ends in a timeout; a read of 0 bytes without a timeout means that the port has hung up, as after
+            // unplugging.
             Ok(0) => Err(io::ErrorKind::UnexpectedEof.into()),
             other => nothing_yet(other),
         }
@@ -100,7 +101,7 @@ impl Line for Port {
     }
 }
 
-/// A wait that ended without a byte is no error.
+/// Turns a wait that ended without a byte into a count of 0.
 fn nothing_yet(result: io::Result<usize>) -> io::Result<usize> {
     match result {
         Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => Ok(0),

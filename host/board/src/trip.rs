@@ -1,23 +1,23 @@
-//! Trips of a board into its safe state in words: what happened and what to do.
+//! Texts for the trips of a board: cause and remedy.
 
 use link::messages::Trip;
 
 use report::failure::Failure;
 use serde::{Deserialize, Serialize};
 
-/// A fault that the board reported.
+/// Trip that the board reported.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FaultEntry {
-    /// Its tick, where it has one.
+    /// Tick of the trip, if it has one.
     pub tick: Option<u32>,
     /// Short name, such as `command_loss`.
     pub name: String,
-    /// What it means and what to do.
+    /// Meaning and remedy.
     pub text: String,
 }
 
-/// Short name, tick where there is one, what it means, what to do.
+/// Short name, tick if it has one, meaning, and remedy of a trip.
 fn words(trip: &Trip) -> (&'static str, Option<u32>, &'static str, &'static str) {
     match *trip {
         Trip::CommandLoss { tick } => (
@@ -80,19 +80,19 @@ fn words(trip: &Trip) -> (&'static str, Option<u32>, &'static str, &'static str)
     }
 }
 
-/// A trip as the end of a run.
+/// Failure that ends a run with a trip.
 pub fn failure(trip: &Trip) -> Failure {
     let (name, tick, what, help) = words(trip);
     let place = tick.map(|tick| format!(" at tick {tick}")).unwrap_or_default();
     let happened = match trip {
-        // What a message asked for was not done, and nothing else changed.
+        // The requested action was refused and nothing else changed.
         Trip::NotRunning | Trip::WrongRole | Trip::Overtaken => "the board refused a message",
         _ => "the board went into its safe state",
     };
     Failure::check_failed(format!("{happened}{place}: {what} ({name})")).with_help(help)
 }
 
-/// A trip as a line of the record.
+/// Entry of the record for a trip.
 pub fn entry(trip: &Trip) -> FaultEntry {
     let (name, tick, what, help) = words(trip);
     FaultEntry { tick, name: name.to_owned(), text: format!("{what}; {help}") }

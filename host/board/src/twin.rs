@@ -1,6 +1,6 @@
-//! The host's twin of the board: the same f32 step under the same torques, compared with every sample bit for bit. A
-//! running digest over the whole state covers the ticks between samples. Accuracy is checked against the reference, in
-//! `joint-run`.
+//! Twin of the board on the host: the same f32 step under the same torques, compared with every sample bit for bit. A
+//! running digest over the whole state covers the ticks between samples. `joint-run` checks accuracy against the
+//! reference.
 
 use link::messages::{Command, Sample};
 use model_core::gears::design::{DesignError, Effort, design_scheme};
@@ -12,29 +12,29 @@ use parameters::{ContactState, JointParameters};
 use crate::device::board::Chip;
 use report::failure::{Failure, Outcome};
 
-/// What the comparison found.
+/// Result of the comparison.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Agreement {
-    /// Steps up to the last sample that agrees, all covered by its digest.
+    /// Steps up to the last agreeing sample before any difference, all covered by its digest.
     pub steps: u32,
     /// Samples compared.
     pub samples: usize,
     /// Samples that differ in any bit.
     pub different: usize,
-    /// The first difference.
+    /// First difference.
     pub first: Option<Difference>,
 }
 
-/// A field of a sample that differs.
+/// First field in which two samples differ.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Difference {
     /// Steps done at the sample.
     pub tick: u32,
     /// Name of the field.
     pub field: &'static str,
-    /// The board's value.
+    /// Value of the board.
     pub board: String,
-    /// The twin's value.
+    /// Value of the twin.
     pub twin: String,
 }
 
@@ -49,7 +49,7 @@ pub fn tables_digest(joint: &JointParameters, chip: Chip, tick_rate: u32) -> Out
     }
 }
 
-/// Replays the commands and compares every sample. Samples are in rising order of ticks.
+/// Repeats the commands on the twin and compares every sample. Samples must be in ascending order of ticks.
 pub fn compare(
     joint: &JointParameters,
     image: Chip,
@@ -73,7 +73,7 @@ pub fn compare(
     Ok(agreement)
 }
 
-/// The twin's samples after the given numbers of steps, which rise.
+/// Samples of the twin after the given numbers of steps, in ascending order.
 pub fn replay(
     joint: &JointParameters,
     chip: Chip,
@@ -128,7 +128,7 @@ fn replayed<const N: usize>(tables: &Tables<f32, N>, commands: &[Command], ticks
     samples
 }
 
-/// The first field in which the board's sample is not the twin's, the digest last: it says least.
+/// First field in which two samples differ. The digest comes last because it tells least.
 fn difference(board: &Sample, twin: &Sample) -> Option<Difference> {
     let (board_fields, twin_fields) = (fields(board), fields(twin));
     let place = board_fields.iter().zip(&twin_fields).position(|(board, twin)| board != twin)?;
@@ -136,7 +136,7 @@ fn difference(board: &Sample, twin: &Sample) -> Option<Difference> {
     Some(Difference { tick: board.tick, field, board: board_value, twin: twin_fields[place].1.clone() })
 }
 
-/// Every field as text, floats with their bits: -0 equals 0 and NaN nothing, but bits are bits.
+/// All fields as text, floats with their bits, because only the bits tell -0 from 0 and one NaN from another.
 fn fields(sample: &Sample) -> [(&'static str, String); 10] {
     let float = |value: &f32| format!("{value:e} (bits {:08x})", value.to_bits());
     let deflections: Vec<String> = sample.deflections.iter().map(float).collect();
@@ -154,7 +154,7 @@ fn fields(sample: &Sample) -> [(&'static str, String); 10] {
     ]
 }
 
-/// The twin's sample after a step.
+/// Sample of the twin after a step.
 pub fn sample<const N: usize>(model: &Model<'_, f32, N>, tick: u32, state_digest: u64, computation: u16) -> Sample {
     let outputs = model.outputs();
     let mut contacts = 0;
@@ -197,7 +197,7 @@ mod tests {
         vec![command(0, 0.5, 3.0), command(40, -0.5, -3.0), command(90, 1.0, 6.0)]
     }
 
-    /// A board that does as it should, written down on its own: torques looked up instead of queued.
+    /// Correct board in an independent form: torques looked up instead of queued.
     fn board(joint: &JointParameters, commands: &[Command], ticks: u32, decimation: u32) -> Vec<Sample> {
         let tables: Tables<f32, 3> = tables(joint, Chip::Stm32f405, TICK_RATE).expect("a good joint");
         let mut model = Model::new(&tables);

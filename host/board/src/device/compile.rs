@@ -15,7 +15,8 @@ use report::workspace::workspace;
 /// The cargo profile of images.
 pub const PROFILE: &str = "firmware";
 
-/// Package of what a library is about: what in it is generic is compiled with the library's own package, the rest here.
+/// Package with the generic code of the library. Its generic functions are compiled with the library's own package, the
+/// others with this one.
 const CORE: &str = "model-core";
 
 /// Package of the images.
@@ -30,7 +31,7 @@ pub(super) fn compile(
     environment: &[(&str, &OsStr)],
     say: Say<'_>,
 ) -> Outcome<Vec<u8>> {
-    // One build at a time in this folder, and none between a build and the copy of its result.
+    // The lock spans build and copy: no other build may replace the result in between.
     let _lock = lock(toolchain.folder(), say)?;
     let mut command = toolchain.cargo("build");
     command
@@ -42,7 +43,8 @@ pub(super) fn compile(
     fs::read(&built).map_err(|error| Failure::new(format!("{}: {error}", built.display())))
 }
 
-/// Compiles a package as a static library for the board, with flags beside the toolchain's; gives the archive.
+/// Compiles a package as a static library for the board, with flags in addition to the toolchain's. Returns the
+/// archive.
 pub fn compile_library(
     toolchain: &Toolchain,
     package: &str,
@@ -61,7 +63,7 @@ pub fn compile_library(
     read_library(&toolchain.folder().join(TARGET), package, "a")
 }
 
-/// Compiles a package as a static and a shared library for this machine. The shared one carries its name for the loader.
+/// Compiles a package as a static and a shared library for this machine. The shared library carries its soname.
 pub fn compile_library_for_host(
     target_directory: &Path,
     package: &str,
@@ -79,14 +81,15 @@ pub fn compile_library_for_host(
     Ok([read_library(&folder, package, "a")?, read_library(&folder, package, "so")?])
 }
 
-/// What makes a package a library for another language's linker. What debuggers want names folders of this machine.
+/// Adds the arguments that make a package a library for a foreign linker. Debug information is left out: it would name
+/// folders of this machine.
 fn as_library<'c>(command: &'c mut Command, package: &str, kinds: &str, features: &str) -> &'c mut Command {
     command
         .args(["--package", package, "--lib", "--profile", PROFILE, "--crate-type", kinds, "--features", features])
         .env("CARGO_PROFILE_FIRMWARE_DEBUG", "0")
 }
 
-/// For boards: a package small; what it depends on is as fast as the images have it.
+/// Cargo arguments that optimise a package for size; its dependencies keep the profile's optimisation.
 fn small(package: &str) -> [String; 2] {
     ["--config".to_owned(), format!("profile.{PROFILE}.package.{package}.opt-level=\"z\"")]
 }
@@ -97,7 +100,7 @@ fn read_library(folder: &Path, package: &str, extension: &str) -> Outcome<Vec<u8
     fs::read(&built).map_err(|error| Failure::new(format!("{}: {error}", built.display())))
 }
 
-/// What cargo calls the library of a package.
+/// Name that cargo gives the library of a package.
 fn library_name(package: &str) -> String {
     package.replace('-', "_")
 }
@@ -113,7 +116,7 @@ fn lock(folder: &Path, say: Say<'_>) -> Outcome<File> {
     open().map_err(|error: io::Error| cannot_write(&path, &error))
 }
 
-/// Puts the whole file in place, or none of it.
+/// Writes a file beside its place and renames it, so that the place holds the whole file or the old one.
 pub(super) fn store(images: &Path, place: &Path, elf: &[u8]) -> Outcome<()> {
     let unfinished = place.with_extension(format!("unfinished-{}", std::process::id()));
     fs::create_dir_all(images)

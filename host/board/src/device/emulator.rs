@@ -1,10 +1,10 @@
-//! The emulated board: QEMU's `netduinoplus2` with its serial line on a Unix socket in a folder that only this user can
+//! Emulated board: QEMU's `netduinoplus2` with its serial line on a Unix socket in a folder that only this user can
 //! enter.
 //!
-//! The emulator never outlives its owner. Dropping [`Emulator`] kills it and waits for it. It is in a process group of
-//! its own, so that Ctrl-C reaches the owner alone, who ends the run and then drops it. And where there is `setpriv`
-//! (util-linux) the kernel kills it when the thread that has started it dies, however that happens: start it on a
-//! thread that lives as long as the run.
+//! The emulator never outlives its owner. Dropping [`Emulator`] kills the process and waits for its end. The process
+//! has its own process group, so that Ctrl-C reaches only the owner, which ends the run and then drops the emulator. If
+//! `setpriv` (util-linux) is installed, the kernel also kills the emulator when the thread that started it dies: start
+//! it on a thread that lives as long as the run.
 
 use std::fs::{self, File};
 use std::io;
@@ -22,17 +22,18 @@ use super::{Say, packages, tool};
 use report::failure::{Failure, Outcome};
 
 const PROGRAM: &str = "qemu-system-arm";
-/// Its Debian package has the same name.
+/// Debian package of the emulator.
 const PACKAGE: &str = PROGRAM;
 /// The emulated board: an STM32F405.
 pub const MACHINE: &str = "netduinoplus2";
-/// Eight nanoseconds an instruction, and no waiting for the host's clock while the processor sleeps: the board's time
-/// depends on its instructions alone.
+/// Eight nanoseconds per instruction, and no waiting for the host's clock while the processor sleeps: emulated time
+/// depends on the instructions alone.
 pub const CLOCK: &str = "shift=3,sleep=off";
 /// Longest wait for the emulator to open its line.
 const START_TIMEOUT: Duration = Duration::from_secs(20);
 const POLL: Duration = Duration::from_millis(5);
-/// Longest folder name that leaves room for the socket's: a socket's path is limited to some hundred bytes.
+/// Longest name of a temporary folder that leaves room for the socket: a socket's path is limited to about a hundred
+/// bytes.
 const LONGEST_FOLDER: usize = 60;
 
 /// A running emulated board.
@@ -43,7 +44,7 @@ pub struct Emulator {
     ended: Option<ExitStatus>,
 }
 
-/// Finds the emulator, or installs it; returns its own version line.
+/// Finds the emulator or installs it; returns its version line.
 pub fn ensure(say: Say<'_>) -> Outcome<String> {
     if tool::find(PROGRAM).is_none() {
         packages::ensure(&[PACKAGE], "to run the emulated board", say)?;
@@ -53,8 +54,8 @@ pub fn ensure(say: Say<'_>) -> Outcome<String> {
 }
 
 impl Emulator {
-    /// Boots an image. The board starts once the returned end of its serial line is connected, so that nothing it says
-    /// is missed.
+    /// Boots an image. The board starts once the returned end of its serial line is connected, so that none of its
+    /// output is lost.
     pub fn start(elf: &Path) -> Outcome<(Self, UnixStream)> {
         Self::start_with(&program()?, elf)
     }
@@ -64,8 +65,8 @@ impl Emulator {
         let socket = folder.path().join("serial");
         let log = File::create(folder.path().join("log")).map_err(|error| no_folder(&error))?;
         let mut command = mortal(program);
-        // The board's UART has room for one byte; a multiplexer before it takes the next ones meanwhile, which doubles the
-        // rate. Its escape character would be taken out of the stream: 256 is none.
+        // The board's UART buffers one byte; the multiplexer buffers the following ones, which doubles the rate. Its
+        // escape character would be removed from the stream; 256 disables it.
         command
             .args(["-M", MACHINE, "-icount", CLOCK])
             .args(["-nodefaults", "-no-user-config", "-display", "none", "-monitor", "none"])
@@ -84,8 +85,8 @@ impl Emulator {
         Ok((emulator, line))
     }
 
-    /// Fails if the emulator has ended; the error has its output. Call it whenever the line is silent or gone: this is how a
-    /// death in mid-run is noticed at once.
+    /// Fails if the emulator has ended, with its output in the error. Call it whenever the line is silent or closed, so
+    /// that the end of the process is reported at once.
     pub fn check(&mut self) -> Outcome<()> {
         if self.ended.is_none() {
             self.ended = self.child.try_wait().ok().flatten();
@@ -96,7 +97,7 @@ impl Emulator {
         }
     }
 
-    /// Its process.
+    /// Process id of the emulator.
     pub fn process_id(&self) -> u32 {
         self.child.id()
     }
@@ -116,7 +117,7 @@ impl Emulator {
         }
     }
 
-    /// The emulator's standard error, apart from its message that it waits for a connection.
+    /// Standard error of the emulator, without the message that it waits for a connection.
     fn last_words(&self) -> String {
         let said = fs::read_to_string(self.folder.path().join("log")).unwrap_or_default();
         said.lines().filter(|line| !line.contains("info: QEMU waiting")).map(|line| format!("\n{line}")).collect()
@@ -125,20 +126,20 @@ impl Emulator {
 
 impl Drop for Emulator {
     fn drop(&mut self) {
-        // It may have ended by itself; either way it is waited for.
+        // The process may have ended by itself; `wait` reaps it in both cases.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// The emulator's program.
+/// Path of the emulator's program.
 pub(super) fn program() -> Outcome<PathBuf> {
     tool::find(PROGRAM).ok_or_else(|| {
         Failure::new(format!("{PROGRAM} is not on the search path")).with_help(format!("install {PACKAGE}"))
     })
 }
 
-/// The program, to be killed by the kernel with its parent thread where that can be had.
+/// Command for a program that the kernel kills when its parent thread dies, if `setpriv` is installed.
 pub(super) fn mortal(program: &Path) -> Command {
     match tool::find("setpriv") {
         None => Command::new(program),
@@ -150,7 +151,7 @@ pub(super) fn mortal(program: &Path) -> Command {
     }
 }
 
-/// A new folder that only this user can enter, with a short name.
+/// Creates a folder with a short name that only this user can enter.
 fn private_folder() -> Outcome<TempDir> {
     let usual = std::env::temp_dir();
     let place = if usual.as_os_str().len() > LONGEST_FOLDER { PathBuf::from("/tmp") } else { usual };

@@ -1,4 +1,5 @@
-//! Writes an image to a real board: by probe-rs through a debug probe, or by dfu-util over USB to the chip's own loader.
+//! Writes an image to a real board: with probe-rs through a debug probe, or with dfu-util over USB to the chip's boot
+//! loader.
 
 use std::fs;
 use std::path::Path;
@@ -12,9 +13,9 @@ use report::failure::{Failure, Outcome};
 
 const PROBE: &str = "probe-rs";
 const DFU: &str = "dfu-util";
-/// The loader of every chip here, as USB knows it.
+/// USB identity of the boot loader of every supported chip.
 const LOADER: &str = "0483:df11";
-/// Where flash begins.
+/// Start address of flash.
 const FLASH: u64 = 0x0800_0000;
 
 /// Writes an image to the board behind the debug probe and starts it. probe-rs shows its own progress.
@@ -30,7 +31,8 @@ pub fn by_probe(elf: &Path, board: &Board) -> Outcome<()> {
     run(&["reset"], None)
 }
 
-/// Writes an image over USB and starts it. dfu-util shows its own progress; the file that it wants is put beside the image.
+/// Writes an image over USB and starts it. dfu-util shows its own progress; the flat binary that it needs is written
+/// beside the image.
 pub fn by_dfu(elf: &Path, board: &Board) -> Outcome<()> {
     let binary = elf.with_extension("bin");
     let bytes = flat(elf)?;
@@ -54,7 +56,7 @@ fn finish(mut command: Command, name: &str, help: &str) -> Outcome<()> {
     }
 }
 
-/// What an image puts into flash, from its first byte to its last; bytes between its parts as after an erase.
+/// Contents of flash from its first to its last used byte; gaps hold 0xff, the erased value.
 fn flat(elf: &Path) -> Outcome<Vec<u8>> {
     let refused = |why: String| Failure::new(format!("{}: {why}", elf.display()));
     let text = fs::read(elf).map_err(|error| refused(error.to_string()))?;
@@ -63,7 +65,7 @@ fn flat(elf: &Path) -> Outcome<Vec<u8>> {
     for segment in file.segments() {
         let data = segment.data().map_err(|error| refused(error.to_string()))?;
         let place = loaded_at(&file, segment.address()).checked_sub(FLASH).map(|place| place as usize);
-        // What is in RAM from the start on has its place in flash, and nothing else is written.
+        // Initial values of RAM have a load address in flash; segments without data are skipped.
         let Some(place) = place.filter(|place| !data.is_empty() && *place < 1 << 24) else { continue };
         bytes.resize(bytes.len().max(place + data.len()), 0xff);
         bytes[place..place + data.len()].copy_from_slice(data);
@@ -71,7 +73,7 @@ fn flat(elf: &Path) -> Outcome<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Where the segment at an address is loaded from.
+/// Load address of the segment at a virtual address.
 fn loaded_at(file: &object::File<'_>, address: u64) -> u64 {
     use object::read::elf::ProgramHeader;
     let object::File::Elf32(elf) = file else { return address };

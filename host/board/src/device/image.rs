@@ -1,5 +1,5 @@
-//! Firmware images: built for a joint, a board and a role, then copied to a name of their own, so that images of
-//! several joints can lie side by side. The tables in an image are made by the firmware's build script.
+//! Firmware images: built for a joint, a board and a role, each under its own file name so that images of several
+//! joints can lie side by side. The tables in an image are made by the firmware's build script.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -20,19 +20,20 @@ use super::toolchain::{TARGET_FLAGS, Toolchain};
 use report::failure::{Failure, Outcome};
 use report::workspace::workspace;
 
-/// Fixed steps a second unless something else is asked for [Hz].
+/// Default rate of fixed steps [Hz].
 pub const DEFAULT_TICK_RATE: u32 = 20_000;
-/// Control periods a second of the roles that control, unless something else is asked for [Hz].
+/// Default control rate of the roles `observer` and `loop` [Hz].
 pub const CONTROL_RATE: u32 = 10_000;
-/// Control periods a second of a slave on SPI: transfer and step fit one after the other [Hz].
+/// Default control rate of an SPI slave, at which transfer and step fit one after the other [Hz].
 pub const SPI_RATE: u32 = 5000;
-/// The binary of that slave.
+/// Binary of the SPI slave.
 const SPI_BINARY: &str = "spi_observer";
-/// For boards with little flash: at a lower level of optimisation the tick's loops keep checks that can panic.
+/// Inline threshold for boards with little flash. A lower level of optimisation would leave checks that can panic in
+/// the loops of the tick.
 const LESS_INLINED: &str = " -Cllvm-args=-inline-threshold=100";
-/// No image is larger [byte].
+/// Upper bound on the size of any image [byte].
 const LARGEST_IMAGE: u32 = 256 << 10;
-/// Where the flash of every board begins; RAM is at and beyond [`RAM`].
+/// Start address of flash on every board. RAM begins at [`RAM`].
 const FLASH: u64 = 0x0800_0000;
 const RAM: u64 = 0x2000_0000;
 
@@ -53,8 +54,8 @@ pub struct Image {
     pub flags: String,
 }
 
-/// Builds the image of a joint, or finds that it is up to date; refuses what the board has no time for, unless it is to be
-/// `forced`. A relative `joint_file` is relative to the folder that the command runs in.
+/// Builds the image of a joint unless it is up to date. Rejects an image whose worst tick exceeds the period unless
+/// `forced`. A relative `joint_file` is relative to the working folder.
 pub fn build_image(
     toolchain: &Toolchain,
     joint_file: &Path,
@@ -71,7 +72,7 @@ pub fn build_image(
     finish(toolchain, [&joint_file; 2], board, binary(role), &control, &place, say)
 }
 
-/// Refuses a joint file that the board cannot be built for; says whether it is by force that it can.
+/// Rejects a joint file that the board cannot be built for. Returns whether the image needs `forced`.
 fn fitted(joint_file: &Path, board: &Board, role: Role, rate: u32, forced: bool, say: Say<'_>) -> Outcome<bool> {
     let parameters = named::load(joint_file)?.file.parameters;
     let forced = OnBoard::new(&parameters, board, role).refuse_unless_forced(rate, forced)?;
@@ -84,24 +85,24 @@ fn fitted(joint_file: &Path, board: &Board, role: Role, rate: u32, forced: bool,
     Ok(forced)
 }
 
-/// What the image of a role that controls is made for, besides its joint.
+/// Requirements of a controller's image besides its joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Control {
-    /// Control periods, and ticks, a second [Hz].
+    /// Control rate, equal to the tick rate [Hz].
     pub rate: u32,
-    /// Bandwidth of the loop [rad/s]; what is good for the joint that the controller is told if none is asked for.
+    /// Bandwidth of the loop [rad/s]; if `None`, derived from the joint as told to the controller.
     pub bandwidth: Option<f64>,
-    /// Most that the teeth shall pass on in position mode, referred to the link [N m]; by the firmware's default if none is
-    /// asked for.
+    /// Limit of the torque through the teeth in position mode, referred to the link [N m]; if `None`, the default of
+    /// the firmware's build.
     pub peak_torque: Option<f64>,
-    /// Whether the observer is shown the output encoder.
+    /// True if the observer reads the output encoder.
     pub output_encoder: bool,
-    /// Built although the board has no time for it.
+    /// True if built although the worst tick exceeds the period.
     pub forced: bool,
 }
 
 impl Control {
-    /// At a rate, with the defaults of the firmware's build.
+    /// Requirements at a rate, with the defaults of the firmware's build.
     pub fn usual(rate: u32) -> Self {
         let ControlRequest { bandwidth, peak_torque, output_encoder } = ControlRequest::USUAL;
         Self { rate, bandwidth, peak_torque, output_encoder, forced: false }
@@ -114,8 +115,8 @@ impl Control {
     }
 }
 
-/// Builds the image of a role that controls, from the texts of two joint files: the true joint, and the joint as its
-/// controller is told it. Each pair has files of its own beside the images.
+/// Builds the image of a role with a controller from the texts of two joint files: the true joint, and the joint as
+/// told to the controller. Each pair has its own files beside the images.
 pub fn build_control_image(
     toolchain: &Toolchain,
     [truth, told]: [&str; 2],
@@ -136,7 +137,7 @@ pub fn build_control_image(
     finish(toolchain, [&truth_file, &told_file], board, binary(role), control, &place, say)
 }
 
-/// Builds observer and compensation of a joint as a slave on SPI, for a board that can be one.
+/// Builds observer and compensation of a joint as an SPI slave, for a board with an SPI slave.
 pub fn build_spi_slave(
     toolchain: &Toolchain,
     joint_file: &Path,
@@ -162,7 +163,7 @@ pub fn build_spi_slave(
     finish(toolchain, [&joint_file; 2], board, SPI_BINARY, &control, &place, say)
 }
 
-/// The whole path of a joint file.
+/// Absolute path of a joint file.
 fn readable(joint_file: &Path) -> Outcome<PathBuf> {
     joint_file.canonicalize().map_err(|error| {
         Failure::new(format!("joint file {}: {error}", joint_file.display())).with_help("name a file that can be read")
@@ -227,7 +228,7 @@ fn finish(
     })
 }
 
-/// What the linker says of an image that a board has no room for, in its own words and no others.
+/// Extracts the linker's one-line message about an image that is too large for the board.
 fn too_large(failure: &Failure, board: &Board) -> Option<Failure> {
     let line = failure.message().lines().find(|line| line.contains("too large for the board"))?;
     let what = line.rsplit("error: ").next().unwrap_or(line).trim();
@@ -239,18 +240,17 @@ fn too_large(failure: &Failure, board: &Board) -> Option<Failure> {
     )))
 }
 
-/// A preset of the workspace's `joints` folder, for a caller that has a name and no file.
+/// Path of a preset in the workspace's `joints` folder.
 pub fn preset_file(name: &str) -> PathBuf {
     workspace().join("joints").join(format!("{name}.toml"))
 }
 
-/// The file of a joint that was named on the command line, as the firmware's build wants it: presets are files too, found
-/// by their `name`.
+/// File of a joint named on the command line, for the firmware's build: a path, or a preset by its `name`.
 pub fn joint_file(file: &Path, name: &str) -> PathBuf {
     if file.is_file() { file.to_owned() } else { preset_file(name) }
 }
 
-/// The firmware's binary for a role: `loop` could not be a crate.
+/// Firmware binary of a role. The role `loop` has another name because `loop` is a keyword.
 fn binary(role: Role) -> &'static str {
     match role {
         Role::Loop => "whole_loop",
@@ -258,13 +258,13 @@ fn binary(role: Role) -> &'static str {
     }
 }
 
-/// Whether a board has flash enough for the images of all roles.
+/// Returns whether a board has enough flash for the images of all roles.
 pub fn has_room_for_all(board: &Board) -> bool {
     board.described.image_bytes() > LARGEST_IMAGE
 }
 
-/// Joint, board, role, and the tick rate if it is not the usual one. Files of the same name in different folders are
-/// told apart by a digest of the path.
+/// File name from joint, board, role, and the tick rate unless it is the default. A digest of the path tells apart
+/// files of one name in different folders.
 fn file_name(joint_file: &Path, board: &Board, role: &str, tick_rate: u32) -> String {
     let joint = joint_file.file_stem().unwrap_or_default().to_string_lossy();
     let [joint_origin, board_origin] = [(joint_file, "joints"), (&board.file, "boards")].map(origin);
@@ -272,7 +272,7 @@ fn file_name(joint_file: &Path, board: &Board, role: &str, tick_rate: u32) -> St
     format!("{joint}{joint_origin}-{}{board_origin}-{role}{rate}.elf", board.name())
 }
 
-/// What tells a file from others of its name; nothing for those in a folder of the workspace.
+/// Suffix that tells a file from others of its name; empty for files in a preset folder of the workspace.
 fn origin((file, presets): (&Path, &str)) -> String {
     let presets = workspace().join(presets);
     let presets = presets.canonicalize().unwrap_or(presets);
@@ -283,7 +283,7 @@ fn origin((file, presets): (&Path, &str)) -> String {
     format!("-{:02x}{:02x}", digest[0], digest[1])
 }
 
-/// Bytes in flash (loaded segments) and in RAM (everything at RAM addresses).
+/// Bytes in flash (loaded segments) and in RAM (all segments at RAM addresses).
 fn sizes(elf: &[u8]) -> Result<(u64, u64), object::Error> {
     let file = object::File::parse(elf)?;
     let mut sizes = (0, 0);
@@ -291,7 +291,7 @@ fn sizes(elf: &[u8]) -> Result<(u64, u64), object::Error> {
         let loaded = segment.file_range().1;
         if segment.address() >= RAM {
             sizes.1 += segment.size();
-            // Initial values of RAM are kept in flash.
+            // Initial values of RAM also occupy flash.
             sizes.0 += loaded;
         } else if segment.address() >= FLASH {
             sizes.0 += loaded;

@@ -1,5 +1,5 @@
-//! Measuring binaries for the emulator: built for any joints, run to their end without a serial line; their output is
-//! read through semihosting.
+//! Measuring binaries for the emulator: built for a list of joints and run to their end without a serial line; their
+//! output comes through semihosting.
 
 use std::env;
 use std::ffi::OsStr;
@@ -19,15 +19,16 @@ use super::toolchain::Toolchain;
 use report::failure::{Failure, Outcome};
 use report::interruption;
 
-/// 64 ns an instruction beside a timer of 168 MHz: 10.752 counts, so that whole instructions are found exactly.
+/// 64 ns per instruction against a timer of 168 MHz: 10.752 counts, so that the number of instructions is recovered
+/// exactly.
 const CLOCK: &str = "shift=6,sleep=off";
-/// Last line of a run that came to its end; a panic or a reset leaves it out.
+/// Last line of a complete run; a panic or a reset leaves it out.
 const END: &str = "end of measurement";
-/// Longest run; a healthy one takes a minute or two.
+/// Longest run; a normal run takes one to two minutes.
 const TIMEOUT: Duration = Duration::from_secs(1200);
 const POLL: Duration = Duration::from_millis(100);
 
-/// Builds a binary that measures in the emulator, with the tables of these joints; returns the ELF file.
+/// Builds a measuring binary with the tables of the given joints; returns the ELF file.
 pub fn build_measuring(
     toolchain: &Toolchain,
     binary: &str,
@@ -49,12 +50,12 @@ fn stored(toolchain: &Toolchain, binary: &str, elf: &[u8]) -> Outcome<PathBuf> {
     Ok(place)
 }
 
-/// The firmware's features for binaries that measure: the chip that is emulated, and what they need.
+/// Firmware features of measuring binaries: the emulated chip, and `measuring`.
 pub(super) fn measuring_features() -> String {
     format!("{},measuring", Chip::Stm32f405.name())
 }
 
-/// Builds a measuring binary of another package of the workspace, with variables for its build; returns the ELF file.
+/// Builds a measuring binary of another workspace package, with variables for its build; returns the ELF file.
 pub fn build_other(
     toolchain: &Toolchain,
     package: &str,
@@ -64,7 +65,7 @@ pub fn build_other(
     stored(toolchain, package, &compile(toolchain, package, package, "", environment, say)?)
 }
 
-/// Runs a measuring binary and reads each of its lines.
+/// Runs a measuring binary and parses each of its lines.
 pub fn read<R>(elf: &Path, mut parse: impl FnMut(&str) -> Option<R>) -> Outcome<Vec<R>> {
     let read = |line: &String| parse(line).ok_or_else(|| Failure::new(format!("the board said: {line}")));
     run(elf)?.iter().map(read).collect()
@@ -75,7 +76,7 @@ pub fn run(elf: &Path) -> Outcome<Vec<String>> {
     run_on(MACHINE, elf)
 }
 
-/// The same on another machine of the emulator.
+/// Runs a measuring binary on another machine of the emulator and returns its lines.
 pub fn run_on(machine: &str, elf: &Path) -> Outcome<Vec<String>> {
     let mut command = emulator::mortal(&emulator::program()?);
     command
@@ -98,11 +99,11 @@ pub fn run_on(machine: &str, elf: &Path) -> Outcome<Vec<String>> {
     }
 }
 
-/// The emulator's process, which does not outlive its owner.
+/// Emulator process, killed when dropped.
 struct Running(Child);
 
 impl Running {
-    /// All that it says until its end.
+    /// Collects all lines until the process ends.
     fn lines(mut self) -> Outcome<Vec<String>> {
         let (sender, receiver) = mpsc::channel();
         let stdout = self.0.stdout.take();
@@ -130,7 +131,7 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It may have ended by itself; either way it is waited for.
+        // The process may have ended by itself; `wait` reaps it in both cases.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }

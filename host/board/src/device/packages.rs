@@ -1,5 +1,5 @@
-//! Installs missing packages on Debian-like systems if the user is root and wants that; otherwise shows the command to run. On
-//! other systems the missing packages are named.
+//! Installs missing packages on Debian-like systems if the user is root and agrees; otherwise shows the command to run.
+//! On other systems the missing packages are named.
 
 use std::env;
 use std::fs::{self, File};
@@ -15,7 +15,7 @@ use report::progress;
 
 use super::{Say, tool};
 
-/// Variable of the environment that decides where `--install` does not.
+/// Environment variable that decides about packages if `--install` is not given.
 pub const VARIABLE: &str = "JOINT_INSTALL";
 
 /// Decision about packages that are missing.
@@ -34,7 +34,7 @@ static WANTED: OnceLock<Install> = OnceLock::new();
 /// Answer of the user, who is asked once.
 static ANSWER: OnceLock<bool> = OnceLock::new();
 
-/// Takes the decision of `--install` for the whole process; only the first one counts.
+/// Sets the decision of `--install` for the whole process; later calls have no effect.
 pub fn decide(wanted: Option<Install>) {
     if let Some(wanted) = wanted {
         let _ = WANTED.set(wanted);
@@ -42,7 +42,7 @@ pub fn decide(wanted: Option<Install>) {
 }
 
 impl Install {
-    /// Returns the decision of `--install`, else that of the environment.
+    /// Returns the decision of `--install`, else of the environment variable.
     pub fn in_force() -> Outcome<Self> {
         match WANTED.get() {
             Some(wanted) => Ok(*wanted),
@@ -60,7 +60,7 @@ impl Install {
         })
     }
 
-    /// Returns the word that `--install` and the environment have for it.
+    /// Returns the word for the decision in `--install` and the environment variable.
     pub fn word(self) -> &'static str {
         match self {
             Self::Yes => "yes",
@@ -70,18 +70,18 @@ impl Install {
     }
 }
 
-/// How packages can be got here.
+/// Way to install packages on this system.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum PackageSource {
     /// apt-get, as root.
     Install(PathBuf),
-    /// apt-get, but somebody else must be root.
+    /// apt-get, but the user is not root.
     Ask,
-    /// There is no apt-get.
+    /// No apt-get.
     Unknown,
 }
 
-/// Makes sure that packages are installed. `purpose` completes "... needed ...", such as "to build for the board".
+/// Installs packages that are missing. `purpose` completes "... needed ...", such as "to build for the board".
 pub fn ensure(packages: &[&str], purpose: &str, say: Say<'_>) -> Outcome<()> {
     let source = package_source();
     let missing = || -> Vec<&str> {
@@ -102,7 +102,7 @@ pub fn ensure(packages: &[&str], purpose: &str, say: Say<'_>) -> Outcome<()> {
         return Err(forbidden(&before.join(" "), purpose));
     }
     let _alone = alone(apt_get_file, say).map_err(|error| cannot_wait(&error))?;
-    // Who waited may find that the packages have come meanwhile.
+    // Another process may have installed the packages during the wait.
     let missing = missing();
     if missing.is_empty() {
         return Ok(());
@@ -122,8 +122,8 @@ pub fn ensure(packages: &[&str], purpose: &str, say: Say<'_>) -> Outcome<()> {
     tool::follow(&mut install, &format!("installing {list}"), say).map_err(|failure| with_line(failure, &list))
 }
 
-/// Waits for the other commands of this project that install something, here or in another process: of two `apt-get update`
-/// at once one fails. The lock is on the program's own file, so that nothing has to be written.
+/// Waits for other commands of this project that install packages, in this or another process: of two concurrent
+/// `apt-get update` one fails. The lock is on apt-get's own file, so that no lock file is needed.
 fn alone(apt_get_file: &Path, say: Say<'_>) -> io::Result<File> {
     let file = File::open(apt_get_file)?;
     tool::lock(&file, "another installation of packages", say)?;
@@ -138,7 +138,7 @@ fn with_line(failure: Failure, list: &str) -> Failure {
     failure.with_help(format!("mend what apt-get complains about, then run: apt-get install {list}"))
 }
 
-/// Asks the user whether packages may be installed; no answer is no.
+/// Asks the user for permission to install packages; no answer means no.
 fn agrees(list: &str, purpose: &str) -> bool {
     let question = format!(
         "{list} must be installed {purpose}: by apt-get, as root, for the whole system (`--install` and {VARIABLE} decide \
@@ -176,7 +176,7 @@ fn package_source() -> PackageSource {
     }
 }
 
-/// The owner of this process's entry is the user that it runs as.
+/// Returns whether the process runs as root: the owner of its `/proc` entry is its user.
 fn is_root() -> bool {
     fs::metadata("/proc/self").is_ok_and(|data| data.uid() == 0)
 }
@@ -187,7 +187,7 @@ fn is_installed(package: &str) -> bool {
     status.is_ok_and(|status| status.starts_with("ii"))
 }
 
-/// Another installation that is under way is waited for, up to five minutes: two commands may be started at once.
+/// apt-get command that waits up to five minutes for another installation.
 fn apt_get() -> Command {
     let mut command = Command::new("apt-get");
     command.env("DEBIAN_FRONTEND", "noninteractive").args(["-o", "DPkg::Lock::Timeout=300"]);
@@ -226,7 +226,7 @@ mod tests {
             seen.load(Ordering::SeqCst)
         });
         assert_eq!(told.recv().unwrap(), "waiting for another installation of packages");
-        // Long enough for one that does not wait to come too early.
+        // Longer than a thread that does not wait needs to reach its assertion.
         std::thread::sleep(Duration::from_millis(100));
         is_over.store(true, Ordering::SeqCst);
         drop(first);

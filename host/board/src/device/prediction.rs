@@ -1,5 +1,5 @@
-//! Prediction whether the image of a role fits a board, by size and by time, before anything is built: sizes of images of
-//! joint Q1 that were linked for the chip, instructions counted in the emulator, and cycles reckoned for the chip.
+//! Predicts before a build whether the image of a role fits a board by size and by time, from sizes of images of joint
+//! Q1 linked for the chip, instructions counted in the emulator, and cycles estimated for the chip.
 
 use std::fmt;
 
@@ -10,28 +10,28 @@ use parameters::JointParameters;
 use super::board::Board;
 use super::tick_time::{Obstacle, OnBoard, TickTime};
 
-/// Words for the origin of every prediction.
+/// Origin of every prediction, as printed.
 pub const ORIGIN: &str = "images of Q1 linked before, instructions counted in the emulator, cycles reckoned";
 
-/// Prediction for a role at a rate.
+/// Predicted size and worst tick of a role at a rate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prediction {
-    /// Memory that the image takes; none if no such image was ever linked for the chip.
+    /// Memory of the image; `None` if no such image was ever linked for the chip.
     size: Option<ImageSize>,
-    /// Flash that an image may take, and RAM that its statics may take [byte].
+    /// Limits of the image in flash and of its statics in RAM [byte].
     limits: [u32; 2],
     /// Steps a second [Hz].
     rate: u32,
-    /// Reason why the rate is refused.
+    /// Reason for which the rate is rejected.
     obstacle: Option<Obstacle>,
-    /// The worst tick, where a step is stable.
+    /// Worst tick, if a step is stable at the rate.
     time: Option<TickTime>,
-    /// The nearest rate that is not refused [Hz].
+    /// Nearest rate that is accepted [Hz].
     nearest: Option<u32>,
 }
 
 impl Prediction {
-    /// Predicts an image, which `--role` names by `image` and whose tick is that of `role`.
+    /// Predicts the image that `--role` calls `image` and whose tick is the tick of `role`.
     pub fn new(board: &Board, joint: &JointParameters, image: &str, role: Role, rate: u32) -> Self {
         let on_board = OnBoard::new(joint, board, role);
         let obstacle = on_board.obstacle(rate);
@@ -45,7 +45,7 @@ impl Prediction {
         }
     }
 
-    /// Returns whether flash and RAM suffice; yes if nothing is known of the size.
+    /// Returns whether flash and RAM suffice; true if the size is unknown.
     pub fn has_room(&self) -> bool {
         let [flash, ram] = self.limits;
         self.size.is_none_or(|size| size.flash <= flash && size.ram <= ram)

@@ -1,8 +1,8 @@
-//! Roles by name, as users type them and as reports print them.
+//! Names of the roles, as typed by users and printed in reports.
 
 use link::messages::Role;
 
-/// The word for a role.
+/// Name of a role.
 pub fn word(role: Role) -> &'static str {
     match role {
         Role::Plant => "plant",

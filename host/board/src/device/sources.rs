@@ -1,5 +1,5 @@
 //! Decides whether an image is up to date, by one digest over every source file, the compiler and its flags. Cargo
-//! alone would rebuild whenever another joint was built in between.
+//! alone would rebuild after every change of the joint.
 
 use std::fs;
 use std::io;
@@ -30,7 +30,7 @@ const PARTS: [&str; 14] = [
     "parameters",
 ];
 
-/// The image at its place, built if it is not there or was built from something else. A file beside it says from what.
+/// Returns the image at `place`, built if it is missing or its digest differs from the one noted beside it.
 pub(super) fn up_to_date(
     toolchain: &Toolchain,
     images: &Path,
@@ -60,7 +60,7 @@ pub(super) fn hexadecimal(digest: &[u8]) -> String {
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Digest over sources, toolchain and what else the caller names, 64 hexadecimal digits.
+/// Digest over sources, toolchain and further texts, as 64 hexadecimal digits.
 fn digest(toolchain: &Toolchain, more: &[&[u8]]) -> Outcome<String> {
     let mut hash = Sha256::new();
     for part in PARTS {
@@ -74,7 +74,7 @@ fn digest(toolchain: &Toolchain, more: &[&[u8]]) -> Outcome<String> {
     Ok(hexadecimal(&hash.finalize()))
 }
 
-/// A file, or all that is in a folder by name.
+/// Adds a file, or all files of a folder in order of their names.
 fn add(hash: &mut Sha256, path: &Path) -> io::Result<()> {
     if path.is_dir() {
         let mut entries: Vec<PathBuf> =

@@ -1,5 +1,5 @@
-//! A private sysroot: `core` for the target, built from a distribution's library source by its own compiler where no
-//! ready one is installed. Built once a compiler and renamed into place when complete.
+//! A private sysroot: `core` for the target, built with a distribution's compiler from its library source if no
+//! compiled one is installed. It is built once per compiler and renamed into place when complete.
 
 use std::fs;
 use std::io;
@@ -12,7 +12,8 @@ use super::cross_build::{TARGET, cannot_write, clean};
 use super::{Say, tool};
 use report::failure::Outcome;
 
-/// Fat link-time optimisation needs the bitcode; the library is for everybody, so it may use unstable features.
+/// Flags of the library: bitcode for fat link-time optimisation, and unstable features for a library that every crate
+/// may use.
 const RUSTFLAGS: &str = "-Cembed-bitcode=yes -Zforce-unstable-if-unmarked -Ctarget-cpu=cortex-m4";
 
 const MANIFEST: &str = r#"[package]
@@ -26,8 +27,8 @@ panic = "abort"
 [workspace]
 "#;
 
-/// The sysroot for this compiler below `target_directory`, built if it is not there. `version` is all that the compiler
-/// says about itself.
+/// Returns the sysroot of this compiler below `target_directory`, built if it is missing. `version` is the compiler's
+/// verbose version text.
 pub fn prepare(cargo: &Path, rustc: &Path, version: &str, target_directory: &Path, say: Say<'_>) -> Outcome<PathBuf> {
     let sysroot = target_directory.join(format!("thumb-sysroot-{}", key(version)));
     if sysroot.is_dir() {
@@ -41,7 +42,7 @@ pub fn prepare(cargo: &Path, rustc: &Path, version: &str, target_directory: &Pat
     result.map(|()| sysroot)
 }
 
-/// Changes with the compiler and with the recipe.
+/// Key that changes with the compiler, the flags and the manifest.
 fn key(version: &str) -> String {
     let digest = Sha256::new().chain_update(version).chain_update(RUSTFLAGS).chain_update(MANIFEST).finalize();
     digest.iter().take(6).map(|byte| format!("{byte:02x}")).collect()
@@ -77,7 +78,7 @@ fn build(cargo: &Path, rustc: &Path, work: &Path, say: Say<'_>) -> Outcome<PathB
     Ok(ready)
 }
 
-/// Gives the finished sysroot its name. If another process was first, its work is as good.
+/// Renames the finished sysroot into place. If another process was faster, its equal result is kept.
 fn publish(ready: &Path, sysroot: &Path) -> Outcome<()> {
     match fs::rename(ready, sysroot) {
         Err(error) if !sysroot.is_dir() => Err(cannot_write(sysroot, &error)),

@@ -1,6 +1,7 @@
-//! Whether a board has time for the tick of a role at a rate: the one verdict of `joint budget`, `check`, `image`, `flash` and
-//! `hil`. Instructions are those of the certificate for the joint's step, and as counted on the emulated board for what a role
-//! does beside it; cycles an instruction are reckoned for the chip. None of it was measured on silicon.
+//! Decides for `joint budget`, `check`, `image`, `flash` and `hil` whether a board has time for the tick of a role at a
+//! rate. Instructions of the joint's step come from its certificate; instructions of the rest of a role's tick were
+//! counted on the emulated board; cycles per instruction are estimated for the chip. None of it was measured on
+//! silicon.
 
 use link::messages::Role;
 use model_core::gears::design::{DesignError, Effort, Processor, StepSize, Substeps};
@@ -10,43 +11,43 @@ use super::board::Board;
 use super::role::word;
 use report::failure::{Failure, Outcome};
 
-/// Instructions that a tick of the role `observer` takes at most. What counts them holds them against this and the next.
+/// Worst-case instructions of a tick of the role `observer`. The counting program checks this bound and the next.
 pub const OBSERVER: u32 = 6200;
-/// Those of a tick of the role `loop` beyond a step of the joint in which every mesh crosses. The most that a run has shown is
-/// 5,768.
+/// Worst-case instructions of a tick of the role `loop` besides a step of the joint in which every mesh crosses.
+/// Largest count in a run: 5,768.
 const LOOP: u32 = 6100;
-/// Part of the period that an observer may take: the rest is the motor controller's whose guest it is.
+/// Part of the period that an observer may take; the rest belongs to the motor controller on the same chip.
 const GUEST: f64 = 0.75;
-/// Rates that are usual for a control period [Hz].
+/// Common control rates, in order of preference [Hz].
 const USUAL: [u32; 5] = [10_000, 8000, 5000, 4000, 2000];
-/// No rate above is looked at [Hz].
+/// Highest rate considered [Hz].
 const HIGHEST: u32 = 500_000;
-/// How to have an image all the same.
+/// Help about building an image in spite of the limit.
 const FORCE: &str = "`--force` builds it all the same, for overruns and late torques that its hello announces";
 
-/// What stands against a rate.
+/// Reason for which a rate is rejected.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Obstacle {
-    /// Below so many Hz no step is stable.
+    /// No step is stable below this rate [Hz].
     Unstable(u32),
-    /// The core clock is so many Hz, and no multiple of it.
+    /// The core clock, which the rate does not divide [Hz].
     NoMultiple(u32),
-    /// The worst tick takes too long.
+    /// The worst tick exceeds its share of the period.
     NoTime(TickTime),
 }
 
-/// What the worst tick takes.
+/// Duration of the worst tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TickTime {
-    /// Instructions.
+    /// Instructions of the tick.
     pub instructions: f64,
-    /// Part of the period.
+    /// Part of the period that the tick takes.
     pub part: f64,
-    /// Part of the period that it may take.
+    /// Part of the period that the tick may take.
     pub share: f64,
 }
 
-/// A joint on a board in a role, at any rate.
+/// A joint on a board in a role, for questions about any rate.
 pub struct OnBoard<'a> {
     joint: &'a JointParameters,
     board: &'a Board,
@@ -56,34 +57,34 @@ pub struct OnBoard<'a> {
 }
 
 impl<'a> OnBoard<'a> {
-    /// Of a joint whose step is fitted to the board.
+    /// Joint whose step is fitted to the board.
     pub fn new(joint: &'a JointParameters, board: &'a Board, role: Role) -> Self {
         Self { joint, board, role, processor: board.processor(), step_size: StepSize::new(joint) }
     }
 
-    /// Of a joint that the board simulates.
+    /// Joint that the board simulates.
     pub fn plant(joint: &'a JointParameters, board: &'a Board) -> Self {
         Self::new(joint, board, Role::Plant)
     }
 
-    /// Sub-steps of a tick in which contacts change.
+    /// Number of sub-steps in which contacts may change, at a rate.
     pub fn substeps(&self, rate: u32) -> Result<Substeps, DesignError> {
         self.step_size.substeps(rate, Effort::Within(self.processor))
     }
 
-    /// The worst tick at a rate that is stable.
+    /// Worst tick at a rate, if a step is stable at it.
     pub fn tick_time(&self, rate: u32) -> Option<TickTime> {
         let step = self.step_size.cost().all_crossing(self.substeps(rate).ok()?);
         let (instructions, share) = match self.role {
             Role::Plant => (step, self.processor.share),
             Role::Observer => (OBSERVER.into(), GUEST),
-            // A whole loop has the chip alone.
+            // The role `loop` does not share the chip.
             Role::Loop => (f64::from(LOOP) + step, 1.0),
         };
         Some(TickTime { instructions, part: self.processor.part(instructions, rate), share })
     }
 
-    /// What stands against a rate; nothing if the board can be built for it.
+    /// Reason for which a rate is rejected, or `None`.
     pub fn obstacle(&self, rate: u32) -> Option<Obstacle> {
         let lowest = self.lowest_rate();
         if rate < lowest {
@@ -95,12 +96,13 @@ impl<'a> OnBoard<'a> {
         self.tick_time(rate).filter(|time| time.part > time.share).map(Obstacle::NoTime)
     }
 
-    /// Refuses a rate that something stands against; names the nearest that nothing does.
+    /// Rejects a rate that has an obstacle; the help names the nearest rate without one.
     pub fn refuse(&self, rate: u32) -> Outcome<()> {
         self.obstacle(rate).map_or(Ok(()), |obstacle| Err(self.refusal(rate, &obstacle)))
     }
 
-    /// The same for an image, of which what takes too long can be had by force; says whether that was needed.
+    /// Rejects a rate as [`Self::refuse`] does, but accepts a tick that is too long if `force` is set. Returns whether
+    /// `force` was needed.
     pub fn refuse_unless_forced(&self, rate: u32, force: bool) -> Outcome<bool> {
         match self.obstacle(rate) {
             None => Ok(false),
@@ -136,27 +138,27 @@ impl<'a> OnBoard<'a> {
         )
     }
 
-    /// Below it no step is stable [Hz].
+    /// Lowest rate at which a step is stable [Hz].
     pub fn lowest_rate(&self) -> u32 {
         self.step_size.lowest_rate(Effort::Within(self.processor))
     }
 
-    /// Rates that can be made of the clock and are stable, the highest first [Hz].
+    /// Stable rates that divide the core clock, in descending order [Hz].
     fn rates(&self) -> impl Iterator<Item = u32> {
         let clock = self.processor.clock;
         let divisors = (clock / HIGHEST).max(1)..=clock / self.lowest_rate();
         divisors.filter(move |divisor| clock.is_multiple_of(*divisor)).map(move |divisor| clock / divisor)
     }
 
-    /// The nearest rate that nothing stands against; of two as near, the higher.
+    /// Nearest accepted rate; the higher of two at equal distance.
     pub fn nearest(&self, rate: u32) -> Option<u32> {
         self.rates()
             .filter(|candidate| self.obstacle(*candidate).is_none())
             .min_by_key(|candidate| (candidate.abs_diff(rate), u32::MAX - candidate))
     }
 
-    /// Rates that nothing stands against, as stretches from a lowest to a highest in which every rate that the clock can be divided
-    /// to is one. There can be several, since the method of the sub-steps changes with the rate.
+    /// Ranges of accepted rates: every rate of a range that divides the clock is accepted. There can be several ranges
+    /// because the method of the sub-steps changes with the rate.
     pub fn rates_that_fit(&self) -> Vec<[u32; 2]> {
         let mut stretches: Vec<[u32; 2]> = Vec::new();
         let mut before = false;
@@ -173,7 +175,7 @@ impl<'a> OnBoard<'a> {
         stretches
     }
 
-    /// The nearest rate to which the clock can be divided [Hz].
+    /// Nearest stable rate that divides the clock [Hz].
     pub fn divided(&self, rate: f64) -> u32 {
         self.rates()
             .min_by(|one, other| (f64::from(*one) - rate).abs().total_cmp(&(f64::from(*other) - rate).abs()))
@@ -181,7 +183,7 @@ impl<'a> OnBoard<'a> {
     }
 }
 
-/// The highest usual rate at which a role that controls fits into its period; the usual one where none does [Hz].
+/// Highest common control rate at which a role fits its period; the highest of all if none fits [Hz].
 pub fn usual_rate(parameters: &JointParameters, board: &Board, role: Role) -> u32 {
     let on_board = OnBoard::new(parameters, board, role);
     USUAL.into_iter().find(|rate| on_board.obstacle(*rate).is_none()).unwrap_or(USUAL[0])
@@ -234,7 +236,8 @@ mod tests {
         for board in Board::presets().unwrap() {
             OnBoard::plant(&joint("q1"), &board).refuse(20_000).unwrap();
         }
-        // Tests that come along run on Q1 at their control rate, in both roles; others may be refused in the role `loop`.
+        // Tests that come along run on Q1 at their control rate in both roles; other joints may be rejected in the role
+        // `loop`.
         for role in [Role::Observer, Role::Loop] {
             OnBoard::new(&joint("q1"), &emulated, role).refuse(10_000).unwrap();
         }

@@ -1,4 +1,4 @@
-//! Running other programs: finding them, following their output, and keeping all of it for an error.
+//! Runs other programs: finds them, follows their output, and keeps it for an error.
 
 use std::env;
 use std::fs::{File, TryLockError};
@@ -9,24 +9,24 @@ use std::process::{Command, Stdio};
 use super::Say;
 use report::failure::{Failure, Outcome};
 
-/// How cargo says that another one is at work.
+/// Text by which cargo reports that it waits for another cargo.
 const WAITS: &str = "Blocking waiting for file lock on";
 
-/// Most lines of a failed program's output that an error shows.
+/// Limit of a failed program's output in an error [lines].
 const LINES_SHOWN: usize = 60;
 
-/// A program on the search path.
+/// Path of a program on the search path.
 pub fn find(name: &str) -> Option<PathBuf> {
     env::split_paths(&env::var_os("PATH")?).map(|folder| folder.join(name)).find(|path| is_program(path))
 }
 
-/// A file that can be run.
+/// Returns whether a path is an executable file.
 pub fn is_program(path: &Path) -> bool {
     use std::os::unix::fs::PermissionsExt;
     path.metadata().is_ok_and(|data| data.is_file() && data.permissions().mode() & 0o111 != 0)
 }
 
-/// Locks a file; who has to wait for that is told for whom.
+/// Locks a file; if it is locked already, announces the wait for `holder`.
 pub fn lock(file: &File, holder: &str, say: Say<'_>) -> io::Result<()> {
     if let Err(TryLockError::WouldBlock) = file.try_lock() {
         say(&format!("waiting for {holder}"));
@@ -34,7 +34,7 @@ pub fn lock(file: &File, holder: &str, say: Say<'_>) -> io::Result<()> {
     file.lock()
 }
 
-/// Runs a program whose output is short and wanted.
+/// Runs a program and returns its standard output.
 pub fn output_of(command: &mut Command) -> Outcome<String> {
     let name = name_of(command);
     let output = command.stdin(Stdio::null()).output().map_err(|error| cannot_run(&name, &error))?;
@@ -45,8 +45,8 @@ pub fn output_of(command: &mut Command) -> Outcome<String> {
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// Runs a program that takes its time: what it says on standard error is passed on line by line, and shown again if it
-/// fails. `what` is what it was to do.
+/// Runs a program and passes its standard error on line by line; the last lines are repeated in the error if it fails.
+/// `what` names the action in the error.
 pub fn follow(command: &mut Command, what: &str, say: Say<'_>) -> Outcome<()> {
     let name = name_of(command);
     let spawned = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();

@@ -21,10 +21,10 @@ const DISTRIBUTION_CARGO: &str = "/usr/bin/cargo";
 const DISTRIBUTION_RUSTC: &str = "/usr/bin/rustc";
 const LIBRARY_SOURCE: &str = "/usr/lib/rustlib/src/rust/library/core/Cargo.toml";
 
-/// The variable by which cargo tells the compiler its flags for the target.
+/// Variable in which cargo takes the compiler's flags for the target.
 pub const TARGET_FLAGS: &str = "CARGO_TARGET_THUMBV7EM_NONE_EABIHF_RUSTFLAGS";
 
-/// A way to build for the board.
+/// Compiler and folders of a cross build.
 #[derive(Debug, Clone)]
 pub struct Toolchain {
     cargo: PathBuf,
@@ -36,7 +36,7 @@ pub struct Toolchain {
 }
 
 impl Toolchain {
-    /// Finds or makes one. May install packages and build a sysroot, and says so.
+    /// Finds a toolchain or makes one. Installing packages and building a sysroot are announced.
     pub fn prepare(say: Say<'_>) -> Outcome<Self> {
         let target_directory = target_directory();
         match in_use(&target_directory) {
@@ -45,38 +45,40 @@ impl Toolchain {
         }
     }
 
-    /// First line of what the compiler says about itself.
+    /// First line of the compiler's version text.
     pub fn compiler(&self) -> &str {
         self.version.lines().next().unwrap_or_default()
     }
 
-    /// Everything in the way of flags that changes the code, apart from the profile.
+    /// Description of all flags that change the code, apart from the profile.
     pub fn flags(&self) -> String {
         let core = if self.sysroot.is_some() { "built here" } else { "as delivered" };
         format!("--target {TARGET}, core library {core}")
     }
 
-    /// Where images and other results go.
+    /// Folder of images and other results.
     pub fn target_directory(&self) -> &Path {
         &self.target_directory
     }
 
-    /// Where cargo builds: cargo does not notice a change of compiler library, so each has a folder of its own.
+    /// Build folder of cargo. Each toolchain has its own, because cargo does not notice a change of the compiler's
+    /// library.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// The same that builds elsewhere.
+    /// Returns this toolchain with another build folder.
     pub fn in_folder(&self, folder: &Path) -> Self {
         Self { folder: folder.to_path_buf(), ..self.clone() }
     }
 
-    /// Whether clippy must be the distribution's: it has to match the compiler that built the core library.
+    /// Returns whether the distribution's toolchain is used; clippy must then match the compiler that built the core
+    /// library.
     pub fn is_distribution(&self) -> bool {
         self.sysroot.is_some()
     }
 
-    /// What the compiler is told for the target, as [`TARGET_FLAGS`] has it.
+    /// Compiler flags for the target, the value of [`TARGET_FLAGS`].
     pub fn target_flags(&self) -> OsString {
         let mut flags = OsString::new();
         if let Some(sysroot) = &self.sysroot {
@@ -87,12 +89,12 @@ impl Toolchain {
         flags
     }
 
-    /// A cargo command in the workspace, for this toolchain. The subcommand comes first.
+    /// Cargo command in the workspace for this toolchain, with the subcommand first.
     pub fn cargo(&self, subcommand: &str) -> Command {
         let mut command = Command::new(&self.cargo);
         clean(&mut command).current_dir(workspace());
         if let Some(rustc) = &self.rustc {
-            // A plugin of cargo, such as clippy, is looked for on the path: the distribution's, not another's.
+            // Cargo looks for its plugins, such as clippy, on the search path: the distribution's must come first.
             let path = env::var_os("PATH").unwrap_or_default();
             let folders = [PathBuf::from("/usr/bin")].into_iter().chain(env::split_paths(&path));
             if let Ok(path) = env::join_paths(folders) {
@@ -105,16 +107,16 @@ impl Toolchain {
     }
 }
 
-/// Where cargo builds unless it is told another place.
+/// Folder in which cargo builds by default.
 pub fn target_directory() -> PathBuf {
     let given = env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
     workspace().join(given.unwrap_or_else(|| "target".into()))
 }
 
-/// The compiler in use, if it has the target.
+/// Returns the compiler in use, if it has the target.
 fn in_use(target_directory: &Path) -> Option<Toolchain> {
     let rustc = env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
-    // Asking must not make rustup fetch anything.
+    // The query must not make rustup download anything.
     let ask = |argument: &[&str]| {
         let mut command = Command::new(&rustc);
         command.args(argument).env("RUSTUP_AUTO_INSTALL", "0").current_dir(workspace());
@@ -146,7 +148,7 @@ fn has_core(sysroot: &Path) -> bool {
     })
 }
 
-/// A distribution's compiler with a sysroot of our own.
+/// Returns a distribution's compiler with a private sysroot.
 fn distribution(target_directory: PathBuf, say: Say<'_>) -> Outcome<Toolchain> {
     let version = match distribution_version() {
         Some(version) => version,
@@ -166,7 +168,7 @@ fn distribution(target_directory: PathBuf, say: Say<'_>) -> Outcome<Toolchain> {
     Ok(Toolchain { cargo, rustc: Some(rustc), sysroot: Some(sysroot), version, folder, target_directory })
 }
 
-/// What the distribution's compiler says about itself, if all that is needed is there and new enough.
+/// Version text of the distribution's compiler, if it is complete and new enough.
 fn distribution_version() -> Option<String> {
     let complete = [DISTRIBUTION_CARGO, DISTRIBUTION_RUSTC].iter().all(|path| tool::is_program(Path::new(path)))
         && Path::new(LIBRARY_SOURCE).exists()
@@ -178,7 +180,7 @@ fn distribution_version() -> Option<String> {
     is_new_enough(&version).then_some(version)
 }
 
-/// Adds the other way out.
+/// Adds rustup as the alternative to the help.
 fn or_rustup(failure: Failure) -> Failure {
     let other = format!("or, with rustup and its network: rustup target add {TARGET}");
     let help = match failure.help() {

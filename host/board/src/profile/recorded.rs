@@ -1,6 +1,6 @@
-//! A recorded torque profile: a CSV file with time, motor torque and load torque at any sampling rate, even or uneven.
-//! Torques are linear between rows; a command is the mean over its interval, which keeps impulses at any rate. After
-//! the last row its torques hold.
+//! Recorded torque profile: a CSV file with time, motor torque and load torque at any sampling rate, even or uneven.
+//! Torques are linear between rows; a command is the mean over its interval, which preserves impulses at any rate.
+//! After the last row its torques hold.
 
 use std::path::Path;
 
@@ -9,15 +9,15 @@ use report::failure::{Failure, Outcome};
 use report::input;
 use report::number::TYPED;
 
-/// Seconds since any epoch are less, and steps of a control period can still be told in them [s].
+/// Limit of times: above any epoch's seconds, and small enough for a f64 to resolve a control period [s].
 const MOST_TIME: f64 = 1e10;
-/// Rows that are nearer to each other are no two moments [s].
+/// Smallest distance of two rows in time [s].
 const LEAST_STEP: f64 = 1e-9;
 
 /// Columns of the file, in any order; others are ignored.
 pub const COLUMNS: [&str; 3] = ["time_s", "motor_torque_Nm", "load_torque_Nm"];
 
-/// Rows of the file, in rising time from 0.
+/// Rows of the file in ascending time, from 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordedTorques {
     rows: Vec<Row>,
@@ -32,7 +32,7 @@ struct Row {
 }
 
 impl RecordedTorques {
-    /// Reads a file; the first row is time 0 of the run, whatever its time.
+    /// Reads a file; the time of the first row becomes 0.
     pub fn read(path: &Path) -> Outcome<Self> {
         let text = input::text(path, input::LARGEST_RECORDED).map_err(|why| {
             Failure::new(format!("cannot read the profile {}: {why}", path.display()))
@@ -42,7 +42,7 @@ impl RecordedTorques {
     }
 
     fn parse(text: &str) -> Outcome<Self> {
-        // Numbers are never quoted: a comma always ends a value. Spreadsheets put a byte-order mark in front.
+        // Values are never quoted, so every comma ends a value. Spreadsheets write a byte-order mark in front.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut lines = (1u64..).zip(text.lines().map(str::trim));
         let mut lines = lines.by_ref().filter(|(_, text)| !text.is_empty() && !text.starts_with('#'));
@@ -76,7 +76,7 @@ impl RecordedTorques {
         }
     }
 
-    /// From the first row to the last [s].
+    /// Time from the first row to the last [s].
     pub fn duration(&self) -> f64 {
         self.rows.last().map_or(0.0, |row| row.time)
     }
@@ -88,7 +88,7 @@ impl RecordedTorques {
         Torques { drive: mean(start.drive, end.drive), load: mean(start.load, end.load) }
     }
 
-    /// Integral of the straight lines from 0 [N m s].
+    /// Integral of the piecewise linear torques from 0 [N m s].
     fn integral(&self, time: f64) -> Torques {
         let after = self.rows.partition_point(|row| row.time <= time);
         let left = self.rows[after.saturating_sub(1)];
@@ -105,7 +105,7 @@ impl RecordedTorques {
     }
 }
 
-/// Takes one line of the file; refuses what cannot be a recording.
+/// Appends a row; rejects a row whose time is out of range or does not rise.
 fn push(rows: &mut Vec<Row>, start: f64, line: u64, [time, drive, load]: [f64; 3]) -> Outcome<()> {
     let torques = Torques { drive, load };
     check_time(line, rows.last().map(|last| last.time + start), time)?;
@@ -124,7 +124,7 @@ fn push(rows: &mut Vec<Row>, start: f64, line: u64, [time, drive, load]: [f64; 3
     Ok(())
 }
 
-/// Refuses a time of a recording that is in another unit or does not rise; `before` is that of the row before.
+/// Rejects a time that is out of range (wrong unit) or does not rise; `before` is the time of the preceding row.
 pub fn check_time(line: u64, before: Option<f64>, now: f64) -> Outcome<()> {
     if now.is_nan() || now.abs() > MOST_TIME {
         return Err(Failure::new(format!("line {line}: time_s is {}", TYPED.write(now)))

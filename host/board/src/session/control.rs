@@ -1,5 +1,5 @@
-//! Runs of the roles that control: one exchange a control period with an observer, or a motion streamed to a board that
-//! runs the whole loop. Every wait has a timeout.
+//! Runs of the roles with a controller: one exchange per control period with an observer, or a motion streamed to a
+//! board that runs the whole loop. Every wait has a timeout.
 
 use std::time::Instant;
 
@@ -26,7 +26,7 @@ impl Session<'_> {
         })?
     }
 
-    /// Gives the board faults between joint and controller, before the motion begins.
+    /// Sends faults between joint and controller to the board, before the motion begins.
     pub fn add_faults(&mut self, faults: &[Fault<FixedPoint<f32>>]) -> Outcome<()> {
         for fault in faults {
             let taken =

@@ -1,27 +1,28 @@
-//! Help for errors about a board that runs another image, or about a host command of another version. The check itself
-//! is in `identity`.
+//! Help for errors about a board with a wrong image, or about a host command of another version. The check itself is in
+//! `identity`.
 
 use link::PROTOCOL_VERSION;
 
 use report::failure::Failure;
 
-/// How to get the right image onto a board, or the right host command.
+/// Remedy for a board with a wrong image.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum BoardHelp {
-    /// By the command that puts the right image onto it.
+    /// Command that flashes the right image.
     Flash(String),
-    /// By the same command; the image was built just now, so a board that has it already is not what is wrong.
+    /// Command that flashes the right image, which was built just now: a board that already has it points to the host
+    /// command.
     FlashBuilt(String),
-    /// Its image was built just now and nothing else can be on it: then this program is not of the sources that it builds.
+    /// The image was built just now and no other can be on the board: the host command is built from other sources.
     Rebuild,
 }
 
-/// Help for a host command built from other sources than those that it builds images from.
+/// Help for a host command built from other sources than its images.
 const REBUILD: &str = "the image was built just now from the sources in this checkout, and this `joint` was built from others: \
                        build it anew, as `cargo joint` does by itself (else: cargo build --package joint)";
 
 impl BoardHelp {
-    /// For a board with an image that is not the right one.
+    /// Help for a board with another image.
     pub fn of_another_image(&self) -> String {
         match self {
             Self::Flash(command) => format!("flash the right image: {command}"),
@@ -32,7 +33,7 @@ impl BoardHelp {
         }
     }
 
-    /// For a line without a valid frame; `first` is what to check first.
+    /// Help for a line without a valid frame; `first` names the first thing to check.
     pub fn of_silence(&self, first: &str) -> String {
         match self {
             Self::Flash(command) | Self::FlashBuilt(command) => {
@@ -44,7 +45,7 @@ impl BoardHelp {
         }
     }
 
-    /// For a board that speaks another version of the protocol.
+    /// Failure for a board with another protocol version.
     pub fn of_protocol(&self, board: u16) -> Failure {
         let host = PROTOCOL_VERSION;
         let message = format!("the board speaks version {board} of the link protocol, this host version {host}");

@@ -1,5 +1,5 @@
-//! Whether the board runs the image that the joint file asks for. A board with another protocol version may send
-//! messages that this host cannot decode, so the first fields of its hello are decoded on their own.
+//! Checks that the board runs the image that the joint file asks for. A board with another protocol version may send
+//! messages that this host cannot decode, so the first fields of its hello are decoded separately.
 
 use std::fmt;
 
@@ -11,27 +11,27 @@ use super::BoardHelp;
 use crate::device::image::word;
 use report::failure::{Failure, Outcome};
 
-/// What the board must be.
+/// Identity that the board must have.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expected {
     /// Name of the joint.
     pub joint: String,
-    /// Digest over its parameters and tables.
+    /// Digest over the joint's parameters and tables.
     pub digest: u64,
-    /// Fixed steps a second [Hz].
+    /// Rate of fixed steps [Hz].
     pub tick_rate: u32,
     /// Number of planets.
     pub planets: usize,
-    /// What it must do.
+    /// Role of the board.
     pub role: Role,
-    /// Digest over its controller's tables, if it has any.
+    /// Digest over the controller's tables, if the role has a controller.
     pub control_digest: Option<u64>,
-    /// What to do about a board that is none of this.
+    /// Remedy for a board with another identity.
     pub help: BoardHelp,
 }
 
 impl Expected {
-    /// Refuses a board that is another one.
+    /// Rejects a board with another identity.
     pub fn verify(&self, hello: &Hello) -> Outcome<()> {
         verify_protocol(hello.protocol, &self.help)?;
         let refuse = |what: String| Err(Failure::new(what).with_help(self.help.of_another_image()));
@@ -66,7 +66,7 @@ fn verify_protocol(protocol: u16, help: &BoardHelp) -> Outcome<()> {
     if protocol == PROTOCOL_VERSION { Ok(()) } else { Err(help.of_protocol(protocol)) }
 }
 
-/// The first fields of a hello, which keep their places in every version.
+/// First fields of a hello, whose places are the same in every version.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct HelloHead {
     protocol: u16,
@@ -74,7 +74,7 @@ pub struct HelloHead {
 }
 
 impl HelloHead {
-    /// Why a board with this head cannot be worked with, if its hello as a whole could not be read.
+    /// Failure for a board whose hello could not be decoded.
     pub fn refusal(self, help: &BoardHelp) -> Failure {
         let Err(failure) = verify_protocol(self.protocol, help) else {
             let message = format!("the board's image has a role that this host does not know (number {})", self.role);
@@ -83,7 +83,7 @@ impl HelloHead {
         failure
     }
 
-    /// Whether a whole hello would have been read.
+    /// Returns whether this host cannot decode the rest of the hello.
     pub fn is_foreign(self) -> bool {
         self.protocol != PROTOCOL_VERSION || self.role > Role::Loop as u32
     }
@@ -91,7 +91,7 @@ impl HelloHead {
 
 impl<'de> serde::Deserialize<'de> for HelloHead {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        // More fields than a frame has bytes: the visitor takes the rest, whatever it is, until it ends.
+        // The length exceeds the bytes of any frame: the visitor skips all remaining bytes.
         deserializer.deserialize_tuple(link::framing::MAX_FRAME, HeadVisitor)
     }
 }

@@ -10,11 +10,11 @@ use crate::recording::Recording;
 use crate::trip;
 use report::failure::{Failure, Outcome};
 
-/// A line without a byte for so long is idle.
+/// Time without a byte after which a line is idle.
 const IDLE_TIME: Duration = Duration::from_millis(100);
 
 impl Session<'_> {
-    /// A zero byte goes ahead: half a frame that hangs in the board's receiver costs nothing but itself.
+    /// Sends a message after a zero byte, which ends an incomplete frame in the board's receiver.
     pub(super) fn send(&mut self, message: &ToBoard) -> Outcome<()> {
         let frame = encode(message).map_err(|_| Failure::new("a message to the board is longer than a frame"))?;
         let frame = [&[0], &frame[..]].concat();
@@ -34,7 +34,7 @@ impl Session<'_> {
         }
     }
 
-    /// Receives what comes within one receive timeout; fails if the user has interrupted the session.
+    /// Receives messages for up to one receive timeout; fails if the user has interrupted the session.
     pub(super) fn receive(&mut self) -> Outcome<Vec<FromBoard>> {
         if self.supervisor.interrupted() {
             return Err(Failure::interrupted("stopped by the user"));
@@ -68,7 +68,7 @@ impl Session<'_> {
         Ok(messages)
     }
 
-    /// Waits until `done` holds for what was received; fails after [`ANSWER_TIMEOUT`].
+    /// Waits until the recording satisfies `done`; fails after [`ANSWER_TIMEOUT`].
     pub(super) fn wait(&mut self, what: &str, done: impl Fn(&Recording) -> bool) -> Outcome<()> {
         let start = Instant::now();
         while !done(&self.recording) {

@@ -1,5 +1,5 @@
-//! The observer's memory on a board (what it has learnt between runs): read from its flash, loaded into its controller,
-//! written and erased. Its content is passed on as bytes.
+//! The observer's memory on a board (estimated parameters kept between runs): read from flash, loaded into the
+//! controller, written and erased. Its content is passed on as bytes.
 
 use std::time::Duration;
 
@@ -11,11 +11,12 @@ use model_core::observer::{MEMORY_BYTES, Memory};
 use super::{ANSWER_TIMEOUT, Session};
 use report::failure::{Failure, Outcome};
 
-/// A large sector of flash takes up to four seconds to be erased; meanwhile its board says nothing.
+/// Longest wait for a flash operation: a large sector takes up to four seconds to erase, and the board is silent
+/// meanwhile.
 const FLASH_WRITE_TIMEOUT: Duration = Duration::from_secs(10);
 
 impl Session<'_> {
-    /// What the page of its flash holds.
+    /// Reads the memory stored in the board's flash.
     pub fn stored_memory(&mut self) -> Outcome<Memory> {
         let mut memory = [0; MEMORY_BYTES];
         for (part, place) in (0..MEMORY_PARTS).zip(memory.as_chunks_mut::<PART_BYTES>().0) {
@@ -28,7 +29,7 @@ impl Session<'_> {
         Ok(memory)
     }
 
-    /// Brings it a memory that runs may begin from; what its controller makes of it.
+    /// Loads a memory for the following runs; returns the controller's verdict on it.
     pub fn load_memory(&mut self, memory: &Memory) -> Outcome<MemoryState> {
         let mut parts = (0..MEMORY_PARTS)
             .zip(memory.as_chunks::<PART_BYTES>().0)
@@ -43,18 +44,18 @@ impl Session<'_> {
         })
     }
 
-    /// Has it write the memory that was brought to its flash.
+    /// Writes the loaded memory to the board's flash.
     pub fn write_memory(&mut self) -> Outcome<MemoryOutcome> {
         self.write(MemoryRequest::Write)
     }
 
-    /// Has it write what it has learnt to its flash.
+    /// Writes the estimated parameters to the board's flash.
     pub fn save_memory(&mut self) -> Outcome<MemoryOutcome> {
         self.write(MemoryRequest::Save)
     }
 
-    /// Ends a run, has what was learnt in it kept, and begins anew from that. Where there is no flash it is at hand until the
-    /// power is off.
+    /// Ends a run, saves its estimated parameters, and starts a run from them. A board without flash slots keeps them
+    /// until power is off.
     pub fn restart_from_memory(&mut self) -> Outcome<()> {
         let settings = self.recording.settings.ok_or_else(|| Failure::new("nothing has run yet"))?;
         self.send(&ToBoard::Stop)?;
@@ -63,7 +64,7 @@ impl Session<'_> {
         self.reset(RunSettings { from_memory: true, ..settings })
     }
 
-    /// Has it forget what it has learnt, in its flash too.
+    /// Erases the estimated parameters, in flash too.
     pub fn erase_memory(&mut self) -> Outcome<MemoryOutcome> {
         self.write(MemoryRequest::Erase)
     }
@@ -73,7 +74,7 @@ impl Session<'_> {
             .and_then(unless_running)
     }
 
-    /// Asks for something that flash need not be written for.
+    /// Sends a request that does not write flash.
     fn ask_about<T>(
         &mut self,
         request: MemoryRequest,

@@ -14,7 +14,7 @@ pub const USUAL_COST: u64 = 1000;
 
 /// What drives the clock of a board, as its file says.
 pub fn usual_surroundings(board: &Described) -> Surroundings {
-    match board.described.clock {
+    match board.description.clock {
         ExternalClock::None => Surroundings::default(),
         ExternalClock::Crystal(frequency) => Surroundings::crystal(frequency.into()),
         ExternalClock::Signal(frequency) => Surroundings::clock(frequency.into()),
@@ -29,7 +29,7 @@ pub fn with(chip: Chip) -> Result<Described, String> {
 
 /// The line of a board: its unit's number is at the end of its name.
 fn cable(board: &Described) -> Cable {
-    let serial = &board.described.serial;
+    let serial = &board.description.serial;
     Cable {
         baud: board.baud_rate().into(),
         unit: serial.unit.trim_start_matches(char::is_alphabetic).parse().unwrap_or_default(),
@@ -75,7 +75,7 @@ impl Subject {
             Chip::Stm32g431 => chips::g431::chip,
         };
         let mut board = Board::new(chip, self.image.clone(), setup)?;
-        let unit = self.board.described.serial.unit;
+        let unit = self.board.description.serial.unit;
         if !board.machine().chip.peripherals.iter().any(|placed| placed.name == unit) {
             return Err(format!("{unit} of {} is not modelled", self.board.chip().name()));
         }

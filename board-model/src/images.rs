@@ -53,7 +53,7 @@ impl Images {
 
     /// One of them; built when it is asked for first.
     pub fn get(&mut self, board: &Board, work: Work) -> Result<Image, String> {
-        if let Some(image) = self.built.get(&(board.named.clone(), work)) {
+        if let Some(image) = self.built.get(&(board.argument.clone(), work)) {
             return Ok(image.clone());
         }
         let (joint, quiet) = (image::preset_file(JOINT), |_: &str| {});
@@ -66,12 +66,12 @@ impl Images {
                 let parameters = joint_file::read(joint_file::preset(JOINT).ok_or("no such joint")?)
                     .map_err(|_| "a preset with problems")?
                     .parameters;
-                role(Role::Loop, tick_time::usual_rate(&parameters, board, Role::Loop))
+                role(Role::Loop, tick_time::default_control_rate(&parameters, board, Role::Loop))
             }
             Work::SpiSlave => image::build_spi_slave(&self.toolchain, &joint, board, SPI_RATE, false, &quiet),
         };
         let image = Image::read(&built.map_err(|failure| failure.to_string())?.elf)?;
-        self.built.insert((board.named.clone(), work), image.clone());
+        self.built.insert((board.argument.clone(), work), image.clone());
         Ok(image)
     }
 }

@@ -76,7 +76,7 @@ fn run(image: &Path, board: Board, source: Option<u64>, cost: u64) -> Result<(),
             Surroundings { crystal: usual.crystal.and(rate), external_clock: usual.external_clock.and(rate), ..usual }
         }
     };
-    let name = board.named.clone();
+    let name = board.argument.clone();
     let subject = Subject { board, image: Image::read(image)?, tampers: &[] };
     let mut board = subject.start_at(surroundings, cost)?;
     let mut told = 0;

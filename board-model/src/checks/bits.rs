@@ -28,7 +28,7 @@ pub fn steps(subject: &Subject) -> Result<String, String> {
     let settings =
         RunSettings { mode: RunMode::Lockstep, decimation: DECIMATION, command_timeout: u32::MAX, from_memory: false };
     let run = session
-        .call(&BoardHelp::Rebuild, Duration::from_secs(20))
+        .wait_for_hello(&BoardHelp::Rebuild, Duration::from_secs(20))
         .and_then(|_| session.reset(settings))
         .and_then(|()| session.stream(&profile, &mut |_| {}))
         .and_then(|()| session.finish(profile.ticks));

@@ -34,7 +34,7 @@ pub fn answers(subject: &Subject) -> Result<String, String> {
     let core = board.machine().wires.clocks.core;
     if hello.board != subject.board.name()
         || core != u64::from(subject.board.core_rate())
-        || hello.clock.source.is_external() != subject.board.described.clock.frequency().is_some()
+        || hello.clock.source.is_external() != subject.board.description.clock.frequency().is_some()
     {
         return Err(format!("{} at {core} Hz from {:?} is not {}", hello.board, hello.clock, subject.board.name()));
     }

@@ -143,9 +143,9 @@ fn received(chip: Chip) -> Option<Received> {
 /// under way.
 fn jumped_to<'a>(subject: &Subject) -> Result<Board<'a>, String> {
     let (mut board, chip) = (subject.start()?, subject.board.chip());
-    let described = &subject.board.described;
-    let is_signal = matches!(described.clock, ExternalClock::Signal(_));
-    let external = described.pll.external;
+    let description = &subject.board.description;
+    let is_signal = matches!(description.clock, ExternalClock::Signal(_));
+    let external = description.pll.external;
     for (address, value) in external.map(|pll| full_speed(chip, is_signal, pll)).unwrap_or_default() {
         let machine = board.machine_mut();
         machine.settle();
@@ -175,11 +175,11 @@ pub fn starts(subject: &Subject) -> Result<String, String> {
     clean(&talk.board.borrow())?;
     let hello = hello.ok_or_else(|| format!("no answer; it was at {}", talk.board.borrow().whereabouts()))?;
     let core = talk.board.borrow().machine().wires.clocks.core;
-    let is_external = subject.board.described.clock.frequency().is_some();
+    let is_external = subject.board.description.clock.frequency().is_some();
     if core != u64::from(subject.board.core_rate()) || hello.clock.source.is_external() != is_external {
         return Err(format!("{core} Hz from {:?}", hello.clock));
     }
-    let is_used = subject.board.described.used_pins().iter().any(|(_, used)| pin(*used) == DRIVEN);
+    let is_used = subject.board.description.used_pins().iter().any(|(_, used)| pin(*used) == DRIVEN);
     if !is_used && matches!(talk.board.borrow().machine().wires.mode(DRIVEN), Mode::Output(_)) {
         return Err("a pin that the bootloader drove is driven still".into());
     }

@@ -17,7 +17,7 @@ const HELD: Time = 2 * SECOND;
 
 /// The motor-enable output, and whether it is on when high.
 fn enable(subject: &Subject) -> Result<(Pin, bool), String> {
-    let output = subject.board.described.enable.ok_or("the board has no enable output")?;
+    let output = subject.board.description.enable.ok_or("the board has no enable output")?;
     Ok((pin(output.pin), output.on == Level::High))
 }
 
@@ -40,7 +40,7 @@ pub fn is_enabled(talk: &Talk<'_>, subject: &Subject) -> bool {
 pub fn start_run<'a>(subject: &Subject) -> Result<Talk<'a>, String> {
     let mut talk = Talk::new(subject.start()?);
     talk.call(2 * SECOND).ok_or("no answer")?;
-    let has_output = subject.board.described.enable.is_some();
+    let has_output = subject.board.description.enable.is_some();
     if has_output && !is_switched(&talk, subject, false) {
         return Err(format!("the enable output is {:?} before any run", level(&talk, subject)));
     }
@@ -68,7 +68,7 @@ pub fn silence(subject: &Subject) -> Result<String, String> {
             }
         }
         let is_off =
-            if subject.board.described.enable.is_some() { is_switched(&talk, subject, false) } else { trip.is_some() };
+            if subject.board.description.enable.is_some() { is_switched(&talk, subject, false) } else { trip.is_some() };
         if gone.is_none() && is_off {
             gone = Some(talk.board.borrow().now() - start);
         }

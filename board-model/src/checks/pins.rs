@@ -17,7 +17,7 @@ pub fn only_those_of_the_file(subject: &Subject) -> Result<String, String> {
     let mut talk = start_run(subject)?;
     talk.hear(RUN);
     clean(&talk.board.borrow())?;
-    let board = &subject.board.described;
+    let board = &subject.board.description;
     let set_up = talk.board.borrow().machine().wires.set_up.clone();
     let mode = |pin| talk.board.borrow().machine().wires.mode(pin);
     let without_use = board.pins_without_use();

@@ -90,7 +90,7 @@ pub fn dies_in_a_run(subject: &Subject) -> Result<String, String> {
     let hello = truthful(&mut talk)?;
     match hello.clock.source {
         source if source.is_external() => Err("the hello names the source that is dead".into()),
-        clock if subject.board.described.enable.is_none() => Ok(format!("then {clock:?}")),
+        clock if subject.board.description.enable.is_none() => Ok(format!("then {clock:?}")),
         clock => Ok(format!("off after {:.1} ms, then {clock:?}", off as f64 / (1000 * MICROSECOND) as f64)),
     }
 }

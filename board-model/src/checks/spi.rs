@@ -93,7 +93,7 @@ impl Master<'_> {
 
 fn master<'a>(subject: &Subject, board: Board<'a>) -> Result<Master<'a>, String> {
     let talk = Talk::new(board);
-    let slave = subject.board.described.spi_slave.as_ref().ok_or("the board is no slave")?;
+    let slave = subject.board.description.spi_slave.as_ref().ok_or("the board is no slave")?;
     let select = pin(slave.select.pin);
     let spi = slave.unit.trim_start_matches("SPI").parse().map_err(|_| format!("unit {}", slave.unit))?;
     let mut master = Master { talk, select, spi, tick: 0 };

@@ -23,7 +23,7 @@ pub struct LineOptions {
 }
 
 /// Board if none is named.
-static USUAL: LazyLock<Board> = LazyLock::new(Board::emulated);
+static DEFAULT_BOARD: LazyLock<Board> = LazyLock::new(Board::emulated);
 
 impl LineOptions {
     /// Speed of the line [baud].
@@ -33,19 +33,19 @@ impl LineOptions {
 
     /// Board behind the port, or the emulated one.
     pub fn board(&self) -> &Board {
-        self.named_board.as_ref().unwrap_or(&USUAL)
+        self.named_board.as_ref().unwrap_or(&DEFAULT_BOARD)
     }
 
     /// Board as the user named it, or the placeholder `NAME`, since an image is always for one board.
-    pub fn board_word(&self) -> String {
-        self.named_board.as_ref().map_or("NAME".to_owned(), |board| quoted(&board.named))
+    pub fn board_argument(&self) -> String {
+        self.named_board.as_ref().map_or("NAME".to_owned(), |board| quoted(&board.argument))
     }
 
     /// Options that select the port and board again, each with a leading space.
-    pub fn again(&self) -> String {
+    pub fn repeated_options(&self) -> String {
         let port = self.port.as_ref().map(|port| format!(" --port {}", quoted(port)));
         let baud = self.baud.map(|baud| format!(" --baud {baud}"));
-        let board = self.named_board.as_ref().map(|board| format!(" --board {}", quoted(&board.named)));
+        let board = self.named_board.as_ref().map(|board| format!(" --board {}", quoted(&board.argument)));
         [port, baud, board].into_iter().flatten().collect()
     }
 }

@@ -45,17 +45,17 @@ pub struct Traffic {
 
 impl Recording {
     /// Stores a message by its kind.
-    pub fn take(&mut self, message: FromBoard) {
+    pub fn store(&mut self, message: FromBoard) {
         self.traffic.messages += 1;
         match message {
             FromBoard::Hello(hello) => self.hello = Some(hello),
             FromBoard::Accepted(_) => {}
-            FromBoard::Samples(batch) => self.take_samples(batch),
+            FromBoard::Samples(batch) => self.store_samples(batch),
             FromBoard::Statistics(statistics) => self.statistics = Some(statistics),
             // Schedules in flight when a run stops are refused; the refusal repeats the trip.
             FromBoard::Tripped(Trip::NotRunning) if !self.trips.is_empty() => {}
             FromBoard::Tripped(trip) => self.trips.push(trip),
-            FromBoard::Log(log) => self.take_log(&log),
+            FromBoard::Log(log) => self.store_log(&log),
             // Kept by the caller that asked for them.
             FromBoard::Answer(_)
             | FromBoard::Loop(_)
@@ -81,7 +81,7 @@ impl Recording {
     }
 
     /// Drops samples after a tick.
-    pub fn keep_until(&mut self, tick: u32) {
+    pub fn drop_samples_after(&mut self, tick: u32) {
         self.samples.retain(|sample| sample.tick <= tick);
     }
 
@@ -90,15 +90,15 @@ impl Recording {
         self.samples.last().map_or(0, |sample| sample.tick)
     }
 
-    fn take_samples(&mut self, batch: SampleBatch) {
-        let Some(lost) = missing(self.next_batch, batch.sequence) else { return };
+    fn store_samples(&mut self, batch: SampleBatch) {
+        let Some(lost) = lost_frames(self.next_batch, batch.sequence) else { return };
         self.traffic.lost_batches += lost;
         self.next_batch = batch.sequence.wrapping_add(1);
         self.samples.extend(batch.samples);
     }
 
-    fn take_log(&mut self, log: &Log) {
-        let Some(lost) = missing(self.next_log.unwrap_or(log.sequence), log.sequence) else { return };
+    fn store_log(&mut self, log: &Log) {
+        let Some(lost) = lost_frames(self.next_log.unwrap_or(log.sequence), log.sequence) else { return };
         self.traffic.lost_logs += lost;
         self.next_log = Some(log.sequence.wrapping_add(1));
         self.log.extend_from_slice(&log.bytes);
@@ -107,7 +107,7 @@ impl Recording {
 
 /// Number of frames missing before `sequence`, or `None` for a repeated frame. Sequence numbers rise, so a number more
 /// than half the range ahead is an old one.
-pub fn missing(next: u16, sequence: u16) -> Option<u32> {
+pub fn lost_frames(next: u16, sequence: u16) -> Option<u32> {
     let gap = sequence.wrapping_sub(next);
     (gap <= u16::MAX / 2).then_some(gap.into())
 }
@@ -120,12 +120,12 @@ pub struct UnacknowledgedSchedules {
 
 impl UnacknowledgedSchedules {
     /// Records a schedule as sent.
-    pub fn sent(&mut self, sequence: u16, commands: &[Command]) {
+    pub fn add(&mut self, sequence: u16, commands: &[Command]) {
         self.schedules.push((sequence, commands.to_vec()));
     }
 
     /// Removes an acknowledged schedule and returns its commands; empty if no such schedule was sent.
-    pub fn acknowledged(&mut self, accepted: Accepted) -> Vec<Command> {
+    pub fn remove(&mut self, accepted: Accepted) -> Vec<Command> {
         let place = self.schedules.iter().position(|(sequence, _)| *sequence == accepted.sequence);
         place.map(|place| self.schedules.remove(place).1).unwrap_or_default()
     }
@@ -166,33 +166,37 @@ mod tests {
         FromBoard::Log(Log { sequence, bytes: heapless::Vec::from_slice(&[1, 2]).expect("room") })
     }
 
+    /// A gap counts by its width, also where sequence numbers wrap.
     #[test]
-    fn a_gap_in_the_batches_is_counted_by_its_width_also_over_the_wrap() {
+    fn lost_batches_counted_over_wrap() {
         let mut recording = Recording { next_batch: u16::MAX - 1, ..Recording::default() };
-        [u16::MAX - 1, u16::MAX, 0, 3, 4].into_iter().for_each(|sequence| recording.take(batch(sequence)));
+        [u16::MAX - 1, u16::MAX, 0, 3, 4].into_iter().for_each(|sequence| recording.store(batch(sequence)));
         assert_eq!(recording.traffic.lost_batches, 2);
     }
 
+    /// Batches lost before the first received one count.
     #[test]
-    fn batches_lost_at_the_very_start_are_counted() {
+    fn lost_first_batches_counted() {
         let mut recording = Recording::default();
-        recording.take(batch(2));
+        recording.store(batch(2));
         assert_eq!(recording.traffic.lost_batches, 2);
     }
 
+    /// Repeated batches and log frames are dropped and do not count as lost.
     #[test]
-    fn a_batch_or_a_log_that_comes_twice_is_kept_once_and_nothing_counts_as_lost() {
+    fn repeated_frames_kept_once() {
         let mut recording = Recording::default();
-        [0, 1, 1, 0, 2].into_iter().for_each(|sequence| recording.take(batch_of_one(sequence)));
-        [5, 6, 6].into_iter().for_each(|sequence| recording.take(log(sequence)));
+        [0, 1, 1, 0, 2].into_iter().for_each(|sequence| recording.store(batch_of_one(sequence)));
+        [5, 6, 6].into_iter().for_each(|sequence| recording.store(log(sequence)));
         assert_eq!((recording.traffic.lost_batches, recording.samples.len()), (0, 3));
         assert_eq!((recording.traffic.lost_logs, recording.log.len()), (0, 4));
     }
 
+    /// A log may begin at any sequence number; gaps after it count.
     #[test]
-    fn a_log_may_be_joined_anywhere_but_not_lose_a_frame() {
+    fn log_may_start_at_any_frame() {
         let mut recording = Recording::default();
-        [7, 8, 10].into_iter().for_each(|sequence| recording.take(log(sequence)));
+        [7, 8, 10].into_iter().for_each(|sequence| recording.store(log(sequence)));
         assert_eq!((recording.traffic.lost_logs, recording.log.len()), (1, 6));
     }
 }

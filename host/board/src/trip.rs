@@ -18,19 +18,19 @@ pub struct FaultEntry {
 }
 
 /// Short name, tick if it has one, meaning, and remedy of a trip.
-fn words(trip: &Trip) -> (&'static str, Option<u32>, &'static str, &'static str) {
+fn texts(trip: &Trip) -> (&'static str, Option<u32>, &'static str, &'static str) {
     match *trip {
         Trip::CommandLoss { tick } => (
             "command_loss",
             Some(tick),
-            "nothing came for longer than the command timeout, or nothing of what is to be done",
+            "no message or no command came for longer than the command timeout",
             "check the line and the load of this machine, or run on the emulated board",
         ),
         Trip::NotFinite { tick } => (
             "not_finite",
             Some(tick),
-            "the simulated state is not finite any more",
-            "check joint file and profile: `joint check` tells the highest stable step",
+            "the simulated state is no longer finite",
+            "check joint file and profile: `joint check` prints the longest stable step",
         ),
         Trip::BadCommand { tick } => {
             ("bad_command", Some(tick), "a commanded torque is not finite", "check the profile's torques")
@@ -57,32 +57,32 @@ fn words(trip: &Trip) -> (&'static str, Option<u32>, &'static str, &'static str)
             "not_running",
             None,
             "torques came for a run that was not started or has stopped",
-            "the board was reset in mid-run: check its power, then run again",
+            "the board was reset during the run: check its power, then run again",
         ),
         Trip::WrongRole => (
             "wrong_role",
             None,
-            "commands came that are for another role than the board's",
+            "the commands are for another role than the board's",
             "flash the image of the role that this run asks for",
         ),
         Trip::FarHorizon { tick } => (
             "far_horizon",
             Some(tick),
             "a schedule reaches farther ahead than ten command timeouts",
-            "send what is to be done in shorter pieces, or state a longer command timeout",
+            "send shorter schedules, or set a longer command timeout",
         ),
         Trip::Overtaken => (
             "overtaken",
             None,
-            "a reset came to its turn too late: after a stop, work on flash, or a silence",
-            "wait for the answer to what was sent before, then reset again",
+            "a reset was overtaken by a stop, by work on flash, or by a silence",
+            "wait for the answer to the preceding message, then reset again",
         ),
     }
 }
 
 /// Failure that ends a run with a trip.
 pub fn failure(trip: &Trip) -> Failure {
-    let (name, tick, what, help) = words(trip);
+    let (name, tick, what, help) = texts(trip);
     let place = tick.map(|tick| format!(" at tick {tick}")).unwrap_or_default();
     let happened = match trip {
         // The requested action was refused and nothing else changed.
@@ -94,6 +94,6 @@ pub fn failure(trip: &Trip) -> Failure {
 
 /// Entry of the record for a trip.
 pub fn entry(trip: &Trip) -> FaultEntry {
-    let (name, tick, what, help) = words(trip);
+    let (name, tick, what, help) = texts(trip);
     FaultEntry { tick, name: name.to_owned(), text: format!("{what}; {help}") }
 }

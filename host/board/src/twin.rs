@@ -45,7 +45,7 @@ pub fn tables_digest(joint: &JointParameters, chip: Chip, tick_rate: u32) -> Out
         3 => Ok(tables::<3>(joint, chip, tick_rate)?.digest),
         4 => Ok(tables::<4>(joint, chip, tick_rate)?.digest),
         5 => Ok(tables::<5>(joint, chip, tick_rate)?.digest),
-        other => Err(so_many_planets(joint, other)),
+        other => Err(unsupported_planets(joint, other)),
     }
 }
 
@@ -82,15 +82,15 @@ pub fn replay(
     ticks: &[u32],
 ) -> Outcome<Vec<Sample>> {
     match joint.geometry.planets {
-        1 => Ok(replayed(&tables::<1>(joint, chip, tick_rate)?, commands, ticks)),
-        3 => Ok(replayed(&tables::<3>(joint, chip, tick_rate)?, commands, ticks)),
-        4 => Ok(replayed(&tables::<4>(joint, chip, tick_rate)?, commands, ticks)),
-        5 => Ok(replayed(&tables::<5>(joint, chip, tick_rate)?, commands, ticks)),
-        other => Err(so_many_planets(joint, other)),
+        1 => Ok(replay_tables(&tables::<1>(joint, chip, tick_rate)?, commands, ticks)),
+        3 => Ok(replay_tables(&tables::<3>(joint, chip, tick_rate)?, commands, ticks)),
+        4 => Ok(replay_tables(&tables::<4>(joint, chip, tick_rate)?, commands, ticks)),
+        5 => Ok(replay_tables(&tables::<5>(joint, chip, tick_rate)?, commands, ticks)),
+        other => Err(unsupported_planets(joint, other)),
     }
 }
 
-fn so_many_planets(joint: &JointParameters, planets: usize) -> Failure {
+fn unsupported_planets(joint: &JointParameters, planets: usize) -> Failure {
     Failure::new(format!("joint `{}` has {planets} planets", joint.name))
         .with_help("a joint may have 3, 4 or 5 planets")
 }
@@ -107,7 +107,7 @@ fn tables<const N: usize>(joint: &JointParameters, chip: Chip, tick_rate: u32) -
     })
 }
 
-fn replayed<const N: usize>(tables: &Tables<f32, N>, commands: &[Command], ticks: &[u32]) -> Vec<Sample> {
+fn replay_tables<const N: usize>(tables: &Tables<f32, N>, commands: &[Command], ticks: &[u32]) -> Vec<Sample> {
     let mut model = Model::new(tables);
     let mut torques = Torques { drive: 0.0, load: 0.0 };
     let mut running = digest::START;
@@ -215,15 +215,17 @@ mod tests {
         samples
     }
 
+    /// A correct board agrees in every bit.
     #[test]
-    fn a_board_that_does_as_it_should_agrees_in_every_bit() {
+    fn correct_board_agrees_bitwise() {
         let samples = board(&joint(), &commands(), 200, 20);
         let agreement = compare(&joint(), Chip::Stm32f405, TICK_RATE, &commands(), &samples).expect("a good joint");
         assert_eq!(agreement, Agreement { steps: 200, samples: 10, different: 0, first: None });
     }
 
+    /// One changed bit in any field makes exactly its sample differ.
     #[test]
-    fn one_bit_anywhere_in_a_sample_is_seen() {
+    fn single_bit_difference_detected() {
         let flips: [fn(&mut Sample); 6] = [
             |sample| sample.gap = f32::from_bits(sample.gap.to_bits() ^ 1),
             |sample| sample.wind_up = -sample.wind_up,
@@ -240,8 +242,9 @@ mod tests {
         }
     }
 
+    /// A command applied one tick late makes every later sample differ.
     #[test]
-    fn a_command_one_tick_late_is_seen_in_every_later_sample() {
+    fn late_command_detected_in_later_samples() {
         let mut late = commands();
         late[1].tick += 1;
         let samples = board(&joint(), &late, 200, 20);

@@ -79,7 +79,7 @@ pub fn memory(library: &Library, joint: &JointFile, machine: Machine) -> Outcome
     for (name, what) in USES {
         let bench = if name == "PLANT" { &whole } else { &control };
         let elf = bench.compile_for(machine, &[&source], &[&format!("-D{name}"), "-Os"])?;
-        let said = tool::output_of(Command::new(machine.target.tool("size")).arg(&elf))?;
+        let said = tool::capture_output(Command::new(machine.target.tool("size")).arg(&elf))?;
         let row: Vec<u64> = said
             .lines()
             .nth(1)

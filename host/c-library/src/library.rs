@@ -142,7 +142,7 @@ pub fn build_in(folder: Option<&Path>, target: Target, features: &str, say: Say<
         Target::Host => {
             let folder = folder.map_or_else(target_directory, Path::to_path_buf);
             let [all, shared] = compile_library_for_host(&folder, PACKAGE, features, SONAME, say)?;
-            let version = tool::output_of(Command::new("rustc").arg("--version").current_dir(workspace()))?;
+            let version = tool::capture_output(Command::new("rustc").arg("--version").current_dir(workspace()))?;
             (all, Some(shared), version.trim().to_owned())
         }
         Target::M4f | Target::M33 | Target::M7 => {
@@ -192,7 +192,7 @@ fn one_object(target: Target, all: &[u8], measuring: bool) -> Outcome<Vec<u8>> {
     if target == Target::Host {
         link.arg("all.a");
     }
-    tool::output_of(&mut link)?;
+    tool::capture_output(&mut link)?;
     let mut copy = Command::new(target.tool("objcopy"));
     copy.current_dir(folder.path()).args([
         "--strip-debug",
@@ -200,9 +200,9 @@ fn one_object(target: Target, all: &[u8], measuring: bool) -> Outcome<Vec<u8>> {
         "--remove-section=.llvmbc",
         "--remove-section=.llvmcmd",
     ]);
-    tool::output_of(copy.args(["--keep-global-symbols=names", "linked.o", "joint.o"]))?;
+    tool::capture_output(copy.args(["--keep-global-symbols=names", "linked.o", "joint.o"]))?;
     let mut archive = Command::new(target.tool("ar"));
-    tool::output_of(archive.current_dir(folder.path()).args(["rcsD", "liblostmotion.a", "joint.o"]))?;
+    tool::capture_output(archive.current_dir(folder.path()).args(["rcsD", "liblostmotion.a", "joint.o"]))?;
     read(&place("liblostmotion.a"))
 }
 

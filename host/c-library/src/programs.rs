@@ -87,7 +87,7 @@ impl Workbench {
             .arg(folder().join("host.c"))
             .args(["test_tables.c", "liblostmotion.a", "-lm", "-o"])
             .arg(&program);
-        tool::output_of(&mut command)?;
+        tool::capture_output(&mut command)?;
         Ok(program)
     }
 
@@ -115,7 +115,7 @@ impl Workbench {
             .arg(board.join("start.c"))
             .args(["test_tables.c", "liblostmotion.a", "-lm", "-lgcc", "-o"])
             .arg(&program);
-        tool::output_of(&mut command)?;
+        tool::capture_output(&mut command)?;
         Ok(program)
     }
 }

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 pub use arguments::Arguments;
 use board::device::board::Board;
-use board::device::tick_time::OnBoard;
+use board::device::tick_time::RateCheck;
 use joint_file::named::Loaded;
 use joint_file::{diagnostic, warned};
 use report::failure::{Failure, Outcome};
@@ -102,7 +102,7 @@ fn make(sheet: &DataSheet, gears: &Gears, path: &Path, seeds: Option<u64>, progr
         told += &format!("note: {warning}\n");
     }
     // A board's time is no part of a data sheet: the joint is as it is.
-    if let Err(failure) = OnBoard::plant(&loaded.file.parameters, &Board::load(board_file::DEFAULT)?).refuse(RATE) {
+    if let Err(failure) = RateCheck::plant(&loaded.file.parameters, &Board::load(board_file::DEFAULT)?).check(RATE) {
         let help = failure.full_help().map_or(String::new(), |help| format!(" ({help})"));
         told += &format!("note: {}{help}\n", failure.message());
     }

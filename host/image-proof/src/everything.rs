@@ -30,7 +30,7 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
         // Boards differ in pins and clock; what a role is made of is the same on all with a chip.
         let is_first = !seen.contains(&board.chip());
         seen.push(board.chip());
-        let control_rate = |role| tick_time::usual_rate(&joint, board, role);
+        let control_rate = |role| tick_time::default_control_rate(&joint, board, role);
         let roles = [
             (Role::Plant, tick_rate),
             (Role::Observer, control_rate(Role::Observer)),
@@ -38,14 +38,14 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
         ];
         let built = if is_first && image::has_room_for_all(board) { &roles[..] } else { &roles[..1] };
         for &(role, rate) in built {
-            let what = format!("role {} for {}", image::word(role), board.name());
+            let what = format!("role {} for {}", image::role_name(role), board.name());
             progress.stage(&format!("building the image of {what}"));
             let image = image::build_image(&toolchain, &image::preset_file("q1"), board, role, rate, false, &say)?;
             let (flash, ram) = (image.flash_bytes, image.ram_bytes);
             let reach = tick::reach(&image.elf)?;
             tick::judge(&reach).map_err(|failure| failure.while_doing(format_args!("image of {what}")))?;
             let (functions, stack) = (reach.functions, tick::stack(&reach));
-            sizes::judge(board.chip(), image::word(role), &image)?;
+            sizes::judge(board.chip(), image::role_name(role), &image)?;
             progress.clear();
             output::print(&format!(
                 "ok       image of {what}: {flash} B of flash, {ram} B of RAM; its tick: {functions} functions, none can \

@@ -11,7 +11,7 @@ use link::messages::Role;
 use super::worst_case::CYCLES_AN_INSTRUCTION;
 use board::device::board::{Board, Chip};
 use board::device::image::CONTROL_RATE;
-use board::device::tick_time::OnBoard;
+use board::device::tick_time::RateCheck;
 use board::device::toolchain::Toolchain;
 use board::device::{Say, measuring};
 use report::failure::{Failure, Outcome};
@@ -73,7 +73,7 @@ pub fn judge(costs: &[RoleCost]) -> Outcome<()> {
     // What images are refused by is no less than what is counted.
     let (board, joint) = (Board::emulated(), named::load(Path::new("q1"))?.file.parameters);
     let promised = |role| {
-        OnBoard::new(&joint, &board, role).tick_time(CONTROL_RATE).map_or(f64::INFINITY, |time| time.instructions)
+        RateCheck::new(&joint, &board, role).tick_time(CONTROL_RATE).map_or(f64::INFINITY, |time| time.instructions)
     };
     let [observer, whole_loop] = [Role::Observer, Role::Loop].map(promised);
     let over = |load: &&RoleCost| match load.role.as_str() {
@@ -93,7 +93,7 @@ pub fn judge(costs: &[RoleCost]) -> Outcome<()> {
 
 #[cfg(test)]
 mod tests {
-    use board::device::tick_time::OBSERVER;
+    use board::device::tick_time::OBSERVER_INSTRUCTIONS;
 
     use super::*;
 
@@ -104,9 +104,9 @@ mod tests {
         let failure = judge(std::slice::from_ref(&load)).unwrap_err();
         assert!(failure.message().contains("role loop, Q1"), "{failure}");
         assert!(judge(&[RoleCost { most: 10_000, ..load.clone() }]).is_ok());
-        let observer = RoleCost { role: "observer".to_owned(), most: OBSERVER + 1, ..load };
+        let observer = RoleCost { role: "observer".to_owned(), most: OBSERVER_INSTRUCTIONS + 1, ..load };
         assert!(judge(std::slice::from_ref(&observer)).is_err());
-        assert!(judge(&[RoleCost { most: OBSERVER, ..observer }]).is_ok());
+        assert!(judge(&[RoleCost { most: OBSERVER_INSTRUCTIONS, ..observer }]).is_ok());
         assert_eq!(parse("panicked at x.rs"), None);
     }
 }

@@ -12,28 +12,28 @@ use report::workspace::workspace;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Board {
     /// Name as given on the command line: a preset or a path.
-    pub named: String,
+    pub argument: String,
     /// Path of the board file, for the firmware's build.
     pub file: PathBuf,
     /// Contents of the board file.
-    pub described: board_file::Board,
+    pub description: board_file::Board,
 }
 
 impl Board {
     /// Reads a board file, or finds a preset.
-    pub fn load(named: &str) -> Outcome<Self> {
-        let typed = Path::new(named);
+    pub fn load(argument: &str) -> Outcome<Self> {
+        let typed = Path::new(argument);
         let loaded = named::load(typed)?;
         let file = match typed.is_file() {
-            true => typed.canonicalize().map_err(|error| Failure::new(format!("{named}: {error}")))?,
-            false => workspace().join("boards").join(named).with_added_extension("toml"),
+            true => typed.canonicalize().map_err(|error| Failure::new(format!("{argument}: {error}")))?,
+            false => workspace().join("boards").join(argument).with_added_extension("toml"),
         };
-        Ok(Self { named: named.to_owned(), file, described: loaded.board })
+        Ok(Self { argument: argument.to_owned(), file, description: loaded.board })
     }
 
     /// Parses a command argument; the error carries message and help as one text.
-    pub fn parse(named: &str) -> Result<Self, String> {
-        Self::load(named).map_err(|failure| match failure.help() {
+    pub fn parse(argument: &str) -> Result<Self, String> {
+        Self::load(argument).map_err(|failure| match failure.help() {
             Some(help) => format!("{}\n{help}", failure.message()),
             None => failure.message().to_owned(),
         })
@@ -54,12 +54,12 @@ impl Board {
 
     /// Name that the board states in its hello.
     pub fn name(&self) -> &str {
-        &self.described.name
+        &self.description.name
     }
 
     /// Its chip.
     pub fn chip(&self) -> Chip {
-        self.described.chip
+        self.description.chip
     }
 
     /// Clock, cycles per instruction and share of the period that the chip offers the step.
@@ -74,11 +74,11 @@ impl Board {
 
     /// Speed of its serial line [baud].
     pub fn baud_rate(&self) -> u32 {
-        self.described.serial.baud
+        self.description.serial.baud
     }
 
     /// Returns whether the firmware can be the SPI slave of a motor controller.
     pub fn has_spi_slave(&self) -> bool {
-        self.described.spi_slave.is_some()
+        self.description.spi_slave.is_some()
     }
 }

@@ -6,7 +6,7 @@ use std::io;
 use std::path::Path;
 use std::process::Command;
 
-use super::cross_build::{TARGET, cannot_write, clean};
+use super::cross_build::{TARGET, cannot_write, clear_host_settings};
 use super::toolchain::{TARGET_FLAGS, Toolchain};
 use super::{Say, tool};
 use report::failure::{Failure, Outcome};
@@ -17,10 +17,10 @@ pub const PROFILE: &str = "firmware";
 
 /// Package with the generic code of the library. Its generic functions are compiled with the library's own package, the
 /// others with this one.
-const CORE: &str = "model-core";
+const CORE_PACKAGE: &str = "model-core";
 
 /// Package of the images.
-pub(super) const FIRMWARE: &str = "firmware";
+pub(super) const FIRMWARE_PACKAGE: &str = "firmware";
 
 /// Compiles a binary of a package for the board.
 pub(super) fn compile(
@@ -38,7 +38,7 @@ pub(super) fn compile(
         .args(["--package", package, "--profile", PROFILE, "--bin", binary])
         .args(["--no-default-features", "--features", features])
         .envs(environment.iter().copied());
-    tool::follow(&mut command, "building the firmware", say)?;
+    tool::run_with_progress(&mut command, "building the firmware", say)?;
     let built = toolchain.folder().join(TARGET).join(PROFILE).join(binary);
     fs::read(&built).map_err(|error| Failure::new(format!("{}: {error}", built.display())))
 }
@@ -57,9 +57,11 @@ pub fn compile_library(
     all_flags.push(" ");
     all_flags.push(flags);
     let mut command = toolchain.cargo("rustc");
-    as_library(&mut command, package, "staticlib", features).args(small(package)).args(small(CORE));
+    add_library_arguments(&mut command, package, "staticlib", features)
+        .args(size_optimised(package))
+        .args(size_optimised(CORE_PACKAGE));
     command.env(TARGET_FLAGS, all_flags);
-    tool::follow(&mut command, "building the library", say)?;
+    tool::run_with_progress(&mut command, "building the library", say)?;
     read_library(&toolchain.folder().join(TARGET), package, "a")
 }
 
@@ -74,23 +76,23 @@ pub fn compile_library_for_host(
     let folder = target_directory.join("c-library");
     let _lock = lock(&folder, say)?;
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    clean(&mut command).current_dir(workspace()).arg("rustc").arg("--target-dir").arg(&folder);
-    as_library(&mut command, package, "staticlib,cdylib", features);
+    clear_host_settings(&mut command).current_dir(workspace()).arg("rustc").arg("--target-dir").arg(&folder);
+    add_library_arguments(&mut command, package, "staticlib,cdylib", features);
     command.arg("--").arg(format!("-Clink-arg=-Wl,-soname,{soname}"));
-    tool::follow(&mut command, "building the library", say)?;
+    tool::run_with_progress(&mut command, "building the library", say)?;
     Ok([read_library(&folder, package, "a")?, read_library(&folder, package, "so")?])
 }
 
 /// Adds the arguments that make a package a library for a foreign linker. Debug information is left out: it would name
 /// folders of this machine.
-fn as_library<'c>(command: &'c mut Command, package: &str, kinds: &str, features: &str) -> &'c mut Command {
+fn add_library_arguments<'c>(command: &'c mut Command, package: &str, kinds: &str, features: &str) -> &'c mut Command {
     command
         .args(["--package", package, "--lib", "--profile", PROFILE, "--crate-type", kinds, "--features", features])
         .env("CARGO_PROFILE_FIRMWARE_DEBUG", "0")
 }
 
 /// Cargo arguments that optimise a package for size; its dependencies keep the profile's optimisation.
-fn small(package: &str) -> [String; 2] {
+fn size_optimised(package: &str) -> [String; 2] {
     ["--config".to_owned(), format!("profile.{PROFILE}.package.{package}.opt-level=\"z\"")]
 }
 
@@ -117,7 +119,7 @@ fn lock(folder: &Path, say: Say<'_>) -> Outcome<File> {
 }
 
 /// Writes a file beside its place and renames it, so that the place holds the whole file or the old one.
-pub(super) fn store(images: &Path, place: &Path, elf: &[u8]) -> Outcome<()> {
+pub(super) fn write_atomically(images: &Path, place: &Path, elf: &[u8]) -> Outcome<()> {
     let unfinished = place.with_extension(format!("unfinished-{}", std::process::id()));
     fs::create_dir_all(images)
         .and_then(|()| fs::write(&unfinished, elf))
@@ -131,8 +133,9 @@ mod tests {
 
     use super::*;
 
+    /// A build that waits for another names the other build's folder.
     #[test]
-    fn waiting_for_another_build_is_said() {
+    fn second_build_announces_wait() {
         let folder = tempfile::tempdir().unwrap();
         let said = Mutex::new(Vec::new());
         let say = |line: &str| said.lock().unwrap().push(line.to_owned());
@@ -149,10 +152,11 @@ mod tests {
         assert!(said.len() == 1 && said[0].starts_with("waiting for another build of firmware in"), "{said:?}");
     }
 
+    /// The failure names the file that could not be written.
     #[test]
-    fn an_image_that_cannot_be_stored_is_named() {
+    fn unwritable_image_path_named() {
         let images = Path::new("/proc/none");
-        let failure = store(images, &images.join("x.elf"), b"").unwrap_err();
+        let failure = write_atomically(images, &images.join("x.elf"), b"").unwrap_err();
         assert!(failure.message().contains("/proc/none/x.elf"), "{failure}");
     }
 }

@@ -11,7 +11,7 @@ use report::failure::Failure;
 pub const TARGET: &str = "thumbv7em-none-eabihf";
 
 /// Removes the build settings that an outer `cargo run` or the user's shell has set for the host.
-pub(super) fn clean(command: &mut Command) -> &mut Command {
+pub(super) fn clear_host_settings(command: &mut Command) -> &mut Command {
     for variable in
         ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "CARGO_BUILD_TARGET", "CARGO_TARGET_DIR", "LD_LIBRARY_PATH"]
     {

@@ -31,6 +31,6 @@ pub fn clippy(toolchain: &Toolchain, board: &Board, say: Say<'_>) -> Outcome<()>
         .env("BOARD_FILE", &board.file)
         .args(["--no-default-features", "--features", &features])
         .args(["--", "-D", "warnings"]);
-    tool::follow(&mut command, &format!("linting the firmware for {}", board.name()), say)
+    tool::run_with_progress(&mut command, &format!("linting the firmware for {}", board.name()), say)
         .map_err(|failure| Failure::check_failed(failure.message()))
 }

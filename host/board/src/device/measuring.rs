@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 
 use super::Say;
 use super::board::Chip;
-use super::compile::{FIRMWARE, compile, store};
+use super::compile::{FIRMWARE_PACKAGE, compile, write_atomically};
 use super::emulator::{self, MACHINE};
 use super::toolchain::Toolchain;
 use report::failure::{Failure, Outcome};
@@ -26,7 +26,7 @@ const CLOCK: &str = "shift=6,sleep=off";
 const END: &str = "end of measurement";
 /// Longest run; a normal run takes one to two minutes.
 const TIMEOUT: Duration = Duration::from_secs(1200);
-const POLL: Duration = Duration::from_millis(100);
+const POLL_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Builds a measuring binary with the tables of the given joints; returns the ELF file.
 pub fn build_measuring(
@@ -40,13 +40,13 @@ pub fn build_measuring(
         .map_err(|error| Failure::new(format!("joint files cannot be listed for the firmware's build: {error}")))?;
     let rate = tick_rate.to_string();
     let environment = [("MEASURED_JOINTS", list.as_ref()), ("JOINT_TICK_RATE", rate.as_ref())];
-    stored(toolchain, binary, &compile(toolchain, FIRMWARE, binary, &measuring_features(), &environment, say)?)
+    stored(toolchain, binary, &compile(toolchain, FIRMWARE_PACKAGE, binary, &measuring_features(), &environment, say)?)
 }
 
 fn stored(toolchain: &Toolchain, binary: &str, elf: &[u8]) -> Outcome<PathBuf> {
     let images = toolchain.target_directory().join("images");
     let place = images.join(format!("{binary}.elf"));
-    store(&images, &place, elf)?;
+    write_atomically(&images, &place, elf)?;
     Ok(place)
 }
 
@@ -67,7 +67,9 @@ pub fn build_other(
 
 /// Runs a measuring binary and parses each of its lines.
 pub fn read<R>(elf: &Path, mut parse: impl FnMut(&str) -> Option<R>) -> Outcome<Vec<R>> {
-    let read = |line: &String| parse(line).ok_or_else(|| Failure::new(format!("the board said: {line}")));
+    let read = |line: &String| {
+        parse(line).ok_or_else(|| Failure::new(format!("unexpected output of the measuring binary: {line}")))
+    };
     run(elf)?.iter().map(read).collect()
 }
 
@@ -78,7 +80,7 @@ pub fn run(elf: &Path) -> Outcome<Vec<String>> {
 
 /// Runs a measuring binary on another machine of the emulator and returns its lines.
 pub fn run_on(machine: &str, elf: &Path) -> Outcome<Vec<String>> {
-    let mut command = emulator::mortal(&emulator::program()?);
+    let mut command = emulator::killed_with_parent(&emulator::program()?);
     command
         .args(["-M", machine, "-icount", CLOCK, "-no-reboot"])
         .args(["-nodefaults", "-no-user-config", "-display", "none", "-monitor", "none", "-serial", "none"])
@@ -94,7 +96,7 @@ pub fn run_on(machine: &str, elf: &Path) -> Outcome<Vec<String>> {
         Some(last) if last == END => Ok(lines),
         last => {
             let said: Vec<_> = lines.into_iter().chain(last).collect();
-            Err(Failure::new(format!("{} broke off in the emulator:\n{}", elf.display(), said.join("\n"))))
+            Err(Failure::new(format!("{} ended early in the emulator:\n{}", elf.display(), said.join("\n"))))
         }
     }
 }
@@ -113,7 +115,7 @@ impl Running {
         });
         let (mut lines, start) = (Vec::new(), Instant::now());
         loop {
-            match receiver.recv_timeout(POLL) {
+            match receiver.recv_timeout(POLL_INTERVAL) {
                 Ok(line) => lines.push(line),
                 Err(RecvTimeoutError::Disconnected) => return Ok(lines),
                 Err(RecvTimeoutError::Timeout) if interruption::requested() => {
@@ -121,7 +123,9 @@ impl Running {
                 }
                 Err(RecvTimeoutError::Timeout) if start.elapsed() > TIMEOUT => {
                     let minutes = TIMEOUT.as_secs() / 60;
-                    return Err(Failure::new(format!("no end in the emulator after {minutes} minutes")));
+                    return Err(Failure::new(format!(
+                        "the measurement did not end in the emulator within {minutes} minutes"
+                    )));
                 }
                 Err(RecvTimeoutError::Timeout) => {}
             }

@@ -8,10 +8,10 @@ use link::messages::Role;
 use parameters::JointParameters;
 
 use super::board::Board;
-use super::tick_time::{Obstacle, OnBoard, TickTime};
+use super::tick_time::{Obstacle, RateCheck, TickTime};
 
 /// Origin of every prediction, as printed.
-pub const ORIGIN: &str = "images of Q1 linked before, instructions counted in the emulator, cycles reckoned";
+pub const ORIGIN: &str = "images of Q1 linked before, instructions counted in the emulator, cycles estimated";
 
 /// Predicted size and worst tick of a role at a rate.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,13 +33,13 @@ pub struct Prediction {
 impl Prediction {
     /// Predicts the image that `--role` calls `image` and whose tick is the tick of `role`.
     pub fn new(board: &Board, joint: &JointParameters, image: &str, role: Role, rate: u32) -> Self {
-        let on_board = OnBoard::new(joint, board, role);
+        let on_board = RateCheck::new(joint, board, role);
         let obstacle = on_board.obstacle(rate);
         Self {
             size: board.chip().image_size(image),
-            limits: [board.described.image_bytes(), board.described.static_bytes()],
+            limits: [board.description.image_bytes(), board.description.static_bytes()],
             rate,
-            nearest: obstacle.as_ref().and_then(|_| on_board.nearest(rate)),
+            nearest: obstacle.as_ref().and_then(|_| on_board.nearest_accepted(rate)),
             obstacle,
             time: on_board.tick_time(rate),
         }
@@ -107,15 +107,17 @@ mod tests {
         Prediction::new(&Board::load(board).unwrap(), &joint, image, role, rate)
     }
 
+    /// A chip with 1 MiB of flash has room and time for plant and observer.
     #[test]
-    fn large_chip_has_room_and_time_for_every_role() {
+    fn large_chip_fits_every_role() {
         for (image, role, rate) in [("plant", Role::Plant, 20_000), ("observer", Role::Observer, 10_000)] {
             assert!(predicted("olimex-h405", image, role, rate).fits(), "{image}");
         }
     }
 
+    /// A chip with 128 KiB of flash has room for plant and SPI slave only.
     #[test]
-    fn small_chip_has_room_for_plant_and_spi_slave_alone() {
+    fn small_chip_fits_plant_and_spi_slave() {
         let on = |image: &str, role: Role, rate: u32| predicted("b-g431b-esc1", image, role, rate);
         assert!(on("plant", Role::Plant, 20_000).has_room());
         assert!(on("spi-observer", Role::Observer, 5000).has_room());
@@ -125,8 +127,9 @@ mod tests {
         assert!(said.starts_with("no room: 173192 of 126976 B of flash, 26164 of 14336 B of RAM"), "{said}");
     }
 
+    /// A rate that is too high is reported with the nearest accepted rate.
     #[test]
-    fn time_is_told_with_the_nearest_rate_that_fits() {
+    fn slow_rate_prediction_names_nearest() {
         let said = predicted("nucleo-g474re", "loop", Role::Loop, 10_000).to_string();
         assert!(said.starts_with("no time:") && said.contains("at 10000 Hz") && said.contains("Hz fits"), "{said}");
     }

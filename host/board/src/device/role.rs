@@ -3,7 +3,7 @@
 use link::messages::Role;
 
 /// Name of a role.
-pub fn word(role: Role) -> &'static str {
+pub fn role_name(role: Role) -> &'static str {
     match role {
         Role::Plant => "plant",
         Role::Observer => "observer",

@@ -8,7 +8,7 @@ use std::process::Command;
 
 use sha2::{Digest, Sha256};
 
-use super::cross_build::{TARGET, cannot_write, clean};
+use super::cross_build::{TARGET, cannot_write, clear_host_settings};
 use super::{Say, tool};
 use report::failure::Outcome;
 
@@ -54,14 +54,14 @@ fn build(cargo: &Path, rustc: &Path, work: &Path, say: Say<'_>) -> Outcome<PathB
     fs::write(work.join("Cargo.toml"), MANIFEST).map_err(failed)?;
     fs::write(work.join("src/lib.rs"), "#![no_std]\n").map_err(failed)?;
     let mut command = Command::new(cargo);
-    clean(&mut command)
+    clear_host_settings(&mut command)
         .current_dir(work)
         .env("RUSTC", rustc)
         .env("RUSTC_BOOTSTRAP", "1")
         .env("RUSTFLAGS", RUSTFLAGS)
         .args(["build", "--release", "--target", TARGET, "--target-dir", "target"])
         .args(["-Zbuild-std=core,alloc,compiler_builtins", "-Zbuild-std-features=compiler-builtins-mem"]);
-    tool::follow(&mut command, "building the core library", say)?;
+    tool::run_with_progress(&mut command, "building the core library", say)?;
 
     let ready = work.join("sysroot");
     let libraries = ready.join("lib/rustlib").join(TARGET).join("lib");
@@ -90,14 +90,16 @@ fn publish(ready: &Path, sysroot: &Path) -> Outcome<()> {
 mod tests {
     use super::*;
 
+    /// Two compilers never share a sysroot.
     #[test]
-    fn each_compiler_has_a_sysroot_of_its_own() {
+    fn sysroot_key_differs_per_compiler() {
         assert_ne!(key("rustc 1.96.0"), key("rustc 1.97.0"));
         assert_eq!(key("rustc 1.96.0"), key("rustc 1.96.0"));
     }
 
+    /// Of two processes that build the sysroot, the second keeps the first one's result.
     #[test]
-    fn a_sysroot_that_another_process_has_finished_is_taken() {
+    fn finished_sysroot_of_other_process_kept() {
         let folder = tempfile::tempdir().unwrap();
         let (ours, theirs) = (folder.path().join("ours"), folder.path().join("theirs"));
         for path in [&ours, &theirs] {
@@ -108,8 +110,9 @@ mod tests {
         assert!(theirs.join("library").exists());
     }
 
+    /// The failure names the folder and has a help.
     #[test]
-    fn a_folder_that_cannot_be_written_is_named() {
+    fn unwritable_folder_named() {
         let failure =
             prepare(Path::new("cargo"), Path::new("rustc"), "", Path::new("/proc/none"), &|_| {}).unwrap_err();
         assert!(failure.message().contains("/proc/none"), "{failure}");

@@ -10,10 +10,10 @@ use super::Say;
 use report::failure::{Failure, Outcome};
 
 /// Text by which cargo reports that it waits for another cargo.
-const WAITS: &str = "Blocking waiting for file lock on";
+const CARGO_WAITING: &str = "Blocking waiting for file lock on";
 
 /// Limit of a failed program's output in an error [lines].
-const LINES_SHOWN: usize = 60;
+const ERROR_LINES: usize = 60;
 
 /// Path of a program on the search path.
 pub fn find(name: &str) -> Option<PathBuf> {
@@ -35,7 +35,7 @@ pub fn lock(file: &File, holder: &str, say: Say<'_>) -> io::Result<()> {
 }
 
 /// Runs a program and returns its standard output.
-pub fn output_of(command: &mut Command) -> Outcome<String> {
+pub fn capture_output(command: &mut Command) -> Outcome<String> {
     let name = name_of(command);
     let output = command.stdin(Stdio::null()).output().map_err(|error| cannot_run(&name, &error))?;
     if !output.status.success() {
@@ -47,7 +47,7 @@ pub fn output_of(command: &mut Command) -> Outcome<String> {
 
 /// Runs a program and passes its standard error on line by line; the last lines are repeated in the error if it fails.
 /// `what` names the action in the error.
-pub fn follow(command: &mut Command, what: &str, say: Say<'_>) -> Outcome<()> {
+pub fn run_with_progress(command: &mut Command, what: &str, say: Say<'_>) -> Outcome<()> {
     let name = name_of(command);
     let spawned = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
     let mut child = spawned.map_err(|error| cannot_run(&name, &error))?;
@@ -55,7 +55,7 @@ pub fn follow(command: &mut Command, what: &str, say: Say<'_>) -> Outcome<()> {
     if let Some(stderr) = child.stderr.take() {
         for line in BufReader::new(stderr).split(b'\n').map_while(Result::ok) {
             let line = String::from_utf8_lossy(&line).into_owned();
-            match line.trim().strip_prefix(WAITS) {
+            match line.trim().strip_prefix(CARGO_WAITING) {
                 Some(what) => say(&format!("waiting for another cargo, which holds the {}", what.trim())),
                 None => say(line.trim()),
             }
@@ -66,7 +66,7 @@ pub fn follow(command: &mut Command, what: &str, say: Say<'_>) -> Outcome<()> {
     if status.success() {
         return Ok(());
     }
-    let shown = lines.len().saturating_sub(LINES_SHOWN);
+    let shown = lines.len().saturating_sub(ERROR_LINES);
     Err(Failure::new(format!("{what} failed ({name}: {status})\n{}", lines[shown..].join("\n"))))
 }
 
@@ -90,34 +90,38 @@ mod tests {
         command
     }
 
+    /// The failure carries the program's standard error.
     #[test]
-    fn a_failed_program_is_shown_with_what_it_said() {
-        let failure = follow(&mut shell("echo no room >&2; exit 3"), "packing", &|_| {}).unwrap_err();
+    fn failed_program_output_shown() {
+        let failure = run_with_progress(&mut shell("echo no room >&2; exit 3"), "packing", &|_| {}).unwrap_err();
         assert!(failure.message().starts_with("packing failed"), "{failure}");
         assert!(failure.message().contains("no room"), "{failure}");
         assert_eq!(failure.exit_code(), 2);
     }
 
+    /// Lines of standard error are passed on, those of standard output are not.
     #[test]
-    fn what_a_program_says_is_passed_on() {
+    fn program_output_passed_on() {
         let said = RefCell::new(Vec::new());
         let say = |line: &str| said.borrow_mut().push(line.to_owned());
-        follow(&mut shell("echo one >&2; echo unseen; echo two >&2"), "counting", &say).unwrap();
+        run_with_progress(&mut shell("echo one >&2; echo unseen; echo two >&2"), "counting", &say).unwrap();
         assert_eq!(*said.borrow(), ["one", "two"]);
     }
 
+    /// Cargo's message about a lock is replaced by a plain one.
     #[test]
-    fn that_cargo_waits_for_another_is_said_in_words_of_our_own() {
+    fn cargo_wait_message_reworded() {
         let said = RefCell::new(Vec::new());
         let say = |line: &str| said.borrow_mut().push(line.to_owned());
         let script = "echo '    Blocking waiting for file lock on build directory' >&2";
-        follow(&mut shell(script), "building", &say).unwrap();
+        run_with_progress(&mut shell(script), "building", &say).unwrap();
         assert_eq!(*said.borrow(), ["waiting for another cargo, which holds the build directory"]);
     }
 
+    /// The failure names a program that is not installed.
     #[test]
-    fn a_program_that_is_not_there_is_named() {
-        let failure = output_of(&mut Command::new("/no/such/program")).unwrap_err();
+    fn missing_program_named() {
+        let failure = capture_output(&mut Command::new("/no/such/program")).unwrap_err();
         assert!(failure.message().contains("/no/such/program"), "{failure}");
     }
 }

@@ -72,8 +72,9 @@ mod tests {
         })
     }
 
+    /// The load reverses at least four times and never exceeds the rated torque.
     #[test]
-    fn torques_reverse_both_ways_and_keep_to_the_rated_torque_after_the_run_up() {
+    fn load_reverses_within_rated_torque() {
         for joint in joints() {
             let rated = joint.rated_output_torque;
             let loads: Vec<f64> = (0..50_000).map(|k| reversals(&joint, 1e-4 * f64::from(k)).load).collect();
@@ -83,8 +84,9 @@ mod tests {
         }
     }
 
+    /// After the run-up drive and load torque balance.
     #[test]
-    fn drive_and_load_are_balanced_once_the_joint_turns() {
+    fn torques_balanced_after_run_up() {
         for joint in joints() {
             for time in [0.31, 1.22, 2.6, 7.3] {
                 let torques = reversals(&joint, time);
@@ -94,8 +96,9 @@ mod tests {
         }
     }
 
+    /// The load is continuous over the end of a period.
     #[test]
-    fn a_longer_run_goes_on_without_a_jump() {
+    fn repeated_profile_continuous() {
         let before = level(DURATION - 1e-9);
         assert!((level(DURATION + 1e-9) - before).abs() < 1e-6);
     }

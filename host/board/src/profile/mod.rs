@@ -116,15 +116,17 @@ mod tests {
 
     const HELD: Torques = Torques { drive: 0.5, load: 3.0 };
 
+    /// Only a change of torque becomes a command.
     #[test]
-    fn a_torque_that_does_not_change_is_sent_once() {
+    fn constant_torque_sent_once() {
         let profile = TorqueProfile::sampled("held", 20_000, 1.0, |_, _| HELD).expect("a profile");
         assert_eq!(profile.commands, [Command { tick: 0, drive_torque: 0.5, load_torque: 3.0 }]);
         assert_eq!(profile.ticks, 20_000);
     }
 
+    /// Commands ascend and end before the run does, at tick rates below and above the command rate.
     #[test]
-    fn commands_rise_and_stay_inside_the_run_at_any_tick_rate() {
+    fn commands_ascend_within_run() {
         for tick_rate in [999, 1000, 20_000, 40_001] {
             let ramp = |from: f64, _| Torques { drive: from, load: -from };
             let profile = TorqueProfile::sampled("ramp", tick_rate, 0.1, ramp).expect("a profile");
@@ -133,8 +135,9 @@ mod tests {
         }
     }
 
+    /// Durations below one tick or above 2^31 ticks are rejected.
     #[test]
-    fn a_run_without_a_tick_is_refused() {
+    fn run_without_tick_rejected() {
         for seconds in [0.0, -1.0, f64::NAN, 1e9] {
             assert!(TorqueProfile::sampled("none", 20_000, seconds, |_, _| HELD).is_err(), "{seconds}");
         }

@@ -10,9 +10,9 @@ use report::input;
 use report::number::TYPED;
 
 /// Limit of times: above any epoch's seconds, and small enough for a f64 to resolve a control period [s].
-const MOST_TIME: f64 = 1e10;
+const MAX_TIME: f64 = 1e10;
 /// Smallest distance of two rows in time [s].
-const LEAST_STEP: f64 = 1e-9;
+const MIN_TIME_STEP: f64 = 1e-9;
 
 /// Columns of the file, in any order; others are ignored.
 pub const COLUMNS: [&str; 3] = ["time_s", "motor_torque_Nm", "load_torque_Nm"];
@@ -66,7 +66,7 @@ impl RecordedTorques {
             for ((value, column), place) in numbers.iter_mut().zip(COLUMNS).zip(places) {
                 *value = number(line, column, row[place])?;
             }
-            push(&mut rows, *start.get_or_insert(numbers[0]), line, numbers)?;
+            push_row(&mut rows, *start.get_or_insert(numbers[0]), line, numbers)?;
         }
         let too_few = |what: &str| Failure::new(what).with_help("give at least two rows of numbers");
         match rows.len() {
@@ -106,7 +106,7 @@ impl RecordedTorques {
 }
 
 /// Appends a row; rejects a row whose time is out of range or does not rise.
-fn push(rows: &mut Vec<Row>, start: f64, line: u64, [time, drive, load]: [f64; 3]) -> Outcome<()> {
+fn push_row(rows: &mut Vec<Row>, start: f64, line: u64, [time, drive, load]: [f64; 3]) -> Outcome<()> {
     let torques = Torques { drive, load };
     check_time(line, rows.last().map(|last| last.time + start), time)?;
     let time = time - start;
@@ -126,18 +126,19 @@ fn push(rows: &mut Vec<Row>, start: f64, line: u64, [time, drive, load]: [f64; 3
 
 /// Rejects a time that is out of range (wrong unit) or does not rise; `before` is the time of the preceding row.
 pub fn check_time(line: u64, before: Option<f64>, now: f64) -> Outcome<()> {
-    if now.is_nan() || now.abs() > MOST_TIME {
+    if now.is_nan() || now.abs() > MAX_TIME {
         return Err(Failure::new(format!("line {line}: time_s is {}", TYPED.write(now)))
-            .with_help(format!("it may be from -{MOST_TIME:e} to {MOST_TIME:e} s: check the unit")));
+            .with_help(format!("it may be from -{MAX_TIME:e} to {MAX_TIME:e} s: check the unit")));
     }
     match before {
         Some(before) if now <= before => {
             Err(Failure::new(format!("line {line}: time_s does not rise: {now} s follows {before} s"))
                 .with_help("sort the rows by time and remove repeated ones"))
         }
-        Some(before) if now - before < LEAST_STEP => {
-            Err(Failure::new(format!("line {line}: time_s rises by {} s only", TYPED.write(now - before)))
-                .with_help(format!("rows must be {LEAST_STEP:e} s apart at least: check the unit, or leave rows out")))
+        Some(before) if now - before < MIN_TIME_STEP => {
+            Err(Failure::new(format!("line {line}: time_s rises by {} s only", TYPED.write(now - before))).with_help(
+                format!("rows must be {MIN_TIME_STEP:e} s apart at least: check the unit, or leave rows out"),
+            ))
         }
         _ => Ok(()),
     }
@@ -178,8 +179,9 @@ mod tests {
         RecordedTorques::parse(text).expect_err("a bad file").message().to_owned()
     }
 
+    /// Every kind of bad row is rejected with its line number.
     #[test]
-    fn bad_rows_are_refused_by_line_number() {
+    fn bad_rows_rejected_by_line() {
         let header = "time_s,motor_torque_Nm,load_torque_Nm\n0,1,6\n";
         assert!(refused(&format!("{header}0.1,NaN,6\n")).starts_with("line 3: motor_torque_Nm is NaN"));
         assert!(refused(&format!("{header}0.1,1,inf\n")).starts_with("line 3: load_torque_Nm is inf"));
@@ -193,16 +195,18 @@ mod tests {
         assert!(refused(&format!("{header}0.1,1.5x,6\n")).starts_with("line 3: motor_torque_Nm is `1.5x`"));
     }
 
+    /// Files without a column or with fewer than two rows are rejected.
     #[test]
-    fn files_without_columns_or_rows_are_refused() {
+    fn incomplete_files_rejected() {
         assert!(refused("").contains("is empty"));
         assert!(refused("time_s,motor_torque_Nm\n0,1\n").contains("no column `load_torque_Nm`"));
         assert!(refused("time_s,motor_torque_Nm,load_torque_Nm\n").contains("no rows"));
         assert!(refused("time_s,motor_torque_Nm,load_torque_Nm\n0,1,6\n").contains("a single row"));
     }
 
+    /// Columns may be reordered, quoted, and mixed with comments and other columns.
     #[test]
-    fn columns_may_stand_in_any_order_beside_others_and_comments() {
+    fn columns_in_any_order_read() {
         let text =
             "\u{feff}# a drive's log\r\nload_torque_Nm, \"time_s\", phase, motor_torque_Nm\r\n6,10,x,1\n12,11,y,2\n";
         let recording = RecordedTorques::parse(text).expect("a good file");
@@ -210,8 +214,9 @@ mod tests {
         assert_eq!(recording.mean(0.0, 1.0), Torques { drive: 1.5, load: 9.0 });
     }
 
+    /// The sum of commands times their width equals the integral over the rows.
     #[test]
-    fn the_impulse_of_a_recording_survives_resampling_at_any_rate() {
+    fn resampling_preserves_impulse() {
         let mut text = String::from("time_s,motor_torque_Nm,load_torque_Nm\n");
         let times: Vec<f64> = (0..=700).map(|k| 0.001_43 * f64::from(k) + 0.0003 * f64::from(k % 3)).collect();
         for time in &times {
@@ -230,8 +235,9 @@ mod tests {
         }
     }
 
+    /// After the last row its torques hold.
     #[test]
-    fn after_the_last_row_its_torque_holds() {
+    fn last_torque_holds() {
         let text = "time_s,motor_torque_Nm,load_torque_Nm\n0,0,0\n1,2,3\n";
         let recording = RecordedTorques::parse(text).expect("a good file");
         assert_eq!(recording.mean(5.0, 6.0), Torques { drive: 2.0, load: 3.0 });

@@ -20,11 +20,11 @@ impl Session<'_> {
     pub fn stored_memory(&mut self) -> Outcome<Memory> {
         let mut memory = [0; MEMORY_BYTES];
         for (part, place) in (0..MEMORY_PARTS).zip(memory.as_chunks_mut::<PART_BYTES>().0) {
-            let told = self.ask_about(MemoryRequest::Read { part }, ANSWER_TIMEOUT, |message| match message {
-                FromBoard::Memory(told) if told.part == part && told.bytes.len() == PART_BYTES => Some(told.bytes),
+            let sent = self.request_memory(MemoryRequest::Read { part }, ANSWER_TIMEOUT, |message| match message {
+                FromBoard::Memory(sent) if sent.part == part && sent.bytes.len() == PART_BYTES => Some(sent.bytes),
                 _ => None,
             })?;
-            place.copy_from_slice(&told);
+            place.copy_from_slice(&sent);
         }
         Ok(memory)
     }
@@ -39,7 +39,7 @@ impl Session<'_> {
             self.send(&ToBoard::Memory(part))?;
         }
         let last = last.ok_or_else(|| Failure::new("a memory has no part"))?;
-        self.ask_about(last, ANSWER_TIMEOUT, |message| {
+        self.request_memory(last, ANSWER_TIMEOUT, |message| {
             if let FromBoard::MemoryChecked(judged) = message { Some(judged) } else { None }
         })
     }
@@ -70,39 +70,39 @@ impl Session<'_> {
     }
 
     fn write(&mut self, request: MemoryRequest) -> Outcome<MemoryOutcome> {
-        self.ask(&ToBoard::Memory(request), "answer about the memory", FLASH_WRITE_TIMEOUT, kept)
+        self.request(&ToBoard::Memory(request), "answer about the memory", FLASH_WRITE_TIMEOUT, memory_outcome)
             .and_then(unless_running)
     }
 
     /// Sends a request that does not write flash.
-    fn ask_about<T>(
+    fn request_memory<T>(
         &mut self,
         request: MemoryRequest,
         timeout: Duration,
         answer: impl Fn(FromBoard) -> Option<T>,
     ) -> Outcome<T> {
         let answered =
-            self.ask(&ToBoard::Memory(request), "answer about the memory", timeout, |message| match message {
+            self.request(&ToBoard::Memory(request), "answer about the memory", timeout, |message| match message {
                 FromBoard::MemoryOutcome(why) => Some(Err(why)),
                 other => answer(other).map(Ok),
             })?;
         answered.or_else(|why| {
             unless_running(why)?;
-            Err(Failure::new("the board's role learns nothing").with_help("flash an image of role observer or loop"))
+            Err(Failure::new("the board's role has no observer").with_help("flash an image of role observer or loop"))
         })
     }
 }
 
-fn kept(message: FromBoard) -> Option<MemoryOutcome> {
-    if let FromBoard::MemoryOutcome(kept) = message { Some(kept) } else { None }
+fn memory_outcome(message: FromBoard) -> Option<MemoryOutcome> {
+    if let FromBoard::MemoryOutcome(outcome) = message { Some(outcome) } else { None }
 }
 
-fn unless_running(kept: MemoryOutcome) -> Outcome<MemoryOutcome> {
-    match kept {
+fn unless_running(outcome: MemoryOutcome) -> Outcome<MemoryOutcome> {
+    match outcome {
         MemoryOutcome::Running => {
-            Err(Failure::new("a run goes on on the board, and its memory is for the time between runs")
+            Err(Failure::new("the board is running, and its memory can be accessed between runs only")
                 .with_help("end the run first, or reset the board"))
         }
-        kept => Ok(kept),
+        outcome => Ok(outcome),
     }
 }

@@ -64,7 +64,7 @@ pub struct Session<'a> {
     supervisor: Box<dyn Supervisor + 'a>,
     receiver: Receiver,
     head_receiver: Option<Receiver>,
-    foreign: Option<HelloHead>,
+    undecodable: Option<HelloHead>,
     dropped_before: u32,
     unacknowledged: UnacknowledgedSchedules,
     /// Messages received so far.
@@ -81,7 +81,7 @@ impl<'a> Session<'a> {
             supervisor,
             receiver: Receiver::new(),
             head_receiver: Some(Receiver::new()),
-            foreign: None,
+            undecodable: None,
             dropped_before: 0,
             unacknowledged: UnacknowledgedSchedules::default(),
             recording: Recording::default(),
@@ -91,14 +91,14 @@ impl<'a> Session<'a> {
 
     /// Sends hello messages until the board answers, and rejects a board with another identity.
     pub fn connect(&mut self, expected: &Expected, timeout: Duration) -> Outcome<Hello> {
-        let hello = self.call(&expected.help, timeout)?;
+        let hello = self.wait_for_hello(&expected.help, timeout)?;
         expected.verify(&hello)?;
         Ok(hello)
     }
 
     /// Sends hello messages until the board answers; accepts any board whose hello can be decoded. `help` is the remedy
     /// for others.
-    pub fn call(&mut self, help: &BoardHelp, timeout: Duration) -> Outcome<Hello> {
+    pub fn wait_for_hello(&mut self, help: &BoardHelp, timeout: Duration) -> Outcome<Hello> {
         let deadline = Instant::now() + timeout;
         let mut next_ping = Instant::now();
         while self.recording.hello.is_none() {
@@ -107,7 +107,7 @@ impl<'a> Session<'a> {
                 next_ping = Instant::now() + HELLO_INTERVAL;
             }
             self.receive()?;
-            if let Some(head) = self.foreign {
+            if let Some(head) = self.undecodable {
                 return Err(head.refusal(help));
             }
             if Instant::now() > deadline {
@@ -115,7 +115,7 @@ impl<'a> Session<'a> {
             }
         }
         self.head_receiver = None;
-        self.recording.hello.clone().ok_or_else(|| Failure::new("the board gave no name"))
+        self.recording.hello.clone().ok_or_else(|| Failure::new("the board sent no hello"))
     }
 
     /// Stops the board and brings it to rest at tick 0 with all counters cleared.
@@ -143,15 +143,15 @@ impl<'a> Session<'a> {
         self.wait("statistics", |recording| recording.statistics.is_some())?;
         self.send(&ToBoard::Stop)?;
         self.drain()?;
-        self.recording.keep_until(last_tick);
+        self.recording.drop_samples_after(last_tick);
         Ok(())
     }
 
     /// Ends a failed run: stops the board and collects its last messages as far as the line allows.
     pub fn abandon(&mut self) {
-        let quickly = |result: Outcome<()>| result.is_ok();
+        let succeeded = |result: Outcome<()>| result.is_ok();
         self.recording.statistics = None;
-        let asked = quickly(self.send(&ToBoard::Stop)) && quickly(self.send(&ToBoard::Statistics { reset: false }));
+        let asked = succeeded(self.send(&ToBoard::Stop)) && succeeded(self.send(&ToBoard::Statistics { reset: false }));
         let deadline = Instant::now() + DRAIN_TIMEOUT;
         while asked && self.recording.statistics.is_none() && Instant::now() < deadline {
             if self.receive_uninterrupted().is_err() {

@@ -34,13 +34,13 @@ impl Session<'_> {
         let capacity = self.recording.hello.as_ref().map_or(0, |hello| usize::from(hello.queue_capacity));
         let tick_rate = self.recording.hello.as_ref().map_or(1, |hello| hello.tick_rate);
         if capacity == 0 {
-            return Err(Failure::new("the board states a command queue without places"));
+            return Err(Failure::new("the board reports a command queue of length 0"));
         }
         let last_sample = profile.ticks - profile.ticks % u32::from(settings.decimation);
         let mut stream = StreamProgress::new(profile, settings, tick_rate);
         while self.recording.last_tick() < last_sample || stream.board_tick < last_sample {
             while let Some(schedule) = stream.next_schedule(capacity, self.unacknowledged.count()) {
-                self.unacknowledged.sent(schedule.sequence, &schedule.commands);
+                self.unacknowledged.add(schedule.sequence, &schedule.commands);
                 self.send(&ToBoard::Schedule(schedule))?;
             }
             for message in self.receive()? {
@@ -52,8 +52,8 @@ impl Session<'_> {
                     }
                     FromBoard::Tripped(raised) => return Err(trip::failure(&raised)),
                     FromBoard::Hello(_) => {
-                        return Err(Failure::check_failed("the board has started anew in mid-run")
-                            .with_help("a brown-out, a watchdog or a panic: see last_panic in the report's record"));
+                        return Err(Failure::check_failed("the board restarted during the run")
+                            .with_help("brown-out, watchdog or panic: see last_panic in the report's record"));
                     }
                     FromBoard::Statistics(_)
                     | FromBoard::Log(_)
@@ -67,16 +67,16 @@ impl Session<'_> {
             }
             progress(stream.board_tick.min(profile.ticks));
             if stream.last_message.elapsed() > ANSWER_TIMEOUT {
-                return Err(self.silent("nothing valid came"));
+                return Err(self.silence("nothing valid came"));
             }
             if stream.last_advance.elapsed() > STALL_TIMEOUT {
-                return Err(self.stands_still(&stream));
+                return Err(self.stalled(&stream));
             }
         }
         Ok(())
     }
 
-    fn stands_still(&self, stream: &StreamProgress<'_>) -> Failure {
+    fn stalled(&self, stream: &StreamProgress<'_>) -> Failure {
         let message = format!(
             "the board on {} answers, but stays at tick {} of {} ({} schedules unanswered)",
             self.line.name(),
@@ -92,14 +92,14 @@ impl<'p> StreamProgress<'p> {
     fn new(profile: &'p TorqueProfile, settings: RunSettings, tick_rate: u32) -> Self {
         let now = Instant::now();
         // In real time the board runs until it is stopped: the last torque is valid until then.
-        let beyond = match settings.mode {
+        let hold_after = match settings.mode {
             RunMode::Lockstep => 0,
             RunMode::Realtime => 4 * tick_rate,
         };
         Self {
             profile,
             settings,
-            horizon_after_last: profile.ticks.saturating_add(beyond),
+            horizon_after_last: profile.ticks.saturating_add(hold_after),
             next_command: 0,
             next_sequence: 0,
             sent_any: false,
@@ -152,7 +152,7 @@ mod tests {
     /// A profile with seconds between its torques: every schedule stays within the board's reach, horizons never go
     /// back, and the stream ends.
     #[test]
-    fn no_schedule_reaches_farther_than_the_board_accepts_and_the_stream_comes_to_its_end() {
+    fn sparse_stream_stays_within_reach() {
         for mode in [RunMode::Lockstep, RunMode::Realtime] {
             let settings = RunSettings { mode, decimation: 1, command_timeout: 2000, from_memory: false };
             let commands =

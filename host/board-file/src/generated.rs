@@ -1,4 +1,4 @@
-//! What a build of the firmware is told of its board: constants as Rust, memory as a linker script, and what is compiled at all.
+//! Inputs of the firmware's build: constants as Rust, memory as a linker script, and `cfg` flags.
 
 use std::fmt::Write;
 
@@ -7,7 +7,7 @@ use crate::chip::Chip;
 use crate::pin::Alternate;
 use crate::pll::Pll;
 
-/// The board as a module of constants, to be included in one.
+/// Constants of the board as Rust source, to be included in a module.
 ///
 /// ```
 /// let board = board_file::read(board_file::preset("olimex-h405").unwrap()).unwrap();
@@ -17,7 +17,7 @@ use crate::pll::Pll;
 pub fn rust_source(board: &Board) -> String {
     let mut source = String::new();
     let mut constant = |what: &str, name: &str, kind: &str, value: String| {
-        // A string takes what is written to it.
+        // Writing to a string cannot fail.
         let _ = writeln!(source, "/// {what}\npub const {name}: {kind} = {value};");
     };
     const PIN: &str = "(u8, u8, u8)";
@@ -89,7 +89,7 @@ fn some(value: Option<String>) -> String {
     value.map_or("None".to_owned(), |value| format!("Some({value})"))
 }
 
-/// A linker script to be read before that of the start-up code: where the stack begins, and that an image fits.
+/// Linker script to be read before the one of the start-up code: start of the stack, and assertions that an image fits.
 pub fn linker_script(board: &Board) -> String {
     let name = &board.name;
     let end = RAM_START + board.ram_bytes;
@@ -110,7 +110,7 @@ ASSERT(__ebss <= {least:#010x} && __euninit <= {least:#010x},
     )
 }
 
-/// What is compiled for a board: names with values, each for a `cfg`. Units are named in lower case.
+/// `cfg` flags of a board, as names with values. Peripherals are named in lower case.
 ///
 /// ```
 /// let board = board_file::read(board_file::preset("olimex-h405").unwrap()).unwrap();
@@ -125,13 +125,13 @@ pub fn cfgs(board: &Board) -> Vec<(&'static str, String)> {
     ];
     if let Some(slave) = &board.spi_slave {
         cfgs.push(("spi_slave", slave.unit.to_lowercase()));
-        // The interrupt lines of pins are numbered as the pins are, whatever their port.
+        // External interrupt lines are numbered like the pins, whatever the port.
         cfgs.push(("select_line", slave.select.pin.number.to_string()));
     }
     cfgs
 }
 
-/// Every name of [`cfgs`] with every value that it can have.
+/// Every name of [`cfgs`] with all of its possible values.
 pub fn all_cfgs() -> Vec<(&'static str, Vec<String>)> {
     let names = |of: fn(Chip) -> Vec<&'static str>| {
         let mut names: Vec<String> = Chip::ALL.into_iter().flat_map(of).map(str::to_lowercase).collect();

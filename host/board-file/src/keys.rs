@@ -1,24 +1,24 @@
-//! Every key of a board file: its section, what it holds, and a hint for who got it wrong. The page
-//! docs/reference/board-files.md lists every key in its tables.
+//! Keys of a board file: section, kind of value, and a hint for wrong input. The page docs/reference/board-files.md
+//! lists every key in its tables.
 
 use joint_file::Keys;
 
-/// What a key holds.
+/// Kind of a key's value.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Kind {
     /// A string.
     Text,
-    /// One of these words.
+    /// One of the given words.
     Choice(&'static [&'static str]),
-    /// A whole number with both ends allowed.
+    /// Whole number between two inclusive bounds.
     Whole(u32, u32),
-    /// The name of a pin.
+    /// Name of a pin.
     Pin,
-    /// A table of its own.
+    /// Table.
     Section,
 }
 
-/// One key.
+/// Key of a board file.
 pub(crate) type Key = joint_file::Key<Kind>;
 
 impl Keys for Kind {

@@ -1,5 +1,5 @@
-//! Lines of a board that no image uses yet: CAN, and the encoders of motor and output. Their pins are held against the chip and
-//! against all other uses, so that nothing else takes them; the firmware leaves them as they are after a reset.
+//! Lines of a board that no image uses yet: CAN, and the encoders of motor and output. Their pins are checked against
+//! the chip and against all other uses, so that they stay reserved; the firmware leaves them in their reset state.
 
 use joint_file::wording::listed;
 
@@ -9,7 +9,7 @@ use crate::pin::Pin;
 use crate::pins::{Pins, no_unit};
 use crate::section::Section;
 
-/// Keys of an encoder that answers on SPI, and of one that sends pulses.
+/// Keys of an SPI encoder, and of a pulse encoder.
 const ON_SPI: [&str; 4] = ["select", "clock", "out", "in"];
 const BY_PULSES: [&str; 3] = ["a", "b", "index"];
 
@@ -26,7 +26,7 @@ pub(crate) fn read_can(section: &Section<'_>, part: Option<Part>, pins: &Pins) -
     Some(Can { unit: unit?.name, send: send?, receive: receive? })
 }
 
-/// Both encoders; each may be left out. The outer `None` if one is there and wrong.
+/// Reads both encoders; each may be left out. Returns `None` if a stated encoder is wrong.
 pub(crate) fn read_encoders(section: &Section<'_>, part: Option<Part>, pins: &Pins) -> Option<[Option<Encoder>; 2]> {
     let [motor, output] = ["motor", "output"].map(|name| match section.has(name) {
         true => section.section(name).and_then(|section| read_encoder(&section, part, pins)).map(Some),
@@ -62,7 +62,7 @@ fn read_encoder(section: &Section<'_>, part: Option<Part>, pins: &Pins) -> Optio
     no_unit(section, &name, part, &units, why)
 }
 
-/// Complains about keys that an encoder of the other kind has.
+/// Reports keys that belong to an encoder of the other kind.
 fn refuse(section: &Section<'_>, others: &[&str], unit: &str, own: &[&str]) {
     for key in others.iter().filter(|key| section.has(key)) {
         let message = format!("`{key}` is no pin of an encoder on {unit}");

@@ -1,4 +1,4 @@
-//! A pin of a chip by its name, and a pin in one of its alternate functions.
+//! Pins of a chip by name, alone and in an alternate function.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,31 +6,31 @@ use std::str::FromStr;
 /// A pin, such as PA9.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Pin {
-    /// Its port: 0 for A, 1 for B, up to 10 for K.
+    /// Port: 0 for A, 1 for B, up to 10 for K.
     pub port: u8,
-    /// Its number in the port, up to 15.
+    /// Number in the port, up to 15.
     pub number: u8,
 }
 
-/// A pin that a unit of the chip drives or reads, by the number of the function that connects the two.
+/// Pin in the alternate function that connects it to a peripheral.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Alternate {
     /// The pin.
     pub pin: Pin,
-    /// The number of the alternate function, 0 to 15.
+    /// Number of the alternate function, 0 to 15.
     pub function: u8,
 }
 
-/// The last port's letter.
+/// Letter of the last port.
 const LAST: u8 = b'K';
 
 impl Pin {
-    /// The letter of its port.
+    /// Letter of the port.
     pub const fn letter(self) -> char {
         (b'A' + self.port) as char
     }
 
-    /// By its name, if it is one: `P`, a port's letter, a number without zeros in front.
+    /// Parses a pin's name: `P`, the port's letter, a number without leading zeros.
     pub const fn named(name: &[u8]) -> Option<Self> {
         let (letter, number) = match name {
             [b'P', letter, ones @ b'0'..=b'9'] => (*letter, *ones - b'0'),
@@ -50,7 +50,7 @@ impl fmt::Display for Pin {
     }
 }
 
-/// A text that names no pin.
+/// Error for a text that is no pin's name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NoPin;
 

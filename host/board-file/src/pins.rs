@@ -1,4 +1,5 @@
-//! Which pins a board file may use for what: those that the chip's package brings out, that nothing else needs, each once.
+//! Decides which pins a board file may use: pins that the chip's package brings out and that have no other use, each
+//! once.
 
 use std::cell::RefCell;
 use std::ops::Range;
@@ -11,23 +12,23 @@ use crate::chip::Part;
 use crate::pin::{Alternate, Pin};
 use crate::section::Section;
 
-/// The pins of a debug probe. Reset is a pin of its own.
+/// Pins of the debug probe. Reset has its own pin.
 const PROBE: [(Pin, &str); 2] = [
     (Pin { port: 0, number: 13 }, "the debug probe's data (SWDIO)"),
     (Pin { port: 0, number: 14 }, "the debug probe's clock (SWCLK)"),
 ];
 
-/// One use of a pin.
+/// Use of a pin.
 struct Use {
-    /// The key that says so, with its section.
+    /// Key with its section.
     key: String,
     pin: Pin,
     span: Range<usize>,
-    /// Unit and wire of a bus that several may be on.
+    /// Peripheral and wire, for a bus that several devices may share.
     bus: Option<(&'static str, String)>,
 }
 
-/// Complains about a unit that the chip does not have, or not for this.
+/// Reports a peripheral that the chip does not have or does not support for this purpose.
 pub(crate) fn no_unit<T>(
     section: &Section<'_>,
     name: &str,
@@ -44,11 +45,11 @@ pub(crate) fn no_unit<T>(
     None
 }
 
-/// Reads pins, and keeps what they are used for.
+/// Reads pins and records their uses.
 pub(crate) struct Pins {
-    /// `None` if the file does not say.
+    /// `None` if the file's chip is missing or wrong.
     part: Option<Part>,
-    /// `None` if the file does not say.
+    /// `None` if the file's clock is missing or wrong.
     clock: Option<ExternalClock>,
     uses: RefCell<Vec<Use>>,
 }
@@ -58,7 +59,7 @@ impl Pins {
         Self { part, clock, uses: RefCell::default() }
     }
 
-    /// A pin that the firmware may use.
+    /// Reads a pin for the firmware's use.
     pub fn free(&self, section: &Section<'_>, name: &str) -> Option<Pin> {
         let (pin, span) = (self.of_nobody_else(section, name, None)?, section.place(name));
         let boot = self.part.and_then(|part| part.chip.facts().boot_pin).filter(|boot| *boot == pin);
@@ -71,7 +72,7 @@ impl Pins {
         Some(pin)
     }
 
-    /// A pin that the package has and that nothing else needs; of a unit's bus, if it is one that several may be on.
+    /// Reads a pin that the package has and that is not reserved. `bus` names the peripheral of a shared bus.
     fn of_nobody_else(&self, section: &Section<'_>, name: &str, bus: Option<&'static str>) -> Option<Pin> {
         let pin = section.required(name, Section::pin)?;
         let (key, span) = (section.full(name), section.place(name));
@@ -85,19 +86,20 @@ impl Pins {
         }
     }
 
-    /// A pin of a line that no image uses yet; in `of` a unit's name and its pins for it, where it is a unit's.
+    /// Reads a pin of a line that no image uses yet; `of` holds the peripheral's name and its possible pins, if the pin
+    /// belongs to one.
     pub fn of_line(&self, section: &Section<'_>, name: &str, of: Option<(&str, &[Pin])>) -> Option<Pin> {
         let pin = self.of_nobody_else(section, name, None)?;
         of.is_none_or(|(unit, list)| self.is_of(section, name, pin, unit, list)).then_some(pin)
     }
 
-    /// The same on a unit's bus, which several may share.
+    /// Reads a pin of a bus that several devices may share.
     pub fn of_bus(&self, section: &Section<'_>, name: &str, unit: &'static str, list: &[Pin]) -> Option<Pin> {
         let pin = self.of_nobody_else(section, name, Some(unit))?;
         self.is_of(section, name, pin, unit, list).then_some(pin)
     }
 
-    /// A pin that a unit has for this; in `of` a unit's name and its pins for it.
+    /// Reads a pin in a peripheral's alternate function; `of` holds the peripheral's name and its possible pins.
     pub fn of_unit(&self, section: &Section<'_>, name: &str, of: Option<(&str, &[Alternate])>) -> Option<Alternate> {
         let pin = self.free(section, name);
         let (unit, list) = of?;
@@ -110,7 +112,7 @@ impl Pins {
         None
     }
 
-    /// Whether a pin is one of a unit's for this; complains if not.
+    /// Returns whether a pin is in the peripheral's list; reports an error if not.
     fn is_of(&self, section: &Section<'_>, name: &str, pin: Pin, unit: &str, list: &[Pin]) -> bool {
         if list.contains(&pin) {
             return true;
@@ -125,7 +127,7 @@ impl Pins {
         false
     }
 
-    /// Why nobody may use a pin, and what to do.
+    /// Reason why a pin is reserved, and the help.
     fn reserved(&self, pin: Pin) -> Option<(String, String)> {
         let part = self.part?;
         if !part.has(pin) {
@@ -187,7 +189,7 @@ impl Pins {
         list
     }
 
-    /// Complains about pins that are used twice, or although they are never driven.
+    /// Reports pins that are used twice, and used pins that must never be driven.
     pub fn check(&self, never_driven: &[(Pin, String)], notes: &Notes<'_>) {
         let uses = self.uses.borrow();
         for (at, Use { key, pin, span, bus }) in uses.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! Reads a whole board file: parses, takes the sections' values, holds them against the chip, and gives either the board with
-//! its warnings or everything that is wrong at once.
+//! Reads a whole board file: parses it, reads the sections, checks the values against the chip, and returns the board
+//! with its warnings or all problems at once.
 
 use joint_file::{Notes, Problems};
 use toml::de::DeTable;
@@ -11,14 +11,14 @@ use crate::pins::{Pins, no_unit};
 use crate::pll::Plls;
 use crate::section::Section;
 
-/// How far a line's speed may be from what it is called: a tenth of what a receiver bears over ten bits.
+/// Tolerance of a line's speed: a tenth of a receiver's tolerance over ten bits [%].
 const BAUD_TOLERANCE_PERCENT: u64 = 1;
-/// A USART samples every bit so often, and divides its clock by so much at least.
+/// Smallest divider of a USART, equal to its samples per bit.
 const LEAST_BAUD_DIVIDER: u32 = 16;
-/// The widest divider of a USART.
+/// Largest divider of a USART.
 const GREATEST_BAUD_DIVIDER: u32 = 0xffff;
 
-/// Reads the text of a board file. On failure gives every problem, warnings among them, in the order of the text.
+/// Reads the text of a board file. On failure returns every problem, including warnings, in the order of the text.
 ///
 /// ```
 /// let text = board_file::preset("olimex-h405").unwrap();
@@ -35,7 +35,7 @@ pub fn read(text: &str) -> Result<Board, Problems> {
     let notes = Notes::new(text);
     let (table, syntax) = DeTable::parse_recoverable(text);
     syntax.iter().take(1).for_each(|error| notes.syntax(error));
-    // What was recovered from broken syntax would be blamed for what the parser dropped.
+    // The parser drops broken parts; their absence must not be reported as an error of the file.
     let board = if syntax.is_empty() { read_table(&Section::top(table.get_ref(), &notes)) } else { None };
     let failed = notes.has_errors();
     let (problems, sources) = notes.into_parts();
@@ -91,7 +91,7 @@ fn read_table(top: &Section<'_>) -> Option<Board> {
     })
 }
 
-/// A section that may be left out; the outer `None` if it is there and wrong.
+/// Reads an optional section; returns `None` if it is there and wrong.
 fn optional<'a, T>(
     top: &Section<'a>,
     name: &'static str,
@@ -100,7 +100,7 @@ fn optional<'a, T>(
     if top.has(name) { read(&top.section(name)?).map(Some) } else { Some(None) }
 }
 
-/// The name, short and plain enough for the board's hello and for an option of a command.
+/// Reads the name; it must suit the board's hello and the option of a command.
 fn read_name(top: &Section<'_>) -> Option<heapless::String<16>> {
     let text = top.required("name", Section::text)?;
     let plain = |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit() || ".-".contains(letter);
@@ -128,7 +128,7 @@ fn read_part(top: &Section<'_>, name: &str) -> Option<Part> {
     part
 }
 
-/// Flash and RAM [KiB].
+/// Reads the sizes of flash and RAM [KiB].
 fn read_memory(section: &Section<'_>, part: Option<Part>) -> (Option<u32>, Option<u32>) {
     let flash = section.required("flash_KiB", Section::whole);
     let ram = section.required("ram_KiB", Section::whole);
@@ -190,7 +190,7 @@ fn read_clock(section: &Section<'_>, chip: Option<Chip>) -> Option<ExternalClock
     None
 }
 
-/// A frequency [Hz] in words.
+/// Frequency as text in MHz.
 fn mega(frequency: u32) -> String {
     format!("{} MHz", f64::from(frequency) / 1e6)
 }
@@ -213,7 +213,7 @@ fn read_serial(section: &Section<'_>, part: Option<Part>, pins: &Pins) -> Option
     Some(Serial { unit: unit.name, clock: unit.clock, send: send?, receive: receive?, baud })
 }
 
-/// Complains about a speed that the unit cannot make.
+/// Reports a speed that the peripheral cannot make.
 fn check_baud(section: &Section<'_>, unit: &SerialUnit, baud: u32) {
     let exact = |divider: u32| f64::from(unit.clock) / f64::from(divider);
     let divider = baud_divider(unit.clock, baud);
@@ -233,7 +233,7 @@ fn check_baud(section: &Section<'_>, unit: &SerialUnit, baud: u32) {
     section.notes.error(section.place("baud"), message, help);
 }
 
-/// What a USART divides its clock by for a speed: the nearest whole number.
+/// Divider of a USART for a speed, rounded to the nearest whole number.
 pub fn baud_divider(clock: u32, baud: u32) -> u32 {
     let divider = (2 * u64::from(clock) + u64::from(baud)) / (2 * u64::from(baud.max(1)));
     u32::try_from(divider).unwrap_or(u32::MAX)

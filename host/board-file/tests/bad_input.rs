@@ -1,9 +1,9 @@
-//! What is wrong with a board file: each case asserts the message, the text that it underlines and the help. Every case is one
-//! good file with one thing spoilt, so that nothing else can be the cause.
+//! Bad board files: each case asserts the message, the underlined text and the help. Every case is one good file with
+//! one change, so that nothing else can be the cause.
 
 use board_file::{Board, Problem, Severity, preset, read};
 
-/// A file with every section.
+/// File with every section.
 const GOOD: &str = r#"
 name = "bench.2-a"
 description = "on the bench"
@@ -43,14 +43,14 @@ PA8 = "gate of motor 0, phase A, high side" # schematic
 PB12 = "brake resistor"
 "#;
 
-/// The good file with one piece of text exchanged.
+/// Good file with one piece of text replaced.
 #[track_caller]
 fn spoilt(from: &str, to: &str) -> String {
     assert_eq!(GOOD.matches(from).count(), 1, "`{from}` is not in the file exactly once");
     GOOD.replace(from, to)
 }
 
-/// The good file for another chip, without what its kind of chip does not have.
+/// Good file for another chip, without sections that the chip does not support.
 fn with_chip(name: &str, flash: u32, ram: u32) -> String {
     let (start, rest) = GOOD.split_once("\n[spi_slave]").expect("it is there");
     let rest = rest.split_once("\n[enable]").expect("it is there").1;
@@ -65,7 +65,7 @@ fn good(text: &str) -> Board {
     read(text).unwrap_or_else(|problems| panic!("{problems:#?}"))
 }
 
-/// The only problem, by its message, the text that it underlines, and its help.
+/// Message, underlined text and help of the only problem.
 #[track_caller]
 fn only(text: &str) -> (String, String, String) {
     let problems = read(text).expect_err("the file is spoilt");
@@ -75,7 +75,7 @@ fn only(text: &str) -> (String, String, String) {
     (message, text[span].to_owned(), help)
 }
 
-/// Asserts message and underlined text of the only problem, and that its help says `wanted`.
+/// Asserts message and underlined text of the only problem, and that its help contains `wanted`.
 #[track_caller]
 fn refused(text: &str, message: &str, underlined: &str, wanted: &str) {
     let (found, place, help) = only(text);
@@ -104,7 +104,7 @@ fn what_is_left_out_may_be() {
     let board = good(text);
     assert_eq!((&board.spi_slave, board.enable, board.light, board.never_driven.len()), (&None, None, None, 0));
     assert_eq!(board.pll.external, None);
-    // Half of the flash, as the file says.
+    // Half of the chip's flash, as the file states.
     assert_eq!((board.flash_bytes, board.slots()[0].address), (512 << 10, 0x0804_0000));
 }
 
@@ -136,7 +136,7 @@ fn a_chip_that_is_not_known_is_refused() {
         ("stm32f405rg", "did you mean \"STM32F405RG\"?"),
         ("STM32F405RGU6", "did you mean \"STM32F405RG\"?"),
     ];
-    // Another number, or another maker's number, is no slip of the keyboard.
+    // Another part number, or another maker's, is no typing error.
     let others =
         ["STM32F407VG", "STM32F446RE", "GD32F405RG", "AT32F405RG", "STM32G473RE", "STM32H750ZI", "STM32F4O5RG"];
     let others = others.map(|name| (name, "firmware exists for STM32F405RG, STM32F405VG"));
@@ -179,7 +179,7 @@ fn a_clock_that_the_chip_cannot_use_is_refused() {
     let message = "STM32F405 takes a crystal between 4 MHz and 26 MHz, not of 48 MHz";
     refused(&text, message, "48_000_000", "25 MHz, 26 MHz");
     assert!(!only(&text).2.contains("48 MHz"));
-    // The same as a signal.
+    // As a signal, the frequency is allowed.
     good(&text.replace("crystal", "signal"));
     let text = with_chip("STM32G474RE", 512, 96).replace("8_000_000", "26_000_000");
     refused(&text, "STM32G474 cannot make its 170 MHz of 26 MHz", "26_000_000", "24 MHz, 25 MHz, 48 MHz");
@@ -243,7 +243,7 @@ fn a_pin_that_the_package_does_not_bring_out_is_refused() {
     refused(&text, "STM32F405RGT has no PD8", "\"PD8\"", "its package brings out");
     let text = spoilt("PB12 = \"brake resistor\"", "PE3 = \"brake resistor\"");
     refused(&text, "the chip has no PE3", "\"brake resistor\"", "its package brings out");
-    // The reset input of the G4 is no pin.
+    // The G4's reset input counts as no pin.
     let text = with_chip("STM32G474RE", 512, 96).replace("\"PB0\"", "\"PG10\"");
     refused(&text, "STM32G474RET has no PG10", "\"PG10\"", "PF0 to PF1");
 }
@@ -284,7 +284,7 @@ fn a_pin_that_is_never_driven_is_refused_wherever_it_is_used() {
 fn pins_of_the_debug_probe_are_refused() {
     let text = spoilt("pin = \"PC12\"", "pin = \"PA13\"");
     refused(&text, "PA13 is the debug probe's data (SWDIO)", "\"PA13\"", "use another pin");
-    // USART2 of the G4 could send there.
+    // On the G4, USART2 could transmit on this pin.
     let text = with_chip("STM32G474RE", 512, 96).replace("USART1", "USART2").replace("PA9", "PA14");
     let text = text.replace("PA10", "PA3");
     refused(&text, "PA14 is the debug probe's clock (SWCLK)", "\"PA14\"", "use another pin");
@@ -336,7 +336,7 @@ fn a_speed_that_the_unit_cannot_make_is_refused() {
     let text = spoilt("230_400", "4_500_000");
     let message = "USART1 would make 4421053 baud, more than 1 % from 4500000";
     refused(&text, message, "4_500_000", "4421053 baud are near");
-    // Half as fast a clock: 42 MHz / 46 is 0.93 % from 921600, 42 MHz / 17 is 1.2 % from 2500000.
+    // Half the clock: 42 MHz / 46 is 0.93 % from 921600, 42 MHz / 17 is 1.2 % from 2500000.
     for (baud, makes) in [("921_600", true), ("1_843_200", true), ("2_625_000", true), ("2_500_000", false)] {
         let text = spoilt("230_400", baud).replace("USART1", "USART2").replace("PA9", "PA2").replace("PA10", "PA3");
         assert_eq!(read(&text).is_ok(), makes, "{baud}");
@@ -445,7 +445,7 @@ fn a_preset_with_lines_exchanged_is_read_or_refused_without_a_panic() {
         lines[below(one.lines().count())] = others[below(others.len())];
         read_well += usize::from(read(&lines.join("\n")).is_ok());
     }
-    // Comments and lists of pins do no harm.
+    // Changed comments and pin lists leave a file valid.
     assert!((100..1900).contains(&read_well), "{read_well}");
 }
 
@@ -456,11 +456,11 @@ fn the_pin_that_is_read_as_boot0_is_warned_of() {
     assert_eq!(warnings.len(), 1, "{warnings:#?}");
     assert_eq!((warnings[0].severity, &text[warnings[0].span.clone()]), (Severity::Warning, "\"PB8\""));
     assert!(warnings[0].help.contains("nSWBOOT0"));
-    // On the F405 that pin is a pin as any other.
+    // On the F405, PB8 is an ordinary pin.
     assert_eq!(good(&spoilt("pin = \"PC12\"", "pin = \"PB8\"")).warnings, []);
 }
 
-/// The good file with a piece at its end.
+/// Good file with a piece appended.
 fn with(piece: &str) -> String {
     format!("{GOOD}\n{piece}")
 }
@@ -486,7 +486,7 @@ fn lines_that_no_image_uses_are_read_and_keep_their_pins() {
         "encoder.output.in PB5",
     ];
     assert_eq!(pins, wanted);
-    // None of them is used by the firmware.
+    // The firmware uses none of these pins.
     assert_eq!(board.used_pins(), good(GOOD).used_pins());
     let taken = with(CAN).replace("pin = \"PC12\"", "pin = \"PB9\"");
     refused(&taken, "PB9 is used twice, for `can.send` and for `light.pin`", "\"PB9\"", "another pin");
@@ -501,7 +501,7 @@ fn two_encoders_share_a_bus_but_no_select() {
     let same = with(&format!("{}{ON_SPI}", ON_SPI.replace("output", "motor")));
     let message = "PA15 is used twice, for `encoder.motor.select` and for `encoder.output.select`";
     refused(&same, message, "\"PA15\"", "another pin");
-    // A bus is shared wire by wire.
+    // Devices share a bus wire by wire.
     let crossed = motor.replace("clock = \"PC10\"", "clock = \"PB3\"").replace("select = \"PB1\"", "select = \"PC10\"");
     let message = "PC10 is used twice, for `encoder.motor.select` and for `encoder.output.clock`";
     refused(&with(&format!("{ON_SPI}{crossed}")), message, "\"PC10\"", "another pin");

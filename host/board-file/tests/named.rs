@@ -1,4 +1,4 @@
-//! Boards that are named on a command line: file before preset, and errors that underline the place.
+//! Boards named on a command line: a file takes precedence over a preset, and errors underline the place.
 #![cfg(feature = "diagnostics")]
 
 use std::path::Path;

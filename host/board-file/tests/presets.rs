@@ -1,5 +1,5 @@
-//! The board files that come with the program: all are read, say where everything comes from, and give the firmware what it
-//! can be built from.
+//! Preset board files: all can be read, state the origin of every value, and yield valid inputs of the firmware's
+//! build.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -43,7 +43,7 @@ fn every_preset_is_read_and_warns_only_of_what_is_known() {
     for name in PRESETS {
         let warnings: Vec<String> = board(name).warnings.into_iter().map(|warning| warning.message).collect();
         let wanted: &[&str] = match name {
-            // The maker's option bytes keep it from being read.
+            // The maker sets the option bytes so that the pin is not read at a reset.
             "moteus-r4" => &["PB8 is read as BOOT0 at a reset: while it is high the chip starts its boot loader"],
             _ => &[],
         };
@@ -97,7 +97,7 @@ fn the_three_boards_of_before_keep_their_pins_and_clocks() {
 
 #[test]
 fn boards_with_a_power_stage_never_drive_it() {
-    // Gates and whatever arms them.
+    // Gates and the pins that arm them.
     let stages: [(&str, &[&str]); 4] = [
         (
             "odrive-3.6",
@@ -121,7 +121,7 @@ fn boards_with_a_power_stage_never_drive_it() {
 
 #[test]
 fn a_board_never_drives_what_another_board_with_its_chip_must_not_be_told_to() {
-    // The reason for board files: an image for one board would drive gates on another.
+    // Reason for board files: an image for one board would drive gates on another.
     let (h405, odrive) = (board("olimex-h405"), board("odrive-3.6"));
     let harm = h405.used_pins().into_iter().filter(|(_, pin)| odrive.never_driven.iter().any(|(left, _)| left == pin));
     let harm: Vec<String> = harm.map(|(key, pin)| format!("{key} {pin}")).collect();

@@ -6,7 +6,7 @@ use model_core::gears::design::Processor;
 use super::facts::{ALL, CanUnit, Facts, ImageSize, Package, SerialUnit, Slot, TimerUnit, Variant, at, pin};
 use crate::pll::PllLimits;
 
-/// Of both buses that have USARTs: a quarter of the core's rate.
+/// Clock of both buses with USARTs: a quarter of the core clock [Hz].
 const APB: u32 = 100_000_000;
 
 pub(super) const FACTS: Facts = Facts {
@@ -19,7 +19,7 @@ pub(super) const FACTS: Facts = Facts {
     signal: (4_000_000, 50_000_000),
     oscillator_pins: [pin("PH0"), pin("PH1")],
     pll: PllLimits {
-        // The wide oscillator, 192 to 836 MHz.
+        // Wide oscillator range, 192 to 836 MHz.
         input: (2_000_000, 16_000_000),
         preferred_input: 4_000_000,
         oscillator: 800_000_000,
@@ -59,7 +59,8 @@ pub(super) const FACTS: Facts = Facts {
     ],
 };
 
-/// The first two sectors of the second bank: an image lies in the first bank, which runs on while they are erased.
+/// Slots: the first two sectors of the second bank. An image lies in the first bank, which can execute while they are
+/// erased.
 fn slots(_: u32) -> [Slot; 2] {
     const SECTOR: u32 = 128 << 10;
     [0, 1].map(|sector| Slot { address: 0x0810_0000 + sector * SECTOR, bytes: SECTOR })

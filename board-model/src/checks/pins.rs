@@ -20,7 +20,7 @@ pub fn only_those_of_the_file(subject: &Subject) -> Result<String, String> {
     let board = &subject.board.description;
     let set_up = talk.board.borrow().machine().wires.set_up.clone();
     let mode = |pin| talk.board.borrow().machine().wires.mode(pin);
-    let without_use = board.pins_without_use();
+    let without_use = board.unused_line_pins();
     let forbidden = board.never_driven.iter().map(|(left, why)| (*left, why.as_str()));
     let forbidden: Vec<_> = forbidden.chain(without_use.iter().map(|(key, left)| (*left, *key))).collect();
     let driven: Vec<_> = forbidden

@@ -8,7 +8,7 @@ use crate::pin::{Alternate, Pin};
 use crate::pll::Plls;
 
 /// Minimum of the RAM reserved for the stack [byte].
-const STACK: u32 = 8 << 10;
+const MIN_STACK_BYTES: u32 = 8 << 10;
 /// Start address of flash.
 pub const FLASH_START: u32 = 0x0800_0000;
 /// Start address of RAM.
@@ -206,7 +206,7 @@ impl Board {
 
     /// RAM available to the statics of an image; the stack has the rest [byte].
     pub fn static_bytes(&self) -> u32 {
-        self.ram_bytes - STACK
+        self.ram_bytes - MIN_STACK_BYTES
     }
 
     /// Core clock [Hz].
@@ -238,7 +238,7 @@ impl Board {
     }
 
     /// Pins of lines that no image uses yet, with their keys. The firmware leaves them in their reset state.
-    pub fn pins_without_use(&self) -> Vec<(&'static str, Pin)> {
+    pub fn unused_line_pins(&self) -> Vec<(&'static str, Pin)> {
         let mut pins = Vec::new();
         if let Some(Can { send, receive, .. }) = self.can {
             pins.extend([("can.send", send), ("can.receive", receive)]);

@@ -133,8 +133,9 @@ mod tests {
 
     const PAGE: &str = include_str!("../../../docs/reference/board-files.md");
 
+    /// The page lists every key with its kind of value and its hint.
     #[test]
-    fn every_key_is_documented_with_what_it_holds() {
+    fn keys_documented_with_kind() {
         for key in KEYS {
             let value = match key.kind {
                 Kind::Text => "text".to_owned(),
@@ -155,8 +156,9 @@ mod tests {
         }
     }
 
+    /// The page has a heading for every section.
     #[test]
-    fn every_section_is_documented() {
+    fn sections_documented() {
         for key in KEYS.iter().filter(|key| matches!(key.kind, Kind::Section) && key.name != "encoder") {
             let name =
                 if key.section.is_empty() { key.name.to_owned() } else { format!("{}.{}", key.section, key.name) };

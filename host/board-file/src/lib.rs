@@ -28,7 +28,7 @@ pub use board::{
 pub use chip::{Chip, ImageSize, OTHER_CHIPS, Slot};
 pub use generated::{all_cfgs, cfgs, linker_script, rust_source};
 pub use joint_file::{Problem, Problems, Severity, Source};
-pub use pin::{Alternate, NoPin, Pin};
+pub use pin::{Alternate, InvalidPinName, Pin};
 pub use pll::{Pll, Plls};
 pub use presets::{DEFAULT, PRESETS, boards_with, chip_in_place_of_board, preset};
 pub use reader::{baud_divider, read};

@@ -22,7 +22,7 @@ pub struct Alternate {
 }
 
 /// Letter of the last port.
-const LAST: u8 = b'K';
+const LAST_PORT: u8 = b'K';
 
 impl Pin {
     /// Letter of the port.
@@ -38,7 +38,7 @@ impl Pin {
             _ => return None,
         };
         match letter {
-            b'A'..=LAST => Some(Self { port: letter - b'A', number }),
+            b'A'..=LAST_PORT => Some(Self { port: letter - b'A', number }),
             _ => None,
         }
     }
@@ -52,21 +52,21 @@ impl fmt::Display for Pin {
 
 /// Error for a text that is no pin's name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct NoPin;
+pub struct InvalidPinName;
 
-impl fmt::Display for NoPin {
+impl fmt::Display for InvalidPinName {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str("no pin: want a name such as PA9")
     }
 }
 
-impl std::error::Error for NoPin {}
+impl std::error::Error for InvalidPinName {}
 
 impl FromStr for Pin {
-    type Err = NoPin;
+    type Err = InvalidPinName;
 
-    fn from_str(text: &str) -> Result<Self, NoPin> {
-        Self::named(text.as_bytes()).ok_or(NoPin)
+    fn from_str(text: &str) -> Result<Self, InvalidPinName> {
+        Self::named(text.as_bytes()).ok_or(InvalidPinName)
     }
 }
 
@@ -74,18 +74,20 @@ impl FromStr for Pin {
 mod tests {
     use super::*;
 
+    /// A pin is printed as it was parsed.
     #[test]
-    fn pins_are_written_as_they_are_read() {
+    fn pin_names_round_trip() {
         for name in ["PA0", "PA9", "PB10", "PC15", "PK7"] {
             assert_eq!(name.parse::<Pin>().expect(name).to_string(), name);
         }
         assert_eq!("PD2".parse(), Ok(Pin { port: 3, number: 2 }));
     }
 
+    /// Texts that are no pin's name are rejected.
     #[test]
-    fn what_names_no_pin_is_none() {
+    fn invalid_pin_names_rejected() {
         for text in ["", "P", "PA", "A9", "pa9", "PA16", "PA09", "PA-1", "PL0", "PA9 ", "P\u{e4}1", "GPIOA9"] {
-            assert_eq!(text.parse::<Pin>(), Err(NoPin), "{text}");
+            assert_eq!(text.parse::<Pin>(), Err(InvalidPinName), "{text}");
         }
     }
 }

@@ -40,7 +40,7 @@ pub(crate) struct PllLimits {
 }
 
 /// Common crystal frequencies [Hz].
-const COMMON: [u32; 12] = [
+const COMMON_CRYSTALS: [u32; 12] = [
     4_000_000, 5_000_000, 6_000_000, 8_000_000, 10_000_000, 12_000_000, 16_000_000, 20_000_000, 24_000_000, 25_000_000,
     26_000_000, 48_000_000,
 ];
@@ -66,8 +66,8 @@ impl PllLimits {
     }
 
     /// Common frequencies within bounds that give the core clock [Hz].
-    pub fn common(&self, (least, greatest): (u32, u32)) -> Vec<u32> {
+    pub fn common_frequencies(&self, (least, greatest): (u32, u32)) -> Vec<u32> {
         let fits = |frequency: &u32| (least..=greatest).contains(frequency) && self.settings(*frequency).is_some();
-        COMMON.into_iter().filter(fits).collect()
+        COMMON_CRYSTALS.into_iter().filter(fits).collect()
     }
 }

@@ -73,7 +73,7 @@ impl<'a> Section<'a> {
     }
 
     /// Text with its origin.
-    pub fn stated(&self, name: &str) -> Option<String> {
+    pub fn text_with_source(&self, name: &str) -> Option<String> {
         self.source(name);
         self.text(name)
     }

@@ -123,7 +123,7 @@ fn layout(board: &Board) -> Sheet {
             }
         },
     );
-    let without_use = board.pins_without_use();
+    let without_use = board.unused_line_pins();
     if !without_use.is_empty() {
         page.heading("Not used by any image yet, and left alone");
         for (key, pin) in without_use {

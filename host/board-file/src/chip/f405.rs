@@ -27,7 +27,7 @@ pub(super) const FACTS: Facts = Facts {
     },
     boot_pin: None,
     serial: SERIAL,
-    refused: &[],
+    unsupported_serial: &[],
     spi: Ok(SPI),
     can: CAN,
     timers: TIMERS,

@@ -31,7 +31,7 @@ pub(crate) struct Facts {
     /// Peripherals supported as the serial line to the host.
     pub serial: &'static [SerialUnit],
     /// Serial peripherals that are not supported, each with the reason.
-    pub refused: &'static [(&'static str, &'static str)],
+    pub unsupported_serial: &'static [(&'static str, &'static str)],
     /// Peripherals supported as SPI slave, or the reason why there are none.
     pub spi: Result<&'static [SpiUnit], &'static str>,
     /// CAN peripherals.

@@ -18,7 +18,7 @@ pub(super) const FACTS: Facts = Facts {
     pll: g474::PLL,
     boot_pin: Some(pin("PB8")),
     serial: &[g474::USART1, g474::USART2, g474::USART3, g474::UART4],
-    refused: &[g474::LPUART1],
+    unsupported_serial: &[g474::LPUART1],
     spi: Ok(g474::SPI),
     can: &[g474::FDCAN1],
     timers: g474::TIMERS,

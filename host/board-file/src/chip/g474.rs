@@ -21,7 +21,7 @@ pub(super) const FACTS: Facts = Facts {
     pll: PLL,
     boot_pin: Some(pin("PB8")),
     serial: &[USART1, USART2, USART3, UART4, UART5],
-    refused: &[LPUART1],
+    unsupported_serial: &[LPUART1],
     spi: Ok(SPI),
     can: CAN,
     timers: TIMERS,
@@ -96,7 +96,7 @@ pub(super) const UART4: SerialUnit =
 const UART5: SerialUnit = SerialUnit { name: "UART5", clock: BUSES, send: &[at("PC12", 5)], receive: &[at("PD2", 5)] };
 
 /// Serial peripheral of another kind, which is not supported.
-pub(super) const LPUART1: (&str, &str) = ("LPUART1", "it divides its clock in another way and has other registers");
+pub(super) const LPUART1: (&str, &str) = ("LPUART1", "its registers and clock divider differ from a USART's");
 
 pub(super) const SPI: &[SpiUnit] = &[
     SpiUnit {

@@ -29,8 +29,8 @@ pub(super) const FACTS: Facts = Facts {
     },
     boot_pin: None,
     serial: SERIAL,
-    refused: &[("LPUART1", "it divides its clock in another way and has other registers")],
-    spi: Err("the SPI of STM32H743 is of another kind, which the firmware has no slave for"),
+    unsupported_serial: &[("LPUART1", "its registers and clock divider differ from a USART's")],
+    spi: Err("the firmware has no slave for the STM32H743's kind of SPI"),
     can: CAN,
     timers: TIMERS,
     // DTCM.
@@ -54,8 +54,8 @@ pub(super) const FACTS: Facts = Facts {
             flash_kib: &[2048],
             packages: &[Package { letter: 'T', pins: PINS_176 }, Package { letter: 'K', pins: PINS_176 }],
         },
-        Variant { name: "STM32H743BI", flash_kib: &[2048], packages: &[Package { letter: 'T', pins: EVERY }] },
-        Variant { name: "STM32H743XI", flash_kib: &[2048], packages: &[Package { letter: 'H', pins: EVERY }] },
+        Variant { name: "STM32H743BI", flash_kib: &[2048], packages: &[Package { letter: 'T', pins: ALL_PORTS }] },
+        Variant { name: "STM32H743XI", flash_kib: &[2048], packages: &[Package { letter: 'H', pins: ALL_PORTS }] },
     ],
 };
 
@@ -156,7 +156,7 @@ const UFBGA169: &[(char, u16)] = &[
 ];
 const PINS_176: &[(char, u16)] =
     &[('A', ALL), ('B', ALL), ('C', ALL), ('D', ALL), ('E', ALL), ('F', ALL), ('G', ALL), ('H', ALL), ('I', 0x0fff)];
-const EVERY: &[(char, u16)] = &[
+const ALL_PORTS: &[(char, u16)] = &[
     ('A', ALL),
     ('B', ALL),
     ('C', ALL),

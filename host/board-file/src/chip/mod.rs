@@ -63,7 +63,7 @@ impl Chip {
     }
 
     /// Finds a chip by its name.
-    pub fn of_name(name: &str) -> Option<Self> {
+    pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|chip| chip.name() == name)
     }
 
@@ -129,7 +129,7 @@ pub(crate) struct Part {
 impl Part {
     /// Parses an order name up to the letter of the flash size, optionally with the letter of the package and the digit
     /// of the temperature range: STM32G431CB, STM32G431CBU, STM32G431CBU6.
-    pub fn of(order_name: &str) -> Option<Self> {
+    pub fn from_order_name(order_name: &str) -> Option<Self> {
         let mut all =
             Chip::ALL.into_iter().flat_map(|chip| chip.facts().variants.iter().map(move |variant| (chip, variant)));
         let (chip, variant) = all.find(|(_, variant)| order_name.starts_with(variant.name))?;
@@ -149,16 +149,16 @@ impl Part {
 
     /// Help for an unknown order name. A name is suggested only within one part number of one maker: chips whose names
     /// differ by a letter have other registers, memory and pins.
-    pub fn help(order_name: &str) -> String {
+    pub fn unknown_name_help(order_name: &str) -> String {
         let typed = order_name.trim().to_uppercase();
-        let of_line = |variant: &&str| {
+        let claim_line_pin = |variant: &&str| {
             Chip::ALL.iter().any(|chip| {
                 let line = chip.name().to_uppercase();
                 typed.starts_with(&line) && variant.starts_with(&line)
             })
         };
         let known = Self::names();
-        let line: Vec<&str> = known.iter().copied().filter(of_line).collect();
+        let line: Vec<&str> = known.iter().copied().filter(claim_line_pin).collect();
         match line.iter().find(|variant| typed.starts_with(**variant)) {
             Some(variant) => format!(
                 "did you mean \"{variant}\"? it is written in capitals, up to the letter of the flash size or with those of \
@@ -171,7 +171,7 @@ impl Part {
                 )
             }
             None => format!(
-                "firmware exists for {}; a chip of another number or maker is another chip, whatever its pins",
+                "firmware exists for {}; a chip of another number or maker is not compatible, even with the same pins",
                 known.join(", ")
             ),
         }
@@ -224,8 +224,9 @@ mod tests {
 
     const MHZ: u32 = 1_000_000;
 
+    /// Every chip makes its core clock exactly from common crystals and from its internal oscillator.
     #[test]
-    fn every_chip_makes_its_core_clock_exactly_from_common_crystals_and_from_its_own_oscillator() {
+    fn plls_make_core_clock_exactly() {
         for chip in Chip::ALL {
             let (mut refused, internal) = (Vec::new(), chip.internal_oscillator());
             for frequency in [8, 12, 16, 24, 25, 26].map(|mega| mega * MHZ).into_iter().chain([internal]) {
@@ -249,8 +250,9 @@ mod tests {
         }
     }
 
+    /// A PLL gets its preferred input frequency, or the highest one that works.
     #[test]
-    fn plls_get_the_preferred_input_or_the_fastest_that_works() {
+    fn plls_prefer_configured_input() {
         let of = |chip: Chip, mega: u32| {
             let Pll { divider, factor, range } = chip.pll(mega * MHZ).expect("it can be made");
             (divider, factor, range)
@@ -269,8 +271,9 @@ mod tests {
         );
     }
 
+    /// Frequencies that cannot make the core clock exactly have no settings.
     #[test]
-    fn a_frequency_that_would_give_another_clock_is_none() {
+    fn pll_rejects_inexact_frequency() {
         for frequency in [0, 1, 11_059_200, 14_745_600, 32_768, u32::MAX] {
             for chip in Chip::ALL {
                 assert_eq!(chip.pll(frequency), None, "{chip:?} from {frequency}");
@@ -278,8 +281,9 @@ mod tests {
         }
     }
 
+    /// Every pin of a peripheral is brought out by some package of the chip.
     #[test]
-    fn every_pin_of_a_unit_is_brought_out_by_some_package() {
+    fn unit_pins_exist_in_some_package() {
         for chip in Chip::ALL {
             let facts = chip.facts();
             let serial = facts.serial.iter().flat_map(|unit| [unit.send, unit.receive]);
@@ -298,8 +302,9 @@ mod tests {
         }
     }
 
+    /// Every pin of a CAN peripheral or timer is brought out by some package and listed once.
     #[test]
-    fn every_pin_of_a_line_without_a_use_is_brought_out_by_some_package_and_stands_there_once() {
+    fn unused_line_pins_exist_once() {
         for chip in Chip::ALL {
             let facts = chip.facts();
             let can = facts.can.iter().flat_map(|unit| [unit.send, unit.receive]);
@@ -314,8 +319,9 @@ mod tests {
         }
     }
 
+    /// No pin occurs twice in the list of a peripheral.
     #[test]
-    fn no_pin_stands_in_a_list_twice() {
+    fn unit_pins_listed_once() {
         for chip in Chip::ALL {
             let facts = chip.facts();
             let serial = facts.serial.iter().flat_map(|unit| [unit.send, unit.receive]);
@@ -328,9 +334,10 @@ mod tests {
         }
     }
 
+    /// Order names are parsed with and without package and temperature range.
     #[test]
-    fn order_names_are_known_with_and_without_package() {
-        let probe = |name: &str| Part::of(name).map(|part| part.probe_name());
+    fn order_names_parsed_with_package() {
+        let probe = |name: &str| Part::from_order_name(name).map(|part| part.probe_name());
         assert_eq!(probe("STM32F405RG").as_deref(), Some("STM32F405RGTx"));
         assert_eq!(probe("STM32F405RGT6").as_deref(), Some("STM32F405RGTx"));
         assert_eq!(probe("STM32G431CB").as_deref(), Some("STM32G431CBTx"));
@@ -341,9 +348,10 @@ mod tests {
         }
     }
 
+    /// The pins of packages agree with the data sheets.
     #[test]
-    fn packages_bring_out_what_their_data_sheets_say() {
-        let part = |name: &str| Part::of(name).expect("a known name");
+    fn packages_match_data_sheets() {
+        let part = |name: &str| Part::from_order_name(name).expect("a known name");
         assert_eq!(part("STM32F405RG").pins(), "PA0 to PA15, PB0 to PB15, PC0 to PC15, PD2, PH0 to PH1");
         assert_eq!(
             part("STM32G431CBU").pins(),
@@ -354,8 +362,9 @@ mod tests {
         assert!(!part("STM32F405OG").has(pin("PC1")) && !part("STM32F405OG").has(pin("PD13")));
     }
 
+    /// The slots lie at the end of the stated flash, or in the second bank.
     #[test]
-    fn slots_lie_at_the_end_of_the_flash() {
+    fn slots_at_end_of_flash() {
         let slots = |chip: Chip, kib: u32| (chip.facts().slots)(kib << 10).map(|slot| (slot.address, slot.bytes));
         assert_eq!(slots(Chip::Stm32f405, 1024), [(0x080c_0000, 0x2_0000), (0x080e_0000, 0x2_0000)]);
         assert_eq!(slots(Chip::Stm32f405, 512), [(0x0804_0000, 0x2_0000), (0x0806_0000, 0x2_0000)]);

@@ -1,5 +1,5 @@
-//! The motor controller of `examples/c-motor-controller` on the core itself, operation by operation: the same digest tells that a
-//! program in C does the same in every bit, and the truth of the run gives the figures of test T2.
+//! Motor controller of `examples/c-motor-controller` on the core itself, operation by operation: equal digests show
+//! that the C program computes the same bits, and the true state of the run gives the figures of test T2.
 
 use model_core::compensation::{CommandRef, Compensation, ImpedancePoint, Motion, Position};
 use model_core::gears::Tables;
@@ -9,29 +9,29 @@ use model_core::virtual_joint::VirtualJoint;
 use report::failure::{Failure, Outcome};
 use table_blob::{Blob, Gears};
 
-/// What the controller does.
+/// Control mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
-    /// Follows with compensation.
+    /// Position control with compensation.
     Position,
-    /// A PID on the motor's place.
+    /// PID on the motor's position.
     WithoutCompensation,
-    /// A spring and damper.
+    /// Spring and damper.
     Impedance,
 }
 
-/// A moment of the run: before the period's torque.
+/// State of the run before the torque of a period.
 #[derive(Debug)]
 pub struct Moment<'now> {
-    /// Since the start.
+    /// Period since the start.
     pub period: u32,
-    /// Where the link is to be [rad].
+    /// Reference position of the link [rad].
     pub wanted: f64,
-    /// The truth.
+    /// Plant with the true state.
     pub joint: &'now VirtualJoint<'now, f32, 3>,
-    /// Its tables.
+    /// Tables of the plant's gears.
     pub gears: &'now Tables<f32, 3>,
-    /// Torque that was asked for last [N m].
+    /// Commanded torque of the previous period [N m].
     pub command: f64,
 }
 
@@ -81,7 +81,8 @@ impl Angle {
     }
 }
 
-/// Runs it, shows every moment, and gives the digest; the joint has three planets.
+/// Runs the controller, passes the state before every period to `show`, and returns the digest. The joint must have
+/// three planets.
 pub fn run(words: &[u64], mode: Mode, mut show: impl FnMut(&Moment<'_>)) -> Outcome<u64> {
     let broken = |error| Failure::new(format!("the tables: {error:?}"));
     let blob = Blob::open(words).map_err(broken)?;

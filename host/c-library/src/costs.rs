@@ -1,5 +1,5 @@
-//! What the library costs on a board: flash and RAM of linked programs that use a part of it, and instructions of each call,
-//! counted on the emulator.
+//! Costs of the library on a board: flash and RAM of linked programs that use a part of it, and instructions and stack
+//! of each call, counted on the emulator.
 
 use std::process::Command;
 
@@ -12,7 +12,7 @@ use crate::library::{Library, Target};
 use crate::programs::{self, MACHINES, Machine, Workbench};
 use crate::tables;
 
-/// What firmware may take of the library, as `bindings/c/programs/size.c` calls it; none comes first.
+/// Uses of the library, with their names in `bindings/c/programs/size.c`; the empty use comes first.
 const USES: [(&str, &str); 6] = [
     ("NOTHING", "nothing"),
     ("OBSERVER_WITHOUT_MAPS", "observer without maps"),
@@ -22,10 +22,10 @@ const USES: [(&str, &str); 6] = [
     ("PLANT", "plant"),
 ];
 
-/// Memory that a use takes, tables included.
+/// Memory of a use, including its tables.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Memory {
-    /// What is used.
+    /// Name of the use.
     pub what: &'static str,
     /// Code and constants [B].
     pub flash: u64,
@@ -36,29 +36,29 @@ pub struct Memory {
 /// Instructions of a call.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Calls {
-    /// The function.
+    /// Name of the function.
     pub name: String,
-    /// On average.
+    /// Mean.
     pub mean: u64,
-    /// Most.
+    /// Maximum.
     pub most: u64,
 }
 
 /// Stack of a call.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Stack {
-    /// The function.
+    /// Name of the function.
     pub name: String,
-    /// Bytes below the caller's stack pointer, arguments on the stack included [B].
+    /// Stack below the caller's stack pointer, including arguments on the stack [B].
     pub bytes: u64,
 }
 
-/// The machine of the emulator that stands for a target.
+/// Emulated machine that stands for a target.
 pub fn machine(target: Target) -> Option<Machine> {
     MACHINES.into_iter().find(|machine| machine.target == target)
 }
 
-/// SysTick's counts in a thousand instructions, of 64 ns each: its clock is 168 MHz, 20 MHz or 25 MHz.
+/// Counts of SysTick in a thousand instructions of 64 ns each: its clock is 168 MHz, 20 MHz or 25 MHz.
 fn counts(machine: Machine) -> u32 {
     match machine.name {
         "netduinoplus2" => 10_752,
@@ -67,7 +67,7 @@ fn counts(machine: Machine) -> u32 {
     }
 }
 
-/// Memory by use, less what a program without the library takes, with tables for that use.
+/// Memory of each use, in excess of a program without the library, with tables for the use.
 pub fn memory(library: &Library, joint: &JointFile, machine: Machine) -> Outcome<Vec<Memory>> {
     let [control, whole] = [false, true].map(|plant| {
         let tables = tables::for_tests(joint, plant, &Board::emulated())?;
@@ -97,7 +97,7 @@ pub fn memory(library: &Library, joint: &JointFile, machine: Machine) -> Outcome
     Ok(sizes.iter().skip(1).map(less).collect())
 }
 
-/// Instructions of each call; `measuring` is for a library that has the core's own steps beside.
+/// Instructions of each call. `measuring` is for a library that also exports the core's own steps.
 pub fn calls(bench: &Workbench, machine: Machine, measuring: bool) -> Outcome<Vec<Calls>> {
     let source = programs::folder().join("costs.c");
     let counts = format!("-DCOUNTS_PER_THOUSAND={}u", counts(machine));
@@ -121,7 +121,7 @@ pub fn stacks(bench: &Workbench, machine: Machine) -> Outcome<Vec<Stack>> {
     let elf = bench.compile_for(machine, &[&source], &["-O2"])?;
     let parse = |line: &String| {
         let (name, bytes) = line.strip_prefix("stack;")?.split_once(';')?;
-        // Zero stands for more than was looked for.
+        // Zero means that the stack exceeds the searched range.
         Some(Stack { name: name.to_owned(), bytes: bytes.parse().ok().filter(|bytes| *bytes > 0)? })
     };
     programs::run_on(machine, &elf)?
@@ -142,7 +142,7 @@ pub struct Costs {
 }
 
 impl Costs {
-    /// Counts them on the machine that stands for the library's target.
+    /// Measures the costs on the machine that stands for the library's target.
     pub fn of(library: &Library, joint: &JointFile, machine: Machine) -> Outcome<Self> {
         let tables = tables::for_tests(joint, true, &Board::emulated())?;
         let bench = Workbench::new(library, &tables)?;
@@ -154,7 +154,7 @@ impl Costs {
     }
 }
 
-/// Costs of a library as text: the archive and the docs have the same.
+/// Costs as Markdown, shared by the archive and the docs.
 pub fn section(costs: &Costs, joint: &JointFile, machine: Machine) -> String {
     let mut text = format!(
         "\nMemory that a program takes beyond one without the library: tables of joint {} are in flash, objects, samples and results\n\

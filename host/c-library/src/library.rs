@@ -1,6 +1,6 @@
-//! Builds what is behind the header: for each target one archive with one object, whose only global names are the header's.
-//! What the compiler puts beside it (the core library, its mathematics) is linked in as far as it is used; what is left open
-//! is `memcpy` and its like, which every C toolchain has.
+//! Builds the functions declared in the header: for each target one archive with one object, whose only global names
+//! are those of the header. The compiler's own libraries (core, mathematics) are linked in as far as they are used;
+//! only `memcpy` and similar functions, which every C toolchain has, stay undefined.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,20 +14,20 @@ use object::read::archive::ArchiveFile;
 use report::failure::{Failure, Outcome};
 use report::workspace::workspace;
 
-/// The package.
+/// Package of the library.
 const PACKAGE: &str = "c-bindings";
-/// Name of the shared library for the loader. The number grows when programs that were linked before must be linked anew.
+/// Soname of the shared library. The number grows when programs must be linked again.
 pub const SONAME: &str = "liblostmotion.so.0";
-/// What C programs for boards are built with.
+/// Packages to build C programs for boards.
 const CROSS: [&str; 2] = ["gcc-arm-none-eabi", "libnewlib-arm-none-eabi"];
-/// What C programs for this machine are built with.
+/// Packages to build C programs for this machine.
 const NATIVE: [&str; 1] = ["g++"];
 
-/// What a small library inlines all the same: observer and compensation take a fifth to a third more
-/// instructions and a third less flash than in the firmware's images; without it the observer's worst would double.
+/// Inline threshold of the size-optimised library: observer and compensation take a fifth to a third more instructions
+/// and a third less flash than in the firmware's images. Without it the observer's worst case would double.
 const INLINED: &str = "-Cllvm-args=-inline-threshold=20";
 
-/// The core's own steps, in a library for measuring.
+/// Exported names of the core's own steps, in a library for measuring.
 const BARE: [&str; 7] = [
     "joint_bare_samples",
     "joint_bare_command",
@@ -38,7 +38,7 @@ const BARE: [&str; 7] = [
     "joint_bare_compensation_step",
 ];
 
-/// What a library is for.
+/// Target of a library.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Target {
     /// Cortex-M4 with FPU, hard-float ABI
@@ -52,7 +52,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// As it is typed.
+    /// Name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::M4f => "m4f",
@@ -72,12 +72,12 @@ impl Target {
         }
     }
 
-    /// A program of the C toolchain, such as gcc.
+    /// Name of a program of the C toolchain, such as gcc.
     pub fn tool(self, name: &str) -> String {
         if self == Self::Host { name.to_owned() } else { format!("arm-none-eabi-{name}") }
     }
 
-    /// Makes sure of the C toolchain.
+    /// Installs the C toolchain if it is missing.
     pub fn prepare(self, say: Say<'_>) -> Outcome<()> {
         let (probe, needed) = match self {
             Self::Host => ("g++", &NATIVE[..]),
@@ -90,16 +90,16 @@ impl Target {
     }
 }
 
-/// A library that was built.
+/// Library built for a target.
 #[derive(Debug)]
 pub struct Library {
-    /// What it is for.
+    /// Target of the library.
     pub target: Target,
     /// `liblostmotion.a`.
     pub archive: Vec<u8>,
     /// `liblostmotion.so`, for a host.
     pub shared: Option<Vec<u8>>,
-    /// The compiler.
+    /// Version of the compiler.
     pub compiler: String,
 }
 
@@ -108,15 +108,15 @@ pub fn include() -> PathBuf {
     workspace().join("bindings/c/include")
 }
 
-/// The header.
+/// Path of the header.
 pub fn header() -> PathBuf {
     include().join("lostmotion/joint.h")
 }
 
-/// Beginnings of the lines that declare a function; inline functions of the header begin otherwise.
+/// Prefixes of the lines that declare a function; the header's inline functions begin differently.
 const DECLARATIONS: [&str; 3] = ["JointStatus joint_", "uint32_t joint_", "const char *joint_"];
 
-/// Functions of the library that the header declares.
+/// Functions declared by the header, in alphabetical order.
 pub fn functions() -> Outcome<Vec<String>> {
     let path = header();
     let text = fs::read_to_string(&path).map_err(|error| Failure::new(format!("{}: {error}", path.display())))?;
@@ -130,12 +130,12 @@ pub fn functions() -> Outcome<Vec<String>> {
     Ok(found)
 }
 
-/// Builds it.
+/// Builds the library in cargo's default folder.
 pub fn build(target: Target, features: &str, say: Say<'_>) -> Outcome<Library> {
     build_in(None, target, features, say)
 }
 
-/// Builds it in a folder: cargo's usual one unless another is given.
+/// Builds the library in a folder; `None` is cargo's default one.
 pub fn build_in(folder: Option<&Path>, target: Target, features: &str, say: Say<'_>) -> Outcome<Library> {
     target.prepare(say)?;
     let (all, shared, compiler) = match target {
@@ -158,7 +158,7 @@ pub fn build_in(folder: Option<&Path>, target: Target, features: &str, say: Say<
     Ok(Library { target, archive, shared, compiler })
 }
 
-/// An archive with a single object, in which nothing but the functions of the header has a name for others.
+/// Archive with a single object, which exports only the functions of the header.
 fn one_object(target: Target, all: &[u8], measuring: bool) -> Outcome<Vec<u8>> {
     let folder = tempfile::tempdir().map_err(|error| Failure::new(format!("no folder for a build: {error}")))?;
     let place = |name: &str| folder.path().join(name);
@@ -188,7 +188,7 @@ fn one_object(target: Target, all: &[u8], measuring: bool) -> Outcome<Vec<u8>> {
         fs::write(place(&name), data).map_err(unwritten)?;
         link.arg(name);
     }
-    // A board's helpers (__aeabi_...) are those of its C compiler; on a host the rest of the archive is what the core needs.
+    // On a board the helpers (`__aeabi_...`) come from its C compiler; on a host the rest of the archive supplies them.
     if target == Target::Host {
         link.arg("all.a");
     }

@@ -1,4 +1,4 @@
-//! The closed loop of `bindings/c/programs/run.h` on the core itself: the same motion, push, silence and digest.
+//! Closed loop of `bindings/c/programs/run.h` on the core itself, with equal motion, push, output gap and digest.
 
 use model_core::compensation::{Command, Compensation, ImpedancePoint, Motion, Position};
 use model_core::controller::Controller;
@@ -10,7 +10,7 @@ use model_core::wiring::{WiringCheck, WiringProgress};
 use report::failure::{Failure, Outcome};
 use table_blob::{Blob, Gears};
 
-/// The digest after so many periods, from the same tables that the C program has.
+/// Digest after a number of periods, from the tables of the C program.
 pub fn digest(words: &[u64], periods: u32) -> Outcome<u64> {
     let broken = |error| Failure::new(format!("the tables: {error:?}"));
     let blob = Blob::open(words).map_err(broken)?;
@@ -79,7 +79,7 @@ fn closed_loop<const N: usize>(
     Ok(running)
 }
 
-/// To and fro by a twentieth of a turn, bang-bang, of whole numbers and single multiplications.
+/// Bang-bang motion to and fro by a twentieth of a turn, from integers and single multiplications.
 fn motion(scale: u32, period: u32) -> Motion<f32> {
     let half = 1250 * scale;
     let segment = 2 * half;
@@ -96,7 +96,7 @@ fn motion(scale: u32, period: u32) -> Motion<f32> {
     }
 }
 
-/// The wiring checks of `bindings/c/programs/wiring.c` on the core itself: digest of their torques.
+/// Wiring checks of `bindings/c/programs/wiring.c` on the core itself: digest of the torques.
 pub fn wiring_digest(words: &[u64]) -> Outcome<u64> {
     let broken = |error| Failure::new(format!("the tables: {error:?}"));
     let blob = Blob::open(words).map_err(broken)?;
@@ -128,7 +128,8 @@ pub fn wiring_digest(words: &[u64]) -> Outcome<u64> {
     Ok(running)
 }
 
-/// The width probe of `bindings/c/programs/probe.c` on the core itself: digest of torques and widths over so many periods.
+/// Width probe of `bindings/c/programs/probe.c` on the core itself: digest of torques and widths over a number of
+/// periods.
 pub fn probe_digest(words: &[u64], periods: u32) -> Outcome<u64> {
     let broken = |error| Failure::new(format!("the tables: {error:?}"));
     let blob = Blob::open(words).map_err(broken)?;

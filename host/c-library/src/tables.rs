@@ -1,4 +1,4 @@
-//! `joint tables`: a joint's tables as constant bytes, in a header, a source and a file of bytes.
+//! `joint tables`: a joint's tables as constant bytes, in a header, a source and a binary file.
 
 use std::path::{Path, PathBuf};
 
@@ -10,10 +10,10 @@ use report::failure::{Failure, Outcome};
 use report::folder::{Folder, file_part};
 use table_blob::{VERSION, Wanted, design};
 
-/// What a controller is asked for unless something else is said.
+/// Default requirements of a controller.
 pub const USUAL: ControlRequest = ControlRequest::USUAL;
 
-/// What is written.
+/// Patterns of the written files.
 const FILES: [&str; 3] = ["*_tables.h", "*_tables.c", "*_tables.bin"];
 
 /// Arguments of `joint tables`.
@@ -51,7 +51,7 @@ pub struct Arguments {
     pub board: Board,
 }
 
-/// A bandwidth that a loop can have.
+/// Parses a positive bandwidth.
 fn bandwidth(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
@@ -59,18 +59,18 @@ fn bandwidth(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Tables with what a C program calls them.
+/// Tables with their name in C.
 #[derive(Debug)]
 pub struct CTables {
-    /// A name of C.
+    /// Identifier in C.
     pub name: String,
-    /// The blob.
+    /// Words of the blob.
     pub words: Vec<u64>,
-    /// What it was made from, as remarks.
+    /// Origin of the tables, as lines for a comment.
     pub made_from: Vec<String>,
 }
 
-/// Writes them; gives what is told of it.
+/// Writes the tables and returns the lines for the user.
 pub fn run(arguments: &Arguments) -> Outcome<String> {
     let loaded = named::load(&arguments.file)?;
     warned::tell(&loaded);
@@ -100,7 +100,7 @@ pub fn run(arguments: &Arguments) -> Outcome<String> {
     ))
 }
 
-/// Designs them.
+/// Designs the tables.
 pub fn make(
     joint: &JointFile,
     nominal: &JointFile,
@@ -143,7 +143,7 @@ pub fn make(
     Ok(CTables { name: c_name(&joint.parameters.name), words, made_from })
 }
 
-/// A name that C takes: letters, digits and underscores, no digit first.
+/// Turns a joint's name into a C identifier: letters, digits and underscores, no leading digit.
 fn c_name(joint: &str) -> String {
     let part = file_part(joint).to_lowercase();
     let name: String = part.chars().map(|it| if it.is_ascii_alphanumeric() { it } else { '_' }).collect();
@@ -151,20 +151,20 @@ fn c_name(joint: &str) -> String {
 }
 
 impl CTables {
-    /// The bytes.
+    /// Bytes of the tables.
     pub fn bytes(&self) -> Vec<u8> {
         self.words.iter().flat_map(|word| word.to_le_bytes()).collect()
     }
 
-    /// Their digest.
+    /// Digest of the tables.
     pub fn digest(&self) -> u64 {
         table_blob::Blob::open(&self.words).map_or(0, |blob| blob.header().digest)
     }
 
-    /// The declaration.
+    /// Text of the header.
     pub fn header(&self) -> String {
         let (name, upper) = (&self.name, self.name.to_uppercase());
-        // A joint may be called anything: the remark ends where it is meant to.
+        // A joint's name may hold anything, even the end of a comment.
         let plain = |line: &String| line.replace(char::is_control, " ").replace("*/", "* /");
         let remarks: String = self.made_from.iter().map(|line| format!(" * {}\n", plain(line))).collect();
         format!(
@@ -183,7 +183,7 @@ impl CTables {
         )
     }
 
-    /// The definition.
+    /// Text of the source.
     pub fn source(&self) -> String {
         let name = &self.name;
         let rows: String = self
@@ -202,14 +202,14 @@ impl CTables {
     }
 }
 
-/// Reads a joint with a control rate, for programs that try the library.
+/// Reads a joint with a control rate, for the test programs.
 pub fn joint_at(name: &Path, rate: u32) -> Outcome<JointFile> {
     let mut joint = named::load(name)?.file;
     joint.surroundings.control_rate = rate;
     Ok(joint)
 }
 
-/// Tables called `test_tables`, for programs that try the library.
+/// Tables called `test_tables`, for the test programs.
 pub fn for_tests(joint: &JointFile, plant: bool, board: &Board) -> Outcome<CTables> {
     Ok(CTables { name: "test".to_owned(), ..make(joint, joint, USUAL, plant, board)? })
 }

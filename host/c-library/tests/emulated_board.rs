@@ -1,4 +1,4 @@
-//! The library on the emulator's machines, called from C: run by `cargo joint hil --check`.
+//! The library on emulated machines, called from C. Run by `cargo joint hil --check`.
 
 use std::path::{Path, PathBuf};
 
@@ -54,8 +54,9 @@ fn four_machines_compute_every_bit_of_the_core() {
     }
 }
 
-/// Most flash and RAM of observer and compensation, with maps and without [B]. Without maps 30 KiB of flash were wished for: that
-/// is not met, since the maps are a few per cent of the code (docs/decisions/c-library.md); what is reached is held.
+/// Limits of flash and RAM of observer and compensation, with and without maps [B]. The goal of 30 KiB of flash without
+/// maps was not met, since the maps are only a few per cent of the code (docs/decisions/c-library.md); the limits hold
+/// what was reached.
 const MEMORY: [(&str, u64, u64); 2] = [
     ("observer with maps, compensation", (46 << 10) + 256, 3 << 10),
     ("observer without maps, compensation", 46 << 10, 3 << 10),
@@ -88,7 +89,7 @@ fn calls_and_memory_cost_what_is_promised() {
             [("joint_observer_step all along", "core's observer"), ("joint_compensation_follow", "core's compensation")]
         {
             let (call, core) = (of(call), of(core));
-            // 4 % of the core's or 40, whichever is more.
+            // Limit: 4 % of the core's instructions, or 40 if that is more.
             let (most, over) = (40.max(4 * core.mean / 100), call.mean.saturating_sub(core.mean));
             println!("{}: {} adds {over} instructions to {} of {}", target.name(), call.name, core.mean, core.name);
             assert!(over <= most, "{call:?} beside {core:?}: more than {most} above");
@@ -96,10 +97,10 @@ fn calls_and_memory_cost_what_is_promised() {
     }
 }
 
-/// Set to write the costs into the docs.
+/// Environment variable that makes the test write the costs into the docs.
 const WRITE: &str = "UPDATE_COSTS";
 
-/// Most stack of each call, as the header states it [B].
+/// Stack of each call as stated in the header [B].
 fn stack_bounds(header: &str) -> Vec<(&str, u64)> {
     header
         .lines()
@@ -150,7 +151,7 @@ fn costs_are_those_of_docs_and_header() {
     }
 }
 
-/// Compares words: texts exactly, numbers within 2 %, since compilers of other versions lay out code otherwise, or within 16.
+/// Compares words: texts exactly, numbers within 2 % (code layout differs between compiler versions) or within 16.
 fn is_near(written: &str, counted: &str) -> bool {
     match (written.parse::<f64>(), counted.parse::<f64>()) {
         (Ok(written), Ok(counted)) => (written - counted).abs() <= (0.02 * counted).max(16.0),
@@ -158,7 +159,7 @@ fn is_near(written: &str, counted: &str) -> bool {
     }
 }
 
-/// Functions of a C library and of the Arm run-time ABI that the header names.
+/// C library functions, in the forms of the Arm run-time ABI too, that the header names as required.
 const FROM_C: [&str; 4] = ["memcpy", "memmove", "memset", "memclr"];
 
 #[test]
@@ -184,7 +185,7 @@ fn library_links_without_a_c_library() {
         let sources = [programs::folder().join("test_joint.c"), programs::folder().join("board/memory.c")];
         let sources: Vec<&Path> = sources.iter().map(PathBuf::as_path).collect();
         let machine = costs::machine(target).expect("a machine");
-        // The last flag keeps the compiler from making calls of strlen out of the loops of start.c.
+        // The last flag keeps the compiler from turning the loops of start.c into calls of strlen.
         let flags = ["-DPERIODS=1000u", "-O2", "-nostdlib", "-fno-tree-loop-distribute-patterns"];
         let program = bench.compile_for(machine, &sources, &flags).expect("a program");
         let lines = programs::run_on(machine, &program).expect("a run");
@@ -197,12 +198,12 @@ fn library_links_without_a_c_library() {
 fn two_builds_give_the_same_bytes() {
     for target in [Target::M4f, Target::M33, Target::M7, Target::Host] {
         let first = library::build(target, "library", &say).expect("a library");
-        // Again from nothing, and elsewhere.
+        // Built from scratch in another folder.
         let folder = tempfile::tempdir().expect("a folder");
         let second = library::build_in(Some(folder.path()), target, "library", &say).expect("a library");
         let name = target.name();
         assert!(first.archive == second.archive && first.shared == second.shared, "{name}");
-        // Costs of one board are counted twice: they are the same on each board if they are on one.
+        // Costs are counted twice on one board only: if they repeat there, they repeat on all boards.
         if matches!(target, Target::M4f | Target::Host) {
             let archives = [&first, &second].map(|library| package::archive(library, &say).expect("an archive"));
             assert!(archives[0] == archives[1], "{name}");
@@ -211,7 +212,7 @@ fn two_builds_give_the_same_bytes() {
     }
 }
 
-/// A command that must succeed; what it says.
+/// Runs a command that must succeed and returns its output.
 fn must(command: &mut std::process::Command) -> String {
     let output = command.output().expect("a command");
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
@@ -219,8 +220,8 @@ fn must(command: &mut std::process::Command) -> String {
     said
 }
 
-/// A project of somebody else's: C99 and C++20, by `find_package`, by `add_subdirectory`, and as a module of Zephyr, whose
-/// two functions stand here for it.
+/// Project of a user: C99 and C++20, by `find_package`, by `add_subdirectory`, and as a Zephyr module, with stand-ins
+/// for Zephyr's two functions.
 const STRANGER: &str = r#"
 cmake_minimum_required(VERSION 3.13)
 project(stranger C CXX)
@@ -335,7 +336,7 @@ fn as_a_stranger(folder: &Path, root: &Path) {
         let mut compile = std::process::Command::new("gcc");
         compile.arg("-o").arg(&program).arg(project.join("program.c"));
         must(compile.args(flags.split_whitespace()));
-        // From another folder, as a user starts it.
+        // Started from another folder, as a user would.
         must(std::process::Command::new(&program).current_dir("/"));
         let needs = must(std::process::Command::new("readelf").arg("-d").arg(&program));
         assert_eq!(needs.contains(library::SONAME), is_shared, "{package}: {needs}");
@@ -346,14 +347,15 @@ fn example(name: &str) -> PathBuf {
     workspace().join("examples/c-motor-controller").join(name)
 }
 
-/// Joint Q1 without weight, as the test T2 has it.
+/// Joint Q1 without gravity, as in test T2.
 fn without_weight(rate: u32) -> JointFile {
     let mut joint = joint_at(Path::new("q1"), rate).expect("a joint");
     joint.surroundings.gravity_torque = 0.0;
     joint
 }
 
-/// Figures of the same controller in Rust, and its digest. Of the first two seconds it learns.
+/// Figures and digest of the same controller in Rust. The first two seconds, in which parameters are estimated, do not
+/// count.
 fn in_rust(joint: &JointFile, words: &[u64], mode: Mode) -> (Figures, u64) {
     let parameters = &joint.parameters;
     let half_backlash = parameters.sun_planet.half_backlash.first().copied().expect("meshes");
@@ -387,7 +389,7 @@ fn controller_in_c_removes_the_lost_motion() {
         let [with, without, _] = &expected.map(|(figures, _)| figures);
         let [gain, peak_gain] = [without.rms / with.rms, without.peak / with.peak];
         println!("{rate} Hz: gains {gain:.1} and {peak_gain:.1}\n  with {with:?}\n  without {without:?}");
-        // The bars of hil/t2.toml; its rivals are not written in C.
+        // Limits of hil/t2.toml; its rival controllers do not exist in C.
         assert!(gain >= 10.0 && peak_gain >= 3.0, "{gain} and {peak_gain}");
         assert!(with.lost_motion_time <= 10e-3 && with.peak_mesh_force <= 231.0, "{with:?}");
         let include = format!("-I{}", example("").display());
@@ -407,7 +409,7 @@ fn controller_in_c_removes_the_lost_motion() {
             let all = |word: &str| -> Vec<&str> { lines.iter().filter_map(|line| line.strip_prefix(word)).collect() };
             let digests = expected.map(|(_, digest)| format!("{digest:016x}"));
             assert_eq!(all("digest "), digests, "{} at {rate} Hz: every bit of the core's", machine.name);
-            // What it says of itself is what the truth of the same bits says.
+            // The figures that the program prints equal those of the true state.
             for (word, unit, expected) in [
                 ("rms_urad ", 1e6, with.rms),
                 ("peak_urad ", 1e6, with.peak),

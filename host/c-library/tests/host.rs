@@ -1,4 +1,4 @@
-//! The library on this machine, called from C and C++: the same bits as the core, whatever the caller was compiled with.
+//! The library on this machine, called from C and C++: bits equal to the core's, whatever the caller's compiler flags.
 
 use std::path::Path;
 use std::sync::LazyLock;
@@ -19,7 +19,7 @@ fn designed(joint: &str, rate: u32) -> CTables {
     tables::for_tests(&joint, true, &Board::emulated()).expect("tables")
 }
 
-/// The digest that a program says after so many periods.
+/// Digest that the test program prints after a number of periods.
 fn digest(bench: &Workbench, compiler: &str, flags: &[&str], periods: u32) -> u64 {
     let periods = format!("-DPERIODS={periods}u");
     let source = programs::folder().join("test_joint.c");
@@ -35,7 +35,7 @@ fn a_c_program_computes_what_the_core_computes_in_every_bit() {
         let bench = Workbench::new(&LIBRARY, &tables).expect("room");
         let expected = run::digest(&tables.words, PERIODS).expect("a run");
         assert_eq!(digest(&bench, "gcc", &["-std=c99", "-O2"], PERIODS), expected, "{rate} Hz");
-        // It flushes to zero, rounds otherwise and thinks that nothing is infinite: in its own code.
+        // These flags make the caller's code flush to zero, round differently and assume finite numbers.
         let wild = ["-std=c17", "-O3", "-ffast-math", "-march=native"];
         assert_eq!(digest(&bench, "gcc", &wild, PERIODS), expected, "{rate} Hz, -ffast-math");
     }
@@ -87,7 +87,7 @@ fn a_library_has_no_name_but_the_header_s_and_needs_no_library_of_c() {
     };
     assert_eq!(names(&["--defined-only", "--extern-only"]), library::functions().expect("a header"));
     assert_eq!(names(&["--undefined-only"]), ["memcpy", "memset"], "as the header states");
-    // Neither a panic nor what would say it: they are not linked, so nothing leads there.
+    // Neither a panic nor its message is linked, so no path leads to one.
     let all = names(&[]);
     assert!(all.len() > 50 && !all.iter().any(|name| name.contains("panic")), "{all:?}");
 }
@@ -95,7 +95,7 @@ fn a_library_has_no_name_but_the_header_s_and_needs_no_library_of_c() {
 #[test]
 fn a_width_probe_finds_the_width_bit_for_bit_and_what_was_learnt_goes_on_in_another_observer() {
     let mut joint = joint_at(Path::new("q1"), 10_000).expect("a joint");
-    // The hand that holds the link.
+    // High friction stands for the hand that holds the link.
     joint.surroundings.load_friction.coulomb = 50.0;
     let mut told = joint.clone();
     told.surroundings.load_friction.coulomb = 0.3;
@@ -134,7 +134,7 @@ fn a_wiring_check_names_what_is_reversed_bit_for_bit_as_the_core_does() {
     assert_eq!(said(&lines, "digest ").expect("a digest"), format!("{digest:016x}"));
 }
 
-/// Lines of a program that starts an observer, compiled with a header of the caller's.
+/// Lines of a program that starts an observer, compiled with a changed header.
 fn with_header(text: &str) -> Vec<String> {
     let bench = Workbench::new(&LIBRARY, &designed("q1", 10_000)).expect("room");
     std::fs::create_dir(bench.path("lostmotion")).expect("a folder");
@@ -171,7 +171,7 @@ fn unlooked_status_is_a_warning() {
     }
 }
 
-/// Set to try more sequences of wrong calls than the short form does.
+/// Environment variable with the number of sequences of wrong calls.
 const SEQUENCES: &str = "C_SEQUENCES";
 
 #[test]

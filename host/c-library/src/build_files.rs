@@ -153,14 +153,14 @@ build:
 ";
 
 fn zephyr_lists(target: Target) -> String {
-    let (option, mend) = match target {
+    let (option, remedy) = match target {
         Target::M4f | Target::M33 | Target::M7 => {
             ("CONFIG_FP_HARDABI", "it is for the hard-float ABI, so set CONFIG_FPU=y and CONFIG_FP_HARDABI=y")
         }
         Target::Host => ("CONFIG_64BIT", "it is for a host of 64 bits, so build for native_sim/native/64"),
     };
     format!(
-        "if(NOT {option})\n  message(FATAL_ERROR \"liblostmotion cannot be linked here: {mend}\")\nendif()\n\
+        "if(NOT {option})\n  message(FATAL_ERROR \"liblostmotion cannot be linked here: {remedy}\")\nendif()\n\
          zephyr_include_directories(../include)\n\
          zephyr_library_import(lostmotion ${{CMAKE_CURRENT_LIST_DIR}}/../lib/liblostmotion.a)\n"
     )

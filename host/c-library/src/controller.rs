@@ -22,7 +22,7 @@ pub enum Mode {
 
 /// State of the run before the torque of a period.
 #[derive(Debug)]
-pub struct Moment<'now> {
+pub struct PeriodState<'now> {
     /// Period since the start.
     pub period: u32,
     /// Reference position of the link [rad].
@@ -53,7 +53,7 @@ struct Angle {
 }
 
 impl Angle {
-    fn of(rad: f32) -> Self {
+    fn from_radians(rad: f32) -> Self {
         let square = rad * rad;
         Self {
             sine: rad * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0))),
@@ -61,20 +61,20 @@ impl Angle {
         }
     }
 
-    fn turned(self, by: Self) -> Self {
+    fn rotated_by(self, by: Self) -> Self {
         Self {
             cosine: self.cosine * by.cosine - self.sine * by.sine,
             sine: self.sine * by.cosine + self.cosine * by.sine,
         }
     }
 
-    fn swing(self) -> f32 {
+    fn turns(self) -> f32 {
         AMPLITUDE / TURN * (1.0 - self.cosine)
     }
 
     fn motion(self) -> Motion<f32> {
         Motion {
-            position: Position { turns: 0, fraction: OUTPUT_ZERO_TURNS + self.swing() },
+            position: Position { turns: 0, fraction: OUTPUT_ZERO_TURNS + self.turns() },
             speed: AMPLITUDE * TURN * self.sine,
             acceleration: AMPLITUDE * TURN * TURN * self.cosine,
         }
@@ -83,27 +83,28 @@ impl Angle {
 
 /// Runs the controller, passes the state before every period to `show`, and returns the digest. The joint must have
 /// three planets.
-pub fn run(words: &[u64], mode: Mode, mut show: impl FnMut(&Moment<'_>)) -> Outcome<u64> {
-    let broken = |error| Failure::new(format!("the tables: {error:?}"));
-    let blob = Blob::open(words).map_err(broken)?;
-    let (Gears::Three(gears), around) = blob.plant().map_err(broken)? else {
-        return Err(Failure::new("the controller is tried on a joint of three planets"));
+pub fn run(words: &[u64], mode: Mode, mut show: impl FnMut(&PeriodState<'_>)) -> Outcome<u64> {
+    let invalid_tables = |error| Failure::new(format!("invalid tables: {error:?}"));
+    let blob = Blob::open(words).map_err(invalid_tables)?;
+    let (Gears::Three(gears), around) = blob.plant().map_err(invalid_tables)? else {
+        return Err(Failure::new("the controller needs a joint with three planets"));
     };
-    let (observer_tables, tables) = (blob.observer().map_err(broken)?, blob.compensation().map_err(broken)?);
+    let (observer_tables, tables) =
+        (blob.observer().map_err(invalid_tables)?, blob.compensation().map_err(invalid_tables)?);
     let mut joint = VirtualJoint::new(gears, around);
     let mut observer = Observer::<f32, MAPPED>::new(observer_tables);
     let mut compensation = Compensation::new(tables);
     let (rate, period_s, lead) = (blob.header().control_rate, observer_tables.period, tables.crossing.lead);
     let (ratio, pole) = (tables.gear.motor_per_link, blob.header().bandwidth);
     let limit = tables.limits.motor * tables.gear.link_per_motor;
-    let (one_period, one_lead) = (Angle::of(TURN * period_s), Angle::of(TURN * lead));
+    let (one_period, one_lead) = (Angle::from_radians(TURN * period_s), Angle::from_radians(TURN * lead));
     let mut motor_zero = None;
-    let (mut at, mut integral, mut reference, mut running) = (Angle::of(0.0), 0.0_f32, 0.0_f32, 0);
+    let (mut phase, mut integral, mut reference, mut running) = (Angle::from_radians(0.0), 0.0_f32, 0.0_f32, 0);
     for period in 0..SECONDS * rate {
-        let (now, ahead) = (at.motion(), at.turned(one_lead).motion());
+        let (now, ahead) = (phase.motion(), phase.rotated_by(one_lead).motion());
         let command = TORQUE_CONSTANT * reference;
-        let wanted = f64::from(at.swing()) * std::f64::consts::TAU;
-        show(&Moment { period, wanted, joint: &joint, gears, command: command.into() });
+        let wanted = f64::from(phase.turns()) * std::f64::consts::TAU;
+        show(&PeriodState { period, wanted, joint: &joint, gears, command: command.into() });
         let mut samples = joint.samples();
         samples.torque = command;
         samples.motor.counts = (samples.motor.counts + MOTOR_ZERO) % MOTOR_COUNTS;
@@ -127,15 +128,15 @@ pub fn run(words: &[u64], mode: Mode, mut show: impl FnMut(&Moment<'_>)) -> Outc
             }
             Mode::WithoutCompensation => {
                 let motor = &estimates.motor;
-                let place = (motor.turns as f32 + motor.fraction) / ratio - motor_zero;
-                let error = TURN * (now.position.turns as f32 + now.position.fraction - place);
+                let position = (motor.turns as f32 + motor.fraction) / ratio - motor_zero;
+                let error = TURN * (now.position.turns as f32 + now.position.fraction - position);
                 let error_rate = now.speed - motor.speed / ratio;
-                let at_link = INERTIA
+                let link_torque = INERTIA
                     * (now.acceleration
                         + 3.0 * pole * error_rate
                         + 3.0 * pole * pole * error
                         + pole * pole * pole * integral);
-                let torque = at_link / ratio;
+                let torque = link_torque / ratio;
                 if torque > limit {
                     limit
                 } else if torque < -limit {
@@ -149,7 +150,7 @@ pub fn run(words: &[u64], mode: Mode, mut show: impl FnMut(&Moment<'_>)) -> Outc
         reference = torque / TORQUE_CONSTANT;
         joint.advance(TORQUE_CONSTANT * reference, 0.0);
         running = chain(chain(running, reference.to_bits().into()), joint.model().state_digest());
-        at = if (period + 1).is_multiple_of(rate) { Angle::of(0.0) } else { at.turned(one_period) };
+        phase = if (period + 1).is_multiple_of(rate) { Angle::from_radians(0.0) } else { phase.rotated_by(one_period) };
     }
     Ok(running)
 }

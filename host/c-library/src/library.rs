@@ -19,16 +19,16 @@ const PACKAGE: &str = "c-bindings";
 /// Soname of the shared library. The number grows when programs must be linked again.
 pub const SONAME: &str = "liblostmotion.so.0";
 /// Packages to build C programs for boards.
-const CROSS: [&str; 2] = ["gcc-arm-none-eabi", "libnewlib-arm-none-eabi"];
+const CROSS_PACKAGES: [&str; 2] = ["gcc-arm-none-eabi", "libnewlib-arm-none-eabi"];
 /// Packages to build C programs for this machine.
-const NATIVE: [&str; 1] = ["g++"];
+const NATIVE_PACKAGES: [&str; 1] = ["g++"];
 
 /// Inline threshold of the size-optimised library: observer and compensation take a fifth to a third more instructions
 /// and a third less flash than in the firmware's images. Without it the observer's worst case would double.
-const INLINED: &str = "-Cllvm-args=-inline-threshold=20";
+const INLINE_THRESHOLD: &str = "-Cllvm-args=-inline-threshold=20";
 
 /// Exported names of the core's own steps, in a library for measuring.
-const BARE: [&str; 7] = [
+const BARE_STEPS: [&str; 7] = [
     "joint_bare_samples",
     "joint_bare_command",
     "joint_bare_observer",
@@ -80,8 +80,8 @@ impl Target {
     /// Installs the C toolchain if it is missing.
     pub fn prepare(self, say: Say<'_>) -> Outcome<()> {
         let (probe, needed) = match self {
-            Self::Host => ("g++", &NATIVE[..]),
-            _ => ("arm-none-eabi-gcc", &CROSS[..]),
+            Self::Host => ("g++", &NATIVE_PACKAGES[..]),
+            _ => ("arm-none-eabi-gcc", &CROSS_PACKAGES[..]),
         };
         if tool::find(probe).is_some() {
             return Ok(());
@@ -150,33 +150,34 @@ pub fn build_in(folder: Option<&Path>, target: Target, features: &str, say: Say<
             let toolchain = folder.map_or_else(|| toolchain.clone(), |folder| toolchain.in_folder(folder));
             // A Cortex-M33 executes every instruction of a Cortex-M4F, so both targets share one build.
             let processor = if target == Target::M7 { "cortex-m7" } else { "cortex-m4" };
-            let flags = format!("-Ctarget-cpu={processor} {INLINED}");
+            let flags = format!("-Ctarget-cpu={processor} {INLINE_THRESHOLD}");
             (compile_library(&toolchain, PACKAGE, features, &flags, say)?, None, toolchain.compiler().to_owned())
         }
     };
-    let archive = one_object(target, &all, features.contains("measuring"))?;
+    let archive = link_single_object(target, &all, features.contains("measuring"))?;
     Ok(Library { target, archive, shared, compiler })
 }
 
 /// Archive with a single object, which exports only the functions of the header.
-fn one_object(target: Target, all: &[u8], measuring: bool) -> Outcome<Vec<u8>> {
-    let folder = tempfile::tempdir().map_err(|error| Failure::new(format!("no folder for a build: {error}")))?;
+fn link_single_object(target: Target, all: &[u8], measuring: bool) -> Outcome<Vec<u8>> {
+    let folder =
+        tempfile::tempdir().map_err(|error| Failure::new(format!("cannot create a folder for a build: {error}")))?;
     let place = |name: &str| folder.path().join(name);
-    let unwritten = |error: std::io::Error| Failure::new(format!("cannot write a part of the library: {error}"));
-    let unread = |error: object::Error| Failure::new(format!("the compiler's archive: {error}"));
+    let write_failure = |error: std::io::Error| Failure::new(format!("cannot write a part of the library: {error}"));
+    let parse_failure = |error: object::Error| Failure::new(format!("the compiler's archive: {error}"));
     let own = ArchiveFile::parse(all)
-        .map_err(unread)?
+        .map_err(parse_failure)?
         .members()
         .filter_map(Result::ok)
         .filter(|member| member.name().starts_with(PACKAGE.replace('-', "_").as_bytes()))
-        .map(|member| member.data(all).map_err(unread))
+        .map(|member| member.data(all).map_err(parse_failure))
         .collect::<Outcome<Vec<_>>>()?;
     let mut names = functions()?;
     if measuring {
-        names.extend(BARE.map(str::to_owned));
+        names.extend(BARE_STEPS.map(str::to_owned));
     }
-    fs::write(place("all.a"), all).map_err(unwritten)?;
-    fs::write(place("names"), names.join("\n")).map_err(unwritten)?;
+    fs::write(place("all.a"), all).map_err(write_failure)?;
+    fs::write(place("names"), names.join("\n")).map_err(write_failure)?;
     let mut link = Command::new(target.tool("ld"));
     link.current_dir(folder.path()).args(["-r", "--gc-sections"]);
     names.iter().for_each(|name| {
@@ -185,7 +186,7 @@ fn one_object(target: Target, all: &[u8], measuring: bool) -> Outcome<Vec<u8>> {
     link.args(["-o", "linked.o"]);
     for (index, data) in own.iter().enumerate() {
         let name = format!("own{index}.o");
-        fs::write(place(&name), data).map_err(unwritten)?;
+        fs::write(place(&name), data).map_err(write_failure)?;
         link.arg(name);
     }
     // On a board the helpers (`__aeabi_...`) come from its C compiler; on a host the rest of the archive supplies them.

@@ -38,7 +38,7 @@ The archive holds headers for C and C++, library, CMake and pkg-config files, li
 library.json for PlatformIO, module.yml for Zephyr, the licence, a table of costs and a test program. Two builds of one checkout give the same bytes. Tables of a joint come from
 `joint tables`.")]
 pub struct Arguments {
-    /// What the library is for
+    /// Target of the library
     #[arg(long, value_enum)]
     pub target: Target,
     /// Folder for the archive [default: joint-out/library/TARGET]
@@ -54,7 +54,7 @@ pub fn run(arguments: &Arguments) -> Outcome<String> {
         progress.stage("building the library");
         let say = |line: &str| progress.say(line);
         let library = library::build(target, "library", &say)?;
-        progress.stage("counting what it costs");
+        progress.stage("counting costs");
         let archive = archive(&library, &say)?;
         Ok((library, archive))
     })?;
@@ -86,16 +86,16 @@ pub fn archive(library: &Library, say: Say<'_>) -> Outcome<Vec<u8>> {
         header
     };
     let path = |name: &str| format!("{}/{name}", prefix(library.target));
-    let unpacked = |name: &str, error| Failure::new(format!("cannot pack {name}: {error}"));
+    let pack_failure = |name: &str, error| Failure::new(format!("cannot pack {name}: {error}"));
     for (name, bytes) in contents(library, say)? {
         let mut header = new_header(tar::EntryType::Regular, &bytes);
         let packed = builder.append_data(&mut header, path(&name), Cursor::new(bytes));
-        packed.map_err(|error| unpacked(&name, error))?;
+        packed.map_err(|error| pack_failure(&name, error))?;
     }
     if library.shared.is_some() {
         let mut header = new_header(tar::EntryType::Symlink, &[]);
         let packed = builder.append_link(&mut header, path(LINKED_NAME), SONAME);
-        packed.map_err(|error| unpacked(LINKED_NAME, error))?;
+        packed.map_err(|error| pack_failure(LINKED_NAME, error))?;
     }
     builder.into_inner().map_err(|error| Failure::new(format!("cannot pack the library: {error}")))
 }
@@ -191,8 +191,8 @@ fn readme(target: Target) -> String {
     let flags = if flags.is_empty() { "none in particular" } else { &flags };
     format!(
         "# lostmotion {VERSION} for C and C++, target {}\n\n\
-         Observer, compensation, width probe and plant of a geared joint with backlash. `include/lostmotion/joint.h` says all that\n\
-         its caller must know; `include/lostmotion/joint.hpp` is a C++ interface over it. COSTS.md has flash, RAM, stack and\n\
+         Observer, compensation, width probe and plant of a geared joint with backlash. `include/lostmotion/joint.h` documents\n\
+         the interface; `include/lostmotion/joint.hpp` is a C++ interface over it. COSTS.md has flash, RAM, stack and\n\
          instructions of each call.\n\n\
          ## {title}\n\n\
          1. Write the tables of your joint: `joint tables my_joint.toml --out tables`, where this archive was written.\n\
@@ -214,11 +214,11 @@ fn readme(target: Target) -> String {
 /// COSTS: flash, RAM, stack and instructions.
 fn costs_page(library: &Library, joint: &joint_file::JointFile, say: Say<'_>) -> Outcome<String> {
     let mut page = format!("# Costs, target {}\n\nBuilt by {}.\n", library.target.name(), library.compiler);
-    page += &match costs::machine(library.target) {
+    page += &match costs::machine_for(library.target) {
         None => "\nNothing is counted on a host: its compiler and processor decide.\n".to_owned(),
         Some(machine) => {
             emulator::ensure(say)?;
-            costs::section(&costs::Costs::of(library, joint, machine)?, joint, machine)
+            costs::section(&costs::Costs::measure(library, joint, machine)?, joint, machine)
         }
     };
     Ok(page)

@@ -49,7 +49,8 @@ pub struct Workbench {
 impl Workbench {
     /// Creates the folder with its files.
     pub fn new(library: &Library, tables: &CTables) -> Outcome<Self> {
-        let folder = tempfile::tempdir().map_err(|error| Failure::new(format!("no folder for a build: {error}")))?;
+        let folder = tempfile::tempdir()
+            .map_err(|error| Failure::new(format!("cannot create a folder for a build: {error}")))?;
         let bench = Self { folder, target: library.target };
         bench.write("liblostmotion.a", &library.archive)?;
         bench.write("test_tables.h", tables.header().as_bytes())?;
@@ -95,7 +96,7 @@ impl Workbench {
     /// Compiles a program for an emulated machine.
     pub fn compile_for(&self, machine: Machine, sources: &[&Path], flags: &[&str]) -> Outcome<PathBuf> {
         if machine.target != self.target {
-            return Err(Failure::new(format!("{} is no {}", machine.name, self.target.name())));
+            return Err(Failure::new(format!("{} is not a machine of target {}", machine.name, self.target.name())));
         }
         let (program, board) = (self.path(&format!("{}.elf", machine.name)), folder().join("board"));
         let mut command = Command::new(self.target.tool("gcc"));
@@ -141,6 +142,6 @@ pub fn run_on(machine: Machine, program: &Path) -> Outcome<Vec<String>> {
 }
 
 /// Text after a prefix, in the first line with it.
-pub fn said(lines: &[String], word: &str) -> Option<String> {
+pub fn value_after(lines: &[String], word: &str) -> Option<String> {
     lines.iter().find_map(|line| line.strip_prefix(word)).map(|rest| rest.trim().to_owned())
 }

@@ -12,16 +12,16 @@ use table_blob::{Blob, Gears};
 
 /// Digest after a number of periods, from the tables of the C program.
 pub fn digest(words: &[u64], periods: u32) -> Outcome<u64> {
-    let broken = |error| Failure::new(format!("the tables: {error:?}"));
-    let blob = Blob::open(words).map_err(broken)?;
-    let (gears, around) = blob.plant().map_err(broken)?;
+    let invalid_tables = |error| Failure::new(format!("invalid tables: {error:?}"));
+    let blob = Blob::open(words).map_err(invalid_tables)?;
+    let (gears, around) = blob.plant().map_err(invalid_tables)?;
     match gears {
         Gears::One(gears) => closed_loop(&blob, gears, around, periods),
         Gears::Three(gears) => closed_loop(&blob, gears, around, periods),
         Gears::Four(gears) => closed_loop(&blob, gears, around, periods),
         Gears::Five(gears) => closed_loop(&blob, gears, around, periods),
     }
-    .map_err(broken)
+    .map_err(invalid_tables)
 }
 
 fn closed_loop<const N: usize>(
@@ -98,12 +98,12 @@ fn motion(scale: u32, period: u32) -> Motion<f32> {
 
 /// Wiring checks of `bindings/c/programs/wiring.c` on the core itself: digest of the torques.
 pub fn wiring_digest(words: &[u64]) -> Outcome<u64> {
-    let broken = |error| Failure::new(format!("the tables: {error:?}"));
-    let blob = Blob::open(words).map_err(broken)?;
-    let (Gears::Three(gears), around) = blob.plant().map_err(broken)? else {
-        return Err(Failure::new("the wiring is checked on a joint of three planets"));
+    let invalid_tables = |error| Failure::new(format!("invalid tables: {error:?}"));
+    let blob = Blob::open(words).map_err(invalid_tables)?;
+    let (Gears::Three(gears), around) = blob.plant().map_err(invalid_tables)? else {
+        return Err(Failure::new("the wiring check needs a joint with three planets"));
     };
-    let table = blob.wiring().map_err(broken)?;
+    let table = blob.wiring().map_err(invalid_tables)?;
     let mut running = START;
     for miswiring in 0..4 {
         let (mut joint, mut check) = (VirtualJoint::new(gears, around), WiringCheck::new(table));
@@ -131,14 +131,16 @@ pub fn wiring_digest(words: &[u64]) -> Outcome<u64> {
 /// Width probe of `bindings/c/programs/probe.c` on the core itself: digest of torques and widths over a number of
 /// periods.
 pub fn probe_digest(words: &[u64], periods: u32) -> Outcome<u64> {
-    let broken = |error| Failure::new(format!("the tables: {error:?}"));
-    let blob = Blob::open(words).map_err(broken)?;
-    let (Gears::Three(gears), around) = blob.plant().map_err(broken)? else {
-        return Err(Failure::new("the probe is tried on a joint of three planets"));
+    let invalid_tables = |error| Failure::new(format!("invalid tables: {error:?}"));
+    let blob = Blob::open(words).map_err(invalid_tables)?;
+    let (Gears::Three(gears), around) = blob.plant().map_err(invalid_tables)? else {
+        return Err(Failure::new("the width probe needs a joint with three planets"));
     };
     let mut joint = VirtualJoint::new(gears, around);
-    let (observer, compensation) = (blob.observer().map_err(broken)?, blob.compensation().map_err(broken)?);
-    let mut controller = Controller::new(observer, compensation).with_probe(Some(blob.probe().map_err(broken)?));
+    let (observer, compensation) =
+        (blob.observer().map_err(invalid_tables)?, blob.compensation().map_err(invalid_tables)?);
+    let mut controller =
+        Controller::new(observer, compensation).with_probe(Some(blob.probe().map_err(invalid_tables)?));
     let mut running = START;
     for _ in 0..periods {
         let answer = controller.probe(&joint.samples());

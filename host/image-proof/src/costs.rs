@@ -1,6 +1,6 @@
-//! Instructions that the certificate promises, against those counted on the emulated board: what a step takes while
-//! contact holds and with all teeth apart, and that neither a searched state nor a way through the machine code takes more than
-//! the bound.
+//! Compares the instructions stated by the certificate with those counted on the emulated board: a step while contact
+//! holds and with all teeth apart. Also checks that neither a searched state nor a path through the machine code
+//! exceeds the certificate's bound.
 
 use model_core::gears::design::{Cost, Substeps};
 use parameters::{Excitation, JointParameters};
@@ -13,25 +13,25 @@ use board::device::toolchain::Toolchain;
 use board::device::{Say, measuring};
 use report::failure::{Failure, Outcome};
 
-/// How far a prediction may be off the count: fits over joints leave 5 %.
+/// Relative tolerance of a prediction; the fits over joints leave 5 %.
 const MARGIN: f64 = 0.06;
-/// A bound beyond this many times the worst state that was found says too little.
+/// Limit of the certificate's bound over the worst state found; a bound above it is too loose to be useful.
 const WIDEST: f64 = 1.6;
 
-/// Instructions counted of one joint.
+/// Instructions counted for a joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Counted {
-    /// The joint.
+    /// Name of the joint.
     pub name: String,
-    /// Parts of its tick where contacts change.
+    /// Sub-steps of a tick in which contacts change.
     pub parts: Substeps,
-    /// Under a load.
+    /// Instructions under a load.
     pub holding: u32,
-    /// At rest in the middle of its gaps.
+    /// Instructions at rest in the middle of the gaps.
     pub apart: u32,
 }
 
-/// Counts on the emulated board.
+/// Counts instructions on the emulated board.
 pub fn count(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<Counted>> {
     let files = write_files(toolchain.target_directory())?;
     let elf = measuring::build_measuring(toolchain, "costs", &files, DEFAULT_TICK_RATE, say)?;
@@ -46,8 +46,8 @@ fn parse(line: &str) -> Option<Counted> {
     Some(Counted { name, parts, holding: number()?, apart: number()? })
 }
 
-/// Holds predictions against counts, and bounds against the search for the worst case and those of the machine code; returns a
-/// line for each joint.
+/// Compares predictions with counts, and bounds with the searched worst case and with the machine code. Returns a line
+/// per joint.
 pub fn judge(counted: &[Counted], searched: &[Search], bounds: &[Bound]) -> Outcome<Vec<String>> {
     TEST_JOINTS
         .iter()

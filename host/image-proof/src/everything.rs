@@ -1,5 +1,5 @@
-//! What `joint hil --check` does after the run: every board's image and what its tick can reach, clippy over the
-//! firmware, the proofs about the step that need the emulated board, and the tests that need it.
+//! Second part of `joint hil --check`: the image of every board and the reach of its tick, clippy over the firmware,
+//! the proofs about the step on the emulated board, and the tests that need the emulated board.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -19,7 +19,7 @@ use report::output;
 use report::progress::Progress;
 use report::workspace::workspace;
 
-/// Runs all of it; the first failure ends it.
+/// Runs all checks; the first failure ends them.
 pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
     let say = |line: &str| progress.say(line);
     progress.stage("preparing the toolchain");
@@ -27,7 +27,7 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
     let joint = named::load(Path::new("q1"))?.file.parameters;
     let mut seen: Vec<Chip> = Vec::new();
     for board in &Board::presets()? {
-        // Boards differ in pins and clock; what a role is made of is the same on all with a chip.
+        // Boards with the same chip differ in pins and clock only, so the roles are checked on the first one.
         let is_first = !seen.contains(&board.chip());
         seen.push(board.chip());
         let control_rate = |role| tick_time::default_control_rate(&joint, board, role);
@@ -74,7 +74,7 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
     board_model::check(progress)
 }
 
-/// Same bits, instructions and worst case, of this program against the emulated board.
+/// Equal bits, instructions and worst case, of this program against the emulated board.
 fn proofs(toolchain: &Toolchain, progress: &Progress) -> Outcome<()> {
     let say = |line: &str| progress.say(line);
     progress.stage("comparing bits between the emulated board and this program");
@@ -109,8 +109,8 @@ fn proofs(toolchain: &Toolchain, progress: &Progress) -> Outcome<()> {
     output::print("ok       worst case of a step within its budget\n")
 }
 
-/// The tests that are left out of `cargo test`, with cargo's own output; of the same packages, whose features are then those
-/// that `cargo test` has just built.
+/// Runs the tests that `cargo test` ignores, with cargo's own output; the packages and thus the features are those that
+/// `cargo test` has just built.
 fn emulator_tests() -> Outcome<()> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let status = Command::new(cargo)

@@ -1,6 +1,6 @@
-//! Instructions of the roles that control, and of the observer alone, counted tick by tick on the emulated board over a
-//! motion with reversals, disturbance torques and a silent encoder, and compared with the time that a control period
-//! leaves. The plant's step is bounded over all states in `worst_case`.
+//! Instructions of the roles with a controller, and of the observer alone, counted tick by tick on the emulated board
+//! over a motion with reversals, disturbance torques and a silent encoder, and compared with the time of a control
+//! period. The plant's step is bounded over all states in `worst_case`.
 
 use std::fmt;
 use std::path::Path;
@@ -19,19 +19,19 @@ use report::failure::{Failure, Outcome};
 /// Instructions of a role's tick.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RoleCost {
-    /// The role.
+    /// Name of the role.
     pub role: String,
-    /// The joint.
+    /// Name of the joint.
     pub joint: String,
-    /// Control periods.
+    /// Number of control periods.
     pub periods: u32,
-    /// Mean.
+    /// Mean instructions.
     pub mean: f64,
-    /// Most.
+    /// Maximum instructions.
     pub most: u32,
-    /// The period that took the most.
+    /// Control period with the maximum.
     pub at: u32,
-    /// What it keeps in memory [B].
+    /// State of the role in memory [B].
     pub bytes: u32,
 }
 
@@ -47,7 +47,7 @@ impl fmt::Display for RoleCost {
     }
 }
 
-/// Counts on the emulated board.
+/// Counts instructions on the emulated board.
 pub fn count(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<RoleCost>> {
     let elf = measuring::build_measuring(toolchain, "roles", &[], CONTROL_RATE, say)?;
     measuring::read(&elf, parse)
@@ -63,14 +63,14 @@ fn parse(line: &str) -> Option<RoleCost> {
     Some(RoleCost { role, joint, periods, mean: sum / f64::from(periods.max(1)), most, at, bytes })
 }
 
-/// Part of a control period of the emulated board that a tick of so many instructions takes.
+/// Part of a control period of the emulated board that a number of instructions takes.
 pub fn part(instructions: f64) -> f64 {
     instructions * CYCLES_AN_INSTRUCTION * f64::from(CONTROL_RATE) / f64::from(Chip::Stm32f405.core_rate())
 }
 
-/// Fails if a role's worst tick takes more of a control period than it may.
+/// Fails if a role's worst tick exceeds its part of a control period.
 pub fn judge(costs: &[RoleCost]) -> Outcome<()> {
-    // What images are refused by is no less than what is counted.
+    // The bounds by which images are rejected must not be below the counts.
     let (board, joint) = (Board::emulated(), named::load(Path::new("q1"))?.file.parameters);
     let promised = |role| {
         RateCheck::new(&joint, &board, role).tick_time(CONTROL_RATE).map_or(f64::INFINITY, |time| time.instructions)

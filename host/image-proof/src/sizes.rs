@@ -1,13 +1,13 @@
-//! Sizes of images against those that `joint board check` predicts from, `images` of `host/board-file/src/chip`.
+//! Compares sizes of images with those from which `joint board check` predicts, `images` in `host/board-file/src/chip`.
 
 use board::device::board::Chip;
 use board::device::image::Image;
 use report::failure::{Failure, Outcome};
 
-/// Part by which an image may differ: boards and compilers differ by 2 % at most (measured on the presets).
+/// Relative tolerance of a size; boards and compilers differ by at most 2 % (measured on the presets).
 const TOLERANCE: f64 = 0.05;
 
-/// Fails if an image takes other memory than its chip's file says of the role, which is named as `--role` names it.
+/// Fails if the size of an image differs from its chip's entry for the role, as named by `--role`.
 pub fn judge(chip: Chip, role: &str, image: &Image) -> Outcome<()> {
     let Some(known) = chip.image_size(role) else { return Ok(()) };
     let found = [image.flash_bytes, image.ram_bytes];

@@ -1,6 +1,6 @@
-//! The worst case of a tick: instructions of one step from many randomly drawn states (trials), counted on the emulated
-//! board without serial traffic and compared with the time that the joint's tick rate leaves. The states come from the
-//! crate `stimuli`.
+//! Worst case of a tick: instructions of one step from many random states (trials), counted on the emulated board
+//! without serial traffic and compared with the time that the tick rate allows. The states come from the crate
+//! `stimuli`.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -14,70 +14,70 @@ use board::device::toolchain::Toolchain;
 use board::device::{Say, measuring};
 use report::failure::{Failure, Outcome};
 
-/// Part of a period that the worst step may take: one and a half times the half of the processor that a step may have
-/// on the average. The rest is for whatever else the board does.
+/// Part of a period allowed for the worst step: one and a half times the half that a step may take on average. The rest
+/// is for the board's other work.
 const WORST_SHARE: f64 = 0.75;
-/// Cycles an instruction of a Cortex-M4F in this code, from the timing tables of its manual weighted by a trace.
+/// Cycles per instruction of a Cortex-M4F in this code, from the timing tables of its manual weighted by a trace.
 pub const CYCLES_AN_INSTRUCTION: f64 = 1.4;
 
-/// Instructions of one sort of trials.
+/// Instructions of one group of trials.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Count {
-    /// The sort.
+    /// Name of the group.
     pub name: String,
     /// Number of trials.
     pub trials: u32,
-    /// Mean instructions a tick.
+    /// Mean instructions per tick.
     pub mean: f64,
-    /// Most instructions a tick.
+    /// Maximum instructions per tick.
     pub most: u32,
-    /// The first trial that took the most.
+    /// First trial with the maximum.
     pub trial: u32,
 }
 
-/// What the search found for a joint.
+/// Result of the search for a joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Search {
-    /// The joint.
+    /// Name of the joint.
     pub name: String,
-    /// Its planets.
+    /// Number of planets.
     pub planets: u32,
-    /// How its tick goes through contacts that change.
+    /// Sub-steps of a tick in which contacts change.
     pub parts: Substeps,
     /// Seed of the trials.
     pub seed: u64,
-    /// By what the contact set did.
+    /// Counts by the change of the contact set.
     pub classes: Vec<Count>,
-    /// By how the trial came about.
+    /// Counts by the origin of the trial.
     pub kinds: Vec<Count>,
-    /// The trial that took the most.
+    /// State of the worst trial.
     pub state: String,
 }
 
 impl Search {
-    /// The class with the worst trial.
+    /// Class with the worst trial.
     pub fn worst(&self) -> Option<&Count> {
         self.classes.iter().max_by_key(|count| count.most)
     }
 
-    /// Most instructions of a tick.
+    /// Maximum instructions of a tick.
     pub fn most(&self) -> u32 {
         self.worst().map_or(0, |worst| worst.most)
     }
 
-    /// Trials in all.
+    /// Number of all trials.
     pub fn trials(&self) -> u32 {
         self.classes.iter().map(|count| count.trials).sum()
     }
 }
 
-/// Most instructions that a step may take at a tick rate on a board.
+/// Instructions allowed for a step at a tick rate on a board.
 pub fn budget(chip: Chip, tick_rate: u32) -> u32 {
     let period = f64::from(chip.core_rate()) / f64::from(tick_rate);
     (WORST_SHARE * period / CYCLES_AN_INSTRUCTION) as u32
 }
 
-/// Builds the image that searches, with the test joints; returns the ELF file.
+/// Builds the searching image with the test joints; returns the ELF file.
 pub fn build(toolchain: &Toolchain, say: Say<'_>) -> Outcome<PathBuf> {
     let files = write_files(toolchain.target_directory())?;
     measuring::build_measuring(toolchain, "worst_case", &files, DEFAULT_TICK_RATE, say)
@@ -90,7 +90,7 @@ pub fn search(elf: &Path) -> Outcome<Vec<Search>> {
     Ok(found)
 }
 
-/// Takes in a line of the board.
+/// Parses a line of the board and adds it to the results.
 pub(crate) fn parse(line: &str, found: &mut Vec<Search>) -> Option<()> {
     let (sort, rest) = line.split_once(';')?;
     let mut fields = rest.split(';');
@@ -121,11 +121,11 @@ pub(crate) fn parse(line: &str, found: &mut Vec<Search>) -> Option<()> {
     Some(())
 }
 
-/// Joints whose tick `design` fits to the emulated board at the usual rate today. The others are searched and shown: the
-/// paper's joint asks for a lower rate, and five planets or a state that is no number for more time than is left.
+/// Joints whose tick is designed to fit the emulated board at the default rate. The others are only shown: the paper's
+/// joint needs a lower rate, and five planets or a state that is not finite need more time than is left.
 const FITTED: [&str; 2] = ["Q1", "L1 with 4 planets"];
 
-/// Fails if a step of a joint that is fitted to the emulated board may take too long there.
+/// Fails if a step of a fitted joint exceeds its time on the emulated board.
 pub fn judge(found: &[Search]) -> Outcome<()> {
     let chip = Chip::Stm32f405;
     let budget = budget(chip, DEFAULT_TICK_RATE);
@@ -192,7 +192,7 @@ mod tests {
 
     #[test]
     fn the_budget_follows_board_and_rate() {
-        // 75 % of 8400 cycles at 1.4 cycles an instruction.
+        // 75 % of 8400 cycles at 1.4 cycles per instruction.
         assert_eq!(budget(Chip::Stm32f405, 20_000), 4500);
         assert_eq!(budget(Chip::Stm32f405, 10_000), 9000);
     }

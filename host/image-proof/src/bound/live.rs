@@ -1,5 +1,5 @@
-//! Which registers a function still looks at from an instruction on. What nobody looks at may be forgotten, so that states
-//! which differ there alone are one. Too little found alive only loosens the bound.
+//! Liveness of registers. Dead registers can be forgotten, so that states that differ only in them merge. A register
+//! wrongly found dead would only loosen the bound.
 
 use std::collections::BTreeMap;
 
@@ -11,21 +11,21 @@ use super::operation::{
 use crate::tick::functions::{Function, Functions};
 use crate::tick::thumb::Flow;
 
-/// Registers and flags, a bit each: 16 core registers, 32 single ones, the flags of both.
+/// Set of registers and flags, one bit each: 16 core registers, 32 single-precision ones, the flags of both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Live(u64);
 
 const FLAGS: Live = Live(1 << 48);
 const FLOAT_FLAGS: Live = Live(1 << 49);
-/// What a callee takes its arguments from.
+/// Registers that may hold a callee's arguments.
 const ARGUMENTS: Live = Live(0x200f | 0xffff << 16);
-/// What it may leave otherwise than it found it.
+/// Registers that a callee may change.
 const SCRATCH: Live = Live(0x500f | 0xffff << 16 | 3 << 48);
 
 impl Live {
-    /// Everything.
+    /// All registers.
     pub const ALL: Self = Self(u64::MAX);
-    /// Nothing.
+    /// No register.
     const NONE: Self = Self(0);
 
     fn core(register: Register) -> Self {
@@ -40,7 +40,7 @@ impl Live {
         Self(list.into())
     }
 
-    /// A single register.
+    /// Set of one single-precision register.
     pub fn of_single(single: Single) -> Self {
         Self::single(single)
     }
@@ -49,7 +49,7 @@ impl Live {
         (0..count).fold(Self::NONE, |row, index| row.and(Self::single(first.saturating_add(index))))
     }
 
-    /// Both together.
+    /// Union.
     pub const fn and(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
@@ -58,37 +58,37 @@ impl Live {
         Self(self.0 & !other.0)
     }
 
-    /// Whether two have something in common.
+    /// Returns whether two sets intersect.
     pub fn meets(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
 
-    /// Whether a core register is among them.
+    /// Returns whether a core register is in the set.
     pub fn has_core(self, register: Register) -> bool {
         self.0 & Self::core(register).0 != 0
     }
 
-    /// Whether a single register is among them.
+    /// Returns whether a single-precision register is in the set.
     pub fn has_single(self, single: Single) -> bool {
         self.0 & Self::single(single).0 != 0
     }
 
-    /// Whether the flags are, of the core and of the floating-point unit.
+    /// Returns whether the flags of the core and of the floating-point unit are in the set.
     pub fn has_flags(self) -> [bool; 2] {
         [self.0 & FLAGS.0 != 0, self.0 & FLOAT_FLAGS.0 != 0]
     }
 }
 
-/// What an operation looks at, and what it sets.
+/// Registers that an operation uses and sets.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Effect {
-    /// Looks at.
+    /// Used registers.
     pub uses: Live,
-    /// Sets, whole.
+    /// Registers that are set as a whole.
     pub sets: Live,
 }
 
-/// Uses and sets of an operation.
+/// Registers used and set by an operation.
 pub fn effect(operation: &Operation) -> Effect {
     let core = Live::core;
     let address = |at: &Address| match at.offset {
@@ -155,14 +155,14 @@ pub fn effect(operation: &Operation) -> Effect {
     Effect { uses, sets }
 }
 
-/// Uses and sets of an instruction in its function.
+/// Registers used and set by an instruction in its function.
 fn effect_at(functions: &Functions, function: &Function, address: u32) -> Effect {
     let (first, second) = functions.halves(address);
     let own = effect(&operation(first, second));
     let flow = function.code.get(&address).map(|instruction| instruction.flow);
     match flow {
         Some(Flow::Next) | None => own,
-        // A comparison of a register with zero has its register where a conditional branch has part of its distance.
+        // `cbz` and `cbnz` hold their register where a conditional branch holds part of its distance.
         Some(Flow::Branch(_)) if first & 0xf500 == 0xb100 => {
             Effect { uses: Live::core((first & 7) as Register), sets: Live::NONE }
         }
@@ -179,7 +179,7 @@ fn effect_at(functions: &Functions, function: &Function, address: u32) -> Effect
     }
 }
 
-/// What is alive before every instruction of a function.
+/// Live registers before every instruction of a function.
 pub fn registers(
     functions: &Functions,
     function: &Function,
@@ -189,7 +189,7 @@ pub fn registers(
 ) -> BTreeMap<u32, Live> {
     let effect = |address: &u32| {
         let effect = effect_at(functions, function, *address);
-        // What may be skipped may leave all as it was.
+        // A conditional instruction may leave all registers unchanged.
         let sets = if conditions.contains_key(address) { Live::NONE } else { effect.sets };
         (*address, Effect { sets, ..effect })
     };

@@ -1,10 +1,10 @@
-//! The longest way through the image from an entry on: every way that the known values leave open is gone, loops round by
-//! round and calls in their callers' places, and where ways meet the greater count is carried on. That is the longest path
-//! over the unrolled control flow, exact for what is known of the values there.
+//! Longest path through the image from an entry: paths that known values exclude are pruned, loops are unrolled round
+//! by round, calls are inlined, and at joins the larger count is kept. The result is the longest path over the unrolled
+//! control flow, exact for the known values.
 //!
-//! A place is a row of calls, of loops with their rounds, and of an instruction's position in its function. Positions grow
-//! along every way (`graph`), rounds grow too, so that the rows are in an order in which all that leads to a place comes
-//! before it.
+//! A place is a sequence of calls, of loops with their rounds, and of an instruction's position in its function.
+//! Positions grow along every path (`graph`) and rounds grow too, so that the lexicographic order of the sequences
+//! visits every predecessor of a place before the place.
 
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
@@ -20,30 +20,30 @@ use crate::tick::functions::{Function, Functions};
 use crate::tick::thumb::Flow;
 use crate::tick::walk::is_panic;
 
-/// States that are kept apart where ways meet; the most alike beyond them become one.
+/// Limit of separate states at a join; the most similar ones above it are merged.
 const KEPT_APART: usize = 4;
-/// No loop of a tick goes round more often: what does has no bound.
+/// Limit of rounds of a loop; a loop above it counts as unbounded.
 const MOST_ROUNDS: u32 = 1024;
 
-/// Why there is no bound.
+/// Reason for which there is no bound.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Refused {
-    /// A loop may go round for ever.
+    /// Loop without a provable limit.
     Unbounded(u32),
-    /// A loop has more than one way in.
+    /// Loop with more than one entry.
     Irreducible(u32),
-    /// Where control goes is not known.
+    /// Jump to an unknown target.
     Lost(u32),
-    /// An instruction is not known.
+    /// Unknown instruction.
     Instruction(u32),
-    /// A function calls itself.
+    /// Recursive function.
     Recursion(u32),
-    /// A panic or a trap can be reached.
+    /// Reachable panic or trap.
     Stops(u32),
 }
 
 impl Refused {
-    /// The instruction.
+    /// Address of the instruction.
     pub fn at(&self) -> u32 {
         match *self {
             Self::Unbounded(at)
@@ -56,10 +56,10 @@ impl Refused {
     }
 }
 
-/// What is counted along a way.
+/// Costs of a path.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Cost {
-    /// Instructions, those that a condition skips included.
+    /// Instructions, including those skipped by a condition.
     pub instructions: u32,
     /// Cycles of a Cortex-M4 without wait states.
     pub cycles: u32,
@@ -71,29 +71,29 @@ impl Cost {
     }
 }
 
-/// The answer.
+/// Result of the search.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Longest {
-    /// The greatest counts; each may be of a way of its own.
+    /// Largest costs; instructions and cycles may belong to different paths.
     pub cost: Cost,
-    /// Loops by their heads, with the most rounds that the values leave open.
+    /// Loops by their heads, with the largest number of rounds that the known values allow.
     pub loops: BTreeMap<u32, u32>,
-    /// Entries of all functions that were gone through.
+    /// Entries of all visited functions.
     pub functions: BTreeSet<u32>,
 }
 
-/// A call that is under way.
+/// Call on the stack of calls.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Frame {
     function: u32,
     rounds: Vec<(u32, u32)>,
-    /// The call.
+    /// Address of the call.
     at: u32,
-    /// Where it goes on; nowhere after a jump into another function.
+    /// Return address; `None` after a jump into another function.
     back: Option<u32>,
 }
 
-/// Where control is.
+/// Place in the unrolled control flow.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Place {
     callers: Rc<Vec<Frame>>,
@@ -102,23 +102,23 @@ struct Place {
     at: u32,
 }
 
-/// A row that orders places.
+/// Key that orders places.
 type Key = Vec<u32>;
 
 #[derive(Debug, Clone)]
 struct State {
     machine: Machine,
     cost: Cost,
-    /// Registers whose values the next instruction has to wait for.
+    /// Registers whose values arrive one cycle late for the next instruction.
     late: Live,
 }
 
-/// The search.
+/// Search for the longest path.
 pub struct Search<'a> {
     functions: &'a Functions,
     graphs: BTreeMap<u32, Graph>,
     open: BTreeMap<Key, (Place, Vec<State>)>,
-    /// What was known at the head of a loop a round before.
+    /// States at the head of a loop one round earlier.
     heads: BTreeMap<Key, Vec<Machine>>,
     lowest_stack: u32,
     found: Longest,
@@ -132,7 +132,7 @@ impl Constants for Functions {
 }
 
 impl<'a> Search<'a> {
-    /// Over an image. The stack reaches down to `lowest_stack` at most.
+    /// Search over an image whose stack ends at `lowest_stack`.
     pub fn new(functions: &'a Functions, lowest_stack: u32) -> Self {
         Self {
             functions,
@@ -145,7 +145,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The longest way from a function's entry to its return.
+    /// Longest path from a function's entry to its return.
     pub fn run(mut self, entry: u32, machine: Machine) -> Result<Longest, Refused> {
         let callers = Rc::new(Vec::new());
         let state = State { machine, cost: Cost::default(), late: Live::default() };
@@ -192,7 +192,7 @@ impl<'a> Search<'a> {
         key
     }
 
-    /// States where ways meet: what is not looked at any more is forgotten, equal ones are one.
+    /// Reduces the states at a join: dead registers are forgotten, and equal states are merged.
     fn met(&self, place: &Place, states: Vec<State>) -> Vec<State> {
         let live = self.graphs[&place.function].live(place.at);
         let mut kept: Vec<State> = Vec::new();
@@ -215,7 +215,7 @@ impl<'a> Search<'a> {
         kept
     }
 
-    /// Counts rounds, and refuses a loop whose next round is like the last.
+    /// Counts rounds, and rejects a loop whose state repeats.
     fn watch_loop(&mut self, key: &Key, place: &Place, states: &[State]) -> Result<(), Refused> {
         let Some((_, round)) = place.rounds.last().filter(|(head, _)| *head == place.at) else { return Ok(()) };
         let most = self.found.loops.entry(place.at).or_default();
@@ -232,7 +232,7 @@ impl<'a> Search<'a> {
         if nothing_new || *round >= MOST_ROUNDS { Err(Refused::Unbounded(place.at)) } else { Ok(()) }
     }
 
-    /// Where a state goes on; where ways meet it is put by until all are there.
+    /// Moves a state to an instruction; at a join the state is queued until all predecessors are done.
     fn go(&mut self, place: &Place, to: u32, state: State) -> Option<(Place, State)> {
         let graph = &self.graphs[&place.function];
         let mut rounds = Vec::new();
@@ -264,7 +264,7 @@ impl<'a> Search<'a> {
         self.open.entry(key).or_insert_with(|| (place, Vec::new())).1.push(state);
     }
 
-    /// Goes into a function.
+    /// Enters a function.
     fn enter(&mut self, callers: Rc<Vec<Frame>>, to: u32, from: u32, state: State) -> Result<(), Refused> {
         let functions = self.functions;
         let function = functions.at(to).ok_or(Refused::Lost(from))?;
@@ -286,14 +286,14 @@ impl<'a> Search<'a> {
         self.enter(Rc::new(callers), to & !1, place.at, state)
     }
 
-    /// Back to where the last call came from.
+    /// Returns to the place of the last call.
     fn leave(&mut self, place: &Place, state: State) {
         let mut callers = place.callers.as_ref().clone();
         while let Some(frame) = callers.pop() {
             let Some(back) = frame.back else { continue };
             let caller =
                 Place { callers: Rc::new(callers), function: frame.function, rounds: frame.rounds, at: frame.at };
-            // All of a callee's returns meet behind the call.
+            // All returns of a callee join behind the call.
             if let Some((place, state)) = self.go(&caller, back, state) {
                 self.put(place, state);
             }
@@ -305,7 +305,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Goes on until ways part, meet or end.
+    /// Follows a path until it branches, joins or ends.
     fn follow(&mut self, mut place: Place, mut state: State) -> Result<(), Refused> {
         let functions = self.functions;
         loop {
@@ -446,7 +446,7 @@ impl State {
         self.cost.cycles += cycles;
     }
 
-    /// Takes over whatever is more in another state that knows no more.
+    /// Takes the larger costs of an equal or merged state.
     fn absorb(&mut self, other: Self) {
         self.cost = self.cost.most(other.cost);
         self.late = self.late.and(other.late);

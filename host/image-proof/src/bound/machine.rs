@@ -1,6 +1,6 @@
-//! The processor as far as it is known: registers, flags and memory, each value a number or not known. An instruction
-//! carries known values on and forgets what it cannot tell, so that whatever the processor does is among what is left open.
-//! Floating-point values are followed only where the result does not depend on the modes of the unit.
+//! Partially known processor state: registers, flags and memory, each value a number or unknown. An instruction
+//! propagates known values and makes all others unknown, so that the real state is always among the possible ones.
+//! Floating-point values are followed only if the result does not depend on the modes of the unit.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -13,16 +13,16 @@ use super::operation::{
 /// Negative, zero, carry, overflow.
 pub type ConditionFlags = [Option<bool>; 4];
 
-/// What is read-only in the image.
+/// Read-only data of the image.
 pub trait Constants {
-    /// A byte that nothing writes.
+    /// Byte that is never written.
     fn byte(&self, address: u32) -> Option<u8>;
 }
 
-/// Known bytes of memory that can be written, by words: value and a mask of the known bytes.
+/// Known bytes of writable memory, by words: value and mask of the known bytes.
 type Memory = BTreeMap<u32, (u32, u32)>;
 
-/// The processor.
+/// Partially known state of the processor.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Machine {
     registers: [Option<u32>; 15],
@@ -32,7 +32,7 @@ pub struct Machine {
     memory: Rc<Memory>,
 }
 
-/// A condition of the instruction set that is not known to hold or not to hold.
+/// Evaluates a condition code; `None` if it is unknown.
 pub fn holds(condition: u8, [negative, zero, carry, overflow]: ConditionFlags) -> Option<bool> {
     let and = |one: Option<bool>, other: Option<bool>| match (one, other) {
         (Some(false), _) | (_, Some(false)) => Some(false),
@@ -59,7 +59,7 @@ fn joined<T: PartialEq>(one: Option<T>, other: Option<T>) -> Option<T> {
 }
 
 impl Machine {
-    /// Nothing known but the stack pointer.
+    /// State in which only the stack pointer is known.
     pub fn with_stack(pointer: u32) -> Self {
         let mut machine = Self {
             registers: [None; 15],
@@ -72,12 +72,12 @@ impl Machine {
         machine
     }
 
-    /// The flags.
+    /// Flags of the core.
     pub fn flags(&self) -> ConditionFlags {
         self.flags
     }
 
-    /// A core register, if its value is known.
+    /// Value of a core register, if known.
     pub fn register(&self, register: Register) -> Option<u32> {
         self.registers.get(usize::from(register)).copied().flatten()
     }
@@ -99,7 +99,7 @@ impl Machine {
         }
     }
 
-    /// Takes back what another does not know in the same way.
+    /// Keeps only the values that another state knows equally.
     pub fn join(&mut self, other: &Self) {
         for (own, others) in self.registers.iter_mut().zip(&other.registers) {
             *own = joined(*own, *others);
@@ -125,7 +125,7 @@ impl Machine {
         self.memory = Rc::new(both.collect());
     }
 
-    /// How many values two machines know differently: what a join would forget.
+    /// Number of values in which two states differ, and which a join would lose.
     pub fn distance(&self, other: &Self) -> usize {
         let differ = |one: &[Option<u32>], other: &[Option<u32>]| one.iter().zip(other).filter(|(a, b)| a != b).count();
         let registers = differ(&self.registers, &other.registers) + differ(&self.singles, &other.singles);
@@ -138,7 +138,7 @@ impl Machine {
         registers + alone(&self.memory, &other.memory) + alone(&other.memory, &self.memory)
     }
 
-    /// Forgets what is below the stack pointer, where nothing lives: states that differ there alone are one.
+    /// Forgets memory below the stack pointer, so that states that differ only there merge.
     pub fn drop_dead_stack(&mut self, lowest: u32) {
         let Some(pointer) = self.registers[13] else { return };
         if pointer > lowest && self.memory.range(lowest..pointer).next().is_some() {
@@ -146,7 +146,7 @@ impl Machine {
         }
     }
 
-    /// Forgets what of the registers nobody looks at any more.
+    /// Forgets the registers that are not live.
     pub fn keep(&mut self, live: Live) {
         for (register, value) in (0..).zip(&mut self.registers).filter(|(register, _)| *register != 13) {
             if !live.has_core(register) {
@@ -182,7 +182,7 @@ impl Machine {
         (mask >> shift & 1 != 0).then_some(value >> shift & 0xff)
     }
 
-    /// Writes; a place that is not known may be anywhere.
+    /// Writes memory; an unknown address makes all memory unknown.
     pub fn write(&mut self, address: Option<u32>, bytes: u8, value: Option<u32>) {
         let Some(address) = address else {
             self.memory = Rc::default();
@@ -207,7 +207,7 @@ impl Machine {
         }
     }
 
-    /// Carries an instruction out. `here` is its address; inside of an `it` short forms set no flags.
+    /// Executes an instruction at address `here`; in an `it` block short forms set no flags.
     pub fn execute(&mut self, operation: &Operation, here: u32, inside_it: bool, constants: &dyn Constants) {
         let pc = here.wrapping_add(4);
         let sets = |flags: &Flags| match flags {
@@ -384,7 +384,7 @@ impl Machine {
                 let [one, other] = [self.single(one), other].map(|value| value.and_then(exact));
                 self.float_flags = match one.zip(other).map(|(one, other)| one.partial_cmp(&other)) {
                     Some(Some(order)) => [order.is_lt(), order.is_eq(), order.is_ge(), false].map(Some),
-                    // What is not ordered is carry and overflow; it is not followed.
+                    // An unordered comparison sets carry and overflow; it is not followed.
                     _ => [None; 4],
                 };
             }
@@ -395,7 +395,7 @@ impl Machine {
         }
     }
 
-    /// Value and carry of a last operand.
+    /// Value and carry of the last operand.
     fn operand(&self, operand: Operand, pc: u32) -> (Option<u32>, Option<bool>) {
         let carry = self.flags[2];
         let value = |register: Register| if register == 15 { Some(pc) } else { self.register(register) };
@@ -405,7 +405,7 @@ impl Machine {
             Operand::ShiftedBy(register, shift, by) => (register, shift, self.register(by).map(|by| by & 0xff)),
         };
         let Some((value, amount)) = value(register).zip(amount) else {
-            // A register that is not shifted leaves the carry alone.
+            // An unshifted register leaves the carry unchanged.
             return (None, if amount == Some(0) { carry } else { None });
         };
         if amount == 0 {
@@ -444,7 +444,7 @@ impl Machine {
             (value, [value.map(|value| value >> 31 != 0), value.map(|value| value == 0), carry, overflow])
         };
         let both = first.zip(second);
-        // Sums as the manual has them: x + y + carry.
+        // Sum as in the manual: x + y + carry.
         let sum = |one: Option<u32>, other: Option<u32>, carry: Option<bool>| {
             let Some(((one, other), carry)) = one.zip(other).zip(carry) else { return (None, [None; 4]) };
             let unsigned = u64::from(one) + u64::from(other) + u64::from(carry);
@@ -455,7 +455,7 @@ impl Machine {
         };
         let not = |value: Option<u32>| value.map(|value| !value);
         match what {
-            // Zero in a factor decides a conjunction.
+            // A zero operand makes the conjunction zero.
             Arithmetic::And if first == Some(0) || second == Some(0) => logical(Some(0)),
             Arithmetic::And => logical(both.map(|(one, other)| one & other)),
             Arithmetic::Clear => logical(both.map(|(one, other)| one & !other)),
@@ -472,7 +472,7 @@ impl Machine {
         }
     }
 
-    /// Where an access goes.
+    /// Address of an access.
     fn place(&self, at: &Address, pc: u32) -> Option<u32> {
         if at.base == 15 {
             let Offset::Constant(by) = at.offset else { return None };
@@ -497,7 +497,7 @@ impl Machine {
     }
 }
 
-/// The lowest bits of a word, with or without their sign.
+/// Lowest bits of a word, zero-extended or sign-extended.
 fn extended(value: u32, bits: u8, signed: bool) -> u32 {
     let left = 32 - u32::from(bits.clamp(1, 32));
     match signed {
@@ -506,7 +506,7 @@ fn extended(value: u32, bits: u8, signed: bool) -> u32 {
     }
 }
 
-/// A number that is the same in every mode of the unit: zero or normal.
+/// Value that is equal in every mode of the unit: zero or normal.
 fn exact(bits: u32) -> Option<f32> {
     let value = f32::from_bits(bits);
     (value == 0.0 || value.is_normal()).then_some(value)

@@ -1,16 +1,16 @@
-//! A bound on the instructions and cycles of a step, from the linked image alone: what the search for the worst case
-//! (`worst_case`) cannot exceed, whatever state it has not tried.
+//! Upper bound on the instructions and cycles of a step, from the linked image alone: no state, tried or not, can
+//! exceed it (`worst_case` searches for the worst one).
 //!
-//! From a step's entry on every way through the machine code is followed that the known values leave open (`longest`). Known
-//! are constants, the tables of the joint, which lie in the image and are never written, and what follows from them; torques
-//! and state are not. So counters of loops are known in every round, and branches by what only the tables say go one way.
-//! A loop whose rounds do not follow from that has no bound, and is an error with its place in the source.
+//! From a step's entry, `longest` follows every path through the machine code that the known values allow. Known are
+//! constants, the tables of the joint, which lie in the image and are never written, and values computed from them;
+//! torques and state are unknown. Loop counters are therefore known in every round, and branches that depend only on
+//! the tables go one way. A loop without a provable limit is an error with its place in the source.
 //!
-//! `operation` decodes, `machine` carries values through an instruction, `live` tells which of them are still looked at, `graph`
-//! is the control flow of a function, `cycles` the table of the Cortex-M4, `source` the debug information.
+//! `operation` decodes, `machine` propagates values through an instruction, `live` finds the registers still used,
+//! `graph` is the control flow of a function, `cycles` the table of the Cortex-M4, `source` the debug information.
 //!
-//! Taken for granted: pointers of safe code stay within their objects, and a caller's arguments are the joint's model and its
-//! torques, the model aligned as its type asks.
+//! Assumptions: pointers of safe code stay within their objects; the caller's arguments are the joint's model and its
+//! torques, the model aligned as its type requires.
 
 mod cycles;
 mod graph;
@@ -32,31 +32,32 @@ use crate::tick::functions::{Function, Functions};
 use crate::worst_case;
 use report::failure::{Failure, Outcome};
 
-/// The step that the search calls, by its path and by its name in the debug information but for the number of planets.
+/// Step that the search calls: its path, and its name in the debug information without the number of planets.
 const STEP: (&str, &str) = ("worst_case::measurement::step", "step");
-/// A bound beyond this many times the worst state that was found says too little.
+/// Limit of a bound over the worst state found; a bound above it is too loose to be useful.
 const WIDEST: f64 = 1.3;
-/// Where stack and model are taken to lie, well apart: nothing depends on it but their alignment, that of their types.
+/// Assumed addresses of stack and model, well apart. Only their alignment matters, which is that of their types.
 const STACK: u32 = 0x2001_0000;
 const LOWEST_STACK: u32 = STACK - 0x4000;
 const MODEL: u32 = STACK - 0x8000;
 
-/// The bound of a joint's step.
+/// Bound of a joint's step.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Bound {
-    /// The joint.
+    /// Name of the joint.
     pub name: String,
-    /// Instructions.
+    /// Upper bound on instructions.
     pub instructions: u32,
-    /// Cycles of a Cortex-M4 whose memory has no wait states; not of the same way as the instructions.
+    /// Upper bound on cycles of a Cortex-M4 without wait states, not necessarily of the path with the most
+    /// instructions.
     pub cycles: u32,
-    /// Functions that the step can reach.
+    /// Number of functions that the step can reach.
     pub functions: usize,
-    /// Loops in them, with the most rounds, by their place in the source.
+    /// Loops of these functions by their place in the source, with their largest number of rounds.
     pub loops: Vec<(String, u32)>,
 }
 
-/// Bounds of the steps of all joints in the image that searches for the worst case, in the order of `searched`.
+/// Bounds of the steps of all joints in the worst-case image, in the order of `searched`.
 pub fn of_steps(elf: &Path, searched: &[worst_case::Search]) -> Outcome<Vec<Bound>> {
     let failed = |why: String| Failure::new(format!("{}: {why}", elf.display()));
     let bytes = fs::read(elf).map_err(|error| failed(error.to_string()))?;
@@ -83,7 +84,7 @@ pub fn of_steps(elf: &Path, searched: &[worst_case::Search]) -> Outcome<Vec<Boun
     searched.iter().enumerate().map(of_joint).collect()
 }
 
-/// The step of a joint with so many planets.
+/// Step of a joint with a number of planets.
 fn step<'a>(functions: &'a Functions, source: &Source<'_>, planets: u32) -> Option<&'a Function> {
     let (path, name) = STEP;
     let symbols = source.symbols(&format!("{name}<{planets}>"));
@@ -110,7 +111,7 @@ fn refusal(joint: &str, functions: &Functions, source: &Source<'_>, refused: Ref
         .with_help(help)
 }
 
-/// Fails if a state was found that takes more than its bound, or if a bound says too little. Returns a line for each joint.
+/// Fails if a state exceeds its bound, or if a bound is too loose. Returns a line per joint.
 pub fn judge(bounds: &[Bound], searched: &[worst_case::Search]) -> Outcome<Vec<String>> {
     bounds
         .iter()

@@ -1,4 +1,4 @@
-//! Small functions, each with what `objdump` prints for it, whose counts are told by hand.
+//! Small functions with their disassembly by `objdump`, whose counts were found by hand.
 
 use super::longest::{Cost, Longest, Refused, Search};
 use super::machine::Machine;
@@ -8,7 +8,7 @@ use model_core::gears::certificate::Substeps;
 const CODE: u32 = 0x0800_1000;
 const DATA: u32 = 0x0800_2000;
 
-/// The longest way through functions, the first of them first, with a table of two words at [`DATA`] in its first register.
+/// Longest path through functions from the first one, with a table of two words at [`DATA`] in register 0.
 fn longest_of(functions: &[(&str, u32, &[u16])]) -> Result<Longest, Refused> {
     let words: &[u16] = &[6, 0, 0, 0];
     let all: Vec<_> = functions.iter().copied().chain([("TABLE", DATA, words)]).collect();
@@ -22,7 +22,7 @@ fn longest(code: &[u16]) -> Result<Longest, Refused> {
     longest_of(&[("one", CODE, code)])
 }
 
-/// The same, with nothing known of the first register.
+/// Longest path with an unknown value in register 0.
 fn longest_of_any(code: &[u16]) -> Result<Longest, Refused> {
     let functions = Functions::assembled(&[("one", CODE, code)], 0..0);
     Search::new(&functions, LOWEST_STACK).run(CODE, Machine::with_stack(STACK))
@@ -55,9 +55,9 @@ fn a_loop_that_nothing_known_ends_is_refused() {
     assert_eq!(longest_of_any(&[0xbf00, 0x3801, 0xd1fd, 0x4770]), Err(Refused::Unbounded(CODE + 2)));
     // nop; ldrb r1, [r0]; adds r0, #1; cbz r1, .+4; b .-6; bx lr
     assert_eq!(longest_of_any(&[0xbf00, 0x7801, 0x3001, 0xb101, 0xe7fb, 0x4770]), Err(Refused::Unbounded(CODE + 2)));
-    // movs r1, #0; adds r1, #1; b .-2: it counts, and nobody looks.
+    // movs r1, #0; adds r1, #1; b .-2: the counter is never tested.
     assert_eq!(longest(&[0x2100, 0x3101, 0xe7fd]), Err(Refused::Unbounded(CODE + 2)));
-    // movs r1, #0; adds r1, #1; cmp r1, r0; bne .-4; bx lr: up to a number that may be any.
+    // movs r1, #0; adds r1, #1; cmp r1, r0; bne .-4; bx lr: the limit is unknown.
     assert_eq!(longest_of_any(&[0x2100, 0x3101, 0x4281, 0xd1fc, 0x4770]), Err(Refused::Unbounded(CODE + 2)));
 }
 
@@ -107,7 +107,7 @@ fn what_a_condition_may_or_may_not_set_is_not_known() {
     // movs r1, #2; cmp r0, #0; it ne; movne r1, #7; subs r1, #1; bne .-2; bx lr
     let register = [0x2102, 0x2800, 0xbf18, 0x2107, 0x3901, 0xd1fd, 0x4770];
     assert_eq!(longest_of_any(&register), Err(Refused::Unbounded(CODE + 8)));
-    // The first register is not zero here, and the condition holds.
+    // Register 0 is known not to be zero, so the condition holds.
     assert_eq!(instructions(longest(&register)), 4 + 7 * 2 + 1);
     // push {r1, lr}; movs r1, #2; str r1, [sp]; movs r2, #7; cmp r0, #0; it ne; strne r2, [sp]; ldr r1, [sp]; subs r1, #1;
     // str r1, [sp]; bne .-6; pop {r1, pc}
@@ -148,7 +148,7 @@ fn calls_stand_in_their_callers_places() {
     let found = |name: &str| longest_of(&[("one", CODE, caller), (name, CODE + 0x14, callee)]);
     assert_eq!(instructions(found("callee")), 2 + 3 * (1 + 2 + 2) + 1);
     assert_eq!(found("core::panicking::panic"), Err(Refused::Stops(CODE + 4)));
-    // Nothing there
+    // No function at the target.
     assert_eq!(longest(caller), Err(Refused::Lost(CODE + 4)));
     // bl to itself
     assert_eq!(longest(&[0xf7ff, 0xfffe, 0x4770]), Err(Refused::Recursion(CODE)));
@@ -221,7 +221,7 @@ fn a_refusal_names_joint_function_and_help() {
     assert_eq!(failure.exit_code(), 1);
 }
 
-/// The head of an ELF file of 32 bits without any section.
+/// Header of a 32-bit ELF file without any section.
 fn empty_image() -> Vec<u8> {
     let mut elf = vec![0; 52];
     elf[..7].copy_from_slice(&[0x7f, b'E', b'L', b'F', 1, 1, 1]);

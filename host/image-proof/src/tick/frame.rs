@@ -1,40 +1,40 @@
-//! One function of the image on its own: its greatest stack depth, its calls with the depth at each, and every
-//! instruction that the analysis cannot follow. Found by following every path through its instructions.
+//! Analysis of one function: its largest stack depth, its calls with the depth at each, and every instruction that
+//! cannot be followed. All paths through its instructions are visited.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::functions::{Function, Functions};
 use super::thumb::{Flow, Stack};
 
-/// A stack that grows beyond this within one function grows in a loop.
+/// Limit of a function's own stack; a larger one grows in a loop [byte].
 const DEEPEST: u32 = 64 * 1024;
 
-/// A call, or a jump into another function.
+/// Call, or jump into another function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Call {
-    /// Where it is.
+    /// Address of the call.
     pub from: u32,
-    /// Where it goes.
+    /// Address of the callee.
     pub to: u32,
-    /// Stack that the caller holds by then [byte].
+    /// Stack held by the caller at the call [byte].
     pub depth: u32,
 }
 
-/// An instruction that cannot be followed, or must not be reached.
+/// Instruction that cannot be followed or must not be reached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Obstacle {
-    /// A call or jump through a pointer.
+    /// Call or jump through a pointer.
     Pointer(u32),
-    /// The stack pointer is set to something unknown, or in a loop.
+    /// The stack pointer is set to an unknown value, or moved in a loop.
     Stack(u32),
-    /// An instruction that stops the processor.
+    /// Instruction that stops the processor.
     Trap(u32),
-    /// Control runs into what is no instruction.
+    /// Address without an instruction.
     Astray(u32),
 }
 
 impl Obstacle {
-    /// Where it stands.
+    /// Address of the instruction.
     pub fn at(self) -> u32 {
         match self {
             Self::Pointer(at) | Self::Stack(at) | Self::Trap(at) | Self::Astray(at) => at,
@@ -42,18 +42,18 @@ impl Obstacle {
     }
 }
 
-/// The analysis of one function.
+/// Result of the analysis of one function.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Frame {
-    /// Deepest stack of its own [byte].
+    /// Largest stack of the function itself [byte].
     pub depth: u32,
-    /// Its calls.
+    /// Calls of the function.
     pub calls: Vec<Call>,
-    /// What stands in the way of an answer.
+    /// Instructions that prevent an answer.
     pub obstacles: Vec<Obstacle>,
 }
 
-/// Follows every path through a function. `returns` tells which callees come back.
+/// Visits every path through a function. `returns` tells which callees return.
 pub fn frame(functions: &Functions, function: &Function, returns: &dyn Fn(u32) -> bool) -> Frame {
     let conditional = conditional(function);
     let mut frame = Frame::default();
@@ -126,7 +126,7 @@ pub fn frame(functions: &Functions, function: &Function, returns: &dyn Fn(u32) -
     frame
 }
 
-/// Instructions that an `it` before them makes conditional.
+/// Instructions in `it` blocks.
 fn conditional(function: &Function) -> BTreeSet<u32> {
     let (mut found, mut left) = (BTreeSet::new(), 0);
     for (address, instruction) in &function.code {
@@ -139,9 +139,9 @@ fn conditional(function: &Function) -> BTreeSet<u32> {
     found
 }
 
-/// Where the table of a `tbb` or `tbh` leads, by distances from the instruction after it. The table follows, or its
-/// address was put into the register somewhere in the function: every such address is taken for one. A table ends
-/// with the last entry that leads to an instruction, or where instructions begin again.
+/// Targets of a `tbb` or `tbh`, from distances to the instruction after it. The table follows the instruction, or its
+/// address is loaded into the register somewhere in the function; every such address is considered. A table ends with
+/// the last entry that leads to an instruction, or where instructions begin again.
 pub fn targets(functions: &Functions, function: &Function, next: u32, width: u32, base: u16) -> Vec<u32> {
     let loaded = function.code.values().filter_map(|instruction| instruction.address_of);
     let tables = match base {

@@ -1,8 +1,8 @@
-//! Can the tick panic, and how much stack does it take at most? Answered from the linked image by following all calls
-//! from the SysTick handler, so that the answer holds for any sources and compiler.
+//! Proves that the tick cannot panic and bounds its stack, from the linked image: all calls from the SysTick handler
+//! are followed, so that the result holds for any sources and compiler.
 //!
 //! `functions` disassembles the image, `thumb` decodes instructions, `frame` analyses one function, `walk` the call
-//! graph; this file compares the result with the promised bounds. What cannot be followed is an error.
+//! graph; this file compares the result with the promised bounds. Code that cannot be followed is an error.
 
 pub(crate) mod frame;
 pub(crate) mod functions;
@@ -17,12 +17,12 @@ pub use walk::{CallPath, Reach};
 
 use report::failure::{Failure, Outcome};
 
-/// Stack that the tick may take, with what the processor pushes when it interrupts [byte].
+/// Limit of the tick's stack, including the interrupt frame [byte].
 pub const STACK_BOUND: u32 = 2048;
-/// What the processor pushes: 26 words with the floating-point registers, and one to align them.
+/// Interrupt frame: 26 words with the floating-point registers, and one for alignment [byte].
 const INTERRUPT_FRAME: u32 = 27 * 4;
 
-/// What the image of a role was found to do in its tick.
+/// Analyses the tick of a role's image.
 pub fn reach(elf: &Path) -> Outcome<Reach> {
     let failed = |why: String| Failure::new(format!("{}: {why}", elf.display()));
     let bytes = fs::read(elf).map_err(|error| failed(error.to_string()))?;
@@ -34,12 +34,12 @@ pub fn reach(elf: &Path) -> Outcome<Reach> {
     Ok(walk::walk(&functions, handler))
 }
 
-/// Most stack that the tick takes, with what the processor pushes [byte].
+/// Largest stack of the tick, including the interrupt frame [byte].
 pub fn stack(reach: &Reach) -> u32 {
     reach.stack + INTERRUPT_FRAME
 }
 
-/// Fails with all that is wrong, each with its call path from the tick and the help.
+/// Fails with all violations, each with its call path from the tick and its help.
 pub fn judge(reach: &Reach) -> Outcome<()> {
     let mut wrong = Vec::new();
     let mut helps: Vec<&str> = Vec::new();

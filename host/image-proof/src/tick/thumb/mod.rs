@@ -1,60 +1,60 @@
-//! As much of the Thumb-2 instruction set as tells where control goes and what becomes of the stack pointer: lengths,
-//! branches, calls, returns and every form that writes `sp`. All other instructions are one and the same here. Encodings
-//! are those of the ARMv7-M Architecture Reference Manual, chapters A5 to A7.
+//! Part of the Thumb-2 instruction set that determines control flow and the stack pointer: lengths, branches, calls,
+//! returns and every form that writes `sp`. Other instructions are not distinguished. Encodings are those of the
+//! ARMv7-M Architecture Reference Manual, chapters A5 to A7.
 
-/// Where control goes after an instruction.
+/// Control flow after an instruction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flow {
-    /// To the next instruction.
+    /// Next instruction.
     Next,
-    /// There, or to the next if the condition does not hold.
+    /// Branch to an address, or next instruction if the condition does not hold.
     Branch(u32),
-    /// There.
+    /// Unconditional branch to an address.
     Jump(u32),
-    /// There and back.
+    /// Call of an address.
     Call(u32),
-    /// Wherever a register says, and back.
+    /// Call of an address in a register.
     CallRegister,
-    /// Wherever a register or a number in memory says.
+    /// Jump to an address in a register or in memory.
     JumpRegister,
-    /// To one of the places in a table whose address is in a register, or that follows.
+    /// Jump through a table whose address is in a register, or that follows the instruction.
     Table {
-        /// Bytes of an entry.
+        /// Size of an entry [byte].
         width: u32,
-        /// The register; 15 if the table follows.
+        /// Register with the table's address; 15 if the table follows.
         base: u16,
     },
-    /// To the caller.
+    /// Return to the caller.
     Return,
-    /// Nowhere: the processor faults or waits for a debugger.
+    /// Stop: the processor faults or waits for a debugger.
     Trap,
 }
 
 /// Effect on the stack pointer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stack {
-    /// Nothing.
+    /// Stack pointer unchanged.
     Same,
-    /// The stack grows by so many bytes.
+    /// Stack grows [byte].
     Grow(u32),
-    /// It shrinks by so many bytes.
+    /// Stack shrinks [byte].
     Shrink(u32),
-    /// It is set to something that cannot be told from this instruction.
+    /// Stack pointer set to a value that this instruction does not show.
     Unknown,
 }
 
-/// One instruction.
+/// Decoded instruction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Instruction {
-    /// 2 or 4 bytes.
+    /// Size, 2 or 4 [byte].
     pub size: u32,
-    /// Where control goes.
+    /// Control flow.
     pub flow: Flow,
     /// Effect on the stack pointer.
     pub stack: Stack,
-    /// The register that it loads with the address of something near by, and that address.
+    /// Register that is loaded with a nearby address, and the address.
     pub address_of: Option<(u16, u32)>,
-    /// How many of the following instructions it makes conditional.
+    /// Number of following instructions that become conditional.
     pub conditional_next: u32,
 }
 
@@ -62,7 +62,7 @@ const SP: u16 = 13;
 const LR: u16 = 14;
 const PC: u16 = 15;
 
-/// Reads the instruction at an address; `second` is the halfword after it, if there is one.
+/// Decodes the instruction at an address; `second` is the half word after it, if there is one.
 pub fn decode(address: u32, first: u16, second: u16) -> Instruction {
     let size = if first >> 11 >= 0b11101 { 4 } else { 2 };
     let (flow, stack) = match size {
@@ -75,7 +75,7 @@ pub fn decode(address: u32, first: u16, second: u16) -> Instruction {
     Instruction { size, flow, stack, address_of, conditional_next }
 }
 
-/// The three forms of `adr`.
+/// Register and address of the three forms of `adr`.
 fn address_of(address: u32, first: u16, second: u16) -> Option<(u16, u32)> {
     let here = (address + 4) & !3;
     match first & 0xfbff {
@@ -86,7 +86,7 @@ fn address_of(address: u32, first: u16, second: u16) -> Option<(u16, u32)> {
     }
 }
 
-/// Destination of the forms of `add` and `mov` that take all registers.
+/// Destination of the short forms of `add` and `mov` that reach all registers.
 fn high_destination(first: u16) -> Option<u16> {
     matches!(first & 0xff00, 0x4400 | 0x4600).then_some(first & 7 | first >> 4 & 8)
 }
@@ -191,12 +191,12 @@ fn stack_of_long(first: u16, second: u16) -> Stack {
     }
 }
 
-/// Sign extension of a number of so many bits.
+/// Sign extension of a number from a width in bits.
 fn extend(value: u32, bits: u32) -> i32 {
     ((value << (32 - bits)) as i32) >> (32 - bits)
 }
 
-/// Offset of `bl` and of `b.w` without condition.
+/// Offset of `bl` and of `b.w` without a condition.
 fn far(first: u16, second: u16) -> i32 {
     let (first, second) = (u32::from(first), u32::from(second));
     let sign = first >> 10 & 1;
@@ -211,12 +211,12 @@ fn near(first: u16, second: u16) -> i32 {
     extend(sign << 20 | high << 19 | low << 18 | (first & 0x3f) << 12 | (second & 0x7ff) << 1, 21)
 }
 
-/// The constant of twelve bits, as it stands.
+/// Plain 12-bit constant.
 fn twelve(first: u16, second: u16) -> u32 {
     u32::from(first >> 10 & 1) << 11 | u32::from(second >> 12 & 7) << 8 | u32::from(second & 0xff)
 }
 
-/// The constant of twelve bits, as the expanding forms mean it.
+/// Modified 12-bit constant.
 fn expand(first: u16, second: u16) -> u32 {
     let code = twelve(first, second);
     let byte = code & 0xff;

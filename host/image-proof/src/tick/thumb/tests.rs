@@ -1,4 +1,4 @@
-//! Instructions, each with what `objdump` prints for it.
+//! Instructions with their disassembly by `objdump`.
 
 use super::*;
 

@@ -420,11 +420,7 @@ fn controller_in_c_removes_the_lost_motion() {
                 ("longest_lost_motion_us ", 1e6, with.longest_lost_motion),
             ] {
                 let said: f64 = all(word).first().and_then(|it| it.parse().ok()).expect("a number");
-                assert!(
-                    (said / (unit * expected) - 1.0).abs() < 0.02,
-                    "{word}{said}, expected {}",
-                    unit * expected
-                );
+                assert!((said / (unit * expected) - 1.0).abs() < 0.02, "{word}{said}, expected {}", unit * expected);
             }
         }
     }

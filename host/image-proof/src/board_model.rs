@@ -26,6 +26,6 @@ pub fn check(progress: &Progress) -> Outcome<()> {
     match status.success() {
         true => output::print("ok       images on the models of their boards\n"),
         false => Err(Failure::check_failed(format!("an image failed on the model of its board ({status})"))
-            .with_help("board-model/README.md says what is checked, and how one check is run alone")),
+            .with_help("board-model/README.md describes the checks and how to run one of them")),
     }
 }

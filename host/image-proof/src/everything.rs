@@ -43,9 +43,9 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
             let image = image::build_image(&toolchain, &image::preset_file("q1"), board, role, rate, false, &say)?;
             let (flash, ram) = (image.flash_bytes, image.ram_bytes);
             let reach = tick::reach(&image.elf)?;
-            tick::judge(&reach).map_err(|failure| failure.while_doing(format_args!("image of {what}")))?;
+            tick::check(&reach).map_err(|failure| failure.while_doing(format_args!("image of {what}")))?;
             let (functions, stack) = (reach.functions, tick::stack(&reach));
-            sizes::judge(board.chip(), image::role_name(role), &image)?;
+            sizes::check(board.chip(), image::role_name(role), &image)?;
             progress.clear();
             output::print(&format!(
                 "ok       image of {what}: {flash} B of flash, {ram} B of RAM; its tick: {functions} functions, none can \
@@ -56,7 +56,7 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
             progress.stage("building the image of a slave on SPI");
             let joint = image::preset_file("q1");
             let built = image::build_spi_slave(&toolchain, &joint, board, image::SPI_RATE, false, &say)?;
-            sizes::judge(board.chip(), "spi-observer", &built)?;
+            sizes::check(board.chip(), "spi-observer", &built)?;
             let bytes = built.flash_bytes;
             progress.clear();
             output::print(&format!("ok       image of a slave on SPI for {}: {bytes} B of flash\n", board.name()))?;
@@ -80,7 +80,7 @@ fn proofs(toolchain: &Toolchain, progress: &Progress) -> Outcome<()> {
     progress.stage("comparing bits between the emulated board and this program");
     let runs = same_bits::compare(&same_bits::on_board(toolchain, &say)?)?;
     progress.clear();
-    output::print(&format!("ok       {runs} runs of the step, the same in every bit on the board and here\n"))?;
+    output::print(&format!("ok       {runs} runs of the step, equal in every bit on the board and on this host\n"))?;
     progress.stage("searching for the worst case on the emulated board");
     let elf = worst_case::build(toolchain, &say)?;
     let found = worst_case::search(&elf)?;
@@ -89,22 +89,22 @@ fn proofs(toolchain: &Toolchain, progress: &Progress) -> Outcome<()> {
         output::print(&format!("{search}\n"))?;
     }
     progress.stage("bounding the step from its machine code");
-    let bounds = bound::of_steps(&elf, &found)?;
-    let lines = bound::judge(&bounds, &found)?;
+    let bounds = bound::bound_steps(&elf, &found)?;
+    let lines = bound::check(&bounds, &found)?;
     progress.clear();
-    output::print(&format!("{}\nok       no state can take more\n", lines.join("\n")))?;
+    output::print(&format!("{}\nok       no state exceeds its bound\n", lines.join("\n")))?;
     progress.stage("counting instructions on the emulated board");
-    let lines = costs::judge(&costs::count(toolchain, &say)?, &found, &bounds)?;
+    let lines = costs::check(&costs::count(toolchain, &say)?, &found, &bounds)?;
     progress.clear();
-    output::print(&format!("{}\nok       instructions as promised\n", lines.join("\n")))?;
-    worst_case::judge(&found)?;
+    output::print(&format!("{}\nok       instructions as predicted\n", lines.join("\n")))?;
+    worst_case::check(&found)?;
     progress.stage("counting the instructions of the roles on the emulated board");
     let loads = roles::count(toolchain, &say)?;
     progress.clear();
     for load in &loads {
         output::print(&format!("{load}\n"))?;
     }
-    roles::judge(&loads)?;
+    roles::check(&loads)?;
     output::print("ok       roles within their control period\n")?;
     output::print("ok       worst case of a step within its budget\n")
 }

@@ -92,8 +92,9 @@ mod tests {
 
     use super::*;
 
+    /// The test joints cover all numbers of planets, damping laws, compliances and backlashes.
     #[test]
-    fn between_them_they_have_everything_that_a_joint_can_have() {
+    fn test_joints_cover_all_features() {
         let joints: Vec<_> = TEST_JOINTS.iter().map(|joint| joint.read().unwrap().parameters).collect();
         let any = |has: &dyn Fn(&parameters::JointParameters) -> bool| joints.iter().any(has);
         for planets in 3..=5 {

@@ -16,7 +16,7 @@ use model_core::gears::certificate::Substeps;
 
 /// Method of a tick in which contacts change, from the fields of a measuring image: number of corrected sub-steps and
 /// of Verlet sub-steps.
-fn parts<'a>(fields: &mut impl Iterator<Item = &'a str>) -> Option<Substeps> {
+fn parse_substeps<'a>(fields: &mut impl Iterator<Item = &'a str>) -> Option<Substeps> {
     let mut number = || fields.next()?.parse().ok();
     let (corrected, verlet) = (number()?, number()?);
     Some(if verlet > 0 { Substeps::Verlet(verlet) } else { Substeps::Corrected(corrected) })

@@ -38,11 +38,11 @@ pub struct RoleCost {
 impl fmt::Display for RoleCost {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { role, joint, periods, mean, most, at, bytes } = self;
-        let [usual, worst] = [*mean, f64::from(*most)].map(|instructions| 100.0 * part(instructions));
+        let [usual, worst] = [*mean, f64::from(*most)].map(|instructions| 100.0 * period_share(instructions));
         write!(
             f,
             "role {role}, {joint}: {mean:.0} instructions a tick, at most {most} (period {at} of {periods}): {usual:.0} % and \
-             {worst:.0} % of a control period; it keeps {bytes} B"
+             {worst:.0} % of a control period; state {bytes} B"
         )
     }
 }
@@ -64,12 +64,12 @@ fn parse(line: &str) -> Option<RoleCost> {
 }
 
 /// Part of a control period of the emulated board that a number of instructions takes.
-pub fn part(instructions: f64) -> f64 {
+pub fn period_share(instructions: f64) -> f64 {
     instructions * CYCLES_AN_INSTRUCTION * f64::from(CONTROL_RATE) / f64::from(Chip::Stm32f405.core_rate())
 }
 
 /// Fails if a role's worst tick exceeds its part of a control period.
-pub fn judge(costs: &[RoleCost]) -> Outcome<()> {
+pub fn check(costs: &[RoleCost]) -> Outcome<()> {
     // The bounds by which images are rejected must not be below the counts.
     let (board, joint) = (Board::emulated(), named::load(Path::new("q1"))?.file.parameters);
     let promised = |role| {
@@ -77,7 +77,7 @@ pub fn judge(costs: &[RoleCost]) -> Outcome<()> {
     };
     let [observer, whole_loop] = [Role::Observer, Role::Loop].map(promised);
     let over = |load: &&RoleCost| match load.role.as_str() {
-        "loop" => f64::from(load.most) > whole_loop || part(load.most.into()) > 1.0,
+        "loop" => f64::from(load.most) > whole_loop || period_share(load.most.into()) > 1.0,
         _ => f64::from(load.most) > observer,
     };
     let over: Vec<String> = costs.iter().filter(over).map(RoleCost::to_string).collect();
@@ -85,7 +85,7 @@ pub fn judge(costs: &[RoleCost]) -> Outcome<()> {
         return Ok(());
     }
     let help = format!(
-        "an observer may take {observer:.0} instructions, a whole loop {whole_loop:.0} (host/board/src/device/tick_time.rs): make \
+        "the limits are {observer:.0} instructions for an observer, {whole_loop:.0} for a whole loop (host/board/src/device/tick_time.rs): make \
          that tick cheaper"
     );
     Err(Failure::check_failed(format!("too many instructions:\n{}", over.join("\n"))).with_help(help))
@@ -97,16 +97,17 @@ mod tests {
 
     use super::*;
 
+    /// The board's lines are parsed, and roles above their share of a period fail.
     #[test]
-    fn what_the_board_says_is_taken_in_and_held_against_the_period() {
+    fn role_costs_checked_against_period() {
         let load = parse("role;loop;Q1;100;200000;12001;7;640").unwrap();
         assert_eq!((load.mean, load.most, load.at, load.bytes), (2000.0, 12001, 7, 640));
-        let failure = judge(std::slice::from_ref(&load)).unwrap_err();
+        let failure = check(std::slice::from_ref(&load)).unwrap_err();
         assert!(failure.message().contains("role loop, Q1"), "{failure}");
-        assert!(judge(&[RoleCost { most: 10_000, ..load.clone() }]).is_ok());
+        assert!(check(&[RoleCost { most: 10_000, ..load.clone() }]).is_ok());
         let observer = RoleCost { role: "observer".to_owned(), most: OBSERVER_INSTRUCTIONS + 1, ..load };
-        assert!(judge(std::slice::from_ref(&observer)).is_err());
-        assert!(judge(&[RoleCost { most: OBSERVER_INSTRUCTIONS, ..observer }]).is_ok());
+        assert!(check(std::slice::from_ref(&observer)).is_err());
+        assert!(check(&[RoleCost { most: OBSERVER_INSTRUCTIONS, ..observer }]).is_ok());
         assert_eq!(parse("panicked at x.rs"), None);
     }
 }

@@ -27,7 +27,7 @@ pub struct Digests {
 
 /// Digests computed on the board, with the mode of its floating-point unit.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct OnBoard {
+pub struct BoardRun {
     /// Digests computed on the board.
     pub digests: Digests,
     /// True if subnormals were flushed to zero.
@@ -67,14 +67,14 @@ fn with_planets<const N: usize>(name: &str, parameters: &JointParameters, in_mod
 }
 
 /// Digests of all joints, computed on the emulated board in every mode.
-pub fn on_board(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<OnBoard>> {
+pub fn on_board(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<BoardRun>> {
     let files = write_files(toolchain.target_directory())?;
     let elf = measuring::build_measuring(toolchain, "same_bits", &files, DEFAULT_TICK_RATE, say)?;
     measuring::read(&elf, parse)
 }
 
 /// Parses name, flush, nan, tables, long, unbounded, tiny, changes; a name may hold commas.
-fn parse(line: &str) -> Option<OnBoard> {
+fn parse(line: &str) -> Option<BoardRun> {
     let mut fields = line.rsplitn(8, ',');
     let changes = fields.next()?.parse().ok()?;
     let mut digest = || u64::from_str_radix(fields.next()?, 16).ok();
@@ -82,12 +82,12 @@ fn parse(line: &str) -> Option<OnBoard> {
     let (default_nan, flush_to_zero) = (fields.next()?.parse().ok()?, fields.next()?.parse().ok()?);
     let name = fields.next()?.to_owned();
     let motions = motion::Digests { long, unbounded, tiny, changes };
-    Some(OnBoard { digests: Digests { name, tables, motions }, flush_to_zero, default_nan })
+    Some(BoardRun { digests: Digests { name, tables, motions }, flush_to_zero, default_nan })
 }
 
 /// Compares every joint and mode of the board with the host; the first difference ends the comparison. Returns the
 /// number of runs compared.
-pub fn compare(board: &[OnBoard]) -> Outcome<usize> {
+pub fn compare(board: &[BoardRun]) -> Outcome<usize> {
     for joint in &TEST_JOINTS {
         let host = on_host(joint, &|work| work())?;
         let runs: Vec<_> = board.iter().filter(|run| run.digests.name == joint.name).collect();
@@ -101,7 +101,7 @@ pub fn compare(board: &[OnBoard]) -> Outcome<usize> {
     Ok(board.len())
 }
 
-fn difference(run: &OnBoard, host: &Digests) -> Failure {
+fn difference(run: &BoardRun, host: &Digests) -> Failure {
     let on = |set: bool| if set { "on" } else { "off" };
     let (flush, nan) = (on(run.flush_to_zero), on(run.default_nan));
     let what = if run.digests.tables != host.tables {
@@ -119,8 +119,8 @@ fn difference(run: &OnBoard, host: &Digests) -> Failure {
         host.name, run.digests
     );
     Failure::check_failed(message).with_help(
-        "the step must use no operation that rounds otherwise on one of them (a fused multiply-add, a library's sine),\n\
-         and must leave no number in its state that a caller's floating-point mode would change",
+        "the step must not use operations that round differently on the two (fused multiply-add, a library's sine),\n\
+         nor keep numbers in its state that depend on the caller's floating-point mode",
     )
 }
 
@@ -128,10 +128,10 @@ fn difference(run: &OnBoard, host: &Digests) -> Failure {
 mod tests {
     use super::*;
 
-    fn on_board(name: &str, long: u64) -> OnBoard {
+    fn on_board(name: &str, long: u64) -> BoardRun {
         let motions = motion::Digests { long, unbounded: 3, tiny: 4, changes: 5 };
         let digests = Digests { name: name.into(), tables: 1, motions };
-        OnBoard { digests, flush_to_zero: true, default_nan: false }
+        BoardRun { digests, flush_to_zero: true, default_nan: false }
     }
 
     #[test]
@@ -141,15 +141,17 @@ mod tests {
         assert_eq!(parse("panicked at x.rs:1:1"), None);
     }
 
+    /// A difference names joint, floating-point mode and motion.
     #[test]
-    fn a_difference_names_joint_setting_and_motion() {
+    fn difference_names_joint_mode_and_motion() {
         let failure = difference(&on_board("Q1", 7), &on_board("Q1", 2).digests);
         assert!(failure.message().contains("the long motion of joint Q1"), "{failure}");
         assert!(failure.message().contains("flush-to-zero on"), "{failure}");
     }
 
+    /// A board that left out a joint fails.
     #[test]
-    fn a_board_that_left_a_joint_out_does_not_pass() {
+    fn missing_joint_fails() {
         assert!(compare(&[]).is_err());
     }
 }

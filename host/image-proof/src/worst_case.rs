@@ -37,7 +37,7 @@ pub struct Count {
 
 /// Result of the search for a joint.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Search {
+pub struct SearchResult {
     /// Name of the joint.
     pub name: String,
     /// Number of planets.
@@ -54,7 +54,7 @@ pub struct Search {
     pub state: String,
 }
 
-impl Search {
+impl SearchResult {
     /// Class with the worst trial.
     pub fn worst(&self) -> Option<&Count> {
         self.classes.iter().max_by_key(|count| count.most)
@@ -84,23 +84,23 @@ pub fn build(toolchain: &Toolchain, say: Say<'_>) -> Outcome<PathBuf> {
 }
 
 /// Searches on the emulated board.
-pub fn search(elf: &Path) -> Outcome<Vec<Search>> {
+pub fn search(elf: &Path) -> Outcome<Vec<SearchResult>> {
     let mut found = Vec::new();
     measuring::read(elf, |line| parse(line, &mut found))?;
     Ok(found)
 }
 
 /// Parses a line of the board and adds it to the results.
-pub(crate) fn parse(line: &str, found: &mut Vec<Search>) -> Option<()> {
+pub(crate) fn parse(line: &str, found: &mut Vec<SearchResult>) -> Option<()> {
     let (sort, rest) = line.split_once(';')?;
     let mut fields = rest.split(';');
     if sort == "joint" {
         let (classes, kinds, state) = (Vec::new(), Vec::new(), String::new());
         let name = fields.next()?.to_owned();
         let planets = fields.next()?.parse().ok()?;
-        let parts = super::parts(&mut fields)?;
+        let parts = super::parse_substeps(&mut fields)?;
         let seed = fields.next()?.parse().ok()?;
-        found.push(Search { name, planets, parts, seed, classes, kinds, state });
+        found.push(SearchResult { name, planets, parts, seed, classes, kinds, state });
         return Some(());
     }
     let search = found.last_mut()?;
@@ -123,29 +123,29 @@ pub(crate) fn parse(line: &str, found: &mut Vec<Search>) -> Option<()> {
 
 /// Joints whose tick is designed to fit the emulated board at the default rate. The others are only shown: the paper's
 /// joint needs a lower rate, and five planets or a state that is not finite need more time than is left.
-const FITTED: [&str; 2] = ["Q1", "L1 with 4 planets"];
+const FITTED_JOINTS: [&str; 2] = ["Q1", "L1 with 4 planets"];
 
 /// Fails if a step of a fitted joint exceeds its time on the emulated board.
-pub fn judge(found: &[Search]) -> Outcome<()> {
+pub fn check(found: &[SearchResult]) -> Outcome<()> {
     let chip = Chip::Stm32f405;
     let budget = budget(chip, DEFAULT_TICK_RATE);
     let over: Vec<_> = found
         .iter()
-        .filter(|search| FITTED.contains(&search.name.as_str()) && search.most() > budget)
-        .map(|search| excess(search, budget))
+        .filter(|search| FITTED_JOINTS.contains(&search.name.as_str()) && search.most() > budget)
+        .map(|search| excess_message(search, budget))
         .collect();
     match over.is_empty() {
         true => Ok(()),
         false => Err(Failure::check_failed(over.join("\n")).with_help(format!(
             "{budget} instructions are {} % of the period at {DEFAULT_TICK_RATE} Hz on {}, at {CYCLES_AN_INSTRUCTION} \
-             cycles each:\nmake the step cheaper on that path, or let `design` choose fewer sub-steps",
+             cycles each:\nreduce the step on that path, or let `design` choose fewer sub-steps",
             100.0 * WORST_SHARE,
             chip.name(),
         ))),
     }
 }
 
-fn excess(search: &Search, budget: u32) -> String {
+fn excess_message(search: &SearchResult, budget: u32) -> String {
     let (class, trial) = search.worst().map_or(("", 0), |worst| (worst.name.as_str(), worst.trial));
     format!(
         "joint {}: a step may take {} instructions, more than {budget} ({class}, trial {trial} of seed {}):\n{}",
@@ -156,7 +156,7 @@ fn excess(search: &Search, budget: u32) -> String {
     )
 }
 
-impl fmt::Display for Search {
+impl fmt::Display for SearchResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, planets, parts, seed, .. } = self;
         writeln!(f, "{name}: {planets} planets, {parts} a tick, {} states, seed {seed}", self.trials())?;
@@ -180,7 +180,7 @@ impl fmt::Display for Search {
 mod tests {
     use super::*;
 
-    fn found() -> Vec<Search> {
+    fn found() -> Vec<SearchResult> {
         let mut found = Vec::new();
         for line in
             ["joint;Q1;3;2;0;1", "class;apart;10;1000;4600;7", "kind;grazing;10;1000;4600;7", "state;X { y: 1 }"]
@@ -190,24 +190,27 @@ mod tests {
         found
     }
 
+    /// The budget is 75 % of a period in instructions.
     #[test]
-    fn the_budget_follows_board_and_rate() {
+    fn budget_follows_clock_and_rate() {
         // 75 % of 8400 cycles at 1.4 cycles per instruction.
         assert_eq!(budget(Chip::Stm32f405, 20_000), 4500);
         assert_eq!(budget(Chip::Stm32f405, 10_000), 9000);
     }
 
+    /// Lines of the board become the results of a search.
     #[test]
-    fn what_the_board_says_is_taken_in() {
+    fn search_output_parsed() {
         let found = found();
         assert_eq!((found[0].most(), found[0].trials(), found[0].classes[0].mean), (4600, 10, 100.0));
         assert_eq!(found[0].state, "X { y: 1 }");
         assert_eq!(parse("panicked at x.rs", &mut Vec::new()), None);
     }
 
+    /// A step above the budget is reported with its trial and state.
     #[test]
-    fn a_step_that_takes_too_long_is_shown_with_its_state() {
-        let failure = judge(&found()).unwrap_err();
+    fn excessive_step_shown_with_state() {
+        let failure = check(&found()).unwrap_err();
         assert!(
             failure.message().contains("trial 7 of seed 1") && failure.message().contains("X { y: 1 }"),
             "{failure}"

@@ -4,7 +4,7 @@
 //! manual describes (consecutive loads, integer instructions during a division) are not credited, so that the sum is
 //! never below the real time.
 
-use super::live::Live;
+use super::live::RegisterSet;
 use super::operation::{Floating, Operation};
 use crate::tick::thumb::Flow;
 
@@ -18,7 +18,7 @@ const FLOAT_DIVIDE: u32 = 14;
 const ACCESS: u32 = 2;
 
 /// Cycles of an operation that continues with the next instruction.
-pub fn of(operation: &Operation) -> u32 {
+pub fn of_operation(operation: &Operation) -> u32 {
     match *operation {
         // A barrier waits for pending work, at most for a refill of the pipeline.
         Operation::Nothing => 1 + REFILL,
@@ -44,7 +44,7 @@ pub fn of(operation: &Operation) -> u32 {
             _ => 1,
         },
         // Special registers, saturation, half words: one or two cycles.
-        Operation::Forget(_) => 2,
+        Operation::Clobber(_) => 2,
     }
 }
 
@@ -53,16 +53,16 @@ pub fn of_jump(flow: Flow, operation: &Operation) -> u32 {
     match flow {
         Flow::Table { .. } => ACCESS + REFILL,
         // A return by a load also takes the cycles of the load.
-        Flow::Return | Flow::JumpRegister => of(operation).max(1 + REFILL),
+        Flow::Return | Flow::JumpRegister => of_operation(operation).max(1 + REFILL),
         _ => 1 + REFILL,
     }
 }
 
 /// Registers whose value arrives one cycle late for the next instruction.
-pub fn late(operation: &Operation) -> Live {
+pub fn late_registers(operation: &Operation) -> RegisterSet {
     match *operation {
-        Operation::Float(Floating::Copy | Floating::Absolute | Floating::Negate, ..) => Live::default(),
-        Operation::Float(_, to, _) => Live::of_single(to),
-        _ => Live::default(),
+        Operation::Float(Floating::Copy | Floating::Absolute | Floating::Negate, ..) => RegisterSet::default(),
+        Operation::Float(_, to, _) => RegisterSet::single(to),
+        _ => RegisterSet::default(),
     }
 }

@@ -7,7 +7,7 @@ use petgraph::algo::{dominators, toposort};
 use petgraph::graph::{DiGraph, NodeIndex};
 use petgraph::visit::EdgeRef;
 
-use super::live::{self, Live};
+use super::live::{self, RegisterSet};
 use super::operation::{Operation, operation};
 use crate::tick::frame::targets;
 use crate::tick::functions::{Function, Functions};
@@ -25,7 +25,7 @@ pub struct Graph {
     /// Conditions of the instructions in an `it` block.
     conditions: BTreeMap<u32, u8>,
     /// Registers that are live before an instruction.
-    live: BTreeMap<u32, Live>,
+    live: BTreeMap<u32, RegisterSet>,
 }
 
 /// Loop with more than one entry.
@@ -37,7 +37,7 @@ pub struct Irreducible {
 
 impl Graph {
     /// Builds the graph of a function. `returns` tells which callees return.
-    pub fn of(functions: &Functions, function: &Function, returns: &dyn Fn(u32) -> bool) -> Result<Self, Irreducible> {
+    pub fn new(functions: &Functions, function: &Function, returns: &dyn Fn(u32) -> bool) -> Result<Self, Irreducible> {
         let conditions = conditions(functions, function);
         let mut graph = DiGraph::<u32, ()>::new();
         let mut nodes: BTreeMap<u32, NodeIndex> = BTreeMap::new();
@@ -54,12 +54,12 @@ impl Graph {
             }
         }
         let dominators = dominators::simple_fast(&graph, root);
-        let goes_back = |from: NodeIndex, to: NodeIndex| {
+        let is_back_edge = |from: NodeIndex, to: NodeIndex| {
             dominators.dominators(from).is_some_and(|mut above| above.any(|node| node == to))
         };
         let back: Vec<_> = graph
             .edge_references()
-            .filter(|edge| goes_back(edge.source(), edge.target()))
+            .filter(|edge| is_back_edge(edge.source(), edge.target()))
             .map(|edge| (edge.source(), edge.target()))
             .collect();
         let forward = graph.filter_map(
@@ -109,8 +109,8 @@ impl Graph {
     }
 
     /// Registers that are live before an instruction.
-    pub fn live(&self, address: u32) -> Live {
-        self.live.get(&address).copied().unwrap_or(Live::ALL)
+    pub fn live(&self, address: u32) -> RegisterSet {
+        self.live.get(&address).copied().unwrap_or(RegisterSet::ALL)
     }
 }
 

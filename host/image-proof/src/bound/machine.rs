@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::live::Live;
+use super::live::RegisterSet;
 use super::operation::{
     Address, Arithmetic, Flags, Floating, Offset, Operand, Operation, Rearrangement, Register, Shift, Single,
 };
@@ -33,7 +33,7 @@ pub struct Machine {
 }
 
 /// Evaluates a condition code; `None` if it is unknown.
-pub fn holds(condition: u8, [negative, zero, carry, overflow]: ConditionFlags) -> Option<bool> {
+pub fn condition_holds(condition: u8, [negative, zero, carry, overflow]: ConditionFlags) -> Option<bool> {
     let and = |one: Option<bool>, other: Option<bool>| match (one, other) {
         (Some(false), _) | (_, Some(false)) => Some(false),
         (Some(true), Some(true)) => Some(true),
@@ -147,7 +147,7 @@ impl Machine {
     }
 
     /// Forgets the registers that are not live.
-    pub fn keep(&mut self, live: Live) {
+    pub fn keep_registers(&mut self, live: RegisterSet) {
         for (register, value) in (0..).zip(&mut self.registers).filter(|(register, _)| *register != 13) {
             if !live.has_core(register) {
                 *value = None;
@@ -297,21 +297,21 @@ impl Machine {
                 self.set(to, value);
             }
             Operation::Load { to, bytes, signed, at } => {
-                let value = self.read(self.place(&at, pc), bytes, constants);
+                let value = self.read(self.access_address(&at, pc), bytes, constants);
                 let value = value.map(|value| extended(value, 8 * bytes, signed));
                 self.move_base(&at);
                 self.set(to, value);
             }
             Operation::Store { from, bytes, at, success } => {
                 let value = self.register(from);
-                self.write(self.place(&at, pc), bytes, value);
+                self.write(self.access_address(&at, pc), bytes, value);
                 self.move_base(&at);
                 if let Some(success) = success {
                     self.set(success, None);
                 }
             }
             Operation::LoadPair(to, at) => {
-                let place = self.place(&at, pc);
+                let place = self.access_address(&at, pc);
                 let values = [0, 4].map(|offset| self.read(place.map(|p| p.wrapping_add(offset)), 4, constants));
                 self.move_base(&at);
                 for (to, value) in to.into_iter().zip(values) {
@@ -319,7 +319,7 @@ impl Machine {
                 }
             }
             Operation::StorePair(from, at) => {
-                let place = self.place(&at, pc);
+                let place = self.access_address(&at, pc);
                 for (from, offset) in from.into_iter().zip([0, 4]) {
                     self.write(place.map(|place| place.wrapping_add(offset)), 4, self.register(from));
                 }
@@ -381,7 +381,7 @@ impl Machine {
             }
             Operation::CompareSingle(one, other) => {
                 let other = other.map_or(Some(0), |other| self.single(other));
-                let [one, other] = [self.single(one), other].map(|value| value.and_then(exact));
+                let [one, other] = [self.single(one), other].map(|value| value.and_then(mode_independent));
                 self.float_flags = match one.zip(other).map(|(one, other)| one.partial_cmp(&other)) {
                     Some(Some(order)) => [order.is_lt(), order.is_eq(), order.is_ge(), false].map(Some),
                     // An unordered comparison sets carry and overflow; it is not followed.
@@ -389,7 +389,7 @@ impl Machine {
                 };
             }
             Operation::FlagsFromSingle => self.flags = self.float_flags,
-            Operation::Forget(registers) => {
+            Operation::Clobber(registers) => {
                 (0..15).filter(|register| registers >> register & 1 != 0).for_each(|register| self.set(register, None));
             }
         }
@@ -424,11 +424,11 @@ impl Machine {
                 let (amount, signed) = (amount.min(32), i64::from(value as i32));
                 (Some((signed >> amount) as u32), Some(signed >> (amount - 1) & 1 != 0))
             }
-            Shift::Around => {
+            Shift::Rotate => {
                 let rotated = value.rotate_right(amount % 32);
                 (Some(rotated), Some(rotated >> 31 != 0))
             }
-            Shift::Carry => (carry.map(|carry| value >> 1 | u32::from(carry) << 31), Some(value & 1 != 0)),
+            Shift::RotateThroughCarry => (carry.map(|carry| value >> 1 | u32::from(carry) << 31), Some(value & 1 != 0)),
         }
     }
 
@@ -468,21 +468,21 @@ impl Machine {
             Arithmetic::AddCarry => sum(first, second, self.flags[2]),
             Arithmetic::Subtract => sum(first, not(second), Some(true)),
             Arithmetic::SubtractCarry => sum(first, not(second), self.flags[2]),
-            Arithmetic::Reverse => sum(not(first), second, Some(true)),
+            Arithmetic::ReverseSubtract => sum(not(first), second, Some(true)),
         }
     }
 
     /// Address of an access.
-    fn place(&self, at: &Address, pc: u32) -> Option<u32> {
+    fn access_address(&self, at: &Address, pc: u32) -> Option<u32> {
         if at.base == 15 {
             let Offset::Constant(by) = at.offset else { return None };
             return Some((pc & !3).wrapping_add_signed(by));
         }
         let base = self.register(at.base);
-        if at.before { base.and_then(|base| self.moved(base, at.offset)) } else { base }
+        if at.before { base.and_then(|base| self.with_offset(base, at.offset)) } else { base }
     }
 
-    fn moved(&self, base: u32, offset: Offset) -> Option<u32> {
+    fn with_offset(&self, base: u32, offset: Offset) -> Option<u32> {
         match offset {
             Offset::Constant(by) => Some(base.wrapping_add_signed(by)),
             Offset::Register(register, shift) => Some(base.wrapping_add(self.register(register)? << shift)),
@@ -491,7 +491,7 @@ impl Machine {
 
     fn move_base(&mut self, at: &Address) {
         if !at.before || at.write_back {
-            let moved = self.register(at.base).and_then(|base| self.moved(base, at.offset));
+            let moved = self.register(at.base).and_then(|base| self.with_offset(base, at.offset));
             self.set(at.base, moved);
         }
     }
@@ -507,7 +507,7 @@ fn extended(value: u32, bits: u8, signed: bool) -> u32 {
 }
 
 /// Value that is equal in every mode of the unit: zero or normal.
-fn exact(bits: u32) -> Option<f32> {
+fn mode_independent(bits: u32) -> Option<f32> {
     let value = f32::from_bits(bits);
     (value == 0.0 || value.is_normal()).then_some(value)
 }
@@ -517,12 +517,12 @@ fn float(what: Floating, [one, other]: [Option<u32>; 2]) -> Option<u32> {
         Floating::Copy => return one,
         Floating::Absolute => return one.map(|bits| bits & 0x7fff_ffff),
         Floating::Negate => return one.map(|bits| bits ^ 0x8000_0000),
-        Floating::Add => exact(one?)? + exact(other?)?,
-        Floating::Subtract => exact(one?)? - exact(other?)?,
-        Floating::Multiply => exact(one?)? * exact(other?)?,
-        Floating::NegatedMultiply => -(exact(one?)? * exact(other?)?),
-        Floating::Divide => exact(one?)? / exact(other?)?,
+        Floating::Add => mode_independent(one?)? + mode_independent(other?)?,
+        Floating::Subtract => mode_independent(one?)? - mode_independent(other?)?,
+        Floating::Multiply => mode_independent(one?)? * mode_independent(other?)?,
+        Floating::NegatedMultiply => -(mode_independent(one?)? * mode_independent(other?)?),
+        Floating::Divide => mode_independent(one?)? / mode_independent(other?)?,
         Floating::SquareRoot | Floating::MultiplyAccumulate | Floating::Convert => return None,
     };
-    exact(result.to_bits()).map(f32::to_bits)
+    mode_independent(result.to_bits()).map(f32::to_bits)
 }

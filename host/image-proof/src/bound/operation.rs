@@ -17,9 +17,9 @@ pub enum Shift {
     /// Arithmetic right shift.
     Arithmetic,
     /// Rotation.
-    Around,
+    Rotate,
     /// Rotation by one through the carry.
-    Carry,
+    RotateThroughCarry,
 }
 
 /// Last operand of a computation.
@@ -46,7 +46,7 @@ pub enum Arithmetic {
     AddCarry,
     SubtractCarry,
     Subtract,
-    Reverse,
+    ReverseSubtract,
     Move,
     Not,
 }
@@ -270,7 +270,7 @@ pub enum Operation {
     /// Copy of the floating-point flags to the core's flags.
     FlagsFromSingle,
     /// Registers, by a mask, whose values become unknown.
-    Forget(u16),
+    Clobber(u16),
     /// Unknown instruction.
     Unknown,
 }
@@ -288,7 +288,7 @@ pub enum Flags {
 
 /// Decodes an instruction; `second` is the half word after the first.
 pub fn operation(first: u16, second: u16) -> Operation {
-    if first >> 11 < 0b11101 { short(first) } else { long(first, second) }
+    if first >> 11 < 0b11101 { decode_short(first) } else { decode_long(first, second) }
 }
 
 fn bits(value: u16, low: u32, count: u32) -> u8 {
@@ -303,7 +303,7 @@ fn compare(what: Arithmetic, first: Register, second: Operand) -> Operation {
     Operation::Compute { what, to: None, first, second, flags: Flags::Set }
 }
 
-fn plain(register: Register) -> Operand {
+fn unshifted(register: Register) -> Operand {
     Operand::Shifted(register, Shift::Left, 0)
 }
 
@@ -315,21 +315,21 @@ fn shifted(register: Register, kind: u8, amount: u8) -> Operand {
         (1, _) => Operand::Shifted(register, Shift::Right, amount),
         (2, 0) => Operand::Shifted(register, Shift::Arithmetic, 32),
         (2, _) => Operand::Shifted(register, Shift::Arithmetic, amount),
-        (_, 0) => Operand::Shifted(register, Shift::Carry, 1),
-        _ => Operand::Shifted(register, Shift::Around, amount),
+        (_, 0) => Operand::Shifted(register, Shift::RotateThroughCarry, 1),
+        _ => Operand::Shifted(register, Shift::Rotate, amount),
     }
 }
 
-fn kind(code: u8) -> Shift {
-    [Shift::Left, Shift::Right, Shift::Arithmetic, Shift::Around][usize::from(code & 3)]
+fn shift_kind(code: u8) -> Shift {
+    [Shift::Left, Shift::Right, Shift::Arithmetic, Shift::Rotate][usize::from(code & 3)]
 }
 
 fn at(base: Register, offset: i32) -> Address {
     Address { base, offset: Offset::Constant(offset), before: true, write_back: false }
 }
 
-fn short(first: u16) -> Operation {
-    use Arithmetic::{Add, AddCarry, And, Clear, Exclusive, Move, Not, Or, Reverse, Subtract, SubtractCarry};
+fn decode_short(first: u16) -> Operation {
+    use Arithmetic::{Add, AddCarry, And, Clear, Exclusive, Move, Not, Or, ReverseSubtract, Subtract, SubtractCarry};
     let (low, middle, high) = (bits(first, 0, 3), bits(first, 3, 3), bits(first, 6, 3));
     let (eight, upper) = (u32::from(first & 0xff), bits(first, 8, 3));
     let five = i32::from(bits(first, 6, 5));
@@ -338,7 +338,7 @@ fn short(first: u16) -> Operation {
     match first >> 11 {
         code @ 0..=2 => compute(Move, low, 0, shifted(middle, code as u8, bits(first, 6, 5)), outside),
         3 => {
-            let second = if first & 0x400 == 0 { plain(high) } else { constant(high.into()) };
+            let second = if first & 0x400 == 0 { unshifted(high) } else { constant(high.into()) };
             compute(if first & 0x200 == 0 { Add } else { Subtract }, low, middle, second, outside)
         }
         4 => compute(Move, upper, 0, constant(eight), outside),
@@ -347,7 +347,7 @@ fn short(first: u16) -> Operation {
         7 => compute(Subtract, upper, upper, constant(eight), outside),
         8 if first & 0x400 == 0 => {
             let by = |kind| compute(Move, low, 0, Operand::ShiftedBy(low, kind, middle), outside);
-            let own = |what| compute(what, low, low, plain(middle), outside);
+            let own = |what| compute(what, low, low, unshifted(middle), outside);
             match bits(first, 6, 4) {
                 0 => own(And),
                 1 => own(Exclusive),
@@ -356,23 +356,23 @@ fn short(first: u16) -> Operation {
                 4 => by(Shift::Arithmetic),
                 5 => own(AddCarry),
                 6 => own(SubtractCarry),
-                7 => by(Shift::Around),
-                8 => compare(And, low, plain(middle)),
-                9 => compute(Reverse, low, middle, constant(0), outside),
-                10 => compare(Subtract, low, plain(middle)),
-                11 => compare(Add, low, plain(middle)),
+                7 => by(Shift::Rotate),
+                8 => compare(And, low, unshifted(middle)),
+                9 => compute(ReverseSubtract, low, middle, constant(0), outside),
+                10 => compare(Subtract, low, unshifted(middle)),
+                11 => compare(Add, low, unshifted(middle)),
                 12 => own(Or),
                 13 => Operation::Multiply { to: low, first: low, second: middle, third: None, flags: outside },
                 14 => own(Clear),
-                _ => compute(Not, low, 0, plain(middle), outside),
+                _ => compute(Not, low, 0, unshifted(middle), outside),
             }
         }
         8 => {
             let (to, from) = (low | bits(first, 7, 1) << 3, bits(first, 3, 4));
             match bits(first, 8, 2) {
-                0 => compute(Add, to, to, plain(from), Flags::Kept),
-                1 => compare(Subtract, to, plain(from)),
-                2 => compute(Move, to, 0, plain(from), Flags::Kept),
+                0 => compute(Add, to, to, unshifted(from), Flags::Kept),
+                1 => compare(Subtract, to, unshifted(from)),
+                2 => compute(Move, to, 0, unshifted(from), Flags::Kept),
                 // bx, blx
                 _ => Operation::Nothing,
             }
@@ -448,34 +448,34 @@ fn miscellaneous(first: u16) -> Operation {
     }
 }
 
-fn long(first: u16, second: u16) -> Operation {
+fn decode_long(first: u16, second: u16) -> Operation {
     match first {
         _ if first & 0xfe40 == 0xe800 => {
             let list = second & 0xdfff;
             let (down, loads) = (first & 0x180 == 0x100, first & 0x10 != 0);
             Operation::Multiple { loads, base: bits(first, 0, 4), list, down, write_back: first & 0x20 != 0 }
         }
-        _ if first & 0xfe40 == 0xe840 => pair(first, second),
+        _ if first & 0xfe40 == 0xe840 => double_or_exclusive(first, second),
         _ if first & 0xfe00 == 0xea00 => {
             let amount = bits(second, 12, 3) << 2 | bits(second, 6, 2);
-            computes(first, second, shifted(bits(second, 0, 4), bits(second, 4, 2), amount))
+            data_processing(first, second, shifted(bits(second, 0, 4), bits(second, 4, 2), amount))
         }
         _ if first & 0xec00 == 0xec00 => floating(first, second),
         _ if first & 0xf800 == 0xf000 && second & 0x8000 != 0 => control(first, second),
         _ if first & 0xfa00 == 0xf000 => {
             let (value, carry) = expand(first, second);
-            computes(first, second, Operand::Constant(value, carry))
+            data_processing(first, second, Operand::Constant(value, carry))
         }
         _ if first & 0xfa00 == 0xf200 => plain_constant(first, second),
-        _ if first & 0xfe00 == 0xf800 => single(first, second),
-        _ if first & 0xff00 == 0xfa00 => registers(first, second),
+        _ if first & 0xfe00 == 0xf800 => load_or_store(first, second),
+        _ if first & 0xff00 == 0xfa00 => register_processing(first, second),
         _ if first & 0xff00 == 0xfb00 => multiply(first, second),
         _ => Operation::Unknown,
     }
 }
 
 /// Double and exclusive accesses; table branches are in `tick::frame`.
-fn pair(first: u16, second: u16) -> Operation {
+fn double_or_exclusive(first: u16, second: u16) -> Operation {
     let (base, rt, rd) = (bits(first, 0, 4), bits(second, 12, 4), bits(second, 8, 4));
     let offset = 4 * i32::from(second & 0xff);
     let load = |bytes, offset| Operation::Load { to: rt, bytes, signed: false, at: at(base, offset) };
@@ -498,8 +498,10 @@ fn pair(first: u16, second: u16) -> Operation {
 }
 
 /// Data processing with a shifted register or an expanded constant.
-fn computes(first: u16, second: u16, operand: Operand) -> Operation {
-    use Arithmetic::{Add, AddCarry, And, Clear, Exclusive, Move, Not, Or, OrNot, Reverse, Subtract, SubtractCarry};
+fn data_processing(first: u16, second: u16, operand: Operand) -> Operation {
+    use Arithmetic::{
+        Add, AddCarry, And, Clear, Exclusive, Move, Not, Or, OrNot, ReverseSubtract, Subtract, SubtractCarry,
+    };
     let (base, to, sets) = (bits(first, 0, 4), bits(second, 8, 4), first & 0x10 != 0);
     let flags = if sets { Flags::Set } else { Flags::Kept };
     let only_compares = to == 15 && sets;
@@ -512,12 +514,12 @@ fn computes(first: u16, second: u16, operand: Operand) -> Operation {
         3 => OrNot,
         4 => Exclusive,
         // Packing of half words is not followed.
-        6 => return Operation::Forget(1 << to),
+        6 => return Operation::Clobber(1 << to),
         8 => Add,
         10 => AddCarry,
         11 => SubtractCarry,
         13 => Subtract,
-        14 => Reverse,
+        14 => ReverseSubtract,
         _ => return Operation::Unknown,
     };
     match what {
@@ -556,7 +558,7 @@ fn plain_constant(first: u16, second: u16) -> Operation {
             compute(Arithmetic::Move, to, 0, Operand::Constant(value, None), Flags::Kept)
         }
         12 => Operation::MoveTop(to, u16::from(base) << 12 | twelve as u16),
-        16 | 18 | 24 | 26 => Operation::Forget(1 << to),
+        16 | 18 | 24 | 26 => Operation::Clobber(1 << to),
         code @ (20 | 28) => Operation::Extract { to, from: base, low, width: last + 1, signed: code == 20 },
         22 if last >= low => {
             let from = (base != 15).then_some(base);
@@ -570,12 +572,12 @@ fn plain_constant(first: u16, second: u16) -> Operation {
 fn control(first: u16, second: u16) -> Operation {
     match first {
         // mrs
-        _ if first & 0xffe0 == 0xf3e0 && second & 0xd000 == 0x8000 => Operation::Forget(1 << bits(second, 8, 4)),
+        _ if first & 0xffe0 == 0xf3e0 && second & 0xd000 == 0x8000 => Operation::Clobber(1 << bits(second, 8, 4)),
         _ => Operation::Nothing,
     }
 }
 
-fn single(first: u16, second: u16) -> Operation {
+fn load_or_store(first: u16, second: u16) -> Operation {
     let (base, rt) = (bits(first, 0, 4), bits(second, 12, 4));
     let (loads, bytes, signed) = (first & 0x10 != 0, 1 << bits(first, 5, 2), first & 0x100 != 0);
     let twelve = i32::from(second & 0xfff);
@@ -607,13 +609,13 @@ fn single(first: u16, second: u16) -> Operation {
 }
 
 /// Data processing between registers.
-fn registers(first: u16, second: u16) -> Operation {
+fn register_processing(first: u16, second: u16) -> Operation {
     let (base, to, other) = (bits(first, 0, 4), bits(second, 8, 4), bits(second, 0, 4));
     let code = bits(first, 4, 4);
     match bits(second, 4, 4) {
         0 if code < 8 => {
             let flags = if code & 1 == 0 { Flags::Kept } else { Flags::Set };
-            compute(Arithmetic::Move, to, 0, Operand::ShiftedBy(base, kind(code >> 1), other), flags)
+            compute(Arithmetic::Move, to, 0, Operand::ShiftedBy(base, shift_kind(code >> 1), other), flags)
         }
         8..=15 if matches!(code, 0 | 1 | 4 | 5) => Operation::Extend {
             to,
@@ -626,7 +628,7 @@ fn registers(first: u16, second: u16) -> Operation {
         8 if code == 11 => Operation::Rearrange(Rearrangement::LeadingZeros, to, other),
         10 if code == 9 => Operation::Rearrange(Rearrangement::ReverseBits, to, other),
         8 if code == 9 => Operation::Rearrange(Rearrangement::ReverseBytes, to, other),
-        _ => Operation::Forget(1 << to),
+        _ => Operation::Clobber(1 << to),
     }
 }
 
@@ -641,14 +643,14 @@ fn multiply(first: u16, second: u16) -> Operation {
             Operation::Multiply { to, first: one, second: other, third, flags: Flags::Kept }
         }
         (0, 1) => Operation::Multiply { to, first: one, second: other, third: Some((third, true)), flags: Flags::Kept },
-        (1..=7, _) => Operation::Forget(1 << to),
+        (1..=7, _) => Operation::Clobber(1 << to),
         (8, 0) => long(true, false),
         (10, 0) => long(false, false),
         (9, 15) => Operation::Divide { to, of: [one, other], signed: true },
         (11, 15) => Operation::Divide { to, of: [one, other], signed: false },
         (12, 0) => long(true, true),
         (14, 0) => long(false, true),
-        (12..=14, _) => Operation::Forget(1 << to | 1 << third),
+        (12..=14, _) => Operation::Clobber(1 << to | 1 << third),
         _ => Operation::Unknown,
     }
 }
@@ -703,7 +705,7 @@ fn floating(first: u16, second: u16) -> Operation {
                 if loads { Operation::FromSingle(rt, half) } else { Operation::ToSingle(half, rt) }
             }
             (0xeee0, false) if first & 0xf == 1 && loads && rt == 15 => Operation::FlagsFromSingle,
-            (0xeee0, false) if first & 0xf == 1 && loads => Operation::Forget(1 << rt),
+            (0xeee0, false) if first & 0xf == 1 && loads => Operation::Clobber(1 << rt),
             // vmsr: changes rounding and subnormal modes; no followed value depends on them.
             (0xeee0, false) if first & 0xf == 1 => Operation::Nothing,
             _ => Operation::Unknown,

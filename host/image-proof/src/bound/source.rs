@@ -21,7 +21,7 @@ impl<'a> Source<'a> {
             let data = file.section_by_name(id.name()).and_then(|section| section.data().ok());
             Ok(EndianSlice::new(data.unwrap_or_default(), LittleEndian))
         };
-        let failed = |error: gimli::Error| format!("its debug information cannot be read: {error}");
+        let failed = |error: gimli::Error| format!("cannot read its debug information: {error}");
         let context = Context::from_dwarf(Dwarf::load(section).map_err(failed)?).map_err(failed)?;
         Ok(Self { context, dwarf: Dwarf::load(section).map_err(failed)? })
     }

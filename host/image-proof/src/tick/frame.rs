@@ -4,10 +4,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::functions::{Function, Functions};
-use super::thumb::{Flow, Stack};
+use super::thumb::{Flow, StackEffect};
 
 /// Limit of a function's own stack; a larger one grows in a loop [byte].
-const DEEPEST: u32 = 64 * 1024;
+const MAX_FRAME_BYTES: u32 = 64 * 1024;
 
 /// Call, or jump into another function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,25 +26,25 @@ pub enum Obstacle {
     /// Call or jump through a pointer.
     Pointer(u32),
     /// The stack pointer is set to an unknown value, or moved in a loop.
-    Stack(u32),
+    StackEffect(u32),
     /// Instruction that stops the processor.
     Trap(u32),
     /// Address without an instruction.
-    Astray(u32),
+    NoInstruction(u32),
 }
 
 impl Obstacle {
     /// Address of the instruction.
     pub fn at(self) -> u32 {
         match self {
-            Self::Pointer(at) | Self::Stack(at) | Self::Trap(at) | Self::Astray(at) => at,
+            Self::Pointer(at) | Self::StackEffect(at) | Self::Trap(at) | Self::NoInstruction(at) => at,
         }
     }
 }
 
 /// Result of the analysis of one function.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Frame {
+pub struct StackFrame {
     /// Largest stack of the function itself [byte].
     pub depth: u32,
     /// Calls of the function.
@@ -54,9 +54,9 @@ pub struct Frame {
 }
 
 /// Visits every path through a function. `returns` tells which callees return.
-pub fn frame(functions: &Functions, function: &Function, returns: &dyn Fn(u32) -> bool) -> Frame {
+pub fn frame(functions: &Functions, function: &Function, returns: &dyn Fn(u32) -> bool) -> StackFrame {
     let conditional = conditional(function);
-    let mut frame = Frame::default();
+    let mut frame = StackFrame::default();
     let mut depths: BTreeMap<u32, u32> = BTreeMap::new();
     let mut open = vec![(function.address, 0)];
     let mut calls = BTreeMap::new();
@@ -66,22 +66,22 @@ pub fn frame(functions: &Functions, function: &Function, returns: &dyn Fn(u32) -
         }
         depths.insert(address, depth);
         let Some(instruction) = function.code.get(&address) else {
-            frame.obstacles.push(Obstacle::Astray(address));
+            frame.obstacles.push(Obstacle::NoInstruction(address));
             continue;
         };
         let may_be_skipped = conditional.contains(&address);
         let after = match instruction.stack {
-            Stack::Same => depth,
-            Stack::Grow(bytes) => depth + bytes,
-            Stack::Shrink(_) if may_be_skipped => depth,
-            Stack::Shrink(bytes) => depth.saturating_sub(bytes),
-            Stack::Unknown => {
-                frame.obstacles.push(Obstacle::Stack(address));
+            StackEffect::Same => depth,
+            StackEffect::Grow(bytes) => depth + bytes,
+            StackEffect::Shrink(_) if may_be_skipped => depth,
+            StackEffect::Shrink(bytes) => depth.saturating_sub(bytes),
+            StackEffect::Unknown => {
+                frame.obstacles.push(Obstacle::StackEffect(address));
                 continue;
             }
         };
-        if after > DEEPEST {
-            frame.obstacles.push(Obstacle::Stack(address));
+        if after > MAX_FRAME_BYTES {
+            frame.obstacles.push(Obstacle::StackEffect(address));
             continue;
         }
         frame.depth = frame.depth.max(after);

@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use super::frame::{Frame, Obstacle, frame};
+use super::frame::{Obstacle, StackFrame, frame};
 use super::functions::{Function, Functions};
 
 /// Parts of the names of functions that panic or only lead to a panic. All of them end in the first two; the others
@@ -58,7 +58,7 @@ pub fn is_panic(name: &str) -> bool {
 /// Walks the call graph from a handler.
 pub fn walk(functions: &Functions, handler: &Function) -> Reach {
     let returns = |to: u32| functions.at(to).is_none_or(|callee| !is_panic(&callee.name));
-    let mut frames: BTreeMap<u32, Frame> = BTreeMap::new();
+    let mut frames: BTreeMap<u32, StackFrame> = BTreeMap::new();
     // Caller and call address of every function.
     let mut came_from: BTreeMap<u32, (u32, u32)> = BTreeMap::new();
     let mut open = VecDeque::from([handler.address]);
@@ -76,13 +76,13 @@ pub fn walk(functions: &Functions, handler: &Function) -> Reach {
         }
         let Some(function) = functions.at(address) else {
             reach.unknown.push(path(address, address, &came_from));
-            frames.insert(address, Frame::default());
+            frames.insert(address, StackFrame::default());
             continue;
         };
         if is_panic(&function.name) {
             let at = came_from.get(&address).map_or(address, |(_, at)| *at);
             reach.panics.push(path(address, at, &came_from));
-            frames.insert(address, Frame::default());
+            frames.insert(address, StackFrame::default());
             continue;
         }
         let own = frame(functions, function, &returns);
@@ -90,7 +90,7 @@ pub fn walk(functions: &Functions, handler: &Function) -> Reach {
             let list = match obstacle {
                 Obstacle::Pointer(_) => &mut reach.pointers,
                 Obstacle::Trap(_) => &mut reach.traps,
-                Obstacle::Stack(_) | Obstacle::Astray(_) => &mut reach.unknown,
+                Obstacle::StackEffect(_) | Obstacle::NoInstruction(_) => &mut reach.unknown,
             };
             list.push(path(address, obstacle.at(), &came_from));
         }
@@ -105,7 +105,7 @@ pub fn walk(functions: &Functions, handler: &Function) -> Reach {
     }
     reach.functions = frames.len();
     let mut depths = Depths { functions, frames: &frames, known: BTreeMap::new(), path: Vec::new(), rings: Vec::new() };
-    reach.stack = depths.of(handler.address).0;
+    reach.stack = depths.depth_of(handler.address).0;
     reach.deepest = depths.deepest(handler.address);
     reach.rings = depths.rings;
     reach
@@ -118,7 +118,7 @@ fn name_of(functions: &Functions, address: u32) -> String {
 /// Deepest stack of every function with its callees.
 struct Depths<'a> {
     functions: &'a Functions,
-    frames: &'a BTreeMap<u32, Frame>,
+    frames: &'a BTreeMap<u32, StackFrame>,
     /// Depth, and the callee that causes it with the stack held at its call.
     known: BTreeMap<u32, (u32, Option<(u32, u32)>)>,
     path: Vec<u32>,
@@ -126,7 +126,7 @@ struct Depths<'a> {
 }
 
 impl Depths<'_> {
-    fn of(&mut self, address: u32) -> (u32, Option<(u32, u32)>) {
+    fn depth_of(&mut self, address: u32) -> (u32, Option<(u32, u32)>) {
         if let Some(known) = self.known.get(&address) {
             return *known;
         }
@@ -140,7 +140,7 @@ impl Depths<'_> {
         let mut deepest = (frame.depth, None);
         for call in &frame.calls {
             let callee = call.to & !1;
-            let depth = call.depth + self.of(callee).0;
+            let depth = call.depth + self.depth_of(callee).0;
             if depth > deepest.0 {
                 deepest = (depth, Some((callee, call.depth)));
             }

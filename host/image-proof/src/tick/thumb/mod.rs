@@ -32,7 +32,7 @@ pub enum Flow {
 
 /// Effect on the stack pointer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stack {
+pub enum StackEffect {
     /// Stack pointer unchanged.
     Same,
     /// Stack grows [byte].
@@ -51,7 +51,7 @@ pub struct Instruction {
     /// Control flow.
     pub flow: Flow,
     /// Effect on the stack pointer.
-    pub stack: Stack,
+    pub stack: StackEffect,
     /// Register that is loaded with a nearby address, and the address.
     pub address_of: Option<(u16, u32)>,
     /// Number of following instructions that become conditional.
@@ -112,15 +112,15 @@ fn flow_of_short(address: u32, first: u16) -> Flow {
     }
 }
 
-fn stack_of_short(first: u16) -> Stack {
+fn stack_of_short(first: u16) -> StackEffect {
     let words = 4 * u32::from(first & 0x7f);
     match first {
-        _ if first & 0xfe00 == 0xb400 => Stack::Grow(4 * (first & 0x1ff).count_ones()),
-        _ if first & 0xfe00 == 0xbc00 => Stack::Shrink(4 * (first & 0x1ff).count_ones()),
-        _ if first & 0xff80 == 0xb000 => Stack::Shrink(words),
-        _ if first & 0xff80 == 0xb080 => Stack::Grow(words),
-        _ if high_destination(first) == Some(SP) => Stack::Unknown,
-        _ => Stack::Same,
+        _ if first & 0xfe00 == 0xb400 => StackEffect::Grow(4 * (first & 0x1ff).count_ones()),
+        _ if first & 0xfe00 == 0xbc00 => StackEffect::Shrink(4 * (first & 0x1ff).count_ones()),
+        _ if first & 0xff80 == 0xb000 => StackEffect::Shrink(words),
+        _ if first & 0xff80 == 0xb080 => StackEffect::Grow(words),
+        _ if high_destination(first) == Some(SP) => StackEffect::Unknown,
+        _ => StackEffect::Same,
     }
 }
 
@@ -156,10 +156,11 @@ fn flow_of_long(address: u32, first: u16, second: u16) -> Flow {
     }
 }
 
-fn stack_of_long(first: u16, second: u16) -> Stack {
+fn stack_of_long(first: u16, second: u16) -> StackEffect {
     let base = first & 15;
     let destination = second >> 8 & 15;
-    let by = |up: bool, bytes: u16| if up { Stack::Shrink(bytes.into()) } else { Stack::Grow(bytes.into()) };
+    let by =
+        |up: bool, bytes: u16| if up { StackEffect::Shrink(bytes.into()) } else { StackEffect::Grow(bytes.into()) };
     let writes_back = first & 0x20 != 0;
     let up = first & 0x80 != 0;
     match first {
@@ -172,22 +173,24 @@ fn stack_of_long(first: u16, second: u16) -> Stack {
         _ if first & 0xfe80 == 0xf800 && base == SP && second & 0x900 == 0x900 => {
             by(second & 0x200 != 0, second & 0xff)
         }
-        _ if first & 0xff70 == 0xf850 && second >> 12 == SP => Stack::Unknown,
+        _ if first & 0xff70 == 0xf850 && second >> 12 == SP => StackEffect::Unknown,
         // Data processing: shifted register, then constant
-        _ if first & 0xfe00 == 0xea00 && destination == SP => Stack::Unknown,
+        _ if first & 0xfe00 == 0xea00 && destination == SP => StackEffect::Unknown,
         _ if first & 0xf800 == 0xf000 && second & 0x8000 == 0 && destination == SP => {
             let (coded, plain) = (expand(first, second), twelve(first, second));
             match first & 0xfbef {
-                0xf10d => Stack::Shrink(coded),
-                0xf1ad => Stack::Grow(coded),
-                0xf20d => Stack::Shrink(plain),
-                0xf2ad => Stack::Grow(plain),
-                _ => Stack::Unknown,
+                0xf10d => StackEffect::Shrink(coded),
+                0xf1ad => StackEffect::Grow(coded),
+                0xf20d => StackEffect::Shrink(plain),
+                0xf2ad => StackEffect::Grow(plain),
+                _ => StackEffect::Unknown,
             }
         }
         // msr to the stack pointers
-        _ if first & 0xffe0 == 0xf380 && second & 0xff00 == 0x8800 && matches!(second & 0xff, 8 | 9) => Stack::Unknown,
-        _ => Stack::Same,
+        _ if first & 0xffe0 == 0xf380 && second & 0xff00 == 0x8800 && matches!(second & 0xff, 8 | 9) => {
+            StackEffect::Unknown
+        }
+        _ => StackEffect::Same,
     }
 }
 

@@ -1,4 +1,4 @@
-//! Pins: those that the board's file names are set up, and no others, least of all those that it forbids.
+//! Pins: exactly those that the board's file names are set up, in particular none that it forbids.
 
 use std::collections::BTreeSet;
 
@@ -9,10 +9,10 @@ use super::outputs::start_run;
 use crate::boards::{Subject, pin};
 use crate::wires::{MICROSECOND, Mode, Pin, Time};
 
-/// How long a run goes on.
+/// Duration of the run.
 const RUN: Time = 20_000 * MICROSECOND;
 
-/// Boots and runs: no pin that the file forbids was set up at any time, and of the others those that it names.
+/// Boots and runs: no forbidden pin is ever set up, and of the others exactly those that the file names.
 pub fn only_those_of_the_file(subject: &Subject) -> Result<String, String> {
     let mut talk = start_run(subject)?;
     talk.hear(RUN);

@@ -1,6 +1,6 @@
-//! An AS5047P, a magnetic encoder on SPI, outside of a chip that is its master: frames, parity, error register and diagnostics by its
-//! data sheet (DS000324, "SPI Interface" and "Register Description"), not by the firmware's driver. Its other registers, ABI and
-//! PWM are left out.
+//! AS5047P, a magnetic encoder on SPI outside of the chip, which is its master: frames, parity, error register and
+//! diagnostics by its data sheet (DS000324, "SPI Interface" and "Register Description"), not by the firmware's driver.
+//! Its other registers, ABI and PWM are not modelled.
 
 use crate::wires::{Pin, SECOND, Time};
 
@@ -8,41 +8,41 @@ const ERRFL: u16 = 0x0001;
 const DIAAGC: u16 = 0x3ffc;
 const ANGLECOM: u16 = 0x3fff;
 const NOP: u16 = 0x0000;
-/// Errors of a frame: too few or too many bits, a register that there is not, a wrong parity.
+/// Errors of a frame: wrong number of bits, unknown register, wrong parity.
 const FRAMING: u16 = 1;
 const INVALID_COMMAND: u16 = 2;
 const PARITY: u16 = 4;
-/// In a command: read. In an answer: the command before was in error.
+/// Bit 14: read in a command, error of the previous command in an answer.
 const READ: u16 = 1 << 14;
 const ERROR: u16 = 1 << 14;
 const CONTENT: u16 = READ - 1;
 
-/// A field that is as it should be: the loops have settled, the gain is in the middle.
+/// Diagnostics in normal operation: the loops have settled, the gain is in the middle.
 pub const WELL: u16 = 1 << 8 | 0x80;
-/// MAGL with the gain at its top, MAGH with the gain at its bottom, and COF beside a field that is hardly there.
+/// Diagnostics of a faulty magnet: MAGL with maximum gain, MAGH with minimum gain, and COF for an almost absent field.
 pub const TOO_WEAK: u16 = 1 << 11 | 1 << 8 | 0xff;
 /// See [`TOO_WEAK`].
 pub const TOO_STRONG: u16 = 1 << 10 | 1 << 8;
 /// See [`TOO_WEAK`].
 pub const LOST: u16 = 1 << 11 | 1 << 9 | 0xff;
 
-/// Least time of a bit, from select to the first edge, and of select being high between frames: table "SPI Timing".
+/// Minimum times of a bit, from select to the first edge, and of select being high between frames: table "SPI Timing".
 const BIT: Time = SECOND / 10_000_000;
 const SELECTED: Time = SECOND / 1_000_000_000 * 350;
 const BETWEEN: Time = SELECTED;
 
-/// The encoder and its wires.
+/// Encoder with its wires.
 #[derive(Debug)]
 pub struct As5047p {
-    /// The unit of the chip that it is on.
+    /// SPI peripheral of the chip that the encoder is connected to.
     pub spi: u32,
-    /// Its select, low while it is spoken to.
+    /// Select pin, low during a frame.
     pub select: Pin,
-    /// What ANGLECOM holds.
+    /// Content of ANGLECOM.
     pub angle: u16,
-    /// What DIAAGC holds.
+    /// Content of DIAAGC.
     pub diagnostics: u16,
-    /// Bits of the answers on the line that are turned over.
+    /// Bits that the line inverts in every answer.
     pub disturbed: u16,
     errors: u16,
     in_error: bool,
@@ -54,7 +54,7 @@ pub struct As5047p {
 }
 
 impl As5047p {
-    /// With a good magnet before it.
+    /// Encoder with a good magnet.
     pub fn new(spi: u32, select: Pin) -> Self {
         Self {
             spi,
@@ -72,7 +72,7 @@ impl As5047p {
         }
     }
 
-    /// Its select has this level; what was wrong about that.
+    /// Sets the level of select; returns the timing rule that was violated.
     pub fn selected(&mut self, is_low: bool, now: Time) -> Option<&'static str> {
         if is_low == self.is_selected {
             return None;
@@ -88,7 +88,7 @@ impl As5047p {
         None
     }
 
-    /// A frame is complete: what the next one answers.
+    /// Executes a complete frame and prepares the answer for the next one.
     fn take(&mut self, command: u16) {
         let address = command & CONTENT;
         let error = if self.bytes != 2 {
@@ -113,7 +113,7 @@ impl As5047p {
         self.answer = answer | (answer.count_ones() as u16 & 1) << 15;
     }
 
-    /// Eight bits of a frame, the highest first, in a mode (CPOL, CPHA); what it sends meanwhile, and what was wrong.
+    /// Exchanges eight bits, highest first, in a mode (CPOL, CPHA); returns the answer and the rule that was violated.
     pub fn exchange(&mut self, byte: u8, mode: (bool, bool), bit: Time, now: Time) -> (u8, Option<&'static str>) {
         if !self.is_selected {
             return (0xff, None);
@@ -139,7 +139,7 @@ mod tests {
     use super::*;
     use crate::wires::MICROSECOND;
 
-    /// What comes back with each of some frames.
+    /// Answers to a sequence of frames.
     fn frames(encoder: &mut As5047p, commands: &[&[u8]]) -> Vec<u16> {
         let (mut now, mut back) = (MICROSECOND, Vec::new());
         for command in commands {
@@ -165,7 +165,7 @@ mod tests {
     #[test]
     fn errors_are_told_in_the_next_frame_and_by_a_register_that_is_cleared_when_read() {
         let mut encoder = As5047p::new(1, Pin('A', 4));
-        // A wrong parity, a register that there is not, and half a frame.
+        // A wrong parity, an unknown register, and half a frame.
         let back =
             frames(&mut encoder, &[&[0x7f, 0xff], &[0xc0, 0x05], &[0xff], &[0x40, 0x01], &[0x40, 0x01], &[0, 0]]);
         assert_eq!(back[1..3], [0xc000, 0xc0]);

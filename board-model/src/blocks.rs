@@ -1,12 +1,12 @@
-//! How many instructions a block of code has: an instruction is one or two half-words, as its first half-word says
-//! (ARMv7-M A5.1). Blocks are looked at once.
+//! Number of instructions of a code block: an instruction has one or two half words, as its first half word tells
+//! (ARMv7-M A5.1). Every block is counted once.
 
 use std::collections::HashMap;
 
 /// First address of flash.
 const FLASH: u32 = 0x0800_0000;
 
-/// Numbers of instructions by the address of a block, with the block's size.
+/// Numbers of instructions by the address and size of a block.
 #[derive(Debug, Default)]
 pub struct Blocks {
     flash: Vec<(u16, u16)>,
@@ -14,7 +14,7 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    /// Instructions of a block, if it has been looked at.
+    /// Instructions of a block that was counted before.
     pub fn get(&self, address: u32, size: u32) -> Option<u32> {
         match self.flash.get((address.wrapping_sub(FLASH) / 2) as usize) {
             Some((known, count)) => (u32::from(*known) == size && *count > 0).then_some((*count).into()),
@@ -22,7 +22,7 @@ impl Blocks {
         }
     }
 
-    /// Looks at a block's code.
+    /// Counts the instructions of a block.
     pub fn look(&mut self, address: u32, code: &[u8]) -> u32 {
         let count = instructions(code);
         let place = (address.wrapping_sub(FLASH) / 2) as usize;
@@ -38,14 +38,14 @@ impl Blocks {
     }
 }
 
-/// Half-words of the largest flash.
+/// Half words of the largest flash.
 const FLASH_PLACES: usize = 0x10_0000;
 
 fn instructions(code: &[u8]) -> u32 {
     let mut count = 0;
     let mut place = 0;
     while place + 1 < code.len() {
-        // 0b11101, 0b11110 and 0b11111 begin one of two half-words.
+        // 0b11101, 0b11110 and 0b11111 begin an instruction of two half words.
         place += if code[place + 1] >> 3 >= 0b11101 { 4 } else { 2 };
         count += 1;
     }

@@ -1,4 +1,4 @@
-//! The boards: chip, what drives its clock, and the speed of its line, as the firmware's page on boards states them.
+//! Boards: chip, clock source and line speed, from the board files.
 
 use board::device::board::{Board as Described, Chip};
 use board_file::ExternalClock;
@@ -9,27 +9,27 @@ use crate::image::Image;
 use crate::tamper::Tamper;
 use crate::wires::{Cable, Pin, Surroundings};
 
-/// An instruction takes a cycle, unless it is said otherwise [thousandths].
+/// Default cost of an instruction [thousandths of a cycle].
 pub const USUAL_COST: u64 = 1000;
 
-/// What drives the clock of a board, as its file says.
+/// Clock source of a board, from its file.
 pub fn usual_surroundings(board: &Described) -> Surroundings {
-    match board.described.clock {
+    match board.description.clock {
         ExternalClock::None => Surroundings::default(),
         ExternalClock::Crystal(frequency) => Surroundings::crystal(frequency.into()),
         ExternalClock::Signal(frequency) => Surroundings::clock(frequency.into()),
     }
 }
 
-/// A board with a chip that is modelled.
+/// First preset board with a chip.
 pub fn with(chip: Chip) -> Result<Described, String> {
     let name = board_file::boards_with(chip).first().copied().ok_or("no board has this chip")?;
     Described::load(name).map_err(|failure| failure.to_string())
 }
 
-/// The line of a board: its unit's number is at the end of its name.
+/// Serial line of a board; the number of the peripheral ends its name.
 fn cable(board: &Described) -> Cable {
-    let serial = &board.described.serial;
+    let serial = &board.description.serial;
     Cable {
         baud: board.baud_rate().into(),
         unit: serial.unit.trim_start_matches(char::is_alphabetic).parse().unwrap_or_default(),
@@ -38,34 +38,34 @@ fn cable(board: &Described) -> Cable {
     }
 }
 
-/// A pin as the model names it.
+/// Pin in the form of the model.
 pub fn pin(pin: board_file::Pin) -> Pin {
     Pin(pin.letter(), pin.number.into())
 }
 
-/// What a check is of: an image on its board, with the mistakes that were planted.
+/// Subject of a check: an image on its board, with planted mistakes.
 #[derive(Debug, Clone)]
 pub struct Subject {
-    /// The board.
+    /// Board.
     pub board: Described,
-    /// The image.
+    /// Image.
     pub image: Image,
-    /// What is done to its writes.
+    /// Changes to the image's writes.
     pub tampers: &'static [Tamper],
 }
 
 impl Subject {
-    /// The board as it is sold.
+    /// Starts the board with its usual surroundings.
     pub fn start<'a>(&self) -> Result<Board<'a>, String> {
         self.start_with(usual_surroundings(&self.board))
     }
 
-    /// The board with other surroundings.
+    /// Starts the board with other surroundings.
     pub fn start_with<'a>(&self, surroundings: Surroundings) -> Result<Board<'a>, String> {
         self.start_at(surroundings, USUAL_COST)
     }
 
-    /// The board with instructions that take longer or shorter.
+    /// Starts the board with another cost of an instruction [thousandths of a cycle].
     pub fn start_at<'a>(&self, surroundings: Surroundings, cost: u64) -> Result<Board<'a>, String> {
         let setup = Setup { surroundings, cable: cable(&self.board), cost };
         let chip = match self.board.chip() {
@@ -75,7 +75,7 @@ impl Subject {
             Chip::Stm32g431 => chips::g431::chip,
         };
         let mut board = Board::new(chip, self.image.clone(), setup)?;
-        let unit = self.board.described.serial.unit;
+        let unit = self.board.description.serial.unit;
         if !board.machine().chip.peripherals.iter().any(|placed| placed.name == unit) {
             return Err(format!("{unit} of {} is not modelled", self.board.chip().name()));
         }

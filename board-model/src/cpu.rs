@@ -1,7 +1,7 @@
-//! The core: instructions by the emulator library, which leaves exceptions to us. They are entered and left here, between
-//! blocks of code (ARMv7-M B1.5): frames with and without the registers of the floating-point unit, which are stacked at once
-//! where the core would put it off; tail chaining falls out of looking again before the next instruction. One stack pointer,
-//! as the images use.
+//! Core: the emulator library executes instructions but leaves exceptions to the model. Exceptions are entered and left
+//! here, between blocks of code (ARMv7-M B1.5), with frames with and without floating-point registers; these are
+//! stacked at once, where the core would stack them lazily. Tail chaining follows from testing for exceptions before
+//! every instruction. Only the main stack pointer is modelled, which the images use.
 
 use unicorn_engine::{Arch, ArmCpuModel, HookType, Mode, Prot, RegisterARM, Unicorn, uc_error};
 
@@ -12,54 +12,54 @@ use crate::peripherals::flash;
 use crate::scs::{FIRST_INTERRUPT, HARD_FAULT, Masks};
 use crate::wires::{Cable, MICROSECOND, Reset, Surroundings, Time};
 
-/// Interrupts of the emulator library.
+/// Interrupt numbers of the emulator library.
 const BREAKPOINT: u32 = 7;
 const EXCEPTION_EXIT: u32 = 8;
-/// A granule of its memory map.
+/// Granule of the library's memory map.
 const GRANULE: u32 = 0x1000;
-/// No instruction is ever there.
+/// Address without any instruction.
 const NOWHERE: u64 = 0x0fff_fffe;
-/// Registers of a frame, from the lowest address on.
+/// Registers of a frame, in ascending order of addresses.
 const FRAME: [RegisterARM; 6] =
     [RegisterARM::R0, RegisterARM::R1, RegisterARM::R2, RegisterARM::R3, RegisterARM::R12, RegisterARM::LR];
 const FIRST_SINGLE: i32 = RegisterARM::S0 as i32;
-/// Values that a branch to leaves an exception: to a handler, or to the thread, on the main stack; bit 4 is 0 with
+/// Values that a branch uses to leave an exception: to a handler, or to the thread, on the main stack; bit 4 is 0 with
 /// floating-point registers (ARMv7-M table B1-8).
 const TO_HANDLER: u32 = 0xffff_fff1;
 const TO_THREAD: u32 = 0xffff_fff9;
 const BASIC_FRAME: u32 = 1 << 4;
-/// State of an IT instruction in xPSR.
+/// IT state in xPSR.
 const IF_THEN: u32 = 0x0600_fc00;
-/// An encoding of `dsb sy`, as it lies in memory.
+/// Encoding of `dsb sy` in memory.
 const BARRIER: [u8; 4] = [0xbf, 0xf3, 0x4f, 0x8f];
 
-/// Time passes by these steps while a debugger holds the core.
+/// Time step while a debugger holds the core.
 const STEP_WHILE_HELD: Time = 20 * MICROSECOND;
 
-/// Cycles between two ticks of a bootloader: a millisecond at the usual rate after a reset.
+/// Cycles between two ticks of a bootloader: a millisecond at the clock after a reset.
 const BOOTLOADER_TICK: u64 = 15_999;
 
-/// How a board is set up.
+/// Setup of a board.
 #[derive(Debug, Clone, Copy)]
 pub struct Setup {
-    /// What is outside of the chip.
+    /// Clock source outside of the chip.
     pub surroundings: Surroundings,
-    /// The line to the host.
+    /// Serial line to the host.
     pub cable: Cable,
-    /// Thousandths of a cycle that an instruction takes.
+    /// Cost of an instruction [thousandths of a cycle].
     pub cost: u64,
 }
 
-/// A chip with its core and an image.
+/// Chip with its core and an image.
 pub struct Board<'a> {
     core: Unicorn<'a, Machine>,
-    /// The image.
+    /// Image.
     pub image: Image,
     sleeping: bool,
 }
 
 impl Board<'_> {
-    /// Powered up and not yet running.
+    /// Board after power-up, before the first instruction.
     pub fn new(chip: impl FnOnce(u32) -> Chip, image: Image, setup: Setup) -> Result<Self, String> {
         let failed = |error: uc_error| format!("the emulator library refuses: {error:?}");
         let image_end = flash::BASE + (image.bytes.len() as u32).next_multiple_of(GRANULE);
@@ -90,12 +90,12 @@ impl Board<'_> {
         Ok(board)
     }
 
-    /// The chip.
+    /// Chip.
     pub fn machine(&self) -> &Machine {
         self.core.get_data()
     }
 
-    /// The chip, to be changed from outside.
+    /// Chip, for changes from outside.
     pub fn machine_mut(&mut self) -> &mut Machine {
         self.core.get_data_mut()
     }
@@ -105,7 +105,7 @@ impl Board<'_> {
         self.machine().time()
     }
 
-    /// Runs for a time, or until something ends it for good.
+    /// Runs for a time, or until the emulation halts.
     pub fn run_for(&mut self, duration: Time) {
         let end = self.now() + duration;
         while self.now() < end && self.machine().halted.is_none() {
@@ -113,8 +113,8 @@ impl Board<'_> {
         }
     }
 
-    /// Begins the image as a bootloader does that jumps to it: with the vectors still those of the bootloader, whose tick runs,
-    /// interrupts masked, and some of them left on and pending.
+    /// Enters the image as a bootloader does: with the bootloader's vectors and tick, interrupts masked, and some of
+    /// them enabled and pending.
     pub fn jump_from(&mut self, bootloader: u32, left: &[usize]) {
         self.set(RegisterARM::PRIMASK, 1);
         let machine = self.core.get_data_mut();
@@ -128,7 +128,7 @@ impl Board<'_> {
         }
     }
 
-    /// A debugger holds the core for a time, or until something resets the chip.
+    /// Holds the core as a debugger does, for a time or until a reset of the chip.
     pub fn hold_for(&mut self, duration: Time) {
         let end = self.now() + duration;
         while self.now() < end && self.machine().wires.reset.is_none() {
@@ -138,7 +138,7 @@ impl Board<'_> {
         self.core.get_data_mut().wires.is_held = false;
     }
 
-    /// One turn: everything to the present, exceptions, then code until something happens.
+    /// Brings everything to the present, handles exceptions, then runs code until the next event.
     fn turn(&mut self, end: Time) {
         self.core.get_data_mut().settle();
         self.transfers();
@@ -175,7 +175,7 @@ impl Board<'_> {
         }
     }
 
-    /// Moves what DMA is asked to move.
+    /// Executes the pending DMA transfers.
     fn transfers(&mut self) {
         while let Some(Transfer { from, to, size }) = self.core.get_data_mut().next_transfer() {
             let mut bytes = [0; 8];
@@ -195,7 +195,7 @@ impl Board<'_> {
         }
     }
 
-    /// Whether an address is in memory, which DMA must be able to reach.
+    /// Returns whether an address is in memory; memory out of reach of DMA is a violation.
     fn is_reached(&mut self, address: u32) -> bool {
         let memory = self.machine().memory_at(address);
         if memory.is_some_and(|memory| memory.core_only) {
@@ -205,7 +205,7 @@ impl Board<'_> {
         memory.is_some()
     }
 
-    /// Enters what is due.
+    /// Enters the exception that is due.
     fn exceptions(&mut self) {
         if !self.machine().scs.may_be_due() {
             return;
@@ -220,7 +220,7 @@ impl Board<'_> {
         }
         let Some(exception) = self.machine().scs.due(masks) else { return };
         if self.register(RegisterARM::XPSR) & IF_THEN != 0 {
-            // The library can split the block of an IT instruction; its state cannot be set anew on the way back.
+            // The library can split the block of an IT instruction, and its state cannot be restored on return.
             self.core.get_data_mut().go_on = true;
             return;
         }
@@ -235,7 +235,7 @@ impl Board<'_> {
         }
     }
 
-    /// From the table of vectors.
+    /// Starts from the vector table.
     fn start(&mut self) {
         self.sleeping = false;
         let vectors = self.machine().scs.vectors;
@@ -254,7 +254,7 @@ impl Board<'_> {
         self.set_running(0);
     }
 
-    /// RAM after power was gone holds anything.
+    /// Fills RAM with noise, as after a loss of power.
     fn forget_memory(&mut self) {
         for memory in self.machine().chip.memories {
             let noise: Vec<u8> = (0..memory.size).map(|place| (place.wrapping_mul(0x9e37_79b9) >> 13) as u8).collect();
@@ -262,7 +262,7 @@ impl Board<'_> {
         }
     }
 
-    /// ARMv7-M B1.5.6.
+    /// Enters an exception: ARMv7-M B1.5.6.
     fn enter(&mut self, exception: usize) {
         let with_floats = self.register(RegisterARM::CONTROL) & 4 != 0;
         if with_floats && self.machine().scs.coprocessors >> 20 & 0xf != 0xf {
@@ -305,11 +305,11 @@ impl Board<'_> {
         self.set(RegisterARM::CONTROL, self.register(RegisterARM::CONTROL) & !4);
         self.set(RegisterARM::PC, handler);
         self.set_running(exception);
-        // Twelve cycles to the first instruction; the registers of floats are put off on the chip.
+        // Twelve cycles to the first instruction; the chip stacks floating-point registers lazily.
         self.core.get_data_mut().cycles += 12;
     }
 
-    /// ARMv7-M B1.5.8.
+    /// Leaves an exception: ARMv7-M B1.5.8.
     fn leave(&mut self, value: u32) {
         let machine = self.core.get_data_mut();
         let inner = machine.scs.running();
@@ -338,7 +338,7 @@ impl Board<'_> {
         let control = self.register(RegisterARM::CONTROL) & !4 | u32::from(with_floats) << 2;
         self.set(RegisterARM::CONTROL, control);
         self.set(RegisterARM::SP, frame + if with_floats { 0x68 } else { 0x20 } + (status >> 9 & 1) * 4);
-        // FAULTMASK is cleared by every return but from NMI.
+        // Every return but the one from NMI clears FAULTMASK.
         if inner != crate::scs::NMI {
             self.set(RegisterARM::FAULTMASK, 0);
         }
@@ -351,15 +351,15 @@ impl Board<'_> {
         }
     }
 
-    /// The exception number, which also tells the library that a handler runs.
+    /// Sets the exception number, by which the library also knows that a handler runs.
     fn set_running(&mut self, exception: usize) {
         self.set(RegisterARM::IPSR, exception as u32);
-        // The library looks at its state anew when it takes this register.
+        // Writing this register makes the library re-evaluate its state.
         let flags = self.register(RegisterARM::XPSR) & 0xf000_0000;
         self.set(RegisterARM::APSR_NZCV, flags);
     }
 
-    /// The library gave up: what a chip would have as a fault.
+    /// Turns an error of the library into the fault that a chip would raise.
     fn fault(&mut self, error: uc_error) {
         let pc = self.register(RegisterARM::PC);
         let what = format!("{error:?} in {}", self.image.function(pc));
@@ -386,7 +386,7 @@ impl Board<'_> {
         }
     }
 
-    /// A word of memory.
+    /// Reads a word of memory.
     pub fn word(&self, address: u32) -> u32 {
         let mut bytes = [0; 4];
         match self.core.mem_read(address.into(), &mut bytes) {
@@ -395,7 +395,7 @@ impl Board<'_> {
         }
     }
 
-    /// A line about where the core is.
+    /// Text about the core's present place.
     pub fn whereabouts(&self) -> String {
         let pc = self.register(RegisterARM::PC);
         let exception = self.machine().scs.running();
@@ -408,7 +408,7 @@ impl Board<'_> {
     }
 }
 
-/// Everything that is not plain memory goes to the machine.
+/// Maps everything but plain memory to the machine.
 fn map_device(core: &mut Unicorn<'_, Machine>, base: u32, size: u32) -> Result<(), uc_error> {
     let read = move |core: &mut Unicorn<'_, Machine>, offset: u64, size: usize| {
         let value = core.get_data_mut().read(base + offset as u32, size as u32);
@@ -429,7 +429,7 @@ fn hook(core: &mut Unicorn<'_, Machine>, image: &Image) -> Result<(), uc_error> 
     core.add_block_hook(1, 0, |core, address, size| {
         let (address, machine) = (address as u32, core.get_data_mut());
         machine.wires.pc = address;
-        // What is due is done before the block, which is then begun again.
+        // Events that are due are handled before the block, which is then started again.
         let goes_on = std::mem::take(&mut machine.go_on);
         if !goes_on && (machine.attention || machine.cycles >= machine.deadline) {
             machine.stopped = true;

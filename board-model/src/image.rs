@@ -1,18 +1,18 @@
-//! The image that ships: what of its ELF file goes into flash, and which function an address is in.
+//! Image that ships: the bytes of its ELF file for flash, and its functions by address.
 
 use std::path::Path;
 
 use object::{Object, ObjectSegment, ObjectSymbol, SymbolKind};
 
-/// Where an image may lie; initial values of what is in RAM lie there too.
+/// Address range of images, including the initial values of RAM.
 const FLASH: std::ops::Range<u64> = 0x0800_0000..0x0840_0000;
 
-/// An image.
+/// Image as bytes and functions.
 #[derive(Debug, Clone)]
 pub struct Image {
     /// Bytes from the start of flash on.
     pub bytes: Vec<u8>,
-    /// Functions by address, in rising order.
+    /// Functions by address, in ascending order.
     functions: Vec<(u32, String)>,
 }
 
@@ -24,12 +24,12 @@ impl Image {
         Self::parse(&file).map_err(|error| named(&error))
     }
 
-    /// The same from memory.
+    /// Parses an ELF file in memory.
     pub fn parse(file: &[u8]) -> Result<Self, object::Error> {
         let file = object::File::parse(file)?;
         let mut bytes = Vec::new();
         for segment in file.segments() {
-            // The address that it is loaded to: that of initial values is in the program header only.
+            // Load address; for initial values it is in the program header only.
             let object::SegmentFlags::Elf { .. } = segment.flags() else { continue };
             let data = segment.data()?;
             let address = physical(&file, segment.address()).unwrap_or(segment.address());
@@ -48,14 +48,14 @@ impl Image {
         Ok(Self { bytes, functions })
     }
 
-    /// The function that an address is in.
+    /// Name of the function at an address.
     pub fn function(&self, address: u32) -> &str {
         let after = self.functions.partition_point(|(start, _)| *start <= address);
         after.checked_sub(1).map_or("?", |place| &self.functions[place].1)
     }
 }
 
-/// Physical address of the segment with a virtual one.
+/// Physical address of the segment at a virtual address.
 fn physical(file: &object::File<'_>, address: u64) -> Option<u64> {
     use object::read::elf::ProgramHeader;
     let object::File::Elf32(elf) = file else { return None };

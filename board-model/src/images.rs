@@ -1,4 +1,4 @@
-//! The images that are checked: built by the host's own code, so that they are those that ship.
+//! Images under check, built by the host's own code so that they equal those that ship.
 
 use std::collections::BTreeMap;
 
@@ -10,10 +10,10 @@ use link::messages::Role;
 
 use crate::image::Image;
 
-/// The joint of all of them.
+/// Joint of all images.
 pub const JOINT: &str = "q1";
 
-/// What an image does.
+/// Kind of image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Work {
     /// Role `plant`.
@@ -22,12 +22,12 @@ pub enum Work {
     Observer,
     /// Role `loop`.
     Loop,
-    /// The slave on SPI.
+    /// SPI slave.
     SpiSlave,
 }
 
 impl Work {
-    /// Its name.
+    /// Name of the kind.
     pub fn name(self) -> &'static str {
         match self {
             Self::Plant => "plant",
@@ -38,22 +38,22 @@ impl Work {
     }
 }
 
-/// Images by board and work.
+/// Images by board and kind.
 pub struct Images {
     toolchain: Toolchain,
     built: BTreeMap<(String, Work), Image>,
 }
 
 impl Images {
-    /// None yet.
+    /// Prepares the toolchain; no image is built yet.
     pub fn prepare() -> Result<Self, String> {
         let toolchain = Toolchain::prepare(&|line| eprintln!("{line}")).map_err(|failure| failure.to_string())?;
         Ok(Self { toolchain, built: BTreeMap::new() })
     }
 
-    /// One of them; built when it is asked for first.
+    /// Returns an image; it is built at the first request.
     pub fn get(&mut self, board: &Board, work: Work) -> Result<Image, String> {
-        if let Some(image) = self.built.get(&(board.named.clone(), work)) {
+        if let Some(image) = self.built.get(&(board.argument.clone(), work)) {
             return Ok(image.clone());
         }
         let (joint, quiet) = (image::preset_file(JOINT), |_: &str| {});
@@ -61,17 +61,17 @@ impl Images {
         let built = match work {
             Work::Plant => role(Role::Plant, DEFAULT_TICK_RATE),
             Work::Observer => role(Role::Observer, CONTROL_RATE),
-            // The highest rate that the chip has time for.
+            // The highest common rate that fits the chip.
             Work::Loop => {
                 let parameters = joint_file::read(joint_file::preset(JOINT).ok_or("no such joint")?)
                     .map_err(|_| "a preset with problems")?
                     .parameters;
-                role(Role::Loop, tick_time::usual_rate(&parameters, board, Role::Loop))
+                role(Role::Loop, tick_time::default_control_rate(&parameters, board, Role::Loop))
             }
             Work::SpiSlave => image::build_spi_slave(&self.toolchain, &joint, board, SPI_RATE, false, &quiet),
         };
         let image = Image::read(&built.map_err(|failure| failure.to_string())?.elf)?;
-        self.built.insert((board.named.clone(), work), image.clone());
+        self.built.insert((board.argument.clone(), work), image.clone());
         Ok(image)
     }
 }

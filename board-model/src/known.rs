@@ -1,20 +1,20 @@
-//! Defects of the images that are known and not mended yet. They do not fail a check; one that is mended must leave this list,
-//! or the check of everything fails.
+//! Known defects of the images that are not fixed yet. They do not fail a check; a fixed one must leave this list, or
+//! the run of all checks fails.
 
 use std::collections::BTreeSet;
 use std::sync::Mutex;
 
 use crate::violation::Violation;
 
-/// Rules that are broken: board, part of what is said, and what follows from it.
+/// Known violations: board, part of the text, and consequence.
 const VIOLATIONS: &[(&str, &str, &str)] = &[];
 
-/// Checks that fail: board, part of the check's name, and what follows from it.
+/// Checks known to fail: board, part of the check's name, and consequence.
 const CHECKS: &[(&str, &str, &str)] = &[];
 
 static SEEN: Mutex<BTreeSet<usize>> = Mutex::new(BTreeSet::new());
 
-/// Whether a violation is known; remembers that it was seen.
+/// Returns whether a violation is known, and records that it was seen.
 pub fn is_known(board: &str, violation: &Violation) -> bool {
     let place = VIOLATIONS.iter().position(|(name, text, _)| *name == board && violation.what.contains(text));
     if let (Some(place), Ok(mut seen)) = (place, SEEN.lock()) {
@@ -23,12 +23,12 @@ pub fn is_known(board: &str, violation: &Violation) -> bool {
     place.is_some()
 }
 
-/// What follows from a check that is known to fail.
+/// Consequence of a check that is known to fail.
 pub fn failing(board: &str, check: &str) -> Option<&'static str> {
     CHECKS.iter().find(|(name, text, _)| *name == board && check.contains(text)).map(|(.., follows)| *follows)
 }
 
-/// Known violations that no check has met, and those that one has.
+/// Known violations that no check has met, and those that were met.
 pub fn violations() -> (Vec<String>, Vec<String>) {
     let seen = SEEN.lock().map(|seen| seen.clone()).unwrap_or_default();
     let line = |(board, what, follows): &(&str, &str, &str)| format!("{board}: {what}: {follows}");

@@ -1,5 +1,5 @@
-//! STM32F405, STM32G474 and STM32H743 at the level of registers, written from their reference manuals and not from the
-//! firmware: runs the images that ship, and notes every step over a rule.
+//! STM32F405, STM32G474 and STM32H743 at register level, written from their reference manuals and not from the
+//! firmware: runs the images that ship, and records every violation of a rule.
 
 pub mod as5047p;
 pub mod blocks;

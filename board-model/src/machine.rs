@@ -1,4 +1,4 @@
-//! A chip without its core: memory map, peripherals in their places, and the rules of access that hold for all of them.
+//! Chip without its core: memory map, peripherals at their addresses, and the access rules common to all of them.
 
 use std::collections::BTreeMap;
 
@@ -9,102 +9,102 @@ use crate::scs::Scs;
 use crate::tamper::Tamper;
 use crate::wires::{Cable, Clocks, Gate, Reset, SECOND, Surroundings, Time, Wires};
 
-/// Place of the clock controller among the peripherals.
+/// Index of the clock controller in the peripherals.
 const CLOCK_CONTROLLER: usize = 0;
-/// The private peripheral bus, whose registers are those of the core itself.
+/// Private peripheral bus, whose registers belong to the core.
 const PRIVATE: std::ops::Range<u32> = 0xe000_0000..0xe004_0000;
-/// Cycles by which time is counted while the clock of the core stands still [Hz].
+/// Rate of the counted cycles while the core's clock stands still [Hz].
 const STOPPED_RATE: u64 = 1_000_000;
-/// Cycles that pass between two looks at flash that is at work, instead of some twenty: a sector takes a second.
+/// Cycles between two polls of busy flash, instead of some twenty: a sector takes a second.
 const LOOK_AGAIN: u64 = 2000;
 
-/// A peripheral in its place.
+/// Peripheral at its address.
 pub struct Placed {
-    /// Its name on the chip.
+    /// Name on the chip.
     pub name: &'static str,
-    /// Its address.
+    /// Base address.
     pub base: u32,
-    /// Bytes that it takes.
+    /// Size of the address range [byte].
     pub size: u32,
-    /// What switches its clock on; `None` where the clock is always on.
+    /// Clock gate; `None` if the clock is always on.
     pub clock: Option<Gate>,
-    /// What holds it in reset.
+    /// Bit that holds the peripheral in reset.
     pub hold: Option<Gate>,
-    /// Section of the manual with its clock gate.
+    /// Section of the manual with the clock gate.
     pub section: &'static str,
-    /// It.
+    /// Model of the peripheral.
     pub peripheral: Box<dyn Peripheral>,
 }
 
-/// Memory that the core reads and writes without further ado.
+/// Plain memory.
 #[derive(Debug, Clone, Copy)]
 pub struct Memory {
     /// First address.
     pub base: u32,
-    /// Bytes.
+    /// Size [byte].
     pub size: u32,
-    /// The DMA controllers cannot reach it.
+    /// True if the DMA controllers cannot reach it.
     pub core_only: bool,
 }
 
-/// What a chip is made of.
+/// Parts of a chip.
 pub struct Chip {
-    /// Its name.
+    /// Name of the chip.
     pub name: &'static str,
-    /// It has caches and a double precision unit: a Cortex-M7.
+    /// True for a Cortex-M7, with caches and double precision.
     pub is_m7: bool,
-    /// Flash [byte].
+    /// Size of flash [byte].
     pub flash: u32,
-    /// Memories.
+    /// Plain memories.
     pub memories: &'static [Memory],
     /// Peripherals; the clock controller comes first.
     pub peripherals: Vec<Placed>,
-    /// Frequency after a reset [Hz].
+    /// Clock after a reset [Hz].
     pub after_reset: u64,
-    /// Register of the flags of resets, and what a reset adds to them.
+    /// Register of the reset flags, and the flags that a reset adds.
     pub reset_flags: fn(Reset) -> (u32, u32),
 }
 
-/// The chip as it runs.
+/// Running chip.
 pub struct Machine {
-    /// Wires between its parts.
+    /// Wires between the parts.
     pub wires: Wires,
-    /// The core's peripherals.
+    /// Peripherals of the core.
     pub scs: Scs,
-    /// What it is made of.
+    /// Parts of the chip.
     pub chip: Chip,
     /// Cycles of the core since power-up.
     pub cycles: u64,
-    /// Cycles and time from which the present clock runs.
+    /// Cycles and time at the start of the present clock.
     since: (u64, Time),
     rate: u64,
-    /// Something has been written: levels may have changed.
+    /// True if a write may have changed levels.
     pub attention: bool,
-    /// Cycle up to which nothing happens by itself.
+    /// Cycle of the next event.
     pub deadline: u64,
     /// Instructions per block, by address.
     pub blocks: crate::blocks::Blocks,
-    /// Cycles that an instruction takes, in thousandths.
+    /// Cost of an instruction [thousandths of a cycle].
     pub cost: u64,
     fraction: u64,
     /// Resets so far, with their times.
     pub resets: Vec<(Reset, Time)>,
-    /// An exception is to be left: the value that was branched to.
+    /// Value of a branch that leaves an exception.
     pub returning: Option<u32>,
-    /// What ended the emulation for good.
+    /// Reason for which the emulation has halted.
     pub halted: Option<String>,
-    /// Clocks that were switched on and whose register has not been read back: offsets in the clock controller, and bits.
+    /// Clocks that were switched on without a read-back of their register: offsets in the clock controller, and bits.
     rising: BTreeMap<u32, u32>,
-    /// Mistakes that were planted.
+    /// Planted mistakes.
     pub tampers: &'static [Tamper],
-    /// One more block is run before anything else.
+    /// True if one more block must run before anything else.
     pub go_on: bool,
-    /// The block hook asked for a stop: it was no sleep.
+    /// True if the block hook stopped the core, which is then not asleep.
     pub stopped: bool,
 }
 
 impl Machine {
-    /// A chip at power-up.
+    /// Chip at power-up.
     pub fn new(chip: Chip, surroundings: Surroundings, cable: Cable, cost: u64) -> Self {
         let (scs, rate) = (Scs::new(chip.is_m7), chip.after_reset);
         let mut machine = Self {
@@ -139,32 +139,32 @@ impl Machine {
         self.fraction = thousandths % 1000;
     }
 
-    /// Time by the cycles so far.
+    /// Present time, from the cycles.
     pub fn time(&self) -> Time {
         let (cycles, time) = self.since;
         time + crate::wires::cycles(self.cycles - cycles, self.rate)
     }
 
-    /// The first cycle at or after a time.
+    /// First cycle at or after a time.
     fn cycle_at(&self, time: Time) -> u64 {
         let (cycles, start) = self.since;
         let passed = u128::from(time.saturating_sub(start));
         cycles + (passed * u128::from(self.rate)).div_ceil(u128::from(SECOND)) as u64
     }
 
-    /// Lets time pass while the core stands still.
+    /// Advances time while the core stands still.
     pub fn pass(&mut self, duration: Time) {
         self.cycles = self.cycle_at(self.time() + duration);
     }
 
-    /// Lets time pass for all but the core, which a debugger holds: its cycles do not count.
+    /// Advances time for all but the core, which a debugger holds.
     pub fn pass_without_core(&mut self, duration: Time) {
         self.since.1 += duration;
         self.wires.is_held = true;
         self.settle();
     }
 
-    /// Brings all parts up to the present, and finds when something happens next.
+    /// Brings all parts to the present, and finds the next event.
     pub fn settle(&mut self) {
         let stall = std::mem::take(&mut self.wires.stall);
         if stall > 0 {
@@ -189,23 +189,23 @@ impl Machine {
         self.attention = false;
     }
 
-    /// Whether the clock of the core stands still.
+    /// Returns whether the clock of the core stands still.
     pub fn is_stopped(&self) -> bool {
         self.wires.clocks.core == 0
     }
 
-    /// The next item that DMA moves.
+    /// Next item that DMA moves.
     pub fn next_transfer(&mut self) -> Option<Transfer> {
         let wires = &mut self.wires;
         self.chip.peripherals.iter_mut().find_map(|placed| placed.peripheral.next_transfer(wires))
     }
 
-    /// The memory at an address.
+    /// Memory at an address.
     pub fn memory_at(&self, address: u32) -> Option<&'static Memory> {
         self.chip.memories.iter().find(|memory| address >= memory.base && address - memory.base < memory.size)
     }
 
-    /// All as after a reset, but for memory and the flags of resets.
+    /// Resets everything but memory and the reset flags.
     pub fn reset(&mut self, reset: Reset) {
         self.wires.now = self.time();
         for placed in &mut self.chip.peripherals {
@@ -235,7 +235,7 @@ impl Machine {
         }
     }
 
-    /// A read outside of memory.
+    /// Read outside of plain memory.
     pub fn read(&mut self, address: u32, size: u32) -> u64 {
         (self.wires.now, self.wires.width) = (self.time(), size);
         if PRIVATE.contains(&address) {
@@ -256,20 +256,20 @@ impl Machine {
         let value = placed.peripheral.read(register.offset, &mut self.wires);
         self.look();
         if std::mem::take(&mut self.wires.waiting) {
-            // Nothing happens before the deadline but that somebody looks again.
+            // Only a further poll can happen before the deadline.
             self.cycles = (self.cycles + LOOK_AGAIN).min(self.deadline);
         }
         u64::from(value >> (8 * (offset - register.offset))) & (u64::MAX >> (64 - 8 * size))
     }
 
-    /// Whether a read has changed what is looked at between blocks: it may take a byte out of a FIFO, or wait for flash.
+    /// Requests attention if a read has changed anything that is checked between blocks, such as a FIFO or busy flash.
     fn look(&mut self) {
         let wires = &mut self.wires;
         let stopped = wires.stall > 0 || wires.bus_fault.is_some() || wires.non_maskable;
         self.attention |= std::mem::take(&mut wires.changed) || stopped;
     }
 
-    /// Resets what the clock controller holds in reset.
+    /// Resets the peripherals that the clock controller holds in reset.
     fn hold(&mut self) {
         for placed in &mut self.chip.peripherals {
             if placed.hold.is_some_and(|hold| self.wires.is_on(hold)) {
@@ -278,7 +278,7 @@ impl Machine {
         }
     }
 
-    /// A write outside of memory.
+    /// Write outside of plain memory.
     pub fn write(&mut self, address: u32, size: u32, value: u64) {
         (self.wires.now, self.wires.width) = (self.time(), size);
         self.attention = true;
@@ -300,7 +300,7 @@ impl Machine {
         let mask = (u64::MAX >> (64 - 8 * size)) as u32;
         let written = match size {
             4 => value as u32,
-            // Other bytes of the register stay; bits that act when written see zeros.
+            // The other bytes of the register stay; bits that act when written receive zeros.
             _ => before & !register.special & !(mask << shift) | (value as u32 & mask) << shift,
         };
         let reserved = !register.fields;
@@ -318,7 +318,7 @@ impl Machine {
         }
     }
 
-    /// A write of a word, as code that is right makes it: a clock that it switches on is read back.
+    /// Writes a word as correct code does: after switching a clock on it reads the register back.
     pub fn set_up(&mut self, address: u32, value: u32) {
         self.write(address, 4, value.into());
         let clocks = &self.chip.peripherals[CLOCK_CONTROLLER];
@@ -327,7 +327,7 @@ impl Machine {
         }
     }
 
-    /// The peripheral at an address, and the offset in it.
+    /// Peripheral at an address, and the offset in it.
     fn find(&mut self, address: u32, done: &str) -> Option<(usize, u32)> {
         let within = |placed: &Placed| address >= placed.base && address - placed.base < placed.size;
         let place = self.chip.peripherals.iter().position(within);
@@ -338,7 +338,7 @@ impl Machine {
         place.map(|place| (place, address - self.chip.peripherals[place].base))
     }
 
-    /// The rules that hold for all registers.
+    /// Checks the rules common to all registers.
     fn check(&mut self, place: usize, offset: u32, size: u32, done: &str) -> Option<&'static Register> {
         let Placed { name, clock, hold, section, peripheral, .. } = &mut self.chip.peripherals[place];
         let registers = peripheral.registers();
@@ -401,13 +401,13 @@ mod tests {
         machine.write(0x4002_3830, 4, 0x0010_0001);
         machine.write(0x4002_0000, 4, 0xa800_0001);
         assert_eq!(said(&machine), ["is written before the clock of GPIOA, just switched on, was read back"]);
-        // Another register's look does not do.
+        // Reading another register is not enough.
         machine.read(0x4002_3840, 4);
         machine.read(0x4002_0000, 4);
         assert_eq!(said(&machine).len(), 2);
         machine.read(0x4002_3830, 4);
         machine.read(0x4002_0000, 4);
-        // It stays on: written again it need not come again.
+        // A clock that stays on needs no further read-back.
         machine.write(0x4002_3830, 4, 0x0010_0001);
         machine.read(0x4002_0000, 4);
         assert_eq!(said(&machine).len(), 2);

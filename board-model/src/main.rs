@@ -1,5 +1,5 @@
-//! `board-model check`: runs the images that ship on models of their boards. `board-model run`: one board with its line on a
-//! pseudo-terminal, for the host's own commands.
+//! `board-model check` runs the images that ship on models of their boards. `board-model run` runs one board with its
+//! line on a pseudo-terminal, for the host's commands.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -66,7 +66,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// A board at a port; what it did against a rule is said as soon as it is noticed.
+/// Runs a board at a port; violations are printed as they occur.
 fn run(image: &Path, board: Board, source: Option<u64>, cost: u64) -> Result<(), String> {
     let usual = usual_surroundings(&board);
     let surroundings = match source {
@@ -76,7 +76,7 @@ fn run(image: &Path, board: Board, source: Option<u64>, cost: u64) -> Result<(),
             Surroundings { crystal: usual.crystal.and(rate), external_clock: usual.external_clock.and(rate), ..usual }
         }
     };
-    let name = board.named.clone();
+    let name = board.argument.clone();
     let subject = Subject { board, image: Image::read(image)?, tampers: &[] };
     let mut board = subject.start_at(surroundings, cost)?;
     let mut told = 0;
@@ -89,7 +89,7 @@ fn run(image: &Path, board: Board, source: Option<u64>, cost: u64) -> Result<(),
     })
 }
 
-/// All of them, whatever fails; then how many did.
+/// Runs all checks, even after a failure, and counts the failures.
 fn check(only_board: Option<Board>, only: Option<&str>, full: bool) -> Result<(), String> {
     let mut images = Images::prepare()?;
     let (mut failed, mut ran) = (0, 0);

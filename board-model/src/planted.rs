@@ -1,5 +1,5 @@
-//! Thirty and more mistakes that a port to these chips can make, planted one by one into the writes of the images that ship.
-//! Each must make its check fail: this is the model's own test.
+//! More than thirty mistakes that a port to these chips can make, planted one by one into the writes of the images that
+//! ship. Each must make its check fail: this tests the model itself.
 
 use board::device::board::Chip;
 use board::device::board::Chip::{Stm32f405, Stm32g431, Stm32g474, Stm32h743};
@@ -10,29 +10,29 @@ use crate::images::Work::{Observer, Plant, SpiSlave};
 use crate::tamper::How::{Clear, Field, Omit, OmitValue, Set, Swap};
 use crate::tamper::{How, Tamper};
 
-/// A mistake.
+/// Planted mistake.
 pub struct Mistake {
-    /// In words.
+    /// Description.
     pub what: &'static str,
-    /// On a board with this chip.
+    /// Chip of the board.
     pub chip: Chip,
-    /// In this image.
+    /// Image.
     pub work: Work,
-    /// What must find it.
+    /// Check that must find it.
     pub check: Check,
-    /// What is done.
+    /// Changes to the image's writes.
     pub tampers: &'static [Tamper],
-    /// It stands for its kind in the short form.
+    /// True if it represents its kind in the short form.
     pub in_short: bool,
 }
 
 impl Mistake {
-    /// One that is left to the long form.
+    /// Mistake of the long form.
     const fn new(chip: Chip, work: Work, check: Check, tampers: &'static [Tamper], what: &'static str) -> Self {
         Self { what, chip, work, check, tampers, in_short: false }
     }
 
-    /// It stands for its kind in the short form.
+    /// Moves the mistake into the short form.
     const fn short(mut self) -> Self {
         self.in_short = true;
         self
@@ -43,7 +43,7 @@ const fn at(address: u32, how: How) -> Tamper {
     Tamper { address, how }
 }
 
-/// All of them.
+/// All mistakes.
 pub const ALL: &[Mistake] = &[
     // STM32F405: clock.
     Mistake::new(

@@ -1,5 +1,5 @@
-//! A modelled board behind a pseudo-terminal, for the host's own commands: to them it is a real board at a port. Its time is
-//! held back to the host's, and may fall behind it.
+//! A modelled board behind a pseudo-terminal, which the host's commands see as a real board at a port. Its time is
+//! slowed to the host's, and may lag behind it.
 
 use std::io::{Read, Write};
 use std::thread;
@@ -10,13 +10,13 @@ use serialport::{SerialPort, TTYPort};
 use crate::cpu::Board;
 use crate::wires::{MICROSECOND, Time};
 
-/// The board runs so long between two looks at the terminal.
+/// Time that the board runs between two polls of the terminal.
 const SLICE: Time = 500 * MICROSECOND;
-/// A nanosecond [fs].
+/// Nanosecond [fs].
 const NANOSECOND: Time = 1_000_000;
 
-/// Serves a board until it is halted, or the process is ended. `opened` is told the path of the terminal, `watch` sees the
-/// board every now and then.
+/// Serves a board until it halts or the process ends. `opened` receives the path of the terminal; `watch` is called
+/// after every slice.
 pub fn serve(
     board: &mut Board<'_>,
     opened: impl FnOnce(&str),
@@ -25,12 +25,12 @@ pub fn serve(
     let (mut own, theirs) = TTYPort::pair().map_err(|error| format!("no pseudo-terminal: {error}"))?;
     own.set_timeout(Duration::ZERO).map_err(|error| format!("the pseudo-terminal: {error}"))?;
     opened(&theirs.name().ok_or("a pseudo-terminal without a name")?);
-    // The host's commands want it for themselves.
+    // The host's commands open it for exclusive use.
     drop(theirs);
     let start = Instant::now();
     let mut buffer = [0; 4096];
     while board.machine().halted.is_none() {
-        // An error says that nothing came, or that nobody has it open: the host's commands come and go.
+        // An error means no data, or no process that has the terminal open: the host's commands come and go.
         if let Ok(count) = own.read(&mut buffer) {
             let machine = board.machine_mut();
             machine.wires.line.to_board.extend(&buffer[..count]);
@@ -38,7 +38,7 @@ pub fn serve(
         }
         board.run_for(SLICE);
         let said = std::mem::take(&mut board.machine_mut().wires.line.to_host);
-        // Nobody may be listening: what does not fit is lost, as on a line.
+        // If no process reads, the excess is lost, as on a real line.
         let _ = own.write(&said);
         watch(board);
         let ahead = Duration::from_nanos(board.now() / NANOSECOND).saturating_sub(start.elapsed());

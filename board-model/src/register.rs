@@ -1,56 +1,56 @@
-//! Registers as data: what a manual's register map says of each, so that access rules are checked in one place.
+//! Registers as data: entries of a manual's register map, so that access rules are checked in one place.
 
-/// What is known of a register.
+/// Description of a register.
 #[derive(Debug, Clone, Copy)]
 pub struct Register {
-    /// Its name in the manual.
+    /// Name in the manual.
     pub name: &'static str,
-    /// From the peripheral's base.
+    /// Offset from the peripheral's base.
     pub offset: u32,
-    /// Its value after a reset.
+    /// Value after a reset.
     pub reset: u32,
-    /// Bits that mean something; the others must be kept as after the reset.
+    /// Defined bits; the others must keep their reset value.
     pub fields: u32,
-    /// Bits among them that writes do not change by themselves: read-only, or changed in a way of their own.
+    /// Defined bits that a write does not change directly: read-only, or with special behaviour.
     pub special: u32,
-    /// Widths of access in bytes that are allowed, added up: 1, 2 and 4.
+    /// Sum of the allowed access widths: 1, 2 and 4 [byte].
     pub widths: u32,
-    /// Reserved bits may be written with anything, as in registers of keys.
+    /// True if reserved bits may have any value, as in key registers.
     pub any_value: bool,
 }
 
 impl Register {
-    /// A register that is accessed by words and has no bits of its own ways.
+    /// Register that is accessed by words and has no special bits.
     pub const fn new(name: &'static str, offset: u32, reset: u32, fields: u32) -> Self {
         Self { name, offset, reset, fields, special: 0, widths: 4, any_value: false }
     }
 
-    /// With bits that writes do not change by themselves.
+    /// Adds special bits.
     pub const fn special(mut self, bits: u32) -> Self {
         self.special = bits;
         self
     }
 
-    /// Bytes and half-words as well.
+    /// Allows bytes and half words too.
     pub const fn any_width(mut self) -> Self {
         self.widths = 7;
         self
     }
 
-    /// Half-words as well.
+    /// Allows half words too.
     pub const fn half_words(mut self) -> Self {
         self.widths = 6;
         self
     }
 
-    /// No bit is reserved in a write.
+    /// Allows any value of reserved bits.
     pub const fn any_value(mut self) -> Self {
         self.any_value = true;
         self
     }
 }
 
-/// The registers of a peripheral with their values.
+/// Registers of a peripheral with their values.
 #[derive(Debug, Clone)]
 pub struct Registers {
     table: &'static [Register],
@@ -58,27 +58,27 @@ pub struct Registers {
 }
 
 impl Registers {
-    /// As after a reset.
+    /// Registers after a reset.
     pub fn new(table: &'static [Register]) -> Self {
         Self { table, values: table.iter().map(|register| register.reset).collect() }
     }
 
-    /// All to their values after a reset.
+    /// Resets all registers.
     pub fn reset(&mut self) {
         *self = Self::new(self.table);
     }
 
-    /// What is known of the one at an offset.
+    /// Description of the register at an offset.
     pub fn describe(&self, offset: u32) -> Option<&'static Register> {
         self.place(offset).map(|place| &self.table[place])
     }
 
-    /// Its value; 0 where there is none.
+    /// Value of a register; 0 if there is none.
     pub fn get(&self, offset: u32) -> u32 {
         self.place(offset).map_or(0, |place| self.values[place])
     }
 
-    /// Sets its value.
+    /// Sets the value of a register.
     pub fn set(&mut self, offset: u32, value: u32) {
         if let Some(place) = self.place(offset) {
             self.values[place] = value;
@@ -90,12 +90,12 @@ impl Registers {
         self.set(offset, self.get(offset) & !clear | set);
     }
 
-    /// Whether a bit is set.
+    /// Returns whether a bit is set.
     pub fn is_set(&self, offset: u32, bit: u32) -> bool {
         self.get(offset) >> bit & 1 == 1
     }
 
-    /// A field's value.
+    /// Value of a field.
     pub fn field(&self, offset: u32, low: u32, bits: u32) -> u32 {
         self.get(offset) >> low & ((1 << bits) - 1)
     }
@@ -105,12 +105,12 @@ impl Registers {
     }
 }
 
-/// Bits from `low` up to and with `high`.
+/// Mask of the bits from `low` to `high`, inclusive.
 pub const fn bits(high: u32, low: u32) -> u32 {
     (u32::MAX >> (31 - high)) & (u32::MAX << low)
 }
 
-/// One bit.
+/// Mask of one bit.
 pub const fn bit(number: u32) -> u32 {
     1 << number
 }

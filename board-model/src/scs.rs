@@ -1,32 +1,32 @@
-//! The core's own peripherals: interrupt controller, SysTick, system control block. ARMv7-M Architecture Reference Manual,
-//! chapter B3; four bits of priority, as all three chips have.
+//! System control space of the core: interrupt controller, SysTick, system control block. ARMv7-M Architecture
+//! Reference Manual, chapter B3; four priority bits, as on all three chips.
 
 use std::collections::BTreeSet;
 
 use crate::register::{bit, bits};
 use crate::wires::Wires;
 
-/// Exceptions with numbers of their own.
+/// Numbers of the system exceptions.
 pub const NMI: usize = 2;
-/// What every fault escalates to unless it is enabled by itself.
+/// Hard fault, to which every fault escalates unless it is enabled separately.
 pub const HARD_FAULT: usize = 3;
 const BUS_FAULT: usize = 5;
-/// Bits of CCR and SHCSR: handlers of highest priority ignore bus faults; bus faults have a handler of their own.
+/// Bits of CCR and SHCSR: handlers of highest priority ignore bus faults; the bus fault has its own handler.
 const BFHFNMIGN: u32 = bit(8);
 const BUSFAULTENA: u32 = bit(17);
 const PEND_SV: usize = 14;
-/// The tick.
+/// Exception of SysTick.
 pub const SYSTICK: usize = 15;
 /// Number of the first interrupt.
 pub const FIRST_INTERRUPT: usize = 16;
 const EXCEPTIONS: usize = 256;
-/// Bits of priority that there are: RM0090 12.1, RM0440 14.1, RM0433 19.1.1.
+/// Implemented priority bits: RM0090 12.1, RM0440 14.1, RM0433 19.1.1.
 const PRIORITY_BITS: u8 = 0xf0;
-/// Below everything.
+/// Priority below all exceptions.
 const IDLE: i32 = 256;
 const MANUAL: &str = "ARMv7-M B3";
 
-/// Masks of the core, as its special registers hold them.
+/// Masks of the core, from its special registers.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Masks {
     /// PRIMASK.
@@ -47,7 +47,7 @@ struct SysTick {
     /// Cycle of the next expiry.
     expires: u64,
     counted: bool,
-    /// What it holds while it is off.
+    /// Counter value while SysTick is off.
     held: u32,
 }
 
@@ -56,13 +56,13 @@ impl SysTick {
         self.control & 1 == 1
     }
 
-    /// The next cycle loads the reload value.
+    /// Starts counting: the next cycle loads the reload value.
     fn start(&mut self, now: u64) {
         self.loaded = now + 1;
         self.expires = self.loaded + u64::from(self.reload);
     }
 
-    /// Whether it has expired since it was asked last.
+    /// Returns whether it has expired since the last call.
     fn advance(&mut self, now: u64) -> bool {
         if !self.is_on() || self.reload == 0 || now < self.expires {
             return false;
@@ -78,22 +78,22 @@ impl SysTick {
     fn value(&self, now: u64) -> u32 {
         match () {
             () if !self.is_on() => self.held,
-            // Between expiry and load it is 0.
+            // Zero between expiry and reload.
             () if now < self.loaded => 0,
             () => self.reload.saturating_sub((now - self.loaded) as u32),
         }
     }
 }
 
-/// The core's peripherals.
+/// System control space.
 #[derive(Debug)]
 pub struct Scs {
     pending: BTreeSet<usize>,
     enabled: Vec<bool>,
     priority: Vec<u8>,
-    /// Exceptions under way, the innermost last.
+    /// Active exceptions, the innermost last.
     active: Vec<usize>,
-    /// How often each was entered.
+    /// Number of entries by exception.
     taken: Vec<u32>,
     systick: SysTick,
     /// VTOR.
@@ -110,12 +110,12 @@ pub struct Scs {
     cache_selection: u32,
     fp_context: u32,
     has_caches: bool,
-    /// Data caches were cleaned or invalidated since this was looked at.
+    /// True if data caches were cleaned or invalidated since the flag was cleared.
     pub cache_maintained: bool,
 }
 
 impl Scs {
-    /// As after a reset, with vectors at the start of flash.
+    /// State after a reset, with vectors at the start of flash.
     pub fn new(has_caches: bool) -> Self {
         let mut enabled = vec![false; EXCEPTIONS];
         enabled[..FIRST_INTERRUPT].fill(true);
@@ -142,34 +142,34 @@ impl Scs {
         }
     }
 
-    /// The exception under way; 0 for none.
+    /// Active exception; 0 for none.
     pub fn running(&self) -> usize {
         self.active.last().copied().unwrap_or(0)
     }
 
-    /// How often an exception was entered since the reset.
+    /// Number of entries into an exception since the reset.
     pub fn taken(&self, exception: usize) -> u32 {
         self.taken[exception]
     }
 
-    /// Whether no interrupt that is on has the priority of an exception or a higher one.
+    /// Returns whether no enabled interrupt has the priority of an exception or a higher one.
     pub fn is_above_all(&self, exception: usize) -> bool {
         let own = self.priority_of(exception);
         (FIRST_INTERRUPT..EXCEPTIONS).all(|other| !self.enabled[other] || self.priority_of(other) > own)
     }
 
-    /// Asks for an exception.
+    /// Sets an exception pending.
     pub fn pend(&mut self, exception: usize) {
         self.pending.insert(exception);
     }
 
-    /// Takes levels of interrupt lines and expiries of SysTick.
+    /// Samples the interrupt lines and expiries of SysTick.
     pub fn advance(&mut self, now: u64, wires: &mut Wires) {
         if self.systick.advance(now) && self.systick.control & 2 != 0 {
             self.pending.insert(SYSTICK);
         }
         for exception in wires.interrupts.iter().map(|line| line + FIRST_INTERRUPT) {
-            // A level pends again once its handler is through.
+            // A level sets the exception pending again after its handler.
             if !self.active.contains(&exception) {
                 self.pending.insert(exception);
             }
@@ -189,14 +189,14 @@ impl Scs {
         }
     }
 
-    /// CFSR: PRECISERR with BFARVALID.
+    /// Sets PRECISERR and BFARVALID in CFSR, and the address.
     fn note_bus_fault(&mut self, address: u32) {
         self.fault_status |= bit(9) | bit(15);
         self.fault_address = address;
     }
 
-    /// A bus fault of a load or store comes to nothing but its status where FAULTMASK or a handler of highest priority runs with
-    /// BFHFNMIGN (ARMv7-M B3.2.8): so what may not be readable is looked at.
+    /// Ignores a bus fault of a load or store except for its status, if FAULTMASK is set or a handler of highest
+    /// priority runs with BFHFNMIGN (ARMv7-M B3.2.8). Code uses this to read memory that may be damaged.
     pub fn ignore_bus_fault(&mut self, faultmask: bool, wires: &mut Wires) {
         if self.ccr & BFHFNMIGN != 0
             && (faultmask || self.active_priority() < 0)
@@ -206,7 +206,7 @@ impl Scs {
         }
     }
 
-    /// When SysTick expires next [cycle].
+    /// Cycle of the next expiry of SysTick.
     pub fn next_event(&self) -> Option<u64> {
         (self.systick.is_on() && self.systick.reload > 0).then_some(self.systick.expires)
     }
@@ -219,7 +219,7 @@ impl Scs {
         }
     }
 
-    /// Priority of what is under way, masks apart.
+    /// Priority of the active exceptions, without masks.
     fn active_priority(&self) -> i32 {
         self.active.iter().map(|exception| self.priority_of(*exception)).min().unwrap_or(IDLE)
     }
@@ -229,7 +229,7 @@ impl Scs {
         enabled.min_by_key(|exception| (self.priority_of(*exception), *exception))
     }
 
-    /// The exception to be entered now: ARMv7-M B1.5.4.
+    /// Exception to be entered now: ARMv7-M B1.5.4.
     pub fn due(&self, masks: Masks) -> Option<usize> {
         let mut limit = self.active_priority();
         if masks.basepri != 0 {
@@ -244,12 +244,12 @@ impl Scs {
         self.candidate().filter(|exception| self.priority_of(*exception) < limit)
     }
 
-    /// Whether there is a reason to look at the masks.
+    /// Returns whether the masks must be evaluated at all.
     pub fn may_be_due(&self) -> bool {
         self.candidate().is_some_and(|exception| self.priority_of(exception) < self.active_priority())
     }
 
-    /// Whether WFI ends: PRIMASK does not keep the core asleep (ARMv7-M B1.5.19).
+    /// Returns whether WFI ends: PRIMASK does not prevent a wake-up (ARMv7-M B1.5.19).
     pub fn wakes(&self, masks: Masks) -> bool {
         self.due(Masks { primask: false, ..masks }).is_some()
     }
@@ -262,17 +262,17 @@ impl Scs {
         self.vectors + 4 * exception as u32
     }
 
-    /// Leaves the exception under way.
+    /// Leaves the active exception.
     pub fn leave(&mut self) {
         self.active.pop();
     }
 
-    /// Whether a fault cannot be handled any more.
+    /// Returns whether a fault can no longer be handled.
     pub fn is_locked_up(&self) -> bool {
         self.active_priority() <= -1 && self.pending.contains(&HARD_FAULT)
     }
 
-    /// A read of the private peripheral bus.
+    /// Read on the private peripheral bus.
     pub fn read(&mut self, address: u32, size: u32, now: u64, wires: &mut Wires) -> u32 {
         self.advance(now, wires);
         let word = self.read_word(address & !3, now, wires);
@@ -356,7 +356,7 @@ impl Scs {
             | self.running() as u32
     }
 
-    /// A write to the private peripheral bus.
+    /// Write on the private peripheral bus.
     pub fn write(&mut self, address: u32, size: u32, value: u32, now: u64, wires: &mut Wires) {
         self.advance(now, wires);
         match address {
@@ -389,7 +389,7 @@ impl Scs {
                 self.systick.reload = value & 0x00ff_ffff;
             }
             0xe000_e018 => {
-                // Any write clears the counter; the next cycle loads it.
+                // Any write clears the counter; the next cycle reloads it.
                 (self.systick.held, self.systick.counted) = (0, false);
                 self.systick.start(now);
             }

@@ -1,5 +1,5 @@
-//! The host's end of the line of a modelled board: bytes go in and come out in the board's own time, which goes on only while
-//! somebody listens. The same run is the same in every byte.
+//! Host end of a modelled board's line: bytes are exchanged in the board's own time, which advances only while the host
+//! listens. Equal runs are equal in every byte.
 
 use std::cell::RefCell;
 use std::io;
@@ -14,26 +14,26 @@ use link::messages::{FromBoard, Hello, RunSettings, ToBoard};
 use crate::cpu::Board;
 use crate::wires::{MICROSECOND, SECOND, Time};
 
-/// How long a board is let run at a time while something is waited for.
+/// Time slice of the board while the host waits.
 const SLICE: Time = 200 * MICROSECOND;
 
-/// A board that several hold.
+/// Board with several owners.
 pub type Shared<'a> = Rc<RefCell<Board<'a>>>;
 
-/// A conversation by single messages.
+/// Conversation by single messages.
 pub struct Talk<'a> {
-    /// The board.
+    /// Board.
     pub board: Shared<'a>,
     receiver: Receiver,
 }
 
 impl<'a> Talk<'a> {
-    /// With a board.
+    /// Conversation with a board.
     pub fn new(board: Board<'a>) -> Self {
         Self { board: Rc::new(RefCell::new(board)), receiver: Receiver::new() }
     }
 
-    /// Sends a message, after a zero that ends what went before.
+    /// Sends a message after a zero byte, which ends an incomplete frame.
     pub fn say(&self, message: &ToBoard) {
         let frame = encode(message).unwrap_or_default();
         self.say_bytes(&[0]);
@@ -48,7 +48,7 @@ impl<'a> Talk<'a> {
         machine.attention = true;
     }
 
-    /// Lets the board run, and takes what it said.
+    /// Runs the board for a time and returns its messages.
     pub fn hear(&mut self, duration: Time) -> Vec<FromBoard> {
         let mut board = self.board.borrow_mut();
         board.run_for(duration);
@@ -56,7 +56,7 @@ impl<'a> Talk<'a> {
         bytes.into_iter().filter_map(|byte| self.receiver.push(byte)).collect()
     }
 
-    /// Waits for a message that is looked for.
+    /// Waits for a message that `pick` accepts.
     pub fn wait<T>(&mut self, limit: Time, mut pick: impl FnMut(FromBoard) -> Option<T>) -> Option<T> {
         let end = self.board.borrow().now() + limit;
         while self.board.borrow().now() < end && self.board.borrow().machine().halted.is_none() {
@@ -75,7 +75,7 @@ impl<'a> Talk<'a> {
         self.wait(limit, pick)
     }
 
-    /// Calls the board until it says who it is.
+    /// Sends hello messages until the board answers.
     pub fn call(&mut self, limit: Time) -> Option<Hello> {
         let tries = limit.div_ceil(SECOND / 10);
         (0..tries).find_map(|_| {
@@ -86,7 +86,7 @@ impl<'a> Talk<'a> {
         })
     }
 
-    /// Asks for a run.
+    /// Requests a run.
     pub fn start_run(&mut self, settings: RunSettings) -> Result<(), String> {
         let granted = self.ask(&ToBoard::Reset(settings), SECOND, |message| match message {
             FromBoard::Hello(_) => Some(()),
@@ -95,13 +95,13 @@ impl<'a> Talk<'a> {
         granted.ok_or_else(|| "a run is not granted".into())
     }
 
-    /// A line for a session of the host's own.
+    /// Line for a host session.
     pub fn line(&self) -> ModelLine<'a> {
         ModelLine(Rc::clone(&self.board))
     }
 }
 
-/// The line as the host's session wants it.
+/// Line in the form of the host's session.
 pub struct ModelLine<'a>(Shared<'a>);
 
 impl Line for ModelLine<'_> {
@@ -137,7 +137,7 @@ impl Line for ModelLine<'_> {
     }
 }
 
-/// Nobody interrupts it.
+/// Supervisor without a user; only a signal interrupts it.
 pub struct Unattended;
 
 impl Supervisor for Unattended {

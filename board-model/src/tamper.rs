@@ -1,34 +1,34 @@
-//! Mistakes planted into the writes of an image: each is as if a line of the firmware were another one. The checks must find
+//! Mistakes planted into the writes of an image, each equivalent to a wrong line of the firmware. The checks must find
 //! them.
 
-/// What becomes of a write.
+/// Change to a write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum How {
-    /// It is left out.
+    /// Omits the write.
     Omit,
-    /// It is left out if it writes this.
+    /// Omits the write of this value.
     OmitValue(u32),
-    /// These bits are not set.
+    /// Clears these bits.
     Clear(u32),
-    /// These bits are set.
+    /// Sets these bits.
     Set(u32),
-    /// The field of this mask has this value instead.
+    /// Replaces the field of this mask by a value.
     Field(u32, u32),
-    /// The field of this mask has the second value wherever it has the first.
+    /// Replaces the field of this mask by the second value if it has the first.
     Swap(u32, u32, u32),
 }
 
-/// A mistake at a register.
+/// Change to the writes of a register.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Tamper {
-    /// The register's address.
+    /// Address of the register.
     pub address: u32,
-    /// What becomes of writes to it.
+    /// Change to the writes.
     pub how: How,
 }
 
 impl Tamper {
-    /// The value that is written instead, if any is.
+    /// Value that is written instead, or `None` if the write is omitted.
     pub fn apply(self, address: u32, value: u32) -> Option<u32> {
         if address != self.address {
             return Some(value);

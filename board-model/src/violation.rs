@@ -1,20 +1,19 @@
-//! What an image did against a rule of the manual: which register, from where, which rule. Nothing is tolerated: a run with
-//! any of these has failed.
+//! Violations of the manuals' rules by an image: register, code address, rule. A run with any violation has failed.
 
 use std::fmt;
 
-/// A rule that was broken.
+/// Violation of a rule.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Violation {
-    /// The register, or what else was touched.
+    /// Register, or other resource.
     pub register: String,
-    /// Where the block of instructions begins that did it.
+    /// Start address of the block of instructions.
     pub pc: u32,
-    /// What is wrong.
+    /// Description.
     pub what: String,
     /// Manual and section of the rule.
     pub section: &'static str,
-    /// How often.
+    /// Number of occurrences.
     pub times: u32,
 }
 
@@ -24,12 +23,12 @@ impl fmt::Display for Violation {
     }
 }
 
-/// All of a run, each kind once.
+/// Violations of a run, each kind once.
 #[derive(Debug, Default)]
 pub struct Violations(Vec<Violation>);
 
 impl Violations {
-    /// Notes one.
+    /// Adds a violation, or counts a known one.
     pub fn add(&mut self, register: &str, pc: u32, what: impl Into<String>, section: &'static str) {
         let what = what.into();
         let same = |known: &&mut Violation| known.register == register && known.what == what;
@@ -39,7 +38,7 @@ impl Violations {
         }
     }
 
-    /// All so far.
+    /// Violations so far.
     pub fn all(&self) -> &[Violation] {
         &self.0
     }

@@ -1,12 +1,12 @@
-//! What runs between the parts of a chip: clocks, clock gates, interrupt lines, pins, requests for DMA, the line to the host.
-//! A peripheral sees the others through these only.
+//! Connections between the parts of a chip: clocks, clock gates, interrupt lines, pins, DMA requests, the line to the
+//! host. Peripherals interact only through these.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use crate::as5047p::As5047p;
 use crate::violation::Violations;
 
-/// Time in femtoseconds: a cycle of every clock is a whole number of them to nine digits.
+/// Time in femtoseconds, in which a cycle of every clock is an integer to nine digits.
 pub type Time = u64;
 /// Femtoseconds in a second.
 pub const SECOND: Time = 1_000_000_000_000_000;
@@ -21,101 +21,101 @@ pub fn cycles(count: u64, rate: u64) -> Time {
 /// Frequencies of a chip's clocks [Hz].
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Clocks {
-    /// Before any divider.
+    /// Clock before any divider.
     pub system: u64,
-    /// The core's, which SysTick counts.
+    /// Clock of the core, counted by SysTick.
     pub core: u64,
-    /// That of the bus of flash and memory.
+    /// Clock of the bus of flash and memory.
     pub bus: u64,
-    /// That of the first peripheral bus.
+    /// Clock of the first peripheral bus.
     pub low: u64,
-    /// That of the second peripheral bus.
+    /// Clock of the second peripheral bus.
     pub high: u64,
-    /// That of the timers on it.
+    /// Clock of the timers on the second peripheral bus.
     pub timers: u64,
 }
 
-/// A bit of a register of the reset and clock controller.
+/// Bit of a register of the reset and clock controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Gate {
     /// Offset of the register.
     pub offset: u32,
-    /// The bit.
+    /// Number of the bit.
     pub bit: u32,
 }
 
-/// A pin: port and number.
+/// Pin as port and number.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Pin(pub char, pub u32);
 
-/// What a pin is set up as.
+/// Mode of a pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
-    /// Input, as most are after a reset.
+    /// Input, the mode of most pins after a reset.
     Input,
-    /// Output at a level.
+    /// Output with its level.
     Output(bool),
-    /// One of the alternate functions.
+    /// Alternate function with its number.
     Alternate(u32),
     /// Analog.
     Analog,
 }
 
-/// Who asks for DMA.
+/// Source of a DMA request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Request {
-    /// A serial peripheral interface with a byte to be fetched.
+    /// SPI with a received byte.
     SpiReceived(u32),
-    /// One with room for a byte.
+    /// SPI with room for a byte to send.
     SpiToSend(u32),
-    /// A USART with a byte to be fetched.
+    /// USART with a received byte.
     UsartReceived(u32),
-    /// One with room for a byte.
+    /// USART with room for a byte to send.
     UsartToSend(u32),
 }
 
 impl Request {
-    /// Whether what asks wants bytes from memory.
+    /// Returns whether the request is for bytes from memory.
     pub fn is_outwards(self) -> bool {
         matches!(self, Self::SpiToSend(_) | Self::UsartToSend(_))
     }
 }
 
-/// Why a chip resets.
+/// Cause of a reset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reset {
-    /// Power came on.
+    /// Power-up.
     Power,
-    /// The software asked for it.
+    /// Request by software.
     Software,
-    /// The watchdog.
+    /// Watchdog.
     Watchdog,
 }
 
-/// What flash does.
+/// Flash operation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Operation {
-    /// Erases a sector or page.
+    /// Erase of a sector or page.
     Erase,
-    /// Programs what its check bits hold together.
+    /// Program of a unit with common check bits.
     Program,
 }
 
-/// How far an operation of flash has come when power goes.
+/// Progress of a flash operation at a power cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HowFar {
-    /// Nothing of it has been done.
+    /// Not started.
     Before,
-    /// Most of it is still as it was.
+    /// Most of it unchanged.
     Early,
-    /// As much is old as new, and most is neither.
+    /// Equal parts old and new, and most of it damaged.
     Middle,
-    /// Most of it is done.
+    /// Most of it done.
     Late,
 }
 
 impl HowFar {
-    /// How far an operation may have come: a program is short, and is cut before it or in it.
+    /// Possible progress of an operation: a program is short, and is cut before it or within it.
     pub fn of(operation: Operation) -> &'static [Self] {
         match operation {
             Operation::Erase => &[Self::Before, Self::Early, Self::Middle, Self::Late],
@@ -124,60 +124,60 @@ impl HowFar {
     }
 }
 
-/// When power goes.
+/// Power cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Cut {
-    /// In this operation of flash, by its number since power-up, from 0.
+    /// Number of the interrupted flash operation since power-up, from 0.
     pub operation: usize,
-    /// How far it has come.
+    /// Progress of the operation at the cut.
     pub how_far: HowFar,
 }
 
-/// What the host's end of the serial line is connected to.
+/// Connection of the host's end of the serial line.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Cable {
-    /// The host's speed [baud].
+    /// Speed of the host [baud].
     pub baud: u64,
-    /// Number of the USART that the line is for.
+    /// Number of the board's USART.
     pub unit: u32,
-    /// The pin that the board sends by.
+    /// Transmit pin of the board.
     pub send: Pin,
-    /// The pin that it receives by.
+    /// Receive pin of the board.
     pub receive: Pin,
 }
 
-/// The serial line, as the host's end drives it.
+/// Serial line, as driven by the host's end.
 #[derive(Debug, Default)]
 pub struct Line {
-    /// Where it is.
+    /// Connection of the line.
     pub cable: Cable,
-    /// Sent by the host and not yet on the line.
+    /// Bytes from the host that are not yet on the line.
     pub to_board: VecDeque<u8>,
-    /// What the host received.
+    /// Bytes received by the host.
     pub to_host: Vec<u8>,
-    /// The byte on its way to the board has arrived then.
+    /// Arrival time of the byte in transmission to the board.
     pub arrives: Option<Time>,
-    /// Bytes that the board lost since the one before had not been fetched.
+    /// Bytes lost by the board because the preceding one had not been read.
     pub overruns: u32,
 }
 
-/// A master on SPI, and what it has under way.
+/// External SPI master, with its transfer.
 #[derive(Debug, Default)]
 pub struct Master {
-    /// Number of the SPI that it is on.
+    /// Number of the SPI that it is connected to.
     pub spi: u32,
-    /// Bytes still to be clocked.
+    /// Bytes still to be sent.
     pub to_slave: VecDeque<u8>,
-    /// What came back.
+    /// Bytes received.
     pub received: Vec<u8>,
-    /// The next byte is complete then.
+    /// Time at which the next byte is complete.
     pub next: Option<Time>,
-    /// Time that a byte takes.
+    /// Duration of a byte.
     pub byte: Time,
 }
 
 impl Master {
-    /// The next byte on an SPI, if it is complete.
+    /// Next byte for an SPI, if it is complete.
     pub fn due(&mut self, spi: u32, now: Time) -> Option<u8> {
         let next = self.next.filter(|next| *next <= now && spi == self.spi)?;
         let byte = self.to_slave.pop_front();
@@ -186,116 +186,116 @@ impl Master {
     }
 }
 
-/// What is outside of the chip.
+/// Clock sources outside of the chip.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Surroundings {
-    /// A crystal at the pins of the external oscillator [Hz].
+    /// Crystal at the pins of the external oscillator [Hz].
     pub crystal: Option<u64>,
-    /// A clock at its input, for the bypass [Hz].
+    /// Clock signal at the input, for the bypass [Hz].
     pub external_clock: Option<u64>,
-    /// The one or the other dies then.
+    /// Time at which crystal or signal fails.
     pub dies_at: Option<Time>,
-    /// A timer that measures it counts so many thousandths too fast: the internal oscillator is that much off. All else has it
-    /// exact.
+    /// Deviation of the internal oscillator [thousandths]: a timer that measures the external source counts this much
+    /// too fast. All other parts use the exact frequency.
     pub internal_off: i64,
 }
 
 impl Surroundings {
-    /// A crystal [Hz].
+    /// Surroundings with a crystal [Hz].
     pub fn crystal(rate: u64) -> Self {
         Self { crystal: Some(rate), ..Self::default() }
     }
 
-    /// A clock from outside [Hz].
+    /// Surroundings with a clock signal [Hz].
     pub fn clock(rate: u64) -> Self {
         Self { external_clock: Some(rate), ..Self::default() }
     }
 
-    /// Whether the external source is dead.
+    /// Returns whether the external source has failed.
     pub fn is_dead(&self, now: Time) -> bool {
         self.dies_at.is_some_and(|time| time <= now)
     }
 }
 
-/// All of it.
+/// Connections of the whole chip.
 #[derive(Debug)]
 pub struct Wires {
     /// Time since power-up.
     pub now: Time,
-    /// Where the core is.
+    /// Code address of the core.
     pub pc: u32,
-    /// What was done wrong so far.
+    /// Violations so far.
     pub violations: Violations,
-    /// Clocks as they are.
+    /// Present clocks.
     pub clocks: Clocks,
-    /// The external oscillator as timers can capture it: divided, while it runs [Hz].
+    /// Divided external source for capture by timers, while it runs [Hz].
     pub divided_external: Option<u64>,
-    /// Registers of the clock controller by offset, as far as they switch clocks on and hold resets.
+    /// Registers of the clock controller by offset, with clock gates and resets.
     pub gates: BTreeMap<u32, u32>,
     /// Interrupt lines that are high.
     pub interrupts: BTreeSet<usize>,
-    /// Pins that are not as after a reset.
+    /// Modes of the pins.
     pub pins: BTreeMap<Pin, Mode>,
-    /// Pins that were ever set up in another way than a reset does.
+    /// Pins whose setting ever differed from the reset state.
     pub set_up: BTreeSet<Pin>,
-    /// Levels that somebody outside drives.
+    /// Levels driven from outside.
     pub driven: BTreeMap<Pin, bool>,
-    /// The port behind each external interrupt line, by number.
+    /// Port of each external interrupt line, by number.
     pub line_ports: [char; 16],
-    /// Who asks for DMA.
+    /// Active DMA requests.
     pub requests: BTreeSet<Request>,
-    /// Requests that a channel which is on serves.
+    /// Requests served by an enabled channel.
     pub served: BTreeSet<Request>,
-    /// The master on SPI.
+    /// External SPI master.
     pub master: Master,
-    /// A slave on SPI.
+    /// External SPI slave.
     pub encoder: Option<As5047p>,
-    /// Bytes of the present access to a register.
+    /// Width of the present register access [byte].
     pub width: u32,
-    /// Requests that a multiplexer leads to a channel of DMA, by controller and channel.
+    /// Requests routed to DMA channels by a multiplexer, by controller and channel.
     pub routes: BTreeMap<(u32, u32), Option<Request>>,
     /// The serial line.
     pub line: Line,
-    /// What is outside.
+    /// Clock sources outside of the chip.
     pub surroundings: Surroundings,
-    /// The core stands still so long.
+    /// Time for which the core must stall.
     pub stall: Time,
-    /// The non-maskable interrupt is asked for.
+    /// True if the non-maskable interrupt is requested.
     pub non_maskable: bool,
-    /// An access failed, at this address.
+    /// Address of a failed access.
     pub bus_fault: Option<u32>,
-    /// The chip is to be reset.
+    /// Reset to be executed.
     pub reset: Option<Reset>,
-    /// A debugger holds the core.
+    /// True while a debugger holds the core.
     pub is_held: bool,
-    /// The watchdog stands still while it does.
+    /// True if the watchdog is frozen while the core is held.
     pub watchdog_stops_with_core: bool,
-    /// PB4 and PB6 are pulled down for an empty battery on USB.
+    /// True if PB4 and PB6 are pulled down for an empty battery on USB.
     pub pulls_down_for_usb: bool,
-    /// The regulator gives the highest range, with boost where there is one.
+    /// True if the regulator is in its highest range, with boost if there is one.
     pub boost: bool,
-    /// The supply [mV].
+    /// Supply voltage [mV].
     pub supply: u32,
-    /// Scale or range of the regulator by its number in the manual: 1 is the fastest.
+    /// Scale or range of the regulator, by its number in the manual: 1 is the fastest.
     pub voltage: u32,
-    /// A level has changed, or something else that is looked at between blocks.
+    /// True if a level, or anything else checked between blocks, has changed.
     pub changed: bool,
-    /// Whoever reads a register waits for flash: time may go on faster.
+    /// True if the last read polls busy flash, so that time may advance faster.
     pub waiting: bool,
-    /// A data synchronisation barrier was executed since the last store to flash.
+    /// True if a data synchronisation barrier was executed since the last store to flash.
     pub barrier: bool,
-    /// An image lies in flash up to here.
+    /// End address of the image in flash.
     pub image_end: u32,
-    /// Option byte DBANK of G474 is 0: its flash is one bank.
+    /// True if option byte DBANK of the G474 is 0: single-bank flash.
     pub single_bank: bool,
-    /// When power goes.
+    /// Planned power cut.
     pub cut: Option<Cut>,
-    /// Operations that flash has begun.
+    /// Flash operations started so far.
     pub flash_operations: Vec<Operation>,
 }
 
 impl Wires {
-    /// At power-up.
+    /// State at power-up.
     pub fn new(surroundings: Surroundings, cable: Cable) -> Self {
         Self {
             now: 0,
@@ -337,32 +337,32 @@ impl Wires {
         }
     }
 
-    /// Notes a violation where the core is.
+    /// Records a violation at the core's address.
     pub fn violation(&mut self, register: &str, what: impl Into<String>, section: &'static str) {
         self.violations.add(register, self.pc, what, section);
     }
 
-    /// Whether a bit of the clock controller is set.
+    /// Returns whether a bit of the clock controller is set.
     pub fn is_on(&self, gate: Gate) -> bool {
         self.gates.get(&gate.offset).is_some_and(|value| value >> gate.bit & 1 == 1)
     }
 
-    /// What a pin is set up as.
+    /// Mode of a pin.
     pub fn mode(&self, pin: Pin) -> Mode {
         self.pins.get(&pin).copied().unwrap_or(Mode::Input)
     }
 
-    /// Whether one of some pins has its alternate function.
+    /// Returns whether one of some pins has its alternate function.
     pub fn leads_to(&self, pins: &[(Pin, u32)]) -> bool {
         pins.iter().any(|(pin, function)| self.mode(*pin) == Mode::Alternate(*function))
     }
 
-    /// Whether a pin is one of some pins and has its alternate function.
+    /// Returns whether a pin is one of some pins and has its alternate function.
     pub fn leads_by(&self, pin: Pin, pins: &[(Pin, u32)]) -> bool {
         pins.iter().any(|(other, function)| *other == pin && self.mode(pin) == Mode::Alternate(*function))
     }
 
-    /// The level at a pin: its own, or that from outside, or low.
+    /// Level at a pin: its own output, else the level driven from outside, else low.
     pub fn level(&self, pin: Pin) -> bool {
         match self.mode(pin) {
             Mode::Output(level) => level,
@@ -370,7 +370,7 @@ impl Wires {
         }
     }
 
-    /// A master on the chip clocks eight bits, in a mode (CPOL, CPHA); what it receives: an open line is high.
+    /// Exchanges eight bits with the external slave, in a mode (CPOL, CPHA); an open line reads as high.
     pub fn clock_slave(&mut self, spi: u32, byte: u8, mode: (bool, bool), bit: Time, start: Time) -> u8 {
         let Some(encoder) = self.encoder.as_mut().filter(|encoder| encoder.spi == spi) else { return 0xff };
         let (answer, wrong) = encoder.exchange(byte, mode, bit, start);
@@ -380,7 +380,7 @@ impl Wires {
         answer
     }
 
-    /// Pins have other levels: the slave may be selected now, or no more.
+    /// Updates the slave's select after a change of levels.
     pub fn look_at_select(&mut self) {
         let Some(select) = self.encoder.as_ref().map(|encoder| encoder.select) else { return };
         let (is_low, now) = (self.mode(select) == Mode::Output(false), self.now);
@@ -389,7 +389,7 @@ impl Wires {
         }
     }
 
-    /// Levels an interrupt line.
+    /// Sets the level of an interrupt line.
     pub fn interrupt(&mut self, line: usize, level: bool) {
         self.changed |= match level {
             true => self.interrupts.insert(line),
@@ -397,7 +397,7 @@ impl Wires {
         };
     }
 
-    /// A flash operation begins; how far it comes, if power goes with it.
+    /// Starts a flash operation; returns its progress if power is cut in it.
     pub fn begins_flash_operation(&mut self, operation: Operation) -> Option<HowFar> {
         let number = self.flash_operations.len();
         self.flash_operations.push(operation);
@@ -406,7 +406,7 @@ impl Wires {
         Some(cut.how_far)
     }
 
-    /// A channel serves a request, or no more.
+    /// Sets whether a channel serves a request.
     pub fn serve(&mut self, request: Request, level: bool) {
         if level {
             self.served.insert(request);
@@ -415,12 +415,12 @@ impl Wires {
         }
     }
 
-    /// Whether a channel that is on serves a request.
+    /// Returns whether an enabled channel serves a request.
     pub fn is_served(&self, request: Request) -> bool {
         self.served.contains(&request)
     }
 
-    /// Asks for DMA, or no more.
+    /// Sets or clears a DMA request.
     pub fn request(&mut self, request: Request, level: bool) {
         self.changed |= match level {
             true => self.requests.insert(request),

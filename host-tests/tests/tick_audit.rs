@@ -17,7 +17,7 @@ fn tick_cannot_panic_and_bounds_its_stack() {
         let image = build_image(&toolchain, &preset_file("q1"), &Board::emulated(), role, rate, false, &say);
         let reach = tick::reach(&image.expect("an image").elf).expect("an image that can be read");
         println!("{role:?}: {} B of stack: {:?}", tick::stack(&reach), reach.deepest);
-        tick::judge(&reach).unwrap_or_else(|failure| panic!("{failure}"));
+        tick::check(&reach).unwrap_or_else(|failure| panic!("{failure}"));
     }
 }
 
@@ -28,7 +28,7 @@ fn planted_faults_are_found_and_named() {
     let say = |line: &str| println!("{line}");
     let toolchain = Toolchain::prepare(&say).expect("a toolchain for the board");
     let elf = build_measuring(&toolchain, "planted_faults", &[], 20_000, &say).expect("an image");
-    let failure = tick::judge(&tick::reach(&elf).expect("an image that can be read")).expect_err("faults");
+    let failure = tick::check(&tick::reach(&elf).expect("an image that can be read")).expect_err("faults");
     println!("{failure}");
     for fault in [
         "may_panic -> core::panicking::panic_bounds_check",

@@ -1,4 +1,4 @@
-//! The compensation: from the observer's estimates and a set-point to a motor torque.
+//! Compensation: motor torque from the observer's estimates and a set-point.
 
 use core::mem::MaybeUninit;
 
@@ -31,7 +31,7 @@ impl Kind for Compensation<'static, f32> {
     const MARK: u32 = 0xc5c5_c5c5;
 }
 
-/// Asserts that a struct of the header begins in memory with what one of the core has.
+/// Asserts that a struct of the header begins with the memory layout of the core's struct.
 macro_rules! alike {
     ($own:ty, $core:ty, $($field:ident: $($path:ident).+),+) => {
         const {
@@ -41,17 +41,17 @@ macro_rules! alike {
     };
 }
 
-/// Largest size of a fraction of a turn [turns]: counts, degrees and most radians are beyond it, while a set-point may cross a
+/// Limit of a fraction of a turn [turns]: counts, degrees and most radians exceed it, while a set-point may cross a
 /// turn before it carries the whole one over.
 const MOST_FRACTION: f32 = 1.0;
 
-/// Where the link shall be at one moment, on the scale of the observer's link shaft.
+/// Motion of the link at one time, on the scale of the observer's link shaft.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct JointMotion {
     /// Whole turns.
     pub turns: i32,
-    /// What is left, from -1 to 1.
+    /// Remaining fraction of a turn, from -1 to 1.
     pub fraction_turns: f32,
     /// Speed.
     pub speed_rad_per_s: f32,
@@ -60,31 +60,31 @@ pub struct JointMotion {
 }
 
 impl JointMotion {
-    /// As the core has it: the same in memory.
+    /// The core's motion, which has the same memory layout.
     #[inline(always)]
     pub(crate) fn motion(&self) -> &Motion<f32> {
         alike!(JointMotion, Motion<f32>, turns: position.turns, fraction_turns: position.fraction,
             speed_rad_per_s: speed, acceleration_rad_per_s2: acceleration);
-        // SAFETY: numbers of the same kinds in the same places, as was asserted; any bits are good.
+        // SAFETY: equal types at equal offsets, as asserted; every bit pattern is valid.
         unsafe { &*ptr::from_ref(self).cast() }
     }
 
-    /// Nothing times its numbers, added to such a sum: zero if they are finite.
+    /// Adds zero times each number to a sum; the result is zero only if all numbers are finite.
     #[inline(always)]
     fn nothing(&self, before: f32) -> f32 {
         before + 0.0 * self.fraction_turns + 0.0 * self.speed_rad_per_s + 0.0 * self.acceleration_rad_per_s2
     }
 }
 
-/// A spring and damper about a moving point, on the scale of the observer's link shaft.
+/// Spring and damper about a moving point, on the scale of the observer's link shaft.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct JointImpedance {
     /// Whole turns of the point.
     pub turns: i32,
-    /// What is left, from -1 to 1.
+    /// Remaining fraction of a turn, from -1 to 1.
     pub fraction_turns: f32,
-    /// Its speed.
+    /// Speed of the point.
     pub speed_rad_per_s: f32,
     /// Torque at the link, on top of spring and damper.
     pub torque_Nm: f32,
@@ -95,16 +95,16 @@ pub struct JointImpedance {
 }
 
 impl JointImpedance {
-    /// As the core has it: the same in memory.
+    /// The core's impedance point, which has the same memory layout.
     #[inline(always)]
     fn point(&self) -> &ImpedancePoint<f32> {
         alike!(JointImpedance, ImpedancePoint<f32>, turns: position.turns, fraction_turns: position.fraction,
             speed_rad_per_s: speed, torque_Nm: torque, stiffness_Nm_per_rad: stiffness, damping_Nm_s_per_rad: damping);
-        // SAFETY: numbers of the same kinds in the same places, as was asserted; any bits are good.
+        // SAFETY: equal types at equal offsets, as asserted; every bit pattern is valid.
         unsafe { &*ptr::from_ref(self).cast() }
     }
 
-    /// Nothing times its numbers: zero if they are finite.
+    /// Zero times each number; zero only if all numbers are finite.
     #[inline(always)]
     fn nothing(&self) -> f32 {
         let spring = 0.0 * self.stiffness_Nm_per_rad + 0.0 * self.damping_Nm_s_per_rad + 0.0 * self.torque_Nm;
@@ -112,63 +112,63 @@ impl JointImpedance {
     }
 }
 
-/// Whether a sum of products with zero is zero: nothing times what is infinite or not a number is not a number, and nor is
-/// what it is added to. Arithmetic makes quiet ones, of which this bit is set; zero has it not. It takes fewer instructions
-/// than the flags of a comparison.
+/// Returns whether a sum of products with zero is zero. Zero times infinity or NaN is a quiet NaN, which has this bit
+/// set; zero does not. The test takes fewer instructions than the flags of a comparison.
 #[inline(always)]
 fn is_zero(nothing: f32) -> bool {
     const QUIET: u32 = 1 << 22;
     nothing.to_bits() & QUIET == 0
 }
 
-/// What the compensation is about.
+/// Stage of the compensation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum JointStage {
     /// A flank carries, or the joint needs none and the motor rests in the middle of the gap.
     Touching = 0,
-    /// On the way through the gap.
+    /// Motion through the gap towards a flank.
     Crossing = 1,
     /// Closing on a flank at a small speed.
     Landing = 2,
-    /// Control without compensation: the gap cannot be seen.
+    /// Control without compensation: the gap is not observable.
     Plain = 3,
-    /// No torque: it is not known where the motor is.
+    /// No torque: the position of the motor is unknown.
     Off = 4,
-    /// No torque until observer and compensation are started anew: the motor ran against its torque, so torque or motor encoder has
-    /// the wrong sign.
+    /// No torque until observer and compensation are restarted: the motor moved against its torque, so torque or motor
+    /// encoder has the wrong sign.
     Reversed = 5,
 }
 
-/// What the compensation answers.
+/// Output of the compensation.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct JointTorque {
-    /// Torque for the motor's shaft: over the torque constant, the current to ask for. Finite and within the limit.
+    /// Torque for the motor's shaft, finite and within the limit; divided by the torque constant it is the current to
+    /// command.
     pub motor_torque_Nm: f32,
-    /// Torque that the teeth will have to pass on after a crossing that began now.
+    /// Torque that the teeth must transmit after a crossing that began now.
     pub demand_Nm: f32,
-    /// What brakes the link besides dry friction, as learnt.
+    /// Estimated load on the link without dry friction.
     pub load_Nm: f32,
-    /// Dry friction of the link, as learnt.
+    /// Estimated dry friction of the link.
     pub friction_Nm: f32,
-    /// Share of the compensation in the torque, the rest being control without: 0 to 1.
+    /// Share of the compensation in the torque, 0 to 1; the rest is control without compensation.
     pub trust: f32,
-    /// What it is about.
+    /// Stage of the compensation.
     pub stage: JointStage,
-    /// The flank that carries or is being gone to.
+    /// Flank that carries, or towards which the motor moves.
     pub flank: JointContact,
-    /// 1 if the law asks for more torque than the motor has, or brakes early because of that; else 0.
+    /// 1 if the law requires more torque than the motor has, or brakes early for lack of torque; else 0.
     pub short_of_torque: u32,
-    /// 1 while control without compensation has taken over because the loop hunted; else 0.
+    /// 1 while control without compensation is active because the loop hunted; else 0.
     pub stepped_back: u32,
 }
 
 impl JointTorque {
-    /// Gives an answer to the caller.
+    /// Writes an output to the caller's struct.
     ///
     /// # Safety
-    /// The place is aligned, not NULL, and the caller's to give.
+    /// The pointer is aligned, not NULL, and valid for writes.
     #[inline(always)]
     unsafe fn give(of: &Shaped<f32>, to: *mut Self) {
         const NUMBERS: usize = 5;
@@ -186,7 +186,7 @@ impl JointTorque {
             Some(Flank::Back) => JointContact::BackSide,
             None => JointContact::Separated,
         };
-        // SAFETY: the numbers lie first and alike in both, as was asserted; the rest is the caller's word.
+        // SAFETY: the numbers are the first fields of both structs, as asserted; the rest is the caller's promise.
         unsafe {
             to.cast::<[f32; NUMBERS]>().write(*ptr::from_ref(of).cast());
             (*to).stage = stage;
@@ -212,12 +212,12 @@ pub unsafe extern "C" fn joint_compensation_start_checked(
         place.write(Compensation::new(blob.compensation()?));
         Ok(())
     };
-    // SAFETY: the caller's word, as the header asks for it.
+    // SAFETY: the caller's promise, as required by the header.
     fp_mode::standard(|| unsafe { start(storage, tables, tables_bytes, make) }).into()
 }
 
-/// One control period of position control, after the observer's step: follow a motion. `ahead` is the motion by
-/// `lead_s` (joint_tables_facts) later than `now`, or NULL if that is not known.
+/// One control period of position control, after the observer's step: follows a motion. `ahead` is the motion `lead_s`
+/// (joint_tables_facts) after `now`, or NULL if it is unknown.
 #[unsafe(no_mangle)]
 #[must_use]
 pub unsafe extern "C" fn joint_compensation_follow(
@@ -232,7 +232,8 @@ pub unsafe extern "C" fn joint_compensation_follow(
         return why(objects, [now.addr(), torque.addr()]);
     }
     fp_mode::standard(|| {
-        // SAFETY: aligned, and not NULL but where that is none; the rest is the caller's word, as the header asks for it.
+        // SAFETY: aligned, and not NULL except where NULL is allowed; the rest is the caller's promise, as required by
+        // the header.
         let (now, ahead) = unsafe { (&*now, ahead.as_ref()) };
         let nothing = now.nothing(0.0);
         if !is_zero(ahead.map_or(nothing, |ahead| ahead.nothing(nothing))) {
@@ -243,12 +244,12 @@ pub unsafe extern "C" fn joint_compensation_follow(
             return JointStatus::FractionOutOfRange;
         }
         let command = CommandRef::Position { now: now.motion(), ahead: ahead.map(JointMotion::motion) };
-        // SAFETY: likewise.
+        // SAFETY: as above.
         unsafe { step(compensation, observer, command, torque) }
     })
 }
 
-/// One control period of impedance control, after the observer's step: be a spring and damper at the link.
+/// One control period of impedance control, after the observer's step: acts as a spring and damper at the link.
 #[unsafe(no_mangle)]
 #[must_use]
 pub unsafe extern "C" fn joint_compensation_yield(
@@ -262,7 +263,7 @@ pub unsafe extern "C" fn joint_compensation_yield(
         return why(objects, [impedance.addr(), torque.addr()]);
     }
     fp_mode::standard(|| {
-        // SAFETY: aligned and not NULL; the rest is the caller's word, as the header asks for it.
+        // SAFETY: aligned and not NULL; the rest is the caller's promise, as required by the header.
         let impedance = unsafe { &*impedance };
         if !is_zero(impedance.nothing()) {
             return JointStatus::NotFinite;
@@ -270,13 +271,13 @@ pub unsafe extern "C" fn joint_compensation_yield(
         if impedance.fraction_turns.abs() > MOST_FRACTION {
             return JointStatus::FractionOutOfRange;
         }
-        // SAFETY: likewise.
+        // SAFETY: as above.
         unsafe { step(compensation, observer, CommandRef::Impedance(impedance.point()), torque) }
     })
 }
 
-/// Whether pointers can be used, in one look: none is NULL but for the last, those to objects are at multiples of eight, the
-/// others of four.
+/// Returns whether all pointers are usable, in one test: only the last may be NULL, pointers to objects are multiples
+/// of eight, the others of four.
 #[inline(always)]
 fn all_usable([one, two]: [usize; 2], [three, four]: [usize; 2], or_null: usize) -> bool {
     const { assert!(align_of::<JointCompensation>() == 8 && align_of::<JointObserver>() == 8) };
@@ -285,14 +286,14 @@ fn all_usable([one, two]: [usize; 2], [three, four]: [usize; 2], or_null: usize)
     low.trailing_zeros() >= 3 && one != 0 && two != 0 && three != 0 && four != 0
 }
 
-/// Why one of them is of no use.
+/// Status for unusable pointers.
 #[cold]
 fn why([one, two]: [usize; 2], [three, four]: [usize; 2]) -> JointStatus {
     let is_null = one == 0 || two == 0 || three == 0 || four == 0;
     if is_null { JointStatus::NullPointer } else { JointStatus::Misaligned }
 }
 
-/// The step itself; all pointers are aligned and not NULL.
+/// Steps the compensation; all pointers are aligned and not NULL.
 #[inline(always)]
 unsafe fn step(
     compensation: *mut JointCompensation,
@@ -300,7 +301,7 @@ unsafe fn step(
     command: CommandRef<f32>,
     torque: *mut JointTorque,
 ) -> JointStatus {
-    // SAFETY: as the caller of this says; the marks of both say that they are two.
+    // SAFETY: the caller's promise; different marks show that the objects are distinct.
     let (Some(object), Some(seen)) =
         (unsafe { (marked::<Compensation<'static, f32>>(compensation), marked::<AnyObserver>(observer.cast_mut())) })
     else {
@@ -310,7 +311,7 @@ unsafe fn step(
         return JointStatus::OtherTables;
     }
     let shaped = object.value.step_by_reference(seen.value.estimates(), command);
-    // SAFETY: aligned, not NULL, and the caller's to give.
+    // SAFETY: aligned, not NULL, and valid for writes.
     unsafe { JointTorque::give(&shaped, torque) };
     JointStatus::Ok
 }

@@ -1,4 +1,4 @@
-//! What goes in and out of the observer, with units in the names.
+//! Inputs and outputs of the observer, with units in the names.
 
 use model_core::observer::{
     Estimate, Estimates, MotorFault, OutputFault, Reading, Samples, Shaft, Source, TorqueResponse,
@@ -7,34 +7,35 @@ use parameters::ContactState;
 
 use crate::status::JointStatus;
 
-/// One reading of an encoder.
+/// Reading of an encoder.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct JointReading {
-    /// Raw counts as the encoder gives them, wrapping as the joint file says.
+    /// Raw counts of the encoder, wrapping as stated in the joint file.
     pub counts: u32,
-    /// When they were taken, in ticks of the samples' clock; wraps at 2^32.
+    /// Time of the reading, in ticks of the samples' clock; wraps at 2^32.
     pub time_ticks: u32,
 }
 
-/// Everything that is measured in one control period.
+/// Measurements of one control period.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct JointSamples {
-    /// Now, in ticks of the clock that the tables were made for (joint_tables_facts); wraps at 2^32.
+    /// Time of the samples, in ticks of the clock that the tables were made for (joint_tables_facts); wraps at 2^32.
     pub time_ticks: u32,
     /// Encoder on the motor.
     pub motor: JointReading,
     /// Encoder on the link.
     pub output: JointReading,
-    /// 0: there is no output encoder, or it gave nothing in this period; `output` is not looked at. Anything else: there is.
+    /// 0 if there is no output encoder, or no reading of it in this period; `output` is then ignored. Otherwise
+    /// nonzero.
     pub has_output: u32,
     /// Torque at the motor's shaft that was commanded last, after every limit: current times torque constant.
     pub motor_torque_Nm: f32,
 }
 
 impl JointSamples {
-    /// As the core has them.
+    /// Converts samples to the core's form.
     #[inline(always)]
     pub fn samples(&self) -> Result<Samples<f32>, JointStatus> {
         let reading = |it: &JointReading| Reading { counts: it.counts, time: it.time_ticks };
@@ -49,7 +50,7 @@ impl JointSamples {
         })
     }
 
-    /// As the caller has them.
+    /// Converts samples to the caller's form.
     pub fn new(of: &Samples<f32>) -> Self {
         let reading = |it: Reading| JointReading { counts: it.counts, time_ticks: it.time };
         Self {
@@ -62,15 +63,15 @@ impl JointSamples {
     }
 }
 
-/// A value, how uncertain it is, and whether the observer stands by it. Value and variance are always finite.
+/// Value with its variance and validity. Value and variance are always finite.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct JointEstimate {
-    /// Best guess, in the unit that its holder's name ends with.
+    /// Estimate, in the unit of the field's name.
     pub value: f32,
-    /// Variance, in the square of that unit.
+    /// Variance, in the square of the unit.
     pub variance: f32,
-    /// 0: the value is only a guess. 1: use it.
+    /// 1 if the value may be used, 0 if it is only a guess.
     pub valid: u32,
 }
 
@@ -80,13 +81,13 @@ impl From<Estimate<f32>> for JointEstimate {
     }
 }
 
-/// A shaft: where it is and how fast it turns.
+/// Angle and speed of a shaft.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct JointShaft {
-    /// Whole turns since the observer began, wrapping.
+    /// Whole turns since the start of the observer, wrapping.
     pub turns: i32,
-    /// What is left, from 0 to 1.
+    /// Remaining fraction of a turn, from 0 to 1.
     pub fraction_turns: f32,
     /// Speed.
     pub speed_rad_per_s: f32,
@@ -98,15 +99,15 @@ impl From<Shaft<f32>> for JointShaft {
     }
 }
 
-/// Which flank carries the force.
+/// Flank that carries the force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum JointContact {
-    /// None: the teeth are in the gap, or it is not known where.
+    /// No flank: the teeth are in the gap, or the contact is unknown.
     Separated = 0,
-    /// The motor drives the load forwards: deflection, force and torque are positive.
+    /// Drive side: the motor drives the load forwards; deflection, force and torque are positive.
     DriveSide = 1,
-    /// The other one: they are negative.
+    /// Back side: deflection, force and torque are negative.
     BackSide = 2,
 }
 
@@ -120,102 +121,103 @@ impl From<ContactState> for JointContact {
     }
 }
 
-/// Which encoders the estimates rest on.
+/// Encoders on which the estimates are based.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum JointSource {
-    /// None: nothing is valid, and what is not heard of is held.
+    /// No encoder: nothing is valid, and values without measurements are held.
     Nothing = 0,
-    /// The motor encoder alone: the load cannot be seen while the gap is open.
+    /// Motor encoder only: the load cannot be observed while the gap is open.
     MotorOnly = 1,
     /// Motor and output encoder.
     Both = 2,
 }
 
-/// Why an encoder is not used.
+/// Reason for which an encoder is not used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum JointFault {
-    /// It is used.
+    /// No fault: the encoder is used.
     None = 0,
-    /// There is none by design.
+    /// No such encoder in the design.
     Absent = 1,
-    /// Nothing fresh is heard of it.
+    /// No new readings.
     Silent = 2,
-    /// Its readings are late time after time.
+    /// Readings are late repeatedly.
     Late = 3,
-    /// Its counts stand still while the joint turns.
+    /// Counts stand still while the joint turns.
     Frozen = 4,
-    /// The motor's counts are where no motor could go.
+    /// Counts of the motor encoder jumped further than the motor can turn.
     Jumped = 5,
-    /// The output's counts put the gap coordinate where it cannot be.
+    /// Counts of the output encoder imply an impossible gap coordinate.
     OutOfRange = 6,
-    /// The output encoder has given no reading yet: the compensation gives no torque until it does.
+    /// No reading of the output encoder yet: the compensation gives no torque before the first one.
     Unheard = 7,
 }
 
-/// In `notices`: the torque was more than twice what the motor can give; none was assumed.
+/// In `notices`: the torque exceeded twice the motor's limit and was replaced by zero.
 pub const JOINT_NOTICE_TORQUE_UNKNOWN: u32 = 1;
 /// In `notices`: the period was too short or too long, or time went backwards.
 pub const JOINT_NOTICE_OUT_OF_TIME: u32 = 2;
-/// In `notices`: the motor's counts were further away than it can turn, and were not believed.
+/// In `notices`: the motor's counts were further away than the motor can turn, and were rejected.
 pub const JOINT_NOTICE_MOTOR_IMPLAUSIBLE: u32 = 4;
-/// In `notices`: the motor's counts are elsewhere time after time.
+/// In `notices`: the motor's counts were implausible repeatedly.
 pub const JOINT_NOTICE_MOTOR_JUMPED: u32 = 8;
-/// In `notices`, until the observer is started anew: the motor ran against its torque. Torque or motor encoder has the wrong sign.
+/// In `notices`, until the observer is restarted: the motor moved against its torque. Torque or motor encoder has the
+/// wrong sign.
 pub const JOINT_NOTICE_TORQUE_REVERSED: u32 = 16;
 
 /// All estimates of one control period. A positive gap coordinate, force or torque drives the load forwards.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct JointEstimates {
-    /// What the rest stands on.
+    /// Encoders on which the estimates are based.
     pub source: JointSource,
-    /// Why the motor encoder is not used.
+    /// Reason for which the motor encoder is not used.
     pub motor_fault: JointFault,
-    /// Why the output encoder is not used.
+    /// Reason for which the output encoder is not used.
     pub output_fault: JointFault,
-    /// What was wrong with the samples: a sum of JOINT_NOTICE_ bits.
+    /// Defects of the samples: a sum of JOINT_NOTICE_ bits.
     pub notices: u32,
     /// Gap coordinate along the line of action: from -2 b to 2 b while every mesh is free.
     pub gap_m: JointEstimate,
-    /// Its rate.
+    /// Rate of the gap coordinate.
     pub gap_rate_m_per_s: f32,
-    /// Contact by the mesh force alone: late, but needs no width.
+    /// Contact from the mesh force alone: later, but independent of the half-backlash.
     pub contact_by_force: JointContact,
-    /// Contact by force and gap coordinate: what a controller should use.
+    /// Contact from force and gap coordinate, for use in a controller.
     pub contact: JointContact,
-    /// Whether `contact` may be used.
+    /// 1 if `contact` may be used, else 0.
     pub contact_valid: u32,
-    /// Contact has held for long enough, with enough force, that the observer learns from it.
+    /// 1 if contact has held long enough, with enough force, for parameters to be estimated; else 0.
     pub settled: u32,
-    /// Torque that the meshes pass on, at the carrier.
+    /// Torque transmitted by the meshes, at the carrier.
     pub mesh_torque_Nm: JointEstimate,
-    /// Everything that brakes the link: friction, weight, what it touches.
+    /// Torque that brakes the link: friction, weight, contact.
     pub load_torque_Nm: JointEstimate,
     /// Half-backlash b of each mesh.
     pub half_backlash_m: JointEstimate,
-    /// By how much the motor encoder leads the output encoder with every tooth centred, beyond where they were at the
-    /// start; at the output.
+    /// Lead of the motor encoder over the output encoder with every tooth centred, relative to the start; at the
+    /// output.
     pub encoder_offset_rad: JointEstimate,
     /// Torsional compliance from sun to link, at the output.
     pub compliance_rad_per_Nm: JointEstimate,
-    /// How old output readings are beyond what their time says, less the same of the motor's.
+    /// Age of output readings beyond their time stamp, less the motor encoder's.
     pub skew_s: JointEstimate,
-    /// Torque that the motor loses whatever its direction.
+    /// Torque that the motor loses in either direction.
     pub torque_bias_Nm: JointEstimate,
     /// Dry friction of the motor.
     pub motor_friction_Nm: JointEstimate,
-    /// Inertia of link and carrier over what the joint file has.
+    /// Inertia of link and carrier over the joint file's value.
     pub link_inertia_ratio: JointEstimate,
-    /// Motor shaft; encoder errors that were learnt are taken out.
+    /// Motor shaft, corrected for estimated encoder errors.
     pub motor: JointShaft,
-    /// Link; likewise. With the motor encoder alone, what that implies.
+    /// Link, corrected for estimated encoder errors. With the motor encoder alone, computed from it.
     pub link: JointShaft,
 }
 
 impl JointEstimates {
-    /// As the caller has them.
+    /// Converts estimates to the caller's form.
     pub fn new(of: &Estimates<f32>) -> Self {
         let (source, motor_fault, output_fault) = match of.source {
             Source::Both => (JointSource::Both, JointFault::None, JointFault::None),

@@ -1,10 +1,9 @@
-//! The mode of the floating-point unit that the numbers are made for: nearest, subnormals kept, NaN passed on, nothing
-//! trapped. A caller may have set another (`-ffast-math` does): it is set here before numbers are made, and what the caller
-//! had comes back after.
+//! Standard mode of the floating-point unit: round to nearest, subnormals kept, NaN propagated, no traps. A caller may
+//! have set another mode (`-ffast-math` does); each function sets the standard mode and restores the caller's.
 
 use unit::{enter, leave};
 
-/// Does work in that mode.
+/// Runs work in the standard mode.
 #[inline(always)]
 pub fn standard<R>(work: impl FnOnce() -> R) -> R {
     let before = enter();
@@ -26,7 +25,7 @@ mod unit {
         // SAFETY: reads a register that every caller with hardware floating point may read.
         unsafe { asm!("vmrs {}, fpscr", out(reg) before) };
         if before & MODES != 0 {
-            // SAFETY: sets the mode that this code was compiled for; `leave` takes it back.
+            // SAFETY: sets the mode that this code was compiled for; `leave` restores the caller's.
             unsafe { asm!("vmsr fpscr, {}", in(reg) before & !MODES) };
         }
         before
@@ -35,7 +34,7 @@ mod unit {
     #[inline(always)]
     pub fn leave(before: u32) {
         if before & MODES != 0 {
-            // SAFETY: what the caller had.
+            // SAFETY: restores the caller's mode.
             unsafe { asm!("vmsr fpscr, {}", in(reg) before) };
         }
     }
@@ -58,7 +57,7 @@ mod unit {
 
     #[inline(always)]
     pub fn leave(before: u32) {
-        // SAFETY: what the caller had.
+        // SAFETY: restores the caller's mode.
         unsafe { asm!("ldmxcsr [{}]", in(reg) &raw const before) };
     }
 }
@@ -77,7 +76,7 @@ mod unit {
 
     #[inline(always)]
     pub fn leave(before: u64) {
-        // SAFETY: what the caller had.
+        // SAFETY: restores the caller's mode.
         unsafe { asm!("msr fpcr, {}", in(reg) before) };
     }
 }

@@ -1,11 +1,11 @@
 #![cfg_attr(feature = "library", no_std)]
 //! Plant, observer, compensation, width probe and wiring check of `model-core` for programs in C and C++. The header is
-//! `bindings/c/include/lostmotion/joint.h`; everything that its reader must know stands there, and is written here.
+//! `bindings/c/include/lostmotion/joint.h`; it documents everything that a caller must know, and is generated from
+//! here.
 //!
-//! Thin: a function takes pointers, checks them, sets the floating-point unit to the mode that the numbers are made for,
-//! and calls the core. The caller owns all storage. There is no heap, no global that changes, no call into libc and no
-//! panic; two contexts may be in here at once as long as each has objects of its own. A function that fails has changed
-//! nothing.
+//! The layer is thin: a function takes pointers, checks them, sets the floating-point unit to its standard mode, and
+//! calls the core. The caller owns all storage. There is no heap, no mutable global, no call into libc and no panic;
+//! two contexts may call at once if they use different objects. A function that fails changes nothing.
 
 #![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets")]
 #![allow(non_snake_case, reason = "units keep their letters: Nm")]
@@ -36,7 +36,7 @@ pub use tables::*;
 pub use version::*;
 pub use wiring::*;
 
-/// Nothing in here panics: a test looks for what would lead here in linked programs, and finds nothing.
+/// Unreachable: a test verifies that linked programs contain no path to a panic.
 #[cfg(feature = "library")]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {

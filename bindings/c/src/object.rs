@@ -1,4 +1,4 @@
-//! Objects in the caller's storage: how they are told from storage that holds none, and how pointers are checked.
+//! Objects in the caller's storage: recognition of started objects, and checks of pointers.
 
 use core::mem::MaybeUninit;
 
@@ -7,32 +7,31 @@ use table_blob::{Blob, Header};
 use crate::status::JointStatus;
 use crate::version::has_abi;
 
-/// A kind of object: the type of its storage in the header, and what lies in it.
+/// Kind of object: its storage in the header, and its content.
 pub trait Kind: Sized {
-    /// What the header declares.
+    /// Storage type of the header.
     type Storage;
-    /// Tells kinds apart: four bytes alike, which a processor of these boards compares with in one instruction.
+    /// Mark of the kind: four equal bytes, which a Cortex-M can compare with in one instruction.
     const MARK: u32;
 }
 
-/// What lies at the beginning of the storage. The mark has the address in it, so that storage which was copied is not taken
-/// for an object.
+/// Content of a storage. The mark includes the address, so that copied storage is not recognised as an object.
 #[repr(C)]
 pub struct Object<K> {
     mark: usize,
-    /// Where those tables are.
+    /// Address of the tables.
     tables: *const Header,
-    /// Of the tables that it was started from.
+    /// Digest of the tables that the object was started from.
     tables_digest: u64,
-    /// The object itself.
+    /// Value of the object.
     pub value: K,
 }
 
 impl<K> Object<K> {
-    /// Whether another object was started from the same tables, or from others of the same digest.
+    /// Returns whether another object was started from the same tables, or from tables with the same digest.
     #[inline(always)]
     pub fn has_tables_of<L>(&self, other: &Object<L>) -> bool {
-        // One look says it where there are no two copies of the tables.
+        // Without copies of the tables the addresses are equal.
         self.tables == other.tables || same(self.tables_digest, other.tables_digest)
     }
 }
@@ -46,82 +45,82 @@ fn mark<K: Kind>(at: *const K::Storage) -> usize {
     K::MARK as usize ^ at.addr()
 }
 
-/// A pointer that something can be read from or written to.
+/// Checks that a pointer is not NULL and is aligned.
 #[inline(always)]
 pub fn usable<T>(pointer: *const T) -> Result<(), JointStatus> {
     if !pointer.is_null() && pointer.is_aligned() { Ok(()) } else { Err(unusable(pointer.is_null())) }
 }
 
-/// Why a pointer is of no use; out of the way of those that are.
+/// Status for an unusable pointer, kept out of the path of usable ones.
 #[cold]
 fn unusable(is_null: bool) -> JointStatus {
     if is_null { JointStatus::NullPointer } else { JointStatus::Misaligned }
 }
 
-/// A copy of what the caller points to.
+/// Copies the value behind a pointer.
 ///
 /// # Safety
-/// What is not NULL points to a value that nobody writes to meanwhile.
+/// A pointer that is not NULL points to a value that nobody writes to meanwhile.
 #[inline(always)]
 pub unsafe fn read<T: Copy>(from: *const T) -> Result<T, JointStatus> {
     usable(from)?;
-    // SAFETY: aligned and not NULL; the rest is the caller's word.
+    // SAFETY: aligned and not NULL; the rest is the caller's promise.
     Ok(unsafe { from.read() })
 }
 
-/// The object in a storage, if it was started there.
+/// Object in a storage, if it was started there.
 ///
 /// # Safety
-/// What is not NULL points to a storage of this type that nobody else uses meanwhile.
+/// A pointer that is not NULL points to a storage of this type that nobody else uses meanwhile.
 #[inline(always)]
 pub unsafe fn open<'a, K: Kind>(storage: *mut K::Storage) -> Result<&'a mut Object<K>, JointStatus> {
     usable(storage)?;
-    // SAFETY: aligned and not NULL; the rest is the caller's word.
+    // SAFETY: aligned and not NULL; the rest is the caller's promise.
     unsafe { marked::<K>(storage) }.ok_or(JointStatus::NotStarted)
 }
 
-/// The same behind a pointer that is known to be aligned and not NULL.
+/// Object in a storage whose pointer is known to be aligned and not NULL.
 ///
 /// # Safety
-/// It is, and it points to a storage of this type that nobody else uses meanwhile.
+/// The pointer is aligned and not NULL, and points to a storage of this type that nobody else uses meanwhile.
 #[inline(always)]
 pub unsafe fn marked<'a, K: Kind>(storage: *mut K::Storage) -> Option<&'a mut Object<K>> {
     let object = storage.cast::<Object<K>>();
-    // SAFETY: aligned, not NULL, and large enough by its type; any bits are a mark.
+    // SAFETY: aligned, not NULL, and large enough by its type; every bit pattern is a valid mark.
     if unsafe { (*object).mark } ^ storage.addr() != K::MARK as usize {
         return None;
     }
-    // SAFETY: the mark is put there by `start` alone, after everything else.
+    // SAFETY: only `start` writes the mark, after everything else.
     Some(unsafe { &mut *object })
 }
 
-/// The same for reading.
+/// Object in a storage, for reading.
 ///
 /// # Safety
 /// As for [`open`], but others may read.
 #[inline(always)]
 pub unsafe fn look<'a, K: Kind>(storage: *const K::Storage) -> Result<&'a Object<K>, JointStatus> {
-    // SAFETY: the same promise; it is only read from.
+    // SAFETY: the caller's promise of this function; the object is only read.
     unsafe { open::<K>(storage.cast_mut()) }.map(|object| &*object)
 }
 
-/// Storage of an object, as a caller hands it over to have an object started in it.
+/// Storage in which a caller wants an object to be started.
 #[derive(Debug, Clone, Copy)]
 pub struct Storage<S> {
     /// Pointer to the storage.
     pub at: *mut S,
-    /// Its size, by the caller's word [B].
+    /// Size of the storage, as stated by the caller [B].
     pub bytes: usize,
     /// `JOINT_ABI` of the caller's header.
     pub abi: u32,
 }
 
-/// Makes an object from tables where it stays: the stack of a caller may have no room for a second one. `make` writes to its
-/// place if it succeeds, and only then.
+/// Starts an object from tables in its final place, since the caller's stack may have no room for a second copy. `make`
+/// writes to the place only if it succeeds.
 ///
 /// # Safety
-/// Storage that is not NULL is of `bytes` and in nobody else's use; tables that are not NULL are of `tables_bytes`, and stay
-/// as they are for as long as the object is used.
+/// Storage that is not NULL has `bytes` bytes and no other user; tables that are not NULL have `tables_bytes` bytes and
+/// stay unchanged for as long as the object is used.
 pub unsafe fn start<K: Kind>(
     storage: Storage<K::Storage>,
     tables: *const u64,
@@ -135,13 +134,13 @@ pub unsafe fn start<K: Kind>(
     if storage.bytes != size_of::<K::Storage>() {
         return Err(JointStatus::WrongSize);
     }
-    // SAFETY: the caller's word on the tables.
+    // SAFETY: the caller's promise about the tables.
     let blob = unsafe { blob(tables, tables_bytes) }?;
     let object = storage.at.cast::<Object<MaybeUninit<K>>>();
-    // SAFETY: aligned, large enough, and the caller's to give; a place without a value may hold any bits.
+    // SAFETY: aligned, large enough, and valid for writes; uninitialised storage may hold any bits.
     make(&blob, unsafe { &mut (*object).value })?;
     let tables = blob.header();
-    // SAFETY: likewise; the mark comes last, when everything else is in place.
+    // SAFETY: as above; the mark is written last, when everything else is in place.
     unsafe {
         (&raw mut (*object).tables).write(tables);
         (&raw mut (*object).tables_digest).write(tables.digest);
@@ -150,16 +149,16 @@ pub unsafe fn start<K: Kind>(
     Ok(())
 }
 
-/// The tables that the caller points to.
+/// Opens the tables behind a pointer.
 ///
 /// # Safety
-/// What is not NULL is of so many bytes and stays as it is.
+/// A pointer that is not NULL points to `bytes` bytes that stay unchanged.
 pub unsafe fn blob(tables: *const u64, bytes: usize) -> Result<Blob<'static>, JointStatus> {
     usable(tables)?;
     if bytes == 0 || !bytes.is_multiple_of(size_of::<u64>()) || bytes > isize::MAX as usize {
         return Err(JointStatus::WrongSize);
     }
-    // SAFETY: aligned, not NULL, initialised as all constants are, and of this size by the caller's word.
+    // SAFETY: aligned, not NULL, initialised as all constants are, and of this size by the caller's promise.
     let words = unsafe { core::slice::from_raw_parts(tables, bytes / size_of::<u64>()) };
     Ok(Blob::open(words)?)
 }

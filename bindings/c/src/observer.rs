@@ -1,5 +1,5 @@
-//! The observer, with error maps or without: which of them, the function that starts it says, and a program that starts only
-//! one kind links only the step of that.
+//! Observer, with or without error maps. The start function selects the kind; a program that starts only one kind links
+//! only the step of that kind.
 
 use core::mem::MaybeUninit;
 use core::ptr;
@@ -14,7 +14,7 @@ use crate::status::JointStatus;
 
 /// 64-bit words of an observer.
 pub const JOINT_OBSERVER_WORDS: usize = 275;
-/// Bytes of what an observer has learnt.
+/// Bytes of an observer's saved memory.
 pub const JOINT_MEMORY_BYTES: usize = 544;
 const _: () = assert!(JOINT_MEMORY_BYTES == MEMORY_BYTES);
 
@@ -24,14 +24,14 @@ pub struct JointObserver {
     storage: [u64; JOINT_OBSERVER_WORDS],
 }
 
-/// What lies in the storage: an observer of either kind, how it is stepped and where in it the estimates are. What is not
-/// of a control period asks for the kind: a program that never saves does not link what saves.
+/// Content of the storage: an observer of either kind, its step function, and the offset of its estimates. Functions
+/// outside of the control period test the kind, so that a program that never saves does not link the saving code.
 pub(crate) struct AnyObserver {
     step: unsafe fn(*mut (), &Samples<f32>),
-    /// From the observer's beginning [B].
+    /// Offset of the estimates from the beginning of the observer [B].
     estimates: usize,
     has_maps: bool,
-    /// A memory is loaded before the first step alone.
+    /// True after the first step; a memory can be loaded before it only.
     stepped: bool,
     pub(crate) observer: MaybeUninit<Observer<'static, f32, MAPPED>>,
 }
@@ -42,22 +42,22 @@ impl Kind for AnyObserver {
 }
 
 impl AnyObserver {
-    /// Builds an observer of a kind in its place.
+    /// Builds an observer of a kind in its final place.
     fn new_in<const P: usize>(blob: &Blob<'static>, place: &mut MaybeUninit<Self>) -> Result<(), JointStatus> {
         const { assert!(size_of::<Observer<'static, f32, P>>() <= size_of::<Observer<'static, f32, MAPPED>>()) };
         const { assert!(align_of::<Observer<'static, f32, P>>() <= align_of::<Observer<'static, f32, MAPPED>>()) };
         let step = |observer: *mut (), samples: &Samples<f32>| {
-            // SAFETY: an observer of this kind is put beside this function.
+            // SAFETY: this function is stored beside an observer of this kind only.
             unsafe { &mut *observer.cast::<Observer<'static, f32, P>>() }.step(samples);
         };
         let tables = blob.observer()?;
         let any = place.as_mut_ptr();
         // SAFETY: inside of the place.
         let room = unsafe { &raw mut (*any).observer }.cast::<MaybeUninit<Observer<'static, f32, P>>>();
-        // SAFETY: large enough and aligned, as was asserted; it may hold any bits.
+        // SAFETY: large enough and aligned, as asserted; uninitialised storage may hold any bits.
         let observer = Observer::new_in(unsafe { &mut *room }, tables);
         let estimates = ptr::from_ref(observer.estimates()).addr() - room.addr();
-        // SAFETY: inside of the place; the observer is written already.
+        // SAFETY: inside of the place; the observer is already written.
         unsafe {
             (&raw mut (*any).step).write(step);
             (&raw mut (*any).estimates).write(estimates);
@@ -67,29 +67,29 @@ impl AnyObserver {
         Ok(())
     }
 
-    /// The estimates of the last step.
+    /// Estimates of the last step.
     #[inline(always)]
     pub(crate) fn estimates(&self) -> &Estimates<f32> {
-        // SAFETY: so far from its beginning they are in this observer.
+        // SAFETY: the estimates are at this offset in this observer.
         unsafe { &*self.observer.as_ptr().byte_add(self.estimates).cast() }
     }
 
     fn save(&self) -> Memory {
         let observer = self.observer.as_ptr();
-        // SAFETY: an observer of the kind that it says.
+        // SAFETY: `has_maps` tells the kind of the observer.
         unsafe { if self.has_maps { (*observer).save() } else { (*observer.cast::<Plain>()).save() } }
     }
 
     fn load(&mut self, memory: &[u8]) -> Result<(), JointStatus> {
         let observer = self.observer.as_mut_ptr();
-        // SAFETY: as above.
+        // SAFETY: `has_maps` tells the kind of the observer.
         let loaded =
             unsafe { if self.has_maps { (*observer).load(memory) } else { (*observer.cast::<Plain>()).load(memory) } };
         Ok(loaded?)
     }
 }
 
-/// An observer without maps.
+/// Observer without maps.
 type Plain = Observer<'static, f32, PLAIN>;
 
 /// Starts an observer, as joint_observer_start; `abi` is JOINT_ABI.
@@ -103,7 +103,7 @@ pub unsafe extern "C" fn joint_observer_start_checked(
     abi: u32,
 ) -> JointStatus {
     let storage = Storage { at: observer, bytes, abi };
-    // SAFETY: the caller's word, as the header asks for it.
+    // SAFETY: the caller's promise, as required by the header.
     fp_mode::standard(|| unsafe { start(storage, tables, tables_bytes, AnyObserver::new_in::<MAPPED>) }).into()
 }
 
@@ -118,11 +118,11 @@ pub unsafe extern "C" fn joint_observer_start_without_maps_checked(
     abi: u32,
 ) -> JointStatus {
     let storage = Storage { at: observer, bytes, abi };
-    // SAFETY: the caller's word, as the header asks for it.
+    // SAFETY: the caller's promise, as required by the header.
     fp_mode::standard(|| unsafe { start(storage, tables, tables_bytes, AnyObserver::new_in::<PLAIN>) }).into()
 }
 
-/// One control period: takes what was measured.
+/// One control period: processes the samples.
 #[unsafe(no_mangle)]
 #[must_use]
 pub unsafe extern "C" fn joint_observer_step(
@@ -130,9 +130,9 @@ pub unsafe extern "C" fn joint_observer_step(
     samples: *const JointSamples,
 ) -> JointStatus {
     fp_mode::standard(|| {
-        // SAFETY: the caller's word, as the header asks for it.
+        // SAFETY: the caller's promise, as required by the header.
         let object = unsafe { open::<AnyObserver>(observer) }?;
-        // SAFETY: likewise.
+        // SAFETY: as above.
         let samples = unsafe { read(samples) }?.samples()?;
         let any = &mut object.value;
         any.stepped = true;
@@ -143,7 +143,7 @@ pub unsafe extern "C" fn joint_observer_step(
     .into()
 }
 
-/// The estimates of the last period.
+/// Copies the estimates of the last period.
 #[unsafe(no_mangle)]
 #[must_use]
 pub unsafe extern "C" fn joint_observer_estimates(
@@ -151,17 +151,17 @@ pub unsafe extern "C" fn joint_observer_estimates(
     estimates: *mut JointEstimates,
 ) -> JointStatus {
     let give = || {
-        // SAFETY: the caller's word, as the header asks for it.
+        // SAFETY: the caller's promise, as required by the header.
         let object = unsafe { look::<AnyObserver>(observer) }?;
         usable(estimates)?;
-        // SAFETY: aligned, not NULL, and the caller's to give.
+        // SAFETY: aligned, not NULL, and valid for writes.
         unsafe { estimates.write(JointEstimates::new(object.value.estimates())) };
         Ok(())
     };
     JointStatus::from(give())
 }
 
-/// Saves what was learnt, outside of the control period. `bytes` is JOINT_MEMORY_BYTES.
+/// Saves the estimated parameters, outside of the control period. `bytes` is JOINT_MEMORY_BYTES.
 #[unsafe(no_mangle)]
 #[must_use]
 pub unsafe extern "C" fn joint_observer_save(
@@ -170,20 +170,20 @@ pub unsafe extern "C" fn joint_observer_save(
     bytes: usize,
 ) -> JointStatus {
     fp_mode::standard(|| {
-        // SAFETY: the caller's word, as the header asks for it.
+        // SAFETY: the caller's promise, as required by the header.
         let object = unsafe { look::<AnyObserver>(observer) }?;
         usable(memory)?;
         if bytes != JOINT_MEMORY_BYTES {
             return Err(JointStatus::WrongSize);
         }
-        // SAFETY: not NULL, of this size, and the caller's to give.
+        // SAFETY: not NULL, of this size, and valid for writes.
         unsafe { memory.cast::<Memory>().write(object.value.save()) };
         Ok(())
     })
     .into()
 }
 
-/// Goes on from what was saved, outside of the control period, before the first step. `bytes` is JOINT_MEMORY_BYTES.
+/// Loads saved parameters, outside of the control period and before the first step. `bytes` is JOINT_MEMORY_BYTES.
 #[unsafe(no_mangle)]
 #[must_use]
 pub unsafe extern "C" fn joint_observer_load(
@@ -192,7 +192,7 @@ pub unsafe extern "C" fn joint_observer_load(
     bytes: usize,
 ) -> JointStatus {
     fp_mode::standard(|| {
-        // SAFETY: the caller's word, as the header asks for it.
+        // SAFETY: the caller's promise, as required by the header.
         let object = unsafe { open::<AnyObserver>(observer) }?;
         usable(memory)?;
         if bytes != JOINT_MEMORY_BYTES {
@@ -201,7 +201,7 @@ pub unsafe extern "C" fn joint_observer_load(
         if object.value.stepped {
             return Err(JointStatus::AlreadyStepped);
         }
-        // SAFETY: not NULL, of this size, and not the object's own.
+        // SAFETY: not NULL, of this size, and disjoint from the object.
         let memory = unsafe { core::slice::from_raw_parts(memory, bytes) };
         object.value.load(memory)
     })

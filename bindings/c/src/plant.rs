@@ -1,5 +1,4 @@
-//! The plant: the gears with motor, current loop, frictions, weight and encoders around them, for a controller to be tried
-//! on.
+//! Plant: the gears with motor, current loop, frictions, weight and encoders, for testing a controller.
 
 use core::mem::MaybeUninit;
 
@@ -14,7 +13,7 @@ use crate::status::JointStatus;
 
 /// 64-bit words of a plant.
 pub const JOINT_PLANT_WORDS: usize = 80;
-/// Most planets of a plant.
+/// Maximum number of planets of a plant.
 pub const JOINT_MOST_PLANETS: usize = 5;
 const _: () = assert!(JOINT_MOST_PLANETS == MOST_PLANETS);
 
@@ -29,19 +28,19 @@ impl Kind for Plant<'static> {
     const MARK: u32 = 0x9191_9191;
 }
 
-/// The motion of a plant, which no sensor sees: for judging what a controller makes of it.
+/// True motion of a plant, which no sensor measures: for evaluating a controller.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct JointPlantOutputs {
     /// Whole turns of the rigid-body carrier angle.
     pub carrier_turns: i32,
-    /// The rest of it, in 2^-32 turns.
+    /// Fraction of the turn of that angle, in 2^-32 turns.
     pub carrier_fraction: u32,
-    /// Rate of that angle.
+    /// Rate of the rigid-body carrier angle.
     pub carrier_speed_rad_per_s: f32,
-    /// Motor angle less ratio times that angle.
+    /// Motor angle less ratio times the rigid-body carrier angle.
     pub motor_offset_rad: f32,
-    /// Link angle less that angle.
+    /// Link angle less the rigid-body carrier angle.
     pub link_offset_rad: f32,
     /// Gap coordinate along the line of action.
     pub gap_m: f32,
@@ -51,17 +50,17 @@ pub struct JointPlantOutputs {
     pub air_gap_torque_Nm: f32,
     /// Torque on the sun, friction and cogging included.
     pub drive_torque_Nm: f32,
-    /// What brakes the link: friction, weight, disturbance.
+    /// Torque that brakes the link: friction, weight, disturbance.
     pub load_torque_Nm: f32,
-    /// Planets; what follows has so many entries in use.
+    /// Number of planets; the arrays below have this many entries in use.
     pub planets: u32,
     /// Deflections of the sun's meshes, planet by planet.
     pub sun_deflections_m: [f32; JOINT_MOST_PLANETS],
-    /// Deflections of the ring's.
+    /// Deflections of the ring's meshes, planet by planet.
     pub ring_deflections_m: [f32; JOINT_MOST_PLANETS],
     /// Contacts of the sun's meshes.
     pub sun_contacts: [JointContact; JOINT_MOST_PLANETS],
-    /// Contacts of the ring's.
+    /// Contacts of the ring's meshes.
     pub ring_contacts: [JointContact; JOINT_MOST_PLANETS],
 }
 
@@ -98,11 +97,11 @@ pub unsafe extern "C" fn joint_plant_start_checked(
 ) -> JointStatus {
     let storage = Storage { at: plant, bytes, abi };
     let make = |blob: &Blob<'static>, place: &mut MaybeUninit<Plant<'static>>| Ok(Plant::new_in(place, blob)?);
-    // SAFETY: the caller's word, as the header asks for it.
+    // SAFETY: the caller's promise, as required by the header.
     fp_mode::standard(|| unsafe { start(storage, tables, tables_bytes, make) }).into()
 }
 
-/// Moves on by one control period under a torque command for the motor and a torque that brakes the link.
+/// Advances by one control period under a torque command for the motor and a torque that brakes the link.
 #[unsafe(no_mangle)]
 #[must_use]
 pub unsafe extern "C" fn joint_plant_step(
@@ -111,7 +110,7 @@ pub unsafe extern "C" fn joint_plant_step(
     load_torque_Nm: f32,
 ) -> JointStatus {
     fp_mode::standard(|| {
-        // SAFETY: the caller's word, as the header asks for it.
+        // SAFETY: the caller's promise, as required by the header.
         let object = unsafe { open::<Plant<'static>>(plant) }?;
         if !(motor_torque_Nm.is_finite() && load_torque_Nm.is_finite()) {
             return Err(JointStatus::NotFinite);
@@ -122,48 +121,48 @@ pub unsafe extern "C" fn joint_plant_step(
     .into()
 }
 
-/// What the encoders read now, and the torque that was commanded last.
+/// Present encoder readings, and the torque that was commanded last.
 #[unsafe(no_mangle)]
 #[must_use]
 pub unsafe extern "C" fn joint_plant_samples(plant: *const JointPlant, samples: *mut JointSamples) -> JointStatus {
     fp_mode::standard(|| {
-        // SAFETY: the caller's word, as the header asks for it.
+        // SAFETY: the caller's promise, as required by the header.
         let object = unsafe { look::<Plant<'static>>(plant) }?;
         usable(samples)?;
         let found = object.value.samples();
-        // SAFETY: aligned, not NULL, and the caller's to give.
+        // SAFETY: aligned, not NULL, and valid for writes.
         unsafe { samples.write(JointSamples::new(&found)) };
         Ok(())
     })
     .into()
 }
 
-/// The motion now.
+/// Present motion.
 #[unsafe(no_mangle)]
 #[must_use]
 pub unsafe extern "C" fn joint_plant_outputs(plant: *const JointPlant, motion: *mut JointPlantOutputs) -> JointStatus {
     fp_mode::standard(|| {
-        // SAFETY: the caller's word, as the header asks for it.
+        // SAFETY: the caller's promise, as required by the header.
         let object = unsafe { look::<Plant<'static>>(plant) }?;
         usable(motion)?;
         let found = outputs(&object.value.motion());
-        // SAFETY: aligned, not NULL, and the caller's to give.
+        // SAFETY: aligned, not NULL, and valid for writes.
         unsafe { motion.write(found) };
         Ok(())
     })
     .into()
 }
 
-/// Digest of every bit of the gears' state: two runs of which it is the same have gone the same way so far.
+/// Digest of every bit of the gears' state; equal digests mean equal runs so far.
 #[unsafe(no_mangle)]
 #[must_use]
 pub unsafe extern "C" fn joint_plant_digest(plant: *const JointPlant, digest: *mut u64) -> JointStatus {
     fp_mode::standard(|| {
-        // SAFETY: the caller's word, as the header asks for it.
+        // SAFETY: the caller's promise, as required by the header.
         let object = unsafe { look::<Plant<'static>>(plant) }?;
         usable(digest)?;
         let found = object.value.digest();
-        // SAFETY: aligned, not NULL, and the caller's to give.
+        // SAFETY: aligned, not NULL, and valid for writes.
         unsafe { digest.write(found) };
         Ok(())
     })

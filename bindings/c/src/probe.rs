@@ -1,4 +1,5 @@
-//! The width probe: a motor that wiggles against a held load and reads the half-backlash off where it comes to rest.
+//! Width probe: moves the motor gently to and fro under a held link, and measures the half-backlash from its rest
+//! positions.
 
 use core::mem::MaybeUninit;
 
@@ -21,7 +22,7 @@ pub struct JointProbe {
     storage: [u64; JOINT_PROBE_WORDS],
 }
 
-/// A probe, and for how many periods it waits until the observer has settled.
+/// Probe with the number of periods that it waits for the observer to settle.
 struct Waiting {
     probe: Probe<'static, f32>,
     wait: u32,
@@ -32,35 +33,35 @@ impl Kind for Waiting {
     const MARK: u32 = 0x9e9e_9e9e;
 }
 
-/// Where a probe stands.
+/// Progress of a probe.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum JointProgress {
     /// Go on: command the torque, and call again in the next period.
     Running = 0,
-    /// The half-backlash is there.
+    /// The half-backlash is valid.
     Done = 1,
     /// The motor was turning when the probe began: let it come to rest.
     NotAtRest = 2,
-    /// The load pushes the teeth with more than the probe may use: take the load off.
+    /// The load presses the teeth with more torque than the probe may use: remove the load.
     Loaded = 3,
-    /// The motor did not come to rest, or went further than the teeth allow: hold the load.
+    /// The motor did not come to rest, or moved further than the teeth allow: hold the load.
     NotHeld = 4,
-    /// The motor hardly moved: friction is more than the probe may use, or the joint is blocked.
+    /// The motor hardly moved: friction exceeds the probe's torque, or the joint is blocked.
     Stuck = 5,
-    /// The first and the last pass do not agree: something moved.
+    /// The first and the last pass differ: something moved.
     Unsteady = 6,
     /// Samples were missing or wrong, or torque or motor encoder has the wrong sign.
     BadSamples = 7,
 }
 
-/// What a probe answers.
+/// Output of a probe.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct JointProbed {
     /// Torque to command next at the motor's shaft; zero once the probe has ended.
     pub motor_torque_Nm: f32,
-    /// Where it stands.
+    /// Progress.
     pub progress: JointProgress,
     /// Half-backlash of each mesh; valid when done.
     pub half_backlash_m: JointEstimate,
@@ -79,15 +80,15 @@ pub unsafe extern "C" fn joint_probe_start_checked(
     let storage = Storage { at: probe, bytes, abi };
     let make = |blob: &Blob<'static>, place: &mut MaybeUninit<_>| {
         let table = blob.probe()?;
-        // The core's controller begins in a period of its own.
+        // The core's controller spends one period on its start.
         place.write(Waiting { probe: Probe::new(table), wait: table.settle.saturating_add(1) });
         Ok(())
     };
-    // SAFETY: the caller's word, as the header asks for it.
+    // SAFETY: the caller's promise, as required by the header.
     fp_mode::standard(|| unsafe { start(storage, tables, tables_bytes, make) }).into()
 }
 
-/// One control period of a probe, after the observer's step and in place of the compensation's.
+/// One control period of a probe, after the observer's step and instead of the compensation's.
 #[unsafe(no_mangle)]
 #[must_use]
 pub unsafe extern "C" fn joint_probe_step(
@@ -96,9 +97,9 @@ pub unsafe extern "C" fn joint_probe_step(
     probed: *mut JointProbed,
 ) -> JointStatus {
     fp_mode::standard(|| {
-        // SAFETY: the caller's word, as the header asks for it.
+        // SAFETY: the caller's promise, as required by the header.
         let object = unsafe { open::<Waiting>(probe) }?;
-        // SAFETY: likewise; the marks of both say that they are two.
+        // SAFETY: as above; different marks show that the objects are distinct.
         let seen = unsafe { look::<AnyObserver>(observer) }?;
         if !object.has_tables_of(seen) {
             return Err(JointStatus::OtherTables);
@@ -127,7 +128,7 @@ pub unsafe extern "C" fn joint_probe_step(
                 (why, none)
             }
         };
-        // SAFETY: aligned, not NULL, and the caller's to give.
+        // SAFETY: aligned, not NULL, and valid for writes.
         unsafe { probed.write(JointProbed { motor_torque_Nm, progress, half_backlash_m }) };
         Ok(())
     })

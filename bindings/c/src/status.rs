@@ -1,11 +1,11 @@
-//! What a function says of its call: a number with a name and a text.
+//! Status of a call: a number with a name and a text.
 
 use core::ffi::c_char;
 
 use model_core::observer::MemoryError;
 use table_blob::BlobError;
 
-/// What every function returns. Whatever it is, unless it is `JOINT_STATUS_OK` nothing was changed.
+/// Result of every function. Unless it is `JOINT_STATUS_OK`, nothing was changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum JointStatus {
@@ -13,29 +13,29 @@ pub enum JointStatus {
     Ok = 0,
     /// A pointer is NULL.
     NullPointer = 1,
-    /// A pointer is not aligned for what it points to.
+    /// A pointer is not aligned for its type.
     Misaligned = 2,
-    /// A size is not the one that the header states.
+    /// A size differs from the one that the header states.
     WrongSize = 3,
     /// The object was not started, was moved, or is of another kind.
     NotStarted = 4,
     /// A number is infinite or not a number.
     NotFinite = 5,
-    /// These are no tables.
+    /// The data are no tables.
     NotTables = 6,
-    /// The tables are of another version than this library.
+    /// The tables have another version than this library.
     WrongTablesVersion = 7,
-    /// The digest of the tables does not fit: some of them was lost.
+    /// The digest of the tables does not match: they are damaged.
     DamagedTables = 8,
-    /// These tables were made without this part.
+    /// The tables were made without this part.
     MissingTables = 9,
     /// Two objects were started from different tables.
     OtherTables = 10,
-    /// These bytes are no memory of an observer.
+    /// The data are no memory of an observer.
     NotAMemory = 11,
-    /// The memory is of another version of the observer.
+    /// The memory has another version of the observer.
     WrongMemoryVersion = 12,
-    /// The digest of the memory does not fit: some of it was lost.
+    /// The digest of the memory does not match: it is damaged.
     DamagedMemory = 13,
     /// The memory belongs to another joint or to other encoders.
     OtherJoint = 14,

@@ -1,4 +1,4 @@
-//! What tables say of themselves.
+//! Properties of tables.
 
 use core::ffi::c_char;
 
@@ -7,33 +7,33 @@ use crate::object::{blob, usable};
 use crate::status::JointStatus;
 use crate::version::has_abi;
 
-/// Bytes of a joint's name, with the zero at its end.
+/// Bytes of a joint's name, including the terminating zero.
 pub const JOINT_NAME_BYTES: usize = 32;
-/// Version of tables that this library reads.
+/// Version of the tables that this library reads.
 pub const JOINT_TABLES_VERSION: u32 = 5;
 const _: () = assert!(JOINT_NAME_BYTES == table_blob::NAME_BYTES && JOINT_TABLES_VERSION == table_blob::VERSION);
 
-/// What tables were made for.
+/// Properties that tables were made for.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct JointTablesFacts {
-    /// Digest over the tables: objects started from tables of one digest belong together.
+    /// Digest of the tables: objects started from tables with one digest belong together.
     pub digest: u64,
     /// Version of the layout.
     pub version: u32,
-    /// Control periods in a second: call the step functions so often.
+    /// Control rate: the step functions are called at this rate.
     pub control_rate_Hz: u32,
-    /// Ticks in a second of the clock that samples are timed by.
+    /// Tick rate of the samples' clock.
     pub clock_rate_Hz: u32,
-    /// A control period.
+    /// Control period.
     pub period_s: f32,
     /// Bandwidth that the compensation was designed for.
     pub bandwidth_rad_per_s: f32,
-    /// How far ahead of now the second motion of joint_compensation_follow is.
+    /// Time from `now` to `ahead` in joint_compensation_follow.
     pub lead_s: f32,
-    /// Motor turns for a turn of the link.
+    /// Motor turns per turn of the link.
     pub ratio: f32,
-    /// Largest torque that the compensation asks the motor for.
+    /// Limit of the compensation's torque command.
     pub torque_limit_Nm: f32,
     /// Planets of the plant; 1 for an equivalent gear, 0 if the tables hold no plant.
     pub planets: u32,
@@ -41,11 +41,11 @@ pub struct JointTablesFacts {
     pub has_output_encoder: u32,
     /// 1 if the tables hold a width probe, else 0.
     pub has_probe: u32,
-    /// Of the joint; ends with a zero.
+    /// Name of the joint, terminated by zero.
     pub name: [c_char; JOINT_NAME_BYTES],
 }
 
-/// Looks at tables, as joint_tables_facts; `abi` is JOINT_ABI.
+/// Reads the properties of tables, as joint_tables_facts; `abi` is JOINT_ABI.
 #[unsafe(no_mangle)]
 #[must_use]
 pub unsafe extern "C" fn joint_tables_facts_checked(
@@ -56,7 +56,7 @@ pub unsafe extern "C" fn joint_tables_facts_checked(
 ) -> JointStatus {
     fp_mode::standard(|| {
         has_abi(abi)?;
-        // SAFETY: the caller's word, as the header asks for it.
+        // SAFETY: the caller's promise, as required by the header.
         let blob = unsafe { blob(tables, tables_bytes) }?;
         let (header, observer, compensation) = (blob.header(), blob.observer()?, blob.compensation()?);
         if facts.is_null() {
@@ -78,7 +78,7 @@ pub unsafe extern "C" fn joint_tables_facts_checked(
             has_probe: blob.probe().is_ok().into(),
             name: header.name.map(|byte| byte as c_char),
         };
-        // SAFETY: aligned, not NULL, and the caller's to give.
+        // SAFETY: aligned, not NULL, and valid for writes.
         unsafe { facts.write(found) };
         Ok(())
     })

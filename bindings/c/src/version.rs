@@ -8,8 +8,8 @@ pub const JOINT_VERSION_MAJOR: u32 = 0;
 pub const JOINT_VERSION_MINOR: u32 = 1;
 /// Version of this header: patch.
 pub const JOINT_VERSION_PATCH: u32 = 0;
-/// Version of what crosses the boundary between caller and library. It grows when a struct, an enumeration or the meaning of a
-/// field changes; sizes are checked beside it.
+/// Version of the interface between caller and library. It grows when a struct, an enumeration or the meaning of a
+/// field changes; sizes are checked in addition.
 pub const JOINT_ABI_VERSION: u32 = 1;
 
 /// Folds the size of a type into `JOINT_ABI`.
@@ -25,7 +25,7 @@ macro_rules! abi {
     }};
 }
 
-/// `JOINT_ABI` of this library: version and sizes of all structs of the header, in the order of the header's own sum.
+/// `JOINT_ABI` of this library: version and sizes of all structs of the header, in the order of the header's sum.
 const ABI: u32 = abi!(
     JointTablesFacts,
     JointReading,
@@ -47,7 +47,7 @@ const ABI: u32 = abi!(
     JointWiring,
 );
 
-/// Refuses a caller whose header is of another version.
+/// Rejects a caller whose header has another version.
 pub(crate) fn has_abi(abi: u32) -> Result<(), JointStatus> {
     if abi == ABI { Ok(()) } else { Err(JointStatus::OtherHeader) }
 }

@@ -1,5 +1,5 @@
-//! The wiring check: whether signs, counts, ratio, torque, rate and clock are those of the tables, by a motor that is moved
-//! gently, or by any motion that is given to it.
+//! Wiring check: compares signs, counts, ratio, torque, rate and clock with the tables, on a gently moved motor or on
+//! any given motion.
 
 use core::mem::MaybeUninit;
 
@@ -27,7 +27,7 @@ pub struct JointWiring {
     storage: [u64; JOINT_WIRING_WORDS],
 }
 
-/// A check.
+/// Wiring check of the core.
 struct Check(WiringCheck<'static, f32>);
 
 impl Kind for Check {
@@ -35,31 +35,31 @@ impl Kind for Check {
     const MARK: u32 = 0x3b3b_3b3b;
 }
 
-/// An item of the wiring: its place in `verdicts`, with what `found` means.
+/// Item of the wiring: its index in `verdicts`, and the meaning of `found`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum JointWiringItem {
-    /// Each control period gives its samples once. Found: calls for each sample.
+    /// Samples are given once per control period. Found: calls per sample.
     Calls = 0,
-    /// The control rate is that of the tables. Found: control period over that of the tables.
+    /// Control rate of the tables. Found: control period over the tables'.
     Period = 1,
-    /// The clock has the tick rate of the tables. Found: tick rate over that of the tables.
+    /// Tick rate of the clock. Found: tick rate over the tables'.
     Clock = 2,
-    /// The motor's readings carry times of the samples' clock. Found: 0.
+    /// Times of the motor's readings are of the samples' clock. Found: 0.
     MotorTime = 3,
-    /// The motor did move. Found: torque that is expected to move it, in N m.
+    /// The motor moved. Found: torque that is expected to move it, in N m.
     Motion = 4,
-    /// Counts in a turn of the motor encoder. Found: their number; 0 for counts that stand still.
+    /// Counts per turn of the motor encoder. Found: their number; 0 for counts that stand still.
     MotorCounts = 5,
-    /// Counts in a turn of the output encoder. Found: their number; 0 for counts that stand still.
+    /// Counts per turn of the output encoder. Found: their number; 0 for counts that stand still.
     OutputCounts = 6,
-    /// Each encoder is read as itself; else both are exchanged. Found: 0.
+    /// The encoders are not exchanged. Found: 0.
     Places = 7,
-    /// Gear ratio. Found: motor turns in an output turn.
+    /// Gear ratio. Found: motor turns per output turn.
     Ratio = 8,
     /// The motor encoder counts up in the direction of a positive torque. Found: -1.
     MotorDirection = 9,
-    /// The output encoder counts up where the motor encoder does. Found: -1.
+    /// The output encoder counts up when the motor encoder does. Found: -1.
     OutputDirection = 10,
     /// A positive torque drives in the direction in which both encoders count up. Found: -1.
     TorqueDirection = 11,
@@ -73,11 +73,12 @@ pub enum JointWiringItem {
 pub enum JointVerdict {
     /// The samples do not show it.
     NotSeen = 0,
-    /// As in the tables.
+    /// Equal to the tables.
     Right = 1,
-    /// Not as in the tables; `found` is what was found instead.
+    /// Different from the tables; `found` is the measured value.
     Wrong = 2,
-    /// This item or another suspect is wrong, and the samples do not tell which; `found` is what it would be.
+    /// This item or another suspect is wrong, and the samples do not tell which; `found` is the value if it is this
+    /// one.
     Suspect = 3,
 }
 
@@ -91,9 +92,9 @@ pub enum JointWiringProgress {
     Done = 1,
     /// The joint moved before any torque was given: let it come to rest.
     NotAtRest = 2,
-    /// The joint moved further than the check may: look for what else drives it. The verdicts hold as far as they go.
+    /// The joint moved further than allowed: look for another drive. The verdicts hold as far as they go.
     TooFar = 3,
-    /// The check took too long: look at the times of the samples. The verdicts hold as far as they go.
+    /// The check took too long: check the times of the samples. The verdicts hold as far as they go.
     TooLong = 4,
 }
 
@@ -107,17 +108,17 @@ pub struct JointWiringStep {
     pub progress: JointWiringProgress,
 }
 
-/// Verdicts on all items, each at the place of its JointWiringItem.
+/// Verdicts on all items, indexed by JointWiringItem.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct JointWiringVerdicts {
-    /// 1 if every item that these tables let be judged was seen and is right, else 0.
+    /// 1 if every item that these tables allow to be judged was seen and is right, else 0.
     pub all_right: u32,
-    /// Items that are wrong or suspect.
+    /// Number of items that are wrong or suspect.
     pub bad: u32,
     /// Verdicts.
     pub verdicts: [JointVerdict; JOINT_WIRING_ITEMS],
-    /// What was found, where a verdict is wrong or suspect; else 0.
+    /// Measured values for wrong and suspect items; else 0.
     pub found: [f32; JOINT_WIRING_ITEMS],
 }
 
@@ -157,12 +158,12 @@ pub unsafe extern "C" fn joint_wiring_start_checked(
         place.write(Check(WiringCheck::new(blob.wiring()?)));
         Ok(())
     };
-    // SAFETY: the caller's word, as the header asks for it.
+    // SAFETY: the caller's promise, as required by the header.
     fp_mode::standard(|| unsafe { start(storage, tables, tables_bytes, make) }).into()
 }
 
-/// One control period of a wiring check, in place of the observer's and the compensation's steps. With an allowed torque of
-/// zero, or with another torque than the answer's in force, it judges whatever motion the samples show.
+/// One control period of a wiring check, instead of the observer's and the compensation's steps. With an allowed torque
+/// of zero, or with another torque in force than the commanded one, any motion in the samples is judged.
 #[unsafe(no_mangle)]
 #[must_use]
 pub unsafe extern "C" fn joint_wiring_step(
@@ -172,9 +173,9 @@ pub unsafe extern "C" fn joint_wiring_step(
     step: *mut JointWiringStep,
 ) -> JointStatus {
     fp_mode::standard(|| {
-        // SAFETY: the caller's word, as the header asks for it.
+        // SAFETY: the caller's promise, as required by the header.
         let object = unsafe { open::<Check>(wiring) }?;
-        // SAFETY: likewise.
+        // SAFETY: as above.
         let samples = unsafe { read(samples) }?.samples()?;
         usable(step)?;
         if !allowed_torque_Nm.is_finite() {
@@ -188,14 +189,14 @@ pub unsafe extern "C" fn joint_wiring_step(
             WiringProgress::Refused(WiringRefusal::TooFar) => JointWiringProgress::TooFar,
             WiringProgress::Refused(WiringRefusal::TooLong) => JointWiringProgress::TooLong,
         };
-        // SAFETY: aligned, not NULL, and the caller's to give.
+        // SAFETY: aligned, not NULL, and valid for writes.
         unsafe { step.write(JointWiringStep { motor_torque_Nm, progress }) };
         Ok(())
     })
     .into()
 }
 
-/// The verdicts on what a check has seen so far, outside of the control period.
+/// Copies the verdicts on the motion so far, outside of the control period.
 #[unsafe(no_mangle)]
 #[must_use]
 pub unsafe extern "C" fn joint_wiring_verdicts(
@@ -203,18 +204,18 @@ pub unsafe extern "C" fn joint_wiring_verdicts(
     verdicts: *mut JointWiringVerdicts,
 ) -> JointStatus {
     fp_mode::standard(|| {
-        // SAFETY: the caller's word, as the header asks for it.
+        // SAFETY: the caller's promise, as required by the header.
         let object = unsafe { look::<Check>(wiring) }?;
         usable(verdicts)?;
         let found = JointWiringVerdicts::from(&object.value.0.wiring());
-        // SAFETY: aligned, not NULL, and the caller's to give.
+        // SAFETY: aligned, not NULL, and valid for writes.
         unsafe { verdicts.write(found) };
         Ok(())
     })
     .into()
 }
 
-/// Names and helps by number: C texts of those of the core, which a test compares.
+/// Names and helps by number, equal to the core's (compared by a test).
 const TEXTS: [[&CStr; 2]; JOINT_WIRING_ITEMS] = [
     [c"calls", c"samples come more than once: call the step once a control period"],
     [c"period", c"the control rate is not that of the tables: call at control_rate_Hz, or make tables for this rate"],
@@ -249,13 +250,13 @@ fn text(item: u32, which: usize) -> *const c_char {
     if which == 0 { name.as_ptr() } else { help.as_ptr() }
 }
 
-/// The name of an item of the wiring, such as "output_direction"; never NULL.
+/// Name of an item of the wiring, such as "output_direction"; never NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn joint_wiring_item_name(item: u32) -> *const c_char {
     text(item, 0)
 }
 
-/// What is wrong with an item of the wiring, and what to do about it, in one sentence; never NULL.
+/// Error and remedy for an item of the wiring, in one sentence; never NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn joint_wiring_item_text(item: u32) -> *const c_char {
     text(item, 1)

@@ -1,4 +1,5 @@
-//! The header is what the sources say, and clean in every C and C++ that firmware is written in.
+//! The committed header equals the one generated from the sources, and compiles without warnings in every C and C++
+//! used for firmware.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,16 +7,16 @@ use std::process::Command;
 
 use cbindgen::{Builder, Config, Language, Style};
 
-/// Set to write the header anew.
+/// Environment variable that makes the test write the header.
 const WRITE: &str = "UPDATE_HEADER";
-/// In the order in which a reader wants them.
+/// Sources in the order of the header's sections.
 const SOURCES: [&str; 9] =
     ["version", "status", "tables", "estimates", "wiring", "observer", "compensation", "probe", "plant"];
-/// What is asked of the header.
+/// Flags under which the header must compile.
 const FLAGS: [&str; 6] = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-fsyntax-only"];
 const C: [&str; 3] = ["c99", "c11", "c17"];
 const CPP: [&str; 3] = ["c++14", "c++17", "c++20"];
-/// Whose storage the caller owns.
+/// Objects in the caller's storage.
 const OBJECTS: [&str; 5] = ["Observer", "Compensation", "Probe", "Plant", "Wiring"];
 
 fn package() -> PathBuf {
@@ -24,7 +25,7 @@ fn package() -> PathBuf {
 
 const HEAD: &str = include_str!("head.h");
 
-/// Size and alignment of the objects, asserted where the header is read.
+/// Assertions of size and alignment of the objects, evaluated where the header is included.
 fn tail() -> String {
     let align =
         |name: &&str| format!("JOINT_ASSERT(alignof(Joint{name}) == 8, joint_{}_alignment);\n", name.to_lowercase());
@@ -60,7 +61,7 @@ fn tail() -> String {
     )
 }
 
-/// A status that nobody looks at is a fault that nobody hears of.
+/// Attribute for functions whose status must not be ignored.
 const MUST_USE: &str = "#if defined(__cplusplus) && __cplusplus >= 201703L
 #define JOINT_MUST_USE [[nodiscard]]
 #elif defined(__GNUC__)
@@ -69,7 +70,7 @@ const MUST_USE: &str = "#if defined(__cplusplus) && __cplusplus >= 201703L
 #define JOINT_MUST_USE
 #endif";
 
-/// Structs of the header, in the order of the library's own sum.
+/// Structs of the header, in the order of the library's sum.
 const CROSSING: [&str; 18] = [
     "TablesFacts",
     "Reading",
@@ -91,7 +92,7 @@ const CROSSING: [&str; 18] = [
     "Wiring",
 ];
 
-/// The sum over the version and the sizes of all structs, as the caller's compiler has them.
+/// Definition of the sum over the version and the sizes of all structs, evaluated by the caller's compiler.
 fn abi() -> String {
     let folded = CROSSING
         .iter()
@@ -103,7 +104,7 @@ fn abi() -> String {
     )
 }
 
-/// Functions that a caller uses, with what the header knows added to the arguments.
+/// Inline functions for callers, which add the header's constants to the arguments.
 fn starts() -> String {
     const STARTS: [(&str, &str, &str); 6] = [
         (
@@ -199,7 +200,7 @@ fn the_header_is_what_the_sources_say() {
 fn the_header_is_clean_in_every_c_and_c_plus_plus() {
     let folder = tempfile::tempdir().expect("a folder");
     let source = folder.path().join("only_the_header.c");
-    // Twice: the guard works.
+    // Included twice to test the guard.
     fs::write(
         &source,
         "#include <lostmotion/joint.h>\n#include <lostmotion/joint.h>\nint main(void) { return joint_status_name(0) == 0; }\n",
@@ -217,7 +218,7 @@ fn the_header_is_clean_in_every_c_and_c_plus_plus() {
     assert!(compiled >= 3, "no C compiler is here");
 }
 
-/// Whether there is such a compiler, which must then have nothing to say.
+/// Returns whether the compiler exists; fails if it reports anything.
 fn is_clean(compiler: &str, language: &str, standard: &str, source: &Path) -> bool {
     let mut command = Command::new(compiler);
     command.args(FLAGS).arg(format!("-std={standard}")).args(["-x", language, "-I"]).arg(package().join("include"));

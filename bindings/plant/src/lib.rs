@@ -1,6 +1,6 @@
 #![no_std]
-//! A plant of any number of planets behind one type. It is a crate of its own because it is compiled for speed, as it is in
-//! the firmware's images, while `bindings/c` around it is compiled for size: nothing in here is generic for a caller.
+//! Plant of any number of planets behind one type. It is a separate crate because it is compiled for speed, as in the
+//! firmware's images, while `bindings/c` is compiled for size: nothing in here is generic for a caller.
 
 use core::mem::MaybeUninit;
 
@@ -10,10 +10,10 @@ use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 use parameters::ContactState;
 use table_blob::{Blob, BlobError, Gears};
 
-/// Most planets.
+/// Maximum number of planets.
 pub const MOST_PLANETS: usize = 5;
 
-/// A joint by its number of planets.
+/// Plant of a joint with any supported number of planets.
 #[derive(Debug)]
 pub struct Plant<'t>(Joint<'t>);
 
@@ -25,28 +25,28 @@ enum Joint<'t> {
     Five(VirtualJoint<'t, f32, 5>),
 }
 
-/// The motion now, in SI; entries beyond the planets are zero.
+/// Present motion, in SI; entries beyond the number of planets are zero.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Motion {
-    /// Whole turns of the rigid-body carrier angle, and the rest in 2^-32 turns.
+    /// Rigid-body carrier angle: whole turns, and the rest in 2^-32 turns.
     pub carrier: (i32, u32),
-    /// Its rate [rad/s].
+    /// Rate of the rigid-body carrier angle [rad/s].
     pub carrier_speed: f32,
-    /// Of motor and link beyond it [rad].
+    /// Offsets of motor and link from the rigid-body motion [rad].
     pub offsets: [f32; 2],
     /// Gap coordinate and wind-up [m].
     pub gap_and_wind_up: [f32; 2],
-    /// In the air gap, on the sun, on the link [N m].
+    /// Torques in the air gap, on the sun and on the link [N m].
     pub torques: [f32; 3],
-    /// Planets.
+    /// Number of planets.
     pub planets: u32,
-    /// Deflections, sun's meshes and ring's [m].
+    /// Deflections of the sun's and the ring's meshes [m].
     pub deflections: [[f32; MOST_PLANETS]; 2],
-    /// Contacts likewise.
+    /// Contacts of the sun's and the ring's meshes.
     pub contacts: [[ContactState; MOST_PLANETS]; 2],
 }
 
-/// Does the same with a joint of any number of planets.
+/// Evaluates an expression for a joint of any number of planets.
 macro_rules! each {
     ($plant:expr, $joint:ident => $work:expr) => {
         match $plant {
@@ -59,7 +59,7 @@ macro_rules! each {
 }
 
 impl<'t> Plant<'t> {
-    /// Builds a plant at rest in its place, which is not written to if the tables have no plant.
+    /// Builds a plant at rest in its final place; nothing is written if the tables have no plant.
     #[inline(never)]
     pub fn new_in(place: &mut MaybeUninit<Self>, blob: &Blob<'t>) -> Result<(), BlobError> {
         let (gears, around) = blob.plant()?;
@@ -72,7 +72,7 @@ impl<'t> Plant<'t> {
         Ok(())
     }
 
-    /// A function of its own for each number of planets: together, their joints would lie side by side on the stack.
+    /// Separate function for each number of planets: inlined, their joints would lie side by side on the stack.
     #[inline(never)]
     fn put<const N: usize>(
         place: &mut MaybeUninit<Self>,
@@ -83,13 +83,13 @@ impl<'t> Plant<'t> {
         place.write(Self(kind(VirtualJoint::new(gears, around))));
     }
 
-    /// Moves on by one control period under a torque command and a torque that brakes the link [N m].
+    /// Advances by one control period under a torque command and a torque that brakes the link [N m].
     #[inline(never)]
     pub fn advance(&mut self, command: f32, disturbance: f32) {
         each!(&mut self.0, joint => joint.advance(command, disturbance));
     }
 
-    /// Measurements now.
+    /// Present measurements.
     #[inline(never)]
     pub fn samples(&self) -> Samples<f32> {
         each!(&self.0, joint => joint.samples())
@@ -101,7 +101,7 @@ impl<'t> Plant<'t> {
         each!(&self.0, joint => joint.model().state_digest())
     }
 
-    /// The motion now.
+    /// Present motion.
     #[inline(never)]
     pub fn motion(&self) -> Motion {
         each!(&self.0, joint => motion(joint))

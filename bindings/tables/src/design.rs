@@ -12,18 +12,18 @@ use parameters::{JointParameters, ParameterError, Surroundings};
 use crate::fixed::Fixed;
 use crate::{HEADER_BYTES, Header, MARK, NAME_BYTES, PARTS, Part, VERSION, WORD, digest_of};
 
-/// What a blob is made for.
+/// Requirements of a blob.
 #[derive(Debug, Clone, Copy)]
 pub struct Wanted<'a> {
-    /// The joint and its surroundings, if a plant is wanted.
+    /// Joint and surroundings, if a plant is wanted.
     pub plant: Option<(&'a JointParameters, &'a Surroundings)>,
-    /// What the controller is told of it.
+    /// Joint as told to the controller.
     pub nominal: NominalPlant<'a>,
-    /// What a plant's sub-steps are chosen for.
+    /// Processor for which a plant's sub-steps are chosen.
     pub processor: Processor,
 }
 
-/// The blob, as little-endian words.
+/// Designs the blob, as little-endian words.
 ///
 /// ```
 /// use model_core::controller::design::{ControlRequest, NominalPlant};
@@ -62,7 +62,7 @@ pub fn design(wanted: &Wanted<'_>) -> Result<Vec<u64>, DesignError> {
     blob.add(5, &wiring);
     let control_rate = wanted.nominal.surroundings.control_rate;
     let mut name = [0; NAME_BYTES];
-    // The last byte stays zero: C reads a text up to it.
+    // The last byte stays zero, to terminate the C string.
     name.iter_mut().take(NAME_BYTES - 1).zip(wanted.nominal.joint.name.bytes()).for_each(|(place, byte)| *place = byte);
     let header = Header {
         mark: MARK,
@@ -117,7 +117,7 @@ impl Writer {
     }
 }
 
-/// The layout of every part, a line a field: what [`VERSION`] stands for.
+/// Layout of every part, one line per field; [`VERSION`] stands for it.
 #[cfg(test)]
 pub fn layout() -> Vec<String> {
     use model_core::compensation::CompensationTables;
@@ -139,7 +139,7 @@ pub fn layout() -> Vec<String> {
 mod tests {
     use model_core::numbers::digest;
 
-    /// Digest of the names, places and types of all fields in this version.
+    /// Digest of the names, offsets and types of all fields in this version.
     const OF_VERSION_5: u64 = 0xaa2a_37f1_ccf6_2b6d;
 
     #[test]

@@ -1,30 +1,31 @@
-//! Values whose bytes in memory are laid out as C does it, and can be written and checked field by field.
+//! Values with the memory layout of C, written and checked field by field.
 
 use model_core::gears::tables::{Block, DampingLaw, Scheme};
 
-/// A value of a fixed layout. Implemented here and by [`structs!`](crate::layout) alone: [`cast`] trusts it.
+/// Value of a fixed layout. Implemented only here and by [`structs!`](crate::layout): [`cast`] relies on it.
 pub trait Fixed {
-    /// Its bytes, at their place; what lies between fields is left as it is.
+    /// Writes the value's bytes; padding is left unchanged.
     #[cfg(feature = "design")]
     fn put(&self, place: &mut [u8]);
 
-    /// Whether bytes are a value. All of them are for numbers; truth values and variants are the reason to ask.
+    /// Returns whether bytes are a valid value. All bytes are valid numbers, but not all are valid booleans or
+    /// variants.
     fn is_one(bytes: &[u8]) -> bool;
 
-    /// A description of the layout: names, offsets, sizes.
+    /// Appends a description of the layout: names, offsets, types.
     #[cfg(test)]
     fn describe(name: &str, offset: usize, out: &mut Vec<String>);
 }
 
-/// A value where it lies, if these words are one.
+/// Value in place, if the words are a valid one.
 pub fn cast<T: Fixed>(words: &[u64]) -> Option<&T> {
     const { assert!(align_of::<T>() <= align_of::<u64>()) };
-    // SAFETY: the same memory for the same time, seen as bytes, of which all are initialised.
+    // SAFETY: the same memory and lifetime, seen as bytes, all of which are initialised.
     let bytes = unsafe { core::slice::from_raw_parts(words.as_ptr().cast::<u8>(), size_of_val(words)) };
     if bytes.len() != size_of::<T>().next_multiple_of(size_of::<u64>()) || !T::is_one(bytes) {
         return None;
     }
-    // SAFETY: as many bytes as the value has, aligned for it, and every field was found to be a value of its type.
+    // SAFETY: the size of the value, aligned for it, and every field was checked.
     Some(unsafe { &*words.as_ptr().cast::<T>() })
 }
 
@@ -108,7 +109,7 @@ impl<T: Fixed, const N: usize> Fixed for [T; N] {
     }
 }
 
-// Columns one after the other, as nalgebra stores them.
+// Columns in order, as nalgebra stores them.
 impl<const R: usize, const C: usize> Fixed for Block<f32, R, C> {
     #[cfg(feature = "design")]
     fn put(&self, place: &mut [u8]) {

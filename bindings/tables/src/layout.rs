@@ -1,21 +1,21 @@
-//! The structs of the tables, by their fields: a field that is missing here does not compile, nor does one too many.
+//! Structs of the tables, by their fields; a missing or an unknown field does not compile.
 
 use model_core::{compensation, gears, observer, virtual_joint, wiring};
 
 use crate::fixed::Fixed;
 
-/// The field's type, from a way to get at it.
+/// Checks a field whose type is inferred from an accessor.
 pub fn is_one<S, F: Fixed>(bytes: &[u8], offset: usize, _: impl Fn(&S) -> &F) -> bool {
     bytes.get(offset..).is_some_and(F::is_one)
 }
 
-/// The field's type likewise.
+/// Describes a field whose type is inferred from an accessor.
 #[cfg(test)]
 pub fn describe<S, F: Fixed>(name: &str, offset: usize, _: impl Fn(&S) -> &F, out: &mut Vec<String>) {
     F::describe(name, offset, out);
 }
 
-/// Gives structs, by their fields, a [`Fixed`] layout.
+/// Implements [`Fixed`] for structs, by their fields.
 macro_rules! structs {
     ($($kind:ty { $($field:ident),* })*) => {$(
         impl $crate::fixed::Fixed for $kind {

@@ -1,7 +1,7 @@
 #![cfg_attr(not(feature = "design"), no_std)]
-//! The tables of a joint as constant bytes, with version and digest: what `joint tables` writes for a C program, and what
-//! `bindings/c` reads where it lies. Tables are not copied: the bytes of a part are those of its struct in memory, which the
-//! language lays out as C does, little-endian, padding zero. The same bytes serve every processor of that kind.
+//! Tables of a joint as constant bytes, with version and digest: written by `joint tables` for a C program, and read in
+//! place by `bindings/c`. Tables are not copied: the bytes of a part are those of its struct in memory, laid out as in
+//! C, little-endian, padding zero. The same bytes serve every processor with this layout.
 //!
 //! Layout: a [`Header`], then the parts that it lists, each at a multiple of eight bytes.
 
@@ -24,48 +24,48 @@ use model_core::observer::{ObserverTables, ProbeTable};
 use model_core::virtual_joint::SurroundingsTable;
 use model_core::wiring::WiringTable;
 
-/// Version of the layout: the next one as soon as a struct of a table changes (the test `layout` tells).
+/// Version of the layout; it must grow with every change of a table's struct (the test `layout` checks).
 pub const VERSION: u32 = 5;
-/// How a blob begins.
+/// First bytes of a blob.
 const MARK: [u8; 8] = *b"JOINTTAB";
-/// Bytes of a joint's name, zeros after its end.
+/// Bytes of a joint's name, padded with zeros.
 pub const NAME_BYTES: usize = 32;
-/// Bytes of a word: what blob and parts are aligned to.
+/// Bytes of a word, the alignment of blob and parts.
 const WORD: usize = 8;
-/// Kinds of parts.
+/// Number of kinds of parts.
 const PARTS: usize = 6;
 
-/// Where a part is.
+/// Place of a part.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct Part {
-    /// From the beginning of the blob [B].
+    /// Offset from the beginning of the blob [B].
     pub offset: u32,
-    /// Zero where there is none [B].
+    /// Size; zero if the part is missing [B].
     pub bytes: u32,
 }
 
-/// What a blob begins with.
+/// Beginning of a blob.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Header {
-    /// `JOINTTAB`.
+    /// Mark `JOINTTAB`.
     mark: [u8; 8],
-    /// Of the layout.
+    /// Version of the layout.
     pub version: u32,
-    /// Of the whole blob.
+    /// Size of the whole blob [B].
     pub bytes: u32,
-    /// Over every other word of the blob.
+    /// Digest over every other word of the blob.
     pub digest: u64,
-    /// The joint.
+    /// Name of the joint.
     pub name: [u8; NAME_BYTES],
-    /// Control periods a second [Hz].
+    /// Control rate [Hz].
     pub control_rate: u32,
-    /// Ticks of the samples' clock in a second [Hz].
+    /// Tick rate of the samples' clock [Hz].
     pub clock_rate: u32,
     /// Bandwidth that the compensation is designed for [rad/s].
     pub bandwidth: f32,
-    /// Planets of the plant; zero without a plant.
+    /// Number of planets of the plant; zero without a plant.
     pub planets: u32,
     /// Gears, surroundings, observer, probe, compensation, wiring check.
     parts: [Part; PARTS],
@@ -79,46 +79,46 @@ structs! {
 /// Bytes before the parts.
 const HEADER_BYTES: usize = size_of::<Header>();
 const _: () = assert!(HEADER_BYTES.is_multiple_of(WORD) && align_of::<Header>() == WORD);
-/// The word that holds the digest.
+/// Index of the word that holds the digest.
 const DIGEST_AT: usize = offset_of!(Header, digest) / WORD;
 
-/// Why tables are not taken.
+/// Reason for which tables are rejected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BlobError {
-    /// They do not begin as tables do.
+    /// The mark is missing.
     NotTables,
-    /// They are of another version of the layout.
+    /// Another version of the layout.
     WrongVersion,
-    /// There are fewer or more bytes than they say.
+    /// The size differs from the stated one.
     WrongSize,
-    /// The digest does not fit.
+    /// The digest does not match.
     Damaged,
-    /// This part is not among them.
+    /// The part is missing.
     Missing,
 }
 
-/// Tables that were found sound.
+/// Checked tables.
 #[derive(Debug, Clone, Copy)]
 pub struct Blob<'a> {
     words: &'a [u64],
     header: &'a Header,
 }
 
-/// A plant's tables, by its number of planets.
+/// Tables of a plant, by its number of planets.
 #[derive(Debug, Clone, Copy)]
 pub enum Gears<'a> {
-    /// An equivalent gear.
+    /// Equivalent gear.
     One(&'a Tables<f32, 1>),
     /// Three planets.
     Three(&'a Tables<f32, 3>),
-    /// Four.
+    /// Four planets.
     Four(&'a Tables<f32, 4>),
-    /// Five.
+    /// Five planets.
     Five(&'a Tables<f32, 5>),
 }
 
 impl<'a> Blob<'a> {
-    /// Takes tables if mark, version, size and digest are right.
+    /// Opens tables with the right mark, version, size and digest.
     pub fn open(words: &'a [u64]) -> Result<Self, BlobError> {
         let (head, _) = words.split_at_checked(HEADER_BYTES / WORD).ok_or(BlobError::NotTables)?;
         let header: &Header = cast(head).ok_or(BlobError::NotTables)?;
@@ -137,7 +137,7 @@ impl<'a> Blob<'a> {
         Ok(Self { words, header })
     }
 
-    /// What they begin with.
+    /// Header of the tables.
     pub fn header(&self) -> &'a Header {
         self.header
     }

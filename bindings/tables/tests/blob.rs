@@ -1,4 +1,4 @@
-//! What is read in place is what was designed, in every bit; what was changed on the way is refused by name.
+//! Tables are read in place bit for bit as designed; changed ones are rejected with the reason.
 
 use model_core::controller::ControllerDesign;
 use model_core::controller::design::{ControlRequest, NominalPlant, wiring_table};
@@ -10,7 +10,7 @@ use model_core::virtual_joint::design::design_surroundings;
 use table_blob::{Blob, BlobError, Gears, VERSION, Wanted, design};
 
 const REQUEST: ControlRequest = ControlRequest::USUAL;
-/// Words of version with length, and of the digest.
+/// Indices of the words with version and size, and with the digest.
 const VERSION_AT: usize = 1;
 const DIGEST_AT: usize = 2;
 
@@ -25,7 +25,7 @@ fn blob(name: &str) -> Vec<u64> {
     design(&Wanted { plant, nominal, processor: Processor::STM32F405 }).unwrap()
 }
 
-/// The digest over everything else, put in place: what somebody would do who changes tables on purpose.
+/// Replaces the digest by the right one, as somebody would who changes tables on purpose.
 fn sealed(mut words: Vec<u64>) -> Vec<u64> {
     let others = words.iter().enumerate().filter(|(index, _)| *index != DIGEST_AT);
     words[DIGEST_AT] = others.fold(digest::START, |running, (_, word)| digest::chain(running, *word));
@@ -92,7 +92,7 @@ fn bytes_that_are_no_value_of_their_type_are_refused_whatever_the_digest_says() 
     let words = blob("q1");
     let observer = std::ptr::from_ref(Blob::open(&words).unwrap().observer().unwrap()) as usize;
     let begin = words.as_ptr() as usize;
-    // The truth values of the counts are neither zero nor one.
+    // The boolean of the counts is neither zero nor one.
     let at = observer - begin + std::mem::offset_of!(model_core::observer::ObserverTables<f32>, counts.has_output);
     let mut wrong = words.clone();
     wrong[at / 8] = wrong[at / 8] & !(0xff << (8 * (at % 8))) | 7 << (8 * (at % 8));

@@ -1,4 +1,4 @@
-//! Steps against the host's twin, through a session of the host's own over the modelled line.
+//! Steps of the board against the host's twin, through a host session over the modelled line.
 
 use std::time::Duration;
 
@@ -13,9 +13,9 @@ use crate::boards::Subject;
 use crate::images::JOINT;
 use crate::talk::{Talk, Unattended};
 
-/// Seconds of motion: 20,000 steps.
+/// Duration of the motion: 20,000 steps [s].
 const LENGTH: f64 = 1.0;
-/// A sample so often; the digest in it covers every step.
+/// Steps between two samples; the digest in a sample covers every step.
 const DECIMATION: u16 = 20;
 
 /// Drives the joint through its reversals in lockstep, and compares every sample.
@@ -28,7 +28,7 @@ pub fn steps(subject: &Subject) -> Result<String, String> {
     let settings =
         RunSettings { mode: RunMode::Lockstep, decimation: DECIMATION, command_timeout: u32::MAX, from_memory: false };
     let run = session
-        .call(&BoardHelp::Rebuild, Duration::from_secs(20))
+        .wait_for_hello(&BoardHelp::Rebuild, Duration::from_secs(20))
         .and_then(|_| session.reset(settings))
         .and_then(|()| session.stream(&profile, &mut |_| {}))
         .and_then(|()| session.finish(profile.ticks));

@@ -1,4 +1,4 @@
-//! From reset to the first answer.
+//! Boot: from reset to the first answer.
 
 use super::clean;
 use crate::boards::Subject;
@@ -6,10 +6,10 @@ use crate::scs::SYSTICK;
 use crate::talk::Talk;
 use crate::wires::{MICROSECOND, SECOND, Time};
 
-/// Ticks of a tenth of a second are counted.
+/// Ticks are counted over this part of a second.
 const COUNTED: u32 = 10;
 
-/// The tick comes at its rate, and nothing is above it.
+/// Checks that the tick has its rate, and that no interrupt has its priority or a higher one.
 pub fn ticks(talk: &mut Talk<'_>, rate: u32) -> Result<(), String> {
     let count = |talk: &Talk<'_>| talk.board.borrow().machine().scs.taken(SYSTICK);
     let before = count(talk);
@@ -24,7 +24,7 @@ pub fn ticks(talk: &mut Talk<'_>, rate: u32) -> Result<(), String> {
     }
 }
 
-/// The board boots, ticks at its rate and says who it is.
+/// The board boots, ticks at its rate and states its identity.
 pub fn answers(subject: &Subject) -> Result<String, String> {
     let mut talk = Talk::new(subject.start()?);
     let hello = talk.call(2 * SECOND);
@@ -34,7 +34,7 @@ pub fn answers(subject: &Subject) -> Result<String, String> {
     let core = board.machine().wires.clocks.core;
     if hello.board != subject.board.name()
         || core != u64::from(subject.board.core_rate())
-        || hello.clock.source.is_external() != subject.board.described.clock.frequency().is_some()
+        || hello.clock.source.is_external() != subject.board.description.clock.frequency().is_some()
     {
         return Err(format!("{} at {core} Hz from {:?} is not {}", hello.board, hello.clock, subject.board.name()));
     }

@@ -1,4 +1,4 @@
-//! After a bootloader: an image begins with whatever that left, not with what a reset leaves.
+//! Start from a bootloader, whose state of the chip differs from the one after a reset.
 
 use board::device::board::Chip;
 use board_file::{ExternalClock, Pll};
@@ -10,12 +10,12 @@ use crate::cpu::Board;
 use crate::talk::Talk;
 use crate::wires::{MICROSECOND, Mode, Pin, SECOND, Time};
 
-/// Interrupts of the serial lines of these boards: left pending, and on.
+/// Interrupts of the serial lines of these boards: left pending and enabled.
 const SERIAL: [usize; 3] = [37, 38, 39];
-/// Longer than any oscillator or PLL takes.
+/// Longer than the start of any oscillator or PLL.
 const A_WHILE: Time = 5000 * MICROSECOND;
 
-/// Where the bootloader of the chip is: RM0090 2.4, RM0440 2.6, RM0433 2.6.
+/// Address of the chip's own bootloader: RM0090 2.4, RM0440 2.6, RM0433 2.6.
 fn system_memory(chip: Chip) -> u32 {
     match chip {
         Chip::Stm32f405 | Chip::Stm32g474 | Chip::Stm32g431 => 0x1fff_0000,
@@ -23,7 +23,7 @@ fn system_memory(chip: Chip) -> u32 {
     }
 }
 
-/// The interrupt of USB, which no image serves: the tables of vectors, RM0090 12.2, RM0440 14.3, RM0433 19.1.2.
+/// Interrupt of USB, which no image serves: vector tables, RM0090 12.2, RM0440 14.3, RM0433 19.1.2.
 fn usb(chip: Chip) -> usize {
     match chip {
         Chip::Stm32f405 => 67,
@@ -32,7 +32,8 @@ fn usb(chip: Chip) -> usize {
     }
 }
 
-/// What makes the full core clock of what is outside, and switches the internal oscillator off: each write, then a while.
+/// Register writes that make the full core clock from the external source and switch the internal oscillator off; a
+/// pause follows each.
 fn full_speed(chip: Chip, is_signal: bool, Pll { divider, factor, range }: Pll) -> Vec<(u32, u32)> {
     let bypass = u32::from(is_signal) << 18;
     match chip {
@@ -87,10 +88,10 @@ fn full_speed(chip: Chip, is_signal: bool, Pll { divider, factor, range }: Pll) 
     }
 }
 
-/// Port C on, and its pin 6 driven: on some boards with the chip that is a gate, and none of those that are tried here uses it.
+/// Pin that the bootloader drives: on some boards with the chip it is a gate, and no board in this check uses it.
 const DRIVEN: Pin = Pin('C', 6);
 
-/// The writes for that, on top of the clocks that are on.
+/// Register writes that clock the port and drive the pin, in addition to the clocks that are on.
 fn driven(chip: Chip) -> [(u32, u32); 3] {
     let (gates, port, was) = match chip {
         Chip::Stm32f405 => ((0x4002_3830, 0x0010_0004), 0x4002_0800, 0),
@@ -100,8 +101,8 @@ fn driven(chip: Chip) -> [(u32, u32); 3] {
     [gates, (port + 0x18, 1 << DRIVEN.1), (port, was & !(3 << (2 * DRIVEN.1)) | 1 << (2 * DRIVEN.1))]
 }
 
-/// DMA that receives into the first bytes of RAM for ever, as far as the chip's DMA is modelled: the register that switches its
-/// clock on, with the bits for that; the channel's control register; and the writes that start it.
+/// DMA that receives into the first bytes of RAM without end, if the chip's DMA is modelled: clock register with its
+/// bits, control register of the channel, and the writes that start it.
 struct Received {
     gate: (u32, u32),
     control: u32,
@@ -138,14 +139,13 @@ fn received(chip: Chip) -> Option<Received> {
     }
 }
 
-/// A bootloader that ran at full speed from what is outside jumps to the image: with its clock, with its own vectors in force and its
-/// tick, with interrupts pending and on that the image serves, and one that it does not, with a pin that it drives, and with DMA
-/// under way.
+/// Board whose image is entered from a bootloader at full speed: with the bootloader's clock, vectors and tick, with
+/// pending and enabled interrupts (some of which the image does not serve), with a driven pin, and with DMA under way.
 fn jumped_to<'a>(subject: &Subject) -> Result<Board<'a>, String> {
     let (mut board, chip) = (subject.start()?, subject.board.chip());
-    let described = &subject.board.described;
-    let is_signal = matches!(described.clock, ExternalClock::Signal(_));
-    let external = described.pll.external;
+    let description = &subject.board.description;
+    let is_signal = matches!(description.clock, ExternalClock::Signal(_));
+    let external = description.pll.external;
     for (address, value) in external.map(|pll| full_speed(chip, is_signal, pll)).unwrap_or_default() {
         let machine = board.machine_mut();
         machine.settle();
@@ -166,8 +166,8 @@ fn jumped_to<'a>(subject: &Subject) -> Result<Board<'a>, String> {
     Ok(board)
 }
 
-/// The image takes its own vectors before any interrupt comes, and its own clock, and is bothered by no interrupt that it does not
-/// serve.
+/// The image sets its own vectors before any interrupt comes, and its own clock, and is not disturbed by interrupts
+/// that it does not serve.
 pub fn starts(subject: &Subject) -> Result<String, String> {
     let chip = subject.board.chip();
     let mut talk = Talk::new(jumped_to(subject)?);
@@ -175,11 +175,11 @@ pub fn starts(subject: &Subject) -> Result<String, String> {
     clean(&talk.board.borrow())?;
     let hello = hello.ok_or_else(|| format!("no answer; it was at {}", talk.board.borrow().whereabouts()))?;
     let core = talk.board.borrow().machine().wires.clocks.core;
-    let is_external = subject.board.described.clock.frequency().is_some();
+    let is_external = subject.board.description.clock.frequency().is_some();
     if core != u64::from(subject.board.core_rate()) || hello.clock.source.is_external() != is_external {
         return Err(format!("{core} Hz from {:?}", hello.clock));
     }
-    let is_used = subject.board.described.used_pins().iter().any(|(_, used)| pin(*used) == DRIVEN);
+    let is_used = subject.board.description.used_pins().iter().any(|(_, used)| pin(*used) == DRIVEN);
     if !is_used && matches!(talk.board.borrow().machine().wires.mode(DRIVEN), Mode::Output(_)) {
         return Err("a pin that the bootloader drove is driven still".into());
     }
@@ -197,7 +197,7 @@ pub fn starts(subject: &Subject) -> Result<String, String> {
     Ok(format!("{core} Hz, vectors at {:#010x}", talk.board.borrow().machine().scs.vectors))
 }
 
-/// The slave on SPI, which has no tick.
+/// The SPI slave, which has no tick, answers after a bootloader.
 pub fn serves_a_master(subject: &Subject) -> Result<String, String> {
     spi::serves(subject, jumped_to(subject)?)
 }

@@ -1,5 +1,6 @@
-//! An encoder AS5047P read over SPI, of which the chip is the master. No image that ships does that: the driver's own code runs on
-//! this host, over a bus that is the registers of the modelled chip, written and read as its manual says; the core stands still.
+//! An AS5047P encoder read over SPI with the chip as master. No image that ships does that: the driver's code runs on
+//! this host, over a bus made of the registers of the modelled chip, accessed as its manual says; the core stands
+//! still.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -18,23 +19,24 @@ const CR1: u32 = 0x00;
 const CR2: u32 = 0x04;
 const SR: u32 = 0x08;
 const DR: u32 = 0x0c;
-/// From a control period to the next: 10 kHz.
+/// Control period: 10 kHz.
 const PERIOD: Time = 100 * MICROSECOND;
-/// Readings within which a fault must be told: the driver looks at the diagnostics every 26 ms at this rate.
+/// Limit of readings before a fault is reported: the driver reads the diagnostics every 26 ms at this rate.
 const PATIENCE: usize = 300;
-/// Looks at a status until it is given up.
+/// Limit of reads of a status register.
 const LOOKS: usize = 1000;
-/// Cycles that a look takes.
+/// Cycles of one read of a status register.
 const LOOK: u32 = 8;
-/// Longer than 350 ns, which the encoder wants between select and clock, and between frames [cycles at 16 MHz].
+/// More than 350 ns, the encoder's minimum between select and clock, and between frames [cycles at 16 MHz].
 const SETTLE: u32 = 8;
 
-/// Where the unit and its pins are on a chip, which is at its clock after a reset, 16 MHz.
+/// Registers and pins of the SPI on a chip that runs at its clock after a reset, 16 MHz.
 struct Place {
     spi: u32,
     registers: u32,
     select: Pin,
-    /// Writes that switch clocks on and set pins up: select an output that is high, the others given to the unit.
+    /// Register writes that switch clocks on and set pins up: select as a high output, the others as alternate
+    /// functions.
     set_up: &'static [(u32, u32)],
 }
 
@@ -68,7 +70,7 @@ fn place(chip: Chip) -> Option<Place> {
     }
 }
 
-/// The bus as a master that polls: RM0090 28.3.3, RM0440 39.4.9.
+/// SPI bus as a polling master: RM0090 28.3.3, RM0440 39.4.9.
 struct Bus<'a> {
     board: Shared<'a>,
     place: Place,
@@ -95,14 +97,14 @@ impl Bus<'_> {
         (0..LOOKS).any(|_| self.status() & mask == wanted).then_some(()).ok_or(ErrorKind::Other)
     }
 
-    /// Mode 1, 8 bits, a bit in four cycles: 4 MHz; the select is the software's.
+    /// Configures mode 1, 8 bits, four cycles per bit (4 MHz), select by software.
     fn open(&mut self) {
         for (address, value) in self.place.set_up {
             self.board.borrow_mut().machine_mut().set_up(*address, *value);
         }
         let registers = self.place.registers;
         if registers == 0x4000_3800 {
-            // RXNE at a byte.
+            // RXNE after a byte.
             self.write(registers + CR2, 4, 0x1700);
         }
         self.write(registers + CR1, 4, 1 << 9 | 1 << 8 | 1 << 3 | 1 << 2 | 1);
@@ -145,14 +147,14 @@ impl SpiDevice for Bus<'_> {
                 }
             }
         }
-        // Not busy: the last bit is over before the select goes.
+        // Not busy: the last bit must end before select.
         outcome = outcome.and(self.wait(1 << 7, 0));
         self.select(false);
         outcome
     }
 }
 
-/// The driver on the bus, with its control periods.
+/// Driver on the bus, with its control periods.
 struct Reader<'a> {
     driver: As5047p<Bus<'a>>,
     board: Shared<'a>,
@@ -160,7 +162,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// A reading, at the beginning of a period.
+    /// Reads the encoder at the beginning of a period.
     fn read(&mut self) -> Result<u32, EncoderFault> {
         self.period += 1;
         let reading = self.driver.read(self.period).map(|reading| reading.counts);
@@ -174,7 +176,7 @@ impl Reader<'_> {
         self.board.borrow_mut().machine_mut().wires.encoder.as_mut().map(change);
     }
 
-    /// Reads until a reading is something.
+    /// Reads until a reading equals the wanted one.
     fn until(&mut self, wanted: Result<u32, EncoderFault>) -> Result<(), String> {
         let found: Vec<_> = (0..PATIENCE).map(|_| self.read()).take_while(|found| *found != wanted).collect();
         match found.len() {
@@ -184,7 +186,7 @@ impl Reader<'_> {
     }
 }
 
-/// Angles are read, what is wrong with the magnet is told by its name, and so are an encoder that is not there and a disturbed line.
+/// Angles are read; faults of the magnet, a missing encoder and a disturbed line are reported by name.
 pub fn is_read(subject: &Subject) -> Result<String, String> {
     let place = place(subject.board.chip()).ok_or("the SPI of this chip is not modelled")?;
     let mut board = subject.start()?;
@@ -196,12 +198,12 @@ pub fn is_read(subject: &Subject) -> Result<String, String> {
     bus.open();
     board.borrow_mut().machine_mut().pass(PERIOD);
     let mut reader = Reader { driver: As5047p::new(bus), board: Rc::clone(&board), period: 0 };
-    // The first frame answers nothing that was asked.
+    // The first frame answers no request.
     if reader.read() != Err(EncoderFault::Pending) {
         return Err("the first reading is one already".into());
     }
     let mut angles = 0;
-    // What is asked for in a frame is what the encoder holds at its end.
+    // A frame requests the value that the encoder holds at its end.
     let mut held = 0;
     for angle in (0..1 << 14).step_by(37) {
         reader.encoder(|encoder| encoder.angle = angle);

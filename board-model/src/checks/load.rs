@@ -1,5 +1,5 @@
-//! A run with ticks of the length that the counted instructions give, while the host talks: the tick must end within its
-//! period, and the line must not lose a byte.
+//! Run with ticks whose length follows from the counted instructions, while the host sends: the tick must end within
+//! its period, and the line must not lose a byte.
 
 use board::device::board::Chip;
 use link::messages::{Command, FromBoard, RunMode, RunSettings, Schedule, Statistics, ToBoard};
@@ -10,13 +10,13 @@ use crate::boards::{Subject, usual_surroundings};
 use crate::talk::Talk;
 use crate::wires::{MICROSECOND, SECOND, Time};
 
-/// Frames that the host sends.
+/// Number of frames that the host sends.
 const FRAMES: u32 = 40;
-/// Between two of them.
+/// Time between two frames.
 const PAUSE: Time = 20_000 * MICROSECOND;
 const TIMEOUT: u32 = 1_000_000;
 
-/// Thousandths of a cycle that an instruction takes, as the project's page on its budget estimates them.
+/// Cost of an instruction as estimated on the project's page about its budget [thousandths of a cycle].
 fn cost(chip: Chip) -> u64 {
     match chip {
         Chip::Stm32f405 => 1400,
@@ -25,13 +25,13 @@ fn cost(chip: Chip) -> u64 {
     }
 }
 
-/// Role `plant`.
+/// Run of the role `plant`.
 pub fn plant(subject: &Subject) -> Result<String, String> {
     let commands = (0..24).map(|tick| Command { tick, drive_torque: 0.3, load_torque: 2.0 }).collect();
     loaded(subject, &ToBoard::Schedule(Schedule { sequence: 0, horizon: TIMEOUT, commands }))
 }
 
-/// Role `loop`.
+/// Run of the role `loop`.
 pub fn whole_loop(subject: &Subject) -> Result<String, String> {
     let at_rest = WireTrajectory::Position((0, Default::default()), None);
     let knot = |tick| Knot { tick, load_torque: 1.0, trajectory: at_rest };
@@ -39,7 +39,7 @@ pub fn whole_loop(subject: &Subject) -> Result<String, String> {
     loaded(subject, &ToBoard::Trajectory(Schedule { sequence: 0, horizon: TIMEOUT, commands }))
 }
 
-/// A run of which the host repeats the schedule, which changes nothing, again and again.
+/// Runs while the host repeats the schedule, which has no further effect.
 fn loaded(subject: &Subject, schedule: &ToBoard) -> Result<String, String> {
     let board = subject.start_at(usual_surroundings(&subject.board), cost(subject.board.chip()))?;
     let mut talk = Talk::new(board);

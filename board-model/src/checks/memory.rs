@@ -1,6 +1,5 @@
-//! What was learnt, kept in flash: saved, read, found again after a reset, loaded, written, erased. And with a cut of power at
-//! every single operation of flash, before it and within it: the board must boot, have the old memory or the new one, and take
-//! another.
+//! Estimated parameters in flash: saved, read, found after a reset, loaded, written, erased. With a power cut before
+//! and within every operation of flash, the board must boot, hold the old memory or the new one, and accept another.
 
 use link::messages::{FromBoard, MEMORY_PARTS, MemoryOutcome, MemoryPart, MemoryRequest, MemoryState, ToBoard};
 
@@ -12,10 +11,10 @@ use crate::cpu::Board;
 use crate::talk::Talk;
 use crate::wires::{Cut, HowFar, Operation, Reset, SECOND, Time};
 
-/// Erasing a sector of 128 KiB takes up to two seconds, and the answer comes after that.
+/// Longest wait for an answer: erasing a sector of 128 KiB takes up to two seconds before it.
 const PATIENCE: Time = 6 * SECOND;
 
-/// Saves, finds, loads, writes, erases.
+/// The memory can be saved, found after a reset, loaded, written and erased.
 pub fn keeps(subject: &Subject) -> Result<String, String> {
     let mut talk = Talk::new(subject.start()?);
     expect_state(&mut talk, MemoryState::Nothing, "of a new board")?;
@@ -40,7 +39,7 @@ pub fn keeps(subject: &Subject) -> Result<String, String> {
     Ok(format!("{operations} erases and programs"))
 }
 
-/// A G474 whose option byte makes one bank of its flash: what is saved is kept, or it is said that it is not.
+/// A G474 with single-bank flash keeps the saved memory, or reports that it does not.
 pub fn one_bank(subject: &Subject) -> Result<String, String> {
     let board = subject.start()?;
     let mut talk = Talk::new(board);
@@ -59,21 +58,22 @@ pub fn one_bank(subject: &Subject) -> Result<String, String> {
     Ok(found.into())
 }
 
-/// What is under way when power goes.
+/// Flash work that a power cut interrupts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Work {
-    /// A memory is written, after so many others.
+    /// Write of a memory, after a number of others.
     Write(usize),
-    /// The memory is erased, after so many were written.
+    /// Erase, after a number of writes.
     Erase(usize),
 }
 
-/// All that differ: two memories may lie beside each other, so the third is written over one, and two are to be erased.
+/// All different cases: two memories may lie beside each other, so the third one overwrites one of them, and an erase
+/// clears two.
 const WORKS: [Work; 5] = [Work::Write(0), Work::Write(1), Work::Write(2), Work::Erase(1), Work::Erase(2)];
-/// So many failures of a work are told; then the next one is tried.
+/// Limit of reported failures per work.
 const TOLD: usize = 2;
 
-/// What a board held before some work, and what it holds after it.
+/// Memories and flash operations of a work.
 #[derive(Debug, Clone)]
 struct Course {
     work: Work,
@@ -96,7 +96,7 @@ impl Course {
         }
     }
 
-    /// A board that holds the old one, and is asked for the work.
+    /// Starts a board that holds the earlier memories, and requests the work.
     fn begin<'a>(&self, subject: &Subject, cut: Option<Cut>) -> Result<Talk<'a>, String> {
         let mut talk = Talk::new(subject.start()?);
         expect_state(&mut talk, MemoryState::Nothing, "of a new board")?;
@@ -123,12 +123,12 @@ impl Course {
     }
 }
 
-/// Cuts power before and within every operation of every work.
+/// Power is cut before and within every operation of every work.
 pub fn survives_cuts(subject: &Subject) -> Result<String, String> {
     survive(subject, |_, _| true)
 }
 
-/// The same at the first and the last program of each work, at one between them, and at all erases.
+/// Power is cut at the first, a middle and the last program of each work, and at all erases.
 pub fn survives_some_cuts(subject: &Subject) -> Result<String, String> {
     survive(subject, |operations, number| {
         let programs = |range: &[Operation]| range.iter().filter(|other| **other == Operation::Program).count();
@@ -158,7 +158,7 @@ fn survive(subject: &Subject, is_tried: impl Fn(&[Operation], usize) -> bool) ->
     if told.is_empty() { Ok(format!("{tried} cuts")) } else { Err(told.join("\n")) }
 }
 
-/// What a new board saves, and others that are as good.
+/// Memory saved by a new board, and other valid ones.
 fn memories(subject: &Subject) -> Result<Vec<Vec<MemoryPart>>, String> {
     let mut talk = Talk::new(subject.start()?);
     expect_state(&mut talk, MemoryState::Nothing, "of a new board")?;
@@ -167,7 +167,7 @@ fn memories(subject: &Subject) -> Result<Vec<Vec<MemoryPart>>, String> {
     Ok(std::iter::successors(Some(first), |parts| Some(another(parts))).take(4).collect())
 }
 
-/// Operations of a work that nobody cuts.
+/// Flash operations of a work without a cut.
 fn operations(subject: &Subject, course: &Course) -> Result<Vec<Operation>, String> {
     let mut talk = course.begin(subject, None)?;
     let before = talk.board.borrow().machine().wires.flash_operations.len();
@@ -179,7 +179,7 @@ fn operations(subject: &Subject, course: &Course) -> Result<Vec<Operation>, Stri
     Ok(talk.board.borrow().machine().wires.flash_operations[before..].to_vec())
 }
 
-/// Cuts power once: then the board boots and holds the old memory or the new one, and takes others.
+/// Cuts power once; the board must then boot, hold the old memory or the new one, and accept another.
 fn survives(subject: &Subject, course: &Course, cut: Cut) -> Result<(), String> {
     let mut talk = course.begin(subject, Some(cut))?;
     let resets = talk.board.borrow().machine().resets.len();
@@ -200,7 +200,7 @@ fn survives(subject: &Subject, course: &Course, cut: Cut) -> Result<(), String> 
     }
     let hello = hello.ok_or_else(|| stuck(&talk))?;
     let left = match hello.memory {
-        // What is left of one that was cut is none, whichever way that is told.
+        // An interrupted memory counts as no memory, however it is reported.
         MemoryState::Nothing | MemoryState::NotAMemory | MemoryState::Damaged => None,
         MemoryState::Good => Some(read(&mut talk)?),
         state => return Err(format!("the memory is {state:?}")),
@@ -226,7 +226,7 @@ fn survives(subject: &Subject, course: &Course, cut: Cut) -> Result<(), String> 
     clean(&talk.board.borrow())
 }
 
-/// Loads a memory into the board, which must find it good.
+/// Loads a memory into the board, which must report it as good.
 fn load(talk: &mut Talk<'_>, memory: &[MemoryPart]) -> Result<(), String> {
     for part in memory {
         talk.say(&ToBoard::Memory(MemoryRequest::Load(part.clone())));
@@ -241,7 +241,7 @@ fn load(talk: &mut Talk<'_>, memory: &[MemoryPart]) -> Result<(), String> {
     }
 }
 
-/// Another memory, that is as good: the place of the encoders' zeros is one further, and the digest is that of it.
+/// Another valid memory: one bit pattern of the encoders' zeros differs, and the digest is updated.
 fn another(parts: &[MemoryPart]) -> Vec<MemoryPart> {
     let mut bytes: Vec<u8> = parts.iter().flat_map(|part| part.bytes.iter().copied()).collect();
     let end = bytes.len() - 8;
@@ -266,7 +266,7 @@ fn outcome(message: FromBoard) -> Option<MemoryOutcome> {
     }
 }
 
-/// Asks for work with the page, and expects it done.
+/// Requests flash work, and expects success.
 pub fn request(talk: &mut Talk<'_>, request: MemoryRequest, done: &str) -> Result<(), String> {
     match talk.ask(&ToBoard::Memory(request), PATIENCE, outcome) {
         Some(MemoryOutcome::Stored) => Ok(()),
@@ -277,7 +277,7 @@ pub fn request(talk: &mut Talk<'_>, request: MemoryRequest, done: &str) -> Resul
     }
 }
 
-/// All parts of what is kept.
+/// Reads all parts of the stored memory.
 fn read(talk: &mut Talk<'_>) -> Result<Vec<MemoryPart>, String> {
     let mut parts = Vec::new();
     for part in 0..MEMORY_PARTS {
@@ -290,7 +290,7 @@ fn read(talk: &mut Talk<'_>) -> Result<Vec<MemoryPart>, String> {
     Ok(parts)
 }
 
-/// A reset from outside.
+/// Resets the board from outside.
 pub fn restart(talk: &mut Talk<'_>, reset: Reset) {
     let mut board: std::cell::RefMut<'_, Board<'_>> = talk.board.borrow_mut();
     board.machine_mut().wires.reset = Some(reset);

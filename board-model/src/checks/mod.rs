@@ -1,5 +1,5 @@
-//! What every image must do on the model of its board. A check starts its own board, and fails on the first thing that is
-//! not as it should be, or on any violation.
+//! Checks of every image on the model of its board. A check starts its own board, and fails on the first error or on
+//! any violation of a rule.
 
 pub mod bits;
 pub mod boot;
@@ -19,22 +19,22 @@ use crate::cpu::Board;
 use crate::images::Work;
 use crate::known;
 
-/// A check of an image: what it found, or what is wrong.
+/// Check of an image; returns findings or the error.
 pub type Check = fn(&Subject) -> Result<String, String>;
 
-/// A check with its name.
+/// Check with its name.
 pub struct Named {
-    /// What must hold.
+    /// Name: the property that must hold.
     pub name: &'static str,
-    /// Images that it is for.
+    /// Images that the check is for.
     pub works: &'static [Work],
-    /// Chips that it is for, on the first board with each; others boot and run the plant only.
+    /// Chips that the check is for, on the first board with each; other boards only boot and run the plant.
     pub chips: &'static [Chip],
-    /// The plant must pass it on every board.
+    /// True if the plant must pass the check on every board.
     pub is_for_every_board: bool,
-    /// It.
+    /// Function of the check.
     pub run: Check,
-    /// It is left to the long form.
+    /// True if the check runs in the long form only.
     pub is_long: bool,
 }
 
@@ -48,7 +48,7 @@ impl Named {
         self
     }
 
-    /// Images of a board that it is for. What differs between boards with the same chip is found when they boot and run.
+    /// Images of a board for this check. Differences between boards with one chip show when they boot and run.
     pub fn works(&self, board: &Described, is_first: bool) -> impl Iterator<Item = Work> {
         let works: &[Work] = if is_first && self.chips.contains(&board.chip()) {
             self.works
@@ -61,7 +61,7 @@ impl Named {
     }
 }
 
-/// All checks.
+/// All checks, in order.
 pub const ALL: &[Named] = &[
     short("boots, ticks and answers", &[Work::Plant, Work::Observer, Work::Loop], boot::answers).on_every_board(),
     short("drives no pin that its file forbids", &[Work::Plant], pins::only_those_of_the_file).on_every_board(),
@@ -107,7 +107,7 @@ pub const ALL: &[Named] = &[
     },
 ];
 
-/// Whether a board has an image for this: STM32G431 has room for the plant alone.
+/// Returns whether a board has an image of a kind: the STM32G431 has room for the plant only.
 fn has_image(board: &Described, work: Work) -> bool {
     match work {
         Work::Plant => true,
@@ -116,7 +116,7 @@ fn has_image(board: &Described, work: Work) -> bool {
     }
 }
 
-/// Fails if a board has been halted or has done anything against a rule.
+/// Fails if a board has halted or has violated a rule.
 pub fn clean(board: &Board<'_>) -> Result<(), String> {
     if let Some(why) = &board.machine().halted {
         return Err(format!("{why}; it was at {}", board.whereabouts()));

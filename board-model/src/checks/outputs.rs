@@ -1,4 +1,4 @@
-//! The motor-enable output and what takes it away: silence of the host, a fault, the watchdog.
+//! Motor-enable output and the events that switch it off: silence of the host, a fault, the watchdog.
 
 use board_file::Level;
 use link::messages::{Command, FromBoard, RunMode, RunSettings, Schedule, ToBoard, Trip};
@@ -9,15 +9,15 @@ use crate::boards::{Subject, pin};
 use crate::talk::Talk;
 use crate::wires::{MICROSECOND, Mode, Pin, Reset, SECOND, Time};
 
-/// Ticks without a word of the host until the safe state.
+/// Ticks without a host message before the safe state.
 const TIMEOUT: u32 = 2000;
 const TICK: Time = SECOND / 20_000;
-/// A debugger holds the core so long.
+/// Time for which a debugger holds the core.
 const HELD: Time = 2 * SECOND;
 
-/// The motor-enable output, and whether it is on when high.
+/// Pin of the motor-enable output, and true if high is on.
 fn enable(subject: &Subject) -> Result<(Pin, bool), String> {
-    let output = subject.board.described.enable.ok_or("the board has no enable output")?;
+    let output = subject.board.description.enable.ok_or("the board has no enable output")?;
     Ok((pin(output.pin), output.on == Level::High))
 }
 
@@ -26,21 +26,21 @@ fn level(talk: &Talk<'_>, subject: &Subject) -> Option<Mode> {
     Some(talk.board.borrow().machine().wires.mode(pin))
 }
 
-/// Whether it is an output that is on, or off.
+/// Returns whether the pin is an output in the on or off state.
 fn is_switched(talk: &Talk<'_>, subject: &Subject, on: bool) -> bool {
     enable(subject).is_ok_and(|(_, high)| level(talk, subject) == Some(Mode::Output(on == high)))
 }
 
-/// Whether it is on.
+/// Returns whether the output is on.
 pub fn is_enabled(talk: &Talk<'_>, subject: &Subject) -> bool {
     is_switched(talk, subject, true)
 }
 
-/// Starts a run in real time whose last command holds for long. The enable output is looked at where there is one.
+/// Starts a run in real time whose last command holds for long, and checks the enable output if there is one.
 pub fn start_run<'a>(subject: &Subject) -> Result<Talk<'a>, String> {
     let mut talk = Talk::new(subject.start()?);
     talk.call(2 * SECOND).ok_or("no answer")?;
-    let has_output = subject.board.described.enable.is_some();
+    let has_output = subject.board.description.enable.is_some();
     if has_output && !is_switched(&talk, subject, false) {
         return Err(format!("the enable output is {:?} before any run", level(&talk, subject)));
     }
@@ -56,7 +56,7 @@ pub fn start_run<'a>(subject: &Subject) -> Result<Talk<'a>, String> {
     Ok(talk)
 }
 
-/// The host falls silent: enable goes within the timeout, and the board says so, whether it has that output or not.
+/// Silence of the host: enable goes off within the timeout, and the board reports a trip, with or without that output.
 pub fn silence(subject: &Subject) -> Result<String, String> {
     let mut talk = start_run(subject)?;
     let start = talk.board.borrow().now();
@@ -68,7 +68,7 @@ pub fn silence(subject: &Subject) -> Result<String, String> {
             }
         }
         let is_off =
-            if subject.board.described.enable.is_some() { is_switched(&talk, subject, false) } else { trip.is_some() };
+            if subject.board.description.enable.is_some() { is_switched(&talk, subject, false) } else { trip.is_some() };
         if gone.is_none() && is_off {
             gone = Some(talk.board.borrow().now() - start);
         }
@@ -82,13 +82,13 @@ pub fn silence(subject: &Subject) -> Result<String, String> {
     }
 }
 
-/// The ticks stop: the watchdog resets within its time, the output is gone, and the next hello says so.
+/// The ticks stop: the watchdog resets in time, the output is off, and the next hello reports the watchdog.
 pub fn watchdog(subject: &Subject) -> Result<String, String> {
     let mut talk = start_run(subject)?;
     let start = talk.board.borrow().now();
     let resets = talk.board.borrow().machine().resets.len();
     {
-        // SysTick's control register, from outside.
+        // Control register of SysTick, written from outside.
         let mut board = talk.board.borrow_mut();
         board.machine_mut().write(0xe000_e010, 4, 0);
     }
@@ -118,8 +118,8 @@ pub fn watchdog(subject: &Subject) -> Result<String, String> {
     }
 }
 
-/// A debugger holds the core for longer than the watchdog waits, and lets it go on: nothing has been reset, and the tick goes
-/// on.
+/// A debugger holds the core for longer than the watchdog's period and lets it continue: nothing is reset, and the tick
+/// continues.
 pub fn held_by_debugger(subject: &Subject) -> Result<String, String> {
     let mut talk = Talk::new(subject.start()?);
     talk.call(2 * SECOND).ok_or("no answer")?;
@@ -134,7 +134,7 @@ pub fn held_by_debugger(subject: &Subject) -> Result<String, String> {
     Ok(format!("held for {} s", HELD / SECOND))
 }
 
-/// A bus fault in a run: a reset, the output gone, and its message in the next hello.
+/// Bus fault in a run: a reset, the output off, and a message in the next hello.
 pub fn fault(subject: &Subject) -> Result<String, String> {
     let mut talk = start_run(subject)?;
     let resets = talk.board.borrow().machine().resets.len();

@@ -1,4 +1,4 @@
-//! Pins: those that the board's file names are set up, and no others, least of all those that it forbids.
+//! Pins: exactly those that the board's file names are set up, in particular none that it forbids.
 
 use std::collections::BTreeSet;
 
@@ -9,18 +9,18 @@ use super::outputs::start_run;
 use crate::boards::{Subject, pin};
 use crate::wires::{MICROSECOND, Mode, Pin, Time};
 
-/// How long a run goes on.
+/// Duration of the run.
 const RUN: Time = 20_000 * MICROSECOND;
 
-/// Boots and runs: no pin that the file forbids was set up at any time, and of the others those that it names.
+/// Boots and runs: no forbidden pin is ever set up, and of the others exactly those that the file names.
 pub fn only_those_of_the_file(subject: &Subject) -> Result<String, String> {
     let mut talk = start_run(subject)?;
     talk.hear(RUN);
     clean(&talk.board.borrow())?;
-    let board = &subject.board.described;
+    let board = &subject.board.description;
     let set_up = talk.board.borrow().machine().wires.set_up.clone();
     let mode = |pin| talk.board.borrow().machine().wires.mode(pin);
-    let without_use = board.pins_without_use();
+    let without_use = board.unused_line_pins();
     let forbidden = board.never_driven.iter().map(|(left, why)| (*left, why.as_str()));
     let forbidden: Vec<_> = forbidden.chain(without_use.iter().map(|(key, left)| (*left, *key))).collect();
     let driven: Vec<_> = forbidden

@@ -1,5 +1,5 @@
-//! Other clock sources than the one that the board is sold with: every usual rate, by crystal and by clock, none at all, and
-//! one that dies in a run. Either the tick has the rate that the hello says, or the hello says that it has not.
+//! Other clock sources than the board's own: every common rate, by crystal and by signal, no source, and a source that
+//! fails in a run. The tick must have the rate stated in the hello, or the hello must report the deviation.
 
 use std::collections::BTreeMap;
 
@@ -11,14 +11,14 @@ use crate::boards::{Subject, usual_surroundings};
 use crate::talk::Talk;
 use crate::wires::{MICROSECOND, SECOND, Surroundings, Time};
 
-/// What crystals and clocks of boards with these chips have [Hz].
+/// Common rates of crystals and clock signals [Hz].
 const RATES: [u64; 6] = [8_000_000, 12_000_000, 16_000_000, 24_000_000, 25_000_000, 26_000_000];
-/// How far the internal oscillator is off at room temperature, by the data sheets of all chips [thousandths].
+/// Deviation of the internal oscillator at room temperature, by the data sheets of all chips [thousandths].
 const INTERNAL_OFF: i64 = 10;
-/// Without its clock a board has this long until its outputs are off: the watchdog's half second and its spread.
+/// Limit from the loss of the clock to the outputs being off: the watchdog's half second and its spread.
 const OUTPUTS_OFF: Time = SECOND * 6 / 10;
 
-/// The external source is dead: the internal oscillator takes over, and the hello says so.
+/// Dead external source: the internal oscillator takes over, and the hello reports it.
 pub fn dead_crystal(subject: &Subject) -> Result<String, String> {
     let mut talk = Talk::new(subject.start_with(Surroundings::default())?);
     let hello = talk.call(4 * SECOND);
@@ -32,8 +32,8 @@ pub fn dead_crystal(subject: &Subject) -> Result<String, String> {
     Ok(format!("{core} Hz from the internal oscillator"))
 }
 
-/// Crystals and clocks that other boards with the chip have: none may take a clock out of its range, or the line away, and the
-/// hello tells the truth about the tick.
+/// Crystals and clock signals of other boards with the chip: none may drive a clock out of its range or break the line,
+/// and the hello must be right about the tick.
 pub fn other_crystals(subject: &Subject) -> Result<String, String> {
     let (mut said, mut wrong) = (BTreeMap::new(), Vec::new());
     for rate in RATES {
@@ -55,7 +55,7 @@ pub fn other_crystals(subject: &Subject) -> Result<String, String> {
     if wrong.is_empty() { Ok(said.join(", ")) } else { Err(wrong.join("\n")) }
 }
 
-/// A source of the kind that the board is sold with.
+/// Source of the board's own kind, at another rate.
 fn of_usual_kind(subject: &Subject, rate: u64) -> Surroundings {
     match usual_surroundings(&subject.board).crystal {
         Some(_) => Surroundings::crystal(rate),
@@ -63,7 +63,7 @@ fn of_usual_kind(subject: &Subject, rate: u64) -> Surroundings {
     }
 }
 
-/// The board answers, and what it says about its tick is so.
+/// The board answers, and its statement about the tick is true.
 fn truthful(talk: &mut Talk<'_>) -> Result<Hello, String> {
     let hello = talk.call(SECOND / 2);
     clean(&talk.board.borrow())?;
@@ -74,7 +74,7 @@ fn truthful(talk: &mut Talk<'_>) -> Result<Hello, String> {
     Ok(hello)
 }
 
-/// The external source dies in a run: the outputs go off, and the next hello names another source.
+/// The external source fails in a run: the outputs go off, and the next hello names another source.
 pub fn dies_in_a_run(subject: &Subject) -> Result<String, String> {
     let mut talk = start_run(subject)?;
     let start = talk.board.borrow().now();
@@ -90,7 +90,7 @@ pub fn dies_in_a_run(subject: &Subject) -> Result<String, String> {
     let hello = truthful(&mut talk)?;
     match hello.clock.source {
         source if source.is_external() => Err("the hello names the source that is dead".into()),
-        clock if subject.board.described.enable.is_none() => Ok(format!("then {clock:?}")),
+        clock if subject.board.description.enable.is_none() => Ok(format!("then {clock:?}")),
         clock => Ok(format!("off after {:.1} ms, then {clock:?}", off as f64 / (1000 * MICROSECOND) as f64)),
     }
 }

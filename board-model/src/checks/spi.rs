@@ -1,5 +1,4 @@
-//! The slave on SPI: good transfers are answered in the next one, and after every kind of bad transfer the next good one is
-//! too.
+//! SPI slave: a good transfer is answered in the next one, also after every kind of bad transfer.
 
 use firmware::port::spi::FRAME_BYTES as FRAME;
 use link::controller::{Answered, Exchange, Motion, SetPoint};
@@ -11,12 +10,12 @@ use crate::cpu::Board;
 use crate::talk::Talk;
 use crate::wires::{MICROSECOND, Pin, SECOND, Time};
 
-/// What the master leaves the slave between two transfers: a control period at 5 kHz, less the transfer.
+/// Pause of the master between two transfers: a control period at 5 kHz, less the transfer.
 const BETWEEN: Time = 120 * MICROSECOND;
-/// A byte at 21 MHz.
+/// Time of a byte at 21 MHz.
 const BYTE: Time = SECOND / 21_000_000 * 8;
 
-/// A master in front of a slave.
+/// SPI master in front of the slave.
 struct Master<'a> {
     talk: Talk<'a>,
     select: Pin,
@@ -25,7 +24,7 @@ struct Master<'a> {
 }
 
 impl Master<'_> {
-    /// A transfer of bytes; what came back.
+    /// Transfers bytes and returns the received ones.
     fn transfer(&mut self, bytes: &[u8]) -> Vec<u8> {
         self.select(false);
         self.talk.hear(2 * MICROSECOND);
@@ -52,7 +51,7 @@ impl Master<'_> {
         board.machine_mut().attention = true;
     }
 
-    /// A good frame with the next tick.
+    /// Valid frame with the next tick.
     fn good(&mut self) -> [u8; FRAME] {
         let point = Motion { position: (0, 0.0), speed: 0.0, acceleration: 0.0 };
         let exchange = Exchange {
@@ -66,12 +65,12 @@ impl Master<'_> {
         };
         self.tick += 1;
         let mut frame = [0; FRAME];
-        // The longest exchange fits: the firmware's tests hold it.
+        // The longest exchange fits a frame; the firmware's tests check that.
         let _ = sealed(&exchange, &mut frame);
         frame
     }
 
-    /// Two good transfers: the second brings the answer to the first.
+    /// Makes two good transfers; the second must carry the answer to the first.
     fn is_answered(&mut self) -> Result<(), String> {
         let frame = self.good();
         self.transfer(&frame);
@@ -93,7 +92,7 @@ impl Master<'_> {
 
 fn master<'a>(subject: &Subject, board: Board<'a>) -> Result<Master<'a>, String> {
     let talk = Talk::new(board);
-    let slave = subject.board.described.spi_slave.as_ref().ok_or("the board is no slave")?;
+    let slave = subject.board.description.spi_slave.as_ref().ok_or("the board is no slave")?;
     let select = pin(slave.select.pin);
     let spi = slave.unit.trim_start_matches("SPI").parse().map_err(|_| format!("unit {}", slave.unit))?;
     let mut master = Master { talk, select, spi, tick: 0 };
@@ -102,7 +101,7 @@ fn master<'a>(subject: &Subject, board: Board<'a>) -> Result<Master<'a>, String>
     Ok(master)
 }
 
-/// A board that has begun in some way answers.
+/// A started board answers transfers.
 pub fn serves(subject: &Subject, board: Board<'_>) -> Result<String, String> {
     let mut master = master(subject, board)?;
     let outcome = (0..3).try_for_each(|_| master.is_answered());
@@ -111,7 +110,7 @@ pub fn serves(subject: &Subject, board: Board<'_>) -> Result<String, String> {
     Ok("3 transfers answered".into())
 }
 
-/// Good transfers, and all kinds of bad ones between them.
+/// Good transfers with all kinds of bad ones between them.
 pub fn transfers(subject: &Subject) -> Result<String, String> {
     let mut master = master(subject, subject.start()?)?;
     for _ in 0..20 {
@@ -142,7 +141,7 @@ pub fn transfers(subject: &Subject) -> Result<String, String> {
     Ok(format!("20 good ones and {bad} bad ones, each answered by the next good one"))
 }
 
-/// Transfers that are too long are no frames, by however many bytes.
+/// Transfers that are too long by any number of bytes are rejected.
 pub fn too_long(subject: &Subject) -> Result<String, String> {
     let mut master = master(subject, subject.start()?)?;
     master.is_answered()?;

@@ -67,7 +67,7 @@ const USART6: Place = Place {
     receive: &[(Pin('C', 7), 8), (Pin('G', 9), 8)],
 };
 
-/// The same table: SPI1 is function 5.
+/// Same data sheet, table 9: SPI1 is function 5.
 const SPI1: spi::Place = spi::Place {
     number: 1,
     clock: BusClock::High,
@@ -77,7 +77,7 @@ const SPI1: spi::Place = spi::Place {
 /// RM0090 19.5: HSE_RTC is input 2.
 const TIM11: tim::Place = tim::Place { map: &tim::F4, interrupt: 26, selection: (0x50, 2) };
 
-/// The chip, with an image up to an address.
+/// Chip with an image that ends at an address.
 pub fn chip(image_end: u32) -> Chip {
     let mut peripherals = vec![
         always("RCC", 0x4002_3800, Box::new(rcc_f4::Rcc::default())),

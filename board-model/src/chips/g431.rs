@@ -1,4 +1,4 @@
-//! STM32G431 with 128 KiB of flash: RM0440, as a chip of category 2. What it shares with the STM32G474 stands there.
+//! STM32G431 with 128 KiB of flash: RM0440, as a chip of category 2. Parts shared with the STM32G474 are in `g474`.
 
 use super::g474::{Parts, peripherals};
 use crate::machine::{Chip, Memory};
@@ -7,13 +7,13 @@ use crate::peripherals::dma_channel::DmaChannels;
 use crate::peripherals::dmamux::DmaMux;
 use crate::peripherals::{flash_g4, rcc_g4};
 
-/// RM0440 2.4: 16 KiB, 6 KiB, and the core-coupled memory, which follows them and is at an address of its own too.
+/// RM0440 2.4: 16 KiB, 6 KiB, and the core-coupled memory, which follows them and also has its own address.
 static MEMORIES: [Memory; 2] = [
     Memory { base: 0x1000_0000, size: 0x2800, core_only: true },
     Memory { base: 0x2000_0000, size: 0x8000, core_only: false },
 ];
 
-/// The chip, with an image up to an address.
+/// Chip with an image that ends at an address.
 pub fn chip(image_end: u32) -> Chip {
     let peripherals = peripherals(Parts {
         rcc: rcc_g4::Rcc::category_2(),

@@ -25,7 +25,7 @@ const APB1RSTR1: u32 = 0x38;
 const APB2RSTR: u32 = 0x40;
 const RM: &str = "RM0440 7.4";
 
-/// RM0440 2.4: 80 KiB, 16 KiB, and the core-coupled memory, which follows them and is at an address of its own too.
+/// RM0440 2.4: 80 KiB, 16 KiB, and the core-coupled memory, which follows them and also has its own address.
 static MEMORIES: [Memory; 2] = [
     Memory { base: 0x1000_0000, size: 0x8000, core_only: true },
     Memory { base: 0x2000_0000, size: 0x2_0000, core_only: false },
@@ -54,18 +54,18 @@ const USART3: Place = Place {
     receive: &[(Pin('B', 8), 7), (Pin('B', 11), 7), (Pin('C', 11), 7), (Pin('D', 9), 7), (Pin('E', 15), 7)],
 };
 
-/// The same table: SPI2 is function 5.
+/// Same data sheet, table 13: SPI2 is function 5.
 const SPI2: spi::Place = spi::Place {
     number: 2,
     clock: BusClock::Low,
     pins: [(Pin('B', 12), 5), (Pin('B', 13), 5), (Pin('B', 14), 5), (Pin('B', 15), 5)],
 };
 
-/// RM0440 30.8: HSE/32 is input 3 of both.
+/// RM0440 30.8: HSE/32 is input 3 of both timers.
 const TIM16: tim::Place = tim::Place { map: &tim::G4, interrupt: 25, selection: (0x5c, 3) };
 const TIM17: tim::Place = tim::Place { interrupt: 26, ..TIM16 };
 
-/// What is not the same on all chips of RM0440.
+/// Peripherals that differ between the chips of RM0440.
 pub(super) struct Parts {
     pub rcc: rcc_g4::Rcc,
     pub flash: flash_g4::Flash,
@@ -74,7 +74,7 @@ pub(super) struct Parts {
     pub dmamux: DmaMux,
 }
 
-/// The chip, with an image up to an address.
+/// Chip with an image that ends at an address.
 pub fn chip(image_end: u32) -> Chip {
     let peripherals = peripherals(Parts {
         rcc: rcc_g4::Rcc::category_3(),
@@ -94,7 +94,7 @@ pub fn chip(image_end: u32) -> Chip {
     }
 }
 
-/// Peripherals that all chips of RM0440 have.
+/// Peripherals common to all chips of RM0440.
 pub(super) fn peripherals(Parts { rcc, flash, dbgmcu, dma, dmamux }: Parts) -> Vec<Placed> {
     let mut peripherals = vec![
         always("RCC", 0x4002_1000, Box::new(rcc)),

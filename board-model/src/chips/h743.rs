@@ -18,7 +18,7 @@ const APB1LRSTR: u32 = 0x90;
 const APB2RSTR: u32 = 0x98;
 const RM: &str = "RM0433 8.7";
 
-/// RM0433 2.4: instruction and data memory of the core, then that of each domain.
+/// RM0433 2.4: instruction and data memory of the core, then the memory of each domain.
 static MEMORIES: [Memory; 5] = [
     Memory { base: 0x0000_0000, size: 0x1_0000, core_only: true },
     Memory { base: 0x2000_0000, size: 0x2_0000, core_only: true },
@@ -39,7 +39,7 @@ const USART3: Place = Place {
 /// RM0433 41.6: HSE_1MHz is input 2.
 const TIM17: tim::Place = tim::Place { map: &tim::H7, interrupt: 118, selection: (0x68, 2) };
 
-/// The chip, with an image up to an address.
+/// Chip with an image that ends at an address.
 pub fn chip(image_end: u32) -> Chip {
     let mut peripherals = vec![
         always("RCC", 0x5802_4400, Box::new(rcc_h7::Rcc::default())),

@@ -1,4 +1,4 @@
-//! The chips: which peripherals are where.
+//! Chips: their peripherals with addresses.
 
 pub mod f405;
 pub mod g431;
@@ -10,12 +10,12 @@ use crate::peripherals::Peripheral;
 use crate::peripherals::gpio::Gpio;
 use crate::wires::Gate;
 
-/// A peripheral whose clock is always on.
+/// Peripheral whose clock is always on.
 fn always(name: &'static str, base: u32, peripheral: Box<dyn Peripheral>) -> Placed {
     Placed { name, base, size: 0x400, clock: None, hold: None, section: "", peripheral }
 }
 
-/// General-purpose ports from A on by their names, a bit of the registers at two offsets each.
+/// General-purpose ports from A on, by their names; each has one bit in the clock and the reset register.
 fn ports<'a>(
     section: &'static str,
     base: u32,
@@ -28,7 +28,8 @@ fn ports<'a>(
     })
 }
 
-/// One with a clock gate and a reset: offsets and bits in the clock controller, whose section is named.
+/// Peripheral with a clock gate and a reset, as offsets and bits in the clock controller; `section` is the manual's
+/// section.
 fn gated(
     section: &'static str,
     name: &'static str,

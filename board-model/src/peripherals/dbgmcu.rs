@@ -1,5 +1,5 @@
-//! What a debugger stops besides the core: RM0090 38.16, RM0440 47.16, RM0433 60.5.8. Of all that it can freeze the independent
-//! watchdog matters here. A reset of the chip leaves its registers; only power takes them back.
+//! Debug unit: RM0090 38.16, RM0440 47.16, RM0433 60.5.8. Of all peripherals that it can freeze, only the independent
+//! watchdog is modelled. Its registers survive a reset of the chip and are cleared by power-up only.
 
 use super::Peripheral;
 use crate::register::{Register, Registers};
@@ -12,7 +12,7 @@ static F405: [Register; 4] = [
     Register::new("DBGMCU_APB2_FZ", 0x0c, 0, 0x0007_0003),
 ];
 static G474: [Register; 5] = g4(0x2003_6469, [0xc060_1c3f, 0x2, 0x0417_2800]);
-/// Without TIM5, I2C4, TIM20 and HRTIM.
+/// G474 without TIM5, I2C4, TIM20 and HRTIM.
 static G431: [Register; 5] = g4(0x2003_6468, [0xc060_1c37, 0, 0x0007_2800]);
 static H743: [Register; 7] = [
     Register::new("DBGMCU_IDC", 0x00, 0x2003_6450, 0).special(u32::MAX),
@@ -24,7 +24,7 @@ static H743: [Register; 7] = [
     Register::new("DBGMCU_APB4FZ1", 0x54, 0, 0x0005_1e80),
 ];
 
-/// The register map of the chips of RM0440, with their identity and what they can freeze.
+/// Register map of the chips of RM0440, with their identity and freeze bits.
 const fn g4(identity: u32, [low, low_2, high]: [u32; 3]) -> [Register; 5] {
     [
         Register::new("DBGMCU_IDCODE", 0x00, identity, 0).special(u32::MAX),
@@ -35,7 +35,7 @@ const fn g4(identity: u32, [low, low_2, high]: [u32; 3]) -> [Register; 5] {
     ]
 }
 
-/// The unit, by where it freezes the independent watchdog: register and bit.
+/// Debug unit, with register and bit that freeze the independent watchdog.
 #[derive(Debug)]
 pub struct Dbgmcu {
     registers: Registers,
@@ -43,22 +43,22 @@ pub struct Dbgmcu {
 }
 
 impl Dbgmcu {
-    /// DBG_IWDG_STOP.
+    /// STM32F405, with DBG_IWDG_STOP.
     pub fn f405() -> Self {
         Self { registers: Registers::new(&F405), watchdog: (0x08, 12) }
     }
 
-    /// DBG_IWDG_STOP.
+    /// STM32G474, with DBG_IWDG_STOP.
     pub fn g474() -> Self {
         Self { registers: Registers::new(&G474), watchdog: (0x08, 12) }
     }
 
-    /// DBG_IWDG_STOP.
+    /// STM32G431, with DBG_IWDG_STOP.
     pub fn g431() -> Self {
         Self { registers: Registers::new(&G431), watchdog: (0x08, 12) }
     }
 
-    /// DBG_IWDG1.
+    /// STM32H743, with DBG_IWDG1.
     pub fn h743() -> Self {
         Self { registers: Registers::new(&H743), watchdog: (0x54, 18) }
     }
@@ -101,7 +101,7 @@ mod tests {
             (machine(chips::h743::chip(BASE + 0x1000)), 0x5800_4800, (0x5c00_1054, 1 << 18)),
         ] {
             machine.settle();
-            // Its longest time is that of 4096 counts by 4: half a second.
+            // Longest time without a reload: 4096 counts by 4, half a second.
             machine.write(watchdog, 4, 0xcccc);
             machine.write(freeze.0, 4, freeze.1);
             (0..20).for_each(|_| machine.pass_without_core(SECOND / 10));

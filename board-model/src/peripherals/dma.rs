@@ -1,36 +1,35 @@
-//! What both kinds of DMA controller share: a transfer of one item between a peripheral and memory, once through or round and
-//! round.
+//! Parts shared by both kinds of DMA controller: transfer of items between a peripheral and memory, once or circular.
 
 use crate::register::Registers;
 
-/// One item to be moved.
+/// Transfer of one item.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Transfer {
-    /// From there.
+    /// Source address.
     pub from: u32,
-    /// To there.
+    /// Destination address.
     pub to: u32,
-    /// Bytes of the item.
+    /// Size of the item [byte].
     pub size: u32,
 }
 
-/// Addresses of one that runs.
+/// Addresses of a running channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Way {
-    /// The peripheral's register.
+    /// Address of the peripheral's register.
     pub peripheral: u32,
-    /// The first item in memory.
+    /// Address of the first item in memory.
     pub memory: u32,
-    /// Addresses in memory rise.
+    /// True if addresses in memory increment.
     pub rises: bool,
-    /// From memory to the peripheral.
+    /// True from memory to the peripheral.
     pub outwards: bool,
-    /// Bytes of an item.
+    /// Size of an item [byte].
     pub size: u32,
 }
 
 impl Way {
-    /// The transfer of an item by its number.
+    /// Transfer of an item by its number.
     pub fn item(self, number: u32) -> Transfer {
         let memory = self.memory + if self.rises { number * self.size } else { 0 };
         let (from, to) = if self.outwards { (memory, self.peripheral) } else { (self.peripheral, memory) };
@@ -38,18 +37,18 @@ impl Way {
     }
 }
 
-/// What is reached with an item: RM0090 10.3.17, RM0440 12.4.6.
+/// Milestone reached with an item: RM0090 10.3.17, RM0440 12.4.6.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reached {
-    /// Neither of the others.
+    /// No milestone.
     Nothing,
     /// Half of the items.
     Half,
-    /// The last one.
+    /// Last item.
     End,
 }
 
-/// How far one that runs has come.
+/// Progress of a running channel.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Course {
     length: u32,
@@ -57,13 +56,13 @@ pub struct Course {
 }
 
 impl Course {
-    /// Begins with as many items as a register of numbers holds.
+    /// Starts with the number of items in a register.
     pub fn start(&mut self, registers: &Registers, number: u32) {
         *self = Self { length: registers.get(number), moved: 0 };
     }
 
-    /// The number of the next item, and what is reached with it. The register counts down; where the course is circular, it
-    /// holds the length again after the last item, which the first one follows (RM0090 10.3.8, RM0440 12.4.5).
+    /// Returns the number of the next item, and the milestone reached with it. The register counts down; in circular
+    /// mode it is reloaded after the last item (RM0090 10.3.8, RM0440 12.4.5).
     pub fn step(&mut self, circular: bool, registers: &mut Registers, number: u32) -> (u32, Reached) {
         let item = self.moved;
         self.moved += 1;
@@ -94,9 +93,9 @@ mod tests {
     const BUFFER: u32 = 0x2000_0100;
     const LENGTH: u32 = 16;
 
-    /// What differs between the chips: writes that begin to receive into the buffer round and round, with interrupts of half
-    /// and end and of an idle line; the register of what is left; interrupts of DMA and USART; the register of flags of DMA with
-    /// those of half and end; and accesses that clear the flag of an idle line.
+    /// Differences between the chips: writes that start circular reception with interrupts of half, end and idle line;
+    /// the register of remaining items; interrupts of DMA and USART; the DMA flag register with the flags of half and
+    /// end; and the accesses that clear the idle flag.
     struct Case {
         machine: Machine,
         writes: &'static [(u32, u32)],
@@ -183,7 +182,7 @@ mod tests {
         [f405, f405_low, g474]
     }
 
-    /// Lets time pass with what DMA moves in it, as the core does.
+    /// Advances time with the DMA transfers in it, as the core does.
     fn run_for(machine: &mut Machine, memory: &mut BTreeMap<u32, u8>, duration: Time) {
         let end = machine.time() + duration;
         while machine.time() < end {
@@ -201,7 +200,7 @@ mod tests {
         for (address, value) in case.writes {
             case.machine.set_up(*address, *value);
         }
-        // A receiver that is switched on sees an idle line first.
+        // A newly enabled receiver sees an idle line first.
         run_for(&mut case.machine, memory, cycles(12, BAUD));
         (case.clears)(&mut case.machine);
     }

@@ -1,12 +1,12 @@
-//! The DMA controllers of STM32G474 and STM32G431, by channels: RM0440 section 12. Between a peripheral and memory; which
-//! peripheral, the multiplexer says.
+//! DMA controllers of STM32G474 and STM32G431, by channels: RM0440 section 12. Transfers between a peripheral and
+//! memory; the multiplexer selects the peripheral.
 
 use super::Peripheral;
 use super::dma::{Course, Reached, Transfer, Way};
 use crate::register::{Register, Registers, bit, bits};
 use crate::wires::{Request, Wires};
 
-/// Most channels of a controller: STM32G431 has six.
+/// Maximum number of channels; the STM32G431 has six.
 const CHANNELS: u32 = 8;
 const ISR: u32 = 0x00;
 const IFCR: u32 = 0x04;
@@ -15,7 +15,8 @@ const STEP: u32 = 0x14;
 const NDTR: u32 = 0x04;
 const PAR: u32 = 0x08;
 const MAR: u32 = 0x0c;
-/// Flags of a channel: any, complete, half. The interrupts of the last two are at the same places of the control register.
+/// Flags of a channel: any, complete, half. The enable bits of the last two have the same positions in the control
+/// register.
 const ANY: u32 = bit(0);
 const COMPLETE: u32 = bit(1);
 const HALF: u32 = bit(2);
@@ -43,7 +44,7 @@ const fn map() -> [Register; 34] {
     map
 }
 
-/// A controller.
+/// DMA controller.
 #[derive(Debug)]
 pub struct DmaChannels {
     registers: Registers,
@@ -53,7 +54,7 @@ pub struct DmaChannels {
 }
 
 impl DmaChannels {
-    /// By its number, with so many channels.
+    /// Controller by its number, with a number of channels.
     pub fn new(number: u32, channels: u32) -> Self {
         let registers = Registers::new(&MAP[..2 + 4 * channels as usize]);
         Self { registers, number, channels, courses: Default::default() }
@@ -116,7 +117,7 @@ impl Peripheral for DmaChannels {
                 let channel = (offset - FIRST) / STEP;
                 let control = (offset - FIRST).is_multiple_of(STEP);
                 let was_on = if control { before & 1 == 1 } else { self.is_on(channel) };
-                // RM0440 12.6.3: all but EN itself can be written while the channel is off only.
+                // RM0440 12.6.3: only EN itself can be written while the channel is on.
                 if was_on && (!control || value & 1 == 1 && (value ^ before) & !bits(3, 0) != 0) {
                     let what = format!("channel {} is set up while it is on", channel + 1);
                     wires.violation("DMA_CCRx", what, "RM0440 12.6.3");

@@ -1,4 +1,4 @@
-//! The DMA controllers of STM32F405, by streams: RM0090 section 10. Direct mode between a peripheral and memory.
+//! DMA controllers of STM32F405, by streams: RM0090 section 10. Direct mode between a peripheral and memory.
 
 use super::Peripheral;
 use super::dma::{Course, Reached, Transfer, Way};
@@ -16,15 +16,15 @@ const FCR: u32 = 0x14;
 const FLAGS: u32 = 0x3d;
 const HALF: u32 = bit(4);
 const COMPLETE: u32 = bit(5);
-/// Interrupts of errors, half and end in the control register, one place below their flags.
+/// Interrupt enables of errors, half and end in the control register, one position below their flags.
 const ENABLES: u32 = bits(4, 1);
 const CIRCULAR: u32 = 8;
 /// Interrupts of the streams of DMA1 and DMA2: RM0090 table 61.
 const INTERRUPTS: [[usize; STREAMS as usize]; 2] = [[11, 12, 13, 14, 15, 16, 17, 47], [56, 57, 58, 59, 60, 68, 69, 70]];
-/// Where the flags of four streams begin in a register.
+/// Positions of the flags of four streams in a register.
 const PLACES: [u32; 4] = [0, 6, 16, 22];
 const ALL_FLAGS: u32 = 0x0f7d_0f7d;
-/// Who is on which stream and channel of DMA1, as far as it is modelled: RM0090 table 42.
+/// Requests by stream and channel of DMA1, as far as modelled: RM0090 table 42.
 const DMA1: [(u32, u32, Request); 9] = [
     (0, 4, Request::UsartReceived(5)),
     (1, 4, Request::UsartReceived(3)),
@@ -36,7 +36,7 @@ const DMA1: [(u32, u32, Request); 9] = [
     (6, 4, Request::UsartToSend(2)),
     (7, 4, Request::UsartToSend(5)),
 ];
-/// The same of DMA2: RM0090 table 43.
+/// Requests by stream and channel of DMA2, as far as modelled: RM0090 table 43.
 const DMA2: [(u32, u32, Request); 11] = [
     (0, 3, Request::SpiReceived(1)),
     (2, 3, Request::SpiReceived(1)),
@@ -73,7 +73,7 @@ const fn map() -> [Register; 52] {
     map
 }
 
-/// A controller.
+/// DMA controller.
 #[derive(Debug)]
 pub struct DmaStreams {
     registers: Registers,
@@ -82,7 +82,7 @@ pub struct DmaStreams {
 }
 
 impl DmaStreams {
-    /// By its number.
+    /// Controller by its number.
     pub fn new(number: usize) -> Self {
         Self { registers: Registers::new(&MAP), number, courses: Default::default() }
     }
@@ -97,7 +97,7 @@ impl DmaStreams {
         requests.iter().find(|(place, number, _)| (*place, *number) == (stream, channel)).map(|(.., request)| *request)
     }
 
-    /// Register of a stream's flags, and their place in it.
+    /// Register of a stream's flags, and their position in it.
     fn flag_place(stream: u32) -> (u32, u32) {
         (if stream < 4 { 0x00 } else { 0x04 }, PLACES[stream as usize % 4])
     }
@@ -159,7 +159,7 @@ impl Peripheral for DmaStreams {
                 let stream = (offset - FIRST) / STEP;
                 let control = (offset - FIRST).is_multiple_of(STEP);
                 let was_on = if control { before & 1 == 1 } else { self.is_on(stream) };
-                // RM0090 10.5.5 to 10.5.10: all but EN itself can be written while the stream is off only.
+                // RM0090 10.5.5 to 10.5.10: only EN itself can be written while the stream is on.
                 if was_on && (!control || value & 1 == 1 && value != before) {
                     wires.violation("DMA_Sx", format!("stream {stream} is set up while it is on"), "RM0090 10.5.5");
                 }
@@ -167,7 +167,7 @@ impl Peripheral for DmaStreams {
                     self.start(stream, wires);
                 }
                 if control && was_on && value & 1 == 0 {
-                    // RM0090 10.3.16: switching off sets the flag of the end.
+                    // RM0090 10.3.16: switching off sets the end flag.
                     self.flag(stream, COMPLETE);
                 }
             }

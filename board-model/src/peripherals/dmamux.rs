@@ -1,11 +1,11 @@
-//! The multiplexer of requests of STM32G474 and STM32G431: RM0440 section 13. Its first outputs are the channels of DMA1, the
-//! others those of DMA2: eight each, or six.
+//! DMA request multiplexer of STM32G474 and STM32G431: RM0440 section 13. Its first outputs are the channels of DMA1,
+//! the others those of DMA2: eight each, or six.
 
 use super::Peripheral;
 use crate::register::{Register, Registers};
 use crate::wires::{Request, Wires};
 
-/// Most outputs.
+/// Maximum number of outputs.
 const OUTPUTS: u32 = 16;
 
 static MAP: [Register; 18] = map();
@@ -22,7 +22,7 @@ const fn map() -> [Register; 18] {
     map
 }
 
-/// The multiplexer.
+/// DMA request multiplexer.
 #[derive(Debug)]
 pub struct DmaMux {
     registers: Registers,
@@ -30,7 +30,7 @@ pub struct DmaMux {
 }
 
 impl DmaMux {
-    /// For controllers of so many channels.
+    /// Multiplexer for controllers with a number of channels.
     pub fn new(channels: u32) -> Self {
         Self { registers: Registers::new(&MAP[..2 + 2 * channels as usize]), channels }
     }

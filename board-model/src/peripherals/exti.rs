@@ -1,4 +1,4 @@
-//! External interrupts: RM0090 section 12, RM0440 section 15. Lines 0 to 15, which are pins.
+//! External interrupts: RM0090 section 12, RM0440 section 15. Only lines 0 to 15 (pins) are modelled.
 
 use super::Peripheral;
 use crate::register::{Register, Registers};
@@ -28,7 +28,7 @@ const RTSR: u32 = 0x08;
 const FTSR: u32 = 0x0c;
 const PR: u32 = 0x14;
 
-/// Interrupts of lines 0 to 15, the same on both chips: 0 to 4 alone, then two groups.
+/// Interrupts of lines 0 to 15, equal on both chips: 0 to 4 single, then two groups.
 const INTERRUPTS: [(u32, usize); 7] = [(0x1, 6), (0x2, 7), (0x4, 8), (0x8, 9), (0x10, 10), (0x3e0, 23), (0xfc00, 40)];
 
 /// External interrupts.
@@ -39,12 +39,12 @@ pub struct Exti {
 }
 
 impl Exti {
-    /// Of F405.
+    /// Controller of the STM32F405.
     pub fn f4() -> Self {
         Self { registers: Registers::new(&F4), levels: [false; 16] }
     }
 
-    /// Of G474.
+    /// Controller of the STM32G474.
     pub fn g4() -> Self {
         Self { registers: Registers::new(&G4), levels: [false; 16] }
     }
@@ -57,7 +57,7 @@ impl Peripheral for Exti {
 
     fn written(&mut self, offset: u32, value: u32, _before: u32, wires: &mut Wires) {
         if offset == PR {
-            // RM0090 12.3.6: ones clear.
+            // RM0090 12.3.6: writing ones clears.
             self.registers.change(PR, 0, value);
         }
         self.advance(wires);

@@ -1,4 +1,4 @@
-//! What flash controllers share: the array behind the image, with words that a lost power has left damaged.
+//! Parts shared by the flash controllers: the array behind the image, with words damaged by a loss of power.
 
 use std::collections::BTreeSet;
 
@@ -12,48 +12,48 @@ pub const BASE: u32 = 0x0800_0000;
 /// Keys of the control register: RM0090 3.6.1, RM0440 3.3.5, RM0433 4.5.1.
 pub const KEYS: [u32; 2] = [0x4567_0123, 0xcdef_89ab];
 
-/// Flash that no image is in.
+/// Flash outside of the image.
 #[derive(Debug, Clone)]
 pub struct Array {
     start: u32,
     bytes: Vec<u8>,
-    /// Bytes that are programmed together, and checked together where there are check bits.
+    /// Size of a word: programmed together, and checked together if there are check bits [byte].
     word: u32,
     has_check_bits: bool,
     damaged: BTreeSet<u32>,
 }
 
 impl Array {
-    /// Erased, from an address to the end of a flash of a size.
+    /// Erased array from an address to the end of the flash.
     pub fn new(start: u32, size: u32, word: u32, has_check_bits: bool) -> Self {
         let bytes = vec![0xff; (BASE + size).saturating_sub(start) as usize];
         Self { start, bytes, word, has_check_bits, damaged: BTreeSet::new() }
     }
 
-    /// Whether an address is in it.
+    /// Returns whether an address is in the array.
     pub fn holds(&self, address: u32) -> bool {
         address >= self.start && ((address - self.start) as usize) < self.bytes.len()
     }
 
-    /// What is there, little endian.
+    /// Reads little-endian data.
     pub fn read(&self, address: u32, size: u32) -> u64 {
         let place = (address - self.start) as usize;
         let bytes = self.bytes.iter().skip(place).take(size as usize);
         bytes.rev().fold(0, |value, byte| value << 8 | u64::from(*byte))
     }
 
-    /// Whether the word around an address was left with check bits that do not fit it.
+    /// Returns whether the check bits of the word around an address are wrong.
     pub fn is_damaged(&self, address: u32) -> bool {
         self.damaged.contains(&(address / self.word))
     }
 
-    /// Whether all of the word around an address is as erased.
+    /// Returns whether the word around an address is erased.
     pub fn is_erased(&self, address: u32) -> bool {
         let first = address / self.word * self.word;
         (0..self.word).all(|byte| self.read(first + byte, 1) == 0xff) && !self.is_damaged(address)
     }
 
-    /// Clears bits: a program can do nothing else.
+    /// Clears bits, the only effect of a program.
     pub fn program(&mut self, address: u32, size: u32, value: u64) {
         for index in 0..size {
             if let Some(byte) = self.bytes.get_mut((address + index - self.start) as usize) {
@@ -62,7 +62,7 @@ impl Array {
         }
     }
 
-    /// Power went while a word was programmed: some of the bits that were to be cleared are, and its check bits do not fit.
+    /// Programs a word incompletely: power fails, only some of the bits are cleared, and the check bits are wrong.
     pub fn leave_programmed(&mut self, address: u32, size: u32, value: u64, how_far: HowFar) {
         if how_far != HowFar::Before {
             self.program(address, size, value | noise(address));
@@ -70,16 +70,16 @@ impl Array {
         }
     }
 
-    /// Erases from an address on; what of it the image holds is a violation.
+    /// Erases a range; erasing a part of the image is a violation.
     pub fn erase(&mut self, address: u32, size: u32, wires: &mut Wires) {
         self.spare_image(address, wires);
         self.erase_words(address, size, |_| Left::Erased);
     }
 
-    /// Power went while that was done: each word is as it was, or erased, or neither.
+    /// Erases incompletely: power fails, and each word is unchanged, erased, or damaged.
     pub fn leave_erased(&mut self, address: u32, size: u32, how_far: HowFar, wires: &mut Wires) {
         self.spare_image(address, wires);
-        // Eighths that are as they were, and those that are erased.
+        // Eighths of the words that are unchanged, and that are erased.
         let (old, erased) = match how_far {
             HowFar::Before => (8, 0),
             HowFar::Early => (6, 0),
@@ -125,50 +125,50 @@ impl Array {
     }
 }
 
-/// What an erase that was cut leaves of a word.
+/// State of a word after an interrupted erase.
 enum Left {
     Old,
     Erased,
     Neither,
 }
 
-/// Bits of no order, the same in every run.
+/// Pseudo-random bits, equal in every run.
 fn noise(address: u32) -> u64 {
     let mixed = u64::from(address / 4).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     (mixed ^ mixed >> 29).wrapping_mul(0xbf58_476d_1ce4_e5b9) >> 3
 }
 
-/// The caches in front of the flash of F405 and G474, by their access control register: RM0090 3.9.1, RM0440 3.7.1.
+/// Caches in front of the flash of F405 and G474, by their access control register: RM0090 3.9.1, RM0440 3.7.1.
 #[derive(Debug, Clone)]
 pub struct Caches {
-    /// Sections of the register, and of what a cache returns.
+    /// Sections of the register, and of the returned data.
     sections: [&'static str; 2],
-    /// That of data is on after a reset.
+    /// True if the data cache is on after a reset.
     is_on_after_reset: bool,
-    /// It holds something, also while it is off.
+    /// True if the data cache holds data, even while it is off.
     filled: bool,
-    /// What it holds may be what was there before.
+    /// True if the held data may be outdated.
     stale: bool,
 }
 
 impl Caches {
-    /// ICEN, DCEN, ICRST and DCRST.
+    /// Positions of ICEN and DCEN, and of ICRST and DCRST.
     const ENABLES: [u32; 2] = [9, 10];
     const RESETS: [u32; 2] = [11, 12];
-    /// Bits that writes change by way of [`Caches::written`].
+    /// Bits that only [`Caches::written`] changes.
     pub const SPECIAL: u32 = bits(12, 11);
 
-    /// As after a reset, with the sections of the access control register and of what a cache returns.
+    /// Caches after a reset, with the sections of the access control register and of the returned data.
     pub fn new(sections: [&'static str; 2], is_on_after_reset: bool) -> Self {
         Self { sections, is_on_after_reset, filled: is_on_after_reset, stale: false }
     }
 
-    /// Whether that of data is on.
+    /// Returns whether the data cache is on.
     fn keeps_data(registers: &Registers) -> bool {
         registers.is_set(ACR, Self::ENABLES[1])
     }
 
-    /// The access control register was written.
+    /// Handles a write of the access control register.
     pub fn written(&mut self, value: u32, registers: &mut Registers, wires: &mut Wires) {
         for ((reset, enable), what) in Self::RESETS.into_iter().zip(Self::ENABLES).zip(["instruction", "data"]) {
             if value & bit(reset) != 0 && value & bit(enable) != 0 {
@@ -183,13 +183,13 @@ impl Caches {
         registers.change(ACR, value & Self::SPECIAL, Self::SPECIAL);
     }
 
-    /// Flash changes; whether the cache of data is on while it does.
+    /// Records a change of flash; returns whether the data cache is on.
     pub fn flash_changes(&mut self, registers: &Registers) -> bool {
         self.stale |= self.filled;
         Self::keeps_data(registers)
     }
 
-    /// Flash is read.
+    /// Checks a read of flash.
     pub fn flash_is_read(&self, registers: &Registers, wires: &mut Wires) {
         if self.stale && Self::keeps_data(registers) {
             let what = "is read through a data cache that was not reset since flash was changed";
@@ -197,46 +197,46 @@ impl Caches {
         }
     }
 
-    /// As after a reset.
+    /// Resets the caches.
     pub fn reset(&mut self) {
         *self = Self::new(self.sections, self.is_on_after_reset);
     }
 }
 
-/// An erase or a program under way.
+/// Erase or program in progress.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Work {
     until: Time,
 }
 
 impl Work {
-    /// One that takes a time begins.
+    /// Starts an operation of a duration.
     pub fn begin(&mut self, duration: Time, wires: &Wires) {
         self.until = wires.now + duration;
     }
 
-    /// Whether it goes on.
+    /// Returns whether the operation is in progress.
     pub fn goes_on(self, wires: &Wires) -> bool {
         self.left(wires) > 0
     }
 
-    /// Time to its end, which whoever reads or writes there meanwhile waits.
+    /// Remaining time, for which accesses to the same bank wait.
     pub fn left(self, wires: &Wires) -> Time {
         self.until.saturating_sub(wires.now)
     }
 }
 
-/// The sequence of keys.
+/// Lock with a sequence of keys.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lock {
-    /// Nothing, or the first key.
+    /// No key yet, or the first one.
     Locked {
-        /// Keys taken so far.
+        /// Number of accepted keys.
         keys: usize,
     },
-    /// Open.
+    /// Unlocked.
     Open,
-    /// A wrong key was given: locked until the next reset.
+    /// A wrong key was written: locked until the next reset.
     Shut,
 }
 
@@ -247,7 +247,7 @@ impl Default for Lock {
 }
 
 impl Lock {
-    /// A key is written.
+    /// Handles a write of a key.
     pub fn key(&mut self, key: u32, register: &str, wires: &mut Wires) {
         *self = match *self {
             Self::Locked { keys } if key == KEYS[keys] => {
@@ -296,7 +296,7 @@ mod tests {
     fn option_bytes_are_not_touched() {
         let machine = |chip| Machine::new(chip, Surroundings::default(), Cable::default(), 1000);
         for (mut machine, writes) in [
-            // Keys of the options, the options, on STM32G474 also that they are loaded.
+            // Keys of the options, the options, and on the STM32G474 their reload.
             (machine(chips::f405::chip(BASE + 0x1000)), &[(0x4002_3c08, 0x0819_2a3b), (0x4002_3c14, 0x0fff_aaee)][..]),
             (
                 machine(chips::g474::chip(BASE + 0x1000)),

@@ -1,4 +1,4 @@
-//! The flash controller of STM32F405: RM0090 section 3. One bank: whoever reads while it is at work waits for it.
+//! Flash controller of STM32F405: RM0090 section 3. Single bank: reads during an operation wait for its end.
 
 use super::Peripheral;
 use super::flash::{ACR, Array, BASE, Caches, Lock, Work};
@@ -8,7 +8,7 @@ use crate::wires::{MICROSECOND, Operation, Time, Wires};
 const KEYR: u32 = 0x04;
 const SR: u32 = 0x0c;
 const CR: u32 = 0x10;
-/// A mebibyte.
+/// One mebibyte.
 const SIZE: u32 = 0x10_0000;
 const KIB: u32 = 1024;
 
@@ -22,14 +22,14 @@ static MAP: [Register; 6] = [
     Register::new("FLASH_OPTCR", 0x14, 0x0fff_aaed, 0x0fff_ffef).special(u32::MAX),
 ];
 
-/// Data sheet of STM32F405, table 40: erase of a 128 KiB sector with words 1 s (2 s at most), of smaller ones less; a word
-/// 16 us.
+/// Data sheet of STM32F405, table 40: erasing a 128 KiB sector by words takes 1 s (2 s at most), smaller sectors less;
+/// a word takes 16 us.
 const ERASE_PER_KIB: Time = 7800 * MICROSECOND;
 const PROGRAM: Time = 16 * MICROSECOND;
-/// RM0090 table 10, 2.7 to 3.6 V: a wait state for each 30 MHz.
+/// RM0090 table 10, 2.7 to 3.6 V: one wait state per 30 MHz.
 const PER_WAIT_STATE: u64 = 30_000_000;
 
-/// The controller.
+/// Flash controller.
 #[derive(Debug)]
 pub struct Flash {
     registers: Registers,
@@ -40,7 +40,7 @@ pub struct Flash {
 }
 
 impl Flash {
-    /// With an image up to an address.
+    /// Controller with an image that ends at an address.
     pub fn new(image_end: u32) -> Self {
         Self {
             registers: Registers::new(&MAP),
@@ -53,7 +53,7 @@ impl Flash {
 
     fn work(&mut self, duration: Time, wires: &mut Wires) {
         self.work.begin(duration, wires);
-        // RM0090 3.6: reads of flash, instructions too, wait until the end.
+        // RM0090 3.6: reads of flash, including instructions, wait for the end.
         wires.stall += duration;
         self.caches.flash_changes(&self.registers);
     }
@@ -173,7 +173,7 @@ impl Peripheral for Flash {
             wires.violation("flash", "is programmed over what is not erased", "RM0090 3.6.4");
         }
         if let Some(how_far) = wires.begins_flash_operation(Operation::Program) {
-            // F405 has no check of its words: nothing tells them from good ones.
+            // The F405 has no check bits: damaged words cannot be told from good ones.
             self.array.leave_programmed(address, size, value, how_far);
             return true;
         }

@@ -1,6 +1,7 @@
-//! The flash controllers of STM32G474 (category 3), RM0440 section 3, and of STM32G431 (category 2), section 5. Double words
-//! with their check bits. Category 3 has two banks, of which code in one runs while the other is at work, or by an option byte one
-//! bank with pages of twice the size; category 2 has one bank with pages of the usual size. Sections are those of category 3.
+//! Flash controllers of STM32G474 (category 3), RM0440 section 3, and of STM32G431 (category 2), section 5: double
+//! words with check bits. Category 3 has two banks, and code in one runs while the other is busy, or by an option byte
+//! one bank with pages of twice the size; category 2 has one bank with pages of 2 KiB. Sections are those of category
+//! 3.
 
 use super::Peripheral;
 use super::flash::{ACR, Array, BASE, Caches, Lock, Work};
@@ -12,14 +13,14 @@ const SR: u32 = 0x10;
 const CR: u32 = 0x14;
 const ECCR: u32 = 0x18;
 const OPTR: u32 = 0x20;
-/// Of category 3: 512 KiB in two banks.
+/// Category 3: 512 KiB in two banks.
 const SIZE: u32 = 0x8_0000;
 const BANK: u32 = SIZE / 2;
-/// Of category 2: 128 KiB.
+/// Category 2: 128 KiB.
 const SMALL_SIZE: u32 = 0x2_0000;
 const PAGE: u32 = 0x800;
 const DOUBLE_WORD: u32 = 8;
-/// Flags of an error in two bits.
+/// Error flags of two-bit errors.
 const ECCD: u32 = bit(31);
 const ECCD2: u32 = bit(29);
 const ERRORS: u32 = 0xc3fa;
@@ -28,7 +29,7 @@ const ERRORS: u32 = 0xc3fa;
 static CATEGORY_3: [Register; 8] = map(0xff07_8bff, 0xf167_ffff, 0x7fdf_77ff);
 static CATEGORY_2: [Register; 8] = map(0xdf07_03ff, 0xc147_ffff, 0x7f8f_77ff);
 
-/// The register map, with fields of the three that differ.
+/// Register map, with the fields of the three registers that differ.
 const fn map(control: u32, check: u32, options: u32) -> [Register; 8] {
     [
         Register::new("FLASH_ACR", ACR, 0x0004_0600, 0x0004_7f0f).special(Caches::SPECIAL),
@@ -38,16 +39,16 @@ const fn map(control: u32, check: u32, options: u32) -> [Register; 8] {
         Register::new("FLASH_SR", SR, 0, 0x0001_c3fb).special(u32::MAX),
         Register::new("FLASH_CR", CR, 0xc000_0000, control).special(u32::MAX),
         Register::new("FLASH_ECCR", ECCR, 0, check).special(u32::MAX),
-        // DBANK (22) is 1 as delivered.
+        // DBANK (22) is 1 in the factory setting.
         Register::new("FLASH_OPTR", OPTR, 0xffef_f8aa, options).special(u32::MAX),
     ]
 }
 
-/// Data sheet of STM32G474, table 52: a page 22 ms, a double word 82 us.
+/// Data sheet of STM32G474, table 52: 22 ms per page, 82 us per double word.
 const ERASE: Time = 22_000 * MICROSECOND;
 const PROGRAM: Time = 82 * MICROSECOND;
 
-/// The controller.
+/// Flash controller.
 #[derive(Debug)]
 pub struct Flash {
     registers: Registers,
@@ -55,18 +56,18 @@ pub struct Flash {
     array: Array,
     lock: Lock,
     work: Work,
-    /// The first half of a double word, and where it goes.
+    /// First half of a double word, with its address.
     half: Option<(u32, u32)>,
     caches: Caches,
 }
 
 impl Flash {
-    /// Of STM32G474, with an image up to an address.
+    /// Controller of the STM32G474, with an image that ends at an address.
     pub fn category_3(image_end: u32) -> Self {
         Self::with(&CATEGORY_3, true, Array::new(image_end, SIZE, DOUBLE_WORD, true))
     }
 
-    /// Of STM32G431.
+    /// Controller of the STM32G431, with an image that ends at an address.
     pub fn category_2(image_end: u32) -> Self {
         Self::with(&CATEGORY_2, false, Array::new(image_end, SMALL_SIZE, DOUBLE_WORD, true))
     }
@@ -83,17 +84,17 @@ impl Flash {
         }
     }
 
-    /// Whether the core waits for an operation on an address: RM0440 3.3.6, reads of the bank at work wait for it,
-    /// instructions too.
+    /// Returns whether the core waits for an operation on an address.
+    /// RM0440 3.3.6: reads of the busy bank wait for the operation, including instruction fetches.
     fn holds_up(&self, address: u32, wires: &Wires) -> bool {
         !self.has_two_banks || wires.single_bank || address < BASE + BANK
     }
 
-    /// An operation on an address begins.
+    /// Starts an operation on an address.
     fn work(&mut self, address: u32, duration: Time, wires: &mut Wires) {
         self.work.begin(duration, wires);
         if self.caches.flash_changes(&self.registers) && !self.holds_up(address, wires) {
-            // ES0430 2.2.2: a read of the one bank while the other is at work may corrupt the data cache.
+            // ES0430 2.2.2: a read of one bank while the other is busy may corrupt the data cache.
             let what = "the data cache is on while a bank is erased or programmed beside running code";
             wires.violation("FLASH_ACR", what, "ES0430 2.2.2");
         }
@@ -154,7 +155,7 @@ impl Flash {
         self.work(first, ERASE, wires);
     }
 
-    /// Both halves are there.
+    /// Programs a complete double word.
     fn program(&mut self, address: u32, value: u64, wires: &mut Wires) {
         if !self.array.is_erased(address) && value != 0 {
             self.registers.change(SR, bit(3), 0);
@@ -187,7 +188,7 @@ impl Peripheral for Flash {
             KEYR => self.lock.key(value, "FLASH_KEYR", wires),
             SR => self.registers.change(SR, 0, value & 0xc3fb),
             CR => self.control_written(value, wires),
-            // ECCC (30) and ECCD (31) are cleared by ones.
+            // ECCC (30) and ECCD (31) are cleared by writing ones.
             ECCR => self.registers.change(ECCR, value & bit(24), value & bits(31, 28) | bit(24)),
             _ => wires.violation("FLASH", "option bytes are not modelled and not to be touched", "RM0440 3.4"),
         }
@@ -205,7 +206,7 @@ impl Peripheral for Flash {
         let busy = self.work.goes_on(wires);
         self.registers.change(SR, u32::from(busy) << 16, bit(16));
         let waits = u64::from(self.registers.field(ACR, 0, 4));
-        // RM0440 3.3.3, table 9: steps of range 1 boost, range 1 normal, range 2.
+        // RM0440 3.3.3, table 9: clock per wait state in range 1 boost, range 1 normal, range 2.
         let step = match (wires.voltage, wires.boost) {
             (2, _) => 12_000_000,
             (_, true) => 34_000_000,
@@ -215,7 +216,7 @@ impl Peripheral for Flash {
             let what = format!("{waits} wait states are too few for {} Hz", wires.clocks.bus);
             wires.violation("FLASH_ACR", what, "RM0440 3.3.3, table 9");
         }
-        // RM0440 3.3.8: the flag of an error in two bits holds the non-maskable interrupt.
+        // RM0440 3.3.8: the flag of a two-bit error holds the non-maskable interrupt.
         wires.non_maskable |= self.registers.get(ECCR) & (ECCD | ECCD2) != 0;
     }
 
@@ -232,8 +233,8 @@ impl Peripheral for Flash {
         }
         self.caches.flash_is_read(&self.registers, wires);
         if self.array.is_damaged(address) {
-            // RM0440 3.7.7: the first one is kept: its bank, and the double word's place in that.
-            // In one bank two of them are read together, and the second one has a flag of its own.
+            // RM0440 3.7.7: the register keeps the first error, with its bank and its offset in the bank.
+            // In single-bank mode two double words are read together, and the second one has its own flag.
             let offset = (address - BASE) / DOUBLE_WORD * DOUBLE_WORD;
             let (flag, bank, place) = match wires.single_bank && self.has_two_banks {
                 true if offset & DOUBLE_WORD != 0 => (ECCD2, 0, offset - DOUBLE_WORD),

@@ -1,5 +1,5 @@
-//! The flash controller of STM32H743: RM0433 section 4. Two banks with registers of their own, words of 256 bits with their
-//! check bits, gathered in a buffer before they are programmed.
+//! Flash controller of STM32H743: RM0433 section 4. Two banks with their own registers, words of 256 bits with check
+//! bits, collected in a buffer before they are programmed.
 
 use super::Peripheral;
 use super::flash::{ACR, Array, BASE, Lock, Work};
@@ -11,7 +11,7 @@ const CR: u32 = 0x0c;
 const SR: u32 = 0x10;
 const CCR: u32 = 0x14;
 const ECC_FA: u32 = 0x60;
-/// Registers of the second bank are so much further.
+/// Offset from the first bank's registers to the second bank's.
 const SECOND: u32 = 0x100;
 /// 2 MiB in two banks.
 const SIZE: u32 = 0x20_0000;
@@ -39,27 +39,28 @@ static MAP: [Register; 14] = [
     Register::new("FLASH_ECC_FA2", SECOND + ECC_FA, 0, 0x7fff).special(u32::MAX),
 ];
 
-/// Data sheet of STM32H743, table 53: a sector 1 s by double words, 256 bits 100 us.
+/// Data sheet of STM32H743, table 53: 1 s per sector by double words, 100 us per 256 bits.
 const ERASE: Time = 1_000_000 * MICROSECOND;
 const PROGRAM: Time = 100 * MICROSECOND;
 
-/// RM0433 table 17: highest clock of the bus by voltage scale, number of wait states and WRHIGHFREQ at least [MHz].
+/// RM0433 table 17: highest bus clock by voltage scale, with the minimum number of wait states and minimum WRHIGHFREQ
+/// [MHz].
 const SPEEDS: [&[(u64, u32, u32)]; 3] = [
     &[(70, 0, 0), (140, 1, 1), (185, 2, 1), (210, 2, 2), (225, 3, 2)],
     &[(55, 0, 0), (110, 1, 1), (165, 2, 1), (225, 3, 2)],
     &[(45, 0, 0), (90, 1, 1), (135, 2, 1), (180, 3, 2), (225, 4, 2)],
 ];
 
-/// A bank's state.
+/// State of a bank.
 #[derive(Debug, Clone, Default)]
 struct Bank {
     lock: Lock,
     work: Work,
-    /// Where the word being gathered begins, and the half-bytes of it that are there.
+    /// Address of the word being collected, and its 32-bit parts written so far.
     gathered: Option<(u32, [Option<u32>; 8])>,
 }
 
-/// The controller.
+/// Flash controller.
 #[derive(Debug)]
 pub struct Flash {
     registers: Registers,
@@ -68,7 +69,7 @@ pub struct Flash {
 }
 
 impl Flash {
-    /// With an image up to an address.
+    /// Controller with an image that ends at an address.
     pub fn new(image_end: u32) -> Self {
         Self {
             registers: Registers::new(&MAP),
@@ -81,7 +82,7 @@ impl Flash {
         let control = bank as u32 * SECOND + CR;
         let programs = before & bit(1) != 0 && value & bit(1) == 0;
         if programs && !wires.barrier {
-            // RM0433 4.3.9 with ARMv7-M A3.7.3: a store may still be on its way when the next register is written.
+            // RM0433 4.3.9 with ARMv7-M A3.7.3: a store may still be pending when the next register is written.
             let what = "PG is cleared with no DSB after the stores to flash";
             wires.violation("FLASH_CR", what, "RM0433 4.3.9, ARMv7-M A3.7.3");
         }
@@ -219,7 +220,7 @@ impl Peripheral for Flash {
         }
         let bank = bank_of(address);
         if self.array.is_damaged(address) {
-            // RM0433 4.7.3: an error in two bits is a bus error, and its flag holds the place of the first word with one.
+            // RM0433 4.7.3: a two-bit error is a bus error; the register keeps the address of the first one.
             let offset = bank as u32 * SECOND;
             if !self.registers.is_set(offset + SR, 26) {
                 self.registers.set(offset + ECC_FA, (address - BASE) % BANK / WORD);
@@ -252,7 +253,7 @@ impl Peripheral for Flash {
             wires.violation("flash", what, section);
             return true;
         }
-        // A write while the bank is at work waits in the bus.
+        // A write to a busy bank waits on the bus.
         wires.stall += self.banks[bank].work.left(wires);
         self.gather(bank, address, value as u32, wires);
         true

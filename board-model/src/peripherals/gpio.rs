@@ -1,5 +1,5 @@
-//! General-purpose ports: RM0090 section 8, RM0440 section 9, RM0433 section 11. The three differ in reset values, and F405
-//! has no register BRR.
+//! General-purpose ports: RM0090 section 8, RM0440 section 9, RM0433 section 11. They differ in reset values, and the
+//! F405 has no register BRR.
 
 use super::Peripheral;
 use crate::register::{Register, Registers};
@@ -16,7 +16,7 @@ const AFRL: u32 = 0x20;
 const AFRH: u32 = 0x24;
 const BRR: u32 = 0x28;
 
-/// The register map, with a port's reset values of MODER, OSPEEDR and PUPDR.
+/// Register map, with a port's reset values of MODER, OSPEEDR and PUPDR.
 const fn map(moder: u32, ospeedr: u32, pupdr: u32) -> [Register; 11] {
     [
         Register::new("MODER", MODER, moder, u32::MAX).any_width(),
@@ -33,38 +33,38 @@ const fn map(moder: u32, ospeedr: u32, pupdr: u32) -> [Register; 11] {
     ]
 }
 
-/// RM0090 8.4: port A holds the debug pins, port B some of them; all others are inputs.
+/// RM0090 8.4: port A has the debug pins, port B some of them; all others are inputs.
 static F4_A: [Register; 11] = map(0xa800_0000, 0x0c00_0000, 0x6400_0000);
 static F4_B: [Register; 11] = map(0x0000_0280, 0x0000_00c0, 0x0000_0100);
 static F4_OTHER: [Register; 11] = map(0, 0, 0);
-/// RM0440 9.4, RM0433 11.4: pins are analog after a reset, but for the debug pins.
+/// RM0440 9.4, RM0433 11.4: after a reset all pins but the debug pins are analog.
 static NEWER_A: [Register; 11] = map(0xabff_ffff, 0x0c00_0000, 0x6400_0000);
 static NEWER_B: [Register; 11] = map(0xffff_febf, 0x0000_00c0, 0x0000_0100);
 static NEWER_OTHER: [Register; 11] = map(0xffff_ffff, 0, 0);
 
-/// A port.
+/// General-purpose port.
 #[derive(Debug)]
 pub struct Gpio {
     port: char,
     has_brr: bool,
     registers: Registers,
-    /// Its pins are not yet on the wires as they are.
+    /// True if the pins on the wires are not up to date.
     is_new: bool,
 }
 
 impl Gpio {
-    /// Of F405.
+    /// Port of the STM32F405.
     pub fn f4(port: char) -> Self {
         let table = match port {
             'A' => &F4_A,
             'B' => &F4_B,
             _ => &F4_OTHER,
         };
-        // RM0090 8.4.11: its map ends with AFRH.
+        // RM0090 8.4.11: its register map ends with AFRH.
         Self { port, has_brr: false, registers: Registers::new(&table[..10]), is_new: true }
     }
 
-    /// Of G474, and of H743, which has no BRR either (RM0433 11.4).
+    /// Port of the STM32G474, and of the STM32H743, which has no BRR either (RM0433 11.4).
     pub fn newer(port: char, has_brr: bool) -> Self {
         let table = match port {
             'A' => &NEWER_A,
@@ -74,7 +74,7 @@ impl Gpio {
         Self { port, has_brr, registers: Registers::new(&table[..if has_brr { 11 } else { 10 }]), is_new: true }
     }
 
-    /// Whether anything of a pin is not as after a reset.
+    /// Returns whether any setting of a pin differs from its reset value.
     fn is_set_up(&self, pin: u32) -> bool {
         let functions = if pin < 8 { AFRL } else { AFRH };
         [(MODER, 2), (OTYPER, 1), (OSPEEDR, 2), (PUPDR, 2), (ODR, 1), (functions, 4)].into_iter().any(
@@ -157,7 +157,7 @@ mod tests {
             Machine::new(chips::f405::chip(BASE + 0x1000), Surroundings::default(), Cable::default(), 1000);
         machine.settle();
         machine.set_up(0x4002_3830, 0b111);
-        // A mode and its reset value again, a pull, a function, and the debug port as it is.
+        // A mode and back to its reset value, a pull, a function, and the debug port unchanged.
         for (address, value) in [
             (0x4002_0800, 1 << 6),
             (0x4002_0800, 0),

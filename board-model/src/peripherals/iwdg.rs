@@ -1,5 +1,5 @@
-//! The independent watchdog: RM0090 section 21, RM0440 section 42, RM0433 section 45. Only the newer ones have a window. It
-//! may stand still while a debugger holds the core.
+//! Independent watchdog: RM0090 section 21, RM0440 section 42, RM0433 section 45. Only the newer ones have a window. It
+//! can be frozen while a debugger holds the core.
 
 use super::Peripheral;
 use crate::register::{Register, Registers};
@@ -19,26 +19,26 @@ static MAP: [Register; 5] = [
     Register::new("IWDG_WINR", WINR, 0xfff, 0xfff).special(0xfff).half_words(),
 ];
 
-/// Its oscillator, within 17 to 47 kHz on F405 and 32 kHz on the others [Hz].
+/// Frequency of its oscillator, 17 to 47 kHz on the F405, nominally 32 kHz on all [Hz].
 const OSCILLATOR: u64 = 32_000;
-/// Cycles of the oscillator until a new setting is taken up (RM0090 21.4.4).
+/// Cycles of the oscillator before a new setting takes effect (RM0090 21.4.4).
 const TAKE_UP: u64 = 5;
 
-/// The watchdog.
+/// Independent watchdog.
 #[derive(Debug)]
 pub struct Iwdg {
     registers: Registers,
     runs: bool,
     unlocked: bool,
     expires: Option<Time>,
-    /// A setting is being taken up until then: prescaler, reload value.
+    /// Times at which new settings take effect: prescaler, reload value.
     updates: [Option<Time>; 2],
-    /// When it was looked at last.
+    /// Time of the last update.
     seen: Time,
 }
 
 impl Iwdg {
-    /// Of a chip with a window or without.
+    /// Watchdog of a chip with or without a window.
     pub fn new(has_window: bool) -> Self {
         let registers = Registers::new(if has_window { &MAP } else { &MAP[..4] });
         Self { registers, runs: false, unlocked: false, expires: None, updates: [None; 2], seen: 0 }
@@ -84,7 +84,7 @@ impl Peripheral for Iwdg {
         self.advance(wires);
         match offset {
             KR => {
-                // RM0090 21.3.2: any other value protects the settings again.
+                // RM0090 21.3.2: any other value restores the write protection.
                 self.unlocked = value == 0x5555;
                 match value {
                     0x5555 => {}
@@ -122,7 +122,7 @@ impl Peripheral for Iwdg {
         self.expires
     }
 
-    /// Only a reset of the chip stops it.
+    /// Keeps the watchdog running: only a reset of the chip stops it.
     fn reset(&mut self) {
         *self = Self::new(self.registers.describe(WINR).is_some());
     }

@@ -1,4 +1,4 @@
-//! The peripherals of the chips, each by its chapter of the reference manual.
+//! Peripherals of the chips, each by its chapter of the reference manual.
 
 pub mod dbgmcu;
 pub mod dma;
@@ -29,47 +29,47 @@ use self::dma::Transfer;
 use crate::register::Registers;
 use crate::wires::{Time, Wires};
 
-/// A peripheral with registers. Access rules that hold for all are checked before any of these is called.
+/// Peripheral with registers. The access rules common to all are checked before any of these methods is called.
 pub trait Peripheral {
-    /// Its registers.
+    /// Registers of the peripheral.
     fn registers(&mut self) -> &mut Registers;
 
-    /// A read of a register as it is at present, with what the read itself changes.
+    /// Reads a register, with the side effects of the read.
     fn read(&mut self, offset: u32, wires: &mut Wires) -> u32 {
         self.advance(wires);
         self.registers().get(offset)
     }
 
-    /// A register was written: the value, and what the register held before.
+    /// Handles a write of a register; `before` is the register's previous value.
     fn written(&mut self, _offset: u32, _value: u32, _before: u32, _wires: &mut Wires) {}
 
-    /// Brings it up to the present, and its wires to their levels.
+    /// Brings the peripheral to the present, and its wires to their levels.
     fn advance(&mut self, _wires: &mut Wires) {}
 
-    /// When something happens by itself next.
+    /// Time of the next event that needs no access.
     fn next_event(&self) -> Option<Time> {
         None
     }
 
-    /// The next item that a DMA controller moves.
+    /// Next item that a DMA controller moves.
     fn next_transfer(&mut self, _wires: &mut Wires) -> Option<Transfer> {
         None
     }
 
-    /// A reset of the peripheral.
+    /// Resets the peripheral.
     fn reset(&mut self) {
         self.registers().reset();
     }
 
-    /// Power is gone, after which the reset comes: what a reset alone leaves.
+    /// Clears the state that survives a reset but not a loss of power.
     fn power_lost(&mut self) {}
 
-    /// A read of flash that is not part of the image.
+    /// Reads flash outside of the image; `None` if the address is not flash.
     fn read_memory(&mut self, _address: u32, _size: u32, _wires: &mut Wires) -> Option<u64> {
         None
     }
 
-    /// A write to flash; whether it was this one's.
+    /// Writes flash; returns whether the address is flash.
     fn write_memory(&mut self, _address: u32, _size: u32, _value: u64, _wires: &mut Wires) -> bool {
         false
     }

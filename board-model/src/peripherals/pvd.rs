@@ -1,24 +1,24 @@
-//! The detector of a low supply in power control of all three chips: RM0090 5.2.3, RM0440 6.2.3, RM0433 6.5.3. Its interrupt,
-//! by a line of EXTI, is not modelled.
+//! Low-supply detector in power control of all three chips: RM0090 5.2.3, RM0440 6.2.3, RM0433 6.5.3. Its interrupt by
+//! a line of EXTI is not modelled.
 
 use crate::register::Registers;
 use crate::wires::Wires;
 
-/// Where a chip has it: registers and places of its enable, its level and what it says; and the levels [mV].
+/// Detector of a chip: registers and bits of enable, level and output, and the levels [mV].
 #[derive(Debug)]
 pub struct Detector {
-    /// PVDE.
+    /// Register and bit of PVDE.
     pub enable: (u32, u32),
-    /// PLS.
+    /// Register and lowest bit of PLS.
     pub level: (u32, u32),
-    /// PVDO.
+    /// Register and bit of PVDO.
     pub output: (u32, u32),
-    /// Typical levels on the way down, of each data sheet; 0 where an input is compared, which nothing drives.
+    /// Typical falling thresholds by the data sheet; 0 for the comparison with an input that nothing drives.
     pub levels: [u32; 8],
 }
 
 impl Detector {
-    /// Says whether the supply is below the level.
+    /// Sets the output if the supply is below the level.
     pub fn watch(&self, registers: &mut Registers, wires: &Wires) {
         let level = self.levels[registers.field(self.level.0, self.level.1, 3) as usize];
         let is_low = registers.is_set(self.enable.0, self.enable.1) && wires.supply < level;

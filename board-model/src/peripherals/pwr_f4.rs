@@ -1,4 +1,4 @@
-//! Power control of STM32F405: RM0090 section 5. The regulator is at scale 1 after a reset, which 168 MHz need.
+//! Power control of STM32F405: RM0090 section 5. After a reset the regulator is at scale 1, which 168 MHz require.
 
 use super::Peripheral;
 use super::pvd::Detector;
@@ -39,7 +39,7 @@ impl Peripheral for Pwr {
 
     fn advance(&mut self, wires: &mut Wires) {
         DETECTOR.watch(&mut self.registers, wires);
-        // RM0090 5.1.3: 144 MHz at scale 2.
+        // RM0090 5.1.3: at most 144 MHz at scale 2.
         if self.registers.get(CR) & bit(14) == 0 && wires.clocks.core > 144_000_000 {
             wires.violation("PWR_CR", "scale 2 is too low for more than 144 MHz", "RM0090 5.1.3");
         }

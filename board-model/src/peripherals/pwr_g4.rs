@@ -1,4 +1,4 @@
-//! Power control of STM32G474 and STM32G431: RM0440 section 6. Which range the regulator is in, and its boost.
+//! Power control of STM32G474 and STM32G431: RM0440 section 6. Range of the regulator, and its boost.
 
 use super::Peripheral;
 use super::pvd::Detector;
@@ -53,7 +53,7 @@ impl Peripheral for Pwr {
         if offset == CR1 && !matches!(range, 1 | 2) {
             wires.violation("PWR_CR1", format!("VOS {range} is no range"), "RM0440 6.4.1");
         }
-        // RM0440 6.1.5: the bus clock is halved before boost is switched on, so that it is not above 85 MHz then.
+        // RM0440 6.1.5: the bus clock must be halved before boost is switched on, so that it is at most 85 MHz.
         let boosts = offset == CR5 && before & bit(8) != 0 && value & bit(8) == 0;
         if boosts && wires.clocks.core > wires.clocks.system / 2 {
             let what = "boost is switched on while the bus clock is not halved";

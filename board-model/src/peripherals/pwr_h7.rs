@@ -1,5 +1,5 @@
-//! Power control of STM32H743: RM0433 section 6. The supply is set up first, once after power came on; then the voltage
-//! scale may be changed.
+//! Power control of STM32H743: RM0433 section 6. The supply is configured first, once after power-up; only then may the
+//! voltage scale change.
 
 use super::Peripheral;
 use super::pvd::Detector;
@@ -31,14 +31,14 @@ const DETECTOR: Detector = Detector {
     levels: [1910, 2050, 2190, 2350, 2500, 2650, 2800, 0],
 };
 
-/// Until another scale is reached.
+/// Settling time of a new scale.
 const SETTLES: Time = 10 * MICROSECOND;
 
 /// Power control.
 #[derive(Debug)]
 pub struct Pwr {
     registers: Registers,
-    /// The supply was set up, and its scale is reached then.
+    /// Time at which the configured supply is stable; `None` before it is configured.
     supplied: Option<Time>,
     scale_at: Time,
 }
@@ -93,7 +93,7 @@ impl Peripheral for Pwr {
         wires.voltage = 4 - active;
     }
 
-    /// RM0433 6.8.4: the set-up of the supply stays until power goes.
+    /// RM0433 6.8.4: the configuration of the supply persists until a loss of power.
     fn reset(&mut self) {
         let supplied = self.supplied;
         *self = Self { supplied, ..Self::default() };

@@ -1,28 +1,29 @@
-//! What reset and clock controllers of the three chips share: oscillators that need their time, dividers, reset flags.
+//! Parts shared by the reset and clock controllers of the three chips: oscillators with start-up times, dividers, reset
+//! flags.
 
 use crate::register::{Registers, bit};
 use crate::wires::{MICROSECOND, Time, Wires};
 
 /// Times to the ready flags. A crystal takes the longest: 2 ms in all three data sheets.
 const CRYSTAL_START: Time = 2000 * MICROSECOND;
-/// A clock that is fed in is there at once, but for the input stage.
+/// Start-up of the input stage for an external clock signal.
 const BYPASS_START: Time = 2 * MICROSECOND;
-/// The internal oscillator, 4 us at most.
+/// Start-up of the internal oscillator, at most 4 us.
 const INTERNAL_START: Time = 4 * MICROSECOND;
-/// A PLL's lock time: 200 us (F405), less on the others.
+/// Lock time of a PLL: 200 us (F405), less on the others.
 const PLL_LOCK: Time = 200 * MICROSECOND;
 
-/// Something that is switched on and ready a while later.
+/// Clock source that becomes ready a while after it is switched on.
 #[derive(Debug, Clone, Copy, Default)]
 struct Source {
     ready_at: Option<Time>,
 }
 
 impl Source {
-    /// Running since long ago.
+    /// Source that has been running for long.
     const RUNNING: Self = Self { ready_at: Some(0) };
 
-    /// On or off; `None` for a start that never comes to its end.
+    /// Switches the source; `start` is `None` if it never becomes ready.
     fn switch(&mut self, on: bool, start: Option<Time>, now: Time) {
         self.ready_at = match (on, self.ready_at) {
             (false, _) => None,
@@ -31,13 +32,13 @@ impl Source {
         };
     }
 
-    /// Whether it can be used.
+    /// Returns whether the source is ready.
     fn is_ready(self, now: Time) -> bool {
         self.ready_at.is_some_and(|ready| ready <= now)
     }
 }
 
-/// Frequency of the external oscillator and the time to its ready flag, if it comes.
+/// Frequency of the external source and the time to its ready flag, if it starts at all.
 fn external(wires: &Wires, bypass: bool) -> Option<(u64, Time)> {
     match bypass {
         _ if wires.surroundings.is_dead(wires.now) => None,
@@ -46,7 +47,7 @@ fn external(wires: &Wires, bypass: bool) -> Option<(u64, Time)> {
     }
 }
 
-/// Control register of all three chips, and what they have at the same place in it: RM0090 7.3.1, RM0440 7.4.1, RM0433 8.7.2.
+/// Control register of all three chips, with the bits common to them: RM0090 7.3.1, RM0440 7.4.1, RM0433 8.7.2.
 pub const CR: u32 = 0x00;
 const HSEON: u32 = bit(16);
 const HSERDY: u32 = 17;
@@ -55,55 +56,55 @@ const CSSON: u32 = bit(19);
 const PLLON: u32 = 24;
 const PLLRDY: u32 = 25;
 
-/// What the system clock can come from.
+/// Possible source of the system clock.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Origin {
-    /// The internal oscillator.
+    /// Internal oscillator.
     Internal,
-    /// The external one.
+    /// External source.
     External,
-    /// The PLL.
+    /// PLL.
     Pll,
 }
 
-/// Where a chip has what differs.
+/// Register layout of a chip, as far as it differs.
 #[derive(Debug)]
 pub struct Layout {
-    /// Places of HSION and HSIRDY in the control register.
+    /// Bits of HSION and HSIRDY in the control register.
     pub internal: [u32; 2],
-    /// Codes of internal oscillator, external one and PLL in SW and SWS.
+    /// Codes of internal oscillator, external source and PLL in SW and SWS.
     pub codes: [u32; 3],
-    /// The register of SW, which begins at its bit 0, and the width of SW; SWS follows it.
+    /// Register of SW, which begins at bit 0, and the width of SW; SWS follows SW.
     pub selection: (u32, u32),
-    /// Why a selection is refused.
+    /// Text for a rejected selection.
     pub refusal: &'static str,
-    /// Sections of the control register, of its HSEBYP, and of the selection.
+    /// Sections of the control register, of HSEBYP, and of the selection.
     pub sections: [&'static str; 3],
-    /// The flag of the clock security system, and what clears it: registers and places.
+    /// Flag of the clock security system, and the bit that clears it, as registers and bits.
     pub security: [(u32, u32); 2],
 }
 
-/// Internal and external oscillator and the PLL behind them.
+/// Internal oscillator, external source, and the PLL behind them.
 #[derive(Debug)]
 pub struct Oscillators {
     layout: &'static Layout,
     internal: Source,
     external: Source,
     pll: Source,
-    /// Frequency of the external one, as it is switched on or would be; 0 once it is dead [Hz].
+    /// Frequency of the external source while it can run; 0 once it has failed [Hz].
     pub external_rate: u64,
-    /// When it dies.
+    /// Time at which the external source fails.
     dies_at: Option<Time>,
 }
 
 impl Oscillators {
-    /// As after a reset: the internal one runs.
+    /// State after a reset: the internal oscillator runs.
     pub fn new(layout: &'static Layout) -> Self {
         let (external, pll) = (Source::default(), Source::default());
         Self { layout, internal: Source::RUNNING, external, pll, external_rate: 0, dies_at: None }
     }
 
-    /// Whether one of them can be used.
+    /// Returns whether a source is ready.
     pub fn is_ready(&self, origin: Origin, wires: &Wires) -> bool {
         let source = match origin {
             Origin::Internal => self.internal,
@@ -119,19 +120,19 @@ impl Oscillators {
         ready.iter().map(|(source, place)| u32::from(source.is_ready(wires.now)) << place).sum()
     }
 
-    /// What drives the system clock, by SWS.
+    /// Source of the system clock, by SWS.
     pub fn selected(&self, registers: &Registers) -> Origin {
         let (register, width) = self.layout.selection;
         self.origin(registers.field(register, width, width)).unwrap_or(Origin::Internal)
     }
 
-    /// What a code stands for.
+    /// Source for a code.
     pub fn origin(&self, code: u32) -> Option<Origin> {
         let place = self.layout.codes.iter().position(|known| *known == code)?;
         Some([Origin::Internal, Origin::External, Origin::Pll][place])
     }
 
-    /// The control register was written; whether the PLL is switched on by that.
+    /// Handles a write of the control register; returns whether it switches the PLL on.
     pub fn control_written(&mut self, value: u32, before: u32, registers: &Registers, wires: &mut Wires) -> bool {
         let [control, bypass, _] = self.layout.sections;
         let internal = bit(self.layout.internal[0]);
@@ -154,7 +155,7 @@ impl Oscillators {
         value & !before & bit(PLLON) != 0
     }
 
-    /// A register was written: a one in the right place clears the flag of the clock security system.
+    /// Clears the flag of the clock security system if the right bit is written as one.
     pub fn clear_security(&self, offset: u32, value: u32, registers: &mut Registers) {
         let [(flags, flag), (clears, clear)] = self.layout.security;
         if offset == clears && value >> clear & 1 == 1 {
@@ -162,9 +163,10 @@ impl Oscillators {
         }
     }
 
-    /// Whether the external oscillator still runs. With the clock security system on, one that has died is switched off, with
-    /// the PLL if that lived on it, and the internal oscillator drives what it drove; the flag of that holds the non-maskable
-    /// interrupt (RM0090 7.2.7, RM0440 7.2.9, RM0433 8.5.3). Without it whatever it drove stands still.
+    /// Tracks the external source. If it fails with the clock security system on, the source is switched off, with the
+    /// PLL if that depends on it; the internal oscillator takes over, and the flag holds the non-maskable interrupt
+    /// (RM0090 7.2.7, RM0440 7.2.9, RM0433 8.5.3). Without the clock security system the clocks driven by the source
+    /// stop.
     pub fn watch(&mut self, pll_source: Origin, registers: &mut Registers, wires: &mut Wires) {
         self.dies_at = wires.surroundings.dies_at.filter(|time| *time > wires.now);
         if wires.surroundings.is_dead(wires.now) {
@@ -197,19 +199,19 @@ impl Oscillators {
         registers.change(flags, bit(flag), 0);
     }
 
-    /// When the external oscillator dies, if that is still to come.
+    /// Future time at which the external source fails.
     pub fn next_event(&self) -> Option<Time> {
         self.dies_at
     }
 
-    /// Frequency of the external oscillator behind a divider, while it runs.
+    /// Frequency of the external source behind a divider, while it runs.
     pub fn divided_external(&self, divider: u32, wires: &Wires) -> Option<u64> {
         let runs = self.external.is_ready(wires.now) && self.external_rate > 0;
         runs.then(|| self.external_rate.checked_div(divider.into())).flatten()
     }
 
-    /// SW was written: it is taken over if what it selects is ready. `led_out` says whether the output of the PLL that the
-    /// system clock takes is on, where it has a switch.
+    /// Handles a write of SW: the selection takes effect if its source is ready. `led_out` tells whether the PLL's
+    /// output to the system clock is enabled, on chips with such a switch.
     pub fn select(&self, value: u32, led_out: bool, registers: &mut Registers, wires: &mut Wires) {
         let (register, width) = self.layout.selection;
         let code = value & (bit(width) - 1);
@@ -223,12 +225,12 @@ impl Oscillators {
     }
 }
 
-/// Whether the PLL is on, while which it is not to be set up.
+/// Returns whether the PLL is on; it must not be configured then.
 pub fn pll_is_on(registers: &Registers) -> bool {
     registers.is_set(CR, PLLON)
 }
 
-/// Divider of the bus of the core: RM0090 7.3.3, RM0440 7.4.3, RM0433 8.7.6.
+/// Divider of the core's bus: RM0090 7.3.3, RM0440 7.4.3, RM0433 8.7.6.
 pub fn bus_divider(code: u32) -> u64 {
     match code {
         0..8 => 1,
@@ -242,18 +244,18 @@ pub fn peripheral_divider(code: u32) -> u64 {
     if code < 4 { 1 } else { 2 << (code - 4) }
 }
 
-/// Clock of the timers on a peripheral bus: that of the bus if it is not divided, else twice that (RM0090 7.2, RM0440 7.2,
-/// RM0433 8.7.6 with TIMPRE 0).
+/// Clock of the timers on a peripheral bus: the bus clock if it is not divided, else twice the bus clock (RM0090 7.2,
+/// RM0440 7.2, RM0433 8.7.6 with TIMPRE 0).
 pub fn timer_clock(bus: u64, peripherals: u64) -> u64 {
     if bus == peripherals { bus } else { 2 * peripherals }
 }
 
-/// Frequencies in megahertz, for messages.
+/// Frequency in megahertz, for messages.
 pub fn megahertz(rate: u64) -> String {
     format!("{:.3} MHz", rate as f64 / 1e6)
 }
 
-/// Notes a frequency outside of its range.
+/// Records a violation if a frequency is out of range.
 pub fn within(wires: &mut Wires, register: &str, what: &str, rate: u64, [low, high]: [u64; 2], section: &'static str) {
     if !(low..=high).contains(&rate) {
         let [low, high] = [low, high].map(megahertz);

@@ -14,7 +14,7 @@ const INTERNAL: u64 = 16_000_000;
 const READY: u32 = bit(1) | bit(17) | bit(25) | bit(27);
 const FLAGS: u32 = bits(31, 25);
 
-/// RM0090 7.3, without what STM32F405 lacks: Ethernet, camera, cryptography, a PLL for audio of its own.
+/// RM0090 7.3, without the parts that the STM32F405 lacks: Ethernet, camera, cryptography, separate audio PLL.
 static MAP: [Register; 18] = [
     Register::new("RCC_CR", CR, 0x83, bits(15, 3) | bits(1, 0) | bits(19, 16) | bits(27, 24))
         .special(READY | bits(15, 8)),
@@ -46,7 +46,7 @@ static LAYOUT: Layout = Layout {
     security: [(CIR, 7), (CIR, 23)],
 };
 
-/// The controller.
+/// Reset and clock controller.
 #[derive(Debug)]
 pub struct Rcc {
     registers: Registers,
@@ -64,7 +64,7 @@ impl Rcc {
         if self.registers.is_set(PLLCFGR, 22) { Origin::External } else { Origin::Internal }
     }
 
-    /// Input, inner and output frequency of the PLL: RM0090 7.3.2.
+    /// Input, VCO and output frequency of the PLL: RM0090 7.3.2.
     fn pll_rates(&self) -> [u64; 3] {
         let source = match self.pll_source() {
             Origin::External => self.oscillators.external_rate,
@@ -122,7 +122,7 @@ impl Peripheral for Rcc {
         let pll_source = self.pll_source();
         self.oscillators.watch(pll_source, &mut self.registers, wires);
         self.registers.change(CR, self.oscillators.ready_flags(wires), READY);
-        // RTCPRE: less than 2 is no clock.
+        // RTCPRE: values below 2 give no clock.
         let divider = Some(self.registers.field(CFGR, 16, 5)).filter(|divider| *divider > 1);
         wires.divided_external = divider.and_then(|divider| self.oscillators.divided_external(divider, wires));
         let system = match self.oscillators.selected(&self.registers) {
@@ -150,7 +150,7 @@ impl Peripheral for Rcc {
         self.oscillators.next_event()
     }
 
-    /// RM0090 7.1.1: a reset leaves the flags of resets.
+    /// RM0090 7.1.1: a reset keeps the reset flags.
     fn reset(&mut self) {
         let flags = self.registers.get(CSR) & FLAGS;
         *self = Self::default();
@@ -158,7 +158,7 @@ impl Peripheral for Rcc {
     }
 }
 
-/// Flags that a reset leaves: RM0090 7.3.21.
+/// Flags set by a reset: RM0090 7.3.21.
 pub fn flags(reset: Reset) -> (u32, u32) {
     (
         CSR,
@@ -170,5 +170,5 @@ pub fn flags(reset: Reset) -> (u32, u32) {
     )
 }
 
-/// Its frequency after a reset [Hz].
+/// Core clock after a reset [Hz].
 pub const AFTER_RESET: u64 = INTERNAL;

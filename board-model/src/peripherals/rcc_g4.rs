@@ -14,9 +14,9 @@ const CSR: u32 = 0x94;
 const INTERNAL: u64 = 16_000_000;
 const READY: u32 = bit(10) | bit(17) | bit(25);
 const FLAGS: u32 = bits(31, 25);
-/// RM0440 7.2.16: timers capture the external oscillator divided by this.
+/// RM0440 7.2.16: divider of the external source for capture by timers.
 const MEASURED: u32 = 32;
-/// RM0440 7.2.7: a step of more than this needs a microsecond at half speed.
+/// RM0440 7.2.7: a larger clock step requires a microsecond at half speed.
 const STEP: u64 = 80_000_000;
 
 /// RM0440 7.4, without the cryptography of STM32G484.
@@ -51,10 +51,10 @@ const MAP: [Register; 28] = [
     Register::new("RCC_CSR", CSR, 0x0c00_0000, 0xfe80_0003).special(FLAGS | bit(1)),
 ];
 
-/// Of category 3: STM32G474.
+/// Category 3: STM32G474.
 static CATEGORY_3: [Register; 28] = MAP;
-/// Of category 2: STM32G431, without ADC3 to ADC5, DAC2, DAC4, FMC, QUADSPI, TIM5, UART5, I2C4, SPI4, TIM20 and HRTIM. Resets
-/// and gates of each bus.
+/// Category 2: STM32G431, without ADC3 to ADC5, DAC2, DAC4, FMC, QUADSPI, TIM5, UART5, I2C4, SPI4, TIM20 and HRTIM.
+/// Resets and gates of each bus.
 static CATEGORY_2: [Register; 28] = without(&[
     ([0x2c, 0x4c], bit(14) | bit(17) | bit(19)),
     ([0x30, 0x50], bit(0) | bit(8)),
@@ -63,7 +63,7 @@ static CATEGORY_2: [Register; 28] = without(&[
     ([0x40, 0x60], bit(15) | bit(20) | bit(26)),
 ]);
 
-/// The map with bits of some registers reserved.
+/// Register map with additional reserved bits in some registers.
 const fn without(lacking: &[([u32; 2], u32)]) -> [Register; 28] {
     let mut map = MAP;
     let mut place = 0;
@@ -90,22 +90,22 @@ static LAYOUT: Layout = Layout {
     security: [(CIFR, 8), (CICR, 8)],
 };
 
-/// The controller.
+/// Reset and clock controller.
 #[derive(Debug)]
 pub struct Rcc {
     registers: Registers,
     oscillators: Oscillators,
-    /// The bus clock has been half the system clock since then.
+    /// Time since which the bus clock has been half the system clock.
     halved_since: Option<Time>,
 }
 
 impl Rcc {
-    /// Of STM32G474.
+    /// Controller of the STM32G474.
     pub fn category_3() -> Self {
         Self::with(Registers::new(&CATEGORY_3))
     }
 
-    /// Of STM32G431.
+    /// Controller of the STM32G431.
     pub fn category_2() -> Self {
         Self::with(Registers::new(&CATEGORY_2))
     }
@@ -126,7 +126,7 @@ impl Rcc {
         }
     }
 
-    /// Input, inner and output frequency of the PLL: RM0440 7.4.4.
+    /// Input, VCO and output frequency of the PLL: RM0440 7.4.4.
     fn pll_rates(&self) -> [u64; 3] {
         let input = self.source_rate() / u64::from(self.registers.field(PLLCFGR, 4, 4) + 1);
         let inner = input * u64::from(self.registers.field(PLLCFGR, 8, 7));
@@ -230,7 +230,7 @@ impl Peripheral for Rcc {
         self.oscillators.next_event()
     }
 
-    /// RM0440 7.1: a reset leaves the flags of resets.
+    /// RM0440 7.1: a reset keeps the reset flags.
     fn reset(&mut self) {
         let flags = self.registers.get(CSR) & FLAGS;
         self.registers.reset();
@@ -239,7 +239,7 @@ impl Peripheral for Rcc {
     }
 }
 
-/// Flags that a reset leaves: RM0440 7.4.28.
+/// Flags set by a reset: RM0440 7.4.28.
 pub fn flags(reset: Reset) -> (u32, u32) {
     let flags = match reset {
         Reset::Power => bit(26) | bit(27),
@@ -249,5 +249,5 @@ pub fn flags(reset: Reset) -> (u32, u32) {
     (CSR, flags)
 }
 
-/// Its frequency after a reset [Hz].
+/// Core clock after a reset [Hz].
 pub const AFTER_RESET: u64 = INTERNAL;

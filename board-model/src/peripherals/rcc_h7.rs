@@ -1,4 +1,4 @@
-//! Reset and clock control of STM32H743: RM0433 section 8. PLL 1 only; the other two may not be switched on.
+//! Reset and clock control of STM32H743: RM0433 section 8. Only PLL 1 is modelled; the other two must stay off.
 
 use super::Peripheral;
 use super::rcc::{CR, Layout, Origin, Oscillators, bus_divider, peripheral_divider, pll_is_on, timer_clock, within};
@@ -77,7 +77,7 @@ static LAYOUT: Layout = Layout {
     security: [(CIFR, 10), (CICR, 10)],
 };
 
-/// The controller.
+/// Reset and clock controller.
 #[derive(Debug)]
 pub struct Rcc {
     registers: Registers,
@@ -99,7 +99,7 @@ impl Rcc {
         INTERNAL >> self.registers.field(CR, 3, 2)
     }
 
-    /// Input, inner and output frequency of PLL 1: RM0433 8.5.5.
+    /// Input, VCO and output frequency of PLL 1: RM0433 8.5.5.
     fn pll_rates(&self) -> [u64; 3] {
         let source = match self.registers.field(PLLCKSELR, 0, 2) {
             0 => self.internal_rate(),
@@ -116,7 +116,7 @@ impl Rcc {
         if !self.oscillators.is_ready(self.pll_source(), wires) {
             wires.violation("RCC_CR", "PLL 1 is switched on before its source is ready", "RM0433 8.5.5");
         }
-        // PLL1RGE and PLL1VCOSEL say what comes in and how fast it is inside.
+        // PLL1RGE and PLL1VCOSEL must match the input frequency and the VCO.
         let range = self.registers.field(PLLCFGR, 2, 2);
         let medium = self.registers.is_set(PLLCFGR, 1);
         within(
@@ -182,7 +182,7 @@ impl Peripheral for Rcc {
         self.oscillators.watch(pll_source, &mut self.registers, wires);
         let ready = self.oscillators.ready_flags(wires) | bit(14) | bit(15) | bit(5);
         self.registers.change(CR, ready, READY);
-        // RTCPRE: less than 2 is no clock.
+        // RTCPRE: values below 2 give no clock.
         let divider = Some(self.registers.field(CFGR, 8, 6)).filter(|divider| *divider > 1);
         wires.divided_external = divider.and_then(|divider| self.oscillators.divided_external(divider, wires));
         let system = match self.oscillators.selected(&self.registers) {
@@ -194,7 +194,8 @@ impl Peripheral for Rcc {
         let bus = core / bus_divider(self.registers.field(D1CFGR, 0, 4));
         let divided = |offset, low| bus / peripheral_divider(self.registers.field(offset, low, 3));
         let [low, high] = [4, 8].map(|place| divided(D2CFGR, place));
-        // RM0433 8.7.6: with TIMPRE timers have four times the clock of their bus, as far as that of the core's bus goes.
+        // RM0433 8.7.6: with TIMPRE the timers run at four times the clock of their bus, at most at the clock of the
+        // core's bus.
         let timers = if self.registers.is_set(CFGR, 15) { bus.min(4 * high) } else { timer_clock(bus, high) };
         let clocks = Clocks { system, core, bus, low, high, timers };
         if clocks != wires.clocks {
@@ -202,7 +203,7 @@ impl Peripheral for Rcc {
             if system == 0 {
                 return;
             }
-            // RM0433 8.7.7 and data sheet table 23: by voltage scale.
+            // RM0433 8.7.7 and data sheet table 23: limits by voltage scale.
             let [cores, buses, peripherals] = match wires.voltage {
                 1 => [400, 200, 100],
                 2 => [300, 150, 75],
@@ -226,7 +227,7 @@ impl Peripheral for Rcc {
         self.oscillators.next_event()
     }
 
-    /// RM0433 8.4: a reset leaves the flags of resets.
+    /// RM0433 8.4: a reset keeps the reset flags.
     fn reset(&mut self) {
         let flags = self.registers.get(RSR) & FLAGS;
         *self = Self::default();
@@ -234,7 +235,7 @@ impl Peripheral for Rcc {
     }
 }
 
-/// Flags that a reset leaves: RM0433 table 55.
+/// Flags set by a reset: RM0433 table 55.
 pub fn flags(reset: Reset) -> (u32, u32) {
     let flags = match reset {
         Reset::Power => 0x00e8_0000,
@@ -244,5 +245,5 @@ pub fn flags(reset: Reset) -> (u32, u32) {
     (RSR, flags)
 }
 
-/// Its frequency after a reset [Hz].
+/// Core clock after a reset [Hz].
 pub const AFTER_RESET: u64 = INTERNAL;

@@ -1,5 +1,6 @@
-//! SPI: RM0090 section 28, with room for one frame each way, and RM0440 section 39, with FIFOs of four bytes. As a slave in mode 0
-//! with 8 bits, whose master is outside, in the wires; as a master in any mode with 8 or 16 bits, whose slave is there too.
+//! SPI: RM0090 section 28, with one frame in each direction, and RM0440 section 39, with FIFOs of four bytes. As a
+//! slave in mode 0 with 8 bits, with the external master in `wires`; as a master in any mode with 8 or 16 bits, with
+//! the external slave in `wires`.
 
 use std::collections::VecDeque;
 
@@ -38,35 +39,36 @@ static NEW: [Register; 9] = [
     Register::new("SPI_I2SPR", 0x20, 2, 0x03ff).half_words(),
 ];
 
-/// CR1: master, on, level of the select that software gives, and that it does.
+/// CR1: master, enable, level of the software select, and software select enable.
 const MSTR: u32 = bit(2);
 const SPE: u32 = bit(6);
 const SSI: u32 = 8;
 const SSM: u32 = 9;
-/// CR1 and CR2: what is left out. Receiving alone, checksums, one data line; frames of another kind, pulses of the select, interrupts.
+/// CR1 and CR2 bits that are not modelled: receive only, checksums, single data line; other frame formats, select
+/// pulses, interrupts.
 const LEFT_OUT: [u32; 2] = [bit(10) | bit(12) | bit(13) | bit(14) | bit(15), bits(7, 3)];
-/// CR2: the select is an output.
+/// CR2: select as an output.
 const SSOE: u32 = bit(2);
 
-/// Where it is on the chip.
+/// Connections of an SPI on the chip.
 #[derive(Debug, Clone, Copy)]
 pub struct Place {
-    /// Its number.
+    /// Number of the SPI.
     pub number: u32,
-    /// What its speed is divided from.
+    /// Bus clock from which its speed is divided.
     pub clock: BusClock,
-    /// Chip select, clock, to the master, from the master, each with its alternate function.
+    /// Pins for chip select, clock, data to the master, data from the master, each with its alternate function.
     pub pins: [(Pin, u32); 4],
 }
 
-/// A frame that is on the line, as a master.
+/// Frame in transmission as a master.
 #[derive(Debug, Clone)]
 struct Shift {
     ends: Time,
     received: Vec<u8>,
 }
 
-/// An SPI.
+/// SPI.
 #[derive(Debug)]
 pub struct Spi {
     registers: Registers,
@@ -76,20 +78,20 @@ pub struct Spi {
     to_send: VecDeque<u8>,
     shift: Option<Shift>,
     overrun: bool,
-    /// The data was read since the overrun: a read of the status then clears it.
+    /// True if the data was read since the overrun: reading the status then clears it.
     data_read: bool,
-    /// MODF, and that the status was read since: a write of CR1 then clears it.
+    /// MODF, and true if the status was read since: writing CR1 then clears it.
     mode_fault: bool,
     fault_read: bool,
 }
 
 impl Spi {
-    /// One frame each way.
+    /// SPI with one frame in each direction.
     pub fn old(place: Place) -> Self {
         Self::with(&OLD, false, place)
     }
 
-    /// FIFOs of four bytes.
+    /// SPI with FIFOs of four bytes.
     pub fn new(place: Place) -> Self {
         Self::with(&NEW, true, place)
     }
@@ -134,7 +136,7 @@ impl Spi {
         self.received.len() >= least
     }
 
-    /// TXE: with FIFOs up to half of one.
+    /// TXE: with FIFOs while the transmit FIFO is at most half full.
     fn has_room(&self) -> bool {
         self.to_send.len() <= if self.has_fifos { 2 } else { 0 }
     }
@@ -144,13 +146,13 @@ impl Spi {
         self.registers.get(CR2) & 3 != 0
     }
 
-    /// Pins that it cannot do without: the select where that is not given by software.
+    /// Returns whether all required pins are routed; select is not required if software gives it.
     fn is_routed(&self, wires: &Wires) -> bool {
         let by_software = usize::from(self.registers.is_set(CR1, SSM));
         self.place.pins[by_software..].iter().all(|pin| wires.leads_to(&[*pin]))
     }
 
-    /// Level of its select (RM0090 28.3.1, RM0440 39.4.5).
+    /// Level of the select (RM0090 28.3.1, RM0440 39.4.5).
     fn select(&self, wires: &Wires) -> bool {
         if self.registers.is_set(CR1, SSM) {
             self.registers.is_set(CR1, SSI)
@@ -159,17 +161,17 @@ impl Spi {
         }
     }
 
-    /// The master outside clocks a byte each way.
+    /// Exchanges a byte with the external master.
     fn exchange(&mut self, byte: u8, wires: &mut Wires) -> u8 {
         if !self.is_on() || self.is_master() || !self.is_routed(wires) || self.select(wires) {
             return 0xff;
         }
         self.take(&[byte]);
-        // An empty one sends what the line happens to hold.
+        // An empty transmit buffer sends whatever is on the line.
         self.to_send.pop_front().unwrap_or(0xff)
     }
 
-    /// A frame was received.
+    /// Stores a received frame, or sets the overrun flag.
     fn take(&mut self, frame: &[u8]) {
         if self.received.len() + frame.len() <= self.depth() {
             self.received.extend(frame);
@@ -178,7 +180,7 @@ impl Spi {
         }
     }
 
-    /// As a master, begins the next frame, if there is one, at a time.
+    /// Starts the next frame as a master, if there is one.
     fn begin(&mut self, now: Time, wires: &mut Wires) {
         let bytes = self.frame();
         if !self.is_on() || !self.is_master() || self.shift.is_some() || self.to_send.len() < bytes {
@@ -188,10 +190,10 @@ impl Spi {
             BusClock::Low => wires.clocks.low,
             BusClock::High => wires.clocks.high,
         };
-        // BR: 2 up to 256.
+        // BR: 2 to 256.
         let rate = bus >> (self.registers.field(CR1, 3, 3) + 1);
         let mode = (self.registers.is_set(CR1, 1), self.registers.is_set(CR1, 0));
-        // The lower byte of a long frame is written first, and the higher one is sent first.
+        // Of a long frame the lower byte is written first, but the higher byte is sent first.
         let mut frame: Vec<u8> = self.to_send.drain(..bytes).collect();
         let low_first = self.registers.is_set(CR1, 7);
         frame.reverse();
@@ -208,7 +210,7 @@ impl Spi {
         self.shift = Some(Shift { ends: now + cycles(8 * bytes as u64, rate), received });
     }
 
-    /// As a master, ends frames that are over, each followed by the next.
+    /// Completes finished frames as a master and starts the following ones.
     fn go_on(&mut self, wires: &mut Wires) {
         while let Some(shift) = self.shift.take_if(|shift| shift.ends <= wires.now) {
             self.take(&shift.received);
@@ -216,7 +218,7 @@ impl Spi {
         }
     }
 
-    /// MODF: a master whose select is low is one no more (RM0090 28.3.10, RM0440 39.4.11).
+    /// MODF: a low select ends the master role (RM0090 28.3.10, RM0440 39.4.11).
     fn look_at_select(&mut self, wires: &mut Wires) {
         let is_output = self.registers.get(CR2) & SSOE != 0 && !self.registers.is_set(CR1, SSM);
         if self.is_on() && self.is_master() && !is_output && !self.select(wires) {
@@ -266,7 +268,7 @@ impl Spi {
         }
     }
 
-    /// Bytes that an access to the data moves: FIFOs take two frames of 8 bits at once by an access that is wider (RM0440 39.4.10).
+    /// Number of bytes that a data access moves: FIFOs move two 8-bit frames in a wider access (RM0440 39.4.10).
     fn moved(&self, wires: &mut Wires) -> usize {
         let frame = self.frame();
         if (wires.width as usize) < frame {
@@ -288,7 +290,7 @@ impl Peripheral for Spi {
                 let levels = [self.received.len() as u32, self.to_send.len() as u32];
                 let fifos = if self.has_fifos { levels[0].min(3) << 9 | levels[1].min(3) << 11 } else { 0 };
                 let (overrun, fault) = (self.overrun, self.mode_fault);
-                // RM0090 28.3.10: a read of the data and then of the status clears it.
+                // RM0090 28.3.10: reading data, then status, clears the overrun.
                 if std::mem::take(&mut self.data_read) {
                     self.overrun = false;
                 }
@@ -330,7 +332,7 @@ impl Peripheral for Spi {
         while let Some(byte) = wires.master.due(self.place.number, wires.now) {
             let answer = self.exchange(byte, wires);
             wires.master.received.push(answer);
-            // DMA has its turn after every byte.
+            // DMA takes its turn after every byte.
             if self.wants_transfer() {
                 break;
             }
@@ -366,7 +368,7 @@ mod tests {
 
     const SPI1: u32 = 0x4001_3000;
     const SPI2: u32 = 0x4000_3800;
-    /// Software gives the select, which is high; 4 MHz of 16; mode 1; on.
+    /// Software select, high; 4 MHz from 16; mode 1; enabled.
     const MASTER: u32 = 1 << 9 | 1 << 8 | 1 << 6 | 1 << 3 | 1 << 2 | 1;
     const BUSY: u64 = 1 << 7;
     const OVERRUN: u64 = 1 << 6;
@@ -424,7 +426,7 @@ mod tests {
             pass(&mut machine, 2 * MICROSECOND - MICROSECOND / 4);
             assert_eq!(machine.read(base + 8, 4) & 1, 0);
             pass(&mut machine, MICROSECOND / 4);
-            // Nobody answers: the line is high.
+            // No slave answers: the line is high.
             assert_eq!(machine.read(base + 8, 4) & (BUSY | 0b11), 0b11);
             assert_eq!((machine.read(base + 12, 1), machine.read(base + 8, 4) & 1), (0xff, 0));
             assert_eq!(said(&machine), [""; 0]);
@@ -443,7 +445,7 @@ mod tests {
         machine.read(SPI1 + 12, 1);
         machine.read(SPI1 + 8, 4);
         assert_eq!(machine.read(SPI1 + 8, 4) & OVERRUN, 0);
-        // FIFOs take four bytes, and the fifth is lost.
+        // FIFOs hold four bytes, and the fifth is lost.
         let mut machine = g474();
         machine.write(SPI2 + 4, 4, 0x1700);
         machine.write(SPI2, 4, MASTER.into());
@@ -465,7 +467,7 @@ mod tests {
         machine.write(SPI1, 4, MASTER.into());
         assert_eq!(machine.read(SPI1 + 8, 4) & MODE_FAULT, 0);
         assert_eq!(machine.read(SPI1, 4) as u32 & (MSTR | SPE), MSTR | SPE);
-        // By its pin, which here is an output of the port: the pin's level counts.
+        // Select by its pin, here an output of the port: the level of the pin counts.
         let mut machine = f405();
         machine.write(0x4002_0018, 4, 1 << 20);
         machine.write(SPI1, 4, (MASTER & !(0b11 << 8)).into());

@@ -1,4 +1,4 @@
-//! System configuration: RM0090 section 9, RM0440 section 10. Only which port is behind an external interrupt line.
+//! System configuration: RM0090 section 9, RM0440 section 10. Only the ports of external interrupt lines are modelled.
 
 use super::Peripheral;
 use crate::register::{Register, Registers};
@@ -6,11 +6,11 @@ use crate::wires::Wires;
 
 const EXTICR1: u32 = 0x08;
 
-/// RM0090 9.2, as far as STM32F405 has it; RM0440 10.2.
+/// RM0090 9.2, as far as the STM32F405 has it; RM0440 10.2.
 static F4: [Register; 6] = map([("SYSCFG_MEMRMP", 0, 0x3), ("SYSCFG_PMC", 0, 0x0080_0000)]);
 static G4: [Register; 6] = map([("SYSCFG_MEMRMP", 0, 0x0107), ("SYSCFG_CFGR1", 0x7c00_0001, 0xfcff_0300)]);
 
-/// The register map, with names, reset values and fields of the two that differ.
+/// Register map, with names, reset values and fields of the two registers that differ.
 const fn map(first: [(&'static str, u32, u32); 2]) -> [Register; 6] {
     let [(memory, memory_reset, memory_fields), (other, other_reset, other_fields)] = first;
     [
@@ -30,12 +30,12 @@ pub struct Syscfg {
 }
 
 impl Syscfg {
-    /// Of F405.
+    /// Registers of the STM32F405.
     pub fn f4() -> Self {
         Self { registers: Registers::new(&F4) }
     }
 
-    /// Of G474.
+    /// Registers of the STM32G474.
     pub fn g4() -> Self {
         Self { registers: Registers::new(&G4) }
     }

@@ -1,7 +1,7 @@
-//! Timers whose first channel can capture the external oscillator, divided, so that an image can measure it against the
-//! internal one before it relies on it: TIM11 of STM32F405 (RM0090 7.2.11 and section 19), TIM16 and TIM17 of STM32G474
-//! (RM0440 7.2.16 and section 30), TIM17 of STM32H743 (RM0433 8.5.8 and section 41). Counter, prescaler, reload and capture of
-//! rising edges; no other input, no output and no slave mode.
+//! Timers whose first channel can capture the divided external source, so that an image can measure it against the
+//! internal oscillator: TIM11 of STM32F405 (RM0090 7.2.11 and section 19), TIM16 and TIM17 of STM32G474 (RM0440 7.2.16
+//! and section 30), TIM17 of STM32H743 (RM0433 8.5.8 and section 41). Counter, prescaler, reload and capture of rising
+//! edges are modelled; other inputs, outputs and slave modes are not.
 
 use super::Peripheral;
 use crate::register::{Register, Registers, bit, bits};
@@ -17,7 +17,7 @@ const CNT: u32 = 0x24;
 const PSC: u32 = 0x28;
 const ARR: u32 = 0x2c;
 const CCR1: u32 = 0x34;
-/// Flags of an update, of a capture and of one that was not read before the next.
+/// Flags of an update, of a capture, and of an overcapture.
 const UIF: u32 = bit(0);
 const CC1IF: u32 = bit(1);
 const CC1OF: u32 = bit(9);
@@ -25,7 +25,7 @@ const CC1OF: u32 = bit(9);
 const UPDATE: u32 = bit(0);
 const CAPTURE: u32 = bit(1);
 
-/// RM0090 19.5: what counts nothing while it is 0 is 0 after a reset.
+/// RM0090 19.5: ARR, which stops the counter while it is 0, is 0 after a reset.
 pub static F4: [Register; 11] = [
     Register::new("TIM_CR1", CR1, 0, 0x038f),
     Register::new("TIM_DIER", DIER, 0, 0x3),
@@ -44,7 +44,8 @@ pub static G4: [Register; 14] = newer(0x1b8f, 0x140f_ffff, 0x5c);
 /// RM0433 41.6.
 pub static H7: [Register; 14] = newer(0x0b8f, 0x000f_ffff, 0x68);
 
-/// The map of the newer ones, with the fields of their first control register and of BDTR, and the offset of TISEL.
+/// Register map of the newer timers, with the fields of their first control register and of BDTR, and the offset of
+/// TISEL.
 const fn newer(control: u32, brake: u32, selection: u32) -> [Register; 14] {
     [
         Register::new("TIM_CR1", CR1, 0, control),
@@ -64,40 +65,40 @@ const fn newer(control: u32, brake: u32, selection: u32) -> [Register; 14] {
     ]
 }
 
-/// Where it is on the chip.
+/// Connections of a timer on the chip.
 #[derive(Debug, Clone, Copy)]
 pub struct Place {
-    /// Its registers.
+    /// Register map.
     pub map: &'static [Register],
-    /// Its interrupt.
+    /// Interrupt.
     pub interrupt: usize,
-    /// The register that selects the input, and the code of the external oscillator in it.
+    /// Register that selects the input, and the code of the external source.
     pub selection: (u32, u32),
 }
 
-/// A timer.
+/// Timer.
 #[derive(Debug)]
 pub struct Timer {
     registers: Registers,
     place: Place,
-    /// PSC as the last update has taken it up.
+    /// Active prescaler, copied from PSC by the last update.
     prescaler: u32,
-    /// The counter as it was at a time, from which it goes on at a rate [Hz].
+    /// Counter value at a time, and the rate at which it counts on [Hz].
     counted: (u32, Time, u64),
-    /// How often it has begun anew since then, as far as that has been noticed.
+    /// Number of wraps since then that have been handled.
     rounds: u64,
-    /// The next edge that is captured.
+    /// Time of the next captured edge.
     next_edge: Option<Time>,
 }
 
 impl Timer {
-    /// Off.
+    /// Timer that is off.
     pub fn new(place: Place) -> Self {
         let registers = Registers::new(place.map);
         Self { registers, place, prescaler: 0, counted: (0, 0, 0), rounds: 0, next_edge: None }
     }
 
-    /// How far the counter has come at a time, with the times that it has begun anew.
+    /// Counter value at a time, with the number of wraps.
     fn count(&self, now: Time) -> (u32, u64) {
         let (count, since, rate) = self.counted;
         let passed = u128::from(now.saturating_sub(since)) * u128::from(rate) / u128::from(SECOND);
@@ -112,13 +113,13 @@ impl Timer {
         (clock + off) as u64 / u64::from(self.prescaler + 1)
     }
 
-    /// The counter goes on from a value.
+    /// Continues counting from a value.
     fn go_on(&mut self, count: u32, wires: &Wires) {
         let runs = self.registers.is_set(CR1, 0) && self.registers.get(ARR) > 0;
         (self.counted, self.rounds) = ((count, wires.now, if runs { self.rate(wires) } else { 0 }), 0);
     }
 
-    /// An update takes up the prescaler.
+    /// Executes an update: the prescaler takes effect.
     fn update(&mut self) {
         self.prescaler = self.registers.get(PSC);
         self.registers.change(SR, UIF, 0);
@@ -131,7 +132,7 @@ impl Timer {
         self.registers.change(SR, CC1IF | if lost { CC1OF } else { 0 }, 0);
     }
 
-    /// Time between two captured edges, while there are any.
+    /// Time between two captured edges, if any are captured.
     fn between(&self, wires: &Wires) -> Option<Time> {
         let (register, code) = self.place.selection;
         let selected = self.registers.field(register, 0, 4) == code && self.registers.field(CCMR1, 0, 2) == 1;
@@ -153,7 +154,7 @@ impl Timer {
                 format!("{input} Hz are captured by a timer at {} Hz: less than half of it", wires.clocks.timers);
             wires.violation("TIM_CCMR1", what, "RM0090 19.3.5");
         }
-        // The divider of edges begins anew when the channel is switched on.
+        // The edge divider restarts when the channel is enabled.
         self.next_edge = self.between(wires).map(|between| (wires.now / between + 1) * between);
     }
 }
@@ -179,7 +180,7 @@ impl Peripheral for Timer {
     fn written(&mut self, offset: u32, value: u32, before: u32, wires: &mut Wires) {
         let count = self.count(wires.now).0;
         match offset {
-            // Zeros clear.
+            // Writing zeros clears.
             SR => self.registers.change(SR, 0, !value),
             EGR => {
                 if value & CAPTURE != 0 {
@@ -238,7 +239,7 @@ mod tests {
     use crate::peripherals::flash::BASE;
     use crate::wires::{Cable, MICROSECOND, Surroundings, Time};
 
-    /// The clock of the internal oscillator's timer over that of the external one, from eight captures of every eighth edge.
+    /// Ratio of the timer's clock to the external source, from eight captures of every eighth edge.
     fn measured(mut machine: Machine, writes: &[(u32, u32)], timer: u32, divider: u64) -> u64 {
         machine.settle();
         for (address, value) in writes {
@@ -274,7 +275,7 @@ mod tests {
             let f405 = machine(chips::f405::chip(BASE + 0x1000), Surroundings::crystal(rate));
             let g474 = machine(chips::g474::chip(BASE + 0x1000), Surroundings::crystal(rate));
             let h743 = machine(chips::h743::chip(BASE + 0x1000), Surroundings::clock(rate));
-            // HSE on, until it is ready; its divider; the timer's clock; its input.
+            // HSE on until it is ready; its divider; the timer's clock; its input.
             let crystal = [(0x4002_3800, 0x1_0083); 21];
             let begin = [(0x4002_3808, 31 << 16), (0x4002_3844, 1 << 18), (0x4001_4850, 2)];
             let old = measured(f405, &with_timer(&[&crystal[..], &begin].concat(), 0x4001_4800), 0x4001_4800, 31);

@@ -1,7 +1,6 @@
-//! USARTs: RM0090 section 30, which has room for one byte each way, and RM0440 section 37 with RM0433 section 48, which have
-//! FIFOs. Asynchronous, 8 bits, no parity; the line's speed is that of the clock tree and of BRR, and a byte that comes
-//! before the one before has been fetched is lost, as it is on the chip. Bytes may be moved by DMA, and a line that falls idle
-//! says so.
+//! USARTs: RM0090 section 30, with one byte in each direction, and RM0440 section 37 with RM0433 section 48, with
+//! FIFOs. Asynchronous, 8 bits, no parity. The line's speed follows from clock tree and BRR; a byte that arrives before
+//! the preceding one was read is lost, as on the chip. DMA can move the bytes, and an idle line sets a flag.
 
 use std::collections::VecDeque;
 
@@ -9,12 +8,12 @@ use super::Peripheral;
 use crate::register::{Register, Registers, bit, bits};
 use crate::wires::{Pin, Request, Time, Wires, cycles};
 
-/// RM0090 30.6; UART4 and UART5 have no clock, no flow control and no cards.
+/// RM0090 30.6; UART4 and UART5 have no clock, flow control or smartcard mode.
 static OLD: [Register; 7] = old(0x7f6f, 0x0fff);
 static OLD_UART: [Register; 7] = old(0x706f, 0x08cf);
 
-/// The register map with the fields of two registers. DMA moves bytes between data registers and memory: the bridge to the bus
-/// makes words of them (RM0090 10.3.10).
+/// Register map with the fields of two registers. DMA moves single bytes between data registers and memory, which the
+/// bus bridge widens to words (RM0090 10.3.10).
 const fn old(cr2: u32, cr3: u32) -> [Register; 7] {
     [
         Register::new("USART_SR", 0x00, 0xc0, 0x3ff).special(0x3ff).half_words(),
@@ -45,21 +44,21 @@ static NEW: [Register; 12] = [
 
 /// Bits of a byte on the line.
 const BITS: u64 = 10;
-/// Most that the board's speed may be off before a receiver fails, in thousandths: RM0090 30.3.5 allows 3.75 percent for both
+/// Limit of the board's speed error before a receiver fails [thousandths]: RM0090 30.3.5 allows 3.75 percent for both
 /// ends together.
 const TOLERANCE: u64 = 20;
 
-/// What differs between the generations.
+/// Generation of the USART.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// One byte each way.
+    /// One byte in each direction.
     Old,
-    /// FIFOs of so many bytes, once they are on.
+    /// FIFOs with this depth, once enabled [byte].
     New(usize),
 }
 
 impl Kind {
-    /// Offsets of the first control register and of BRR.
+    /// Offset of the first control register.
     fn control(self) -> u32 {
         if self == Self::Old { 0x0c } else { 0x00 }
     }
@@ -79,31 +78,31 @@ impl Kind {
     }
 }
 
-/// Which clock it has.
+/// Clock of a peripheral.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BusClock {
-    /// That of the first peripheral bus.
+    /// Clock of the first peripheral bus.
     Low,
-    /// That of the second.
+    /// Clock of the second peripheral bus.
     High,
 }
 
-/// Where it is on the chip.
+/// Connections of a USART on the chip.
 #[derive(Debug, Clone, Copy)]
 pub struct Place {
-    /// Its number.
+    /// Number of the USART.
     pub number: u32,
-    /// Its interrupt.
+    /// Interrupt.
     pub interrupt: usize,
-    /// Its clock.
+    /// Clock.
     pub clock: BusClock,
-    /// Pins that can send, with the alternate function.
+    /// Possible transmit pins, with the alternate function.
     pub send: &'static [(Pin, u32)],
-    /// Pins that can receive.
+    /// Possible receive pins.
     pub receive: &'static [(Pin, u32)],
 }
 
-/// A USART.
+/// USART.
 #[derive(Debug)]
 pub struct Usart {
     registers: Registers,
@@ -112,27 +111,27 @@ pub struct Usart {
     received: VecDeque<u8>,
     overrun: bool,
     idle: bool,
-    /// The flags of overrun and of an idle line that the status showed when it was read: reading the data ends them.
+    /// Overrun and idle flags in the last status read; reading the data clears them.
     seen: [bool; 2],
-    /// The line has been idle for a byte then, unless one begins before.
+    /// Time at which the line has been idle for a byte, unless another byte begins before.
     idle_at: Option<Time>,
     waiting: VecDeque<u8>,
-    /// On its way out, and when it is done.
+    /// Byte in transmission, and the time of its end.
     sending: Option<(u8, Time)>,
 }
 
 impl Usart {
-    /// One byte each way.
+    /// USART with one byte in each direction.
     pub fn old(place: Place) -> Self {
         Self::with(Registers::new(&OLD), Kind::Old, place)
     }
 
-    /// The same without a clock: UART4 and UART5.
+    /// USART with one byte in each direction and no clock: UART4 and UART5.
     pub fn old_uart(place: Place) -> Self {
         Self::with(Registers::new(&OLD_UART), Kind::Old, place)
     }
 
-    /// With FIFOs: 8 bytes on G474, 16 on H743.
+    /// USART with FIFOs: 8 bytes on the G474, 16 on the H743.
     pub fn new(place: Place, depth: usize) -> Self {
         Self::with(Registers::new(&NEW), Kind::New(depth), place)
     }
@@ -166,7 +165,7 @@ impl Usart {
             && wires.leads_by(wires.line.cable.receive, self.place.receive)
     }
 
-    /// Whether the line to the host is for it.
+    /// Returns whether the line to the host is connected to this USART.
     fn has_line(&self, wires: &Wires) -> bool {
         wires.line.cable.unit == self.place.number
     }
@@ -182,7 +181,7 @@ impl Usart {
         }
     }
 
-    /// Its speed [baud]: RM0090 30.3.4, RM0440 37.5.7.
+    /// Speed [baud]: RM0090 30.3.4, RM0440 37.5.7.
     fn baud(&self, wires: &Wires) -> u64 {
         let clock = match self.place.clock {
             BusClock::Low => wires.clocks.low,
@@ -244,7 +243,7 @@ impl Usart {
             self.idle_at = None;
         }
         if let Kind::New(_) = self.kind {
-            // RM0440 37.8.1: these fields can only be written while the USART is off.
+            // RM0440 37.8.1: these fields can be written only while the USART is off.
             let fixed = bit(29) | bit(28) | bit(15) | bit(12) | bits(11, 9);
             if before & enable != 0 && (value ^ before) & fixed != 0 {
                 wires.violation(
@@ -285,8 +284,8 @@ impl Usart {
         }
     }
 
-    /// Looks whether the line was silent for as long as a byte takes (RM0090 30.3.3, RM0440 37.5.6), up to now or up to the
-    /// next byte that has begun.
+    /// Sets the idle flag if the line was silent for a byte's time (RM0090 30.3.3, RM0440 37.5.6), up to now or to the
+    /// start of the next byte.
     fn watch_silence(&mut self, begun: Option<Time>, now: Time) {
         let Some(idle_at) = self.idle_at else { return };
         if begun.is_some_and(|begun| begun < idle_at) {
@@ -296,14 +295,14 @@ impl Usart {
         }
     }
 
-    /// The line is silent from a time on.
+    /// Records that the line is silent from a time on.
     fn falls_silent(&mut self, now: Time, wires: &Wires) {
         self.idle_at = Some(now + cycles(BITS, self.baud(wires)));
     }
 
-    /// A byte has come in full.
+    /// Receives a complete byte.
     fn arrive(&mut self, byte: u8, at: Time, wires: &mut Wires) {
-        // A wrong speed makes other bytes of them.
+        // A wrong speed garbles the byte.
         let byte = if self.is_off_speed(wires) { !byte } else { byte };
         if !self.receives(wires) {
             return;
@@ -332,7 +331,7 @@ impl Peripheral for Usart {
             }
             (Kind::New(_), 0x1c) => self.status(),
             (Kind::Old, 0x04) | (Kind::New(_), 0x24) => {
-                // RM0090 30.6.1: a read of the status and then of the data, by whomever, clears overrun and idle line.
+                // RM0090 30.6.1: reading status, then data, by core or DMA, clears overrun and idle.
                 let [overrun, idle] = std::mem::take(&mut self.seen);
                 self.overrun &= !overrun;
                 self.idle &= !idle;
@@ -379,7 +378,7 @@ impl Peripheral for Usart {
         let asks_for_dma = self.is_enabled() && self.registers.get(self.kind.requests()) & bit(6) != 0;
         let is_served = asks_for_dma && wires.is_served(Request::UsartReceived(self.place.number));
         while let Some(arrives) = wires.line.arrives.filter(|arrives| has_line && *arrives <= wires.now) {
-            // While the core stands still, DMA has its turn after every byte.
+            // While the core stands still, DMA takes its turn after every byte.
             if is_served && !self.received.is_empty() {
                 break;
             }
@@ -402,7 +401,7 @@ impl Peripheral for Usart {
         let send = control & bit(7) != 0 && status & bit(7) != 0;
         let done = control & bit(6) != 0 && status & bit(6) != 0;
         let idle = control & bit(4) != 0 && status & bit(4) != 0;
-        // RM0090 30.6.6: EIE is for DMA only; RM0440 37.8.4: it is not.
+        // RM0090 30.6.6: EIE applies with DMA only; RM0440 37.8.4: without DMA too.
         let errs = requests & bit(0) != 0 && (self.kind != Kind::Old || requests & bit(6) != 0) && self.overrun;
         wires.interrupt(self.place.interrupt, self.is_enabled() && (receive || send || done || idle || errs));
         let number = self.place.number;

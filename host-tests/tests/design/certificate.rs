@@ -5,7 +5,7 @@
 //! `CERTIFICATE_JOINTS` and `CERTIFICATE_SEED` choose others, `CERTIFICATE_MS` cuts the motions off.
 
 use board::device::board::Board;
-use board::device::tick_time::OnBoard;
+use board::device::tick_time::RateCheck;
 use host_tests::tolerance::certificate::{OTHER_ABOVE_BOUND, STANDARD_ABOVE_BOUND, TYPICAL, TYPICAL_MEDIAN};
 use parameters::JointParameters;
 use rayon::prelude::*;
@@ -37,7 +37,7 @@ fn measured_by_sim(motion: &Motion, board: &Board) -> Option<Errors> {
 fn compare(seed: u64, longest: f64) -> Comparison {
     let draw = |of: &[&'static str]| of[(seed / 3) as usize % of.len()];
     let (joint, board) = (random_joint(seed), Board::load(draw(&BOARDS)).expect("a preset"));
-    let lowest = OnBoard::plant(&joint, &board).lowest_rate();
+    let lowest = RateCheck::plant(&joint, &board).lowest_rate();
     let rate = RATES[seed as usize % RATES.len()].max(lowest.next_multiple_of(5000));
     let stated = measure_up_to(&joint, &board.processor(), rate, longest).expect("a joint that can be stepped");
     let mut all = Comparison { ratios: Vec::new(), standard_above: false, other_above: false };
@@ -75,7 +75,7 @@ fn table_row(
             format!("{:.1e} {:.1e} {:.1e}", errors.deflections, errors.gap, errors.link)
         })
     };
-    let substeps = OnBoard::plant(joint, board).substeps(rate).map_or(String::new(), |substeps| substeps.to_string());
+    let substeps = RateCheck::plant(joint, board).substeps(rate).map_or(String::new(), |substeps| substeps.to_string());
     format!(
         "{seed}: {} planets, {} at {rate} Hz, {substeps}, {kind:?}: typical {}, sim {}; bound {}, another motion {}",
         joint.geometry.planets,

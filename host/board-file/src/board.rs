@@ -1,4 +1,4 @@
-//! A board as its file says it, checked.
+//! Checked description of a board.
 
 use joint_file::{Problem, Source};
 use model_core::gears::design::Processor;
@@ -7,69 +7,69 @@ use crate::chip::{Chip, Slot};
 use crate::pin::{Alternate, Pin};
 use crate::pll::Plls;
 
-/// RAM that is left for the stack at least [byte].
-const STACK: u32 = 8 << 10;
-/// Where the flash begins.
+/// Minimum of the RAM reserved for the stack [byte].
+const MIN_STACK_BYTES: u32 = 8 << 10;
+/// Start address of flash.
 pub const FLASH_START: u32 = 0x0800_0000;
-/// Where the RAM begins.
+/// Start address of RAM.
 pub const RAM_START: u32 = 0x2000_0000;
 
-/// A board that images can be built for.
+/// Board that images can be built for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Board {
-    /// What it calls itself in its hello.
+    /// Name that the board states in its hello.
     pub name: heapless::String<16>,
-    /// A sentence for people; may be empty.
+    /// Description for people; may be empty.
     pub description: String,
-    /// Its chip.
+    /// Chip on the board.
     pub chip: Chip,
-    /// The chip's order name, as the file has it.
+    /// Order name of the chip, as in the file.
     pub chip_name: String,
-    /// The chip as debug probes know it.
+    /// Name of the chip in debug probes.
     pub probe_name: String,
-    /// Flash, that of the slots included.
+    /// Flash, including the two slots [byte].
     pub flash_bytes: u32,
-    /// RAM without a gap.
+    /// Contiguous RAM [byte].
     pub ram_bytes: u32,
-    /// What drives the chip's clock.
+    /// External source of the chip's clock.
     pub clock: ExternalClock,
-    /// What makes the core clock of it.
+    /// PLL settings that make the core clock.
     pub pll: Plls,
-    /// The line to the host.
+    /// Serial line to the host.
     pub serial: Serial,
-    /// The line to a motor controller whose slave the board is.
+    /// SPI line to a motor controller, the board as slave.
     pub spi_slave: Option<SpiSlave>,
-    /// Its line on CAN, which no image uses yet.
+    /// CAN line, which no image uses yet.
     pub can: Option<Can>,
-    /// Encoders of motor and output, which no image reads yet.
+    /// Encoders at motor and output, which no image reads yet.
     pub encoders: [Option<Encoder>; 2],
-    /// Holds the board's own supply.
+    /// Output that holds the board's own supply.
     pub supply: Option<Output>,
-    /// Switches the motor on.
+    /// Output that switches the motor on.
     pub enable: Option<Output>,
-    /// The status light.
+    /// Status light.
     pub light: Option<Output>,
-    /// Pins that the firmware leaves as they are after a reset, each with what it is there.
+    /// Pins that the firmware leaves in their reset state, each with its use.
     pub never_driven: Vec<(Pin, String)>,
-    /// What is odd but can be used.
+    /// Problems that do not prevent a build.
     pub warnings: Vec<Problem>,
-    /// Where each value comes from, by the comment behind it.
+    /// Origin of each value, from the comment behind it.
     pub sources: Vec<Source>,
 }
 
-/// What a board supplies its chip's clock from.
+/// External source of the chip's clock.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExternalClock {
-    /// Nothing: the chip's own oscillator drives it.
+    /// None: the chip's own oscillator is used.
     None,
     /// A crystal [Hz].
     Crystal(u32),
-    /// A clock that comes from elsewhere [Hz].
+    /// External clock signal [Hz].
     Signal(u32),
 }
 
 impl ExternalClock {
-    /// Its frequency [Hz], if there is any.
+    /// Frequency of the external source [Hz], if there is one.
     pub fn frequency(self) -> Option<u32> {
         match self {
             Self::None => None,
@@ -78,100 +78,100 @@ impl ExternalClock {
     }
 }
 
-/// The line to the host.
+/// Serial line to the host.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Serial {
-    /// The unit, such as USART1.
+    /// Peripheral, such as USART1.
     pub unit: &'static str,
-    /// What its baud rate is divided from while the PLL runs [Hz].
+    /// Clock from which the baud rate is divided while the PLL runs [Hz].
     pub clock: u32,
-    /// Where it sends.
+    /// Transmit pin.
     pub send: Alternate,
-    /// Where it receives.
+    /// Receive pin.
     pub receive: Alternate,
-    /// Its speed [baud].
+    /// Speed of the line [baud].
     pub baud: u32,
 }
 
-/// The line to a motor controller whose slave the board is.
+/// SPI line to a motor controller, the board as slave.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SpiSlave {
-    /// The unit, such as SPI1.
+    /// Peripheral, such as SPI1.
     pub unit: &'static str,
-    /// Low while the master speaks to this board.
+    /// Select input, low while the master addresses this board.
     pub select: Alternate,
-    /// The master's clock.
+    /// Clock of the master.
     pub clock: Alternate,
-    /// To the master.
+    /// Data to the master.
     pub out: Alternate,
-    /// From the master.
+    /// Data from the master.
     pub input: Alternate,
 }
 
-/// A line on CAN.
+/// CAN line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Can {
-    /// The unit, such as CAN1.
+    /// Peripheral, such as CAN1.
     pub unit: &'static str,
-    /// To the transceiver.
+    /// Data to the transceiver.
     pub send: Pin,
-    /// From the transceiver.
+    /// Data from the transceiver.
     pub receive: Pin,
 }
 
 /// An encoder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Encoder {
-    /// The unit that reads it, such as SPI2 or TIM4.
+    /// Peripheral that reads the encoder, such as SPI2 or TIM4.
     pub unit: &'static str,
-    /// Its wires.
+    /// Pins of the encoder.
     pub pins: EncoderPins,
 }
 
-/// The wires of an encoder.
+/// Pins of an encoder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EncoderPins {
-    /// It answers on SPI, whose master the board is.
+    /// SPI encoder; the board is the master.
     Spi {
-        /// Low while the board speaks to it.
+        /// Select output, low while the board addresses the encoder.
         select: Pin,
-        /// The clock.
+        /// Clock.
         clock: Pin,
-        /// From the encoder.
+        /// Data from the encoder.
         out: Pin,
-        /// To the encoder.
+        /// Data to the encoder.
         input: Pin,
     },
-    /// It sends pulses.
+    /// Pulse encoder.
     Pulses {
-        /// One channel.
+        /// Channel A.
         a: Pin,
-        /// The other channel, a quarter of a period apart.
+        /// Channel B, a quarter of a period from channel A.
         b: Pin,
-        /// Once a turn.
+        /// Index, once per turn.
         index: Option<Pin>,
     },
 }
 
-/// A pin that switches something.
+/// Pin that switches something.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Output {
     /// The pin.
     pub pin: Pin,
-    /// Its level while that is on.
+    /// Level in the on state.
     pub on: Level,
 }
 
 /// The level of a pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Level {
-    /// At ground.
+    /// Ground.
     Low,
-    /// At the supply.
+    /// Supply voltage.
     High,
 }
 
-/// Keys of both encoders' pins.
+/// Keys of the pins of both encoders.
 const ENCODER_KEYS: [[&str; 7]; 2] = [
     [
         "encoder.motor.select",
@@ -194,32 +194,32 @@ const ENCODER_KEYS: [[&str; 7]; 2] = [
 ];
 
 impl Board {
-    /// The two parts of the flash that keep what the observer has learnt.
+    /// Two parts of the flash that keep the observer's memory.
     pub fn slots(&self) -> [Slot; 2] {
         (self.chip.facts().slots)(self.flash_bytes)
     }
 
-    /// What an image may take of the flash, from its start to the first slot.
+    /// Flash available to an image, from its start to the first slot [byte].
     pub fn image_bytes(&self) -> u32 {
         self.slots()[0].address - FLASH_START
     }
 
-    /// Returns the RAM that the statics of an image may take: the stack has the rest [byte].
+    /// RAM available to the statics of an image; the stack has the rest [byte].
     pub fn static_bytes(&self) -> u32 {
-        self.ram_bytes - STACK
+        self.ram_bytes - MIN_STACK_BYTES
     }
 
-    /// Its core clock [Hz].
+    /// Core clock [Hz].
     pub fn core_rate(&self) -> u32 {
         self.chip.core_rate()
     }
 
-    /// What it gives the step.
+    /// Clock, cycles per instruction and share of the period that the chip offers the step.
     pub fn processor(&self) -> Processor {
         self.chip.processor()
     }
 
-    /// Every pin that the firmware uses, with the key that says so, in the order of the documentation.
+    /// Pins that the firmware uses, with their keys, in the order of the documentation.
     pub fn used_pins(&self) -> Vec<(&'static str, Pin)> {
         let Serial { send, receive, .. } = &self.serial;
         let mut pins = vec![("serial.send", send.pin), ("serial.receive", receive.pin)];
@@ -237,8 +237,8 @@ impl Board {
         pins
     }
 
-    /// Every pin of a line that no image uses yet, with the key that says so: the firmware leaves them as they are after a reset.
-    pub fn pins_without_use(&self) -> Vec<(&'static str, Pin)> {
+    /// Pins of lines that no image uses yet, with their keys. The firmware leaves them in their reset state.
+    pub fn unused_line_pins(&self) -> Vec<(&'static str, Pin)> {
         let mut pins = Vec::new();
         if let Some(Can { send, receive, .. }) = self.can {
             pins.extend([("can.send", send), ("can.receive", receive)]);

@@ -1,4 +1,4 @@
-//! What a build of the firmware is told of its board: constants as Rust, memory as a linker script, and what is compiled at all.
+//! Inputs of the firmware's build: constants as Rust, memory as a linker script, and `cfg` flags.
 
 use std::fmt::Write;
 
@@ -7,7 +7,7 @@ use crate::chip::Chip;
 use crate::pin::Alternate;
 use crate::pll::Pll;
 
-/// The board as a module of constants, to be included in one.
+/// Constants of the board as Rust source, to be included in a module.
 ///
 /// ```
 /// let board = board_file::read(board_file::preset("olimex-h405").unwrap()).unwrap();
@@ -17,12 +17,12 @@ use crate::pll::Pll;
 pub fn rust_source(board: &Board) -> String {
     let mut source = String::new();
     let mut constant = |what: &str, name: &str, kind: &str, value: String| {
-        // A string takes what is written to it.
+        // Writing to a string cannot fail.
         let _ = writeln!(source, "/// {what}\npub const {name}: {kind} = {value};");
     };
     const PIN: &str = "(u8, u8, u8)";
     const OUTPUT: &str = "Option<(u8, u8, bool)>";
-    let hertz = |clock: ExternalClock| match clock {
+    let external_clock = |clock: ExternalClock| match clock {
         ExternalClock::None => "None".to_owned(),
         ExternalClock::Crystal(frequency) => format!("Some(({frequency}, false))"),
         ExternalClock::Signal(frequency) => format!("Some(({frequency}, true))"),
@@ -30,66 +30,81 @@ pub fn rust_source(board: &Board) -> String {
     let pll = |Pll { divider, factor, range }: Pll| format!("({divider}, {factor}, {range})");
     let pin = |Alternate { pin, function }: Alternate| format!("({}, {}, {function})", pin.port, pin.number);
     let output = |output: Option<Output>| {
-        some(output.map(|Output { pin, on }| format!("({}, {}, {})", pin.port, pin.number, on == Level::High)))
+        option_source(output.map(|Output { pin, on }| format!("({}, {}, {})", pin.port, pin.number, on == Level::High)))
     };
-    constant("What the board calls itself.", "NAME", "&str", format!("{:?}", board.name.as_str()));
+    constant("Name of the board, as in its hello.", "NAME", "&str", format!("{:?}", board.name.as_str()));
     constant("Core clock [Hz].", "CORE_RATE", "u32", board.core_rate().to_string());
     constant(
-        "What drives the clock from outside: frequency [Hz], and whether it is a signal rather than a crystal.",
+        "External source of the clock: frequency [Hz], and true for a signal, false for a crystal.",
         "EXTERNAL",
         "Option<(u32, bool)>",
-        hertz(board.clock),
+        external_clock(board.clock),
     );
     constant(
-        "Of the PLL for that: divider, factor, code of the input's range.",
+        "PLL for the external source: divider, factor, code of the input's range.",
         "EXTERNAL_PLL",
         "Option<(u32, u32, u32)>",
-        some(board.pll.external.map(pll)),
+        option_source(board.pll.external.map(pll)),
     );
-    constant("Of the PLL for the chip's own oscillator.", "INTERNAL_PLL", "(u32, u32, u32)", pll(board.pll.internal));
-    constant("The chip's own oscillator [Hz].", "INTERNAL", "u32", board.chip.internal_oscillator().to_string());
-    constant("Where the line to the host sends: port, number, function.", "SERIAL_SEND", PIN, pin(board.serial.send));
-    constant("Where it receives.", "SERIAL_RECEIVE", PIN, pin(board.serial.receive));
-    constant("Clock of its unit while the PLL runs [Hz].", "SERIAL_CLOCK", "u32", board.serial.clock.to_string());
-    constant("Its speed [baud].", "BAUD", "u32", board.serial.baud.to_string());
+    constant("PLL for the chip's own oscillator.", "INTERNAL_PLL", "(u32, u32, u32)", pll(board.pll.internal));
     constant(
-        "Pins of the slave on SPI: select, clock, out, in.",
+        "Frequency of the chip's own oscillator [Hz].",
+        "INTERNAL",
+        "u32",
+        board.chip.internal_oscillator().to_string(),
+    );
+    constant(
+        "Transmit pin of the line to the host: port, number, function.",
+        "SERIAL_SEND",
+        PIN,
+        pin(board.serial.send),
+    );
+    constant("Receive pin of the line to the host.", "SERIAL_RECEIVE", PIN, pin(board.serial.receive));
+    constant(
+        "Clock of the serial peripheral while the PLL runs [Hz].",
+        "SERIAL_CLOCK",
+        "u32",
+        board.serial.clock.to_string(),
+    );
+    constant("Speed of the line to the host [baud].", "BAUD", "u32", board.serial.baud.to_string());
+    constant(
+        "Pins of the SPI slave: select, clock, out, in.",
         "SPI_SLAVE",
         "Option<[(u8, u8, u8); 4]>",
-        some(
+        option_source(
             board
                 .spi_slave
                 .as_ref()
                 .map(|slave| format!("[{}]", [slave.select, slave.clock, slave.out, slave.input].map(pin).join(", "))),
         ),
     );
-    constant("What holds the supply: port, number, whether high is on.", "SUPPLY", OUTPUT, output(board.supply));
-    constant("What switches the motor on: the same.", "ENABLE", OUTPUT, output(board.enable));
-    constant("The status light: the same.", "LIGHT", OUTPUT, output(board.light));
+    constant("Output that holds the supply: port, number, true if high is on.", "SUPPLY", OUTPUT, output(board.supply));
+    constant("Output that switches the motor on, in the same form.", "ENABLE", OUTPUT, output(board.enable));
+    constant("Status light, in the same form.", "LIGHT", OUTPUT, output(board.light));
     let [first, second] = board.slots();
     constant(
-        "Where what the observer has learnt is kept.",
+        "Addresses of the slots for the observer's memory.",
         "SLOTS",
         "[u32; 2]",
         format!("[{:#010x}, {:#010x}]", first.address, second.address),
     );
     constant(
-        "So much of each may be used: no more than is erased at once.",
+        "Usable size of each slot, at most the part erased at once [byte].",
         "SLOT_BYTES",
         "u32",
         first.bytes.min(second.bytes).to_string(),
     );
-    constant("Flash, that of the slots included.", "FLASH_BYTES", "u32", board.flash_bytes.to_string());
-    constant("What an image may take of it.", "IMAGE_BYTES", "u32", board.image_bytes().to_string());
-    constant("RAM.", "RAM_BYTES", "u32", board.ram_bytes.to_string());
+    constant("Flash, including the slots [byte].", "FLASH_BYTES", "u32", board.flash_bytes.to_string());
+    constant("Flash available to an image [byte].", "IMAGE_BYTES", "u32", board.image_bytes().to_string());
+    constant("RAM [byte].", "RAM_BYTES", "u32", board.ram_bytes.to_string());
     source
 }
 
-fn some(value: Option<String>) -> String {
+fn option_source(value: Option<String>) -> String {
     value.map_or("None".to_owned(), |value| format!("Some({value})"))
 }
 
-/// A linker script to be read before that of the start-up code: where the stack begins, and that an image fits.
+/// Linker script to be read before the one of the start-up code: start of the stack, and assertions that an image fits.
 pub fn linker_script(board: &Board) -> String {
     let name = &board.name;
     let end = RAM_START + board.ram_bytes;
@@ -110,7 +125,7 @@ ASSERT(__ebss <= {least:#010x} && __euninit <= {least:#010x},
     )
 }
 
-/// What is compiled for a board: names with values, each for a `cfg`. Units are named in lower case.
+/// `cfg` flags of a board, as names with values. Peripherals are named in lower case.
 ///
 /// ```
 /// let board = board_file::read(board_file::preset("olimex-h405").unwrap()).unwrap();
@@ -125,13 +140,13 @@ pub fn cfgs(board: &Board) -> Vec<(&'static str, String)> {
     ];
     if let Some(slave) = &board.spi_slave {
         cfgs.push(("spi_slave", slave.unit.to_lowercase()));
-        // The interrupt lines of pins are numbered as the pins are, whatever their port.
+        // External interrupt lines are numbered like the pins, whatever the port.
         cfgs.push(("select_line", slave.select.pin.number.to_string()));
     }
     cfgs
 }
 
-/// Every name of [`cfgs`] with every value that it can have.
+/// Every name of [`cfgs`] with all of its possible values.
 pub fn all_cfgs() -> Vec<(&'static str, Vec<String>)> {
     let names = |of: fn(Chip) -> Vec<&'static str>| {
         let mut names: Vec<String> = Chip::ALL.into_iter().flat_map(of).map(str::to_lowercase).collect();

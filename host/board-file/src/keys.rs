@@ -1,24 +1,24 @@
-//! Every key of a board file: its section, what it holds, and a hint for who got it wrong. The page
-//! docs/reference/board-files.md lists every key in its tables.
+//! Keys of a board file: section, kind of value, and a hint for wrong input. The page docs/reference/board-files.md
+//! lists every key in its tables.
 
 use joint_file::Keys;
 
-/// What a key holds.
+/// Kind of a key's value.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Kind {
     /// A string.
     Text,
-    /// One of these words.
+    /// One of the given words.
     Choice(&'static [&'static str]),
-    /// A whole number with both ends allowed.
+    /// Whole number between two inclusive bounds.
     Whole(u32, u32),
-    /// The name of a pin.
+    /// Name of a pin.
     Pin,
-    /// A table of its own.
+    /// Table.
     Section,
 }
 
-/// One key.
+/// Key of a board file.
 pub(crate) type Key = joint_file::Key<Kind>;
 
 impl Keys for Kind {
@@ -133,8 +133,9 @@ mod tests {
 
     const PAGE: &str = include_str!("../../../docs/reference/board-files.md");
 
+    /// The page lists every key with its kind of value and its hint.
     #[test]
-    fn every_key_is_documented_with_what_it_holds() {
+    fn keys_documented_with_kind() {
         for key in KEYS {
             let value = match key.kind {
                 Kind::Text => "text".to_owned(),
@@ -155,8 +156,9 @@ mod tests {
         }
     }
 
+    /// The page has a heading for every section.
     #[test]
-    fn every_section_is_documented() {
+    fn sections_documented() {
         for key in KEYS.iter().filter(|key| matches!(key.kind, Kind::Section) && key.name != "encoder") {
             let name =
                 if key.section.is_empty() { key.name.to_owned() } else { format!("{}.{}", key.section, key.name) };

@@ -1,10 +1,10 @@
-//! Board files: TOML that says what a board is (chip, memory, clock, pins, lines), read with all problems of a file found at
-//! once, each with its place in the text.
+//! Board files: TOML that describes a board (chip, memory, clock, pins, lines). Reading reports all problems of a file
+//! at once, each with its place in the text.
 //!
-//! `chip` has the facts of every chip, a file each; `keys` lists every key; `section` takes values out of a table by that
-//! list; `pins` says which pins may be used for what, `lines` what a board has that no image uses yet; `reader` puts the board together. `generated` is what a build of the
-//! firmware takes from it. A board that is read can be built for: pins, clock, speed of the line and memory have been held
-//! against its chip.
+//! `chip` holds the data of every chip, one file each; `keys` lists every key; `section` reads values of a table by
+//! that list; `pins` decides which pins may be used for a purpose; `lines` reads the lines that no image uses yet;
+//! `reader` assembles the board. `generated` is the part that a build of the firmware uses. A board that was read can
+//! be built for: its pins, clock, line speed and memory have been checked against the chip.
 
 #![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets")]
 
@@ -28,7 +28,7 @@ pub use board::{
 pub use chip::{Chip, ImageSize, OTHER_CHIPS, Slot};
 pub use generated::{all_cfgs, cfgs, linker_script, rust_source};
 pub use joint_file::{Problem, Problems, Severity, Source};
-pub use pin::{Alternate, NoPin, Pin};
+pub use pin::{Alternate, InvalidPinName, Pin};
 pub use pll::{Pll, Plls};
 pub use presets::{DEFAULT, PRESETS, boards_with, chip_in_place_of_board, preset};
 pub use reader::{baud_divider, read};

@@ -1,32 +1,32 @@
-//! Lines of a board that no image uses yet: CAN, and the encoders of motor and output. Their pins are held against the chip and
-//! against all other uses, so that nothing else takes them; the firmware leaves them as they are after a reset.
+//! Lines of a board that no image uses yet: CAN, and the encoders of motor and output. Their pins are checked against
+//! the chip and against all other uses, so that they stay reserved; the firmware leaves them in their reset state.
 
 use joint_file::wording::listed;
 
 use crate::board::{Can, Encoder, EncoderPins};
 use crate::chip::{CanUnit, Part, TimerUnit};
 use crate::pin::Pin;
-use crate::pins::{Pins, no_unit};
+use crate::pins::{Pins, report_unknown_unit};
 use crate::section::Section;
 
-/// Keys of an encoder that answers on SPI, and of one that sends pulses.
-const ON_SPI: [&str; 4] = ["select", "clock", "out", "in"];
-const BY_PULSES: [&str; 3] = ["a", "b", "index"];
+/// Keys of an SPI encoder, and of a pulse encoder.
+const SPI_KEYS: [&str; 4] = ["select", "clock", "out", "in"];
+const PULSE_KEYS: [&str; 3] = ["a", "b", "index"];
 
 pub(crate) fn read_can(section: &Section<'_>, part: Option<Part>, pins: &Pins) -> Option<Can> {
-    let name = section.required("unit", Section::stated);
+    let name = section.required("unit", Section::text_with_source);
     let unit = name.zip(part).and_then(|(name, part)| {
         let all = part.chip.facts().can;
         let units: Vec<&str> = all.iter().map(|unit| unit.name).collect();
-        all.iter().find(|unit| unit.name == name).or_else(|| no_unit(section, &name, part, &units, None))
+        all.iter().find(|unit| unit.name == name).or_else(|| report_unknown_unit(section, &name, part, &units, None))
     });
-    let of = |list: fn(&CanUnit) -> &'static [Pin]| unit.map(|unit| (unit.name, list(unit)));
-    let send = pins.of_line(section, "send", of(|unit| unit.send));
-    let receive = pins.of_line(section, "receive", of(|unit| unit.receive));
+    let unit_pins = |list: fn(&CanUnit) -> &'static [Pin]| unit.map(|unit| (unit.name, list(unit)));
+    let send = pins.claim_line_pin(section, "send", unit_pins(|unit| unit.send));
+    let receive = pins.claim_line_pin(section, "receive", unit_pins(|unit| unit.receive));
     Some(Can { unit: unit?.name, send: send?, receive: receive? })
 }
 
-/// Both encoders; each may be left out. The outer `None` if one is there and wrong.
+/// Reads both encoders; each may be left out. Returns `None` if a stated encoder is wrong.
 pub(crate) fn read_encoders(section: &Section<'_>, part: Option<Part>, pins: &Pins) -> Option<[Option<Encoder>; 2]> {
     let [motor, output] = ["motor", "output"].map(|name| match section.has(name) {
         true => section.section(name).and_then(|section| read_encoder(&section, part, pins)).map(Some),
@@ -36,36 +36,37 @@ pub(crate) fn read_encoders(section: &Section<'_>, part: Option<Part>, pins: &Pi
 }
 
 fn read_encoder(section: &Section<'_>, part: Option<Part>, pins: &Pins) -> Option<Encoder> {
-    let name = section.required("unit", Section::stated)?;
+    let name = section.required("unit", Section::text_with_source)?;
     let part = part?;
     let facts = part.chip.facts();
     let spi = facts.spi.unwrap_or_default();
     if let Some(unit) = spi.iter().find(|unit| unit.name == name) {
-        refuse(section, &BY_PULSES, &name, &ON_SPI);
+        report_foreign_keys(section, &PULSE_KEYS, &name, &SPI_KEYS);
         let plain = |list: &'static [crate::pin::Alternate]| list.iter().map(|it| it.pin).collect::<Vec<_>>();
-        let select = pins.of_line(section, "select", None);
+        let select = pins.claim_line_pin(section, "select", None);
         let [clock, out, input] = [("clock", unit.clock), ("out", unit.out), ("in", unit.input)]
-            .map(|(key, list)| pins.of_bus(section, key, unit.name, &plain(list)));
+            .map(|(key, list)| pins.claim_bus_pin(section, key, unit.name, &plain(list)));
         let pins = EncoderPins::Spi { select: select?, clock: clock?, out: out?, input: input? };
         return Some(Encoder { unit: unit.name, pins });
     }
     if let Some(unit) = facts.timers.iter().find(|unit| unit.name == name) {
-        refuse(section, &ON_SPI, &name, &BY_PULSES);
+        report_foreign_keys(section, &SPI_KEYS, &name, &PULSE_KEYS);
         let TimerUnit { name, a, b } = *unit;
-        let a = pins.of_line(section, "a", Some((name, a)));
-        let b = pins.of_line(section, "b", Some((name, b)));
-        let index = if section.has("index") { pins.of_line(section, "index", None).map(Some) } else { Some(None) };
+        let a = pins.claim_line_pin(section, "a", Some((name, a)));
+        let b = pins.claim_line_pin(section, "b", Some((name, b)));
+        let index =
+            if section.has("index") { pins.claim_line_pin(section, "index", None).map(Some) } else { Some(None) };
         return Some(Encoder { unit: name, pins: EncoderPins::Pulses { a: a?, b: b?, index: index? } });
     }
     let units: Vec<&str> = spi.iter().map(|it| it.name).chain(facts.timers.iter().map(|it| it.name)).collect();
-    let why = (facts.spi.is_err() && name.starts_with("SPI")).then_some("the pins of its SPI are not known here");
-    no_unit(section, &name, part, &units, why)
+    let why = (facts.spi.is_err() && name.starts_with("SPI")).then_some("the pins of its SPI are not in this program");
+    report_unknown_unit(section, &name, part, &units, why)
 }
 
-/// Complains about keys that an encoder of the other kind has.
-fn refuse(section: &Section<'_>, others: &[&str], unit: &str, own: &[&str]) {
+/// Reports keys that belong to an encoder of the other kind.
+fn report_foreign_keys(section: &Section<'_>, others: &[&str], unit: &str, own: &[&str]) {
     for key in others.iter().filter(|key| section.has(key)) {
         let message = format!("`{key}` is no pin of an encoder on {unit}");
-        section.notes.error(section.place(key), message, format!("it has {}", listed(own)));
+        section.notes.error(section.place(key), message, format!("use {}", listed(own)));
     }
 }

@@ -1,4 +1,4 @@
-//! Finds a board file, by path or as a preset, and reads it, with errors that underline the place.
+//! Finds a board file by path or as a preset and reads it; errors underline the place in the text.
 
 use std::path::Path;
 
@@ -9,18 +9,18 @@ use report::input;
 use crate::board::Board;
 use crate::presets::{PRESETS, chip_in_place_of_board, preset};
 
-/// A board file and where it was found.
+/// Board file with its name and text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loaded {
-    /// Its path, or the name of the preset.
+    /// Path, or name of the preset.
     pub name: String,
-    /// Its text.
+    /// Text of the file.
     pub text: String,
-    /// What it says.
+    /// Parsed board.
     pub board: Board,
 }
 
-/// Reads a path or a preset. A file of that name goes before a preset.
+/// Reads a path or a preset. A file takes precedence over a preset of the same name.
 pub fn load(file: &Path) -> Outcome<Loaded> {
     let name = file.display().to_string();
     let known = file.to_str().filter(|_| !file.is_file());

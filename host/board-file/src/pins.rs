@@ -1,4 +1,5 @@
-//! Which pins a board file may use for what: those that the chip's package brings out, that nothing else needs, each once.
+//! Decides which pins a board file may use: pins that the chip's package brings out and that have no other use, each
+//! once.
 
 use std::cell::RefCell;
 use std::ops::Range;
@@ -11,24 +12,24 @@ use crate::chip::Part;
 use crate::pin::{Alternate, Pin};
 use crate::section::Section;
 
-/// The pins of a debug probe. Reset is a pin of its own.
-const PROBE: [(Pin, &str); 2] = [
+/// Pins of the debug probe. Reset has its own pin.
+const PROBE_PINS: [(Pin, &str); 2] = [
     (Pin { port: 0, number: 13 }, "the debug probe's data (SWDIO)"),
     (Pin { port: 0, number: 14 }, "the debug probe's clock (SWCLK)"),
 ];
 
-/// One use of a pin.
-struct Use {
-    /// The key that says so, with its section.
+/// Use of a pin.
+struct PinUse {
+    /// Key with its section.
     key: String,
     pin: Pin,
     span: Range<usize>,
-    /// Unit and wire of a bus that several may be on.
+    /// Peripheral and wire, for a bus that several devices may share.
     bus: Option<(&'static str, String)>,
 }
 
-/// Complains about a unit that the chip does not have, or not for this.
-pub(crate) fn no_unit<T>(
+/// Reports a peripheral that the chip does not have or does not support for this purpose.
+pub(crate) fn report_unknown_unit<T>(
     section: &Section<'_>,
     name: &str,
     part: Part,
@@ -44,13 +45,13 @@ pub(crate) fn no_unit<T>(
     None
 }
 
-/// Reads pins, and keeps what they are used for.
+/// Reads pins and records their uses.
 pub(crate) struct Pins {
-    /// `None` if the file does not say.
+    /// `None` if the file's chip is missing or wrong.
     part: Option<Part>,
-    /// `None` if the file does not say.
+    /// `None` if the file's clock is missing or wrong.
     clock: Option<ExternalClock>,
-    uses: RefCell<Vec<Use>>,
+    uses: RefCell<Vec<PinUse>>,
 }
 
 impl Pins {
@@ -58,9 +59,9 @@ impl Pins {
         Self { part, clock, uses: RefCell::default() }
     }
 
-    /// A pin that the firmware may use.
-    pub fn free(&self, section: &Section<'_>, name: &str) -> Option<Pin> {
-        let (pin, span) = (self.of_nobody_else(section, name, None)?, section.place(name));
+    /// Reads a pin for the firmware's use.
+    pub fn claim(&self, section: &Section<'_>, name: &str) -> Option<Pin> {
+        let (pin, span) = (self.claim_unreserved(section, name, None)?, section.place(name));
         let boot = self.part.and_then(|part| part.chip.facts().boot_pin).filter(|boot| *boot == pin);
         if let Some(boot) = boot {
             let message =
@@ -71,12 +72,17 @@ impl Pins {
         Some(pin)
     }
 
-    /// A pin that the package has and that nothing else needs; of a unit's bus, if it is one that several may be on.
-    fn of_nobody_else(&self, section: &Section<'_>, name: &str, bus: Option<&'static str>) -> Option<Pin> {
+    /// Reads a pin that the package has and that is not reserved. `bus` names the peripheral of a shared bus.
+    fn claim_unreserved(&self, section: &Section<'_>, name: &str, bus: Option<&'static str>) -> Option<Pin> {
         let pin = section.required(name, Section::pin)?;
         let (key, span) = (section.full(name), section.place(name));
-        self.uses.borrow_mut().push(Use { key, pin, span: span.clone(), bus: bus.map(|unit| (unit, name.to_owned())) });
-        match self.reserved(pin) {
+        self.uses.borrow_mut().push(PinUse {
+            key,
+            pin,
+            span: span.clone(),
+            bus: bus.map(|unit| (unit, name.to_owned())),
+        });
+        match self.reservation(pin) {
             None => Some(pin),
             Some((message, help)) => {
                 section.notes.error(span, message, help);
@@ -85,33 +91,39 @@ impl Pins {
         }
     }
 
-    /// A pin of a line that no image uses yet; in `of` a unit's name and its pins for it, where it is a unit's.
-    pub fn of_line(&self, section: &Section<'_>, name: &str, of: Option<(&str, &[Pin])>) -> Option<Pin> {
-        let pin = self.of_nobody_else(section, name, None)?;
-        of.is_none_or(|(unit, list)| self.is_of(section, name, pin, unit, list)).then_some(pin)
+    /// Reads a pin of a line that no image uses yet; `of` holds the peripheral's name and its possible pins, if the pin
+    /// belongs to one.
+    pub fn claim_line_pin(&self, section: &Section<'_>, name: &str, of: Option<(&str, &[Pin])>) -> Option<Pin> {
+        let pin = self.claim_unreserved(section, name, None)?;
+        of.is_none_or(|(unit, list)| self.check_listed(section, name, pin, unit, list)).then_some(pin)
     }
 
-    /// The same on a unit's bus, which several may share.
-    pub fn of_bus(&self, section: &Section<'_>, name: &str, unit: &'static str, list: &[Pin]) -> Option<Pin> {
-        let pin = self.of_nobody_else(section, name, Some(unit))?;
-        self.is_of(section, name, pin, unit, list).then_some(pin)
+    /// Reads a pin of a bus that several devices may share.
+    pub fn claim_bus_pin(&self, section: &Section<'_>, name: &str, unit: &'static str, list: &[Pin]) -> Option<Pin> {
+        let pin = self.claim_unreserved(section, name, Some(unit))?;
+        self.check_listed(section, name, pin, unit, list).then_some(pin)
     }
 
-    /// A pin that a unit has for this; in `of` a unit's name and its pins for it.
-    pub fn of_unit(&self, section: &Section<'_>, name: &str, of: Option<(&str, &[Alternate])>) -> Option<Alternate> {
-        let pin = self.free(section, name);
+    /// Reads a pin in a peripheral's alternate function; `of` holds the peripheral's name and its possible pins.
+    pub fn claim_alternate(
+        &self,
+        section: &Section<'_>,
+        name: &str,
+        of: Option<(&str, &[Alternate])>,
+    ) -> Option<Alternate> {
+        let pin = self.claim(section, name);
         let (unit, list) = of?;
         let pin = pin?;
         if let Some(found) = list.iter().find(|alternate| alternate.pin == pin) {
             return Some(*found);
         }
         let pins: Vec<Pin> = list.iter().map(|alternate| alternate.pin).collect();
-        self.is_of(section, name, pin, unit, &pins);
+        self.check_listed(section, name, pin, unit, &pins);
         None
     }
 
-    /// Whether a pin is one of a unit's for this; complains if not.
-    fn is_of(&self, section: &Section<'_>, name: &str, pin: Pin, unit: &str, list: &[Pin]) -> bool {
+    /// Returns whether a pin is in the peripheral's list; reports an error if not.
+    fn check_listed(&self, section: &Section<'_>, name: &str, pin: Pin, unit: &str, list: &[Pin]) -> bool {
         if list.contains(&pin) {
             return true;
         }
@@ -125,16 +137,16 @@ impl Pins {
         false
     }
 
-    /// Why nobody may use a pin, and what to do.
-    fn reserved(&self, pin: Pin) -> Option<(String, String)> {
+    /// Reason why a pin is reserved, and the help.
+    fn reservation(&self, pin: Pin) -> Option<(String, String)> {
         let part = self.part?;
         if !part.has(pin) {
             return Some((format!("{} has no {pin}", part.name()), format!("its package brings out {}", part.pins())));
         }
-        if let Some((_, what)) = PROBE.iter().find(|(probe, _)| *probe == pin) {
+        if let Some((_, what)) = PROBE_PINS.iter().find(|(probe, _)| *probe == pin) {
             return Some((
                 format!("{pin} is {what}"),
-                "use another pin: without the probe no image gets in".to_owned(),
+                "use another pin: without the debug probe the board cannot be flashed".to_owned(),
             ));
         }
         let what = match self.clock? {
@@ -142,10 +154,10 @@ impl Pins {
             ExternalClock::Crystal(_) => "the crystal",
             ExternalClock::Signal(_) => "the clock signal",
         };
-        let taken = part.chip.facts().oscillator_pins.contains(&pin);
-        taken.then(|| {
+        let is_oscillator_pin = part.chip.facts().oscillator_pins.contains(&pin);
+        is_oscillator_pin.then(|| {
             let help = "use another pin; with source = \"internal\" in [clock] it would be free".to_owned();
-            (format!("{pin} is where {what} is connected"), help)
+            (format!("{pin} is the pin of {what}"), help)
         })
     }
 
@@ -162,7 +174,7 @@ impl Pins {
             let word = key.get_ref().as_ref();
             let pin = word.parse::<Pin>().ok();
             let (message, help) = match (pin, value.get_ref()) {
-                (None, _) => (format!("`{word}` in [{NAME}] is no pin"), "write PA8 = \"what it is there\"".to_owned()),
+                (None, _) => (format!("`{word}` in [{NAME}] is no pin"), "write PA8 = \"its use\"".to_owned()),
                 (Some(pin), _) if self.part.is_some_and(|part| !part.has(pin)) => {
                     let pins = self.part.map_or(String::new(), |part| part.pins());
                     (format!("the chip has no {pin}"), format!("its package brings out {pins}"))
@@ -173,7 +185,7 @@ impl Pins {
                     continue;
                 }
                 (Some(pin), _) => (
-                    format!("`{pin}` in [{NAME}] must say what the pin is there"),
+                    format!("`{pin}` in [{NAME}] must state the pin's use"),
                     "write it as a string: \"gate of phase A\"".to_owned(),
                 ),
             };
@@ -187,11 +199,11 @@ impl Pins {
         list
     }
 
-    /// Complains about pins that are used twice, or although they are never driven.
+    /// Reports pins that are used twice, and used pins that must never be driven.
     pub fn check(&self, never_driven: &[(Pin, String)], notes: &Notes<'_>) {
         let uses = self.uses.borrow();
-        for (at, Use { key, pin, span, bus }) in uses.iter().enumerate() {
-            let is_other = |other: &&Use| other.pin == *pin && (bus.is_none() || other.bus != *bus);
+        for (at, PinUse { key, pin, span, bus }) in uses.iter().enumerate() {
+            let is_other = |other: &&PinUse| other.pin == *pin && (bus.is_none() || other.bus != *bus);
             if let Some(first) = uses[..at].iter().find(is_other) {
                 let message = format!("{pin} is used twice, for `{}` and for `{key}`", first.key);
                 notes.error(span.clone(), message, "give one of them another pin");

@@ -1,51 +1,52 @@
-//! How a chip makes its core clock: an oscillator's frequency f is divided by M, multiplied by N in the PLL's own oscillator
-//! and halved at its output, so that `core = f / M * N / 2`, exactly.
+//! Core clock of a chip: an oscillator's frequency f is divided by M, multiplied by N in the PLL's own oscillator and
+//! halved at its output, so that `core = f / M * N / 2`, exactly.
 
-/// Divider and factor that a PLL is set to.
+/// Settings of a PLL.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pll {
-    /// M: the oscillator's frequency is divided by it.
+    /// M: divider of the oscillator's frequency.
     pub divider: u32,
-    /// N: the PLL's own oscillator is so many times faster than what comes in.
+    /// N: factor from the PLL's input to its own oscillator.
     pub factor: u32,
-    /// The code of the range that the input lies in, on chips that want to be told; else 0.
+    /// Code of the input's frequency range, on chips that need it; else 0.
     pub range: u32,
 }
 
-/// The settings for both oscillators of a board.
+/// PLL settings for both oscillators of a board.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Plls {
-    /// From what the board supplies, if it supplies anything.
+    /// Settings for the external source, if there is one.
     pub external: Option<Pll>,
-    /// From the chip's own oscillator, which takes over if nothing comes from outside.
+    /// Settings for the chip's own oscillator, the fallback if the external source fails.
     pub internal: Pll,
 }
 
-/// What the PLL of a family of chips can do.
+/// Limits of a family's PLL.
 #[derive(Debug)]
 pub(crate) struct PllLimits {
-    /// Least and greatest frequency that may come in [Hz].
+    /// Lowest and highest input frequency [Hz].
     pub input: (u32, u32),
-    /// Taken if it can be made [Hz]; else the highest that can: a faster input jitters less.
+    /// Preferred input frequency [Hz]. If it cannot be made, the highest possible one is used: a faster input jitters
+    /// less.
     pub preferred_input: u32,
-    /// Of the PLL's own oscillator [Hz]: twice the core clock.
+    /// Frequency of the PLL's own oscillator, twice the core clock [Hz].
     pub oscillator: u32,
-    /// Least and greatest M.
+    /// Smallest and largest M.
     pub divider: (u32, u32),
-    /// Least and greatest N.
+    /// Smallest and largest N.
     pub factor: (u32, u32),
-    /// Input frequencies at which the code of the range rises by one [Hz].
+    /// Input frequencies at which the range code rises by one [Hz].
     pub ranges: &'static [u32],
 }
 
-/// Frequencies that crystals are commonly cut for [Hz].
-const COMMON: [u32; 12] = [
+/// Common crystal frequencies [Hz].
+const COMMON_CRYSTALS: [u32; 12] = [
     4_000_000, 5_000_000, 6_000_000, 8_000_000, 10_000_000, 12_000_000, 16_000_000, 20_000_000, 24_000_000, 25_000_000,
     26_000_000, 48_000_000,
 ];
 
 impl PllLimits {
-    /// The settings for an oscillator [Hz]; `None` if no pair of divider and factor gives the core clock exactly.
+    /// Settings for an oscillator [Hz]; `None` if no pair of divider and factor gives the core clock exactly.
     pub fn settings(&self, frequency: u32) -> Option<Pll> {
         let frequency = u64::from(frequency);
         let fits = |divider: u32| -> Option<Pll> {
@@ -64,9 +65,9 @@ impl PllLimits {
         dividers().find(preferred).or_else(|| dividers().next())
     }
 
-    /// Common frequencies between two that give the core clock [Hz].
-    pub fn common(&self, (least, greatest): (u32, u32)) -> Vec<u32> {
+    /// Common frequencies within bounds that give the core clock [Hz].
+    pub fn common_frequencies(&self, (least, greatest): (u32, u32)) -> Vec<u32> {
         let fits = |frequency: &u32| (least..=greatest).contains(frequency) && self.settings(*frequency).is_some();
-        COMMON.into_iter().filter(fits).collect()
+        COMMON_CRYSTALS.into_iter().filter(fits).collect()
     }
 }

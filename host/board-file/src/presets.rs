@@ -1,4 +1,4 @@
-//! The board files that come with the program. Each carries the source of what it says.
+//! Preset board files. Each value carries its origin.
 
 use crate::chip::{Chip, OTHER_CHIPS, Part};
 
@@ -26,24 +26,25 @@ presets![
     "weact-g431",
 ];
 
-/// The board that is meant where none is named.
+/// Preset that is used if none is named.
 pub const DEFAULT: &str = PRESETS[0];
 
-/// The text of a preset, by its name.
+/// Text of a preset, by its name.
 pub fn preset(name: &str) -> Option<&'static str> {
     PRESETS.into_iter().position(|known| known == name).map(|place| TEXTS[place])
 }
 
-/// The presets with a chip.
+/// Presets with a chip.
 pub fn boards_with(chip: Chip) -> Vec<&'static str> {
-    let of = |name: &&str| preset(name).and_then(|text| crate::read(text).ok()).is_some_and(|board| board.chip == chip);
-    PRESETS.into_iter().filter(of).collect()
+    let has_chip =
+        |name: &&str| preset(name).and_then(|text| crate::read(text).ok()).is_some_and(|board| board.chip == chip);
+    PRESETS.into_iter().filter(has_chip).collect()
 }
 
-/// What is wrong with a chip's name, or its order name, where a board is wanted, and the help; `None` if it is none.
+/// Message and help for a chip's name or order name in the place of a board's name; `None` for other names.
 pub fn chip_in_place_of_board(name: &str) -> Option<(String, String)> {
-    let part = || Part::of(&name.to_uppercase()).map(|part| part.chip);
-    let Some(chip) = Chip::of_name(&name.to_lowercase()).or_else(part) else {
+    let part = || Part::from_order_name(&name.to_uppercase()).map(|part| part.chip);
+    let Some(chip) = Chip::from_name(&name.to_lowercase()).or_else(part) else {
         let is_order_name = |rest: &str| !rest.is_empty() && rest.chars().all(|letter| letter.is_ascii_alphanumeric());
         return name.to_lowercase().strip_prefix("stm32").filter(|rest| is_order_name(rest)).map(|_| {
             (

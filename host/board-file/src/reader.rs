@@ -1,5 +1,5 @@
-//! Reads a whole board file: parses, takes the sections' values, holds them against the chip, and gives either the board with
-//! its warnings or everything that is wrong at once.
+//! Reads a whole board file: parses it, reads the sections, checks the values against the chip, and returns the board
+//! with its warnings or all problems at once.
 
 use joint_file::{Notes, Problems};
 use toml::de::DeTable;
@@ -7,18 +7,18 @@ use toml::de::DeTable;
 use crate::board::{Board, ExternalClock, Level, Output, Serial, SpiSlave};
 use crate::chip::{Chip, OTHER_CHIPS, Part, SerialUnit, SpiUnit};
 use crate::lines;
-use crate::pins::{Pins, no_unit};
+use crate::pins::{Pins, report_unknown_unit};
 use crate::pll::Plls;
 use crate::section::Section;
 
-/// How far a line's speed may be from what it is called: a tenth of what a receiver bears over ten bits.
+/// Tolerance of a line's speed: a tenth of a receiver's tolerance over ten bits [%].
 const BAUD_TOLERANCE_PERCENT: u64 = 1;
-/// A USART samples every bit so often, and divides its clock by so much at least.
-const LEAST_BAUD_DIVIDER: u32 = 16;
-/// The widest divider of a USART.
-const GREATEST_BAUD_DIVIDER: u32 = 0xffff;
+/// Smallest divider of a USART, equal to its samples per bit.
+const MIN_BAUD_DIVIDER: u32 = 16;
+/// Largest divider of a USART.
+const MAX_BAUD_DIVIDER: u32 = 0xffff;
 
-/// Reads the text of a board file. On failure gives every problem, warnings among them, in the order of the text.
+/// Reads the text of a board file. On failure returns every problem, including warnings, in the order of the text.
 ///
 /// ```
 /// let text = board_file::preset("olimex-h405").unwrap();
@@ -35,7 +35,7 @@ pub fn read(text: &str) -> Result<Board, Problems> {
     let notes = Notes::new(text);
     let (table, syntax) = DeTable::parse_recoverable(text);
     syntax.iter().take(1).for_each(|error| notes.syntax(error));
-    // What was recovered from broken syntax would be blamed for what the parser dropped.
+    // The parser drops broken parts; their absence must not be reported as an error of the file.
     let board = if syntax.is_empty() { read_table(&Section::top(table.get_ref(), &notes)) } else { None };
     let failed = notes.has_errors();
     let (problems, sources) = notes.into_parts();
@@ -48,7 +48,7 @@ pub fn read(text: &str) -> Result<Board, Problems> {
 fn read_table(top: &Section<'_>) -> Option<Board> {
     let name = read_name(top);
     let description = if top.has("description") { top.text("description") } else { Some(String::new()) };
-    let chip_name = top.required("chip", Section::stated);
+    let chip_name = top.required("chip", Section::text_with_source);
     let part = chip_name.as_deref().and_then(|name| read_part(top, name));
     let memory = top.required_section("memory").map(|section| read_memory(&section, part));
     let clock = top.required_section("clock").and_then(|section| read_clock(&section, part.map(|part| part.chip)));
@@ -91,7 +91,7 @@ fn read_table(top: &Section<'_>) -> Option<Board> {
     })
 }
 
-/// A section that may be left out; the outer `None` if it is there and wrong.
+/// Reads an optional section; returns `None` if it is there and wrong.
 fn optional<'a, T>(
     top: &Section<'a>,
     name: &'static str,
@@ -100,14 +100,14 @@ fn optional<'a, T>(
     if top.has(name) { read(&top.section(name)?).map(Some) } else { Some(None) }
 }
 
-/// The name, short and plain enough for the board's hello and for an option of a command.
+/// Reads the name; it must suit the board's hello and the option of a command.
 fn read_name(top: &Section<'_>) -> Option<heapless::String<16>> {
     let text = top.required("name", Section::text)?;
     let plain = |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit() || ".-".contains(letter);
     let hint = top.value("name")?.1.hint;
     let (message, help) = match heapless::String::try_from(text.as_str()) {
-        Ok(_) if Chip::of_name(&text).is_some() => {
-            (format!("`name` is a chip's: {text}"), "a board with this chip needs a name of its own")
+        Ok(_) if Chip::from_name(&text).is_some() => {
+            (format!("`name` is the name of a chip: {text}"), "give the board another name")
         }
         Ok(name) if text.contains(|letter: char| letter.is_ascii_alphanumeric()) && text.chars().all(plain) => {
             return Some(name);
@@ -120,15 +120,15 @@ fn read_name(top: &Section<'_>) -> Option<heapless::String<16>> {
 }
 
 fn read_part(top: &Section<'_>, name: &str) -> Option<Part> {
-    let part = Part::of(name);
+    let part = Part::from_order_name(name);
     if part.is_none() {
-        let help = format!("{}; {OTHER_CHIPS}", Part::help(name));
+        let help = format!("{}; {OTHER_CHIPS}", Part::unknown_name_help(name));
         top.notes.error(top.place("chip"), format!("there is no firmware for the chip \"{name}\""), help);
     }
     part
 }
 
-/// Flash and RAM [KiB].
+/// Reads the sizes of flash and RAM [KiB].
 fn read_memory(section: &Section<'_>, part: Option<Part>) -> (Option<u32>, Option<u32>) {
     let flash = section.required("flash_KiB", Section::whole);
     let ram = section.required("ram_KiB", Section::whole);
@@ -139,7 +139,7 @@ fn read_memory(section: &Section<'_>, part: Option<Part>) -> (Option<u32>, Optio
         let message = match flash {
             _ if sizes.contains(flash) => return true,
             _ if *flash > most => format!("{} has {most} KiB of flash, not {flash}", part.name()),
-            _ => format!("{flash} KiB of flash leave no place for what the observer has learnt"),
+            _ => format!("{flash} KiB of flash leave no slots for the observer's memory"),
         };
         let sizes: Vec<String> = sizes.iter().map(u32::to_string).collect();
         let help = format!("write flash_KiB = {}", sizes.join(" or "));
@@ -149,7 +149,7 @@ fn read_memory(section: &Section<'_>, part: Option<Part>) -> (Option<u32>, Optio
     let most = part.chip.facts().ram_kib;
     let ram = ram.filter(|ram| {
         if *ram > most {
-            let message = format!("{} has {most} KiB of RAM in one piece for data, not {ram}", part.name());
+            let message = format!("{} has {most} KiB of contiguous RAM for data, not {ram}", part.name());
             section.notes.error(section.place("ram_KiB"), message, format!("write ram_KiB = {most}, or less"));
         }
         *ram <= most
@@ -161,12 +161,8 @@ fn read_clock(section: &Section<'_>, chip: Option<Chip>) -> Option<ExternalClock
     let source = section.required("source", Section::choice);
     if source == Some("internal") {
         if section.has("frequency_Hz") {
-            let message = "`frequency_Hz` is that of a crystal or signal, and there is none";
-            section.notes.error(
-                section.place("frequency_Hz"),
-                message,
-                "leave it out, or say what `source` it belongs to",
-            );
+            let message = "`frequency_Hz` needs a crystal or signal, but `source` is \"internal\"";
+            section.notes.error(section.place("frequency_Hz"), message, "leave `frequency_Hz` out, or change `source`");
         }
         return Some(ExternalClock::None);
     }
@@ -176,13 +172,17 @@ fn read_clock(section: &Section<'_>, chip: Option<Chip>) -> Option<ExternalClock
     let (least, greatest) = chip.oscillator_limits(crystal);
     let chip_name = chip.name().to_uppercase();
     let common: Vec<String> =
-        chip.facts().pll.common((least, greatest)).iter().map(|frequency| mega(*frequency)).collect();
-    let common = format!("common frequencies that can: {}", common.join(", "));
+        chip.facts().pll.common_frequencies((least, greatest)).iter().map(|frequency| megahertz(*frequency)).collect();
+    let common = format!("common frequencies that fit: {}", common.join(", "));
     let message = if !(least..=greatest).contains(&frequency) {
-        let limits = format!("between {} and {}", mega(least), mega(greatest));
-        format!("{chip_name} takes a {source} {limits}, not of {}", mega(frequency))
+        let limits = format!("between {} and {}", megahertz(least), megahertz(greatest));
+        format!("{chip_name} needs a {source} {limits}, not {}", megahertz(frequency))
     } else if chip.pll(frequency).is_none() {
-        format!("{chip_name} cannot make its {} of {}", mega(chip.core_rate()), mega(frequency))
+        format!(
+            "{chip_name} cannot make its core clock of {} from {}",
+            megahertz(chip.core_rate()),
+            megahertz(frequency)
+        )
     } else {
         return Some(if crystal { ExternalClock::Crystal(frequency) } else { ExternalClock::Signal(frequency) });
     };
@@ -190,35 +190,35 @@ fn read_clock(section: &Section<'_>, chip: Option<Chip>) -> Option<ExternalClock
     None
 }
 
-/// A frequency [Hz] in words.
-fn mega(frequency: u32) -> String {
+/// Frequency as text in MHz.
+fn megahertz(frequency: u32) -> String {
     format!("{} MHz", f64::from(frequency) / 1e6)
 }
 
 fn read_serial(section: &Section<'_>, part: Option<Part>, pins: &Pins) -> Option<Serial> {
-    let name = section.required("unit", Section::stated);
+    let name = section.required("unit", Section::text_with_source);
     let unit = name.zip(part).and_then(|(name, part)| {
         let facts = part.chip.facts();
         let units: Vec<&str> = facts.serial.iter().map(|unit| unit.name).collect();
-        let why = facts.refused.iter().find(|(refused, _)| *refused == name).map(|(_, why)| *why);
+        let why = facts.unsupported_serial.iter().find(|(unsupported, _)| *unsupported == name).map(|(_, why)| *why);
         let found = facts.serial.iter().find(|unit| unit.name == name);
-        found.or_else(|| no_unit(section, &name, part, &units, why))
+        found.or_else(|| report_unknown_unit(section, &name, part, &units, why))
     });
-    let of = |list: fn(&SerialUnit) -> &'static [_]| unit.map(|unit| (unit.name, list(unit)));
-    let send = pins.of_unit(section, "send", of(|unit| unit.send));
-    let receive = pins.of_unit(section, "receive", of(|unit| unit.receive));
+    let unit_pins = |list: fn(&SerialUnit) -> &'static [_]| unit.map(|unit| (unit.name, list(unit)));
+    let send = pins.claim_alternate(section, "send", unit_pins(|unit| unit.send));
+    let receive = pins.claim_alternate(section, "receive", unit_pins(|unit| unit.receive));
     let baud = section.required("baud", Section::whole);
     let (unit, baud) = (unit?, baud?);
     check_baud(section, unit, baud);
     Some(Serial { unit: unit.name, clock: unit.clock, send: send?, receive: receive?, baud })
 }
 
-/// Complains about a speed that the unit cannot make.
+/// Reports a speed that the peripheral cannot make.
 fn check_baud(section: &Section<'_>, unit: &SerialUnit, baud: u32) {
     let exact = |divider: u32| f64::from(unit.clock) / f64::from(divider);
     let divider = baud_divider(unit.clock, baud);
-    let (fastest, slowest) = (unit.clock / LEAST_BAUD_DIVIDER, unit.clock / GREATEST_BAUD_DIVIDER);
-    let message = if !(LEAST_BAUD_DIVIDER..=GREATEST_BAUD_DIVIDER).contains(&divider) {
+    let (fastest, slowest) = (unit.clock / MIN_BAUD_DIVIDER, unit.clock / MAX_BAUD_DIVIDER);
+    let message = if !(MIN_BAUD_DIVIDER..=MAX_BAUD_DIVIDER).contains(&divider) {
         format!("{} makes {slowest} to {fastest} baud, not {baud}", unit.name)
     } else {
         // |clock / divider - baud| > 1 % of baud, in whole numbers.
@@ -228,12 +228,16 @@ fn check_baud(section: &Section<'_>, unit: &SerialUnit, baud: u32) {
         }
         format!("{} would make {:.0} baud, more than 1 % from {baud}", unit.name, exact(divider))
     };
-    let near = divider.clamp(LEAST_BAUD_DIVIDER, GREATEST_BAUD_DIVIDER);
-    let help = format!("it divides {} by a whole number: {:.0} baud are near", mega(unit.clock), exact(near));
+    let near = divider.clamp(MIN_BAUD_DIVIDER, MAX_BAUD_DIVIDER);
+    let help = format!(
+        "the divider of {} is a whole number: the nearest speed is {:.0} baud",
+        megahertz(unit.clock),
+        exact(near)
+    );
     section.notes.error(section.place("baud"), message, help);
 }
 
-/// What a USART divides its clock by for a speed: the nearest whole number.
+/// Divider of a USART for a speed, rounded to the nearest whole number.
 pub fn baud_divider(clock: u32, baud: u32) -> u32 {
     let divider = (2 * u64::from(clock) + u64::from(baud)) / (2 * u64::from(baud.max(1)));
     u32::try_from(divider).unwrap_or(u32::MAX)
@@ -243,27 +247,27 @@ fn read_spi_slave(section: &Section<'_>, part: Option<Part>, pins: &Pins) -> Opt
     if let Some(Err(why)) = part.map(|part| part.chip.facts().spi) {
         section.notes.error(
             section.header.clone(),
-            format!("no board with this chip is a slave: {why}"),
+            format!("a board with this chip cannot be an SPI slave: {why}"),
             format!("leave [spi_slave] out; {OTHER_CHIPS}"),
         );
         return None;
     }
-    let name = section.required("unit", Section::stated);
+    let name = section.required("unit", Section::text_with_source);
     let unit = name.zip(part).and_then(|(name, part)| {
         let all = part.chip.facts().spi.unwrap_or_default();
         let units: Vec<&str> = all.iter().map(|unit| unit.name).collect();
-        all.iter().find(|unit| unit.name == name).or_else(|| no_unit(section, &name, part, &units, None))
+        all.iter().find(|unit| unit.name == name).or_else(|| report_unknown_unit(section, &name, part, &units, None))
     });
-    let of = |list: fn(&SpiUnit) -> &'static [_]| unit.map(|unit| (unit.name, list(unit)));
-    let select = pins.of_unit(section, "select", of(|unit| unit.select));
-    let clock = pins.of_unit(section, "clock", of(|unit| unit.clock));
-    let out = pins.of_unit(section, "out", of(|unit| unit.out));
-    let input = pins.of_unit(section, "in", of(|unit| unit.input));
+    let unit_pins = |list: fn(&SpiUnit) -> &'static [_]| unit.map(|unit| (unit.name, list(unit)));
+    let select = pins.claim_alternate(section, "select", unit_pins(|unit| unit.select));
+    let clock = pins.claim_alternate(section, "clock", unit_pins(|unit| unit.clock));
+    let out = pins.claim_alternate(section, "out", unit_pins(|unit| unit.out));
+    let input = pins.claim_alternate(section, "in", unit_pins(|unit| unit.input));
     Some(SpiSlave { unit: unit?.name, select: select?, clock: clock?, out: out?, input: input? })
 }
 
 fn read_output(section: &Section<'_>, pins: &Pins) -> Option<Output> {
-    let pin = pins.free(section, "pin");
+    let pin = pins.claim(section, "pin");
     let on = match section.required("on", Section::choice)? {
         "high" => Level::High,
         _ => Level::Low,

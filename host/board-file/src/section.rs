@@ -1,4 +1,4 @@
-//! Takes values out of one table of a board file by the list of keys: right type, within bounds, each with its source.
+//! Reads values of one table of a board file by the list of keys: right type, within bounds, each with its origin.
 
 use std::ops::Deref;
 
@@ -10,7 +10,7 @@ use toml::de::{DeTable, DeValue};
 use crate::keys::{Key, Kind};
 use crate::pin::Pin;
 
-/// One table of the file.
+/// Table of the file.
 pub(crate) struct Section<'a>(Table<'a, Kind>);
 
 impl<'a> Deref for Section<'a> {
@@ -22,12 +22,12 @@ impl<'a> Deref for Section<'a> {
 }
 
 impl<'a> Section<'a> {
-    /// The top of the file.
+    /// Top of the file.
     pub fn top(table: &'a DeTable<'a>, notes: &'a Notes<'a>) -> Self {
         Self(Table::new(String::new(), "", notes.top(), table, notes))
     }
 
-    /// The table `name`, as it is; `None` if it is absent or no table.
+    /// Table `name` as parsed; `None` if it is absent or no table.
     pub fn table(&self, name: &str) -> Option<&'a Spanned<DeValue<'a>>> {
         let value = self.table.get(name)?;
         if let DeValue::Table(_) = value.get_ref() {
@@ -38,16 +38,16 @@ impl<'a> Section<'a> {
         None
     }
 
-    /// The table `name`; `None` if it is absent or no table.
+    /// Section `name`; `None` if it is absent or no table.
     pub fn section(&self, name: &'static str) -> Option<Self> {
         let value = self.table(name)?;
         let DeValue::Table(table) = value.get_ref() else { return None };
-        // Both encoders have the same keys.
+        // Both encoders have the keys of `encoder.motor`.
         let schema = if self.schema == "encoder" { "encoder.motor" } else { name };
         Some(Self(Table::new(self.full(name), schema, value.span(), table, self.notes)))
     }
 
-    /// The table `name`, which must be there.
+    /// Section `name`, which is required.
     pub fn required_section(&self, name: &'static str) -> Option<Self> {
         if !self.has(name) {
             let hint = Kind::find("", name).map_or("", |key| key.hint);
@@ -56,7 +56,7 @@ impl<'a> Section<'a> {
         self.section(name)
     }
 
-    /// A value that must be there.
+    /// Value that is required.
     pub fn required<T>(&self, name: &str, read: impl Fn(&Self, &str) -> Option<T>) -> Option<T> {
         if !self.has(name) {
             self.missing(name);
@@ -72,13 +72,13 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// A text that says a fact, with its source.
-    pub fn stated(&self, name: &str) -> Option<String> {
+    /// Text with its origin.
+    pub fn text_with_source(&self, name: &str) -> Option<String> {
         self.source(name);
         self.text(name)
     }
 
-    /// One of the words that the key may hold.
+    /// Word out of the key's list.
     pub fn choice(&self, name: &str) -> Option<&'static str> {
         let (value, key) = self.value(name)?;
         let Kind::Choice(words) = key.kind else { return None };
@@ -110,7 +110,7 @@ impl<'a> Section<'a> {
         })
     }
 
-    /// Remembers the comment behind a value.
+    /// Records the comment behind a value.
     fn source(&self, name: &str) {
         if let Some(value) = self.table.get(name) {
             self.notes.source(self.full(name), &value.span());

@@ -1,9 +1,9 @@
-//! What is wrong with a board file: each case asserts the message, the text that it underlines and the help. Every case is one
-//! good file with one thing spoilt, so that nothing else can be the cause.
+//! Bad board files: each case asserts the message, the underlined text and the help. Every case is one good file with
+//! one change, so that nothing else can be the cause.
 
 use board_file::{Board, Problem, Severity, preset, read};
 
-/// A file with every section.
+/// File with every section.
 const GOOD: &str = r#"
 name = "bench.2-a"
 description = "on the bench"
@@ -43,14 +43,14 @@ PA8 = "gate of motor 0, phase A, high side" # schematic
 PB12 = "brake resistor"
 "#;
 
-/// The good file with one piece of text exchanged.
+/// Good file with one piece of text replaced.
 #[track_caller]
 fn spoilt(from: &str, to: &str) -> String {
     assert_eq!(GOOD.matches(from).count(), 1, "`{from}` is not in the file exactly once");
     GOOD.replace(from, to)
 }
 
-/// The good file for another chip, without what its kind of chip does not have.
+/// Good file for another chip, without sections that the chip does not support.
 fn with_chip(name: &str, flash: u32, ram: u32) -> String {
     let (start, rest) = GOOD.split_once("\n[spi_slave]").expect("it is there");
     let rest = rest.split_once("\n[enable]").expect("it is there").1;
@@ -65,7 +65,7 @@ fn good(text: &str) -> Board {
     read(text).unwrap_or_else(|problems| panic!("{problems:#?}"))
 }
 
-/// The only problem, by its message, the text that it underlines, and its help.
+/// Message, underlined text and help of the only problem.
 #[track_caller]
 fn only(text: &str) -> (String, String, String) {
     let problems = read(text).expect_err("the file is spoilt");
@@ -75,7 +75,7 @@ fn only(text: &str) -> (String, String, String) {
     (message, text[span].to_owned(), help)
 }
 
-/// Asserts message and underlined text of the only problem, and that its help says `wanted`.
+/// Asserts message and underlined text of the only problem, and that its help contains `wanted`.
 #[track_caller]
 fn refused(text: &str, message: &str, underlined: &str, wanted: &str) {
     let (found, place, help) = only(text);
@@ -83,8 +83,9 @@ fn refused(text: &str, message: &str, underlined: &str, wanted: &str) {
     assert!(help.contains(wanted), "`{wanted}` is not in `{help}`");
 }
 
+/// The file with every section is read without warnings, on each family of chips.
 #[test]
-fn the_good_file_is_good() {
+fn complete_file_accepted() {
     let board = good(GOOD);
     assert_eq!((board.warnings.len(), board.never_driven.len()), (0, 2));
     assert_eq!(board.used_pins().len(), 8);
@@ -97,19 +98,21 @@ fn the_good_file_is_good() {
     good(&with_chip("STM32H743ZI", 2048, 128));
 }
 
+/// Optional sections may be left out.
 #[test]
-fn what_is_left_out_may_be() {
+fn optional_sections_omitted() {
     let text = "name = \"a\"\nchip = \"STM32F405RG\"\n[memory]\nflash_KiB = 512\nram_KiB = 64\n[clock]\nsource = \"internal\"\n\
          [serial]\nunit = \"UART5\"\nsend = \"PC12\"\nreceive = \"PD2\"\nbaud = 1_000_000\n";
     let board = good(text);
     assert_eq!((&board.spi_slave, board.enable, board.light, board.never_driven.len()), (&None, None, None, 0));
     assert_eq!(board.pll.external, None);
-    // Half of the flash, as the file says.
+    // Half of the chip's flash, as the file states.
     assert_eq!((board.flash_bytes, board.slots()[0].address), (512 << 10, 0x0804_0000));
 }
 
+/// A name with other characters, too long, or equal to a chip's name is rejected.
 #[test]
-fn a_name_that_no_board_can_have_is_refused() {
+fn invalid_board_name_rejected() {
     for name in ["", "My-Board", "two words", "\u{e9}", "..", "under_score"] {
         refused(
             &spoilt("\"bench.2-a\"", &format!("\"{name}\"")),
@@ -123,20 +126,21 @@ fn a_name_that_no_board_can_have_is_refused() {
     refused(&spoilt("bench.2-a", long), message, &format!("\"{long}\""), "up to 16");
     refused(
         &spoilt("bench.2-a", "stm32f405"),
-        "`name` is a chip's: stm32f405",
+        "`name` is the name of a chip: stm32f405",
         "\"stm32f405\"",
-        "needs a name of its own",
+        "another name",
     );
 }
 
+/// A suggestion is made only within one part number; other chips get the list of supported ones.
 #[test]
-fn a_chip_that_is_not_known_is_refused() {
+fn unknown_chip_rejected() {
     let same_number = [
         ("STM32F405", "write one of STM32F405RG, STM32F405VG"),
         ("stm32f405rg", "did you mean \"STM32F405RG\"?"),
         ("STM32F405RGU6", "did you mean \"STM32F405RG\"?"),
     ];
-    // Another number, or another maker's number, is no slip of the keyboard.
+    // Another part number, or another maker's, is no typing error.
     let others =
         ["STM32F407VG", "STM32F446RE", "GD32F405RG", "AT32F405RG", "STM32G473RE", "STM32H750ZI", "STM32F4O5RG"];
     let others = others.map(|name| (name, "firmware exists for STM32F405RG, STM32F405VG"));
@@ -148,54 +152,63 @@ fn a_chip_that_is_not_known_is_refused() {
     }
 }
 
+/// Flash and RAM above the chip's are rejected.
 #[test]
-fn more_memory_than_the_chip_has_is_refused() {
+fn excessive_memory_rejected() {
     let text = spoilt("flash_KiB = 1024", "flash_KiB = 2048");
     refused(&text, "STM32F405RGT has 1024 KiB of flash, not 2048", "2048", "flash_KiB = 512 or 1024");
     let text = spoilt("ram_KiB = 128", "ram_KiB = 192");
-    let message = "STM32F405RGT has 128 KiB of RAM in one piece for data, not 192";
+    let message = "STM32F405RGT has 128 KiB of contiguous RAM for data, not 192";
     refused(&text, message, "192", "ram_KiB = 128, or less");
     let text = with_chip("STM32G474RE", 512, 128);
-    refused(&text, "STM32G474RET has 96 KiB of RAM in one piece for data, not 128", "128", "ram_KiB = 96");
+    refused(&text, "STM32G474RET has 96 KiB of contiguous RAM for data, not 128", "128", "ram_KiB = 96");
     let text = with_chip("STM32F405OE", 1024, 128);
     refused(&text, "STM32F405OEY has 512 KiB of flash, not 1024", "1024", "flash_KiB = 512");
 }
 
+/// A size of flash without slots for the observer's memory is rejected.
 #[test]
-fn flash_without_a_place_for_what_is_learnt_is_refused() {
+fn flash_without_slots_rejected() {
     let text = spoilt("flash_KiB = 1024", "flash_KiB = 700");
-    let message = "700 KiB of flash leave no place for what the observer has learnt";
+    let message = "700 KiB of flash leave no slots for the observer's memory";
     refused(&text, message, "700", "flash_KiB = 512 or 1024");
     let text = spoilt("ram_KiB = 128", "ram_KiB = 8");
     refused(&text, "`ram_KiB` must be between 16 and 4096, not 8", "8", "contiguous RAM");
 }
 
+/// Frequencies that the chip's oscillator or PLL cannot use are rejected.
 #[test]
-fn a_clock_that_the_chip_cannot_use_is_refused() {
+fn unusable_clock_rejected() {
     let text = spoilt("8_000_000", "14_745_600");
-    let message = "STM32F405 cannot make its 168 MHz of 14.7456 MHz";
+    let message = "STM32F405 cannot make its core clock of 168 MHz from 14.7456 MHz";
     refused(&text, message, "14_745_600", "4 MHz, 5 MHz, 6 MHz, 8 MHz, 10 MHz, 12 MHz, 16 MHz");
     let text = spoilt("8_000_000", "48_000_000");
-    let message = "STM32F405 takes a crystal between 4 MHz and 26 MHz, not of 48 MHz";
+    let message = "STM32F405 needs a crystal between 4 MHz and 26 MHz, not 48 MHz";
     refused(&text, message, "48_000_000", "25 MHz, 26 MHz");
     assert!(!only(&text).2.contains("48 MHz"));
-    // The same as a signal.
+    // As a signal, the frequency is allowed.
     good(&text.replace("crystal", "signal"));
     let text = with_chip("STM32G474RE", 512, 96).replace("8_000_000", "26_000_000");
-    refused(&text, "STM32G474 cannot make its 170 MHz of 26 MHz", "26_000_000", "24 MHz, 25 MHz, 48 MHz");
+    refused(
+        &text,
+        "STM32G474 cannot make its core clock of 170 MHz from 26 MHz",
+        "26_000_000",
+        "24 MHz, 25 MHz, 48 MHz",
+    );
     let text = with_chip("STM32H743ZI", 2048, 128).replace("8_000_000", "49_000_000");
-    let message = "STM32H743 takes a crystal between 4 MHz and 48 MHz, not of 49 MHz";
+    let message = "STM32H743 needs a crystal between 4 MHz and 48 MHz, not 49 MHz";
     refused(&text, message, "49_000_000", "26 MHz, 48 MHz");
     let text = spoilt("8_000_000", "8");
     let message = "`frequency_Hz` must be between 1000000 and 50000000, not 8";
     refused(&text, message, "8", "8_000_000");
 }
 
+/// Source and frequency must agree.
 #[test]
-fn a_clock_that_contradicts_itself_is_refused() {
+fn contradictory_clock_rejected() {
     let text = spoilt("\"crystal\"", "\"internal\"");
-    let message = "`frequency_Hz` is that of a crystal or signal, and there is none";
-    refused(&text, message, "8_000_000", "leave it out");
+    let message = "`frequency_Hz` needs a crystal or signal, but `source` is \"internal\"";
+    refused(&text, message, "8_000_000", "leave `frequency_Hz` out");
     let text = spoilt("frequency_Hz = 8_000_000 # printed on it\n", "");
     refused(&text, "`frequency_Hz` is missing from [clock]", "[clock]", "of crystal or signal");
     let text = spoilt("\"crystal\"", "\"quartz\"");
@@ -203,8 +216,9 @@ fn a_clock_that_contradicts_itself_is_refused() {
     refused(&text, message, "\"quartz\"", "the chip's own oscillator");
 }
 
+/// Values that are no pin's name are rejected.
 #[test]
-fn what_is_no_pin_is_refused() {
+fn non_pin_value_rejected() {
     for name in ["A9", "PA16", "pa9", "PA09", "GPIOA9"] {
         let text = spoilt("send = \"PA9\"", &format!("send = \"{name}\""));
         let message = format!("`send` must be a pin such as \"PA9\", not \"{name}\"");
@@ -214,8 +228,9 @@ fn what_is_no_pin_is_refused() {
     refused(&text, "`send` must be a pin as a string, not a whole number", "9", "transmit pin");
 }
 
+/// A pin of another peripheral is rejected, and the possible pins of the package are named.
 #[test]
-fn a_pin_that_the_unit_does_not_have_is_refused() {
+fn pin_outside_unit_rejected() {
     let text = spoilt("send = \"PA9\"", "send = \"PA2\"");
     refused(&text, "PA2 cannot be `send` of USART1", "\"PA2\"", "USART1 has PA9 or PB6 for `send`");
     let text = spoilt("out = \"PA6\"", "out = \"PB5\"");
@@ -227,29 +242,32 @@ fn a_pin_that_the_unit_does_not_have_is_refused() {
     refused(&text, "PB11 cannot be `send` of USART3", "\"PB11\"", "USART3 has PB10 or PC10 for `send`");
 }
 
+/// A peripheral without pins in the package is reported as such.
 #[test]
-fn a_unit_without_a_pin_in_the_package_is_told_so() {
+fn unit_without_package_pins_reported() {
     let text = with_chip("STM32G474CET", 512, 96).replace("PC12", "PB1");
     let text = text.replace("USART1", "UART4");
     let problems = read(&text).expect_err("the 48 pins have no UART4");
     assert!(problems[0].help.contains("no pin of this package is `send` of UART4"), "{problems:#?}");
 }
 
+/// A pin that the package does not bring out is rejected.
 #[test]
-fn a_pin_that_the_package_does_not_bring_out_is_refused() {
+fn pin_outside_package_rejected() {
     let text = spoilt("pin = \"PB0\"", "pin = \"PE3\"");
     refused(&text, "STM32F405RGT has no PE3", "\"PE3\"", "PC0 to PC15, PD2, PH0 to PH1");
     let text = spoilt("send = \"PA9\"", "send = \"PD8\"").replace("USART1", "USART3").replace("PA10", "PB11");
     refused(&text, "STM32F405RGT has no PD8", "\"PD8\"", "its package brings out");
     let text = spoilt("PB12 = \"brake resistor\"", "PE3 = \"brake resistor\"");
     refused(&text, "the chip has no PE3", "\"brake resistor\"", "its package brings out");
-    // The reset input of the G4 is no pin.
+    // The G4's reset input counts as no pin.
     let text = with_chip("STM32G474RE", 512, 96).replace("\"PB0\"", "\"PG10\"");
     refused(&text, "STM32G474RET has no PG10", "\"PG10\"", "PF0 to PF1");
 }
 
+/// The second use of a pin is underlined, and both keys are named.
 #[test]
-fn a_pin_used_twice_is_refused() {
+fn pin_used_twice_rejected() {
     let text = spoilt("pin = \"PB0\"", "pin = \"PA9\"");
     let message = "PA9 is used twice, for `serial.send` and for `enable.pin`";
     let problems = read(&text).expect_err("the file is spoilt");
@@ -261,8 +279,9 @@ fn a_pin_used_twice_is_refused() {
     assert_eq!(only(&text).0, "PA4 is used twice, for `spi_slave.select` and for `light.pin`");
 }
 
+/// A pin of `[never_driven]` is rejected for every use.
 #[test]
-fn a_pin_that_is_never_driven_is_refused_wherever_it_is_used() {
+fn never_driven_pin_rejected_for_any_use() {
     let what = "gate of motor 0, phase A, high side";
     for (from, key) in [
         ("send = \"PA9\"", "serial.send"),
@@ -280,31 +299,34 @@ fn a_pin_that_is_never_driven_is_refused_wherever_it_is_used() {
     }
 }
 
+/// The pins of the debug probe cannot be used otherwise.
 #[test]
-fn pins_of_the_debug_probe_are_refused() {
+fn debug_probe_pins_rejected() {
     let text = spoilt("pin = \"PC12\"", "pin = \"PA13\"");
     refused(&text, "PA13 is the debug probe's data (SWDIO)", "\"PA13\"", "use another pin");
-    // USART2 of the G4 could send there.
+    // On the G4, USART2 could transmit on this pin.
     let text = with_chip("STM32G474RE", 512, 96).replace("USART1", "USART2").replace("PA9", "PA14");
     let text = text.replace("PA10", "PA3");
     refused(&text, "PA14 is the debug probe's clock (SWCLK)", "\"PA14\"", "use another pin");
 }
 
+/// The oscillator's pins are free only with the internal oscillator.
 #[test]
-fn pins_of_the_oscillator_are_refused_unless_nothing_is_connected() {
+fn oscillator_pins_rejected_if_connected() {
     let text = spoilt("pin = \"PC12\"", "pin = \"PH0\"");
-    refused(&text, "PH0 is where the crystal is connected", "\"PH0\"", "source = \"internal\"");
+    refused(&text, "PH0 is the pin of the crystal", "\"PH0\"", "source = \"internal\"");
     let signal = text.replace("\"crystal\"", "\"signal\"").replace("PH0", "PH1");
-    refused(&signal, "PH1 is where the clock signal is connected", "\"PH1\"", "use another pin");
+    refused(&signal, "PH1 is the pin of the clock signal", "\"PH1\"", "use another pin");
     good(&text.replace("\"crystal\"", "\"internal\"").replace("frequency_Hz = 8_000_000 # printed on it\n", ""));
     let text = with_chip("STM32G474RE", 512, 96).replace("PC12", "PF1");
-    refused(&text, "PF1 is where the crystal is connected", "\"PF1\"", "use another pin");
+    refused(&text, "PF1 is the pin of the crystal", "\"PF1\"", "use another pin");
     let text = with_chip("STM32H743ZI", 2048, 128).replace("PC12", "PH1");
-    refused(&text, "PH1 is where the crystal is connected", "\"PH1\"", "use another pin");
+    refused(&text, "PH1 is the pin of the crystal", "\"PH1\"", "use another pin");
 }
 
+/// A peripheral that the chip lacks or that is unsupported is rejected with the possible ones.
 #[test]
-fn a_unit_that_the_chip_does_not_have_is_refused() {
+fn missing_unit_rejected() {
     let text = spoilt("\"USART1\"", "\"UART7\"");
     let wanted = "\"USART1\", \"USART2\", \"USART3\", \"UART4\", \"UART5\" or \"USART6\"";
     refused(&text, "STM32F405 has no UART7 for [serial]", "\"UART7\"", wanted);
@@ -314,49 +336,53 @@ fn a_unit_that_the_chip_does_not_have_is_refused() {
     let text = with_chip("STM32G431RB", 128, 22).replace("USART1", "UART5");
     refused(&text, "STM32G431 has no UART5 for [serial]", "\"UART5\"", "\"USART3\" or \"UART4\"");
     let text = with_chip("STM32G474RE", 512, 96).replace("USART1", "LPUART1");
-    let message = "LPUART1 of STM32G474 cannot be used: it divides its clock in another way and has other registers";
+    let message = "LPUART1 of STM32G474 cannot be used: its registers and clock divider differ from a USART's";
     refused(&text, message, "\"LPUART1\"", "USART2");
 }
 
+/// The STM32H743 cannot be an SPI slave.
 #[test]
-fn a_slave_on_spi_is_refused_where_the_unit_is_of_another_kind() {
+fn spi_slave_of_h743_rejected() {
     let text = GOOD.replace("STM32F405RG", "STM32H743ZI").replace("1024", "2048");
-    let message = "no board with this chip is a slave: the SPI of STM32H743 is of another kind, which the firmware has no \
-                   slave for";
+    let message =
+        "a board with this chip cannot be an SPI slave: the firmware has no slave for the STM32H743's kind of SPI";
     refused(&text, message, "[spi_slave]", "leave [spi_slave] out");
 }
 
+/// Speeds out of range or more than 1 % from the nearest possible one are rejected.
 #[test]
-fn a_speed_that_the_unit_cannot_make_is_refused() {
+fn unreachable_baud_rate_rejected() {
     let text = spoilt("230_400", "9_500");
     refused(&text, "`baud` must be between 9600 and 10000000, not 9500", "9_500", "230_400, 921_600");
     let text = spoilt("230_400", "10_000_000");
     let message = "USART1 makes 1281 to 5250000 baud, not 10000000";
-    refused(&text, message, "10_000_000", "84 MHz by a whole number: 5250000 baud are near");
+    refused(&text, message, "10_000_000", "divider of 84 MHz is a whole number: the nearest speed is 5250000 baud");
     let text = spoilt("230_400", "4_500_000");
     let message = "USART1 would make 4421053 baud, more than 1 % from 4500000";
-    refused(&text, message, "4_500_000", "4421053 baud are near");
-    // Half as fast a clock: 42 MHz / 46 is 0.93 % from 921600, 42 MHz / 17 is 1.2 % from 2500000.
+    refused(&text, message, "4_500_000", "nearest speed is 4421053 baud");
+    // Half the clock: 42 MHz / 46 is 0.93 % from 921600, 42 MHz / 17 is 1.2 % from 2500000.
     for (baud, makes) in [("921_600", true), ("1_843_200", true), ("2_625_000", true), ("2_500_000", false)] {
         let text = spoilt("230_400", baud).replace("USART1", "USART2").replace("PA9", "PA2").replace("PA10", "PA3");
         assert_eq!(read(&text).is_ok(), makes, "{baud}");
     }
 }
 
+/// Entries of `[never_driven]` need a pin and a use.
 #[test]
-fn never_driven_pins_that_make_no_sense_are_refused() {
+fn invalid_never_driven_rejected() {
     let text = spoilt("PB12 = \"brake resistor\"", "brake = \"PB12\"");
-    refused(&text, "`brake` in [never_driven] is no pin", "brake", "PA8 = \"what it is there\"");
+    refused(&text, "`brake` in [never_driven] is no pin", "brake", "PA8 = \"its use\"");
     let text = spoilt("PB12 = \"brake resistor\"", "PB12 = true");
-    refused(&text, "`PB12` in [never_driven] must say what the pin is there", "true", "as a string");
+    refused(&text, "`PB12` in [never_driven] must state the pin's use", "true", "as a string");
     let text = spoilt("PB12 = \"brake resistor\"", "PB12 = \" \"");
-    refused(&text, "`PB12` in [never_driven] must say what the pin is there", "\" \"", "as a string");
+    refused(&text, "`PB12` in [never_driven] must state the pin's use", "\" \"", "as a string");
     let text = spoilt("PB12 = \"brake resistor\"", "PA8 = \"brake resistor\"");
     refused(&text, "not TOML: duplicate key", "PA8", "leave one of the two out");
 }
 
+/// Missing sections and keys are named with their hints.
 #[test]
-fn sections_and_keys_that_are_missing_are_named() {
+fn missing_sections_and_keys_named() {
     for (section, hint) in [("memory", "flash_KiB"), ("clock", "source"), ("serial", "baud")] {
         let text = GOOD.replace(&format!("[{section}]"), &format!("[other_{section}]"));
         let problems = read(&text).expect_err("a section is missing");
@@ -372,8 +398,9 @@ fn sections_and_keys_that_are_missing_are_named() {
     refused(&text, "`name` is missing from the top of the file", "description = \"on the bench\"", "16");
 }
 
+/// Unknown keys are reported with a similar key or the key's section.
 #[test]
-fn keys_that_nobody_knows_are_told_what_was_meant() {
+fn unknown_keys_get_suggestion() {
     let text = spoilt("receive =", "recieve =");
     let problems = read(&text).expect_err("the file is spoilt");
     assert_eq!(problems.len(), 2, "{problems:#?}");
@@ -384,8 +411,9 @@ fn keys_that_nobody_knows_are_told_what_was_meant() {
     assert!(read(&text).expect_err("unknown")[0].message.contains("unknown key `gates`"));
 }
 
+/// Values of a wrong type are rejected with the expected one.
 #[test]
-fn values_of_another_type_are_refused() {
+fn wrong_types_rejected() {
     let text = spoilt("baud = 230_400", "baud = \"fast\"");
     refused(&text, "`baud` must be a whole number, not a string", "\"fast\"", "230_400");
     let text = spoilt("on = \"high\"", "on = true");
@@ -398,8 +426,9 @@ fn values_of_another_type_are_refused() {
     refused(&text, "`light` must be a section, not a string", "\"PC12\"", "[light]");
 }
 
+/// All problems of a file are reported together, in the order of the text.
 #[test]
-fn everything_that_is_wrong_is_told_at_once() {
+fn all_problems_reported_at_once() {
     let text =
         spoilt("\"PA9\"", "\"PA2\"").replace("8_000_000", "14_745_600").replace("ram_KiB = 128", "ram_KiB = 192");
     let text = text.replace("bench.2-a", "Bench");
@@ -408,29 +437,33 @@ fn everything_that_is_wrong_is_told_at_once() {
     assert!(problems.is_sorted_by_key(|problem| problem.span.start));
 }
 
+/// With an unknown chip nothing else is reported.
 #[test]
-fn a_file_without_a_known_chip_is_told_that_alone() {
+fn unknown_chip_is_only_problem() {
     let text = spoilt("\"STM32F405RG\"", "\"STM32F407VG\"").replace("\"USART1\"", "\"UART9\"");
     assert!(only(&text).0.contains("STM32F407VG"));
 }
 
+/// Texts that are no board file are rejected with a message.
 #[test]
-fn text_that_is_no_board_file_is_refused_in_words() {
+fn non_board_file_rejected() {
     for text in ["", "\u{0}", "= 1", "[[serial]]", "name = ", "serial = [1]", "never_driven = 3"] {
         assert!(!read(text).expect_err("no board").is_empty(), "{text:?}");
     }
 }
 
+/// A preset cut anywhere is read or rejected.
 #[test]
-fn a_preset_cut_anywhere_is_read_or_refused_without_a_panic() {
+fn truncated_preset_never_panics() {
     let text = preset("odrive-3.6").expect("a preset");
     for end in (0..text.len()).filter(|end| text.is_char_boundary(*end)).step_by(7) {
         let _ = read(&text[..end]);
     }
 }
 
+/// A preset with a line of another one is read or rejected.
 #[test]
-fn a_preset_with_lines_exchanged_is_read_or_refused_without_a_panic() {
+fn mixed_preset_lines_never_panic() {
     // A linear congruential generator (Knuth's MMIX): any seed will do.
     let mut state: u64 = 1;
     let mut below = |count: usize| {
@@ -445,22 +478,23 @@ fn a_preset_with_lines_exchanged_is_read_or_refused_without_a_panic() {
         lines[below(one.lines().count())] = others[below(others.len())];
         read_well += usize::from(read(&lines.join("\n")).is_ok());
     }
-    // Comments and lists of pins do no harm.
+    // Changed comments and pin lists leave a file valid.
     assert!((100..1900).contains(&read_well), "{read_well}");
 }
 
+/// Using the pin that is read as BOOT0 gives a warning.
 #[test]
-fn the_pin_that_is_read_as_boot0_is_warned_of() {
+fn boot0_pin_warned() {
     let text = with_chip("STM32G474RE", 512, 96).replace("PC12", "PB8");
     let warnings = good(&text).warnings;
     assert_eq!(warnings.len(), 1, "{warnings:#?}");
     assert_eq!((warnings[0].severity, &text[warnings[0].span.clone()]), (Severity::Warning, "\"PB8\""));
     assert!(warnings[0].help.contains("nSWBOOT0"));
-    // On the F405 that pin is a pin as any other.
+    // On the F405, PB8 is an ordinary pin.
     assert_eq!(good(&spoilt("pin = \"PC12\"", "pin = \"PB8\"")).warnings, []);
 }
 
-/// The good file with a piece at its end.
+/// Good file with a piece appended.
 fn with(piece: &str) -> String {
     format!("{GOOD}\n{piece}")
 }
@@ -470,10 +504,11 @@ const PULSES: &str = "[encoder.motor]\nunit = \"TIM3\"\na = \"PC6\"\nb = \"PC7\"
 const ON_SPI: &str =
     "[encoder.output]\nunit = \"SPI3\"\nselect = \"PA15\"\nclock = \"PC10\"\nout = \"PC11\"\nin = \"PB5\"\n";
 
+/// Lines that no image uses yet are read, and their pins are reserved.
 #[test]
-fn lines_that_no_image_uses_are_read_and_keep_their_pins() {
+fn unused_lines_reserve_pins() {
     let board = good(&with(&format!("{CAN}{PULSES}{ON_SPI}")));
-    let pins: Vec<String> = board.pins_without_use().iter().map(|(key, pin)| format!("{key} {pin}")).collect();
+    let pins: Vec<String> = board.unused_line_pins().iter().map(|(key, pin)| format!("{key} {pin}")).collect();
     let wanted = [
         "can.send PB9",
         "can.receive PB8",
@@ -486,7 +521,7 @@ fn lines_that_no_image_uses_are_read_and_keep_their_pins() {
         "encoder.output.in PB5",
     ];
     assert_eq!(pins, wanted);
-    // None of them is used by the firmware.
+    // The firmware uses none of these pins.
     assert_eq!(board.used_pins(), good(GOOD).used_pins());
     let taken = with(CAN).replace("pin = \"PC12\"", "pin = \"PB9\"");
     refused(&taken, "PB9 is used twice, for `can.send` and for `light.pin`", "\"PB9\"", "another pin");
@@ -494,21 +529,23 @@ fn lines_that_no_image_uses_are_read_and_keep_their_pins() {
     refused(&gate, "PA12 of `can.send` is never driven: brake resistor", "\"PA12\"", "take it out");
 }
 
+/// Two SPI encoders may share clock and data, but no select.
 #[test]
-fn two_encoders_share_a_bus_but_no_select() {
+fn encoders_share_bus_not_select() {
     let motor = ON_SPI.replace("output", "motor").replace("PA15", "PB1");
     assert!(good(&with(&format!("{ON_SPI}{motor}"))).encoders.iter().all(Option::is_some));
     let same = with(&format!("{}{ON_SPI}", ON_SPI.replace("output", "motor")));
     let message = "PA15 is used twice, for `encoder.motor.select` and for `encoder.output.select`";
     refused(&same, message, "\"PA15\"", "another pin");
-    // A bus is shared wire by wire.
+    // Devices share a bus wire by wire.
     let crossed = motor.replace("clock = \"PC10\"", "clock = \"PB3\"").replace("select = \"PB1\"", "select = \"PC10\"");
     let message = "PC10 is used twice, for `encoder.motor.select` and for `encoder.output.clock`";
     refused(&with(&format!("{ON_SPI}{crossed}")), message, "\"PC10\"", "another pin");
 }
 
+/// CAN peripherals, timers and pins that the chip lacks are rejected.
 #[test]
-fn lines_that_the_chip_does_not_have_are_refused() {
+fn missing_lines_rejected() {
     let can = with(&CAN.replace("CAN1", "CAN3"));
     refused(&can, "STM32F405 has no CAN3 for [can]", "\"CAN3\"", "\"CAN1\" or \"CAN2\"");
     let pin = with(&CAN.replace("PB9", "PC3"));
@@ -524,7 +561,7 @@ fn lines_that_the_chip_does_not_have_are_refused() {
     let half = with(&CAN.replace("receive = \"PB8\"\n", ""));
     assert!(only(&half).0.contains("`receive`"));
     let large = with_chip("STM32H743ZI", 2048, 128) + "\n" + ON_SPI;
-    let message = "SPI3 of STM32H743 cannot be used: the pins of its SPI are not known here";
+    let message = "SPI3 of STM32H743 cannot be used: the pins of its SPI are not in this program";
     refused(&large, message, "\"SPI3\"", "\"TIM1\"");
     let other = with("[encoder.link]\nunit = \"TIM3\"\n");
     assert!(only(&other).0.contains("link"));

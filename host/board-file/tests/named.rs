@@ -1,4 +1,4 @@
-//! Boards that are named on a command line: file before preset, and errors that underline the place.
+//! Boards named on a command line: a file takes precedence over a preset, and errors underline the place.
 #![cfg(feature = "diagnostics")]
 
 use std::path::Path;
@@ -6,15 +6,17 @@ use std::path::Path;
 use board_file::named::load;
 use board_file::preset;
 
+/// A preset is found by its name.
 #[test]
-fn a_preset_is_found_by_its_name() {
+fn preset_found_by_name() {
     let loaded = load(Path::new("olimex-h405")).expect("a preset");
     assert_eq!((loaded.name.as_str(), loaded.board.name.as_str()), ("olimex-h405", "olimex-h405"));
     assert_eq!(Some(loaded.text.as_str()), preset("olimex-h405"));
 }
 
+/// A file is read by path, and its problems are underlined.
 #[test]
-fn a_file_is_read_and_its_problems_are_underlined() {
+fn file_problems_underlined() {
     let folder = std::env::temp_dir().join(format!("board-file-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
     let path = folder.join("mine.toml");
@@ -29,15 +31,17 @@ fn a_file_is_read_and_its_problems_are_underlined() {
     assert_eq!(failure.exit_code(), 2);
 }
 
+/// A chip's name is answered with the boards that have the chip.
 #[test]
-fn a_chip_is_told_the_boards_that_have_it() {
+fn chip_name_lists_boards() {
     let failure = load(Path::new("stm32g431")).expect_err("a chip");
     assert_eq!(failure.message(), "stm32g431 is a chip, not a board: pins differ from board to board");
     assert!(failure.help().is_some_and(|help| help.contains("b-g431b-esc1")));
 }
 
+/// A chip without firmware is answered with the C library.
 #[test]
-fn chip_without_firmware_is_told_the_c_library() {
+fn unsupported_chip_points_to_c_library() {
     for name in ["stm32f446", "STM32F446RE", "stm32f446ret6"] {
         let failure = load(Path::new(name)).expect_err("a chip");
         assert_eq!(failure.message(), format!("there is no firmware for the chip {name}"));
@@ -46,8 +50,9 @@ fn chip_without_firmware_is_told_the_c_library() {
     }
 }
 
+/// Any other name is answered with the presets.
 #[test]
-fn what_is_neither_is_told_the_presets() {
+fn unknown_name_lists_presets() {
     let failure = load(Path::new("no-such-board")).expect_err("nothing");
     assert!(failure.message().contains("cannot read the board file no-such-board"), "{failure:?}");
     assert!(failure.help().is_some_and(|help| help.contains("olimex-h405, nucleo-g474re")));

@@ -1,5 +1,5 @@
-//! The board files that come with the program: all are read, say where everything comes from, and give the firmware what it
-//! can be built from.
+//! Preset board files: all can be read, state the origin of every value, and yield valid inputs of the firmware's
+//! build.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -20,8 +20,9 @@ fn pin(name: &str) -> Pin {
     name.parse().expect("a pin")
 }
 
+/// Every file in `boards` is a preset, and every preset a file.
 #[test]
-fn every_file_of_boards_is_a_preset_of_its_name() {
+fn board_files_match_presets() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../boards");
     let mut stems = BTreeSet::new();
     for entry in std::fs::read_dir(folder).expect("a folder") {
@@ -38,12 +39,13 @@ fn every_file_of_boards_is_a_preset_of_its_name() {
     assert_eq!(DEFAULT, "olimex-h405");
 }
 
+/// Presets are read without warnings other than the known one.
 #[test]
-fn every_preset_is_read_and_warns_only_of_what_is_known() {
+fn presets_read_with_known_warnings() {
     for name in PRESETS {
         let warnings: Vec<String> = board(name).warnings.into_iter().map(|warning| warning.message).collect();
         let wanted: &[&str] = match name {
-            // The maker's option bytes keep it from being read.
+            // The maker sets the option bytes so that the pin is not read at a reset.
             "moteus-r4" => &["PB8 is read as BOOT0 at a reset: while it is high the chip starts its boot loader"],
             _ => &[],
         };
@@ -51,8 +53,9 @@ fn every_preset_is_read_and_warns_only_of_what_is_known() {
     }
 }
 
+/// Every value of a preset carries its origin.
 #[test]
-fn every_value_of_every_preset_says_where_it_comes_from() {
+fn preset_values_state_origin() {
     for name in PRESETS {
         let sources = board(name).sources;
         assert!(sources.len() > 10, "{name}: {}", sources.len());
@@ -61,8 +64,9 @@ fn every_value_of_every_preset_says_where_it_comes_from() {
     }
 }
 
+/// Each tag of an origin is explained at the top of the file.
 #[test]
-fn tags_of_sources_are_explained_at_the_top() {
+fn source_tags_explained() {
     for name in PRESETS {
         let text = preset(name).expect("a preset");
         let head: Vec<&str> = text.lines().take_while(|line| line.starts_with('#')).collect();
@@ -77,8 +81,9 @@ fn tags_of_sources_are_explained_at_the_top() {
     }
 }
 
+/// Pins and clocks of the first three boards stay as they were before there were board files.
 #[test]
-fn the_three_boards_of_before_keep_their_pins_and_clocks() {
+fn first_three_boards_unchanged() {
     let h405 = board("olimex-h405");
     assert_eq!((h405.chip, h405.probe_name.as_str()), (Chip::Stm32f405, "STM32F405RGTx"));
     assert_eq!((h405.flash_bytes, h405.ram_bytes), (1 << 20, 128 << 10));
@@ -95,9 +100,10 @@ fn the_three_boards_of_before_keep_their_pins_and_clocks() {
     assert_eq!((h743.probe_name.as_str(), h743.image_bytes()), ("STM32H743ZITx", 1 << 20));
 }
 
+/// Gates, and the pins that arm them, are in `[never_driven]`.
 #[test]
-fn boards_with_a_power_stage_never_drive_it() {
-    // Gates and whatever arms them.
+fn power_stages_never_driven() {
+    // Gates and the pins that arm them.
     let stages: [(&str, &[&str]); 4] = [
         (
             "odrive-3.6",
@@ -120,16 +126,17 @@ fn boards_with_a_power_stage_never_drive_it() {
 }
 
 #[test]
-fn a_board_never_drives_what_another_board_with_its_chip_must_not_be_told_to() {
-    // The reason for board files: an image for one board would drive gates on another.
+fn image_pins_would_harm_other_board() {
+    // Reason for board files: an image for one board would drive gates on another.
     let (h405, odrive) = (board("olimex-h405"), board("odrive-3.6"));
     let harm = h405.used_pins().into_iter().filter(|(_, pin)| odrive.never_driven.iter().any(|(left, _)| left == pin));
     let harm: Vec<String> = harm.map(|(key, pin)| format!("{key} {pin}")).collect();
     assert!(harm.contains(&"serial.send PA9".to_owned()) && harm.contains(&"enable.pin PB0".to_owned()), "{harm:?}");
 }
 
+/// The generated source consists of 19 public constants.
 #[test]
-fn what_the_firmware_is_told_is_rust() {
+fn generated_constants_parse_as_rust() {
     for name in PRESETS {
         let source = rust_source(&board(name));
         let file = syn::parse_file(&source).unwrap_or_else(|error| panic!("{name}: {error}\n{source}"));
@@ -139,8 +146,9 @@ fn what_the_firmware_is_told_is_rust() {
     }
 }
 
+/// The generated constants have the board's values.
 #[test]
-fn constants_are_those_of_the_board() {
+fn generated_constants_match_board() {
     let source = rust_source(&board("olimex-h405"));
     for line in [
         "pub const NAME: &str = \"olimex-h405\";",
@@ -166,8 +174,9 @@ fn constants_are_those_of_the_board() {
     assert!(rust_source(&board("nucleo-h743zi")).contains("Some((8000000, true))"));
 }
 
+/// The linker script holds the start of the stack and the limits of image and statics.
 #[test]
-fn the_linker_is_told_where_ram_ends_and_where_an_image_must() {
+fn linker_script_limits_memory() {
     let script = linker_script(&board("nucleo-g474re"));
     for part in [
         "_stack_start = 0x20018000;",
@@ -183,8 +192,9 @@ fn the_linker_is_told_where_ram_ends_and_where_an_image_must() {
     }
 }
 
+/// Every `cfg` of a preset is among the announced ones.
 #[test]
-fn what_is_compiled_for_a_board_is_announced() {
+fn cfgs_announced() {
     let announced = all_cfgs();
     for name in PRESETS {
         for (key, value) in cfgs(&board(name)) {
@@ -206,8 +216,9 @@ fn what_is_compiled_for_a_board_is_announced() {
     assert_eq!(of("moteus-r4")[2..], [("serial", "usart3".to_owned())]);
 }
 
+/// A chip's name in the place of a board's is answered with the boards that have the chip.
 #[test]
-fn a_chip_in_place_of_a_board_is_told_its_boards() {
+fn chip_in_place_of_board_lists_boards() {
     let (message, help) = chip_in_place_of_board("stm32f405").expect("a chip");
     assert_eq!(message, "stm32f405 is a chip, not a board: pins differ from board to board");
     assert!(help.contains("boards with it: olimex-h405, odrive-3.6, feather-f405, weact-f405, vesc-6"), "{help}");
@@ -227,8 +238,9 @@ fn a_chip_in_place_of_a_board_is_told_its_boards() {
     }
 }
 
+/// The page lists every preset with chip, clock and serial line.
 #[test]
-fn the_page_lists_every_preset_with_its_line() {
+fn page_lists_presets() {
     let page = include_str!("../../../docs/reference/board-files.md");
     for name in PRESETS {
         let Board { chip_name, clock, serial, .. } = board(name);

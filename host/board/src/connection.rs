@@ -1,5 +1,5 @@
-//! A connection to a board, emulated or real: the serial line, who watches over it (Ctrl-C, the emulator's process),
-//! the timeout of the first answer, and the firmware image if it was built here.
+//! Connection to an emulated or real board: the serial line, its supervisor (Ctrl-C, the emulator's process), the
+//! timeout of the first answer, and the firmware image if it was built here.
 
 use std::time::{Duration, Instant};
 
@@ -12,27 +12,27 @@ use report::failure::{Failure, Outcome};
 use report::interruption;
 use report::progress::Progress;
 
-/// The emulator needs this long to boot on a busy machine; if it ends meanwhile, that is noticed at once.
+/// Longest boot of the emulator on a busy machine; a process that ends earlier is reported at once.
 const BOOT_TIMEOUT: Duration = Duration::from_secs(10);
-/// A process that has closed its line needs a moment to end.
+/// Longest time from the emulator closing its line to the end of its process.
 const EXIT_TIMEOUT: Duration = Duration::from_millis(500);
 
-/// A connection to a board.
+/// Open connection to a board.
 pub struct Connection {
-    /// The line.
+    /// Serial line.
     pub line: Box<dyn Line>,
-    /// Polled by the session while it waits; owns the emulator.
+    /// Supervisor polled by the session while it waits; owns the emulator.
     pub supervisor: Box<dyn Supervisor>,
     /// Longest wait for the board's first message.
     pub timeout: Duration,
-    /// The emulator's version, or the port.
+    /// Version and machine of the emulator, or port and speed.
     pub transport: String,
-    /// The image, if it was built here.
+    /// Image, if it was built here.
     pub image: Option<Image>,
 }
 
 impl Connection {
-    /// The board behind a port, which is opened before its image is built.
+    /// Connects to the board behind a port. The port is opened before the image is built.
     pub fn on_port(path: &str, baud: u32, image: impl FnOnce() -> Outcome<Option<Image>>) -> Outcome<Self> {
         let port = Port::open(path, baud)?;
         Ok(Self {
@@ -44,7 +44,7 @@ impl Connection {
         })
     }
 
-    /// The emulator of a version with an image.
+    /// Starts the emulator with an image; `version` goes into `transport`.
     pub fn in_emulator(version: &str, image: Image) -> Outcome<Self> {
         let (emulator, stream) = Emulator::start(&image.elf)?;
         let line = Socket::new(stream, "the emulated board")
@@ -58,7 +58,7 @@ impl Connection {
         })
     }
 
-    /// The emulated board with an image that is built for it once the emulator is there.
+    /// Finds the emulator, builds the image for it and starts it.
     pub fn emulated(progress: &Progress, build: impl FnOnce(&Board) -> Outcome<Image>) -> Outcome<Self> {
         progress.stage("finding the emulator");
         let version = emulator::ensure(&|line| progress.say(line))?;
@@ -68,7 +68,7 @@ impl Connection {
     }
 }
 
-/// A real board: whether it is gone is known only from the line.
+/// Supervisor of a real board, whose loss only the line shows.
 struct RealBoard;
 
 impl Supervisor for RealBoard {
@@ -77,7 +77,7 @@ impl Supervisor for RealBoard {
     }
 }
 
-/// The emulator, which is killed with its owner.
+/// Supervisor of the emulated board; dropping it kills the emulator.
 struct EmulatedBoard(Emulator);
 
 impl Supervisor for EmulatedBoard {

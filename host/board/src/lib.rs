@@ -1,7 +1,7 @@
-//! A board as the host sees it: build its firmware image (`device`), start the emulator or open the port
-//! (`connection`), talk to it over the line (`transport`, `session`), and drive it through a torque profile
-//! (`profile`). Received messages are kept raw (`recording`, `logs`); `twin` computes the same run on the host and
-//! compares it bit for bit. Verdicts on a run are made in `joint-run`.
+//! A board as seen from the host: its firmware image is built (`device`), the emulator started or the port opened
+//! (`connection`), messages exchanged over the line (`transport`, `session`), and a torque profile run (`profile`).
+//! Received messages are kept raw (`recording`, `logs`); `twin` computes the same run on the host and compares it bit
+//! for bit. Verdicts on a run are made in `joint-run`.
 
 pub mod connection;
 pub mod device;

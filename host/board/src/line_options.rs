@@ -1,4 +1,4 @@
-//! The options that name a board, its role and its line, which every command that talks to one has.
+//! Options that name a board, its role and its line, shared by every command that talks to a board.
 
 use std::sync::LazyLock;
 
@@ -8,7 +8,7 @@ use report::command_line::quoted;
 
 use crate::device::board::Board;
 
-/// Which board, and how it is reached.
+/// Options that select a board and its line.
 #[derive(Debug, clap::Args)]
 pub struct LineOptions {
     /// Serial port of a real board, such as /dev/ttyACM0 [default: the emulated board]
@@ -22,8 +22,8 @@ pub struct LineOptions {
     named_board: Option<Board>,
 }
 
-/// The board that is meant where none is named.
-static USUAL: LazyLock<Board> = LazyLock::new(Board::emulated);
+/// Board if none is named.
+static DEFAULT_BOARD: LazyLock<Board> = LazyLock::new(Board::emulated);
 
 impl LineOptions {
     /// Speed of the line [baud].
@@ -31,27 +31,26 @@ impl LineOptions {
         self.baud.unwrap_or(self.board().baud_rate())
     }
 
-    /// The board behind the port, or the emulated one.
+    /// Board behind the port, or the emulated one.
     pub fn board(&self) -> &Board {
-        self.named_board.as_ref().unwrap_or(&USUAL)
+        self.named_board.as_ref().unwrap_or(&DEFAULT_BOARD)
     }
 
-    /// The board as the user named it; the word for one in its place where none is named, since no image is for just any
-    /// board.
-    pub fn board_word(&self) -> String {
-        self.named_board.as_ref().map_or("NAME".to_owned(), |board| quoted(&board.named))
+    /// Board as the user named it, or the placeholder `NAME`, since an image is always for one board.
+    pub fn board_argument(&self) -> String {
+        self.named_board.as_ref().map_or("NAME".to_owned(), |board| quoted(&board.argument))
     }
 
-    /// The options that name port and board again, each with a space in front.
-    pub fn again(&self) -> String {
+    /// Options that select the port and board again, each with a leading space.
+    pub fn repeated_options(&self) -> String {
         let port = self.port.as_ref().map(|port| format!(" --port {}", quoted(port)));
         let baud = self.baud.map(|baud| format!(" --baud {baud}"));
-        let board = self.named_board.as_ref().map(|board| format!(" --board {}", quoted(&board.named)));
+        let board = self.named_board.as_ref().map(|board| format!(" --board {}", quoted(&board.argument)));
         [port, baud, board].into_iter().flatten().collect()
     }
 }
 
-/// What a board does in tests of observer and compensation.
+/// Role of a board in tests of observer and compensation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum RoleName {
     /// Observer and compensation; the joint is simulated here
@@ -69,7 +68,7 @@ impl From<RoleName> for Role {
     }
 }
 
-/// Who waits for whom.
+/// Timing of a run: the board waits for the host, or runs by its own clock.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Mode {
     /// The board waits for the host before every step that it has no torques for

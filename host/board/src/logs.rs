@@ -1,4 +1,4 @@
-//! The board's log as text: decodes defmt frames with the image that wrote them. Without that image the bytes are kept
+//! Decodes the board's log: defmt frames, with the image that wrote them. Without the image the bytes are kept
 //! undecoded.
 
 use std::path::Path;
@@ -20,12 +20,12 @@ pub struct LogLine {
     pub text: String,
 }
 
-/// What a board's log says.
+/// Decoded log of a board.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Log {
     /// Decoded lines, oldest first.
     pub lines: Vec<LogLine>,
-    /// Entries that could not be decoded, as after a lost frame.
+    /// Entries that could not be decoded, for example after a lost frame.
     pub malformed: u32,
 }
 
@@ -53,7 +53,7 @@ pub fn decode(bytes: &[u8], image: &Path) -> Outcome<Log> {
     }
 }
 
-/// The log as a text file.
+/// Text file of the log.
 pub fn text(lines: &[LogLine]) -> String {
     lines.iter().map(|line| format!("{} {:5} {}\n", line.timestamp, line.level, line.text)).collect()
 }

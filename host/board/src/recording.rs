@@ -1,32 +1,32 @@
-//! What a session received from the board, and which commands the board has acknowledged, both unprocessed. Gaps in
-//! sequence numbers are counted here; conversion to SI units and verdicts are in `joint-run`.
+//! Messages of a session as received, and the commands that the board has acknowledged. Gaps in sequence numbers are
+//! counted here; conversion to SI units and verdicts are in `joint-run`.
 
 use link::messages::{Accepted, Command, FromBoard, Hello, Log, RunSettings, Sample, SampleBatch, Statistics, Trip};
 
-/// Everything of one session.
+/// Messages and counters of one session.
 #[derive(Debug, Clone, Default)]
 pub struct Recording {
-    /// Who the board said it was.
+    /// Identity of the board.
     pub hello: Option<Hello>,
-    /// What the run was started with.
+    /// Settings of the run.
     pub settings: Option<RunSettings>,
-    /// Commands in schedules that the board said it took, in the order sent.
+    /// Commands in acknowledged schedules, in the order sent.
     pub accepted: Vec<Command>,
-    /// Samples in the order in which they came.
+    /// Samples in order of arrival.
     pub samples: Vec<Sample>,
-    /// The last statistics.
+    /// Most recent statistics.
     pub statistics: Option<Statistics>,
-    /// Faults in the order in which they came.
+    /// Trips in order of arrival.
     pub trips: Vec<Trip>,
-    /// Encoded log, with the gaps left out.
+    /// Encoded log, with lost frames left out.
     pub log: Vec<u8>,
-    /// What went over the line and what was lost on it.
+    /// Traffic on the line.
     pub traffic: Traffic,
     next_batch: u16,
     next_log: Option<u16>,
 }
 
-/// What went over the line and what was lost on it, seen from the host.
+/// Traffic and losses on the line, counted on the host.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Traffic {
     /// Bytes to the board.
@@ -35,27 +35,27 @@ pub struct Traffic {
     pub received_bytes: u64,
     /// Good messages from the board.
     pub messages: u64,
-    /// Frames dropped here during the run for a bad CRC, length or content.
+    /// Frames dropped on the host during the run for a bad CRC, length or content.
     pub bad_frames: u32,
-    /// Sample batches missing by sequence number.
+    /// Sample batches missing in the sequence.
     pub lost_batches: u32,
-    /// Log frames missing by sequence number.
+    /// Log frames missing in the sequence.
     pub lost_logs: u32,
 }
 
 impl Recording {
     /// Stores a message by its kind.
-    pub fn take(&mut self, message: FromBoard) {
+    pub fn store(&mut self, message: FromBoard) {
         self.traffic.messages += 1;
         match message {
             FromBoard::Hello(hello) => self.hello = Some(hello),
             FromBoard::Accepted(_) => {}
-            FromBoard::Samples(batch) => self.take_samples(batch),
+            FromBoard::Samples(batch) => self.store_samples(batch),
             FromBoard::Statistics(statistics) => self.statistics = Some(statistics),
-            // Schedules that were under way when a run stopped are refused: that says nothing new.
+            // Schedules in flight when a run stops are refused; the refusal repeats the trip.
             FromBoard::Tripped(Trip::NotRunning) if !self.trips.is_empty() => {}
             FromBoard::Tripped(trip) => self.trips.push(trip),
-            FromBoard::Log(log) => self.take_log(&log),
+            FromBoard::Log(log) => self.store_log(&log),
             // Kept by the caller that asked for them.
             FromBoard::Answer(_)
             | FromBoard::Loop(_)
@@ -66,7 +66,7 @@ impl Recording {
         }
     }
 
-    /// A run starts: only the log and the board's name go on.
+    /// Starts a run: clears everything but the log and the board's identity.
     pub fn start_run(&mut self, settings: RunSettings) {
         let log = std::mem::take(&mut self.log);
         let lost_logs = self.traffic.lost_logs;
@@ -80,57 +80,57 @@ impl Recording {
         };
     }
 
-    /// Forgets samples after a tick.
-    pub fn keep_until(&mut self, tick: u32) {
+    /// Drops samples after a tick.
+    pub fn drop_samples_after(&mut self, tick: u32) {
         self.samples.retain(|sample| sample.tick <= tick);
     }
 
-    /// Last tick that the board is known to have done.
+    /// Tick of the last received sample.
     pub fn last_tick(&self) -> u32 {
         self.samples.last().map_or(0, |sample| sample.tick)
     }
 
-    fn take_samples(&mut self, batch: SampleBatch) {
-        let Some(lost) = missing(self.next_batch, batch.sequence) else { return };
+    fn store_samples(&mut self, batch: SampleBatch) {
+        let Some(lost) = lost_frames(self.next_batch, batch.sequence) else { return };
         self.traffic.lost_batches += lost;
         self.next_batch = batch.sequence.wrapping_add(1);
         self.samples.extend(batch.samples);
     }
 
-    fn take_log(&mut self, log: &Log) {
-        let Some(lost) = missing(self.next_log.unwrap_or(log.sequence), log.sequence) else { return };
+    fn store_log(&mut self, log: &Log) {
+        let Some(lost) = lost_frames(self.next_log.unwrap_or(log.sequence), log.sequence) else { return };
         self.traffic.lost_logs += lost;
         self.next_log = Some(log.sequence.wrapping_add(1));
         self.log.extend_from_slice(&log.bytes);
     }
 }
 
-/// How many numbers are missing before one that has come; none if that one comes once more, as on a line that says a frame
-/// twice: numbers rise, so that one far ahead is one from behind.
-pub fn missing(next: u16, sequence: u16) -> Option<u32> {
+/// Number of frames missing before `sequence`, or `None` for a repeated frame. Sequence numbers rise, so a number more
+/// than half the range ahead is an old one.
+pub fn lost_frames(next: u16, sequence: u16) -> Option<u32> {
     let gap = sequence.wrapping_sub(next);
     (gap <= u16::MAX / 2).then_some(gap.into())
 }
 
-/// Schedules that were sent and not yet answered for.
+/// Schedules sent and not yet acknowledged.
 #[derive(Debug, Default)]
 pub struct UnacknowledgedSchedules {
     schedules: Vec<(u16, Vec<Command>)>,
 }
 
 impl UnacknowledgedSchedules {
-    /// A schedule has been sent.
-    pub fn sent(&mut self, sequence: u16, commands: &[Command]) {
+    /// Records a schedule as sent.
+    pub fn add(&mut self, sequence: u16, commands: &[Command]) {
         self.schedules.push((sequence, commands.to_vec()));
     }
 
-    /// The board took one: its commands; none if it was not asked.
-    pub fn acknowledged(&mut self, accepted: Accepted) -> Vec<Command> {
+    /// Removes an acknowledged schedule and returns its commands; empty if no such schedule was sent.
+    pub fn remove(&mut self, accepted: Accepted) -> Vec<Command> {
         let place = self.schedules.iter().position(|(sequence, _)| *sequence == accepted.sequence);
         place.map(|place| self.schedules.remove(place).1).unwrap_or_default()
     }
 
-    /// How many are under way.
+    /// Number of schedules in flight.
     pub fn count(&self) -> usize {
         self.schedules.len()
     }
@@ -166,33 +166,37 @@ mod tests {
         FromBoard::Log(Log { sequence, bytes: heapless::Vec::from_slice(&[1, 2]).expect("room") })
     }
 
+    /// A gap counts by its width, also where sequence numbers wrap.
     #[test]
-    fn a_gap_in_the_batches_is_counted_by_its_width_also_over_the_wrap() {
+    fn lost_batches_counted_over_wrap() {
         let mut recording = Recording { next_batch: u16::MAX - 1, ..Recording::default() };
-        [u16::MAX - 1, u16::MAX, 0, 3, 4].into_iter().for_each(|sequence| recording.take(batch(sequence)));
+        [u16::MAX - 1, u16::MAX, 0, 3, 4].into_iter().for_each(|sequence| recording.store(batch(sequence)));
         assert_eq!(recording.traffic.lost_batches, 2);
     }
 
+    /// Batches lost before the first received one count.
     #[test]
-    fn batches_lost_at_the_very_start_are_counted() {
+    fn lost_first_batches_counted() {
         let mut recording = Recording::default();
-        recording.take(batch(2));
+        recording.store(batch(2));
         assert_eq!(recording.traffic.lost_batches, 2);
     }
 
+    /// Repeated batches and log frames are dropped and do not count as lost.
     #[test]
-    fn a_batch_or_a_log_that_comes_twice_is_kept_once_and_nothing_counts_as_lost() {
+    fn repeated_frames_kept_once() {
         let mut recording = Recording::default();
-        [0, 1, 1, 0, 2].into_iter().for_each(|sequence| recording.take(batch_of_one(sequence)));
-        [5, 6, 6].into_iter().for_each(|sequence| recording.take(log(sequence)));
+        [0, 1, 1, 0, 2].into_iter().for_each(|sequence| recording.store(batch_of_one(sequence)));
+        [5, 6, 6].into_iter().for_each(|sequence| recording.store(log(sequence)));
         assert_eq!((recording.traffic.lost_batches, recording.samples.len()), (0, 3));
         assert_eq!((recording.traffic.lost_logs, recording.log.len()), (0, 4));
     }
 
+    /// A log may begin at any sequence number; gaps after it count.
     #[test]
-    fn a_log_may_be_joined_anywhere_but_not_lose_a_frame() {
+    fn log_may_start_at_any_frame() {
         let mut recording = Recording::default();
-        [7, 8, 10].into_iter().for_each(|sequence| recording.take(log(sequence)));
+        [7, 8, 10].into_iter().for_each(|sequence| recording.store(log(sequence)));
         assert_eq!((recording.traffic.lost_logs, recording.log.len()), (1, 6));
     }
 }

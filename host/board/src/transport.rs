@@ -9,18 +9,18 @@ use serialport::{ErrorKind, SerialPort};
 
 use report::failure::{Failure, Outcome};
 
-/// Longest wait of one [`Line::receive`]; a session looks at its deadlines and at Ctrl-C this often.
+/// Longest wait of one [`Line::receive`], and interval at which a session checks its deadlines and Ctrl-C.
 pub const RECEIVE_TIMEOUT: Duration = Duration::from_millis(20);
-/// Longest wait for the other end to take what is sent.
+/// Longest wait for the other end to accept sent bytes.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// A byte stream in both directions.
+/// Byte stream in both directions.
 pub trait Line {
     /// Sends everything, or fails.
     fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
     /// Waits for up to [`RECEIVE_TIMEOUT`]; 0 bytes mean that nothing came, an error that the line is gone.
     fn receive(&mut self, buffer: &mut [u8]) -> io::Result<usize>;
-    /// The line as a user knows it.
+    /// Name of the line, as shown to the user.
     fn name(&self) -> &str;
 }
 
@@ -31,7 +31,7 @@ pub struct Socket {
 }
 
 impl Socket {
-    /// Takes over a connected socket.
+    /// Wraps a connected socket.
     pub fn new(stream: UnixStream, name: impl Into<String>) -> io::Result<Self> {
         stream.set_read_timeout(Some(RECEIVE_TIMEOUT))?;
         stream.set_write_timeout(Some(WRITE_TIMEOUT))?;
@@ -47,7 +47,7 @@ impl Line for Socket {
     fn receive(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         match self.stream.read(buffer) {
             Ok(0) => Err(io::ErrorKind::UnexpectedEof.into()),
-            other => nothing_yet(other),
+            other => zero_on_timeout(other),
         }
     }
 
@@ -63,7 +63,7 @@ pub struct Port {
 }
 
 impl Port {
-    /// Opens a port for this process alone.
+    /// Opens a port for exclusive use.
     pub fn open(path: &str, baud: u32) -> Outcome<Self> {
         let opened = serialport::new(path, baud).timeout(RECEIVE_TIMEOUT).exclusive(true).open();
         match opened {
@@ -75,11 +75,11 @@ impl Port {
 
 impl Line for Port {
     fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        // The port's one timeout is the short one for reading: a driver that is merely busy is asked again.
+        // The port has one timeout, the short one for reading: a busy driver is tried again.
         let deadline = std::time::Instant::now() + WRITE_TIMEOUT;
         let mut rest = bytes;
         while !rest.is_empty() {
-            match nothing_yet(self.port.write(rest))? {
+            match zero_on_timeout(self.port.write(rest))? {
                 0 if std::time::Instant::now() > deadline => return Err(io::ErrorKind::TimedOut.into()),
                 sent => rest = &rest[sent..],
             }
@@ -89,9 +89,10 @@ impl Line for Port {
 
     fn receive(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         match self.port.read(buffer) {
-            // Silence is a timeout; nothing without one is a port that has hung up, as an unplugged adapter does.
+            // Silence ends in a timeout; a read of 0 bytes without a timeout means that the port has hung up, as after
+            // unplugging.
             Ok(0) => Err(io::ErrorKind::UnexpectedEof.into()),
-            other => nothing_yet(other),
+            other => zero_on_timeout(other),
         }
     }
 
@@ -100,8 +101,8 @@ impl Line for Port {
     }
 }
 
-/// A wait that ended without a byte is no error.
-fn nothing_yet(result: io::Result<usize>) -> io::Result<usize> {
+/// Turns a wait that ended without a byte into a count of 0.
+fn zero_on_timeout(result: io::Result<usize>) -> io::Result<usize> {
     match result {
         Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => Ok(0),
         Err(error) if error.kind() == io::ErrorKind::Interrupted => Ok(0),
@@ -111,7 +112,7 @@ fn nothing_yet(result: io::Result<usize>) -> io::Result<usize> {
 
 fn cannot_open(path: &str, baud: u32, error: &serialport::Error) -> Failure {
     if !Path::new(path).exists() {
-        return Failure::new(format!("there is no serial port {path}")).with_help(ports_there_are());
+        return Failure::new(format!("there is no serial port {path}")).with_help(available_ports());
     }
     match error.kind() {
         ErrorKind::NoDevice => Failure::new(format!("serial port {path} is busy: another program has it open"))
@@ -121,18 +122,18 @@ fn cannot_open(path: &str, baud: u32, error: &serialport::Error) -> Failure {
                 .with_help("add yourself to the port's group (`sudo usermod -aG dialout $USER`), then log in again")
         }
         _ => Failure::new(format!("cannot open {path} as a serial port at {baud} baud: {}", error.description))
-            .with_help(ports_there_are()),
+            .with_help(available_ports()),
     }
 }
 
-fn ports_there_are() -> String {
+fn available_ports() -> String {
     let mut names: Vec<String> =
         serialport::available_ports().unwrap_or_default().into_iter().map(|port| port.port_name).collect();
     names.sort();
     if names.is_empty() {
         "no serial port was found: connect the board; without --port the emulated board is used".to_owned()
     } else {
-        format!("ports there are: {}; without --port the emulated board is used", names.join(", "))
+        format!("available ports: {}; without --port the emulated board is used", names.join(", "))
     }
 }
 
@@ -140,22 +141,25 @@ fn ports_there_are() -> String {
 mod tests {
     use super::*;
 
+    /// The failure names the port, and its help the ports of this machine.
     #[test]
-    fn a_missing_port_is_named_with_the_ports_there_are() {
+    fn missing_port_named() {
         let failure = Port::open("/dev/no-such-port", 115_200).err().expect("there is no such port");
         assert!(failure.message().contains("/dev/no-such-port"), "{failure}");
         assert!(failure.help().is_some_and(|help| help.contains("port")), "{failure}");
         assert_eq!(failure.exit_code(), 2);
     }
 
+    /// A file that is no serial port is rejected by name.
     #[test]
-    fn a_file_that_is_no_port_is_refused() {
+    fn file_is_no_port() {
         let failure = Port::open("/dev/null", 115_200).err().expect("not a port");
         assert!(failure.message().contains("/dev/null"), "{failure}");
     }
 
+    /// A port opened by another program is reported as busy.
     #[test]
-    fn a_port_held_by_another_is_called_busy() {
+    fn port_in_use_reported_busy() {
         let (_master, slave) = serialport::TTYPort::pair().expect("pseudo-terminals");
         let path = slave.name().expect("a pseudo-terminal has a path");
         let _held = Port::open(&path, 115_200).expect("the port is free");
@@ -164,8 +168,9 @@ mod tests {
         assert!(failure.message().contains(&path), "{failure}");
     }
 
+    /// A closed socket is an error, a silent one is not.
     #[test]
-    fn a_closed_socket_is_an_error_and_a_silent_one_is_not() {
+    fn closed_socket_fails_silent_one_waits() {
         let (ours, theirs) = UnixStream::pair().expect("a pair");
         let mut line = Socket::new(ours, "pair").expect("options");
         assert_eq!(line.receive(&mut [0; 8]).expect("silence"), 0);

@@ -1,36 +1,36 @@
-//! Trips of a board into its safe state in words: what happened and what to do.
+//! Texts for the trips of a board: cause and remedy.
 
 use link::messages::Trip;
 
 use report::failure::Failure;
 use serde::{Deserialize, Serialize};
 
-/// A fault that the board reported.
+/// Trip that the board reported.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FaultEntry {
-    /// Its tick, where it has one.
+    /// Tick of the trip, if it has one.
     pub tick: Option<u32>,
     /// Short name, such as `command_loss`.
     pub name: String,
-    /// What it means and what to do.
+    /// Meaning and remedy.
     pub text: String,
 }
 
-/// Short name, tick where there is one, what it means, what to do.
-fn words(trip: &Trip) -> (&'static str, Option<u32>, &'static str, &'static str) {
+/// Short name, tick if it has one, meaning, and remedy of a trip.
+fn texts(trip: &Trip) -> (&'static str, Option<u32>, &'static str, &'static str) {
     match *trip {
         Trip::CommandLoss { tick } => (
             "command_loss",
             Some(tick),
-            "nothing came for longer than the command timeout, or nothing of what is to be done",
+            "no message or no command came for longer than the command timeout",
             "check the line and the load of this machine, or run on the emulated board",
         ),
         Trip::NotFinite { tick } => (
             "not_finite",
             Some(tick),
-            "the simulated state is not finite any more",
-            "check joint file and profile: `joint check` tells the highest stable step",
+            "the simulated state is no longer finite",
+            "check joint file and profile: `joint check` prints the longest stable step",
         ),
         Trip::BadCommand { tick } => {
             ("bad_command", Some(tick), "a commanded torque is not finite", "check the profile's torques")
@@ -57,43 +57,43 @@ fn words(trip: &Trip) -> (&'static str, Option<u32>, &'static str, &'static str)
             "not_running",
             None,
             "torques came for a run that was not started or has stopped",
-            "the board was reset in mid-run: check its power, then run again",
+            "the board was reset during the run: check its power, then run again",
         ),
         Trip::WrongRole => (
             "wrong_role",
             None,
-            "commands came that are for another role than the board's",
+            "the commands are for another role than the board's",
             "flash the image of the role that this run asks for",
         ),
         Trip::FarHorizon { tick } => (
             "far_horizon",
             Some(tick),
             "a schedule reaches farther ahead than ten command timeouts",
-            "send what is to be done in shorter pieces, or state a longer command timeout",
+            "send shorter schedules, or set a longer command timeout",
         ),
         Trip::Overtaken => (
             "overtaken",
             None,
-            "a reset came to its turn too late: after a stop, work on flash, or a silence",
-            "wait for the answer to what was sent before, then reset again",
+            "a reset was overtaken by a stop, by work on flash, or by a silence",
+            "wait for the answer to the preceding message, then reset again",
         ),
     }
 }
 
-/// A trip as the end of a run.
+/// Failure that ends a run with a trip.
 pub fn failure(trip: &Trip) -> Failure {
-    let (name, tick, what, help) = words(trip);
+    let (name, tick, what, help) = texts(trip);
     let place = tick.map(|tick| format!(" at tick {tick}")).unwrap_or_default();
     let happened = match trip {
-        // What a message asked for was not done, and nothing else changed.
+        // The requested action was refused and nothing else changed.
         Trip::NotRunning | Trip::WrongRole | Trip::Overtaken => "the board refused a message",
         _ => "the board went into its safe state",
     };
     Failure::check_failed(format!("{happened}{place}: {what} ({name})")).with_help(help)
 }
 
-/// A trip as a line of the record.
+/// Entry of the record for a trip.
 pub fn entry(trip: &Trip) -> FaultEntry {
-    let (name, tick, what, help) = words(trip);
+    let (name, tick, what, help) = texts(trip);
     FaultEntry { tick, name: name.to_owned(), text: format!("{what}; {help}") }
 }

@@ -1,6 +1,6 @@
-//! The host's twin of the board: the same f32 step under the same torques, compared with every sample bit for bit. A
-//! running digest over the whole state covers the ticks between samples. Accuracy is checked against the reference, in
-//! `joint-run`.
+//! Twin of the board on the host: the same f32 step under the same torques, compared with every sample bit for bit. A
+//! running digest over the whole state covers the ticks between samples. `joint-run` checks accuracy against the
+//! reference.
 
 use link::messages::{Command, Sample};
 use model_core::gears::design::{DesignError, Effort, design_scheme};
@@ -12,29 +12,29 @@ use parameters::{ContactState, JointParameters};
 use crate::device::board::Chip;
 use report::failure::{Failure, Outcome};
 
-/// What the comparison found.
+/// Result of the comparison.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Agreement {
-    /// Steps up to the last sample that agrees, all covered by its digest.
+    /// Steps up to the last agreeing sample before any difference, all covered by its digest.
     pub steps: u32,
     /// Samples compared.
     pub samples: usize,
     /// Samples that differ in any bit.
     pub different: usize,
-    /// The first difference.
+    /// First difference.
     pub first: Option<Difference>,
 }
 
-/// A field of a sample that differs.
+/// First field in which two samples differ.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Difference {
     /// Steps done at the sample.
     pub tick: u32,
     /// Name of the field.
     pub field: &'static str,
-    /// The board's value.
+    /// Value of the board.
     pub board: String,
-    /// The twin's value.
+    /// Value of the twin.
     pub twin: String,
 }
 
@@ -45,11 +45,11 @@ pub fn tables_digest(joint: &JointParameters, chip: Chip, tick_rate: u32) -> Out
         3 => Ok(tables::<3>(joint, chip, tick_rate)?.digest),
         4 => Ok(tables::<4>(joint, chip, tick_rate)?.digest),
         5 => Ok(tables::<5>(joint, chip, tick_rate)?.digest),
-        other => Err(so_many_planets(joint, other)),
+        other => Err(unsupported_planets(joint, other)),
     }
 }
 
-/// Replays the commands and compares every sample. Samples are in rising order of ticks.
+/// Repeats the commands on the twin and compares every sample. Samples must be in ascending order of ticks.
 pub fn compare(
     joint: &JointParameters,
     image: Chip,
@@ -73,7 +73,7 @@ pub fn compare(
     Ok(agreement)
 }
 
-/// The twin's samples after the given numbers of steps, which rise.
+/// Samples of the twin after the given numbers of steps, in ascending order.
 pub fn replay(
     joint: &JointParameters,
     chip: Chip,
@@ -82,15 +82,15 @@ pub fn replay(
     ticks: &[u32],
 ) -> Outcome<Vec<Sample>> {
     match joint.geometry.planets {
-        1 => Ok(replayed(&tables::<1>(joint, chip, tick_rate)?, commands, ticks)),
-        3 => Ok(replayed(&tables::<3>(joint, chip, tick_rate)?, commands, ticks)),
-        4 => Ok(replayed(&tables::<4>(joint, chip, tick_rate)?, commands, ticks)),
-        5 => Ok(replayed(&tables::<5>(joint, chip, tick_rate)?, commands, ticks)),
-        other => Err(so_many_planets(joint, other)),
+        1 => Ok(replay_tables(&tables::<1>(joint, chip, tick_rate)?, commands, ticks)),
+        3 => Ok(replay_tables(&tables::<3>(joint, chip, tick_rate)?, commands, ticks)),
+        4 => Ok(replay_tables(&tables::<4>(joint, chip, tick_rate)?, commands, ticks)),
+        5 => Ok(replay_tables(&tables::<5>(joint, chip, tick_rate)?, commands, ticks)),
+        other => Err(unsupported_planets(joint, other)),
     }
 }
 
-fn so_many_planets(joint: &JointParameters, planets: usize) -> Failure {
+fn unsupported_planets(joint: &JointParameters, planets: usize) -> Failure {
     Failure::new(format!("joint `{}` has {planets} planets", joint.name))
         .with_help("a joint may have 3, 4 or 5 planets")
 }
@@ -107,7 +107,7 @@ fn tables<const N: usize>(joint: &JointParameters, chip: Chip, tick_rate: u32) -
     })
 }
 
-fn replayed<const N: usize>(tables: &Tables<f32, N>, commands: &[Command], ticks: &[u32]) -> Vec<Sample> {
+fn replay_tables<const N: usize>(tables: &Tables<f32, N>, commands: &[Command], ticks: &[u32]) -> Vec<Sample> {
     let mut model = Model::new(tables);
     let mut torques = Torques { drive: 0.0, load: 0.0 };
     let mut running = digest::START;
@@ -128,7 +128,7 @@ fn replayed<const N: usize>(tables: &Tables<f32, N>, commands: &[Command], ticks
     samples
 }
 
-/// The first field in which the board's sample is not the twin's, the digest last: it says least.
+/// First field in which two samples differ. The digest comes last because it tells least.
 fn difference(board: &Sample, twin: &Sample) -> Option<Difference> {
     let (board_fields, twin_fields) = (fields(board), fields(twin));
     let place = board_fields.iter().zip(&twin_fields).position(|(board, twin)| board != twin)?;
@@ -136,7 +136,7 @@ fn difference(board: &Sample, twin: &Sample) -> Option<Difference> {
     Some(Difference { tick: board.tick, field, board: board_value, twin: twin_fields[place].1.clone() })
 }
 
-/// Every field as text, floats with their bits: -0 equals 0 and NaN nothing, but bits are bits.
+/// All fields as text, floats with their bits, because only the bits tell -0 from 0 and one NaN from another.
 fn fields(sample: &Sample) -> [(&'static str, String); 10] {
     let float = |value: &f32| format!("{value:e} (bits {:08x})", value.to_bits());
     let deflections: Vec<String> = sample.deflections.iter().map(float).collect();
@@ -154,7 +154,7 @@ fn fields(sample: &Sample) -> [(&'static str, String); 10] {
     ]
 }
 
-/// The twin's sample after a step.
+/// Sample of the twin after a step.
 pub fn sample<const N: usize>(model: &Model<'_, f32, N>, tick: u32, state_digest: u64, computation: u16) -> Sample {
     let outputs = model.outputs();
     let mut contacts = 0;
@@ -197,7 +197,7 @@ mod tests {
         vec![command(0, 0.5, 3.0), command(40, -0.5, -3.0), command(90, 1.0, 6.0)]
     }
 
-    /// A board that does as it should, written down on its own: torques looked up instead of queued.
+    /// Correct board in an independent form: torques looked up instead of queued.
     fn board(joint: &JointParameters, commands: &[Command], ticks: u32, decimation: u32) -> Vec<Sample> {
         let tables: Tables<f32, 3> = tables(joint, Chip::Stm32f405, TICK_RATE).expect("a good joint");
         let mut model = Model::new(&tables);
@@ -215,15 +215,17 @@ mod tests {
         samples
     }
 
+    /// A correct board agrees in every bit.
     #[test]
-    fn a_board_that_does_as_it_should_agrees_in_every_bit() {
+    fn correct_board_agrees_bitwise() {
         let samples = board(&joint(), &commands(), 200, 20);
         let agreement = compare(&joint(), Chip::Stm32f405, TICK_RATE, &commands(), &samples).expect("a good joint");
         assert_eq!(agreement, Agreement { steps: 200, samples: 10, different: 0, first: None });
     }
 
+    /// One changed bit in any field makes exactly its sample differ.
     #[test]
-    fn one_bit_anywhere_in_a_sample_is_seen() {
+    fn single_bit_difference_detected() {
         let flips: [fn(&mut Sample); 6] = [
             |sample| sample.gap = f32::from_bits(sample.gap.to_bits() ^ 1),
             |sample| sample.wind_up = -sample.wind_up,
@@ -240,8 +242,9 @@ mod tests {
         }
     }
 
+    /// A command applied one tick late makes every later sample differ.
     #[test]
-    fn a_command_one_tick_late_is_seen_in_every_later_sample() {
+    fn late_command_detected_in_later_samples() {
         let mut late = commands();
         late[1].tick += 1;
         let samples = board(&joint(), &late, 200, 20);

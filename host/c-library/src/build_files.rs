@@ -1,9 +1,10 @@
-//! Files of the archive for build systems: CMake, pkg-config, Arduino, PlatformIO and Zephyr. Tests run the first two; the
-//! others keep to the library specifications of Arduino and PlatformIO and to the schema of Zephyr's `scripts/zephyr_module.py`.
+//! Files of the archive for build systems: CMake, pkg-config, Arduino, PlatformIO and Zephyr. Tests run the first two;
+//! the others follow the library specifications of Arduino and PlatformIO and the schema of Zephyr's
+//! `scripts/zephyr_module.py`.
 
 use crate::library::Target;
 
-/// Names and texts of all of them.
+/// Names and texts of all files for a target.
 pub fn all(target: Target, version: &str) -> Vec<(&'static str, String)> {
     let with_version = |text: &str| text.replace("@VERSION@", version);
     let mut files = vec![
@@ -26,7 +27,8 @@ pub fn all(target: Target, version: &str) -> Vec<(&'static str, String)> {
     files
 }
 
-/// Where Arduino looks for a library that is compiled already: `src/{build.mcu}`, whatever the flags of the floating-point unit.
+/// Folder in which Arduino looks for a precompiled library: `src/{build.mcu}`, regardless of the flags of the
+/// floating-point unit.
 pub fn arduino_folder(target: Target) -> Option<&'static str> {
     match target {
         Target::M4f => Some("src/cortex-m4"),
@@ -36,7 +38,7 @@ pub fn arduino_folder(target: Target) -> Option<&'static str> {
     }
 }
 
-/// Of the emulated machine that the test program is for.
+/// Linker script of the emulated machine on which the test program runs.
 pub fn linker_script(target: Target) -> Option<&'static str> {
     match target {
         Target::M4f => Some("netduinoplus2.ld"),
@@ -69,7 +71,7 @@ if(NOT TARGET lostmotion::joint)
 endif()
 ";
 
-/// Before 1.0 another minor version may differ in anything.
+/// Before version 1.0 every minor version may be incompatible.
 const CMAKE_CONFIG_VERSION: &str = "set(PACKAGE_VERSION \"@VERSION@\")
 if(PACKAGE_FIND_VERSION VERSION_EQUAL PACKAGE_VERSION)
   set(PACKAGE_VERSION_EXACT TRUE)
@@ -83,7 +85,8 @@ elseif(PACKAGE_FIND_VERSION VERSION_LESS PACKAGE_VERSION)
 endif()
 ";
 
-/// The archive is named as a file: beside a shared library `-l` takes the shared one, and the program does not start.
+/// The archive is named as a file: if a shared library lies beside it, `-l` would select the shared one, and the
+/// program would not start.
 const PKG_CONFIG: &str = "prefix=${pcfiledir}/../..
 Name: lostmotion
 Description: Observer, compensation and plant of a geared joint with backlash, static library
@@ -92,7 +95,7 @@ Cflags: -I${prefix}/include
 Libs: ${prefix}/lib/liblostmotion.a
 ";
 
-/// The path goes into the program, which finds the library wherever it is started from.
+/// The path is stored in the program, so that the loader finds the library from any working folder.
 const PKG_CONFIG_SHARED: &str = "prefix=${pcfiledir}/../..
 Name: lostmotion-shared
 Description: Observer, compensation and plant of a geared joint with backlash, shared library
@@ -115,7 +118,7 @@ ldflags=-llostmotion
 includes=lostmotion.h
 ";
 
-/// Header in the root of `src`, where Arduino looks for what a sketch includes.
+/// Header in the root of `src`, where Arduino looks for the headers of a sketch.
 pub const ARDUINO_HEADER: &str = "/* For Arduino, which finds a library by a header in this folder. MIT OR Apache-2.0. */\n\
 #ifndef LOSTMOTION_H\n#define LOSTMOTION_H\n#include \"lostmotion/joint.h\"\n#endif\n";
 
@@ -137,7 +140,7 @@ const PLATFORMIO: &str = "{
 }
 ";
 
-/// PlatformIO has no key for a library that is compiled already.
+/// Script that links the library, since PlatformIO has no key for a precompiled one.
 const PLATFORMIO_SCRIPT: &str =
     "# Links the library of this archive: PlatformIO runs this file with the environment of the build.
 Import(\"env\")
@@ -150,20 +153,20 @@ build:
 ";
 
 fn zephyr_lists(target: Target) -> String {
-    let (option, mend) = match target {
+    let (option, remedy) = match target {
         Target::M4f | Target::M33 | Target::M7 => {
             ("CONFIG_FP_HARDABI", "it is for the hard-float ABI, so set CONFIG_FPU=y and CONFIG_FP_HARDABI=y")
         }
         Target::Host => ("CONFIG_64BIT", "it is for a host of 64 bits, so build for native_sim/native/64"),
     };
     format!(
-        "if(NOT {option})\n  message(FATAL_ERROR \"liblostmotion cannot be linked here: {mend}\")\nendif()\n\
+        "if(NOT {option})\n  message(FATAL_ERROR \"liblostmotion cannot be linked here: {remedy}\")\nendif()\n\
          zephyr_include_directories(../include)\n\
          zephyr_library_import(lostmotion ${{CMAKE_CURRENT_LIST_DIR}}/../lib/liblostmotion.a)\n"
     )
 }
 
-/// The test program as a project of its own, which finds the library beside it.
+/// CMake project of the test program, which finds the library beside it.
 fn test_lists(target: Target) -> String {
     let (sources, options) = match linker_script(target) {
         None => ("host.c", String::new()),
@@ -184,7 +187,7 @@ fn test_lists(target: Target) -> String {
     )
 }
 
-/// Names the compiler and the processor only: a project brings its own linker script.
+/// CMake toolchain file with compiler and processor only; a project has its own linker script.
 fn toolchain(target: Target) -> String {
     let flags = target.c_flags().join(" ");
     format!(

@@ -1,5 +1,5 @@
-//! The motor controller of `examples/c-motor-controller` on the core itself, operation by operation: the same digest tells that a
-//! program in C does the same in every bit, and the truth of the run gives the figures of test T2.
+//! Motor controller of `examples/c-motor-controller` on the core itself, operation by operation: equal digests show
+//! that the C program computes the same bits, and the true state of the run gives the figures of test T2.
 
 use model_core::compensation::{CommandRef, Compensation, ImpedancePoint, Motion, Position};
 use model_core::gears::Tables;
@@ -9,29 +9,29 @@ use model_core::virtual_joint::VirtualJoint;
 use report::failure::{Failure, Outcome};
 use table_blob::{Blob, Gears};
 
-/// What the controller does.
+/// Control mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
-    /// Follows with compensation.
+    /// Position control with compensation.
     Position,
-    /// A PID on the motor's place.
+    /// PID on the motor's position.
     WithoutCompensation,
-    /// A spring and damper.
+    /// Spring and damper.
     Impedance,
 }
 
-/// A moment of the run: before the period's torque.
+/// State of the run before the torque of a period.
 #[derive(Debug)]
-pub struct Moment<'now> {
-    /// Since the start.
+pub struct PeriodState<'now> {
+    /// Period since the start.
     pub period: u32,
-    /// Where the link is to be [rad].
+    /// Reference position of the link [rad].
     pub wanted: f64,
-    /// The truth.
+    /// Plant with the true state.
     pub joint: &'now VirtualJoint<'now, f32, 3>,
-    /// Its tables.
+    /// Tables of the plant's gears.
     pub gears: &'now Tables<f32, 3>,
-    /// Torque that was asked for last [N m].
+    /// Commanded torque of the previous period [N m].
     pub command: f64,
 }
 
@@ -53,7 +53,7 @@ struct Angle {
 }
 
 impl Angle {
-    fn of(rad: f32) -> Self {
+    fn from_radians(rad: f32) -> Self {
         let square = rad * rad;
         Self {
             sine: rad * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0))),
@@ -61,48 +61,50 @@ impl Angle {
         }
     }
 
-    fn turned(self, by: Self) -> Self {
+    fn rotated_by(self, by: Self) -> Self {
         Self {
             cosine: self.cosine * by.cosine - self.sine * by.sine,
             sine: self.sine * by.cosine + self.cosine * by.sine,
         }
     }
 
-    fn swing(self) -> f32 {
+    fn turns(self) -> f32 {
         AMPLITUDE / TURN * (1.0 - self.cosine)
     }
 
     fn motion(self) -> Motion<f32> {
         Motion {
-            position: Position { turns: 0, fraction: OUTPUT_ZERO_TURNS + self.swing() },
+            position: Position { turns: 0, fraction: OUTPUT_ZERO_TURNS + self.turns() },
             speed: AMPLITUDE * TURN * self.sine,
             acceleration: AMPLITUDE * TURN * TURN * self.cosine,
         }
     }
 }
 
-/// Runs it, shows every moment, and gives the digest; the joint has three planets.
-pub fn run(words: &[u64], mode: Mode, mut show: impl FnMut(&Moment<'_>)) -> Outcome<u64> {
-    let broken = |error| Failure::new(format!("the tables: {error:?}"));
-    let blob = Blob::open(words).map_err(broken)?;
-    let (Gears::Three(gears), around) = blob.plant().map_err(broken)? else {
-        return Err(Failure::new("the controller is tried on a joint of three planets"));
+/// Runs the controller, passes the state before every period to `show`, and returns the digest. The joint must have
+/// three planets.
+pub fn run(words: &[u64], mode: Mode, mut show: impl FnMut(&PeriodState<'_>)) -> Outcome<u64> {
+    let invalid_tables = |error| Failure::new(format!("invalid tables: {error:?}"));
+    let blob = Blob::open(words).map_err(invalid_tables)?;
+    let (Gears::Three(gears), around) = blob.plant().map_err(invalid_tables)? else {
+        return Err(Failure::new("the controller needs a joint with three planets"));
     };
-    let (observer_tables, tables) = (blob.observer().map_err(broken)?, blob.compensation().map_err(broken)?);
+    let (observer_tables, tables) =
+        (blob.observer().map_err(invalid_tables)?, blob.compensation().map_err(invalid_tables)?);
     let mut joint = VirtualJoint::new(gears, around);
     let mut observer = Observer::<f32, MAPPED>::new(observer_tables);
     let mut compensation = Compensation::new(tables);
     let (rate, period_s, lead) = (blob.header().control_rate, observer_tables.period, tables.crossing.lead);
     let (ratio, pole) = (tables.gear.motor_per_link, blob.header().bandwidth);
     let limit = tables.limits.motor * tables.gear.link_per_motor;
-    let (one_period, one_lead) = (Angle::of(TURN * period_s), Angle::of(TURN * lead));
+    let (one_period, one_lead) = (Angle::from_radians(TURN * period_s), Angle::from_radians(TURN * lead));
     let mut motor_zero = None;
-    let (mut at, mut integral, mut reference, mut running) = (Angle::of(0.0), 0.0_f32, 0.0_f32, 0);
+    let (mut phase, mut integral, mut reference, mut running) = (Angle::from_radians(0.0), 0.0_f32, 0.0_f32, 0);
     for period in 0..SECONDS * rate {
-        let (now, ahead) = (at.motion(), at.turned(one_lead).motion());
+        let (now, ahead) = (phase.motion(), phase.rotated_by(one_lead).motion());
         let command = TORQUE_CONSTANT * reference;
-        let wanted = f64::from(at.swing()) * std::f64::consts::TAU;
-        show(&Moment { period, wanted, joint: &joint, gears, command: command.into() });
+        let wanted = f64::from(phase.turns()) * std::f64::consts::TAU;
+        show(&PeriodState { period, wanted, joint: &joint, gears, command: command.into() });
         let mut samples = joint.samples();
         samples.torque = command;
         samples.motor.counts = (samples.motor.counts + MOTOR_ZERO) % MOTOR_COUNTS;
@@ -126,15 +128,15 @@ pub fn run(words: &[u64], mode: Mode, mut show: impl FnMut(&Moment<'_>)) -> Outc
             }
             Mode::WithoutCompensation => {
                 let motor = &estimates.motor;
-                let place = (motor.turns as f32 + motor.fraction) / ratio - motor_zero;
-                let error = TURN * (now.position.turns as f32 + now.position.fraction - place);
+                let position = (motor.turns as f32 + motor.fraction) / ratio - motor_zero;
+                let error = TURN * (now.position.turns as f32 + now.position.fraction - position);
                 let error_rate = now.speed - motor.speed / ratio;
-                let at_link = INERTIA
+                let link_torque = INERTIA
                     * (now.acceleration
                         + 3.0 * pole * error_rate
                         + 3.0 * pole * pole * error
                         + pole * pole * pole * integral);
-                let torque = at_link / ratio;
+                let torque = link_torque / ratio;
                 if torque > limit {
                     limit
                 } else if torque < -limit {
@@ -148,7 +150,7 @@ pub fn run(words: &[u64], mode: Mode, mut show: impl FnMut(&Moment<'_>)) -> Outc
         reference = torque / TORQUE_CONSTANT;
         joint.advance(TORQUE_CONSTANT * reference, 0.0);
         running = chain(chain(running, reference.to_bits().into()), joint.model().state_digest());
-        at = if (period + 1).is_multiple_of(rate) { Angle::of(0.0) } else { at.turned(one_period) };
+        phase = if (period + 1).is_multiple_of(rate) { Angle::from_radians(0.0) } else { phase.rotated_by(one_period) };
     }
     Ok(running)
 }

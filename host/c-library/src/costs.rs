@@ -1,5 +1,5 @@
-//! What the library costs on a board: flash and RAM of linked programs that use a part of it, and instructions of each call,
-//! counted on the emulator.
+//! Costs of the library on a board: flash and RAM of linked programs that use a part of it, and instructions and stack
+//! of each call, counted on the emulator.
 
 use std::process::Command;
 
@@ -12,7 +12,7 @@ use crate::library::{Library, Target};
 use crate::programs::{self, MACHINES, Machine, Workbench};
 use crate::tables;
 
-/// What firmware may take of the library, as `bindings/c/programs/size.c` calls it; none comes first.
+/// Uses of the library, with their names in `bindings/c/programs/size.c`; the empty use comes first.
 const USES: [(&str, &str); 6] = [
     ("NOTHING", "nothing"),
     ("OBSERVER_WITHOUT_MAPS", "observer without maps"),
@@ -22,10 +22,10 @@ const USES: [(&str, &str); 6] = [
     ("PLANT", "plant"),
 ];
 
-/// Memory that a use takes, tables included.
+/// Memory of a use, including its tables.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Memory {
-    /// What is used.
+pub struct MemoryUse {
+    /// Name of the use.
     pub what: &'static str,
     /// Code and constants [B].
     pub flash: u64,
@@ -35,31 +35,31 @@ pub struct Memory {
 
 /// Instructions of a call.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Calls {
-    /// The function.
+pub struct CallCost {
+    /// Name of the function.
     pub name: String,
-    /// On average.
+    /// Mean.
     pub mean: u64,
-    /// Most.
-    pub most: u64,
+    /// Maximum.
+    pub max: u64,
 }
 
 /// Stack of a call.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Stack {
-    /// The function.
+pub struct StackUse {
+    /// Name of the function.
     pub name: String,
-    /// Bytes below the caller's stack pointer, arguments on the stack included [B].
+    /// Stack below the caller's stack pointer, including arguments on the stack [B].
     pub bytes: u64,
 }
 
-/// The machine of the emulator that stands for a target.
-pub fn machine(target: Target) -> Option<Machine> {
+/// Emulated machine that stands for a target.
+pub fn machine_for(target: Target) -> Option<Machine> {
     MACHINES.into_iter().find(|machine| machine.target == target)
 }
 
-/// SysTick's counts in a thousand instructions, of 64 ns each: its clock is 168 MHz, 20 MHz or 25 MHz.
-fn counts(machine: Machine) -> u32 {
+/// Counts of SysTick in a thousand instructions of 64 ns each: its clock is 168 MHz, 20 MHz or 25 MHz.
+fn systick_counts(machine: Machine) -> u32 {
     match machine.name {
         "netduinoplus2" => 10_752,
         "mps2-an505" => 1280,
@@ -67,8 +67,8 @@ fn counts(machine: Machine) -> u32 {
     }
 }
 
-/// Memory by use, less what a program without the library takes, with tables for that use.
-pub fn memory(library: &Library, joint: &JointFile, machine: Machine) -> Outcome<Vec<Memory>> {
+/// Memory of each use, in excess of a program without the library, with tables for the use.
+pub fn memory(library: &Library, joint: &JointFile, machine: Machine) -> Outcome<Vec<MemoryUse>> {
     let [control, whole] = [false, true].map(|plant| {
         let tables = tables::for_tests(joint, plant, &Board::emulated())?;
         Workbench::new(library, &tables)
@@ -79,8 +79,8 @@ pub fn memory(library: &Library, joint: &JointFile, machine: Machine) -> Outcome
     for (name, what) in USES {
         let bench = if name == "PLANT" { &whole } else { &control };
         let elf = bench.compile_for(machine, &[&source], &[&format!("-D{name}"), "-Os"])?;
-        let said = tool::output_of(Command::new(machine.target.tool("size")).arg(&elf))?;
-        let row: Vec<u64> = said
+        let output = tool::capture_output(Command::new(machine.target.tool("size")).arg(&elf))?;
+        let row: Vec<u64> = output
             .lines()
             .nth(1)
             .unwrap_or_default()
@@ -88,45 +88,46 @@ pub fn memory(library: &Library, joint: &JointFile, machine: Machine) -> Outcome
             .take(3)
             .map_while(|it| it.parse().ok())
             .collect();
-        let [text, data, bss] = row.try_into().map_err(|_| Failure::new(format!("no sizes: {said}")))?;
+        let [text, data, bss] =
+            row.try_into().map_err(|_| Failure::new(format!("unexpected output of `size`: {output}")))?;
         sizes.push((what, text + data, data + bss));
     }
-    let none = sizes.first().copied().unwrap_or_default();
-    let less =
-        |(what, flash, ram): &(&'static str, u64, u64)| Memory { what, flash: flash - none.1, ram: ram - none.2 };
-    Ok(sizes.iter().skip(1).map(less).collect())
+    let empty = sizes.first().copied().unwrap_or_default();
+    let excess =
+        |(what, flash, ram): &(&'static str, u64, u64)| MemoryUse { what, flash: flash - empty.1, ram: ram - empty.2 };
+    Ok(sizes.iter().skip(1).map(excess).collect())
 }
 
-/// Instructions of each call; `measuring` is for a library that has the core's own steps beside.
-pub fn calls(bench: &Workbench, machine: Machine, measuring: bool) -> Outcome<Vec<Calls>> {
+/// Instructions of each call. `measuring` is for a library that also exports the core's own steps.
+pub fn calls(bench: &Workbench, machine: Machine, measuring: bool) -> Outcome<Vec<CallCost>> {
     let source = programs::folder().join("costs.c");
-    let counts = format!("-DCOUNTS_PER_THOUSAND={}u", counts(machine));
+    let counts = format!("-DCOUNTS_PER_THOUSAND={}u", systick_counts(machine));
     let mut flags = vec![counts.as_str(), "-O2"];
     flags.extend(measuring.then_some("-DMEASURING"));
     let elf = bench.compile_for(machine, &[&source], &flags)?;
     let parse = |line: &String| {
         let mut fields = line.strip_prefix("cost;")?.split(';');
         let name = fields.next()?.to_owned();
-        Some(Calls { name, mean: fields.next()?.parse().ok()?, most: fields.next()?.parse().ok()? })
+        Some(CallCost { name, mean: fields.next()?.parse().ok()?, max: fields.next()?.parse().ok()? })
     };
     programs::run_on(machine, &elf)?
         .iter()
-        .map(|line| parse(line).ok_or_else(|| Failure::new(format!("{} said: {line}", machine.name))))
+        .map(|line| parse(line).ok_or_else(|| Failure::new(format!("unexpected output on {}: {line}", machine.name))))
         .collect()
 }
 
 /// Stack of each call.
-pub fn stacks(bench: &Workbench, machine: Machine) -> Outcome<Vec<Stack>> {
+pub fn stacks(bench: &Workbench, machine: Machine) -> Outcome<Vec<StackUse>> {
     let source = programs::folder().join("stack.c");
     let elf = bench.compile_for(machine, &[&source], &["-O2"])?;
     let parse = |line: &String| {
         let (name, bytes) = line.strip_prefix("stack;")?.split_once(';')?;
-        // Zero stands for more than was looked for.
-        Some(Stack { name: name.to_owned(), bytes: bytes.parse().ok().filter(|bytes| *bytes > 0)? })
+        // Zero means that the stack exceeds the searched range.
+        Some(StackUse { name: name.to_owned(), bytes: bytes.parse().ok().filter(|bytes| *bytes > 0)? })
     };
     programs::run_on(machine, &elf)?
         .iter()
-        .map(|line| parse(line).ok_or_else(|| Failure::new(format!("{} said: {line}", machine.name))))
+        .map(|line| parse(line).ok_or_else(|| Failure::new(format!("unexpected output on {}: {line}", machine.name))))
         .collect()
 }
 
@@ -134,16 +135,16 @@ pub fn stacks(bench: &Workbench, machine: Machine) -> Outcome<Vec<Stack>> {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Costs {
     /// Memory by use.
-    pub memory: Vec<Memory>,
+    pub memory: Vec<MemoryUse>,
     /// Instructions of each call that was counted.
-    pub calls: Vec<Calls>,
+    pub calls: Vec<CallCost>,
     /// Stack of each call.
-    pub stacks: Vec<Stack>,
+    pub stacks: Vec<StackUse>,
 }
 
 impl Costs {
-    /// Counts them on the machine that stands for the library's target.
-    pub fn of(library: &Library, joint: &JointFile, machine: Machine) -> Outcome<Self> {
+    /// Measures the costs on the machine that stands for the library's target.
+    pub fn measure(library: &Library, joint: &JointFile, machine: Machine) -> Outcome<Self> {
         let tables = tables::for_tests(joint, true, &Board::emulated())?;
         let bench = Workbench::new(library, &tables)?;
         Ok(Self {
@@ -154,7 +155,7 @@ impl Costs {
     }
 }
 
-/// Costs of a library as text: the archive and the docs have the same.
+/// Costs as Markdown, shared by the archive and the docs.
 pub fn section(costs: &Costs, joint: &JointFile, machine: Machine) -> String {
     let mut text = format!(
         "\nMemory that a program takes beyond one without the library: tables of joint {} are in flash, objects, samples and results\n\
@@ -172,9 +173,9 @@ pub fn section(costs: &Costs, joint: &JointFile, machine: Machine) -> String {
     );
     for stack in &costs.stacks {
         let counted = costs.calls.iter().find(|call| call.name == stack.name);
-        let [mean, most] =
-            counted.map_or(["".to_owned(), "".to_owned()], |it| [it.mean, it.most].map(|it| it.to_string()));
-        text += &format!("| `{}` | {mean} | {most} | {} |\n", stack.name, stack.bytes);
+        let [mean, max] =
+            counted.map_or(["".to_owned(), "".to_owned()], |it| [it.mean, it.max].map(|it| it.to_string()));
+        text += &format!("| `{}` | {mean} | {max} | {} |\n", stack.name, stack.bytes);
     }
     text
 }

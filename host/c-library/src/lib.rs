@@ -1,7 +1,7 @@
-//! What programs in C and C++ take from here. `tables` writes a joint's tables as C source (`joint tables`); `library` builds
-//! what is behind the header of `bindings/c`, `package` makes one archive of it with `build_files` (`joint library`); `programs` compiles C
-//! for this machine and for the emulator's, `run` and `controller` are the Rust halves of the closed loops that those programs run, `costs`
-//! counts what a call takes.
+//! Tables and library for programs in C and C++. `tables` writes a joint's tables as C source (`joint tables`);
+//! `library` builds the functions declared in the header of `bindings/c`, `package` packs them with `build_files` into
+//! one archive (`joint library`). `programs` compiles C for this machine and for the emulator's; `run` and `controller`
+//! are the Rust counterparts of the closed loops in those programs; `costs` counts the costs of each call.
 
 pub mod build_files;
 pub mod controller;

@@ -1,6 +1,6 @@
-//! Builds what is behind the header: for each target one archive with one object, whose only global names are the header's.
-//! What the compiler puts beside it (the core library, its mathematics) is linked in as far as it is used; what is left open
-//! is `memcpy` and its like, which every C toolchain has.
+//! Builds the functions declared in the header: for each target one archive with one object, whose only global names
+//! are those of the header. The compiler's own libraries (core, mathematics) are linked in as far as they are used;
+//! only `memcpy` and similar functions, which every C toolchain has, stay undefined.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,21 +14,21 @@ use object::read::archive::ArchiveFile;
 use report::failure::{Failure, Outcome};
 use report::workspace::workspace;
 
-/// The package.
+/// Package of the library.
 const PACKAGE: &str = "c-bindings";
-/// Name of the shared library for the loader. The number grows when programs that were linked before must be linked anew.
+/// Soname of the shared library. The number grows when programs must be linked again.
 pub const SONAME: &str = "liblostmotion.so.0";
-/// What C programs for boards are built with.
-const CROSS: [&str; 2] = ["gcc-arm-none-eabi", "libnewlib-arm-none-eabi"];
-/// What C programs for this machine are built with.
-const NATIVE: [&str; 1] = ["g++"];
+/// Packages to build C programs for boards.
+const CROSS_PACKAGES: [&str; 2] = ["gcc-arm-none-eabi", "libnewlib-arm-none-eabi"];
+/// Packages to build C programs for this machine.
+const NATIVE_PACKAGES: [&str; 1] = ["g++"];
 
-/// What a small library inlines all the same: observer and compensation take a fifth to a third more
-/// instructions and a third less flash than in the firmware's images; without it the observer's worst would double.
-const INLINED: &str = "-Cllvm-args=-inline-threshold=20";
+/// Inline threshold of the size-optimised library: observer and compensation take a fifth to a third more instructions
+/// and a third less flash than in the firmware's images. Without it the observer's worst case would double.
+const INLINE_THRESHOLD: &str = "-Cllvm-args=-inline-threshold=20";
 
-/// The core's own steps, in a library for measuring.
-const BARE: [&str; 7] = [
+/// Exported names of the core's own steps, in a library for measuring.
+const BARE_STEPS: [&str; 7] = [
     "joint_bare_samples",
     "joint_bare_command",
     "joint_bare_observer",
@@ -38,7 +38,7 @@ const BARE: [&str; 7] = [
     "joint_bare_compensation_step",
 ];
 
-/// What a library is for.
+/// Target of a library.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Target {
     /// Cortex-M4 with FPU, hard-float ABI
@@ -52,7 +52,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// As it is typed.
+    /// Name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::M4f => "m4f",
@@ -72,16 +72,16 @@ impl Target {
         }
     }
 
-    /// A program of the C toolchain, such as gcc.
+    /// Name of a program of the C toolchain, such as gcc.
     pub fn tool(self, name: &str) -> String {
         if self == Self::Host { name.to_owned() } else { format!("arm-none-eabi-{name}") }
     }
 
-    /// Makes sure of the C toolchain.
+    /// Installs the C toolchain if it is missing.
     pub fn prepare(self, say: Say<'_>) -> Outcome<()> {
         let (probe, needed) = match self {
-            Self::Host => ("g++", &NATIVE[..]),
-            _ => ("arm-none-eabi-gcc", &CROSS[..]),
+            Self::Host => ("g++", &NATIVE_PACKAGES[..]),
+            _ => ("arm-none-eabi-gcc", &CROSS_PACKAGES[..]),
         };
         if tool::find(probe).is_some() {
             return Ok(());
@@ -90,16 +90,16 @@ impl Target {
     }
 }
 
-/// A library that was built.
+/// Library built for a target.
 #[derive(Debug)]
 pub struct Library {
-    /// What it is for.
+    /// Target of the library.
     pub target: Target,
     /// `liblostmotion.a`.
     pub archive: Vec<u8>,
     /// `liblostmotion.so`, for a host.
     pub shared: Option<Vec<u8>>,
-    /// The compiler.
+    /// Version of the compiler.
     pub compiler: String,
 }
 
@@ -108,15 +108,15 @@ pub fn include() -> PathBuf {
     workspace().join("bindings/c/include")
 }
 
-/// The header.
+/// Path of the header.
 pub fn header() -> PathBuf {
     include().join("lostmotion/joint.h")
 }
 
-/// Beginnings of the lines that declare a function; inline functions of the header begin otherwise.
+/// Prefixes of the lines that declare a function; the header's inline functions begin differently.
 const DECLARATIONS: [&str; 3] = ["JointStatus joint_", "uint32_t joint_", "const char *joint_"];
 
-/// Functions of the library that the header declares.
+/// Functions declared by the header, in alphabetical order.
 pub fn functions() -> Outcome<Vec<String>> {
     let path = header();
     let text = fs::read_to_string(&path).map_err(|error| Failure::new(format!("{}: {error}", path.display())))?;
@@ -130,19 +130,19 @@ pub fn functions() -> Outcome<Vec<String>> {
     Ok(found)
 }
 
-/// Builds it.
+/// Builds the library in cargo's default folder.
 pub fn build(target: Target, features: &str, say: Say<'_>) -> Outcome<Library> {
     build_in(None, target, features, say)
 }
 
-/// Builds it in a folder: cargo's usual one unless another is given.
+/// Builds the library in a folder; `None` is cargo's default one.
 pub fn build_in(folder: Option<&Path>, target: Target, features: &str, say: Say<'_>) -> Outcome<Library> {
     target.prepare(say)?;
     let (all, shared, compiler) = match target {
         Target::Host => {
             let folder = folder.map_or_else(target_directory, Path::to_path_buf);
             let [all, shared] = compile_library_for_host(&folder, PACKAGE, features, SONAME, say)?;
-            let version = tool::output_of(Command::new("rustc").arg("--version").current_dir(workspace()))?;
+            let version = tool::capture_output(Command::new("rustc").arg("--version").current_dir(workspace()))?;
             (all, Some(shared), version.trim().to_owned())
         }
         Target::M4f | Target::M33 | Target::M7 => {
@@ -150,33 +150,34 @@ pub fn build_in(folder: Option<&Path>, target: Target, features: &str, say: Say<
             let toolchain = folder.map_or_else(|| toolchain.clone(), |folder| toolchain.in_folder(folder));
             // A Cortex-M33 executes every instruction of a Cortex-M4F, so both targets share one build.
             let processor = if target == Target::M7 { "cortex-m7" } else { "cortex-m4" };
-            let flags = format!("-Ctarget-cpu={processor} {INLINED}");
+            let flags = format!("-Ctarget-cpu={processor} {INLINE_THRESHOLD}");
             (compile_library(&toolchain, PACKAGE, features, &flags, say)?, None, toolchain.compiler().to_owned())
         }
     };
-    let archive = one_object(target, &all, features.contains("measuring"))?;
+    let archive = link_single_object(target, &all, features.contains("measuring"))?;
     Ok(Library { target, archive, shared, compiler })
 }
 
-/// An archive with a single object, in which nothing but the functions of the header has a name for others.
-fn one_object(target: Target, all: &[u8], measuring: bool) -> Outcome<Vec<u8>> {
-    let folder = tempfile::tempdir().map_err(|error| Failure::new(format!("no folder for a build: {error}")))?;
+/// Archive with a single object, which exports only the functions of the header.
+fn link_single_object(target: Target, all: &[u8], measuring: bool) -> Outcome<Vec<u8>> {
+    let folder =
+        tempfile::tempdir().map_err(|error| Failure::new(format!("cannot create a folder for a build: {error}")))?;
     let place = |name: &str| folder.path().join(name);
-    let unwritten = |error: std::io::Error| Failure::new(format!("cannot write a part of the library: {error}"));
-    let unread = |error: object::Error| Failure::new(format!("the compiler's archive: {error}"));
+    let write_failure = |error: std::io::Error| Failure::new(format!("cannot write a part of the library: {error}"));
+    let parse_failure = |error: object::Error| Failure::new(format!("the compiler's archive: {error}"));
     let own = ArchiveFile::parse(all)
-        .map_err(unread)?
+        .map_err(parse_failure)?
         .members()
         .filter_map(Result::ok)
         .filter(|member| member.name().starts_with(PACKAGE.replace('-', "_").as_bytes()))
-        .map(|member| member.data(all).map_err(unread))
+        .map(|member| member.data(all).map_err(parse_failure))
         .collect::<Outcome<Vec<_>>>()?;
     let mut names = functions()?;
     if measuring {
-        names.extend(BARE.map(str::to_owned));
+        names.extend(BARE_STEPS.map(str::to_owned));
     }
-    fs::write(place("all.a"), all).map_err(unwritten)?;
-    fs::write(place("names"), names.join("\n")).map_err(unwritten)?;
+    fs::write(place("all.a"), all).map_err(write_failure)?;
+    fs::write(place("names"), names.join("\n")).map_err(write_failure)?;
     let mut link = Command::new(target.tool("ld"));
     link.current_dir(folder.path()).args(["-r", "--gc-sections"]);
     names.iter().for_each(|name| {
@@ -185,14 +186,14 @@ fn one_object(target: Target, all: &[u8], measuring: bool) -> Outcome<Vec<u8>> {
     link.args(["-o", "linked.o"]);
     for (index, data) in own.iter().enumerate() {
         let name = format!("own{index}.o");
-        fs::write(place(&name), data).map_err(unwritten)?;
+        fs::write(place(&name), data).map_err(write_failure)?;
         link.arg(name);
     }
-    // A board's helpers (__aeabi_...) are those of its C compiler; on a host the rest of the archive is what the core needs.
+    // On a board the helpers (`__aeabi_...`) come from its C compiler; on a host the rest of the archive supplies them.
     if target == Target::Host {
         link.arg("all.a");
     }
-    tool::output_of(&mut link)?;
+    tool::capture_output(&mut link)?;
     let mut copy = Command::new(target.tool("objcopy"));
     copy.current_dir(folder.path()).args([
         "--strip-debug",
@@ -200,9 +201,9 @@ fn one_object(target: Target, all: &[u8], measuring: bool) -> Outcome<Vec<u8>> {
         "--remove-section=.llvmbc",
         "--remove-section=.llvmcmd",
     ]);
-    tool::output_of(copy.args(["--keep-global-symbols=names", "linked.o", "joint.o"]))?;
+    tool::capture_output(copy.args(["--keep-global-symbols=names", "linked.o", "joint.o"]))?;
     let mut archive = Command::new(target.tool("ar"));
-    tool::output_of(archive.current_dir(folder.path()).args(["rcsD", "liblostmotion.a", "joint.o"]))?;
+    tool::capture_output(archive.current_dir(folder.path()).args(["rcsD", "liblostmotion.a", "joint.o"]))?;
     read(&place("liblostmotion.a"))
 }
 

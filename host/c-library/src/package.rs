@@ -1,4 +1,4 @@
-//! `joint library`: header, library, what build systems want to know of it, its costs and a test program, as one archive.
+//! `joint library`: header, library, files for build systems, costs and a test program, as one archive.
 
 use std::fs;
 use std::io::Cursor;
@@ -16,15 +16,15 @@ use crate::library::{self, Library, SONAME, Target};
 use crate::programs;
 use crate::{build_files, costs, run, tables};
 
-/// What is written.
+/// Patterns of the written files.
 const FILES: [&str; 1] = ["lostmotion-*.tar"];
 /// Name under which a linker finds the shared library.
 const LINKED_NAME: &str = "lib/liblostmotion.so";
-/// The library's version: the workspace's.
+/// Version of the library, equal to the workspace's.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Control periods of the test program.
 const PERIODS: u32 = 20_000;
-/// Its control rate [Hz].
+/// Control rate of the test program [Hz].
 const RATE: u32 = 10_000;
 
 /// Arguments of `joint library`.
@@ -38,7 +38,7 @@ The archive holds headers for C and C++, library, CMake and pkg-config files, li
 library.json for PlatformIO, module.yml for Zephyr, the licence, a table of costs and a test program. Two builds of one checkout give the same bytes. Tables of a joint come from
 `joint tables`.")]
 pub struct Arguments {
-    /// What the library is for
+    /// Target of the library
     #[arg(long, value_enum)]
     pub target: Target,
     /// Folder for the archive [default: joint-out/library/TARGET]
@@ -46,7 +46,7 @@ pub struct Arguments {
     pub out: Option<PathBuf>,
 }
 
-/// Builds and writes it; gives what is told of it.
+/// Builds the archive, writes it, and returns the line for the user.
 pub fn run(arguments: &Arguments) -> Outcome<String> {
     let target = arguments.target;
     let folder = Folder::prepare(arguments.out.as_deref(), "library", target.name(), &FILES)?;
@@ -54,7 +54,7 @@ pub fn run(arguments: &Arguments) -> Outcome<String> {
         progress.stage("building the library");
         let say = |line: &str| progress.say(line);
         let library = library::build(target, "library", &say)?;
-        progress.stage("counting what it costs");
+        progress.stage("counting costs");
         let archive = archive(&library, &say)?;
         Ok((library, archive))
     })?;
@@ -69,12 +69,12 @@ pub fn run(arguments: &Arguments) -> Outcome<String> {
     ))
 }
 
-/// The folder in the archive, which is also how the archive is called.
+/// Name of the archive and of the folder in it.
 pub fn prefix(target: Target) -> String {
     format!("lostmotion-{VERSION}-{}", target.name())
 }
 
-/// The archive: the same bytes for the same library.
+/// Packs the archive; equal libraries give equal bytes.
 pub fn archive(library: &Library, say: Say<'_>) -> Outcome<Vec<u8>> {
     let mut builder = tar::Builder::new(Vec::new());
     let new_header = |entry: tar::EntryType, bytes: &[u8]| {
@@ -86,21 +86,21 @@ pub fn archive(library: &Library, say: Say<'_>) -> Outcome<Vec<u8>> {
         header
     };
     let path = |name: &str| format!("{}/{name}", prefix(library.target));
-    let unpacked = |name: &str, error| Failure::new(format!("cannot pack {name}: {error}"));
+    let pack_failure = |name: &str, error| Failure::new(format!("cannot pack {name}: {error}"));
     for (name, bytes) in contents(library, say)? {
         let mut header = new_header(tar::EntryType::Regular, &bytes);
         let packed = builder.append_data(&mut header, path(&name), Cursor::new(bytes));
-        packed.map_err(|error| unpacked(&name, error))?;
+        packed.map_err(|error| pack_failure(&name, error))?;
     }
     if library.shared.is_some() {
         let mut header = new_header(tar::EntryType::Symlink, &[]);
         let packed = builder.append_link(&mut header, path(LINKED_NAME), SONAME);
-        packed.map_err(|error| unpacked(LINKED_NAME, error))?;
+        packed.map_err(|error| pack_failure(LINKED_NAME, error))?;
     }
     builder.into_inner().map_err(|error| Failure::new(format!("cannot pack the library: {error}")))
 }
 
-/// Names and bytes of all files, in their order.
+/// Names and contents of all files, in the order of the archive.
 fn contents(library: &Library, say: Say<'_>) -> Outcome<Vec<(String, Vec<u8>)>> {
     let target = library.target;
     let joint = tables::joint_at(Path::new("q1"), RATE)?;
@@ -158,7 +158,7 @@ fn read(path: &Path) -> Outcome<Vec<u8>> {
     fs::read(path).map_err(|error| Failure::new(format!("{}: {error}", path.display())))
 }
 
-/// How a program is built with it, and the test program is built and run.
+/// README: building a program with the library, and running the test program.
 fn readme(target: Target) -> String {
     let flags = target.c_flags().join(" ");
     let (title, test, with_cmake) = match build_files::linker_script(target) {
@@ -191,8 +191,8 @@ fn readme(target: Target) -> String {
     let flags = if flags.is_empty() { "none in particular" } else { &flags };
     format!(
         "# lostmotion {VERSION} for C and C++, target {}\n\n\
-         Observer, compensation, width probe and plant of a geared joint with backlash. `include/lostmotion/joint.h` says all that\n\
-         its caller must know; `include/lostmotion/joint.hpp` is a C++ interface over it. COSTS.md has flash, RAM, stack and\n\
+         Observer, compensation, width probe and plant of a geared joint with backlash. `include/lostmotion/joint.h` documents\n\
+         the interface; `include/lostmotion/joint.hpp` is a C++ interface over it. COSTS.md has flash, RAM, stack and\n\
          instructions of each call.\n\n\
          ## {title}\n\n\
          1. Write the tables of your joint: `joint tables my_joint.toml --out tables`, where this archive was written.\n\
@@ -211,14 +211,14 @@ fn readme(target: Target) -> String {
     )
 }
 
-/// Flash, RAM, stack and instructions.
+/// COSTS: flash, RAM, stack and instructions.
 fn costs_page(library: &Library, joint: &joint_file::JointFile, say: Say<'_>) -> Outcome<String> {
     let mut page = format!("# Costs, target {}\n\nBuilt by {}.\n", library.target.name(), library.compiler);
-    page += &match costs::machine(library.target) {
+    page += &match costs::machine_for(library.target) {
         None => "\nNothing is counted on a host: its compiler and processor decide.\n".to_owned(),
         Some(machine) => {
             emulator::ensure(say)?;
-            costs::section(&costs::Costs::of(library, joint, machine)?, joint, machine)
+            costs::section(&costs::Costs::measure(library, joint, machine)?, joint, machine)
         }
     };
     Ok(page)

@@ -1,5 +1,5 @@
-//! C programs that try the library: compiled with tables beside them, for this machine or for one of the emulator's, and
-//! run to their end.
+//! C programs that test the library: compiled with tables for this machine or for an emulated one, and run to their
+//! end.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,21 +12,21 @@ use report::workspace::workspace;
 use crate::library::{Library, Target};
 use crate::tables::CTables;
 
-/// What C programs here are clean under.
+/// Warnings under which all C programs here compile.
 pub const WARNINGS: [&str; 5] = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"];
 
-/// A machine of the emulator.
+/// Emulated machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Machine {
-    /// As the emulator calls it.
+    /// Name in the emulator.
     pub name: &'static str,
-    /// What its programs are compiled for.
+    /// Target of its programs.
     pub target: Target,
-    /// Its memory, a linker script of `bindings/c/programs/board`.
+    /// Linker script of its memory, in `bindings/c/programs/board`.
     memory: &'static str,
 }
 
-/// The machines: an STM32F405, another Cortex-M4F, a Cortex-M33, a Cortex-M7.
+/// All machines: an STM32F405, another Cortex-M4F, a Cortex-M33, a Cortex-M7.
 pub const MACHINES: [Machine; 4] = [
     Machine { name: "netduinoplus2", target: Target::M4f, memory: "netduinoplus2.ld" },
     Machine { name: "mps2-an386", target: Target::M4f, memory: "mps2.ld" },
@@ -34,12 +34,12 @@ pub const MACHINES: [Machine; 4] = [
     Machine { name: "mps2-an500", target: Target::M7, memory: "mps2.ld" },
 ];
 
-/// Sources of programs that try the library.
+/// Folder of the sources of the test programs.
 pub fn folder() -> PathBuf {
     workspace().join("bindings/c/programs")
 }
 
-/// A folder with the library and tables called `tables_of_test`, for programs to be compiled in.
+/// Temporary folder with the library and the tables `tables_of_test`, in which programs are compiled.
 #[derive(Debug)]
 pub struct Workbench {
     folder: tempfile::TempDir,
@@ -47,9 +47,10 @@ pub struct Workbench {
 }
 
 impl Workbench {
-    /// Puts everything in place.
+    /// Creates the folder with its files.
     pub fn new(library: &Library, tables: &CTables) -> Outcome<Self> {
-        let folder = tempfile::tempdir().map_err(|error| Failure::new(format!("no folder for a build: {error}")))?;
+        let folder = tempfile::tempdir()
+            .map_err(|error| Failure::new(format!("cannot create a folder for a build: {error}")))?;
         let bench = Self { folder, target: library.target };
         bench.write("liblostmotion.a", &library.archive)?;
         bench.write("test_tables.h", tables.header().as_bytes())?;
@@ -58,18 +59,19 @@ impl Workbench {
         Ok(bench)
     }
 
-    /// Writes a file into it.
+    /// Writes a file into the folder.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Outcome<()> {
         let path = self.path(name);
         fs::write(&path, bytes).map_err(|error| Failure::new(format!("cannot write {}: {error}", path.display())))
     }
 
-    /// A file in it.
+    /// Path of a file in the folder.
     pub fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }
 
-    /// Compiles a program for this machine, with flags of the caller's beside the warnings, by a compiler of the caller's.
+    /// Compiles a program for this machine with the caller's compiler, with the caller's flags in addition to the
+    /// warnings.
     pub fn compile(&self, compiler: &str, sources: &[&Path], flags: &[&str]) -> Outcome<PathBuf> {
         let program = self.path("program");
         let mut command = Command::new(compiler);
@@ -87,14 +89,14 @@ impl Workbench {
             .arg(folder().join("host.c"))
             .args(["test_tables.c", "liblostmotion.a", "-lm", "-o"])
             .arg(&program);
-        tool::output_of(&mut command)?;
+        tool::capture_output(&mut command)?;
         Ok(program)
     }
 
-    /// Compiles a program for a machine of the emulator.
+    /// Compiles a program for an emulated machine.
     pub fn compile_for(&self, machine: Machine, sources: &[&Path], flags: &[&str]) -> Outcome<PathBuf> {
         if machine.target != self.target {
-            return Err(Failure::new(format!("{} is no {}", machine.name, self.target.name())));
+            return Err(Failure::new(format!("{} is not a machine of target {}", machine.name, self.target.name())));
         }
         let (program, board) = (self.path(&format!("{}.elf", machine.name)), folder().join("board"));
         let mut command = Command::new(self.target.tool("gcc"));
@@ -115,12 +117,12 @@ impl Workbench {
             .arg(board.join("start.c"))
             .args(["test_tables.c", "liblostmotion.a", "-lm", "-lgcc", "-o"])
             .arg(&program);
-        tool::output_of(&mut command)?;
+        tool::capture_output(&mut command)?;
         Ok(program)
     }
 }
 
-/// Runs a program of this machine; its lines. One that fails is a failed check with what it said.
+/// Runs a program on this machine and returns its lines; a failing one becomes a failed check with its output.
 pub fn run(program: &Path, arguments: &[&str]) -> Outcome<Vec<String>> {
     let output = Command::new(program)
         .args(arguments)
@@ -134,12 +136,12 @@ pub fn run(program: &Path, arguments: &[&str]) -> Outcome<Vec<String>> {
     Ok(said.lines().map(str::to_owned).collect())
 }
 
-/// Runs a program on a machine of the emulator; its lines.
+/// Runs a program on an emulated machine and returns its lines.
 pub fn run_on(machine: Machine, program: &Path) -> Outcome<Vec<String>> {
     measuring::run_on(machine.name, program)
 }
 
-/// What a line says after a word.
-pub fn said(lines: &[String], word: &str) -> Option<String> {
+/// Text after a prefix, in the first line with it.
+pub fn value_after(lines: &[String], word: &str) -> Option<String> {
     lines.iter().find_map(|line| line.strip_prefix(word)).map(|rest| rest.trim().to_owned())
 }

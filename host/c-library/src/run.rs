@@ -1,4 +1,4 @@
-//! The closed loop of `bindings/c/programs/run.h` on the core itself: the same motion, push, silence and digest.
+//! Closed loop of `bindings/c/programs/run.h` on the core itself, with equal motion, push, output gap and digest.
 
 use model_core::compensation::{Command, Compensation, ImpedancePoint, Motion, Position};
 use model_core::controller::Controller;
@@ -10,18 +10,18 @@ use model_core::wiring::{WiringCheck, WiringProgress};
 use report::failure::{Failure, Outcome};
 use table_blob::{Blob, Gears};
 
-/// The digest after so many periods, from the same tables that the C program has.
+/// Digest after a number of periods, from the tables of the C program.
 pub fn digest(words: &[u64], periods: u32) -> Outcome<u64> {
-    let broken = |error| Failure::new(format!("the tables: {error:?}"));
-    let blob = Blob::open(words).map_err(broken)?;
-    let (gears, around) = blob.plant().map_err(broken)?;
+    let invalid_tables = |error| Failure::new(format!("invalid tables: {error:?}"));
+    let blob = Blob::open(words).map_err(invalid_tables)?;
+    let (gears, around) = blob.plant().map_err(invalid_tables)?;
     match gears {
         Gears::One(gears) => closed_loop(&blob, gears, around, periods),
         Gears::Three(gears) => closed_loop(&blob, gears, around, periods),
         Gears::Four(gears) => closed_loop(&blob, gears, around, periods),
         Gears::Five(gears) => closed_loop(&blob, gears, around, periods),
     }
-    .map_err(broken)
+    .map_err(invalid_tables)
 }
 
 fn closed_loop<const N: usize>(
@@ -79,7 +79,7 @@ fn closed_loop<const N: usize>(
     Ok(running)
 }
 
-/// To and fro by a twentieth of a turn, bang-bang, of whole numbers and single multiplications.
+/// Bang-bang motion to and fro by a twentieth of a turn, from integers and single multiplications.
 fn motion(scale: u32, period: u32) -> Motion<f32> {
     let half = 1250 * scale;
     let segment = 2 * half;
@@ -96,14 +96,14 @@ fn motion(scale: u32, period: u32) -> Motion<f32> {
     }
 }
 
-/// The wiring checks of `bindings/c/programs/wiring.c` on the core itself: digest of their torques.
+/// Wiring checks of `bindings/c/programs/wiring.c` on the core itself: digest of the torques.
 pub fn wiring_digest(words: &[u64]) -> Outcome<u64> {
-    let broken = |error| Failure::new(format!("the tables: {error:?}"));
-    let blob = Blob::open(words).map_err(broken)?;
-    let (Gears::Three(gears), around) = blob.plant().map_err(broken)? else {
-        return Err(Failure::new("the wiring is checked on a joint of three planets"));
+    let invalid_tables = |error| Failure::new(format!("invalid tables: {error:?}"));
+    let blob = Blob::open(words).map_err(invalid_tables)?;
+    let (Gears::Three(gears), around) = blob.plant().map_err(invalid_tables)? else {
+        return Err(Failure::new("the wiring check needs a joint with three planets"));
     };
-    let table = blob.wiring().map_err(broken)?;
+    let table = blob.wiring().map_err(invalid_tables)?;
     let mut running = START;
     for miswiring in 0..4 {
         let (mut joint, mut check) = (VirtualJoint::new(gears, around), WiringCheck::new(table));
@@ -128,17 +128,19 @@ pub fn wiring_digest(words: &[u64]) -> Outcome<u64> {
     Ok(running)
 }
 
-/// The width probe of `bindings/c/programs/probe.c` on the core itself: digest of torques and widths over so many periods.
+/// Width probe of `bindings/c/programs/probe.c` on the core itself: digest of torques and widths over a number of
+/// periods.
 pub fn probe_digest(words: &[u64], periods: u32) -> Outcome<u64> {
-    let broken = |error| Failure::new(format!("the tables: {error:?}"));
-    let blob = Blob::open(words).map_err(broken)?;
-    let (Gears::Three(gears), around) = blob.plant().map_err(broken)? else {
-        return Err(Failure::new("the probe is tried on a joint of three planets"));
+    let invalid_tables = |error| Failure::new(format!("invalid tables: {error:?}"));
+    let blob = Blob::open(words).map_err(invalid_tables)?;
+    let (Gears::Three(gears), around) = blob.plant().map_err(invalid_tables)? else {
+        return Err(Failure::new("the width probe needs a joint with three planets"));
     };
     let mut joint = VirtualJoint::new(gears, around);
-    let (observer, compensation) = (blob.observer().map_err(broken)?, blob.compensation().map_err(broken)?);
+    let (observer, compensation) =
+        (blob.observer().map_err(invalid_tables)?, blob.compensation().map_err(invalid_tables)?);
     let mut controller =
-        Controller::with_tables(observer, compensation).with_probe(Some(blob.probe().map_err(broken)?));
+        Controller::with_tables(observer, compensation).with_probe(Some(blob.probe().map_err(invalid_tables)?));
     let mut running = START;
     for _ in 0..periods {
         let answer = controller.probe(&joint.samples());

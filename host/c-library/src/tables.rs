@@ -1,4 +1,4 @@
-//! `joint tables`: a joint's tables as constant bytes, in a header, a source and a file of bytes.
+//! `joint tables`: a joint's tables as constant bytes, in a header, a source and a binary file.
 
 use std::path::{Path, PathBuf};
 
@@ -10,20 +10,20 @@ use report::failure::{Failure, Outcome};
 use report::folder::{Folder, file_part};
 use table_blob::{VERSION, Wanted, design};
 
-/// What a controller is asked for unless something else is said.
-pub const USUAL: ControlRequest = ControlRequest::USUAL;
+/// Default requirements of a controller.
+pub const DEFAULT_REQUEST: ControlRequest = ControlRequest::USUAL;
 
-/// What is written.
+/// Patterns of the written files.
 const FILES: [&str; 3] = ["*_tables.h", "*_tables.c", "*_tables.bin"];
 
 /// Arguments of `joint tables`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   joint tables joints/q1.toml --out firmware/q1          q1_tables.h, q1_tables.c and q1_tables.bin for the C library
-  joint tables q1 --rate 20000 --bandwidth 80 --without-plant --out q1    20 kHz, and nothing to try a controller on
-  joint tables my_joint.toml --told guess.toml --out test    a plant of one joint, a controller that was told another
+  joint tables q1 --rate 20000 --bandwidth 80 --without-plant --out q1    20 kHz, without the plant
+  joint tables my_joint.toml --told guess.toml --out test    plant of one joint, controller designed for another
 
-Header and source are C99 and C++14; the file of bytes is the same, for a loader or a partition of its own.")]
+Header and source are C99 and C++14; the binary file holds the same bytes, for a loader or a separate partition.")]
 pub struct Arguments {
     /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, c1, paper, paper_printed
     #[arg(value_name = "FILE", default_value = "q1")]
@@ -31,7 +31,7 @@ pub struct Arguments {
     /// Folder for the tables [default: joint-out/tables/JOINT]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Control periods a second, in Hz [default: what the joint file says]
+    /// Control rate, in Hz [default: from the joint file]
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..))]
     pub rate: Option<u32>,
     /// Bandwidth of the loop, in rad/s [default: 60, or as much as the joint allows]
@@ -40,10 +40,10 @@ pub struct Arguments {
     /// Joint file that observer and compensation are designed for [default: FILE]
     #[arg(long, value_name = "FILE")]
     pub told: Option<PathBuf>,
-    /// The observer is not shown the output encoder
+    /// Designs the observer without the output encoder
     #[arg(long)]
     pub motor_only: bool,
-    /// Leaves out the tables of the plant, which firmware that drives a real joint has no use for
+    /// Leaves out the tables of the plant, which firmware for a real joint does not need
     #[arg(long)]
     pub without_plant: bool,
     /// Board whose time a plant's sub-steps are chosen for: a name of boards/, or the path of a board file
@@ -51,7 +51,7 @@ pub struct Arguments {
     pub board: Board,
 }
 
-/// A bandwidth that a loop can have.
+/// Parses a positive bandwidth.
 fn bandwidth(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
@@ -59,18 +59,18 @@ fn bandwidth(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Tables with what a C program calls them.
+/// Tables with their name in C.
 #[derive(Debug)]
 pub struct CTables {
-    /// A name of C.
+    /// Identifier in C.
     pub name: String,
-    /// The blob.
+    /// Words of the blob.
     pub words: Vec<u64>,
-    /// What it was made from, as remarks.
+    /// Origin of the tables, as lines for a comment.
     pub made_from: Vec<String>,
 }
 
-/// Writes them; gives what is told of it.
+/// Writes the tables and returns the lines for the user.
 pub fn run(arguments: &Arguments) -> Outcome<String> {
     let loaded = named::load(&arguments.file)?;
     warnings::print(&loaded);
@@ -100,7 +100,7 @@ pub fn run(arguments: &Arguments) -> Outcome<String> {
     ))
 }
 
-/// Designs them.
+/// Designs the tables.
 pub fn make(
     joint: &JointFile,
     nominal: &JointFile,
@@ -115,9 +115,9 @@ pub fn make(
     let (words, bandwidth) = words.map_err(|error| {
         let of_plant = plant.is_some() && design(&Wanted { plant: None, ..wanted }).is_ok();
         Failure::new(error.to_string()).with_help(match of_plant {
-            true => "`--without-plant` leaves out the plant, which firmware that drives a real joint has no use for",
+            true => "`--without-plant` leaves out the plant, which firmware for a real joint does not need",
             false => {
-                "`joint check` says what follows from the file; `--rate` and `--bandwidth` change what is asked for"
+                "`joint check` shows the limits that follow from the file; change the requirements with `--rate` and `--bandwidth`"
             }
         })
     })?;
@@ -143,7 +143,7 @@ pub fn make(
     Ok(CTables { name: c_name(&joint.parameters.name), words, made_from })
 }
 
-/// A name that C takes: letters, digits and underscores, no digit first.
+/// Turns a joint's name into a C identifier: letters, digits and underscores, no leading digit.
 fn c_name(joint: &str) -> String {
     let part = file_part(joint).to_lowercase();
     let name: String = part.chars().map(|it| if it.is_ascii_alphanumeric() { it } else { '_' }).collect();
@@ -151,20 +151,20 @@ fn c_name(joint: &str) -> String {
 }
 
 impl CTables {
-    /// The bytes.
+    /// Bytes of the tables.
     pub fn bytes(&self) -> Vec<u8> {
         self.words.iter().flat_map(|word| word.to_le_bytes()).collect()
     }
 
-    /// Their digest.
+    /// Digest of the tables.
     pub fn digest(&self) -> u64 {
         table_blob::Blob::open(&self.words).map_or(0, |blob| blob.header().digest)
     }
 
-    /// The declaration.
+    /// Text of the header.
     pub fn header(&self) -> String {
         let (name, upper) = (&self.name, self.name.to_uppercase());
-        // A joint may be called anything: the remark ends where it is meant to.
+        // A joint's name may hold anything, even the end of a comment.
         let plain = |line: &String| line.replace(char::is_control, " ").replace("*/", "* /");
         let remarks: String = self.made_from.iter().map(|line| format!(" * {}\n", plain(line))).collect();
         format!(
@@ -173,7 +173,7 @@ impl CTables {
              /* Version of the layout, and digest. */\n\
              #define {upper}_TABLES_VERSION {VERSION}\n#define {upper}_TABLES_DIGEST {:#018x}ull\n\n\
              #if defined(JOINT_TABLES_VERSION) && JOINT_TABLES_VERSION != {VERSION}\n\
-             #error \"{name}_tables.h is of another version than joint.h: write it anew with that library's `joint tables`\"\n\
+             #error \"{name}_tables.h is of another version than joint.h: generate it again with that library's `joint tables`\"\n\
              #endif\n\n\
              #ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n\
              /* Pass it with sizeof {name}_tables. */\nextern const uint64_t {name}_tables[{}];\n\n\
@@ -183,7 +183,7 @@ impl CTables {
         )
     }
 
-    /// The definition.
+    /// Text of the source.
     pub fn source(&self) -> String {
         let name = &self.name;
         let rows: String = self
@@ -202,24 +202,25 @@ impl CTables {
     }
 }
 
-/// Reads a joint with a control rate, for programs that try the library.
+/// Reads a joint with a control rate, for the test programs.
 pub fn joint_at(name: &Path, rate: u32) -> Outcome<JointFile> {
     let mut joint = named::load(name)?.file;
     joint.surroundings.control_rate = rate;
     Ok(joint)
 }
 
-/// Tables called `test_tables`, for programs that try the library.
+/// Tables called `test_tables`, for the test programs.
 pub fn for_tests(joint: &JointFile, plant: bool, board: &Board) -> Outcome<CTables> {
-    Ok(CTables { name: "test".to_owned(), ..make(joint, joint, USUAL, plant, board)? })
+    Ok(CTables { name: "test".to_owned(), ..make(joint, joint, DEFAULT_REQUEST, plant, board)? })
 }
 
 #[cfg(test)]
 mod tests {
     use super::c_name;
 
+    /// Every joint's name becomes a C identifier.
     #[test]
-    fn any_joint_s_name_becomes_a_name_of_c() {
+    fn joint_names_become_c_identifiers() {
         assert_eq!(c_name("Q1"), "q1");
         assert_eq!(c_name("left knee (v2)"), c_name("left knee (v2)"));
         for name in ["7 up", "", "Ellenbogen-3", "ä"] {

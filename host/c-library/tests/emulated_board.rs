@@ -1,4 +1,4 @@
-//! The library on the emulator's machines, called from C: run by `cargo joint hil --check`.
+//! The library on emulated machines, called from C. Run by `cargo joint hil --check`.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use c_library::controller::{self, Mode};
 use c_library::costs::{self, Costs};
 use c_library::library::{self, Target};
 use c_library::package;
-use c_library::programs::{self, MACHINES, Workbench, said};
+use c_library::programs::{self, MACHINES, Workbench, value_after};
 use c_library::run;
 use c_library::tables::{self, joint_at};
 use joint_file::JointFile;
@@ -30,9 +30,10 @@ fn say(line: &str) {
     println!("{line}");
 }
 
+/// Every emulated machine computes the core's bits from C, at two control rates.
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn four_machines_compute_every_bit_of_the_core() {
+fn machines_match_core_bitwise() {
     emulator::ensure(&say).expect("an emulator");
     for target in BOARDS {
         let library = library::build(target, "library", &say).expect("a library");
@@ -46,7 +47,7 @@ fn four_machines_compute_every_bit_of_the_core() {
                 let flags = [&format!("-DPERIODS={PERIODS}u"), "-O2", "-ffast-math"];
                 let program = bench.compile_for(machine, &[&source], &flags).expect("a program");
                 let lines = programs::run_on(machine, &program).expect("a run");
-                let digest = said(&lines, "digest ").expect("a digest");
+                let digest = value_after(&lines, "digest ").expect("a digest");
                 assert_eq!(digest, format!("{expected:016x}"), "{} at {rate} Hz", machine.name);
                 println!("{} at {rate} Hz: {digest} after {PERIODS} periods", machine.name);
             }
@@ -54,28 +55,30 @@ fn four_machines_compute_every_bit_of_the_core() {
     }
 }
 
-/// Most flash and RAM of observer and compensation, with maps and without [B]. Without maps 30 KiB of flash were wished for: that
-/// is not met, since the maps are a few per cent of the code (docs/decisions/c-library.md); what is reached is held.
-const MEMORY: [(&str, u64, u64); 2] = [
+/// Limits of flash and RAM of observer and compensation, with and without maps [B]. The goal of 30 KiB of flash without
+/// maps was not met, since the maps are only a few per cent of the code (docs/decisions/c-library.md); the limits hold
+/// what was reached.
+const MEMORY_LIMITS: [(&str, u64, u64); 2] = [
     ("observer with maps, compensation", (46 << 10) + 256, 3 << 10),
     ("observer without maps, compensation", 46 << 10, 3 << 10),
 ];
 
+/// Memory stays within its limits, and a call costs at most 4 % more than the core's own step.
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn calls_and_memory_cost_what_is_promised() {
+fn calls_and_memory_within_limits() {
     emulator::ensure(&say).expect("an emulator");
     for target in BOARDS {
         let library = library::build(target, "library,measuring", &say).expect("a library");
         let joint = joint_at(Path::new("q1"), 10_000).expect("a joint");
         let tables = tables::for_tests(&joint, true, &Board::emulated()).expect("tables");
         let bench = Workbench::new(&library, &tables).expect("room");
-        let machine = costs::machine(target).expect("a machine");
+        let machine = costs::machine_for(target).expect("a machine");
         let memory = costs::memory(&library, &joint, machine).expect("sizes");
         for use_of in &memory {
             println!("{}: {use_of:?}", target.name());
         }
-        for (what, flash, ram) in MEMORY {
+        for (what, flash, ram) in MEMORY_LIMITS {
             let found = memory.iter().find(|it| it.what == what).expect("a use");
             assert!(found.flash <= flash && found.ram <= ram, "{}: {found:?}", target.name());
         }
@@ -88,7 +91,7 @@ fn calls_and_memory_cost_what_is_promised() {
             [("joint_observer_step all along", "core's observer"), ("joint_compensation_follow", "core's compensation")]
         {
             let (call, core) = (of(call), of(core));
-            // 4 % of the core's or 40, whichever is more.
+            // Limit: 4 % of the core's instructions, or 40 if that is more.
             let (most, over) = (40.max(4 * core.mean / 100), call.mean.saturating_sub(core.mean));
             println!("{}: {} adds {over} instructions to {} of {}", target.name(), call.name, core.mean, core.name);
             assert!(over <= most, "{call:?} beside {core:?}: more than {most} above");
@@ -96,10 +99,10 @@ fn calls_and_memory_cost_what_is_promised() {
     }
 }
 
-/// Set to write the costs into the docs.
-const WRITE: &str = "UPDATE_COSTS";
+/// Environment variable that makes the test write the costs into the docs.
+const UPDATE_VARIABLE: &str = "UPDATE_COSTS";
 
-/// Most stack of each call, as the header states it [B].
+/// Stack of each call as stated in the header [B].
 fn stack_bounds(header: &str) -> Vec<(&str, u64)> {
     header
         .lines()
@@ -113,9 +116,10 @@ fn stack_bounds(header: &str) -> Vec<(&str, u64)> {
         .collect()
 }
 
+/// The documented costs are those counted, and the header's stack bounds hold without being twice too large.
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn costs_are_those_of_docs_and_header() {
+fn costs_match_docs_and_header() {
     const BEGIN: &str = "<!-- Costs: written by the command above. -->\n";
     const END: &str = "<!-- End of the costs. -->\n";
     emulator::ensure(&say).expect("an emulator");
@@ -125,8 +129,8 @@ fn costs_are_those_of_docs_and_header() {
     let mut costs = String::new();
     for target in BOARDS {
         let library = library::build(target, "library", &say).expect("a library");
-        let machine = costs::machine(target).expect("a machine");
-        let counted = Costs::of(&library, &joint, machine).expect("costs");
+        let machine = costs::machine_for(target).expect("a machine");
+        let counted = Costs::measure(&library, &joint, machine).expect("costs");
         // The page has one target; the archive of each has its own costs.
         if target == Target::M4f {
             costs += &format!("\n### Target {}\n{}", target.name(), costs::section(&counted, &joint, machine));
@@ -141,11 +145,11 @@ fn costs_are_those_of_docs_and_header() {
     let page = std::fs::read_to_string(&path).expect("a page");
     let (head, rest) = page.split_once(BEGIN).expect("a beginning");
     let (written, tail) = rest.split_once(END).expect("an end");
-    if std::env::var_os(WRITE).is_some() {
+    if std::env::var_os(UPDATE_VARIABLE).is_some() {
         std::fs::write(&path, format!("{head}{BEGIN}{costs}\n{END}{tail}")).expect("a page that can be written");
         return;
     }
-    let command = format!("{WRITE}=1 cargo test -p c-library --test emulated_board costs_are -- --ignored");
+    let command = format!("{UPDATE_VARIABLE}=1 cargo test -p c-library --test emulated_board costs_match -- --ignored");
     let [written, counted] = [written, &costs].map(|text| text.split_whitespace().collect::<Vec<_>>());
     assert_eq!(written.len(), counted.len(), "docs/reference/c-library.md has other rows: {command}");
     for (written, counted) in written.iter().zip(&counted) {
@@ -153,7 +157,7 @@ fn costs_are_those_of_docs_and_header() {
     }
 }
 
-/// Compares words: texts exactly, numbers within 2 %, since compilers of other versions lay out code otherwise, or within 16.
+/// Compares words: texts exactly, numbers within 2 % (code layout differs between compiler versions) or within 16.
 fn is_near(written: &str, counted: &str) -> bool {
     match (written.parse::<f64>(), counted.parse::<f64>()) {
         (Ok(written), Ok(counted)) => (written - counted).abs() <= (0.02 * counted).max(16.0),
@@ -161,7 +165,7 @@ fn is_near(written: &str, counted: &str) -> bool {
     }
 }
 
-/// Functions of a C library and of the Arm run-time ABI that the header names.
+/// C library functions, in the forms of the Arm run-time ABI too, that the header names as required.
 const FROM_C: [&str; 4] = ["memcpy", "memmove", "memset", "memclr"];
 
 #[test]
@@ -174,7 +178,7 @@ fn library_links_without_a_c_library() {
     for target in BOARDS {
         let library = library::build(target, "library", &say).expect("a library");
         let bench = Workbench::new(&library, &tables).expect("room");
-        let open = must(
+        let open = run_checked(
             std::process::Command::new(target.tool("nm")).arg("--undefined-only").arg(bench.path("liblostmotion.a")),
         );
         let open: Vec<&str> = open.lines().filter_map(|line| line.trim().strip_prefix("U ")).collect();
@@ -186,26 +190,27 @@ fn library_links_without_a_c_library() {
         }
         let sources = [programs::folder().join("test_joint.c"), programs::folder().join("board/memory.c")];
         let sources: Vec<&Path> = sources.iter().map(PathBuf::as_path).collect();
-        let machine = costs::machine(target).expect("a machine");
-        // The last flag keeps the compiler from making calls of strlen out of the loops of start.c.
+        let machine = costs::machine_for(target).expect("a machine");
+        // The last flag keeps the compiler from turning the loops of start.c into calls of strlen.
         let flags = ["-DPERIODS=1000u", "-O2", "-nostdlib", "-fno-tree-loop-distribute-patterns"];
         let program = bench.compile_for(machine, &sources, &flags).expect("a program");
         let lines = programs::run_on(machine, &program).expect("a run");
-        assert_eq!(said(&lines, "digest "), Some(format!("{expected:016x}")));
+        assert_eq!(value_after(&lines, "digest "), Some(format!("{expected:016x}")));
     }
 }
 
+/// Two builds in different folders give equal bytes.
 #[test]
 #[ignore = "builds the library once more from nothing: run by `cargo joint hil --check`"]
-fn two_builds_give_the_same_bytes() {
+fn builds_are_reproducible() {
     for target in [Target::M4f, Target::M33, Target::M7, Target::Host] {
         let first = library::build(target, "library", &say).expect("a library");
-        // Again from nothing, and elsewhere.
+        // Built from scratch in another folder.
         let folder = tempfile::tempdir().expect("a folder");
         let second = library::build_in(Some(folder.path()), target, "library", &say).expect("a library");
         let name = target.name();
         assert!(first.archive == second.archive && first.shared == second.shared, "{name}");
-        // Costs of one board are counted twice: they are the same on each board if they are on one.
+        // Costs are counted twice on one board only: if they repeat there, they repeat on all boards.
         if matches!(target, Target::M4f | Target::Host) {
             let archives = [&first, &second].map(|library| package::archive(library, &say).expect("an archive"));
             assert!(archives[0] == archives[1], "{name}");
@@ -214,17 +219,17 @@ fn two_builds_give_the_same_bytes() {
     }
 }
 
-/// A command that must succeed; what it says.
-fn must(command: &mut std::process::Command) -> String {
+/// Runs a command that must succeed and returns its output.
+fn run_checked(command: &mut std::process::Command) -> String {
     let output = command.output().expect("a command");
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(output.status.success(), "{command:?}:\n{said}{}", String::from_utf8_lossy(&output.stderr));
     said
 }
 
-/// A project of somebody else's: C99 and C++20, by `find_package`, by `add_subdirectory`, and as a module of Zephyr, whose
-/// two functions stand here for it.
-const STRANGER: &str = r#"
+/// Project of a user: C99 and C++20, by `find_package`, by `add_subdirectory`, and as a Zephyr module, with stand-ins
+/// for Zephyr's two functions.
+const USER_PROJECT: &str = r#"
 cmake_minimum_required(VERSION 3.13)
 project(stranger C CXX)
 set(CMAKE_C_STANDARD 99)
@@ -266,12 +271,13 @@ foreach(library ${LIBRARIES})
 endforeach()
 "#;
 
-const STRANGER_S_PROGRAM: &str = "#include <lostmotion/joint.h>\nint main(void) {\n    static JointObserver observer;\n    \
+const USER_PROGRAM: &str = "#include <lostmotion/joint.h>\nint main(void) {\n    static JointObserver observer;\n    \
      return joint_observer_step(&observer, 0) == JOINT_STATUS_NOT_STARTED ? 0 : 1;\n}\n";
 
+/// CMake and pkg-config find the library in the archive, and the programs run.
 #[test]
 #[ignore = "installs CMake and pkg-config: run by `cargo joint hil --check`"]
-fn cmake_and_pkg_config_take_the_archive() {
+fn archive_builds_with_cmake_and_pkg_config() {
     packages::ensure(&["cmake", "make", "pkg-config", "g++"], "to try the library in build systems", &say)
         .expect("packages");
     for target in [Target::Host, Target::M4f, Target::M33, Target::M7] {
@@ -283,12 +289,12 @@ fn cmake_and_pkg_config_take_the_archive() {
         let build = folder.path().join("build");
         let mut configure = std::process::Command::new("cmake");
         configure.arg("-S").arg(root.join("test")).arg("-B").arg(&build);
-        let machine = costs::machine(target);
+        let machine = costs::machine_for(target);
         if machine.is_some() {
             configure.arg(format!("-DCMAKE_TOOLCHAIN_FILE={}", root.join("test/board/toolchain.cmake").display()));
         }
-        must(&mut configure);
-        must(std::process::Command::new("cmake").arg("--build").arg(&build));
+        run_checked(&mut configure);
+        run_checked(std::process::Command::new("cmake").arg("--build").arg(&build));
         let program = build.join("test_joint");
         let lines = match machine {
             Some(machine) => programs::run_on(machine, &program),
@@ -298,22 +304,20 @@ fn cmake_and_pkg_config_take_the_archive() {
         assert!(lines.contains(&"as expected".to_owned()), "{}: {lines:?}", target.name());
         println!("{}: built by CMake, {}", target.name(), lines.join(", "));
         if target == Target::Host {
-            as_a_stranger(folder.path(), &root);
+            build_user_project(folder.path(), &root);
         }
     }
 }
 
-fn as_a_stranger(folder: &Path, root: &Path) {
+fn build_user_project(folder: &Path, root: &Path) {
     let project = folder.join("stranger");
     std::fs::create_dir(&project).expect("a folder");
-    for (name, text) in
-        [("CMakeLists.txt", STRANGER), ("program.c", STRANGER_S_PROGRAM), ("program.cpp", STRANGER_S_PROGRAM)]
-    {
+    for (name, text) in [("CMakeLists.txt", USER_PROJECT), ("program.c", USER_PROGRAM), ("program.cpp", USER_PROGRAM)] {
         std::fs::write(project.join(name), text).expect("a file");
     }
     for how in ["find_package", "add_subdirectory", "zephyr"] {
         let build = project.join(how);
-        must(
+        run_checked(
             std::process::Command::new("cmake")
                 .arg("-S")
                 .arg(&project)
@@ -323,13 +327,13 @@ fn as_a_stranger(folder: &Path, root: &Path) {
                 .arg(format!("-DARCHIVE={}", root.display()))
                 .arg(format!("-DCMAKE_PREFIX_PATH={}", root.display())),
         );
-        must(std::process::Command::new("cmake").arg("--build").arg(&build));
-        let said = must(std::process::Command::new("ctest").current_dir(&build));
+        run_checked(std::process::Command::new("cmake").arg("--build").arg(&build));
+        let said = run_checked(std::process::Command::new("ctest").current_dir(&build));
         assert!(said.contains("100% tests passed"), "{how}: {said}");
         println!("{how}: programs in C99 and C++20 run");
     }
     for (package, is_shared) in [("lostmotion", false), ("lostmotion-shared", true)] {
-        let flags = must(
+        let flags = run_checked(
             std::process::Command::new("pkg-config")
                 .args(["--cflags", "--libs", &format!("{package} >= 0.1")])
                 .env("PKG_CONFIG_PATH", root.join("lib/pkgconfig")),
@@ -337,10 +341,10 @@ fn as_a_stranger(folder: &Path, root: &Path) {
         let program = project.join(package);
         let mut compile = std::process::Command::new("gcc");
         compile.arg("-o").arg(&program).arg(project.join("program.c"));
-        must(compile.args(flags.split_whitespace()));
-        // From another folder, as a user starts it.
-        must(std::process::Command::new(&program).current_dir("/"));
-        let needs = must(std::process::Command::new("readelf").arg("-d").arg(&program));
+        run_checked(compile.args(flags.split_whitespace()));
+        // Started from another folder, as a user would.
+        run_checked(std::process::Command::new(&program).current_dir("/"));
+        let needs = run_checked(std::process::Command::new("readelf").arg("-d").arg(&program));
         assert_eq!(needs.contains(library::SONAME), is_shared, "{package}: {needs}");
     }
 }
@@ -349,15 +353,16 @@ fn example(name: &str) -> PathBuf {
     workspace().join("examples/c-motor-controller").join(name)
 }
 
-/// Joint Q1 without weight, as the test T2 has it.
+/// Joint Q1 without gravity, as in test T2.
 fn without_weight(rate: u32) -> JointFile {
     let mut joint = joint_at(Path::new("q1"), rate).expect("a joint");
     joint.surroundings.gravity_torque = 0.0;
     joint
 }
 
-/// Figures of the same controller in Rust, and its digest. Of the first two seconds it learns.
-fn in_rust(joint: &JointFile, words: &[u64], mode: Mode) -> (Figures, u64) {
+/// Figures and digest of the same controller in Rust. The first two seconds, in which parameters are estimated, do not
+/// count.
+fn rust_controller(joint: &JointFile, words: &[u64], mode: Mode) -> (Figures, u64) {
     let parameters = &joint.parameters;
     let half_backlash = parameters.sun_planet.half_backlash.first().copied().expect("meshes");
     let period = 1.0 / f64::from(joint.surroundings.control_rate);
@@ -386,11 +391,11 @@ fn controller_in_c_removes_the_lost_motion() {
     for rate in [10_000, 20_000] {
         let joint = without_weight(rate);
         let tables = tables::for_tests(&joint, true, &Board::emulated()).expect("tables");
-        let expected = MODES.map(|mode| in_rust(&joint, &tables.words, mode));
+        let expected = MODES.map(|mode| rust_controller(&joint, &tables.words, mode));
         let [with, without, _] = &expected.map(|(figures, _)| figures);
         let [gain, peak_gain] = [without.rms / with.rms, without.peak / with.peak];
         println!("{rate} Hz: gains {gain:.1} and {peak_gain:.1}\n  with {with:?}\n  without {without:?}");
-        // The bars of hil/t2.toml; its rivals are not written in C.
+        // Limits of hil/t2.toml; its rival controllers do not exist in C.
         assert!(gain >= 10.0 && peak_gain >= 3.0, "{gain} and {peak_gain}");
         assert!(with.lost_motion_time <= 10e-3 && with.peak_mesh_force <= 231.0, "{with:?}");
         let include = format!("-I{}", example("").display());
@@ -410,7 +415,7 @@ fn controller_in_c_removes_the_lost_motion() {
             let all = |word: &str| -> Vec<&str> { lines.iter().filter_map(|line| line.strip_prefix(word)).collect() };
             let digests = expected.map(|(_, digest)| format!("{digest:016x}"));
             assert_eq!(all("digest "), digests, "{} at {rate} Hz: every bit of the core's", machine.name);
-            // What it says of itself is what the truth of the same bits says.
+            // The figures that the program prints equal those of the true state.
             for (word, unit, expected) in [
                 ("rms_urad ", 1e6, with.rms),
                 ("peak_urad ", 1e6, with.peak),
@@ -424,9 +429,10 @@ fn controller_in_c_removes_the_lost_motion() {
     }
 }
 
+/// The plant is the device under test of the C++ example.
 #[test]
 #[ignore = "installs a package for unit tests in C++: run by `cargo joint hil --check`"]
-fn the_plant_is_the_device_under_a_unit_test_in_c_plus_plus() {
+fn plant_serves_cpp_unit_test() {
     packages::ensure(&["doctest-dev", "g++"], "to run a unit test in C++", &say).expect("packages");
     let library = library::build(Target::Host, "library", &say).expect("a library");
     let tables = tables::for_tests(&without_weight(10_000), true, &Board::emulated()).expect("tables");
@@ -440,9 +446,10 @@ fn the_plant_is_the_device_under_a_unit_test_in_c_plus_plus() {
     assert!(lines.iter().any(|line| line.contains("3 passed")), "{lines:?}");
 }
 
+/// The example finds a half-backlash of 40 um in a log, though designed for 60 um.
 #[test]
 #[ignore = "with the other examples in C: run by `cargo joint hil --check`"]
-fn the_observer_alone_prints_the_gap_of_a_recorded_log() {
+fn observer_example_estimates_half_backlash() {
     let library = library::build(Target::Host, "library", &say).expect("a library");
     let joint = without_weight(10_000);
     let mut told = joint.clone();

@@ -1,11 +1,11 @@
-//! The library on this machine, called from C and C++: the same bits as the core, whatever the caller was compiled with.
+//! The library on this machine, called from C and C++: bits equal to the core's, whatever the caller's compiler flags.
 
 use std::path::Path;
 use std::sync::LazyLock;
 
 use board::device::board::Board;
 use c_library::library::{self, Library, Target};
-use c_library::programs::{self, Workbench, said};
+use c_library::programs::{self, Workbench, value_after};
 use c_library::run;
 use c_library::tables::{self, CTables, joint_at};
 
@@ -19,30 +19,32 @@ fn designed(joint: &str, rate: u32) -> CTables {
     tables::for_tests(&joint, true, &Board::emulated()).expect("tables")
 }
 
-/// The digest that a program says after so many periods.
+/// Digest that the test program prints after a number of periods.
 fn digest(bench: &Workbench, compiler: &str, flags: &[&str], periods: u32) -> u64 {
     let periods = format!("-DPERIODS={periods}u");
     let source = programs::folder().join("test_joint.c");
     let program = bench.compile(compiler, &[&source], &[&[periods.as_str()], flags].concat()).expect("a program");
     let lines = programs::run(&program, &[]).expect("a run");
-    u64::from_str_radix(&said(&lines, "digest ").expect("a digest"), 16).expect("a number")
+    u64::from_str_radix(&value_after(&lines, "digest ").expect("a digest"), 16).expect("a number")
 }
 
+/// A C program computes the core's bits, also with -ffast-math in its own code.
 #[test]
-fn a_c_program_computes_what_the_core_computes_in_every_bit() {
+fn c_program_matches_core_bitwise() {
     for rate in [10_000, 20_000] {
         let tables = designed("q1", rate);
         let bench = Workbench::new(&LIBRARY, &tables).expect("room");
         let expected = run::digest(&tables.words, PERIODS).expect("a run");
         assert_eq!(digest(&bench, "gcc", &["-std=c99", "-O2"], PERIODS), expected, "{rate} Hz");
-        // It flushes to zero, rounds otherwise and thinks that nothing is infinite: in its own code.
+        // These flags make the caller's code flush to zero, round differently and assume finite numbers.
         let wild = ["-std=c17", "-O3", "-ffast-math", "-march=native"];
         assert_eq!(digest(&bench, "gcc", &wild, PERIODS), expected, "{rate} Hz, -ffast-math");
     }
 }
 
+/// A caller that rounds upwards gets the same bits and keeps its rounding mode.
 #[test]
-fn a_caller_that_rounds_upwards_changes_no_bit_and_keeps_its_mode() {
+fn caller_rounding_mode_has_no_effect() {
     let tables = designed("q1", 10_000);
     let bench = Workbench::new(&LIBRARY, &tables).expect("room");
     let expected = run::digest(&tables.words, 20_000).expect("a run");
@@ -50,8 +52,9 @@ fn a_caller_that_rounds_upwards_changes_no_bit_and_keeps_its_mode() {
     assert_eq!(digest(&bench, "gcc", &upward, 20_000), expected);
 }
 
+/// Compiled as C++, the program computes the core's bits for other joints too.
 #[test]
-fn the_same_program_is_c_plus_plus_and_any_joint_will_do() {
+fn cpp_program_matches_core_for_other_joints() {
     for joint in ["s1", "c1", "d2"] {
         let tables = designed(joint, 10_000);
         let bench = Workbench::new(&LIBRARY, &tables).expect("room");
@@ -60,8 +63,9 @@ fn the_same_program_is_c_plus_plus_and_any_joint_will_do() {
     }
 }
 
+/// The C++ interface computes the core's bits without exceptions and RTTI.
 #[test]
-fn cpp_interface_gives_the_digest_of_the_core() {
+fn cpp_interface_matches_core_bitwise() {
     let tables = designed("q1", 10_000);
     let bench = Workbench::new(&LIBRARY, &tables).expect("room");
     let expected = run::digest(&tables.words, 20_000).expect("a run");
@@ -69,11 +73,12 @@ fn cpp_interface_gives_the_digest_of_the_core() {
     let flags = ["-std=c++20", "-O2", "-fno-exceptions", "-fno-rtti"];
     let program = bench.compile("g++", &[&source], &flags).expect("a program");
     let lines = programs::run(&program, &[]).expect("a run");
-    assert_eq!(said(&lines, "digest "), Some(format!("{expected:016x}")));
+    assert_eq!(value_after(&lines, "digest "), Some(format!("{expected:016x}")));
 }
 
+/// The library exports the header's functions only, needs `memcpy` and `memset` only, and links no panic.
 #[test]
-fn a_library_has_no_name_but_the_header_s_and_needs_no_library_of_c() {
+fn library_symbols_match_header() {
     let bench = Workbench::new(&LIBRARY, &designed("q1", 10_000)).expect("room");
     let names = |options: &[&str]| {
         let out =
@@ -87,27 +92,28 @@ fn a_library_has_no_name_but_the_header_s_and_needs_no_library_of_c() {
     };
     assert_eq!(names(&["--defined-only", "--extern-only"]), library::functions().expect("a header"));
     assert_eq!(names(&["--undefined-only"]), ["memcpy", "memset"], "as the header states");
-    // Neither a panic nor what would say it: they are not linked, so nothing leads there.
+    // Neither a panic nor its message is linked, so no path leads to one.
     let all = names(&[]);
     assert!(all.len() > 50 && !all.iter().any(|name| name.contains("panic")), "{all:?}");
 }
 
+/// The width probe finds 40 um with the core's bits, and its memory is accepted by another observer.
 #[test]
-fn a_width_probe_finds_the_width_bit_for_bit_and_what_was_learnt_goes_on_in_another_observer() {
+fn width_probe_and_memory_match_core() {
     let mut joint = joint_at(Path::new("q1"), 10_000).expect("a joint");
-    // The hand that holds the link.
+    // High friction stands for the hand that holds the link.
     joint.surroundings.load_friction.coulomb = 50.0;
     let mut told = joint.clone();
     told.surroundings.load_friction.coulomb = 0.3;
     let tables = CTables {
         name: "test".to_owned(),
-        ..tables::make(&joint, &told, tables::USUAL, true, &Board::emulated()).expect("tables")
+        ..tables::make(&joint, &told, tables::DEFAULT_REQUEST, true, &Board::emulated()).expect("tables")
     };
     let bench = Workbench::new(&LIBRARY, &tables).expect("room");
     let program =
         bench.compile("gcc", &[&programs::folder().join("probe.c")], &["-std=c99", "-O2"]).expect("a program");
     let lines = programs::run(&program, &[]).expect("a run");
-    let number = |word: &str| said(&lines, word).expect("a number");
+    let number = |word: &str| value_after(&lines, word).expect("a number");
     assert_eq!(number("progress "), "1", "done: {lines:?}");
     let width_nm: f64 = number("width_nm ").parse().expect("a number");
     assert!((width_nm / 40_000.0 - 1.0).abs() < 0.1, "it is 40 um: {lines:?}");
@@ -116,8 +122,9 @@ fn a_width_probe_finds_the_width_bit_for_bit_and_what_was_learnt_goes_on_in_anot
     assert!(lines.contains(&"memory the same".to_owned()), "{lines:?}");
 }
 
+/// The wiring check names the reversed signal, with the core's torques.
 #[test]
-fn a_wiring_check_names_what_is_reversed_bit_for_bit_as_the_core_does() {
+fn wiring_check_matches_core_bitwise() {
     let tables = designed("q1", 10_000);
     let bench = Workbench::new(&LIBRARY, &tables).expect("room");
     let program =
@@ -131,10 +138,10 @@ fn a_wiring_check_names_what_is_reversed_bit_for_bit_as_the_core_does() {
     ];
     assert_eq!(lines[..4], expected, "{lines:?}");
     let digest = run::wiring_digest(&tables.words).expect("a run");
-    assert_eq!(said(&lines, "digest ").expect("a digest"), format!("{digest:016x}"));
+    assert_eq!(value_after(&lines, "digest ").expect("a digest"), format!("{digest:016x}"));
 }
 
-/// Lines of a program that starts an observer, compiled with a header of the caller's.
+/// Lines of a program that starts an observer, compiled with a changed header.
 fn with_header(text: &str) -> Vec<String> {
     let bench = Workbench::new(&LIBRARY, &designed("q1", 10_000)).expect("room");
     std::fs::create_dir(bench.path("lostmotion")).expect("a folder");
@@ -144,8 +151,9 @@ fn with_header(text: &str) -> Vec<String> {
     programs::run(&program, &[]).expect("a run")
 }
 
+/// A program compiled with a header of another layout or version is rejected at start.
 #[test]
-fn header_of_another_version_is_refused() {
+fn changed_header_rejected() {
     let header = std::fs::read_to_string(library::header()).expect("a header");
     assert_eq!(with_header(&header), ["JOINT_STATUS_OK", "nothing was written"]);
     for (this, other) in [
@@ -159,8 +167,9 @@ fn header_of_another_version_is_refused() {
     }
 }
 
+/// Ignoring a status is a compiler warning.
 #[test]
-fn unlooked_status_is_a_warning() {
+fn ignored_status_warned() {
     let bench = Workbench::new(&LIBRARY, &designed("q1", 10_000)).expect("room");
     let program = "#include <lostmotion/joint.h>\nint main(void) {\n    \
                    joint_observer_step(0, 0);\n    return 0;\n}\n";
@@ -171,12 +180,13 @@ fn unlooked_status_is_a_warning() {
     }
 }
 
-/// Set to try more sequences of wrong calls than the short form does.
-const SEQUENCES: &str = "C_SEQUENCES";
+/// Environment variable with the number of sequences of wrong calls.
+const SEQUENCES_VARIABLE: &str = "C_SEQUENCES";
 
+/// Random wrong calls return a status and change nothing, also under the sanitizers.
 #[test]
-fn callers_that_get_it_wrong_are_told_and_change_nothing() {
-    let sequences = std::env::var(SEQUENCES).unwrap_or_else(|_| "5000".to_owned());
+fn wrong_calls_rejected_without_effect() {
+    let sequences = std::env::var(SEQUENCES_VARIABLE).unwrap_or_else(|_| "5000".to_owned());
     let bench = Workbench::new(&LIBRARY, &designed("q1", 10_000)).expect("room");
     let source = programs::folder().join("fuzz.c");
     for (kind, flags) in [
@@ -186,7 +196,7 @@ fn callers_that_get_it_wrong_are_told_and_change_nothing() {
         let program = bench.compile("gcc", &[&source], flags).expect("a program");
         let lines = programs::run(&program, &[&sequences, "7"]).expect("no wrong call is taken, none changes anything");
         println!("{kind}: {sequences} sequences; {}", lines.join("; "));
-        let count = |word: &str| said(&lines, word).expect("a count").parse::<u64>().expect("a number");
+        let count = |word: &str| value_after(&lines, word).expect("a count").parse::<u64>().expect("a number");
         assert!(count("calls that were right ") > 5000 && count("calls that were refused ") > 5000, "{lines:?}");
     }
 }

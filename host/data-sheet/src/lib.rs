@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 pub use arguments::Arguments;
 use board::device::board::Board;
-use board::device::tick_time::OnBoard;
+use board::device::tick_time::RateCheck;
 use joint_file::named::Loaded;
 use joint_file::{diagnostic, warnings};
 use report::failure::{Failure, Outcome};
@@ -108,8 +108,8 @@ fn write_file(
         printed += &format!("note: {warning}\n");
     }
     // A board's computing time is no part of a data sheet: the joint is kept, with a note.
-    if let Err(failure) = OnBoard::plant(&loaded.file.parameters, &Board::load(board_file::DEFAULT)?).refuse(CHECK_RATE)
-    {
+    let board = Board::load(board_file::DEFAULT)?;
+    if let Err(failure) = RateCheck::plant(&loaded.file.parameters, &board).check(CHECK_RATE) {
         let help = failure.full_help().map_or(String::new(), |help| format!(" ({help})"));
         printed += &format!("note: {}{help}\n", failure.message());
     }

@@ -1,5 +1,5 @@
-//! The images on models of their boards, at the level of registers: the package `board-model`, which is under another licence
-//! than the workspace and therefore a program of its own, started through cargo.
+//! Images on register-level models of their boards: the package `board-model`, which has another licence than the
+//! workspace and is therefore a separate program, started through cargo.
 
 use std::process::{Command, Stdio};
 
@@ -9,10 +9,10 @@ use report::output;
 use report::progress::Progress;
 use report::workspace::workspace;
 
-/// What its emulator library is built with.
+/// Packages to build the emulator library of the board model.
 const PACKAGES: [&str; 3] = ["cmake", "libclang-dev", "build-essential"];
 
-/// Runs its short form; it prints a line for each of its checks.
+/// Runs the short form of the board model's checks; it prints a line per check.
 pub fn check(progress: &Progress) -> Outcome<()> {
     packages::ensure(&PACKAGES, "to build the model of the boards", &|line| progress.say(line))?;
     progress.clear();
@@ -26,6 +26,6 @@ pub fn check(progress: &Progress) -> Outcome<()> {
     match status.success() {
         true => output::print("ok       images on the models of their boards\n"),
         false => Err(Failure::check_failed(format!("an image failed on the model of its board ({status})"))
-            .with_help("board-model/README.md says what is checked, and how one check is run alone")),
+            .with_help("board-model/README.md describes the checks and how to run one of them")),
     }
 }

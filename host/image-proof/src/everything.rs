@@ -1,5 +1,5 @@
-//! What `joint hil --check` does after the run: every board's image and what its tick can reach, clippy over the
-//! firmware, the proofs about the step that need the emulated board, and the tests that need it.
+//! Second part of `joint hil --check`: the image of every board and the reach of its tick, clippy over the firmware,
+//! the proofs about the step on the emulated board, and the tests that need the emulated board.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -19,7 +19,7 @@ use report::output;
 use report::progress::Progress;
 use report::workspace::workspace;
 
-/// Runs all of it; the first failure ends it.
+/// Runs all checks; the first failure ends them.
 pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
     let say = |line: &str| progress.say(line);
     progress.stage("preparing the toolchain");
@@ -27,10 +27,10 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
     let joint = named::load(Path::new("q1"))?.file.parameters;
     let mut seen: Vec<Chip> = Vec::new();
     for board in &Board::presets()? {
-        // Boards differ in pins and clock; what a role is made of is the same on all with a chip.
+        // Boards with the same chip differ in pins and clock only, so the roles are checked on the first one.
         let is_first = !seen.contains(&board.chip());
         seen.push(board.chip());
-        let control_rate = |role| tick_time::usual_rate(&joint, board, role);
+        let control_rate = |role| tick_time::default_control_rate(&joint, board, role);
         let roles = [
             (Role::Plant, tick_rate),
             (Role::Observer, control_rate(Role::Observer)),
@@ -38,14 +38,14 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
         ];
         let built = if is_first && image::has_room_for_all(board) { &roles[..] } else { &roles[..1] };
         for &(role, rate) in built {
-            let what = format!("role {} for {}", image::word(role), board.name());
+            let what = format!("role {} for {}", image::role_name(role), board.name());
             progress.stage(&format!("building the image of {what}"));
             let image = image::build_image(&toolchain, &image::preset_file("q1"), board, role, rate, false, &say)?;
             let (flash, ram) = (image.flash_bytes, image.ram_bytes);
             let reach = tick::reach(&image.elf)?;
-            tick::judge(&reach).map_err(|failure| failure.while_doing(format_args!("image of {what}")))?;
+            tick::check(&reach).map_err(|failure| failure.while_doing(format_args!("image of {what}")))?;
             let (functions, stack) = (reach.functions, tick::stack(&reach));
-            sizes::judge(board.chip(), image::word(role), &image)?;
+            sizes::check(board.chip(), image::role_name(role), &image)?;
             progress.clear();
             output::print(&format!(
                 "ok       image of {what}: {flash} B of flash, {ram} B of RAM; its tick: {functions} functions, none can \
@@ -56,7 +56,7 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
             progress.stage("building the image of a slave on SPI");
             let joint = image::preset_file("q1");
             let built = image::build_spi_slave(&toolchain, &joint, board, image::SPI_RATE, false, &say)?;
-            sizes::judge(board.chip(), "spi-observer", &built)?;
+            sizes::check(board.chip(), "spi-observer", &built)?;
             let bytes = built.flash_bytes;
             progress.clear();
             output::print(&format!("ok       image of a slave on SPI for {}: {bytes} B of flash\n", board.name()))?;
@@ -74,13 +74,13 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
     board_model::check(progress)
 }
 
-/// Same bits, instructions and worst case, of this program against the emulated board.
+/// Equal bits, instructions and worst case, of this program against the emulated board.
 fn proofs(toolchain: &Toolchain, progress: &Progress) -> Outcome<()> {
     let say = |line: &str| progress.say(line);
     progress.stage("comparing bits between the emulated board and this program");
     let runs = same_bits::compare(&same_bits::on_board(toolchain, &say)?)?;
     progress.clear();
-    output::print(&format!("ok       {runs} runs of the step, the same in every bit on the board and here\n"))?;
+    output::print(&format!("ok       {runs} runs of the step, equal in every bit on the board and on this host\n"))?;
     progress.stage("searching for the worst case on the emulated board");
     let elf = worst_case::build(toolchain, &say)?;
     let found = worst_case::search(&elf)?;
@@ -89,28 +89,28 @@ fn proofs(toolchain: &Toolchain, progress: &Progress) -> Outcome<()> {
         output::print(&format!("{search}\n"))?;
     }
     progress.stage("bounding the step from its machine code");
-    let bounds = bound::of_steps(&elf, &found)?;
-    let lines = bound::judge(&bounds, &found)?;
+    let bounds = bound::bound_steps(&elf, &found)?;
+    let lines = bound::check(&bounds, &found)?;
     progress.clear();
-    output::print(&format!("{}\nok       no state can take more\n", lines.join("\n")))?;
+    output::print(&format!("{}\nok       no state exceeds its bound\n", lines.join("\n")))?;
     progress.stage("counting instructions on the emulated board");
-    let lines = costs::judge(&costs::count(toolchain, &say)?, &found, &bounds)?;
+    let lines = costs::check(&costs::count(toolchain, &say)?, &found, &bounds)?;
     progress.clear();
-    output::print(&format!("{}\nok       instructions as promised\n", lines.join("\n")))?;
-    worst_case::judge(&found)?;
+    output::print(&format!("{}\nok       instructions as predicted\n", lines.join("\n")))?;
+    worst_case::check(&found)?;
     progress.stage("counting the instructions of the roles on the emulated board");
     let loads = roles::count(toolchain, &say)?;
     progress.clear();
     for load in &loads {
         output::print(&format!("{load}\n"))?;
     }
-    roles::judge(&loads)?;
+    roles::check(&loads)?;
     output::print("ok       roles within their control period\n")?;
     output::print("ok       worst case of a step within its budget\n")
 }
 
-/// The tests that are left out of `cargo test`, with cargo's own output; of the same packages, whose features are then those
-/// that `cargo test` has just built.
+/// Runs the tests that `cargo test` ignores, with cargo's own output; the packages and thus the features are those that
+/// `cargo test` has just built.
 fn emulator_tests() -> Outcome<()> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let status = Command::new(cargo)

@@ -1,5 +1,5 @@
-//! The test joints of the proofs: 3, 4 and 5 planets, both damping laws, with compliance and without, mesh phase by
-//! angle and by time, equal, unequal and no backlash, and an equivalent gear. They are presets with a few values changed.
+//! Test joints of the proofs: 3, 4 and 5 planets, both damping laws, with and without compliance, mesh phase by angle
+//! and by time, equal, unequal and no backlash, and an equivalent gear. Each is a preset with a few values changed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,16 +9,16 @@ use joint_file::JointFile;
 use board::device::cross_build::cannot_write;
 use report::failure::{Failure, Outcome};
 
-/// A joint that the step is tried on.
+/// Joint on which the step is tested.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TestJoint {
-    /// Its name in every table.
+    /// Name in every table.
     pub name: &'static str,
     preset: &'static str,
     changes: &'static [(&'static str, &'static str)],
 }
 
-/// All of them.
+/// All test joints.
 pub const TEST_JOINTS: [TestJoint; 6] = [
     TestJoint { name: "Q1", preset: "q1", changes: &[] },
     TestJoint { name: "paper", preset: "paper", changes: &[] },
@@ -35,7 +35,7 @@ pub const TEST_JOINTS: [TestJoint; 6] = [
     TestJoint {
         name: "Q1 with 5 planets",
         preset: "q1",
-        // A larger sun leaves room between five planets.
+        // A larger sun leaves room for five planets.
         changes: &[
             ("coherence", "warn"),
             ("planets", "5"),
@@ -45,12 +45,12 @@ pub const TEST_JOINTS: [TestJoint; 6] = [
             ("mesh.half_backlash_um", "[40.0, 30.0, 20.0, 10.0, 0.0]"),
         ],
     },
-    // An equivalent gear, whose contact is fast against a tick.
+    // Equivalent gear with a contact that is fast compared with a tick.
     TestJoint { name: "C1", preset: "c1", changes: &[("equivalent_gear.total_stiffness_N_m_per_arcmin", "6000")] },
 ];
 
 impl TestJoint {
-    /// Its joint file.
+    /// Text of the joint file.
     pub fn text(&self) -> Outcome<String> {
         let preset = joint_file::preset(self.preset);
         let start = preset.ok_or_else(|| Failure::new(format!("there is no preset {}", self.preset)))?;
@@ -61,7 +61,7 @@ impl TestJoint {
         })
     }
 
-    /// What its file says.
+    /// Parsed joint file.
     pub fn read(&self) -> Outcome<JointFile> {
         joint_file::read(&self.text()?).map_err(|problems| {
             let list: Vec<_> = problems.iter().map(ToString::to_string).collect();
@@ -70,12 +70,12 @@ impl TestJoint {
     }
 }
 
-/// Writes the files of all of them below a folder, for the firmware's build.
+/// Writes the files of all test joints below a folder, for the firmware's build.
 pub fn write_files(folder: &Path) -> Outcome<Vec<PathBuf>> {
     let folder = folder.join("trial-joints");
     let write = |(index, joint): (usize, &TestJoint)| {
         let (path, text) = (folder.join(format!("{index}.toml")), joint.text()?);
-        // A file that says the same is left alone, so that nothing is built anew.
+        // An unchanged file is not rewritten, so that nothing is rebuilt.
         if fs::read_to_string(&path).is_ok_and(|found| found == text) {
             return Ok(path);
         }
@@ -92,8 +92,9 @@ mod tests {
 
     use super::*;
 
+    /// The test joints cover all numbers of planets, damping laws, compliances and backlashes.
     #[test]
-    fn between_them_they_have_everything_that_a_joint_can_have() {
+    fn test_joints_cover_all_features() {
         let joints: Vec<_> = TEST_JOINTS.iter().map(|joint| joint.read().unwrap().parameters).collect();
         let any = |has: &dyn Fn(&parameters::JointParameters) -> bool| joints.iter().any(has);
         for planets in 3..=5 {

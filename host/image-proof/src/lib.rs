@@ -1,5 +1,5 @@
-//! What is proved about the step that ships, on the emulated board and from the linked image: that its results are the
-//! host's in every bit, what it takes at worst and at most, that it cannot panic and how much stack it needs.
+//! Proofs about the step that ships, on the emulated board and from the linked image: results equal to the host's in
+//! every bit, worst case and upper bound of its instructions, no panic, and the stack that it needs.
 
 pub mod board_model;
 pub mod bound;
@@ -14,8 +14,9 @@ pub mod worst_case;
 
 use model_core::gears::certificate::Substeps;
 
-/// How a joint's tick goes through contacts that change, as the measuring images say it: sub-steps, Verlet sub-steps or none.
-fn parts<'a>(fields: &mut impl Iterator<Item = &'a str>) -> Option<Substeps> {
+/// Method of a tick in which contacts change, from the fields of a measuring image: number of corrected sub-steps and
+/// of Verlet sub-steps.
+fn parse_substeps<'a>(fields: &mut impl Iterator<Item = &'a str>) -> Option<Substeps> {
     let mut number = || fields.next()?.parse().ok();
     let (corrected, verlet) = (number()?, number()?);
     Some(if verlet > 0 { Substeps::Verlet(verlet) } else { Substeps::Corrected(corrected) })

@@ -1,6 +1,6 @@
-//! Is every result the same in every bit, on the emulated board and here? Also when the caller has set the board's
-//! floating-point unit to flush subnormals to zero or to return default NaNs. The motions are those of the crate
-//! `stimuli`; host-tests hold other builds of the host to the same digests.
+//! Compares every result of the emulated board and the host bit for bit, also with the board's floating-point unit set
+//! to flush subnormals to zero or to return default NaNs. The motions come from the crate `stimuli`; host-tests compare
+//! other builds of the host with the same digests.
 
 use std::fmt;
 
@@ -14,25 +14,25 @@ use board::device::toolchain::Toolchain;
 use board::device::{Say, measuring};
 use report::failure::{Failure, Outcome};
 
-/// Digests of a joint's tables and trial motions.
+/// Digests of a joint's tables and test motions.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Digests {
-    /// The joint.
+    /// Name of the joint.
     pub name: String,
-    /// Of its tables.
+    /// Digest of the tables.
     pub tables: u64,
-    /// Of its motions.
+    /// Digests of the motions.
     pub motions: motion::Digests,
 }
 
-/// Digests by the board, and how its floating-point unit was set.
+/// Digests computed on the board, with the mode of its floating-point unit.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct OnBoard {
-    /// The digests.
+pub struct BoardRun {
+    /// Digests computed on the board.
     pub digests: Digests,
-    /// Tiny numbers were flushed to zero.
+    /// True if subnormals were flushed to zero.
     pub flush_to_zero: bool,
-    /// Every NaN was the default one.
+    /// True if every NaN was the default one.
     pub default_nan: bool,
 }
 
@@ -43,11 +43,11 @@ impl fmt::Display for Digests {
     }
 }
 
-/// Runs work in a floating-point mode.
+/// Function that runs its argument in a floating-point mode.
 pub type InMode<'a> = &'a dyn Fn(&mut dyn FnMut());
 
-/// The digests of a joint, computed here. The step runs in the given floating-point mode; design, which only ever runs
-/// in the usual one, does not.
+/// Digests of a joint, computed on the host. The step runs in the given floating-point mode; the design always runs in
+/// the default one.
 pub fn on_host(joint: &TestJoint, in_mode: InMode<'_>) -> Outcome<Digests> {
     let parameters = joint.read()?.parameters;
     match parameters.geometry.planets {
@@ -66,15 +66,15 @@ fn with_planets<const N: usize>(name: &str, parameters: &JointParameters, in_mod
     Ok(Digests { name: name.to_owned(), tables: tables.digest, motions })
 }
 
-/// The digests of all joints by the emulated board, in every setting.
-pub fn on_board(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<OnBoard>> {
+/// Digests of all joints, computed on the emulated board in every mode.
+pub fn on_board(toolchain: &Toolchain, say: Say<'_>) -> Outcome<Vec<BoardRun>> {
     let files = write_files(toolchain.target_directory())?;
     let elf = measuring::build_measuring(toolchain, "same_bits", &files, DEFAULT_TICK_RATE, say)?;
     measuring::read(&elf, parse)
 }
 
-/// name,flush,nan,tables,long,unbounded,changes: names may hold commas.
-fn parse(line: &str) -> Option<OnBoard> {
+/// Parses name, flush, nan, tables, long, unbounded, tiny, changes; a name may hold commas.
+fn parse(line: &str) -> Option<BoardRun> {
     let mut fields = line.rsplitn(8, ',');
     let changes = fields.next()?.parse().ok()?;
     let mut digest = || u64::from_str_radix(fields.next()?, 16).ok();
@@ -82,12 +82,12 @@ fn parse(line: &str) -> Option<OnBoard> {
     let (default_nan, flush_to_zero) = (fields.next()?.parse().ok()?, fields.next()?.parse().ok()?);
     let name = fields.next()?.to_owned();
     let motions = motion::Digests { long, unbounded, tiny, changes };
-    Some(OnBoard { digests: Digests { name, tables, motions }, flush_to_zero, default_nan })
+    Some(BoardRun { digests: Digests { name, tables, motions }, flush_to_zero, default_nan })
 }
 
-/// Every joint on the board in every setting against the host: the first difference ends it. Returns how many runs were
-/// compared.
-pub fn compare(board: &[OnBoard]) -> Outcome<usize> {
+/// Compares every joint and mode of the board with the host; the first difference ends the comparison. Returns the
+/// number of runs compared.
+pub fn compare(board: &[BoardRun]) -> Outcome<usize> {
     for joint in &TEST_JOINTS {
         let host = on_host(joint, &|work| work())?;
         let runs: Vec<_> = board.iter().filter(|run| run.digests.name == joint.name).collect();
@@ -101,7 +101,7 @@ pub fn compare(board: &[OnBoard]) -> Outcome<usize> {
     Ok(board.len())
 }
 
-fn difference(run: &OnBoard, host: &Digests) -> Failure {
+fn difference(run: &BoardRun, host: &Digests) -> Failure {
     let on = |set: bool| if set { "on" } else { "off" };
     let (flush, nan) = (on(run.flush_to_zero), on(run.default_nan));
     let what = if run.digests.tables != host.tables {
@@ -119,8 +119,8 @@ fn difference(run: &OnBoard, host: &Digests) -> Failure {
         host.name, run.digests
     );
     Failure::check_failed(message).with_help(
-        "the step must use no operation that rounds otherwise on one of them (a fused multiply-add, a library's sine),\n\
-         and must leave no number in its state that a caller's floating-point mode would change",
+        "the step must not use operations that round differently on the two (fused multiply-add, a library's sine),\n\
+         nor keep numbers in its state that depend on the caller's floating-point mode",
     )
 }
 
@@ -128,10 +128,10 @@ fn difference(run: &OnBoard, host: &Digests) -> Failure {
 mod tests {
     use super::*;
 
-    fn on_board(name: &str, long: u64) -> OnBoard {
+    fn on_board(name: &str, long: u64) -> BoardRun {
         let motions = motion::Digests { long, unbounded: 3, tiny: 4, changes: 5 };
         let digests = Digests { name: name.into(), tables: 1, motions };
-        OnBoard { digests, flush_to_zero: true, default_nan: false }
+        BoardRun { digests, flush_to_zero: true, default_nan: false }
     }
 
     #[test]
@@ -141,15 +141,17 @@ mod tests {
         assert_eq!(parse("panicked at x.rs:1:1"), None);
     }
 
+    /// A difference names joint, floating-point mode and motion.
     #[test]
-    fn a_difference_names_joint_setting_and_motion() {
+    fn difference_names_joint_mode_and_motion() {
         let failure = difference(&on_board("Q1", 7), &on_board("Q1", 2).digests);
         assert!(failure.message().contains("the long motion of joint Q1"), "{failure}");
         assert!(failure.message().contains("flush-to-zero on"), "{failure}");
     }
 
+    /// A board that left out a joint fails.
     #[test]
-    fn a_board_that_left_a_joint_out_does_not_pass() {
+    fn missing_joint_fails() {
         assert!(compare(&[]).is_err());
     }
 }

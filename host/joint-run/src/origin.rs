@@ -29,7 +29,7 @@ pub fn record(request: &RunRequest<'_>, plan: &RunPlan, transport: &str) -> RunR
 /// Notes the board's statements about itself.
 pub fn note_board(identity: &mut Identity, hello: &Hello) {
     let [major, minor, patch] = hello.firmware_version;
-    identity.role = image::word(hello.role).to_owned();
+    identity.role = image::role_name(hello.role).to_owned();
     identity.board = hello.board.to_string();
     identity.firmware_version = format!("{major}.{minor}.{patch}");
     identity.clock = clock_text(hello.clock);

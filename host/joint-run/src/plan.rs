@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use board::device::board::Board;
 use board::device::image;
-use board::device::tick_time::OnBoard;
+use board::device::tick_time::RateCheck;
 use board::line_options::{LineOptions, Mode};
 use board::profile::TorqueProfile;
 use board::session::{BoardHelp, Expected, command_timeout};
@@ -79,8 +79,8 @@ impl RunPlan {
         let path = image::joint_file(request.file, &loaded.name);
         let Loaded { name, file: joint, .. } = loaded;
         let parameters = &joint.parameters;
-        let on_board = OnBoard::new(parameters, request.line.board(), Role::Plant);
-        on_board.refuse_unless_forced(request.rate, request.force)?;
+        let on_board = RateCheck::new(parameters, request.line.board(), Role::Plant);
+        on_board.check_unless_forced(request.rate, request.force)?;
         let substeps = on_board.substeps(request.rate).map_err(|error| Failure::new(error.to_string()))?;
         let digest = twin::tables_digest(parameters, request.line.board().chip(), request.rate)?;
         let profile = TorqueProfile::load(request.profile, parameters, request.rate, request.duration)?;
@@ -113,7 +113,7 @@ impl RunRequest<'_> {
         if self.line.port.is_none() {
             return BoardHelp::Rebuild;
         }
-        let (file, board) = (quoted(&self.file.display().to_string()), self.line.board_word());
+        let (file, board) = (quoted(&self.file.display().to_string()), self.line.board_argument());
         let force = if self.force { " --force" } else { "" };
         let command = format!("cargo joint flash {file} --board {board}{}{force}", self.rate_option());
         if self.no_build { BoardHelp::Flash(command) } else { BoardHelp::FlashBuilt(command) }
@@ -121,7 +121,8 @@ impl RunRequest<'_> {
 
     /// Command that repeats the run.
     pub fn replay_command(&self) -> String {
-        let mut command = format!("cargo joint hil {}{}", quoted(&self.file.display().to_string()), self.line.again());
+        let mut command =
+            format!("cargo joint hil {}{}", quoted(&self.file.display().to_string()), self.line.repeated_options());
         let mut option = |name: &str, value: Option<String>| {
             if let Some(value) = value {
                 command += &format!(" --{name} {}", quoted(&value));

@@ -49,13 +49,13 @@ struct CheckArguments {
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     match &arguments.action {
         Action::Check(check) => {
-            let described = named::load(&check.file)?.board;
+            let description = named::load(&check.file)?.board;
             let joint = joint_file::named::load(&check.joint)?.file.parameters;
-            let board = OnTarget { named: check.file.display().to_string(), file: check.file.clone(), described };
-            let mut page = layout(&board.described);
+            let board = OnTarget { argument: check.file.display().to_string(), file: check.file.clone(), description };
+            let mut page = layout(&board.description);
             roles(&mut page, &board, &joint);
             let shown = terminal(&page.document());
-            let warnings = board.described.warnings.iter().map(|warning| format!("warning: {warning}\n"));
+            let warnings = board.description.warnings.iter().map(|warning| format!("warning: {warning}\n"));
             output::print(&(shown + &warnings.collect::<String>()))
         }
         Action::List => {
@@ -123,7 +123,7 @@ fn layout(board: &Board) -> Sheet {
             }
         },
     );
-    let without_use = board.pins_without_use();
+    let without_use = board.unused_line_pins();
     if !without_use.is_empty() {
         page.heading("Not used by any image yet, and left alone");
         for (key, pin) in without_use {

@@ -71,7 +71,7 @@ pub fn main() -> ExitCode {
 }
 
 fn run(cli: &Cli) -> Outcome<()> {
-    packages::decide(cli.install);
+    packages::set_decision(cli.install);
     match &cli.command {
         None => show_help(),
         Some(Command::Hil(arguments)) => hil::run(arguments),

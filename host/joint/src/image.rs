@@ -78,7 +78,7 @@ impl ImageRole {
     pub fn usual_rate(self, joint: &JointParameters, board: &Board) -> u32 {
         match self {
             Self::Plant => image::DEFAULT_TICK_RATE,
-            Self::Observer | Self::Loop => tick_time::usual_rate(joint, board, self.role()),
+            Self::Observer | Self::Loop => tick_time::default_control_rate(joint, board, self.role()),
             Self::SpiObserver => image::SPI_RATE,
         }
     }

@@ -27,13 +27,15 @@ pub fn run(package: &str, rest: &[OsString]) -> Outcome<()> {
     let _in_order = interruption::InOrder::begin();
     let progress = Progress::new();
     progress.stage(&format!("building {package}"));
-    let built = tool::follow(&mut cargo("build", package), &format!("building {package}"), &|line| progress.say(line));
+    let built = tool::run_with_progress(&mut cargo("build", package), &format!("building {package}"), &|line| {
+        progress.say(line)
+    });
     progress.clear();
     interruption::explain(built)?;
     let status = cargo("run", package)
         .args(["--quiet", "--"])
         .args(rest)
-        .env(packages::VARIABLE, Install::in_force()?.word())
+        .env(packages::INSTALL_VARIABLE, Install::effective()?.word())
         .status()
         .map_err(|error| Failure::new(format!("cannot start `{package}` through cargo: {error}")))?;
     match status.code() {

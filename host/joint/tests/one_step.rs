@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use board::device::board::Board;
-use board::device::tick_time::OnBoard;
+use board::device::tick_time::RateCheck;
 use board::line_options::LineOptions;
 use clap::Parser;
 use joint_file::{change, named, preset};
@@ -121,7 +121,7 @@ fn four_commands_say_the_same_of_random_joints() {
         let board = Board::load(name).expect("a preset");
         let load = || named::load(&file).unwrap_or_else(|failure| panic!("seed {seed}: {failure}"));
         let joint = load().file.parameters;
-        let on_board = OnBoard::new(&joint, &board, Role::Plant);
+        let on_board = RateCheck::new(&joint, &board, Role::Plant);
         if rate < on_board.lowest_rate() {
             assert!(check::summary(&load(), &board, rate, None).is_err(), "seed {seed}");
             continue;
@@ -147,7 +147,7 @@ fn four_commands_say_the_same_of_random_joints() {
             assert_eq!((told.method, told.substeps), said, "seed {seed}: budget");
             let again = check::summary(&load(), &board, rate, Some(0.5)).expect("figures").fixed_step.verdicts;
             assert_eq!(again.as_ref(), Some(&told), "seed {seed}: check and budget");
-            assert_eq!(told.time.fits, on_board.refuse(rate).is_ok(), "seed {seed}");
+            assert_eq!(told.time.fits, on_board.check(rate).is_ok(), "seed {seed}");
             assert_eq!(told.rates_that_fit_Hz, on_board.rates_that_fit(), "seed {seed}");
         }
         let fits = on_board.obstacle(rate).is_none();

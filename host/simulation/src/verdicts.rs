@@ -2,8 +2,8 @@
 //! whether the board has time for it, and whether its error is small enough; each verdict with the rate that would reach it.
 
 use board::device::board::Board;
-use board::device::image::word;
-use board::device::tick_time::{Obstacle, OnBoard, TickTime};
+use board::device::image::role_name;
+use board::device::tick_time::{Obstacle, RateCheck, TickTime};
 use link::messages::Role;
 use model_core::gears::design::DesignError;
 use parameters::JointParameters;
@@ -89,9 +89,9 @@ pub struct AccuracyVerdict {
 
 /// Measures a joint's step on a board and judges it: an error up to the wanted one is small enough.
 pub fn verdicts(joint: &JointParameters, board: &Board, role: Role, rate: u32, wanted: f64) -> Outcome<Verdicts> {
-    let on_board = OnBoard::new(joint, board, role);
+    let on_board = RateCheck::new(joint, board, role);
     if let Some(Obstacle::Unstable(_)) = on_board.obstacle(rate) {
-        on_board.refuse(rate)?;
+        on_board.check(rate)?;
     }
     let failed = |error: DesignError| Failure::new(format!("no fixed step for {}: {error}", joint.name));
     let substeps = on_board.substeps(rate).map_err(failed)?;
@@ -102,7 +102,7 @@ pub fn verdicts(joint: &JointParameters, board: &Board, role: Role, rate: u32, w
     let fits = obstacle.is_none();
     Ok(Verdicts {
         board: board.name().to_owned(),
-        role: word(role),
+        role: role_name(role),
         rate_Hz: rate,
         method: substeps.method(),
         substeps: substeps.count(),
@@ -112,7 +112,7 @@ pub fn verdicts(joint: &JointParameters, board: &Board, role: Role, rate: u32, w
             worst_instructions: instructions.ceil() as u32,
             part,
             share,
-            rate_that_fits_Hz: if fits { Some(rate) } else { on_board.nearest(rate) },
+            rate_that_fits_Hz: if fits { Some(rate) } else { on_board.nearest_accepted(rate) },
         },
         accuracy: judged(joint, board, &on_board, rate, wanted, errors.reversals.typical)?,
         errors,
@@ -123,7 +123,7 @@ pub fn verdicts(joint: &JointParameters, board: &Board, role: Role, rate: u32, w
 fn judged(
     joint: &JointParameters,
     board: &Board,
-    on_board: &OnBoard<'_>,
+    on_board: &RateCheck<'_>,
     rate: u32,
     wanted: f64,
     typical: Option<Errors>,
@@ -132,7 +132,7 @@ fn judged(
     let typical_up_to = |rate: u32, longest: f64| accuracy::typical(joint, &board.processor(), rate, longest);
     let here = within(typical, wanted);
     let mut found = here.then_some(rate);
-    let tried = TRIED.iter().map(|factor| on_board.divided(factor * f64::from(rate)));
+    let tried = TRIED.iter().map(|factor| on_board.nearest_divisor_rate(factor * f64::from(rate)));
     for candidate in tried.filter(|candidate| (on_board.lowest_rate()..=HIGHEST_TRIED).contains(candidate)) {
         if found.is_some() {
             break;

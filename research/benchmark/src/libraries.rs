@@ -69,8 +69,8 @@ fn time(cases: &[String], feature: &str, say: Say<'_>) -> Outcome<Vec<Time>> {
         ]);
         command
     };
-    tool::follow(&mut command("build"), "building the host libraries", say)?;
+    tool::run_with_progress(&mut command("build"), "building the host libraries", say)?;
     say("timing the host libraries");
-    let text = tool::output_of(command("run").arg("--quiet").arg("--").args(cases))?;
+    let text = tool::capture_output(command("run").arg("--quiet").arg("--").args(cases))?;
     serde_json::from_str(&text).map_err(|error| Failure::new(format!("the times of the host libraries: {error}")))
 }

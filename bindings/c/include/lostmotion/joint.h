@@ -76,29 +76,30 @@
 // Version of this header: patch.
 #define JOINT_VERSION_PATCH 0
 
-// Version of what crosses the boundary between caller and library. It grows when a struct, an enumeration or the meaning of a
-// field changes; sizes are checked beside it.
+// Version of the interface between caller and library. It grows when a struct, an enumeration or the meaning of a
+// field changes; sizes are checked in addition.
 #define JOINT_ABI_VERSION 1
 
-// Bytes of a joint's name, with the zero at its end.
+// Bytes of a joint's name, including the terminating zero.
 #define JOINT_NAME_BYTES 32
 
-// Version of tables that this library reads.
+// Version of the tables that this library reads.
 #define JOINT_TABLES_VERSION 5
 
-// In `notices`: the torque was more than twice what the motor can give; none was assumed.
+// In `notices`: the torque exceeded twice the motor's limit and was replaced by zero.
 #define JOINT_NOTICE_TORQUE_UNKNOWN 1
 
 // In `notices`: the period was too short or too long, or time went backwards.
 #define JOINT_NOTICE_OUT_OF_TIME 2
 
-// In `notices`: the motor's counts were further away than it can turn, and were not believed.
+// In `notices`: the motor's counts were further away than the motor can turn, and were rejected.
 #define JOINT_NOTICE_MOTOR_IMPLAUSIBLE 4
 
-// In `notices`: the motor's counts are elsewhere time after time.
+// In `notices`: the motor's counts were implausible repeatedly.
 #define JOINT_NOTICE_MOTOR_JUMPED 8
 
-// In `notices`, until the observer is started anew: the motor ran against its torque. Torque or motor encoder has the wrong sign.
+// In `notices`, until the observer is restarted: the motor moved against its torque. Torque or motor encoder has the
+// wrong sign.
 #define JOINT_NOTICE_TORQUE_REVERSED 16
 
 // 64-bit words of a wiring check.
@@ -110,7 +111,7 @@
 // 64-bit words of an observer.
 #define JOINT_OBSERVER_WORDS 275
 
-// Bytes of what an observer has learnt.
+// Bytes of an observer's saved memory.
 #define JOINT_MEMORY_BYTES 544
 
 // 64-bit words of a compensation.
@@ -122,10 +123,10 @@
 // 64-bit words of a plant.
 #define JOINT_PLANT_WORDS 80
 
-// Most planets of a plant.
+// Maximum number of planets of a plant.
 #define JOINT_MOST_PLANETS 5
 
-// What every function returns. Whatever it is, unless it is `JOINT_STATUS_OK` nothing was changed.
+// Result of every function. Unless it is `JOINT_STATUS_OK`, nothing was changed.
 enum JointStatus
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
@@ -135,29 +136,29 @@ enum JointStatus
   JOINT_STATUS_OK = 0,
   // A pointer is NULL.
   JOINT_STATUS_NULL_POINTER = 1,
-  // A pointer is not aligned for what it points to.
+  // A pointer is not aligned for its type.
   JOINT_STATUS_MISALIGNED = 2,
-  // A size is not the one that the header states.
+  // A size differs from the one that the header states.
   JOINT_STATUS_WRONG_SIZE = 3,
   // The object was not started, was moved, or is of another kind.
   JOINT_STATUS_NOT_STARTED = 4,
   // A number is infinite or not a number.
   JOINT_STATUS_NOT_FINITE = 5,
-  // These are no tables.
+  // The data are no tables.
   JOINT_STATUS_NOT_TABLES = 6,
-  // The tables are of another version than this library.
+  // The tables have another version than this library.
   JOINT_STATUS_WRONG_TABLES_VERSION = 7,
-  // The digest of the tables does not fit: some of them was lost.
+  // The digest of the tables does not match: they are damaged.
   JOINT_STATUS_DAMAGED_TABLES = 8,
-  // These tables were made without this part.
+  // The tables were made without this part.
   JOINT_STATUS_MISSING_TABLES = 9,
   // Two objects were started from different tables.
   JOINT_STATUS_OTHER_TABLES = 10,
-  // These bytes are no memory of an observer.
+  // The data are no memory of an observer.
   JOINT_STATUS_NOT_A_MEMORY = 11,
-  // The memory is of another version of the observer.
+  // The memory has another version of the observer.
   JOINT_STATUS_WRONG_MEMORY_VERSION = 12,
-  // The digest of the memory does not fit: some of it was lost.
+  // The digest of the memory does not match: it is damaged.
   JOINT_STATUS_DAMAGED_MEMORY = 13,
   // The memory belongs to another joint or to other encoders.
   JOINT_STATUS_OTHER_JOINT = 14,
@@ -190,9 +191,9 @@ enum JointWiringProgress
   JOINT_WIRING_PROGRESS_DONE = 1,
   // The joint moved before any torque was given: let it come to rest.
   JOINT_WIRING_PROGRESS_NOT_AT_REST = 2,
-  // The joint moved further than the check may: look for what else drives it. The verdicts hold as far as they go.
+  // The joint moved further than allowed: look for another drive. The verdicts hold as far as they go.
   JOINT_WIRING_PROGRESS_TOO_FAR = 3,
-  // The check took too long: look at the times of the samples. The verdicts hold as far as they go.
+  // The check took too long: check the times of the samples. The verdicts hold as far as they go.
   JOINT_WIRING_PROGRESS_TOO_LONG = 4,
 };
 #ifndef __cplusplus
@@ -211,11 +212,12 @@ enum JointVerdict
  {
   // The samples do not show it.
   JOINT_VERDICT_NOT_SEEN = 0,
-  // As in the tables.
+  // Equal to the tables.
   JOINT_VERDICT_RIGHT = 1,
-  // Not as in the tables; `found` is what was found instead.
+  // Different from the tables; `found` is the measured value.
   JOINT_VERDICT_WRONG = 2,
-  // This item or another suspect is wrong, and the samples do not tell which; `found` is what it would be.
+  // This item or another suspect is wrong, and the samples do not tell which; `found` is the value if it is this
+  // one.
   JOINT_VERDICT_SUSPECT = 3,
 };
 #ifndef __cplusplus
@@ -226,15 +228,15 @@ typedef uint32_t JointVerdict;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// Which encoders the estimates rest on.
+// Encoders on which the estimates are based.
 enum JointSource
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-  // None: nothing is valid, and what is not heard of is held.
+  // No encoder: nothing is valid, and values without measurements are held.
   JOINT_SOURCE_NOTHING = 0,
-  // The motor encoder alone: the load cannot be seen while the gap is open.
+  // Motor encoder only: the load cannot be observed while the gap is open.
   JOINT_SOURCE_MOTOR_ONLY = 1,
   // Motor and output encoder.
   JOINT_SOURCE_BOTH = 2,
@@ -247,27 +249,27 @@ typedef uint32_t JointSource;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// Why an encoder is not used.
+// Reason for which an encoder is not used.
 enum JointFault
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-  // It is used.
+  // No fault: the encoder is used.
   JOINT_FAULT_NONE = 0,
-  // There is none by design.
+  // No such encoder in the design.
   JOINT_FAULT_ABSENT = 1,
-  // Nothing fresh is heard of it.
+  // No new readings.
   JOINT_FAULT_SILENT = 2,
-  // Its readings are late time after time.
+  // Readings are late repeatedly.
   JOINT_FAULT_LATE = 3,
-  // Its counts stand still while the joint turns.
+  // Counts stand still while the joint turns.
   JOINT_FAULT_FROZEN = 4,
-  // The motor's counts are where no motor could go.
+  // Counts of the motor encoder jumped further than the motor can turn.
   JOINT_FAULT_JUMPED = 5,
-  // The output's counts put the gap coordinate where it cannot be.
+  // Counts of the output encoder imply an impossible gap coordinate.
   JOINT_FAULT_OUT_OF_RANGE = 6,
-  // The output encoder has given no reading yet: the compensation gives no torque until it does.
+  // No reading of the output encoder yet: the compensation gives no torque before the first one.
   JOINT_FAULT_UNHEARD = 7,
 };
 #ifndef __cplusplus
@@ -278,17 +280,17 @@ typedef uint32_t JointFault;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// Which flank carries the force.
+// Flank that carries the force.
 enum JointContact
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-  // None: the teeth are in the gap, or it is not known where.
+  // No flank: the teeth are in the gap, or the contact is unknown.
   JOINT_CONTACT_SEPARATED = 0,
-  // The motor drives the load forwards: deflection, force and torque are positive.
+  // Drive side: the motor drives the load forwards; deflection, force and torque are positive.
   JOINT_CONTACT_DRIVE_SIDE = 1,
-  // The other one: they are negative.
+  // Back side: deflection, force and torque are negative.
   JOINT_CONTACT_BACK_SIDE = 2,
 };
 #ifndef __cplusplus
@@ -299,7 +301,7 @@ typedef uint32_t JointContact;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// What the compensation is about.
+// Stage of the compensation.
 enum JointStage
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
@@ -307,16 +309,16 @@ enum JointStage
  {
   // A flank carries, or the joint needs none and the motor rests in the middle of the gap.
   JOINT_STAGE_TOUCHING = 0,
-  // On the way through the gap.
+  // Motion through the gap towards a flank.
   JOINT_STAGE_CROSSING = 1,
   // Closing on a flank at a small speed.
   JOINT_STAGE_LANDING = 2,
-  // Control without compensation: the gap cannot be seen.
+  // Control without compensation: the gap is not observable.
   JOINT_STAGE_PLAIN = 3,
-  // No torque: it is not known where the motor is.
+  // No torque: the position of the motor is unknown.
   JOINT_STAGE_OFF = 4,
-  // No torque until observer and compensation are started anew: the motor ran against its torque, so torque or motor encoder has
-  // the wrong sign.
+  // No torque until observer and compensation are restarted: the motor moved against its torque, so torque or motor
+  // encoder has the wrong sign.
   JOINT_STAGE_REVERSED = 5,
 };
 #ifndef __cplusplus
@@ -327,7 +329,7 @@ typedef uint32_t JointStage;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// Where a probe stands.
+// Progress of a probe.
 enum JointProgress
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
@@ -335,17 +337,17 @@ enum JointProgress
  {
   // Go on: command the torque, and call again in the next period.
   JOINT_PROGRESS_RUNNING = 0,
-  // The half-backlash is there.
+  // The half-backlash is valid.
   JOINT_PROGRESS_DONE = 1,
   // The motor was turning when the probe began: let it come to rest.
   JOINT_PROGRESS_NOT_AT_REST = 2,
-  // The load pushes the teeth with more than the probe may use: take the load off.
+  // The load presses the teeth with more torque than the probe may use: remove the load.
   JOINT_PROGRESS_LOADED = 3,
-  // The motor did not come to rest, or went further than the teeth allow: hold the load.
+  // The motor did not come to rest, or moved further than the teeth allow: hold the load.
   JOINT_PROGRESS_NOT_HELD = 4,
-  // The motor hardly moved: friction is more than the probe may use, or the joint is blocked.
+  // The motor hardly moved: friction exceeds the probe's torque, or the joint is blocked.
   JOINT_PROGRESS_STUCK = 5,
-  // The first and the last pass do not agree: something moved.
+  // The first and the last pass differ: something moved.
   JOINT_PROGRESS_UNSTEADY = 6,
   // Samples were missing or wrong, or torque or motor encoder has the wrong sign.
   JOINT_PROGRESS_BAD_SAMPLES = 7,
@@ -358,25 +360,25 @@ typedef uint32_t JointProgress;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// What tables were made for.
+// Properties that tables were made for.
 typedef struct JointTablesFacts {
-  // Digest over the tables: objects started from tables of one digest belong together.
+  // Digest of the tables: objects started from tables with one digest belong together.
   uint64_t digest;
   // Version of the layout.
   uint32_t version;
-  // Control periods in a second: call the step functions so often.
+  // Control rate: the step functions are called at this rate.
   uint32_t control_rate_Hz;
-  // Ticks in a second of the clock that samples are timed by.
+  // Tick rate of the samples' clock.
   uint32_t clock_rate_Hz;
-  // A control period.
+  // Control period.
   float period_s;
   // Bandwidth that the compensation was designed for.
   float bandwidth_rad_per_s;
-  // How far ahead of now the second motion of joint_compensation_follow is.
+  // Time from `now` to `ahead` in joint_compensation_follow.
   float lead_s;
-  // Motor turns for a turn of the link.
+  // Motor turns per turn of the link.
   float ratio;
-  // Largest torque that the compensation asks the motor for.
+  // Limit of the compensation's torque command.
   float torque_limit_Nm;
   // Planets of the plant; 1 for an equivalent gear, 0 if the tables hold no plant.
   uint32_t planets;
@@ -384,7 +386,7 @@ typedef struct JointTablesFacts {
   uint32_t has_output_encoder;
   // 1 if the tables hold a width probe, else 0.
   uint32_t has_probe;
-  // Of the joint; ends with a zero.
+  // Name of the joint, terminated by zero.
   char name[JOINT_NAME_BYTES];
 } JointTablesFacts;
 
@@ -393,23 +395,24 @@ typedef struct JointWiring {
   uint64_t storage[JOINT_WIRING_WORDS];
 } JointWiring;
 
-// One reading of an encoder.
+// Reading of an encoder.
 typedef struct JointReading {
-  // Raw counts as the encoder gives them, wrapping as the joint file says.
+  // Raw counts of the encoder, wrapping as stated in the joint file.
   uint32_t counts;
-  // When they were taken, in ticks of the samples' clock; wraps at 2^32.
+  // Time of the reading, in ticks of the samples' clock; wraps at 2^32.
   uint32_t time_ticks;
 } JointReading;
 
-// Everything that is measured in one control period.
+// Measurements of one control period.
 typedef struct JointSamples {
-  // Now, in ticks of the clock that the tables were made for (joint_tables_facts); wraps at 2^32.
+  // Time of the samples, in ticks of the clock that the tables were made for (joint_tables_facts); wraps at 2^32.
   uint32_t time_ticks;
   // Encoder on the motor.
   struct JointReading motor;
   // Encoder on the link.
   struct JointReading output;
-  // 0: there is no output encoder, or it gave nothing in this period; `output` is not looked at. Anything else: there is.
+  // 0 if there is no output encoder, or no reading of it in this period; `output` is then ignored. Otherwise
+  // nonzero.
   uint32_t has_output;
   // Torque at the motor's shaft that was commanded last, after every limit: current times torque constant.
   float motor_torque_Nm;
@@ -423,15 +426,15 @@ typedef struct JointWiringStep {
   JointWiringProgress progress;
 } JointWiringStep;
 
-// Verdicts on all items, each at the place of its JointWiringItem.
+// Verdicts on all items, indexed by JointWiringItem.
 typedef struct JointWiringVerdicts {
-  // 1 if every item that these tables let be judged was seen and is right, else 0.
+  // 1 if every item that these tables allow to be judged was seen and is right, else 0.
   uint32_t all_right;
-  // Items that are wrong or suspect.
+  // Number of items that are wrong or suspect.
   uint32_t bad;
   // Verdicts.
   JointVerdict verdicts[JOINT_WIRING_ITEMS];
-  // What was found, where a verdict is wrong or suspect; else 0.
+  // Measured values for wrong and suspect items; else 0.
   float found[JOINT_WIRING_ITEMS];
 } JointWiringVerdicts;
 
@@ -440,21 +443,21 @@ typedef struct JointObserver {
   uint64_t storage[JOINT_OBSERVER_WORDS];
 } JointObserver;
 
-// A value, how uncertain it is, and whether the observer stands by it. Value and variance are always finite.
+// Value with its variance and validity. Value and variance are always finite.
 typedef struct JointEstimate {
-  // Best guess, in the unit that its holder's name ends with.
+  // Estimate, in the unit of the field's name.
   float value;
-  // Variance, in the square of that unit.
+  // Variance, in the square of the unit.
   float variance;
-  // 0: the value is only a guess. 1: use it.
+  // 1 if the value may be used, 0 if it is only a guess.
   uint32_t valid;
 } JointEstimate;
 
-// A shaft: where it is and how fast it turns.
+// Angle and speed of a shaft.
 typedef struct JointShaft {
-  // Whole turns since the observer began, wrapping.
+  // Whole turns since the start of the observer, wrapping.
   int32_t turns;
-  // What is left, from 0 to 1.
+  // Remaining fraction of a turn, from 0 to 1.
   float fraction_turns;
   // Speed.
   float speed_rad_per_s;
@@ -462,48 +465,48 @@ typedef struct JointShaft {
 
 // All estimates of one control period. A positive gap coordinate, force or torque drives the load forwards.
 typedef struct JointEstimates {
-  // What the rest stands on.
+  // Encoders on which the estimates are based.
   JointSource source;
-  // Why the motor encoder is not used.
+  // Reason for which the motor encoder is not used.
   JointFault motor_fault;
-  // Why the output encoder is not used.
+  // Reason for which the output encoder is not used.
   JointFault output_fault;
-  // What was wrong with the samples: a sum of JOINT_NOTICE_ bits.
+  // Defects of the samples: a sum of JOINT_NOTICE_ bits.
   uint32_t notices;
   // Gap coordinate along the line of action: from -2 b to 2 b while every mesh is free.
   struct JointEstimate gap_m;
-  // Its rate.
+  // Rate of the gap coordinate.
   float gap_rate_m_per_s;
-  // Contact by the mesh force alone: late, but needs no width.
+  // Contact from the mesh force alone: later, but independent of the half-backlash.
   JointContact contact_by_force;
-  // Contact by force and gap coordinate: what a controller should use.
+  // Contact from force and gap coordinate, for use in a controller.
   JointContact contact;
-  // Whether `contact` may be used.
+  // 1 if `contact` may be used, else 0.
   uint32_t contact_valid;
-  // Contact has held for long enough, with enough force, that the observer learns from it.
+  // 1 if contact has held long enough, with enough force, for parameters to be estimated; else 0.
   uint32_t settled;
-  // Torque that the meshes pass on, at the carrier.
+  // Torque transmitted by the meshes, at the carrier.
   struct JointEstimate mesh_torque_Nm;
-  // Everything that brakes the link: friction, weight, what it touches.
+  // Torque that brakes the link: friction, weight, contact.
   struct JointEstimate load_torque_Nm;
   // Half-backlash b of each mesh.
   struct JointEstimate half_backlash_m;
-  // By how much the motor encoder leads the output encoder with every tooth centred, beyond where they were at the
-  // start; at the output.
+  // Lead of the motor encoder over the output encoder with every tooth centred, relative to the start; at the
+  // output.
   struct JointEstimate encoder_offset_rad;
   // Torsional compliance from sun to link, at the output.
   struct JointEstimate compliance_rad_per_Nm;
-  // How old output readings are beyond what their time says, less the same of the motor's.
+  // Age of output readings beyond their time stamp, less the motor encoder's.
   struct JointEstimate skew_s;
-  // Torque that the motor loses whatever its direction.
+  // Torque that the motor loses in either direction.
   struct JointEstimate torque_bias_Nm;
   // Dry friction of the motor.
   struct JointEstimate motor_friction_Nm;
-  // Inertia of link and carrier over what the joint file has.
+  // Inertia of link and carrier over the joint file's value.
   struct JointEstimate link_inertia_ratio;
-  // Motor shaft; encoder errors that were learnt are taken out.
+  // Motor shaft, corrected for estimated encoder errors.
   struct JointShaft motor;
-  // Link; likewise. With the motor encoder alone, what that implies.
+  // Link, corrected for estimated encoder errors. With the motor encoder alone, computed from it.
   struct JointShaft link;
 } JointEstimates;
 
@@ -512,11 +515,11 @@ typedef struct JointCompensation {
   uint64_t storage[JOINT_COMPENSATION_WORDS];
 } JointCompensation;
 
-// Where the link shall be at one moment, on the scale of the observer's link shaft.
+// Motion of the link at one time, on the scale of the observer's link shaft.
 typedef struct JointMotion {
   // Whole turns.
   int32_t turns;
-  // What is left, from -1 to 1.
+  // Remaining fraction of a turn, from -1 to 1.
   float fraction_turns;
   // Speed.
   float speed_rad_per_s;
@@ -524,35 +527,36 @@ typedef struct JointMotion {
   float acceleration_rad_per_s2;
 } JointMotion;
 
-// What the compensation answers.
+// Output of the compensation.
 typedef struct JointTorque {
-  // Torque for the motor's shaft: over the torque constant, the current to ask for. Finite and within the limit.
+  // Torque for the motor's shaft, finite and within the limit; divided by the torque constant it is the current to
+  // command.
   float motor_torque_Nm;
-  // Torque that the teeth will have to pass on after a crossing that began now.
+  // Torque that the teeth must transmit after a crossing that began now.
   float demand_Nm;
-  // What brakes the link besides dry friction, as learnt.
+  // Estimated load on the link without dry friction.
   float load_Nm;
-  // Dry friction of the link, as learnt.
+  // Estimated dry friction of the link.
   float friction_Nm;
-  // Share of the compensation in the torque, the rest being control without: 0 to 1.
+  // Share of the compensation in the torque, 0 to 1; the rest is control without compensation.
   float trust;
-  // What it is about.
+  // Stage of the compensation.
   JointStage stage;
-  // The flank that carries or is being gone to.
+  // Flank that carries, or towards which the motor moves.
   JointContact flank;
-  // 1 if the law asks for more torque than the motor has, or brakes early because of that; else 0.
+  // 1 if the law requires more torque than the motor has, or brakes early for lack of torque; else 0.
   uint32_t short_of_torque;
-  // 1 while control without compensation has taken over because the loop hunted; else 0.
+  // 1 while control without compensation is active because the loop hunted; else 0.
   uint32_t stepped_back;
 } JointTorque;
 
-// A spring and damper about a moving point, on the scale of the observer's link shaft.
+// Spring and damper about a moving point, on the scale of the observer's link shaft.
 typedef struct JointImpedance {
   // Whole turns of the point.
   int32_t turns;
-  // What is left, from -1 to 1.
+  // Remaining fraction of a turn, from -1 to 1.
   float fraction_turns;
-  // Its speed.
+  // Speed of the point.
   float speed_rad_per_s;
   // Torque at the link, on top of spring and damper.
   float torque_Nm;
@@ -567,11 +571,11 @@ typedef struct JointProbe {
   uint64_t storage[JOINT_PROBE_WORDS];
 } JointProbe;
 
-// What a probe answers.
+// Output of a probe.
 typedef struct JointProbed {
   // Torque to command next at the motor's shaft; zero once the probe has ended.
   float motor_torque_Nm;
-  // Where it stands.
+  // Progress.
   JointProgress progress;
   // Half-backlash of each mesh; valid when done.
   struct JointEstimate half_backlash_m;
@@ -582,17 +586,17 @@ typedef struct JointPlant {
   uint64_t storage[JOINT_PLANT_WORDS];
 } JointPlant;
 
-// The motion of a plant, which no sensor sees: for judging what a controller makes of it.
+// True motion of a plant, which no sensor measures: for evaluating a controller.
 typedef struct JointPlantOutputs {
   // Whole turns of the rigid-body carrier angle.
   int32_t carrier_turns;
-  // The rest of it, in 2^-32 turns.
+  // Fraction of the turn of that angle, in 2^-32 turns.
   uint32_t carrier_fraction;
-  // Rate of that angle.
+  // Rate of the rigid-body carrier angle.
   float carrier_speed_rad_per_s;
-  // Motor angle less ratio times that angle.
+  // Motor angle less ratio times the rigid-body carrier angle.
   float motor_offset_rad;
-  // Link angle less that angle.
+  // Link angle less the rigid-body carrier angle.
   float link_offset_rad;
   // Gap coordinate along the line of action.
   float gap_m;
@@ -602,17 +606,17 @@ typedef struct JointPlantOutputs {
   float air_gap_torque_Nm;
   // Torque on the sun, friction and cogging included.
   float drive_torque_Nm;
-  // What brakes the link: friction, weight, disturbance.
+  // Torque that brakes the link: friction, weight, disturbance.
   float load_torque_Nm;
-  // Planets; what follows has so many entries in use.
+  // Number of planets; the arrays below have this many entries in use.
   uint32_t planets;
   // Deflections of the sun's meshes, planet by planet.
   float sun_deflections_m[JOINT_MOST_PLANETS];
-  // Deflections of the ring's.
+  // Deflections of the ring's meshes, planet by planet.
   float ring_deflections_m[JOINT_MOST_PLANETS];
   // Contacts of the sun's meshes.
   JointContact sun_contacts[JOINT_MOST_PLANETS];
-  // Contacts of the ring's.
+  // Contacts of the ring's meshes.
   JointContact ring_contacts[JOINT_MOST_PLANETS];
 } JointPlantOutputs;
 
@@ -629,7 +633,7 @@ const char *joint_status_name(uint32_t status);
 // What a status means and what to do about it, in one sentence; never NULL.
 const char *joint_status_text(uint32_t status);
 
-// Looks at tables, as joint_tables_facts; `abi` is JOINT_ABI.
+// Reads the properties of tables, as joint_tables_facts; `abi` is JOINT_ABI.
 JOINT_MUST_USE
 JointStatus joint_tables_facts_checked(const uint64_t *tables,
                                        size_t tables_bytes,
@@ -644,23 +648,23 @@ JointStatus joint_wiring_start_checked(struct JointWiring *wiring,
                                        size_t tables_bytes,
                                        uint32_t abi);
 
-// One control period of a wiring check, in place of the observer's and the compensation's steps. With an allowed torque of
-// zero, or with another torque than the answer's in force, it judges whatever motion the samples show.
+// One control period of a wiring check, instead of the observer's and the compensation's steps. With an allowed torque
+// of zero, or with another torque in force than the commanded one, any motion in the samples is judged.
 JOINT_MUST_USE
 JointStatus joint_wiring_step(struct JointWiring *wiring,
                               const struct JointSamples *samples,
                               float allowed_torque_Nm,
                               struct JointWiringStep *step);
 
-// The verdicts on what a check has seen so far, outside of the control period.
+// Copies the verdicts on the motion so far, outside of the control period.
 JOINT_MUST_USE
 JointStatus joint_wiring_verdicts(const struct JointWiring *wiring,
                                   struct JointWiringVerdicts *verdicts);
 
-// The name of an item of the wiring, such as "output_direction"; never NULL.
+// Name of an item of the wiring, such as "output_direction"; never NULL.
 const char *joint_wiring_item_name(uint32_t item);
 
-// What is wrong with an item of the wiring, and what to do about it, in one sentence; never NULL.
+// Error and remedy for an item of the wiring, in one sentence; never NULL.
 const char *joint_wiring_item_text(uint32_t item);
 
 // Starts an observer, as joint_observer_start; `abi` is JOINT_ABI.
@@ -679,23 +683,23 @@ JointStatus joint_observer_start_without_maps_checked(struct JointObserver *obse
                                                       size_t tables_bytes,
                                                       uint32_t abi);
 
-// One control period: takes what was measured.
+// One control period: processes the samples.
 JOINT_MUST_USE
 JointStatus joint_observer_step(struct JointObserver *observer,
                                 const struct JointSamples *samples);
 
-// The estimates of the last period.
+// Copies the estimates of the last period.
 JOINT_MUST_USE
 JointStatus joint_observer_estimates(const struct JointObserver *observer,
                                      struct JointEstimates *estimates);
 
-// Saves what was learnt, outside of the control period. `bytes` is JOINT_MEMORY_BYTES.
+// Saves the estimated parameters, outside of the control period. `bytes` is JOINT_MEMORY_BYTES.
 JOINT_MUST_USE
 JointStatus joint_observer_save(const struct JointObserver *observer,
                                 uint8_t *memory,
                                 size_t bytes);
 
-// Goes on from what was saved, outside of the control period, before the first step. `bytes` is JOINT_MEMORY_BYTES.
+// Loads saved parameters, outside of the control period and before the first step. `bytes` is JOINT_MEMORY_BYTES.
 JOINT_MUST_USE
 JointStatus joint_observer_load(struct JointObserver *observer,
                                 const uint8_t *memory,
@@ -709,8 +713,8 @@ JointStatus joint_compensation_start_checked(struct JointCompensation *compensat
                                              size_t tables_bytes,
                                              uint32_t abi);
 
-// One control period of position control, after the observer's step: follow a motion. `ahead` is the motion by
-// `lead_s` (joint_tables_facts) later than `now`, or NULL if that is not known.
+// One control period of position control, after the observer's step: follows a motion. `ahead` is the motion `lead_s`
+// (joint_tables_facts) after `now`, or NULL if it is unknown.
 JOINT_MUST_USE
 JointStatus joint_compensation_follow(struct JointCompensation *compensation,
                                       const struct JointObserver *observer,
@@ -718,7 +722,7 @@ JointStatus joint_compensation_follow(struct JointCompensation *compensation,
                                       const struct JointMotion *ahead,
                                       struct JointTorque *torque);
 
-// One control period of impedance control, after the observer's step: be a spring and damper at the link.
+// One control period of impedance control, after the observer's step: acts as a spring and damper at the link.
 JOINT_MUST_USE
 JointStatus joint_compensation_yield(struct JointCompensation *compensation,
                                      const struct JointObserver *observer,
@@ -733,7 +737,7 @@ JointStatus joint_probe_start_checked(struct JointProbe *probe,
                                       size_t tables_bytes,
                                       uint32_t abi);
 
-// One control period of a probe, after the observer's step and in place of the compensation's.
+// One control period of a probe, after the observer's step and instead of the compensation's.
 JOINT_MUST_USE
 JointStatus joint_probe_step(struct JointProbe *probe,
                              const struct JointObserver *observer,
@@ -747,21 +751,21 @@ JointStatus joint_plant_start_checked(struct JointPlant *plant,
                                       size_t tables_bytes,
                                       uint32_t abi);
 
-// Moves on by one control period under a torque command for the motor and a torque that brakes the link.
+// Advances by one control period under a torque command for the motor and a torque that brakes the link.
 JOINT_MUST_USE
 JointStatus joint_plant_step(struct JointPlant *plant,
                              float motor_torque_Nm,
                              float load_torque_Nm);
 
-// What the encoders read now, and the torque that was commanded last.
+// Present encoder readings, and the torque that was commanded last.
 JOINT_MUST_USE JointStatus joint_plant_samples(const struct JointPlant *plant, struct JointSamples *samples);
 
-// The motion now.
+// Present motion.
 JOINT_MUST_USE
 JointStatus joint_plant_outputs(const struct JointPlant *plant,
                                 struct JointPlantOutputs *motion);
 
-// Digest of every bit of the gears' state: two runs of which it is the same have gone the same way so far.
+// Digest of every bit of the gears' state; equal digests mean equal runs so far.
 JOINT_MUST_USE JointStatus joint_plant_digest(const struct JointPlant *plant, uint64_t *digest);
 
 #ifdef __cplusplus

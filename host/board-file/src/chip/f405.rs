@@ -27,7 +27,7 @@ pub(super) const FACTS: Facts = Facts {
     },
     boot_pin: None,
     serial: SERIAL,
-    refused: &[],
+    unsupported_serial: &[],
     spi: Ok(SPI),
     can: CAN,
     timers: TIMERS,
@@ -49,7 +49,7 @@ pub(super) const FACTS: Facts = Facts {
     ],
 };
 
-/// The last two sectors of 128 KiB.
+/// Slots: the last two sectors of 128 KiB.
 fn slots(flash: u32) -> [Slot; 2] {
     const SECTOR: u32 = 128 << 10;
     [2, 1].map(|from_end| Slot { address: 0x0800_0000 + flash - from_end * SECTOR, bytes: SECTOR })
@@ -135,6 +135,6 @@ const LQFP64: &[(char, u16)] = &[('A', ALL), ('B', ALL), ('C', ALL), ('D', 1 << 
 const LQFP100: &[(char, u16)] = &[('A', ALL), ('B', ALL), ('C', ALL), ('D', ALL), ('E', ALL), ('H', 0b11)];
 const LQFP144: &[(char, u16)] =
     &[('A', ALL), ('B', ALL), ('C', ALL), ('D', ALL), ('E', ALL), ('F', ALL), ('G', ALL), ('H', 0b11)];
-/// Without PC1, PC4, PC5, PD3, PD13 and PE0 to PE6.
+/// All pins but PC1, PC4, PC5, PD3, PD13 and PE0 to PE6.
 const WLCSP90: &[(char, u16)] =
     &[('A', ALL), ('B', ALL), ('C', !0x0032), ('D', !0x2008), ('E', 0xff80), ('H', 0b11), ('I', 0b11)];

@@ -1,68 +1,68 @@
-//! What is known of a chip, in one shape for all of them.
+//! Data of a chip, in one form for all chips.
 
 use model_core::gears::design::Processor;
 
 use crate::pin::{Alternate, Pin};
 use crate::pll::PllLimits;
 
-/// A chip: what all of its packages have in common.
+/// Chip: data common to all of its packages.
 #[derive(Debug)]
 pub(crate) struct Facts {
-    /// Its name: the firmware's feature.
+    /// Name, equal to the firmware's feature.
     pub name: &'static str,
-    /// Chips with the same registers: what the firmware is compiled for.
+    /// Family of chips with the same registers, for which the firmware is compiled.
     pub family: &'static str,
     /// Core clock [Hz].
     pub core_rate: u32,
-    /// What it gives the step.
+    /// Clock, cycles per instruction and share of the period offered to the step.
     pub processor: Processor,
-    /// Its internal oscillator [Hz].
+    /// Frequency of the internal oscillator [Hz].
     pub internal_oscillator: u32,
-    /// Least and greatest frequency of a crystal [Hz].
+    /// Lowest and highest frequency of a crystal [Hz].
     pub crystal: (u32, u32),
-    /// Least and greatest frequency of a clock from elsewhere [Hz].
+    /// Lowest and highest frequency of an external clock signal [Hz].
     pub signal: (u32, u32),
-    /// Where crystal or clock are connected.
+    /// Pins of crystal or clock signal.
     pub oscillator_pins: [Pin; 2],
-    /// Its PLL.
+    /// Limits of the PLL.
     pub pll: PllLimits,
-    /// The pin that is read as BOOT0 at a reset and is free afterwards, if there is one.
+    /// Pin that is read as BOOT0 at a reset and is free afterwards, if there is one.
     pub boot_pin: Option<Pin>,
-    /// Units that can be the line to the host.
+    /// Peripherals supported as the serial line to the host.
     pub serial: &'static [SerialUnit],
-    /// Units that look as if they could and cannot, each with the reason.
-    pub refused: &'static [(&'static str, &'static str)],
-    /// Units that can be a slave of a motor controller, or why there are none.
+    /// Serial peripherals that are not supported, each with the reason.
+    pub unsupported_serial: &'static [(&'static str, &'static str)],
+    /// Peripherals supported as SPI slave, or the reason why there are none.
     pub spi: Result<&'static [SpiUnit], &'static str>,
-    /// Units that are on CAN.
+    /// CAN peripherals.
     pub can: &'static [CanUnit],
     /// Timers that count the pulses of an encoder.
     pub timers: &'static [TimerUnit],
-    /// RAM from 0x2000_0000 on without a gap, that of other purposes left out [KiB].
+    /// Contiguous RAM for data from 0x2000_0000 on [KiB].
     pub ram_kib: u32,
-    /// Two places at the end of the flash that are erased without touching an image, by the flash that the board uses
-    /// [bytes].
+    /// Two slots at the end of the flash that can be erased without touching an image, from the flash that the board
+    /// uses [byte].
     pub slots: fn(u32) -> [Slot; 2],
-    /// Images of joint Q1 as they were linked; one that was never linked is left out. `joint hil --check` holds them against
-    /// the images that it builds.
+    /// Sizes of linked images of joint Q1; roles that were never linked are left out. `joint hil --check` compares them
+    /// with the images that it builds.
     pub images: &'static [ImageSize],
-    /// By what it is ordered.
+    /// Order names.
     pub variants: &'static [Variant],
 }
 
-/// A part of the flash that is erased by itself.
+/// Part of the flash that is erased separately.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Slot {
-    /// Its first byte.
+    /// Address of the first byte.
     pub address: u32,
-    /// What may be used of it: no more than is erased at once.
+    /// Usable size, at most the part erased at once.
     pub bytes: u32,
 }
 
 /// Memory that an image takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ImageSize {
-    /// Role, as `--role` names it.
+    /// Role, as named by `--role`.
     pub role: &'static str,
     /// Flash: code, constants and initial values [byte].
     pub flash: u32,
@@ -70,29 +70,29 @@ pub struct ImageSize {
     pub ram: u32,
 }
 
-/// A unit that sends and receives bytes.
+/// Serial peripheral.
 #[derive(Debug)]
 pub(crate) struct SerialUnit {
     pub name: &'static str,
-    /// What its baud rate is divided from while the PLL runs [Hz].
+    /// Clock from which the baud rate is divided while the PLL runs [Hz].
     pub clock: u32,
     pub send: &'static [Alternate],
     pub receive: &'static [Alternate],
 }
 
-/// A unit that can be a slave on SPI.
+/// Peripheral that can be an SPI slave.
 #[derive(Debug)]
 pub(crate) struct SpiUnit {
     pub name: &'static str,
     pub select: &'static [Alternate],
     pub clock: &'static [Alternate],
-    /// To the master.
+    /// Data to the master.
     pub out: &'static [Alternate],
-    /// From the master.
+    /// Data from the master.
     pub input: &'static [Alternate],
 }
 
-/// A unit on CAN. What connects it to its pins is nobody's business until an image uses it.
+/// CAN peripheral. The alternate functions of its pins are left out until an image uses it.
 #[derive(Debug)]
 pub(crate) struct CanUnit {
     pub name: &'static str,
@@ -100,7 +100,7 @@ pub(crate) struct CanUnit {
     pub receive: &'static [Pin],
 }
 
-/// A timer that counts pulses of an encoder at its first two channels.
+/// Timer that counts encoder pulses on its first two channels.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TimerUnit {
     pub name: &'static str,
@@ -111,20 +111,20 @@ pub(crate) struct TimerUnit {
 /// Packages under one order name.
 #[derive(Debug)]
 pub(crate) struct Variant {
-    /// Up to the letter of the flash: STM32F405RG.
+    /// Order name up to the letter of the flash size, such as STM32F405RG.
     pub name: &'static str,
-    /// Its flash, and less of it that a board may make do with; the largest last [KiB].
+    /// Sizes of flash that a board file may state; the chip's own size is the last [KiB].
     pub flash_kib: &'static [u32],
-    /// The one that is meant if the order name goes no further comes first.
+    /// Packages; the first applies if the order name names none.
     pub packages: &'static [Package],
 }
 
-/// What a package brings out.
+/// Pins of a package.
 #[derive(Debug)]
 pub(crate) struct Package {
-    /// The next letter of the order name.
+    /// Package letter of the order name.
     pub letter: char,
-    /// Ports, each with a bit for every pin. Pins that only reset the chip are left out.
+    /// Ports, each with a bit for every pin. Pins that serve only as reset are left out.
     pub pins: &'static [(char, u16)],
 }
 
@@ -132,13 +132,13 @@ pub(crate) struct Package {
 pub(super) const ALL: u16 = 0xffff;
 
 impl Package {
-    /// Whether it has a pin.
+    /// Returns whether the package has a pin.
     pub fn has(&self, pin: Pin) -> bool {
         self.pins.iter().any(|(letter, pins)| *letter == pin.letter() && pins >> pin.number & 1 == 1)
     }
 }
 
-/// A pin by its name; one that is none does not compile.
+/// Pin by its name; a wrong name does not compile.
 pub(super) const fn pin(name: &str) -> Pin {
     match Pin::named(name.as_bytes()) {
         Some(pin) => pin,
@@ -146,7 +146,7 @@ pub(super) const fn pin(name: &str) -> Pin {
     }
 }
 
-/// A pin by its name, in a function.
+/// Pin by its name, in an alternate function.
 pub(super) const fn at(name: &str, function: u8) -> Alternate {
     Alternate { pin: pin(name), function }
 }

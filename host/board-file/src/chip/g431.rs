@@ -1,5 +1,5 @@
-//! STM32G431 with 128 KiB of flash: data sheet DS12589 (pins and their functions, oscillators, PLL), reference manual RM0440
-//! (pages of the flash, clock tree). What it shares with the STM32G474 stands there.
+//! STM32G431 with 128 KiB of flash: data sheet DS12589 (pins and their functions, oscillators, PLL), reference manual
+//! RM0440 (pages of the flash, clock tree). Data shared with the STM32G474 are in `g474`.
 
 use model_core::gears::design::Processor;
 
@@ -18,14 +18,15 @@ pub(super) const FACTS: Facts = Facts {
     pll: g474::PLL,
     boot_pin: Some(pin("PB8")),
     serial: &[g474::USART1, g474::USART2, g474::USART3, g474::UART4],
-    refused: &[g474::LPUART1],
+    unsupported_serial: &[g474::LPUART1],
     spi: Ok(g474::SPI),
     can: &[g474::FDCAN1],
     timers: g474::TIMERS,
     // SRAM1 and SRAM2; the 10 KiB of CCM that follow are for code.
     ram_kib: 22,
     slots,
-    // The plant is linked with less inlined. The others were linked for the STM32G474 only: less inlined they take less flash.
+    // The plant is linked with less inlining. The others were linked for the STM32G474 only; with less inlining they
+    // need less flash.
     images: &[
         ImageSize { role: "plant", flash: 123_636, ram: 10_532 },
         g474::IMAGES[1],
@@ -57,12 +58,12 @@ pub(super) const FACTS: Facts = Facts {
     ],
 };
 
-/// The last two pages of 2 KiB.
+/// Slots: the last two pages of 2 KiB.
 fn slots(flash: u32) -> [Slot; 2] {
     const PAGE: u32 = 2 << 10;
     [2, 1].map(|from_end| Slot { address: 0x0800_0000 + flash - from_end * PAGE, bytes: PAGE })
 }
 
 const PINS_32: &[(char, u16)] = &[('A', ALL), ('B', 0x01f9), ('F', 0b11)];
-/// As UFQFPN48 without PC10.
+/// UFQFPN48 without PC10.
 const WLCSP49: &[(char, u16)] = &[('A', ALL), ('B', ALL), ('C', 0xe850), ('F', 0b11)];

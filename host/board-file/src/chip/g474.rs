@@ -6,7 +6,7 @@ use model_core::gears::design::Processor;
 use super::facts::{ALL, CanUnit, Facts, ImageSize, Package, SerialUnit, Slot, SpiUnit, TimerUnit, Variant, at, pin};
 use crate::pll::PllLimits;
 
-/// All buses run at the core's rate.
+/// Clock of all buses, equal to the core clock [Hz].
 pub(super) const BUSES: u32 = 170_000_000;
 
 pub(super) const FACTS: Facts = Facts {
@@ -21,7 +21,7 @@ pub(super) const FACTS: Facts = Facts {
     pll: PLL,
     boot_pin: Some(pin("PB8")),
     serial: &[USART1, USART2, USART3, UART4, UART5],
-    refused: &[LPUART1],
+    unsupported_serial: &[LPUART1],
     spi: Ok(SPI),
     can: CAN,
     timers: TIMERS,
@@ -67,8 +67,8 @@ pub(super) const IMAGES: [ImageSize; 4] = [
     ImageSize { role: "spi-observer", flash: 111_464, ram: 3_300 },
 ];
 
-/// The last two pages of 4 KiB, as they are with one bank. With two banks each is two pages of 2 KiB, of which the first is
-/// used: so the places are the same whatever the option bytes say.
+/// Slots: the last two pages of 4 KiB of the single-bank layout. In the dual-bank layout each is two pages of 2 KiB, of
+/// which the first is used, so that the addresses do not depend on the option bytes.
 fn slots(flash: u32) -> [Slot; 2] {
     [2, 1].map(|from_end| Slot { address: 0x0800_0000 + flash - from_end * (4 << 10), bytes: 2 << 10 })
 }
@@ -95,8 +95,8 @@ pub(super) const UART4: SerialUnit =
     SerialUnit { name: "UART4", clock: BUSES, send: &[at("PC10", 5)], receive: &[at("PC11", 5)] };
 const UART5: SerialUnit = SerialUnit { name: "UART5", clock: BUSES, send: &[at("PC12", 5)], receive: &[at("PD2", 5)] };
 
-/// A line of another kind.
-pub(super) const LPUART1: (&str, &str) = ("LPUART1", "it divides its clock in another way and has other registers");
+/// Serial peripheral of another kind, which is not supported.
+pub(super) const LPUART1: (&str, &str) = ("LPUART1", "its registers and clock divider differ from a USART's");
 
 pub(super) const SPI: &[SpiUnit] = &[
     SpiUnit {
@@ -133,7 +133,7 @@ const CAN: &[CanUnit] = &[
     CanUnit { name: "FDCAN3", send: &[pin("PA15"), pin("PB4")], receive: &[pin("PA8"), pin("PB3")] },
 ];
 
-/// Those that all chips of RM0440 have. TIM5 of the STM32G474 is left out.
+/// Timers common to all chips of RM0440. TIM5 of the STM32G474 is left out.
 pub(super) const TIMERS: &[TimerUnit] = &[
     TimerUnit { name: "TIM1", a: &[pin("PA8"), pin("PC0"), pin("PE9")], b: &[pin("PA9"), pin("PC1"), pin("PE11")] },
     TimerUnit {
@@ -150,9 +150,9 @@ pub(super) const TIMERS: &[TimerUnit] = &[
     TimerUnit { name: "TIM8", a: &[pin("PA15"), pin("PB6"), pin("PC6")], b: &[pin("PB8"), pin("PC7")] },
 ];
 
-// PG10 is the reset input of all of them.
+// PG10 is the reset input of all packages.
 pub(super) const LQFP48: &[(char, u16)] = &[('A', ALL), ('B', ALL), ('C', 0xe000), ('F', 0b11)];
-/// With PC4, PC6, PC10 and PC11 beside those of the other one.
+/// LQFP48 with PC4, PC6, PC10 and PC11 in addition.
 pub(super) const UFQFPN48: &[(char, u16)] = &[('A', ALL), ('B', ALL), ('C', 0xec50), ('F', 0b11)];
 pub(super) const PINS_64: &[(char, u16)] = &[('A', ALL), ('B', ALL), ('C', ALL), ('D', 1 << 2), ('F', 0b11)];
 pub(super) const PINS_80: &[(char, u16)] =

@@ -6,7 +6,7 @@ use model_core::gears::design::Processor;
 use super::facts::{ALL, CanUnit, Facts, ImageSize, Package, SerialUnit, Slot, TimerUnit, Variant, at, pin};
 use crate::pll::PllLimits;
 
-/// Of both buses that have USARTs: a quarter of the core's rate.
+/// Clock of both buses with USARTs: a quarter of the core clock [Hz].
 const APB: u32 = 100_000_000;
 
 pub(super) const FACTS: Facts = Facts {
@@ -19,7 +19,7 @@ pub(super) const FACTS: Facts = Facts {
     signal: (4_000_000, 50_000_000),
     oscillator_pins: [pin("PH0"), pin("PH1")],
     pll: PllLimits {
-        // The wide oscillator, 192 to 836 MHz.
+        // Wide oscillator range, 192 to 836 MHz.
         input: (2_000_000, 16_000_000),
         preferred_input: 4_000_000,
         oscillator: 800_000_000,
@@ -29,8 +29,8 @@ pub(super) const FACTS: Facts = Facts {
     },
     boot_pin: None,
     serial: SERIAL,
-    refused: &[("LPUART1", "it divides its clock in another way and has other registers")],
-    spi: Err("the SPI of STM32H743 is of another kind, which the firmware has no slave for"),
+    unsupported_serial: &[("LPUART1", "its registers and clock divider differ from a USART's")],
+    spi: Err("the firmware has no slave for the STM32H743's kind of SPI"),
     can: CAN,
     timers: TIMERS,
     // DTCM.
@@ -54,12 +54,13 @@ pub(super) const FACTS: Facts = Facts {
             flash_kib: &[2048],
             packages: &[Package { letter: 'T', pins: PINS_176 }, Package { letter: 'K', pins: PINS_176 }],
         },
-        Variant { name: "STM32H743BI", flash_kib: &[2048], packages: &[Package { letter: 'T', pins: EVERY }] },
-        Variant { name: "STM32H743XI", flash_kib: &[2048], packages: &[Package { letter: 'H', pins: EVERY }] },
+        Variant { name: "STM32H743BI", flash_kib: &[2048], packages: &[Package { letter: 'T', pins: ALL_PORTS }] },
+        Variant { name: "STM32H743XI", flash_kib: &[2048], packages: &[Package { letter: 'H', pins: ALL_PORTS }] },
     ],
 };
 
-/// The first two sectors of the second bank: an image lies in the first bank, which runs on while they are erased.
+/// Slots: the first two sectors of the second bank. An image lies in the first bank, which can execute while they are
+/// erased.
 fn slots(_: u32) -> [Slot; 2] {
     const SECTOR: u32 = 128 << 10;
     [0, 1].map(|sector| Slot { address: 0x0810_0000 + sector * SECTOR, bytes: SECTOR })
@@ -155,7 +156,7 @@ const UFBGA169: &[(char, u16)] = &[
 ];
 const PINS_176: &[(char, u16)] =
     &[('A', ALL), ('B', ALL), ('C', ALL), ('D', ALL), ('E', ALL), ('F', ALL), ('G', ALL), ('H', ALL), ('I', 0x0fff)];
-const EVERY: &[(char, u16)] = &[
+const ALL_PORTS: &[(char, u16)] = &[
     ('A', ALL),
     ('B', ALL),
     ('C', ALL),

@@ -1,4 +1,4 @@
-//! The chips that images can be built for, and what each of them is.
+//! Chips that images can be built for, and their data.
 
 mod facts;
 
@@ -12,11 +12,11 @@ use facts::{Facts, Package, Variant};
 
 pub(crate) use facts::{CanUnit, SerialUnit, SpiUnit, TimerUnit};
 
-/// Help where a chip is refused: the library is built for a core, not for a chip.
+/// Help for an unsupported chip: the C library is built for a core, not for a chip.
 pub const OTHER_CHIPS: &str = "the C library serves any chip with a Cortex-M4F, M7 or M33 beside the firmware that it has: \
                                docs/in-your-firmware.md; a new chip for the firmware: docs/add-a-chip.md";
 
-/// Declares the chips: a line each with its name and the file of its facts.
+/// Declares the chips, one per line with its name and the file of its data.
 macro_rules! chips {
     ($($(#[$what:meta])* $name:ident => $file:ident,)+) => {
         $(mod $file;)+
@@ -45,59 +45,59 @@ chips! {
     Stm32f405 => f405,
     /// STM32G474: Cortex-M4F at 170 MHz.
     Stm32g474 => g474,
-    /// STM32G431: the same with less memory.
+    /// STM32G431: STM32G474 with less memory.
     Stm32g431 => g431,
     /// STM32H743: Cortex-M7 at 400 MHz.
     Stm32h743 => h743,
 }
 
 impl Chip {
-    /// Its name: the firmware's feature.
+    /// Name, equal to the firmware's feature.
     pub fn name(self) -> &'static str {
         self.facts().name
     }
 
-    /// Returns the family whose registers it has: the firmware's files of a chip are for a family.
+    /// Family of chips with the same registers; the firmware has one file per family.
     pub fn family(self) -> &'static str {
         self.facts().family
     }
 
-    /// The chip of a name.
-    pub fn of_name(name: &str) -> Option<Self> {
+    /// Finds a chip by its name.
+    pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|chip| chip.name() == name)
     }
 
-    /// Its core clock [Hz]; the tick rate must divide it.
+    /// Core clock [Hz]; the tick rate must divide it.
     pub fn core_rate(self) -> u32 {
         self.facts().core_rate
     }
 
-    /// What it gives the step.
+    /// Clock, cycles per instruction and share of the period offered to the step.
     pub fn processor(self) -> Processor {
         self.facts().processor
     }
 
-    /// Its internal oscillator [Hz], which drives it from a reset on.
+    /// Frequency of the internal oscillator, which is the clock after a reset [Hz].
     pub fn internal_oscillator(self) -> u32 {
         self.facts().internal_oscillator
     }
 
-    /// Returns what the image of joint Q1 in a role takes, as it was linked; the role as `--role` names it.
+    /// Size of the linked image of joint Q1 in a role, as named by `--role`.
     pub fn image_size(self, role: &str) -> Option<ImageSize> {
         self.facts().images.iter().copied().find(|image| image.role == role)
     }
 
-    /// Whether it can be the slave of a motor controller on SPI.
+    /// Returns whether the firmware supports the chip as an SPI slave.
     pub fn has_spi_slave(self) -> bool {
         self.facts().spi.is_ok()
     }
 
-    /// Frequencies of a crystal, or of a clock from elsewhere, that it takes, least and greatest [Hz].
+    /// Lowest and highest frequency of a crystal, or of an external clock signal [Hz].
     pub fn oscillator_limits(self, crystal: bool) -> (u32, u32) {
         if crystal { self.facts().crystal } else { self.facts().signal }
     }
 
-    /// The setting of its PLL that makes the core clock from a frequency [Hz]; `None` if that cannot be done exactly.
+    /// PLL settings that make the core clock from a frequency [Hz]; `None` if the core clock cannot be made exactly.
     ///
     /// ```
     /// use board_file::{Chip, Pll};
@@ -109,16 +109,16 @@ impl Chip {
         self.facts().pll.settings(frequency)
     }
 
-    /// The setting of its PLL for its internal oscillator.
+    /// PLL settings for the internal oscillator.
     ///
     /// # Panics
-    /// Never: a test asks every chip.
+    /// Never: a test checks every chip.
     pub fn internal_pll(self) -> Pll {
         self.pll(self.internal_oscillator()).expect("every chip makes its core clock of its own oscillator")
     }
 }
 
-/// A chip as it is ordered: with its memory and, if the name goes so far, its package.
+/// Chip as ordered: with its memory and, if the order name contains it, its package.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Part {
     pub chip: Chip,
@@ -127,9 +127,9 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    /// By the order name up to the letter of the flash, or with the letter of the package, or with the digit of the
-    /// temperature range too: STM32G431CB, STM32G431CBU, STM32G431CBU6.
-    pub fn of(order_name: &str) -> Option<Self> {
+    /// Parses an order name up to the letter of the flash size, optionally with the letter of the package and the digit
+    /// of the temperature range: STM32G431CB, STM32G431CBU, STM32G431CBU6.
+    pub fn from_order_name(order_name: &str) -> Option<Self> {
         let mut all =
             Chip::ALL.into_iter().flat_map(|chip| chip.facts().variants.iter().map(move |variant| (chip, variant)));
         let (chip, variant) = all.find(|(_, variant)| order_name.starts_with(variant.name))?;
@@ -142,23 +142,23 @@ impl Part {
         (temperature_range && rest.next().is_none()).then_some(Self { chip, variant, package })
     }
 
-    /// Every order name that is known, without a package.
+    /// Order names of all supported chips, without a package.
     pub fn names() -> Vec<&'static str> {
         Chip::ALL.into_iter().flat_map(|chip| chip.facts().variants).map(|variant| variant.name).collect()
     }
 
-    /// Help for an order name that is none of these. A name is suggested only within one part number of one maker: chips
-    /// whose names differ by a letter have other registers, other memory and other pins.
-    pub fn help(order_name: &str) -> String {
+    /// Help for an unknown order name. A name is suggested only within one part number of one maker: chips whose names
+    /// differ by a letter have other registers, memory and pins.
+    pub fn unknown_name_help(order_name: &str) -> String {
         let typed = order_name.trim().to_uppercase();
-        let of_line = |variant: &&str| {
+        let claim_line_pin = |variant: &&str| {
             Chip::ALL.iter().any(|chip| {
                 let line = chip.name().to_uppercase();
                 typed.starts_with(&line) && variant.starts_with(&line)
             })
         };
         let known = Self::names();
-        let line: Vec<&str> = known.iter().copied().filter(of_line).collect();
+        let line: Vec<&str> = known.iter().copied().filter(claim_line_pin).collect();
         match line.iter().find(|variant| typed.starts_with(**variant)) {
             Some(variant) => format!(
                 "did you mean \"{variant}\"? it is written in capitals, up to the letter of the flash size or with those of \
@@ -171,28 +171,28 @@ impl Part {
                 )
             }
             None => format!(
-                "firmware exists for {}; a chip of another number or maker is another chip, whatever its pins",
+                "firmware exists for {}; a chip of another number or maker is not compatible, even with the same pins",
                 known.join(", ")
             ),
         }
     }
 
-    /// As debug probes know it: the order name with its package and an x for the temperature range.
+    /// Name of the chip in debug probes: the order name with its package and an x for the temperature range.
     pub fn probe_name(&self) -> String {
         format!("{}{}x", self.variant.name, self.package.letter)
     }
 
-    /// The sizes of flash that a board with it may state, the whole of it last [KiB].
+    /// Sizes of flash that a board file may state, the chip's own size last [KiB].
     pub fn flash_kib(&self) -> &'static [u32] {
         self.variant.flash_kib
     }
 
-    /// Whether its package brings a pin out.
+    /// Returns whether the package brings out a pin.
     pub fn has(&self, pin: Pin) -> bool {
         self.package.has(pin)
     }
 
-    /// The pins that its package brings out, in words.
+    /// Pins of the package, as text.
     pub fn pins(&self) -> String {
         let ports = self.package.pins.iter().map(|(letter, pins)| {
             let mut spans: Vec<(u32, u32)> = Vec::new();
@@ -211,7 +211,7 @@ impl Part {
         ports.collect::<Vec<_>>().join(", ")
     }
 
-    /// Its own name, with its package if that is known.
+    /// Order name with its package.
     pub fn name(&self) -> String {
         format!("{}{}", self.variant.name, self.package.letter)
     }
@@ -224,8 +224,9 @@ mod tests {
 
     const MHZ: u32 = 1_000_000;
 
+    /// Every chip makes its core clock exactly from common crystals and from its internal oscillator.
     #[test]
-    fn every_chip_makes_its_core_clock_exactly_from_common_crystals_and_from_its_own_oscillator() {
+    fn plls_make_core_clock_exactly() {
         for chip in Chip::ALL {
             let (mut refused, internal) = (Vec::new(), chip.internal_oscillator());
             for frequency in [8, 12, 16, 24, 25, 26].map(|mega| mega * MHZ).into_iter().chain([internal]) {
@@ -242,15 +243,16 @@ mod tests {
                 assert!((limits.divider.0..=limits.divider.1).contains(&divider));
                 assert!((limits.factor.0..=limits.factor.1).contains(&factor));
             }
-            // 340 MHz are 170 x 26 / 13 MHz, and 2 MHz are too little for the PLL of the G4.
+            // 340 MHz are 170 x 26 / 13 MHz, and 2 MHz are below the input range of the G4's PLL.
             let wanted: &[u32] = if chip.core_rate() == 170 * MHZ { &[26] } else { &[] };
             assert_eq!(refused, wanted, "{chip:?}");
             assert_eq!(Some(chip.internal_pll()), chip.pll(internal), "{chip:?}");
         }
     }
 
+    /// A PLL gets its preferred input frequency, or the highest one that works.
     #[test]
-    fn plls_get_the_preferred_input_or_the_fastest_that_works() {
+    fn plls_prefer_configured_input() {
         let of = |chip: Chip, mega: u32| {
             let Pll { divider, factor, range } = chip.pll(mega * MHZ).expect("it can be made");
             (divider, factor, range)
@@ -269,8 +271,9 @@ mod tests {
         );
     }
 
+    /// Frequencies that cannot make the core clock exactly have no settings.
     #[test]
-    fn a_frequency_that_would_give_another_clock_is_none() {
+    fn pll_rejects_inexact_frequency() {
         for frequency in [0, 1, 11_059_200, 14_745_600, 32_768, u32::MAX] {
             for chip in Chip::ALL {
                 assert_eq!(chip.pll(frequency), None, "{chip:?} from {frequency}");
@@ -278,8 +281,9 @@ mod tests {
         }
     }
 
+    /// Every pin of a peripheral is brought out by some package of the chip.
     #[test]
-    fn every_pin_of_a_unit_is_brought_out_by_some_package() {
+    fn unit_pins_exist_in_some_package() {
         for chip in Chip::ALL {
             let facts = chip.facts();
             let serial = facts.serial.iter().flat_map(|unit| [unit.send, unit.receive]);
@@ -287,7 +291,7 @@ mod tests {
             let spi = spi.flat_map(|unit| [unit.select, unit.clock, unit.out, unit.input]);
             let packages = || facts.variants.iter().flat_map(|variant| variant.packages);
             for Alternate { pin, function } in serial.chain(spi).flatten() {
-                // The STM32G431 has no package with port G beside PG10, and its table is the STM32G474's.
+                // No package of the STM32G431 has port G apart from PG10; its table is shared with the STM32G474.
                 let missing = !packages().any(|package| package.has(*pin));
                 assert!(!missing || (chip == Chip::Stm32g431 && pin.letter() == 'G'), "{chip:?} {pin}");
                 assert!(*function < 16);
@@ -298,8 +302,9 @@ mod tests {
         }
     }
 
+    /// Every pin of a CAN peripheral or timer is brought out by some package and listed once.
     #[test]
-    fn every_pin_of_a_line_without_a_use_is_brought_out_by_some_package_and_stands_there_once() {
+    fn unused_line_pins_exist_once() {
         for chip in Chip::ALL {
             let facts = chip.facts();
             let can = facts.can.iter().flat_map(|unit| [unit.send, unit.receive]);
@@ -314,8 +319,9 @@ mod tests {
         }
     }
 
+    /// No pin occurs twice in the list of a peripheral.
     #[test]
-    fn no_pin_stands_in_a_list_twice() {
+    fn unit_pins_listed_once() {
         for chip in Chip::ALL {
             let facts = chip.facts();
             let serial = facts.serial.iter().flat_map(|unit| [unit.send, unit.receive]);
@@ -328,9 +334,10 @@ mod tests {
         }
     }
 
+    /// Order names are parsed with and without package and temperature range.
     #[test]
-    fn order_names_are_known_with_and_without_package() {
-        let probe = |name: &str| Part::of(name).map(|part| part.probe_name());
+    fn order_names_parsed_with_package() {
+        let probe = |name: &str| Part::from_order_name(name).map(|part| part.probe_name());
         assert_eq!(probe("STM32F405RG").as_deref(), Some("STM32F405RGTx"));
         assert_eq!(probe("STM32F405RGT6").as_deref(), Some("STM32F405RGTx"));
         assert_eq!(probe("STM32G431CB").as_deref(), Some("STM32G431CBTx"));
@@ -341,9 +348,10 @@ mod tests {
         }
     }
 
+    /// The pins of packages agree with the data sheets.
     #[test]
-    fn packages_bring_out_what_their_data_sheets_say() {
-        let part = |name: &str| Part::of(name).expect("a known name");
+    fn packages_match_data_sheets() {
+        let part = |name: &str| Part::from_order_name(name).expect("a known name");
         assert_eq!(part("STM32F405RG").pins(), "PA0 to PA15, PB0 to PB15, PC0 to PC15, PD2, PH0 to PH1");
         assert_eq!(
             part("STM32G431CBU").pins(),
@@ -354,8 +362,9 @@ mod tests {
         assert!(!part("STM32F405OG").has(pin("PC1")) && !part("STM32F405OG").has(pin("PD13")));
     }
 
+    /// The slots lie at the end of the stated flash, or in the second bank.
     #[test]
-    fn slots_lie_at_the_end_of_the_flash() {
+    fn slots_at_end_of_flash() {
         let slots = |chip: Chip, kib: u32| (chip.facts().slots)(kib << 10).map(|slot| (slot.address, slot.bytes));
         assert_eq!(slots(Chip::Stm32f405, 1024), [(0x080c_0000, 0x2_0000), (0x080e_0000, 0x2_0000)]);
         assert_eq!(slots(Chip::Stm32f405, 512), [(0x0804_0000, 0x2_0000), (0x0806_0000, 0x2_0000)]);

@@ -1,4 +1,4 @@
-//! The board that an image is built for: what its board file says, and where that is.
+//! Board that an image is built for: its description and the path of its board file.
 
 use std::path::{Path, PathBuf};
 
@@ -8,61 +8,61 @@ use model_core::gears::design::Processor;
 use report::failure::{Failure, Outcome};
 use report::workspace::workspace;
 
-/// A board with its file.
+/// Board with the path of its file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Board {
-    /// As it was named: a preset, or a path.
-    pub named: String,
-    /// Its file, for the firmware's build.
+    /// Name as given on the command line: a preset or a path.
+    pub argument: String,
+    /// Path of the board file, for the firmware's build.
     pub file: PathBuf,
-    /// What that says.
-    pub described: board_file::Board,
+    /// Contents of the board file.
+    pub description: board_file::Board,
 }
 
 impl Board {
     /// Reads a board file, or finds a preset.
-    pub fn load(named: &str) -> Outcome<Self> {
-        let typed = Path::new(named);
+    pub fn load(argument: &str) -> Outcome<Self> {
+        let typed = Path::new(argument);
         let loaded = named::load(typed)?;
         let file = match typed.is_file() {
-            true => typed.canonicalize().map_err(|error| Failure::new(format!("{named}: {error}")))?,
-            false => workspace().join("boards").join(named).with_added_extension("toml"),
+            true => typed.canonicalize().map_err(|error| Failure::new(format!("{argument}: {error}")))?,
+            false => workspace().join("boards").join(argument).with_added_extension("toml"),
         };
-        Ok(Self { named: named.to_owned(), file, described: loaded.board })
+        Ok(Self { argument: argument.to_owned(), file, description: loaded.board })
     }
 
-    /// For a command's arguments: the whole complaint, should there be one, as a text.
-    pub fn parse(named: &str) -> Result<Self, String> {
-        Self::load(named).map_err(|failure| match failure.help() {
+    /// Parses a command argument; the error carries message and help as one text.
+    pub fn parse(argument: &str) -> Result<Self, String> {
+        Self::load(argument).map_err(|failure| match failure.help() {
             Some(help) => format!("{}\n{help}", failure.message()),
             None => failure.message().to_owned(),
         })
     }
 
-    /// What the emulator stands for.
+    /// Returns the board that the emulator stands for.
     ///
     /// # Panics
-    /// If the preset cannot be read, which its own test finds.
+    /// Panics if the preset cannot be read; the preset's own test finds that.
     pub fn emulated() -> Self {
         Self::load(DEFAULT).expect("a good preset")
     }
 
-    /// Every preset.
+    /// Loads every preset.
     pub fn presets() -> Outcome<Vec<Self>> {
         PRESETS.into_iter().map(Self::load).collect()
     }
 
-    /// What it calls itself in its hello.
+    /// Name that the board states in its hello.
     pub fn name(&self) -> &str {
-        &self.described.name
+        &self.description.name
     }
 
     /// Its chip.
     pub fn chip(&self) -> Chip {
-        self.described.chip
+        self.description.chip
     }
 
-    /// What it gives the step.
+    /// Clock, cycles per instruction and share of the period that the chip offers the step.
     pub fn processor(&self) -> Processor {
         self.chip().processor()
     }
@@ -74,11 +74,11 @@ impl Board {
 
     /// Speed of its serial line [baud].
     pub fn baud_rate(&self) -> u32 {
-        self.described.serial.baud
+        self.description.serial.baud
     }
 
-    /// Whether its firmware can be the slave of a motor controller on SPI.
+    /// Returns whether the firmware can be the SPI slave of a motor controller.
     pub fn has_spi_slave(&self) -> bool {
-        self.described.spi_slave.is_some()
+        self.description.spi_slave.is_some()
     }
 }

@@ -6,7 +6,7 @@ use std::io;
 use std::path::Path;
 use std::process::Command;
 
-use super::cross_build::{TARGET, cannot_write, clean};
+use super::cross_build::{TARGET, cannot_write, clear_host_settings};
 use super::toolchain::{TARGET_FLAGS, Toolchain};
 use super::{Say, tool};
 use report::failure::{Failure, Outcome};
@@ -15,11 +15,12 @@ use report::workspace::workspace;
 /// The cargo profile of images.
 pub const PROFILE: &str = "firmware";
 
-/// Package of what a library is about: what in it is generic is compiled with the library's own package, the rest here.
-const CORE: &str = "model-core";
+/// Package with the generic code of the library. Its generic functions are compiled with the library's own package, the
+/// others with this one.
+const CORE_PACKAGE: &str = "model-core";
 
 /// Package of the images.
-pub(super) const FIRMWARE: &str = "firmware";
+pub(super) const FIRMWARE_PACKAGE: &str = "firmware";
 
 /// Compiles a binary of a package for the board.
 pub(super) fn compile(
@@ -30,19 +31,20 @@ pub(super) fn compile(
     environment: &[(&str, &OsStr)],
     say: Say<'_>,
 ) -> Outcome<Vec<u8>> {
-    // One build at a time in this folder, and none between a build and the copy of its result.
+    // The lock spans build and copy: no other build may replace the result in between.
     let _lock = lock(toolchain.folder(), say)?;
     let mut command = toolchain.cargo("build");
     command
         .args(["--package", package, "--profile", PROFILE, "--bin", binary])
         .args(["--no-default-features", "--features", features])
         .envs(environment.iter().copied());
-    tool::follow(&mut command, "building the firmware", say)?;
+    tool::run_with_progress(&mut command, "building the firmware", say)?;
     let built = toolchain.folder().join(TARGET).join(PROFILE).join(binary);
     fs::read(&built).map_err(|error| Failure::new(format!("{}: {error}", built.display())))
 }
 
-/// Compiles a package as a static library for the board, with flags beside the toolchain's; gives the archive.
+/// Compiles a package as a static library for the board, with flags in addition to the toolchain's. Returns the
+/// archive.
 pub fn compile_library(
     toolchain: &Toolchain,
     package: &str,
@@ -55,13 +57,15 @@ pub fn compile_library(
     all_flags.push(" ");
     all_flags.push(flags);
     let mut command = toolchain.cargo("rustc");
-    as_library(&mut command, package, "staticlib", features).args(small(package)).args(small(CORE));
+    add_library_arguments(&mut command, package, "staticlib", features)
+        .args(size_optimised(package))
+        .args(size_optimised(CORE_PACKAGE));
     command.env(TARGET_FLAGS, all_flags);
-    tool::follow(&mut command, "building the library", say)?;
+    tool::run_with_progress(&mut command, "building the library", say)?;
     read_library(&toolchain.folder().join(TARGET), package, "a")
 }
 
-/// Compiles a package as a static and a shared library for this machine. The shared one carries its name for the loader.
+/// Compiles a package as a static and a shared library for this machine. The shared library carries its soname.
 pub fn compile_library_for_host(
     target_directory: &Path,
     package: &str,
@@ -72,22 +76,23 @@ pub fn compile_library_for_host(
     let folder = target_directory.join("c-library");
     let _lock = lock(&folder, say)?;
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    clean(&mut command).current_dir(workspace()).arg("rustc").arg("--target-dir").arg(&folder);
-    as_library(&mut command, package, "staticlib,cdylib", features);
+    clear_host_settings(&mut command).current_dir(workspace()).arg("rustc").arg("--target-dir").arg(&folder);
+    add_library_arguments(&mut command, package, "staticlib,cdylib", features);
     command.arg("--").arg(format!("-Clink-arg=-Wl,-soname,{soname}"));
-    tool::follow(&mut command, "building the library", say)?;
+    tool::run_with_progress(&mut command, "building the library", say)?;
     Ok([read_library(&folder, package, "a")?, read_library(&folder, package, "so")?])
 }
 
-/// What makes a package a library for another language's linker. What debuggers want names folders of this machine.
-fn as_library<'c>(command: &'c mut Command, package: &str, kinds: &str, features: &str) -> &'c mut Command {
+/// Adds the arguments that make a package a library for a foreign linker. Debug information is left out: it would name
+/// folders of this machine.
+fn add_library_arguments<'c>(command: &'c mut Command, package: &str, kinds: &str, features: &str) -> &'c mut Command {
     command
         .args(["--package", package, "--lib", "--profile", PROFILE, "--crate-type", kinds, "--features", features])
         .env("CARGO_PROFILE_FIRMWARE_DEBUG", "0")
 }
 
-/// For boards: a package small; what it depends on is as fast as the images have it.
-fn small(package: &str) -> [String; 2] {
+/// Cargo arguments that optimise a package for size; its dependencies keep the profile's optimisation.
+fn size_optimised(package: &str) -> [String; 2] {
     ["--config".to_owned(), format!("profile.{PROFILE}.package.{package}.opt-level=\"z\"")]
 }
 
@@ -97,7 +102,7 @@ fn read_library(folder: &Path, package: &str, extension: &str) -> Outcome<Vec<u8
     fs::read(&built).map_err(|error| Failure::new(format!("{}: {error}", built.display())))
 }
 
-/// What cargo calls the library of a package.
+/// Name that cargo gives the library of a package.
 fn library_name(package: &str) -> String {
     package.replace('-', "_")
 }
@@ -113,8 +118,8 @@ fn lock(folder: &Path, say: Say<'_>) -> Outcome<File> {
     open().map_err(|error: io::Error| cannot_write(&path, &error))
 }
 
-/// Puts the whole file in place, or none of it.
-pub(super) fn store(images: &Path, place: &Path, elf: &[u8]) -> Outcome<()> {
+/// Writes a file beside its place and renames it, so that the place holds the whole file or the old one.
+pub(super) fn write_atomically(images: &Path, place: &Path, elf: &[u8]) -> Outcome<()> {
     let unfinished = place.with_extension(format!("unfinished-{}", std::process::id()));
     fs::create_dir_all(images)
         .and_then(|()| fs::write(&unfinished, elf))
@@ -128,8 +133,9 @@ mod tests {
 
     use super::*;
 
+    /// A build that waits for another names the other build's folder.
     #[test]
-    fn waiting_for_another_build_is_said() {
+    fn second_build_announces_wait() {
         let folder = tempfile::tempdir().unwrap();
         let said = Mutex::new(Vec::new());
         let say = |line: &str| said.lock().unwrap().push(line.to_owned());
@@ -146,10 +152,11 @@ mod tests {
         assert!(said.len() == 1 && said[0].starts_with("waiting for another build of firmware in"), "{said:?}");
     }
 
+    /// The failure names the file that could not be written.
     #[test]
-    fn an_image_that_cannot_be_stored_is_named() {
+    fn unwritable_image_path_named() {
         let images = Path::new("/proc/none");
-        let failure = store(images, &images.join("x.elf"), b"").unwrap_err();
+        let failure = write_atomically(images, &images.join("x.elf"), b"").unwrap_err();
         assert!(failure.message().contains("/proc/none/x.elf"), "{failure}");
     }
 }

@@ -1,10 +1,10 @@
-//! The emulated board: QEMU's `netduinoplus2` with its serial line on a Unix socket in a folder that only this user can
+//! Emulated board: QEMU's `netduinoplus2` with its serial line on a Unix socket in a folder that only this user can
 //! enter.
 //!
-//! The emulator never outlives its owner. Dropping [`Emulator`] kills it and waits for it. It is in a process group of
-//! its own, so that Ctrl-C reaches the owner alone, who ends the run and then drops it. And where there is `setpriv`
-//! (util-linux) the kernel kills it when the thread that has started it dies, however that happens: start it on a
-//! thread that lives as long as the run.
+//! The emulator never outlives its owner. Dropping [`Emulator`] kills the process and waits for its end. The process
+//! has its own process group, so that Ctrl-C reaches only the owner, which ends the run and then drops the emulator. If
+//! `setpriv` (util-linux) is installed, the kernel also kills the emulator when the thread that started it dies: start
+//! it on a thread that lives as long as the run.
 
 use std::fs::{self, File};
 use std::io;
@@ -22,18 +22,19 @@ use super::{Say, packages, tool};
 use report::failure::{Failure, Outcome};
 
 const PROGRAM: &str = "qemu-system-arm";
-/// Its Debian package has the same name.
+/// Debian package of the emulator.
 const PACKAGE: &str = PROGRAM;
 /// The emulated board: an STM32F405.
 pub const MACHINE: &str = "netduinoplus2";
-/// Eight nanoseconds an instruction, and no waiting for the host's clock while the processor sleeps: the board's time
-/// depends on its instructions alone.
+/// Eight nanoseconds per instruction, and no waiting for the host's clock while the processor sleeps: emulated time
+/// depends on the instructions alone.
 pub const CLOCK: &str = "shift=3,sleep=off";
 /// Longest wait for the emulator to open its line.
 const START_TIMEOUT: Duration = Duration::from_secs(20);
-const POLL: Duration = Duration::from_millis(5);
-/// Longest folder name that leaves room for the socket's: a socket's path is limited to some hundred bytes.
-const LONGEST_FOLDER: usize = 60;
+const POLL_INTERVAL: Duration = Duration::from_millis(5);
+/// Longest name of a temporary folder that leaves room for the socket: a socket's path is limited to about a hundred
+/// bytes.
+const LONGEST_FOLDER_NAME: usize = 60;
 
 /// A running emulated board.
 #[derive(Debug)]
@@ -43,18 +44,18 @@ pub struct Emulator {
     ended: Option<ExitStatus>,
 }
 
-/// Finds the emulator, or installs it; returns its own version line.
+/// Finds the emulator or installs it; returns its version line.
 pub fn ensure(say: Say<'_>) -> Outcome<String> {
     if tool::find(PROGRAM).is_none() {
         packages::ensure(&[PACKAGE], "to run the emulated board", say)?;
     }
-    let version = tool::output_of(Command::new(program()?).arg("--version"))?;
+    let version = tool::capture_output(Command::new(program()?).arg("--version"))?;
     Ok(version.lines().next().unwrap_or_default().to_owned())
 }
 
 impl Emulator {
-    /// Boots an image. The board starts once the returned end of its serial line is connected, so that nothing it says
-    /// is missed.
+    /// Boots an image. The board starts once the returned end of its serial line is connected, so that none of its
+    /// output is lost.
     pub fn start(elf: &Path) -> Outcome<(Self, UnixStream)> {
         Self::start_with(&program()?, elf)
     }
@@ -62,10 +63,10 @@ impl Emulator {
     fn start_with(program: &Path, elf: &Path) -> Outcome<(Self, UnixStream)> {
         let folder = private_folder()?;
         let socket = folder.path().join("serial");
-        let log = File::create(folder.path().join("log")).map_err(|error| no_folder(&error))?;
-        let mut command = mortal(program);
-        // The board's UART has room for one byte; a multiplexer before it takes the next ones meanwhile, which doubles the
-        // rate. Its escape character would be taken out of the stream: 256 is none.
+        let log = File::create(folder.path().join("log")).map_err(|error| folder_failure(&error))?;
+        let mut command = killed_with_parent(program);
+        // The board's UART buffers one byte; the multiplexer buffers the following ones, which doubles the rate. Its
+        // escape character would be removed from the stream; 256 disables it.
         command
             .args(["-M", MACHINE, "-icount", CLOCK])
             .args(["-nodefaults", "-no-user-config", "-display", "none", "-monitor", "none"])
@@ -84,19 +85,19 @@ impl Emulator {
         Ok((emulator, line))
     }
 
-    /// Fails if the emulator has ended; the error has its output. Call it whenever the line is silent or gone: this is how a
-    /// death in mid-run is noticed at once.
+    /// Fails if the emulator has ended, with its output in the error. Call it whenever the line is silent or closed, so
+    /// that the end of the process is reported at once.
     pub fn check(&mut self) -> Outcome<()> {
         if self.ended.is_none() {
             self.ended = self.child.try_wait().ok().flatten();
         }
         match self.ended {
             None => Ok(()),
-            Some(status) => Err(Failure::new(format!("the emulator has ended ({status}){}", self.last_words()))),
+            Some(status) => Err(Failure::new(format!("the emulator has ended ({status}){}", self.error_output()))),
         }
     }
 
-    /// Its process.
+    /// Process id of the emulator.
     pub fn process_id(&self) -> u32 {
         self.child.id()
     }
@@ -107,17 +108,17 @@ impl Emulator {
             match UnixStream::connect(socket) {
                 Ok(line) => return Ok(line),
                 Err(error) if Instant::now() > deadline => {
-                    let message = format!("the emulator did not open its serial line: {error}{}", self.last_words());
+                    let message = format!("the emulator did not open its serial line: {error}{}", self.error_output());
                     return Err(Failure::new(message));
                 }
                 Err(_) => self.check()?,
             }
-            thread::sleep(POLL);
+            thread::sleep(POLL_INTERVAL);
         }
     }
 
-    /// The emulator's standard error, apart from its message that it waits for a connection.
-    fn last_words(&self) -> String {
+    /// Standard error of the emulator, without the message that it waits for a connection.
+    fn error_output(&self) -> String {
         let said = fs::read_to_string(self.folder.path().join("log")).unwrap_or_default();
         said.lines().filter(|line| !line.contains("info: QEMU waiting")).map(|line| format!("\n{line}")).collect()
     }
@@ -125,21 +126,21 @@ impl Emulator {
 
 impl Drop for Emulator {
     fn drop(&mut self) {
-        // It may have ended by itself; either way it is waited for.
+        // The process may have ended by itself; `wait` reaps it in both cases.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// The emulator's program.
+/// Path of the emulator's program.
 pub(super) fn program() -> Outcome<PathBuf> {
     tool::find(PROGRAM).ok_or_else(|| {
         Failure::new(format!("{PROGRAM} is not on the search path")).with_help(format!("install {PACKAGE}"))
     })
 }
 
-/// The program, to be killed by the kernel with its parent thread where that can be had.
-pub(super) fn mortal(program: &Path) -> Command {
+/// Command for a program that the kernel kills when its parent thread dies, if `setpriv` is installed.
+pub(super) fn killed_with_parent(program: &Path) -> Command {
     match tool::find("setpriv") {
         None => Command::new(program),
         Some(setpriv) => {
@@ -150,19 +151,20 @@ pub(super) fn mortal(program: &Path) -> Command {
     }
 }
 
-/// A new folder that only this user can enter, with a short name.
+/// Creates a folder with a short name that only this user can enter.
 fn private_folder() -> Outcome<TempDir> {
-    let usual = std::env::temp_dir();
-    let place = if usual.as_os_str().len() > LONGEST_FOLDER { PathBuf::from("/tmp") } else { usual };
-    let for_us_alone = fs::Permissions::from_mode(0o700);
+    let default_folder = std::env::temp_dir();
+    let place =
+        if default_folder.as_os_str().len() > LONGEST_FOLDER_NAME { PathBuf::from("/tmp") } else { default_folder };
+    let owner_only = fs::Permissions::from_mode(0o700);
     tempfile::Builder::new()
         .prefix("joint-")
-        .permissions(for_us_alone)
+        .permissions(owner_only)
         .tempdir_in(place)
-        .map_err(|error| no_folder(&error))
+        .map_err(|error| folder_failure(&error))
 }
 
-fn no_folder(error: &io::Error) -> Failure {
+fn folder_failure(error: &io::Error) -> Failure {
     Failure::new(format!("no temporary folder for the emulator's serial line: {error}"))
         .with_help("set TMPDIR to a folder that can be written")
 }
@@ -183,8 +185,9 @@ mod tests {
         Path::new("/proc").join(process.to_string()).exists()
     }
 
+    /// The failure of an emulator that ends at once carries its standard error.
     #[test]
-    fn an_emulator_that_ends_at_once_is_reported_with_what_it_said() {
+    fn emulator_exit_at_start_shows_output() {
         let folder = tempfile::tempdir().unwrap();
         let program = script(folder.path(), "echo no such machine >&2; exit 1");
         let failure = Emulator::start_with(&program, Path::new("x.elf")).map(|_| ()).unwrap_err();
@@ -192,11 +195,12 @@ mod tests {
         assert_eq!(failure.exit_code(), 2);
     }
 
+    /// Dropping the emulator ends its process and removes its folder.
     #[test]
-    fn a_dropped_emulator_leaves_no_process_and_no_folder() {
+    fn dropped_emulator_removes_process_folder() {
         let folder = private_folder().unwrap();
         let path = folder.path().to_owned();
-        let child = mortal(Path::new("/bin/sleep")).arg("600").process_group(0).spawn().unwrap();
+        let child = killed_with_parent(Path::new("/bin/sleep")).arg("600").process_group(0).spawn().unwrap();
         let mut emulator = Emulator { child, folder, ended: None };
         let process = emulator.process_id();
         assert!(emulator.check().is_ok() && is_alive(process));
@@ -204,35 +208,37 @@ mod tests {
         assert!(!is_alive(process) && !path.exists());
     }
 
+    /// Every check after the emulator's end reports the exit status.
     #[test]
-    fn a_death_in_mid_run_is_noticed_again_and_again() {
+    fn emulator_exit_reported_every_check() {
         let child = Command::new("/bin/sh").args(["-c", "exit 7"]).spawn().unwrap();
         let mut emulator = Emulator { child, folder: private_folder().unwrap(), ended: None };
         let deadline = Instant::now() + START_TIMEOUT;
         while emulator.check().is_ok() && Instant::now() < deadline {
-            thread::sleep(POLL);
+            thread::sleep(POLL_INTERVAL);
         }
         assert!(emulator.check().unwrap_err().message().contains("exit status: 7"));
         assert!(emulator.check().is_err());
     }
 
+    /// The kernel kills the emulator when the thread that started it ends.
     #[test]
-    fn the_kernel_kills_the_emulator_when_its_starter_dies() {
+    fn emulator_killed_with_starter() {
         if tool::find("setpriv").is_none() {
             return;
         }
         let start = || {
-            let child = mortal(Path::new("/bin/sleep")).arg("600").process_group(0).spawn().unwrap();
+            let child = killed_with_parent(Path::new("/bin/sleep")).arg("600").process_group(0).spawn().unwrap();
             let name = Path::new("/proc").join(child.id().to_string()).join("comm");
             while fs::read_to_string(&name).unwrap() != "sleep\n" {
-                thread::sleep(POLL);
+                thread::sleep(POLL_INTERVAL);
             }
             child
         };
         let mut child = thread::spawn(start).join().unwrap();
         let deadline = Instant::now() + START_TIMEOUT;
         while child.try_wait().unwrap().is_none() && Instant::now() < deadline {
-            thread::sleep(POLL);
+            thread::sleep(POLL_INTERVAL);
         }
         let ended = child.try_wait().unwrap();
         let _ = child.kill();
@@ -240,8 +246,9 @@ mod tests {
         assert!(ended.is_some(), "still running");
     }
 
+    /// Other users cannot enter the folder of the emulator's socket.
     #[test]
-    fn the_folder_is_private() {
+    fn socket_folder_private() {
         let folder = private_folder().unwrap();
         assert_eq!(folder.path().metadata().unwrap().permissions().mode() & 0o077, 0);
     }

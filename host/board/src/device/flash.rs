@@ -1,4 +1,5 @@
-//! Writes an image to a real board: by probe-rs through a debug probe, or by dfu-util over USB to the chip's own loader.
+//! Writes an image to a real board: with probe-rs through a debug probe, or with dfu-util over USB to the chip's boot
+//! loader.
 
 use std::fs;
 use std::path::Path;
@@ -12,40 +13,43 @@ use report::failure::{Failure, Outcome};
 
 const PROBE: &str = "probe-rs";
 const DFU: &str = "dfu-util";
-/// The loader of every chip here, as USB knows it.
-const LOADER: &str = "0483:df11";
-/// Where flash begins.
-const FLASH: u64 = 0x0800_0000;
+/// USB identity of the boot loader of every supported chip.
+const BOOT_LOADER_USB_ID: &str = "0483:df11";
+/// Start address of flash.
+const FLASH_START: u64 = 0x0800_0000;
 
 /// Writes an image to the board behind the debug probe and starts it. probe-rs shows its own progress.
 pub fn by_probe(elf: &Path, board: &Board) -> Outcome<()> {
-    let program = tool::find(PROBE).ok_or_else(|| no_probe(elf, board))?;
-    let chip = board.described.probe_name.as_str();
+    let program = tool::find(PROBE).ok_or_else(|| probe_missing(elf, board))?;
+    let chip = board.description.probe_name.as_str();
     let run = |arguments: &[&str], elf: Option<&Path>| {
         let mut command = Command::new(&program);
         command.args(arguments).args(["--chip", chip]).args(elf);
-        finish(command, PROBE, "is the debug probe plugged in? `probe-rs list` shows what is there")
+        run_tool(command, PROBE, "is the debug probe plugged in? `probe-rs list` shows what is there")
     };
     run(&["download"], Some(elf))?;
     run(&["reset"], None)
 }
 
-/// Writes an image over USB and starts it. dfu-util shows its own progress; the file that it wants is put beside the image.
+/// Writes an image over USB and starts it. dfu-util shows its own progress; the flat_binary binary that it needs is written
+/// beside the image.
 pub fn by_dfu(elf: &Path, board: &Board) -> Outcome<()> {
     let binary = elf.with_extension("bin");
-    let bytes = flat(elf)?;
+    let bytes = flat_binary(elf)?;
     fs::write(&binary, bytes).map_err(|error| Failure::new(format!("{}: {error}", binary.display())))?;
-    let program = tool::find(DFU).ok_or_else(|| no_dfu(&binary, board))?;
+    let program = tool::find(DFU).ok_or_else(|| dfu_missing(&binary, board))?;
     let mut command = Command::new(program);
-    command.args(["--device", LOADER, "--alt", "0", "--dfuse-address", "0x08000000:leave", "--download"]).arg(&binary);
-    finish(
+    command
+        .args(["--device", BOOT_LOADER_USB_ID, "--alt", "0", "--dfuse-address", "0x08000000:leave", "--download"])
+        .arg(&binary);
+    run_tool(
         command,
         DFU,
         "is the board on USB, and was it started with BOOT0 high? `dfu-util --list` shows what is there",
     )
 }
 
-fn finish(mut command: Command, name: &str, help: &str) -> Outcome<()> {
+fn run_tool(mut command: Command, name: &str, help: &str) -> Outcome<()> {
     let status =
         command.stdin(Stdio::null()).status().map_err(|error| Failure::new(format!("cannot run {name}: {error}")))?;
     match status.success() {
@@ -54,16 +58,16 @@ fn finish(mut command: Command, name: &str, help: &str) -> Outcome<()> {
     }
 }
 
-/// What an image puts into flash, from its first byte to its last; bytes between its parts as after an erase.
-fn flat(elf: &Path) -> Outcome<Vec<u8>> {
+/// Contents of flash from its first to its last used byte; gaps hold 0xff, the erased value.
+fn flat_binary(elf: &Path) -> Outcome<Vec<u8>> {
     let refused = |why: String| Failure::new(format!("{}: {why}", elf.display()));
     let text = fs::read(elf).map_err(|error| refused(error.to_string()))?;
     let file = object::File::parse(&*text).map_err(|error| refused(error.to_string()))?;
     let mut bytes = Vec::new();
     for segment in file.segments() {
         let data = segment.data().map_err(|error| refused(error.to_string()))?;
-        let place = loaded_at(&file, segment.address()).checked_sub(FLASH).map(|place| place as usize);
-        // What is in RAM from the start on has its place in flash, and nothing else is written.
+        let place = load_address(&file, segment.address()).checked_sub(FLASH_START).map(|place| place as usize);
+        // Initial values of RAM have a load address in flash; segments without data are skipped.
         let Some(place) = place.filter(|place| !data.is_empty() && *place < 1 << 24) else { continue };
         bytes.resize(bytes.len().max(place + data.len()), 0xff);
         bytes[place..place + data.len()].copy_from_slice(data);
@@ -71,8 +75,8 @@ fn flat(elf: &Path) -> Outcome<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Where the segment at an address is loaded from.
-fn loaded_at(file: &object::File<'_>, address: u64) -> u64 {
+/// Load address of the segment at a virtual address.
+fn load_address(file: &object::File<'_>, address: u64) -> u64 {
     use object::read::elf::ProgramHeader;
     let object::File::Elf32(elf) = file else { return address };
     let headers = elf.elf_program_headers();
@@ -80,21 +84,21 @@ fn loaded_at(file: &object::File<'_>, address: u64) -> u64 {
     header.map_or(address, |header| header.p_paddr(elf.endian()).into())
 }
 
-fn no_probe(elf: &Path, board: &Board) -> Failure {
+fn probe_missing(elf: &Path, board: &Board) -> Failure {
     Failure::new(format!("{PROBE}, which writes images to boards, is not on the search path")).with_help(format!(
         "get it: cargo install {PROBE}-tools --locked (https://probe.rs/docs/getting-started/installation)\n\
          or write {} to the {} by a tool of your own",
         elf.display(),
-        board.described.probe_name
+        board.description.probe_name
     ))
 }
 
-fn no_dfu(binary: &Path, board: &Board) -> Failure {
+fn dfu_missing(binary: &Path, board: &Board) -> Failure {
     Failure::new(format!("{DFU}, which writes images over USB, is not on the search path")).with_help(format!(
         "get it: it is the package {DFU} of most distributions\n\
          or write {} to the {} at 0x08000000 by a tool of your own",
         binary.display(),
-        board.described.probe_name
+        board.description.probe_name
     ))
 }
 
@@ -102,11 +106,12 @@ fn no_dfu(binary: &Path, board: &Board) -> Failure {
 mod tests {
     use super::*;
 
+    /// Without the tool the help names its installation and the file to write by other means.
     #[test]
-    fn without_a_tool_both_ways_to_go_on_are_shown() {
+    fn missing_flash_tool_shows_both_remedies() {
         let nucleo = Board::load("nucleo-g474re").unwrap();
-        let probe = no_probe(Path::new("images/q1.elf"), &nucleo);
-        let dfu = no_dfu(Path::new("images/q1.bin"), &nucleo);
+        let probe = probe_missing(Path::new("images/q1.elf"), &nucleo);
+        let dfu = dfu_missing(Path::new("images/q1.bin"), &nucleo);
         for (failure, words) in [
             (probe, ["cargo install probe-rs-tools", "images/q1.elf", "STM32G474RETx"]),
             (dfu, ["package dfu-util", "images/q1.bin", "STM32G474RETx"]),
@@ -117,8 +122,9 @@ mod tests {
         }
     }
 
+    /// The failure names the file that is no ELF file.
     #[test]
-    fn what_is_no_elf_is_named() {
-        assert!(flat(Path::new("/no/image.elf")).unwrap_err().message().contains("/no/image.elf"));
+    fn missing_elf_named() {
+        assert!(flat_binary(Path::new("/no/image.elf")).unwrap_err().message().contains("/no/image.elf"));
     }
 }

@@ -1,5 +1,5 @@
-//! Firmware images: built for a joint, a board and a role, then copied to a name of their own, so that images of
-//! several joints can lie side by side. The tables in an image are made by the firmware's build script.
+//! Firmware images: built for a joint, a board and a role, each under its own file name so that images of several
+//! joints can lie side by side. The tables in an image are made by the firmware's build script.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -12,29 +12,30 @@ use sha2::{Digest, Sha256};
 
 use super::Say;
 use super::board::Board;
-use super::compile::{FIRMWARE, PROFILE, compile, store};
-pub use super::role::word;
+use super::compile::{FIRMWARE_PACKAGE, PROFILE, compile, write_atomically};
+pub use super::role::role_name;
 use super::sources::{self, hexadecimal};
-use super::tick_time::OnBoard;
+use super::tick_time::RateCheck;
 use super::toolchain::{TARGET_FLAGS, Toolchain};
 use report::failure::{Failure, Outcome};
 use report::workspace::workspace;
 
-/// Fixed steps a second unless something else is asked for [Hz].
+/// Default rate of fixed steps [Hz].
 pub const DEFAULT_TICK_RATE: u32 = 20_000;
-/// Control periods a second of the roles that control, unless something else is asked for [Hz].
+/// Default control rate of the roles `observer` and `loop` [Hz].
 pub const CONTROL_RATE: u32 = 10_000;
-/// Control periods a second of a slave on SPI: transfer and step fit one after the other [Hz].
+/// Default control rate of an SPI slave, at which transfer and step fit one after the other [Hz].
 pub const SPI_RATE: u32 = 5000;
-/// The binary of that slave.
+/// Binary of the SPI slave.
 const SPI_BINARY: &str = "spi_observer";
-/// For boards with little flash: at a lower level of optimisation the tick's loops keep checks that can panic.
-const LESS_INLINED: &str = " -Cllvm-args=-inline-threshold=100";
-/// No image is larger [byte].
+/// Inline threshold for boards with little flash. A lower level of optimisation would leave checks that can panic in
+/// the loops of the tick.
+const LOW_INLINE_THRESHOLD: &str = " -Cllvm-args=-inline-threshold=100";
+/// Upper bound on the size of any image [byte].
 const LARGEST_IMAGE: u32 = 256 << 10;
-/// Where the flash of every board begins; RAM is at and beyond [`RAM`].
-const FLASH: u64 = 0x0800_0000;
-const RAM: u64 = 0x2000_0000;
+/// Start address of flash on every board. RAM begins at [`RAM_START`].
+const FLASH_START: u64 = 0x0800_0000;
+const RAM_START: u64 = 0x2000_0000;
 
 /// A finished image.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -53,8 +54,8 @@ pub struct Image {
     pub flags: String,
 }
 
-/// Builds the image of a joint, or finds that it is up to date; refuses what the board has no time for, unless it is to be
-/// `forced`. A relative `joint_file` is relative to the folder that the command runs in.
+/// Builds the image of a joint unless it is up to date. Rejects an image whose worst tick exceeds the period unless
+/// `forced`. A relative `joint_file` is relative to the working folder.
 pub fn build_image(
     toolchain: &Toolchain,
     joint_file: &Path,
@@ -64,45 +65,45 @@ pub fn build_image(
     forced: bool,
     say: Say<'_>,
 ) -> Outcome<Image> {
-    let joint_file = readable(joint_file)?;
-    let forced = fitted(&joint_file, board, role, tick_rate, forced, say)?;
-    let place = file_name(&joint_file, board, word(role), tick_rate);
-    let control = Control { forced, ..Control::usual(tick_rate) };
-    finish(toolchain, [&joint_file; 2], board, binary(role), &control, &place, say)
+    let joint_file = absolute_path(joint_file)?;
+    let forced = check_fit(&joint_file, board, role, tick_rate, forced, say)?;
+    let place = file_name(&joint_file, board, role_name(role), tick_rate);
+    let control = Control { forced, ..Control::with_defaults(tick_rate) };
+    build(toolchain, [&joint_file; 2], board, binary_name(role), &control, &place, say)
 }
 
-/// Refuses a joint file that the board cannot be built for; says whether it is by force that it can.
-fn fitted(joint_file: &Path, board: &Board, role: Role, rate: u32, forced: bool, say: Say<'_>) -> Outcome<bool> {
+/// Rejects a joint file that the board cannot be built for. Returns whether the image needs `forced`.
+fn check_fit(joint_file: &Path, board: &Board, role: Role, rate: u32, forced: bool, say: Say<'_>) -> Outcome<bool> {
     let parameters = named::load(joint_file)?.file.parameters;
-    let forced = OnBoard::new(&parameters, board, role).refuse_unless_forced(rate, forced)?;
+    let forced = RateCheck::new(&parameters, board, role).check_unless_forced(rate, forced)?;
     if forced {
         say(&format!(
-            "built by force: {} has no time for the worst tick at {rate} Hz, and its hello says so",
+            "built by force: the worst tick at {rate} Hz takes too long for {}; the board reports `forced` in its hello",
             board.name()
         ));
     }
     Ok(forced)
 }
 
-/// What the image of a role that controls is made for, besides its joint.
+/// Requirements of a controller's image besides its joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Control {
-    /// Control periods, and ticks, a second [Hz].
+    /// Control rate, equal to the tick rate [Hz].
     pub rate: u32,
-    /// Bandwidth of the loop [rad/s]; what is good for the joint that the controller is told if none is asked for.
+    /// Bandwidth of the loop [rad/s]; if `None`, derived from the joint as told to the controller.
     pub bandwidth: Option<f64>,
-    /// Most that the teeth shall pass on in position mode, referred to the link [N m]; by the firmware's default if none is
-    /// asked for.
+    /// Limit of the torque through the teeth in position mode, referred to the link [N m]; if `None`, the default of
+    /// the firmware's build.
     pub peak_torque: Option<f64>,
-    /// Whether the observer is shown the output encoder.
+    /// True if the observer reads the output encoder.
     pub output_encoder: bool,
-    /// Built although the board has no time for it.
+    /// True if built although the worst tick exceeds the period.
     pub forced: bool,
 }
 
 impl Control {
-    /// At a rate, with the defaults of the firmware's build.
-    pub fn usual(rate: u32) -> Self {
+    /// Requirements at a rate, with the defaults of the firmware's build.
+    pub fn with_defaults(rate: u32) -> Self {
         let ControlRequest { bandwidth, peak_torque, output_encoder } = ControlRequest::USUAL;
         Self { rate, bandwidth, peak_torque, output_encoder, forced: false }
     }
@@ -114,8 +115,8 @@ impl Control {
     }
 }
 
-/// Builds the image of a role that controls, from the texts of two joint files: the true joint, and the joint as its
-/// controller is told it. Each pair has files of its own beside the images.
+/// Builds the image of a role with a controller from the texts of two joint files: the true joint, and the joint as
+/// told to the controller. Each pair has its own files beside the images.
 pub fn build_control_image(
     toolchain: &Toolchain,
     [truth, told]: [&str; 2],
@@ -128,15 +129,15 @@ pub fn build_control_image(
     let name = hexadecimal(&digest[..6]);
     let folder = toolchain.target_directory().join("images/control");
     let [truth_file, told_file] = ["truth", "told"].map(|which| folder.join(format!("{name}-{which}.toml")));
-    store(&folder, &truth_file, truth.as_bytes())?;
-    store(&folder, &told_file, told.as_bytes())?;
-    let forced = fitted(&truth_file, board, role, control.rate, control.forced, say)?;
+    write_atomically(&folder, &truth_file, truth.as_bytes())?;
+    write_atomically(&folder, &told_file, told.as_bytes())?;
+    let forced = check_fit(&truth_file, board, role, control.rate, control.forced, say)?;
     let control = &Control { forced, ..*control };
-    let place = format!("control-{name}-{}-{}.elf", board.name(), word(role));
-    finish(toolchain, [&truth_file, &told_file], board, binary(role), control, &place, say)
+    let place = format!("control-{name}-{}-{}.elf", board.name(), role_name(role));
+    build(toolchain, [&truth_file, &told_file], board, binary_name(role), control, &place, say)
 }
 
-/// Builds observer and compensation of a joint as a slave on SPI, for a board that can be one.
+/// Builds observer and compensation of a joint as an SPI slave, for a board with an SPI slave.
 pub fn build_spi_slave(
     toolchain: &Toolchain,
     joint_file: &Path,
@@ -150,26 +151,28 @@ pub fn build_spi_slave(
         let presets = Board::presets()?;
         let able: Vec<&str> = presets.iter().filter(|board| board.has_spi_slave()).map(Board::name).collect();
         return Err(Failure::new(message).with_help(format!(
-            "take one of {}; beside a motor controller on the same chip or on a serial line, --role observer is for every board; {}",
+            "use one of {}; every board can run --role observer, beside a motor controller on the same chip or on a serial line; {}",
             able.join(", "),
             board_file::OTHER_CHIPS
         )));
     }
-    let joint_file = readable(joint_file)?;
-    let control =
-        Control { forced: fitted(&joint_file, board, Role::Observer, rate, forced, say)?, ..Control::usual(rate) };
+    let joint_file = absolute_path(joint_file)?;
+    let control = Control {
+        forced: check_fit(&joint_file, board, Role::Observer, rate, forced, say)?,
+        ..Control::with_defaults(rate)
+    };
     let place = file_name(&joint_file, board, SPI_BINARY, rate);
-    finish(toolchain, [&joint_file; 2], board, SPI_BINARY, &control, &place, say)
+    build(toolchain, [&joint_file; 2], board, SPI_BINARY, &control, &place, say)
 }
 
-/// The whole path of a joint file.
-fn readable(joint_file: &Path) -> Outcome<PathBuf> {
+/// Absolute path of a joint file.
+fn absolute_path(joint_file: &Path) -> Outcome<PathBuf> {
     joint_file.canonicalize().map_err(|error| {
         Failure::new(format!("joint file {}: {error}", joint_file.display())).with_help("name a file that can be read")
     })
 }
 
-fn finish(
+fn build(
     toolchain: &Toolchain,
     [truth, told]: [&Path; 2],
     board: &Board,
@@ -183,7 +186,7 @@ fn finish(
     let [bandwidth, peak_torque] =
         [bandwidth, peak_torque].map(|asked| asked.map_or_else(String::new, |asked| asked.to_string()));
     let [motor_only, forced] = [!output_encoder, control.forced].map(|yes| if yes { "1" } else { "0" });
-    let own_flags = if has_room_for_all(board) { "" } else { LESS_INLINED };
+    let own_flags = if has_room_for_all(board) { "" } else { LOW_INLINE_THRESHOLD };
     let mut target_flags = toolchain.target_flags();
     target_flags.push(own_flags);
     let environment: [(&str, &OsStr); 9] = [
@@ -206,8 +209,8 @@ fn finish(
         [truth, told, &board.file],
         &format!("{binary}{}{control:?}{own_flags}", board.file.display()),
         || {
-            compile(toolchain, FIRMWARE, binary, board.chip().name(), &environment, say)
-                .map_err(|failure| too_large(&failure, board).unwrap_or(failure))
+            compile(toolchain, FIRMWARE_PACKAGE, binary, board.chip().name(), &environment, say)
+                .map_err(|failure| size_failure(&failure, board).unwrap_or(failure))
         },
     )?;
     let (flash_bytes, ram_bytes) =
@@ -227,53 +230,52 @@ fn finish(
     })
 }
 
-/// What the linker says of an image that a board has no room for, in its own words and no others.
-fn too_large(failure: &Failure, board: &Board) -> Option<Failure> {
+/// Extracts the linker's one-line message about an image that is too large for the board.
+fn size_failure(failure: &Failure, board: &Board) -> Option<Failure> {
     let line = failure.message().lines().find(|line| line.contains("too large for the board"))?;
     let what = line.rsplit("error: ").next().unwrap_or(line).trim();
     Some(Failure::new(what).with_help(format!(
-        "take a role that needs less (`--role plant` is the smallest), or a board with more: `joint board check {}` says what \
-         this one has; {}",
-        board.named,
+        "use a role that needs less (`--role plant` is the smallest), or a board with more memory: `joint board check {}` \
+         lists the memory of this one; {}",
+        board.argument,
         board_file::OTHER_CHIPS
     )))
 }
 
-/// A preset of the workspace's `joints` folder, for a caller that has a name and no file.
+/// Path of a preset in the workspace's `joints` folder.
 pub fn preset_file(name: &str) -> PathBuf {
     workspace().join("joints").join(format!("{name}.toml"))
 }
 
-/// The file of a joint that was named on the command line, as the firmware's build wants it: presets are files too, found
-/// by their `name`.
+/// File of a joint named on the command line, for the firmware's build: a path, or a preset by its `name`.
 pub fn joint_file(file: &Path, name: &str) -> PathBuf {
     if file.is_file() { file.to_owned() } else { preset_file(name) }
 }
 
-/// The firmware's binary for a role: `loop` could not be a crate.
-fn binary(role: Role) -> &'static str {
+/// Firmware binary of a role. The role `loop` has another name because `loop` is a keyword.
+fn binary_name(role: Role) -> &'static str {
     match role {
         Role::Loop => "whole_loop",
-        other => word(other),
+        other => role_name(other),
     }
 }
 
-/// Whether a board has flash enough for the images of all roles.
+/// Returns whether a board has enough flash for the images of all roles.
 pub fn has_room_for_all(board: &Board) -> bool {
-    board.described.image_bytes() > LARGEST_IMAGE
+    board.description.image_bytes() > LARGEST_IMAGE
 }
 
-/// Joint, board, role, and the tick rate if it is not the usual one. Files of the same name in different folders are
-/// told apart by a digest of the path.
+/// File name from joint, board, role, and the tick rate unless it is the default. A digest of the path tells apart
+/// files of one name in different folders.
 fn file_name(joint_file: &Path, board: &Board, role: &str, tick_rate: u32) -> String {
     let joint = joint_file.file_stem().unwrap_or_default().to_string_lossy();
-    let [joint_origin, board_origin] = [(joint_file, "joints"), (&board.file, "boards")].map(origin);
+    let [joint_origin, board_origin] = [(joint_file, "joints"), (&board.file, "boards")].map(folder_suffix);
     let rate = if tick_rate == DEFAULT_TICK_RATE { String::new() } else { format!("-{tick_rate}hz") };
     format!("{joint}{joint_origin}-{}{board_origin}-{role}{rate}.elf", board.name())
 }
 
-/// What tells a file from others of its name; nothing for those in a folder of the workspace.
-fn origin((file, presets): (&Path, &str)) -> String {
+/// Suffix that tells a file from others of its name; empty for files in a preset folder of the workspace.
+fn folder_suffix((file, presets): (&Path, &str)) -> String {
     let presets = workspace().join(presets);
     let presets = presets.canonicalize().unwrap_or(presets);
     if file.parent() == Some(&presets) {
@@ -283,17 +285,17 @@ fn origin((file, presets): (&Path, &str)) -> String {
     format!("-{:02x}{:02x}", digest[0], digest[1])
 }
 
-/// Bytes in flash (loaded segments) and in RAM (everything at RAM addresses).
+/// Bytes in flash (loaded segments) and in RAM (all segments at RAM addresses).
 fn sizes(elf: &[u8]) -> Result<(u64, u64), object::Error> {
     let file = object::File::parse(elf)?;
     let mut sizes = (0, 0);
     for segment in file.segments() {
         let loaded = segment.file_range().1;
-        if segment.address() >= RAM {
+        if segment.address() >= RAM_START {
             sizes.1 += segment.size();
-            // Initial values of RAM are kept in flash.
+            // Initial values of RAM also occupy flash.
             sizes.0 += loaded;
-        } else if segment.address() >= FLASH {
+        } else if segment.address() >= FLASH_START {
             sizes.0 += loaded;
         }
     }
@@ -309,8 +311,9 @@ mod tests {
         file_name(path, &Board::emulated(), "plant", DEFAULT_TICK_RATE)
     }
 
+    /// Joints, boards, rates and folders never share an image's file name.
     #[test]
-    fn joints_boards_and_rates_have_files_of_their_own() {
+    fn image_names_differ() {
         let preset = preset_file("q1");
         assert_eq!(name(&preset), "q1-olimex-h405-plant.elf");
         assert_ne!(name(&preset), name(&preset_file("s1")));
@@ -321,23 +324,26 @@ mod tests {
         assert_ne!(file_name(&preset, &own, "plant", 10_000), "q1-nucleo-h743zi-plant-10000hz.elf");
     }
 
+    /// The default tick rate divides the core clock of every chip.
     #[test]
-    fn the_usual_tick_rate_can_be_made_on_every_chip() {
+    fn default_tick_rate_divides_every_clock() {
         assert!(Chip::ALL.iter().all(|chip| chip.core_rate().is_multiple_of(DEFAULT_TICK_RATE)));
     }
 
+    /// Only the linker's assertion about size becomes the message.
     #[test]
-    fn an_image_that_has_no_room_is_told_in_one_sentence() {
+    fn oversized_image_message_is_one_line() {
         let board = Board::load("b-g431b-esc1").unwrap();
         let said = "building the firmware failed\n  = note: ld.lld: error: statics are too large for the board b-g431b-esc1: why\n";
-        let failure = too_large(&Failure::new(said), &board).unwrap();
+        let failure = size_failure(&Failure::new(said), &board).unwrap();
         assert_eq!(failure.message(), "statics are too large for the board b-g431b-esc1: why");
         assert!(failure.help().unwrap().contains("--role plant"), "{failure}");
-        assert!(too_large(&Failure::new("no such crate"), &board).is_none());
+        assert!(size_failure(&Failure::new("no such crate"), &board).is_none());
     }
 
+    /// A file that is no ELF file has no sizes.
     #[test]
-    fn a_file_that_is_no_elf_has_no_sizes() {
+    fn sizes_reject_non_elf() {
         assert!(sizes(b"no elf").is_err());
     }
 }

@@ -1,5 +1,5 @@
-//! Measuring binaries for the emulator: built for any joints, run to their end without a serial line; their output is
-//! read through semihosting.
+//! Measuring binaries for the emulator: built for a list of joints and run to their end without a serial line; their
+//! output comes through semihosting.
 
 use std::env;
 use std::ffi::OsStr;
@@ -13,21 +13,22 @@ use std::time::{Duration, Instant};
 
 use super::Say;
 use super::board::Chip;
-use super::compile::{FIRMWARE, compile, store};
+use super::compile::{FIRMWARE_PACKAGE, compile, write_atomically};
 use super::emulator::{self, MACHINE};
 use super::toolchain::Toolchain;
 use report::failure::{Failure, Outcome};
 use report::interruption;
 
-/// 64 ns an instruction beside a timer of 168 MHz: 10.752 counts, so that whole instructions are found exactly.
+/// 64 ns per instruction against a timer of 168 MHz: 10.752 counts, so that the number of instructions is recovered
+/// exactly.
 const CLOCK: &str = "shift=6,sleep=off";
-/// Last line of a run that came to its end; a panic or a reset leaves it out.
+/// Last line of a complete run; a panic or a reset leaves it out.
 const END: &str = "end of measurement";
-/// Longest run; a healthy one takes a minute or two.
+/// Longest run; a normal run takes one to two minutes.
 const TIMEOUT: Duration = Duration::from_secs(1200);
-const POLL: Duration = Duration::from_millis(100);
+const POLL_INTERVAL: Duration = Duration::from_millis(100);
 
-/// Builds a binary that measures in the emulator, with the tables of these joints; returns the ELF file.
+/// Builds a measuring binary with the tables of the given joints; returns the ELF file.
 pub fn build_measuring(
     toolchain: &Toolchain,
     binary: &str,
@@ -39,22 +40,22 @@ pub fn build_measuring(
         .map_err(|error| Failure::new(format!("joint files cannot be listed for the firmware's build: {error}")))?;
     let rate = tick_rate.to_string();
     let environment = [("MEASURED_JOINTS", list.as_ref()), ("JOINT_TICK_RATE", rate.as_ref())];
-    stored(toolchain, binary, &compile(toolchain, FIRMWARE, binary, &measuring_features(), &environment, say)?)
+    stored(toolchain, binary, &compile(toolchain, FIRMWARE_PACKAGE, binary, &measuring_features(), &environment, say)?)
 }
 
 fn stored(toolchain: &Toolchain, binary: &str, elf: &[u8]) -> Outcome<PathBuf> {
     let images = toolchain.target_directory().join("images");
     let place = images.join(format!("{binary}.elf"));
-    store(&images, &place, elf)?;
+    write_atomically(&images, &place, elf)?;
     Ok(place)
 }
 
-/// The firmware's features for binaries that measure: the chip that is emulated, and what they need.
+/// Firmware features of measuring binaries: the emulated chip, and `measuring`.
 pub(super) fn measuring_features() -> String {
     format!("{},measuring", Chip::Stm32f405.name())
 }
 
-/// Builds a measuring binary of another package of the workspace, with variables for its build; returns the ELF file.
+/// Builds a measuring binary of another workspace package, with variables for its build; returns the ELF file.
 pub fn build_other(
     toolchain: &Toolchain,
     package: &str,
@@ -64,9 +65,11 @@ pub fn build_other(
     stored(toolchain, package, &compile(toolchain, package, package, "", environment, say)?)
 }
 
-/// Runs a measuring binary and reads each of its lines.
+/// Runs a measuring binary and parses each of its lines.
 pub fn read<R>(elf: &Path, mut parse: impl FnMut(&str) -> Option<R>) -> Outcome<Vec<R>> {
-    let read = |line: &String| parse(line).ok_or_else(|| Failure::new(format!("the board said: {line}")));
+    let read = |line: &String| {
+        parse(line).ok_or_else(|| Failure::new(format!("unexpected output of the measuring binary: {line}")))
+    };
     run(elf)?.iter().map(read).collect()
 }
 
@@ -75,9 +78,9 @@ pub fn run(elf: &Path) -> Outcome<Vec<String>> {
     run_on(MACHINE, elf)
 }
 
-/// The same on another machine of the emulator.
+/// Runs a measuring binary on another machine of the emulator and returns its lines.
 pub fn run_on(machine: &str, elf: &Path) -> Outcome<Vec<String>> {
-    let mut command = emulator::mortal(&emulator::program()?);
+    let mut command = emulator::killed_with_parent(&emulator::program()?);
     command
         .args(["-M", machine, "-icount", CLOCK, "-no-reboot"])
         .args(["-nodefaults", "-no-user-config", "-display", "none", "-monitor", "none", "-serial", "none"])
@@ -93,16 +96,16 @@ pub fn run_on(machine: &str, elf: &Path) -> Outcome<Vec<String>> {
         Some(last) if last == END => Ok(lines),
         last => {
             let said: Vec<_> = lines.into_iter().chain(last).collect();
-            Err(Failure::new(format!("{} broke off in the emulator:\n{}", elf.display(), said.join("\n"))))
+            Err(Failure::new(format!("{} ended early in the emulator:\n{}", elf.display(), said.join("\n"))))
         }
     }
 }
 
-/// The emulator's process, which does not outlive its owner.
+/// Emulator process, killed when dropped.
 struct Running(Child);
 
 impl Running {
-    /// All that it says until its end.
+    /// Collects all lines until the process ends.
     fn lines(mut self) -> Outcome<Vec<String>> {
         let (sender, receiver) = mpsc::channel();
         let stdout = self.0.stdout.take();
@@ -112,7 +115,7 @@ impl Running {
         });
         let (mut lines, start) = (Vec::new(), Instant::now());
         loop {
-            match receiver.recv_timeout(POLL) {
+            match receiver.recv_timeout(POLL_INTERVAL) {
                 Ok(line) => lines.push(line),
                 Err(RecvTimeoutError::Disconnected) => return Ok(lines),
                 Err(RecvTimeoutError::Timeout) if interruption::requested() => {
@@ -120,7 +123,9 @@ impl Running {
                 }
                 Err(RecvTimeoutError::Timeout) if start.elapsed() > TIMEOUT => {
                     let minutes = TIMEOUT.as_secs() / 60;
-                    return Err(Failure::new(format!("no end in the emulator after {minutes} minutes")));
+                    return Err(Failure::new(format!(
+                        "the measurement did not end in the emulator within {minutes} minutes"
+                    )));
                 }
                 Err(RecvTimeoutError::Timeout) => {}
             }
@@ -130,7 +135,7 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It may have ended by itself; either way it is waited for.
+        // The process may have ended by itself; `wait` reaps it in both cases.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }

@@ -1,8 +1,8 @@
-//! Everything about the device under test on the host: its compiler, images, the emulator, flashing.
+//! The device under test on the host: its compiler, images, the emulator, flashing.
 //!
-//! The order of use: [`toolchain::Toolchain::prepare`], [`image::build_image`], then [`emulator::Emulator::start`] or
-//! [`flash::flash`]; or [`measuring::build_measuring`] and [`measuring::run`]. An image is built once for its `sources`. Each says
-//! what it is about to do, if that takes time or changes the machine, before it does it.
+//! Order of use: [`toolchain::Toolchain::prepare`], [`image::build_image`], then [`emulator::Emulator::start`] or
+//! [`flash`]; or [`measuring::build_measuring`] and [`measuring::run`]. An image is rebuilt only if one of its
+//! `sources` has changed. Each step that takes time or changes the machine announces itself first.
 
 pub mod board;
 pub mod compile;
@@ -21,5 +21,5 @@ pub mod tick_time;
 pub mod tool;
 pub mod toolchain;
 
-/// Prints a line for the user about what is done next.
+/// Callback that prints a progress line for the user.
 pub type Say<'a> = &'a dyn Fn(&str);

@@ -1,5 +1,5 @@
-//! Installs missing packages on Debian-like systems if the user is root and wants that; otherwise shows the command to run. On
-//! other systems the missing packages are named.
+//! Installs missing packages on Debian-like systems if the user is root and agrees; otherwise shows the command to run.
+//! On other systems the missing packages are named.
 
 use std::env;
 use std::fs::{self, File};
@@ -15,8 +15,8 @@ use report::progress;
 
 use super::{Say, tool};
 
-/// Variable of the environment that decides where `--install` does not.
-pub const VARIABLE: &str = "JOINT_INSTALL";
+/// Environment variable that decides about packages if `--install` is not given.
+pub const INSTALL_VARIABLE: &str = "JOINT_INSTALL";
 
 /// Decision about packages that are missing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -30,37 +30,37 @@ pub enum Install {
 }
 
 /// Decision of `--install`, for the whole process.
-static WANTED: OnceLock<Install> = OnceLock::new();
+static DECISION: OnceLock<Install> = OnceLock::new();
 /// Answer of the user, who is asked once.
 static ANSWER: OnceLock<bool> = OnceLock::new();
 
-/// Takes the decision of `--install` for the whole process; only the first one counts.
-pub fn decide(wanted: Option<Install>) {
+/// Sets the decision of `--install` for the whole process; later calls have no effect.
+pub fn set_decision(wanted: Option<Install>) {
     if let Some(wanted) = wanted {
-        let _ = WANTED.set(wanted);
+        let _ = DECISION.set(wanted);
     }
 }
 
 impl Install {
-    /// Returns the decision of `--install`, else that of the environment.
-    pub fn in_force() -> Outcome<Self> {
-        match WANTED.get() {
+    /// Returns the decision of `--install`, else of the environment variable.
+    pub fn effective() -> Outcome<Self> {
+        match DECISION.get() {
             Some(wanted) => Ok(*wanted),
-            None => {
-                Self::of_variable(env::var_os(VARIABLE).map(|typed| typed.to_string_lossy().into_owned()).as_deref())
-            }
+            None => Self::from_variable(
+                env::var_os(INSTALL_VARIABLE).map(|typed| typed.to_string_lossy().into_owned()).as_deref(),
+            ),
         }
     }
 
-    fn of_variable(typed: Option<&str>) -> Outcome<Self> {
+    fn from_variable(typed: Option<&str>) -> Outcome<Self> {
         let Some(typed) = typed.filter(|typed| !typed.is_empty()) else { return Ok(Self::Ask) };
         Self::from_str(typed, true).map_err(|_| {
-            Failure::new(format!("{VARIABLE}={typed} is no decision about packages"))
-                .with_help(format!("set {VARIABLE} to yes, no or ask, or leave it out"))
+            Failure::new(format!("{INSTALL_VARIABLE}={typed} is invalid"))
+                .with_help(format!("set {INSTALL_VARIABLE} to yes, no or ask, or leave it out"))
         })
     }
 
-    /// Returns the word that `--install` and the environment have for it.
+    /// Returns the word for the decision in `--install` and the environment variable.
     pub fn word(self) -> &'static str {
         match self {
             Self::Yes => "yes",
@@ -70,18 +70,18 @@ impl Install {
     }
 }
 
-/// How packages can be got here.
+/// Way to install packages on this system.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum PackageSource {
     /// apt-get, as root.
     Install(PathBuf),
-    /// apt-get, but somebody else must be root.
+    /// apt-get, but the user is not root.
     Ask,
-    /// There is no apt-get.
+    /// No apt-get.
     Unknown,
 }
 
-/// Makes sure that packages are installed. `purpose` completes "... needed ...", such as "to build for the board".
+/// Installs packages that are missing. `purpose` completes "... needed ...", such as "to build for the board".
 pub fn ensure(packages: &[&str], purpose: &str, say: Say<'_>) -> Outcome<()> {
     let source = package_source();
     let missing = || -> Vec<&str> {
@@ -94,37 +94,42 @@ pub fn ensure(packages: &[&str], purpose: &str, say: Say<'_>) -> Outcome<()> {
     if before.is_empty() {
         return Ok(());
     }
-    let install = Install::in_force()?;
+    let install = Install::effective()?;
     let PackageSource::Install(apt_get_file) = &source else {
-        return Err(absent(&source, &before.join(" "), purpose));
+        return Err(not_installed(&source, &before.join(" "), purpose));
     };
     if install == Install::No {
-        return Err(forbidden(&before.join(" "), purpose));
+        return Err(not_permitted(&before.join(" "), purpose));
     }
-    let _alone = alone(apt_get_file, say).map_err(|error| cannot_wait(&error))?;
-    // Who waited may find that the packages have come meanwhile.
+    let _lock = lock_installation(apt_get_file, say).map_err(|error| cannot_wait(&error))?;
+    // Another process may have installed the packages during the wait.
     let missing = missing();
     if missing.is_empty() {
         return Ok(());
     }
     let list = missing.join(" ");
     let is_terminal = io::stdin().is_terminal() && io::stderr().is_terminal();
-    let asks = install == Install::Ask;
-    if asks && is_terminal && !*ANSWER.get_or_init(|| agrees(&list, purpose)) {
-        return Err(forbidden(&list, purpose));
+    let is_asking = install == Install::Ask;
+    if is_asking && is_terminal && !*ANSWER.get_or_init(|| user_agrees(&list, purpose)) {
+        return Err(not_permitted(&list, purpose));
     }
-    let hint =
-        if asks && !is_terminal { format!("; `--install no` or {VARIABLE}=no forbids that") } else { String::new() };
+    let hint = if is_asking && !is_terminal {
+        format!("; `--install no` or {INSTALL_VARIABLE}=no forbids that")
+    } else {
+        String::new()
+    };
     say(&format!("installing {list} with apt-get, needed {purpose}{hint}"));
-    tool::follow(apt_get().arg("update"), "apt-get update", say).map_err(|failure| with_line(failure, &list))?;
+    tool::run_with_progress(apt_get().arg("update"), "apt-get update", say)
+        .map_err(|failure| with_apt_get_help(failure, &list))?;
     let mut install = apt_get();
     install.args(["install", "--yes", "--no-install-recommends"]).args(&missing);
-    tool::follow(&mut install, &format!("installing {list}"), say).map_err(|failure| with_line(failure, &list))
+    tool::run_with_progress(&mut install, &format!("installing {list}"), say)
+        .map_err(|failure| with_apt_get_help(failure, &list))
 }
 
-/// Waits for the other commands of this project that install something, here or in another process: of two `apt-get update`
-/// at once one fails. The lock is on the program's own file, so that nothing has to be written.
-fn alone(apt_get_file: &Path, say: Say<'_>) -> io::Result<File> {
+/// Waits for other commands of this project that install packages, in this or another process: of two concurrent
+/// `apt-get update` one fails. The lock is on apt-get's own file, so that no lock file is needed.
+fn lock_installation(apt_get_file: &Path, say: Say<'_>) -> io::Result<File> {
     let file = File::open(apt_get_file)?;
     tool::lock(&file, "another installation of packages", say)?;
     Ok(file)
@@ -134,14 +139,14 @@ fn cannot_wait(error: &io::Error) -> Failure {
     Failure::new(format!("cannot wait for other installations to end: apt-get: {error}"))
 }
 
-fn with_line(failure: Failure, list: &str) -> Failure {
-    failure.with_help(format!("mend what apt-get complains about, then run: apt-get install {list}"))
+fn with_apt_get_help(failure: Failure, list: &str) -> Failure {
+    failure.with_help(format!("fix the error of apt-get, then run: apt-get install {list}"))
 }
 
-/// Asks the user whether packages may be installed; no answer is no.
-fn agrees(list: &str, purpose: &str) -> bool {
+/// Asks the user for permission to install packages; no answer means no.
+fn user_agrees(list: &str, purpose: &str) -> bool {
     let question = format!(
-        "{list} must be installed {purpose}: by apt-get, as root, for the whole system (`--install` and {VARIABLE} decide \
+        "{list} must be installed {purpose}: by apt-get, as root, for the whole system (`--install` and {INSTALL_VARIABLE} decide \
          without a question).\ninstall now? [y/N] "
     );
     progress::ask(&question).is_some_and(|answer| is_yes(&answer))
@@ -152,17 +157,17 @@ fn is_yes(answer: &str) -> bool {
 }
 
 /// Failure for packages that the user has not allowed to be installed.
-fn forbidden(list: &str, purpose: &str) -> Failure {
+fn not_permitted(list: &str, purpose: &str) -> Failure {
     Failure::new(format!("not installed, but needed {purpose}: {list}")).with_help(format!(
-        "run: apt-get update && apt-get install {list}\nor allow it by `--install yes` or {VARIABLE}=yes"
+        "run: apt-get update && apt-get install {list}\nor allow it by `--install yes` or {INSTALL_VARIABLE}=yes"
     ))
 }
 
-fn absent(package_source: &PackageSource, list: &str, purpose: &str) -> Failure {
+fn not_installed(package_source: &PackageSource, list: &str, purpose: &str) -> Failure {
     let failure = Failure::new(format!("not installed, but needed {purpose}: {list}"));
     match package_source {
         PackageSource::Unknown => {
-            failure.with_help("install what these Debian packages hold, by your system's own means")
+            failure.with_help("install the programs of these Debian packages with your system's package manager")
         }
         _ => failure.with_help(format!("run: sudo apt-get update && sudo apt-get install {list}")),
     }
@@ -176,18 +181,18 @@ fn package_source() -> PackageSource {
     }
 }
 
-/// The owner of this process's entry is the user that it runs as.
+/// Returns whether the process runs as root: the owner of its `/proc` entry is its user.
 fn is_root() -> bool {
     fs::metadata("/proc/self").is_ok_and(|data| data.uid() == 0)
 }
 
 fn is_installed(package: &str) -> bool {
     let status =
-        tool::output_of(Command::new("dpkg-query").args(["--show", "--showformat=${db:Status-Abbrev}", package]));
+        tool::capture_output(Command::new("dpkg-query").args(["--show", "--showformat=${db:Status-Abbrev}", package]));
     status.is_ok_and(|status| status.starts_with("ii"))
 }
 
-/// Another installation that is under way is waited for, up to five minutes: two commands may be started at once.
+/// apt-get command that waits up to five minutes for another installation.
 fn apt_get() -> Command {
     let mut command = Command::new("apt-get");
     command.env("DEBIAN_FRONTEND", "noninteractive").args(["-o", "DPkg::Lock::Timeout=300"]);
@@ -203,67 +208,73 @@ mod tests {
 
     use super::*;
 
+    /// Without root the help is the exact command, and the exit code is 2.
     #[test]
-    fn who_is_not_root_gets_the_exact_line_and_exit_code_2() {
-        let failure = absent(&PackageSource::Ask, "lld qemu-system-arm", "to run the emulated board");
+    fn missing_package_without_root_shows_command() {
+        let failure = not_installed(&PackageSource::Ask, "lld qemu-system-arm", "to run the emulated board");
         assert_eq!(failure.help(), Some("run: sudo apt-get update && sudo apt-get install lld qemu-system-arm"));
         assert!(failure.message().contains("to run the emulated board"));
         assert_eq!(failure.exit_code(), 2);
     }
 
+    /// A second installation waits until the first has ended.
     #[test]
-    fn who_installs_waits_for_who_does_already() {
+    fn concurrent_installation_waits() {
         let folder = tempfile::tempdir().unwrap();
         let program = folder.path().join("apt-get");
         fs::write(&program, "").unwrap();
-        let first = alone(&program, &|_| {}).unwrap();
+        let first = lock_installation(&program, &|_| {}).unwrap();
         assert!(matches!(File::open(&program).unwrap().try_lock(), Err(TryLockError::WouldBlock)));
         let (waits, told) = mpsc::channel();
         let is_over = Arc::new(AtomicBool::new(false));
         let seen = Arc::clone(&is_over);
         let other = std::thread::spawn(move || {
-            let _alone = alone(&program, &|line| waits.send(line.to_owned()).unwrap()).unwrap();
+            let _lock = lock_installation(&program, &|line| waits.send(line.to_owned()).unwrap()).unwrap();
             seen.load(Ordering::SeqCst)
         });
         assert_eq!(told.recv().unwrap(), "waiting for another installation of packages");
-        // Long enough for one that does not wait to come too early.
+        // Longer than a thread that does not wait needs to reach its assertion.
         std::thread::sleep(Duration::from_millis(100));
         is_over.store(true, Ordering::SeqCst);
         drop(first);
         assert!(other.join().unwrap());
     }
 
+    /// `JOINT_INSTALL` accepts yes, no and ask; an empty variable counts as unset.
     #[test]
-    fn variable_says_yes_no_or_ask_and_nothing_else() {
+    fn install_variable_accepts_three_words() {
         for (typed, wanted) in [(None, Install::Ask), (Some(""), Install::Ask), (Some("No"), Install::No)] {
-            assert_eq!(Install::of_variable(typed).unwrap(), wanted, "{typed:?}");
+            assert_eq!(Install::from_variable(typed).unwrap(), wanted, "{typed:?}");
         }
         for install in Install::value_variants() {
-            assert_eq!(Install::of_variable(Some(install.word())).unwrap(), *install);
+            assert_eq!(Install::from_variable(Some(install.word())).unwrap(), *install);
         }
-        let failure = Install::of_variable(Some("never")).unwrap_err();
+        let failure = Install::from_variable(Some("never")).unwrap_err();
         assert!(failure.message().contains("JOINT_INSTALL=never"), "{failure}");
         assert!(failure.help().unwrap().contains("yes, no or ask"), "{failure}");
         assert_eq!(failure.exit_code(), 2);
     }
 
+    /// Any answer but y or yes means no.
     #[test]
-    fn only_a_yes_is_a_yes() {
+    fn only_yes_permits_installation() {
         assert!(["y\n", "Yes\n", " YES "].into_iter().all(is_yes));
         assert!(!["", "\n", "n\n", "yess\n", "no"].into_iter().any(is_yes));
     }
 
+    /// The failure names the packages, and its help the command.
     #[test]
-    fn what_is_forbidden_names_package_and_command() {
-        let failure = forbidden("lld qemu-system-arm", "to run the emulated board");
+    fn refused_installation_names_command() {
+        let failure = not_permitted("lld qemu-system-arm", "to run the emulated board");
         assert!(failure.message().contains("to run the emulated board: lld qemu-system-arm"), "{failure}");
         assert!(failure.help().unwrap().contains("apt-get install lld qemu-system-arm"), "{failure}");
         assert_eq!(failure.exit_code(), 2);
     }
 
+    /// Without apt-get the packages are named and no command is offered.
     #[test]
-    fn without_apt_get_the_packages_are_named() {
-        let failure = absent(&PackageSource::Unknown, "lld", "to build for the board");
+    fn missing_packages_named_without_apt_get() {
+        let failure = not_installed(&PackageSource::Unknown, "lld", "to build for the board");
         assert!(failure.message().contains("lld"), "{failure}");
         assert!(!failure.help().unwrap_or_default().contains("apt-get"));
     }

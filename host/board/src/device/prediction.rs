@@ -1,5 +1,5 @@
-//! Prediction whether the image of a role fits a board, by size and by time, before anything is built: sizes of images of
-//! joint Q1 that were linked for the chip, instructions counted in the emulator, and cycles reckoned for the chip.
+//! Predicts before a build whether the image of a role fits a board by size and by time, from sizes of images of joint
+//! Q1 linked for the chip, instructions counted in the emulator, and cycles estimated for the chip.
 
 use std::fmt;
 
@@ -8,44 +8,44 @@ use link::messages::Role;
 use parameters::JointParameters;
 
 use super::board::Board;
-use super::tick_time::{Obstacle, OnBoard, TickTime};
+use super::tick_time::{Obstacle, RateCheck, TickTime};
 
-/// Words for the origin of every prediction.
-pub const ORIGIN: &str = "images of Q1 linked before, instructions counted in the emulator, cycles reckoned";
+/// Origin of every prediction, as printed.
+pub const ORIGIN: &str = "images of Q1 linked before, instructions counted in the emulator, cycles estimated";
 
-/// Prediction for a role at a rate.
+/// Predicted size and worst tick of a role at a rate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prediction {
-    /// Memory that the image takes; none if no such image was ever linked for the chip.
+    /// Memory of the image; `None` if no such image was ever linked for the chip.
     size: Option<ImageSize>,
-    /// Flash that an image may take, and RAM that its statics may take [byte].
+    /// Limits of the image in flash and of its statics in RAM [byte].
     limits: [u32; 2],
     /// Steps a second [Hz].
     rate: u32,
-    /// Reason why the rate is refused.
+    /// Reason for which the rate is rejected.
     obstacle: Option<Obstacle>,
-    /// The worst tick, where a step is stable.
+    /// Worst tick, if a step is stable at the rate.
     time: Option<TickTime>,
-    /// The nearest rate that is not refused [Hz].
+    /// Nearest rate that is accepted [Hz].
     nearest: Option<u32>,
 }
 
 impl Prediction {
-    /// Predicts an image, which `--role` names by `image` and whose tick is that of `role`.
+    /// Predicts the image that `--role` calls `image` and whose tick is the tick of `role`.
     pub fn new(board: &Board, joint: &JointParameters, image: &str, role: Role, rate: u32) -> Self {
-        let on_board = OnBoard::new(joint, board, role);
+        let on_board = RateCheck::new(joint, board, role);
         let obstacle = on_board.obstacle(rate);
         Self {
             size: board.chip().image_size(image),
-            limits: [board.described.image_bytes(), board.described.static_bytes()],
+            limits: [board.description.image_bytes(), board.description.static_bytes()],
             rate,
-            nearest: obstacle.as_ref().and_then(|_| on_board.nearest(rate)),
+            nearest: obstacle.as_ref().and_then(|_| on_board.nearest_accepted(rate)),
             obstacle,
             time: on_board.tick_time(rate),
         }
     }
 
-    /// Returns whether flash and RAM suffice; yes if nothing is known of the size.
+    /// Returns whether flash and RAM suffice; true if the size is unknown.
     pub fn has_room(&self) -> bool {
         let [flash, ram] = self.limits;
         self.size.is_none_or(|size| size.flash <= flash && size.ram <= ram)
@@ -107,15 +107,17 @@ mod tests {
         Prediction::new(&Board::load(board).unwrap(), &joint, image, role, rate)
     }
 
+    /// A chip with 1 MiB of flash has room and time for plant and observer.
     #[test]
-    fn large_chip_has_room_and_time_for_every_role() {
+    fn large_chip_fits_every_role() {
         for (image, role, rate) in [("plant", Role::Plant, 20_000), ("observer", Role::Observer, 10_000)] {
             assert!(predicted("olimex-h405", image, role, rate).fits(), "{image}");
         }
     }
 
+    /// A chip with 128 KiB of flash has room for plant and SPI slave only.
     #[test]
-    fn small_chip_has_room_for_plant_and_spi_slave_alone() {
+    fn small_chip_fits_plant_and_spi_slave() {
         let on = |image: &str, role: Role, rate: u32| predicted("b-g431b-esc1", image, role, rate);
         assert!(on("plant", Role::Plant, 20_000).has_room());
         assert!(on("spi-observer", Role::Observer, 5000).has_room());
@@ -125,8 +127,9 @@ mod tests {
         assert!(said.starts_with("no room: 173192 of 126976 B of flash, 26164 of 14336 B of RAM"), "{said}");
     }
 
+    /// A rate that is too high is reported with the nearest accepted rate.
     #[test]
-    fn time_is_told_with_the_nearest_rate_that_fits() {
+    fn slow_rate_prediction_names_nearest() {
         let said = predicted("nucleo-g474re", "loop", Role::Loop, 10_000).to_string();
         assert!(said.starts_with("no time:") && said.contains("at 10000 Hz") && said.contains("Hz fits"), "{said}");
     }

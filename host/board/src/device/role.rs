@@ -1,9 +1,9 @@
-//! Roles by name, as users type them and as reports print them.
+//! Names of the roles, as typed by users and printed in reports.
 
 use link::messages::Role;
 
-/// The word for a role.
-pub fn word(role: Role) -> &'static str {
+/// Name of a role.
+pub fn role_name(role: Role) -> &'static str {
     match role {
         Role::Plant => "plant",
         Role::Observer => "observer",

@@ -1,5 +1,5 @@
 //! Decides whether an image is up to date, by one digest over every source file, the compiler and its flags. Cargo
-//! alone would rebuild whenever another joint was built in between.
+//! alone would rebuild after every change of the joint.
 
 use std::fs;
 use std::io;
@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
-use super::compile::store;
+use super::compile::write_atomically;
 use super::toolchain::Toolchain;
 use report::failure::{Failure, Outcome};
 use report::workspace::workspace;
 
 /// Folders and files of the workspace that the firmware is built from.
-const PARTS: [&str; 14] = [
+const SOURCES: [&str; 14] = [
     "Cargo.lock",
     "Cargo.toml",
     "memory.x",
@@ -30,7 +30,7 @@ const PARTS: [&str; 14] = [
     "parameters",
 ];
 
-/// The image at its place, built if it is not there or was built from something else. A file beside it says from what.
+/// Returns the image at `place`, built if it is missing or its digest differs from the one noted beside it.
 pub(super) fn up_to_date(
     toolchain: &Toolchain,
     images: &Path,
@@ -50,8 +50,8 @@ pub(super) fn up_to_date(
         return Ok(elf);
     }
     let elf = build()?;
-    store(images, place, &elf)?;
-    store(images, &note, noted(&elf).as_bytes())?;
+    write_atomically(images, place, &elf)?;
+    write_atomically(images, &note, noted(&elf).as_bytes())?;
     Ok(elf)
 }
 
@@ -60,12 +60,13 @@ pub(super) fn hexadecimal(digest: &[u8]) -> String {
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Digest over sources, toolchain and what else the caller names, 64 hexadecimal digits.
+/// Digest over sources, toolchain and further texts, as 64 hexadecimal digits.
 fn digest(toolchain: &Toolchain, more: &[&[u8]]) -> Outcome<String> {
     let mut hash = Sha256::new();
-    for part in PARTS {
+    for part in SOURCES {
         let path = workspace().join(part);
-        add(&mut hash, &path).map_err(|error| Failure::new(format!("cannot read {}: {error}", path.display())))?;
+        hash_path(&mut hash, &path)
+            .map_err(|error| Failure::new(format!("cannot read {}: {error}", path.display())))?;
     }
     for text in [toolchain.compiler().as_bytes(), toolchain.flags().as_bytes()].iter().chain(more) {
         hash.update(text.len().to_le_bytes());
@@ -74,13 +75,13 @@ fn digest(toolchain: &Toolchain, more: &[&[u8]]) -> Outcome<String> {
     Ok(hexadecimal(&hash.finalize()))
 }
 
-/// A file, or all that is in a folder by name.
-fn add(hash: &mut Sha256, path: &Path) -> io::Result<()> {
+/// Adds a file, or all files of a folder in order of their names.
+fn hash_path(hash: &mut Sha256, path: &Path) -> io::Result<()> {
     if path.is_dir() {
         let mut entries: Vec<PathBuf> =
             fs::read_dir(path)?.map(|entry| entry.map(|entry| entry.path())).collect::<io::Result<_>>()?;
         entries.sort();
-        return entries.iter().try_for_each(|entry| add(hash, entry));
+        return entries.iter().try_for_each(|entry| hash_path(hash, entry));
     }
     let (name, content) = (path.as_os_str().as_encoded_bytes(), fs::read(path)?);
     for bytes in [name, &content] {
@@ -94,24 +95,25 @@ fn add(hash: &mut Sha256, path: &Path) -> io::Result<()> {
 mod tests {
     use super::*;
 
-    fn of(folder: &Path) -> Vec<u8> {
+    fn digest_of(folder: &Path) -> Vec<u8> {
         let mut hash = Sha256::new();
-        add(&mut hash, folder).expect("readable");
+        hash_path(&mut hash, folder).expect("readable");
         hash.finalize().to_vec()
     }
 
+    /// The digest changes with every change of a file, and with nothing else.
     #[test]
-    fn a_change_of_any_file_changes_the_digest_and_nothing_else_does() {
+    fn source_digest_changes_with_files() {
         let folder = tempfile::tempdir().expect("a folder");
         fs::create_dir(folder.path().join("src")).expect("a folder");
         let file = folder.path().join("src/a.rs");
         fs::write(&file, "one").expect("written");
-        let before = of(folder.path());
-        assert_eq!(of(folder.path()), before);
+        let before = digest_of(folder.path());
+        assert_eq!(digest_of(folder.path()), before);
         fs::write(&file, "two").expect("written");
-        let after = of(folder.path());
+        let after = digest_of(folder.path());
         assert_ne!(after, before);
         fs::write(folder.path().join("src/b.rs"), "").expect("written");
-        assert_ne!(of(folder.path()), after);
+        assert_ne!(digest_of(folder.path()), after);
     }
 }

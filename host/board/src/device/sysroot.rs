@@ -1,5 +1,5 @@
-//! A private sysroot: `core` for the target, built from a distribution's library source by its own compiler where no
-//! ready one is installed. Built once a compiler and renamed into place when complete.
+//! A private sysroot: `core` for the target, built with a distribution's compiler from its library source if no
+//! compiled one is installed. It is built once per compiler and renamed into place when complete.
 
 use std::fs;
 use std::io;
@@ -8,11 +8,12 @@ use std::process::Command;
 
 use sha2::{Digest, Sha256};
 
-use super::cross_build::{TARGET, cannot_write, clean};
+use super::cross_build::{TARGET, cannot_write, clear_host_settings};
 use super::{Say, tool};
 use report::failure::Outcome;
 
-/// Fat link-time optimisation needs the bitcode; the library is for everybody, so it may use unstable features.
+/// Flags of the library: bitcode for fat link-time optimisation, and unstable features for a library that every crate
+/// may use.
 const RUSTFLAGS: &str = "-Cembed-bitcode=yes -Zforce-unstable-if-unmarked -Ctarget-cpu=cortex-m4";
 
 const MANIFEST: &str = r#"[package]
@@ -26,8 +27,8 @@ panic = "abort"
 [workspace]
 "#;
 
-/// The sysroot for this compiler below `target_directory`, built if it is not there. `version` is all that the compiler
-/// says about itself.
+/// Returns the sysroot of this compiler below `target_directory`, built if it is missing. `version` is the compiler's
+/// verbose version text.
 pub fn prepare(cargo: &Path, rustc: &Path, version: &str, target_directory: &Path, say: Say<'_>) -> Outcome<PathBuf> {
     let sysroot = target_directory.join(format!("thumb-sysroot-{}", key(version)));
     if sysroot.is_dir() {
@@ -41,7 +42,7 @@ pub fn prepare(cargo: &Path, rustc: &Path, version: &str, target_directory: &Pat
     result.map(|()| sysroot)
 }
 
-/// Changes with the compiler and with the recipe.
+/// Key that changes with the compiler, the flags and the manifest.
 fn key(version: &str) -> String {
     let digest = Sha256::new().chain_update(version).chain_update(RUSTFLAGS).chain_update(MANIFEST).finalize();
     digest.iter().take(6).map(|byte| format!("{byte:02x}")).collect()
@@ -53,14 +54,14 @@ fn build(cargo: &Path, rustc: &Path, work: &Path, say: Say<'_>) -> Outcome<PathB
     fs::write(work.join("Cargo.toml"), MANIFEST).map_err(failed)?;
     fs::write(work.join("src/lib.rs"), "#![no_std]\n").map_err(failed)?;
     let mut command = Command::new(cargo);
-    clean(&mut command)
+    clear_host_settings(&mut command)
         .current_dir(work)
         .env("RUSTC", rustc)
         .env("RUSTC_BOOTSTRAP", "1")
         .env("RUSTFLAGS", RUSTFLAGS)
         .args(["build", "--release", "--target", TARGET, "--target-dir", "target"])
         .args(["-Zbuild-std=core,alloc,compiler_builtins", "-Zbuild-std-features=compiler-builtins-mem"]);
-    tool::follow(&mut command, "building the core library", say)?;
+    tool::run_with_progress(&mut command, "building the core library", say)?;
 
     let ready = work.join("sysroot");
     let libraries = ready.join("lib/rustlib").join(TARGET).join("lib");
@@ -77,7 +78,7 @@ fn build(cargo: &Path, rustc: &Path, work: &Path, say: Say<'_>) -> Outcome<PathB
     Ok(ready)
 }
 
-/// Gives the finished sysroot its name. If another process was first, its work is as good.
+/// Renames the finished sysroot into place. If another process was faster, its equal result is kept.
 fn publish(ready: &Path, sysroot: &Path) -> Outcome<()> {
     match fs::rename(ready, sysroot) {
         Err(error) if !sysroot.is_dir() => Err(cannot_write(sysroot, &error)),
@@ -89,14 +90,16 @@ fn publish(ready: &Path, sysroot: &Path) -> Outcome<()> {
 mod tests {
     use super::*;
 
+    /// Two compilers never share a sysroot.
     #[test]
-    fn each_compiler_has_a_sysroot_of_its_own() {
+    fn sysroot_key_differs_per_compiler() {
         assert_ne!(key("rustc 1.96.0"), key("rustc 1.97.0"));
         assert_eq!(key("rustc 1.96.0"), key("rustc 1.96.0"));
     }
 
+    /// Of two processes that build the sysroot, the second keeps the first one's result.
     #[test]
-    fn a_sysroot_that_another_process_has_finished_is_taken() {
+    fn finished_sysroot_of_other_process_kept() {
         let folder = tempfile::tempdir().unwrap();
         let (ours, theirs) = (folder.path().join("ours"), folder.path().join("theirs"));
         for path in [&ours, &theirs] {
@@ -107,8 +110,9 @@ mod tests {
         assert!(theirs.join("library").exists());
     }
 
+    /// The failure names the folder and has a help.
     #[test]
-    fn a_folder_that_cannot_be_written_is_named() {
+    fn unwritable_folder_named() {
         let failure =
             prepare(Path::new("cargo"), Path::new("rustc"), "", Path::new("/proc/none"), &|_| {}).unwrap_err();
         assert!(failure.message().contains("/proc/none"), "{failure}");

@@ -1,4 +1,4 @@
-//! Running other programs: finding them, following their output, and keeping all of it for an error.
+//! Runs other programs: finds them, follows their output, and keeps it for an error.
 
 use std::env;
 use std::fs::{File, TryLockError};
@@ -9,24 +9,24 @@ use std::process::{Command, Stdio};
 use super::Say;
 use report::failure::{Failure, Outcome};
 
-/// How cargo says that another one is at work.
-const WAITS: &str = "Blocking waiting for file lock on";
+/// Text by which cargo reports that it waits for another cargo.
+const CARGO_WAITING: &str = "Blocking waiting for file lock on";
 
-/// Most lines of a failed program's output that an error shows.
-const LINES_SHOWN: usize = 60;
+/// Limit of a failed program's output in an error [lines].
+const ERROR_LINES: usize = 60;
 
-/// A program on the search path.
+/// Path of a program on the search path.
 pub fn find(name: &str) -> Option<PathBuf> {
     env::split_paths(&env::var_os("PATH")?).map(|folder| folder.join(name)).find(|path| is_program(path))
 }
 
-/// A file that can be run.
+/// Returns whether a path is an executable file.
 pub fn is_program(path: &Path) -> bool {
     use std::os::unix::fs::PermissionsExt;
     path.metadata().is_ok_and(|data| data.is_file() && data.permissions().mode() & 0o111 != 0)
 }
 
-/// Locks a file; who has to wait for that is told for whom.
+/// Locks a file; if it is locked already, announces the wait for `holder`.
 pub fn lock(file: &File, holder: &str, say: Say<'_>) -> io::Result<()> {
     if let Err(TryLockError::WouldBlock) = file.try_lock() {
         say(&format!("waiting for {holder}"));
@@ -34,8 +34,8 @@ pub fn lock(file: &File, holder: &str, say: Say<'_>) -> io::Result<()> {
     file.lock()
 }
 
-/// Runs a program whose output is short and wanted.
-pub fn output_of(command: &mut Command) -> Outcome<String> {
+/// Runs a program and returns its standard output.
+pub fn capture_output(command: &mut Command) -> Outcome<String> {
     let name = name_of(command);
     let output = command.stdin(Stdio::null()).output().map_err(|error| cannot_run(&name, &error))?;
     if !output.status.success() {
@@ -45,9 +45,9 @@ pub fn output_of(command: &mut Command) -> Outcome<String> {
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// Runs a program that takes its time: what it says on standard error is passed on line by line, and shown again if it
-/// fails. `what` is what it was to do.
-pub fn follow(command: &mut Command, what: &str, say: Say<'_>) -> Outcome<()> {
+/// Runs a program and passes its standard error on line by line; the last lines are repeated in the error if it fails.
+/// `what` names the action in the error.
+pub fn run_with_progress(command: &mut Command, what: &str, say: Say<'_>) -> Outcome<()> {
     let name = name_of(command);
     let spawned = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
     let mut child = spawned.map_err(|error| cannot_run(&name, &error))?;
@@ -55,7 +55,7 @@ pub fn follow(command: &mut Command, what: &str, say: Say<'_>) -> Outcome<()> {
     if let Some(stderr) = child.stderr.take() {
         for line in BufReader::new(stderr).split(b'\n').map_while(Result::ok) {
             let line = String::from_utf8_lossy(&line).into_owned();
-            match line.trim().strip_prefix(WAITS) {
+            match line.trim().strip_prefix(CARGO_WAITING) {
                 Some(what) => say(&format!("waiting for another cargo, which holds the {}", what.trim())),
                 None => say(line.trim()),
             }
@@ -66,7 +66,7 @@ pub fn follow(command: &mut Command, what: &str, say: Say<'_>) -> Outcome<()> {
     if status.success() {
         return Ok(());
     }
-    let shown = lines.len().saturating_sub(LINES_SHOWN);
+    let shown = lines.len().saturating_sub(ERROR_LINES);
     Err(Failure::new(format!("{what} failed ({name}: {status})\n{}", lines[shown..].join("\n"))))
 }
 
@@ -90,34 +90,38 @@ mod tests {
         command
     }
 
+    /// The failure carries the program's standard error.
     #[test]
-    fn a_failed_program_is_shown_with_what_it_said() {
-        let failure = follow(&mut shell("echo no room >&2; exit 3"), "packing", &|_| {}).unwrap_err();
+    fn failed_program_output_shown() {
+        let failure = run_with_progress(&mut shell("echo no room >&2; exit 3"), "packing", &|_| {}).unwrap_err();
         assert!(failure.message().starts_with("packing failed"), "{failure}");
         assert!(failure.message().contains("no room"), "{failure}");
         assert_eq!(failure.exit_code(), 2);
     }
 
+    /// Lines of standard error are passed on, those of standard output are not.
     #[test]
-    fn what_a_program_says_is_passed_on() {
+    fn program_output_passed_on() {
         let said = RefCell::new(Vec::new());
         let say = |line: &str| said.borrow_mut().push(line.to_owned());
-        follow(&mut shell("echo one >&2; echo unseen; echo two >&2"), "counting", &say).unwrap();
+        run_with_progress(&mut shell("echo one >&2; echo unseen; echo two >&2"), "counting", &say).unwrap();
         assert_eq!(*said.borrow(), ["one", "two"]);
     }
 
+    /// Cargo's message about a lock is replaced by a plain one.
     #[test]
-    fn that_cargo_waits_for_another_is_said_in_words_of_our_own() {
+    fn cargo_wait_message_reworded() {
         let said = RefCell::new(Vec::new());
         let say = |line: &str| said.borrow_mut().push(line.to_owned());
         let script = "echo '    Blocking waiting for file lock on build directory' >&2";
-        follow(&mut shell(script), "building", &say).unwrap();
+        run_with_progress(&mut shell(script), "building", &say).unwrap();
         assert_eq!(*said.borrow(), ["waiting for another cargo, which holds the build directory"]);
     }
 
+    /// The failure names a program that is not installed.
     #[test]
-    fn a_program_that_is_not_there_is_named() {
-        let failure = output_of(&mut Command::new("/no/such/program")).unwrap_err();
+    fn missing_program_named() {
+        let failure = capture_output(&mut Command::new("/no/such/program")).unwrap_err();
         assert!(failure.message().contains("/no/such/program"), "{failure}");
     }
 }

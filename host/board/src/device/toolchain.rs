@@ -9,22 +9,22 @@ use std::process::Command;
 
 use report::workspace::workspace;
 
-use super::cross_build::{TARGET, clean};
+use super::cross_build::{TARGET, clear_host_settings};
 use super::{Say, packages, sysroot, tool};
 use report::failure::{Failure, Outcome};
 
 /// Oldest compiler that the workspace builds with: its `rust-version`.
-const OLDEST: (u32, u32) = (1, 95);
+const OLDEST_COMPILER: (u32, u32) = (1, 95);
 /// Debian's compiler, cargo, library source and linker.
 const PACKAGES: [&str; 4] = ["rustc-web", "cargo-web", "rust-web-src", "lld"];
 const DISTRIBUTION_CARGO: &str = "/usr/bin/cargo";
 const DISTRIBUTION_RUSTC: &str = "/usr/bin/rustc";
 const LIBRARY_SOURCE: &str = "/usr/lib/rustlib/src/rust/library/core/Cargo.toml";
 
-/// The variable by which cargo tells the compiler its flags for the target.
+/// Variable in which cargo takes the compiler's flags for the target.
 pub const TARGET_FLAGS: &str = "CARGO_TARGET_THUMBV7EM_NONE_EABIHF_RUSTFLAGS";
 
-/// A way to build for the board.
+/// Compiler and folders of a cross build.
 #[derive(Debug, Clone)]
 pub struct Toolchain {
     cargo: PathBuf,
@@ -36,47 +36,49 @@ pub struct Toolchain {
 }
 
 impl Toolchain {
-    /// Finds or makes one. May install packages and build a sysroot, and says so.
+    /// Finds a toolchain or makes one. Installing packages and building a sysroot are announced.
     pub fn prepare(say: Say<'_>) -> Outcome<Self> {
         let target_directory = target_directory();
-        match in_use(&target_directory) {
+        match compiler_in_use(&target_directory) {
             Some(toolchain) => Ok(toolchain),
             None => distribution(target_directory, say),
         }
     }
 
-    /// First line of what the compiler says about itself.
+    /// First line of the compiler's version text.
     pub fn compiler(&self) -> &str {
         self.version.lines().next().unwrap_or_default()
     }
 
-    /// Everything in the way of flags that changes the code, apart from the profile.
+    /// Description of all flags that change the code, apart from the profile.
     pub fn flags(&self) -> String {
         let core = if self.sysroot.is_some() { "built here" } else { "as delivered" };
         format!("--target {TARGET}, core library {core}")
     }
 
-    /// Where images and other results go.
+    /// Folder of images and other results.
     pub fn target_directory(&self) -> &Path {
         &self.target_directory
     }
 
-    /// Where cargo builds: cargo does not notice a change of compiler library, so each has a folder of its own.
+    /// Build folder of cargo. Each toolchain has its own, because cargo does not notice a change of the compiler's
+    /// library.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// The same that builds elsewhere.
+    /// Returns this toolchain with another build folder.
     pub fn in_folder(&self, folder: &Path) -> Self {
         Self { folder: folder.to_path_buf(), ..self.clone() }
     }
 
-    /// Whether clippy must be the distribution's: it has to match the compiler that built the core library.
+    /// Returns whether the distribution's toolchain is used; clippy must then match the compiler that built the core
+    /// library.
     pub fn is_distribution(&self) -> bool {
         self.sysroot.is_some()
     }
 
-    /// What the compiler is told for the target, as [`TARGET_FLAGS`] has it.
+    /// Compiler flags for the target, the value of [`TARGET_FLAGS`].
     pub fn target_flags(&self) -> OsString {
         let mut flags = OsString::new();
         if let Some(sysroot) = &self.sysroot {
@@ -87,12 +89,12 @@ impl Toolchain {
         flags
     }
 
-    /// A cargo command in the workspace, for this toolchain. The subcommand comes first.
+    /// Cargo command in the workspace for this toolchain, with the subcommand first.
     pub fn cargo(&self, subcommand: &str) -> Command {
         let mut command = Command::new(&self.cargo);
-        clean(&mut command).current_dir(workspace());
+        clear_host_settings(&mut command).current_dir(workspace());
         if let Some(rustc) = &self.rustc {
-            // A plugin of cargo, such as clippy, is looked for on the path: the distribution's, not another's.
+            // Cargo looks for its plugins, such as clippy, on the search path: the distribution's must come first.
             let path = env::var_os("PATH").unwrap_or_default();
             let folders = [PathBuf::from("/usr/bin")].into_iter().chain(env::split_paths(&path));
             if let Ok(path) = env::join_paths(folders) {
@@ -105,20 +107,20 @@ impl Toolchain {
     }
 }
 
-/// Where cargo builds unless it is told another place.
+/// Folder in which cargo builds by default.
 pub fn target_directory() -> PathBuf {
     let given = env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
     workspace().join(given.unwrap_or_else(|| "target".into()))
 }
 
-/// The compiler in use, if it has the target.
-fn in_use(target_directory: &Path) -> Option<Toolchain> {
+/// Returns the compiler in use, if it has the target.
+fn compiler_in_use(target_directory: &Path) -> Option<Toolchain> {
     let rustc = env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
-    // Asking must not make rustup fetch anything.
+    // The query must not make rustup download anything.
     let ask = |argument: &[&str]| {
         let mut command = Command::new(&rustc);
         command.args(argument).env("RUSTUP_AUTO_INSTALL", "0").current_dir(workspace());
-        tool::output_of(&mut command).ok()
+        tool::capture_output(&mut command).ok()
     };
     let sysroot = ask(&["--print", "sysroot"])?;
     if !has_core(Path::new(sysroot.trim())) {
@@ -146,16 +148,19 @@ fn has_core(sysroot: &Path) -> bool {
     })
 }
 
-/// A distribution's compiler with a sysroot of our own.
+/// Returns a distribution's compiler with a private sysroot.
 fn distribution(target_directory: PathBuf, say: Say<'_>) -> Outcome<Toolchain> {
     let version = match distribution_version() {
         Some(version) => version,
         None => {
-            packages::ensure(&PACKAGES, "to build for the board", say).map_err(or_rustup)?;
+            packages::ensure(&PACKAGES, "to build for the board", say).map_err(with_rustup_help)?;
             distribution_version().ok_or_else(|| {
-                let (major, minor) = OLDEST;
-                let message = format!("{} do not hold a Rust compiler from {major}.{minor} on", PACKAGES.join(" "));
-                or_rustup(Failure::new(message))
+                let (major, minor) = OLDEST_COMPILER;
+                let message = format!(
+                    "the packages {} contain no Rust compiler of version {major}.{minor} or later",
+                    PACKAGES.join(" ")
+                );
+                with_rustup_help(Failure::new(message))
             })?
         }
     };
@@ -166,7 +171,7 @@ fn distribution(target_directory: PathBuf, say: Say<'_>) -> Outcome<Toolchain> {
     Ok(Toolchain { cargo, rustc: Some(rustc), sysroot: Some(sysroot), version, folder, target_directory })
 }
 
-/// What the distribution's compiler says about itself, if all that is needed is there and new enough.
+/// Version text of the distribution's compiler, if it is complete and new enough.
 fn distribution_version() -> Option<String> {
     let complete = [DISTRIBUTION_CARGO, DISTRIBUTION_RUSTC].iter().all(|path| tool::is_program(Path::new(path)))
         && Path::new(LIBRARY_SOURCE).exists()
@@ -174,12 +179,12 @@ fn distribution_version() -> Option<String> {
     if !complete {
         return None;
     }
-    let version = tool::output_of(Command::new(DISTRIBUTION_RUSTC).args(["--version", "--verbose"])).ok()?;
+    let version = tool::capture_output(Command::new(DISTRIBUTION_RUSTC).args(["--version", "--verbose"])).ok()?;
     is_new_enough(&version).then_some(version)
 }
 
-/// Adds the other way out.
-fn or_rustup(failure: Failure) -> Failure {
+/// Adds rustup as the alternative to the help.
+fn with_rustup_help(failure: Failure) -> Failure {
     let other = format!("or, with rustup and its network: rustup target add {TARGET}");
     let help = match failure.help() {
         Some(help) => format!("{help}\n{other}"),
@@ -189,7 +194,7 @@ fn or_rustup(failure: Failure) -> Failure {
 }
 
 fn is_new_enough(version: &str) -> bool {
-    version_number(version).is_some_and(|number| number >= OLDEST)
+    version_number(version).is_some_and(|number| number >= OLDEST_COMPILER)
 }
 
 /// Major and minor of "rustc 1.96.0 (...)".
@@ -202,23 +207,26 @@ fn version_number(version: &str) -> Option<(u32, u32)> {
 mod tests {
     use super::*;
 
+    /// The oldest compiler is accepted, the minor version before it is not.
     #[test]
-    fn a_compiler_is_new_enough_from_the_oldest_on() {
-        let (major, minor) = OLDEST;
+    fn compiler_version_bound_inclusive() {
+        let (major, minor) = OLDEST_COMPILER;
         assert!(is_new_enough(&format!("rustc {major}.{minor}.0 (abc 2026-01-01)")));
         assert!(!is_new_enough(&format!("rustc {major}.{}.1 (abc 2026-01-01)", minor - 1)));
         assert!(!is_new_enough("something else"));
     }
 
+    /// The bound equals the workspace's `rust-version`.
     #[test]
-    fn the_oldest_compiler_is_the_one_that_the_workspace_states() {
+    fn oldest_compiler_matches_manifest() {
         let manifest = fs::read_to_string(workspace().join("Cargo.toml")).unwrap();
-        let (major, minor) = OLDEST;
+        let (major, minor) = OLDEST_COMPILER;
         assert!(manifest.contains(&format!("rust-version = \"{major}.{minor}\"")));
     }
 
+    /// A sysroot counts only if it holds `core` for the target.
     #[test]
-    fn a_sysroot_without_the_target_is_not_taken() {
+    fn sysroot_without_target_rejected() {
         let folder = tempfile::tempdir().unwrap();
         assert!(!has_core(folder.path()));
         let libraries = folder.path().join("lib/rustlib").join(TARGET).join("lib");
@@ -228,9 +236,10 @@ mod tests {
         assert!(has_core(folder.path()));
     }
 
+    /// The help names the distribution's packages and rustup.
     #[test]
-    fn both_ways_out_are_shown() {
-        let failure = or_rustup(Failure::new("no compiler").with_help("run: sudo apt-get install lld"));
+    fn missing_compiler_help_has_both_remedies() {
+        let failure = with_rustup_help(Failure::new("no compiler").with_help("run: sudo apt-get install lld"));
         let help = failure.help().unwrap();
         assert!(help.contains("apt-get install") && help.contains("rustup target add thumbv7em-none-eabihf"), "{help}");
     }

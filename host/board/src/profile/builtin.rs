@@ -1,5 +1,5 @@
-//! The built-in profile: torque steps of both signs through the gap on a joint that turns. It is made from the joint's
-//! own rated torque, ratio and inertia, so that any joint may run it.
+//! Built-in profile: torque steps of both signs through the gap on a turning joint. It is derived from the joint's
+//! rated torque, ratio and inertia, so that it runs on any joint.
 
 use std::f64::consts::TAU;
 
@@ -14,8 +14,8 @@ pub const BUILTIN: [&str; 1] = ["reversals"];
 /// Length of the built-in profile; longer runs repeat it [s].
 pub const DURATION: f64 = 5.0;
 
-/// Load levels over the rated torque, each from its time on [s]; drive and load are balanced. Reversals cross the gap at
-/// full torque: at a small one the planets rattle for so long that nothing could be compared afterwards.
+/// Load levels as (start time [s], torque over rated torque); drive and load are balanced. Reversals cross the gap at
+/// full torque: at a small torque the planets would rattle too long for any comparison afterwards.
 const LEVELS: [(f64, f64); 11] = [
     (0.0, 1.0),
     (0.5, 0.5),
@@ -29,14 +29,14 @@ const LEVELS: [(f64, f64); 11] = [
     (4.0, -1.0),
     (4.5, 1.0),
 ];
-/// Rise of a step, in rated torques a second: from full torque one way to the other in 50 ms.
+/// Slope of a torque step, in rated torques per second: 50 ms from full torque to the opposite one.
 const SLEW: f64 = 40.0;
-/// Speed of the link after the run-up: a quarter turn a second [rad/s].
+/// Speed of the link after the run-up: a quarter turn per second [rad/s].
 const SPEED: f64 = TAU / 4.0;
-/// The drive torque bears what accelerates the joint, beside the steps, for so long [s].
+/// Time in which the drive torque also accelerates the joint [s].
 const RUN_UP: f64 = 0.3;
 
-/// Torques at a time.
+/// Torques at a time of the profile.
 pub fn reversals(joint: &JointParameters, time: f64) -> Torques {
     let ratio = joint.geometry.ratio_by_radii();
     let load = joint.rated_output_torque * level(time);
@@ -44,12 +44,12 @@ pub fn reversals(joint: &JointParameters, time: f64) -> Torques {
     Torques { drive: (load + sheet::inertia_at_link(joint) * acceleration) / ratio, load }
 }
 
-/// Load over rated torque: steps with straight flanks.
+/// Load over rated torque: steps with linear slopes.
 fn level(time: f64) -> f64 {
     let time_in_period = time.rem_euclid(DURATION);
     let step = LEVELS.partition_point(|&(start, _)| start <= time_in_period).saturating_sub(1);
     let (start, to) = LEVELS[step];
-    // The last level goes on over the end of a period; before the very first step there is no torque.
+    // The last level continues into the next period; the torque is zero before the first level of all.
     let from = match step {
         0 if time < DURATION => 0.0,
         0 => LEVELS[LEVELS.len() - 1].1,
@@ -72,8 +72,9 @@ mod tests {
         })
     }
 
+    /// The load reverses at least four times and never exceeds the rated torque.
     #[test]
-    fn torques_reverse_both_ways_and_keep_to_the_rated_torque_after_the_run_up() {
+    fn load_reverses_within_rated_torque() {
         for joint in joints() {
             let rated = joint.rated_output_torque;
             let loads: Vec<f64> = (0..50_000).map(|k| reversals(&joint, 1e-4 * f64::from(k)).load).collect();
@@ -83,8 +84,9 @@ mod tests {
         }
     }
 
+    /// After the run-up drive and load torque balance.
     #[test]
-    fn drive_and_load_are_balanced_once_the_joint_turns() {
+    fn torques_balanced_after_run_up() {
         for joint in joints() {
             for time in [0.31, 1.22, 2.6, 7.3] {
                 let torques = reversals(&joint, time);
@@ -94,8 +96,9 @@ mod tests {
         }
     }
 
+    /// The load is continuous over the end of a period.
     #[test]
-    fn a_longer_run_goes_on_without_a_jump() {
+    fn repeated_profile_continuous() {
         let before = level(DURATION - 1e-9);
         assert!((level(DURATION + 1e-9) - before).abs() < 1e-6);
     }

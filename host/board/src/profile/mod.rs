@@ -1,4 +1,4 @@
-//! Torque profiles by tick number, built in or read from a CSV file. Torques are rounded to f32 once, here, so that
+//! Torque profiles on a tick grid, built in or read from a CSV file. Torques are rounded to f32 once, here, so that
 //! board and twin get the same bits.
 
 mod builtin;
@@ -18,11 +18,11 @@ pub use recorded::check_time;
 pub use torques::MAX_TORQUE;
 use torques::Torques;
 
-/// No link or carrier turns faster [rad/s].
+/// Largest speed of a link or carrier [rad/s].
 pub const MAX_SPEED: f64 = 1e4;
-/// A run along a recording is no longer, unless it is asked for [s].
+/// Longest run along a recording without an explicit duration [s].
 pub const LONGEST_RUN: f64 = 3600.0;
-/// Commands a second; torques hold in between [Hz].
+/// Rate of commands; the torques hold in between [Hz].
 pub const COMMAND_RATE: u32 = 1000;
 
 /// A torque profile on the board's tick grid.
@@ -30,14 +30,15 @@ pub const COMMAND_RATE: u32 = 1000;
 pub struct TorqueProfile {
     /// Name of the built-in profile, or path of the CSV.
     pub name: String,
-    /// Torque changes, in rising order of ticks, from tick 0.
+    /// Torque changes in ascending order of ticks, from tick 0.
     pub commands: Vec<Command>,
     /// Length in ticks.
     pub ticks: u32,
 }
 
 impl TorqueProfile {
-    /// A built-in profile by name, or a CSV by path. `duration` cuts the profile or stretches its last torque [s].
+    /// Loads a built-in profile by name, or a CSV file by path. `duration` cuts the profile or extends its last torque
+    /// [s].
     pub fn load(name: &str, joint: &JointParameters, tick_rate: u32, duration: Option<f64>) -> Outcome<Self> {
         if BUILTIN.contains(&name) {
             let seconds = duration.unwrap_or(builtin::DURATION);
@@ -61,7 +62,7 @@ impl TorqueProfile {
         Self::sampled(name, tick_rate, seconds, |from, to| recording.mean(from, to))
     }
 
-    /// Takes torques on the command grid, from the mean that `mean(from, to)` gives for every interval.
+    /// Samples torques on the command grid; `mean(from, to)` returns the mean over an interval.
     fn sampled(name: &str, tick_rate: u32, seconds: f64, mean: impl Fn(f64, f64) -> Torques) -> Outcome<Self> {
         let ticks = seconds * f64::from(tick_rate);
         if !(1.0..=f64::from(u32::MAX / 2)).contains(&ticks) {
@@ -95,7 +96,7 @@ impl TorqueProfile {
     }
 }
 
-/// Refuses to run a recording to its end if that is hours away; `option` says how much of it is wanted.
+/// Rejects a recording whose full length is more than [`LONGEST_RUN`]; the help names the `option` that limits it.
 pub fn check_length(seconds: f64, option: &str) -> Outcome<()> {
     if seconds <= LONGEST_RUN {
         return Ok(());
@@ -115,15 +116,17 @@ mod tests {
 
     const HELD: Torques = Torques { drive: 0.5, load: 3.0 };
 
+    /// Only a change of torque becomes a command.
     #[test]
-    fn a_torque_that_does_not_change_is_sent_once() {
+    fn constant_torque_sent_once() {
         let profile = TorqueProfile::sampled("held", 20_000, 1.0, |_, _| HELD).expect("a profile");
         assert_eq!(profile.commands, [Command { tick: 0, drive_torque: 0.5, load_torque: 3.0 }]);
         assert_eq!(profile.ticks, 20_000);
     }
 
+    /// Commands ascend and end before the run does, at tick rates below and above the command rate.
     #[test]
-    fn commands_rise_and_stay_inside_the_run_at_any_tick_rate() {
+    fn commands_ascend_within_run() {
         for tick_rate in [999, 1000, 20_000, 40_001] {
             let ramp = |from: f64, _| Torques { drive: from, load: -from };
             let profile = TorqueProfile::sampled("ramp", tick_rate, 0.1, ramp).expect("a profile");
@@ -132,8 +135,9 @@ mod tests {
         }
     }
 
+    /// Durations below one tick or above 2^31 ticks are rejected.
     #[test]
-    fn a_run_without_a_tick_is_refused() {
+    fn run_without_tick_rejected() {
         for seconds in [0.0, -1.0, f64::NAN, 1e9] {
             assert!(TorqueProfile::sampled("none", 20_000, seconds, |_, _| HELD).is_err(), "{seconds}");
         }

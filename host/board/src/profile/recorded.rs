@@ -1,6 +1,6 @@
-//! A recorded torque profile: a CSV file with time, motor torque and load torque at any sampling rate, even or uneven.
-//! Torques are linear between rows; a command is the mean over its interval, which keeps impulses at any rate. After
-//! the last row its torques hold.
+//! Recorded torque profile: a CSV file with time, motor torque and load torque at any sampling rate, even or uneven.
+//! Torques are linear between rows; a command is the mean over its interval, which preserves impulses at any rate.
+//! After the last row its torques hold.
 
 use std::path::Path;
 
@@ -9,15 +9,15 @@ use report::failure::{Failure, Outcome};
 use report::input;
 use report::number::TYPED;
 
-/// Seconds since any epoch are less, and steps of a control period can still be told in them [s].
-const MOST_TIME: f64 = 1e10;
-/// Rows that are nearer to each other are no two moments [s].
-const LEAST_STEP: f64 = 1e-9;
+/// Limit of times: above any epoch's seconds, and small enough for a f64 to resolve a control period [s].
+const MAX_TIME: f64 = 1e10;
+/// Smallest distance of two rows in time [s].
+const MIN_TIME_STEP: f64 = 1e-9;
 
 /// Columns of the file, in any order; others are ignored.
 pub const COLUMNS: [&str; 3] = ["time_s", "motor_torque_Nm", "load_torque_Nm"];
 
-/// Rows of the file, in rising time from 0.
+/// Rows of the file in ascending time, from 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordedTorques {
     rows: Vec<Row>,
@@ -32,7 +32,7 @@ struct Row {
 }
 
 impl RecordedTorques {
-    /// Reads a file; the first row is time 0 of the run, whatever its time.
+    /// Reads a file; the time of the first row becomes 0.
     pub fn read(path: &Path) -> Outcome<Self> {
         let text = input::text(path, input::LARGEST_RECORDED).map_err(|why| {
             Failure::new(format!("cannot read the profile {}: {why}", path.display()))
@@ -42,7 +42,7 @@ impl RecordedTorques {
     }
 
     fn parse(text: &str) -> Outcome<Self> {
-        // Numbers are never quoted: a comma always ends a value. Spreadsheets put a byte-order mark in front.
+        // Values are never quoted, so every comma ends a value. Spreadsheets write a byte-order mark in front.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut lines = (1u64..).zip(text.lines().map(str::trim));
         let mut lines = lines.by_ref().filter(|(_, text)| !text.is_empty() && !text.starts_with('#'));
@@ -66,7 +66,7 @@ impl RecordedTorques {
             for ((value, column), place) in numbers.iter_mut().zip(COLUMNS).zip(places) {
                 *value = number(line, column, row[place])?;
             }
-            push(&mut rows, *start.get_or_insert(numbers[0]), line, numbers)?;
+            push_row(&mut rows, *start.get_or_insert(numbers[0]), line, numbers)?;
         }
         let too_few = |what: &str| Failure::new(what).with_help("give at least two rows of numbers");
         match rows.len() {
@@ -76,7 +76,7 @@ impl RecordedTorques {
         }
     }
 
-    /// From the first row to the last [s].
+    /// Time from the first row to the last [s].
     pub fn duration(&self) -> f64 {
         self.rows.last().map_or(0.0, |row| row.time)
     }
@@ -88,7 +88,7 @@ impl RecordedTorques {
         Torques { drive: mean(start.drive, end.drive), load: mean(start.load, end.load) }
     }
 
-    /// Integral of the straight lines from 0 [N m s].
+    /// Integral of the piecewise linear torques from 0 [N m s].
     fn integral(&self, time: f64) -> Torques {
         let after = self.rows.partition_point(|row| row.time <= time);
         let left = self.rows[after.saturating_sub(1)];
@@ -105,8 +105,8 @@ impl RecordedTorques {
     }
 }
 
-/// Takes one line of the file; refuses what cannot be a recording.
-fn push(rows: &mut Vec<Row>, start: f64, line: u64, [time, drive, load]: [f64; 3]) -> Outcome<()> {
+/// Appends a row; rejects a row whose time is out of range or does not rise.
+fn push_row(rows: &mut Vec<Row>, start: f64, line: u64, [time, drive, load]: [f64; 3]) -> Outcome<()> {
     let torques = Torques { drive, load };
     check_time(line, rows.last().map(|last| last.time + start), time)?;
     let time = time - start;
@@ -124,20 +124,21 @@ fn push(rows: &mut Vec<Row>, start: f64, line: u64, [time, drive, load]: [f64; 3
     Ok(())
 }
 
-/// Refuses a time of a recording that is in another unit or does not rise; `before` is that of the row before.
+/// Rejects a time that is out of range (wrong unit) or does not rise; `before` is the time of the preceding row.
 pub fn check_time(line: u64, before: Option<f64>, now: f64) -> Outcome<()> {
-    if now.is_nan() || now.abs() > MOST_TIME {
+    if now.is_nan() || now.abs() > MAX_TIME {
         return Err(Failure::new(format!("line {line}: time_s is {}", TYPED.write(now)))
-            .with_help(format!("it may be from -{MOST_TIME:e} to {MOST_TIME:e} s: check the unit")));
+            .with_help(format!("it may be from -{MAX_TIME:e} to {MAX_TIME:e} s: check the unit")));
     }
     match before {
         Some(before) if now <= before => {
             Err(Failure::new(format!("line {line}: time_s does not rise: {now} s follows {before} s"))
                 .with_help("sort the rows by time and remove repeated ones"))
         }
-        Some(before) if now - before < LEAST_STEP => {
-            Err(Failure::new(format!("line {line}: time_s rises by {} s only", TYPED.write(now - before)))
-                .with_help(format!("rows must be {LEAST_STEP:e} s apart at least: check the unit, or leave rows out")))
+        Some(before) if now - before < MIN_TIME_STEP => {
+            Err(Failure::new(format!("line {line}: time_s rises by {} s only", TYPED.write(now - before))).with_help(
+                format!("rows must be {MIN_TIME_STEP:e} s apart at least: check the unit, or leave rows out"),
+            ))
         }
         _ => Ok(()),
     }
@@ -178,8 +179,9 @@ mod tests {
         RecordedTorques::parse(text).expect_err("a bad file").message().to_owned()
     }
 
+    /// Every kind of bad row is rejected with its line number.
     #[test]
-    fn bad_rows_are_refused_by_line_number() {
+    fn bad_rows_rejected_by_line() {
         let header = "time_s,motor_torque_Nm,load_torque_Nm\n0,1,6\n";
         assert!(refused(&format!("{header}0.1,NaN,6\n")).starts_with("line 3: motor_torque_Nm is NaN"));
         assert!(refused(&format!("{header}0.1,1,inf\n")).starts_with("line 3: load_torque_Nm is inf"));
@@ -193,16 +195,18 @@ mod tests {
         assert!(refused(&format!("{header}0.1,1.5x,6\n")).starts_with("line 3: motor_torque_Nm is `1.5x`"));
     }
 
+    /// Files without a column or with fewer than two rows are rejected.
     #[test]
-    fn files_without_columns_or_rows_are_refused() {
+    fn incomplete_files_rejected() {
         assert!(refused("").contains("is empty"));
         assert!(refused("time_s,motor_torque_Nm\n0,1\n").contains("no column `load_torque_Nm`"));
         assert!(refused("time_s,motor_torque_Nm,load_torque_Nm\n").contains("no rows"));
         assert!(refused("time_s,motor_torque_Nm,load_torque_Nm\n0,1,6\n").contains("a single row"));
     }
 
+    /// Columns may be reordered, quoted, and mixed with comments and other columns.
     #[test]
-    fn columns_may_stand_in_any_order_beside_others_and_comments() {
+    fn columns_in_any_order_read() {
         let text =
             "\u{feff}# a drive's log\r\nload_torque_Nm, \"time_s\", phase, motor_torque_Nm\r\n6,10,x,1\n12,11,y,2\n";
         let recording = RecordedTorques::parse(text).expect("a good file");
@@ -210,8 +214,9 @@ mod tests {
         assert_eq!(recording.mean(0.0, 1.0), Torques { drive: 1.5, load: 9.0 });
     }
 
+    /// The sum of commands times their width equals the integral over the rows.
     #[test]
-    fn the_impulse_of_a_recording_survives_resampling_at_any_rate() {
+    fn resampling_preserves_impulse() {
         let mut text = String::from("time_s,motor_torque_Nm,load_torque_Nm\n");
         let times: Vec<f64> = (0..=700).map(|k| 0.001_43 * f64::from(k) + 0.0003 * f64::from(k % 3)).collect();
         for time in &times {
@@ -230,8 +235,9 @@ mod tests {
         }
     }
 
+    /// After the last row its torques hold.
     #[test]
-    fn after_the_last_row_its_torque_holds() {
+    fn last_torque_holds() {
         let text = "time_s,motor_torque_Nm,load_torque_Nm\n0,0,0\n1,2,3\n";
         let recording = RecordedTorques::parse(text).expect("a good file");
         assert_eq!(recording.mean(5.0, 6.0), Torques { drive: 2.0, load: 3.0 });

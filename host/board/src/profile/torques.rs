@@ -1,6 +1,6 @@
-//! Motor and load torque at one time, and the largest torque that is accepted.
+//! Motor and load torque at one time, and the largest accepted torque.
 
-/// No joint that this is for gives or takes more: it is a slip of the unit [N m].
+/// Largest accepted torque; a larger one is a wrong unit [N m].
 pub const MAX_TORQUE: f64 = 1e6;
 
 /// Torques at one time: drive on the sun shaft, load that brakes the link [N m].

@@ -1,5 +1,5 @@
-//! Whether the board runs the image that the joint file asks for. A board with another protocol version may send
-//! messages that this host cannot decode, so the first fields of its hello are decoded on their own.
+//! Checks that the board runs the image that the joint file asks for. A board with another protocol version may send
+//! messages that this host cannot decode, so the first fields of its hello are decoded separately.
 
 use std::fmt;
 
@@ -8,35 +8,35 @@ use link::messages::{Hello, Role};
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 
 use super::BoardHelp;
-use crate::device::image::word;
+use crate::device::image::role_name;
 use report::failure::{Failure, Outcome};
 
-/// What the board must be.
+/// Identity that the board must have.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expected {
     /// Name of the joint.
     pub joint: String,
-    /// Digest over its parameters and tables.
+    /// Digest over the joint's parameters and tables.
     pub digest: u64,
-    /// Fixed steps a second [Hz].
+    /// Rate of fixed steps [Hz].
     pub tick_rate: u32,
     /// Number of planets.
     pub planets: usize,
-    /// What it must do.
+    /// Role of the board.
     pub role: Role,
-    /// Digest over its controller's tables, if it has any.
+    /// Digest over the controller's tables, if the role has a controller.
     pub control_digest: Option<u64>,
-    /// What to do about a board that is none of this.
+    /// Remedy for a board with another identity.
     pub help: BoardHelp,
 }
 
 impl Expected {
-    /// Refuses a board that is another one.
+    /// Rejects a board with another identity.
     pub fn verify(&self, hello: &Hello) -> Outcome<()> {
         verify_protocol(hello.protocol, &self.help)?;
-        let refuse = |what: String| Err(Failure::new(what).with_help(self.help.of_another_image()));
+        let refuse = |what: String| Err(Failure::new(what).with_help(self.help.wrong_image()));
         if hello.role != self.role {
-            let (board, host) = (word(hello.role), word(self.role));
+            let (board, host) = (role_name(hello.role), role_name(self.role));
             return refuse(format!("the board's image has the role `{board}`, this run asks for `{host}`"));
         }
         if !hello.digest_good {
@@ -63,10 +63,10 @@ impl Expected {
 }
 
 fn verify_protocol(protocol: u16, help: &BoardHelp) -> Outcome<()> {
-    if protocol == PROTOCOL_VERSION { Ok(()) } else { Err(help.of_protocol(protocol)) }
+    if protocol == PROTOCOL_VERSION { Ok(()) } else { Err(help.other_protocol(protocol)) }
 }
 
-/// The first fields of a hello, which keep their places in every version.
+/// First fields of a hello, whose places are the same in every version.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct HelloHead {
     protocol: u16,
@@ -74,24 +74,24 @@ pub struct HelloHead {
 }
 
 impl HelloHead {
-    /// Why a board with this head cannot be worked with, if its hello as a whole could not be read.
+    /// Failure for a board whose hello could not be decoded.
     pub fn refusal(self, help: &BoardHelp) -> Failure {
         let Err(failure) = verify_protocol(self.protocol, help) else {
             let message = format!("the board's image has a role that this host does not know (number {})", self.role);
-            return Failure::new(message).with_help(help.of_another_image());
+            return Failure::new(message).with_help(help.wrong_image());
         };
         failure
     }
 
-    /// Whether a whole hello would have been read.
-    pub fn is_foreign(self) -> bool {
+    /// Returns whether this host cannot decode the rest of the hello.
+    pub fn is_undecodable(self) -> bool {
         self.protocol != PROTOCOL_VERSION || self.role > Role::Loop as u32
     }
 }
 
 impl<'de> serde::Deserialize<'de> for HelloHead {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        // More fields than a frame has bytes: the visitor takes the rest, whatever it is, until it ends.
+        // The length exceeds the bytes of any frame: the visitor skips all remaining bytes.
         deserializer.deserialize_tuple(link::framing::MAX_FRAME, HeadVisitor)
     }
 }
@@ -170,13 +170,15 @@ mod tests {
         failure
     }
 
+    /// A board with the expected identity is accepted.
     #[test]
-    fn the_right_board_is_taken() {
+    fn expected_board_accepted() {
         expected().verify(&hello()).expect("the right board");
     }
 
+    /// Each difference of identity is rejected, with the command that flashes the right image.
     #[test]
-    fn another_board_is_refused_with_the_command_that_mends_it() {
+    fn other_board_rejected_with_command() {
         assert!(refused(|hello| hello.joint_digest = 0x99).message().contains("0000000000000099"));
         assert!(refused(|hello| hello.tick_rate = 10_000).message().contains("10000 Hz"));
         assert!(refused(|hello| hello.protocol = PROTOCOL_VERSION + 1).message().contains("protocol"));
@@ -192,22 +194,24 @@ mod tests {
         frame.into_iter().find_map(|byte| receiver.push_beginning(byte))
     }
 
+    /// The head of a hello with an unknown role or version is still decoded.
     #[test]
-    fn the_head_of_an_unreadable_hello_is_read() {
+    fn head_of_foreign_hello_decoded() {
         let own = head_of(&FromBoard::Hello(hello())).expect("a head");
-        assert!(!own.is_foreign());
+        assert!(!own.is_undecodable());
         let other_role = head_of(&(0u32, PROTOCOL_VERSION, [1u8, 2, 3], 7u32, "with fields", 1.5f64)).expect("a head");
-        assert!(other_role.is_foreign());
+        assert!(other_role.is_undecodable());
         assert!(other_role.refusal(&BoardHelp::Rebuild).message().contains("(number 7)"));
         let other_version = head_of(&(0u32, PROTOCOL_VERSION + 1, [1u8, 2, 3], 0u32)).expect("a head");
-        assert!(other_version.is_foreign());
+        assert!(other_version.is_undecodable());
         assert!(
             other_version.refusal(&BoardHelp::Rebuild).message().contains(&format!("version {}", PROTOCOL_VERSION + 1))
         );
     }
 
+    /// Messages other than a hello have no head.
     #[test]
-    fn other_messages_have_no_head() {
+    fn other_messages_have_no_hello_head() {
         assert_eq!(head_of(&FromBoard::Tripped(link::messages::Trip::BadDigest)), None);
     }
 }

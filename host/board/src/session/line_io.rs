@@ -10,11 +10,11 @@ use crate::recording::Recording;
 use crate::trip;
 use report::failure::{Failure, Outcome};
 
-/// A line without a byte for so long is idle.
+/// Time without a byte after which a line is idle.
 const IDLE_TIME: Duration = Duration::from_millis(100);
 
 impl Session<'_> {
-    /// A zero byte goes ahead: half a frame that hangs in the board's receiver costs nothing but itself.
+    /// Sends a message after a zero byte, which ends an incomplete frame in the board's receiver.
     pub(super) fn send(&mut self, message: &ToBoard) -> Outcome<()> {
         let frame = encode(message).map_err(|_| Failure::new("a message to the board is longer than a frame"))?;
         let frame = [&[0], &frame[..]].concat();
@@ -29,12 +29,12 @@ impl Session<'_> {
                 while Instant::now() < deadline
                     && self.receive_uninterrupted().is_ok_and(|messages| !messages.is_empty())
                 {}
-                Err(self.lost(&error))
+                Err(self.line_lost(&error))
             }
         }
     }
 
-    /// Receives what comes within one receive timeout; fails if the user has interrupted the session.
+    /// Receives messages for up to one receive timeout; fails if the user has interrupted the session.
     pub(super) fn receive(&mut self) -> Outcome<Vec<FromBoard>> {
         if self.supervisor.interrupted() {
             return Err(Failure::interrupted("stopped by the user"));
@@ -46,29 +46,29 @@ impl Session<'_> {
         let mut buffer = [0; 4096];
         let count = match self.line.receive(&mut buffer) {
             Ok(count) => count,
-            Err(error) => return Err(self.lost(&error)),
+            Err(error) => return Err(self.line_lost(&error)),
         };
         self.recording.traffic.received_bytes += count as u64;
         let mut messages = Vec::new();
         for &byte in &buffer[..count] {
             if let Some(message) = self.receiver.push::<FromBoard>(byte) {
                 if let FromBoard::Accepted(accepted) = &message {
-                    self.recording.accepted.extend(self.unacknowledged.acknowledged(*accepted));
+                    self.recording.accepted.extend(self.unacknowledged.remove(*accepted));
                 }
-                self.recording.take(message.clone());
+                self.recording.store(message.clone());
                 messages.push(message);
             }
             if let Some(head) =
                 self.head_receiver.as_mut().and_then(|receiver| receiver.push_beginning::<HelloHead>(byte))
             {
-                self.foreign = Some(head).filter(|head| head.is_foreign());
+                self.undecodable = Some(head).filter(|head| head.is_undecodable());
             }
         }
         self.recording.traffic.bad_frames = self.receiver.dropped().frames - self.dropped_before;
         Ok(messages)
     }
 
-    /// Waits until `done` holds for what was received; fails after [`ANSWER_TIMEOUT`].
+    /// Waits until the recording satisfies `done`; fails after [`ANSWER_TIMEOUT`].
     pub(super) fn wait(&mut self, what: &str, done: impl Fn(&Recording) -> bool) -> Outcome<()> {
         let start = Instant::now();
         while !done(&self.recording) {
@@ -77,14 +77,14 @@ impl Session<'_> {
                 return Err(trip::failure(trip));
             }
             if start.elapsed() > ANSWER_TIMEOUT {
-                return Err(self.silent(&format!("no {what} came")));
+                return Err(self.silence(&format!("no {what} came")));
             }
         }
         Ok(())
     }
 
     /// Sends a message and waits for its answer.
-    pub(super) fn ask<T>(
+    pub(super) fn request<T>(
         &mut self,
         message: &ToBoard,
         what: &str,
@@ -103,7 +103,7 @@ impl Session<'_> {
                 }
             }
             if start.elapsed() > timeout {
-                return Err(self.silent_for(timeout, &format!("no {what} came")));
+                return Err(self.silence_for(timeout, &format!("no {what} came")));
             }
         }
     }
@@ -127,17 +127,18 @@ impl Session<'_> {
         let bytes = self.recording.traffic.received_bytes;
         if bytes == 0 {
             let message = format!("no board answers on {name}: nothing came in {seconds} s");
-            return Failure::new(message).with_help(help.of_silence("check power, wiring (TX to RX) and port"));
+            return Failure::new(message).with_help(help.no_valid_frame("check power, wiring (TX to RX) and port"));
         }
         let message = format!("no board answers on {name}: {bytes} bytes came in {seconds} s, but no valid frame");
-        Failure::new(message).with_help(help.of_silence("check --baud, and that this checkout's image is on the board"))
+        Failure::new(message)
+            .with_help(help.no_valid_frame("check --baud, and that this checkout's image is on the board"))
     }
 
-    pub(super) fn silent(&self, what: &str) -> Failure {
-        self.silent_for(ANSWER_TIMEOUT, what)
+    pub(super) fn silence(&self, what: &str) -> Failure {
+        self.silence_for(ANSWER_TIMEOUT, what)
     }
 
-    pub(super) fn silent_for(&self, timeout: Duration, what: &str) -> Failure {
+    pub(super) fn silence_for(&self, timeout: Duration, what: &str) -> Failure {
         let traffic = &self.recording.traffic;
         let message = format!(
             "the board on {} has fallen silent at tick {}: {what} for {} s ({} bad frames dropped)",
@@ -149,12 +150,12 @@ impl Session<'_> {
         Failure::new(message).with_help("check the line and the board's power, reset the board and run again")
     }
 
-    pub(super) fn lost(&mut self, error: &std::io::Error) -> Failure {
+    pub(super) fn line_lost(&mut self, error: &std::io::Error) -> Failure {
         let name = self.line.name().to_owned();
         let tick = self.recording.last_tick();
         match self.supervisor.gone() {
             Some(why) => Failure::new(format!("{name} is gone at tick {tick}: {why}"))
-                .with_help("run again; if it happens again its last words are above or in the run's log"),
+                .with_help("run again; if it happens again, read the output above or the run's log"),
             None => Failure::new(format!("the line to {name} was lost at tick {tick}: {error}"))
                 .with_help("check the cable and the board's power, then run again"),
         }

@@ -1,5 +1,5 @@
-//! The observer's memory on a board (what it has learnt between runs): read from its flash, loaded into its controller,
-//! written and erased. Its content is passed on as bytes.
+//! The observer's memory on a board (estimated parameters kept between runs): read from flash, loaded into the
+//! controller, written and erased. Its content is passed on as bytes.
 
 use std::time::Duration;
 
@@ -11,24 +11,25 @@ use model_core::observer::{MEMORY_BYTES, Memory};
 use super::{ANSWER_TIMEOUT, Session};
 use report::failure::{Failure, Outcome};
 
-/// A large sector of flash takes up to four seconds to be erased; meanwhile its board says nothing.
+/// Longest wait for a flash operation: a large sector takes up to four seconds to erase, and the board is silent
+/// meanwhile.
 const FLASH_WRITE_TIMEOUT: Duration = Duration::from_secs(10);
 
 impl Session<'_> {
-    /// What the page of its flash holds.
+    /// Reads the memory stored in the board's flash.
     pub fn stored_memory(&mut self) -> Outcome<Memory> {
         let mut memory = [0; MEMORY_BYTES];
         for (part, place) in (0..MEMORY_PARTS).zip(memory.as_chunks_mut::<PART_BYTES>().0) {
-            let told = self.ask_about(MemoryRequest::Read { part }, ANSWER_TIMEOUT, |message| match message {
-                FromBoard::Memory(told) if told.part == part && told.bytes.len() == PART_BYTES => Some(told.bytes),
+            let sent = self.request_memory(MemoryRequest::Read { part }, ANSWER_TIMEOUT, |message| match message {
+                FromBoard::Memory(sent) if sent.part == part && sent.bytes.len() == PART_BYTES => Some(sent.bytes),
                 _ => None,
             })?;
-            place.copy_from_slice(&told);
+            place.copy_from_slice(&sent);
         }
         Ok(memory)
     }
 
-    /// Brings it a memory that runs may begin from; what its controller makes of it.
+    /// Loads a memory for the following runs; returns the controller's verdict on it.
     pub fn load_memory(&mut self, memory: &Memory) -> Outcome<MemoryState> {
         let mut parts = (0..MEMORY_PARTS)
             .zip(memory.as_chunks::<PART_BYTES>().0)
@@ -38,23 +39,23 @@ impl Session<'_> {
             self.send(&ToBoard::Memory(part))?;
         }
         let last = last.ok_or_else(|| Failure::new("a memory has no part"))?;
-        self.ask_about(last, ANSWER_TIMEOUT, |message| {
+        self.request_memory(last, ANSWER_TIMEOUT, |message| {
             if let FromBoard::MemoryChecked(judged) = message { Some(judged) } else { None }
         })
     }
 
-    /// Has it write the memory that was brought to its flash.
+    /// Writes the loaded memory to the board's flash.
     pub fn write_memory(&mut self) -> Outcome<MemoryOutcome> {
         self.write(MemoryRequest::Write)
     }
 
-    /// Has it write what it has learnt to its flash.
+    /// Writes the estimated parameters to the board's flash.
     pub fn save_memory(&mut self) -> Outcome<MemoryOutcome> {
         self.write(MemoryRequest::Save)
     }
 
-    /// Ends a run, has what was learnt in it kept, and begins anew from that. Where there is no flash it is at hand until the
-    /// power is off.
+    /// Ends a run, saves its estimated parameters, and starts a run from them. A board without flash slots keeps them
+    /// until power is off.
     pub fn restart_from_memory(&mut self) -> Outcome<()> {
         let settings = self.recording.settings.ok_or_else(|| Failure::new("nothing has run yet"))?;
         self.send(&ToBoard::Stop)?;
@@ -63,45 +64,45 @@ impl Session<'_> {
         self.reset(RunSettings { from_memory: true, ..settings })
     }
 
-    /// Has it forget what it has learnt, in its flash too.
+    /// Erases the estimated parameters, in flash too.
     pub fn erase_memory(&mut self) -> Outcome<MemoryOutcome> {
         self.write(MemoryRequest::Erase)
     }
 
     fn write(&mut self, request: MemoryRequest) -> Outcome<MemoryOutcome> {
-        self.ask(&ToBoard::Memory(request), "answer about the memory", FLASH_WRITE_TIMEOUT, kept)
+        self.request(&ToBoard::Memory(request), "answer about the memory", FLASH_WRITE_TIMEOUT, memory_outcome)
             .and_then(unless_running)
     }
 
-    /// Asks for something that flash need not be written for.
-    fn ask_about<T>(
+    /// Sends a request that does not write flash.
+    fn request_memory<T>(
         &mut self,
         request: MemoryRequest,
         timeout: Duration,
         answer: impl Fn(FromBoard) -> Option<T>,
     ) -> Outcome<T> {
         let answered =
-            self.ask(&ToBoard::Memory(request), "answer about the memory", timeout, |message| match message {
+            self.request(&ToBoard::Memory(request), "answer about the memory", timeout, |message| match message {
                 FromBoard::MemoryOutcome(why) => Some(Err(why)),
                 other => answer(other).map(Ok),
             })?;
         answered.or_else(|why| {
             unless_running(why)?;
-            Err(Failure::new("the board's role learns nothing").with_help("flash an image of role observer or loop"))
+            Err(Failure::new("the board's role has no observer").with_help("flash an image of role observer or loop"))
         })
     }
 }
 
-fn kept(message: FromBoard) -> Option<MemoryOutcome> {
-    if let FromBoard::MemoryOutcome(kept) = message { Some(kept) } else { None }
+fn memory_outcome(message: FromBoard) -> Option<MemoryOutcome> {
+    if let FromBoard::MemoryOutcome(outcome) = message { Some(outcome) } else { None }
 }
 
-fn unless_running(kept: MemoryOutcome) -> Outcome<MemoryOutcome> {
-    match kept {
+fn unless_running(outcome: MemoryOutcome) -> Outcome<MemoryOutcome> {
+    match outcome {
         MemoryOutcome::Running => {
-            Err(Failure::new("a run goes on on the board, and its memory is for the time between runs")
+            Err(Failure::new("the board is running, and its memory can be accessed between runs only")
                 .with_help("end the run first, or reset the board"))
         }
-        kept => Ok(kept),
+        outcome => Ok(outcome),
     }
 }

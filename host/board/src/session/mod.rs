@@ -1,8 +1,8 @@
-//! A session with a board: connect, reset, run, stop. Whatever was received before an error is kept in `recording`.
+//! Session with a board: connect, reset, run, stop. Messages received before an error are kept in `recording`.
 //!
 //! `line_io` sends, receives and enforces timeouts; `identity` checks that the board runs the expected image and `help`
-//! says what to do if it does not; `stream` and `control` are the runs of the roles, `memory` reads and writes what a
-//! board has learnt.
+//! holds the remedies; `stream` and `control` are the runs of the roles; `memory` reads and writes the estimated
+//! parameters of a board.
 
 mod control;
 mod help;
@@ -28,59 +28,60 @@ use identity::HelloHead;
 
 /// Longest wait for an answer of a connected board.
 pub const ANSWER_TIMEOUT: Duration = Duration::from_secs(2);
-/// A real board that has not heard of its host for so long goes to its safe state [s].
+/// Time without a host message after which a real board enters its safe state [s].
 const COMMAND_TIMEOUT: f64 = 0.1;
-/// In a run a host that has nothing else to say says this often that it is there: three times in a timeout.
+/// Interval of keep-alive messages during a run: three per command timeout.
 const KEEP_ALIVE_INTERVAL: Duration = Duration::from_millis(30);
-/// Schedules with commands under way at once: the board's receive buffer holds two of the longest.
+/// Limit of schedules with commands in flight: the board's receive buffer holds two of the longest.
 const SCHEDULES_IN_FLIGHT: usize = 2;
-/// Empty ones beside them, of 16 bytes at most: while a slow line brings samples the answers are late.
+/// Limit of empty schedules (at most 16 bytes) in flight besides: acknowledgements are late while a slow line carries
+/// samples.
 const KEEP_ALIVES_IN_FLIGHT: usize = 8;
 /// Time between two hello messages to a board that has not answered yet.
 const HELLO_INTERVAL: Duration = Duration::from_millis(100);
 /// Longest wait for the line to become idle.
 const DRAIN_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// What a session polls while it waits: has the user interrupted it, is the other end gone?
+/// Conditions that a session polls while it waits.
 pub trait Supervisor {
-    /// The user wants to stop.
+    /// Returns whether the user wants to stop.
     fn interrupted(&self) -> bool;
-    /// Why the other end is gone, if it is known to be.
+    /// Reason for which the other end is gone, if known.
     fn gone(&mut self) -> Option<String> {
         None
     }
 }
 
-/// Command timeout of a board's runs, in ticks. There is none to speak of on the emulated board: its clock runs as fast as
-/// it can while the host is thinking.
+/// Command timeout of a board's runs [ticks]. The emulated board has practically none, because its clock runs as fast
+/// as it can while the host computes.
 pub fn command_timeout(tick_rate: u32, emulated: bool) -> u32 {
     if emulated { u32::MAX } else { (COMMAND_TIMEOUT * f64::from(tick_rate)).ceil() as u32 }
 }
 
-/// A session with a board.
+/// Open session with a board.
 pub struct Session<'a> {
     line: Box<dyn Line + 'a>,
     supervisor: Box<dyn Supervisor + 'a>,
     receiver: Receiver,
     head_receiver: Option<Receiver>,
-    foreign: Option<HelloHead>,
+    undecodable: Option<HelloHead>,
     dropped_before: u32,
     unacknowledged: UnacknowledgedSchedules,
-    /// All that was received.
+    /// Messages received so far.
     pub recording: Recording,
-    /// A board that runs is stopped before the process ends.
+    /// Keeps the process alive until a running board is stopped.
     _in_order: InOrder,
 }
 
 impl<'a> Session<'a> {
-    /// A session on a line; nothing is sent yet.
+    /// Session on a line; nothing is sent yet.
     pub fn new(line: Box<dyn Line + 'a>, supervisor: Box<dyn Supervisor + 'a>) -> Self {
         Self {
             line,
             supervisor,
             receiver: Receiver::new(),
             head_receiver: Some(Receiver::new()),
-            foreign: None,
+            undecodable: None,
             dropped_before: 0,
             unacknowledged: UnacknowledgedSchedules::default(),
             recording: Recording::default(),
@@ -88,15 +89,16 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Calls the board until it answers, and refuses one that is not as expected.
+    /// Sends hello messages until the board answers, and rejects a board with another identity.
     pub fn connect(&mut self, expected: &Expected, timeout: Duration) -> Outcome<Hello> {
-        let hello = self.call(&expected.help, timeout)?;
+        let hello = self.wait_for_hello(&expected.help, timeout)?;
         expected.verify(&hello)?;
         Ok(hello)
     }
 
-    /// Calls the board until it answers, whatever it is as long as it can be understood; `help` is for a board that cannot be.
-    pub fn call(&mut self, help: &BoardHelp, timeout: Duration) -> Outcome<Hello> {
+    /// Sends hello messages until the board answers; accepts any board whose hello can be decoded. `help` is the remedy
+    /// for others.
+    pub fn wait_for_hello(&mut self, help: &BoardHelp, timeout: Duration) -> Outcome<Hello> {
         let deadline = Instant::now() + timeout;
         let mut next_ping = Instant::now();
         while self.recording.hello.is_none() {
@@ -105,7 +107,7 @@ impl<'a> Session<'a> {
                 next_ping = Instant::now() + HELLO_INTERVAL;
             }
             self.receive()?;
-            if let Some(head) = self.foreign {
+            if let Some(head) = self.undecodable {
                 return Err(head.refusal(help));
             }
             if Instant::now() > deadline {
@@ -113,10 +115,10 @@ impl<'a> Session<'a> {
             }
         }
         self.head_receiver = None;
-        self.recording.hello.clone().ok_or_else(|| Failure::new("the board gave no name"))
+        self.recording.hello.clone().ok_or_else(|| Failure::new("the board sent no hello"))
     }
 
-    /// Brings the board to rest at tick 0, whatever it was doing, with all counts cleared.
+    /// Stops the board and brings it to rest at tick 0 with all counters cleared.
     pub fn reset(&mut self, settings: RunSettings) -> Outcome<()> {
         self.send(&ToBoard::Stop)?;
         self.drain()?;
@@ -133,23 +135,23 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Asks for the statistics of the run, then ends it. Samples after `last_tick` are no part of it: in real time the
-    /// board goes on until it is stopped.
+    /// Requests the statistics of the run, then ends it. Samples after `last_tick` are dropped: in real time the board
+    /// runs until it is stopped.
     pub fn finish(&mut self, last_tick: u32) -> Outcome<()> {
         self.recording.statistics = None;
         self.send(&ToBoard::Statistics { reset: false })?;
         self.wait("statistics", |recording| recording.statistics.is_some())?;
         self.send(&ToBoard::Stop)?;
         self.drain()?;
-        self.recording.keep_until(last_tick);
+        self.recording.drop_samples_after(last_tick);
         Ok(())
     }
 
-    /// Ends a run that has gone wrong: stops the board and takes what it still says, as far as that can be had.
+    /// Ends a failed run: stops the board and collects its last messages as far as the line allows.
     pub fn abandon(&mut self) {
-        let quickly = |result: Outcome<()>| result.is_ok();
+        let succeeded = |result: Outcome<()>| result.is_ok();
         self.recording.statistics = None;
-        let asked = quickly(self.send(&ToBoard::Stop)) && quickly(self.send(&ToBoard::Statistics { reset: false }));
+        let asked = succeeded(self.send(&ToBoard::Stop)) && succeeded(self.send(&ToBoard::Statistics { reset: false }));
         let deadline = Instant::now() + DRAIN_TIMEOUT;
         while asked && self.recording.statistics.is_none() && Instant::now() < deadline {
             if self.receive_uninterrupted().is_err() {

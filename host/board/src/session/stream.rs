@@ -1,5 +1,5 @@
-//! Streaming a torque profile: schedules are sent as far ahead as the board's queue and buffers have room, samples are
-//! received. The window is computed from the ticks that the board has reported as done.
+//! Streams a torque profile: schedules are sent as far ahead as the board's queue and buffers allow, and samples are
+//! received. The window follows from the ticks that the board has reported as done.
 
 use std::time::{Duration, Instant};
 
@@ -10,10 +10,10 @@ use crate::profile::TorqueProfile;
 use crate::trip;
 use report::failure::{Failure, Outcome};
 
-/// A board that answers, but whose ticks do not go on for so long, has lost a schedule.
+/// Time without progress of the ticks after which a board that still answers has lost a schedule.
 const STALL_TIMEOUT: Duration = Duration::from_secs(4);
 
-/// Progress of a stream.
+/// State of a stream.
 struct StreamProgress<'p> {
     profile: &'p TorqueProfile,
     settings: RunSettings,
@@ -28,19 +28,19 @@ struct StreamProgress<'p> {
 }
 
 impl Session<'_> {
-    /// Runs a profile to its last sample. `progress` is told the ticks done.
+    /// Runs a profile to its last sample; `progress` receives the ticks done.
     pub fn stream(&mut self, profile: &TorqueProfile, progress: &mut dyn FnMut(u32)) -> Outcome<()> {
         let settings = self.recording.settings.ok_or_else(|| Failure::new("a stream needs a reset before it"))?;
         let capacity = self.recording.hello.as_ref().map_or(0, |hello| usize::from(hello.queue_capacity));
         let tick_rate = self.recording.hello.as_ref().map_or(1, |hello| hello.tick_rate);
         if capacity == 0 {
-            return Err(Failure::new("the board states a command queue without places"));
+            return Err(Failure::new("the board reports a command queue of length 0"));
         }
         let last_sample = profile.ticks - profile.ticks % u32::from(settings.decimation);
         let mut stream = StreamProgress::new(profile, settings, tick_rate);
         while self.recording.last_tick() < last_sample || stream.board_tick < last_sample {
             while let Some(schedule) = stream.next_schedule(capacity, self.unacknowledged.count()) {
-                self.unacknowledged.sent(schedule.sequence, &schedule.commands);
+                self.unacknowledged.add(schedule.sequence, &schedule.commands);
                 self.send(&ToBoard::Schedule(schedule))?;
             }
             for message in self.receive()? {
@@ -52,8 +52,8 @@ impl Session<'_> {
                     }
                     FromBoard::Tripped(raised) => return Err(trip::failure(&raised)),
                     FromBoard::Hello(_) => {
-                        return Err(Failure::check_failed("the board has started anew in mid-run")
-                            .with_help("a brown-out, a watchdog or a panic: see last_panic in the report's record"));
+                        return Err(Failure::check_failed("the board restarted during the run")
+                            .with_help("brown-out, watchdog or panic: see last_panic in the report's record"));
                     }
                     FromBoard::Statistics(_)
                     | FromBoard::Log(_)
@@ -67,16 +67,16 @@ impl Session<'_> {
             }
             progress(stream.board_tick.min(profile.ticks));
             if stream.last_message.elapsed() > ANSWER_TIMEOUT {
-                return Err(self.silent("nothing valid came"));
+                return Err(self.silence("nothing valid came"));
             }
             if stream.last_advance.elapsed() > STALL_TIMEOUT {
-                return Err(self.stands_still(&stream));
+                return Err(self.stalled(&stream));
             }
         }
         Ok(())
     }
 
-    fn stands_still(&self, stream: &StreamProgress<'_>) -> Failure {
+    fn stalled(&self, stream: &StreamProgress<'_>) -> Failure {
         let message = format!(
             "the board on {} answers, but stays at tick {} of {} ({} schedules unanswered)",
             self.line.name(),
@@ -91,15 +91,15 @@ impl Session<'_> {
 impl<'p> StreamProgress<'p> {
     fn new(profile: &'p TorqueProfile, settings: RunSettings, tick_rate: u32) -> Self {
         let now = Instant::now();
-        // In real time the board goes on until it is told to stop: the last torque is known to hold until then.
-        let beyond = match settings.mode {
+        // In real time the board runs until it is stopped: the last torque is valid until then.
+        let hold_after = match settings.mode {
             RunMode::Lockstep => 0,
             RunMode::Realtime => 4 * tick_rate,
         };
         Self {
             profile,
             settings,
-            horizon_after_last: profile.ticks.saturating_add(beyond),
+            horizon_after_last: profile.ticks.saturating_add(hold_after),
             next_command: 0,
             next_sequence: 0,
             sent_any: false,
@@ -117,8 +117,8 @@ impl<'p> StreamProgress<'p> {
         }
     }
 
-    /// The next schedule, if the board is known to have room for it beside those in flight. An empty one asks how far the
-    /// board is, if that is all that holds the stream up, and says that the host is there.
+    /// Returns the next schedule if the board has room for it besides those in flight. An empty schedule requests the
+    /// board's tick when the stream waits for it, and keeps the command timeout from expiring.
     fn next_schedule(&mut self, capacity: usize, in_flight: usize) -> Option<Schedule> {
         let commands = &self.profile.commands;
         // A command leaves the queue with the step that it is for.
@@ -149,10 +149,10 @@ impl<'p> StreamProgress<'p> {
 mod tests {
     use super::*;
 
-    /// A profile with seconds between its torques, on a board that is as far as it has been told: every schedule is within
-    /// reach, and none goes back.
+    /// A profile with seconds between its torques: every schedule stays within the board's reach, horizons never go
+    /// back, and the stream ends.
     #[test]
-    fn no_schedule_reaches_farther_than_the_board_accepts_and_the_stream_comes_to_its_end() {
+    fn sparse_stream_stays_within_reach() {
         for mode in [RunMode::Lockstep, RunMode::Realtime] {
             let settings = RunSettings { mode, decimation: 1, command_timeout: 2000, from_memory: false };
             let commands =
@@ -163,7 +163,7 @@ mod tests {
             let now = Instant::now();
             while stream.board_tick < profile.ticks {
                 assert!(now.elapsed() < ANSWER_TIMEOUT, "it stays at tick {}", stream.board_tick);
-                // Time passes without waiting for it.
+                // Advances the keep-alive clock without waiting.
                 stream.last_sent -= KEEP_ALIVE_INTERVAL;
                 assert!(stream.next_schedule(127, SCHEDULES_IN_FLIGHT + KEEP_ALIVES_IN_FLIGHT).is_none());
                 let schedule = stream.next_schedule(127, 0).expect("the host says that it is there");

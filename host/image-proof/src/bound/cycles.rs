@@ -1,25 +1,26 @@
-//! Cycles of an instruction on a Cortex-M4, at most: the tables of the Cortex-M4 Technical Reference Manual (r0p1, 3.3.1 and
-//! 7.2.3) with the dearest case of each row. They hold for memory without wait states that nobody else uses at that moment:
-//! code, tables, stack and state in CCM RAM (STM32F303, STM32G4) or in SRAM. Overlaps that the manual describes (loads one
-//! after the other, whole numbers beside a division) are not counted on, so that the sum is no less than the time.
+//! Upper bound on the cycles of an instruction on a Cortex-M4: the tables of the Cortex-M4 Technical Reference Manual
+//! (r0p1, 3.3.1 and 7.2.3) with the most expensive case of each row. They hold for memory without wait states and
+//! without contention: code, tables, stack and state in CCM RAM (STM32F303, STM32G4) or in SRAM. Overlaps that the
+//! manual describes (consecutive loads, integer instructions during a division) are not credited, so that the sum is
+//! never below the real time.
 
-use super::live::Live;
+use super::live::RegisterSet;
 use super::operation::{Floating, Operation};
 use crate::tick::thumb::Flow;
 
 /// P of the manual: cycles to refill the pipeline after a jump, 1 to 3.
 const REFILL: u32 = 3;
-/// A division of whole numbers takes 2 to 12.
+/// Integer division, 2 to 12 cycles.
 const DIVIDE: u32 = 12;
-/// A division or a square root of single precision.
+/// Division or square root in single precision.
 const FLOAT_DIVIDE: u32 = 14;
-/// An access to memory: one, and one for its data.
+/// Memory access: one cycle, and one for its data.
 const ACCESS: u32 = 2;
 
-/// Cycles of an operation that goes on to the next instruction.
-pub fn of(operation: &Operation) -> u32 {
+/// Cycles of an operation that continues with the next instruction.
+pub fn of_operation(operation: &Operation) -> u32 {
     match *operation {
-        // Barriers wait for what is under way, at most as long as the pipeline takes to fill.
+        // A barrier waits for pending work, at most for a refill of the pipeline.
         Operation::Nothing => 1 + REFILL,
         Operation::Unknown | Operation::If(..) | Operation::MoveTop(..) => 1,
         Operation::Compute { to: Some(15), .. } => 1 + REFILL,
@@ -42,26 +43,26 @@ pub fn of(operation: &Operation) -> u32 {
             Floating::MultiplyAccumulate => 3,
             _ => 1,
         },
-        // Special registers, saturation, halves: one or two.
-        Operation::Forget(_) => 2,
+        // Special registers, saturation, half words: one or two cycles.
+        Operation::Clobber(_) => 2,
     }
 }
 
-/// Cycles of an instruction that goes elsewhere.
+/// Cycles of an instruction that may jump.
 pub fn of_jump(flow: Flow, operation: &Operation) -> u32 {
     match flow {
         Flow::Table { .. } => ACCESS + REFILL,
-        // A return by a load has the load, too.
-        Flow::Return | Flow::JumpRegister => of(operation).max(1 + REFILL),
+        // A return by a load also takes the cycles of the load.
+        Flow::Return | Flow::JumpRegister => of_operation(operation).max(1 + REFILL),
         _ => 1 + REFILL,
     }
 }
 
-/// Registers whose value comes a cycle late for the very next instruction.
-pub fn late(operation: &Operation) -> Live {
+/// Registers whose value arrives one cycle late for the next instruction.
+pub fn late_registers(operation: &Operation) -> RegisterSet {
     match *operation {
-        Operation::Float(Floating::Copy | Floating::Absolute | Floating::Negate, ..) => Live::default(),
-        Operation::Float(_, to, _) => Live::of_single(to),
-        _ => Live::default(),
+        Operation::Float(Floating::Copy | Floating::Absolute | Floating::Negate, ..) => RegisterSet::default(),
+        Operation::Float(_, to, _) => RegisterSet::single(to),
+        _ => RegisterSet::default(),
     }
 }

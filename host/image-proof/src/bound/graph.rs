@@ -1,5 +1,5 @@
-//! Control flow within one function: its instructions in an order in which every way leads onwards, its loops, and where
-//! ways meet. Dominators and order are `petgraph`'s.
+//! Control flow within a function: its instructions in topological order, its loops, and the joins of its paths.
+//! Dominators and order come from `petgraph`.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,37 +7,37 @@ use petgraph::algo::{dominators, toposort};
 use petgraph::graph::{DiGraph, NodeIndex};
 use petgraph::visit::EdgeRef;
 
-use super::live::{self, Live};
+use super::live::{self, RegisterSet};
 use super::operation::{Operation, operation};
 use crate::tick::frame::targets;
 use crate::tick::functions::{Function, Functions};
 use crate::tick::thumb::Flow;
 
-/// The control flow of a function.
+/// Control flow of a function.
 #[derive(Debug)]
 pub struct Graph {
-    /// Place of every instruction in the order.
+    /// Position of every instruction in the order.
     order: BTreeMap<u32, u32>,
-    /// Heads of the loops that an instruction is in, the outermost first.
+    /// Heads of the loops around an instruction, outermost first.
     loops: BTreeMap<u32, Vec<u32>>,
-    /// Instructions that more than one way leads to.
+    /// Instructions with more than one predecessor.
     joins: BTreeSet<u32>,
-    /// Conditions of the instructions after an `it`.
+    /// Conditions of the instructions in an `it` block.
     conditions: BTreeMap<u32, u8>,
-    /// What of the registers is looked at from an instruction on.
-    live: BTreeMap<u32, Live>,
+    /// Registers that are live before an instruction.
+    live: BTreeMap<u32, RegisterSet>,
 }
 
-/// A loop with more than one way in.
+/// Loop with more than one entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Irreducible {
-    /// An instruction in it.
+    /// Address of an instruction in the loop.
     pub at: u32,
 }
 
 impl Graph {
-    /// Of a function. `returns` tells which callees come back.
-    pub fn of(functions: &Functions, function: &Function, returns: &dyn Fn(u32) -> bool) -> Result<Self, Irreducible> {
+    /// Builds the graph of a function. `returns` tells which callees return.
+    pub fn new(functions: &Functions, function: &Function, returns: &dyn Fn(u32) -> bool) -> Result<Self, Irreducible> {
         let conditions = conditions(functions, function);
         let mut graph = DiGraph::<u32, ()>::new();
         let mut nodes: BTreeMap<u32, NodeIndex> = BTreeMap::new();
@@ -54,12 +54,12 @@ impl Graph {
             }
         }
         let dominators = dominators::simple_fast(&graph, root);
-        let goes_back = |from: NodeIndex, to: NodeIndex| {
+        let is_back_edge = |from: NodeIndex, to: NodeIndex| {
             dominators.dominators(from).is_some_and(|mut above| above.any(|node| node == to))
         };
         let back: Vec<_> = graph
             .edge_references()
-            .filter(|edge| goes_back(edge.source(), edge.target()))
+            .filter(|edge| is_back_edge(edge.source(), edge.target()))
             .map(|edge| (edge.source(), edge.target()))
             .collect();
         let forward = graph.filter_map(
@@ -88,33 +88,33 @@ impl Graph {
         Ok(Self { order, loops, joins, conditions, live })
     }
 
-    /// Place of an instruction in the order.
+    /// Position of an instruction in the order.
     pub fn place(&self, address: u32) -> u32 {
         self.order.get(&address).copied().unwrap_or(u32::MAX)
     }
 
-    /// Heads of the loops around an instruction, the outermost first.
+    /// Heads of the loops around an instruction, outermost first.
     pub fn loops(&self, address: u32) -> &[u32] {
         self.loops.get(&address).map_or(&[], Vec::as_slice)
     }
 
-    /// Whether ways meet at an instruction.
+    /// Returns whether paths join at an instruction.
     pub fn is_join(&self, address: u32) -> bool {
         self.joins.contains(&address)
     }
 
-    /// Condition of an instruction after an `it`.
+    /// Condition of an instruction in an `it` block.
     pub fn condition(&self, address: u32) -> Option<u8> {
         self.conditions.get(&address).copied()
     }
 
-    /// What of the registers is looked at from an instruction on.
-    pub fn live(&self, address: u32) -> Live {
-        self.live.get(&address).copied().unwrap_or(Live::ALL)
+    /// Registers that are live before an instruction.
+    pub fn live(&self, address: u32) -> RegisterSet {
+        self.live.get(&address).copied().unwrap_or(RegisterSet::ALL)
     }
 }
 
-/// Every node that reaches the end of a loop without passing its head.
+/// Nodes of a loop: all that reach its end without passing its head.
 fn body(graph: &DiGraph<u32, ()>, from: NodeIndex, head: NodeIndex) -> BTreeSet<NodeIndex> {
     let mut found = BTreeSet::from([head]);
     let mut open = vec![from];
@@ -132,7 +132,7 @@ fn conditions(functions: &Functions, function: &Function) -> BTreeMap<u32, u8> {
         let (first, second) = functions.halves(*address);
         if state != 0 {
             found.insert(*address, state >> 4);
-            // The manual's ITAdvance.
+            // ITAdvance of the manual.
             state = if state & 7 == 0 { 0 } else { state & 0xe0 | state << 1 & 0x1f };
         }
         if let Operation::If(condition, mask) = operation(first, second) {
@@ -142,7 +142,7 @@ fn conditions(functions: &Functions, function: &Function) -> BTreeMap<u32, u8> {
     found
 }
 
-/// Where an instruction leads within its function.
+/// Successors of an instruction within its function.
 fn successors(
     functions: &Functions,
     function: &Function,

@@ -1,5 +1,5 @@
-//! Which registers a function still looks at from an instruction on. What nobody looks at may be forgotten, so that states
-//! which differ there alone are one. Too little found alive only loosens the bound.
+//! Liveness of registers. Dead registers can be forgotten, so that states that differ only in them merge. A register
+//! wrongly found dead would only loosen the bound.
 
 use std::collections::BTreeMap;
 
@@ -11,28 +11,29 @@ use super::operation::{
 use crate::tick::functions::{Function, Functions};
 use crate::tick::thumb::Flow;
 
-/// Registers and flags, a bit each: 16 core registers, 32 single ones, the flags of both.
+/// Set of registers and flags, one bit each: 16 core registers, 32 single-precision ones, the flags of both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Live(u64);
+pub struct RegisterSet(u64);
 
-const FLAGS: Live = Live(1 << 48);
-const FLOAT_FLAGS: Live = Live(1 << 49);
-/// What a callee takes its arguments from.
-const ARGUMENTS: Live = Live(0x200f | 0xffff << 16);
-/// What it may leave otherwise than it found it.
-const SCRATCH: Live = Live(0x500f | 0xffff << 16 | 3 << 48);
+const FLAGS: RegisterSet = RegisterSet(1 << 48);
+const FLOAT_FLAGS: RegisterSet = RegisterSet(1 << 49);
+/// Registers that may hold a callee's arguments.
+const ARGUMENTS: RegisterSet = RegisterSet(0x200f | 0xffff << 16);
+/// Registers that a callee may change.
+const CALLER_SAVED: RegisterSet = RegisterSet(0x500f | 0xffff << 16 | 3 << 48);
 
-impl Live {
-    /// Everything.
+impl RegisterSet {
+    /// All registers.
     pub const ALL: Self = Self(u64::MAX);
-    /// Nothing.
+    /// No register.
     const NONE: Self = Self(0);
 
     fn core(register: Register) -> Self {
         Self(1 << (register & 15))
     }
 
-    fn single(single: Single) -> Self {
+    /// Set of one single-precision register.
+    pub fn single(single: Single) -> Self {
         Self(1 << (16 + u32::from(single & 31)))
     }
 
@@ -40,168 +41,173 @@ impl Live {
         Self(list.into())
     }
 
-    /// A single register.
-    pub fn of_single(single: Single) -> Self {
-        Self::single(single)
+    fn consecutive_singles(first: Single, count: u8) -> Self {
+        (0..count).fold(Self::NONE, |row, index| row.union(Self::single(first.saturating_add(index))))
     }
 
-    fn row(first: Single, count: u8) -> Self {
-        (0..count).fold(Self::NONE, |row, index| row.and(Self::single(first.saturating_add(index))))
-    }
-
-    /// Both together.
-    pub const fn and(self, other: Self) -> Self {
+    /// Union.
+    pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    fn less(self, other: Self) -> Self {
+    fn without(self, other: Self) -> Self {
         Self(self.0 & !other.0)
     }
 
-    /// Whether two have something in common.
-    pub fn meets(self, other: Self) -> bool {
+    /// Returns whether two sets intersect.
+    pub fn intersects(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
 
-    /// Whether a core register is among them.
+    /// Returns whether a core register is in the set.
     pub fn has_core(self, register: Register) -> bool {
         self.0 & Self::core(register).0 != 0
     }
 
-    /// Whether a single register is among them.
+    /// Returns whether a single-precision register is in the set.
     pub fn has_single(self, single: Single) -> bool {
         self.0 & Self::single(single).0 != 0
     }
 
-    /// Whether the flags are, of the core and of the floating-point unit.
+    /// Returns whether the flags of the core and of the floating-point unit are in the set.
     pub fn has_flags(self) -> [bool; 2] {
         [self.0 & FLAGS.0 != 0, self.0 & FLOAT_FLAGS.0 != 0]
     }
 }
 
-/// What an operation looks at, and what it sets.
+/// Registers that an operation uses and sets.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Effect {
-    /// Looks at.
-    pub uses: Live,
-    /// Sets, whole.
-    pub sets: Live,
+    /// Used registers.
+    pub uses: RegisterSet,
+    /// Registers that are set as a whole.
+    pub sets: RegisterSet,
 }
 
-/// Uses and sets of an operation.
+/// Registers used and set by an operation.
 pub fn effect(operation: &Operation) -> Effect {
-    let core = Live::core;
+    let core = RegisterSet::core;
     let address = |at: &Address| match at.offset {
         Offset::Constant(_) => core(at.base),
-        Offset::Register(register, _) => core(at.base).and(core(register)),
+        Offset::Register(register, _) => core(at.base).union(core(register)),
     };
     let (uses, sets) = match *operation {
-        Operation::Nothing | Operation::Unknown => (Live::NONE, Live::NONE),
-        Operation::If(..) => (FLAGS, Live::NONE),
+        Operation::Nothing | Operation::Unknown => (RegisterSet::NONE, RegisterSet::NONE),
+        Operation::If(..) => (FLAGS, RegisterSet::NONE),
         Operation::Compute { what, to, first, second, flags } => {
             let operand = match second {
-                Operand::Constant(..) => Live::NONE,
+                Operand::Constant(..) => RegisterSet::NONE,
                 Operand::Shifted(register, ..) => core(register),
-                Operand::ShiftedBy(register, _, by) => core(register).and(core(by)),
+                Operand::ShiftedBy(register, _, by) => core(register).union(core(by)),
             };
-            let first = if matches!(what, Arithmetic::Move | Arithmetic::Not) { Live::NONE } else { core(first) };
+            let first =
+                if matches!(what, Arithmetic::Move | Arithmetic::Not) { RegisterSet::NONE } else { core(first) };
             let carries = matches!(what, Arithmetic::AddCarry | Arithmetic::SubtractCarry)
-                || matches!(second, Operand::Shifted(_, Shift::Carry, _));
-            let flags_in = if carries { FLAGS } else { Live::NONE };
-            let flags_out = if flags == Flags::Kept { Live::NONE } else { FLAGS };
-            (operand.and(first).and(flags_in), to.map_or(Live::NONE, core).and(flags_out))
+                || matches!(second, Operand::Shifted(_, Shift::RotateThroughCarry, _));
+            let flags_in = if carries { FLAGS } else { RegisterSet::NONE };
+            let flags_out = if flags == Flags::Kept { RegisterSet::NONE } else { FLAGS };
+            (operand.union(first).union(flags_in), to.map_or(RegisterSet::NONE, core).union(flags_out))
         }
-        Operation::MoveTop(to, _) => (core(to), Live::NONE),
+        Operation::MoveTop(to, _) => (core(to), RegisterSet::NONE),
         Operation::Multiply { to, first, second, third, .. } => {
-            (core(first).and(core(second)).and(third.map_or(Live::NONE, |(third, _)| core(third))), core(to))
+            (core(first).union(core(second)).union(third.map_or(RegisterSet::NONE, |(third, _)| core(third))), core(to))
         }
         Operation::MultiplyLong { to, factors, accumulates, .. } => {
-            let to = core(to[0]).and(core(to[1]));
-            let factors = core(factors[0]).and(core(factors[1]));
-            (if accumulates { factors.and(to) } else { factors }, to)
+            let to = core(to[0]).union(core(to[1]));
+            let factors = core(factors[0]).union(core(factors[1]));
+            (if accumulates { factors.union(to) } else { factors }, to)
         }
-        Operation::Divide { to, of, .. } => (core(of[0]).and(core(of[1])), core(to)),
-        Operation::Extend { to, from, plus, .. } => (core(from).and(plus.map_or(Live::NONE, core)), core(to)),
+        Operation::Divide { to, of, .. } => (core(of[0]).union(core(of[1])), core(to)),
+        Operation::Extend { to, from, plus, .. } => (core(from).union(plus.map_or(RegisterSet::NONE, core)), core(to)),
         Operation::Extract { to, from, .. } => (core(from), core(to)),
-        Operation::Insert { to, from, .. } => (core(to).and(from.map_or(Live::NONE, core)), Live::NONE),
+        Operation::Insert { to, from, .. } => (core(to).union(from.map_or(RegisterSet::NONE, core)), RegisterSet::NONE),
         Operation::Rearrange(_, to, from) => (core(from), core(to)),
         Operation::Load { to, ref at, .. } => (address(at), core(to)),
         Operation::Store { from, ref at, success, .. } => {
-            (address(at).and(core(from)), success.map_or(Live::NONE, core))
+            (address(at).union(core(from)), success.map_or(RegisterSet::NONE, core))
         }
-        Operation::LoadPair(to, ref at) => (address(at), core(to[0]).and(core(to[1]))),
-        Operation::StorePair(from, ref at) => (address(at).and(core(from[0])).and(core(from[1])), Live::NONE),
-        Operation::Multiple { loads: true, base, list, .. } => (core(base), Live::list(list)),
-        Operation::Multiple { loads: false, base, list, .. } => (core(base).and(Live::list(list)), Live::NONE),
-        Operation::MultipleSingle { loads: true, base, first, count, .. } => (core(base), Live::row(first, count)),
+        Operation::LoadPair(to, ref at) => (address(at), core(to[0]).union(core(to[1]))),
+        Operation::StorePair(from, ref at) => {
+            (address(at).union(core(from[0])).union(core(from[1])), RegisterSet::NONE)
+        }
+        Operation::Multiple { loads: true, base, list, .. } => (core(base), RegisterSet::list(list)),
+        Operation::Multiple { loads: false, base, list, .. } => {
+            (core(base).union(RegisterSet::list(list)), RegisterSet::NONE)
+        }
+        Operation::MultipleSingle { loads: true, base, first, count, .. } => {
+            (core(base), RegisterSet::consecutive_singles(first, count))
+        }
         Operation::MultipleSingle { loads: false, base, first, count, .. } => {
-            (core(base).and(Live::row(first, count)), Live::NONE)
+            (core(base).union(RegisterSet::consecutive_singles(first, count)), RegisterSet::NONE)
         }
-        Operation::ToSingle(to, from) => (core(from), Live::single(to)),
-        Operation::FromSingle(to, from) => (Live::single(from), core(to)),
-        Operation::ToSingles(to, from) => (core(from[0]).and(core(from[1])), Live::row(to, 2)),
-        Operation::FromSingles(to, from) => (Live::row(from, 2), core(to[0]).and(core(to[1]))),
-        Operation::SingleConstant(to, _) => (Live::NONE, Live::single(to)),
+        Operation::ToSingle(to, from) => (core(from), RegisterSet::single(to)),
+        Operation::FromSingle(to, from) => (RegisterSet::single(from), core(to)),
+        Operation::ToSingles(to, from) => (core(from[0]).union(core(from[1])), RegisterSet::consecutive_singles(to, 2)),
+        Operation::FromSingles(to, from) => (RegisterSet::consecutive_singles(from, 2), core(to[0]).union(core(to[1]))),
+        Operation::SingleConstant(to, _) => (RegisterSet::NONE, RegisterSet::single(to)),
         Operation::Float(what, to, of) => {
-            let of = Live::single(of[0]).and(Live::single(of[1]));
-            (if what == Floating::MultiplyAccumulate { of.and(Live::single(to)) } else { of }, Live::single(to))
+            let of = RegisterSet::single(of[0]).union(RegisterSet::single(of[1]));
+            (
+                if what == Floating::MultiplyAccumulate { of.union(RegisterSet::single(to)) } else { of },
+                RegisterSet::single(to),
+            )
         }
         Operation::CompareSingle(one, other) => {
-            (Live::single(one).and(other.map_or(Live::NONE, Live::single)), FLOAT_FLAGS)
+            (RegisterSet::single(one).union(other.map_or(RegisterSet::NONE, RegisterSet::single)), FLOAT_FLAGS)
         }
         Operation::FlagsFromSingle => (FLOAT_FLAGS, FLAGS),
-        Operation::Forget(registers) => (Live::NONE, Live::list(registers)),
+        Operation::Clobber(registers) => (RegisterSet::NONE, RegisterSet::list(registers)),
     };
     Effect { uses, sets }
 }
 
-/// Uses and sets of an instruction in its function.
+/// Registers used and set by an instruction in its function.
 fn effect_at(functions: &Functions, function: &Function, address: u32) -> Effect {
     let (first, second) = functions.halves(address);
     let own = effect(&operation(first, second));
     let flow = function.code.get(&address).map(|instruction| instruction.flow);
     match flow {
         Some(Flow::Next) | None => own,
-        // A comparison of a register with zero has its register where a conditional branch has part of its distance.
+        // `cbz` and `cbnz` hold their register where a conditional branch holds part of its distance.
         Some(Flow::Branch(_)) if first & 0xf500 == 0xb100 => {
-            Effect { uses: Live::core((first & 7) as Register), sets: Live::NONE }
+            Effect { uses: RegisterSet::core((first & 7) as Register), sets: RegisterSet::NONE }
         }
-        Some(Flow::Branch(_)) => Effect { uses: FLAGS, sets: Live::NONE },
-        Some(Flow::Call(_) | Flow::CallRegister) => Effect { uses: own.uses.and(ARGUMENTS), sets: SCRATCH },
+        Some(Flow::Branch(_)) => Effect { uses: FLAGS, sets: RegisterSet::NONE },
+        Some(Flow::Call(_) | Flow::CallRegister) => Effect { uses: own.uses.union(ARGUMENTS), sets: CALLER_SAVED },
         Some(Flow::Jump(to)) if (function.address..function.end).contains(&to) => own,
         Some(Flow::Table { .. }) => Effect {
-            uses: Live::core((first & 15) as Register).and(Live::core((second & 15) as Register)),
-            sets: Live::NONE,
+            uses: RegisterSet::core((first & 15) as Register).union(RegisterSet::core((second & 15) as Register)),
+            sets: RegisterSet::NONE,
         },
         Some(Flow::Jump(_) | Flow::JumpRegister | Flow::Return | Flow::Trap) => {
-            Effect { uses: Live::ALL.less(FLAGS).less(FLOAT_FLAGS), sets: Live::NONE }
+            Effect { uses: RegisterSet::ALL.without(FLAGS).without(FLOAT_FLAGS), sets: RegisterSet::NONE }
         }
     }
 }
 
-/// What is alive before every instruction of a function.
+/// Live registers before every instruction of a function.
 pub fn registers(
     functions: &Functions,
     function: &Function,
     graph: &DiGraph<u32, ()>,
     nodes: &BTreeMap<u32, NodeIndex>,
     conditions: &BTreeMap<u32, u8>,
-) -> BTreeMap<u32, Live> {
+) -> BTreeMap<u32, RegisterSet> {
     let effect = |address: &u32| {
         let effect = effect_at(functions, function, *address);
-        // What may be skipped may leave all as it was.
-        let sets = if conditions.contains_key(address) { Live::NONE } else { effect.sets };
+        // A conditional instruction may leave all registers unchanged.
+        let sets = if conditions.contains_key(address) { RegisterSet::NONE } else { effect.sets };
         (*address, Effect { sets, ..effect })
     };
     let effects: BTreeMap<u32, Effect> = nodes.keys().map(effect).collect();
-    let mut live: BTreeMap<u32, Live> = nodes.keys().map(|address| (*address, Live::NONE)).collect();
+    let mut live: BTreeMap<u32, RegisterSet> = nodes.keys().map(|address| (*address, RegisterSet::NONE)).collect();
     let mut changes = true;
     while changes {
         changes = false;
         for (address, node) in nodes.iter().rev() {
-            let after = graph.neighbors(*node).fold(Live::NONE, |all, next| all.and(live[&graph[next]]));
+            let after = graph.neighbors(*node).fold(RegisterSet::NONE, |all, next| all.union(live[&graph[next]]));
             let Effect { uses, sets } = effects[address];
-            let before = after.less(sets).and(uses);
+            let before = after.without(sets).union(uses);
             changes |= live.insert(*address, before) != Some(before);
         }
     }

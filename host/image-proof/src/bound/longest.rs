@@ -1,10 +1,10 @@
-//! The longest way through the image from an entry on: every way that the known values leave open is gone, loops round by
-//! round and calls in their callers' places, and where ways meet the greater count is carried on. That is the longest path
-//! over the unrolled control flow, exact for what is known of the values there.
+//! Longest path through the image from an entry: paths that known values exclude are pruned, loops are unrolled round
+//! by round, calls are inlined, and at joins the larger count is kept. The result is the longest path over the unrolled
+//! control flow, exact for the known values.
 //!
-//! A place is a row of calls, of loops with their rounds, and of an instruction's position in its function. Positions grow
-//! along every way (`graph`), rounds grow too, so that the rows are in an order in which all that leads to a place comes
-//! before it.
+//! A place is a sequence of calls, of loops with their rounds, and of an instruction's position in its function.
+//! Positions grow along every path (`graph`) and rounds grow too, so that the lexicographic order of the sequences
+//! visits every predecessor of a place before the place.
 
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
@@ -12,116 +12,116 @@ use std::rc::Rc;
 
 use super::cycles;
 use super::graph::Graph;
-use super::live::{Effect, Live, effect};
-use super::machine::{Constants, Machine, holds};
+use super::live::{Effect, RegisterSet, effect};
+use super::machine::{Constants, Machine, condition_holds};
 use super::operation::{Operation, Register, operation};
 use crate::tick::frame::targets;
 use crate::tick::functions::{Function, Functions};
 use crate::tick::thumb::Flow;
 use crate::tick::walk::is_panic;
 
-/// States that are kept apart where ways meet; the most alike beyond them become one.
-const KEPT_APART: usize = 4;
-/// No loop of a tick goes round more often: what does has no bound.
-const MOST_ROUNDS: u32 = 1024;
+/// Limit of separate states at a join; the most similar ones above it are merged.
+const MAX_STATES_AT_JOIN: usize = 4;
+/// Limit of rounds of a loop; a loop above it counts as unbounded.
+const MAX_ROUNDS: u32 = 1024;
 
-/// Why there is no bound.
+/// Reason for which there is no bound.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Refused {
-    /// A loop may go round for ever.
-    Unbounded(u32),
-    /// A loop has more than one way in.
-    Irreducible(u32),
-    /// Where control goes is not known.
-    Lost(u32),
-    /// An instruction is not known.
-    Instruction(u32),
-    /// A function calls itself.
+pub enum NoBound {
+    /// Loop without a provable limit.
+    UnboundedLoop(u32),
+    /// Loop with more than one entry.
+    IrreducibleLoop(u32),
+    /// Jump to an unknown target.
+    UnknownTarget(u32),
+    /// Unknown instruction.
+    UnknownInstruction(u32),
+    /// Recursive function.
     Recursion(u32),
-    /// A panic or a trap can be reached.
-    Stops(u32),
+    /// Reachable panic or trap.
+    ReachablePanic(u32),
 }
 
-impl Refused {
-    /// The instruction.
+impl NoBound {
+    /// Address of the instruction.
     pub fn at(&self) -> u32 {
         match *self {
-            Self::Unbounded(at)
-            | Self::Irreducible(at)
-            | Self::Lost(at)
-            | Self::Instruction(at)
+            Self::UnboundedLoop(at)
+            | Self::IrreducibleLoop(at)
+            | Self::UnknownTarget(at)
+            | Self::UnknownInstruction(at)
             | Self::Recursion(at)
-            | Self::Stops(at) => at,
+            | Self::ReachablePanic(at) => at,
         }
     }
 }
 
-/// What is counted along a way.
+/// Costs of a path.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Cost {
-    /// Instructions, those that a condition skips included.
+    /// Instructions, including those skipped by a condition.
     pub instructions: u32,
     /// Cycles of a Cortex-M4 without wait states.
     pub cycles: u32,
 }
 
 impl Cost {
-    fn most(self, other: Self) -> Self {
+    fn max(self, other: Self) -> Self {
         Self { instructions: self.instructions.max(other.instructions), cycles: self.cycles.max(other.cycles) }
     }
 }
 
-/// The answer.
+/// Result of the search.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Longest {
-    /// The greatest counts; each may be of a way of its own.
+pub struct LongestPath {
+    /// Largest costs; instructions and cycles may belong to different paths.
     pub cost: Cost,
-    /// Loops by their heads, with the most rounds that the values leave open.
+    /// Loops by their heads, with the largest number of rounds that the known values allow.
     pub loops: BTreeMap<u32, u32>,
-    /// Entries of all functions that were gone through.
+    /// Entries of all visited functions.
     pub functions: BTreeSet<u32>,
 }
 
-/// A call that is under way.
+/// Call on the stack of calls.
 #[derive(Debug, Clone, PartialEq, Eq)]
-struct Frame {
+struct CallFrame {
     function: u32,
     rounds: Vec<(u32, u32)>,
-    /// The call.
+    /// Address of the call.
     at: u32,
-    /// Where it goes on; nowhere after a jump into another function.
+    /// Return address; `None` after a jump into another function.
     back: Option<u32>,
 }
 
-/// Where control is.
+/// Place in the unrolled control flow.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Place {
-    callers: Rc<Vec<Frame>>,
+    callers: Rc<Vec<CallFrame>>,
     function: u32,
     rounds: Vec<(u32, u32)>,
     at: u32,
 }
 
-/// A row that orders places.
+/// Key that orders places.
 type Key = Vec<u32>;
 
 #[derive(Debug, Clone)]
 struct State {
     machine: Machine,
     cost: Cost,
-    /// Registers whose values the next instruction has to wait for.
-    late: Live,
+    /// Registers whose values arrive one cycle late for the next instruction.
+    late: RegisterSet,
 }
 
-/// The search.
-pub struct Search<'a> {
+/// Search for the longest path.
+pub struct PathSearch<'a> {
     functions: &'a Functions,
     graphs: BTreeMap<u32, Graph>,
-    open: BTreeMap<Key, (Place, Vec<State>)>,
-    /// What was known at the head of a loop a round before.
+    queued: BTreeMap<Key, (Place, Vec<State>)>,
+    /// States at the head of a loop one round earlier.
     heads: BTreeMap<Key, Vec<Machine>>,
-    lowest_stack: u32,
-    found: Longest,
+    stack_bottom: u32,
+    found: LongestPath,
     end: Option<State>,
 }
 
@@ -131,30 +131,30 @@ impl Constants for Functions {
     }
 }
 
-impl<'a> Search<'a> {
-    /// Over an image. The stack reaches down to `lowest_stack` at most.
-    pub fn new(functions: &'a Functions, lowest_stack: u32) -> Self {
+impl<'a> PathSearch<'a> {
+    /// Search over an image whose stack ends at `lowest_stack`.
+    pub fn new(functions: &'a Functions, stack_bottom: u32) -> Self {
         Self {
             functions,
             graphs: BTreeMap::new(),
-            open: BTreeMap::new(),
+            queued: BTreeMap::new(),
             heads: BTreeMap::new(),
-            lowest_stack,
-            found: Longest::default(),
+            stack_bottom,
+            found: LongestPath::default(),
             end: None,
         }
     }
 
-    /// The longest way from a function's entry to its return.
-    pub fn run(mut self, entry: u32, machine: Machine) -> Result<Longest, Refused> {
+    /// Longest path from a function's entry to its return.
+    pub fn run(mut self, entry: u32, machine: Machine) -> Result<LongestPath, NoBound> {
         let callers = Rc::new(Vec::new());
-        let state = State { machine, cost: Cost::default(), late: Live::default() };
+        let state = State { machine, cost: Cost::default(), late: RegisterSet::default() };
         self.enter(callers, entry & !1, entry, state)?;
-        while let Some((key, (place, states))) = self.open.pop_first() {
-            let states = self.met(&place, states);
-            self.watch_loop(&key, &place, &states)?;
+        while let Some((key, (place, states))) = self.queued.pop_first() {
+            let states = self.merge_states(&place, states);
+            self.check_loop(&key, &place, &states)?;
             for state in states {
-                self.follow(place.clone(), state)?;
+                self.follow_path(place.clone(), state)?;
             }
         }
         if let Some(end) = self.end {
@@ -163,14 +163,14 @@ impl<'a> Search<'a> {
         Ok(self.found)
     }
 
-    fn graph(&mut self, function: &Function) -> Result<&Graph, Refused> {
+    fn graph(&mut self, function: &Function) -> Result<&Graph, NoBound> {
         let functions = self.functions;
         Ok(match self.graphs.entry(function.address) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(place) => {
                 let returns = |to: u32| functions.at(to).is_none_or(|callee| !is_panic(&callee.name));
-                let graph = Graph::of(functions, function, &returns);
-                place.insert(graph.map_err(|found| Refused::Irreducible(found.at))?)
+                let graph = Graph::new(functions, function, &returns);
+                place.insert(graph.map_err(|found| NoBound::IrreducibleLoop(found.at))?)
             }
         })
     }
@@ -192,31 +192,31 @@ impl<'a> Search<'a> {
         key
     }
 
-    /// States where ways meet: what is not looked at any more is forgotten, equal ones are one.
-    fn met(&self, place: &Place, states: Vec<State>) -> Vec<State> {
+    /// Reduces the states at a join: dead registers are forgotten, and equal states are merged.
+    fn merge_states(&self, place: &Place, states: Vec<State>) -> Vec<State> {
         let live = self.graphs[&place.function].live(place.at);
         let mut kept: Vec<State> = Vec::new();
         for mut state in states {
-            state.machine.keep(live);
-            state.machine.drop_dead_stack(self.lowest_stack);
+            state.machine.keep_registers(live);
+            state.machine.drop_dead_stack(self.stack_bottom);
             match kept.iter_mut().find(|other| other.machine == state.machine) {
-                Some(other) => other.absorb(state),
+                Some(other) => other.take_larger(state),
                 None => kept.push(state),
             }
         }
-        while kept.len() > KEPT_APART {
+        while kept.len() > MAX_STATES_AT_JOIN {
             let pairs = (0..kept.len()).flat_map(|one| (one + 1..kept.len()).map(move |other| (one, other)));
             let nearest = pairs.min_by_key(|(one, other)| kept[*one].machine.distance(&kept[*other].machine));
             let Some((one, other)) = nearest else { break };
             let removed = kept.swap_remove(other);
             kept[one].machine.join(&removed.machine);
-            kept[one].absorb(removed);
+            kept[one].take_larger(removed);
         }
         kept
     }
 
-    /// Counts rounds, and refuses a loop whose next round is like the last.
-    fn watch_loop(&mut self, key: &Key, place: &Place, states: &[State]) -> Result<(), Refused> {
+    /// Counts rounds, and rejects a loop whose state repeats.
+    fn check_loop(&mut self, key: &Key, place: &Place, states: &[State]) -> Result<(), NoBound> {
         let Some((_, round)) = place.rounds.last().filter(|(head, _)| *head == place.at) else { return Ok(()) };
         let most = self.found.loops.entry(place.at).or_default();
         *most = (*most).max(round + 1);
@@ -229,11 +229,11 @@ impl<'a> Search<'a> {
             return Ok(());
         }
         let nothing_new = before.is_some_and(|before| states.iter().all(|state| before.contains(&state.machine)));
-        if nothing_new || *round >= MOST_ROUNDS { Err(Refused::Unbounded(place.at)) } else { Ok(()) }
+        if nothing_new || *round >= MAX_ROUNDS { Err(NoBound::UnboundedLoop(place.at)) } else { Ok(()) }
     }
 
-    /// Where a state goes on; where ways meet it is put by until all are there.
-    fn go(&mut self, place: &Place, to: u32, state: State) -> Option<(Place, State)> {
+    /// Moves a state to an instruction; at a join the state is queued until all predecessors are done.
+    fn advance(&mut self, place: &Place, to: u32, state: State) -> Option<(Place, State)> {
         let graph = &self.graphs[&place.function];
         let mut rounds = Vec::new();
         let mut is_same = true;
@@ -253,102 +253,102 @@ impl<'a> Search<'a> {
         }
         let place = Place { callers: Rc::clone(&place.callers), function: place.function, rounds, at: to };
         if graph.is_join(to) {
-            self.put(place, state);
+            self.queue(place, state);
             return None;
         }
         Some((place, state))
     }
 
-    fn put(&mut self, place: Place, state: State) {
+    fn queue(&mut self, place: Place, state: State) {
         let key = self.key(&place);
-        self.open.entry(key).or_insert_with(|| (place, Vec::new())).1.push(state);
+        self.queued.entry(key).or_insert_with(|| (place, Vec::new())).1.push(state);
     }
 
-    /// Goes into a function.
-    fn enter(&mut self, callers: Rc<Vec<Frame>>, to: u32, from: u32, state: State) -> Result<(), Refused> {
+    /// Enters a function.
+    fn enter(&mut self, callers: Rc<Vec<CallFrame>>, to: u32, from: u32, state: State) -> Result<(), NoBound> {
         let functions = self.functions;
-        let function = functions.at(to).ok_or(Refused::Lost(from))?;
+        let function = functions.at(to).ok_or(NoBound::UnknownTarget(from))?;
         if is_panic(&function.name) {
-            return Err(Refused::Stops(from));
+            return Err(NoBound::ReachablePanic(from));
         }
         if callers.iter().any(|frame| frame.function == function.address) {
-            return Err(Refused::Recursion(from));
+            return Err(NoBound::Recursion(from));
         }
         self.found.functions.insert(function.address);
         let rounds = self.graph(function)?.loops(function.address).iter().map(|head| (*head, 0)).collect();
-        self.put(Place { callers, function: function.address, rounds, at: function.address }, state);
+        self.queue(Place { callers, function: function.address, rounds, at: function.address }, state);
         Ok(())
     }
 
-    fn call(&mut self, place: &Place, to: u32, back: Option<u32>, state: State) -> Result<(), Refused> {
+    fn call(&mut self, place: &Place, to: u32, back: Option<u32>, state: State) -> Result<(), NoBound> {
         let mut callers = place.callers.as_ref().clone();
-        callers.push(Frame { function: place.function, rounds: place.rounds.clone(), at: place.at, back });
+        callers.push(CallFrame { function: place.function, rounds: place.rounds.clone(), at: place.at, back });
         self.enter(Rc::new(callers), to & !1, place.at, state)
     }
 
-    /// Back to where the last call came from.
-    fn leave(&mut self, place: &Place, state: State) {
+    /// Returns to the place of the last call.
+    fn return_to_caller(&mut self, place: &Place, state: State) {
         let mut callers = place.callers.as_ref().clone();
         while let Some(frame) = callers.pop() {
             let Some(back) = frame.back else { continue };
             let caller =
                 Place { callers: Rc::new(callers), function: frame.function, rounds: frame.rounds, at: frame.at };
-            // All of a callee's returns meet behind the call.
-            if let Some((place, state)) = self.go(&caller, back, state) {
-                self.put(place, state);
+            // All returns of a callee join behind the call.
+            if let Some((place, state)) = self.advance(&caller, back, state) {
+                self.queue(place, state);
             }
             return;
         }
         match &mut self.end {
-            Some(end) => end.absorb(state),
+            Some(end) => end.take_larger(state),
             None => self.end = Some(state),
         }
     }
 
-    /// Goes on until ways part, meet or end.
-    fn follow(&mut self, mut place: Place, mut state: State) -> Result<(), Refused> {
+    /// Follows a path until it branches, joins or ends.
+    fn follow_path(&mut self, mut place: Place, mut state: State) -> Result<(), NoBound> {
         let functions = self.functions;
         loop {
-            let function = functions.at(place.function).ok_or(Refused::Lost(place.at))?;
-            let instruction = function.code.get(&place.at).ok_or(Refused::Lost(place.at))?;
+            let function = functions.at(place.function).ok_or(NoBound::UnknownTarget(place.at))?;
+            let instruction = function.code.get(&place.at).ok_or(NoBound::UnknownTarget(place.at))?;
             let (first, second) = functions.halves(place.at);
             let operation = operation(first, second);
             if operation == Operation::Unknown {
-                return Err(Refused::Instruction(place.at));
+                return Err(NoBound::UnknownInstruction(place.at));
             }
             let next = place.at + instruction.size;
             let condition = self.graphs[&place.function].condition(place.at);
-            let meets = condition.map_or(Some(true), |condition| holds(condition, state.machine.flags()));
+            let meets = condition.map_or(Some(true), |condition| condition_holds(condition, state.machine.flags()));
             let is_plain = instruction.flow == Flow::Next;
             if meets == Some(false) || meets.is_none() && !is_plain {
                 let mut skipped = state.clone();
                 skipped.count(1);
-                skipped.late = Live::default();
-                let went = self.go(&place, next, skipped);
+                skipped.late = RegisterSet::default();
+                let advanced = self.advance(&place, next, skipped);
                 if meets == Some(false) {
-                    let Some(went) = went else { return Ok(()) };
-                    (place, state) = went;
+                    let Some(advanced) = advanced else { return Ok(()) };
+                    (place, state) = advanced;
                     continue;
                 }
-                if let Some((place, skipped)) = went {
-                    self.put(place, skipped);
+                if let Some((place, skipped)) = advanced {
+                    self.queue(place, skipped);
                 }
             }
             let Effect { uses, .. } = effect(&operation);
-            state.cost.cycles += u32::from(state.late.meets(uses));
+            state.cost.cycles += u32::from(state.late.intersects(uses));
             if is_plain {
                 let before = (meets.is_none()).then(|| state.machine.clone());
                 state.machine.execute(&operation, place.at, condition.is_some(), functions);
                 if let Some(before) = before {
                     state.machine.join(&before);
                 }
-                state.count(cycles::of(&operation));
-                state.late = cycles::late(&operation);
-                let Some(went) = self.go(&place, next, state) else { return Ok(()) };
-                (place, state) = went;
+                state.count(cycles::of_operation(&operation));
+                state.late = cycles::late_registers(&operation);
+                let Some(advanced) = self.advance(&place, next, state) else { return Ok(()) };
+                (place, state) = advanced;
                 continue;
             }
-            state.late = Live::default();
+            state.late = RegisterSet::default();
             let jump = cycles::of_jump(instruction.flow, &operation);
             match instruction.flow {
                 Flow::Next => {}
@@ -360,7 +360,7 @@ impl<'a> Search<'a> {
                         }
                         None => {
                             let condition = if first >> 11 >= 0b11101 { first >> 6 & 15 } else { first >> 8 & 15 };
-                            holds(condition as u8, state.machine.flags())
+                            condition_holds(condition as u8, state.machine.flags())
                         }
                     };
                     let mut goes_on = Vec::new();
@@ -374,14 +374,14 @@ impl<'a> Search<'a> {
                         }
                         state.count(cycles);
                         if function.code.contains_key(&to) {
-                            goes_on.extend(self.go(&place, to, state));
+                            goes_on.extend(self.advance(&place, to, state));
                         } else {
                             self.call(&place, to, None, state)?;
                         }
                     }
                     let last = goes_on.pop();
                     for (place, state) in goes_on {
-                        self.put(place, state);
+                        self.queue(place, state);
                     }
                     let Some(last) = last else { return Ok(()) };
                     (place, state) = last;
@@ -392,8 +392,8 @@ impl<'a> Search<'a> {
                     if !function.code.contains_key(&to) {
                         return self.call(&place, to, None, state);
                     }
-                    let Some(went) = self.go(&place, to, state) else { return Ok(()) };
-                    (place, state) = went;
+                    let Some(advanced) = self.advance(&place, to, state) else { return Ok(()) };
+                    (place, state) = advanced;
                     continue;
                 }
                 Flow::Call(to) => {
@@ -404,7 +404,11 @@ impl<'a> Search<'a> {
                 Flow::CallRegister | Flow::JumpRegister => {
                     let register = (first >> 3 & 15) as Register;
                     let is_branch = first & 0xff00 == 0x4700;
-                    let to = state.machine.register(register).filter(|_| is_branch).ok_or(Refused::Lost(place.at))?;
+                    let to = state
+                        .machine
+                        .register(register)
+                        .filter(|_| is_branch)
+                        .ok_or(NoBound::UnknownTarget(place.at))?;
                     state.count(jump);
                     let back = (instruction.flow == Flow::CallRegister).then_some(next);
                     return self.call(&place, to, back, state);
@@ -418,11 +422,11 @@ impl<'a> Search<'a> {
                         _ => &all[..],
                     };
                     if to.is_empty() {
-                        return Err(Refused::Lost(place.at));
+                        return Err(NoBound::UnknownTarget(place.at));
                     }
                     for to in to {
-                        if let Some((place, state)) = self.go(&place, *to, state.clone()) {
-                            self.put(place, state);
+                        if let Some((place, state)) = self.advance(&place, *to, state.clone()) {
+                            self.queue(place, state);
                         }
                     }
                     return Ok(());
@@ -430,10 +434,10 @@ impl<'a> Search<'a> {
                 Flow::Return => {
                     state.machine.execute(&operation, place.at, condition.is_some(), functions);
                     state.count(jump);
-                    self.leave(&place, state);
+                    self.return_to_caller(&place, state);
                     return Ok(());
                 }
-                Flow::Trap => return Err(Refused::Stops(place.at)),
+                Flow::Trap => return Err(NoBound::ReachablePanic(place.at)),
             }
         }
     }
@@ -446,9 +450,9 @@ impl State {
         self.cost.cycles += cycles;
     }
 
-    /// Takes over whatever is more in another state that knows no more.
-    fn absorb(&mut self, other: Self) {
-        self.cost = self.cost.most(other.cost);
-        self.late = self.late.and(other.late);
+    /// Takes the larger costs of an equal or merged state.
+    fn take_larger(&mut self, other: Self) {
+        self.cost = self.cost.max(other.cost);
+        self.late = self.late.union(other.late);
     }
 }

@@ -1,11 +1,11 @@
-//! The processor as far as it is known: registers, flags and memory, each value a number or not known. An instruction
-//! carries known values on and forgets what it cannot tell, so that whatever the processor does is among what is left open.
-//! Floating-point values are followed only where the result does not depend on the modes of the unit.
+//! Partially known processor state: registers, flags and memory, each value a number or unknown. An instruction
+//! propagates known values and makes all others unknown, so that the real state is always among the possible ones.
+//! Floating-point values are followed only if the result does not depend on the modes of the unit.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::live::Live;
+use super::live::RegisterSet;
 use super::operation::{
     Address, Arithmetic, Flags, Floating, Offset, Operand, Operation, Rearrangement, Register, Shift, Single,
 };
@@ -13,16 +13,16 @@ use super::operation::{
 /// Negative, zero, carry, overflow.
 pub type ConditionFlags = [Option<bool>; 4];
 
-/// What is read-only in the image.
+/// Read-only data of the image.
 pub trait Constants {
-    /// A byte that nothing writes.
+    /// Byte that is never written.
     fn byte(&self, address: u32) -> Option<u8>;
 }
 
-/// Known bytes of memory that can be written, by words: value and a mask of the known bytes.
+/// Known bytes of writable memory, by words: value and mask of the known bytes.
 type Memory = BTreeMap<u32, (u32, u32)>;
 
-/// The processor.
+/// Partially known state of the processor.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Machine {
     registers: [Option<u32>; 15],
@@ -32,8 +32,8 @@ pub struct Machine {
     memory: Rc<Memory>,
 }
 
-/// A condition of the instruction set that is not known to hold or not to hold.
-pub fn holds(condition: u8, [negative, zero, carry, overflow]: ConditionFlags) -> Option<bool> {
+/// Evaluates a condition code; `None` if it is unknown.
+pub fn condition_holds(condition: u8, [negative, zero, carry, overflow]: ConditionFlags) -> Option<bool> {
     let and = |one: Option<bool>, other: Option<bool>| match (one, other) {
         (Some(false), _) | (_, Some(false)) => Some(false),
         (Some(true), Some(true)) => Some(true),
@@ -59,7 +59,7 @@ fn joined<T: PartialEq>(one: Option<T>, other: Option<T>) -> Option<T> {
 }
 
 impl Machine {
-    /// Nothing known but the stack pointer.
+    /// State in which only the stack pointer is known.
     pub fn with_stack(pointer: u32) -> Self {
         let mut machine = Self {
             registers: [None; 15],
@@ -72,12 +72,12 @@ impl Machine {
         machine
     }
 
-    /// The flags.
+    /// Flags of the core.
     pub fn flags(&self) -> ConditionFlags {
         self.flags
     }
 
-    /// A core register, if its value is known.
+    /// Value of a core register, if known.
     pub fn register(&self, register: Register) -> Option<u32> {
         self.registers.get(usize::from(register)).copied().flatten()
     }
@@ -99,7 +99,7 @@ impl Machine {
         }
     }
 
-    /// Takes back what another does not know in the same way.
+    /// Keeps only the values that another state knows equally.
     pub fn join(&mut self, other: &Self) {
         for (own, others) in self.registers.iter_mut().zip(&other.registers) {
             *own = joined(*own, *others);
@@ -125,7 +125,7 @@ impl Machine {
         self.memory = Rc::new(both.collect());
     }
 
-    /// How many values two machines know differently: what a join would forget.
+    /// Number of values in which two states differ, and which a join would lose.
     pub fn distance(&self, other: &Self) -> usize {
         let differ = |one: &[Option<u32>], other: &[Option<u32>]| one.iter().zip(other).filter(|(a, b)| a != b).count();
         let registers = differ(&self.registers, &other.registers) + differ(&self.singles, &other.singles);
@@ -138,7 +138,7 @@ impl Machine {
         registers + alone(&self.memory, &other.memory) + alone(&other.memory, &self.memory)
     }
 
-    /// Forgets what is below the stack pointer, where nothing lives: states that differ there alone are one.
+    /// Forgets memory below the stack pointer, so that states that differ only there merge.
     pub fn drop_dead_stack(&mut self, lowest: u32) {
         let Some(pointer) = self.registers[13] else { return };
         if pointer > lowest && self.memory.range(lowest..pointer).next().is_some() {
@@ -146,8 +146,8 @@ impl Machine {
         }
     }
 
-    /// Forgets what of the registers nobody looks at any more.
-    pub fn keep(&mut self, live: Live) {
+    /// Forgets the registers that are not live.
+    pub fn keep_registers(&mut self, live: RegisterSet) {
         for (register, value) in (0..).zip(&mut self.registers).filter(|(register, _)| *register != 13) {
             if !live.has_core(register) {
                 *value = None;
@@ -182,7 +182,7 @@ impl Machine {
         (mask >> shift & 1 != 0).then_some(value >> shift & 0xff)
     }
 
-    /// Writes; a place that is not known may be anywhere.
+    /// Writes memory; an unknown address makes all memory unknown.
     pub fn write(&mut self, address: Option<u32>, bytes: u8, value: Option<u32>) {
         let Some(address) = address else {
             self.memory = Rc::default();
@@ -207,7 +207,7 @@ impl Machine {
         }
     }
 
-    /// Carries an instruction out. `here` is its address; inside of an `it` short forms set no flags.
+    /// Executes an instruction at address `here`; in an `it` block short forms set no flags.
     pub fn execute(&mut self, operation: &Operation, here: u32, inside_it: bool, constants: &dyn Constants) {
         let pc = here.wrapping_add(4);
         let sets = |flags: &Flags| match flags {
@@ -297,21 +297,21 @@ impl Machine {
                 self.set(to, value);
             }
             Operation::Load { to, bytes, signed, at } => {
-                let value = self.read(self.place(&at, pc), bytes, constants);
+                let value = self.read(self.access_address(&at, pc), bytes, constants);
                 let value = value.map(|value| extended(value, 8 * bytes, signed));
                 self.move_base(&at);
                 self.set(to, value);
             }
             Operation::Store { from, bytes, at, success } => {
                 let value = self.register(from);
-                self.write(self.place(&at, pc), bytes, value);
+                self.write(self.access_address(&at, pc), bytes, value);
                 self.move_base(&at);
                 if let Some(success) = success {
                     self.set(success, None);
                 }
             }
             Operation::LoadPair(to, at) => {
-                let place = self.place(&at, pc);
+                let place = self.access_address(&at, pc);
                 let values = [0, 4].map(|offset| self.read(place.map(|p| p.wrapping_add(offset)), 4, constants));
                 self.move_base(&at);
                 for (to, value) in to.into_iter().zip(values) {
@@ -319,7 +319,7 @@ impl Machine {
                 }
             }
             Operation::StorePair(from, at) => {
-                let place = self.place(&at, pc);
+                let place = self.access_address(&at, pc);
                 for (from, offset) in from.into_iter().zip([0, 4]) {
                     self.write(place.map(|place| place.wrapping_add(offset)), 4, self.register(from));
                 }
@@ -381,21 +381,21 @@ impl Machine {
             }
             Operation::CompareSingle(one, other) => {
                 let other = other.map_or(Some(0), |other| self.single(other));
-                let [one, other] = [self.single(one), other].map(|value| value.and_then(exact));
+                let [one, other] = [self.single(one), other].map(|value| value.and_then(mode_independent));
                 self.float_flags = match one.zip(other).map(|(one, other)| one.partial_cmp(&other)) {
                     Some(Some(order)) => [order.is_lt(), order.is_eq(), order.is_ge(), false].map(Some),
-                    // What is not ordered is carry and overflow; it is not followed.
+                    // An unordered comparison sets carry and overflow; it is not followed.
                     _ => [None; 4],
                 };
             }
             Operation::FlagsFromSingle => self.flags = self.float_flags,
-            Operation::Forget(registers) => {
+            Operation::Clobber(registers) => {
                 (0..15).filter(|register| registers >> register & 1 != 0).for_each(|register| self.set(register, None));
             }
         }
     }
 
-    /// Value and carry of a last operand.
+    /// Value and carry of the last operand.
     fn operand(&self, operand: Operand, pc: u32) -> (Option<u32>, Option<bool>) {
         let carry = self.flags[2];
         let value = |register: Register| if register == 15 { Some(pc) } else { self.register(register) };
@@ -405,7 +405,7 @@ impl Machine {
             Operand::ShiftedBy(register, shift, by) => (register, shift, self.register(by).map(|by| by & 0xff)),
         };
         let Some((value, amount)) = value(register).zip(amount) else {
-            // A register that is not shifted leaves the carry alone.
+            // An unshifted register leaves the carry unchanged.
             return (None, if amount == Some(0) { carry } else { None });
         };
         if amount == 0 {
@@ -424,11 +424,11 @@ impl Machine {
                 let (amount, signed) = (amount.min(32), i64::from(value as i32));
                 (Some((signed >> amount) as u32), Some(signed >> (amount - 1) & 1 != 0))
             }
-            Shift::Around => {
+            Shift::Rotate => {
                 let rotated = value.rotate_right(amount % 32);
                 (Some(rotated), Some(rotated >> 31 != 0))
             }
-            Shift::Carry => (carry.map(|carry| value >> 1 | u32::from(carry) << 31), Some(value & 1 != 0)),
+            Shift::RotateThroughCarry => (carry.map(|carry| value >> 1 | u32::from(carry) << 31), Some(value & 1 != 0)),
         }
     }
 
@@ -444,7 +444,7 @@ impl Machine {
             (value, [value.map(|value| value >> 31 != 0), value.map(|value| value == 0), carry, overflow])
         };
         let both = first.zip(second);
-        // Sums as the manual has them: x + y + carry.
+        // Sum as in the manual: x + y + carry.
         let sum = |one: Option<u32>, other: Option<u32>, carry: Option<bool>| {
             let Some(((one, other), carry)) = one.zip(other).zip(carry) else { return (None, [None; 4]) };
             let unsigned = u64::from(one) + u64::from(other) + u64::from(carry);
@@ -455,7 +455,7 @@ impl Machine {
         };
         let not = |value: Option<u32>| value.map(|value| !value);
         match what {
-            // Zero in a factor decides a conjunction.
+            // A zero operand makes the conjunction zero.
             Arithmetic::And if first == Some(0) || second == Some(0) => logical(Some(0)),
             Arithmetic::And => logical(both.map(|(one, other)| one & other)),
             Arithmetic::Clear => logical(both.map(|(one, other)| one & !other)),
@@ -468,21 +468,21 @@ impl Machine {
             Arithmetic::AddCarry => sum(first, second, self.flags[2]),
             Arithmetic::Subtract => sum(first, not(second), Some(true)),
             Arithmetic::SubtractCarry => sum(first, not(second), self.flags[2]),
-            Arithmetic::Reverse => sum(not(first), second, Some(true)),
+            Arithmetic::ReverseSubtract => sum(not(first), second, Some(true)),
         }
     }
 
-    /// Where an access goes.
-    fn place(&self, at: &Address, pc: u32) -> Option<u32> {
+    /// Address of an access.
+    fn access_address(&self, at: &Address, pc: u32) -> Option<u32> {
         if at.base == 15 {
             let Offset::Constant(by) = at.offset else { return None };
             return Some((pc & !3).wrapping_add_signed(by));
         }
         let base = self.register(at.base);
-        if at.before { base.and_then(|base| self.moved(base, at.offset)) } else { base }
+        if at.before { base.and_then(|base| self.with_offset(base, at.offset)) } else { base }
     }
 
-    fn moved(&self, base: u32, offset: Offset) -> Option<u32> {
+    fn with_offset(&self, base: u32, offset: Offset) -> Option<u32> {
         match offset {
             Offset::Constant(by) => Some(base.wrapping_add_signed(by)),
             Offset::Register(register, shift) => Some(base.wrapping_add(self.register(register)? << shift)),
@@ -491,13 +491,13 @@ impl Machine {
 
     fn move_base(&mut self, at: &Address) {
         if !at.before || at.write_back {
-            let moved = self.register(at.base).and_then(|base| self.moved(base, at.offset));
+            let moved = self.register(at.base).and_then(|base| self.with_offset(base, at.offset));
             self.set(at.base, moved);
         }
     }
 }
 
-/// The lowest bits of a word, with or without their sign.
+/// Lowest bits of a word, zero-extended or sign-extended.
 fn extended(value: u32, bits: u8, signed: bool) -> u32 {
     let left = 32 - u32::from(bits.clamp(1, 32));
     match signed {
@@ -506,8 +506,8 @@ fn extended(value: u32, bits: u8, signed: bool) -> u32 {
     }
 }
 
-/// A number that is the same in every mode of the unit: zero or normal.
-fn exact(bits: u32) -> Option<f32> {
+/// Value that is equal in every mode of the unit: zero or normal.
+fn mode_independent(bits: u32) -> Option<f32> {
     let value = f32::from_bits(bits);
     (value == 0.0 || value.is_normal()).then_some(value)
 }
@@ -517,12 +517,12 @@ fn float(what: Floating, [one, other]: [Option<u32>; 2]) -> Option<u32> {
         Floating::Copy => return one,
         Floating::Absolute => return one.map(|bits| bits & 0x7fff_ffff),
         Floating::Negate => return one.map(|bits| bits ^ 0x8000_0000),
-        Floating::Add => exact(one?)? + exact(other?)?,
-        Floating::Subtract => exact(one?)? - exact(other?)?,
-        Floating::Multiply => exact(one?)? * exact(other?)?,
-        Floating::NegatedMultiply => -(exact(one?)? * exact(other?)?),
-        Floating::Divide => exact(one?)? / exact(other?)?,
+        Floating::Add => mode_independent(one?)? + mode_independent(other?)?,
+        Floating::Subtract => mode_independent(one?)? - mode_independent(other?)?,
+        Floating::Multiply => mode_independent(one?)? * mode_independent(other?)?,
+        Floating::NegatedMultiply => -(mode_independent(one?)? * mode_independent(other?)?),
+        Floating::Divide => mode_independent(one?)? / mode_independent(other?)?,
         Floating::SquareRoot | Floating::MultiplyAccumulate | Floating::Convert => return None,
     };
-    exact(result.to_bits()).map(f32::to_bits)
+    mode_independent(result.to_bits()).map(f32::to_bits)
 }

@@ -1,16 +1,16 @@
-//! A bound on the instructions and cycles of a step, from the linked image alone: what the search for the worst case
-//! (`worst_case`) cannot exceed, whatever state it has not tried.
+//! Upper bound on the instructions and cycles of a step, from the linked image alone: no state, tried or not, can
+//! exceed it (`worst_case` searches for the worst one).
 //!
-//! From a step's entry on every way through the machine code is followed that the known values leave open (`longest`). Known
-//! are constants, the tables of the joint, which lie in the image and are never written, and what follows from them; torques
-//! and state are not. So counters of loops are known in every round, and branches by what only the tables say go one way.
-//! A loop whose rounds do not follow from that has no bound, and is an error with its place in the source.
+//! From a step's entry, `longest` follows every path through the machine code that the known values allow. Known are
+//! constants, the tables of the joint, which lie in the image and are never written, and values computed from them;
+//! torques and state are unknown. Loop counters are therefore known in every round, and branches that depend only on
+//! the tables go one way. A loop without a provable limit is an error with its place in the source.
 //!
-//! `operation` decodes, `machine` carries values through an instruction, `live` tells which of them are still looked at, `graph`
-//! is the control flow of a function, `cycles` the table of the Cortex-M4, `source` the debug information.
+//! `operation` decodes, `machine` propagates values through an instruction, `live` finds the registers still used,
+//! `graph` is the control flow of a function, `cycles` the table of the Cortex-M4, `source` the debug information.
 //!
-//! Taken for granted: pointers of safe code stay within their objects, and a caller's arguments are the joint's model and its
-//! torques, the model aligned as its type asks.
+//! Assumptions: pointers of safe code stay within their objects; the caller's arguments are the joint's model and its
+//! torques, the model aligned as its type requires.
 
 mod cycles;
 mod graph;
@@ -24,7 +24,7 @@ use std::fmt;
 use std::fs;
 use std::path::Path;
 
-use longest::{Longest, Refused, Search};
+use longest::{LongestPath, NoBound, PathSearch};
 use machine::Machine;
 use source::Source;
 
@@ -32,39 +32,40 @@ use crate::tick::functions::{Function, Functions};
 use crate::worst_case;
 use report::failure::{Failure, Outcome};
 
-/// The step that the search calls, by its path and by its name in the debug information but for the number of planets.
+/// Step that the search calls: its path, and its name in the debug information without the number of planets.
 const STEP: (&str, &str) = ("worst_case::measurement::step", "step");
-/// A bound beyond this many times the worst state that was found says too little.
-const WIDEST: f64 = 1.3;
-/// Where stack and model are taken to lie, well apart: nothing depends on it but their alignment, that of their types.
-const STACK: u32 = 0x2001_0000;
-const LOWEST_STACK: u32 = STACK - 0x4000;
-const MODEL: u32 = STACK - 0x8000;
+/// Limit of a bound over the worst state found; a bound above it is too loose to be useful.
+const MAX_BOUND_RATIO: f64 = 1.3;
+/// Assumed addresses of stack and model, well apart. Only their alignment matters, which is that of their types.
+const STACK_TOP: u32 = 0x2001_0000;
+const STACK_BOTTOM: u32 = STACK_TOP - 0x4000;
+const MODEL_ADDRESS: u32 = STACK_TOP - 0x8000;
 
-/// The bound of a joint's step.
+/// Bound of a joint's step.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Bound {
-    /// The joint.
+    /// Name of the joint.
     pub name: String,
-    /// Instructions.
+    /// Upper bound on instructions.
     pub instructions: u32,
-    /// Cycles of a Cortex-M4 whose memory has no wait states; not of the same way as the instructions.
+    /// Upper bound on cycles of a Cortex-M4 without wait states, not necessarily of the path with the most
+    /// instructions.
     pub cycles: u32,
-    /// Functions that the step can reach.
+    /// Number of functions that the step can reach.
     pub functions: usize,
-    /// Loops in them, with the most rounds, by their place in the source.
+    /// Loops of these functions by their place in the source, with their largest number of rounds.
     pub loops: Vec<(String, u32)>,
 }
 
-/// Bounds of the steps of all joints in the image that searches for the worst case, in the order of `searched`.
-pub fn of_steps(elf: &Path, searched: &[worst_case::Search]) -> Outcome<Vec<Bound>> {
+/// Bounds of the steps of all joints in the worst-case image, in the order of `searched`.
+pub fn bound_steps(elf: &Path, searched: &[worst_case::SearchResult]) -> Outcome<Vec<Bound>> {
     let failed = |why: String| Failure::new(format!("{}: {why}", elf.display()));
     let bytes = fs::read(elf).map_err(|error| failed(error.to_string()))?;
     let functions = Functions::read(&bytes).map_err(failed)?;
     let source = Source::read(&bytes).map_err(failed)?;
-    let of_joint = |(index, joint): (usize, &worst_case::Search)| {
+    let of_joint = |(index, joint): (usize, &worst_case::SearchResult)| {
         let missing = |what: String| {
-            failed(format!("{what} of joint {} is not to be found", joint.name))
+            failed(format!("cannot find {what} of joint {}", joint.name))
                 .with_help("the image must keep its symbols and its debug information")
         };
         let step = step(&functions, &source, joint.planets).ok_or_else(|| missing("the step".into()))?;
@@ -73,45 +74,50 @@ pub fn of_steps(elf: &Path, searched: &[worst_case::Search]) -> Outcome<Vec<Boun
         let (_, tables) = tables.ok_or_else(|| missing(format!("the data {place}")))?;
         let model = format!("Model<f32, {}>", joint.planets);
         let member = source.offset(&model, "tables").ok_or_else(|| missing(format!("member tables of {model}")))?;
-        let mut machine = Machine::with_stack(STACK);
-        machine.set(0, Some(MODEL));
-        machine.write(Some(MODEL + member), 4, Some(tables));
-        let longest = Search::new(&functions, LOWEST_STACK).run(step.address, machine);
+        let mut machine = Machine::with_stack(STACK_TOP);
+        machine.set(0, Some(MODEL_ADDRESS));
+        machine.write(Some(MODEL_ADDRESS + member), 4, Some(tables));
+        let longest = PathSearch::new(&functions, STACK_BOTTOM).run(step.address, machine);
         let longest = longest.map_err(|refused| refusal(&joint.name, &functions, &source, refused))?;
         Ok(Bound::new(&joint.name, longest, &source))
     };
     searched.iter().enumerate().map(of_joint).collect()
 }
 
-/// The step of a joint with so many planets.
+/// Step of a joint with a number of planets.
 fn step<'a>(functions: &'a Functions, source: &Source<'_>, planets: u32) -> Option<&'a Function> {
     let (path, name) = STEP;
     let symbols = source.symbols(&format!("{name}<{planets}>"));
     functions.all().find(|function| function.name == path && symbols.contains(&function.symbol))
 }
 
-fn refusal(joint: &str, functions: &Functions, source: &Source<'_>, refused: Refused) -> Failure {
+fn refusal(joint: &str, functions: &Functions, source: &Source<'_>, refused: NoBound) -> Failure {
     let at = refused.at();
     let function = functions.all().find(|function| (function.address..function.end).contains(&at));
     let function = function.map_or("no function", |function| function.name.as_str());
     let line = source.line(at).unwrap_or_else(|| "no line".into());
     let (what, help) = match refused {
-        Refused::Unbounded(_) => (
-            "a loop may go round without end",
-            "let it count up to a literal or to a number of the joint's tables, and index by that count",
-        ),
-        Refused::Irreducible(_) => ("a loop has more than one way in", "write it as one loop with one head"),
-        Refused::Lost(_) => ("where control goes is not known", "call by a generic in place of a pointer"),
-        Refused::Instruction(_) => ("an instruction is not known", "add it to host/image-proof/src/bound/operation.rs"),
-        Refused::Recursion(_) => ("a function comes to call itself", "make a bounded loop of the recursion"),
-        Refused::Stops(_) => ("a panic or a trap can be reached", "take `get`, `checked_` and `match` instead"),
+        NoBound::UnboundedLoop(_) => {
+            ("a loop has no provable limit", "make the loop count up to a literal or to a value of the joint's tables")
+        }
+        NoBound::IrreducibleLoop(_) => ("a loop has more than one entry", "write it as one loop with one head"),
+        NoBound::UnknownTarget(_) => {
+            ("a jump has an unknown target", "call through a generic parameter instead of a pointer")
+        }
+        NoBound::UnknownInstruction(_) => {
+            ("an instruction is unknown", "add it to host/image-proof/src/bound/operation.rs")
+        }
+        NoBound::Recursion(_) => ("a function is recursive", "replace the recursion by a bounded loop"),
+        NoBound::ReachablePanic(_) => {
+            ("a panic or a trap can be reached", "use `get`, `checked_...` and `match` instead of code that can panic")
+        }
     };
     Failure::check_failed(format!("joint {joint}: the step has no bound: {what} at {at:#010x}, in {function}, {line}"))
         .with_help(help)
 }
 
-/// Fails if a state was found that takes more than its bound, or if a bound says too little. Returns a line for each joint.
-pub fn judge(bounds: &[Bound], searched: &[worst_case::Search]) -> Outcome<Vec<String>> {
+/// Fails if a state exceeds its bound, or if a bound is too loose. Returns a line per joint.
+pub fn check(bounds: &[Bound], searched: &[worst_case::SearchResult]) -> Outcome<Vec<String>> {
     bounds
         .iter()
         .zip(searched)
@@ -120,18 +126,18 @@ pub fn judge(bounds: &[Bound], searched: &[worst_case::Search]) -> Outcome<Vec<S
             let most = search.most();
             if most > *instructions {
                 return Err(Failure::check_failed(format!(
-                    "joint {name}: a step was found to take {most} instructions, and its bound is {instructions}:\n{}",
+                    "joint {name}: a step took {most} instructions, more than its bound of {instructions}:\n{}",
                     search.state
                 ))
-                .with_help("host/image-proof/src/bound follows an instruction wrongly: it must leave open what the step did"));
+                .with_help("host/image-proof/src/bound models an instruction wrongly: correct it until it allows this step"));
             }
             let times = f64::from(*instructions) / f64::from(most.max(1));
-            if times > WIDEST {
+            if times > MAX_BOUND_RATIO {
                 return Err(Failure::check_failed(format!(
-                    "joint {name}: the bound of a step is {instructions} instructions, {times:.2} times the worst that was found"
+                    "joint {name}: the bound of a step is {instructions} instructions, {times:.2} times the worst step found"
                 ))
                 .with_help(format!(
-                    "want at most {WIDEST} times: search for worse states, or make ways that exclude each other one branch"
+                    "the limit is {MAX_BOUND_RATIO} times: search for worse states, or merge branches that exclude each other"
                 )));
             }
             Ok(format!("{bound}; {times:.2} times the worst found, {most}"))
@@ -140,7 +146,7 @@ pub fn judge(bounds: &[Bound], searched: &[worst_case::Search]) -> Outcome<Vec<S
 }
 
 impl Bound {
-    fn new(name: &str, longest: Longest, source: &Source<'_>) -> Self {
+    fn new(name: &str, longest: LongestPath, source: &Source<'_>) -> Self {
         let line = |head: u32| source.line(head).unwrap_or_else(|| format!("{head:#010x}"));
         Self {
             name: name.to_owned(),

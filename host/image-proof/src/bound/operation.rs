@@ -1,39 +1,39 @@
-//! What an instruction does to registers and memory, as far as a value can be followed through it. Where control goes is
-//! `tick::thumb`'s. Encodings are those of the ARMv7-M Architecture Reference Manual, chapters A5 to A7; what is not in this
-//! file is refused by the bound, never guessed.
+//! Effect of an instruction on registers and memory, as far as values can be followed. Control flow is in
+//! `tick::thumb`. Encodings are those of the ARMv7-M Architecture Reference Manual, chapters A5 to A7; an encoding
+//! missing here is rejected by the bound, never guessed.
 
-/// A core register, 0 to 15.
+/// Core register, 0 to 15.
 pub type Register = u8;
-/// A single-precision register, 0 to 31; a double is two of them.
+/// Single-precision register, 0 to 31; a double occupies two.
 pub type Single = u8;
 
-/// How a register is shifted.
+/// Kind of shift.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shift {
-    /// Left.
+    /// Left shift.
     Left,
-    /// Right, zeros come in.
+    /// Logical right shift.
     Right,
-    /// Right, the sign comes in.
+    /// Arithmetic right shift.
     Arithmetic,
-    /// Around.
-    Around,
-    /// Around through the carry, by one.
-    Carry,
+    /// Rotation.
+    Rotate,
+    /// Rotation by one through the carry.
+    RotateThroughCarry,
 }
 
-/// Last operand of an instruction that computes.
+/// Last operand of a computation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Operand {
-    /// A constant, and the carry that its expansion gives.
+    /// Constant, with the carry of its expansion.
     Constant(u32, Option<bool>),
-    /// A register shifted by a constant; by zero bits the carry stays.
+    /// Register shifted by a constant; a shift by zero keeps the carry.
     Shifted(Register, Shift, u8),
-    /// A register shifted by another.
+    /// Register shifted by another register.
     ShiftedBy(Register, Shift, Register),
 }
 
-/// What is computed.
+/// Kind of computation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum Arithmetic {
@@ -46,41 +46,41 @@ pub enum Arithmetic {
     AddCarry,
     SubtractCarry,
     Subtract,
-    Reverse,
+    ReverseSubtract,
     Move,
     Not,
 }
 
-/// Where memory is read or written.
+/// Address of a memory access.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Address {
-    /// The base; 15 is the next instruction but one, rounded down to a word.
+    /// Base register; for 15, the address of the next instruction but one, rounded down to a word.
     pub base: Register,
-    /// What is added.
+    /// Offset from the base.
     pub offset: Offset,
-    /// Whether it is added before the access.
+    /// True if the offset is added before the access.
     pub before: bool,
-    /// Whether the base becomes the sum.
+    /// True if the sum is written back to the base.
     pub write_back: bool,
 }
 
-/// What is added to a base.
+/// Offset from a base.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Offset {
-    /// A constant.
+    /// Constant offset.
     Constant(i32),
-    /// A register times a power of two.
+    /// Register times a power of two.
     Register(Register, u8),
 }
 
-/// What a 32-bit word becomes.
+/// Rearrangement of a 32-bit word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum Rearrangement {
     LeadingZeros,
     ReverseBits,
     ReverseBytes,
-    /// Something whose value is not followed.
+    /// Rearrangement whose value is not followed.
     Unfollowed,
 }
 
@@ -91,9 +91,9 @@ pub enum Floating {
     Add,
     Subtract,
     Multiply,
-    /// Multiply, negated.
+    /// Product, negated.
     NegatedMultiply,
-    /// The destination is an operand too.
+    /// Product added to the destination.
     MultiplyAccumulate,
     Divide,
     SquareRoot,
@@ -103,192 +103,192 @@ pub enum Floating {
     Convert,
 }
 
-/// An instruction's effect.
+/// Effect of an instruction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Operation {
-    /// None that is followed: hints, barriers, branches.
+    /// No effect that is followed: hints, barriers, branches.
     Nothing,
-    /// Makes the following instructions conditional: first condition and mask.
+    /// Start of an `it` block: first condition and mask.
     If(u8, u8),
-    /// Computes; without destination for its flags alone.
+    /// Computation; without a destination it only sets flags.
     Compute {
-        /// What.
+        /// Kind of computation.
         what: Arithmetic,
-        /// Where to.
+        /// Destination.
         to: Option<Register>,
         /// First operand.
         first: Register,
         /// Second operand.
         second: Operand,
-        /// Whether flags are set. Short forms set none inside of an `it`.
+        /// Effect on the flags.
         flags: Flags,
     },
-    /// Upper half of a register.
+    /// Replacement of a register's upper half.
     MoveTop(Register, u16),
-    /// to = first * second, plus or minus a third.
+    /// to = first * second, plus or minus a third register.
     Multiply {
-        /// Where to.
+        /// Destination.
         to: Register,
-        /// A factor.
+        /// First factor.
         first: Register,
-        /// The other.
+        /// Second factor.
         second: Register,
-        /// Added, or taken from (`true`).
+        /// Third register; the product is added to it, or subtracted from it (`true`).
         third: Option<(Register, bool)>,
-        /// Whether flags are set.
+        /// Effect on the flags.
         flags: Flags,
     },
-    /// Two registers by a long multiplication or other operation whose value is not followed.
+    /// Long multiplication into two registers.
     MultiplyLong {
-        /// Low and high.
+        /// Destination, low and high.
         to: [Register; 2],
         /// Factors.
         factors: [Register; 2],
-        /// As signed numbers.
+        /// True for signed factors.
         signed: bool,
-        /// Added to what they hold.
+        /// True if the product is added to the destination.
         accumulates: bool,
     },
     /// to = first / second.
     Divide {
-        /// Where to.
+        /// Destination.
         to: Register,
-        /// Dividend, divisor.
+        /// Dividend and divisor.
         of: [Register; 2],
-        /// As signed numbers.
+        /// True for signed operands.
         signed: bool,
     },
     /// Byte or half word, rotated, extended, and added to a register.
     Extend {
-        /// Where to.
+        /// Destination.
         to: Register,
-        /// From where.
+        /// Source.
         from: Register,
-        /// Added.
+        /// Register that is added.
         plus: Option<Register>,
-        /// Rotation right.
+        /// Rotation to the right [bit].
         rotation: u8,
-        /// 8 or 16.
+        /// Width, 8 or 16 [bit].
         bits: u8,
-        /// With its sign.
+        /// True for sign extension.
         signed: bool,
     },
-    /// Bits of a register (`ubfx`, `sbfx`).
+    /// Bit field of a register (`ubfx`, `sbfx`).
     Extract {
-        /// Where to.
+        /// Destination.
         to: Register,
-        /// From where.
+        /// Source.
         from: Register,
         /// Lowest bit.
         low: u8,
-        /// How many.
+        /// Width [bit].
         width: u8,
-        /// With their sign.
+        /// True for sign extension.
         signed: bool,
     },
-    /// Bits put into a register (`bfi`), zeros without source (`bfc`).
+    /// Bit field inserted into a register (`bfi`), zeros without a source (`bfc`).
     Insert {
-        /// Where to.
+        /// Destination.
         to: Register,
-        /// From where.
+        /// Source.
         from: Option<Register>,
         /// Lowest bit.
         low: u8,
-        /// How many.
+        /// Width [bit].
         width: u8,
     },
-    /// A word rearranged.
+    /// Rearranged word: kind, destination, source.
     Rearrange(Rearrangement, Register, Register),
-    /// Reads so many bytes into a register.
+    /// Load of one register.
     Load {
-        /// Where to.
+        /// Destination.
         to: Register,
-        /// 1, 2 or 4.
+        /// Size, 1, 2 or 4 [byte].
         bytes: u8,
-        /// With its sign.
+        /// True for sign extension.
         signed: bool,
-        /// From where.
+        /// Address.
         at: Address,
     },
-    /// Writes so many bytes of a register.
+    /// Store of one register.
     Store {
-        /// What.
+        /// Source.
         from: Register,
-        /// 1, 2 or 4.
+        /// Size, 1, 2 or 4 [byte].
         bytes: u8,
-        /// Where to.
+        /// Address.
         at: Address,
-        /// The register that says whether an exclusive store was made.
+        /// Register for the result of an exclusive store.
         success: Option<Register>,
     },
-    /// Reads two words.
+    /// Load of two words.
     LoadPair([Register; 2], Address),
-    /// Writes two words.
+    /// Store of two words.
     StorePair([Register; 2], Address),
-    /// Reads or writes a list of registers.
+    /// Load or store of a list of registers.
     Multiple {
-        /// Reads.
+        /// True for a load.
         loads: bool,
-        /// Where.
+        /// Base register.
         base: Register,
-        /// Which.
+        /// Bit mask of the registers.
         list: u16,
-        /// Below the base, from it downwards.
+        /// True if the addresses lie below the base.
         down: bool,
-        /// Whether the base moves.
+        /// True if the base is updated.
         write_back: bool,
     },
-    /// Reads or writes single-precision registers in a row.
+    /// Load or store of consecutive single-precision registers.
     MultipleSingle {
-        /// Reads.
+        /// True for a load.
         loads: bool,
-        /// Where.
+        /// Base register.
         base: Register,
-        /// The first.
+        /// First register.
         first: Single,
-        /// How many.
+        /// Number of registers.
         count: u8,
-        /// What is added to the base, before.
+        /// Offset from the base, before the access.
         offset: i32,
-        /// What the base becomes: itself and this.
+        /// Change of the base, if it is updated.
         write_back: Option<i32>,
     },
-    /// A core register into a single one.
+    /// Core register copied to a single-precision one.
     ToSingle(Single, Register),
-    /// A single register into a core register.
+    /// Single-precision register copied to a core register.
     FromSingle(Register, Single),
-    /// Two core registers into two single ones.
+    /// Two core registers copied to two single-precision ones.
     ToSingles(Single, [Register; 2]),
-    /// And back.
+    /// Two single-precision registers copied to two core registers.
     FromSingles([Register; 2], Single),
-    /// A constant into single registers, by its bits.
+    /// Constant for a single-precision register, by its bits.
     SingleConstant(Single, u32),
-    /// Single-precision arithmetic: destination, operands.
+    /// Single-precision arithmetic: kind, destination, operands.
     Float(Floating, Single, [Single; 2]),
-    /// Compares with another or with zero.
+    /// Comparison with another register or with zero.
     CompareSingle(Single, Option<Single>),
-    /// The flags of the last comparison of single registers become those of the core.
+    /// Copy of the floating-point flags to the core's flags.
     FlagsFromSingle,
-    /// Registers, by a mask, get values that are not followed.
-    Forget(u16),
-    /// Nothing known.
+    /// Registers, by a mask, whose values become unknown.
+    Clobber(u16),
+    /// Unknown instruction.
     Unknown,
 }
 
-/// Whether an instruction sets flags.
+/// Effect of an instruction on the flags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flags {
-    /// Never.
+    /// Flags unchanged.
     Kept,
-    /// Always.
+    /// Flags set.
     Set,
-    /// Outside of an `it`.
+    /// Flags set outside of an `it` block only.
     SetOutside,
 }
 
-/// Reads an instruction; `second` is the half word after the first.
+/// Decodes an instruction; `second` is the half word after the first.
 pub fn operation(first: u16, second: u16) -> Operation {
-    if first >> 11 < 0b11101 { short(first) } else { long(first, second) }
+    if first >> 11 < 0b11101 { decode_short(first) } else { decode_long(first, second) }
 }
 
 fn bits(value: u16, low: u32, count: u32) -> u8 {
@@ -303,11 +303,11 @@ fn compare(what: Arithmetic, first: Register, second: Operand) -> Operation {
     Operation::Compute { what, to: None, first, second, flags: Flags::Set }
 }
 
-fn plain(register: Register) -> Operand {
+fn unshifted(register: Register) -> Operand {
     Operand::Shifted(register, Shift::Left, 0)
 }
 
-/// A shift by a constant as it is coded.
+/// Shift by a constant, from its encoding.
 fn shifted(register: Register, kind: u8, amount: u8) -> Operand {
     match (kind, amount) {
         (0, _) => Operand::Shifted(register, Shift::Left, amount),
@@ -315,21 +315,21 @@ fn shifted(register: Register, kind: u8, amount: u8) -> Operand {
         (1, _) => Operand::Shifted(register, Shift::Right, amount),
         (2, 0) => Operand::Shifted(register, Shift::Arithmetic, 32),
         (2, _) => Operand::Shifted(register, Shift::Arithmetic, amount),
-        (_, 0) => Operand::Shifted(register, Shift::Carry, 1),
-        _ => Operand::Shifted(register, Shift::Around, amount),
+        (_, 0) => Operand::Shifted(register, Shift::RotateThroughCarry, 1),
+        _ => Operand::Shifted(register, Shift::Rotate, amount),
     }
 }
 
-fn kind(code: u8) -> Shift {
-    [Shift::Left, Shift::Right, Shift::Arithmetic, Shift::Around][usize::from(code & 3)]
+fn shift_kind(code: u8) -> Shift {
+    [Shift::Left, Shift::Right, Shift::Arithmetic, Shift::Rotate][usize::from(code & 3)]
 }
 
 fn at(base: Register, offset: i32) -> Address {
     Address { base, offset: Offset::Constant(offset), before: true, write_back: false }
 }
 
-fn short(first: u16) -> Operation {
-    use Arithmetic::{Add, AddCarry, And, Clear, Exclusive, Move, Not, Or, Reverse, Subtract, SubtractCarry};
+fn decode_short(first: u16) -> Operation {
+    use Arithmetic::{Add, AddCarry, And, Clear, Exclusive, Move, Not, Or, ReverseSubtract, Subtract, SubtractCarry};
     let (low, middle, high) = (bits(first, 0, 3), bits(first, 3, 3), bits(first, 6, 3));
     let (eight, upper) = (u32::from(first & 0xff), bits(first, 8, 3));
     let five = i32::from(bits(first, 6, 5));
@@ -338,7 +338,7 @@ fn short(first: u16) -> Operation {
     match first >> 11 {
         code @ 0..=2 => compute(Move, low, 0, shifted(middle, code as u8, bits(first, 6, 5)), outside),
         3 => {
-            let second = if first & 0x400 == 0 { plain(high) } else { constant(high.into()) };
+            let second = if first & 0x400 == 0 { unshifted(high) } else { constant(high.into()) };
             compute(if first & 0x200 == 0 { Add } else { Subtract }, low, middle, second, outside)
         }
         4 => compute(Move, upper, 0, constant(eight), outside),
@@ -347,7 +347,7 @@ fn short(first: u16) -> Operation {
         7 => compute(Subtract, upper, upper, constant(eight), outside),
         8 if first & 0x400 == 0 => {
             let by = |kind| compute(Move, low, 0, Operand::ShiftedBy(low, kind, middle), outside);
-            let own = |what| compute(what, low, low, plain(middle), outside);
+            let own = |what| compute(what, low, low, unshifted(middle), outside);
             match bits(first, 6, 4) {
                 0 => own(And),
                 1 => own(Exclusive),
@@ -356,23 +356,23 @@ fn short(first: u16) -> Operation {
                 4 => by(Shift::Arithmetic),
                 5 => own(AddCarry),
                 6 => own(SubtractCarry),
-                7 => by(Shift::Around),
-                8 => compare(And, low, plain(middle)),
-                9 => compute(Reverse, low, middle, constant(0), outside),
-                10 => compare(Subtract, low, plain(middle)),
-                11 => compare(Add, low, plain(middle)),
+                7 => by(Shift::Rotate),
+                8 => compare(And, low, unshifted(middle)),
+                9 => compute(ReverseSubtract, low, middle, constant(0), outside),
+                10 => compare(Subtract, low, unshifted(middle)),
+                11 => compare(Add, low, unshifted(middle)),
                 12 => own(Or),
                 13 => Operation::Multiply { to: low, first: low, second: middle, third: None, flags: outside },
                 14 => own(Clear),
-                _ => compute(Not, low, 0, plain(middle), outside),
+                _ => compute(Not, low, 0, unshifted(middle), outside),
             }
         }
         8 => {
             let (to, from) = (low | bits(first, 7, 1) << 3, bits(first, 3, 4));
             match bits(first, 8, 2) {
-                0 => compute(Add, to, to, plain(from), Flags::Kept),
-                1 => compare(Subtract, to, plain(from)),
-                2 => compute(Move, to, 0, plain(from), Flags::Kept),
+                0 => compute(Add, to, to, unshifted(from), Flags::Kept),
+                1 => compare(Subtract, to, unshifted(from)),
+                2 => compute(Move, to, 0, unshifted(from), Flags::Kept),
                 // bx, blx
                 _ => Operation::Nothing,
             }
@@ -405,7 +405,7 @@ fn short(first: u16) -> Operation {
                 _ => Operation::Load { to, bytes, signed: false, at },
             }
         }
-        // adr: the machine knows what register 15 is here.
+        // adr: `machine` resolves register 15.
         20 => compute(Add, upper, 15, constant(4 * eight), Flags::Kept),
         21 => compute(Add, upper, 13, constant(4 * eight), Flags::Kept),
         22 | 23 => miscellaneous(first),
@@ -443,39 +443,39 @@ fn miscellaneous(first: u16) -> Operation {
         0xa0..=0xa3 => Operation::Rearrange(Rearrangement::ReverseBytes, low, middle),
         0xa4..=0xaf => Operation::Rearrange(Rearrangement::Unfollowed, low, middle),
         0xf0..=0xff if first & 0xf != 0 => Operation::If(bits(first, 4, 4), bits(first, 0, 4)),
-        // cbz and cbnz, whose register the machine looks at; cps, hints; a breakpoint is a trap of the walker.
+        // cbz and cbnz, whose register `longest` reads; cps, hints. A breakpoint is a trap in `tick::thumb`.
         _ => Operation::Nothing,
     }
 }
 
-fn long(first: u16, second: u16) -> Operation {
+fn decode_long(first: u16, second: u16) -> Operation {
     match first {
         _ if first & 0xfe40 == 0xe800 => {
             let list = second & 0xdfff;
             let (down, loads) = (first & 0x180 == 0x100, first & 0x10 != 0);
             Operation::Multiple { loads, base: bits(first, 0, 4), list, down, write_back: first & 0x20 != 0 }
         }
-        _ if first & 0xfe40 == 0xe840 => pair(first, second),
+        _ if first & 0xfe40 == 0xe840 => double_or_exclusive(first, second),
         _ if first & 0xfe00 == 0xea00 => {
             let amount = bits(second, 12, 3) << 2 | bits(second, 6, 2);
-            computes(first, second, shifted(bits(second, 0, 4), bits(second, 4, 2), amount))
+            data_processing(first, second, shifted(bits(second, 0, 4), bits(second, 4, 2), amount))
         }
         _ if first & 0xec00 == 0xec00 => floating(first, second),
         _ if first & 0xf800 == 0xf000 && second & 0x8000 != 0 => control(first, second),
         _ if first & 0xfa00 == 0xf000 => {
             let (value, carry) = expand(first, second);
-            computes(first, second, Operand::Constant(value, carry))
+            data_processing(first, second, Operand::Constant(value, carry))
         }
         _ if first & 0xfa00 == 0xf200 => plain_constant(first, second),
-        _ if first & 0xfe00 == 0xf800 => single(first, second),
-        _ if first & 0xff00 == 0xfa00 => registers(first, second),
+        _ if first & 0xfe00 == 0xf800 => load_or_store(first, second),
+        _ if first & 0xff00 == 0xfa00 => register_processing(first, second),
         _ if first & 0xff00 == 0xfb00 => multiply(first, second),
         _ => Operation::Unknown,
     }
 }
 
-/// Double, exclusive; table branches are the walker's.
-fn pair(first: u16, second: u16) -> Operation {
+/// Double and exclusive accesses; table branches are in `tick::frame`.
+fn double_or_exclusive(first: u16, second: u16) -> Operation {
     let (base, rt, rd) = (bits(first, 0, 4), bits(second, 12, 4), bits(second, 8, 4));
     let offset = 4 * i32::from(second & 0xff);
     let load = |bytes, offset| Operation::Load { to: rt, bytes, signed: false, at: at(base, offset) };
@@ -497,9 +497,11 @@ fn pair(first: u16, second: u16) -> Operation {
     }
 }
 
-/// Data processing, with a shifted register or an expanded constant.
-fn computes(first: u16, second: u16, operand: Operand) -> Operation {
-    use Arithmetic::{Add, AddCarry, And, Clear, Exclusive, Move, Not, Or, OrNot, Reverse, Subtract, SubtractCarry};
+/// Data processing with a shifted register or an expanded constant.
+fn data_processing(first: u16, second: u16, operand: Operand) -> Operation {
+    use Arithmetic::{
+        Add, AddCarry, And, Clear, Exclusive, Move, Not, Or, OrNot, ReverseSubtract, Subtract, SubtractCarry,
+    };
     let (base, to, sets) = (bits(first, 0, 4), bits(second, 8, 4), first & 0x10 != 0);
     let flags = if sets { Flags::Set } else { Flags::Kept };
     let only_compares = to == 15 && sets;
@@ -511,13 +513,13 @@ fn computes(first: u16, second: u16, operand: Operand) -> Operation {
         3 if base == 15 => Not,
         3 => OrNot,
         4 => Exclusive,
-        // Packing of half words, whose value is not followed.
-        6 => return Operation::Forget(1 << to),
+        // Packing of half words is not followed.
+        6 => return Operation::Clobber(1 << to),
         8 => Add,
         10 => AddCarry,
         11 => SubtractCarry,
         13 => Subtract,
-        14 => Reverse,
+        14 => ReverseSubtract,
         _ => return Operation::Unknown,
     };
     match what {
@@ -526,7 +528,7 @@ fn computes(first: u16, second: u16, operand: Operand) -> Operation {
     }
 }
 
-/// The constant of twelve bits as the expanding forms mean it, and its carry.
+/// Value and carry of a modified 12-bit constant.
 fn expand(first: u16, second: u16) -> (u32, Option<bool>) {
     let code = u32::from(bits(first, 10, 1)) << 11 | u32::from(bits(second, 12, 3)) << 8 | u32::from(second & 0xff);
     let byte = code & 0xff;
@@ -556,7 +558,7 @@ fn plain_constant(first: u16, second: u16) -> Operation {
             compute(Arithmetic::Move, to, 0, Operand::Constant(value, None), Flags::Kept)
         }
         12 => Operation::MoveTop(to, u16::from(base) << 12 | twelve as u16),
-        16 | 18 | 24 | 26 => Operation::Forget(1 << to),
+        16 | 18 | 24 | 26 => Operation::Clobber(1 << to),
         code @ (20 | 28) => Operation::Extract { to, from: base, low, width: last + 1, signed: code == 20 },
         22 if last >= low => {
             let from = (base != 15).then_some(base);
@@ -570,12 +572,12 @@ fn plain_constant(first: u16, second: u16) -> Operation {
 fn control(first: u16, second: u16) -> Operation {
     match first {
         // mrs
-        _ if first & 0xffe0 == 0xf3e0 && second & 0xd000 == 0x8000 => Operation::Forget(1 << bits(second, 8, 4)),
+        _ if first & 0xffe0 == 0xf3e0 && second & 0xd000 == 0x8000 => Operation::Clobber(1 << bits(second, 8, 4)),
         _ => Operation::Nothing,
     }
 }
 
-fn single(first: u16, second: u16) -> Operation {
+fn load_or_store(first: u16, second: u16) -> Operation {
     let (base, rt) = (bits(first, 0, 4), bits(second, 12, 4));
     let (loads, bytes, signed) = (first & 0x10 != 0, 1 << bits(first, 5, 2), first & 0x100 != 0);
     let twelve = i32::from(second & 0xfff);
@@ -606,14 +608,14 @@ fn single(first: u16, second: u16) -> Operation {
     }
 }
 
-/// Data processing of registers alone.
-fn registers(first: u16, second: u16) -> Operation {
+/// Data processing between registers.
+fn register_processing(first: u16, second: u16) -> Operation {
     let (base, to, other) = (bits(first, 0, 4), bits(second, 8, 4), bits(second, 0, 4));
     let code = bits(first, 4, 4);
     match bits(second, 4, 4) {
         0 if code < 8 => {
             let flags = if code & 1 == 0 { Flags::Kept } else { Flags::Set };
-            compute(Arithmetic::Move, to, 0, Operand::ShiftedBy(base, kind(code >> 1), other), flags)
+            compute(Arithmetic::Move, to, 0, Operand::ShiftedBy(base, shift_kind(code >> 1), other), flags)
         }
         8..=15 if matches!(code, 0 | 1 | 4 | 5) => Operation::Extend {
             to,
@@ -626,7 +628,7 @@ fn registers(first: u16, second: u16) -> Operation {
         8 if code == 11 => Operation::Rearrange(Rearrangement::LeadingZeros, to, other),
         10 if code == 9 => Operation::Rearrange(Rearrangement::ReverseBits, to, other),
         8 if code == 9 => Operation::Rearrange(Rearrangement::ReverseBytes, to, other),
-        _ => Operation::Forget(1 << to),
+        _ => Operation::Clobber(1 << to),
     }
 }
 
@@ -641,19 +643,19 @@ fn multiply(first: u16, second: u16) -> Operation {
             Operation::Multiply { to, first: one, second: other, third, flags: Flags::Kept }
         }
         (0, 1) => Operation::Multiply { to, first: one, second: other, third: Some((third, true)), flags: Flags::Kept },
-        (1..=7, _) => Operation::Forget(1 << to),
+        (1..=7, _) => Operation::Clobber(1 << to),
         (8, 0) => long(true, false),
         (10, 0) => long(false, false),
         (9, 15) => Operation::Divide { to, of: [one, other], signed: true },
         (11, 15) => Operation::Divide { to, of: [one, other], signed: false },
         (12, 0) => long(true, true),
         (14, 0) => long(false, true),
-        (12..=14, _) => Operation::Forget(1 << to | 1 << third),
+        (12..=14, _) => Operation::Clobber(1 << to | 1 << third),
         _ => Operation::Unknown,
     }
 }
 
-/// A single-precision register, or the first of a double.
+/// Single-precision register, or the first half of a double.
 fn single_register(upper: u8, lower: u8, is_double: bool) -> Single {
     if is_double { (lower << 4 | upper) << 1 } else { upper << 1 | lower }
 }
@@ -697,14 +699,14 @@ fn floating(first: u16, second: u16) -> Operation {
         _ if first & 0xff00 == 0xee00 && second & 0x10 == 0x10 => match (first & 0xffe0, is_double) {
             (0xee00, false) if loads => Operation::FromSingle(rt, n),
             (0xee00, false) => Operation::ToSingle(n, rt),
-            // Half of a double
+            // Half of a double.
             (0xee00 | 0xee20, true) => {
                 let half = single_register(base, bits(second, 7, 1), true) + bits(first, 5, 1);
                 if loads { Operation::FromSingle(rt, half) } else { Operation::ToSingle(half, rt) }
             }
             (0xeee0, false) if first & 0xf == 1 && loads && rt == 15 => Operation::FlagsFromSingle,
-            (0xeee0, false) if first & 0xf == 1 && loads => Operation::Forget(1 << rt),
-            // vmsr: modes of rounding and of small numbers; nothing is computed here that depends on them.
+            (0xeee0, false) if first & 0xf == 1 && loads => Operation::Clobber(1 << rt),
+            // vmsr: changes rounding and subnormal modes; no followed value depends on them.
             (0xeee0, false) if first & 0xf == 1 => Operation::Nothing,
             _ => Operation::Unknown,
         },
@@ -732,9 +734,9 @@ fn floating(first: u16, second: u16) -> Operation {
                     (1, true) => one(Floating::SquareRoot),
                     (4, _) => Operation::CompareSingle(d, Some(m)),
                     (5, _) => Operation::CompareSingle(d, None),
-                    // Half precision changes a part of the register; all of it is forgotten.
+                    // Half precision changes a part of the register; all of it becomes unknown.
                     (2 | 3 | 8 | 12 | 13, _) => one(Floating::Convert),
-                    // Fixed point, in place
+                    // Fixed point, in place.
                     (10 | 11 | 14 | 15, _) => Operation::Float(Floating::Convert, d, [d, d]),
                     _ => Operation::Unknown,
                 },

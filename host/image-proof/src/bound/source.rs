@@ -1,4 +1,4 @@
-//! What an image's debug information tells: the line that an instruction comes from, and where a value lies in a structure.
+//! Debug information of an image: source lines of instructions, and offsets of structure members.
 
 use addr2line::Context;
 use addr2line::gimli::{self, AttributeValue, Dwarf, EndianSlice, LittleEndian, SectionId};
@@ -7,26 +7,27 @@ use object::{Endianness, Object, ObjectSection};
 
 type Reader<'a> = EndianSlice<'a, LittleEndian>;
 
-/// The debug information of an image.
+/// Debug information of an image.
 pub struct Source<'a> {
     context: Context<Reader<'a>>,
     dwarf: Dwarf<Reader<'a>>,
 }
 
 impl<'a> Source<'a> {
-    /// Of an image.
+    /// Reads the debug information of an image.
     pub fn read(elf: &'a [u8]) -> Result<Self, String> {
         let file: ElfFile32<'a, Endianness> = ElfFile32::parse(elf).map_err(|error| error.to_string())?;
         let section = |id: SectionId| -> Result<Reader<'a>, gimli::Error> {
             let data = file.section_by_name(id.name()).and_then(|section| section.data().ok());
             Ok(EndianSlice::new(data.unwrap_or_default(), LittleEndian))
         };
-        let failed = |error: gimli::Error| format!("its debug information cannot be read: {error}");
+        let failed = |error: gimli::Error| format!("cannot read its debug information: {error}");
         let context = Context::from_dwarf(Dwarf::load(section).map_err(failed)?).map_err(failed)?;
         Ok(Self { context, dwarf: Dwarf::load(section).map_err(failed)? })
     }
 
-    /// File and line of an instruction, its folders left out beyond the last two: the innermost that is not the library's.
+    /// File and line of an instruction, with at most two folders. Of inlined frames the innermost outside of the
+    /// standard library counts.
     pub fn line(&self, address: u32) -> Option<String> {
         let mut frames = self.context.find_frames(address.into()).skip_all_loads().ok()?;
         let mut innermost = None;
@@ -42,7 +43,7 @@ impl<'a> Source<'a> {
         innermost
     }
 
-    /// Symbols of the functions of this name, generic arguments included.
+    /// Symbols of the functions with this name, including generic arguments.
     pub fn symbols(&self, function: &str) -> Vec<String> {
         let mut found = Vec::new();
         let mut units = self.dwarf.units();
@@ -63,7 +64,7 @@ impl<'a> Source<'a> {
         found
     }
 
-    /// Where a member lies in a structure of this name [byte].
+    /// Offset of a member in a structure with this name [byte].
     pub fn offset(&self, structure: &str, member: &str) -> Option<u32> {
         let mut units = self.dwarf.units();
         while let Ok(Some(header)) = units.next() {

@@ -1,62 +1,62 @@
-//! One function of the image on its own: its greatest stack depth, its calls with the depth at each, and every
-//! instruction that the analysis cannot follow. Found by following every path through its instructions.
+//! Analysis of one function: its largest stack depth, its calls with the depth at each, and every instruction that
+//! cannot be followed. All paths through its instructions are visited.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::functions::{Function, Functions};
-use super::thumb::{Flow, Stack};
+use super::thumb::{Flow, StackEffect};
 
-/// A stack that grows beyond this within one function grows in a loop.
-const DEEPEST: u32 = 64 * 1024;
+/// Limit of a function's own stack; a larger one grows in a loop [byte].
+const MAX_FRAME_BYTES: u32 = 64 * 1024;
 
-/// A call, or a jump into another function.
+/// Call, or jump into another function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Call {
-    /// Where it is.
+    /// Address of the call.
     pub from: u32,
-    /// Where it goes.
+    /// Address of the callee.
     pub to: u32,
-    /// Stack that the caller holds by then [byte].
+    /// Stack held by the caller at the call [byte].
     pub depth: u32,
 }
 
-/// An instruction that cannot be followed, or must not be reached.
+/// Instruction that cannot be followed or must not be reached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Obstacle {
-    /// A call or jump through a pointer.
+    /// Call or jump through a pointer.
     Pointer(u32),
-    /// The stack pointer is set to something unknown, or in a loop.
-    Stack(u32),
-    /// An instruction that stops the processor.
+    /// The stack pointer is set to an unknown value, or moved in a loop.
+    StackEffect(u32),
+    /// Instruction that stops the processor.
     Trap(u32),
-    /// Control runs into what is no instruction.
-    Astray(u32),
+    /// Address without an instruction.
+    NoInstruction(u32),
 }
 
 impl Obstacle {
-    /// Where it stands.
+    /// Address of the instruction.
     pub fn at(self) -> u32 {
         match self {
-            Self::Pointer(at) | Self::Stack(at) | Self::Trap(at) | Self::Astray(at) => at,
+            Self::Pointer(at) | Self::StackEffect(at) | Self::Trap(at) | Self::NoInstruction(at) => at,
         }
     }
 }
 
-/// The analysis of one function.
+/// Result of the analysis of one function.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Frame {
-    /// Deepest stack of its own [byte].
+pub struct StackFrame {
+    /// Largest stack of the function itself [byte].
     pub depth: u32,
-    /// Its calls.
+    /// Calls of the function.
     pub calls: Vec<Call>,
-    /// What stands in the way of an answer.
+    /// Instructions that prevent an answer.
     pub obstacles: Vec<Obstacle>,
 }
 
-/// Follows every path through a function. `returns` tells which callees come back.
-pub fn frame(functions: &Functions, function: &Function, returns: &dyn Fn(u32) -> bool) -> Frame {
+/// Visits every path through a function. `returns` tells which callees return.
+pub fn frame(functions: &Functions, function: &Function, returns: &dyn Fn(u32) -> bool) -> StackFrame {
     let conditional = conditional(function);
-    let mut frame = Frame::default();
+    let mut frame = StackFrame::default();
     let mut depths: BTreeMap<u32, u32> = BTreeMap::new();
     let mut open = vec![(function.address, 0)];
     let mut calls = BTreeMap::new();
@@ -66,22 +66,22 @@ pub fn frame(functions: &Functions, function: &Function, returns: &dyn Fn(u32) -
         }
         depths.insert(address, depth);
         let Some(instruction) = function.code.get(&address) else {
-            frame.obstacles.push(Obstacle::Astray(address));
+            frame.obstacles.push(Obstacle::NoInstruction(address));
             continue;
         };
         let may_be_skipped = conditional.contains(&address);
         let after = match instruction.stack {
-            Stack::Same => depth,
-            Stack::Grow(bytes) => depth + bytes,
-            Stack::Shrink(_) if may_be_skipped => depth,
-            Stack::Shrink(bytes) => depth.saturating_sub(bytes),
-            Stack::Unknown => {
-                frame.obstacles.push(Obstacle::Stack(address));
+            StackEffect::Same => depth,
+            StackEffect::Grow(bytes) => depth + bytes,
+            StackEffect::Shrink(_) if may_be_skipped => depth,
+            StackEffect::Shrink(bytes) => depth.saturating_sub(bytes),
+            StackEffect::Unknown => {
+                frame.obstacles.push(Obstacle::StackEffect(address));
                 continue;
             }
         };
-        if after > DEEPEST {
-            frame.obstacles.push(Obstacle::Stack(address));
+        if after > MAX_FRAME_BYTES {
+            frame.obstacles.push(Obstacle::StackEffect(address));
             continue;
         }
         frame.depth = frame.depth.max(after);
@@ -126,7 +126,7 @@ pub fn frame(functions: &Functions, function: &Function, returns: &dyn Fn(u32) -
     frame
 }
 
-/// Instructions that an `it` before them makes conditional.
+/// Instructions in `it` blocks.
 fn conditional(function: &Function) -> BTreeSet<u32> {
     let (mut found, mut left) = (BTreeSet::new(), 0);
     for (address, instruction) in &function.code {
@@ -139,9 +139,9 @@ fn conditional(function: &Function) -> BTreeSet<u32> {
     found
 }
 
-/// Where the table of a `tbb` or `tbh` leads, by distances from the instruction after it. The table follows, or its
-/// address was put into the register somewhere in the function: every such address is taken for one. A table ends
-/// with the last entry that leads to an instruction, or where instructions begin again.
+/// Targets of a `tbb` or `tbh`, from distances to the instruction after it. The table follows the instruction, or its
+/// address is loaded into the register somewhere in the function; every such address is considered. A table ends with
+/// the last entry that leads to an instruction, or where instructions begin again.
 pub fn targets(functions: &Functions, function: &Function, next: u32, width: u32, base: u16) -> Vec<u32> {
     let loaded = function.code.values().filter_map(|instruction| instruction.address_of);
     let tables = match base {

@@ -1,5 +1,5 @@
-//! The functions of a linked image with their instructions, and the handler of the tick among them. The compiler's
-//! mapping symbols separate code from literal pools.
+//! Functions of a linked image with their instructions, including the handler of the tick. The compiler's mapping
+//! symbols separate code from literal pools.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -10,31 +10,31 @@ use object::{Endianness, Object, ObjectSection, ObjectSymbol, SectionFlags};
 
 use super::thumb::{Instruction, decode};
 
-/// Where the vector table begins, and the place of SysTick in it.
+/// Start address of the vector table, and index of SysTick in it.
 const VECTORS: u64 = 0x0800_0000;
 const SYSTICK: u64 = 15;
 
-/// A function of the image.
+/// Function of the image.
 #[derive(Debug, Clone)]
 pub struct Function {
-    /// Its name as its author wrote it.
+    /// Demangled name.
     pub name: String,
-    /// Its symbol.
+    /// Symbol.
     pub symbol: String,
-    /// Where it begins.
+    /// Start address.
     pub address: u32,
-    /// Where the next one begins, at most.
+    /// End address: at most the start of the next function.
     pub end: u32,
-    /// Its instructions by address.
+    /// Instructions by address.
     pub code: BTreeMap<u32, Instruction>,
 }
 
-/// All functions by address, and the bytes that they are in.
+/// All functions by address, with the bytes of the image.
 #[derive(Debug)]
 pub struct Functions {
     functions: BTreeMap<u32, Function>,
     memory: Vec<(u32, Vec<u8>)>,
-    /// Addresses of what of it is never written.
+    /// Address ranges that are never written.
     constants: Vec<Range<u32>>,
     /// Names and addresses of data.
     objects: Vec<(String, u32)>,
@@ -79,7 +79,7 @@ impl Functions {
         Ok(found)
     }
 
-    /// Functions of so many half words each, with names; `data` is where a table lies among them.
+    /// Functions from half words, with names; `data` is the range of a table among them.
     #[cfg(test)]
     pub fn assembled(functions: &[(&str, u32, &[u16])], data: Range<u32>) -> Self {
         let bytes = |code: &[u16]| code.iter().flat_map(|half| half.to_le_bytes()).collect::<Vec<u8>>();
@@ -100,24 +100,24 @@ impl Functions {
         found
     }
 
-    /// The handler of the tick, as the vector table names it.
+    /// Handler of the tick, from the vector table.
     pub fn tick(&self) -> Option<&Function> {
         let entry = VECTORS + 4 * SYSTICK;
         self.at(u32::from(self.half(entry as u32 + 2)?) << 16 | u32::from(self.half(entry as u32)?))
     }
 
-    /// The function that begins at an address.
+    /// Function that begins at an address.
     pub fn at(&self, address: u32) -> Option<&Function> {
         self.functions.get(&(address & !1))
     }
 
-    /// One byte.
+    /// Byte at an address.
     pub fn byte(&self, address: u32) -> Option<u8> {
         let (start, bytes) = self.section(address)?;
         bytes.get((address - start) as usize).copied()
     }
 
-    /// One byte of what nothing writes.
+    /// Byte at an address that is never written.
     pub fn constant_byte(&self, address: u32) -> Option<u8> {
         self.constants.iter().any(|range| range.contains(&address)).then(|| self.byte(address))?
     }
@@ -132,12 +132,12 @@ impl Functions {
         self.objects.iter().map(|(name, address)| (name.as_str(), *address))
     }
 
-    /// Two bytes.
+    /// Half word at an address.
     pub fn half(&self, address: u32) -> Option<u16> {
         Some(u16::from_le_bytes([self.byte(address)?, self.byte(address + 1)?]))
     }
 
-    /// Both half words of an instruction; zero where there is none.
+    /// Both half words of an instruction; zero outside of the image.
     pub fn halves(&self, address: u32) -> (u16, u16) {
         (self.half(address).unwrap_or(0), self.half(address + 2).unwrap_or(0))
     }
@@ -154,7 +154,7 @@ impl Functions {
             let is_code = marks.range(..=address).next_back().is_none_or(|(_, is_code)| *is_code);
             let Some(first) = self.half(address) else { break };
             if !is_code {
-                // Constants may be of single bytes; code begins at an even address again.
+                // Constants may have an odd size; code begins at an even address again.
                 address += 2;
                 continue;
             }

@@ -1,8 +1,8 @@
-//! Can the tick panic, and how much stack does it take at most? Answered from the linked image by following all calls
-//! from the SysTick handler, so that the answer holds for any sources and compiler.
+//! Proves that the tick cannot panic and bounds its stack, from the linked image: all calls from the SysTick handler
+//! are followed, so that the result holds for any sources and compiler.
 //!
 //! `functions` disassembles the image, `thumb` decodes instructions, `frame` analyses one function, `walk` the call
-//! graph; this file compares the result with the promised bounds. What cannot be followed is an error.
+//! graph; this file compares the result with the promised bounds. Code that cannot be followed is an error.
 
 pub(crate) mod frame;
 pub(crate) mod functions;
@@ -17,12 +17,12 @@ pub use walk::{CallPath, Reach};
 
 use report::failure::{Failure, Outcome};
 
-/// Stack that the tick may take, with what the processor pushes when it interrupts [byte].
+/// Limit of the tick's stack, including the interrupt frame [byte].
 pub const STACK_BOUND: u32 = 2048;
-/// What the processor pushes: 26 words with the floating-point registers, and one to align them.
+/// Interrupt frame: 26 words with the floating-point registers, and one for alignment [byte].
 const INTERRUPT_FRAME: u32 = 27 * 4;
 
-/// What the image of a role was found to do in its tick.
+/// Analyses the tick of a role's image.
 pub fn reach(elf: &Path) -> Outcome<Reach> {
     let failed = |why: String| Failure::new(format!("{}: {why}", elf.display()));
     let bytes = fs::read(elf).map_err(|error| failed(error.to_string()))?;
@@ -34,17 +34,17 @@ pub fn reach(elf: &Path) -> Outcome<Reach> {
     Ok(walk::walk(&functions, handler))
 }
 
-/// Most stack that the tick takes, with what the processor pushes [byte].
+/// Largest stack of the tick, including the interrupt frame [byte].
 pub fn stack(reach: &Reach) -> u32 {
     reach.stack + INTERRUPT_FRAME
 }
 
-/// Fails with all that is wrong, each with its call path from the tick and the help.
-pub fn judge(reach: &Reach) -> Outcome<()> {
-    let mut wrong = Vec::new();
+/// Fails with all violations, each with its call path from the tick and its help.
+pub fn check(reach: &Reach) -> Outcome<()> {
+    let mut violations = Vec::new();
     let mut helps: Vec<&str> = Vec::new();
-    let mut note = |what: String, help: &'static str| {
-        wrong.push(what);
+    let mut add_violation = |what: String, help: &'static str| {
+        violations.push(what);
         if !helps.contains(&help) {
             helps.push(help);
         }
@@ -53,44 +53,47 @@ pub fn judge(reach: &Reach) -> Outcome<()> {
         (
             &reach.panics,
             "the tick can panic, by the call",
-            "in the function before the panic, take `get`, `checked_` and `match` in place of indexing, division and unwrap",
+            "in the function before the panic, use `get`, `checked_...` and `match` instead of indexing, division and unwrap",
         ),
-        (&reach.traps, "the tick can stop the processor", "take out the `unreachable`, abort or breakpoint there"),
+        (&reach.traps, "the tick can stop the processor", "remove the `unreachable`, abort or breakpoint"),
         (
             &reach.pointers,
             "the tick calls through a pointer",
-            "call by a generic in place of `dyn` or a function pointer, so that what runs is known",
+            "call through a generic parameter instead of `dyn` or a function pointer",
         ),
     ];
     for (paths, what, help) in found {
         for path in paths {
-            note(format!("{what} at {:#010x}: {}", path.at, arrow(&path.names)), help);
+            add_violation(format!("{what} at {:#010x}: {}", path.at, joined_path(&path.names)), help);
         }
     }
     for ring in &reach.rings {
-        note(format!("the tick can call in a ring: {}", arrow(ring)), "make a bounded loop of the recursion");
+        add_violation(
+            format!("the tick can call in a ring: {}", joined_path(ring)),
+            "replace the recursion by a bounded loop",
+        );
     }
     for path in &reach.unknown {
-        note(
-            format!("what happens at {:#010x} cannot be told: {}", path.at, arrow(&path.names)),
+        add_violation(
+            format!("the effect of the code at {:#010x} is unknown: {}", path.at, joined_path(&path.names)),
             "keep hand-written assembly and memory of unknown size out of the tick",
         );
     }
     let stack = stack(reach);
     let parts: Vec<_> = reach.deepest.iter().map(|(name, held)| format!("{name} {held} B")).collect();
     if stack > STACK_BOUND {
-        note(
-            format!("the tick may take {stack} B of stack, more than {STACK_BOUND} B: {}", arrow(&parts)),
-            "make the arrays on that way smaller, or pass them by reference",
+        add_violation(
+            format!("the tick can use {stack} B of stack, more than {STACK_BOUND} B: {}", joined_path(&parts)),
+            "make the arrays on this path smaller, or pass them by reference",
         );
     }
-    match wrong.is_empty() {
+    match violations.is_empty() {
         true => Ok(()),
-        false => Err(Failure::check_failed(wrong.join("\n")).with_help(helps.join("\n"))),
+        false => Err(Failure::check_failed(violations.join("\n")).with_help(helps.join("\n"))),
     }
 }
 
-fn arrow(path: &[String]) -> String {
+fn joined_path(path: &[String]) -> String {
     path.join(" -> ")
 }
 
@@ -98,10 +101,11 @@ fn arrow(path: &[String]) -> String {
 mod tests {
     use super::*;
 
+    /// A tick within its bounds passes; each kind of violation fails by itself.
     #[test]
-    fn a_tick_within_its_bounds_passes_and_each_fault_alone_does_not() {
+    fn each_violation_fails_alone() {
         let sound = Reach { functions: 3, stack: 900, deepest: vec![("SysTick".into(), 900)], ..Reach::default() };
-        assert!(judge(&sound).is_ok());
+        assert!(check(&sound).is_ok());
         let names = vec!["SysTick".to_owned(), "control::tick".to_owned(), "core::panicking::panic".to_owned()];
         let path = CallPath { names: names.clone(), at: 0x0800_1000 };
         let faults = [
@@ -113,14 +117,15 @@ mod tests {
             Reach { stack: STACK_BOUND, ..sound },
         ];
         for fault in faults {
-            let failure = judge(&fault).unwrap_err();
+            let failure = check(&fault).unwrap_err();
             assert!(failure.message().contains("SysTick") && failure.help().is_some(), "{failure}");
             assert_eq!(failure.exit_code(), 1);
         }
     }
 
+    /// The failure names the file that is no image.
     #[test]
-    fn a_file_that_is_no_image_is_named() {
+    fn non_image_named() {
         let failure = reach(Path::new("/proc/self/status")).unwrap_err();
         assert!(failure.message().contains("/proc/self/status"), "{failure}");
     }

@@ -1,13 +1,13 @@
-//! The call graph of the tick: the shortest call path to every panic, everything that cannot be followed, recursion,
-//! and the deepest stack. `tick::judge` says what is allowed.
+//! Call graph of the tick: the shortest call path to every panic, code that cannot be followed, recursion, and the
+//! deepest stack. `tick::judge` decides about them.
 
 use std::collections::{BTreeMap, VecDeque};
 
-use super::frame::{Frame, Obstacle, frame};
+use super::frame::{Obstacle, StackFrame, frame};
 use super::functions::{Function, Functions};
 
-/// Names of functions that are, or lead nowhere but to, a panic. All of them end in the first two; the others are here
-/// for the name's sake, since a way ends at the first that it meets.
+/// Parts of the names of functions that panic or only lead to a panic. All of them end in the first two; the others
+/// give a better name, since a path ends at the first match.
 const PANICS: [&str; 8] = [
     "core::panicking::",
     "rust_begin_unwind",
@@ -19,47 +19,47 @@ const PANICS: [&str; 8] = [
     "_defmt_panic",
 ];
 
-/// The call path from the handler to a place.
+/// Call path from the handler to an address.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CallPath {
-    /// The functions, the handler first.
+    /// Names of the functions, the handler first.
     pub names: Vec<String>,
-    /// The place: an instruction of the last but one, if the last must not be called; otherwise of the last.
+    /// Address in the last function, or in the last but one if the last must not be called.
     pub at: u32,
 }
 
-/// What the tick can reach.
+/// Reach of the tick.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Reach {
-    /// Functions that can be reached, the handler included.
+    /// Number of reachable functions, including the handler.
     pub functions: usize,
-    /// The call path to each panic, from the handler on.
+    /// Call path to each panic.
     pub panics: Vec<CallPath>,
-    /// The call path to each function that calls through a pointer, and where it does.
+    /// Call path to each call through a pointer.
     pub pointers: Vec<CallPath>,
-    /// The call path to each instruction that stops the processor.
+    /// Call path to each instruction that stops the processor.
     pub traps: Vec<CallPath>,
-    /// The call path to each place where the stack or the next instruction is unknown.
+    /// Call path to each address where the stack or the next instruction is unknown.
     pub unknown: Vec<CallPath>,
-    /// Functions that come to call themselves, in order.
+    /// Rings of recursive calls, in order of the calls.
     pub rings: Vec<Vec<String>>,
-    /// Most stack that the handler and what it calls can take, without what the processor itself pushes [byte]. Says
-    /// nothing where there are rings, pointers or unknown places.
+    /// Largest stack of the handler and its callees, without the interrupt frame [byte]. Meaningless if there are
+    /// rings, pointers or unknown addresses.
     pub stack: u32,
-    /// The calls that take it, each with what it holds when it calls the next.
+    /// Calls on the deepest path, each with the stack held at the next call.
     pub deepest: Vec<(String, u32)>,
 }
 
-/// Whether a name stands for a panic.
+/// Returns whether a name is that of a panic.
 pub fn is_panic(name: &str) -> bool {
     PANICS.iter().any(|panic| name.contains(panic))
 }
 
-/// Walks from a handler.
+/// Walks the call graph from a handler.
 pub fn walk(functions: &Functions, handler: &Function) -> Reach {
     let returns = |to: u32| functions.at(to).is_none_or(|callee| !is_panic(&callee.name));
-    let mut frames: BTreeMap<u32, Frame> = BTreeMap::new();
-    // Who called, and where.
+    let mut frames: BTreeMap<u32, StackFrame> = BTreeMap::new();
+    // Caller and call address of every function.
     let mut came_from: BTreeMap<u32, (u32, u32)> = BTreeMap::new();
     let mut open = VecDeque::from([handler.address]);
     let mut reach = Reach::default();
@@ -76,13 +76,13 @@ pub fn walk(functions: &Functions, handler: &Function) -> Reach {
         }
         let Some(function) = functions.at(address) else {
             reach.unknown.push(path(address, address, &came_from));
-            frames.insert(address, Frame::default());
+            frames.insert(address, StackFrame::default());
             continue;
         };
         if is_panic(&function.name) {
             let at = came_from.get(&address).map_or(address, |(_, at)| *at);
             reach.panics.push(path(address, at, &came_from));
-            frames.insert(address, Frame::default());
+            frames.insert(address, StackFrame::default());
             continue;
         }
         let own = frame(functions, function, &returns);
@@ -90,7 +90,7 @@ pub fn walk(functions: &Functions, handler: &Function) -> Reach {
             let list = match obstacle {
                 Obstacle::Pointer(_) => &mut reach.pointers,
                 Obstacle::Trap(_) => &mut reach.traps,
-                Obstacle::Stack(_) | Obstacle::Astray(_) => &mut reach.unknown,
+                Obstacle::StackEffect(_) | Obstacle::NoInstruction(_) => &mut reach.unknown,
             };
             list.push(path(address, obstacle.at(), &came_from));
         }
@@ -105,7 +105,7 @@ pub fn walk(functions: &Functions, handler: &Function) -> Reach {
     }
     reach.functions = frames.len();
     let mut depths = Depths { functions, frames: &frames, known: BTreeMap::new(), path: Vec::new(), rings: Vec::new() };
-    reach.stack = depths.of(handler.address).0;
+    reach.stack = depths.depth_of(handler.address).0;
     reach.deepest = depths.deepest(handler.address);
     reach.rings = depths.rings;
     reach
@@ -115,18 +115,18 @@ fn name_of(functions: &Functions, address: u32) -> String {
     functions.at(address).map_or_else(|| format!("{address:#010x}"), |function| function.name.clone())
 }
 
-/// Deepest stack of every function with all that it calls.
+/// Deepest stack of every function with its callees.
 struct Depths<'a> {
     functions: &'a Functions,
-    frames: &'a BTreeMap<u32, Frame>,
-    /// Depth, and the callee that makes it with what is held when it is called.
+    frames: &'a BTreeMap<u32, StackFrame>,
+    /// Depth, and the callee that causes it with the stack held at its call.
     known: BTreeMap<u32, (u32, Option<(u32, u32)>)>,
     path: Vec<u32>,
     rings: Vec<Vec<String>>,
 }
 
 impl Depths<'_> {
-    fn of(&mut self, address: u32) -> (u32, Option<(u32, u32)>) {
+    fn depth_of(&mut self, address: u32) -> (u32, Option<(u32, u32)>) {
         if let Some(known) = self.known.get(&address) {
             return *known;
         }
@@ -140,7 +140,7 @@ impl Depths<'_> {
         let mut deepest = (frame.depth, None);
         for call in &frame.calls {
             let callee = call.to & !1;
-            let depth = call.depth + self.of(callee).0;
+            let depth = call.depth + self.depth_of(callee).0;
             if depth > deepest.0 {
                 deepest = (depth, Some((callee, call.depth)));
             }
@@ -155,7 +155,7 @@ impl Depths<'_> {
         while let Some((depth, next)) = self.known.get(&address) {
             steps.push((name_of(self.functions, address), next.map_or(*depth, |(_, held)| held)));
             match next {
-                // A ring could go round for ever.
+                // A ring would never end.
                 Some((callee, _)) if steps.len() <= self.known.len() => address = *callee,
                 _ => break,
             }

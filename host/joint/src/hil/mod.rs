@@ -61,6 +61,6 @@ fn say_how_to_go_on(line: &LineOptions) -> Outcome<()> {
     output::print(&format!(
         "tests of observer and compensation take an image of their own, which is built and named by\n\
          joint hil hil/t2.toml --role loop{}\n",
-        line.again()
+        line.repeated_options()
     ))
 }

@@ -6,7 +6,7 @@ use super::arguments::BoardArguments;
 use board::connection::Connection;
 use board::device::image;
 use board::device::image::CONTROL_RATE;
-use board::device::image::word;
+use board::device::image::role_name;
 use board::device::toolchain::Toolchain;
 use board::session::{BoardHelp, Session};
 use joint_file::named::Loaded;
@@ -31,19 +31,19 @@ impl AnsweringBoard {
         let (connection, options) = match &place.line.port {
             Some(path) => {
                 let baud = place.line.baud_rate();
-                (Connection::on_port(path, baud, || Ok(None))?, place.line.again())
+                (Connection::on_port(path, baud, || Ok(None))?, place.line.repeated_options())
             }
             None => (emulated(place, loaded, progress)?, String::new()),
         };
         progress.stage("calling the board");
-        let flash = format!("cargo joint flash {file} --role observer --board {}", place.line.board_word());
+        let flash = format!("cargo joint flash {file} --role observer --board {}", place.line.board_argument());
         let help = if place.line.port.is_some() { BoardHelp::Flash(flash.clone()) } else { BoardHelp::Rebuild };
         let mut session = Session::new(connection.line, connection.supervisor);
-        let hello = session.call(&help, connection.timeout)?;
+        let hello = session.wait_for_hello(&help, connection.timeout)?;
         let name =
             place.line.port.as_ref().map_or("the emulated board".to_owned(), |path| format!("the board on {path}"));
         if hello.role == Role::Plant {
-            let role = word(hello.role);
+            let role = role_name(hello.role);
             return Err(Failure::new(format!("{name} has an image of role `{role}`, which learns nothing"))
                 .with_help(format!("flash one that does: {flash}")));
         }

@@ -31,8 +31,8 @@ use super::suite::{Suite, Test};
 use board::connection::Connection;
 use board::device::emulator;
 use board::device::image;
-use board::device::image::{Control, Image, word};
-use board::device::tick_time::OnBoard;
+use board::device::image::{Control, Image, role_name};
+use board::device::tick_time::RateCheck;
 use board::device::toolchain::Toolchain;
 use board::session::{BoardHelp, Expected, Session, command_timeout};
 use board::transport::Port;
@@ -65,7 +65,7 @@ fn control(file: &TestFile, case: &Case) -> Outcome<Control> {
         bandwidth: Some(case.bandwidth(file)?),
         peak_torque: file.peak_torque,
         output_encoder: file.output_encoder,
-        ..Control::usual(case.nominal_surroundings.control_rate)
+        ..Control::with_defaults(case.nominal_surroundings.control_rate)
     })
 }
 
@@ -107,15 +107,15 @@ impl<'w> Boards<'w> {
     /// Where controllers run, for the record.
     pub fn label(&self) -> String {
         let place = self.request.port.unwrap_or("emulated");
-        format!("{} on {} ({place})", word(self.request.role), self.request.board.name())
+        format!("{} on {} ({place})", role_name(self.request.role), self.request.board.name())
     }
 
     /// The arguments that ask for them again.
     pub fn arguments(&self) -> String {
         let BoardRequest { role, port, baud, board, no_build, force, mode } = self.request;
-        let mut arguments = format!("--role {}", word(role));
+        let mut arguments = format!("--role {}", role_name(role));
         if let Some(port) = port {
-            arguments += &format!(" --port {} --board {}", quoted(port), quoted(&board.named));
+            arguments += &format!(" --port {} --board {}", quoted(port), quoted(&board.argument));
         }
         if let Some(baud) = baud {
             arguments += &format!(" --baud {baud}");
@@ -158,8 +158,8 @@ impl<'w> Boards<'w> {
     fn session(&self, pair: &Pair) -> Outcome<(Session<'static>, String)> {
         let request = &self.request;
         // Before an image is built, and where none is: the board has its own.
-        OnBoard::new(&pair.truth.parameters, request.board, request.role)
-            .refuse_unless_forced(pair.control.rate, request.force)?;
+        RateCheck::new(&pair.truth.parameters, request.board, request.role)
+            .check_unless_forced(pair.control.rate, request.force)?;
         let image = || {
             let build = |toolchain: &Toolchain| {
                 let texts = pair.texts.each_ref().map(String::as_str);
@@ -189,7 +189,7 @@ impl<'w> Boards<'w> {
         let nominal = NominalPlant { joint: &nominal.parameters, surroundings: &nominal.surroundings, request };
         let source = control_source(&truth.parameters, &truth.surroundings, &nominal, &board.processor())
             .map_err(|error| Failure::new(format!("joint `{}`: {error}", truth.parameters.name)))?;
-        let probe = &board.described.probe_name;
+        let probe = &board.description.probe_name;
         Ok(Expected {
             joint: truth.parameters.name.to_string(),
             digest: tables_digest(&truth.parameters, board.chip(), control.rate)?,
@@ -223,7 +223,7 @@ impl<'w> Boards<'w> {
     fn board_run(&self, image: String, same_periods: u32, statistics: Option<&Statistics>) -> BoardRun {
         let figure = |of: &dyn Fn(&Statistics) -> u32| statistics.map_or(0, of);
         BoardRun {
-            role: word(self.request.role).to_owned(),
+            role: role_name(self.request.role).to_owned(),
             elf_sha256: image,
             same_periods,
             computation_mean: figure(&|statistics| statistics.computation.mean),

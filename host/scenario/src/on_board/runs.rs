@@ -66,7 +66,7 @@ impl Boards<'_> {
         let (mut session, image) = self.session(pair)?;
         let follow = |session: &mut Session<'_>| {
             session.add_faults(&faults)?;
-            session.follow(&knots, digests.len() as u32)
+            session.stream_motion(&knots, digests.len() as u32)
         };
         let followed = match test.file.from_memory {
             true => {

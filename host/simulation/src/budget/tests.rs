@@ -11,7 +11,7 @@ use parameters::JointParameters;
 use super::{BudgetSummary, layout, summary};
 use crate::verdicts::ACCURACY;
 use board::device::board::Board;
-use board::device::tick_time::OnBoard;
+use board::device::tick_time::RateCheck;
 use report::output;
 
 fn file(name: &str) -> JointFile {
@@ -30,7 +30,7 @@ fn budget(name: &str, board: &Board, rate: u32) -> BudgetSummary {
 fn every_preset_can_be_stepped_at_the_usual_rate_on_the_emulated_board() {
     for name in PRESETS {
         let (joint, board) = (preset(name), Board::emulated());
-        if let Err(failure) = OnBoard::new(&joint, &board, Role::Plant).refuse(20_000) {
+        if let Err(failure) = RateCheck::new(&joint, &board, Role::Plant).check(20_000) {
             panic!("{failure}");
         }
     }
@@ -44,8 +44,8 @@ fn a_rate_that_takes_too_long_is_told_with_the_nearest_that_fits() {
     assert!(!told.verdicts.time.fits && layout(&told).contains("DOES NOT FIT"), "{}", layout(&told));
     assert!(layout(&told).contains(&format!("{rate} Hz would fit")), "{}", layout(&told));
     let joint = preset("q1");
-    let on_board = OnBoard::new(&joint, &board, Role::Plant);
-    assert!(on_board.refuse(rate).is_ok());
+    let on_board = RateCheck::new(&joint, &board, Role::Plant);
+    assert!(on_board.check(rate).is_ok());
     let nearer = (1..rate.abs_diff(168_000)).flat_map(|off| [168_000 - off, 168_000 + off]);
     assert_eq!(nearer.into_iter().find(|rate| on_board.obstacle(*rate).is_none()), None);
 }

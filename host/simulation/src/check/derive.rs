@@ -16,7 +16,7 @@ use super::summary::{
 use crate::bandwidth::Bandwidth;
 use crate::verdicts::verdicts;
 use board::device::board::Board;
-use board::device::tick_time::OnBoard;
+use board::device::tick_time::RateCheck;
 use joint_file::named::Loaded;
 use link::messages::Role;
 use report::failure::{Failure, Outcome};
@@ -187,7 +187,7 @@ fn fixed_step(parameters: &JointParameters, board: &Board, rate: u32, wanted: Op
     };
     let step = step(parameters, board.processor(), rate).map_err(failed)?;
     let step_size = StepSize::new(parameters);
-    let on_board = OnBoard::new(parameters, board, Role::Plant);
+    let on_board = RateCheck::new(parameters, board, Role::Plant);
     let substeps = on_board.substeps(rate).map_err(failed)?;
     let (lowest, recommended) = (on_board.lowest_rate(), step_size.recommended_rate());
     let verdicts = wanted.map(|wanted| verdicts(parameters, board, Role::Plant, rate, wanted)).transpose()?;

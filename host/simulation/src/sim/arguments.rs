@@ -117,7 +117,7 @@ impl MotionArguments {
         option("load", self.load.map(|value| value.to_string()));
         option("start", self.start.map(|start| start.name().to_owned()));
         option("speed", self.speed.map(|value| value.to_string()));
-        option("board", self.board.as_ref().map(|board| board.named.clone()));
+        option("board", self.board.as_ref().map(|board| board.argument.clone()));
         if self.f64 {
             options += " --f64";
         }

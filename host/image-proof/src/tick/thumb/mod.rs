@@ -1,60 +1,60 @@
-//! As much of the Thumb-2 instruction set as tells where control goes and what becomes of the stack pointer: lengths,
-//! branches, calls, returns and every form that writes `sp`. All other instructions are one and the same here. Encodings
-//! are those of the ARMv7-M Architecture Reference Manual, chapters A5 to A7.
+//! Part of the Thumb-2 instruction set that determines control flow and the stack pointer: lengths, branches, calls,
+//! returns and every form that writes `sp`. Other instructions are not distinguished. Encodings are those of the
+//! ARMv7-M Architecture Reference Manual, chapters A5 to A7.
 
-/// Where control goes after an instruction.
+/// Control flow after an instruction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flow {
-    /// To the next instruction.
+    /// Next instruction.
     Next,
-    /// There, or to the next if the condition does not hold.
+    /// Branch to an address, or next instruction if the condition does not hold.
     Branch(u32),
-    /// There.
+    /// Unconditional branch to an address.
     Jump(u32),
-    /// There and back.
+    /// Call of an address.
     Call(u32),
-    /// Wherever a register says, and back.
+    /// Call of an address in a register.
     CallRegister,
-    /// Wherever a register or a number in memory says.
+    /// Jump to an address in a register or in memory.
     JumpRegister,
-    /// To one of the places in a table whose address is in a register, or that follows.
+    /// Jump through a table whose address is in a register, or that follows the instruction.
     Table {
-        /// Bytes of an entry.
+        /// Size of an entry [byte].
         width: u32,
-        /// The register; 15 if the table follows.
+        /// Register with the table's address; 15 if the table follows.
         base: u16,
     },
-    /// To the caller.
+    /// Return to the caller.
     Return,
-    /// Nowhere: the processor faults or waits for a debugger.
+    /// Stop: the processor faults or waits for a debugger.
     Trap,
 }
 
 /// Effect on the stack pointer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stack {
-    /// Nothing.
+pub enum StackEffect {
+    /// Stack pointer unchanged.
     Same,
-    /// The stack grows by so many bytes.
+    /// Stack grows [byte].
     Grow(u32),
-    /// It shrinks by so many bytes.
+    /// Stack shrinks [byte].
     Shrink(u32),
-    /// It is set to something that cannot be told from this instruction.
+    /// Stack pointer set to a value that this instruction does not show.
     Unknown,
 }
 
-/// One instruction.
+/// Decoded instruction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Instruction {
-    /// 2 or 4 bytes.
+    /// Size, 2 or 4 [byte].
     pub size: u32,
-    /// Where control goes.
+    /// Control flow.
     pub flow: Flow,
     /// Effect on the stack pointer.
-    pub stack: Stack,
-    /// The register that it loads with the address of something near by, and that address.
+    pub stack: StackEffect,
+    /// Register that is loaded with a nearby address, and the address.
     pub address_of: Option<(u16, u32)>,
-    /// How many of the following instructions it makes conditional.
+    /// Number of following instructions that become conditional.
     pub conditional_next: u32,
 }
 
@@ -62,7 +62,7 @@ const SP: u16 = 13;
 const LR: u16 = 14;
 const PC: u16 = 15;
 
-/// Reads the instruction at an address; `second` is the halfword after it, if there is one.
+/// Decodes the instruction at an address; `second` is the half word after it, if there is one.
 pub fn decode(address: u32, first: u16, second: u16) -> Instruction {
     let size = if first >> 11 >= 0b11101 { 4 } else { 2 };
     let (flow, stack) = match size {
@@ -75,7 +75,7 @@ pub fn decode(address: u32, first: u16, second: u16) -> Instruction {
     Instruction { size, flow, stack, address_of, conditional_next }
 }
 
-/// The three forms of `adr`.
+/// Register and address of the three forms of `adr`.
 fn address_of(address: u32, first: u16, second: u16) -> Option<(u16, u32)> {
     let here = (address + 4) & !3;
     match first & 0xfbff {
@@ -86,7 +86,7 @@ fn address_of(address: u32, first: u16, second: u16) -> Option<(u16, u32)> {
     }
 }
 
-/// Destination of the forms of `add` and `mov` that take all registers.
+/// Destination of the short forms of `add` and `mov` that reach all registers.
 fn high_destination(first: u16) -> Option<u16> {
     matches!(first & 0xff00, 0x4400 | 0x4600).then_some(first & 7 | first >> 4 & 8)
 }
@@ -112,15 +112,15 @@ fn flow_of_short(address: u32, first: u16) -> Flow {
     }
 }
 
-fn stack_of_short(first: u16) -> Stack {
+fn stack_of_short(first: u16) -> StackEffect {
     let words = 4 * u32::from(first & 0x7f);
     match first {
-        _ if first & 0xfe00 == 0xb400 => Stack::Grow(4 * (first & 0x1ff).count_ones()),
-        _ if first & 0xfe00 == 0xbc00 => Stack::Shrink(4 * (first & 0x1ff).count_ones()),
-        _ if first & 0xff80 == 0xb000 => Stack::Shrink(words),
-        _ if first & 0xff80 == 0xb080 => Stack::Grow(words),
-        _ if high_destination(first) == Some(SP) => Stack::Unknown,
-        _ => Stack::Same,
+        _ if first & 0xfe00 == 0xb400 => StackEffect::Grow(4 * (first & 0x1ff).count_ones()),
+        _ if first & 0xfe00 == 0xbc00 => StackEffect::Shrink(4 * (first & 0x1ff).count_ones()),
+        _ if first & 0xff80 == 0xb000 => StackEffect::Shrink(words),
+        _ if first & 0xff80 == 0xb080 => StackEffect::Grow(words),
+        _ if high_destination(first) == Some(SP) => StackEffect::Unknown,
+        _ => StackEffect::Same,
     }
 }
 
@@ -156,10 +156,11 @@ fn flow_of_long(address: u32, first: u16, second: u16) -> Flow {
     }
 }
 
-fn stack_of_long(first: u16, second: u16) -> Stack {
+fn stack_of_long(first: u16, second: u16) -> StackEffect {
     let base = first & 15;
     let destination = second >> 8 & 15;
-    let by = |up: bool, bytes: u16| if up { Stack::Shrink(bytes.into()) } else { Stack::Grow(bytes.into()) };
+    let by =
+        |up: bool, bytes: u16| if up { StackEffect::Shrink(bytes.into()) } else { StackEffect::Grow(bytes.into()) };
     let writes_back = first & 0x20 != 0;
     let up = first & 0x80 != 0;
     match first {
@@ -172,31 +173,33 @@ fn stack_of_long(first: u16, second: u16) -> Stack {
         _ if first & 0xfe80 == 0xf800 && base == SP && second & 0x900 == 0x900 => {
             by(second & 0x200 != 0, second & 0xff)
         }
-        _ if first & 0xff70 == 0xf850 && second >> 12 == SP => Stack::Unknown,
+        _ if first & 0xff70 == 0xf850 && second >> 12 == SP => StackEffect::Unknown,
         // Data processing: shifted register, then constant
-        _ if first & 0xfe00 == 0xea00 && destination == SP => Stack::Unknown,
+        _ if first & 0xfe00 == 0xea00 && destination == SP => StackEffect::Unknown,
         _ if first & 0xf800 == 0xf000 && second & 0x8000 == 0 && destination == SP => {
             let (coded, plain) = (expand(first, second), twelve(first, second));
             match first & 0xfbef {
-                0xf10d => Stack::Shrink(coded),
-                0xf1ad => Stack::Grow(coded),
-                0xf20d => Stack::Shrink(plain),
-                0xf2ad => Stack::Grow(plain),
-                _ => Stack::Unknown,
+                0xf10d => StackEffect::Shrink(coded),
+                0xf1ad => StackEffect::Grow(coded),
+                0xf20d => StackEffect::Shrink(plain),
+                0xf2ad => StackEffect::Grow(plain),
+                _ => StackEffect::Unknown,
             }
         }
         // msr to the stack pointers
-        _ if first & 0xffe0 == 0xf380 && second & 0xff00 == 0x8800 && matches!(second & 0xff, 8 | 9) => Stack::Unknown,
-        _ => Stack::Same,
+        _ if first & 0xffe0 == 0xf380 && second & 0xff00 == 0x8800 && matches!(second & 0xff, 8 | 9) => {
+            StackEffect::Unknown
+        }
+        _ => StackEffect::Same,
     }
 }
 
-/// Sign extension of a number of so many bits.
+/// Sign extension of a number from a width in bits.
 fn extend(value: u32, bits: u32) -> i32 {
     ((value << (32 - bits)) as i32) >> (32 - bits)
 }
 
-/// Offset of `bl` and of `b.w` without condition.
+/// Offset of `bl` and of `b.w` without a condition.
 fn far(first: u16, second: u16) -> i32 {
     let (first, second) = (u32::from(first), u32::from(second));
     let sign = first >> 10 & 1;
@@ -211,12 +214,12 @@ fn near(first: u16, second: u16) -> i32 {
     extend(sign << 20 | high << 19 | low << 18 | (first & 0x3f) << 12 | (second & 0x7ff) << 1, 21)
 }
 
-/// The constant of twelve bits, as it stands.
+/// Plain 12-bit constant.
 fn twelve(first: u16, second: u16) -> u32 {
     u32::from(first >> 10 & 1) << 11 | u32::from(second >> 12 & 7) << 8 | u32::from(second & 0xff)
 }
 
-/// The constant of twelve bits, as the expanding forms mean it.
+/// Modified 12-bit constant.
 fn expand(first: u16, second: u16) -> u32 {
     let code = twelve(first, second);
     let byte = code & 0xff;

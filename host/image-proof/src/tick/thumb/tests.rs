@@ -1,14 +1,15 @@
-//! Instructions, each with what `objdump` prints for it.
+//! Instructions with their disassembly by `objdump`.
 
 use super::*;
 
-fn at(address: u32, first: u16, second: u16) -> (u32, Flow, Stack) {
+fn at(address: u32, first: u16, second: u16) -> (u32, Flow, StackEffect) {
     let Instruction { size, flow, stack, .. } = decode(address, first, second);
     (size, flow, stack)
 }
 
+/// Branches, calls and returns are distinguished.
 #[test]
-fn branches_calls_and_returns_are_told_apart() {
+fn control_flow_decoded() {
     let flow = |first, second| decode(0x1000, first, second).flow;
     assert_eq!(flow(0xd0fe, 0), Flow::Branch(0x1000)); // beq.n 1000
     assert_eq!(flow(0xe7fe, 0), Flow::Jump(0x1000)); // b.n 1000
@@ -33,37 +34,40 @@ fn branches_calls_and_returns_are_told_apart() {
     assert_eq!(flow(0xf3bf, 0x8f5f), Flow::Next); // dmb sy
 }
 
+/// Every instruction that moves the stack pointer is found.
 #[test]
-fn every_way_to_move_the_stack_pointer_is_seen() {
-    assert_eq!(at(0, 0xb5f0, 0), (2, Flow::Next, Stack::Grow(20))); // push {r4-r7, lr}
-    assert_eq!(at(0, 0xbcf0, 0), (2, Flow::Next, Stack::Shrink(16))); // pop {r4-r7}
-    assert_eq!(at(0, 0xb082, 0), (2, Flow::Next, Stack::Grow(8))); // sub sp, #8
-    assert_eq!(at(0, 0xb002, 0), (2, Flow::Next, Stack::Shrink(8))); // add sp, #8
-    assert_eq!(at(0, 0xe92d, 0x4ff0), (4, Flow::Next, Stack::Grow(36))); // stmdb sp!, {r4-r11, lr}
-    assert_eq!(at(0, 0xed2d, 0x8b10), (4, Flow::Next, Stack::Grow(64))); // vpush {d8-d15}
-    assert_eq!(at(0, 0xecbd, 0x8b10), (4, Flow::Next, Stack::Shrink(64))); // vpop {d8-d15}
-    assert_eq!(at(0, 0xf84d, 0x8d04), (4, Flow::Next, Stack::Grow(4))); // str.w r8, [sp, #-4]!
-    assert_eq!(at(0, 0xf85d, 0x8b04), (4, Flow::Next, Stack::Shrink(4))); // ldr.w r8, [sp], #4
-    assert_eq!(at(0, 0xf5ad, 0x7d00), (4, Flow::Next, Stack::Grow(512))); // sub.w sp, sp, #512
-    assert_eq!(at(0, 0xf50d, 0x7d00), (4, Flow::Next, Stack::Shrink(512))); // add.w sp, sp, #512
-    assert_eq!(at(0, 0xf6ad, 0x0d04), (4, Flow::Next, Stack::Grow(2052))); // subw sp, sp, #2052
-    assert_eq!(at(0, 0x46a5, 0), (2, Flow::Next, Stack::Unknown)); // mov sp, r4
-    assert_eq!(at(0, 0xf1a7, 0x0d08), (4, Flow::Next, Stack::Unknown)); // sub.w sp, r7, #8
-    assert_eq!(at(0, 0xf380, 0x8808), (4, Flow::Next, Stack::Unknown)); // msr MSP, r0
+fn stack_pointer_changes_decoded() {
+    assert_eq!(at(0, 0xb5f0, 0), (2, Flow::Next, StackEffect::Grow(20))); // push {r4-r7, lr}
+    assert_eq!(at(0, 0xbcf0, 0), (2, Flow::Next, StackEffect::Shrink(16))); // pop {r4-r7}
+    assert_eq!(at(0, 0xb082, 0), (2, Flow::Next, StackEffect::Grow(8))); // sub sp, #8
+    assert_eq!(at(0, 0xb002, 0), (2, Flow::Next, StackEffect::Shrink(8))); // add sp, #8
+    assert_eq!(at(0, 0xe92d, 0x4ff0), (4, Flow::Next, StackEffect::Grow(36))); // stmdb sp!, {r4-r11, lr}
+    assert_eq!(at(0, 0xed2d, 0x8b10), (4, Flow::Next, StackEffect::Grow(64))); // vpush {d8-d15}
+    assert_eq!(at(0, 0xecbd, 0x8b10), (4, Flow::Next, StackEffect::Shrink(64))); // vpop {d8-d15}
+    assert_eq!(at(0, 0xf84d, 0x8d04), (4, Flow::Next, StackEffect::Grow(4))); // str.w r8, [sp, #-4]!
+    assert_eq!(at(0, 0xf85d, 0x8b04), (4, Flow::Next, StackEffect::Shrink(4))); // ldr.w r8, [sp], #4
+    assert_eq!(at(0, 0xf5ad, 0x7d00), (4, Flow::Next, StackEffect::Grow(512))); // sub.w sp, sp, #512
+    assert_eq!(at(0, 0xf50d, 0x7d00), (4, Flow::Next, StackEffect::Shrink(512))); // add.w sp, sp, #512
+    assert_eq!(at(0, 0xf6ad, 0x0d04), (4, Flow::Next, StackEffect::Grow(2052))); // subw sp, sp, #2052
+    assert_eq!(at(0, 0x46a5, 0), (2, Flow::Next, StackEffect::Unknown)); // mov sp, r4
+    assert_eq!(at(0, 0xf1a7, 0x0d08), (4, Flow::Next, StackEffect::Unknown)); // sub.w sp, r7, #8
+    assert_eq!(at(0, 0xf380, 0x8808), (4, Flow::Next, StackEffect::Unknown)); // msr MSP, r0
 }
 
+/// Instructions that only read the stack pointer have no effect on the stack.
 #[test]
-fn the_stack_pointer_may_be_used_without_being_moved() {
-    assert_eq!(at(0, 0xa802, 0).2, Stack::Same); // add r0, sp, #8
-    assert_eq!(at(0, 0x4668, 0).2, Stack::Same); // mov r0, sp
-    assert_eq!(at(0, 0xf8dd, 0x0010).2, Stack::Same); // ldr.w r0, [sp, #16]
-    assert_eq!(at(0, 0xe9cd, 0x0102).2, Stack::Same); // strd r0, r1, [sp, #8]
-    assert_eq!(at(0, 0xed9d, 0x0a02).2, Stack::Same); // vldr s0, [sp, #8]
-    assert_eq!(at(0, 0xf10d, 0x0010).2, Stack::Same); // add.w r0, sp, #16
+fn stack_pointer_reads_ignored() {
+    assert_eq!(at(0, 0xa802, 0).2, StackEffect::Same); // add r0, sp, #8
+    assert_eq!(at(0, 0x4668, 0).2, StackEffect::Same); // mov r0, sp
+    assert_eq!(at(0, 0xf8dd, 0x0010).2, StackEffect::Same); // ldr.w r0, [sp, #16]
+    assert_eq!(at(0, 0xe9cd, 0x0102).2, StackEffect::Same); // strd r0, r1, [sp, #8]
+    assert_eq!(at(0, 0xed9d, 0x0a02).2, StackEffect::Same); // vldr s0, [sp, #8]
+    assert_eq!(at(0, 0xf10d, 0x0010).2, StackEffect::Same); // add.w r0, sp, #16
 }
 
+/// The forms of `adr` give register and address.
 #[test]
-fn the_address_of_a_table_near_by_is_found() {
+fn nearby_table_address_decoded() {
     let address_of = |first, second| decode(0x1002, first, second).address_of;
     assert_eq!(address_of(0xa103, 0), Some((1, 0x1010))); // add r1, pc, #12
     assert_eq!(address_of(0xf20f, 0x0310), Some((3, 0x1014))); // addw r3, pc, #16
@@ -72,8 +76,9 @@ fn the_address_of_a_table_near_by_is_found() {
     assert_eq!(decode(0, 0xe8d1, 0xf010).flow, Flow::Table { width: 2, base: 1 }); // tbh [r1, r0, lsl #1]
 }
 
+/// The mask of an `it` gives the number of conditional instructions.
 #[test]
-fn a_condition_covers_as_many_instructions_as_its_mask_says() {
+fn it_block_length_decoded() {
     assert_eq!(decode(0, 0xbf08, 0).conditional_next, 1); // it eq
     assert_eq!(decode(0, 0xbf1c, 0).conditional_next, 2); // itt ne
     assert_eq!(decode(0, 0xbf15, 0).conditional_next, 4); // itete ne

@@ -1,4 +1,4 @@
-//! `joint board`: what a board file says, or everything that is wrong with it; and the boards that come with the program.
+//! `joint board`: shows a board file or reports every error in it; lists the boards that come with the program.
 
 use std::path::PathBuf;
 
@@ -22,7 +22,7 @@ pub struct Arguments {
 
 #[derive(Debug, clap::Subcommand)]
 enum Action {
-    /// Read a board file and print what the firmware makes of it, or everything that is wrong with it
+    /// Check a board file and show its pins, clock and memory, or report every error in it
     Check(CheckArguments),
     /// List the boards that come with the program
     List,
@@ -45,7 +45,7 @@ struct CheckArguments {
     joint: PathBuf,
 }
 
-/// Checks a board file, or lists those that there are.
+/// Checks a board file, or lists the presets.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     match &arguments.action {
         Action::Check(check) => {
@@ -70,7 +70,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     }
 }
 
-/// Adds which roles fit, by size and by time.
+/// Adds the predicted fit of each role, in size and in time.
 fn roles(page: &mut Sheet, board: &OnTarget, joint: &JointParameters) {
     page.heading(&format!("Roles for {}, predicted: no image is built", joint.name));
     for role in ImageRole::value_variants() {

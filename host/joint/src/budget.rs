@@ -1,4 +1,5 @@
-//! `joint budget`: what is known of a joint's fixed step on a board at a rate, with verdicts on time and accuracy.
+//! `joint budget`: predicted cost and error of a joint's fixed step on a board at a rate, with verdicts on time and
+//! accuracy.
 
 use std::path::PathBuf;
 
@@ -31,21 +32,22 @@ pub struct Arguments {
     /// Board that steps the joint: a name of boards/, or the path of a board file
     #[arg(long, value_name = "NAME|FILE", value_parser = Board::parse, default_value = board_file::DEFAULT)]
     board: Board,
-    /// What the board does
+    /// Role of the board
     #[arg(long, value_enum, default_value = "plant")]
     role: ImageRole,
-    /// Steps a second, in Hz
+    /// Step rate in Hz
     #[arg(long, value_name = "HZ", default_value_t = image::DEFAULT_TICK_RATE, value_parser = clap::value_parser!(u32).range(1..))]
     rate: u32,
-    /// Error that is small enough: deflections, gap and link on the reversals, over the motion's standard deviation [default: 1e-2]
+    /// Largest acceptable error: deflections, gap and link on the reversals, over the motion's standard deviation
+    /// [default: 1e-2]
     #[arg(long, value_name = "E", value_parser = accuracy)]
     accuracy: Option<f64>,
-    /// Writes the same figures as JSON ("-" is standard output, in place of the text)
+    /// Writes the figures as JSON ("-": to standard output, in place of the text)
     #[arg(long, value_name = "OUT")]
     json: Option<PathBuf>,
 }
 
-/// Prints the certificate with its verdict.
+/// Prints the budget; fails if the board is too slow, or if the error exceeds `--accuracy`.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     let loaded = named::load(&arguments.file)?;
     warned::tell(&loaded);
@@ -71,7 +73,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     Ok(())
 }
 
-/// An error that is small enough.
+/// Parses a relative error; rejects values outside 0 to 1.
 pub fn accuracy(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value < 1.0 => Ok(value),

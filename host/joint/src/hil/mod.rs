@@ -1,5 +1,5 @@
-//! `joint hil`: a joint run on a board (crate `joint-run`), or tests of observer and compensation (crate `scenario`),
-//! depending on the file.
+//! `joint hil`: runs a joint on a board (crate `joint-run`), or tests of observer and compensation (crate `scenario`);
+//! the file decides.
 
 mod arguments;
 mod tests;
@@ -12,7 +12,7 @@ use report::output;
 use report::progress::Progress;
 use scenario::suite;
 
-/// Runs a joint on a board; succeeds only if every check held.
+/// Runs a joint or test files; fails if a check fails.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     output::keep_for_json(arguments.json.as_deref());
     Progress::during(|progress| {
@@ -32,7 +32,8 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     })
 }
 
-/// The tests of observer and compensation after the joint's own checks: what failed there does not keep them from running.
+/// Runs the tests of observer and compensation after the joint's own run. A failed check of the joint does not prevent
+/// the tests; any other failure does.
 fn run_tests(arguments: &Arguments, joint: Outcome<()>, progress: &Progress) -> Outcome<()> {
     let check_failed = Failure::check_failed("").exit_code();
     if let Err(failure) = joint.as_ref()
@@ -56,7 +57,8 @@ fn run_tests(arguments: &Arguments, joint: Outcome<()>, progress: &Progress) -> 
     }
 }
 
-/// A real board keeps the image that it has until the user flashes another one.
+/// Prints the command that tests observer and compensation on a real board. A real board keeps its image until the user
+/// flashes another one, so the tests cannot follow at once.
 fn say_how_to_go_on(line: &LineOptions) -> Outcome<()> {
     output::print(&format!(
         "tests of observer and compensation take an image of their own, which is built and named by\n\

@@ -1,5 +1,5 @@
-//! Which arguments of `joint hil` belong to test files and which to joints; the wrong ones are named rather than
-//! ignored.
+//! Arguments of `joint hil` that belong to test files only, or to joints only; an argument of the other kind is an
+//! error.
 
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ use scenario::suite;
 use scenario::suite::Choice;
 use scenario::{TestGroup, TestRequest};
 
-/// What is asked of the tests in a file or folder.
+/// Request for the tests in a file or folder; rejects arguments that belong to joints.
 pub fn test_request(arguments: &Arguments) -> Outcome<TestRequest<'_>> {
     let of_joints = [
         ("duration", arguments.duration.is_some(), "write duration_s into the test file"),
@@ -55,8 +55,8 @@ pub fn test_request(arguments: &Arguments) -> Outcome<TestRequest<'_>> {
     Ok(of_groups(arguments, vec![part], name, arguments.out.clone()))
 }
 
-/// What is asked of the tests that come with the program where no file is named: on the board those that say so, and with
-/// `--full` all of them around the f64 reference, which is where their bounds are stated.
+/// Request for the tests that come with the program, if no file is named: the tests marked for the board run on the
+/// board; `--full` adds every test around the f64 reference, where the bounds are stated.
 pub fn test_request_of_all(arguments: &Arguments) -> TestRequest<'_> {
     let part = |choice, plant, boards| TestGroup { path: folder(), choice, plant, boards };
     let on_board = |role, plant| part(Choice::OnBoard(role), plant, Some(boards(arguments, role)));
@@ -67,12 +67,12 @@ pub fn test_request_of_all(arguments: &Arguments) -> TestRequest<'_> {
     of_groups(arguments, parts, "all".to_owned(), arguments.out.as_ref().map(|out| out.join("tests")))
 }
 
-/// Files that a run without `--full` leaves out.
+/// Test files that a run without `--full` leaves out.
 pub fn left_out() -> Outcome<Vec<PathBuf>> {
     suite::left_out(&folder())
 }
 
-/// The tests that come with the program; by the short path where that leads there too, as it does in the workspace.
+/// Folder of the tests that come with the program; the relative path `hil` if it leads to the same folder.
 fn folder() -> PathBuf {
     let whole = workspace().join("hil");
     let short = Path::new("hil");
@@ -110,9 +110,10 @@ fn boards(arguments: &Arguments, role: Role) -> BoardRequest<'_> {
     }
 }
 
-/// Complains about arguments of tests when a joint was named.
+/// Rejects arguments of test files if a joint is named.
 pub fn refuse_for_joints(arguments: &Arguments) -> Outcome<()> {
-    // Without a file, on the emulated board, the tests that come with the program follow.
+    // Without a file, on the emulated board, the tests that come with the program follow, so `--full` and `--junit`
+    // apply.
     let alone = arguments.file.is_some() || arguments.line.port.is_some() || arguments.check;
     let of_tests = [
         ("host", arguments.host),

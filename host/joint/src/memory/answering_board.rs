@@ -1,4 +1,4 @@
-//! Connects to the board whose memory is asked for, and refuses a board whose image learns nothing.
+//! Connects to the board whose memory is addressed, and rejects a board whose image estimates no parameters.
 
 use link::messages::{Hello, MemoryOutcome, MemoryState, Role};
 
@@ -13,19 +13,19 @@ use joint_file::named::Loaded;
 use report::failure::{Failure, Outcome};
 use report::progress::Progress;
 
-/// A board that has answered.
+/// A connected board that has answered.
 pub(super) struct AnsweringBoard {
     pub session: Session<'static>,
     pub hello: Hello,
-    /// As a user knows it.
+    /// Name of the board in messages.
     pub name: String,
-    /// The options that name it again.
+    /// Options that select the board again, for commands in help texts.
     pub options: String,
     emulated: bool,
 }
 
 impl AnsweringBoard {
-    /// Finds the board and calls it.
+    /// Connects to the board, or starts the emulated one, and reads its identity.
     pub fn call(place: &BoardArguments, loaded: &Loaded, progress: &Progress) -> Outcome<Self> {
         let file = place.joint.display();
         let (connection, options) = match &place.line.port {
@@ -50,12 +50,12 @@ impl AnsweringBoard {
         Ok(Self { session, hello, name, options, emulated: place.line.port.is_none() })
     }
 
-    /// Whether its flash is none.
+    /// Returns true for the emulated board, which has no flash.
     pub fn is_emulated(&self) -> bool {
         self.emulated
     }
 
-    /// Its flash is empty.
+    /// Error: the board's flash holds no memory.
     pub fn keeps_nothing(&self) -> Failure {
         if self.emulated {
             return Failure::new("the emulated board has no flash, so it keeps no memory")
@@ -69,7 +69,7 @@ impl AnsweringBoard {
             .with_help(format!("let it learn in a run, then have it kept: joint memory keep{}", self.options))
     }
 
-    /// Its flash takes nothing.
+    /// Error: the memory was not written to the board's flash.
     pub fn not_written(&self, outcome: MemoryOutcome) -> Failure {
         if self.emulated {
             return self.keeps_nothing();

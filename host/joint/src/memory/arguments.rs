@@ -1,4 +1,4 @@
-//! What `joint memory` may be asked for on the command line.
+//! Command line of `joint memory`.
 
 use std::path::PathBuf;
 
@@ -30,56 +30,56 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Show what is in a memory, with intervals and units, beside its joint file
+    /// Show the parameters in a memory, with intervals and units, beside those of its joint file
     Show {
-        /// The memory
+        /// Memory to show
         #[arg(value_name = "MEMORY")]
         file: PathBuf,
-        /// Joint file (TOML) or preset that it was learnt with
+        /// Joint file (TOML) or preset of the run in which the parameters were estimated
         #[arg(long, value_name = "FILE", default_value = "q1")]
         joint: PathBuf,
-        /// Writes the same as JSON ("-" is standard output, in place of the text)
+        /// Writes the parameters as JSON ("-": to standard output, in place of the text)
         #[arg(long, value_name = "OUT")]
         json: Option<PathBuf>,
     },
-    /// Read a memory off the flash of a board into a file, and show it
+    /// Read a memory from the flash of a board into a file, and show it
     Read {
-        /// File that is to be written
+        /// File to write
         #[arg(value_name = "MEMORY")]
         file: PathBuf,
         #[command(flatten)]
         place: BoardArguments,
     },
-    /// Bring a memory to a board, which judges it and writes it to its flash
+    /// Send a memory to a board, which checks it and writes it to its flash
     Write {
-        /// The memory
+        /// Memory to send
         #[arg(value_name = "MEMORY")]
         file: PathBuf,
         #[command(flatten)]
         place: BoardArguments,
     },
-    /// Have a board write what it has learnt in its last run to its flash
+    /// Have a board write the parameters that it estimated in its last run to its flash
     Keep {
         #[command(flatten)]
         place: BoardArguments,
     },
-    /// Have a board forget what it has learnt, in its flash too
+    /// Have a board erase its estimated parameters, in its flash too
     Erase {
         #[command(flatten)]
         place: BoardArguments,
     },
 }
 
-/// Which board.
+/// Board, joint and role.
 #[derive(Debug, clap::Args)]
 pub(super) struct BoardArguments {
-    /// Which board, and how it is reached.
+    /// Board and its connection.
     #[command(flatten)]
     pub line: LineOptions,
     /// Joint file (TOML) or preset of the board's image
     #[arg(long, value_name = "FILE", default_value = "q1")]
     pub joint: PathBuf,
-    /// What the emulated board does [default: observer]
+    /// Role of the emulated board [default: observer]
     #[arg(long, value_enum, conflicts_with = "port")]
     pub role: Option<RoleName>,
 }

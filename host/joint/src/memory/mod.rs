@@ -1,7 +1,7 @@
-//! `joint memory`: what an observer has learnt of its joint, as a file: read off a board, shown, written to a board,
-//! kept and erased there.
+//! `joint memory`: estimated parameters of a joint as a file, read from a board, shown, or written to a board; and the
+//! commands to save or erase the parameters in the board's flash.
 //!
-//! `arguments` is the command line, `answering_board` finds the board.
+//! `arguments` is the command line, `answering_board` connects to the board.
 
 mod answering_board;
 mod arguments;
@@ -24,7 +24,7 @@ use report::output;
 use report::progress::Progress;
 use report::write::write_bytes;
 
-/// What a board is asked to do with its flash.
+/// Command to the board about its flash.
 type Ask = fn(&mut Session<'static>) -> Outcome<MemoryOutcome>;
 
 /// Runs the subcommand.
@@ -40,7 +40,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     })
 }
 
-/// A joint file, whose warnings are told.
+/// Loads a joint file and prints its warnings.
 fn load_joint(file: &Path) -> Outcome<Loaded> {
     let loaded = named::load(file)?;
     warned::tell(&loaded);
@@ -84,7 +84,7 @@ fn read(file: &Path, place: &BoardArguments, progress: &Progress) -> Outcome<()>
 fn write(file: &Path, place: &BoardArguments, progress: &Progress) -> Outcome<()> {
     let (memory, loaded) = (load(file)?, load_joint(&place.joint)?);
     let name = file.display().to_string();
-    // What is no memory at all is known before a board is asked.
+    // A file that is not a memory is rejected before a board is asked.
     match Content::of(&memory, &loaded) {
         Err(error) if error != MemoryError::OtherJoint => return Err(refused(&name, error)),
         _ => {}
@@ -109,7 +109,7 @@ fn write(file: &Path, place: &BoardArguments, progress: &Progress) -> Outcome<()
     }
 }
 
-/// Has a board do something with its own flash, and prints the result.
+/// Changes the flash of a board and prints the result.
 fn change(place: &BoardArguments, progress: &Progress, ask: Ask, done: &str) -> Outcome<()> {
     let loaded = load_joint(&place.joint)?;
     let mut found = AnsweringBoard::call(place, &loaded, progress)?;
@@ -121,10 +121,10 @@ fn change(place: &BoardArguments, progress: &Progress, ask: Ask, done: &str) -> 
     }
 }
 
-/// How to come by one.
+/// Help: command that creates a memory file.
 const READ_ONE: &str = "read one off a board: joint memory read FILE --port PATH";
 
-/// The bytes of a file.
+/// Reads the bytes of a memory file.
 fn load(file: &Path) -> Outcome<Memory> {
     let name = file.display();
     let failed = |why: String| Failure::new(format!("cannot read the memory {name}: {why}")).with_help(READ_ONE);
@@ -138,13 +138,13 @@ fn load(file: &Path) -> Outcome<Memory> {
     })
 }
 
-/// A memory that is not taken.
+/// Error: the memory is rejected.
 fn refused(name: &str, error: MemoryError) -> Failure {
     let (what, help) = parts(error);
     Failure::new(format!("{name}: {what}")).with_help(help)
 }
 
-/// What is wrong, and the help.
+/// Splits an error into message and help.
 fn parts(error: MemoryError) -> (String, String) {
     let text = error.to_string();
     let (what, help) = text.split_once(": ").unwrap_or((&text, ""));
@@ -156,7 +156,7 @@ fn parts(error: MemoryError) -> (String, String) {
     (what.to_owned(), help)
 }
 
-/// A judgement of a board, unless it is good.
+/// Error that corresponds to a board's verdict on a memory; `None` for a good memory.
 fn fault(judged: MemoryState) -> Option<MemoryError> {
     match judged {
         MemoryState::Good => None,

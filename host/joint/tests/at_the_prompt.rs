@@ -1,5 +1,5 @@
-//! What a user who types commands is told and given: which of two files is meant, what is on standard output, where results
-//! go.
+//! Behaviour at the prompt: choice between a preset and a file of its name, contents of standard output, folders of
+//! results, installation of packages.
 
 mod command;
 mod pseudo_terminal;
@@ -28,7 +28,7 @@ fn a_file_with_the_name_of_a_preset_is_told_apart_from_it() {
     }
 }
 
-/// The joint on a board is held to it beside the other tests of boards: `command_failure_modes`.
+/// `hil` with a joint on a board has its own test of `--json -` in `command_failure_modes`.
 #[test]
 fn json_is_alone_on_standard_output_where_that_is_asked_for() {
     let place = folder();
@@ -115,7 +115,7 @@ fn results_go_below_the_folder_that_the_user_works_in() {
     assert_eq!(fs::read_to_string(mine).expect("still there"), "my notes");
 }
 
-/// Seen to fail: title, file name and argument reached the terminal as they were.
+/// Seen to fail: title, file name and argument reached the terminal unescaped.
 #[test]
 fn text_of_files_and_arguments_is_shown_escaped() {
     let place = folder();
@@ -162,7 +162,8 @@ fn text_of_files_and_arguments_is_shown_escaped() {
     }
 }
 
-/// Folder with programs that stand for Debian's: nothing is installed, and what is asked of `apt-get` is kept.
+/// Creates fake `dpkg-query` and `apt-get` in a folder: no package is installed, and the arguments of `apt-get` are
+/// recorded.
 fn debian(place: &std::path::Path) -> String {
     use std::os::unix::fs::PermissionsExt;
     let asked = place.join("asked");
@@ -176,7 +177,7 @@ fn debian(place: &std::path::Path) -> String {
     text(place).to_owned()
 }
 
-/// Returns whether packages can be installed here; those that cannot are named, whatever was decided.
+/// Returns true if the test runs as root. Without root the command only names the missing packages.
 fn is_root() -> bool {
     use std::os::unix::fs::MetadataExt;
     fs::metadata("/proc/self").is_ok_and(|data| data.uid() == 0)

@@ -1,5 +1,5 @@
-//! Bad input to every command: files that are not what they should be, numbers that cannot be, results that would be written
-//! over what they are made from. What is wrong inside a good form of file is tested beside the reader of that form.
+//! Bad input to every command: unreadable files, impossible numbers, output paths that would overwrite an input. Errors
+//! within a readable file are tested beside the reader of its format.
 
 mod command;
 
@@ -9,17 +9,17 @@ use std::process::Command;
 
 use command::{folder, joint, text};
 
-/// A test that is over in a moment.
+/// A test file that runs in a fraction of a second.
 const SHORT: &str = "duration_s = 0.2\nsettle_s = 0.1\nprofile = \"T2\"\n[controller]\nrivals = []\n";
 
-/// Files that are nothing any command reads.
+/// Paths that no command can read: missing, folder, pipe, endless, empty, binary, not UTF-8.
 fn nothing(folder: &Path) -> Vec<PathBuf> {
     let write = |name: &str, content: &[u8]| {
         let path = folder.join(name);
         fs::write(&path, content).expect("a file");
         path
     };
-    // Nobody writes to it: a command that opens it waits for ever.
+    // The pipe has no writer: a command that opened it would wait for ever.
     let pipe = folder.join("pipe");
     assert!(Command::new("mkfifo").arg(&pipe).status().expect("`mkfifo` is there").success());
     let all_bytes: Vec<u8> = (0..=255).cycle().take(2048).collect();

@@ -10,7 +10,7 @@ use std::time::Duration;
 use bad_line::trial::{Trial, seeds};
 use thread_board::{Misbehaviour, TICK_RATE};
 
-/// The long form: `PROXY_SEEDS=200`.
+/// A disturbed run reports every loss, and the link recovers with the first frame. Long form: `PROXY_SEEDS=200`.
 #[test]
 fn a_bad_line_costs_what_is_told_and_the_link_is_back_with_the_first_frame() {
     let (ours, theirs) = UnixStream::pair().expect("a pair of sockets");

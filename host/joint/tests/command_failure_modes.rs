@@ -1,5 +1,5 @@
-//! The command itself, in normal operation and in its failure modes, on a board in a thread behind a pseudo-terminal:
-//! exit codes, messages, kept files.
+//! The command on a board in a thread behind a pseudo-terminal, in normal operation and in its failure modes: exit
+//! codes, messages, saved files.
 
 mod command;
 mod pseudo_terminal;
@@ -20,25 +20,25 @@ use serde_json::Value;
 use tempfile::TempDir;
 use thread_board::Misbehaviour;
 
-/// A message is due within 2 s by design; a busy machine is given ten times that.
+/// Messages are due within 2 s by design; a busy machine gets ten times as long.
 const LIVENESS: Duration = Duration::from_secs(20);
 
-/// Path of the port that a board is behind; the port stays open as long as the file.
+/// Path of a board's port, and a file that keeps the port open.
 fn board(misbehaviour: Misbehaviour) -> (String, File) {
     let (path, slave, _) = counted_board(misbehaviour);
     (path, slave)
 }
 
-/// The same, and how many bytes the board has said.
+/// Board with a count of the bytes that it has sent.
 fn counted_board(misbehaviour: Misbehaviour) -> (String, File, Arc<AtomicUsize>) {
     let (stream, slave, path) = pseudo_terminal::pair();
     let said = Arc::new(AtomicUsize::new(0));
-    // The thread ends with the test's process: a pseudo-terminal does not end while one side is open.
+    // The thread ends with the test's process: a pseudo-terminal stays open while one side is open.
     drop(thread_board::start(Counted { stream, said: said.clone() }, misbehaviour));
     (path, slave, said)
 }
 
-/// A stream that counts the bytes that are written to it.
+/// A stream that counts the bytes written to it.
 struct Counted<S> {
     stream: S,
     said: Arc<AtomicUsize>,
@@ -62,12 +62,12 @@ impl<S: Write> Write for Counted<S> {
     }
 }
 
-/// The command line of a run on a port.
+/// Command line of a run on a port.
 fn line<'l>(duration: &'l str, port: &'l str, out: &'l Path) -> [&'l str; 10] {
     ["hil", "q1", "--port", port, "--no-build", "--no-reference", "--duration", duration, "--out", text(out)]
 }
 
-/// Runs it to its end, which is due.
+/// Runs the command and asserts that it ends in time.
 fn finish(arguments: &[&str]) -> Ended {
     let start = Instant::now();
     let ended = joint(arguments);
@@ -169,7 +169,7 @@ fn a_folder_that_cannot_be_written_is_found_before_the_run() {
 fn a_full_disk_at_the_end_does_not_cost_the_record() {
     let (port, _open) = board(Misbehaviour::None);
     let out = folder();
-    // Where the record is, is said too.
+    // The message also gives the path of the record.
     finish(&[&line("1", &port, out.path())[..], &["--json", "/dev/full"]].concat())
         .refused(&["cannot write /dev/full", text(out.path())]);
     assert_eq!(samples(&record(&out)), 1000);

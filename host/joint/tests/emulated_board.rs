@@ -1,5 +1,5 @@
-//! The command on the emulated board: the real firmware, the real emulator, runs that succeed and runs that are cut
-//! off. These tests build images and take a while, so they are left out of a plain `cargo test`.
+//! The command on the emulated board: real firmware and real emulator, successful and interrupted runs. These tests
+//! build images, so a plain `cargo test` skips them.
 
 mod bad_line;
 mod command;
@@ -23,12 +23,12 @@ use link::messages::Role;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A message is due within 2 s by design; a busy machine is given ten times that.
+/// Messages are due within 2 s by design; a busy machine gets ten times as long.
 const LIVENESS: Duration = Duration::from_secs(20);
-/// Longest wait for a run to have begun: the image may have to be built first.
+/// Longest wait for the start of a run: the image may have to be built first.
 const BUILD: Duration = Duration::from_secs(900);
 
-/// Runs a joint, or a test file, to its end.
+/// Runs a joint or a test file to its end.
 fn hil(file: &str, out: &TempDir, more: &[&str]) -> Ended {
     let ended = joint(&[&["hil", file, "--out", text(out.path())], more].concat());
     assert!(!ended.err.contains("panicked"), "{ended:?}");
@@ -44,7 +44,7 @@ fn check<'r>(record: &'r Value, name: &str) -> &'r Value {
     checks.iter().find(|check| check["name"].as_str().is_some_and(|check| check.contains(name))).expect("a check")
 }
 
-/// Processes whose parent is this one, by `/proc`.
+/// Child processes of a process, by `/proc`.
 fn children(parent: u32) -> Vec<u32> {
     let is_child = |process: &u32| {
         let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
@@ -54,14 +54,14 @@ fn children(parent: u32) -> Vec<u32> {
     processes.filter_map(|entry| entry.file_name().to_str()?.parse().ok()).filter(is_child).collect()
 }
 
-/// An emulator that runs an image, not one that is asked for its version.
+/// Returns true for an emulator that runs an image, not one that prints its version.
 fn is_emulator(process: u32) -> bool {
     let line = fs::read(format!("/proc/{process}/cmdline")).unwrap_or_default();
     let mut words = line.split(|byte| *byte == 0);
     words.next().is_some_and(|program| program.ends_with(b"qemu-system-arm")) && words.any(|word| word == b"-kernel")
 }
 
-/// Whether a process has computed for about a second: user and system time in hundredths, fields 14 and 15.
+/// Returns true once a process has computed for about a second: user and system time in hundredths, fields 14 and 15.
 fn has_worked(process: u32) -> bool {
     let stat = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
     let after_name = stat.rsplit(')').next().unwrap_or_default();
@@ -70,7 +70,7 @@ fn has_worked(process: u32) -> bool {
 
 fn is_alive(process: u32) -> bool {
     let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
-    // A zombie whose parent has gone is taken by init in a moment; it is dead all the same.
+    // A zombie whose parent has ended is removed by init shortly; it counts as dead.
     !status.is_empty() && !status.lines().any(|line| line.starts_with("State:") && line.contains('Z'))
 }
 
@@ -79,7 +79,7 @@ fn kill(process: u32) {
     assert!(status.success());
 }
 
-/// A long run in its middle, and its emulator.
+/// Starts a long run and waits until its emulator computes.
 fn long_run(out: &TempDir) -> (Child, u32) {
     let mut child = start(&["hil", "q1", "--out", text(out.path()), "--duration", "3600", "--no-reference"]);
     let joint = child.id();
@@ -214,8 +214,8 @@ fn the_whole_loop_has_the_faults_of_a_test_as_the_host_has_them() {
         text += &format!("[[fault]]\n{fault}\nstart_s = {start}\nend_s = {}\n", start + 0.1);
     }
     fs::write(&file, text + "[assert]\nfault_found_ms = \"<= 400\"\n").expect("a file");
-    // With seed 2 the encoder that slips is given up after 50 ms. With 1, 3, 5, 6 and 8, from other places in the gap, neither that nor the
-    // frozen one is put down to the output's encoder by the end: known, and not mended.
+    // With seed 2 the slipping encoder is excluded after 50 ms. Known limitation: with seeds 1, 3, 5, 6 and 8, which
+    // start elsewhere in the gap, neither the slipping nor the frozen encoder is attributed to the output by the end.
     let ended = hil(self::text(&file), &out, &["--role", "loop", "--seed", "2"]).well();
     let board = record(&out)["tests"][0]["runs"][0]["board"].clone();
     assert_eq!((board["role"].as_str(), board["same_periods"].as_u64()), (Some("loop"), Some(5000)), "{ended:?}");
@@ -246,7 +246,7 @@ fn the_tutorial_prints_what_it_says_on_the_emulated_board() {
     tutorial::follow_page("tutorial.md", tutorial::Tier::EmulatedBoard);
 }
 
-/// The long form: `PROXY_SEEDS=200`.
+/// A disturbed run reports every loss, and the link recovers with the first frame. Long form: `PROXY_SEEDS=200`.
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
 fn a_bad_line_costs_what_is_told_and_the_link_is_back_with_the_first_frame() {
@@ -256,7 +256,7 @@ fn a_bad_line_costs_what_is_told_and_the_link_is_back_with_the_first_frame() {
     let file = preset_file("q1");
     let image = build_image(&toolchain, &file, &Board::emulated(), Role::Plant, 20_000, false, &say).expect("an image");
     let (mut emulator, line) = Emulator::start(&image.elf).expect("a board");
-    // Its clock runs as fast as it can while the host is thinking: no timeout.
+    // The board's clock runs at full speed while the host computes, so the timeout is disabled.
     let trial = Trial::of(line, u32::MAX);
     seeds(6).for_each(|seed| trial.seed(seed));
     emulator.check().expect("the board still runs");

@@ -1,5 +1,4 @@
-//! `joint memory` as a user meets it: with files, and with the board's own firmware in a thread behind a
-//! pseudo-terminal.
+//! `joint memory` with files, and with the board's own firmware in a thread behind a pseudo-terminal.
 
 mod command;
 mod learning;
@@ -17,10 +16,10 @@ use model_core::observer::{MEMORY_BYTES, Memory};
 use tempfile::TempDir;
 use thread_board::Flash;
 
-/// Long enough to learn the width: one second.
+/// One second, enough to estimate the width.
 const PERIODS: u32 = 10_000;
 
-/// A memory of joint Q1 whose teeth are wider than its file says, in a file.
+/// Memory of joint Q1 whose true backlash is wider than stated, as a file.
 fn stored(folder: &TempDir) -> (PathBuf, Memory) {
     let q1 = learning::joint(&[]);
     let wide = learning::joint(&[("mesh.half_backlash_um", "55")]);
@@ -30,7 +29,7 @@ fn stored(folder: &TempDir) -> (PathBuf, Memory) {
     (path, memory)
 }
 
-/// A board of a joint behind a port, which stays open as long as the file.
+/// Starts a board behind a port; the file keeps the port open.
 fn board(changes: &[(&str, &str)], flash: &Flash) -> (String, fs::File) {
     let (master, slave, path) = pseudo_terminal::pair();
     let joint = learning::joint(changes);
@@ -42,7 +41,7 @@ fn memory(words: &[&str], port: &str) -> Ended {
     joint(&[&["memory"], words, &["--port", port]].concat())
 }
 
-/// What is learnt on the host is a board's memory, with the joint file that it is good for.
+/// A run on the host saves a board's memory, with the joint file that it belongs to.
 #[test]
 fn what_is_learnt_on_the_host_is_had_as_a_file() {
     let folder = folder();
@@ -167,7 +166,7 @@ fn damaged_flash_and_flash_that_takes_nothing_are_named_with_what_to_do() {
     let out = folder.path().join("out");
     memory(&["read", text(&out)], &port).refused(&["the memory is damaged", "joint memory erase --port"]);
     assert!(!out.exists());
-    // Power was cut while it was written.
+    // The supply was cut during the write.
     let (port, _cut) = board(&[], &Flash::with([None; 2]));
     memory(&["read", text(&out)], &port).refused(&["cannot be read", "joint memory erase --port"]);
     let worn = Flash::empty();

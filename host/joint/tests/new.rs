@@ -1,5 +1,5 @@
-//! `joint new`: data sheets become joint files whose every line says where it comes from, and which every command takes;
-//! what is missing, what cannot be and what is there already is refused.
+//! `joint new`: data sheets become joint files that state the source of every line and that every command accepts.
+//! Missing, impossible and existing items are rejected.
 
 mod command;
 mod pseudo_terminal;
@@ -16,7 +16,7 @@ use joint_file::{JointFile, read};
 use model_core::gears::Kinematics;
 use parameters::MESH_KINDS;
 
-/// Ratio, lost motion, stiffness, rated torque, rotor, no-load torque, efficiency, and what else is said.
+/// Ratio, lost motion, stiffness, rated torque, rotor inertia, no-load torque, efficiency; further options.
 type Sheet = ([f64; 7], &'static [&'static str]);
 
 const ELBOW: Sheet = ([9.0, 15.0, 1.8, 8.0, 0.32, 0.05, 0.94], &[]);
@@ -49,7 +49,7 @@ fn words(line: &[String]) -> Vec<&str> {
     line.iter().map(String::as_str).collect()
 }
 
-/// Makes a joint without measuring its assumptions.
+/// Creates a joint without measuring its assumptions.
 fn made(place: &Path, sheet: Sheet) -> (String, JointFile) {
     let path = place.join("made.toml");
     joint(&words(&line(&place.join("made"), sheet, &["--no-measure"]))).well();
@@ -90,7 +90,7 @@ fn data_sheets_become_joints_that_check_sim_and_budget_take_without_a_warning() 
     }
 }
 
-/// A cycloid of which nobody knows the teeth.
+/// A cycloidal gear with unknown teeth.
 const CYCLOID: Sheet = ([59.0, 3.0, 20.0, 100.0, 1.0, 0.1, 0.85], &["--equivalent", "--gravity-torque-Nm", "15"]);
 
 #[test]
@@ -160,7 +160,7 @@ fn every_assumption_is_measured_by_the_standard_test() {
         let measured = line.contains("moves the standard test by ") && line.ends_with('%');
         assert!(measured || line.starts_with("planets = "), "{line}");
     }
-    // The link's inertia is what T2 is driven by, and the noise of the current is nothing beside it.
+    // The link inertia dominates the effort of T2; the noise of the current is negligible beside it.
     let of = |key: &str| {
         let line = assumed.iter().find(|line| line.starts_with(key)).unwrap_or_else(|| panic!("{key}\n{file}"));
         let moved = line.rsplit("by ").next().and_then(|words| words.trim_end_matches(" %").parse::<f64>().ok());
@@ -210,7 +210,7 @@ fn what_cannot_be_is_refused_before_anything_is_written() {
     assert_eq!(command::contents(place.path()), []);
 }
 
-/// The line of an option of the elbow's sheet exchanged or added.
+/// Command line of the elbow's sheet with options replaced or added.
 fn changed(name: &Path, changes: &[(&str, &str)]) -> Vec<String> {
     let mut line = line(name, ELBOW, &["--no-measure"]);
     for (option, value) in changes {
@@ -243,7 +243,7 @@ fn ratios_that_no_stage_has_name_the_command_for_an_equivalent_gear() {
         let refused = joint(&words(&changed(&name, &changes)));
         refused.refused(&["--equivalent", &command]);
         let typed = refused.err.split("joint new ").last().expect("a command").trim().to_owned();
-        // The command does what it says, typed as it stands.
+        // The proposed command succeeds as printed.
         let typed: Vec<&str> = ["new"].into_iter().chain(typed.split_whitespace()).collect();
         joint(&typed).well();
         fs::remove_file(place.path().join("elbow.toml")).expect("written");
@@ -253,7 +253,8 @@ fn ratios_that_no_stage_has_name_the_command_for_an_equivalent_gear() {
     assert!(!refused.err.contains("--equivalent"), "{}", refused.err);
 }
 
-/// A clamping hub on the motor's shaft is most of a gearhead's inertia at its input, and no disc of the sun's size.
+/// Most of a gearhead's inertia at its input may be a clamping hub on the motor's shaft, which is larger than a disc of
+/// the sun's size.
 #[test]
 fn inertia_of_a_clamping_hub_is_not_warned_of() {
     let place = folder();
@@ -263,7 +264,7 @@ fn inertia_of_a_clamping_hub_is_not_warned_of() {
     assert_eq!(read(&fs::read_to_string(path).expect("written")).expect("a joint").warnings, []);
 }
 
-/// A value that the command derived from a diameter is no typing error of the user's.
+/// A value that the command derived from a diameter is not reported as the user's typing error.
 #[test]
 fn a_derived_stiffness_is_warned_of_by_what_it_was_derived_from() {
     let place = folder();
@@ -275,7 +276,7 @@ fn a_derived_stiffness_is_warned_of_by_what_it_was_derived_from() {
     assert!(!of_stiffness.any(|line| line.contains("typed in")), "{}", made.err);
 }
 
-/// A servo of 353.5:1, whose motor would not swing a link of ten times the rotor's inertia.
+/// A servo of 353.5:1, whose motor could not swing a link of ten times the rotor's inertia.
 #[test]
 fn an_assumed_link_is_one_that_the_motor_swings() {
     const SERVO: Sheet =
@@ -312,7 +313,7 @@ fn a_file_that_is_there_is_never_written_over() {
     assert_eq!(fs::read_to_string(&path).expect("still there"), "mine");
 }
 
-/// What is said where these answers are typed.
+/// Text on the standard error of `joint new` after these answers.
 fn said(arguments: &[&str], answers: &[u8]) -> String {
     let (mut master, terminal, _) = pseudo_terminal::pair();
     let mut command = Command::new(env!("CARGO_BIN_EXE_joint"));
@@ -321,7 +322,7 @@ fn said(arguments: &[&str], answers: &[u8]) -> String {
     let mut asked = asked.expect("the command can be started");
     master.write_all(answers).expect("a terminal takes it");
     let ended = within(Duration::from_secs(60), "an end", || {
-        // What the terminal repeats must be taken off it.
+        // The terminal's echo must be read.
         let _ = master.read(&mut [0; 256]);
         asked.try_wait().expect("it was started here")
     });

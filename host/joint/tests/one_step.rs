@@ -1,6 +1,5 @@
-//! `check`, `budget`, `sim` and `hil` say the same of the same joint, board and rate: the sub-steps of the tables that a board
-//! gets, one verdict on time for every role, and nothing beside it that contradicts it. Random joint files by seed, through all
-//! four as libraries.
+//! `check`, `budget`, `sim` and `hil` agree on a joint, board and rate: number of sub-steps (that of the board's
+//! tables) and verdict on time for every role. Random joint files by seed, through all four commands as libraries.
 
 use std::fs;
 use std::path::Path;
@@ -24,7 +23,7 @@ const JOINTS: u64 = 64;
 const BOARDS: [&str; 4] = ["olimex-h405", "nucleo-g474re", "nucleo-h743zi", "b-g431b-esc1"];
 const RATES: [u32; 5] = [5000, 10_000, 20_000, 40_000, 160_000];
 
-/// Chance that repeats itself: whole numbers by splitmix64.
+/// Repeatable random numbers (splitmix64).
 struct Chance(u64);
 
 impl Chance {
@@ -45,7 +44,7 @@ impl Chance {
     }
 }
 
-/// The text of a joint file: light and heavy planets, 3 to 5 of them, or a gear without teeth.
+/// Random joint file: light and heavy planets, 3 to 5 of them, or a gear without teeth.
 fn text(chance: &mut Chance) -> String {
     let name = chance.of(&["q1", "q1", "l1", "c1"]);
     let mut changes = Vec::new();
@@ -74,7 +73,7 @@ fn text(chance: &mut Chance) -> String {
     })
 }
 
-/// The sub-steps of the tables that a board with this processor gets.
+/// Sub-steps of the tables for a board with this processor.
 fn of_tables(joint: &JointParameters, processor: Processor, rate: u32) -> Substeps {
     fn of<const N: usize>(joint: &JointParameters, processor: Processor, rate: u32) -> Substeps {
         let tables: Tables<f32, N> =
@@ -141,7 +140,7 @@ fn four_commands_say_the_same_of_random_joints() {
             Ok(run) => assert_eq!(run.substeps, truth, "seed {seed}: hil"),
             Err(failure) => assert!(failure.message().contains("no multiple"), "seed {seed}: {failure}"),
         }
-        // Errors are measured for some only: they take a second each.
+        // Errors are measured for some joints only, a second each.
         if seed % 16 == 0 {
             let told = budget::summary(&load().file, &board, Role::Plant, rate, 0.5).expect("figures").verdicts;
             assert_eq!((told.method, told.substeps), said, "seed {seed}: budget");

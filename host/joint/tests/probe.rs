@@ -1,5 +1,5 @@
-//! The width probe as a test file has it: a held link gives the width, any other a reason, and what has no probe says
-//! so.
+//! The width probe in a test file: a held link gives the width, a free link gives a reason, and an unsupported role is
+//! rejected.
 
 mod command;
 

@@ -1,5 +1,5 @@
-//! `joint identify --quasi-static` as a user meets it: on logs with a known truth its intervals hold it, and logs that cannot
-//! tell are refused by name.
+//! `joint identify --quasi-static` at the command line: on logs with a known truth the intervals contain it, and logs
+//! without the necessary information are rejected with the cause.
 
 mod command;
 
@@ -12,28 +12,28 @@ use command::{Ended, folder, joint, json, text};
 use scenario::random::RandomStream;
 use serde_json::Value;
 
-/// Units of a turn of the output, as the program of the measured joint has it.
+/// Units per turn of the output, in the log format of the measured joint.
 const TURN: f64 = 4096.0 * 220.0 / 360.0;
 
-/// A joint that sweeps, and how it is recorded.
+/// A joint in slow sweeps, and the recording.
 #[derive(Clone, Copy)]
 struct Sweeps {
     seed: u64,
-    /// Samples a second.
+    /// Sampling rate [Hz].
     rate: f64,
-    /// Time of a sweep [s].
+    /// Duration of a sweep [s].
     sweep: f64,
-    /// Where in a sweep the log begins.
+    /// Phase of the first sample within a sweep.
     phase: f64,
     /// Sweeps in each half.
     count: usize,
-    /// Mean lost motion, or width by direction [units], and by how much it goes up and down with the place.
+    /// Mean lost motion, or width by direction, and its amplitude over the position [units].
     width: [f64; 2],
     /// Hysteresis in each half [units].
     hysteresis: [f64; 2],
-    /// How much passes scatter, and single readings [units].
+    /// Scatter of passes and of single readings [units].
     scatter: [f64; 2],
-    /// Which way the load goes in each half.
+    /// Sign of the load in each half.
     loads: [f64; 2],
 }
 
@@ -49,7 +49,7 @@ const SWEEPS: Sweeps = Sweeps {
     loads: [1.0, -1.0],
 };
 
-/// A sample: time, output, motor on the output's scale, way, load.
+/// Sample: time, output, motor on the output's scale, direction, load.
 #[derive(Clone, Copy)]
 struct Sample {
     time: f64,
@@ -74,8 +74,8 @@ impl Sweeps {
         self.width[0] + self.width[1] * (1.5 * TAU * (place - LOW) / TRAVEL).sin()
     }
 
-    /// Two halves with a rest between them. The load closes one flank throughout a half; without any, friction closes it by
-    /// direction.
+    /// Two halves with a rest between them. The load closes one flank throughout a half; without load, friction closes
+    /// the flank of the direction.
     fn record(&self) -> Vec<Sample> {
         let mut random = RandomStream::new(self.seed, "sweeps");
         let half = self.sweep * self.count as f64;
@@ -109,7 +109,7 @@ impl Sweeps {
         samples
     }
 
-    /// In the form of the measured joint: no header, blanks, output less motor with an offset.
+    /// Log in the format of the measured joint: no header, blanks, output minus motor with an offset.
     fn as_measured(&self) -> String {
         let row = |one: &Sample| {
             let difference = one.output - one.motor + 2000.0;
@@ -128,7 +128,7 @@ impl Sweeps {
 const MEASURED: [&str; 7] =
     ["--quasi-static", "--column", "time_s=1", "--column", "output_counts=2", "--column", "output_less_motor_counts=3"];
 
-/// The command on a log.
+/// Runs the command on a log.
 fn identify(folder: &Path, log: &str, options: &[&str]) -> Ended {
     let [path, out] = ["log.txt", "out"].map(|name| folder.join(name));
     fs::write(&path, log).expect("room");
@@ -155,7 +155,7 @@ fn near(record: &Value, key: &str, truth: f64, share: f64) {
     assert!((value / truth - 1.0).abs() < share, "{key}: {value}, truly {truth}");
 }
 
-/// Lost motion at a share of the places, as the joint truly has it over the places that were kept.
+/// True lost motion at a quantile of the positions that the record kept.
 fn true_width(sweeps: &Sweeps, record: &Value, share: f64) -> f64 {
     let places = record["place"].as_array().expect("places").iter().filter_map(Value::as_f64);
     let mut widths: Vec<f64> = places.map(|place| sweeps.width_at(place)).collect();
@@ -195,7 +195,7 @@ fn a_file_of_the_measured_joints_form_is_read_by_one_command() {
     let median = &record["quantities"].as_array().expect("a list")[0];
     let degrees = median["value"].as_f64().expect("a number") * 360.0 / TURN;
     assert!((median["value_deg"].as_f64().expect("a turn is known") - degrees).abs() < 1e-12);
-    // Half of a width that goes up and down by 4 is what one width leaves over in each half.
+    // Describing a width with an amplitude of 4 by its mean leaves half of the amplitude unexplained in each half.
     let left = |key: &str| record["prediction"][key].as_f64().expect("a number");
     let unexplained = (left("map_and_width").powi(2) - left("curves").powi(2)).sqrt();
     assert!((unexplained / (0.5 * 4.0 / 2f64.sqrt()) - 1.0).abs() < 0.15, "{unexplained}");
@@ -207,7 +207,8 @@ fn a_file_of_the_measured_joints_form_is_read_by_one_command() {
 fn intervals_hold_the_truth_in_nineteen_of_twenty_logs() {
     let (mut inside, mut all) = (0, 0);
     for seed in 100..140 {
-        // As often the course of the measured joint: three sweeps in each half, of which two go over the same places.
+        // Every other log has the course of the measured joint: three sweeps in each half, two of them over the same
+        // positions.
         let sweeps = match seed % 2 {
             0 => Sweeps { seed, rate: 50.0, ..SWEEPS },
             _ => Sweeps { seed, rate: 50.0, phase: 0.45, count: 3, sweep: 20.0, ..SWEEPS },
@@ -235,11 +236,11 @@ fn intervals_hold_the_truth_in_nineteen_of_twenty_logs() {
     }
     println!("{inside} of {all} inside");
     assert!(100 * inside >= 90 * all, "{inside} of {all} true values lie in their 95 % intervals");
-    // Intervals that hold everything say nothing.
+    // Intervals that contain every truth would be too wide to be useful.
     assert!(inside < all, "{inside} of {all}");
 }
 
-/// A log with a header, the motor's own column in counts over a gear ratio of 6, and torques.
+/// Log with a header, the motor's own column in counts over a gear ratio of 6, and torques.
 fn with_torque(sweeps: &Sweeps, separator: &str, torque: impl Fn(&Sample) -> f64) -> String {
     let mut log =
         ["time_ms", "output_counts", "motor_counts", "motor_torque_N_m", "output_torque_N_m"].join(separator) + "\n";
@@ -370,7 +371,7 @@ fn the_torque_s_sign_tells_the_loads_without_halves() {
     near(&record, "lost_motion_median", true_width(&loaded, &record, 0.5), 0.05);
     near(&record, "hysteresis_2", 7.0, 0.15);
     near(&record, "output_torque_dry_friction_1", 0.5, 0.01);
-    // One load throughout keeps one flank closed: no lost motion is in that.
+    // A constant load keeps one flank closed, so the log shows no lost motion.
     let one_way = Sweeps { loads: [1.0; 2], hysteresis: [5.0; 2], rate: 100.0, ..SWEEPS };
     let record = findings(&with_torque(&one_way, ",", |one| 3.0 * one.load + 0.5 * one.way), &GEARED);
     near(&record, "hysteresis_1", 5.0, 0.15);
@@ -454,7 +455,7 @@ fn gaps_and_jitter_are_taken_and_told_and_turns_are_joined() {
         if (1300..1345).contains(&row) {
             continue;
         }
-        // A turn of 700 units is passed twice in a sweep.
+        // The output passes a turn of 700 units twice in a sweep.
         let output = one.output.rem_euclid(700.0);
         let time = one.time + 3e-3 * random.uniform();
         writeln!(log, "{time},{output},{}", output - one.motor.rem_euclid(700.0)).expect("a string");
@@ -490,7 +491,7 @@ fn logs_that_cannot_tell_are_refused_with_the_reason_and_the_mend() {
     let [first, second] = quick.halves();
     let halves = [&MEASURED[..], &["--half", &first, "--half", &second]].concat();
     let with = |more: &[&'static str]| [&MEASURED[..], more].concat();
-    // What is in the log.
+    // Errors of the log.
     refused(&measured, &MEASURED, ["two levels", "--half"]);
     let cut = Sweeps { phase: 0.45, count: 3, sweep: 20.0, rate: 50.0, ..quick };
     refused(&cut.as_measured(), &MEASURED, ["do not repeat", "--half"]);
@@ -542,7 +543,7 @@ fn logs_that_cannot_tell_are_refused_with_the_reason_and_the_mend() {
     refused(&wrapped, &MEASURED, ["the output jumps by", "--output-units-per-turn"]);
     let still: String = quick.record().iter().map(|one| format!("{} 5 {}\n", one.time, 5.0 - one.motor)).collect();
     refused(&still, &MEASURED, ["the output does not move", "both encoders"]);
-    // What is asked for.
+    // Errors of the options.
     refused(&measured, &with(&["--gear-ratio", "6"]), ["--gear-ratio has no effect", "leave the option out"]);
     refused(&measured, &with(&["--half", "0..48"]), ["--half is given 1 times", "twice"]);
     refused(&measured, &with(&["--half", "0..48", "--half", "40..90"]), ["halves overlap", "one way only"]);

@@ -1,4 +1,4 @@
-//! `joint replay`: a run of `joint hil TEST` is repeated in every bit, and any other log is shown to an observer.
+//! `joint replay` repeats a run of `joint hil TEST` in every bit, and feeds any other log to an observer.
 
 mod command;
 
@@ -12,13 +12,13 @@ use tempfile::TempDir;
 
 use command::{joint, json, text};
 
-/// Topic and place of a count: behind the head of CDR, the time, the period and the clock.
+/// Topic of the controller, and the offset of the motor counts: after the CDR header, time, period and clock.
 const CONTROLLER: &str = "/joint/controller";
 const MOTOR_COUNTS_AT: usize = 4 + 8 + 4 + 4;
-/// A motion with enough of everything that a joint is identified by.
+/// A motion with enough excitation for every parameter.
 const SWING: &str = "[profile]\nkind = \"random\"\namplitude_rad = 0.4\nhighest_Hz = 8\n[controller]\nrivals = []\n";
 
-/// Runs a test on the host, and says where its only log is.
+/// Runs a test on the host and returns the path of its only log.
 fn log_of(folder: &Path, test: &str, plant: &str) -> PathBuf {
     let (file, out) = (folder.join("swing.toml"), folder.join("tests"));
     fs::write(&file, test).expect("room");
@@ -38,7 +38,7 @@ fn find<'f>(findings: &'f Value, name: &str) -> &'f Value {
     all.iter().find(|finding| finding["name"] == name).expect(name)
 }
 
-/// The same log with the messages of a topic changed.
+/// Copies a log with the messages of a topic changed or removed.
 fn changed(log: &Path, into: &Path, topic: &str, mut change: impl FnMut(u32, &mut Vec<u8>) -> bool) {
     let bytes = fs::read(log).expect("a log");
     let mut writer = Writer::new(std::io::BufWriter::new(fs::File::create(into).expect("room"))).expect("a log");
@@ -151,10 +151,10 @@ fn any_log_is_shown_to_the_observer_of_a_joint() {
     assert!(record["repeats"].is_null() && record["counts_from_angles"] == false);
     let learnt = record["learnt"].as_array().expect("a list");
     let width = learnt.iter().find(|finding| finding["name"] == "half-backlash b").expect("it is learnt");
-    // As right as tests of the observer ask for, and with an interval.
+    // Accuracy that the observer's tests require, and an interval.
     assert!((width["value"].as_f64().expect("a number") / 40.0 - 1.0).abs() < 0.05, "{width}");
     assert!(width["interval"][0].as_f64() < width["interval"][1].as_f64(), "{width}");
-    // The same names in CSV and MCAP, at the usual thousand rows a second.
+    // CSV and MCAP have the same names, at the default thousand rows a second.
     let csv = fs::read_to_string(out.join("estimates.csv")).expect("written");
     let mut lines = csv.lines();
     let head: Vec<String> = lines.next().expect("a head").split(',').map(str::to_ascii_lowercase).collect();
@@ -230,14 +230,14 @@ fn identify_finds_the_joint_in_the_log_of_a_test() {
         assert!(low <= truth && truth <= high, "{finding}");
     }
 
-    // A link that hardly moves and turns once tells nothing.
+    // A link that hardly moves and reverses twice gives too few crossings.
     let still = "duration_s = 2\nsettle_s = 0.5\nseeds = [2]\n[profile]\nkind = \"sine\"\namplitude_rad = 0.02\nfrequency_Hz = 0.5\n\
                  [controller]\nrivals = []\n";
     let log = log_of(folder.path(), still, "reference");
     let out = folder.path().join("nothing");
     joint(&["identify", text(&log), "--joint", "q1", "--out", text(&out)])
         .refused(&["too few crossings: the carrying flank changes 2 times", "reverse the torque more often"]);
-    // Turned more often it has a fit, but nothing that the joint file does not say: inertias that repeat it are no news.
+    // With more reversals the fit succeeds but adds no information to the joint file.
     let log = log_of(folder.path(), &still.replace("duration_s = 2", "duration_s = 10"), "core");
     let out = folder.path().join("no-news");
     joint(&["identify", text(&log), "--joint", "q1", "--out", text(&out)])

@@ -1,4 +1,4 @@
-//! What commands write as JSON is what the published schemas say.
+//! JSON output of the commands is valid by the published schemas.
 
 mod command;
 
@@ -42,7 +42,7 @@ fn what_commands_write_is_valid_by_their_published_schemas() {
     let line = ["identify", &out("sweeps.csv"), "--quasi-static", "--out", &out("slow")];
     assert_valid("identify-quasi-static.schema.json", &written(&line, "slow.json"));
 
-    // A run gives a memory, and a log that is repeated.
+    // A run writes a memory and a log for `replay`.
     fs::write(path("test.toml"), "duration_s = 1\nsettle_s = 0.5\nprofile = \"T2\"\n[controller]\nrivals = []\n")
         .expect("room");
     let line = ["hil", &out("test.toml"), "--host", "--memory", "--seed", "1", "--out", &out("tests")];

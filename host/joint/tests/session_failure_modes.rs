@@ -1,5 +1,5 @@
-//! A session with a board in a thread, in normal operation and in its failure modes: messages, kept recordings, how it
-//! ends.
+//! A session with a board in a thread, in normal operation and in its failure modes: messages, saved recordings,
+//! outcome.
 
 #[allow(dead_code, reason = "every test binary uses its own part of it")]
 mod thread_board;
@@ -19,11 +19,11 @@ use link::messages::{Role, RunMode, RunSettings, ToBoard, Trip};
 use report::failure::{Failure, Outcome};
 use thread_board::{Misbehaviour, TICK_RATE, joint};
 
-/// A message is due within 2 s by design; a busy machine is given ten times that.
+/// Messages are due within 2 s by design; a busy machine gets ten times as long.
 const LIVENESS: Duration = Duration::from_secs(20);
 const TIMEOUT: Duration = Duration::from_secs(2);
 
-/// A user who presses Ctrl-C at a moment, if at all; nothing is known about the other end.
+/// A user who may press Ctrl-C at a given time.
 struct User(Option<Instant>);
 
 impl Supervisor for User {
@@ -82,7 +82,7 @@ fn failure(misbehaviour: Misbehaviour) -> (Failure, Recording) {
     (failure, recording)
 }
 
-/// The recorded run against the same run computed here.
+/// Comparison of the recorded run with the run computed on the host.
 fn agreement(recording: &Recording) -> Agreement {
     let Recording { accepted, samples, .. } = recording;
     twin::compare(&joint(), Chip::Stm32f405, TICK_RATE, accepted, samples).expect("designed")

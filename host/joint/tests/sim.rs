@@ -1,5 +1,5 @@
-//! `joint sim` as a user meets it: what it computes for the paper's joint, what it leaves on disk, what a crash or a
-//! full disk leaves of that, and what it says to bad input.
+//! `joint sim` at the command line: figures of the paper's joint, files, files after a crash or on a full disk, and
+//! messages for bad input.
 
 mod command;
 
@@ -14,7 +14,7 @@ use mcap::MessageStream;
 use mcap::read::Options;
 use serde_json::Value;
 
-/// Runs a simulation and gives its figures.
+/// Runs a simulation and returns its figures.
 fn figures(arguments: &[&str]) -> Value {
     let folder = folder();
     let elsewhere = folder.path().join("figures-elsewhere.json");
@@ -65,7 +65,7 @@ fn the_paper_s_regimes_come_out_of_the_board_s_scheme() {
     assert_eq!(chaos["period"], Value::Null, "chaos does not repeat");
 }
 
-/// Oracle 4: the mesh force of the standing joint is T_D / (n r_bs), the deflection b + that over k.
+/// Oracle 4: mesh force of the joint at rest T_D / (n r_bs), deflection b plus force over k.
 #[test]
 fn a_joint_that_stands_under_its_torque_has_the_static_deflection() {
     let still = ["q1", "--speed", "0", "--duration", "0.4", "--drive", "2", "--set", "transmission_error_um=0"];
@@ -78,7 +78,7 @@ fn a_joint_that_stands_under_its_torque_has_the_static_deflection() {
     }
 }
 
-/// Oracle 5.
+/// Oracle 5: the energy balance of the reference closes.
 #[test]
 fn the_energy_books_of_the_reference_balance() {
     let figures = figures(&["paper", "--scheme", "reference", "--duration", "0.01"]);
@@ -98,7 +98,8 @@ fn all_schemes_are_held_against_the_reference() {
     assert!(rows.iter().all(|row| number(&row["cost_s_per_s"]) > 0.0), "{rows:?}");
 }
 
-/// An equivalent gear has no meshes, so that two schemes move it. Under constant torques nothing swings: no scheme diverges.
+/// An equivalent gear has no meshes, so only two schemes can step it. Under constant torques nothing swings, and no
+/// scheme diverges.
 #[test]
 fn all_schemes_of_an_equivalent_gear_are_two() {
     let figures = figures(&["c1", "--profile", "reversals", "--duration", "0.6", "--scheme", "all"]);
@@ -123,13 +124,13 @@ fn a_prescribed_mesh_period_has_ticks_enough_and_a_board_s_rate_can_be_had() {
     assert_eq!(figures_at(&["--rate", "20000"])["tick_rate_Hz"], 20_000);
 }
 
-/// Messages of a log, up to where it was cut.
+/// Messages of a log, up to a cut.
 fn messages(log: &[u8]) -> Vec<Vec<u8>> {
     let stream = MessageStream::new_with_options(log, Options::IgnoreEndMagic.into()).expect("a log");
     stream.map_while(Result::ok).map(|message| message.data.into_owned()).collect()
 }
 
-/// The n-th number of a message: eight bytes each behind a head of four.
+/// Number at an index of a message: eight bytes each after a header of four.
 fn field(message: &[u8], place: usize) -> f64 {
     let at = 4 + 8 * place;
     f64::from_le_bytes(message[at..at + 8].try_into().expect("eight bytes"))
@@ -163,7 +164,7 @@ fn csv_and_log_hold_the_same_history() {
         for name in ["time_s", "twist_rad", "gap_m", "drive_torque_Nm"] {
             assert_eq!(field(&message, place(&name.to_lowercase())), number(name), "{name}");
         }
-        // The first list begins behind all numbers with its length, on a multiple of eight.
+        // The first list follows the numbers, with its length, aligned to eight bytes.
         let list = place("sun_planet_deflection_m");
         assert_eq!(message[4 + 8 * list], 3);
         assert_eq!(field(&message, list + 1), number("sun_planet_1_deflection_m"));
@@ -187,7 +188,7 @@ fn a_log_that_was_cut_off_is_readable_up_to_the_cut() {
     for percent in (20..=100).step_by(5) {
         let found = messages(&log[..log.len() * percent / 100]).len();
         assert!(found >= before, "a longer rest cannot hold less");
-        // No more than a chunk and its share of the index is lost.
+        // At most one chunk and its share of the index are lost.
         assert!(100 * found + 1500 * 10 >= whole * (percent - 10) / 10 * 10, "{percent} %: {found} of {whole}");
         before = found;
     }
@@ -234,7 +235,7 @@ fn a_full_disk_is_named_and_nothing_older_is_lost() {
         joint_on_a_full_disk(200, &["sim", "l1", "--duration", "1", "--no-energy", "--out", text(folder.path())]);
     ended.refused(&["cannot write", "history.partial", "free some space"]);
     let now = contents(folder.path());
-    // The list of files tells what was tried, too.
+    // The list of written files also contains attempts.
     let results = older.iter().filter(|(name, _)| name != ".written-by-joint");
     assert!(results.into_iter().all(|file| now.contains(file)), "what was there is there");
 }
@@ -285,9 +286,10 @@ fn the_report_needs_neither_network_nor_script() {
     assert!(page.len() < 4_000_000, "{} bytes", page.len());
 }
 
-/// Incremental encoders of 1000 and 1800 lines go through every command, and the joint follows. So do Hall sensors of 24 counts on
-/// the motor of a gear with a lost motion of 60 arcmin, which is 4 counts there; with 3 arcmin an observer is refused. Without its
-/// variance of rounding the filter of the motor side has the gap wrong for 4 % of the time with 64 counts.
+/// Incremental encoders of 1000 and 1800 lines work with every command, and the joint follows. So do Hall sensors of 24
+/// counts on the motor of a gear with a lost motion of 60 arcmin, which is 4 counts at the motor; with 3 arcmin the
+/// observer's design is rejected. Without the rounding variance in the motor-side filter the gap would be wrong for 4 %
+/// of the time with 64 counts.
 #[test]
 fn encoders_of_any_counts_go_through_all_commands() {
     let folder = folder();
@@ -324,7 +326,7 @@ fn encoders_of_any_counts_go_through_all_commands() {
     }
 }
 
-/// The worm of a telescope mount with the motor off and 10 N m at its link: gap and wind-up are 0.8 mrad.
+/// The worm gear of a telescope mount with the motor off and 10 N m at the link: gap plus wind-up are 0.8 mrad.
 #[test]
 fn a_worm_s_link_holds_with_the_motor_off() {
     let folder = folder();

@@ -1,5 +1,5 @@
-//! `joint sweep` and `joint merge` as a user meets them: the same bytes whatever the threads, shards, kills and order;
-//! no foreign file touched; every error with its cause and its help.
+//! `joint sweep` and `joint merge` at the command line: equal bytes for any threads, shards, kills and order; foreign
+//! files stay untouched; every error has its cause and remedy.
 
 mod command;
 
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use command::{Ended, contents, folder, interrupt, joint, joint_on_a_full_disk, start, text, until, wait};
 
-/// A grid of 31 points of a few milliseconds each.
+/// Grid of 31 points of a few milliseconds each.
 const GRID: [&str; 6] = ["sweep", "paper", "--vary", "half_backlash_um=0:150:5", "--duration", "0.01"];
 
 fn sweep(more: &[&str], out: &Path) -> Ended {
@@ -19,7 +19,7 @@ fn result(folder: &Path) -> String {
     fs::read_to_string(folder.join("points.csv")).expect("the result")
 }
 
-/// What a whole sweep in one go gives.
+/// Result of an uninterrupted sweep.
 fn whole(folder: &Path) -> String {
     let path = folder.join("whole");
     sweep(&[], &path).well();
@@ -44,7 +44,7 @@ fn the_same_bytes_come_out_of_any_number_of_threads_and_shards() {
         sweep(&["--threads", threads], &path).well();
         assert_eq!(result(&path), expected, "{threads} threads");
     }
-    // Shards in one folder, the last one first; the one that finishes the grid writes the result.
+    // Shards in one folder, the last one first; the shard that completes the grid writes the result.
     let together = folder.path().join("together");
     for shard in ["3/3", "1/3"] {
         let ended = sweep(&["--shard", shard], &together).well();
@@ -71,7 +71,7 @@ fn shards_from_several_folders_are_merged_once_none_is_missing() {
     assert!(!out.exists());
     joint(&["merge", three, one, two, "--out", text(&out)]).well();
     assert_eq!(result(&out), expected);
-    // Twice is no harm.
+    // Merging again does no harm.
     joint(&["merge", one, two, three, "--out", text(&out)]).well();
     assert_eq!(result(&out), expected);
 }
@@ -150,7 +150,7 @@ fn ctrl_c_keeps_what_is_done_and_says_how_to_go_on() {
 #[test]
 fn a_full_disk_costs_no_finished_point() {
     let folder = folder();
-    // The description of the sweep has room enough, the journal of 151 points has not.
+    // The limit has room for the description of the sweep, but not for the journal of 151 points.
     let grid = ["sweep", "paper", "--vary", "half_backlash_um=0:150:1", "--duration", "0.003", "--threads", "1"];
     let (expected, path) = (folder.path().join("whole"), folder.path().join("full"));
     joint(&[&grid[..], &["--out", text(&expected)]].concat()).well();
@@ -209,7 +209,7 @@ fn a_folder_of_anyone_else_is_refused_and_left_as_it_is() {
         assert_eq!(contents(&path), before);
         fs::remove_file(path.join(name)).expect("it was there");
     }
-    // A sweep's own folder with something beside it.
+    // A sweep's own folder with a foreign file.
     sweep(&[], &path).well();
     fs::write(path.join("notes.txt"), "my data").expect("room");
     let before = contents(&path);
@@ -275,7 +275,7 @@ fn a_spoilt_sweep_is_refused_by_name_and_left_as_it_is() {
 fn a_joint_that_cannot_be_is_one_row_and_not_the_end() {
     let folder = folder();
     let path = folder.path().join("some");
-    // A motor limit below the drive torque is refused by the joint file's own rules.
+    // The joint file's own rules reject a motor limit below the drive torque.
     let grid = ["sweep", "q1", "--vary", "drive_torque_N_m=1,2,3", "--vary", "motor_torque_limit_N_m=5,2.5"];
     let ended = joint(&[&grid[..], &["--duration", "0.01", "--out", text(&path)]].concat()).well();
     assert!(ended.err.contains("1 points were refused") && ended.err.contains("motor_torque_limit_N_m"), "{ended:?}");
@@ -293,7 +293,7 @@ fn a_sweep_draws_its_map_whoever_finishes_it() {
     let ended = sweep(&[], &whole).well();
     assert!(ended.out.contains("report: "), "{ended:?}");
     assert!(page(&whole).contains("Greatest mesh force") && page(&whole).contains("mesh.half_backlash_um"));
-    // The same bytes out of shards, and again into the same folder.
+    // Shards, and a second run into the same folder, give equal bytes.
     let paths = ["1/2", "2/2"].map(|shard| {
         let path = folder.path().join(shard.replace('/', "-of-"));
         sweep(&["--shard", shard], &path).well();

@@ -1,5 +1,5 @@
-//! Test files of observer and compensation as a user meets them: messages for bad input, results on disk,
-//! repeatability, and that a controller that does nothing fails.
+//! Test files of observer and compensation at the command line: messages for bad input, results on disk, repeatability,
+//! and failure of a controller without output.
 
 mod command;
 #[allow(dead_code, reason = "every test binary uses its own part of it")]
@@ -15,7 +15,7 @@ use scenario::suite;
 use scenario::suite::Choice;
 use serde_json::Value;
 
-/// A short test, with more lines at its end.
+/// Writes a short test file with further lines at its end.
 fn test_file(folder: &Path, more: &str) -> PathBuf {
     let path = folder.join("short.toml");
     let head = "title = \"short\"\nduration_s = 1.2\nsettle_s = 0.6\n";
@@ -99,8 +99,8 @@ fn false_alarms(name: &str, plant: &str, seed: &str) -> f64 {
     ours["figures"]["false_alarms"].as_f64().expect("a number")
 }
 
-/// Joints around which one or the other encoder was given up before the gap was known: a half-gap of 1 um had been learnt, and was
-/// sure, where it was 35.
+/// Joints on which an encoder was excluded before the gap was known: the estimated half-gap was 1 um, with confidence,
+/// at a true 35 um.
 #[test]
 fn a_sound_encoder_is_kept_while_the_gap_is_not_known() {
     for seed in ["5737", "5829", "4048", "5715", "9583", "2869"] {
@@ -108,7 +108,7 @@ fn a_sound_encoder_is_kept_while_the_gap_is_not_known() {
     }
 }
 
-/// Joints whose output encoder has sub-divisional errors: taken for noise of rests, they blame no encoder.
+/// Joints whose output encoder has sub-divisional errors. Treated as noise at rest, they blame no encoder.
 #[test]
 fn subdivisional_error_blames_no_encoder() {
     for seed in ["603", "612"] {
@@ -116,7 +116,7 @@ fn subdivisional_error_blames_no_encoder() {
     }
 }
 
-/// A torque that has moved the motor once, and then is less than its friction, leaves it within the gap while the link goes on.
+/// After a first motion, a torque below friction leaves the motor within the gap while the link moves on.
 #[test]
 fn a_motor_that_friction_has_stopped_is_not_taken_for_one_that_teeth_hold() {
     assert_eq!(false_alarms("coarse-encoder.toml", "reference", "16"), 0.0);
@@ -155,7 +155,7 @@ fn a_controller_that_does_nothing_fails_and_the_report_leads_with_it() {
         mcap::MessageStream::new(&bytes).expect("MCAP").map(|message| message.expect("whole").channel.topic.clone());
     let topics: Vec<String> = topics.collect();
     let of = |topic: &str| topics.iter().filter(|other| *other == topic).count();
-    // A thousand messages a second of the run, and one of the controller for each of its periods.
+    // A thousand messages a second of the run, and one of the controller for each period.
     assert_eq!([of("/joint/trial"), of("/joint/controller"), topics.len()], [1200, 12_000, 13_200]);
 }
 
@@ -170,7 +170,7 @@ fn bandwidth_is_told_with_its_limit() {
     assert!(off.is_null(), "{off}");
 }
 
-/// Record of the bandwidth in the results of a test, which the terminal has as well.
+/// Record of the bandwidth in the results of a test; the terminal must show the same figures.
 fn compensation_bandwidth(more: &str) -> serde_json::Value {
     let folder = folder();
     let ended = run(folder.path(), more, &[]).well();

@@ -1,4 +1,4 @@
-//! Stands between host and board: a thread a direction, at the rate at which the bytes come.
+//! Forwards bytes between host and board, one thread for each direction.
 
 use std::io::{Read, Write};
 use std::net::Shutdown;
@@ -8,14 +8,14 @@ use std::thread;
 
 use super::disturbance::{Direction, Trouble};
 
-/// Both directions; the line is cut when it is dropped.
+/// Both directions of a line; dropping the proxy closes the line.
 pub struct Proxy {
     ways: [Arc<Mutex<Trouble>>; 2],
     board: UnixStream,
 }
 
 impl Proxy {
-    /// A good line to a board, and the host's end of it.
+    /// Returns an undisturbed line to a board, and the host's end of the line.
     pub fn before(board: UnixStream) -> (Self, UnixStream) {
         let (host, ours) = UnixStream::pair().expect("a pair of sockets");
         let ways = [Direction::ToBoard, Direction::ToHost].map(|way| Arc::new(Mutex::new(Trouble::none(way))));
@@ -24,13 +24,13 @@ impl Proxy {
         (Self { ways, board }, host)
     }
 
-    /// The line is as bad as a seed says from now on; in words.
+    /// Disturbs the line by a seed; returns the disturbances as text.
     pub fn disturb(&self, seed: u64) -> String {
         let [to_board, to_host] = [0, 1].map(|way| self.ways[way].lock().expect("no panic").begin(seed));
         format!("to the board:{to_board}; to the host:{to_host}")
     }
 
-    /// The line is good.
+    /// Ends all disturbances.
     pub fn calm(&self) {
         self.ways.iter().for_each(|way| way.lock().expect("no panic").end());
     }

@@ -1,5 +1,5 @@
-//! On a full disk every command ends with the file and the reason, loses nothing that was there, and leaves nothing that it
-//! does not tell. A limit on the size of files is the disk: it works for every user, and at any size.
+//! On a full disk every command names the file and the cause, preserves existing files, and reports every file that it
+//! leaves. A limit on the size of files simulates the full disk: it works for every user and at any size.
 
 use std::fs;
 use std::path::Path;
@@ -8,17 +8,17 @@ use crate::command::{Ended, folder, joint_on_a_full_disk_with, text};
 use crate::tree::{LIST, Tree, assert_same, results, say_the_same, tree};
 use crate::writers::{Writer, empty};
 
-/// Limits on the size of a file [KiB]; in the last every file of these has room.
+/// Limits on the size of a file [KiB]; the last one has room for every file.
 const LIMITS: [u32; 8] = [0, 1, 2, 4, 16, 64, 256, 1 << 16];
-/// That for what is slow.
+/// Limits for slow commands [KiB].
 const SLOW_LIMITS: [u32; 1] = [64];
 
-/// What is left of a run that found no room: files of before, whole ones, and what it tells.
+/// Asserts that a folder holds only earlier files, complete files, and partial files that the error message names.
 fn assert_all_is_told(writer: Writer, left: &Tree, whole: &Tree, ended: &Ended, when: &str) {
     for (name, bytes) in left {
-        // A board may have nothing to log.
+        // The log of a board may be empty.
         assert!(!bytes.is_empty() || name == "log.txt", "{when}: {name} is empty: {ended:?}");
-        // A journal is whole up to its last line.
+        // A journal is valid up to its last complete line.
         if name == LIST || name.starts_with("journal-") {
             continue;
         }
@@ -34,7 +34,8 @@ fn assert_all_is_told(writer: Writer, left: &Tree, whole: &Tree, ended: &Ended, 
     }
 }
 
-/// Results of tests of which one had no room for its log say so, as they say everything that kept a test from running.
+/// Returns true for a complete result that reports a failed write: a test without room for its log states so in the
+/// results.
 fn is_a_whole_result_that_tells(name: &str, bytes: &[u8]) -> bool {
     let text = String::from_utf8_lossy(bytes);
     let whole = match name.rsplit('.').next() {
@@ -50,7 +51,7 @@ fn finds_no_room(writer: Writer) {
     let out = empty(place.path());
     writer.run(&out).well();
     let whole = results(tree(&out));
-    // Once with nothing in the folder, once with a whole run.
+    // First in an empty folder, then over a complete run.
     let slow = writer.is_slow();
     let states: &[bool] = match writer {
         _ if writer.writes_once().is_some() => &[false],
@@ -70,7 +71,8 @@ fn finds_no_room(writer: Writer) {
             }
             assert!(*limit < LIMITS[LIMITS.len() - 1], "{when}: {ended:?}");
             refusals += 1;
-            // What had room for its record, which is of no fixed length, says where that is.
+            // A record of a board has no fixed length; if it found room in the second place, the message gives the
+            // path.
             let kept = writer == Writer::Board && count(second.path()) > 0;
             let help = if kept { text(second.path()) } else { "free some space" };
             ended.refused(&["cannot write", text(&out), help]);
@@ -100,7 +102,8 @@ fn every_writer_to_a_file_finds_no_room() {
     }
 }
 
-/// What cannot be measured again is tried in a second place; where that is full too nothing is left there either.
+/// A measurement cannot be repeated, so the record is also tried in a second place. If that place is full too, no file
+/// stays there.
 #[test]
 fn a_run_on_a_board_leaves_no_empty_second_place() {
     let place = folder();

@@ -1,11 +1,11 @@
-//! A command that is killed at any moment leaves no half-written file under a final name, and the same command run again
-//! gives what a run that nobody has killed gives, and clears away what was left.
+//! A command killed at any moment leaves no partial file under a final name. Running the command again gives the
+//! results of an undisturbed run and removes the leftovers.
 //!
-//! Seen to fail: with results that are written in parts under their final names, every command has a kill that finds one half
-//! written.
+//! Seen to fail: with results written in parts under their final names, every command has a kill that leaves a partial
+//! file.
 //!
-//! The short run has fixed seeds; `KILLS=1000` makes as many of each command, from a seed that is printed and that `KILLS_SEED`
-//! brings again.
+//! The short run has fixed seeds; `KILLS=1000` kills each command that often, from a printed seed that `KILLS_SEED`
+//! repeats.
 
 use std::path::Path;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
@@ -16,7 +16,7 @@ use crate::command::{folder, start, wait};
 use crate::tree::{LIST, Tree, assert_same, results, say_the_same, tree};
 use crate::writers::{Writer, empty};
 
-/// Kills of each command in the short run, and of those that are slow.
+/// Kills of each command in the short run, and of each slow command.
 const KILLS: u32 = 6;
 const SLOW_KILLS: u32 = 1;
 
@@ -24,7 +24,7 @@ fn asked(name: &str) -> Option<u64> {
     std::env::var(name).ok().map(|value| value.parse().unwrap_or_else(|_| panic!("{name}={value} is no whole number")))
 }
 
-/// Kills of each command, and the seed of their moments.
+/// Kills of each command, and the seed of their times.
 fn extent(writer: Writer) -> (u32, u64) {
     let now = || SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
     match asked("KILLS") {
@@ -33,11 +33,11 @@ fn extent(writer: Writer) -> (u32, u64) {
     }
 }
 
-/// A file that is not yet whole, by its name: it is no result of anybody.
+/// Returns true for the name of an unfinished file, which is no result.
 fn is_unfinished(name: &str) -> bool {
     let last = name.rsplit('/').next().unwrap_or(name);
     let temporary = last.starts_with('.') && last.contains(".joint-") && last.ends_with(".tmp");
-    // A journal is whole up to its last line, and is gone on with.
+    // A journal is valid up to its last complete line, and the next run continues it.
     temporary || last == LIST || last.starts_with("history.partial.") || last.starts_with("journal-")
 }
 
@@ -48,7 +48,7 @@ fn assert_none_is_half_written(writer: Writer, left: &Tree, whole: &Tree, when: 
     }
 }
 
-/// Runs a command and kills it after a time; says whether it was still running.
+/// Runs a command and kills it after a time; returns true if it was still running.
 fn killed(writer: Writer, out: &Path, after: Duration) -> bool {
     let line = writer.line(out);
     let mut child = start(&line.words());
@@ -64,7 +64,7 @@ fn is_killed_at_any_moment(writer: Writer) {
     let place = folder();
     let out = empty(place.path());
     if !writer.is_slow() {
-        // The first run finds files of the system that the others have at hand.
+        // The first run loads system files that later runs find cached.
         writer.run(&out).well();
     }
     let out = empty(place.path());
@@ -73,12 +73,12 @@ fn is_killed_at_any_moment(writer: Writer) {
     let mut long = begin.elapsed();
     let whole = results(tree(&out));
     let mut amidst = 0;
-    // A machine that has become faster since must not end them all before.
+    // If the machine has become faster, the runs end before the kill: try more often, earlier.
     for kill in 0..3 * kills {
         if amidst == kills {
             break;
         }
-        // Half of them have nothing in the folder, and half a whole run.
+        // Half of the runs start in an empty folder, half over a complete run.
         let out = if kill % 2 == 0 || writer.writes_once().is_some() { empty(place.path()) } else { out.clone() };
         let after = long.mul_f64(1.05 * stream.uniform());
         let when = format!("{writer:?}, kill {kill}, after {after:?}, KILLS_SEED={seed}");

@@ -1,4 +1,4 @@
-//! A file of the user's own in the folder of `--out` is never written over: the run is refused before anything is done.
+//! The user's own files in the folder of `--out` are never overwritten: the command rejects the folder before it works.
 
 use std::fs;
 
@@ -6,10 +6,10 @@ use crate::command::{folder, joint, text};
 use crate::tree::{LIST, results, tree};
 use crate::writers::{Writer, empty};
 
-/// Files of a run that ended early.
+/// Files of an interrupted run.
 const CUT_SHORT: [&str; 2] = ["history.partial.csv", "history.partial.mcap"];
 
-/// What a command leaves in an empty folder, or may leave.
+/// Names of all files that a command may write to a folder.
 fn names(writer: Writer) -> Vec<String> {
     let place = folder();
     let out = empty(place.path());
@@ -35,7 +35,7 @@ fn no_command_writes_over_a_file_that_it_has_not_written() {
             fs::write(out.join(".notes"), "mine too").expect("room");
             let before = tree(&out);
             let ended = writer.run(&out);
-            // A sweep has its folder for itself: there it is any file.
+            // A sweep needs a folder of its own and rejects any other file.
             let why = match writer {
                 Writer::Sweep | Writer::Merge if name == "sweep.json" => "is not what a sweep wrote",
                 Writer::Sweep | Writer::Merge => "holds files that are not a sweep's",
@@ -54,7 +54,7 @@ fn no_command_writes_over_a_file_that_the_user_has_changed() {
         let out = empty(place.path());
         writer.run(&out).well();
         let before = tree(&out);
-        // What a sweep reads again it knows by what is in it: see its own tests.
+        // Files that a sweep reads back are checked by their content, in its own tests.
         let read = |name: &str| name == "sweep.json" || name.starts_with("journal");
         for (name, bytes) in before.iter().filter(|(name, _)| *name != LIST && !read(name)) {
             let changed = [bytes, "my note\n".as_bytes()].concat();
@@ -102,7 +102,7 @@ fn a_log_of_the_user_s_own_among_those_of_the_tests_is_not_removed() {
     assert_eq!(tree(&out), before);
 }
 
-/// A long command is refused as soon as a short one.
+/// A long command rejects the folder as quickly as a short one.
 #[test]
 fn the_refusal_comes_before_any_work() {
     let place = folder();

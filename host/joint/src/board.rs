@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use board::device::board::Board as OnTarget;
+use board::device::board::Board as TargetBoard;
 use board::device::prediction::ORIGIN;
 use board_file::{Board, ExternalClock, Level, Output, PRESETS, Pin, SpiSlave, named};
 use clap::ValueEnum;
@@ -51,9 +51,9 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
         Action::Check(check) => {
             let described = named::load(&check.file)?.board;
             let joint = joint_file::named::load(&check.joint)?.file.parameters;
-            let board = OnTarget { named: check.file.display().to_string(), file: check.file.clone(), described };
-            let mut page = layout(&board.described);
-            roles(&mut page, &board, &joint);
+            let board = TargetBoard { named: check.file.display().to_string(), file: check.file.clone(), described };
+            let mut page = board_page(&board.described);
+            add_roles(&mut page, &board, &joint);
             let shown = terminal(&page.document());
             let warnings = board.described.warnings.iter().map(|warning| format!("warning: {warning}\n"));
             output::print(&(shown + &warnings.collect::<String>()))
@@ -71,7 +71,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
 }
 
 /// Adds the predicted fit of each role, in size and in time.
-fn roles(page: &mut Sheet, board: &OnTarget, joint: &JointParameters) {
+fn add_roles(page: &mut Sheet, board: &TargetBoard, joint: &JointParameters) {
     page.heading(&format!("Roles for {}, predicted: no image is built", joint.name));
     for role in ImageRole::value_variants() {
         let Some(value) = role.to_possible_value() else { continue };
@@ -79,14 +79,14 @@ fn roles(page: &mut Sheet, board: &OnTarget, joint: &JointParameters) {
             ImageRole::SpiObserver if !board.has_spi_slave() => {
                 "not on this board: its file has no [spi_slave]".to_owned()
             }
-            _ => role.predicted(joint, board, role.usual_rate(joint, board)).to_string(),
+            _ => role.predict(joint, board, role.default_rate(joint, board)).to_string(),
         };
         page.row(value.get_name(), verdict);
     }
     page.row("predicted from", ORIGIN);
 }
 
-fn layout(board: &Board) -> Sheet {
+fn board_page(board: &Board) -> Sheet {
     let mut page = Sheet::new(match board.description.as_str() {
         "" => board.name.to_string(),
         description => format!("{}: {description}", board.name),

@@ -40,7 +40,7 @@ pub struct Arguments {
     rate: u32,
     /// Largest acceptable error: deflections, gap and link on the reversals, over the motion's standard deviation
     /// [default: 1e-2]
-    #[arg(long, value_name = "E", value_parser = accuracy)]
+    #[arg(long, value_name = "E", value_parser = parse_accuracy)]
     accuracy: Option<f64>,
     /// Writes the figures as JSON ("-": to standard output, in place of the text)
     #[arg(long, value_name = "OUT")]
@@ -74,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
 }
 
 /// Parses a relative error; rejects values outside 0 to 1.
-pub fn accuracy(text: &str) -> Result<f64, String> {
+pub fn parse_accuracy(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value < 1.0 => Ok(value),
         _ => Err("an error over the motion's standard deviation is a number between 0 and 1, such as 1e-2".to_owned()),

@@ -10,7 +10,7 @@ use report::progress::Progress;
 use simulation::check::{layout, summary};
 use simulation::verdicts::ACCURACY;
 
-use crate::budget::accuracy;
+use crate::budget::parse_accuracy;
 
 /// Arguments of `joint check`.
 #[derive(Debug, clap::Args)]
@@ -28,7 +28,7 @@ pub struct Arguments {
     #[arg(long, value_name = "HZ", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..))]
     pub rate: u32,
     /// Largest acceptable error: deflections, gap and link on the reversals, over the motion's standard deviation
-    #[arg(long, value_name = "E", value_parser = accuracy, default_value_t = ACCURACY)]
+    #[arg(long, value_name = "E", value_parser = parse_accuracy, default_value_t = ACCURACY)]
     pub accuracy: f64,
 }
 

@@ -76,7 +76,7 @@ impl ImageRole {
     }
 
     /// Default rate of an image in this role [Hz].
-    pub fn usual_rate(self, joint: &JointParameters, board: &Board) -> u32 {
+    pub fn default_rate(self, joint: &JointParameters, board: &Board) -> u32 {
         match self {
             Self::Plant => image::DEFAULT_TICK_RATE,
             Self::Observer | Self::Loop => tick_time::usual_rate(joint, board, self.role()),
@@ -85,7 +85,7 @@ impl ImageRole {
     }
 
     /// Predicts whether an image in this role fits a board at a rate.
-    pub fn predicted(self, joint: &JointParameters, board: &Board, rate: u32) -> Prediction {
+    pub fn predict(self, joint: &JointParameters, board: &Board, rate: u32) -> Prediction {
         let word = self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
         Prediction::new(board, joint, &word, self.role(), rate)
     }
@@ -104,10 +104,10 @@ pub fn build(arguments: &Image, board: &Board) -> Outcome<image::Image> {
     warned::tell(&loaded);
     let file = image::joint_file(&arguments.file, &loaded.name);
     let (parameters, role) = (&loaded.file.parameters, arguments.role);
-    let rate = arguments.rate.unwrap_or_else(|| role.usual_rate(parameters, board));
+    let rate = arguments.rate.unwrap_or_else(|| role.default_rate(parameters, board));
     let progress = Progress::new();
     let say = |line: &str| progress.say(line);
-    let predicted = role.predicted(parameters, board, rate);
+    let predicted = role.predict(parameters, board, rate);
     if !predicted.has_room() {
         say(&format!("predicted for {}, from {ORIGIN}: {predicted}; it is built all the same", board.name()));
     }

@@ -86,14 +86,14 @@ fn identified(name: &str, seed: u64, count: &mut Count) {
     let common = ["identify", text(&log), "--joint", name, "--motor-bits", &motor, "--output-bits", &output];
     let sets: Vec<String> = truths.iter().map(|(key, value)| format!("{key}={value}")).collect();
     let sets = sets.iter().flat_map(|set| ["--set", set.as_str()]);
-    joint(&common.into_iter().chain(["--simulate", "--seed", &seed]).chain(sets).collect::<Vec<_>>()).well();
+    joint(&common.into_iter().chain(["--simulate", "--seed", &seed]).chain(sets).collect::<Vec<_>>()).succeeded();
     let off = if draw.between(0.0, 1.0) < 0.5 { 1.0 - INERTIA_OFF } else { 1.0 + INERTIA_OFF };
     let wrong = INERTIAS.get(draw.between(0.0, 3.0) as usize).map(|key| {
         let inertia = stated(key).unwrap_or_else(|| panic!("{name} states {key}"));
         format!("{key}={}", off * inertia)
     });
     let wrong: Vec<&str> = wrong.iter().flat_map(|set| ["--set", set.as_str()]).collect();
-    joint(&[&common[..], &wrong[..], &["--out", text(&out)]].concat()).well();
+    joint(&[&common[..], &wrong[..], &["--out", text(&out)]].concat()).succeeded();
     for finding in json(&out.join("findings.json"))["findings"].as_array().expect("a list") {
         let Some(key) = finding["key"].as_str() else { continue };
         let (Some(value), Some(ends)) = (finding["value"].as_f64(), finding["interval"].as_array()) else { continue };
@@ -115,7 +115,7 @@ fn identified(name: &str, seed: u64, count: &mut Count) {
 
 const JOINTS: [&str; 4] = ["q1", "d2", "l1", "s1"];
 
-fn covered(joints: &[&str], seeds: impl Iterator<Item = u64> + Clone) {
+fn check_coverage(joints: &[&str], seeds: impl Iterator<Item = u64> + Clone) {
     let mut all = Count::default();
     for name in joints {
         let mut count = Count::default();
@@ -143,15 +143,16 @@ fn covered(joints: &[&str], seeds: impl Iterator<Item = u64> + Clone) {
     }
 }
 
+/// Short form of the coverage test, on joints that differ from their files.
 #[test]
-fn true_values_of_joints_that_are_not_as_their_file_says_lie_in_the_stated_intervals() {
-    covered(&JOINTS, 41..43);
+fn coverage_of_changed_joints() {
+    check_coverage(&JOINTS, 41..43);
 }
 
 #[test]
 #[ignore = "six minutes; COVERAGE_JOINTS=l1,s1 and COVERAGE_SEEDS=10 for fewer"]
-fn they_do_so_over_many_seeds() {
+fn coverage_over_many_seeds() {
     let joints = std::env::var("COVERAGE_JOINTS").unwrap_or(JOINTS.join(","));
     let seeds = std::env::var("COVERAGE_SEEDS").map_or(50, |seeds| seeds.parse().expect("a number of seeds"));
-    covered(&joints.split(',').collect::<Vec<_>>(), 100..100 + seeds);
+    check_coverage(&joints.split(',').collect::<Vec<_>>(), 100..100 + seeds);
 }

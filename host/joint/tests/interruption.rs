@@ -14,7 +14,7 @@ const TRIES: u32 = 5;
 
 /// Seen to fail with a counted instead of a measured pause, and with logs written to their end: 0.2 to 0.45 s.
 #[test]
-fn a_command_that_works_ends_at_once() {
+fn working_command_stops_at_once() {
     let place = folder();
     let out = place.path().join("out");
     let tests = ["real-any", "random-plants"].map(|name| workspace().join("hil").join(name).with_extension("toml"));

@@ -13,7 +13,7 @@ use serde_json::Value;
 /// Simulated log of Q1: time, counts of motor and output, torque. Counts continue over turns.
 fn rows(folder: &Path) -> Vec<[f64; 4]> {
     let path = folder.join("plain.csv");
-    joint(&["identify", text(&path), "--joint", "q1", "--simulate", "--seed", "31"]).well();
+    joint(&["identify", text(&path), "--joint", "q1", "--simulate", "--seed", "31"]).succeeded();
     let log = fs::read_to_string(&path).expect("written");
     let row = |line: &str| {
         let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
@@ -42,7 +42,7 @@ fn findings(folder: &Path) -> (Value, String) {
 }
 
 /// Checks that the true half-backlash and stiffness of Q1 are in their intervals.
-fn holds_the_truth(findings: &Value) {
+fn assert_contains_truth(findings: &Value) {
     for (key, truth) in [("mesh.half_backlash_um", 40.0), ("compliance.stiffness_N_m_per_rad", 10.3e3)] {
         let all = findings.as_array().expect("a list");
         let one = all.iter().find(|one| one["key"] == key).expect(key);
@@ -52,7 +52,7 @@ fn holds_the_truth(findings: &Value) {
 }
 
 /// Checks that two logs have equal findings, up to the rounding of angles with different origins.
-fn alike(found: &Value, truth: &Value) {
+fn assert_equal_findings(found: &Value, truth: &Value) {
     let [found, truth] = [found, truth].map(|findings| findings.as_array().expect("a list"));
     assert_eq!(found.len(), truth.len());
     for (found, truth) in found.iter().zip(truth) {
@@ -63,12 +63,12 @@ fn alike(found: &Value, truth: &Value) {
 }
 
 #[test]
-fn registers_of_any_width_are_read_as_counts_that_go_on() {
+fn register_counts_are_unwrapped() {
     let folder = folder();
     let folder = folder.path();
     let plain = rows(folder);
     write(folder, &plain);
-    identify(folder, &[]).well();
+    identify(folder, &[]).succeeded();
     let (truth, told) = findings(folder);
     assert!(!told.contains("register") && !told.contains("jump away"), "{told}");
     let register = |value: f64, bits: i32, signed: bool| {
@@ -79,9 +79,9 @@ fn registers_of_any_width_are_read_as_counts_that_go_on() {
         let read =
             |row: &[f64; 4]| [row[0], register(row[1], motor.0, motor.1), register(row[2], output.0, output.1), row[3]];
         write(folder, &plain.iter().map(read).collect::<Vec<_>>());
-        identify(folder, &[]).well();
+        identify(folder, &[]).succeeded();
         let (found, told) = findings(folder);
-        alike(&found, &truth);
+        assert_equal_findings(&found, &truth);
         let counts = format!("`motor_counts` is read as a register that begins anew after {} values", 1 << motor.0);
         assert!(told.contains(&counts), "{told}");
     }
@@ -90,8 +90,9 @@ fn registers_of_any_width_are_read_as_counts_that_go_on() {
     identify(folder, &["--motor-bits", "14"]).refused(&["an encoder of 13 bits begins anew so, and 14 bits are set"]);
 }
 
+/// Above 1 % the log is rejected.
 #[test]
-fn bad_readings_are_left_out_and_told_up_to_one_percent() {
+fn bad_readings_up_to_one_percent_dropped() {
     let folder = folder();
     let folder = folder.path();
     let mut spoiled = rows(folder);
@@ -105,9 +106,9 @@ fn bad_readings_are_left_out_and_told_up_to_one_percent() {
         }
     }
     write(folder, &spoiled);
-    identify(folder, &[]).well();
+    identify(folder, &[]).succeeded();
     let (found, told) = findings(folder);
-    holds_the_truth(&found);
+    assert_contains_truth(&found);
     for what in ["readings of `motor_counts`", "readings of `output_counts`", "jump away from the motion", "left out"] {
         assert!(told.contains(what), "{what}: {told}");
     }
@@ -117,7 +118,7 @@ fn bad_readings_are_left_out_and_told_up_to_one_percent() {
 }
 
 #[test]
-fn repeated_time_stamps_are_resolved_or_refused_with_what_would_help() {
+fn repeated_time_stamps_resolved_or_rejected() {
     let folder = folder();
     let folder = folder.path();
     let plain = rows(folder);
@@ -137,25 +138,25 @@ fn repeated_time_stamps_are_resolved_or_refused_with_what_would_help() {
         "--column period=NAME",
     ]);
     log(",cycle", &|row| format!(",{}", row % 65536));
-    identify(folder, &["--column", "period=cycle"]).well();
-    holds_the_truth(&findings(folder).0);
+    identify(folder, &["--column", "period=cycle"]).succeeded();
+    assert_contains_truth(&findings(folder).0);
     log(",time_us", &|row| format!(",{}", 100 * row));
-    identify(folder, &[]).well();
+    identify(folder, &[]).succeeded();
     let (found, told) = findings(folder);
-    holds_the_truth(&found);
+    assert_contains_truth(&found);
     assert!(told.contains("times are those of `time_us`"), "{told}");
     // Rows that were written twice.
     let twice: Vec<[f64; 4]> =
         plain.iter().enumerate().flat_map(|(row, cells)| vec![*cells; if row % 1000 == 7 { 2 } else { 1 }]).collect();
     write(folder, &twice);
-    identify(folder, &[]).well();
+    identify(folder, &[]).succeeded();
     let (found, told) = findings(folder);
-    holds_the_truth(&found);
+    assert_contains_truth(&found);
     assert!(told.contains("rows have the time of the row before and all its values: left out"), "{told}");
 }
 
 #[test]
-fn lines_before_the_header_and_rows_without_a_value_are_passed_over_and_told() {
+fn preamble_and_incomplete_rows_skipped() {
     let folder = folder();
     let folder = folder.path();
     let plain = rows(folder);
@@ -169,14 +170,14 @@ fn lines_before_the_header_and_rows_without_a_value_are_passed_over_and_told() {
         }
     }
     fs::write(folder.join("log.csv"), log).expect("written");
-    identify(folder, &[]).well();
+    identify(folder, &[]).succeeded();
     let (found, told) = findings(folder);
-    holds_the_truth(&found);
+    assert_contains_truth(&found);
     assert!(told.contains("Lines 1 to 3 before the header passed over"), "{told}");
     assert!(told.contains("rows were left out, since a value is missing: `motor_counts` is empty in"), "{told}");
     // The observer is fed the same rows.
     let [path, out] = ["log.csv", "replay"].map(|name| folder.join(name));
-    joint(&["replay", text(&path), "q1", "--out", text(&out)]).well();
+    joint(&["replay", text(&path), "q1", "--out", text(&out)]).succeeded();
     assert!(json(&out.join("record.json"))["log_notes"].to_string().contains("value is missing"));
     // Two encoders with different time stamps.
     let mut apart = "time_s,motor_counts,output_counts,motor_torque_N_m\n".to_owned();
@@ -188,7 +189,7 @@ fn lines_before_the_header_and_rows_without_a_value_are_passed_over_and_told() {
 }
 
 #[test]
-fn several_joints_of_one_log_have_a_report_each() {
+fn joints_of_one_log_reported_separately() {
     let folder = folder();
     let folder = folder.path();
     let mut log = "t,knee_motor,knee_output,knee_torque,hip_motor,hip_output,hip_torque\n".to_owned();
@@ -209,8 +210,8 @@ fn several_joints_of_one_log_have_a_report_each() {
     assert!(ended.out.contains("knee") && ended.out.contains("half-backlash"), "{}", ended.out);
     ended.refused(&["hip: ", "there is no reversal in this log"]);
     let found = json(&folder.join("out/knee/findings.json"));
-    holds_the_truth(&found["findings"]);
+    assert_contains_truth(&found["findings"]);
     assert!(!folder.join("out/hip").exists());
-    identify(folder, &["--map", text(&map), "--map-joint", "knee"]).well();
+    identify(folder, &["--map", text(&map), "--map-joint", "knee"]).succeeded();
     identify(folder, &["--map", text(&map), "--map-joint", "toe"]).refused(&["no joint `toe`", "hip, knee"]);
 }

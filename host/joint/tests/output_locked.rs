@@ -63,7 +63,7 @@ fn interval(record: &Value, key: &str) -> [f64; 2] {
 type Case<'a> = (&'a [(&'a str, &'a str)], [f64; 3], u64, usize);
 
 #[test]
-fn a_held_output_tells_gap_stiffness_and_friction_within_their_intervals() {
+fn locked_output_intervals_contain_truth() {
     let folder = folder();
     let folder = folder.path();
     let cases: [Case<'_>; 4] = [
@@ -74,7 +74,7 @@ fn a_held_output_tells_gap_stiffness_and_friction_within_their_intervals() {
     ];
     for (changes, truths, seed, every) in cases {
         write(folder, &record("q1", changes, seed, 2.0, every));
-        identify(folder, "q1", &[]).well();
+        identify(folder, "q1", &[]).succeeded();
         let record = json(&folder.join("out/findings.json"));
         // The joint's torque constant is off by 3 %, as the joint file states.
         for ((key, truth), most) in [BACKLASH, STIFFNESS, FRICTION].into_iter().zip(truths).zip([0.4, 0.4, 3.0]) {
@@ -89,7 +89,7 @@ fn a_held_output_tells_gap_stiffness_and_friction_within_their_intervals() {
 }
 
 #[test]
-fn logs_of_a_held_output_that_cannot_tell_are_refused_by_name() {
+fn uninformative_locked_logs_rejected() {
     let folder = folder();
     let folder = folder.path();
     let rows = record("q1", &[], 7, 2.0, 10);

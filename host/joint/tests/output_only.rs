@@ -21,7 +21,7 @@ const LOST_MOTION: &str = "lost motion at the output";
 fn record(folder: &Path, common: &[&str], every: usize, torque: f64) {
     let log = folder.join("all.csv");
     let _ = fs::remove_file(&log);
-    joint(&[&["identify", text(&log), "--simulate"], common].concat()).well();
+    joint(&[&["identify", text(&log), "--simulate"], common].concat()).succeeded();
     rewrite(folder, every, torque);
 }
 
@@ -49,7 +49,7 @@ fn interval(record: &Value, name: &str) -> [f64; 2] {
 type Case<'a> = (&'a str, &'a str, &'a str, usize, &'a [&'a str], &'a [(&'a str, f64)]);
 
 #[test]
-fn an_output_alone_tells_inertia_friction_and_weight_within_their_intervals() {
+fn output_only_intervals_contain_truth() {
     let folder = folder();
     let folder = folder.path();
     let cases: [Case<'_>; 5] = [
@@ -85,7 +85,7 @@ fn an_output_alone_tells_inertia_friction_and_weight_within_their_intervals() {
         record(folder, &[&common[..], &["--seed", seed], &sets].concat(), every, 1.0);
         // The servo is identified with its data sheet, the others with a joint file that lacks the changes.
         let known = if changes == SERVO { sets } else { Vec::new() };
-        identify(folder, &[&common[..], &known].concat()).well();
+        identify(folder, &[&common[..], &known].concat()).succeeded();
         let record = json(&folder.join("out/findings.json"));
         for (finding, truth) in truths {
             let [low, high] = interval(&record, finding);
@@ -120,7 +120,7 @@ const SERVO: &[&str] = &[
 ];
 
 #[test]
-fn logs_of_an_output_that_cannot_tell_are_refused_by_name() {
+fn uninformative_output_logs_rejected() {
     let folder = folder();
     let folder = folder.path();
     record(folder, &["--joint", "q1", "--seed", "6"], 10, 1.0);

@@ -137,7 +137,7 @@ fn identify(folder: &Path, log: &str, options: &[&str]) -> Ended {
 
 fn findings(log: &str, options: &[&str]) -> Value {
     let folder = folder();
-    identify(folder.path(), log, options).well();
+    identify(folder.path(), log, options).succeeded();
     json(&folder.path().join("out/findings.json"))
 }
 
@@ -166,12 +166,12 @@ fn true_width(sweeps: &Sweeps, record: &Value, share: f64) -> f64 {
 }
 
 #[test]
-fn a_file_of_the_measured_joints_form_is_read_by_one_command() {
+fn measured_format_read_by_one_command() {
     let folder = folder();
     let [first, second] = SWEEPS.halves();
     let turn = TURN.to_string();
     let options = [&MEASURED[..], &["--half", &first, "--half", &second, "--output-units-per-turn", &turn]].concat();
-    let said = identify(folder.path(), &SWEEPS.as_measured(), &options).well().out;
+    let said = identify(folder.path(), &SWEEPS.as_measured(), &options).succeeded().out;
     assert!(said.contains("lost motion, median over the places") && said.contains("hysteresis, second half"), "{said}");
     let out = folder.path().join("out");
     let page = fs::read_to_string(out.join("report.html")).expect("written");
@@ -204,7 +204,7 @@ fn a_file_of_the_measured_joints_form_is_read_by_one_command() {
 }
 
 #[test]
-fn intervals_hold_the_truth_in_nineteen_of_twenty_logs() {
+fn intervals_cover_truth_in_95_percent() {
     let (mut inside, mut all) = (0, 0);
     for seed in 100..140 {
         // Every other log has the course of the measured joint: three sweeps in each half, two of them over the same
@@ -257,7 +257,7 @@ const GEARED: [&str; 7] =
     ["--quasi-static", "--gear-ratio", "6", "--output-units-per-turn", "16384", "--motor-units-per-turn", "8192"];
 
 #[test]
-fn a_log_of_ten_hertz_tells_width_and_friction_by_direction() {
+fn ten_hertz_log_width_and_friction() {
     let slow = Sweeps { rate: 10.0, sweep: 40.0, count: 4, loads: [0.0; 2], ..SWEEPS };
     let friction = |one: &Sample| if one.way > 0.0 { 0.6 } else { -0.42 };
     for separator in [",", ";", "\t", "  "] {
@@ -277,8 +277,9 @@ fn a_log_of_ten_hertz_tells_width_and_friction_by_direction() {
     }
 }
 
+/// Without scatter the resolution of the readings limits the interval.
 #[test]
-fn passes_that_repeat_exactly_have_intervals_as_wide_as_readings_resolve() {
+fn exact_passes_interval_is_resolution() {
     let exact = Sweeps { scatter: [0.0; 2], rate: 50.0, loads: [0.0; 2], width: [9.4, 0.0], ..SWEEPS };
     let mut log = "time_s,output_counts,motor_counts,motor_torque_N_m\n".to_owned();
     for one in exact.record() {
@@ -300,7 +301,7 @@ fn passes_that_repeat_exactly_have_intervals_as_wide_as_readings_resolve() {
 }
 
 #[test]
-fn counts_in_a_register_of_several_turns_are_joined_and_a_lost_reading_left_out() {
+fn multi_turn_register_unwrapped() {
     let sweeps = Sweeps { loads: [0.0; 2], rate: 50.0, ..SWEEPS };
     let log = |read: &dyn Fn(f64) -> f64, bad: usize| {
         let mut log = "time_s,output_counts,motor_counts\n".to_owned();
@@ -321,8 +322,9 @@ fn counts_in_a_register_of_several_turns_are_joined_and_a_lost_reading_left_out(
     near(&spoiled, "width_by_direction_median", found(&plain, "width_by_direction_median").0, 0.01);
 }
 
+/// The remedy must not ask for an option that is already on the command line.
 #[test]
-fn no_option_that_is_stated_is_asked_for_again() {
+fn stated_option_not_requested_again() {
     let folder = folder();
     let sweeps = Sweeps { loads: [0.0; 2], rate: 100.0, ..SWEEPS };
     let wrapped: String = std::iter::once("time_s,output_counts,motor_counts\n".to_owned())
@@ -341,7 +343,7 @@ fn no_option_that_is_stated_is_asked_for_again() {
 }
 
 #[test]
-fn a_ratio_that_is_two_percent_off_is_refused_and_the_right_one_named() {
+fn wrong_ratio_rejected_right_one_named() {
     let folder = folder();
     let straight = |one: Sample| Sample { motor: one.motor + map(one.output), ..one };
     let slow = Sweeps { rate: 10.0, sweep: 40.0, count: 4, loads: [0.0; 2], ..SWEEPS };
@@ -352,12 +354,12 @@ fn a_ratio_that_is_two_percent_off_is_refused_and_the_right_one_named() {
         }
         log
     };
-    identify(folder.path(), &log(1.0), &GEARED).well();
+    identify(folder.path(), &log(1.0), &GEARED).succeeded();
     identify(folder.path(), &log(1.02), &GEARED).refused(&["the output turns 0.98", "6.12", "--gear-ratio"]);
 }
 
 #[test]
-fn a_width_without_a_known_load_is_said_to_be_either() {
+fn width_without_load_is_ambiguous() {
     let slow = Sweeps { loads: [0.0; 2], rate: 100.0, ..SWEEPS };
     let record = findings(&slow.as_measured(), &MEASURED);
     near(&record, "width_by_direction_median", true_width(&slow, &record, 0.5), 0.06);
@@ -365,7 +367,7 @@ fn a_width_without_a_known_load_is_said_to_be_either() {
 }
 
 #[test]
-fn the_torque_s_sign_tells_the_loads_without_halves() {
+fn torque_sign_gives_load_direction() {
     let loaded = Sweeps { rate: 100.0, ..SWEEPS };
     let record = findings(&with_torque(&loaded, ",", |one| 3.0 * one.load + 0.5 * one.way), &GEARED);
     near(&record, "lost_motion_median", true_width(&loaded, &record, 0.5), 0.05);
@@ -379,8 +381,9 @@ fn the_torque_s_sign_tells_the_loads_without_halves() {
     assert!(record["assumptions"][0].as_str().expect("text").contains("one flank carries all the time"), "{record}");
 }
 
+/// Radians, a motor that counts backwards, and the other order of loads.
 #[test]
-fn radians_a_motor_that_counts_backwards_and_the_other_order_of_loads_are_read_alike() {
+fn units_and_signs_give_equal_width() {
     let sweeps = Sweeps { rate: 50.0, loads: [-1.0, 1.0], ..SWEEPS };
     let [first, second] = sweeps.halves();
     let halves = ["--half", &first, "--half", &second];
@@ -420,7 +423,7 @@ fn radians_a_motor_that_counts_backwards_and_the_other_order_of_loads_are_read_a
 }
 
 #[test]
-fn an_mcap_log_says_what_the_same_log_as_text_says() {
+fn mcap_log_equals_text_log() {
     let sweeps = Sweeps { rate: 50.0, loads: [0.0; 2], count: 3, ..SWEEPS };
     let folder = folder();
     let [log, out] = ["log.mcap", "out"].map(|name| folder.path().join(name));
@@ -440,14 +443,14 @@ fn an_mcap_log_says_what_the_same_log_as_text_says() {
     let columns = ["--column", "output_counts=read[0]", "--column", "motor_counts=read[1]"];
     for topic in [&[][..], &["--topic", "/joint"]] {
         let options = ["identify", text(&log), "--quasi-static", "--out", text(&out)];
-        joint(&[&options[..], &columns, topic].concat()).well();
+        joint(&[&options[..], &columns, topic].concat()).succeeded();
         let record = json(&out.join("findings.json"));
         assert_eq!(record["quantities"], findings(&plain, &["--quasi-static"])["quantities"]);
     }
 }
 
 #[test]
-fn gaps_and_jitter_are_taken_and_told_and_turns_are_joined() {
+fn gaps_and_jitter_noted_turns_joined() {
     let sweeps = Sweeps { rate: 100.0, ..SWEEPS };
     let mut random = RandomStream::new(7, "jitter");
     let mut log = String::new();
@@ -471,7 +474,7 @@ fn gaps_and_jitter_are_taken_and_told_and_turns_are_joined() {
 }
 
 #[test]
-fn logs_that_cannot_tell_are_refused_with_the_reason_and_the_mend() {
+fn uninformative_logs_name_cause_and_remedy() {
     let folder = folder();
     let refused = |log: &str, options: &[&str], words: [&str; 2]| {
         let ended = identify(folder.path(), log, options);

@@ -34,7 +34,7 @@ fn results(folder: &Path) -> Value {
 }
 
 #[test]
-fn every_shipped_test_can_be_read_and_designed() {
+fn shipped_tests_load() {
     let hil = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../hil");
     let [all, short] = [Choice::Full, Choice::Short].map(|choice| {
         let suite = suite::load(&hil, choice, PlantName::Reference).expect("a folder of tests");
@@ -44,8 +44,9 @@ fn every_shipped_test_can_be_read_and_designed() {
     assert!(all > short && short > 10, "{all} tests, {short} of them short");
 }
 
+/// The run without a file must contain no test that its board would reject.
 #[test]
-fn the_run_without_a_file_has_tests_of_both_roles_and_none_that_its_board_would_refuse() {
+fn default_run_has_tests_of_both_roles() {
     let hil = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../hil");
     for (role, plant) in [(Role::Loop, PlantName::Core), (Role::Observer, PlantName::Reference)] {
         let suite = suite::load(&hil, Choice::OnBoard(role), plant).expect("a folder of tests");
@@ -58,10 +59,10 @@ fn the_run_without_a_file_has_tests_of_both_roles_and_none_that_its_board_would_
 }
 
 #[test]
-fn the_same_seed_gives_the_same_bits_and_another_seed_others() {
+fn digest_depends_on_seed_only() {
     let digests = |seed: &str, plant: &str| {
         let folder = folder();
-        run(folder.path(), "profile = \"T2\"", &["--seed", seed, "--plant", plant]).well();
+        run(folder.path(), "profile = \"T2\"", &["--seed", seed, "--plant", plant]).succeeded();
         let results = results(folder.path());
         let runs = results["tests"][0]["runs"].as_array().expect("runs").clone();
         assert_eq!(runs.len(), 3);
@@ -75,11 +76,11 @@ fn the_same_seed_gives_the_same_bits_and_another_seed_others() {
 }
 
 #[test]
-fn both_plants_move_the_same_joint() {
+fn plants_agree_on_motion() {
     let peak = |plant: &str| {
         let folder = folder();
         let more = "profile = \"T2\"\n[controller]\nmode = \"motor_pid\"\nrivals = []";
-        run(folder.path(), more, &["--plant", plant]).well();
+        run(folder.path(), more, &["--plant", plant]).succeeded();
         let figures = results(folder.path())["tests"][0]["runs"][0]["figures"].clone();
         ["rms_mrad", "peak_mrad", "effort_N_m"].map(|name| figures[name].as_f64().expect("a number"))
     };
@@ -102,7 +103,7 @@ fn false_alarms(name: &str, plant: &str, seed: &str) -> f64 {
 /// Joints on which an encoder was excluded before the gap was known: the estimated half-gap was 1 um, with confidence,
 /// at a true 35 um.
 #[test]
-fn a_sound_encoder_is_kept_while_the_gap_is_not_known() {
+fn sound_encoder_kept_with_unknown_gap() {
     for seed in ["5737", "5829", "4048", "5715", "9583", "2869"] {
         assert_eq!(false_alarms("never-worse.toml", "core", seed), 0.0, "false alarms with seed {seed}");
     }
@@ -118,12 +119,13 @@ fn subdivisional_error_blames_no_encoder() {
 
 /// After a first motion, a torque below friction leaves the motor within the gap while the link moves on.
 #[test]
-fn a_motor_that_friction_has_stopped_is_not_taken_for_one_that_teeth_hold() {
+fn friction_stop_not_taken_for_contact() {
     assert_eq!(false_alarms("coarse-encoder.toml", "reference", "16"), 0.0);
 }
 
+/// A controller without output must fail, and the report must begin with the failure.
 #[test]
-fn a_controller_that_does_nothing_fails_and_the_report_leads_with_it() {
+fn idle_controller_fails_first_in_report() {
     let folder = folder();
     let more =
         "profile = \"T2\"\n[controller]\nmode = \"off\"\n[assert]\nrms_gain_over_pid = \">= 1\"\nrms_mrad = \"<= 1e9\"";
@@ -160,7 +162,7 @@ fn a_controller_that_does_nothing_fails_and_the_report_leads_with_it() {
 }
 
 #[test]
-fn bandwidth_is_told_with_its_limit() {
+fn bandwidth_reported_with_limit() {
     let usual = compensation_bandwidth("profile = \"T2\"");
     assert_eq!(usual["asked"], false, "{usual}");
     let asked = compensation_bandwidth("profile = \"T2\"\n[controller]\nbandwidth_rad_per_s = 30");
@@ -173,7 +175,7 @@ fn bandwidth_is_told_with_its_limit() {
 /// Record of the bandwidth in the results of a test; the terminal must show the same figures.
 fn compensation_bandwidth(more: &str) -> serde_json::Value {
     let folder = folder();
-    let ended = run(folder.path(), more, &[]).well();
+    let ended = run(folder.path(), more, &[]).succeeded();
     let bandwidth = results(folder.path())["tests"][0]["bandwidth"].clone();
     if let Some(limit) = bandwidth["limited_by"].as_str() {
         let [used, widest] =
@@ -186,9 +188,9 @@ fn compensation_bandwidth(more: &str) -> serde_json::Value {
 }
 
 #[test]
-fn a_motor_that_is_held_is_called_locked_and_runs_once() {
+fn held_motor_called_locked() {
     let folder = folder();
-    let ended = run(folder.path(), "profile = \"hysteresis\"", &[]).well();
+    let ended = run(folder.path(), "profile = \"hysteresis\"", &[]).succeeded();
     assert!(ended.out.contains("hysteresis of joint Q1, locked"), "{ended:?}");
     let test = &results(folder.path())["tests"][0];
     assert_eq!(test["controller"], "locked");
@@ -198,7 +200,7 @@ fn a_motor_that_is_held_is_called_locked_and_runs_once() {
 }
 
 #[test]
-fn what_failed_runs_again_as_it_was() {
+fn replay_command_repeats_failure() {
     let head =
         "profile = \"T2\"\nseeds = 3\n[controller]\nrivals = []\n[plant]\nhalf_backlash_um = [40, 80]\n[assert]\n";
     for (bound, with_one_seed) in [("\"<= 0\"", true), ("{ mean = \"<= 0\" }", false)] {
@@ -218,8 +220,9 @@ fn what_failed_runs_again_as_it_was() {
     }
 }
 
+/// Unreadable test files must not prevent the other tests.
 #[test]
-fn what_cannot_run_in_a_folder_is_named_and_the_rest_runs() {
+fn bad_tests_in_folder_named_rest_runs() {
     let folder = folder();
     let tests = folder.path().join("tests");
     fs::create_dir(&tests).expect("a folder");
@@ -267,7 +270,7 @@ fn what_cannot_run_in_a_folder_is_named_and_the_rest_runs() {
 }
 
 #[test]
-fn a_failure_counts_more_than_what_was_not_run() {
+fn failure_outranks_not_run() {
     let folder = folder();
     let tests = folder.path().join("tests");
     fs::create_dir(&tests).expect("a folder");
@@ -280,7 +283,7 @@ fn a_failure_counts_more_than_what_was_not_run() {
 }
 
 #[test]
-fn a_test_whose_time_is_up_fails() {
+fn timed_out_test_fails() {
     let folder = folder();
     let more = "timeout_s = 0.1\nprofile = \"T2\"\n[plant]\nhalf_backlash_um = 41";
     let file = test_file(folder.path(), more);
@@ -292,7 +295,7 @@ fn a_test_whose_time_is_up_fails() {
 }
 
 #[test]
-fn what_is_wrong_with_a_test_file_is_named_with_the_mend() {
+fn test_file_errors_name_remedy() {
     let refused = |more: &str, words: &[&str]| run(folder().path(), more, &[]).refused(words);
     refused("profile = \"T3\"", &["\"T3\" is no kind", "did you mean"]);
     refused("profil = \"T2\"", &["unknown key `profil`", "did you mean `profile`?", "`profile` is missing"]);
@@ -351,7 +354,7 @@ fn what_is_wrong_with_a_test_file_is_named_with_the_mend() {
 }
 
 #[test]
-fn arguments_of_joints_and_of_tests_are_not_mixed_up() {
+fn joint_and_test_arguments_not_mixed() {
     let folder = folder();
     let file = test_file(folder.path(), "profile = \"T2\"");
     joint(&["hil", text(&file), "--host", "--role", "loop"]).refused(&["--host", "--role"]);
@@ -384,23 +387,24 @@ fn arguments_of_joints_and_of_tests_are_not_mixed_up() {
 }
 
 #[test]
-fn a_recorded_motion_and_any_preset_can_be_tested() {
+fn recorded_motion_runs_on_presets() {
     let folder = folder();
     let rows: String =
         (0..=150).map(|k| format!("{},{}\n", 0.01 * f64::from(k), 0.1 * (0.05 * f64::from(k)).sin())).collect();
     fs::write(folder.path().join("motion.csv"), format!("time_s,position_rad\n{rows}")).expect("a file");
     for preset in ["s1", "l1", "d2"] {
         let more = format!("joint = \"{preset}\"\nprofile = {{ kind = \"csv\", file = \"motion.csv\" }}");
-        run(folder.path(), &more, &["--plant", "reference"]).well();
+        run(folder.path(), &more, &["--plant", "reference"]).succeeded();
     }
 }
 
+/// The memory must not change the rivals' runs.
 #[test]
-fn a_run_from_memory_knows_the_width_at_once_and_its_rivals_are_the_same() {
+fn run_from_memory_knows_width_at_once() {
     let of = |from_memory: bool| {
         let folder = folder();
         let more = format!("profile = \"T2\"\n[controller]\nfrom_memory = {from_memory}");
-        run(folder.path(), &more, &["--seed", "4"]).well();
+        run(folder.path(), &more, &["--seed", "4"]).succeeded();
         let runs = results(folder.path())["tests"][0]["runs"].clone();
         let figure = |name: &str| runs[0]["figures"][name].as_f64().expect("a figure");
         (figure("width_right_after_s"), runs[1]["digest"].clone())
@@ -411,28 +415,28 @@ fn a_run_from_memory_knows_the_width_at_once_and_its_rivals_are_the_same() {
 }
 
 #[test]
-fn the_example_of_the_documentation_passes() {
+fn documented_example_passes() {
     let document = include_str!("../../../docs/reference/hil-file.md");
     let (_, rest) = document.split_once("```toml\n").expect("an example");
     let (example, _) = rest.split_once("```").expect("its end");
     let folder = folder();
     let file = folder.path().join("example.toml");
     fs::write(&file, example).expect("a file");
-    joint(&["hil", text(&file), "--host", "--plant", "reference", "--out", text(folder.path())]).well();
+    joint(&["hil", text(&file), "--host", "--plant", "reference", "--out", text(folder.path())]).succeeded();
 }
 
 #[test]
-fn the_tutorial_prints_what_it_says() {
+fn tutorial_matches_output() {
     tutorial::follow_page("tutorial.md", tutorial::Tier::Host);
 }
 
 #[test]
-fn quick_start_prints_what_it_says() {
+fn quick_start_matches_output() {
     tutorial::follow_page("quick-start.md", tutorial::Tier::Host);
 }
 
 #[test]
-fn a_page_that_says_a_wrong_figure_is_refused_by_its_line_and_can_be_mended() {
+fn wrong_page_line_is_located_and_updated() {
     let right = "`a/b.toml`:\n\n```toml\nmass_kg = 3\nlength_m = 1\n```\n\n```console\n$ cat a/b.toml; echo took 7 s\n...\nlength_m = 1\n\
                  took [...] s\n$ false\n$ echo $?\n1\n```\n";
     let followed = |page: &str| tutorial::follow(page, tutorial::Tier::Host);

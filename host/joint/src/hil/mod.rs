@@ -19,22 +19,22 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
         if suite::is_of_tests(arguments.file()) {
             return scenario::run(&tests::test_request(arguments)?, progress);
         }
-        tests::refuse_for_joints(arguments)?;
+        tests::reject_test_arguments(arguments)?;
         let joint = joint_run::run(&arguments.request(), progress);
         if arguments.check {
             return joint.and_then(|()| everything::check(arguments.rate(), progress));
         }
         match (&arguments.file, &arguments.line.port) {
             (Some(_), _) => joint,
-            (None, Some(_)) => joint.and_then(|()| say_how_to_go_on(&arguments.line)),
-            (None, None) => run_tests(arguments, joint, progress),
+            (None, Some(_)) => joint.and_then(|()| print_test_command(&arguments.line)),
+            (None, None) => run_default_tests(arguments, joint, progress),
         }
     })
 }
 
 /// Runs the tests of observer and compensation after the joint's own run. A failed check of the joint does not prevent
 /// the tests; any other failure does.
-fn run_tests(arguments: &Arguments, joint: Outcome<()>, progress: &Progress) -> Outcome<()> {
+fn run_default_tests(arguments: &Arguments, joint: Outcome<()>, progress: &Progress) -> Outcome<()> {
     let check_failed = Failure::check_failed("").exit_code();
     if let Err(failure) = joint.as_ref()
         && failure.exit_code() != check_failed
@@ -42,9 +42,9 @@ fn run_tests(arguments: &Arguments, joint: Outcome<()>, progress: &Progress) -> 
         return joint;
     }
     output::print("\n")?;
-    let tests = scenario::run(&tests::test_request_of_all(arguments), progress);
+    let tests = scenario::run(&tests::default_test_request(arguments), progress);
     if !arguments.full {
-        let left = tests::left_out()?.len();
+        let left = tests::skipped_tests()?.len();
         output::print(&format!("left to `joint hil --full`: {left} more tests, all of them with all their seeds\n"))?;
     }
     match (joint, tests) {
@@ -59,7 +59,7 @@ fn run_tests(arguments: &Arguments, joint: Outcome<()>, progress: &Progress) -> 
 
 /// Prints the command that tests observer and compensation on a real board. A real board keeps its image until the user
 /// flashes another one, so the tests cannot follow at once.
-fn say_how_to_go_on(line: &LineOptions) -> Outcome<()> {
+fn print_test_command(line: &LineOptions) -> Outcome<()> {
     output::print(&format!(
         "tests of observer and compensation take an image of their own, which is built and named by\n\
          joint hil hil/t2.toml --role loop{}\n",

@@ -18,7 +18,7 @@ use scenario::{TestGroup, TestRequest};
 
 /// Request for the tests in a file or folder; rejects arguments that belong to joints.
 pub fn test_request(arguments: &Arguments) -> Outcome<TestRequest<'_>> {
-    let of_joints = [
+    let joint_arguments = [
         ("duration", arguments.duration.is_some(), "write duration_s into the test file"),
         ("profile", arguments.profile.is_some(), "write profile into the test file"),
         ("rate", arguments.rate.is_some(), "write drive_train.control_rate_Hz into [known] of the test file"),
@@ -27,9 +27,9 @@ pub fn test_request(arguments: &Arguments) -> Outcome<TestRequest<'_>> {
         ("no-reference", arguments.no_reference, "leave it out: --plant says what is controlled"),
         ("check", arguments.check, "leave FILE out, or name a joint"),
     ];
-    if let Some((name, _, mend)) = of_joints.iter().find(|(_, given, _)| *given) {
+    if let Some((name, _, remedy)) = joint_arguments.iter().find(|(_, given, _)| *given) {
         let message = format!("--{name} is for joints, and {} holds tests", arguments.file().display());
-        return Err(Failure::new(message).with_help(*mend));
+        return Err(Failure::new(message).with_help(*remedy));
     }
     if arguments.mode.is_some() && (arguments.host || arguments.role == Some(RoleName::Observer)) {
         return Err(Failure::new("--mode is for a whole loop on a board: all else goes step by step")
@@ -48,27 +48,27 @@ pub fn test_request(arguments: &Arguments) -> Outcome<TestRequest<'_>> {
     let part = TestGroup {
         choice: if arguments.full { Choice::Full } else { Choice::Short },
         plant: arguments.plant.unwrap_or(PlantName::Core),
-        boards: (!arguments.host).then(|| boards(arguments, role)),
+        boards: (!arguments.host).then(|| board_request(arguments, role)),
         path,
     };
     let name = part.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(of_groups(arguments, vec![part], name, arguments.out.clone()))
+    Ok(request_of_groups(arguments, vec![part], name, arguments.out.clone()))
 }
 
 /// Request for the tests that come with the program, if no file is named: the tests marked for the board run on the
 /// board; `--full` adds every test around the f64 reference, where the bounds are stated.
-pub fn test_request_of_all(arguments: &Arguments) -> TestRequest<'_> {
+pub fn default_test_request(arguments: &Arguments) -> TestRequest<'_> {
     let part = |choice, plant, boards| TestGroup { path: folder(), choice, plant, boards };
-    let on_board = |role, plant| part(Choice::OnBoard(role), plant, Some(boards(arguments, role)));
+    let on_board = |role, plant| part(Choice::OnBoard(role), plant, Some(board_request(arguments, role)));
     let mut parts = vec![on_board(Role::Loop, PlantName::Core), on_board(Role::Observer, PlantName::Reference)];
     if arguments.full {
         parts.push(part(Choice::Full, PlantName::Reference, None));
     }
-    of_groups(arguments, parts, "all".to_owned(), arguments.out.as_ref().map(|out| out.join("tests")))
+    request_of_groups(arguments, parts, "all".to_owned(), arguments.out.as_ref().map(|out| out.join("tests")))
 }
 
 /// Test files that a run without `--full` leaves out.
-pub fn left_out() -> Outcome<Vec<PathBuf>> {
+pub fn skipped_tests() -> Outcome<Vec<PathBuf>> {
     suite::left_out(&folder())
 }
 
@@ -80,7 +80,7 @@ fn folder() -> PathBuf {
     if same { short.to_owned() } else { whole }
 }
 
-fn of_groups<'a>(
+fn request_of_groups<'a>(
     arguments: &'a Arguments,
     parts: Vec<TestGroup<'a>>,
     name: String,
@@ -98,7 +98,7 @@ fn of_groups<'a>(
     }
 }
 
-fn boards(arguments: &Arguments, role: Role) -> BoardRequest<'_> {
+fn board_request(arguments: &Arguments, role: Role) -> BoardRequest<'_> {
     BoardRequest {
         role,
         port: arguments.line.port.as_deref(),
@@ -111,11 +111,11 @@ fn boards(arguments: &Arguments, role: Role) -> BoardRequest<'_> {
 }
 
 /// Rejects arguments of test files if a joint is named.
-pub fn refuse_for_joints(arguments: &Arguments) -> Outcome<()> {
+pub fn reject_test_arguments(arguments: &Arguments) -> Outcome<()> {
     // Without a file, on the emulated board, the tests that come with the program follow, so `--full` and `--junit`
     // apply.
     let alone = arguments.file.is_some() || arguments.line.port.is_some() || arguments.check;
-    let of_tests = [
+    let test_arguments = [
         ("host", arguments.host),
         ("role", arguments.role.is_some()),
         ("seed", arguments.seed.is_some()),
@@ -123,7 +123,7 @@ pub fn refuse_for_joints(arguments: &Arguments) -> Outcome<()> {
         ("full", arguments.full && alone),
         ("junit", arguments.junit.is_some() && alone),
     ];
-    let Some((name, _)) = of_tests.iter().find(|(_, given)| *given) else { return Ok(()) };
+    let Some((name, _)) = test_arguments.iter().find(|(_, given)| *given) else { return Ok(()) };
     let file = arguments.file().display();
     let message = match (joint_file::preset(&file.to_string()), input::text(arguments.file(), input::LARGEST_TYPED)) {
         (Some(_), _) | (_, Ok(_)) => format!("--{name} is for test files, and {file} is a joint"),

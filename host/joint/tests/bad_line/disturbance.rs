@@ -69,13 +69,13 @@ impl Draw {
 }
 
 /// One direction of the line.
-pub struct Trouble {
+pub struct LineFaults {
     direction: Direction,
     events: VecDeque<Event>,
     draw: Draw,
     passed: u32,
     /// Bytes of an undisturbed run.
-    usual: Option<u32>,
+    run_length: Option<u32>,
     /// Bytes still to be corrupted (`flips`) or dropped (`cut`).
     flips: u32,
     cut: u32,
@@ -85,16 +85,16 @@ pub struct Trouble {
     hello: Vec<u8>,
 }
 
-impl Trouble {
+impl LineFaults {
     /// Returns an undisturbed line.
-    pub fn none(direction: Direction) -> Self {
+    pub fn undisturbed(direction: Direction) -> Self {
         let (frame, last, hello) = (vec![], vec![], vec![]);
         Self {
             direction,
             events: VecDeque::new(),
             draw: Draw(0),
             passed: 0,
-            usual: None,
+            run_length: None,
             flips: 0,
             cut: 0,
             frame,
@@ -106,12 +106,12 @@ impl Trouble {
     /// Draws new disturbances from a seed and returns them as text. The bytes before the first call are an undisturbed
     /// run and give its length.
     pub fn begin(&mut self, seed: u64) -> String {
-        let usual = *self.usual.get_or_insert(self.passed);
+        let run_length = *self.run_length.get_or_insert(self.passed);
         self.draw = Draw(seed.wrapping_mul(2) + u64::from(self.direction == Direction::ToHost));
         let draw = &mut self.draw;
         let mut events: Vec<Event> = (0..draw.below(4))
             .map(|_| {
-                let (at, kind) = (draw.below(usual), KINDS[draw.below(KINDS.len() as u32) as usize]);
+                let (at, kind) = (draw.below(run_length), KINDS[draw.below(KINDS.len() as u32) as usize]);
                 Event { at, kind, between_frames: draw.below(2) == 0 }
             })
             .collect();
@@ -129,7 +129,7 @@ impl Trouble {
     }
 
     /// Passes bytes through the line; returns the output in pieces, each with its delay.
-    pub fn pass(&mut self, bytes: &[u8]) -> Vec<(Duration, Vec<u8>)> {
+    pub fn transmit(&mut self, bytes: &[u8]) -> Vec<(Duration, Vec<u8>)> {
         let mut pieces = vec![(Duration::ZERO, vec![])];
         for &byte in bytes {
             self.passed += 1;
@@ -137,7 +137,7 @@ impl Trouble {
             let (passed, between) = (self.passed, self.frame.is_empty());
             let is_due = |event: &mut Event| event.at <= passed && (between || !event.between_frames);
             while let Some(event) = self.events.pop_front_if(is_due) {
-                self.disturb(event.kind, &mut pieces);
+                self.apply(event.kind, &mut pieces);
             }
         }
         pieces
@@ -161,7 +161,7 @@ impl Trouble {
         pieces.last_mut().expect("a piece").1.push(changed);
     }
 
-    fn disturb(&mut self, kind: Kind, pieces: &mut Vec<(Duration, Vec<u8>)>) {
+    fn apply(&mut self, kind: Kind, pieces: &mut Vec<(Duration, Vec<u8>)>) {
         let mut more = Vec::new();
         match kind {
             Kind::Garbage => {

@@ -31,8 +31,8 @@ const LIVENESS: Duration = Duration::from_secs(60);
 const QUIET: Duration = Duration::from_millis(150);
 
 /// Seeds to run: `PROXY_SEEDS` of the environment, or the default number.
-pub fn seeds(usual: u64) -> Range<u64> {
-    0..std::env::var("PROXY_SEEDS").map_or(usual, |count| count.parse().expect("a number of seeds"))
+pub fn seeds(default_count: u64) -> Range<u64> {
+    0..std::env::var("PROXY_SEEDS").map_or(default_count, |count| count.parse().expect("a number of seeds"))
 }
 
 struct Nobody;
@@ -56,7 +56,7 @@ pub struct Trial {
 
 impl Trial {
     /// Starts joint Q1 as a plant on a board and records an undisturbed run.
-    pub fn of(board: UnixStream, command_timeout: u32) -> Self {
+    pub fn start(board: UnixStream, command_timeout: u32) -> Self {
         let text = joint_file::preset("q1").expect("the default preset");
         let joint = joint_file::read(text).expect("a good preset").parameters;
         let (proxy, host) = Proxy::before(board);
@@ -72,7 +72,7 @@ impl Trial {
             help: BoardHelp::Rebuild,
         };
         let mut trial = Self { proxy, host, joint, profile, settings, expected, undisturbed: Recording::default() };
-        trial.undisturbed = trial.good_run();
+        trial.undisturbed = trial.undisturbed_run();
         trial
     }
 
@@ -81,12 +81,12 @@ impl Trial {
     pub fn seed(&self, seed: u64) {
         let trouble = self.proxy.disturb(seed);
         let (outcome, recording) = self.run();
-        self.proxy.calm();
+        self.proxy.end_disturbance();
         let end = outcome.as_ref().map_or_else(Failure::to_string, |()| "comes to its end".into());
         println!("seed {seed}: {trouble}: {end}");
-        self.judge(&outcome, &recording);
-        self.answers_at_once();
-        self.good_run();
+        self.check_outcome(&outcome, &recording);
+        self.check_recovery();
+        self.undisturbed_run();
     }
 
     fn line(&self) -> Socket {
@@ -110,15 +110,15 @@ impl Trial {
     }
 
     /// Runs on the undisturbed line: every check of the report holds, and the samples equal those of the first run.
-    fn good_run(&self) -> Recording {
+    fn undisturbed_run(&self) -> Recording {
         let (outcome, recording) = self.run();
-        outcome.and_then(|()| self.report(&recording)).expect("the line is good");
+        outcome.and_then(|()| self.check_report(&recording)).expect("the line is good");
         assert!(self.undisturbed.samples.is_empty() || recording.samples == self.undisturbed.samples);
         recording
     }
 
     /// Verdict of the run's report.
-    fn report(&self, recording: &Recording) -> Outcome<()> {
+    fn check_report(&self, recording: &Recording) -> Outcome<()> {
         let why = "not looked at";
         let agreement =
             twin::compare(&self.joint, Chip::Stm32f405, TICK_RATE, &recording.accepted, &recording.samples)?;
@@ -135,14 +135,14 @@ impl Trial {
 
     /// Checks a disturbed run: it ends with an error and its remedy, or the report states the loss, or nothing was
     /// lost. No sample is wrong or duplicated, and no tick was late.
-    fn judge(&self, outcome: &Outcome<()>, recording: &Recording) {
+    fn check_outcome(&self, outcome: &Outcome<()>, recording: &Recording) {
         assert!(recording.statistics.as_ref().is_none_or(|statistics| statistics.overruns == 0), "overruns");
         assert!(recording.samples.is_sorted_by(|one, next| one.tick < next.tick), "samples twice or out of order");
         let right = recording.samples.iter().all(|sample| self.undisturbed.samples.contains(sample));
         assert!(right, "a sample that no undisturbed run has");
         match outcome {
             Err(failure) => assert!(failure.help().is_some(), "{failure}"),
-            Ok(()) => match self.report(recording) {
+            Ok(()) => match self.check_report(recording) {
                 Err(failure) => println!("    reported: {failure}"),
                 Ok(()) => assert_eq!(recording.samples, self.undisturbed.samples, "a loss that no check tells"),
             },
@@ -151,7 +151,7 @@ impl Trial {
 
     /// Checks the recovery of the link: the first stop and the first hello on the undisturbed line must be handled
     /// whatever the board's receiver holds. The schedule between them asks whether the run was stopped.
-    fn answers_at_once(&self) {
+    fn check_recovery(&self) {
         let mut line = self.line();
         receive_until(&mut line, QUIET, |_| false);
         let empty = Schedule { sequence: 0, horizon: 0, commands: heapless::Vec::new() };

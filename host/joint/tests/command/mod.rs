@@ -132,12 +132,12 @@ impl Ended {
     /// Asserts exit code 2 (bad input) with all these words in the message, and no panic.
     #[track_caller]
     pub fn refused(&self, words: &[&str]) {
-        self.said(2, words);
+        self.exited(2, words);
     }
 
     /// Asserts an exit code with all these words in the message, and no panic.
     #[track_caller]
-    pub fn said(&self, code: i32, words: &[&str]) {
+    pub fn exited(&self, code: i32, words: &[&str]) {
         assert_eq!(self.code, Some(code), "{self:?}");
         // Underlined messages are broken into lines beside a drawn rule.
         let plain = self.err.replace(['│', '╰', '─', '├', '▶'], " ").split_whitespace().collect::<Vec<_>>().join(" ");
@@ -149,7 +149,7 @@ impl Ended {
 
     /// Asserts success.
     #[track_caller]
-    pub fn well(self) -> Self {
+    pub fn succeeded(self) -> Self {
         assert_eq!(self.code, Some(0), "{self:?}");
         self
     }

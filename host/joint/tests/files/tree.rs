@@ -9,7 +9,7 @@ use report_diff::{Options, compare};
 use crate::writers::Writer;
 
 /// List of the files in a folder that the command has written.
-pub const LIST: &str = ".written-by-joint";
+pub const WRITTEN_LIST: &str = ".written-by-joint";
 
 /// Contents by path.
 pub type Tree = BTreeMap<String, Vec<u8>>;
@@ -31,17 +31,17 @@ pub fn tree(folder: &Path) -> Tree {
 
 /// Removes the list from a tree.
 pub fn results(mut tree: Tree) -> Tree {
-    tree.remove(LIST);
+    tree.remove(WRITTEN_LIST);
     tree
 }
 
 /// Returns true if two files of a writer are equal except for dates and similar entries.
-pub fn say_the_same(writer: Writer, name: &str, one: &[u8], other: &[u8]) -> bool {
+pub fn is_equal(writer: Writer, name: &str, one: &[u8], other: &[u8]) -> bool {
     if one == other {
         return true;
     }
     if writer == Writer::Board {
-        return say_the_same_of_a_board(name, one, other);
+        return is_equal_for_board(name, one, other);
     }
     if name.starts_with("journal-") {
         // Threads finish points in any order.
@@ -59,7 +59,7 @@ pub fn say_the_same(writer: Writer, name: &str, one: &[u8], other: &[u8]) -> boo
 
 /// Compares files of a board. Its clock makes the times differ: motion and completeness must be equal, and the page
 /// complete.
-fn say_the_same_of_a_board(name: &str, one: &[u8], other: &[u8]) -> bool {
+fn is_equal_for_board(name: &str, one: &[u8], other: &[u8]) -> bool {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     let value = |bytes: &[u8], key: &str| Some(serde_json::from_slice::<serde_json::Value>(bytes).ok()?[key].clone());
     match name {
@@ -82,6 +82,6 @@ fn sorted(journal: &[u8]) -> Vec<&[u8]> {
 pub fn assert_same(writer: Writer, found: &Tree, expected: &Tree, when: &str) {
     assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>(), "{when}");
     for (name, bytes) in found {
-        assert!(say_the_same(writer, name, bytes, &expected[name]), "{when}: {name} says something else");
+        assert!(is_equal(writer, name, bytes, &expected[name]), "{when}: {name} says something else");
     }
 }

@@ -22,11 +22,11 @@ fn inputs() -> PathBuf {
     let _ = fs::remove_dir_all(&inputs);
     fs::create_dir_all(&inputs).expect("room");
     fs::write(path("test.toml"), TEST).expect("room");
-    joint(&["identify", text(&path("log.csv")), "--simulate"]).well();
+    joint(&["identify", text(&path("log.csv")), "--simulate"]).succeeded();
     fs::write(path("sweeps.csv"), sweeps()).expect("room");
     fs::write(path("still.csv"), still()).expect("room");
     for shard in ["1/2", "2/2"] {
-        joint(&[&SWEEP[..], &["--shard", shard, "--out", text(&path("shards"))]].concat()).well();
+        joint(&[&SWEEP[..], &["--shard", shard, "--out", text(&path("shards"))]].concat()).succeeded();
     }
     fs::remove_file(path("shards/points.csv")).expect("the last shard has written it");
     inputs
@@ -179,7 +179,7 @@ fn board(port: &Path) -> File {
 }
 
 /// Creates an empty folder for results below another folder.
-pub fn empty(place: &Path) -> PathBuf {
+pub fn empty_folder(place: &Path) -> PathBuf {
     let out = place.join("out");
     if out.exists() {
         fs::remove_dir_all(&out).expect("it is ours");

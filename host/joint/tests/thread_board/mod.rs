@@ -116,11 +116,11 @@ where
         for message in buffer[..count].iter().filter_map(|&byte| receiver.push::<ToBoard>(byte)) {
             scheduled = matches!(message, ToBoard::Schedule(_));
             unheard = 0;
-            if misbehaviour.changes_what_is_heard() {
-                misbehaviour.heard(message).iter().for_each(|message| board.send(message));
+            if misbehaviour.changes_received() {
+                misbehaviour.received(message).iter().for_each(|message| board.send(message));
             }
         }
-        if !misbehaviour.changes_what_is_heard() {
+        if !misbehaviour.changes_received() {
             board.send_bytes(&buffer[..count]);
         }
         board.settle();
@@ -129,19 +129,19 @@ where
         board.run(ticks);
         unheard += ticks;
         for message in board.said() {
-            stream.write_all(&misbehaviour.said(message)?).map_err(|_| Gone)?;
+            stream.write_all(&misbehaviour.sent(message)?).map_err(|_| Gone)?;
         }
     }
 }
 
 impl Misbehaviour {
     /// Returns true if messages are decoded and changed on the way to the board; otherwise the bytes pass unchanged.
-    fn changes_what_is_heard(&self) -> bool {
+    fn changes_received(&self) -> bool {
         matches!(self, Self::LosesSchedule(_) | Self::LateTorques)
     }
 
     /// Message that reaches the board, if any.
-    fn heard(&self, message: ToBoard) -> Option<ToBoard> {
+    fn received(&self, message: ToBoard) -> Option<ToBoard> {
         match (self, message) {
             (Self::LosesSchedule(number), ToBoard::Schedule(schedule)) if schedule.sequence == *number => None,
             (Self::LateTorques, ToBoard::Schedule(mut schedule)) => {
@@ -153,7 +153,7 @@ impl Misbehaviour {
     }
 
     /// Bytes on the line for a message of the board.
-    fn said(&mut self, mut message: FromBoard) -> Result<Vec<u8>, Gone> {
+    fn sent(&mut self, mut message: FromBoard) -> Result<Vec<u8>, Gone> {
         let sampled = match &message {
             FromBoard::Samples(batch) => batch.samples.last().map(|sample| sample.tick),
             _ => None,

@@ -14,7 +14,7 @@ use report::failure::{Failure, Outcome};
 use report::progress::Progress;
 
 /// A connected board that has answered.
-pub(super) struct AnsweringBoard {
+pub(super) struct ConnectedBoard {
     pub session: Session<'static>,
     pub hello: Hello,
     /// Name of the board in messages.
@@ -24,9 +24,9 @@ pub(super) struct AnsweringBoard {
     emulated: bool,
 }
 
-impl AnsweringBoard {
+impl ConnectedBoard {
     /// Connects to the board, or starts the emulated one, and reads its identity.
-    pub fn call(place: &BoardArguments, loaded: &Loaded, progress: &Progress) -> Outcome<Self> {
+    pub fn connect(place: &BoardArguments, loaded: &Loaded, progress: &Progress) -> Outcome<Self> {
         let file = place.joint.display();
         let (connection, options) = match &place.line.port {
             Some(path) => {
@@ -56,7 +56,7 @@ impl AnsweringBoard {
     }
 
     /// Error: the board's flash holds no memory.
-    pub fn keeps_nothing(&self) -> Failure {
+    pub fn no_memory_error(&self) -> Failure {
         if self.emulated {
             return Failure::new("the emulated board has no flash, so it keeps no memory")
                 .with_help("name a real board by --port");
@@ -70,9 +70,9 @@ impl AnsweringBoard {
     }
 
     /// Error: the memory was not written to the board's flash.
-    pub fn not_written(&self, outcome: MemoryOutcome) -> Failure {
+    pub fn write_error(&self, outcome: MemoryOutcome) -> Failure {
         if self.emulated {
-            return self.keeps_nothing();
+            return self.no_memory_error();
         }
         if outcome == MemoryOutcome::LowSupply {
             return Failure::new(format!(

@@ -96,7 +96,7 @@ fn board_page(board: &Board) -> Sheet {
     page.row("core clock", megahertz(board.core_rate()));
     let [first, second] = board.slots();
     page.row("flash", format!("{} KiB, {} KiB for an image", board.flash_bytes >> 10, board.image_bytes() >> 10));
-    page.row("what was learnt", format!("at {:#010x} and {:#010x}", first.address, second.address));
+    page.row("stored parameters", format!("at {:#010x} and {:#010x}", first.address, second.address));
     page.row("RAM", format!("{} KiB", board.ram_bytes >> 10));
     page.heading("Clock");
     page.row(
@@ -111,7 +111,7 @@ fn board_page(board: &Board) -> Sheet {
     let serial = &board.serial;
     let line = format!("{}: {} out, {} in, {} baud", serial.unit, serial.send.pin, serial.receive.pin, serial.baud);
     page.row("line to the host", line);
-    page.row("hold of the supply", output(board.supply));
+    page.row("supply latch", output(board.supply));
     page.row("enable", output(board.enable));
     page.row("status light", output(board.light));
     page.row(
@@ -125,7 +125,7 @@ fn board_page(board: &Board) -> Sheet {
     );
     let without_use = board.pins_without_use();
     if !without_use.is_empty() {
-        page.heading("Not used by any image yet, and left alone");
+        page.heading("Not used by any image");
         for (key, pin) in without_use {
             page.row(key, pin.to_string());
         }

@@ -20,11 +20,10 @@ use crate::image::ImageRole;
 #[command(after_help = "Examples:
   joint budget                                          joint q1 on the olimex-h405 at 20 kHz
   joint budget joints/l1.toml --board nucleo-h743zi --rate 40000
-  joint budget q1 --role loop --rate 10000              the same verdict that image, flash and hil refuse by
+  joint budget q1 --role loop --rate 10000              the verdict that image, flash and hil apply
   joint budget paper --rate 10000 --accuracy 1e-3 --json -
 
-Exit code 2 if the board has no time for that rate, 1 if the error is greater than was asked for by --accuracy; each time
-with a rate that would do.")]
+Exit code 2 if the board is too slow for the rate, 1 if the error exceeds --accuracy; the message names a rate that works.")]
 pub struct Arguments {
     /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, c1, paper, paper_printed
     #[arg(default_value = "q1", value_name = "FILE")]
@@ -64,10 +63,10 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     let accuracy = &summary.verdicts.accuracy;
     if arguments.accuracy.is_some() && !accuracy.reached {
         let help = match accuracy.rate_that_reaches_it_Hz {
-            Some(rate) => format!("it would be at `--rate {rate}`"),
-            None => "no rate was found at which it would be: heavier planets or more damping would help".to_owned(),
+            Some(rate) => format!("use `--rate {rate}`"),
+            None => "no rate reaches that accuracy: use heavier planets or more damping".to_owned(),
         };
-        let message = format!("the error of {} at {rate} Hz is greater than {wanted:.1e}", parameters.name);
+        let message = format!("the error of {} at {rate} Hz exceeds {wanted:.1e}", parameters.name);
         return Err(Failure::check_failed(message).with_help(help));
     }
     Ok(())

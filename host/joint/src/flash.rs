@@ -12,7 +12,7 @@ use crate::image;
 #[group(id = "flash")]
 #[command(after_help = "Examples:
   joint flash --board nucleo-g474re                     joint q1 onto the board behind the debug probe
-  joint flash joints/l1.toml --board weact-f405 --dfu   onto the board on USB, which was started with BOOT0 high
+  joint flash joints/l1.toml --board weact-f405 --dfu   onto the board on USB, started with BOOT0 high
   joint flash --board my_board.toml --role observer
 
 The board must be named: the pins of one board are gate inputs of another.")]

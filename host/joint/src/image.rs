@@ -109,7 +109,7 @@ pub fn build(arguments: &Image, board: &Board) -> Outcome<image::Image> {
     let say = |line: &str| progress.say(line);
     let predicted = role.predict(parameters, board, rate);
     if !predicted.has_room() {
-        say(&format!("predicted for {}, from {ORIGIN}: {predicted}; it is built all the same", board.name()));
+        say(&format!("predicted for {}, from {ORIGIN}: {predicted}; building anyway", board.name()));
     }
     progress.stage("preparing the toolchain");
     let built = Toolchain::prepare(&say).and_then(|toolchain| {

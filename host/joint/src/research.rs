@@ -40,7 +40,7 @@ pub fn run(package: &str, rest: &[OsString]) -> Outcome<()> {
         Some(0) => Ok(()),
         // The program has printed its own error.
         Some(code) => std::process::exit(code),
-        None => Err(Failure::interrupted(format!("`{package}` was ended by a signal"))),
+        None => Err(Failure::interrupted(format!("a signal ended `{package}`"))),
     }
 }
 

@@ -108,7 +108,7 @@ fn memory_round_trip_over_line() {
     let flash = Flash::empty();
     let (port, _open) = board(&[], &flash);
     memory(&["read", text(&folder.path().join("none"))], &port)
-        .refused(&["keeps no memory", "joint memory keep --port"]);
+        .refused(&["has no stored memory", "joint memory keep --port"]);
     memory(&["write", text(&path)], &port).succeeded();
     assert_eq!(flash.kept(), Some(bytes));
     let copy = folder.path().join("copy");
@@ -173,8 +173,8 @@ fn flash_faults_name_remedy() {
     let worn = Flash::empty();
     worn.cells().works = false;
     let (port, _worn) = board(&[], &worn);
-    memory(&["write", text(&path)], &port).refused(&["does not read as it was written"]);
-    memory(&["keep"], &port).refused(&["does not read as it was written"]);
+    memory(&["write", text(&path)], &port).refused(&["does not read back as written"]);
+    memory(&["keep"], &port).refused(&["does not read back as written"]);
     let starved = Flash::empty();
     starved.cells().is_starved = true;
     let (port, _starved) = board(&[], &starved);
@@ -185,7 +185,8 @@ fn flash_faults_name_remedy() {
 fn plant_board_names_observer_image() {
     let (master, _slave, port) = pseudo_terminal::pair();
     drop(thread_board::start(master, thread_board::Misbehaviour::None));
-    memory(&["erase"], &port).refused(&["role `plant`, which learns nothing", "cargo joint flash q1 --role observer"]);
+    memory(&["erase"], &port)
+        .refused(&["role `plant`, which estimates no parameters", "cargo joint flash q1 --role observer"]);
 }
 
 #[test]

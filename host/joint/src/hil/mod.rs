@@ -45,13 +45,13 @@ fn run_default_tests(arguments: &Arguments, joint: Outcome<()>, progress: &Progr
     let tests = scenario::run(&tests::default_test_request(arguments), progress);
     if !arguments.full {
         let left = tests::skipped_tests()?.len();
-        output::print(&format!("left to `joint hil --full`: {left} more tests, all of them with all their seeds\n"))?;
+        output::print(&format!("`joint hil --full` runs {left} more tests, and every test with all its seeds\n"))?;
     }
     match (joint, tests) {
         (Ok(()), Ok(())) => output::print("passed:  the joint on the board, observer and compensation\n"),
         (Err(joint), Err(tests)) if tests.exit_code() == check_failed => {
             Err(Failure::check_failed(format!("{}; {}", joint.message(), tests.message()))
-                .with_help("the reports lead with what failed"))
+                .with_help("the reports list the failed checks first"))
         }
         (joint, tests) => tests.and(joint),
     }
@@ -61,7 +61,7 @@ fn run_default_tests(arguments: &Arguments, joint: Outcome<()>, progress: &Progr
 /// flashes another one, so the tests cannot follow at once.
 fn print_test_command(line: &LineOptions) -> Outcome<()> {
     output::print(&format!(
-        "tests of observer and compensation take an image of their own, which is built and named by\n\
+        "tests of observer and compensation need another image; build it with\n\
          joint hil hil/t2.toml --role loop{}\n",
         line.again()
     ))

@@ -22,7 +22,7 @@ pub fn test_request(arguments: &Arguments) -> Outcome<TestRequest<'_>> {
         ("duration", arguments.duration.is_some(), "write duration_s into the test file"),
         ("profile", arguments.profile.is_some(), "write profile into the test file"),
         ("rate", arguments.rate.is_some(), "write drive_train.control_rate_Hz into [known] of the test file"),
-        ("decimation", arguments.decimation.is_some(), "leave it out: the log of a run has what there is"),
+        ("decimation", arguments.decimation.is_some(), "leave it out: the log of a run has a fixed rate"),
         ("picture", arguments.picture.is_some(), "leave it out: the report has pictures"),
         ("no-reference", arguments.no_reference, "leave it out: --plant says what is controlled"),
         ("check", arguments.check, "leave FILE out, or name a joint"),
@@ -32,12 +32,13 @@ pub fn test_request(arguments: &Arguments) -> Outcome<TestRequest<'_>> {
         return Err(Failure::new(message).with_help(*remedy));
     }
     if arguments.mode.is_some() && (arguments.host || arguments.role == Some(RoleName::Observer)) {
-        return Err(Failure::new("--mode is for a whole loop on a board: all else goes step by step")
+        return Err(Failure::new("--mode is for a whole loop on a board: all other tests run in lockstep")
             .with_help("leave it out, or run on a board with --role loop"));
     }
     if arguments.full && arguments.seed.is_some() && !arguments.file().is_dir() {
-        return Err(Failure::new("--full asks for the full list of seeds, and --seed for one of them")
-            .with_help("leave one of them out"));
+        return Err(
+            Failure::new("--full runs the full list of seeds, and --seed one seed").with_help("leave one of them out")
+        );
     }
     if let (true, Some(port)) = (arguments.host, &arguments.line.port) {
         return Err(Failure::new(format!("--host runs without a board, and --port {port} names one"))
@@ -130,5 +131,5 @@ pub fn reject_test_arguments(arguments: &Arguments) -> Outcome<()> {
         (None, Err(why)) => format!("cannot read the test file {file}: {why}"),
     };
     Err(Failure::new(message)
-        .with_help("name a test file such as hil/t2.toml; docs/reference/hil-file.md tells how to write one"))
+        .with_help("name a test file such as hil/t2.toml; docs/reference/hil-file.md describes the format"))
 }

@@ -10,16 +10,16 @@ use board::line_options::RoleName;
 /// Arguments of `joint memory`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "A memory is what the observer on a board has learnt: half-backlash, compliance, offset, encoder errors. It \
-is good for the joint file and encoders that the board's image was built from, and for nothing else.
+    after_help = "A memory holds the parameters that the observer on a board has estimated: half-backlash, compliance, offset, encoder \
+errors. It is valid only with the joint file and encoders that the board's image was built from.
 
 Examples:
-  joint memory keep --port /dev/ttyACM0               what was learnt in the last run, to the flash
-  joint memory read q1.memory --port /dev/ttyACM0     from the flash to a file, and shown
-  joint memory show q1.memory --joint joints/q1.toml  what is in it
+  joint memory keep --port /dev/ttyACM0               parameters of the last run, to the flash
+  joint memory read q1.memory --port /dev/ttyACM0     from the flash to a file, and show
+  joint memory show q1.memory --joint joints/q1.toml  show the contents
   joint memory write q1.memory --port /dev/ttyACM0    to the flash of a board
-  joint memory write q1.memory --joint q1             judged by the firmware on the emulated board
-  joint memory erase --port /dev/ttyACM0              forgotten
+  joint memory write q1.memory --joint q1             checked by the firmware on the emulated board
+  joint memory erase --port /dev/ttyACM0              erase the flash
 
 Exit code: 0 if it was done, 2 for bad input or a bad environment, 130 after Ctrl-C."
 )]

@@ -44,8 +44,8 @@ impl ConnectedBoard {
             place.line.port.as_ref().map_or("the emulated board".to_owned(), |path| format!("the board on {path}"));
         if hello.role == Role::Plant {
             let role = word(hello.role);
-            return Err(Failure::new(format!("{name} has an image of role `{role}`, which learns nothing"))
-                .with_help(format!("flash one that does: {flash}")));
+            return Err(Failure::new(format!("{name} has an image of role `{role}`, which estimates no parameters"))
+                .with_help(format!("flash an observer: {flash}")));
         }
         Ok(Self { session, hello, name, options, emulated: place.line.port.is_none() })
     }
@@ -58,15 +58,15 @@ impl ConnectedBoard {
     /// Error: the board's flash holds no memory.
     pub fn no_memory_error(&self) -> Failure {
         if self.emulated {
-            return Failure::new("the emulated board has no flash, so it keeps no memory")
+            return Failure::new("the emulated board has no flash, so it stores no memory")
                 .with_help("name a real board by --port");
         }
         if self.hello.memory == MemoryState::Damaged {
-            return Failure::new(format!("what {} keeps cannot be read", self.name))
+            return Failure::new(format!("the stored memory of {} cannot be read", self.name))
                 .with_help(format!("erase it: joint memory erase{}", self.options));
         }
-        Failure::new(format!("{} keeps no memory", self.name))
-            .with_help(format!("let it learn in a run, then have it kept: joint memory keep{}", self.options))
+        Failure::new(format!("{} has no stored memory", self.name))
+            .with_help(format!("run it once, then save its parameters: joint memory keep{}", self.options))
     }
 
     /// Error: the memory was not written to the board's flash.
@@ -79,10 +79,10 @@ impl ConnectedBoard {
                 "the supply of {} is too low to write its flash: nothing was changed",
                 self.name
             ))
-            .with_help("feed it with 3.3 V, 3.1 V at least, and try again");
+            .with_help("supply 3.3 V, at least 3.1 V, and try again");
         }
-        Failure::new(format!("the flash of {} does not read as it was written", self.name))
-            .with_help("try again; if it stays so it is worn out or write-protected (option bytes)")
+        Failure::new(format!("the flash of {} does not read back as written", self.name))
+            .with_help("try again; if the error persists, the flash is worn out or write-protected (option bytes)")
     }
 }
 

@@ -34,9 +34,9 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
         Command::Read { file, place } => read(file, place, progress),
         Command::Write { file, place } => write(file, place, progress),
         Command::Keep { place } => {
-            change_flash(place, progress, Session::save_memory, "keeps what it has learnt, in its flash")
+            change_flash(place, progress, Session::save_memory, "has saved its estimated parameters in its flash")
         }
-        Command::Erase { place } => change_flash(place, progress, Session::erase_memory, "keeps no memory now"),
+        Command::Erase { place } => change_flash(place, progress, Session::erase_memory, "has no memory now"),
     })
 }
 
@@ -66,7 +66,7 @@ fn read(file: &Path, place: &BoardArguments, progress: &Progress) -> Outcome<()>
     if let Err(error) = &content
         && *error != MemoryError::OtherJoint
     {
-        let what = format!("what {} keeps is not used by it", found.name);
+        let what = format!("{} does not use its stored memory", found.name);
         return Err(Failure::new(format!("{what}: {}", message_and_help(*error).0))
             .with_help(format!("erase it: joint memory erase{}", found.options)));
     }
@@ -75,7 +75,7 @@ fn read(file: &Path, place: &BoardArguments, progress: &Progress) -> Outcome<()>
     match content {
         Ok(content) => output::print(&content.text(&name, &loaded)),
         Err(_) => output::print(&format!(
-            "{name} written; it is of another joint than {}, or of other encoders: show it with its own --joint\n",
+            "{name} written; it belongs to a joint or encoders other than {}: show it with its own --joint\n",
             loaded.name
         )),
     }
@@ -99,10 +99,10 @@ fn write(file: &Path, place: &BoardArguments, progress: &Progress) -> Outcome<()
     progress.clear();
     match kept {
         MemoryOutcome::Stored => {
-            output::print(&format!("{name} is in the flash of {}: runs may begin from it\n", found.name))
+            output::print(&format!("{name} is in the flash of {}: runs can start from it\n", found.name))
         }
         _ if found.is_emulated() => output::print(&format!(
-            "{name} is good: the firmware of {} takes it; nothing of it stays, since that board has no flash\n",
+            "{name} is good: the firmware of {} accepts it; it is not stored, since that board has no flash\n",
             found.name
         )),
         outcome => Err(found.write_error(outcome)),
@@ -131,10 +131,8 @@ fn load(file: &Path) -> Outcome<Memory> {
     let bytes = input::bytes(file, input::LARGEST_TYPED).map_err(failed)?;
     let count = bytes.len();
     bytes.try_into().map_err(|_| {
-        Failure::new(format!(
-            "{name} is no memory of an observer: it has {count} bytes, and a memory has {MEMORY_BYTES}"
-        ))
-        .with_help(READ_HELP)
+        Failure::new(format!("{name} is not a memory: it has {count} bytes, and a memory has {MEMORY_BYTES}"))
+            .with_help(READ_HELP)
     })
 }
 

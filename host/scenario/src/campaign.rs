@@ -1,5 +1,4 @@
-//! Runs one test: every seed and every controller, on all cores, and combines the results. The order of completion does
-//! not change them.
+//! Runs one test: every seed and every controller, on all cores. The results do not depend on the order of completion.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -28,31 +27,31 @@ use report::folder::Folder;
 use report::seeds::Seeds;
 use simulation::bandwidth::Bandwidth;
 
-/// How tests are run.
+/// Options of a run of tests.
 pub struct RunOptions<'c> {
-    /// What is controlled.
+    /// Model of the joint.
     pub plant: PlantName,
     /// Seeds in place of the file's.
     pub seed: Option<Seeds>,
-    /// The full lists of seeds.
+    /// Runs the full lists of seeds.
     pub full: bool,
-    /// The boards that the tested controller runs on, if it does not run here.
+    /// Boards for the tested controller; `None` runs it on the host.
     pub boards: Option<&'c Boards<'c>>,
-    /// Whether what observers have learnt is kept, as a board keeps it.
+    /// Saves the estimated parameters after each run, as a board does.
     pub memories: bool,
-    /// Where logs go.
+    /// Folder of the logs.
     pub folder: &'c Folder,
-    /// Told after every run how many are done.
+    /// Called after every run with the number of finished runs.
     pub done: &'c (dyn Fn(u32) + Sync),
 }
 
 /// A finished test: its record, and the data of its pictures.
 pub struct FinishedTest {
-    /// Everything that is written.
+    /// Record that is written.
     pub record: TestRecord,
-    /// The shown seed's runs, in the order of the record's controllers.
+    /// Runs of the shown seed, in the order of the record's controllers.
     pub shown: Vec<(ControllerName, Trace)>,
-    /// Faults by their words, with the times at which they begin and end [s].
+    /// Words of the faults, with their start and end times [s].
     pub faults: Vec<(&'static str, [f64; 2])>,
 }
 
@@ -60,17 +59,18 @@ pub struct FinishedTest {
 struct Job {
     seed: u64,
     controller: ControllerName,
-    /// Whether its log, and what pictures are drawn from, are kept.
+    /// Keeps the log and the data of the pictures.
     keep_logs: bool,
 }
 
-/// Of more seeds than this only the shown one leaves a log: a log has some megabytes, and `--seed` repeats any run.
+/// Largest number of seeds for which every run leaves a log of some megabytes. Above, only the shown seed does;
+/// `--seed` repeats any run.
 const MOST_LOGGED: usize = 100;
 
 struct Done {
     values: Option<MetricValues>,
     run: TestRun,
-    /// For the pictures, if it is kept.
+    /// Data of the pictures, if kept.
     trace: Option<Trace>,
 }
 
@@ -114,7 +114,7 @@ pub fn run(test: &Test, options: &RunOptions<'_>, before: &AtomicU32) -> Outcome
         done[place].values.clone()
     };
     let assertions = judge(&test.file, &Results { seeds: &seeds, of: &of });
-    // What the tested controller broke off for is the test's own failure; a rival that breaks only costs its figures.
+    // If the tested controller's run breaks off, the test fails; a rival's broken run only costs its figures.
     let own = |(job, done): (&Job, &Done)| {
         let why = done.run.broken.as_ref().filter(|_| job.controller == test.file.controller)?;
         Some((job.seed, format!("seed {}: {why}", job.seed)))
@@ -131,7 +131,7 @@ pub fn run(test: &Test, options: &RunOptions<'_>, before: &AtomicU32) -> Outcome
     let mut shown = Vec::new();
     for (job, mut done) in jobs.iter().zip(done) {
         if job.seed == shown_seed {
-            // The same run again, with all that was not kept of so many.
+            // Repeats the run with the log and the pictures that were not kept for so many seeds.
             if !keep_logs {
                 done = one(test, options, &Job { keep_logs: true, ..*job }, deadline)?;
             }
@@ -181,8 +181,7 @@ fn bandwidth(test: &Test, seed: u64) -> Option<BandwidthRecord> {
     })
 }
 
-/// The seed whose run alone shows all that failed, if there is one: what is made of several seeds, or fails with several,
-/// takes them all.
+/// The only seed that shows every failure, if there is one; figures over several seeds need all of them.
 fn alone(failed: &[&AssertionRecord], broken: &[(u64, String)]) -> Option<u64> {
     let of_one =
         failed.iter().map(|assertion| assertion.seed.filter(|_| assertion.aggregate == Aggregate::Worst.word()));
@@ -191,7 +190,7 @@ fn alone(failed: &[&AssertionRecord], broken: &[(u64, String)]) -> Option<u64> {
     seeds.all(|seed| seed == Some(first)).then_some(first)
 }
 
-/// The command that runs what failed again; with a seed only that of all.
+/// Command that repeats the failures; with a seed, only that seed's.
 fn replay(test: &Test, options: &RunOptions<'_>, alone: Option<u64>) -> String {
     let place = options.boards.map_or("--host".to_owned(), Boards::arguments);
     let alone = alone.map(|seed| Seeds { first: seed, last: seed });
@@ -205,8 +204,8 @@ fn replay(test: &Test, options: &RunOptions<'_>, alone: Option<u64>) -> String {
 
 fn one(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) -> Outcome<Done> {
     let mut case = test.case(job.seed)?;
-    // A log carries the joint file of its observer. A guess that no joint file may have is run all the same where nobody
-    // else reads it.
+    // A log carries the joint file of its observer. A nominal joint outside the limits of joint files is run anyway if
+    // no board or memory needs the file.
     if let Err(refused) = case.round_nominal()
         && (options.boards.is_some() || options.memories)
     {

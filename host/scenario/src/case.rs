@@ -1,5 +1,5 @@
-//! One case of a test file, for one seed: the true joint and its surroundings, the nominal joint that controllers are
-//! told, the motion, the disturbance torques.
+//! One case of a test file, for one seed: the true joint with its surroundings, the nominal joint for the controllers,
+//! the motion, and the disturbance torques.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -30,52 +30,52 @@ use report::failure::{Failure, Outcome};
 
 /// One seed of a test.
 pub struct Case {
-    /// The true joint.
+    /// True joint.
     pub truth: JointFile,
-    /// What truly surrounds it.
+    /// True drive train.
     pub train: DriveTrainParameters,
-    /// The nominal joint, which controllers are designed to; its backlash is guessed.
+    /// Nominal joint, for which the controllers are designed; its backlash is a guess.
     pub nominal: JointParameters,
-    /// Its nominal surroundings.
+    /// Nominal surroundings.
     pub nominal_surroundings: Surroundings,
     /// Guessed over true half-backlash.
     pub width_guess: f64,
-    /// Where the zeros of the encoders lie.
+    /// Zeros of the encoders.
     pub zeros: EncoderZeros,
-    /// Where the link shall be.
+    /// Desired motion of the link.
     pub motion: SharedProfile,
     /// Disturbance torques on the link.
     pub disturbances: Vec<Disturbance>,
-    /// What the seed drew, by the names of the keys.
+    /// Values that the seed drew, by key.
     pub drawn: BTreeMap<String, f64>,
-    /// Texts of the joint files: as controllers know the joint but for its backlash, and the truth.
+    /// Texts of the joint files: nominal except for the backlash, and true.
     texts: [String; 2],
-    /// The nominal joint is just what its file says.
+    /// True once the nominal joint equals its joint file in every bit.
     is_told: bool,
 }
 
-/// The designed tables of observer, compensation and width probe for a case.
+/// Designed tables of observer, compensation and width probe.
 pub struct Designed {
     /// Tables of the observer.
     pub observer: ObserverTables<f32>,
     /// Tables of the compensation.
     pub compensation: CompensationTables<f32>,
-    /// Table of the width probe, where one can be.
+    /// Table of the width probe, if the joint allows one.
     pub probe: Option<ProbeTable<f32>>,
     /// Clock ticks in a control period.
     pub ticks: u32,
 }
 
-/// Takes one value of a range.
+/// Draws one value of a range.
 type Draw<'p> = dyn FnMut(&str, NumberOrRange) -> f64 + 'p;
 
 impl Case {
-    /// The case of a seed. `text` is the joint file's.
+    /// Draws the case of a seed; `text` is the joint file's.
     pub fn new(file: &TestFile, text: &str, seed: u64, motion: Option<&RecordedMotion>) -> Outcome<Self> {
         let mut drawn = BTreeMap::new();
         let mut draw = |name: &str, quantity: NumberOrRange| {
             let mut stream = RandomStream::new(seed, name);
-            // An encoder has no half bits and no half counts.
+            // Bits and counts of an encoder are whole numbers.
             let whole = [".bits", ".counts_per_turn"].iter().any(|key| name.ends_with(key));
             let value = if whole { quantity.draw_whole(&mut stream) } else { quantity.draw(&mut stream) };
             if matches!(quantity, NumberOrRange::Between(..)) {
@@ -93,7 +93,7 @@ impl Case {
         };
         let [known, truth] = &texts;
         let (known, truth) = (read(known)?, read(truth)?);
-        // An unmeasured width is wrong by half, one way or the other.
+        // An unmeasured width is wrong by half, the sign depending on the seed.
         let usual = NumberOrRange::Exactly(if seed.is_multiple_of(2) { 0.5 } else { 1.5 });
         let width_guess = draw("width_guess_ratio", file.width_guess.unwrap_or(usual));
         let mut nominal = known.parameters.clone();
@@ -128,12 +128,12 @@ impl Case {
         })
     }
 
-    /// The joint file of the truth.
+    /// Text of the true joint file.
     pub fn truth_text(&self) -> &str {
         &self.texts[1]
     }
 
-    /// The nominal joint file, which controllers are designed to.
+    /// Text of the nominal joint file, for which the controllers are designed.
     pub fn nominal_text(&self) -> Outcome<String> {
         let (key, value) = match self.nominal.equivalent_gear() {
             Some(gear) => ("equivalent_gear.lost_motion_mrad", 1e3 * gear.lost_motion),
@@ -146,14 +146,15 @@ impl Case {
             .map_err(|refused| Failure::new(refused.message).with_help(refused.help))
     }
 
-    /// What an observer of this case repeats a run from, if a joint file says all that it was told.
+    /// Data from which an observer of this case can repeat a run; `None` unless the joint file holds all of the nominal
+    /// joint.
     pub fn observer_origin(&self, file: &TestFile, memory: Option<Memory>) -> Option<ObserverOrigin> {
         let joint_file = self.nominal_text().ok().filter(|_| self.is_told)?;
         Some(ObserverOrigin { joint_file, output_encoder: file.output_encoder, memory })
     }
 
-    /// Tells controllers no more than a joint file can say, so that host and a board built from the file have the same numbers
-    /// to the last bit.
+    /// Rounds the nominal joint to the numbers of its joint file, so that the host and a board built from the file
+    /// agree in every bit.
     pub fn round_nominal(&mut self) -> Outcome<()> {
         let nominal = read_told(&self.nominal_text()?)?;
         self.nominal = nominal.parameters;
@@ -167,7 +168,7 @@ impl Case {
         half_backlash(&self.truth.parameters)
     }
 
-    /// The same case with teeth that have no gap.
+    /// True joint without backlash.
     pub fn joint_without_gap(&self) -> JointParameters {
         let mut joint = self.truth.parameters.clone();
         for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
@@ -176,12 +177,12 @@ impl Case {
         joint
     }
 
-    /// What rivals know: the truth, but for the width.
+    /// Knowledge of the rivals: the truth except for the width.
     pub fn knowledge(&self) -> Knowledge {
         Knowledge::of(&self.truth.parameters, &self.train, self.width_guess)
     }
 
-    /// Designs observer and compensation from what they are told.
+    /// Designs observer and compensation for the nominal joint.
     pub fn design(&self, file: &TestFile) -> Outcome<Designed> {
         let mut settings = observer_settings(&self.nominal_surroundings);
         if !file.output_encoder {
@@ -196,25 +197,25 @@ impl Case {
         Ok(Designed { observer, compensation, probe, ticks: settings.clock_rate / settings.control_rate })
     }
 
-    /// What a compensation is designed to, as a file asks for it.
+    /// Settings of the compensation's design, as the file asks.
     pub fn settings_of_law(&self, file: &TestFile, bandwidth: f64) -> CompensationSettings {
         let usual = compensation_settings(&self.nominal_surroundings, bandwidth);
         CompensationSettings { peak_torque: file.peak_torque, ..usual }
     }
 
-    /// Bandwidth of all controllers of a test [rad/s]: what its file asks for, or what is good for the nominal joint.
+    /// Bandwidth of all controllers of a test [rad/s]: the file's, or the default of the nominal joint.
     pub fn bandwidth(&self, file: &TestFile) -> Outcome<f64> {
         let good = || good_bandwidth(&self.nominal, &self.nominal_surroundings);
         file.bandwidth.map_or_else(good, Ok).map_err(|error| self.refused("compensation", &error))
     }
 
-    /// Why nothing can be designed for the nominal joint.
+    /// Error: the nominal joint cannot be designed for.
     fn refused(&self, what: &str, error: &dyn std::fmt::Display) -> Failure {
         Failure::new(format!("no {what} can be designed for joint `{}`: {error}", self.nominal.name))
     }
 }
 
-/// A joint file that a controller is told.
+/// Reads the joint file of a controller.
 pub fn read_told(text: &str) -> Outcome<JointFile> {
     joint_file::read(text).map_err(|problems| {
         let first = problems.first().map_or_else(String::new, ToString::to_string);
@@ -222,7 +223,7 @@ pub fn read_told(text: &str) -> Outcome<JointFile> {
     })
 }
 
-/// Tries the changes of a file at both ends of their ranges, so that what cannot be is found before anything runs.
+/// Checks the changes of a file at both ends of their ranges, before any run.
 pub fn check_changes(file: &TestFile, text: &str) -> Result<(), Vec<Problem>> {
     for end in [0, 1] {
         texts(file, text, &mut |_, quantity| quantity.ends()[end]).map_err(|problem| vec![problem])?;
@@ -230,7 +231,7 @@ pub fn check_changes(file: &TestFile, text: &str) -> Result<(), Vec<Problem>> {
     Ok(())
 }
 
-/// The joint file as controllers know it, and as it truly is.
+/// Texts of the nominal and of the true joint file.
 fn texts(file: &TestFile, text: &str, draw: &mut Draw<'_>) -> Result<[String; 2], Problem> {
     let rated = joint_file::read(text).map_or(1.0, |joint| joint.parameters.rated_output_torque);
     let mut known = text.to_owned();
@@ -248,8 +249,8 @@ fn texts(file: &TestFile, text: &str, draw: &mut Draw<'_>) -> Result<[String; 2]
     Ok([known, truth])
 }
 
-/// Applies changes to the text of a joint file. Keys may need one another, so the joint is read once all changes are made; only if it
-/// cannot be read is the first change found with which it cannot.
+/// Applies changes to the text of a joint file. Keys may depend on one another, so the joint is read after all changes;
+/// only if it cannot be read is the first change found after which it cannot.
 fn apply(text: &mut String, changes: &[Change], section: &str, draw: &mut Draw<'_>) -> Result<(), Problem> {
     let before = text.clone();
     for change in changes {
@@ -264,7 +265,7 @@ fn apply(text: &mut String, changes: &[Change], section: &str, draw: &mut Draw<'
         apply_one(text, change, section, draw)?;
         let problems = joint_file::read(text).err();
         let first = problems.and_then(|list| list.into_iter().find(|problem| problem.severity == Severity::Error));
-        // What a later change mends is no problem of this one.
+        // A problem that a later change removes is not reported.
         last = first.map(|first| last.take().unwrap_or((change.span.clone(), first.message, first.help)));
     }
     last.map_or(Ok(()), |(span, message, help)| Err(problem(span, format!("the joint would be none: {message}"), help)))
@@ -289,7 +290,7 @@ fn apply_one(text: &mut String, change: &Change, section: &str, draw: &mut Draw<
     Ok(())
 }
 
-/// A number for a key; whole numbers stay whole, since some keys want them.
+/// Formats a number for a key; whole numbers stay whole, as some keys require.
 fn typed(value: f64, quantity: NumberOrRange) -> String {
     let whole = quantity.ends().iter().all(|end| end.fract() == 0.0 && end.abs() < 1e9);
     match quantity {
@@ -302,7 +303,7 @@ fn problem(span: std::ops::Range<usize>, message: impl Into<String>, help: impl 
     Problem { span, message: message.into(), help: help.into(), severity: Severity::Error }
 }
 
-/// The recorded motion of a file, if it has one.
+/// Recorded motion of a file, if any.
 pub fn recorded(file: &TestFile, folder: &Path) -> Outcome<Option<RecordedMotion>> {
     match &file.profile.trajectory {
         Trajectory::File(name) => RecordedMotion::read(&folder.join(name)).map(Some),
@@ -326,7 +327,7 @@ fn trajectory(profile: &MotionProfile, recorded: Option<&RecordedMotion>, seed: 
             Arc::new(Standard::Walking { amplitude: *amplitude, frequency: *frequency })
         }
         (Trajectory::Hold(angle), _) => Arc::new(Standard::Hold(*angle)),
-        // A recording has been read, and a motion of a seed is drawn before it comes here.
+        // A recording has been read, and a random motion drawn, before this point.
         (Trajectory::File(_) | Trajectory::Any | Trajectory::Real(_), None) => Arc::new(Standard::Hold(0.0)),
     }
 }
@@ -338,7 +339,7 @@ mod tests {
     use crate::file::{self, ProfileLoad, RealMotion, Trajectory};
     use reference::closed_loop::rivals::Knowledge;
 
-    /// A hundred motions with their loads of the preset Q1: each seed its own, all of them within the motor's torque.
+    /// A hundred motions with their loads on preset Q1: all differ, and all are within the motor's torque.
     #[test]
     fn motions_and_loads_are_within_the_motors_torque_and_no_two_are_the_same() {
         let text = joint_file::preset("q1").expect("a preset");
@@ -356,7 +357,7 @@ mod tests {
                 Trajectory::Steps(..) => 2,
                 _ => 3,
             }] += 1;
-            // Once a sine has swelled up; a load may come at its worst.
+            // Times after the start of a sine; the load may act at the worst time.
             let times = (1000..6000).map(|moment| f64::from(moment) * 1e-3);
             let accelerated = times.map(|time| inertia * case.motion.at(time).acceleration.abs()).fold(0.0, f64::max);
             let load = match profile.load {

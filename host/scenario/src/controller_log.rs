@@ -1,5 +1,5 @@
-//! What went into a controller and came out of it in every control period, as a topic of a run's log: counts and moments as
-//! the controller got them, torques, and a digest over all estimates. With it an observer repeats the run.
+//! Topic of a run's log with the inputs and outputs of the controller in every control period: counts and times as
+//! received, torques, and a digest over all estimates. From this topic an observer repeats the run.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -11,49 +11,49 @@ use super::estimate_fields::digest_of;
 
 /// Topic of every control period.
 pub const TOPIC: &str = "/joint/controller";
-/// Name of its schema.
+/// Name of the topic's schema.
 pub const SCHEMA_NAME: &str = "joint_msgs/msg/Controller";
 
 /// Number of the control period, in this and other topics of the log.
 pub const PERIOD: &str = "period";
-/// The digest of the estimates.
+/// Digest of the estimates.
 pub const DIGEST: &str = "estimates_digest";
-/// The torque that the observer was shown.
+/// Torque given to the observer.
 pub const SHOWN_TORQUE: &str = "shown_torque_Nm";
-/// Whether the output encoder gave a reading.
+/// Flag of a new reading of the output encoder.
 pub const OUTPUT_READ: &str = "output_read";
-/// Fields of 32 bits that make samples.
+/// Fields of 32 bits that form the samples.
 pub const SAMPLES: [&str; 5] =
     ["clock_ticks", "motor_counts", "motor_read_at_ticks", "output_counts", "output_read_at_ticks"];
 
 /// One control period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ControllerPeriod {
-    /// What the controller was shown.
+    /// Inputs of the controller.
     pub samples: Samples<f32>,
-    /// The torque that it asked for [N m].
+    /// Commanded torque [N m].
     pub torque: f32,
-    /// What its observer made of it.
+    /// Estimates of the observer, if the controller has one.
     pub estimates: Option<Estimates<f32>>,
 }
 
-/// What an observer must be told to repeat a run, as the log's remarks say it.
+/// Data that an observer needs to repeat a run, stored in the log's remarks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObserverOrigin {
-    /// Text of the joint file that it was designed from.
+    /// Text of the joint file of the observer's design.
     pub joint_file: String,
-    /// Whether it was shown the output encoder.
+    /// True if the observer had the output encoder.
     pub output_encoder: bool,
-    /// What it began with.
+    /// Memory that the observer started from.
     pub memory: Option<Memory>,
 }
 
-/// Names of remarks.
+/// Names of the remarks.
 const JOINT_FILE: &str = "observer_joint_file";
 const OUTPUT_ENCODER: &str = "observer_output_encoder";
 const MEMORY: &str = "observer_memory";
 
-/// The message as ROS 2 writes it down.
+/// Schema of the message in the text form of ROS 2.
 pub fn schema() -> String {
     let meanings = [
         "now, by the clock of all readings",
@@ -73,15 +73,15 @@ pub fn schema() -> String {
     text
 }
 
-/// Makes the messages of a run.
+/// Builds the messages of a run.
 #[derive(Debug, Default)]
 pub struct ControllerMessages {
-    /// The last reading of the output encoder.
+    /// Last reading of the output encoder.
     output: Reading,
 }
 
 impl ControllerMessages {
-    /// Of the next period.
+    /// Message of the next period.
     pub fn next(&mut self, time: f64, period: usize, of: &ControllerPeriod) -> Message {
         let ControllerPeriod { samples, torque, estimates } = of;
         self.output = samples.output.unwrap_or(self.output);
@@ -100,7 +100,7 @@ impl ControllerMessages {
 }
 
 impl ObserverOrigin {
-    /// As remarks.
+    /// Remarks for the log.
     pub fn remarks(&self) -> BTreeMap<String, String> {
         let hexadecimal = |memory: &Memory| {
             memory.iter().fold(String::new(), |mut text, byte| {
@@ -113,7 +113,7 @@ impl ObserverOrigin {
         both.into_iter().chain(memory).map(|(name, text)| (name.to_owned(), text)).collect()
     }
 
-    /// From remarks; nothing if they do not say it.
+    /// Parses remarks; `None` if they are incomplete.
     pub fn of(remarks: &BTreeMap<String, String>) -> Option<Self> {
         let bytes = |text: &String| -> Option<Memory> {
             let byte = |place: usize| u8::from_str_radix(text.get(2 * place..2 * place + 2)?, 16).ok();

@@ -1,32 +1,32 @@
-//! Disturbance torques on the link: of the profile, of the file, and of a recorded motion. Torques that are not given
-//! scale with the rated torque.
+//! Disturbance torques on the link: of the profile, of the file, and of a recorded motion. Torques without a stated
+//! value scale with the rated torque.
 
 use reference::drive_train::Disturbance;
 
 use super::file::{MotionProfile, ProfileLoad, TestFile, Wave};
 use super::recorded::RecordedMotion;
 
-/// A hold is disturbed by this part of the rated torque: 1.5 N m for Q1.
+/// Disturbance of a hold over the rated torque [-]: 1.5 N m for Q1.
 const DISTURBED: f64 = 0.125;
-/// An impact is this many times the rated torque.
+/// Torque of an impact over the rated torque [-].
 const IMPACT: f64 = 3.0;
 
-/// In a free hold the disturbing pulse comes so long before the figures begin [s].
+/// Time from the pulse of a free hold to the start of the figures [s].
 const BEFORE: f64 = 0.1;
 
-/// A foot is set down, or lifted, within this time [s].
+/// Time in which a foot is set down or lifted [s].
 const STEP_OF_A_FOOT: f64 = 0.02;
 
-/// Load of a foot over the rated torque: 3 N m for Q1. Assumed.
+/// Load of a foot over the rated torque [-]: 3 N m for Q1. Assumed.
 const STANCE: f64 = 0.25;
 
-/// Share of a step in which the foot is on the ground: that of walking people.
+/// Share of a step with the foot on the ground [-], as in human walking.
 const ON_THE_GROUND: f64 = 0.6;
 
-/// Length of the blow as the foot touches down, of half its load [s]. Assumed.
+/// Length of the touch-down pulse, of half the foot's load [s]. Assumed.
 const TOUCH_DOWN: f64 = 0.01;
 
-/// All torques on the link in a run of a file, under the load of its profile.
+/// All torques on the link in a run of a file, with the load of its profile.
 pub fn disturbances(
     file: &TestFile,
     profile: &MotionProfile,

@@ -1,18 +1,18 @@
-//! Where the zeros of both encoders lie. An encoder is mounted at any angle, so every seed draws them: a controller sees raw counts
-//! from there, and its set-points lie on the scale of the raw output encoder.
+//! Zeros of both encoders. An encoder may be mounted at any angle, so each seed draws the zeros: the controller
+//! receives raw counts, and its set-points are on the scale of the raw output encoder.
 
 use super::random::RandomStream;
 
-/// Share of the seeds whose encoder starts next to its wrap.
+/// Share of the seeds whose encoder starts close to its wrap [-].
 const NEAR_WRAP: f64 = 0.25;
 
-/// Distance from the wrap that counts as next to it [turns]: a few counts of 14 bits.
+/// Largest distance from the wrap in those seeds [turns]: a few counts of 14 bits.
 const NEAR: f64 = 3e-4;
 
-/// Readings of both encoders where a joint starts, as parts of a turn.
+/// Readings of both encoders at the start of the joint, as fractions of a turn.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EncoderZeros {
-    /// Of the motor encoder and of the output encoder [turns].
+    /// Readings of the motor encoder and the output encoder [turns].
     turns: [f64; 2],
 }
 
@@ -28,7 +28,7 @@ impl EncoderZeros {
         Self { turns: [place(), place()] }
     }
 
-    /// Raw readings for encoders of so many counts in a turn: motor, output.
+    /// Raw readings for given counts per turn: motor, output.
     pub fn counts(&self, counts_per_turn: [i64; 2]) -> [i64; 2] {
         [0, 1].map(|encoder| (self.turns[encoder] * counts_per_turn[encoder] as f64).floor() as i64)
     }

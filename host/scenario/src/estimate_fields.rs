@@ -1,5 +1,5 @@
-//! The observer's estimates as fields of a log: every value with its variance and validity in SI, states as words. One list
-//! for the logs of runs and for whoever replays them.
+//! Estimates of the observer as fields of a log: every value in SI with variance and validity, states as words. Logs of
+//! runs and replays share this list.
 
 use model_core::numbers::digest;
 use model_core::observer::{Estimates, MotorFault, Notices, OutputFault, Source, TorqueResponse};
@@ -10,14 +10,14 @@ use report::log::{Message, field};
 /// A number or flag of the estimates.
 #[derive(Debug, Clone, Copy)]
 pub struct EstimateField {
-    /// Its name, with the unit.
+    /// Name, with the unit.
     pub name: &'static str,
-    /// What it is.
+    /// Meaning.
     pub meaning: &'static str,
     value: Value,
 }
 
-/// How a field is had.
+/// Accessor of a field.
 #[derive(Debug, Clone, Copy)]
 enum Value {
     Number(fn(&Estimates<f32>) -> f32),
@@ -25,14 +25,14 @@ enum Value {
     Flag(fn(&Estimates<f32>) -> bool),
 }
 
-/// A field of a word.
+/// A field that is a word.
 #[derive(Debug, Clone, Copy)]
 pub struct WordField {
-    /// Its name.
+    /// Name.
     pub name: &'static str,
-    /// What it is.
+    /// Meaning.
     pub meaning: &'static str,
-    /// The word.
+    /// Accessor of the word.
     pub word: fn(&Estimates<f32>) -> &'static str,
 }
 
@@ -71,7 +71,7 @@ const ESTIMATES: [[EstimateField; 3]; 9] = [
     estimate!(torque_bias, "torque_bias", "_Nm", "_N2m2", "what the motor loses in either direction [N m]"),
     estimate!(motor_friction, "motor_friction", "_Nm", "_N2m2", "dry friction of the motor [N m]"),
 ];
-/// The others.
+/// Other numbers and flags.
 const OTHERS: [EstimateField; 15] = [
     number("estimated_link_inertia_ratio", "inertia of the link over the joint file's", |all| {
         all.link_inertia_ratio.value
@@ -116,7 +116,7 @@ pub const WORDS: [WordField; 4] = [
     },
 ];
 
-/// The field of all notices.
+/// Field of all notices: name and meaning.
 pub const NOTICES: (&str, &str) = (
     "observer_notices",
     "what was wrong with the samples: torque_unknown, out_of_time, motor_implausible, motor_jumped; torque_reversed, which stays",
@@ -128,7 +128,7 @@ pub fn fields() -> impl Iterator<Item = EstimateField> {
 }
 
 impl EstimateField {
-    /// Its value; a flag is 0 or 1.
+    /// Value of the field; a flag is 0 or 1.
     pub fn of(&self, estimates: &Estimates<f32>) -> f64 {
         match self.value {
             Value::Number(value) => value(estimates).into(),
@@ -137,13 +137,13 @@ impl EstimateField {
         }
     }
 
-    /// Whether it is 0 or 1.
+    /// Returns true for a flag.
     pub fn is_flag(&self) -> bool {
         matches!(self.value, Value::Flag(_))
     }
 }
 
-/// The fields as ROS 2 message text.
+/// Fields in the text form of ROS 2 messages.
 pub fn schema() -> String {
     let numbers =
         fields().map(|known| field(if known.is_flag() { "bool" } else { "float64" }, known.name, known.meaning));
@@ -164,7 +164,7 @@ pub fn add(message: &mut Message, estimates: Option<&Estimates<f32>>) {
     message.words(estimates.map_or_else(Vec::new, notices).into_iter());
 }
 
-/// Digest over every bit of the estimates, in 32 bits: two that differ once differ in the periods after that too.
+/// Digest over every bit of the estimates, in 32 bits. A difference in one period shows in the following periods too.
 pub fn digest_of(estimates: &Estimates<f32>) -> u32 {
     let numbers = fields().map(|field| field.of(estimates).to_bits());
     let words = WORDS.iter().flat_map(|field| (field.word)(estimates).bytes().map(u64::from));
@@ -173,7 +173,7 @@ pub fn digest_of(estimates: &Estimates<f32>) -> u32 {
     (digest ^ (digest >> 32)) as u32
 }
 
-/// Notices by name.
+/// Names of the active notices.
 pub fn notices(of: &Estimates<f32>) -> Vec<&'static str> {
     let Notices { torque_unknown, out_of_time, motor_implausible, motor_jumped } = of.notices;
     let all = [

@@ -1,6 +1,6 @@
-//! The results as JUnit XML, for a lab's own test server: a suite for each file, a case for each assertion; a file that could
-//! not run is a case that was skipped. Assertions are judged on the same runs: each has an equal share of their time, so that
-//! the cases' times add up to the suite's. What JUnit has no word for is in the JSON.
+//! Results as JUnit XML, for a lab's test server: a suite for each file, a case for each assertion; a file that could
+//! not run is a skipped case. Assertions share their runs, so the cases of a file share its time equally and their
+//! times add up to the suite's. Details without a JUnit element are in the JSON.
 
 use std::fmt::Write;
 
@@ -14,7 +14,8 @@ pub fn render(record: &TestsRecord) -> String {
     let tests = record.tests.iter().map(cases).sum::<usize>() + record.not_run.len();
     let failed: usize = record.tests.iter().map(|test| test.failed().count()).sum();
     let errors = record.tests.iter().filter(|test| test.broken.is_some()).count();
-    // What was skipped stands with each suite: the schema of Jenkins knows it there only. Writing to a string cannot fail.
+    // The number of skipped cases stands with each suite: the schema of Jenkins allows it only there. Writing to a
+    // string cannot fail.
     let _ = writeln!(
         xml,
         "<testsuites name=\"joint hil\" tests=\"{tests}\" failures=\"{failed}\" errors=\"{errors}\" time=\"{:.3}\">",
@@ -26,7 +27,7 @@ pub fn render(record: &TestsRecord) -> String {
     xml
 }
 
-/// A test that was broken off, or asserts nothing, has a case of its own.
+/// Number of cases of a test. A test that broke off, or asserts nothing, has a case of its own.
 fn cases(test: &TestRecord) -> usize {
     test.assertions.len() + usize::from(test.broken.is_some() || test.assertions.is_empty())
 }

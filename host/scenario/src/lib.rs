@@ -1,12 +1,12 @@
-//! `joint hil FILE.toml`: tests of observer and compensation that users write as files, run against the f64 reference
-//! or the core's own plant, and reported. Observer and compensation run on the host or, through `on_board`, on a board.
+//! `joint hil FILE.toml`: users' tests of observer and compensation, run against the f64 reference or the core's own
+//! plant, with reports. Observer and compensation run on the host or, through `on_board`, on a board.
 //!
-//! The order of a test: `file` reads the test file, `suite` finds files and joints, `case` draws the values of one
-//! seed; `execution` runs the case on the `rig`, which closes the loop between `plant` and `controller` through
-//! `faults`, with observer and compensation behind `port`, and `run_history` keeps what happened; `metrics`, `values`
-//! and `observer_metrics` compute the figures, `verdict` judges them, `campaign` combines all seeds; `page`, `junit`,
-//! `log_file` and `record` are the results on disk; `controller_log` and `estimate_fields` are what a log says of the
-//! controller.
+//! Order of a test: `file` reads the test file, `suite` finds files and joints, `case` draws the values of one seed;
+//! `execution` runs the case on the `rig`, which closes the loop between `plant` and `controller` through `faults`,
+//! with observer and compensation behind `port`, and `run_history` stores the run; `metrics`, `values` and
+//! `observer_metrics` compute the figures, `verdict` compares them with their bounds, `campaign` combines all seeds;
+//! `page`, `junit`, `log_file` and `record` are the results on disk; `controller_log` and `estimate_fields` are the
+//! controller's part of a log.
 
 mod any_motion;
 mod campaign;
@@ -63,56 +63,56 @@ use report::provenance;
 use report::seeds::Seeds;
 use report::write::write_text;
 
-/// The page, the results as JSON and as JUnit XML, and a log of every run.
+/// Names of the page, of the results as JSON and as JUnit XML, and of the logs.
 const REPORT: &str = "report.html";
 const RECORD: &str = "record.json";
 const JUNIT: &str = "junit.xml";
 const LOGS: &str = "runs/*.mcap";
-/// Everything that tests write.
+/// All files that tests write.
 const FILES: [&str; 6] = [REPORT, RECORD, JUNIT, LOGS, memory_file::MEMORIES, memory_file::JOINTS];
 
 /// A request to run tests.
 #[derive(Debug, Clone)]
 pub struct TestRequest<'w> {
-    /// Which tests, and where they run.
+    /// Groups of tests.
     pub parts: Vec<TestGroup<'w>>,
     /// Seeds in place of the files'.
     pub seed: Option<Seeds>,
-    /// The full lists of seeds.
+    /// Runs the full lists of seeds.
     pub full: bool,
-    /// Whether what observers on the host have learnt is kept.
+    /// Saves the estimated parameters after each run on the host.
     pub memories: bool,
-    /// Name of the usual folder for everything that stays.
+    /// Name of the default output folder.
     pub name: String,
-    /// Another folder.
+    /// Output folder in place of the default.
     pub out: Option<PathBuf>,
-    /// The results as JSON, too.
+    /// Further file for the results as JSON.
     pub json: Option<&'w Path>,
-    /// The results as JUnit XML, too.
+    /// Further file for the results as JUnit XML.
     pub junit: Option<&'w Path>,
 }
 
-/// Tests that run in one place.
+/// Tests that run on one kind of board, or on the host.
 #[derive(Debug, Clone)]
 pub struct TestGroup<'w> {
-    /// A test file, or a folder of them.
+    /// A test file, or a folder of test files.
     pub path: PathBuf,
-    /// Which of a folder.
+    /// Choice among the files of a folder.
     pub choice: Choice,
-    /// What is controlled.
+    /// Model of the joint.
     pub plant: PlantName,
-    /// The boards to run on; without them the host.
+    /// Boards to run on; `None` runs on the host.
     pub boards: Option<BoardRequest<'w>>,
 }
 
-/// A part that can be run.
+/// A group that is ready to run.
 struct PreparedGroup<'w> {
     suite: Suite,
     plant: PlantName,
     boards: Option<Boards<'w>>,
 }
 
-/// Runs tests; succeeds only if all ran and passed.
+/// Runs tests; fails unless all ran and passed.
 pub fn run(request: &TestRequest<'_>, progress: &Progress) -> Outcome<()> {
     let start = Instant::now();
     let folder = Folder::choose(request.out.as_deref(), "hil/tests", &request.name, &FILES)?;
@@ -143,7 +143,7 @@ pub fn run(request: &TestRequest<'_>, progress: &Progress) -> Outcome<()> {
     let document = page::document(&record, &tested);
     output::print(&(terminal(&document) + "\n"))?;
     write(request, &folder, &record, &document)?;
-    // Logs of an older run would be taken for this one's. Where a test has not run, its older log is all there is.
+    // Logs of an older run could be mistaken for this run's. If a test did not run, its older log is kept.
     if record.not_run.is_empty() {
         for files in [LOGS, memory_file::MEMORIES, memory_file::JOINTS] {
             folder.clear_older(files)?;
@@ -153,7 +153,7 @@ pub fn run(request: &TestRequest<'_>, progress: &Progress) -> Outcome<()> {
     verdict(&record)
 }
 
-/// What ran, and what could not.
+/// Finished tests, and files that could not run.
 type RunOrNot = (Vec<FinishedTest>, Vec<NotRun>);
 
 fn run_parts(
@@ -183,7 +183,7 @@ fn run_parts(
             one.iter().for_each(|one| progress.say_above(&page::line(&one.record)));
             one
         };
-        // A test on the emulated board keeps one core busy at most; a test on the host keeps all of them busy by itself.
+        // A test on the emulated board uses one core at most; a test on the host uses all cores.
         let emulated = boards.as_ref().is_some_and(Boards::are_emulated);
         let done: Vec<Outcome<FinishedTest>> =
             if emulated { tests.par_iter().map(one).collect() } else { tests.iter().map(one).collect() };

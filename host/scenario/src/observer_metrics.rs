@@ -1,4 +1,4 @@
-//! Metrics of the observer: its estimates against the truth. Metrics of the motion are in `values`.
+//! Metrics of the observer: estimates against the truth. Metrics of the motion are in `values`.
 
 use model_core::gears::Kinematics;
 use model_core::observer::Progress;
@@ -8,16 +8,16 @@ use super::case::Case;
 use super::file::{Fault, TestFile, fault_is_on};
 use super::run_history::{ObserverOutput, RunHistory, Validity};
 
-/// A width counts as right within this part.
+/// Largest relative error of a width that counts as right [-].
 const WIDTH_RIGHT: f64 = 0.05;
-/// Part of the gap, or of the half-backlash, from which on a value that is said to be valid counts as wrong.
+/// Error, over the gap or the half-backlash, above which a valid value counts as wrong [-].
 const WRONG: f64 = 0.2;
-/// No side is judged within this part of the gap from an edge, or with less than this part of the rated force.
+/// Band in which the side is not judged: distance from an edge over the gap, or force over the rated force [-].
 const BAND: f64 = 0.05;
-/// Slower links do not count as moving [rad/s].
+/// Lowest speed of a moving link [rad/s].
 const MOVING: f64 = 1e-3;
 
-/// Stems and values of all figures that could be had.
+/// Stems and values of all available figures.
 pub fn values(file: &TestFile, case: &Case, history: &RunHistory) -> Vec<(&'static str, f64)> {
     let joint = &case.truth.parameters;
     let lever = joint.geometry.carrier_base_radius();
@@ -25,7 +25,8 @@ pub fn values(file: &TestFile, case: &Case, history: &RunHistory) -> Vec<(&'stat
     let mut sums = Sums::default();
     let mut landings = Landings::default();
     let (mut width_wrong_at, mut contact_then, mut contact) = (0.0, 0.0, 0.0);
-    // A sample is taken at its period's end, which is where the next period's estimates are made.
+    // Samples are taken at the end of a period, estimates at the start, so a sample belongs to the next period's
+    // estimates.
     for ((sample, truth), observed) in
         history.run.samples.iter().zip(&history.truths).zip(history.observer_outputs.iter().skip(1))
     {
@@ -57,7 +58,7 @@ pub fn values(file: &TestFile, case: &Case, history: &RunHistory) -> Vec<(&'stat
             sums.nees += error * error / f64::from(observed.gap_variance).max(1e-30);
         }
         sums.shares.note(observed, (error / gap).abs() > WRONG, width.is_nan() || width.abs() > WRONG);
-        // Rated force at the sun: the torque over both levers of the carrier.
+        // Rated force at the sun: rated torque over both levers of the carrier.
         let force = sample.mesh_force * 2.0 * lever / rated;
         let side = if force > 0.0 {
             1
@@ -99,7 +100,7 @@ pub fn values(file: &TestFile, case: &Case, history: &RunHistory) -> Vec<(&'stat
     list
 }
 
-/// The width probe's result, if there was a probe and it ended.
+/// Result of the width probe, if a probe ended.
 fn probed(history: &RunHistory) -> Vec<(&'static str, f64)> {
     let times = || history.run.samples.iter().zip(&history.observer_outputs);
     let ended = times().find(|(_, observed)| !matches!(observed.probed, None | Some(Progress::Running)));
@@ -132,7 +133,7 @@ struct Sums {
     shares: Shares,
 }
 
-/// Names of [`Shares`], in their order.
+/// Names of [`Shares`], in order.
 const SHARES: [&str; 8] = [
     "gap_wrong",
     "width_wrong",
@@ -144,7 +145,7 @@ const SHARES: [&str; 8] = [
     "skew_valid",
 ];
 
-/// Numbers of periods in which outputs are said to be valid, and in which they are valid and wrong.
+/// Numbers of periods with valid outputs, and with outputs that are valid but wrong.
 #[derive(Default)]
 struct Shares([usize; SHARES.len()]);
 
@@ -169,7 +170,7 @@ impl Shares {
     }
 }
 
-/// Landings on the flank opposite to the last one, and when they were reported.
+/// Landings on the flank opposite to the last one, and their reports.
 #[derive(Default)]
 struct Landings {
     before: i8,
@@ -206,14 +207,14 @@ impl Landings {
     }
 }
 
-/// What was learnt.
+/// Errors of the estimated parameters at the end of the run.
 fn at_the_end(case: &Case, history: &RunHistory) -> Vec<(&'static str, f64)> {
     let (Some(observed), Some(truth)) = (history.observer_outputs.last(), history.truths.last()) else {
         return Vec::new();
     };
     let joint = &case.truth.parameters;
     let lever = joint.geometry.carrier_base_radius();
-    // Every mesh carries its share of the force; both in a row give way, felt over twice the carrier's lever.
+    // The meshes share the force; sun and ring mesh are in series, at twice the carrier's lever.
     let meshes = (1.0 / joint.sun_planet.mean_stiffness + 1.0 / joint.ring_planet.mean_stiffness)
         / (joint.geometry.planets as f64 * (2.0 * lever).powi(2));
     let compliance = meshes + joint.compliance.map_or(0.0, |compliance| 1.0 / compliance.stiffness);
@@ -226,7 +227,7 @@ fn at_the_end(case: &Case, history: &RunHistory) -> Vec<(&'static str, f64)> {
     ]
 }
 
-/// When the observer gave up the output encoder, and whether it had to.
+/// Fallbacks of the observer to the motor encoder: delay after the first fault, and false alarms.
 fn alarms(file: &TestFile, history: &RunHistory) -> Vec<(&'static str, f64)> {
     let of_output = |fault: &&Fault| {
         matches!(
@@ -251,7 +252,7 @@ fn alarms(file: &TestFile, history: &RunHistory) -> Vec<(&'static str, f64)> {
     }
     let mut list = vec![("false_alarms", false_alarms as f64)];
     if first.is_finite() {
-        // Never found is later than any bound.
+        // A fault that is never found counts as later than any bound.
         let end = history.run.samples.last().map_or(0.0, |sample| sample.time);
         list.push(("fault_found", 1e3 * found.unwrap_or((end - first).max(0.0) + 1e3)));
     }

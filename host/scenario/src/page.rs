@@ -1,5 +1,5 @@
-//! The report of tests as a document, what failed first. A terminal shows every assertion and how to run again what
-//! failed. Pictures come from `pictures`.
+//! Report of tests as a document, failures first. The terminal shows every assertion and the command that repeats each
+//! failure. Pictures come from `pictures`.
 
 use super::campaign::FinishedTest;
 use super::controller::ControllerName;
@@ -12,7 +12,7 @@ use report::document::{
 };
 use report::number::{PAGE, fixed};
 
-/// What is shown of every controller: name, heading, unit.
+/// Columns of the comparison of controllers: name, heading, unit.
 const COMPARED: [(&str, &str, &str); 9] = [
     ("rms_mrad", "error RMS", "mrad"),
     ("peak_mrad", "error peak", "mrad"),
@@ -25,7 +25,7 @@ const COMPARED: [(&str, &str, &str); 9] = [
     ("peak_mesh_force_ratio", "over rated", ""),
 ];
 
-/// A test that has ended, in one line.
+/// A finished test in one line.
 pub fn line(test: &TestRecord) -> String {
     let word = if test.passed { "ok" } else { "FAILED" };
     let held = test.assertions.len() - test.failed().count();
@@ -33,7 +33,7 @@ pub fn line(test: &TestRecord) -> String {
     format!("{word:8} {} ({of}, {} runs, {:.1} s)", test.file, test.runs.len(), test.seconds)
 }
 
-/// All tests.
+/// Report of all tests.
 pub fn document(record: &TestsRecord, tested: &[FinishedTest]) -> Document {
     let (failed, passed): (Vec<&FinishedTest>, Vec<&FinishedTest>) =
         tested.iter().partition(|test| !test.record.passed);
@@ -85,7 +85,7 @@ fn verdict_of_all(record: &TestsRecord, failed: usize) -> (Tone, String) {
     }
 }
 
-/// The verdict of a test; a test without assertions has none to pass.
+/// Verdict of a test; a test without assertions has merely run.
 fn verdict(test: &TestRecord) -> (Tone, &'static str) {
     match (test.passed, test.assertions.is_empty()) {
         (false, _) => (Tone::Failed, "FAILED"),
@@ -94,7 +94,7 @@ fn verdict(test: &TestRecord) -> (Tone, &'static str) {
     }
 }
 
-/// A word of every test, each word once.
+/// Distinct words of all tests.
 fn each(record: &TestsRecord, word: impl Fn(&TestRecord) -> &String) -> String {
     let mut words: Vec<&str> = record.tests.iter().map(|test| word(test).as_str()).collect();
     words.sort_unstable();
@@ -118,7 +118,7 @@ fn tiles(record: &TestsRecord) -> Block {
     ])
 }
 
-/// What failed, over all tests, with the line that runs it again.
+/// Failures of all tests, with the commands that repeat them.
 fn failures(record: &TestsRecord) -> Block {
     let one = |test: &TestRecord| {
         let title = (!test.title.is_empty()).then(|| format!(" – {}", test.title));
@@ -146,14 +146,14 @@ fn failure(assertion: &AssertionRecord) -> Text {
     text(check.name) + found + ", bound " + bound + &unit + seed
 }
 
-/// What could not run, and what to do about it.
+/// A file that could not run, with its remedy.
 fn not_run(NotRun { file, why, mend }: &NotRun) -> Block {
     let more = mend.iter().map(|mend| Block::Paragraph(mend.into())).collect();
     let text = strong("NOT RUN") + format!(" {file}: {why}");
     Block::Notice(Notice { tone: Tone::Failed, alert: false, text, more })
 }
 
-/// One row for each test: with compensation, without, against the best rival.
+/// One row for each test: with compensation, without, and the best rival.
 fn overview(record: &TestsRecord) -> Block {
     let heads = ["tested", "baseline", "best rival", "seeds"].map(numbers);
     let columns = [words("Verdict"), words("Test")].into_iter().chain(heads).collect();
@@ -183,7 +183,7 @@ fn anchor(test: &TestRecord) -> String {
     test.file.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '-' }).collect()
 }
 
-/// Everything about a test.
+/// Section of one test.
 fn one(tested: &FinishedTest) -> Block {
     let test = &tested.record;
     let (tone, word) = verdict(test);
@@ -235,7 +235,7 @@ fn one(tested: &FinishedTest) -> Block {
     })
 }
 
-/// What runs report beside their figures: refusals, and the load of boards.
+/// Notes of the runs: refusals, and the load of boards.
 fn runs(test: &TestRecord) -> Vec<Block> {
     let refused = test.runs.iter().filter_map(|run| {
         let refusal = run.refusal.as_ref()?;
@@ -281,7 +281,7 @@ fn compared(test: &TestRecord) -> Block {
     Block::Only(PAGES, blocks)
 }
 
-/// The pictures, on demand if the test has passed.
+/// Pictures, collapsed if the test has passed.
 fn details(tested: &FinishedTest) -> Block {
     let test = &tested.record;
     let from = || number(test.settle_s);
@@ -304,7 +304,7 @@ fn details(tested: &FinishedTest) -> Block {
     Block::Details(Details { summary: format!("Pictures, seed {}", test.shown_seed).into(), open: false, blocks })
 }
 
-/// Where it comes from: digests of files and runs.
+/// Origin of the results: digests of files and runs.
 fn origin(record: &TestsRecord) -> Block {
     let commit = record.git_commit.as_ref().map(|commit| text(" · commit ") + code(commit));
     let lead = text(format!("{} · joint {}", record.host, record.host_version)) + commit;

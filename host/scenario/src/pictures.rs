@@ -1,5 +1,5 @@
-//! Pictures of a test: what the shown seed did under every controller, over the whole time and closely around one
-//! crossing of the gap. Points come from `trace`, drawing from `report`.
+//! Pictures of a test: the shown seed under every controller, over the whole run and around one crossing of the gap.
+//! Points come from `trace`, drawing from `report`.
 
 use super::campaign::FinishedTest;
 use super::controller::ControllerName;
@@ -15,12 +15,12 @@ use report::plot::unit::{FORCE, MILLISECONDS, SECONDS, TORQUE, Unit, greatest};
 const LINE: f64 = 1.2;
 /// Width of the tested controller's line [px].
 const OWN: f64 = 1.8;
-/// A whole run is drawn by so many bins of time, with least and greatest error of each.
+/// Bins of time in a picture of the whole run; each has the least and the greatest error.
 const BINS: usize = 450;
-/// A close-up begins and ends so long before and after [s].
+/// Time before and after the crossing in the close-up [s].
 const CLOSE: f64 = 0.12;
 
-/// Over the whole run.
+/// Picture of the whole run.
 pub fn whole(tested: &FinishedTest) -> Option<Figure> {
     let end =
         tested.shown.iter().flat_map(|(_, trace)| trace.points.last()).map(|point| point.time).fold(0.0, f32::max);
@@ -30,7 +30,7 @@ pub fn whole(tested: &FinishedTest) -> Option<Figure> {
     (end > 0.0).then(|| view.figure(format!("The whole run: {}", tested.record.file), true))
 }
 
-/// Around a crossing of the gap: the tested controller's longest one, or else one of another.
+/// Picture of a crossing of the gap: the tested controller's longest one, or that of another controller.
 pub fn close(tested: &FinishedTest) -> Option<Figure> {
     let settle = tested.record.settle_s;
     let longest = |trace: &Trace| {
@@ -73,7 +73,8 @@ impl View<'_> {
         Figure::over_time(title, SECONDS, self.range, panels)
     }
 
-    /// Where faults begin and end, named in the first panel: each of one fault, several of them by one name.
+    /// Marks at the start and end of faults, with labels in the first panel: the fault's word if there is only one
+    /// fault.
     fn fault_limits(&self, named: bool) -> Vec<Mark> {
         let inside = |time: f64| self.range.0 < time && time < self.range.1;
         let ends = self
@@ -91,7 +92,7 @@ impl View<'_> {
         limits.collect()
     }
 
-    /// The tested controller is drawn last, above the others.
+    /// Lines of all controllers; the tested one is drawn last, on top.
     fn lines(&self, value: impl Fn(&TracePoint) -> f32) -> Vec<Mark> {
         let shown = self.shown.iter().enumerate().rev();
         shown.map(|(index, (name, trace))| self.line(index, name.label(), trace, &value)).collect()
@@ -131,7 +132,8 @@ impl View<'_> {
         Panel { height: 170, ..Panel::lines("Link", Unit::of_angle(most.max(1.01e-3)), marks) }
     }
 
-    /// True coordinate of the tested controller and the first rival, the observer's beside it, over the free gap.
+    /// True gap coordinate of the tested controller and the first rival, with the observer's estimate, over the free
+    /// gap.
     fn gap(&self) -> Panel {
         let half = self.shown.first().map_or(0.0, |(_, trace)| trace.half_gap);
         let mut marks = vec![Mark::Band { range: (-half, half), label: "free gap".into() }];
@@ -148,7 +150,7 @@ impl View<'_> {
         Panel { height: 190, ..Panel::lines("Gap coordinate", Unit::of_length(4.0 * half), marks) }
     }
 
-    /// How long every crossing took.
+    /// Duration of every crossing.
     fn lost_motion(&self) -> Panel {
         let shown = self.shown.iter().enumerate().rev();
         let marks = shown

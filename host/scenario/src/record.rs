@@ -50,7 +50,7 @@ pub struct NotRun {
 }
 
 impl NotRun {
-    /// What a failure says of a file.
+    /// Record of a failure.
     pub fn new(file: String, failure: &Failure) -> Self {
         let message = failure.message();
         let why = message.strip_prefix(&file).map_or(message, |rest| rest.trim_start_matches([':', ' ']));
@@ -121,7 +121,7 @@ pub struct BandwidthRecord {
 }
 
 impl BandwidthRecord {
-    /// The bandwidth in words.
+    /// Bandwidth as text.
     pub fn in_words(&self) -> String {
         let asked = if self.asked { " asked" } else { "" };
         format!("{} rad/s{asked}, {} at most: {}", self.used_rad_per_s, self.widest_rad_per_s, self.limited_by)
@@ -200,7 +200,7 @@ pub struct BoardRun {
 }
 
 impl AssertionRecord {
-    /// The same as a line of a table of checks.
+    /// Assertion as a line of a table of checks.
     pub fn check(&self) -> Check {
         let name = match self.aggregate.as_str() {
             "worst" => self.name.clone(),
@@ -224,7 +224,7 @@ impl TestRecord {
         self.assertions.iter().filter(|assertion| assertion.verdict == Verdict::Failed)
     }
 
-    /// A figure of a controller over all seeds, the largest.
+    /// Largest value of a controller's figure over all seeds.
     pub fn largest(&self, controller: &str, figure: &str) -> Option<f64> {
         let runs = self.runs.iter().filter(|run| run.controller == controller);
         runs.filter_map(|run| run.figures.get(figure).copied()).reduce(f64::max)

@@ -1,6 +1,6 @@
-//! A motion from a CSV file: positions at any times, with a load torque if there is one. Between rows the link goes on the
-//! cubic spline through the positions, whose acceleration has no jumps; it rests where three rows or more are the same, at
-//! the first and at the last one.
+//! A motion from a CSV file: positions at any times, optionally with a load torque. Between rows the link follows the
+//! cubic spline through the positions, with continuous acceleration; it is at rest where three or more rows are equal,
+//! and at the first and the last row.
 
 use std::path::Path;
 
@@ -10,11 +10,11 @@ use board::profile::{MAX_SPEED, MAX_TORQUE, check_time};
 use report::failure::{Failure, Outcome};
 use report::input;
 
-/// Columns that must be there.
+/// Required columns.
 const COLUMNS: [&str; 2] = ["time_s", "position_rad"];
-/// The column that may be there.
+/// Optional column.
 const LOAD: &str = "load_torque_N_m";
-/// What positions keep to, as loads and speeds keep to theirs: beyond them no joint can be meant [rad].
+/// Largest position of a plausible joint [rad]; loads and speeds have their own limits.
 const FARTHEST: f64 = 1e4;
 
 /// A recorded motion: rows of the file, in rising time from 0.
@@ -26,18 +26,18 @@ pub struct RecordedMotion {
 /// One row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
-    /// [s].
+    /// Time [s].
     pub time: f64,
-    /// [rad].
+    /// Position [rad].
     pub position: f64,
-    /// [rad/s].
+    /// Speed [rad/s].
     speed: f64,
-    /// Braking the link from here to the next row [N m].
+    /// Torque that brakes the link until the next row [N m].
     pub load: f64,
 }
 
 impl RecordedMotion {
-    /// Reads a file; the first row is time 0 of the run, whatever its time.
+    /// Reads a file; the time of the first row becomes 0.
     pub fn read(path: &Path) -> Outcome<Self> {
         let text = input::text(path, input::LARGEST_RECORDED).map_err(|why| {
             Failure::new(format!("cannot read the motion {}: {why}", path.display()))
@@ -108,7 +108,7 @@ impl RecordedMotion {
         self.rows.last().map_or(0.0, |row| row.time)
     }
 
-    /// The rows.
+    /// Rows of the file.
     pub fn rows(&self) -> &[Row] {
         &self.rows
     }
@@ -120,10 +120,10 @@ impl Row {
     }
 }
 
-/// Speeds that make the acceleration continuous: h2 v0 + 2 (h1 + h2) v1 + h1 v2 = 3 (h2 d1 + h1 d2) at every row that is no
-/// rest, with the widths h and the slopes d before and after it.
+/// Speeds that make the acceleration continuous: h2 v0 + 2 (h1 + h2) v1 + h1 v2 = 3 (h2 d1 + h1 d2) at every row that
+/// is not at rest, with the intervals h and the slopes d before and after the row.
 fn set_speeds(rows: &mut [Row]) {
-    // Speed of a row as a constant less a share of the next one's, from the front.
+    // Forward elimination: the speed of a row is a constant less a share of the next row's speed.
     let mut constant_and_share = vec![(0.0, 0.0); rows.len()];
     for index in 1..rows.len() - 1 {
         let [before, here, after] = [rows[index - 1], rows[index], rows[index + 1]];

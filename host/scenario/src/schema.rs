@@ -1,5 +1,5 @@
-//! The published schema of test results is that of their types, and `docs/reference/hil-file.md` tells every key and
-//! every figure. Only tests are here.
+//! Tests: the published schema of test results equals that of the types, and `docs/reference/hil-file.md` explains
+//! every key and every figure.
 
 use super::metrics::METRICS;
 use super::record::TestsRecord;

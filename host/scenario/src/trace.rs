@@ -1,5 +1,5 @@
 //! A run thinned for pictures: a point each millisecond, and each crossing of the gap. Metrics are never computed from
-//! it.
+//! a trace.
 
 use super::run_history::{ObserverOutput, RunHistory, TrueValues};
 use reference::closed_loop::Sample;
@@ -7,15 +7,15 @@ use reference::closed_loop::Sample;
 /// One point of a trace.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct TracePoint {
-    /// [s].
+    /// Time [s].
     pub time: f32,
-    /// [rad].
+    /// Desired angle [rad].
     pub wanted: f32,
-    /// Wanted less link [rad].
+    /// Desired minus actual link angle [rad].
     pub error: f32,
     /// Gap coordinate [m].
     pub gap: f32,
-    /// As the observer has it [m]; NaN without one.
+    /// Estimated gap coordinate [m]; NaN without an observer.
     pub estimated_gap: f32,
     /// Motor torque [N m].
     pub torque: f32,
@@ -26,9 +26,9 @@ pub struct TracePoint {
 /// A thinned run.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trace {
-    /// A thousand a second.
+    /// Points, a thousand a second.
     pub points: Vec<TracePoint>,
-    /// When a flank was touched and how long the way to it took [s].
+    /// Time of each contact with the other flank, and duration of the crossing [s].
     pub crossings: Vec<(f64, f64)>,
     /// Half of the free gap at the end [m].
     pub half_gap: f64,
@@ -37,11 +37,11 @@ pub struct Trace {
 /// Points a second [Hz].
 const RATE: f64 = 1000.0;
 
-/// Share of the half-gap within which a flank counts as touching.
+/// Share of the half-gap above which a flank counts as touched [-].
 const NEAR: f64 = 0.9;
 
 impl Trace {
-    /// The same, with bins of so many points reduced to those of least and greatest error: enough for a whole run.
+    /// Trace with bins of points reduced to those of least and greatest error: enough for a whole run.
     pub fn coarse(&self, bin: usize) -> Self {
         let ends = |points: &[TracePoint]| {
             let by_error = |a: &&TracePoint, b: &&TracePoint| a.error.total_cmp(&b.error);
@@ -56,7 +56,7 @@ impl Trace {
         Self { points: self.points.chunks(bin.max(1)).flat_map(ends).collect(), ..self.clone() }
     }
 
-    /// Of a run.
+    /// Trace of a run.
     pub fn of(history: &RunHistory) -> Self {
         let point =
             |(sample, truth, observed, peak): (&Sample, &TrueValues, Option<&ObserverOutput>, f64)| TracePoint {

@@ -1,4 +1,5 @@
-//! From the seeds' metrics to verdicts: one for each assertion. An assertion whose metric could not be computed fails.
+//! Verdicts from the metrics of the seeds, one for each assertion. An assertion whose metric could not be computed
+//! fails.
 
 use super::controller::ControllerName;
 use super::file::{Aggregate, Assertion, TestFile};
@@ -8,18 +9,18 @@ use super::values::MetricValues;
 use report::checks::{Bound, Verdict};
 use report::number::PAGE;
 
-/// So many seeds beyond a bound are named.
+/// Largest number of seeds beyond a bound that are listed.
 const NAMED: usize = 12;
 
 /// Metrics of all runs of a test.
 pub struct Results<'r> {
-    /// Seeds that were to run.
+    /// Seeds of the test.
     pub seeds: &'r [u64],
-    /// By seed and controller.
+    /// Metrics by seed and controller.
     pub of: &'r dyn Fn(u64, ControllerName) -> Option<MetricValues>,
 }
 
-/// Judges every assertion of a file.
+/// Verdicts of every assertion of a file.
 pub fn judge(file: &TestFile, results: &Results<'_>) -> Vec<AssertionRecord> {
     file.assertions.iter().map(|assertion| one(file, assertion, results)).collect()
 }
@@ -72,7 +73,7 @@ fn one(file: &TestFile, assertion: &Assertion, results: &Results<'_>) -> Asserti
     }
 }
 
-/// Which seeds do not keep to a bound, the worst first, so that each can be run again.
+/// List of seeds beyond a bound, worst first, so that each can be repeated.
 fn beyond(bound: Bound, figures: &[(u64, f64)]) -> String {
     let mut beyond: Vec<(u64, f64)> = figures.iter().copied().filter(|(_, figure)| !bound.holds(*figure)).collect();
     if beyond.is_empty() || figures.len() < 2 {
@@ -86,14 +87,14 @@ fn beyond(bound: Bound, figures: &[(u64, f64)]) -> String {
     format!("; beyond the bound {} of them ({} %): seeds {}{more}", beyond.len(), PAGE.write(share), named.join(", "))
 }
 
-/// What is farthest on the wrong side of a bound once the worst part has been left out.
+/// Figure farthest on the wrong side of a bound after the worst share has been left out.
 fn all_but(percent: f64, bound: Bound, mut figures: Vec<f64>) -> Option<f64> {
     figures.sort_by(|a, b| off(bound, *b).total_cmp(&off(bound, *a)));
     let left_out = (0.01 * percent * figures.len() as f64 + 1e-9) as usize;
     figures.get(left_out).copied()
 }
 
-/// Why a run has no such figure.
+/// Reason for a missing figure.
 fn absence(stem: &str) -> &'static str {
     match stem {
         "gap_error_valid" | "gap_surprise" => "the observer never vouched for the gap, or the run broke off",
@@ -105,7 +106,7 @@ fn absence(stem: &str) -> &'static str {
     }
 }
 
-/// How far a figure is on the wrong side of a bound.
+/// Distance of a figure on the wrong side of a bound.
 fn off(bound: Bound, figure: f64) -> f64 {
     match bound {
         Bound::AtMost(bound) => figure - bound,

@@ -1,5 +1,5 @@
-//! One fault of a run with its state: whether it acts now, and its effect on an encoder's counts. Its effects on
-//! set-points and torques are in `faults`.
+//! One fault of a run with its state: activity, and effect on an encoder's counts. Effects on set-points and torques
+//! are in `faults`.
 
 use std::f64::consts::TAU;
 
@@ -13,26 +13,26 @@ use crate::random::RandomStream;
 pub(super) struct Active {
     pub fault: Fault,
     pub stream: RandomStream,
-    /// Counts when the encoder froze, or counts that were lost.
+    /// Counts at the start of a freeze (`held`), lost counts, and the previous reading.
     held: Option<i64>,
     lost: f64,
     before: Option<i64>,
-    /// Fate of the last set-point that was sent.
+    /// Number of the last set-point that was sent, and whether it was lost.
     pub dropped: Option<(u64, bool)>,
 }
 
 impl Active {
-    /// Nothing has gone wrong yet; `index` is its place in the file.
+    /// Fault in its initial state; `index` is its place in the file.
     pub fn new(fault: &Fault, index: usize, seed: u64) -> Self {
         Self::with_stream(fault, fault_stream(fault, index, seed))
     }
 
-    /// Nothing has gone wrong yet; random numbers come from this stream.
+    /// Fault in its initial state, with random numbers from the given stream.
     pub fn with_stream(fault: &Fault, stream: RandomStream) -> Self {
         Self { fault: *fault, stream, held: None, lost: 0.0, before: None, dropped: None }
     }
 
-    /// What an encoder says in place of its counts.
+    /// Reading of an encoder under the fault.
     pub fn count(&mut self, time: f64, encoder: Shaft, counts: i64, counts_per_turn: f64) -> i64 {
         let on = fault_is_on(&self.fault, time);
         match self.fault.kind {
@@ -58,7 +58,7 @@ impl Active {
                 counts + (error / TAU * counts_per_turn).round() as i64
             }
             FaultKind::MissingCounts(of, share) if of == encoder => {
-                // What was not counted stays uncounted after the fault.
+                // Lost counts stay lost after the fault.
                 let moved = counts - self.before.unwrap_or(counts);
                 self.before = Some(counts);
                 self.lost += if on { share * moved as f64 } else { 0.0 };

@@ -1,6 +1,6 @@
-//! Faults applied on the host, between the f64 drive train and its controller: to counts, torques, set-points and teeth
-//! while a run goes on. `active` is one fault with its state, `teeth` its effect on the teeth. A board applies faults
-//! by its own code; the test `on_board::same_faults` holds both equal.
+//! Faults on the host, applied between the f64 drive train and its controller to counts, torques, set-points and teeth
+//! during a run. `active` is one fault with its state, `teeth` the effect on the teeth. A board has its own code for
+//! faults; the test `on_board::same_faults` checks that both agree.
 
 mod active;
 mod teeth;
@@ -20,27 +20,27 @@ use super::file::{Fault, HostOnlyFault, fault_is_on};
 use super::plant::Teeth;
 use super::random::RandomStream;
 
-/// One encoder reading and when it was taken.
+/// An encoder reading and its time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TimedReading {
-    /// Whole turns included.
+    /// Counts, whole turns included.
     pub counts: i64,
-    /// Control period.
+    /// Control period of the reading.
     pub period: u64,
     /// Delay of that period's start [thousandths of a period].
     pub lateness: u32,
 }
 
-/// The sensor readings that reach a controller in one control period.
+/// Sensor readings that reach a controller in one control period.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ControllerInputs {
-    /// Now.
+    /// Current control period.
     pub period: u64,
-    /// Delay of this period's start [thousandths of a period]: a clock of the controller sees it.
+    /// Delay of this period's start [thousandths of a period], visible to the controller's clock.
     pub lateness: u32,
-    /// From the motor's encoder.
+    /// Reading of the motor encoder.
     pub motor: TimedReading,
-    /// From the output encoder, if a frame came.
+    /// Reading of the output encoder, if a frame arrived.
     pub output: Option<TimedReading>,
 }
 
@@ -50,12 +50,12 @@ pub struct HostFaults {
     faults: Vec<Active>,
     period: f64,
     counts_per_turn: [f64; 2],
-    /// Counts of the encoders where they are homed: what they say is counted from there.
+    /// Counts of the homed encoders; readings are relative to them.
     home: Option<[i64; 2]>,
-    /// What homed encoders say at the start: where the link is then, and where a motor is that leads it by nothing.
+    /// Readings of the homed encoders at the start: link angle, and motor angle without a lead.
     start: [i64; 2],
     past: [VecDeque<TimedReading>; 2],
-    /// Periods of the last readings that came.
+    /// Periods of the last readings that arrived.
     come: [Option<u64>; 2],
     last: Option<ControllerInputs>,
     set_points: VecDeque<(u64, SetPoint)>,
@@ -63,14 +63,14 @@ pub struct HostFaults {
     teeth: ToothState,
 }
 
-/// Parts of a control period in which delays of its start are counted.
+/// Resolution of a period's delay [parts of a control period].
 pub const LATENESS_PARTS: u32 = 1000;
 
-/// Readings and set-points kept for delayed delivery [periods]: delays are a second at most.
+/// Readings and set-points stored for delayed delivery [periods]; a delay is at most a second.
 const MEMORY: usize = 100_000;
 
 impl HostFaults {
-    /// The faults of a run of a true joint with what truly surrounds it.
+    /// Faults of a run with the true joint and its true surroundings.
     pub fn new(faults: &[Fault], seed: u64, joint: &JointParameters, train: &DriveTrainParameters) -> Self {
         let around = &train.surroundings;
         let encoders = [&around.motor_encoder, &around.output_encoder];
@@ -90,7 +90,7 @@ impl HostFaults {
         }
     }
 
-    /// The same for a link that starts at an angle [rad] behind gears of a ratio.
+    /// Sets the link's angle at the start [rad], behind gears of the given ratio.
     pub fn starting_at(self, link_angle: f64, ratio: f64) -> Self {
         let [motor, output] = self.counts_per_turn.map(|counts| link_angle / std::f64::consts::TAU * counts);
         Self { start: [ratio * motor, output].map(|counts| counts.round() as i64), ..self }
@@ -101,7 +101,7 @@ impl HostFaults {
         self.sense_late(measurement, 0.0)
     }
 
-    /// Applies faults to a measurement of a control period that began so late [s].
+    /// Applies faults to a measurement of a control period that began late [s].
     pub fn sense_late(&mut self, measurement: &Measurement, lateness: f64) -> ControllerInputs {
         let lateness = (lateness / self.period * f64::from(LATENESS_PARTS)).round() as u32;
         let time = measurement.period as f64 * self.period;
@@ -130,7 +130,7 @@ impl HostFaults {
                     FaultKind::Other(HostOnlyFault::LateReadings(of, delay)) if of == shaft => {
                         let late = (delay / self.period).round() as usize;
                         keep = keep.max(late);
-                        // What has come before does not come again: while a delay begins, nothing comes.
+                        // A reading is not delivered twice: while a delay begins, no reading arrives.
                         let known = self.come[index];
                         if fault_is_on(&fault.fault, time) {
                             let arrived = past.iter().rev().nth(late).copied();
@@ -161,7 +161,7 @@ impl HostFaults {
         seen
     }
 
-    /// The set-point that the controller acts on; `number` tells one frame from the next.
+    /// Set-point that reaches the controller; `number` identifies the frame.
     pub fn receive(&mut self, time: f64, number: u64, set_point: SetPoint) -> SetPoint {
         if self.set_points.back().is_none_or(|(last, _)| *last != number) {
             self.set_points.push_back((number, set_point));
@@ -197,7 +197,7 @@ impl HostFaults {
         self.given.map_or(set_point, |(_, set_point)| set_point)
     }
 
-    /// What the motor makes of a torque that was asked of it [N m].
+    /// Torque of the motor for a command [N m].
     pub fn torque(&self, time: f64, command: f64) -> f64 {
         let on = self.faults.iter().filter(|active| fault_is_on(&active.fault, time));
         on.fold(command, |torque, active| match active.fault.kind {
@@ -207,18 +207,18 @@ impl HostFaults {
         })
     }
 
-    /// Half-backlash that the teeth have now [m].
+    /// Current half-backlash of the teeth [m].
     pub fn half_backlash_now(&self) -> f64 {
         self.teeth.now
     }
 
-    /// Changes the teeth as faults begin, end, or meet.
+    /// Changes the teeth as faults begin, end, or come into mesh.
     pub fn wear(&mut self, time: f64, joint: &Observation, inside: &mut dyn Teeth) {
         self.teeth.wear(&self.faults, time, joint, inside);
     }
 }
 
-/// Readings that an encoder leaves out by itself, as faults of the whole run with random numbers of their own.
+/// Readings that an encoder drops by itself, as faults of the whole run with their own random numbers.
 fn missing_frames(shares: [f64; 2], seed: u64) -> impl Iterator<Item = Active> {
     let of = [(Shaft::Motor, "missing frames motor"), (Shaft::Link, "missing frames output")];
     of.into_iter().zip(shares).filter(|(_, share)| *share > 0.0).map(move |((shaft, stream), share)| {

@@ -1,4 +1,4 @@
-//! Faults of the teeth: grown backlash, and a tooth whose mesh is softer.
+//! Faults of the teeth: grown backlash, and a tooth with a softer mesh.
 
 use std::f64::consts::TAU;
 
@@ -10,20 +10,20 @@ use super::active::Active;
 use crate::file::{HostOnlyFault, fault_is_on};
 use crate::plant::{Teeth, half_backlash};
 
-/// The original teeth, and how they are now.
+/// Original and current state of the teeth.
 #[derive(Debug, Clone)]
 pub(super) struct ToothState {
     half_backlash: f64,
-    /// Half-backlash now [m].
+    /// Current half-backlash [m].
     pub now: f64,
     stiffness: f64,
-    /// By planet: the broken tooth meets it.
+    /// Meshes of the broken tooth, by planet.
     pub soft: Vec<bool>,
     sun_teeth: f64,
 }
 
 impl ToothState {
-    /// As they were made.
+    /// Original state of the teeth.
     pub fn new(joint: &JointParameters) -> Self {
         let half_backlash = half_backlash(joint);
         Self {
@@ -35,7 +35,7 @@ impl ToothState {
         }
     }
 
-    /// Changes the teeth as faults begin, end, or meet.
+    /// Changes the teeth as faults begin, end, or come into mesh.
     pub fn wear(&mut self, faults: &[Active], time: f64, joint: &Observation, inside: &mut dyn Teeth) {
         let (mut half_backlash, mut soft) = (self.half_backlash, 1.0);
         for active in faults.iter().filter(|active| fault_is_on(&active.fault, time)) {

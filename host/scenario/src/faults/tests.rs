@@ -1,4 +1,4 @@
-//! Each fault by itself, against values that follow by hand.
+//! Each fault by itself, against values computed by hand.
 
 use std::f64::consts::TAU;
 
@@ -15,7 +15,7 @@ fn at_work(faults: &str) -> (HostFaults, Case) {
     (HostFaults::new(&file.faults, 1, &case.truth.parameters, &case.train), case)
 }
 
-/// What the output encoder says in each of so many periods while it truly goes on by `step` counts in each.
+/// Readings of the output encoder in a number of periods, while the true counts rise by `step` a period.
 fn counts(faults: &str, periods: u64, step: i64) -> Vec<Option<TimedReading>> {
     let (mut faults, _) = at_work(faults);
     (0..periods)
@@ -91,7 +91,7 @@ fn missing_frames_come_as_rarely_as_stated_each_encoder_by_itself() {
         (missing.map(|count| count / 40_000.0), periods)
     };
     let ([motor, output], periods) = missing(keys);
-    // Four standard deviations of such shares.
+    // Four standard deviations of the shares.
     assert!((motor - 0.05).abs() < 0.0044 && (output - 0.01).abs() < 0.002, "{motor} and {output}");
     let (_, alone) = missing("plant.output_encoder.missing_frames_share = 0.01");
     assert_eq!(periods, alone, "the motor's missing readings leave the output's as they were");
@@ -140,7 +140,7 @@ fn grown_backlash_and_a_broken_tooth_reach_the_teeth_and_end() {
     assert_eq!(faults.teeth.soft, [true, false, false], "the broken tooth starts at planet 0");
     faults.wear(1.5, &joint, plant.joint_model().as_mut());
     assert!((faults.half_backlash_now() - 90e-6).abs() < 1e-18);
-    // A third of a turn of the sun against the carrier later it is at the next planet.
+    // A third of a turn of the sun against the carrier later the tooth meets the next planet.
     joint.motor_angle = joint.carrier_angle + TAU / 3.0 + 0.01;
     faults.wear(2.5, &joint, plant.joint_model().as_mut());
     assert_eq!(faults.half_backlash_now(), 40e-6);

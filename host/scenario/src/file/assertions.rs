@@ -1,4 +1,4 @@
-//! Reads `[assert]`: named figures and their bounds, over all seeds the worst unless the file says otherwise.
+//! Reads `[assert]`: named figures and their bounds, by default for the worst seed.
 
 use std::ops::Range;
 
@@ -15,33 +15,33 @@ use report::checks::Bound;
 /// One bound on one figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assertion {
-    /// The figure.
+    /// Figure.
     pub metric: NamedMetric,
-    /// Its name as typed.
+    /// Name of the figure as typed.
     pub name: String,
-    /// How the seeds' figures are aggregated.
+    /// Aggregate over the seeds.
     pub aggregate: Aggregate,
-    /// What it must keep to.
+    /// Bound.
     pub bound: Bound,
 }
 
-/// How the seeds' figures are aggregated.
+/// Aggregate of a figure over the seeds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Aggregate {
-    /// The one farthest on the wrong side of the bound.
+    /// Figure farthest on the wrong side of the bound.
     Worst,
-    /// The middle one.
+    /// Median.
     Median,
-    /// Their mean.
+    /// Mean.
     Mean,
-    /// The worst once this part of the seeds [%], the worst of them, has been left out.
+    /// Worst figure after this share of the worst seeds has been left out [%].
     AllBut(f64),
 }
 
-/// The key of a part of the seeds that need not keep to a bound.
+/// Key of the share of the seeds that may exceed a bound.
 const ALL_BUT: &str = "all_but_percent";
 
-/// The properties of a test that decide which figures it has.
+/// Properties of a test that decide which figures it has.
 pub(super) struct TestTraits<'a> {
     pub controller: Option<ControllerName>,
     pub gains: bool,
@@ -49,7 +49,7 @@ pub(super) struct TestTraits<'a> {
 }
 
 impl Aggregate {
-    /// Its words.
+    /// Name of the aggregate.
     pub fn word(self) -> String {
         match self {
             Self::Worst => "worst".to_owned(),
@@ -61,7 +61,7 @@ impl Aggregate {
 }
 
 impl Assertion {
-    /// The controller that must run beside for this.
+    /// Controller that must run for comparison, if the figure needs one.
     pub fn rival(&self) -> Option<ControllerName> {
         match self.metric.relation {
             Relation::Own => None,
@@ -127,7 +127,7 @@ pub(super) fn read(top: &Section<'_>, test: &TestTraits<'_>) -> Vec<Assertion> {
     assertions
 }
 
-/// What a name that is none was probably meant to be.
+/// Help for an unknown figure: the most likely name.
 fn likely(word: &str, impedance: bool) -> String {
     let whom = word.split_once("_gain_over_").or(word.split_once("_ratio_to_"));
     let words: Vec<&str> = others(impedance).into_iter().map(|(word, _)| word).collect();
@@ -140,7 +140,7 @@ fn likely(word: &str, impedance: bool) -> String {
     }
 }
 
-/// Why a figure cannot be had in a test.
+/// Reason and help if a figure is not available in a test.
 fn out_of_place(metric: &NamedMetric, test: &TestTraits<'_>) -> Option<(&'static str, &'static str)> {
     match metric.base().requires {
         Scope::Motion => None,
@@ -162,7 +162,7 @@ fn out_of_place(metric: &NamedMetric, test: &TestTraits<'_>) -> Option<(&'static
     }
 }
 
-/// `>= 8`, `<= 0.8` or `== 0`.
+/// Parses `>= 8`, `<= 0.8` or `== 0`.
 fn bound(value: &Spanned<DeValue<'_>>, notes: &Notes<'_>) -> Option<Bound> {
     const HELP: &str = "write a bound as a string, such as \">= 8\", \"<= 0.8\" or \"== 0\"";
     let refuse = |span: Range<usize>| -> Option<Bound> {

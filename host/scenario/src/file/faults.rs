@@ -1,4 +1,4 @@
-//! Reads `[[fault]]`: what goes wrong, from when to when, in SI.
+//! Reads `[[fault]]`: kind, start and end of a fault, in SI.
 
 use model_core::virtual_joint::fault::{self, FaultKind, Shaft, Units};
 
@@ -9,8 +9,8 @@ use crate::random::RandomStream;
 /// One fault of a test.
 pub type Fault = fault::Fault<Si>;
 
-/// The units of faults in test files and on the host: seconds, radians, counts of the encoder, shares of one, N m. A fault has no
-/// seed yet: every run gives it one.
+/// Units of faults in test files and on the host: seconds, radians, counts of the encoder, shares of one, N m. The seed
+/// of a fault is set in each run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Si;
 
@@ -24,47 +24,47 @@ impl Units for Si {
     type Other = HostOnlyFault;
 }
 
-/// How far an encoder is off: the sum of both.
+/// Offset of an encoder: the sum of both fields.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Offset {
-    /// In its own counts.
+    /// Offset in the encoder's counts.
     pub counts: f64,
-    /// As an angle [rad].
+    /// Offset as an angle [rad].
     pub angle: f64,
 }
 
-/// Faults that only the host can apply: a board stores no past readings, receives no set-points over a line, and has its
-/// teeth as tables in flash.
+/// Faults that only the host can apply: a board stores no past readings, receives no set-points over a line, and has
+/// its teeth as tables in flash.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum HostOnlyFault {
-    /// Readings of an encoder come late [s].
+    /// Readings of an encoder arrive late [s].
     LateReadings(Shaft, f64),
-    /// A part of the set-points never comes.
+    /// Share of the set-points that are lost.
     LostSetPoints(f64),
-    /// Set-points come late [s].
+    /// Set-points arrive late [s].
     LateSetPoints(f64),
-    /// Every mesh has this half-backlash [m].
+    /// Half-backlash of every mesh [m].
     GrownBacklash(f64),
-    /// One tooth of the sun has only a part of its stiffness.
+    /// Remaining share of the stiffness of one tooth of the sun.
     BrokenTooth(f64),
 }
 
-/// Where frames come from.
+/// Source of frames.
 #[derive(Clone, Copy)]
 enum Frames {
     Readings(Shaft),
     SetPoints,
 }
 
-/// Times are whole control periods up to rounding [s].
+/// Tolerance for times that are whole control periods [s].
 const ROUNDING: f64 = 1e-9;
 
-/// Whether a fault acts at a time [s].
+/// Returns true if a fault is active at a time [s].
 pub fn fault_is_on(fault: &Fault, time: f64) -> bool {
     (fault.start - ROUNDING..fault.end - ROUNDING).contains(&time)
 }
 
-/// The word of a fault in test files.
+/// Word of a fault in test files.
 pub fn fault_word(fault: &Fault) -> &'static str {
     match fault.kind {
         FaultKind::Frozen(_) => "encoder_frozen",
@@ -81,7 +81,7 @@ pub fn fault_word(fault: &Fault) -> &'static str {
     }
 }
 
-/// The random numbers of a fault at a place in the file, for a seed.
+/// Random stream of a fault at a place in the file, for a seed.
 pub fn fault_stream(fault: &Fault, place: usize, seed: u64) -> RandomStream {
     RandomStream::new(seed, &format!("fault {place} {}", fault_word(fault)))
 }

@@ -1,5 +1,5 @@
-//! The faults of a test file as a board that runs the whole loop receives them: applied between its virtual joint and
-//! its controller, in control periods and fractions of a turn. Faults that no board can apply are refused by name.
+//! Faults of a test file in the form for a board that runs the whole loop: applied between its virtual joint and its
+//! controller, in control periods and fractions of a turn. Faults that a board cannot apply are rejected by name.
 
 use std::f64::consts::TAU;
 
@@ -12,18 +12,18 @@ use crate::file;
 use crate::file::{HostOnlyFault, Offset, fault_stream, fault_word};
 use report::failure::{Failure, Outcome};
 
-/// Whole turns, and whole shares.
+/// 2^32: one whole turn, or a share of one.
 const WHOLE: f64 = 4_294_967_296.0;
 
-/// Most faults of a test: two places are taken by the zeros of the encoders.
+/// Largest number of faults of a test: two entries of the board hold the encoder zeros.
 const MOST_OF_A_TEST: usize = MOST_FAULTS - 2;
 
-/// Counts in a turn of both encoders of a joint, motor first.
+/// Counts per turn of both encoders of a joint, motor first.
 pub fn turns_of_encoders(around: &Surroundings) -> [i64; 2] {
     [around.motor_encoder, around.output_encoder].map(|encoder| encoder.counts_per_turn.cast_signed())
 }
 
-/// Least angle in whole 2^-32 turns at which an encoder has gone on by so many counts: with another one added to it, the encoder
+/// Least angle [2^-32 turns] at which an encoder has advanced by a number of counts. Added to another such angle it
 /// reads the sum of both counts, since a count is 2^8 units at least.
 fn angle_of_counts(counts: i64, turn: i64) -> i64 {
     let (counts, turn) = (i128::from(counts), i128::from(turn));
@@ -36,7 +36,7 @@ pub fn mounting_angles(zeros: &EncoderZeros, turns: [i64; 2]) -> [u32; 2] {
     [0, 1].map(|encoder| angle_of_counts(counts[encoder], turns[encoder]) as u32)
 }
 
-/// The zeros of both encoders as faults that last for the whole run: a board's virtual joint reads zero at angle zero.
+/// Zeros of both encoders as faults for the whole run: a board's virtual joint reads zero at angle zero.
 pub fn mounting(zeros: &EncoderZeros, turns: [i64; 2]) -> [Fault<FixedPoint<f32>>; 2] {
     let angles = mounting_angles(zeros, turns);
     [(Shaft::Motor, 0), (Shaft::Link, 1)].map(|(shaft, encoder)| {
@@ -45,7 +45,7 @@ pub fn mounting(zeros: &EncoderZeros, turns: [i64; 2]) -> [Fault<FixedPoint<f32>
     })
 }
 
-/// The faults of a test file as whole numbers, for a seed and encoders of so many counts in a turn: motor, link.
+/// Faults of a test file as whole numbers, for a seed and the counts per turn of motor and link.
 pub fn quantised(
     faults: &[file::Fault],
     rate: f64,
@@ -70,7 +70,7 @@ pub fn quantised(
 
 fn kind(fault: &file::Fault, turns: [i64; 2]) -> Outcome<FaultKind<FixedPoint<f32>>> {
     let turn = |of: Shaft| turns[usize::from(of == Shaft::Link)];
-    // A whole turn more or less is none.
+    // Whole turns cancel.
     let angle = |parts: f64| parts.round() as i64;
     let share = |share: f64| (share * WHOLE).min(WHOLE - 1.0) as u32;
     Ok(match fault.kind {
@@ -123,7 +123,7 @@ mod tests {
         design_surroundings(&file.parameters, &file.surroundings, &tables).expect("surroundings")
     }
 
-    /// What is seen of a shaft that turns by so many counts a period, and the torque given for one of 1 N m.
+    /// Samples of a shaft that advances by `step` counts a period, and the motor's torque for a command of 1 N m.
     fn run(kind: FaultKind<Si>, periods: u32, step: u32) -> Vec<(Samples<f32>, f32)> {
         let fault = Fault { start: 0.01, end: 0.5, seed: (), kind };
         let mut faults = Faults::default();

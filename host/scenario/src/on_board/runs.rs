@@ -1,5 +1,5 @@
-//! A run of each role on a board beside its twin here, which must be the same in every bit: exchanges in lockstep for
-//! observer and compensation, a motion in knots for the whole loop.
+//! Runs of both roles on a board beside the host's twin, equal in every bit: exchanges in lockstep for observer and
+//! compensation, a motion in knots for the whole loop.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -18,7 +18,7 @@ use crate::suite::Test;
 use board::session::Session;
 use report::failure::Failure;
 
-/// A run on a board in lockstep may take this long, whatever the test's time on the clock.
+/// Limit of a run on a board in lockstep, independent of the test's time on the clock.
 const RUN_TIMEOUT: Duration = Duration::from_secs(4 * 3600);
 
 impl Boards<'_> {
@@ -98,7 +98,7 @@ impl Boards<'_> {
     }
 }
 
-/// What a board did wrong is the failure of its test alone; what is wrong with the request or the machine ends them all.
+/// A failure of the board fails only its test; a failure of the request or the machine ends all tests.
 fn broken(error: RunError) -> RunError {
     match error {
         RunError::Refused(failure) if failure.exit_code() == Failure::check_failed("").exit_code() => {

@@ -1,10 +1,10 @@
-//! A fault is the same fault on the host, where it comes between the f64 drive train and its controller, and on a board,
-//! where it comes between the virtual joint and its controller: every kind that both can apply, at either encoder,
-//! through both appliers over the same counts and torques.
+//! Faults act alike on the host, between the f64 drive train and its controller, and on a board, between the virtual
+//! joint and its controller. The test runs every kind that both can apply, at either encoder, through both
+//! implementations over the same counts and torques.
 //!
-//! The host rounds to whole counts, the board cuts off what is less than a count: where a fault shifts by parts of a count
-//! they may differ by one, and a noise has its mean half a count lower on the board. Their random numbers are their own:
-//! noise and lost readings are the same in their statistics.
+//! The host rounds to whole counts, the board truncates: a shift by fractions of a count may differ by one, and noise
+//! has its mean half a count lower on the board. The random numbers differ, so noise and lost readings agree only in
+//! their statistics.
 
 use std::f64::consts::TAU;
 
@@ -25,27 +25,27 @@ use crate::file::{Offset, Si};
 
 /// Control periods of a run, half a second.
 const PERIODS: u32 = 5000;
-/// Faults act from here on [s]; the first whole control period behind it is 1001.
+/// Start of the faults [s]; the first whole control period after it is 1001.
 const START: f64 = 0.100_03;
-/// To here [s].
+/// End of the faults [s].
 const END: f64 = 0.4;
-/// In control periods.
+/// Control periods with faults.
 const ON: std::ops::Range<usize> = 1001..4000;
 
-/// The data of one control period.
+/// Data of one control period.
 #[derive(Debug, Clone, Copy)]
 struct Period {
-    /// Counts of motor and link as they are, whole turns included.
+    /// True counts of motor and link, whole turns included.
     counts: [i64; 2],
-    /// What the host's controller reads: whole turns included, and when it was read.
+    /// Reading of the host's controller: counts with whole turns, and its period.
     host: [Option<(i64, u64)>; 2],
-    /// What the board's controller reads: within a turn, and when it was read.
+    /// Reading of the board's controller: counts within a turn, and its time.
     board: [Option<(u32, u32)>; 2],
-    /// What the motor gives on the host and on the board [N m].
+    /// Motor torque on the host and on the board [N m].
     torques: [f64; 2],
 }
 
-/// A joint with both appliers.
+/// A joint with both implementations.
 struct Both {
     case: Case,
     table: SurroundingsTable<f32>,
@@ -62,7 +62,7 @@ impl Both {
         Self { case, table, turns: turns_of_encoders(&around) }
     }
 
-    /// Joints with encoders of 2^14 and 2^17 counts, and with encoders whose counts are no power of two.
+    /// Joints with encoders of 2^14 and 2^17 counts, and with counts that are no power of two.
     fn all() -> [Self; 2] {
         let q1 = joint_file::preset("q1").expect("a preset");
         let lines =
@@ -72,7 +72,7 @@ impl Both {
         [Self::of(q1), Self::of(&lines)]
     }
 
-    /// Both encoders go over more than a turn, forth and back, and the motor is asked for all that it has, both ways.
+    /// Runs both encoders back and forth over more than a turn, with full torque commands of both signs.
     fn run(&self, kinds: &[FaultKind<Si>]) -> Vec<Period> {
         let faults: Vec<_> = kinds.iter().map(|kind| Fault { start: START, end: END, seed: (), kind: *kind }).collect();
         let rate = f64::from(self.case.truth.surroundings.control_rate);
@@ -102,11 +102,11 @@ impl Both {
         (0..PERIODS).map(one).collect()
     }
 
-    /// Counts of an encoder on the host and on the board beyond the true ones, in every period; the reading came in all.
+    /// Errors of an encoder's counts on the host and on the board in every period; every reading must have arrived.
     fn beside(&self, run: &[Period], shaft: Shaft) -> Vec<[i64; 2]> {
         let of = usize::from(shaft == Shaft::Link);
         let turn = self.turns[of];
-        // Within half a turn to either side.
+        // Wraps to within half a turn.
         let near = |counts: i64| (counts + turn / 2).rem_euclid(turn) - turn / 2;
         let one = |period: &Period| {
             let (host, board) = (period.host[of].expect("a reading"), period.board[of].expect("a reading"));
@@ -131,7 +131,7 @@ fn encoders_freeze_slip_lose_counts_and_run_out_of_true_alike_to_one_count() {
         let of_angle = FaultKind::Offset(shaft, Offset { counts: 3.0, angle: 20.3e-3 });
         let eccentric = FaultKind::Eccentric(shaft, 0.3_f64.to_radians());
         let missing = FaultKind::MissingCounts(shaft, 0.01);
-        // Most counts by which the two may differ, fewest that the fault moves at its worst.
+        // Largest difference between both [counts], and least effect of the fault at its worst [counts].
         let cases: [(&[FaultKind<Si>], i64, i64); 6] = [
             (&[FaultKind::Frozen(shaft)], 0, 1000),
             (&[of_counts], 0, 7),
@@ -167,7 +167,7 @@ fn encoders_scatter_alike_in_their_deviation() {
             let square = beside[ON].iter().map(|beside| (beside[side] as f64 - mean).powi(2)).sum::<f64>();
             (mean, (square / count).sqrt())
         };
-        // Of so many readings a deviation is uncertain by 1.3 %, a mean by 0.11 counts: four times that.
+        // Standard error of a deviation 1.3 %, of a mean 0.11 counts: four times as much is allowed.
         let (host, board) = (statistics(0), statistics(1));
         assert!((host.1 / board.1 - 1.0).abs() < 0.08, "{shaft:?}: deviations of {} and {} counts", host.1, board.1);
         assert!((host.1 / 6.0 - 1.0).abs() < 0.055, "{shaft:?}: a deviation of {} counts", host.1);
@@ -200,7 +200,7 @@ fn readings_are_lost_alike_and_the_motor_s_last_one_stands() {
                 }
                 assert!(share < 1.0 || host == board, "{shaft:?}: {host:?} and {board:?} in period {number}");
             }
-            // The standard deviation of the difference of two such numbers is 31: four times that.
+            // The standard deviation of the difference of two such counts is 31: four times as much is allowed.
             let apart = if share < 1.0 { 124 } else { 0 };
             assert!(lost[0].abs_diff(lost[1]) <= apart, "{shaft:?}: {lost:?} readings lost");
             assert!(f64::from(lost[0].abs_diff((share * ON.len() as f64) as u32)) <= 88.0, "{shaft:?}: {lost:?}");

@@ -1,4 +1,4 @@
-//! A motion as a board that runs the whole loop receives it: quintic polynomials between knots that match position,
+//! Motion in the form for a board that runs the whole loop: quintic polynomials between knots that match position,
 //! speed and acceleration at both ends, or impedance set-points at their own rate, with the torque on the link.
 
 use std::f64::consts::TAU;
@@ -13,10 +13,10 @@ use crate::file::TestFile;
 use crate::port::command;
 use crate::set_point_source::SetPointSource;
 
-/// Length of a polynomial at most [s]: a motion of 20 Hz is met to a millionth.
+/// Largest length of a polynomial [s]: a motion of 20 Hz is matched to a millionth.
 const SEGMENT: f64 = 5e-3;
 
-/// The knots of a test on the observer's scale of the link, which is `zero` at the joint's angle zero [turns].
+/// Knots of a test on the observer's scale of the link, which reads `zero` at the joint's angle zero [turns].
 pub fn knots(file: &TestFile, case: &Case, designed: &Designed, zero: f64) -> Vec<Knot> {
     let rate = f64::from(case.nominal_surroundings.control_rate);
     let periods = (file.duration * rate).round() as u32;
@@ -60,8 +60,8 @@ fn still(motion: Motion) -> bool {
     motion.speed == 0.0 && motion.acceleration == 0.0
 }
 
-/// The tick that ends a stretch: where one of the motions comes to rest or still does for the last time, and after `every`
-/// periods at the latest. A polynomial over such a moment would begin by going back.
+/// Tick that ends a segment: where a motion comes to rest or leaves rest, at the latest after `every` periods. A
+/// polynomial across such a point would start in the wrong direction.
 fn end_of_segment(tick: u32, every: u32, rests: impl Fn(u32) -> [bool; 2]) -> u32 {
     let mut here = rests(tick + 1);
     let mut before = rests(tick);
@@ -75,7 +75,7 @@ fn end_of_segment(tick: u32, every: u32, rests: impl Fn(u32) -> [bool; 2]) -> u3
     tick + every
 }
 
-/// From one moment of a motion to another.
+/// Quintic polynomial between two states of a motion.
 fn polynomial(from: Motion, to: Motion, time: f64) -> Segment<f32> {
     let way = to.position - from.position - time * (from.speed + 0.5 * time * from.acceleration);
     let gain = (to.speed - from.speed - time * from.acceleration) * time;
@@ -139,7 +139,7 @@ mod tests {
                 }
                 (tick, segments) = (next, segments + 1);
             }
-            // Few more than without: a line carries only so many.
+            // Only slightly more segments than without rests, since the line's capacity is limited.
             assert!(segments < 420, "{segments}");
         }
     }

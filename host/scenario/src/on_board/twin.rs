@@ -1,6 +1,6 @@
-//! The host's twin of a board that runs the whole loop: the same joint, observer and compensation over the same knots,
-//! in the same order of operations. The metrics of the board's run are computed from it, since every period can be seen
-//! here.
+//! Twin on the host of a board that runs the whole loop: equal joint, observer and compensation over the same knots, in
+//! the same order of operations. The metrics of the board's run are computed from the twin, whose every period is
+//! observable.
 
 use std::f64::consts::TAU;
 
@@ -30,32 +30,32 @@ use simulation::sim::snapshot::Reader;
 
 /// A twin run: the test, its drawn case, and the true joint at the board's rate.
 pub struct Twin<'t> {
-    /// The test.
+    /// Test file.
     pub file: &'t TestFile,
-    /// Its case.
+    /// Case of the test.
     pub case: &'t Case,
     /// Tables of the controller.
     pub designed: &'t Designed,
-    /// The true joint.
+    /// True joint.
     pub truth: &'t JointFile,
-    /// The board whose image it is.
+    /// Board of the image.
     pub board: &'t Board,
-    /// What goes wrong between joint and controller.
+    /// Faults between joint and controller.
     pub faults: &'t [Fault<FixedPoint<f32>>],
 }
 
-/// The result of a twin run.
+/// Result of a twin run.
 pub struct TwinResult {
-    /// The motion in knots.
+    /// Motion in knots.
     pub knots: Vec<Knot>,
-    /// Everything that happened.
+    /// History of the run.
     pub history: RunHistory,
     /// Running digest after every period.
     pub digests: Vec<u64>,
 }
 
 impl Twin<'_> {
-    /// Runs it.
+    /// Runs the twin.
     pub fn run(&self) -> Outcome<TwinResult> {
         match self.truth.parameters.geometry.planets {
             1 => self.run_with::<1>(),
@@ -87,7 +87,7 @@ impl Twin<'_> {
         Ok(self.pass(&tables, &table, &mut controller))
     }
 
-    /// The run from its first period to its last.
+    /// Runs from the first period to the last.
     fn pass<const N: usize>(
         &self,
         tables: &Tables<f32, N>,
@@ -150,7 +150,7 @@ impl Twin<'_> {
     }
 }
 
-/// A set-point with its angle counted from the joint's own zero, at which the observer's scale is `zero` [turns].
+/// Set-point with its angle relative to the joint's own zero, where the observer's scale reads `zero` [turns].
 fn asked(command: &Command<f32>, zero: f64) -> Asked {
     let angle = |position: Position<f32>| TAU * (f64::from(position.turns) + f64::from(position.fraction) - zero);
     match command {

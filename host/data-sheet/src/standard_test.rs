@@ -148,8 +148,8 @@ fn figure_of_run(file: &TestFile, text: &str, seed: u64, designed: &Designed) ->
         RunError::Refused(failure) => told(&failure),
         other => other.to_string(),
     })?;
-    let values = MetricValues::of(file, &case, &history, None);
-    let figure = values.named().find(|(metric, _)| metric.name() == METRIC).map(|(_, value)| value);
+    let values = MetricValues::compute(file, &case, &history, None);
+    let figure = values.available().find(|(metric, _)| metric.name() == METRIC).map(|(_, value)| value);
     figure.filter(|figure| *figure > 0.0).ok_or_else(|| "the run has no figure".to_owned())
 }
 

@@ -51,7 +51,7 @@ pub struct Case {
     /// Texts of the joint files: nominal except for the backlash, and true.
     texts: [String; 2],
     /// True once the nominal joint equals its joint file in every bit.
-    is_told: bool,
+    is_rounded: bool,
 }
 
 /// Designed tables of observer, compensation and width probe.
@@ -83,7 +83,7 @@ impl Case {
             }
             value
         };
-        let texts = texts(file, text, &mut draw).map_err(|problem| Failure::new(problem.to_string()))?;
+        let texts = joint_texts(file, text, &mut draw).map_err(|problem| Failure::new(problem.to_string()))?;
         let read = |text: &str| {
             joint_file::read(text).map_err(|problems| {
                 let message = problems.first().map_or_else(String::new, ToString::to_string);
@@ -111,7 +111,7 @@ impl Case {
             _ => file.profile.clone(),
         };
         if matches!(file.profile.trajectory, Trajectory::Any | Trajectory::Real(_)) {
-            drawn.extend(profile.numbers().into_iter().map(|(name, value)| (name.to_owned(), value)));
+            drawn.extend(profile.drawn_values().into_iter().map(|(name, value)| (name.to_owned(), value)));
         }
         Ok(Self {
             zeros: EncoderZeros::draw(seed),
@@ -124,7 +124,7 @@ impl Case {
             disturbances: disturbances(file, &profile, motion, rated),
             drawn,
             texts,
-            is_told: false,
+            is_rounded: false,
         })
     }
 
@@ -149,17 +149,17 @@ impl Case {
     /// Data from which an observer of this case can repeat a run; `None` unless the joint file holds all of the nominal
     /// joint.
     pub fn observer_origin(&self, file: &TestFile, memory: Option<Memory>) -> Option<ObserverOrigin> {
-        let joint_file = self.nominal_text().ok().filter(|_| self.is_told)?;
+        let joint_file = self.nominal_text().ok().filter(|_| self.is_rounded)?;
         Some(ObserverOrigin { joint_file, output_encoder: file.output_encoder, memory })
     }
 
     /// Rounds the nominal joint to the numbers of its joint file, so that the host and a board built from the file
     /// agree in every bit.
     pub fn round_nominal(&mut self) -> Outcome<()> {
-        let nominal = read_told(&self.nominal_text()?)?;
+        let nominal = read_controller_joint(&self.nominal_text()?)?;
         self.nominal = nominal.parameters;
         self.nominal_surroundings = nominal.surroundings;
-        self.is_told = true;
+        self.is_rounded = true;
         Ok(())
     }
 
@@ -188,17 +188,18 @@ impl Case {
         if !file.output_encoder {
             settings.output_encoder = None;
         }
-        let observer = design_observer(&self.nominal, &settings).map_err(|error| self.refused("observer", &error))?;
-        let law = self.settings_of_law(file, self.bandwidth(file)?);
+        let observer =
+            design_observer(&self.nominal, &settings).map_err(|error| self.design_error("observer", &error))?;
+        let law = self.compensation_settings_for(file, self.bandwidth(file)?);
         let compensation =
-            design_compensation(&self.nominal, &law).map_err(|error| self.refused("compensation", &error))?;
+            design_compensation(&self.nominal, &law).map_err(|error| self.design_error("compensation", &error))?;
         let probe =
-            design_usual_probe(&self.nominal, &settings).map_err(|error| self.refused("width probe", &error))?;
+            design_usual_probe(&self.nominal, &settings).map_err(|error| self.design_error("width probe", &error))?;
         Ok(Designed { observer, compensation, probe, ticks: settings.clock_rate / settings.control_rate })
     }
 
     /// Settings of the compensation's design, as the file asks.
-    pub fn settings_of_law(&self, file: &TestFile, bandwidth: f64) -> CompensationSettings {
+    pub fn compensation_settings_for(&self, file: &TestFile, bandwidth: f64) -> CompensationSettings {
         let usual = compensation_settings(&self.nominal_surroundings, bandwidth);
         CompensationSettings { peak_torque: file.peak_torque, ..usual }
     }
@@ -206,17 +207,17 @@ impl Case {
     /// Bandwidth of all controllers of a test [rad/s]: the file's, or the default of the nominal joint.
     pub fn bandwidth(&self, file: &TestFile) -> Outcome<f64> {
         let good = || good_bandwidth(&self.nominal, &self.nominal_surroundings);
-        file.bandwidth.map_or_else(good, Ok).map_err(|error| self.refused("compensation", &error))
+        file.bandwidth.map_or_else(good, Ok).map_err(|error| self.design_error("compensation", &error))
     }
 
     /// Error: the nominal joint cannot be designed for.
-    fn refused(&self, what: &str, error: &dyn std::fmt::Display) -> Failure {
+    fn design_error(&self, what: &str, error: &dyn std::fmt::Display) -> Failure {
         Failure::new(format!("no {what} can be designed for joint `{}`: {error}", self.nominal.name))
     }
 }
 
 /// Reads the joint file of a controller.
-pub fn read_told(text: &str) -> Outcome<JointFile> {
+pub fn read_controller_joint(text: &str) -> Outcome<JointFile> {
     joint_file::read(text).map_err(|problems| {
         let first = problems.first().map_or_else(String::new, ToString::to_string);
         Failure::new(format!("the joint that a controller is told cannot be: {first}"))
@@ -226,13 +227,13 @@ pub fn read_told(text: &str) -> Outcome<JointFile> {
 /// Checks the changes of a file at both ends of their ranges, before any run.
 pub fn check_changes(file: &TestFile, text: &str) -> Result<(), Vec<Problem>> {
     for end in [0, 1] {
-        texts(file, text, &mut |_, quantity| quantity.ends()[end]).map_err(|problem| vec![problem])?;
+        joint_texts(file, text, &mut |_, quantity| quantity.ends()[end]).map_err(|problem| vec![problem])?;
     }
     Ok(())
 }
 
 /// Texts of the nominal and of the true joint file.
-fn texts(file: &TestFile, text: &str, draw: &mut Draw<'_>) -> Result<[String; 2], Problem> {
+fn joint_texts(file: &TestFile, text: &str, draw: &mut Draw<'_>) -> Result<[String; 2], Problem> {
     let rated = joint_file::read(text).map_or(1.0, |joint| joint.parameters.rated_output_torque);
     let mut known = text.to_owned();
     let of_profile =
@@ -243,18 +244,18 @@ fn texts(file: &TestFile, text: &str, draw: &mut Draw<'_>) -> Result<[String; 2]
                 .map_err(|refused| problem(0..0, refused.message, refused.help))?;
         }
     }
-    apply(&mut known, &file.known, "known", draw)?;
+    apply_changes(&mut known, &file.known, "known", draw)?;
     let mut truth = known.clone();
-    apply(&mut truth, &file.plant, "plant", draw)?;
+    apply_changes(&mut truth, &file.plant, "plant", draw)?;
     Ok([known, truth])
 }
 
 /// Applies changes to the text of a joint file. Keys may depend on one another, so the joint is read after all changes;
 /// only if it cannot be read is the first change found after which it cannot.
-fn apply(text: &mut String, changes: &[Change], section: &str, draw: &mut Draw<'_>) -> Result<(), Problem> {
+fn apply_changes(text: &mut String, changes: &[Change], section: &str, draw: &mut Draw<'_>) -> Result<(), Problem> {
     let before = text.clone();
     for change in changes {
-        apply_one(text, change, section, draw)?;
+        apply_change(text, change, section, draw)?;
     }
     if joint_file::read(text).is_ok() {
         return Ok(());
@@ -262,7 +263,7 @@ fn apply(text: &mut String, changes: &[Change], section: &str, draw: &mut Draw<'
     *text = before;
     let mut last = None;
     for change in changes {
-        apply_one(text, change, section, draw)?;
+        apply_change(text, change, section, draw)?;
         let problems = joint_file::read(text).err();
         let first = problems.and_then(|list| list.into_iter().find(|problem| problem.severity == Severity::Error));
         // A problem that a later change removes is not reported.
@@ -271,11 +272,11 @@ fn apply(text: &mut String, changes: &[Change], section: &str, draw: &mut Draw<'
     last.map_or(Ok(()), |(span, message, help)| Err(problem(span, format!("the joint would be none: {message}"), help)))
 }
 
-fn apply_one(text: &mut String, change: &Change, section: &str, draw: &mut Draw<'_>) -> Result<(), Problem> {
+fn apply_change(text: &mut String, change: &Change, section: &str, draw: &mut Draw<'_>) -> Result<(), Problem> {
     let name = format!("{section}.{}", change.key);
     let value = match &change.value {
         NewValue::Text(text) => text.clone(),
-        NewValue::Number(quantity) => typed(draw(&name, *quantity), *quantity),
+        NewValue::Number(quantity) => format_number(draw(&name, *quantity), *quantity),
         NewValue::Times(quantity) => {
             let stated = joint_file::value(text, &change.typed).ok().flatten();
             let was: f64 = stated.and_then(|typed| typed.replace('_', "").parse().ok()).ok_or_else(|| {
@@ -291,7 +292,7 @@ fn apply_one(text: &mut String, change: &Change, section: &str, draw: &mut Draw<
 }
 
 /// Formats a number for a key; whole numbers stay whole, as some keys require.
-fn typed(value: f64, quantity: NumberOrRange) -> String {
+fn format_number(value: f64, quantity: NumberOrRange) -> String {
     let whole = quantity.ends().iter().all(|end| end.fract() == 0.0 && end.abs() < 1e9);
     match quantity {
         NumberOrRange::Exactly(_) if whole => format!("{value:.0}"),
@@ -304,7 +305,7 @@ fn problem(span: std::ops::Range<usize>, message: impl Into<String>, help: impl 
 }
 
 /// Recorded motion of a file, if any.
-pub fn recorded(file: &TestFile, folder: &Path) -> Outcome<Option<RecordedMotion>> {
+pub fn recorded_motion(file: &TestFile, folder: &Path) -> Outcome<Option<RecordedMotion>> {
     match &file.profile.trajectory {
         Trajectory::File(name) => RecordedMotion::read(&folder.join(name)).map(Some),
         _ => Ok(None),
@@ -335,13 +336,13 @@ fn trajectory(profile: &MotionProfile, recorded: Option<&RecordedMotion>, seed: 
 #[cfg(test)]
 mod tests {
     use super::Case;
-    use crate::any_motion::{TAKEN, any_motion, break_away, real_motion, torque_left};
+    use crate::any_motion::{USABLE_TORQUE_SHARE, any_motion, available_torque, breakaway_torque, real_motion};
     use crate::file::{self, ProfileLoad, RealMotion, Trajectory};
     use reference::closed_loop::rivals::Knowledge;
 
     /// A hundred motions with their loads on preset Q1: all differ, and all are within the motor's torque.
     #[test]
-    fn motions_and_loads_are_within_the_motors_torque_and_no_two_are_the_same() {
+    fn any_motions_within_torque_and_distinct() {
         let text = joint_file::preset("q1").expect("a preset");
         let test = file::read("profile = \"any\"").expect("a test file");
         let mut kinds = [0; 4];
@@ -364,15 +365,18 @@ mod tests {
                 ProfileLoad::Wave(_, Some(torque), _) => torque,
                 _ => 0.0,
             };
-            let carried =
-                if matches!(profile.trajectory, Trajectory::Hold(_)) { break_away(&joint, &case.truth) } else { 0.0 };
-            let most = TAKEN * torque_left(&joint, &case.truth);
+            let carried = if matches!(profile.trajectory, Trajectory::Hold(_)) {
+                breakaway_torque(&joint, &case.truth)
+            } else {
+                0.0
+            };
+            let most = USABLE_TORQUE_SHARE * available_torque(&joint, &case.truth);
             assert!(
                 accelerated + load - carried <= most * (1.0 + 1e-9),
                 "seed {seed}: {accelerated} + {load} of {most}"
             );
             assert!(accelerated + load > 0.0, "seed {seed} asks for nothing");
-            let numbers = profile.numbers();
+            let numbers = profile.drawn_values();
             assert!(numbers != before, "seed {seed} is the one before it");
             before = numbers;
         }
@@ -380,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn seven_seeds_have_the_seven_real_motions_within_the_torque() {
+    fn seven_seeds_cover_real_motions() {
         let text = joint_file::preset("q1").expect("a preset");
         let light = "known.gravity_torque_N_m = 2\nplant.payload_step_ratio = 3";
         let test = file::read(&format!("profile = \"real\"\n{light}")).expect("a test file");
@@ -390,7 +394,7 @@ mod tests {
                 let case = Case::new(&test, text, seed, None).expect("a case");
                 let joint = Knowledge::of(&case.truth.parameters, &case.train, case.width_guess);
                 let profile = real_motion(None, &joint, &case.truth, seed);
-                kinds.push(RealMotion::of_seed(seed));
+                kinds.push(RealMotion::for_seed(seed));
                 let inertia = joint.total_inertia * 36.0 + 2.0 * case.truth.parameters.link_inertia;
                 let times = (1000..8000).map(|moment| f64::from(moment) * 1e-3);
                 let asked = times.map(|time| inertia * case.motion.at(time).acceleration.abs()).fold(0.0, f64::max);
@@ -398,7 +402,7 @@ mod tests {
                     ProfileLoad::Stance(Some(torque), _) => torque,
                     _ => 0.0,
                 };
-                let room = TAKEN * torque_left(&joint, &case.truth);
+                let room = USABLE_TORQUE_SHARE * available_torque(&joint, &case.truth);
                 assert!(asked + load <= room * (1.0 + 1e-9), "seed {seed}, {profile:?}: {asked} + {load} of {room}");
                 assert_eq!(asked + load > 0.0, !matches!(profile.trajectory, Trajectory::Hold(_)), "seed {seed}");
             }
@@ -407,7 +411,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_can_fix_the_real_motion() {
+    fn stated_real_motion_is_used() {
         let text = joint_file::preset("q1").expect("a preset");
         let test = file::read("[profile]\nkind = \"real\"\nmotion = \"slow_sine\"").expect("a test file");
         for seed in 1..8 {

@@ -70,7 +70,7 @@ impl ControllerName {
     ];
 
     /// Controller by its word in a file. `none` is the baseline, and so is `locked` in an impedance test.
-    pub fn of_word(word: &str, impedance: bool) -> Self {
+    pub fn from_word(word: &str, impedance: bool) -> Self {
         if word == Self::Locked.word() && !impedance {
             return Self::Locked;
         }
@@ -129,7 +129,7 @@ impl ControllerName {
     }
 
     /// Returns true if both names stand for one control law.
-    pub fn is_the_same_as(self, other: Self) -> bool {
+    pub fn has_same_law(self, other: Self) -> bool {
         let law = |name| if name == Self::Locked { Self::MotorPid } else { name };
         law(self) == law(other)
     }

@@ -7,7 +7,7 @@ use std::fmt::Write;
 use model_core::observer::{Estimates, MEMORY_BYTES, Memory, Reading, Samples};
 use report::log::{Message, field};
 
-use super::estimate_fields::digest_of;
+use super::estimate_fields::estimates_digest;
 
 /// Topic of every control period.
 pub const TOPIC: &str = "/joint/controller";
@@ -17,13 +17,13 @@ pub const SCHEMA_NAME: &str = "joint_msgs/msg/Controller";
 /// Number of the control period, in this and other topics of the log.
 pub const PERIOD: &str = "period";
 /// Digest of the estimates.
-pub const DIGEST: &str = "estimates_digest";
+pub const ESTIMATES_DIGEST: &str = "estimates_digest";
 /// Torque given to the observer.
-pub const SHOWN_TORQUE: &str = "shown_torque_Nm";
+pub const OBSERVER_TORQUE: &str = "shown_torque_Nm";
 /// Flag of a new reading of the output encoder.
 pub const OUTPUT_READ: &str = "output_read";
 /// Fields of 32 bits that form the samples.
-pub const SAMPLES: [&str; 5] =
+pub const SAMPLE_FIELDS: [&str; 5] =
     ["clock_ticks", "motor_counts", "motor_read_at_ticks", "output_counts", "output_read_at_ticks"];
 
 /// One control period.
@@ -64,12 +64,15 @@ pub fn schema() -> String {
     ];
     let mut text = field("float64", "time_s", "beginning of the period [s]");
     text += &field("uint32", PERIOD, "number of the control period");
-    text.extend(SAMPLES.iter().zip(meanings).map(|(name, meaning)| field("uint32", name, meaning)));
+    text.extend(SAMPLE_FIELDS.iter().zip(meanings).map(|(name, meaning)| field("uint32", name, meaning)));
     text += &field("bool", OUTPUT_READ, "whether the output encoder gave a reading in this period");
-    text +=
-        &field("float32", SHOWN_TORQUE, "asked of the motor in the period before, as the observer is shown it [N m]");
+    text += &field(
+        "float32",
+        OBSERVER_TORQUE,
+        "asked of the motor in the period before, as the observer is shown it [N m]",
+    );
     text += &field("float32", "motor_torque_Nm", "asked of the motor from now on [N m]");
-    text += &field("uint32", DIGEST, "digest over every bit of all estimates, 0 without them");
+    text += &field("uint32", ESTIMATES_DIGEST, "digest over every bit of all estimates, 0 without them");
     text
 }
 
@@ -82,7 +85,7 @@ pub struct ControllerMessages {
 
 impl ControllerMessages {
     /// Message of the next period.
-    pub fn next(&mut self, time: f64, period: usize, of: &ControllerPeriod) -> Message {
+    pub fn message(&mut self, time: f64, period: usize, of: &ControllerPeriod) -> Message {
         let ControllerPeriod { samples, torque, estimates } = of;
         self.output = samples.output.unwrap_or(self.output);
         let mut message = Message::default();
@@ -94,7 +97,7 @@ impl ControllerMessages {
         message.flag(samples.output.is_some());
         message.single(samples.torque);
         message.single(*torque);
-        message.whole(estimates.as_ref().map_or(0, digest_of));
+        message.whole(estimates.as_ref().map_or(0, estimates_digest));
         message
     }
 }
@@ -114,7 +117,7 @@ impl ObserverOrigin {
     }
 
     /// Parses remarks; `None` if they are incomplete.
-    pub fn of(remarks: &BTreeMap<String, String>) -> Option<Self> {
+    pub fn from_remarks(remarks: &BTreeMap<String, String>) -> Option<Self> {
         let bytes = |text: &String| -> Option<Memory> {
             let byte = |place: usize| u8::from_str_radix(text.get(2 * place..2 * place + 2)?, 16).ok();
             let bytes: Option<Vec<u8>> = (0..MEMORY_BYTES).map(byte).collect();
@@ -137,16 +140,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_remarks_say_is_what_was_to_be_said() {
+    fn origin_round_trips_through_remarks() {
         let mut memory = [0_u8; MEMORY_BYTES];
         memory[3] = 0xa7;
         for memory in [None, Some(memory)] {
             let origin = ObserverOrigin { joint_file: "name = \"J\"\n".to_owned(), output_encoder: false, memory };
-            assert_eq!(ObserverOrigin::of(&origin.remarks()), Some(origin.clone()));
+            assert_eq!(ObserverOrigin::from_remarks(&origin.remarks()), Some(origin.clone()));
             let mut damaged = origin.remarks();
             damaged.insert(MEMORY.to_owned(), "a7".to_owned());
-            assert_eq!(ObserverOrigin::of(&damaged), None);
+            assert_eq!(ObserverOrigin::from_remarks(&damaged), None);
         }
-        assert_eq!(ObserverOrigin::of(&BTreeMap::new()), None);
+        assert_eq!(ObserverOrigin::from_remarks(&BTreeMap::new()), None);
     }
 }

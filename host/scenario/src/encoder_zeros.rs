@@ -4,10 +4,10 @@
 use super::random::RandomStream;
 
 /// Share of the seeds whose encoder starts close to its wrap [-].
-const NEAR_WRAP: f64 = 0.25;
+const NEAR_WRAP_SHARE: f64 = 0.25;
 
 /// Largest distance from the wrap in those seeds [turns]: a few counts of 14 bits.
-const NEAR: f64 = 3e-4;
+const NEAR_WRAP_DISTANCE: f64 = 3e-4;
 
 /// Readings of both encoders at the start of the joint, as fractions of a turn.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -21,9 +21,9 @@ impl EncoderZeros {
     pub fn draw(seed: u64) -> Self {
         let mut stream = RandomStream::new(seed, "encoder zeros");
         let mut place = || {
-            let near_wrap = stream.uniform() < NEAR_WRAP;
+            let near_wrap = stream.uniform() < NEAR_WRAP_SHARE;
             let place = stream.uniform();
-            if near_wrap { ((2.0 * place - 1.0) * NEAR).rem_euclid(1.0) } else { place }
+            if near_wrap { ((2.0 * place - 1.0) * NEAR_WRAP_DISTANCE).rem_euclid(1.0) } else { place }
         };
         Self { turns: [place(), place()] }
     }
@@ -39,11 +39,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn zeros_cover_the_turn_and_both_sides_of_its_wrap() {
+    fn zeros_cover_turn_and_wrap() {
         let zeros: Vec<_> = (0..400).map(|seed| EncoderZeros::draw(seed).counts([1 << 14, 1 << 17])).collect();
         for (encoder, bits) in [(0, 14), (1, 17)] {
             let turn = 1_i64 << bits;
-            let near = (NEAR * turn as f64) as i64 + 1;
+            let near = (NEAR_WRAP_DISTANCE * turn as f64) as i64 + 1;
             let within =
                 |range: std::ops::Range<i64>| zeros.iter().filter(|counts| range.contains(&counts[encoder])).count();
             assert_eq!(within(0..turn), 400);

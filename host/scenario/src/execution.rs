@@ -32,7 +32,7 @@ pub struct RunSpec {
 }
 
 /// Share of the runs that start on a flank [-]; the others start in the open gap.
-const ON_FLANK: f64 = 0.33;
+const ON_FLANK_SHARE: f64 = 0.33;
 
 /// Control periods between checks of the deadline.
 const PERIODS_BETWEEN_CHECKS: u64 = 500;
@@ -104,11 +104,11 @@ fn run(
     let run = RunContext { file, case, spec, designed, deadline };
     if file.from_memory && spec.controller.is_compensation() {
         // The first run has other noise, so that the memory holds the joint and not the noise.
-        run.pass(&mut controller, !seed)?;
+        run.execute(&mut controller, !seed)?;
         let memory_at_start = controller.restart_from_memory()?;
-        return Ok(RunHistory { memory_at_start, ..run.pass(&mut controller, seed)? });
+        return Ok(RunHistory { memory_at_start, ..run.execute(&mut controller, seed)? });
     }
-    run.pass(&mut controller, seed)
+    run.execute(&mut controller, seed)
 }
 
 /// Plant, motion and faults of a case.
@@ -116,7 +116,7 @@ pub fn setup(file: &TestFile, case: &Case, seed: u64, spec: RunSpec) -> Setup {
     let joint = if spec.without_gap { case.joint_without_gap() } else { case.truth.parameters.clone() };
     Setup {
         plant: spec.plant,
-        start: Start::Relative(start(&joint, seed)),
+        start: Start::Relative(start_state(&joint, seed)),
         disturbances: case.disturbances.clone(),
         faults: if spec.without_gap { Vec::new() } else { file.faults.clone() },
         ..Setup::new(joint, case.train.clone(), case.motion.clone(), file.duration, seed)
@@ -125,9 +125,9 @@ pub fn setup(file: &TestFile, case: &Case, seed: u64, spec: RunSpec) -> Setup {
 
 /// Start at rest at a random place in the gap, every third start on a flank, like a joint after power-off. Both meshes
 /// of a planet share the gap.
-fn start(joint: &JointParameters, seed: u64) -> RelativeState {
+fn start_state(joint: &JointParameters, seed: u64) -> RelativeState {
     let mut stream = RandomStream::new(seed, "start in the gap");
-    let (on_flank, place) = (stream.uniform() < ON_FLANK, 2.0 * stream.uniform() - 1.0);
+    let (on_flank, place) = (stream.uniform() < ON_FLANK_SHARE, 2.0 * stream.uniform() - 1.0);
     let mesh = half_backlash(joint) * if on_flank { place.signum() } else { place };
     let centred = RelativeState::centred(joint.geometry.planets);
     RelativeState { sun_planet: centred.sun_planet.iter().map(|_| mesh).collect(), gap: 2.0 * mesh, ..centred }
@@ -143,7 +143,7 @@ struct RunContext<'r> {
 }
 
 impl RunContext<'_> {
-    fn pass(&self, controller: &mut ActiveController<'_>, seed: u64) -> Result<RunHistory, RunError> {
+    fn execute(&self, controller: &mut ActiveController<'_>, seed: u64) -> Result<RunHistory, RunError> {
         let Self { file, case, spec, designed, deadline } = *self;
         let rig = Rig::new(&setup(file, case, seed, spec))?;
         let mut set_points = SetPointSource::new(file, case, spec.controller, designed);
@@ -157,7 +157,7 @@ impl RunContext<'_> {
             if interruption::requested() {
                 return Err(RunError::Interrupted);
             }
-            history.note(period, &mut translator);
+            history.add_period(period, &mut translator);
             Ok(())
         })?;
         history.memory = controller.memory();
@@ -189,6 +189,6 @@ fn translator(case: &Case) -> Translator {
 /// Designs the compensation that is fed with the true state, for the true joint.
 fn design_from_truth(file: &TestFile, case: &Case) -> Outcome<CompensationTables<f64>> {
     let joint = &case.truth.parameters;
-    design_compensation(joint, &case.settings_of_law(file, case.bandwidth(file)?))
+    design_compensation(joint, &case.compensation_settings_for(file, case.bandwidth(file)?))
         .map_err(|error| Failure::new(format!("no compensation can be designed for joint `{}`: {error}", joint.name)))
 }

@@ -75,13 +75,13 @@ const FILES: [&str; 6] = [REPORT, RECORD, JUNIT, LOGS, memory_file::MEMORIES, me
 #[derive(Debug, Clone)]
 pub struct TestRequest<'w> {
     /// Groups of tests.
-    pub parts: Vec<TestGroup<'w>>,
+    pub groups: Vec<TestGroup<'w>>,
     /// Seeds in place of the files'.
     pub seed: Option<Seeds>,
     /// Runs the full lists of seeds.
     pub full: bool,
     /// Saves the estimated parameters after each run on the host.
-    pub memories: bool,
+    pub save_memories: bool,
     /// Name of the default output folder.
     pub name: String,
     /// Output folder in place of the default.
@@ -116,18 +116,18 @@ struct PreparedGroup<'w> {
 pub fn run(request: &TestRequest<'_>, progress: &Progress) -> Outcome<()> {
     let start = Instant::now();
     let folder = Folder::choose(request.out.as_deref(), "hil/tests", &request.name, &FILES)?;
-    let mut parts = Vec::new();
-    for TestGroup { path, choice, plant, boards } in &request.parts {
+    let mut groups = Vec::new();
+    for TestGroup { path, choice, plant, boards } in &request.groups {
         let mut suite = suite::load(path, *choice, *plant)?;
         let boards = boards.map(|request| Boards::prepare(request, &mut suite, *plant, progress)).transpose()?;
-        parts.push(PreparedGroup { suite, plant: *plant, boards });
+        groups.push(PreparedGroup { suite, plant: *plant, boards });
     }
-    let read: Vec<PathBuf> = parts.iter().flat_map(|part| &part.suite.tests).flat_map(Test::files).collect();
+    let read: Vec<PathBuf> = groups.iter().flat_map(|part| &part.suite.tests).flat_map(Test::files).collect();
     let read: Vec<&Path> = read.iter().map(PathBuf::as_path).collect();
     folder::check_files(&[("json", request.json), ("junit", request.junit)], &read)?;
     folder.make()?;
     folder::make(&folder.file(log_file::FOLDER))?;
-    let (tested, not_run) = run_parts(parts, request, &folder, progress)?;
+    let (tested, not_run) = run_groups(groups, request, &folder, progress)?;
     let record = TestsRecord {
         schema: SCHEMA.to_owned(),
         passed: not_run.is_empty() && tested.iter().all(|test| test.record.passed),
@@ -154,32 +154,32 @@ pub fn run(request: &TestRequest<'_>, progress: &Progress) -> Outcome<()> {
 }
 
 /// Finished tests, and files that could not run.
-type RunOrNot = (Vec<FinishedTest>, Vec<NotRun>);
+type GroupResults = (Vec<FinishedTest>, Vec<NotRun>);
 
-fn run_parts(
-    parts: Vec<PreparedGroup<'_>>,
+fn run_groups(
+    groups: Vec<PreparedGroup<'_>>,
     request: &TestRequest<'_>,
     folder: &Folder,
     progress: &Progress,
-) -> Outcome<RunOrNot> {
+) -> Outcome<GroupResults> {
     let runs_of = |test: &Test| test.seeds(request.seed, request.full).len() * test.controllers().len();
-    let runs: usize = parts.iter().flat_map(|part| &part.suite.tests).map(runs_of).sum();
+    let runs: usize = groups.iter().flat_map(|part| &part.suite.tests).map(runs_of).sum();
     progress.run("testing", runs as u32);
-    let before = AtomicU32::new(0);
+    let finished_runs = AtomicU32::new(0);
     let (mut tested, mut not_run) = (Vec::new(), Vec::new());
-    for PreparedGroup { suite: Suite { tests, not_run: refused, .. }, plant, boards } in parts {
+    for PreparedGroup { suite: Suite { tests, not_run: refused, .. }, plant, boards } in groups {
         not_run.extend(refused);
         let options = RunOptions {
             plant,
             seed: request.seed,
             full: request.full,
             boards: boards.as_ref(),
-            memories: request.memories,
+            save_memories: request.save_memories,
             folder,
             done: &|runs| progress.at(runs),
         };
         let one = |test: &Test| {
-            let one = campaign::run(test, &options, &before);
+            let one = campaign::run(test, &options, &finished_runs);
             one.iter().for_each(|one| progress.say_above(&page::line(&one.record)));
             one
         };
@@ -223,9 +223,10 @@ fn verdict(record: &TestsRecord) -> Outcome<()> {
     match (failed.is_empty(), not_run) {
         (true, None) => Ok(()),
         (true, Some(not_run)) => {
-            let mend = record.not_run.first().and_then(|one| one.mend.clone()).filter(|_| record.not_run.len() == 1);
+            let remedy =
+                record.not_run.first().and_then(|one| one.remedy.clone()).filter(|_| record.not_run.len() == 1);
             Err(Failure::new(not_run)
-                .with_help(mend.unwrap_or_else(|| "each is named above with its reason".to_owned())))
+                .with_help(remedy.unwrap_or_else(|| "each is named above with its reason".to_owned())))
         }
         (false, not_run) => {
             let mut message = format!("{} of {all} tests failed: {}", failed.len(), failed.join(", "));

@@ -7,7 +7,7 @@ use std::io::{self, Write};
 
 use super::controller_log::{self, ControllerMessages};
 use super::estimate_fields;
-use super::file::{Fault, fault_is_on, fault_word};
+use super::file::{Fault, fault_is_active, fault_word};
 use super::run_history::RunHistory;
 use report::failure::Outcome;
 use report::folder::Folder;
@@ -74,8 +74,8 @@ fn fill(out: &mut impl Write, run: LoggedRun<'_>) -> io::Result<()> {
     let mut log = Log::begin(out, remarks)?;
     let mut trial = log.topic(TOPIC, SCHEMA_NAME, &schema())?;
     let mut controller = log.topic(controller_log::TOPIC, controller_log::SCHEMA_NAME, &controller_log::schema())?;
-    let (every, mut messages) = (history.every(RATE), ControllerMessages::default());
-    let mut thinned = history.thinned(RATE);
+    let (every, mut messages) = (history.periods_per_sample(RATE), ControllerMessages::default());
+    let mut thinned = history.samples_at(RATE);
     for (period, of) in history.controller.iter().enumerate() {
         if interruption::requested() {
             // Writing a log takes longer than a user waits, so an interruption stops it; the partial log is removed.
@@ -83,13 +83,13 @@ fn fill(out: &mut impl Write, run: LoggedRun<'_>) -> io::Result<()> {
         }
         let began = period as f64 * history.run.period;
         if every_period {
-            log.write(&mut controller, began, &messages.next(began, period, of))?;
+            log.write(&mut controller, began, &messages.message(began, period, of))?;
         }
         if (period + 1) % every != 0 {
             continue;
         }
         let Some((sample, truth, seen, peak)) = thinned.next() else { continue };
-        let (observed, asked) = (seen.copied().unwrap_or_default(), &history.asked[period]);
+        let (observed, asked) = (seen.copied().unwrap_or_default(), &history.set_points[period]);
         let numbers: [f64; NUMBERS.len()] = [
             sample.time,
             sample.wanted,
@@ -117,7 +117,7 @@ fn fill(out: &mut impl Write, run: LoggedRun<'_>) -> io::Result<()> {
         numbers.into_iter().for_each(|number| message.number(number));
         message.whole(period as u32);
         estimate_fields::add(&mut message, of.estimates.as_ref());
-        let acting: Vec<&str> = faults.iter().filter(|fault| fault_is_on(fault, began)).map(fault_word).collect();
+        let acting: Vec<&str> = faults.iter().filter(|fault| fault_is_active(fault, began)).map(fault_word).collect();
         message.words(acting.into_iter());
         log.write(&mut trial, sample.time, &message)?;
     }

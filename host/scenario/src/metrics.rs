@@ -198,7 +198,7 @@ impl Metric {
 }
 
 /// Names that may follow `over` or `to` in a test, with their controllers.
-pub fn others(impedance: bool) -> Vec<(&'static str, ControllerName)> {
+pub fn rival_names(impedance: bool) -> Vec<(&'static str, ControllerName)> {
     let own = ControllerName::ALL.into_iter().filter(|name| !name.is_compensation() && name.wants_gains() == impedance);
     let mut list: Vec<_> = own.filter(|name| *name != ControllerName::Off).map(|name| (name.word(), name)).collect();
     list.push(("baseline", ControllerName::baseline(impedance)));
@@ -211,10 +211,10 @@ pub fn others(impedance: bool) -> Vec<(&'static str, ControllerName)> {
 }
 
 /// All names that a test may assert.
-pub fn names(impedance: bool) -> Vec<String> {
+pub fn assertable_names(impedance: bool) -> Vec<String> {
     let mut names: Vec<String> = METRICS.iter().map(Metric::name).collect();
     for metric in METRICS.iter().filter(|metric| matches!(metric.requires, Motion | Impedance)) {
-        for (other, _) in others(impedance) {
+        for (other, _) in rival_names(impedance) {
             names.push(format!("{}_gain_over_{other}", metric.stem));
             names.push(format!("{}_ratio_to_{other}", metric.stem));
             names.push(format!("{}_of_{other}", metric.name()));
@@ -231,7 +231,7 @@ impl NamedMetric {
         }
         let of_motion = |metric: &Metric| matches!(metric.requires, Motion | Impedance);
         if let Some((own, other)) = name.rsplit_once("_of_")
-            && let Some((_, other)) = others(impedance).into_iter().find(|(word, _)| *word == other)
+            && let Some((_, other)) = rival_names(impedance).into_iter().find(|(word, _)| *word == other)
         {
             let index = METRICS.iter().position(|metric| metric.name() == own && of_motion(metric))?;
             return Some(Self { index, relation: Relation::Of(other) });
@@ -242,7 +242,7 @@ impl NamedMetric {
             (None, None) => return None,
         };
         let index = METRICS.iter().position(|metric| metric.stem == stem && of_motion(metric))?;
-        let (_, other) = others(impedance).into_iter().find(|(word, _)| *word == other)?;
+        let (_, other) = rival_names(impedance).into_iter().find(|(word, _)| *word == other)?;
         let relation = if gain { Relation::GainOver(other) } else { Relation::RatioTo(other) };
         Some(Self { index, relation })
     }
@@ -253,7 +253,7 @@ impl NamedMetric {
     }
 
     /// Index of the base metric.
-    pub fn place(&self) -> usize {
+    pub fn index(&self) -> usize {
         self.index
     }
 }

@@ -12,16 +12,16 @@ use report::plot::panel::Panel;
 use report::plot::unit::{FORCE, MILLISECONDS, SECONDS, TORQUE, Unit, greatest};
 
 /// Width of a line [px].
-const LINE: f64 = 1.2;
+const LINE_WIDTH: f64 = 1.2;
 /// Width of the tested controller's line [px].
-const OWN: f64 = 1.8;
+const TESTED_LINE_WIDTH: f64 = 1.8;
 /// Bins of time in a picture of the whole run; each has the least and the greatest error.
 const BINS: usize = 450;
 /// Time before and after the crossing in the close-up [s].
-const CLOSE: f64 = 0.12;
+const CLOSE_UP_MARGIN: f64 = 0.12;
 
 /// Picture of the whole run.
-pub fn whole(tested: &FinishedTest) -> Option<Figure> {
+pub fn whole_run(tested: &FinishedTest) -> Option<Figure> {
     let end =
         tested.shown.iter().flat_map(|(_, trace)| trace.points.last()).map(|point| point.time).fold(0.0, f32::max);
     let coarse = |(name, trace): &(ControllerName, Trace)| (*name, trace.coarse(trace.points.len() / BINS));
@@ -31,15 +31,15 @@ pub fn whole(tested: &FinishedTest) -> Option<Figure> {
 }
 
 /// Picture of a crossing of the gap: the tested controller's longest one, or that of another controller.
-pub fn close(tested: &FinishedTest) -> Option<Figure> {
+pub fn crossing(tested: &FinishedTest) -> Option<Figure> {
     let settle = tested.record.settle_s;
     let longest = |trace: &Trace| {
         let late = trace.crossings.iter().filter(|(time, _)| *time >= settle);
         late.copied().reduce(|a, b| if b.1 > a.1 { b } else { a })
     };
     let (time, took) = tested.shown.iter().find_map(|(_, trace)| longest(trace))?;
-    let from = (time - took.min(0.3) - CLOSE).max(0.0);
-    let view = View { shown: &tested.shown, faults: &tested.faults, range: (from, time + CLOSE) };
+    let from = (time - took.min(0.3) - CLOSE_UP_MARGIN).max(0.0);
+    let view = View { shown: &tested.shown, faults: &tested.faults, range: (from, time + CLOSE_UP_MARGIN) };
     Some(view.figure(format!("A crossing of the gap: {}", tested.record.file), false))
 }
 
@@ -104,7 +104,7 @@ impl View<'_> {
             points: trace.points.iter().filter(inside).map(|p| (p.time.into(), value(p).into())).collect(),
             ink: LINES[index.min(LINES.len() - 1)],
             label: label.to_owned(),
-            width: if index == 0 { OWN } else { LINE },
+            width: if index == 0 { TESTED_LINE_WIDTH } else { LINE_WIDTH },
         }
     }
 

@@ -81,7 +81,7 @@ pub fn plant_from(
     let refused =
         |error: &dyn std::fmt::Display| Failure::new(format!("joint `{}` cannot be run: {error}", joint.name));
     let mut train = train.clone();
-    refuse_effects(name, &train.surroundings)?;
+    reject_effects(name, &train.surroundings)?;
     let inside: Box<dyn Teeth> = match name {
         PlantName::Reference => {
             let hysteresis = train.surroundings.hysteresis;
@@ -105,7 +105,11 @@ pub fn plant_from(
 }
 
 /// State of the core's step for an initial state.
-fn state_of<const N: usize>(joint: &JointParameters, tables: &Tables<f32, N>, start: &RelativeState) -> State<f32, N> {
+fn core_state<const N: usize>(
+    joint: &JointParameters,
+    tables: &Tables<f32, N>,
+    start: &RelativeState,
+) -> State<f32, N> {
     let scales = Scales::new(joint);
     let scaled = |planets: &[f64], gap: f64, wind_up: f64, unit: f64| Relative {
         planets: std::array::from_fn(|planet| (planets.get(planet).copied().unwrap_or(0.0) / unit) as f32),
@@ -119,7 +123,7 @@ fn state_of<const N: usize>(joint: &JointParameters, tables: &Tables<f32, N>, st
 }
 
 /// Rejects effects that the plant does not model.
-pub fn refuse_effects(name: PlantName, around: &Surroundings) -> Outcome<()> {
+pub fn reject_effects(name: PlantName, around: &Surroundings) -> Outcome<()> {
     let why = |effect: Effect| match effect {
         Effect::Hysteresis => Some("its spring between carrier and link has no loss but damping"),
         Effect::PayloadStep => Some("its inertias are tables"),
@@ -162,7 +166,7 @@ impl<const N: usize> CoreJoint<N> {
         let compliance_damping = compliance_damping(joint);
         let state = match start {
             Start::Still => State::REST,
-            Start::Relative(start) => state_of(joint, &tables, start),
+            Start::Relative(start) => core_state(joint, &tables, start),
         };
         Ok(Self { joint: joint.clone(), tables, state, ticks: 0, compliance_damping, backlash_scale: 1.0 })
     }
@@ -175,7 +179,7 @@ impl<const N: usize> CoreJoint<N> {
 
     /// Designs the tables for the current joint. Scales do not depend on the backlash, so the state remains valid. The
     /// design cannot fail for a joint that was designed before.
-    fn design_again(&mut self) {
+    fn redesign(&mut self) {
         let mut joint = self.joint.clone();
         for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
             mesh.half_backlash.iter_mut().for_each(|value| *value *= self.backlash_scale);
@@ -215,7 +219,7 @@ impl<const N: usize> Teeth for CoreJoint<N> {
             mesh.half_backlash.iter_mut().for_each(|value| *value = half_backlash);
         }
         self.joint = joint;
-        self.design_again();
+        self.redesign();
     }
 
     fn set_sun_planet_stiffness(&mut self, _: usize, _: f64) {
@@ -238,7 +242,7 @@ impl<const N: usize> JointModel for CoreJoint<N> {
     fn scale_half_backlash(&mut self, factor: f64) {
         if (factor - self.backlash_scale).abs() > DESIGN_STEP {
             self.backlash_scale = factor;
-            self.design_again();
+            self.redesign();
         }
     }
 
@@ -247,7 +251,7 @@ impl<const N: usize> JointModel for CoreJoint<N> {
     fn set_link_inertia(&mut self, link_inertia: f64) {
         self.joint.link_inertia = link_inertia;
         self.compliance_damping = compliance_damping(&self.joint);
-        self.design_again();
+        self.redesign();
     }
 
     fn observe(&self) -> Observation {
@@ -315,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn the_core_refuses_by_name_what_it_lacks() {
+    fn core_rejects_missing_effects() {
         type Lacking = (&'static str, fn(&mut Surroundings));
         let lacking: [Lacking; 3] = [
             ("`hysteresis_stiffness_share`", |of| of.hysteresis = Hysteresis { stiffness_share: 0.2, torque: 1.0 }),
@@ -333,7 +337,7 @@ mod tests {
     }
 
     #[test]
-    fn a_payload_swings_alike_on_both_plants() {
+    fn payload_swings_alike_on_plants() {
         let around = Surroundings {
             payload: Payload { inertia_share: 0.5, frequency: 12.0, damping_ratio: 0.02 },
             ..Surroundings::ideal()
@@ -355,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn the_backlash_varies_alike_on_both_plants() {
+    fn backlash_varies_alike_on_plants() {
         let around = Surroundings {
             width: WidthVariation { per_link_turn: 0.3, per_motor_turn: 0.0 },
             load_friction: Friction { coulomb: 5.0, ..Friction::default() },

@@ -56,7 +56,7 @@ impl ControllerPort for HostPort<'_> {
     }
 
     fn restart_from_memory(&mut self) -> Outcome<Memory> {
-        remember(&mut self.0)
+        restart_from_memory(&mut self.0)
     }
 
     fn memory(&self) -> Option<Memory> {
@@ -65,7 +65,7 @@ impl ControllerPort for HostPort<'_> {
 }
 
 /// Restarts a controller from its estimated parameters, as a board does after a reset.
-pub fn remember(controller: &mut Controller<'_, f32>) -> Outcome<Memory> {
+pub fn restart_from_memory(controller: &mut Controller<'_, f32>) -> Outcome<Memory> {
     let memory = controller.save();
     controller.reset();
     controller
@@ -170,7 +170,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_late_period_has_the_time_of_its_start() {
+    fn late_period_has_time_of_start() {
         let frame = TimedReading { counts: 0, period: 7, lateness: 42 };
         let seen = ControllerInputs { period: 7, lateness: 42, motor: frame, output: Some(frame) };
         let samples = Translator::new(1000, [14, 17], &EncoderZeros::default()).samples(&seen);

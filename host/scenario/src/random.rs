@@ -78,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_stream_depends_on_seed_and_name_and_keeps_within_its_range() {
+    fn stream_depends_on_seed_and_name() {
         let draw = |seed, name| NumberOrRange::Between(-2.0, 3.0).draw(&mut RandomStream::new(seed, name));
         assert_eq!(draw(1, "a"), draw(1, "a"));
         assert_ne!(draw(1, "a"), draw(2, "a"));
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn whole_numbers_are_drawn_as_often_as_one_another() {
+    fn whole_numbers_are_uniform() {
         let bits = NumberOrRange::Between(12.0, 18.0);
         let mut count = [0; 7];
         for seed in 0..7000 {

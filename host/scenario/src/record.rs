@@ -46,7 +46,8 @@ pub struct NotRun {
     /// Reason why the file could not run.
     pub why: String,
     /// Remedy.
-    pub mend: Option<String>,
+    #[serde(rename = "mend")]
+    pub remedy: Option<String>,
 }
 
 impl NotRun {
@@ -54,7 +55,7 @@ impl NotRun {
     pub fn new(file: String, failure: &Failure) -> Self {
         let message = failure.message();
         let why = message.strip_prefix(&file).map_or(message, |rest| rest.trim_start_matches([':', ' ']));
-        Self { why: why.to_owned(), mend: failure.full_help(), file }
+        Self { why: why.to_owned(), remedy: failure.full_help(), file }
     }
 }
 

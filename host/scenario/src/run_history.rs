@@ -21,7 +21,7 @@ pub struct RunHistory {
     /// Inputs and outputs of the controller, in the order of the samples.
     pub controller: Vec<ControllerPeriod>,
     /// Set-points of the controller, in the order of the samples.
-    pub asked: Vec<Asked>,
+    pub set_points: Vec<LoggedSetPoint>,
     /// Digest over every bit of the run.
     pub digest: u64,
     /// Memory that the observer started from, if any.
@@ -45,7 +45,7 @@ pub struct TrueValues {
 
 /// Set-point of a controller in one period; angles are relative to the joint's own zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Asked {
+pub struct LoggedSetPoint {
     /// Angle, speed and acceleration of the link [rad, rad/s, rad/s^2].
     pub motion: Motion,
     /// Feed-forward torque [N m].
@@ -56,7 +56,7 @@ pub struct Asked {
     pub damping: f64,
 }
 
-impl From<&SetPoint> for Asked {
+impl From<&SetPoint> for LoggedSetPoint {
     fn from(set_point: &SetPoint) -> Self {
         match *set_point {
             SetPoint::Position { now, .. } => Self { motion: now, ..Self::default() },
@@ -89,7 +89,7 @@ pub struct ObserverOutput {
     /// Skew of the encoders [s].
     pub skew: f32,
     /// True if both encoders are in use.
-    pub both: bool,
+    pub both_encoders: bool,
     /// Share of the compensation in the torque.
     pub trust: f32,
     /// The law demands more torque than the limit, or brakes early because of the limit.
@@ -129,7 +129,7 @@ impl RunHistory {
             observer_outputs: Vec::new(),
             truths: Vec::with_capacity(periods as usize),
             controller: Vec::with_capacity(periods as usize),
-            asked: Vec::with_capacity(periods as usize),
+            set_points: Vec::with_capacity(periods as usize),
             digest: digest::START,
             memory_at_start: None,
             memory: None,
@@ -145,14 +145,14 @@ impl RunHistory {
     }
 
     /// Control periods between samples at a rate [Hz].
-    pub fn every(&self, rate: f64) -> usize {
+    pub fn periods_per_sample(&self, rate: f64) -> usize {
         (1.0 / (rate * self.run.period)).round().max(1.0) as usize
     }
 
     /// Samples at a rate [Hz], each with true values, observer output, and the largest net force of the sun's meshes
     /// since the previous sample [N].
-    pub fn thinned(&self, rate: f64) -> impl Iterator<Item = (&Sample, &TrueValues, Option<&ObserverOutput>, f64)> {
-        let every = self.every(rate);
+    pub fn samples_at(&self, rate: f64) -> impl Iterator<Item = (&Sample, &TrueValues, Option<&ObserverOutput>, f64)> {
+        let every = self.periods_per_sample(rate);
         self.run.samples.chunks_exact(every).zip(1..).map(move |(chunk, number)| {
             let last = number * every - 1;
             let peak = chunk.iter().map(|sample| sample.mesh_force.abs()).fold(0.0, f64::max);
@@ -161,7 +161,7 @@ impl RunHistory {
     }
 
     /// Adds a period of a rig, with its readings converted to samples.
-    pub fn note(&mut self, period: &Period<'_>, translator: &mut Translator) {
+    pub fn add_period(&mut self, period: &Period<'_>, translator: &mut Translator) {
         let joint = period.plant.joint();
         let sample = Sample::of(joint, period.wanted, period.half_backlash, period.command);
         let truth = TrueValues {
@@ -181,7 +181,7 @@ impl RunHistory {
         sample: Sample,
         truth: TrueValues,
         samples: Samples<f32>,
-        asked: Asked,
+        set_points: LoggedSetPoint,
         answer: Option<&Answer>,
     ) {
         self.controller.push(ControllerPeriod {
@@ -189,7 +189,7 @@ impl RunHistory {
             torque: sample.command as f32,
             estimates: answer.map(|answer| answer.estimates),
         });
-        self.asked.push(asked);
+        self.set_points.push(set_points);
         for value in [sample.link, sample.mesh_force, sample.command, truth.gap, truth.motor] {
             self.digest = digest::chain(self.digest, value.to_bits());
         }
@@ -218,7 +218,7 @@ impl ObserverOutput {
             half_backlash: estimates.half_backlash.value,
             compliance: estimates.compliance.value,
             skew: estimates.skew.value,
-            both: estimates.source == Source::Both,
+            both_encoders: estimates.source == Source::Both,
             trust: shaped.trust,
             short_of_torque: shaped.short_of_torque,
             stepped_back: shaped.stepped_back,

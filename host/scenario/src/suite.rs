@@ -8,9 +8,9 @@ use link::messages::Role;
 use model_core::virtual_joint::fault::FaultKind;
 use sha2::{Digest, Sha256};
 
-use super::case::{Case, check_changes, recorded};
+use super::case::{Case, check_changes, recorded_motion};
 use super::file::{self, HostOnlyFault, TestFile, Trajectory};
-use super::plant::{PlantName, refuse_effects};
+use super::plant::{PlantName, reject_effects};
 use super::record::NotRun;
 use super::recorded::RecordedMotion;
 use board::profile::check_length;
@@ -35,7 +35,7 @@ pub struct Test {
 }
 
 /// Returns true for a folder, or for a file that is not a joint file.
-pub fn is_of_tests(path: &Path) -> bool {
+pub fn holds_tests(path: &Path) -> bool {
     path.is_dir() || input::text(path, input::LARGEST_TYPED).is_ok_and(|text| file::is_test_file(&text))
 }
 
@@ -51,7 +51,7 @@ pub enum Choice {
 }
 
 impl Choice {
-    fn takes(self, file: &TestFile) -> bool {
+    fn includes(self, file: &TestFile) -> bool {
         match self {
             Self::Short => !file.only_with_full,
             Self::Full => true,
@@ -90,9 +90,9 @@ pub fn load(path: &Path, choice: Choice, plant: PlantName) -> Outcome<Suite> {
         return Ok(Suite { tests: vec![load_one(path, plant)?], not_run: Vec::new(), alone: true });
     }
     let mut suite = Suite { tests: Vec::new(), not_run: Vec::new(), alone: false };
-    for path in paths(path)? {
+    for path in test_paths(path)? {
         let test = match read(&path) {
-            Ok((_, file)) if !choice.takes(&file) => continue,
+            Ok((_, file)) if !choice.includes(&file) => continue,
             Ok(_) => load_one(&path, plant),
             Err(failure) => Err(failure),
         };
@@ -110,13 +110,13 @@ pub fn load(path: &Path, choice: Choice, plant: PlantName) -> Outcome<Suite> {
 }
 
 /// Files of a folder without a board's role, which a run without `--full` skips.
-pub fn left_out(folder: &Path) -> Outcome<Vec<PathBuf>> {
+pub fn skipped_without_full(folder: &Path) -> Outcome<Vec<PathBuf>> {
     let left = |path: &PathBuf| read(path).is_ok_and(|(_, file)| file.short_run.is_none());
-    Ok(paths(folder)?.into_iter().filter(left).collect())
+    Ok(test_paths(folder)?.into_iter().filter(left).collect())
 }
 
 /// Test files of a folder, by name; joint files in the folder are ignored.
-fn paths(path: &Path) -> Outcome<Vec<PathBuf>> {
+fn test_paths(path: &Path) -> Outcome<Vec<PathBuf>> {
     let unreadable = |error| Failure::new(format!("cannot read the folder {}: {error}", path.display()));
     let mut paths: Vec<PathBuf> = Vec::new();
     for entry in fs::read_dir(path).map_err(unreadable)? {
@@ -145,18 +145,18 @@ fn read_text(name: &str, text: &str) -> Outcome<TestFile> {
 fn load_one(path: &Path, plant: PlantName) -> Outcome<Test> {
     let (text, file) = read(path)?;
     let folder = path.parent().unwrap_or(Path::new("."));
-    test_of(path.display().to_string(), text, file, folder, plant)
+    checked_test(path.display().to_string(), text, file, folder, plant)
 }
 
 /// Test from a text, with a name and folder.
 pub fn from_text(name: &str, text: &str, folder: &Path, plant: PlantName) -> Outcome<Test> {
     let file = read_text(name, text)?;
-    test_of(folder.join(name).display().to_string(), text.to_owned(), file, folder, plant)
+    checked_test(folder.join(name).display().to_string(), text.to_owned(), file, folder, plant)
 }
 
 /// Checks a test with its joint before any run.
-fn test_of(name: String, text: String, file: TestFile, folder: &Path, plant: PlantName) -> Outcome<Test> {
-    let joint = joint(&file.joint, folder).map_err(|failure| failure.while_doing(&name))?;
+fn checked_test(name: String, text: String, file: TestFile, folder: &Path, plant: PlantName) -> Outcome<Test> {
+    let joint = load_joint(&file.joint, folder).map_err(|failure| failure.while_doing(&name))?;
     check_changes(&file, &joint.text)
         .map_err(|problems| Failure::from_report(diagnostic::report(&name, &text, &problems)))?;
     let broken_tooth =
@@ -174,7 +174,7 @@ fn test_of(name: String, text: String, file: TestFile, folder: &Path, plant: Pla
         ))
         .with_help("run it with --plant reference, with --host or --role observer"));
     }
-    let motion = recorded(&file, folder).map_err(|failure| failure.while_doing(&name))?;
+    let motion = recorded_motion(&file, folder).map_err(|failure| failure.while_doing(&name))?;
     if let Some(motion) = motion.as_ref().filter(|_| !file.states_duration) {
         check_length(motion.duration(), "duration_s").map_err(|failure| failure.while_doing(&name))?;
     }
@@ -184,12 +184,12 @@ fn test_of(name: String, text: String, file: TestFile, folder: &Path, plant: Pla
         _ => file,
     };
     let test = Test { name, sha256: sha256(&text), file, joint, motion };
-    test.try_design(plant)?;
+    test.check_design(plant)?;
     Ok(test)
 }
 
 /// Loads a joint file, preferably one beside the test file.
-fn joint(name: &str, folder: &Path) -> Outcome<Loaded> {
+fn load_joint(name: &str, folder: &Path) -> Outcome<Loaded> {
     let beside = folder.join(name);
     let loaded = named::load(if beside.is_file() { &beside } else { Path::new(name) })?;
     warned::tell(&loaded);
@@ -207,10 +207,10 @@ impl Test {
     }
 
     /// Tries the design, and rejects effects that the plant does not model, before the first run.
-    fn try_design(&self, plant: PlantName) -> Outcome<()> {
+    fn check_design(&self, plant: PlantName) -> Outcome<()> {
         let seed = self.file.seeds.first().copied().unwrap_or(1);
         let case = self.case(seed)?;
-        refuse_effects(plant, &case.truth.surroundings).map_err(|failure| failure.while_doing(&self.name))?;
+        reject_effects(plant, &case.truth.surroundings).map_err(|failure| failure.while_doing(&self.name))?;
         if self.file.controller.is_compensation() {
             case.design(&self.file).map_err(|failure| failure.while_doing(&self.name))?;
         }
@@ -250,14 +250,14 @@ mod tests {
     }
 
     #[test]
-    fn keys_that_need_one_another_may_stand_in_any_order() {
+    fn dependent_keys_in_any_order() {
         let keys = "payload_inertia_share = [0.2, 0.6]\npayload_frequency_Hz = [8, 25]";
         assert!(test(keys, PlantName::Core).is_ok());
         assert!(test("payload_inertia_share = 0.2", PlantName::Core).is_err(), "one alone is refused");
     }
 
     #[test]
-    fn what_the_plant_lacks_is_refused_before_anything_runs() {
+    fn missing_effect_rejected_before_run() {
         assert!(test("control_jitter_ratio = 0.05", PlantName::Reference).is_ok());
         let refused = test("control_jitter_ratio = 0.05", PlantName::Core).err().expect("refused");
         assert!(refused.message().contains("`control_jitter_ratio`"), "{refused}");

@@ -38,7 +38,7 @@ pub struct Trace {
 const RATE: f64 = 1000.0;
 
 /// Share of the half-gap above which a flank counts as touched [-].
-const NEAR: f64 = 0.9;
+const TOUCH_SHARE: f64 = 0.9;
 
 impl Trace {
     /// Trace with bins of points reduced to those of least and greatest error: enough for a whole run.
@@ -57,7 +57,7 @@ impl Trace {
     }
 
     /// Trace of a run.
-    pub fn of(history: &RunHistory) -> Self {
+    pub fn from_history(history: &RunHistory) -> Self {
         let point =
             |(sample, truth, observed, peak): (&Sample, &TrueValues, Option<&ObserverOutput>, f64)| TracePoint {
                 time: sample.time as f32,
@@ -69,12 +69,12 @@ impl Trace {
                 force: peak as f32,
             };
         let mut trace = Self {
-            points: history.thinned(RATE).map(point).collect(),
+            points: history.samples_at(RATE).map(point).collect(),
             crossings: Vec::new(),
             half_gap: history.truths.last().map_or(0.0, |truth| 2.0 * truth.half_backlash),
         };
         let mut touched = None::<(f64, f64)>;
-        for sample in history.run.samples.iter().filter(|sample| sample.gap.abs() > NEAR) {
+        for sample in history.run.samples.iter().filter(|sample| sample.gap.abs() > TOUCH_SHARE) {
             let side = sample.gap.signum();
             if let Some((_, since)) = touched.filter(|(before, _)| *before != side) {
                 trace.crossings.push((sample.time, sample.time - since));

@@ -12,7 +12,7 @@ use super::observer_metrics;
 use super::run_history::{RunHistory, TrueValues};
 
 /// Largest gain over another controller; division by zero error would give infinity.
-const MOST_GAIN: f64 = 1e6;
+const MAX_GAIN: f64 = 1e6;
 
 /// Values of all metrics that could be computed.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +20,7 @@ pub struct MetricValues(Vec<Option<f64>>);
 
 impl MetricValues {
     /// Values for a run; `without_gap` is the run that an impedance's deviation is measured from.
-    pub fn of(file: &TestFile, case: &Case, history: &RunHistory, without_gap: Option<&RunHistory>) -> Self {
+    pub fn compute(file: &TestFile, case: &Case, history: &RunHistory, without_gap: Option<&RunHistory>) -> Self {
         let mut values = Self(vec![None; METRICS.len()]);
         values.motion(file, case, history);
         if let Some(other) = without_gap {
@@ -41,7 +41,7 @@ impl MetricValues {
     }
 
     /// Metrics and values that are available.
-    pub fn named(&self) -> impl Iterator<Item = (&'static Metric, f64)> {
+    pub fn available(&self) -> impl Iterator<Item = (&'static Metric, f64)> {
         METRICS.iter().zip(&self.0).filter_map(|(metric, value)| Some((metric, (*value)?)))
     }
 
@@ -51,18 +51,18 @@ impl MetricValues {
     }
 
     /// Value of a metric relative to other controllers' values.
-    pub fn of_named(&self, named: &NamedMetric, of: impl Fn(ControllerName) -> Option<MetricValues>) -> Option<f64> {
-        let own = self.at(named.place())?;
+    pub fn named_value(&self, named: &NamedMetric, of: impl Fn(ControllerName) -> Option<MetricValues>) -> Option<f64> {
+        let own = self.at(named.index())?;
         let ratio = |above: f64, below: f64| match (above, below) {
             (above, below) if above == below => 1.0,
-            (above, 0.0) => above.signum() * MOST_GAIN,
+            (above, 0.0) => above.signum() * MAX_GAIN,
             (above, below) => above / below,
         };
         match named.relation {
             Relation::Own => Some(own),
-            Relation::GainOver(other) => Some(ratio(of(other)?.at(named.place())?, own)),
-            Relation::Of(other) => of(other)?.at(named.place()),
-            Relation::RatioTo(other) => Some(ratio(own, of(other)?.at(named.place())?)),
+            Relation::GainOver(other) => Some(ratio(of(other)?.at(named.index())?, own)),
+            Relation::Of(other) => of(other)?.at(named.index()),
+            Relation::RatioTo(other) => Some(ratio(own, of(other)?.at(named.index())?)),
         }
     }
 
@@ -134,12 +134,12 @@ impl MetricValues {
 }
 
 /// Time before and after a reversal in which the error is taken [s].
-const AROUND: f64 = 0.06;
+const REVERSAL_WINDOW: f64 = 0.06;
 
 /// Largest error near each reversal, mean over reversals [rad].
 fn reversal_error(settle: f64, case: &Case, history: &RunHistory) -> Option<f64> {
     let samples = &history.run.samples;
-    let reach = (AROUND / history.run.period).round() as usize;
+    let reach = (REVERSAL_WINDOW / history.run.period).round() as usize;
     let mut before = 0.0;
     let mut largest = Vec::new();
     for (index, sample) in samples.iter().enumerate() {

@@ -46,31 +46,31 @@ pub fn test_request(arguments: &Arguments) -> Outcome<TestRequest<'_>> {
     }
     let role = arguments.role.map_or(Role::Loop, Role::from);
     let path = arguments.file().to_owned();
-    let part = TestGroup {
+    let group = TestGroup {
         choice: if arguments.full { Choice::Full } else { Choice::Short },
         plant: arguments.plant.unwrap_or(PlantName::Core),
         boards: (!arguments.host).then(|| board_request(arguments, role)),
         path,
     };
-    let name = part.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(request_of_groups(arguments, vec![part], name, arguments.out.clone()))
+    let name = group.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(request_of_groups(arguments, vec![group], name, arguments.out.clone()))
 }
 
 /// Request for the tests that come with the program, if no file is named: the tests marked for the board run on the
 /// board; `--full` adds every test around the f64 reference, where the bounds are stated.
 pub fn default_test_request(arguments: &Arguments) -> TestRequest<'_> {
-    let part = |choice, plant, boards| TestGroup { path: folder(), choice, plant, boards };
-    let on_board = |role, plant| part(Choice::OnBoard(role), plant, Some(board_request(arguments, role)));
-    let mut parts = vec![on_board(Role::Loop, PlantName::Core), on_board(Role::Observer, PlantName::Reference)];
+    let group = |choice, plant, boards| TestGroup { path: folder(), choice, plant, boards };
+    let on_board = |role, plant| group(Choice::OnBoard(role), plant, Some(board_request(arguments, role)));
+    let mut groups = vec![on_board(Role::Loop, PlantName::Core), on_board(Role::Observer, PlantName::Reference)];
     if arguments.full {
-        parts.push(part(Choice::Full, PlantName::Reference, None));
+        groups.push(group(Choice::Full, PlantName::Reference, None));
     }
-    request_of_groups(arguments, parts, "all".to_owned(), arguments.out.as_ref().map(|out| out.join("tests")))
+    request_of_groups(arguments, groups, "all".to_owned(), arguments.out.as_ref().map(|out| out.join("tests")))
 }
 
 /// Test files that a run without `--full` leaves out.
 pub fn skipped_tests() -> Outcome<Vec<PathBuf>> {
-    suite::left_out(&folder())
+    suite::skipped_without_full(&folder())
 }
 
 /// Folder of the tests that come with the program; the relative path `hil` if it leads to the same folder.
@@ -83,15 +83,15 @@ fn folder() -> PathBuf {
 
 fn request_of_groups<'a>(
     arguments: &'a Arguments,
-    parts: Vec<TestGroup<'a>>,
+    groups: Vec<TestGroup<'a>>,
     name: String,
     out: Option<PathBuf>,
 ) -> TestRequest<'a> {
     TestRequest {
-        parts,
+        groups,
         seed: arguments.seed,
         full: arguments.full,
-        memories: arguments.memory,
+        save_memories: arguments.memory,
         name,
         out,
         json: arguments.json.as_deref().filter(|_| arguments.file.is_some()),

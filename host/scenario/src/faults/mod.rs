@@ -13,10 +13,10 @@ use reference::closed_loop::SetPoint;
 use reference::drive_train::{DriveTrainParameters, Measurement};
 use reference::joint::Observation;
 
-use active::Active;
+use active::ActiveFault;
 use teeth::ToothState;
 
-use super::file::{Fault, HostOnlyFault, fault_is_on};
+use super::file::{Fault, HostOnlyFault, fault_is_active};
 use super::plant::Teeth;
 use super::random::RandomStream;
 
@@ -47,7 +47,7 @@ pub struct ControllerInputs {
 /// All faults of a run with their state.
 #[derive(Debug, Clone)]
 pub struct HostFaults {
-    faults: Vec<Active>,
+    faults: Vec<ActiveFault>,
     period: f64,
     counts_per_turn: [f64; 2],
     /// Counts of the homed encoders; readings are relative to them.
@@ -56,10 +56,10 @@ pub struct HostFaults {
     start: [i64; 2],
     past: [VecDeque<TimedReading>; 2],
     /// Periods of the last readings that arrived.
-    come: [Option<u64>; 2],
+    last_delivered: [Option<u64>; 2],
     last: Option<ControllerInputs>,
     set_points: VecDeque<(u64, SetPoint)>,
-    given: Option<(u64, SetPoint)>,
+    delivered_set_point: Option<(u64, SetPoint)>,
     teeth: ToothState,
 }
 
@@ -67,14 +67,14 @@ pub struct HostFaults {
 pub const LATENESS_PARTS: u32 = 1000;
 
 /// Readings and set-points stored for delayed delivery [periods]; a delay is at most a second.
-const MEMORY: usize = 100_000;
+const MAX_DELAY_PERIODS: usize = 100_000;
 
 impl HostFaults {
     /// Faults of a run with the true joint and its true surroundings.
     pub fn new(faults: &[Fault], seed: u64, joint: &JointParameters, train: &DriveTrainParameters) -> Self {
         let around = &train.surroundings;
         let encoders = [&around.motor_encoder, &around.output_encoder];
-        let stated = faults.iter().enumerate().map(|(index, fault)| Active::new(fault, index, seed));
+        let stated = faults.iter().enumerate().map(|(index, fault)| ActiveFault::new(fault, index, seed));
         Self {
             faults: stated.chain(missing_frames(encoders.map(|encoder| encoder.missing_share), seed)).collect(),
             period: 1.0 / f64::from(around.control_rate),
@@ -82,10 +82,10 @@ impl HostFaults {
             home: None,
             start: [0; 2],
             past: Default::default(),
-            come: [None; 2],
+            last_delivered: [None; 2],
             last: None,
             set_points: VecDeque::new(),
-            given: None,
+            delivered_set_point: None,
             teeth: ToothState::new(joint),
         }
     }
@@ -122,7 +122,7 @@ impl HostFaults {
             let Some(fresh) = *frame else { continue };
             let past = &mut self.past[index];
             past.push_back(fresh);
-            past.truncate(MEMORY);
+            past.truncate(MAX_DELAY_PERIODS);
             let shaft = shafts[index];
             let mut keep = 0;
             for fault in self.faults.iter_mut() {
@@ -131,14 +131,14 @@ impl HostFaults {
                         let late = (delay / self.period).round() as usize;
                         keep = keep.max(late);
                         // A reading is not delivered twice: while a delay begins, no reading arrives.
-                        let known = self.come[index];
-                        if fault_is_on(&fault.fault, time) {
+                        let known = self.last_delivered[index];
+                        if fault_is_active(&fault.fault, time) {
                             let arrived = past.iter().rev().nth(late).copied();
                             *frame = arrived.filter(|arrived| known.is_none_or(|known| arrived.period > known));
                         }
                     }
                     FaultKind::LostReadings(of, share)
-                        if of == shaft && fault_is_on(&fault.fault, time) && fault.stream.uniform() < share =>
+                        if of == shaft && fault_is_active(&fault.fault, time) && fault.stream.uniform() < share =>
                     {
                         *frame = None;
                     }
@@ -148,7 +148,7 @@ impl HostFaults {
             while past.len() > keep + 1 {
                 past.pop_front();
             }
-            self.come[index] = frame.map(|frame| frame.period).or(self.come[index]);
+            self.last_delivered[index] = frame.map(|frame| frame.period).or(self.last_delivered[index]);
         }
         // A silent motor encoder leaves its last reading in place, with the time of that reading.
         let motor = frames[0].or(self.last.map(|last| last.motor)).unwrap_or(TimedReading {
@@ -173,17 +173,17 @@ impl HostFaults {
                 FaultKind::Other(HostOnlyFault::LateSetPoints(delay)) => {
                     let late = (delay / self.period).round() as usize;
                     keep = keep.max(late + 1);
-                    if fault_is_on(&fault.fault, time) {
+                    if fault_is_active(&fault.fault, time) {
                         arrived = self.set_points.iter().rev().nth(late).or(self.set_points.front()).copied();
                     }
                 }
-                FaultKind::Other(HostOnlyFault::LostSetPoints(share)) if fault_is_on(&fault.fault, time) => {
+                FaultKind::Other(HostOnlyFault::LostSetPoints(share)) if fault_is_active(&fault.fault, time) => {
                     // A frame that is held for several periods is lost once.
-                    let lost = match fault.dropped {
+                    let lost = match fault.last_set_point {
                         Some((last, lost)) if last == number => lost,
                         _ => fault.stream.uniform() < share,
                     };
-                    fault.dropped = Some((number, lost));
+                    fault.last_set_point = Some((number, lost));
                     arrived = arrived.filter(|_| !lost);
                 }
                 _ => {}
@@ -192,14 +192,14 @@ impl HostFaults {
         while self.set_points.len() > keep {
             self.set_points.pop_front();
         }
-        let is_new = |(number, _): &(u64, SetPoint)| self.given.is_none_or(|(known, _)| *number >= known);
-        self.given = arrived.filter(is_new).or(self.given).or(Some((number, set_point)));
-        self.given.map_or(set_point, |(_, set_point)| set_point)
+        let is_new = |(number, _): &(u64, SetPoint)| self.delivered_set_point.is_none_or(|(known, _)| *number >= known);
+        self.delivered_set_point = arrived.filter(is_new).or(self.delivered_set_point).or(Some((number, set_point)));
+        self.delivered_set_point.map_or(set_point, |(_, set_point)| set_point)
     }
 
     /// Torque of the motor for a command [N m].
     pub fn torque(&self, time: f64, command: f64) -> f64 {
-        let on = self.faults.iter().filter(|active| fault_is_on(&active.fault, time));
+        let on = self.faults.iter().filter(|active| fault_is_active(&active.fault, time));
         on.fold(command, |torque, active| match active.fault.kind {
             FaultKind::TorqueBias(ratio, offset) => torque * (1.0 + ratio) + offset,
             FaultKind::Saturation(limit) => torque.clamp(-limit, limit),
@@ -208,23 +208,23 @@ impl HostFaults {
     }
 
     /// Current half-backlash of the teeth [m].
-    pub fn half_backlash_now(&self) -> f64 {
-        self.teeth.now
+    pub fn current_half_backlash(&self) -> f64 {
+        self.teeth.half_backlash_now
     }
 
     /// Changes the teeth as faults begin, end, or come into mesh.
-    pub fn wear(&mut self, time: f64, joint: &Observation, inside: &mut dyn Teeth) {
-        self.teeth.wear(&self.faults, time, joint, inside);
+    pub fn update_teeth(&mut self, time: f64, joint: &Observation, inside: &mut dyn Teeth) {
+        self.teeth.update_teeth(&self.faults, time, joint, inside);
     }
 }
 
 /// Readings that an encoder drops by itself, as faults of the whole run with their own random numbers.
-fn missing_frames(shares: [f64; 2], seed: u64) -> impl Iterator<Item = Active> {
+fn missing_frames(shares: [f64; 2], seed: u64) -> impl Iterator<Item = ActiveFault> {
     let of = [(Shaft::Motor, "missing frames motor"), (Shaft::Link, "missing frames output")];
     of.into_iter().zip(shares).filter(|(_, share)| *share > 0.0).map(move |((shaft, stream), share)| {
         let kind = FaultKind::LostReadings(shaft, share);
         let fault = Fault { start: 0.0, end: f64::INFINITY, seed: (), kind };
-        Active::with_stream(&fault, RandomStream::new(seed, stream))
+        ActiveFault::with_stream(&fault, RandomStream::new(seed, stream))
     })
 }
 

@@ -6,8 +6,8 @@ use model_core::virtual_joint::fault::FaultKind;
 use parameters::JointParameters;
 use reference::joint::Observation;
 
-use super::active::Active;
-use crate::file::{HostOnlyFault, fault_is_on};
+use super::active::ActiveFault;
+use crate::file::{HostOnlyFault, fault_is_active};
 use crate::plant::{Teeth, half_backlash};
 
 /// Original and current state of the teeth.
@@ -15,7 +15,7 @@ use crate::plant::{Teeth, half_backlash};
 pub(super) struct ToothState {
     half_backlash: f64,
     /// Current half-backlash [m].
-    pub now: f64,
+    pub half_backlash_now: f64,
     stiffness: f64,
     /// Meshes of the broken tooth, by planet.
     pub soft: Vec<bool>,
@@ -28,7 +28,7 @@ impl ToothState {
         let half_backlash = half_backlash(joint);
         Self {
             half_backlash,
-            now: half_backlash,
+            half_backlash_now: half_backlash,
             stiffness: joint.sun_planet.mean_stiffness,
             soft: vec![false; joint.geometry.planets],
             sun_teeth: f64::from(joint.geometry.sun_teeth),
@@ -36,18 +36,18 @@ impl ToothState {
     }
 
     /// Changes the teeth as faults begin, end, or come into mesh.
-    pub fn wear(&mut self, faults: &[Active], time: f64, joint: &Observation, inside: &mut dyn Teeth) {
+    pub fn update_teeth(&mut self, faults: &[ActiveFault], time: f64, joint: &Observation, inside: &mut dyn Teeth) {
         let (mut half_backlash, mut soft) = (self.half_backlash, 1.0);
-        for active in faults.iter().filter(|active| fault_is_on(&active.fault, time)) {
+        for active in faults.iter().filter(|active| fault_is_active(&active.fault, time)) {
             match active.fault.kind {
                 FaultKind::Other(HostOnlyFault::GrownBacklash(grown)) => half_backlash = grown,
                 FaultKind::Other(HostOnlyFault::BrokenTooth(ratio)) => soft = ratio,
                 _ => {}
             }
         }
-        if half_backlash != self.now {
+        if half_backlash != self.half_backlash_now {
             inside.set_half_backlash(half_backlash);
-            self.now = half_backlash;
+            self.half_backlash_now = half_backlash;
         }
         if soft == 1.0 && !self.soft.contains(&true) {
             return;

@@ -9,7 +9,7 @@ use toml::de::DeValue;
 use super::motion::MotionProfile;
 use super::section::{Section, number};
 use crate::controller::ControllerName;
-use crate::metrics::{NamedMetric, Relation, Requirement as Scope, names, others};
+use crate::metrics::{NamedMetric, Relation, Requirement as Scope, assertable_names, rival_names};
 use report::checks::Bound;
 
 /// One bound on one figure.
@@ -77,11 +77,11 @@ pub(super) fn read(top: &Section<'_>, test: &TestTraits<'_>) -> Vec<Assertion> {
     for (name, value) in table {
         let word = name.get_ref().as_ref();
         let Some(metric) = NamedMetric::find(word, test.gains) else {
-            let help = likely(word, test.gains);
+            let help = suggestion(word, test.gains);
             top.notes.error(name.span(), format!("there is no figure `{word}` in this test"), help);
             continue;
         };
-        if let Some((message, help)) = out_of_place(&metric, test) {
+        if let Some((message, help)) = unavailable(&metric, test) {
             top.notes.error(name.span(), format!("`{word}` {message}"), help);
             continue;
         }
@@ -128,20 +128,20 @@ pub(super) fn read(top: &Section<'_>, test: &TestTraits<'_>) -> Vec<Assertion> {
 }
 
 /// Help for an unknown figure: the most likely name.
-fn likely(word: &str, impedance: bool) -> String {
+fn suggestion(word: &str, impedance: bool) -> String {
     let whom = word.split_once("_gain_over_").or(word.split_once("_ratio_to_"));
-    let words: Vec<&str> = others(impedance).into_iter().map(|(word, _)| word).collect();
+    let words: Vec<&str> = rival_names(impedance).into_iter().map(|(word, _)| word).collect();
     if let Some((_, whom)) = whom.filter(|(_, whom)| !words.contains(whom)) {
         return format!("`{whom}` does not run in this test; there are {}", words.join(", "));
     }
-    match joint_file::nearest(word, names(impedance).iter().map(String::as_str)) {
+    match joint_file::nearest(word, assertable_names(impedance).iter().map(String::as_str)) {
         Some(near) => format!("did you mean `{near}`?"),
         None => "docs/reference/hil-file.md lists all figures, such as rms_mrad and rms_gain_over_pid".to_owned(),
     }
 }
 
 /// Reason and help if a figure is not available in a test.
-fn out_of_place(metric: &NamedMetric, test: &TestTraits<'_>) -> Option<(&'static str, &'static str)> {
+fn unavailable(metric: &NamedMetric, test: &TestTraits<'_>) -> Option<(&'static str, &'static str)> {
     match metric.base().requires {
         Scope::Motion => None,
         Scope::Impedance => {

@@ -56,7 +56,7 @@ fn collect(table: &DeTable<'_>, path: &str, section: &str, notes: &Notes<'_>, ch
         if let DeValue::Table(inner) = value.get_ref() {
             if let Some(times) = inner.get("times").filter(|_| inner.len() == 1) {
                 if let Some(factor) = quantity(times, notes) {
-                    push(&path, NewValue::Times(factor), name.span(), section, notes, changes);
+                    add_change(&path, NewValue::Times(factor), name.span(), section, notes, changes);
                 }
             } else {
                 collect(inner, &path, section, notes, changes);
@@ -78,12 +78,19 @@ fn collect(table: &DeTable<'_>, path: &str, section: &str, notes: &Notes<'_>, ch
             _ => quantity(value, notes).map(NewValue::Number),
         };
         if let Some(new) = new {
-            push(&path, new, name.span(), section, notes, changes);
+            add_change(&path, new, name.span(), section, notes, changes);
         }
     }
 }
 
-fn push(path: &str, value: NewValue, span: Range<usize>, section: &str, notes: &Notes<'_>, changes: &mut Vec<Change>) {
+fn add_change(
+    path: &str,
+    value: NewValue,
+    span: Range<usize>,
+    section: &str,
+    notes: &Notes<'_>,
+    changes: &mut Vec<Change>,
+) {
     match joint_file::full_key(path) {
         Err(refused) => notes.error(span, refused.message, refused.help),
         Ok(key) => {

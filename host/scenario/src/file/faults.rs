@@ -2,7 +2,7 @@
 
 use model_core::virtual_joint::fault::{self, FaultKind, Shaft, Units};
 
-use super::motion::refuse_others;
+use super::motion::reject_unused_keys;
 use super::section::Section;
 use crate::random::RandomStream;
 
@@ -51,17 +51,17 @@ pub enum HostOnlyFault {
 
 /// Source of frames.
 #[derive(Clone, Copy)]
-enum Frames {
+enum FrameSource {
     Readings(Shaft),
     SetPoints,
 }
 
 /// Tolerance for times that are whole control periods [s].
-const ROUNDING: f64 = 1e-9;
+const TIME_TOLERANCE: f64 = 1e-9;
 
 /// Returns true if a fault is active at a time [s].
-pub fn fault_is_on(fault: &Fault, time: f64) -> bool {
-    (fault.start - ROUNDING..fault.end - ROUNDING).contains(&time)
+pub fn fault_is_active(fault: &Fault, time: f64) -> bool {
+    (fault.start - TIME_TOLERANCE..fault.end - TIME_TOLERANCE).contains(&time)
 }
 
 /// Word of a fault in test files.
@@ -102,16 +102,16 @@ pub(super) fn read(section: &Section<'_>) -> Option<Fault> {
         "grown_backlash" => &["half_backlash_um"],
         _ => &["stiffness_ratio"],
     };
-    let taken: Vec<&str> = ["kind", "start_s", "end_s"].into_iter().chain(own.iter().copied()).collect();
-    refuse_others(section, &taken, word);
+    let known_keys: Vec<&str> = ["kind", "start_s", "end_s"].into_iter().chain(own.iter().copied()).collect();
+    reject_unused_keys(section, &known_keys, word);
     let encoder = match section.word("encoder") {
         Some("motor") => Shaft::Motor,
         _ => Shaft::Link,
     };
     let frames = match section.word("frames") {
-        Some("motor") => Frames::Readings(Shaft::Motor),
-        Some("set_points") => Frames::SetPoints,
-        _ => Frames::Readings(Shaft::Link),
+        Some("motor") => FrameSource::Readings(Shaft::Motor),
+        Some("set_points") => FrameSource::SetPoints,
+        _ => FrameSource::Readings(Shaft::Link),
     };
     let needed = |name: &str| section.required(name, Section::number);
     let one_of = |names: [&str; 2]| {
@@ -144,15 +144,15 @@ pub(super) fn read(section: &Section<'_>) -> Option<Fault> {
         "lost_frames" => {
             let share = needed("share")?;
             match frames {
-                Frames::Readings(of) => FaultKind::LostReadings(of, share),
-                Frames::SetPoints => FaultKind::Other(HostOnlyFault::LostSetPoints(share)),
+                FrameSource::Readings(of) => FaultKind::LostReadings(of, share),
+                FrameSource::SetPoints => FaultKind::Other(HostOnlyFault::LostSetPoints(share)),
             }
         }
         "late_frames" => {
             let delay = needed("delay_ms")? / 1e3;
             FaultKind::Other(match frames {
-                Frames::Readings(of) => HostOnlyFault::LateReadings(of, delay),
-                Frames::SetPoints => HostOnlyFault::LateSetPoints(delay),
+                FrameSource::Readings(of) => HostOnlyFault::LateReadings(of, delay),
+                FrameSource::SetPoints => HostOnlyFault::LateSetPoints(delay),
             })
         }
         "grown_backlash" => FaultKind::Other(HostOnlyFault::GrownBacklash(needed("half_backlash_um")? / 1e6)),

@@ -211,7 +211,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_key_and_every_word_is_documented() {
+    fn every_key_and_word_is_documented() {
         let document = include_str!("../../../../docs/reference/hil-file.md");
         for key in KEYS {
             let row = format!("| `{}` |", key.name);

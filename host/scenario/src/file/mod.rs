@@ -14,8 +14,8 @@ mod section;
 
 pub use assertions::{Aggregate, Assertion};
 pub use changes::{Change, NewValue};
-pub use faults::{Fault, HostOnlyFault, Offset, Si, fault_is_on, fault_stream, fault_word};
-pub use motion::{DisturbanceSpec, MotionProfile, ProfileLoad, RealMotion, STEPS, Trajectory, Wave};
+pub use faults::{Fault, HostOnlyFault, Offset, Si, fault_is_active, fault_stream, fault_word};
+pub use motion::{DisturbanceSpec, MotionProfile, ProfileLoad, RealMotion, STEP_RATE, Trajectory, Wave};
 
 use joint_file::{Keys, Notes, Problem};
 use link::messages::Role;
@@ -81,7 +81,7 @@ pub struct TestFile {
 }
 
 /// Default limit of a test's time on the clock [s].
-const TIMEOUT: f64 = 600.0;
+const DEFAULT_TIMEOUT: f64 = 600.0;
 
 /// Returns true for the text of a test file, false for a joint file. If the text is not TOML, its headers decide.
 pub fn is_test_file(text: &str) -> bool {
@@ -110,7 +110,7 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
     let profile = match table.get("profile") {
         Some(value) if matches!(value.get_ref(), DeValue::String(_)) => {
             let kind = Kind::find("profile", "kind").and_then(|key| top.word_of(value, key));
-            kind.map(MotionProfile::of_kind)
+            kind.map(MotionProfile::default_of_kind)
         }
         _ => match top.table("profile") {
             Some((span, table)) => motion::read(&Section::new("profile", span, table, notes)),
@@ -136,9 +136,9 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
     let bare = matches!(mode, Some("none" | "locked" | "off"));
     let gains = gains::read(
         &controller,
-        (impedance_profile && bare) || mode.is_some_and(|mode| ControllerName::of_word(mode, false).wants_gains()),
+        (impedance_profile && bare) || mode.is_some_and(|mode| ControllerName::from_word(mode, false).wants_gains()),
     );
-    let name = mode.map(|mode| ControllerName::of_word(mode, gains.is_some()));
+    let name = mode.map(|mode| ControllerName::from_word(mode, gains.is_some()));
     let rivals = if controller.has("rivals") {
         controller.words("rivals")
     } else if name == Some(ControllerName::Probe) {
@@ -149,7 +149,7 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
         Some(vec!["motor_pid", "output_integral"])
     };
     let mut rivals: Vec<ControllerName> =
-        rivals?.into_iter().map(|word| ControllerName::of_word(word, gains.is_some())).collect();
+        rivals?.into_iter().map(|word| ControllerName::from_word(word, gains.is_some())).collect();
     for rival in &rivals {
         if rival.wants_gains() != gains.is_some() {
             let help = match gains {
@@ -160,7 +160,7 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
         }
     }
     // Two runs of one control law are redundant unless a bound asks for both.
-    rivals.retain(|rival| name.is_none_or(|name| !rival.is_the_same_as(name)));
+    rivals.retain(|rival| name.is_none_or(|name| !rival.has_same_law(name)));
     let about = assertions::TestTraits { controller: name, gains: gains.is_some(), profile: profile.as_ref() };
     let assertions = assertions::read(&top, &about);
     for rival in assertions.iter().filter_map(Assertion::rival) {
@@ -185,7 +185,7 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
     }
     // A recorded motion has the length of its file unless the test file states a duration.
     if top.has("duration_s") || !matches!(profile.trajectory, Trajectory::File(_)) {
-        refuse_late(disturbance_sections.iter().chain(&fault_sections), duration);
+        reject_late(disturbance_sections.iter().chain(&fault_sections), duration);
     }
     let from_memory = controller.or("from_memory", Section::flag, false)?;
     if let (true, Some(name)) = (from_memory, name.filter(|name| !name.is_compensation())) {
@@ -201,7 +201,7 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
             _ => Some(Role::Observer),
         },
         only_with_full: top.or("only_with_full", Section::flag, false)?,
-        timeout: top.or("timeout_s", Section::number, TIMEOUT)?,
+        timeout: top.or("timeout_s", Section::number, DEFAULT_TIMEOUT)?,
         bandwidth: controller.or("bandwidth_rad_per_s", |section, name| section.number(name).map(Some), None)?,
         peak_torque: controller.or("peak_torque_N_m", |section, name| section.number(name).map(Some), None)?,
         width_guess: controller.or("width_guess_ratio", |section, name| section.range(name).map(Some), None)?,
@@ -225,7 +225,7 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
 }
 
 /// Rejects disturbances and faults that begin after the run.
-fn refuse_late<'s>(sections: impl Iterator<Item = &'s Section<'s>>, duration: f64) {
+fn reject_late<'s>(sections: impl Iterator<Item = &'s Section<'s>>, duration: f64) {
     for section in sections {
         let start = section.table.get("start_s").and_then(section::number);
         if start.is_some_and(|start| start >= duration) {

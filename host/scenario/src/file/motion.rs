@@ -71,11 +71,11 @@ impl RealMotion {
         [Self::Sine, Self::Random, Self::Moves, Self::SlowSine, Self::DisturbedHold, Self::Walking, Self::Rest];
 
     /// Motion of a seed; seven successive seeds cover all seven.
-    pub fn of_seed(seed: u64) -> Self {
+    pub fn for_seed(seed: u64) -> Self {
         Self::ALL[(seed % 7) as usize]
     }
 
-    fn of_word(word: &str) -> Option<Self> {
+    fn from_word(word: &str) -> Option<Self> {
         REAL_MOTIONS.iter().position(|known| *known == word).map(|index| Self::ALL[index])
     }
 }
@@ -124,18 +124,18 @@ pub struct DisturbanceSpec {
 }
 
 /// Load friction of T1 over the rated torque [-]: 1 N m for Q1.
-const FRICTION: f64 = 1.0 / 12.0;
+const T1_FRICTION_RATIO: f64 = 1.0 / 12.0;
 /// Weight of T2b over the rated torque [-]: 6 N m for Q1.
-const WEIGHT: f64 = 0.5;
+const T2B_WEIGHT_RATIO: f64 = 0.5;
 /// Step rate of a walking robot [Hz].
-pub const STEPS: f64 = 1.2;
+pub const STEP_RATE: f64 = 1.2;
 /// Torque of a brake that holds the link, over the rated torque [-]; no probe reaches it.
-const BRAKE: f64 = 4.0;
+const BRAKE_TORQUE_RATIO: f64 = 4.0;
 
 impl MotionProfile {
     /// Default motion of a kind.
-    pub fn of_kind(kind: &'static str) -> Self {
-        let usual = Self {
+    pub fn default_of_kind(kind: &'static str) -> Self {
+        let default = Self {
             kind,
             trajectory: Trajectory::Hold(0.0),
             load: ProfileLoad::None,
@@ -145,33 +145,39 @@ impl MotionProfile {
             settle: 2.0,
         };
         match kind {
-            "T1" => Self { trajectory: Trajectory::Sine(0.5, 0.2), friction: Some(FRICTION), duration: 12.0, ..usual },
-            "T2" | "impedance" => Self { trajectory: Trajectory::Sine(0.5, 1.0), ..usual }.timed(1.0),
-            "T2b" => Self { trajectory: Trajectory::Sine(0.3, 1.5), gravity: Some(WEIGHT), ..usual }.timed(1.5),
-            "sine" => Self { trajectory: Trajectory::Sine(0.5, 1.0), gravity: None, ..usual }.timed(1.0),
-            "random" => Self { trajectory: Trajectory::Random(0.2, 2.0), ..usual },
-            "steps" => Self { trajectory: Trajectory::Steps(0.05, 0.06, 0.3), ..usual },
-            "disturbed_hold" => Self { load: ProfileLoad::Wave(Wave::Sine, None, 1.0), ..usual },
-            "free_hold" => Self { load: ProfileLoad::Kick(None, 0.02), duration: 14.0, settle: 2.1, ..usual },
-            "impact" => Self { load: ProfileLoad::Impacts(None, 0.01), ..usual },
-            "hysteresis" => Self { load: ProfileLoad::Slow(None, 0.25), duration: 9.0, settle: 1.0, ..usual },
-            "held" => Self { friction: Some(BRAKE), duration: 1.0, settle: 0.0, ..usual },
-            "walking" => Self {
-                trajectory: Trajectory::Walking(0.3, STEPS),
-                load: ProfileLoad::Stance(None, STEPS),
-                gravity: None,
-                ..usual
+            "T1" => Self {
+                trajectory: Trajectory::Sine(0.5, 0.2),
+                friction: Some(T1_FRICTION_RATIO),
+                duration: 12.0,
+                ..default
             },
-            "real" => Self { trajectory: Trajectory::Real(None), gravity: None, ..usual },
+            "T2" | "impedance" => Self { trajectory: Trajectory::Sine(0.5, 1.0), ..default }.with_four_periods(1.0),
+            "T2b" => Self { trajectory: Trajectory::Sine(0.3, 1.5), gravity: Some(T2B_WEIGHT_RATIO), ..default }
+                .with_four_periods(1.5),
+            "sine" => Self { trajectory: Trajectory::Sine(0.5, 1.0), gravity: None, ..default }.with_four_periods(1.0),
+            "random" => Self { trajectory: Trajectory::Random(0.2, 2.0), ..default },
+            "steps" => Self { trajectory: Trajectory::Steps(0.05, 0.06, 0.3), ..default },
+            "disturbed_hold" => Self { load: ProfileLoad::Wave(Wave::Sine, None, 1.0), ..default },
+            "free_hold" => Self { load: ProfileLoad::Kick(None, 0.02), duration: 14.0, settle: 2.1, ..default },
+            "impact" => Self { load: ProfileLoad::Impacts(None, 0.01), ..default },
+            "hysteresis" => Self { load: ProfileLoad::Slow(None, 0.25), duration: 9.0, settle: 1.0, ..default },
+            "held" => Self { friction: Some(BRAKE_TORQUE_RATIO), duration: 1.0, settle: 0.0, ..default },
+            "walking" => Self {
+                trajectory: Trajectory::Walking(0.3, STEP_RATE),
+                load: ProfileLoad::Stance(None, STEP_RATE),
+                gravity: None,
+                ..default
+            },
+            "real" => Self { trajectory: Trajectory::Real(None), gravity: None, ..default },
             // The link keeps its stated friction and weight.
-            "any" => Self { trajectory: Trajectory::Any, gravity: None, ..usual },
+            "any" => Self { trajectory: Trajectory::Any, gravity: None, ..default },
             // A recording has its own load, or none.
-            _ => Self { gravity: None, ..usual },
+            _ => Self { gravity: None, ..default },
         }
     }
 
     /// Numbers of a random motion and its load, by key.
-    pub fn numbers(&self) -> Vec<(&'static str, f64)> {
+    pub fn drawn_values(&self) -> Vec<(&'static str, f64)> {
         let mut numbers = match self.trajectory {
             Trajectory::Sine(amplitude, frequency) => {
                 vec![("profile.sine.amplitude_rad", amplitude), ("profile.sine.frequency_Hz", frequency)]
@@ -204,7 +210,7 @@ impl MotionProfile {
     }
 
     /// Sets four periods for the figures, after the time for the estimation of parameters.
-    fn timed(self, frequency: f64) -> Self {
+    fn with_four_periods(self, frequency: f64) -> Self {
         Self { duration: 2.0 + 4.0 / frequency, settle: 1.0 + (1.0 / frequency).max(1.0), ..self }
     }
 }
@@ -212,11 +218,11 @@ impl MotionProfile {
 /// Reads `[profile]`.
 pub(super) fn read(section: &Section<'_>) -> Option<MotionProfile> {
     let kind = section.required("kind", Section::word)?;
-    let mut profile = MotionProfile::of_kind(kind);
-    let mut taken = vec!["kind"];
+    let mut profile = MotionProfile::default_of_kind(kind);
+    let mut known_keys = vec!["kind"];
     {
         let mut set = |name: &'static str, value: &mut f64| {
-            taken.push(name);
+            known_keys.push(name);
             *value = section.number(name).unwrap_or(*value);
         };
         match &mut profile.trajectory {
@@ -252,8 +258,8 @@ pub(super) fn read(section: &Section<'_>) -> Option<MotionProfile> {
         *frequency = *steps;
     }
     if let Trajectory::Real(motion) = &mut profile.trajectory {
-        taken.push("motion");
-        *motion = section.word("motion").and_then(RealMotion::of_word);
+        known_keys.push("motion");
+        *motion = section.word("motion").and_then(RealMotion::from_word);
     }
     if let ProfileLoad::Wave(_, torque, _)
     | ProfileLoad::Stance(torque, _)
@@ -261,11 +267,11 @@ pub(super) fn read(section: &Section<'_>) -> Option<MotionProfile> {
     | ProfileLoad::Kick(torque, _)
     | ProfileLoad::Impacts(torque, _) = &mut profile.load
     {
-        taken.push("torque_N_m");
+        known_keys.push("torque_N_m");
         *torque = section.number("torque_N_m");
     }
     if let ProfileLoad::Wave(wave, ..) = &mut profile.load {
-        taken.push("wave");
+        known_keys.push("wave");
         *wave = match section.word("wave") {
             Some("square") => Wave::Square,
             Some("walk") => Wave::Walk,
@@ -275,27 +281,27 @@ pub(super) fn read(section: &Section<'_>) -> Option<MotionProfile> {
     if let Trajectory::Sine(_, frequency) = profile.trajectory
         && section.has("frequency_Hz")
     {
-        profile = profile.timed(frequency);
+        profile = profile.with_four_periods(frequency);
     }
     if kind == "csv" {
-        taken.push("file");
+        known_keys.push("file");
         profile.trajectory = Trajectory::File(section.required("file", Section::text)?);
     }
-    refuse_others(section, &taken, kind);
+    reject_unused_keys(section, &known_keys, kind);
     Some(profile)
 }
 
 /// Reads one `[[disturbance]]`.
 pub(super) fn read_disturbance(section: &Section<'_>) -> Option<DisturbanceSpec> {
     let kind = section.required("kind", Section::word)?;
-    let taken: &[&str] = match kind {
+    let known_keys: &[&str] = match kind {
         "step" => &["kind", "start_s", "torque_N_m"],
         "pulse" => &["kind", "start_s", "length_s", "torque_N_m"],
         _ => &["kind", "torque_N_m", "frequency_Hz"],
     };
-    taken.iter().filter(|name| !section.has(name)).for_each(|name| section.missing(name));
-    refuse_others(section, taken, kind);
-    let number = |name: &str| if taken.contains(&name) { section.number(name) } else { Some(0.0) };
+    known_keys.iter().filter(|name| !section.has(name)).for_each(|name| section.missing(name));
+    reject_unused_keys(section, known_keys, kind);
+    let number = |name: &str| if known_keys.contains(&name) { section.number(name) } else { Some(0.0) };
     Some(DisturbanceSpec {
         kind,
         start: number("start_s")?,
@@ -306,11 +312,11 @@ pub(super) fn read_disturbance(section: &Section<'_>) -> Option<DisturbanceSpec>
 }
 
 /// Rejects keys that have no meaning for this kind.
-pub(super) fn refuse_others(section: &Section<'_>, taken: &[&str], kind: &str) {
+pub(super) fn reject_unused_keys(section: &Section<'_>, known_keys: &[&str], kind: &str) {
     for (name, value) in section.table {
         let name = name.get_ref().as_ref();
-        if !taken.contains(&name) && super::keys::KEYS.iter().any(|key| key.name == name) {
-            let known: Vec<String> = taken.iter().map(|name| format!("`{name}`")).collect();
+        if !known_keys.contains(&name) && super::keys::KEYS.iter().any(|key| key.name == name) {
+            let known: Vec<String> = known_keys.iter().map(|name| format!("`{name}`")).collect();
             let help = format!("kind \"{kind}\" has {}", known.join(", "));
             section.notes.error(Spanned::span(value), format!("`{name}` means nothing to \"{kind}\""), help);
         }

@@ -95,7 +95,7 @@ impl<'a> Section<'a> {
             DeValue::Array(list) => list.iter().map(|item| self.word_of(item, key)).collect(),
             _ => self.wrong_type(value, key, "a list of names"),
         };
-        words.iter().for_each(|words| self.refuse_twice(value, words));
+        words.iter().for_each(|words| self.reject_repeats(value, words));
         words
     }
 
@@ -161,13 +161,13 @@ impl<'a> Section<'a> {
         let good = seeds.filter(|seeds| !seeds.is_empty());
         match &good {
             None => self.notes.error(value.span(), format!("`{name}` names no seeds"), key.hint),
-            Some(seeds) => self.refuse_twice(value, seeds),
+            Some(seeds) => self.reject_repeats(value, seeds),
         }
         good
     }
 
     /// Rejects a list with repeated items.
-    fn refuse_twice<T: PartialEq + std::fmt::Display>(&self, value: &Spanned<DeValue<'_>>, list: &[T]) {
+    fn reject_repeats<T: PartialEq + std::fmt::Display>(&self, value: &Spanned<DeValue<'_>>, list: &[T]) {
         if let Some((_, twice)) = list.iter().enumerate().find(|(place, item)| list[..*place].contains(item)) {
             self.notes.error(value.span(), format!("{twice} is named twice"), "name it once: the same runs once");
         }

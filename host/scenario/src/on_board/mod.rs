@@ -20,7 +20,7 @@ use model_core::controller::design::{NominalPlant, control_source};
 pub use request::BoardRequest;
 use request::{check_request, check_test};
 
-use super::case::{Case, read_told};
+use super::case::{Case, read_controller_joint};
 use super::execution::RunSpec;
 use super::file::TestFile;
 use super::plant::PlantName;
@@ -52,7 +52,7 @@ pub struct Boards<'w> {
 }
 
 /// Joints and settings of a run.
-struct Pair {
+struct RunJoints {
     texts: [String; 2],
     nominal: JointFile,
     truth: JointFile,
@@ -141,20 +141,20 @@ impl<'w> Boards<'w> {
         }
     }
 
-    fn pair(&self, test: &Test, case: &Case) -> Outcome<Pair> {
+    fn pair(&self, test: &Test, case: &Case) -> Outcome<RunJoints> {
         let nominal_text = case.nominal_text()?;
         // In the role `observer` the image knows only the nominal joint.
         let truth_text =
             if self.request.role == Role::Loop { case.truth_text().to_owned() } else { nominal_text.clone() };
         let rate = case.nominal_surroundings.control_rate;
-        let (mut nominal, mut truth) = (read_told(&nominal_text)?, read_told(&truth_text)?);
+        let (mut nominal, mut truth) = (read_controller_joint(&nominal_text)?, read_controller_joint(&truth_text)?);
         [&mut nominal, &mut truth].into_iter().for_each(|joint| joint.surroundings.control_rate = rate);
         let control = Control { forced: self.request.force, ..control(&test.file, case)? };
-        Ok(Pair { texts: [truth_text, nominal_text], nominal, truth, control })
+        Ok(RunJoints { texts: [truth_text, nominal_text], nominal, truth, control })
     }
 
     /// Builds the image, connects to the board and starts the run.
-    fn session(&self, pair: &Pair) -> Outcome<(Session<'static>, String)> {
+    fn session(&self, pair: &RunJoints) -> Outcome<(Session<'static>, String)> {
         let request = &self.request;
         // Checked before the build, and also if the board keeps its image.
         OnBoard::new(&pair.truth.parameters, request.board, request.role)
@@ -181,8 +181,8 @@ impl<'w> Boards<'w> {
         Ok((session, sha256))
     }
 
-    fn expected(&self, pair: &Pair, image: Option<&Image>) -> Outcome<Expected> {
-        let Pair { nominal, truth, control, .. } = pair;
+    fn expected(&self, pair: &RunJoints, image: Option<&Image>) -> Outcome<Expected> {
+        let RunJoints { nominal, truth, control, .. } = pair;
         let request = control.request();
         let board = self.request.board;
         let nominal = NominalPlant { joint: &nominal.parameters, surroundings: &nominal.surroundings, request };
@@ -243,7 +243,7 @@ mod tests {
 
     /// Seen to fail for `peak_torque_N_m` while the image did not get it.
     #[test]
-    fn image_and_twin_have_the_tables_of_every_controller_key() {
+    fn image_and_twin_tables_agree() {
         let text = joint_file::preset("q1").expect("a preset");
         let tables = |keys: &str| {
             let test = file::read(&format!("profile = \"T2\"\n[controller]\n{keys}")).expect("a good file");

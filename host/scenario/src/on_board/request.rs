@@ -2,7 +2,7 @@
 
 use link::messages::{Role, RunMode};
 
-use super::faults::quantised;
+use super::faults::quantised_faults;
 use crate::controller::ControllerName;
 use crate::plant::PlantName;
 use crate::suite::Test;
@@ -55,7 +55,7 @@ pub fn check_test(request: &BoardRequest<'_>, test: &Test) -> Outcome<()> {
             let help = "run it with --role observer --plant reference, or with --host --plant reference";
             return Err(Failure::new(message).with_help(help));
         }
-        quantised(&test.file.faults, 1.0, [1; 2], 0).map_err(|failure| failure.while_doing(name))?;
+        quantised_faults(&test.file.faults, 1.0, [1; 2], 0).map_err(|failure| failure.while_doing(name))?;
     }
     Ok(())
 }

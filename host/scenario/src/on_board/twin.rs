@@ -18,12 +18,12 @@ use model_core::virtual_joint::faults::Faults;
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 use reference::closed_loop::{Motion, Sample};
 
-use super::faults::{mounting_angles, turns_of_encoders};
+use super::faults::{counts_per_turn, mounting_angles};
 use super::trajectory;
 use crate::case::{Case, Designed};
 use crate::file::TestFile;
-use crate::port::remember;
-use crate::run_history::{Asked, RunHistory, TrueValues};
+use crate::port::restart_from_memory;
+use crate::run_history::{LoggedSetPoint, RunHistory, TrueValues};
 use board::device::board::Board;
 use report::failure::{Failure, Outcome};
 use simulation::sim::snapshot::Reader;
@@ -78,17 +78,17 @@ impl Twin<'_> {
             design_surroundings(joint, &around, &tables).map_err(|error| refused(&error))?;
         let mut controller = Controller::new(&self.designed.observer, &self.designed.compensation);
         if self.file.from_memory {
-            self.pass(&tables, &table, &mut controller);
-            let memory_at_start = Some(remember(&mut controller)?);
-            let mut result = self.pass(&tables, &table, &mut controller);
+            self.run_once(&tables, &table, &mut controller);
+            let memory_at_start = Some(restart_from_memory(&mut controller)?);
+            let mut result = self.run_once(&tables, &table, &mut controller);
             result.history.memory_at_start = memory_at_start;
             return Ok(result);
         }
-        Ok(self.pass(&tables, &table, &mut controller))
+        Ok(self.run_once(&tables, &table, &mut controller))
     }
 
     /// Runs from the first period to the last.
-    fn pass<const N: usize>(
+    fn run_once<const N: usize>(
         &self,
         tables: &Tables<f32, N>,
         table: &SurroundingsTable<f32>,
@@ -98,7 +98,7 @@ impl Twin<'_> {
         let mut faults = Faults::default();
         let all_taken = self.faults.iter().all(|fault| faults.add(*fault));
         debug_assert!(all_taken, "more than fit were refused before");
-        let [_, mounted] = mounting_angles(&self.case.zeros, turns_of_encoders(&self.truth.surroundings));
+        let [_, mounted] = mounting_angles(&self.case.zeros, counts_per_turn(&self.truth.surroundings));
         let zero = f64::from(mounted) / 2.0_f64.powi(32) - f64::from(virtual_joint.output_turn(mounted));
         let knots = trajectory::knots(self.file, self.case, self.designed, zero);
         let joint = &self.truth.parameters;
@@ -144,25 +144,25 @@ impl Twin<'_> {
                 load_torque: f64::from(virtual_joint.acting().load),
                 motor: moment.motor_angle(joint),
             };
-            history.add(sample, truth, samples, asked(&command, zero), Some(&answer));
+            history.add(sample, truth, samples, logged_set_point(&command, zero), Some(&answer));
         }
         TwinResult { knots, history, digests }
     }
 }
 
 /// Set-point with its angle relative to the joint's own zero, where the observer's scale reads `zero` [turns].
-fn asked(command: &Command<f32>, zero: f64) -> Asked {
+fn logged_set_point(command: &Command<f32>, zero: f64) -> LoggedSetPoint {
     let angle = |position: Position<f32>| TAU * (f64::from(position.turns) + f64::from(position.fraction) - zero);
     match command {
-        Command::Position { now, .. } => Asked {
+        Command::Position { now, .. } => LoggedSetPoint {
             motion: Motion {
                 position: angle(now.position),
                 speed: now.speed.into(),
                 acceleration: now.acceleration.into(),
             },
-            ..Asked::default()
+            ..LoggedSetPoint::default()
         },
-        Command::Impedance(point) => Asked {
+        Command::Impedance(point) => LoggedSetPoint {
             motion: Motion { position: angle(point.position), speed: point.speed.into(), acceleration: 0.0 },
             torque: point.torque.into(),
             stiffness: point.stiffness.into(),

@@ -43,11 +43,11 @@ impl<'p> ActiveController<'p> {
             ControllerName::Off => return Self::Off,
             _ => Box::new(MotorPid::new(knowledge, bandwidth)),
         };
-        Self::of(controller)
+        Self::from_rival(controller)
     }
 
     /// Controller that uses counts and set-points only, as rivals do.
-    pub fn of(controller: Box<dyn Controller + 'p>) -> Self {
+    pub fn from_rival(controller: Box<dyn Controller + 'p>) -> Self {
         Self::Rival(controller, 0)
     }
 
@@ -69,17 +69,17 @@ impl<'p> ActiveController<'p> {
     }
 
     /// Passes the true state before a period to the compensation that uses it.
-    pub fn show(&mut self, joint: &Observation, torques: &TrueTorques) {
+    pub fn set_true_state(&mut self, joint: &Observation, torques: &TrueTorques) {
         if let Self::TrueState(from_truth) = self {
-            from_truth.show(joint, torques);
+            from_truth.set_true_state(joint, torques);
         }
     }
 
     /// Torque for the period that begins [N m], and the port's answer.
-    pub fn period(&mut self, seen: &ControllerInputs, set_point: &SetPoint) -> Outcome<(f64, Option<Answer>)> {
+    pub fn step(&mut self, seen: &ControllerInputs, set_point: &SetPoint) -> Outcome<(f64, Option<Answer>)> {
         match self {
             Self::Off => Ok((0.0, None)),
-            Self::TrueState(from_truth) => Ok((from_truth.period(set_point), None)),
+            Self::TrueState(from_truth) => Ok((from_truth.step(set_point), None)),
             Self::Rival(controller, output) => {
                 *output = seen.output.map_or(*output, |frame| frame.counts);
                 let measurement =

@@ -41,7 +41,7 @@ pub struct Rig {
 }
 
 /// Callback for every period, which may end the run.
-pub type Watch<'w> = &'w mut dyn FnMut(&Period<'_>) -> Result<(), RunError>;
+pub type OnPeriod<'w> = &'w mut dyn FnMut(&Period<'_>) -> Result<(), RunError>;
 
 impl Rig {
     /// Rig at rest before its first period.
@@ -80,19 +80,19 @@ impl Rig {
         mut self,
         controller: &mut ActiveController<'_>,
         set_points: &mut SetPointSource,
-        watch: Watch<'_>,
+        on_period: OnPeriod<'_>,
     ) -> Result<(), RunError> {
         let Self { plant, faults, motion, period, periods } = &mut self;
         for index in 0..*periods {
             // Set-points and samples are taken at the true start of the period.
             let time = index as f64 * *period + plant.lateness();
             let joint = plant.joint().clone();
-            faults.wear(time, &joint, plant.joint_model().as_mut());
+            faults.update_teeth(time, &joint, plant.joint_model().as_mut());
             let (number, set_point) = set_points.at(time, index);
             let set_point = faults.receive(time, number, set_point);
             let seen = faults.sense_late(&plant.measure(), plant.lateness());
-            controller.show(&joint, &plant.torques());
-            let (command, answer) = controller.period(&seen, &set_point)?;
+            controller.set_true_state(&joint, &plant.torques());
+            let (command, answer) = controller.step(&seen, &set_point)?;
             if !command.is_finite() {
                 return Err(RunError::Broke(format!("the controller's torque is not finite at t = {time:.4} s")));
             }
@@ -100,12 +100,12 @@ impl Rig {
                 .advance(faults.torque(time, command))
                 .map_err(|error| RunError::Broke(format!("the plant at t = {time:.4} s: {error}")))?;
             let joint = plant.joint();
-            watch(&Period {
+            on_period(&Period {
                 index,
                 time,
                 plant,
                 wanted: motion.at(joint.time).position,
-                half_backlash: plant.width_scale() * faults.half_backlash_now(),
+                half_backlash: plant.width_scale() * faults.current_half_backlash(),
                 seen: &seen,
                 set_point: &set_point,
                 command,
@@ -126,7 +126,7 @@ impl Rig {
     ) -> Result<Vec<PeriodSample>, RunError> {
         let mut moments = Vec::with_capacity(self.periods as usize);
         self.run(controller, set_points, &mut |period| {
-            moments.push(PeriodSample::of(period));
+            moments.push(PeriodSample::at_end_of(period));
             Ok(())
         })?;
         Ok(moments)

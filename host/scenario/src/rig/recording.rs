@@ -25,7 +25,7 @@ pub struct PeriodSample {
 
 impl PeriodSample {
     /// Sample at the end of a period.
-    pub fn of(period: &Period<'_>) -> Self {
+    pub fn at_end_of(period: &Period<'_>) -> Self {
         let (measurement, joint) = (period.plant.measure(), period.plant.joint());
         Self {
             command: period.command,

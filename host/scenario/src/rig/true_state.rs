@@ -44,7 +44,7 @@ impl<'t> TrueStateCompensation<'t> {
     }
 
     /// Sets the estimates to the true values, with zero variance.
-    pub fn show(&mut self, joint: &Observation, torques: &TrueTorques) {
+    pub fn set_true_state(&mut self, joint: &Observation, torques: &TrueTorques) {
         let exact = |value: f64| Estimate { value, variance: 0.0, valid: true };
         let near = TOUCHING * 2.0 * self.half_backlash;
         let contact = if joint.gap > near {
@@ -74,7 +74,7 @@ impl<'t> TrueStateCompensation<'t> {
     }
 
     /// Torque for the period that begins [N m].
-    pub fn period(&mut self, set_point: &SetPoint) -> f64 {
+    pub fn step(&mut self, set_point: &SetPoint) -> f64 {
         self.compensation.step(&self.estimates, &command(set_point, 0.0)).torque
     }
 }

@@ -1,4 +1,4 @@
-//! The published schemas of what the commands of this crate write as JSON are those of their types. Only tests are here.
+//! Tests: the published schemas of this crate's JSON equal those of its types.
 
 use report::schema::assert_published;
 

@@ -1,4 +1,4 @@
-//! Verdicts: that they say what is refused, and that text, JSON and the rates beside them never contradict them.
+//! Verdicts: agreement with the refusals, and of text, JSON and rates with one another.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What the tables take of a board's flash, and their digest, from `model_core::gears::design`.
+//! Size and digest of the tables, from `model_core::gears::design`.
 
 use model_core::gears::design::{DesignError, Effort, Processor, design_scheme};
 use model_core::gears::{Scheme, Tables};
@@ -7,13 +7,13 @@ use parameters::JointParameters;
 /// The fixed step at one rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Step {
-    /// Bytes of the f32 tables.
+    /// Size of the f32 tables [bytes].
     pub table_bytes: usize,
     /// Digest of the tables.
     pub digest: u64,
 }
 
-/// The step on a processor at `rate` [Hz].
+/// Designs the step for a processor at `rate` [Hz].
 pub(super) fn step(parameters: &JointParameters, processor: Processor, rate: u32) -> Result<Step, DesignError> {
     match parameters.geometry.planets {
         1 => of_size::<1>(parameters, processor, rate),

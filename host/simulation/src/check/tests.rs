@@ -1,4 +1,4 @@
-//! Figures against the oracles of the model and the joints' data sheets, and what a user sees of a bad file.
+//! Figures against the oracles of the model and the joints' data sheets, and messages for a bad file.
 
 use model_core::gears::Mechanics;
 use std::path::Path;
@@ -22,7 +22,7 @@ fn preset(name: &str) -> CheckSummary {
     summary(&load(Path::new(name)).expect("a preset"), &Board::emulated(), RATE, None).expect("figures")
 }
 
-/// Q1's text with pieces exchanged, read.
+/// Reads Q1 with pieces of the text replaced.
 fn changed(changes: &[(&str, &str)]) -> Loaded {
     let text = changes.iter().fold(joint_file::preset("q1").expect("a preset").to_owned(), |text, (from, to)| {
         assert_eq!(text.matches(from).count(), 1, "{from}");
@@ -32,7 +32,7 @@ fn changed(changes: &[(&str, &str)]) -> Loaded {
     Loaded { name: "changed".to_owned(), text, file }
 }
 
-/// Equal within half a unit of the last digit that is printed.
+/// Equal within half a unit of the last printed digit.
 #[track_caller]
 fn assert_printed(value: f64, printed: f64, decimals: i32) {
     assert!((value - printed).abs() <= 0.5 * 10f64.powi(-decimals) * (1.0 + 1e-9), "{value} is not {printed}");
@@ -102,7 +102,7 @@ fn an_equivalent_gear_is_told_by_its_data_sheet_and_not_by_teeth() {
     assert_eq!((gear.motor_turns, gear.link_turns), (59, 1));
     let at_link = 59.0 * 59.0 * (1.0e-4 + 0.25e-4);
     assert_printed(gear.motor_inertia_at_link_kg_m2, at_link, 12);
-    // 20 N m/arcmin between both inertias, by hand.
+    // 20 N m/arcmin between both inertias, computed by hand.
     let stiffness = 20.0 * 180.0 * 60.0 / std::f64::consts::PI;
     let omega = (stiffness * (1.0 / at_link + 1.0 / 0.8)).sqrt();
     assert_printed(c1.frequencies.omega_n_rad_per_s / omega, 1.0, 12);
@@ -135,7 +135,7 @@ fn static_deflections_carry_the_rated_torque() {
         let at_sun =
             planets * sun.mean_stiffness_N_per_m * sun.deflection_at_rated_torque_m * geometry.sun_base_radius_m;
         assert!((at_sun / summary.output.balancing_drive_torque_N_m - 1.0).abs() < 1e-12, "{name}");
-        // X = u_s - 2 u_c is the sum of both deflections; the sun stands still.
+        // X = u_s - 2 u_c is the sum of both deflections; the sun is at rest.
         let turned = (sun.deflection_at_rated_torque_m + ring.deflection_at_rated_torque_m)
             / (2.0 * geometry.carrier_base_radius_m);
         assert!((turned / summary.output.wind_up_of_teeth_rad - 1.0).abs() < 1e-12, "{name}");
@@ -270,7 +270,7 @@ fn minutes_of_arc_are_sixtieths_of_degrees() {
     assert_printed(arcmin(std::f64::consts::PI), 180.0 * 60.0, 9);
 }
 
-/// A bad file as it is drawn, without colours.
+/// Report of a bad file, without colours.
 fn drawn(text: &str) -> String {
     let problems = joint_file::read(text).expect_err("a bad file");
     let report = diagnostic::report("bad.toml", text, &problems);

@@ -1,6 +1,6 @@
-//! The energy balance of a run (kinetic and elastic energy against the work of torques, damping, errors and changing
-//! stiffness), tick by tick. The work of a tick is that of the reference started at the tick's own state, so that the
-//! residual is the scheme's own gain or loss of energy. There is none for the tanh dead zone.
+//! Energy balance of a run (kinetic and elastic energy against the work of torques, damping, errors and changing
+//! stiffness), tick by tick. The work of a tick is that of the reference started at the tick's own state, so the
+//! residual is the scheme's own gain or loss of energy. The tanh dead zone has no balance.
 
 use model_core::gears::MeshPhasing;
 use std::f64::consts::TAU;
@@ -10,7 +10,7 @@ use reference::joint::{Reference, RelativeState, Start, Work};
 
 use super::snapshot::Snapshot;
 
-/// Points of the series for the picture, at most.
+/// Largest number of points in the picture.
 const MOST_POINTS: usize = 20_000;
 
 /// Energy balance of a run [J].
@@ -21,52 +21,52 @@ pub struct Balance {
     /// Kinetic and elastic energy at the start and at the end.
     pub stored_at_start_J: f64,
     pub stored_at_end_J: f64,
-    /// By the drive torque, less what the load took.
+    /// Energy supplied by the drive torque, minus that taken by the load.
     pub supplied_J: f64,
-    /// Lost in mesh damping and compliance.
+    /// Energy dissipated in mesh damping and compliance.
     pub dissipated_J: f64,
-    /// Done against imposed transmission errors.
+    /// Work done against imposed transmission errors.
     pub against_errors_J: f64,
-    /// Brought in by changing mesh stiffness.
+    /// Energy supplied by changing mesh stiffness.
     pub by_stiffness_J: f64,
-    /// Growth of the stored energy less all work: what the scheme makes (or, negative, loses).
+    /// Growth of the stored energy minus all work: energy gained (or, negative, lost) by the scheme.
     pub residual_J: f64,
-    /// The residual over the energy dissipated.
+    /// Residual over the dissipated energy.
     pub residual_over_dissipated: f64,
 }
 
-/// A moment of the balance: time [s], stored energy, work done so far and residual so far [J].
+/// One entry of the balance: time [s], stored energy, work so far and residual so far [J].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Entry {
-    /// [s].
+    /// Time [s].
     pub time: f64,
-    /// Kinetic and elastic [J].
+    /// Kinetic and elastic energy [J].
     pub stored: f64,
     /// Work so far.
     pub work: Work,
-    /// Stored energy less its start and all work [J].
+    /// Stored energy minus its initial value and all work [J].
     pub residual: f64,
 }
 
-/// Accumulates the energy balance while a run goes on.
+/// Energy balance, accumulated during a run.
 #[derive(Debug, Clone)]
 pub struct EnergyAccount<'a> {
     joint: &'a JointParameters,
     tick_rate: f64,
-    /// Every so many ticks an entry is kept.
+    /// Ticks between two entries.
     every: u32,
     started: Option<f64>,
-    /// The tick that is open: the reference at its start.
+    /// Reference at the start of the current tick.
     open: Option<Reference>,
     torques: (f64, f64),
     work: Work,
-    /// What is kept for the picture.
+    /// Entries for the picture.
     pub entries: Vec<Entry>,
     last: Option<Entry>,
 }
 
 impl<'a> EnergyAccount<'a> {
-    /// Books for a run of so many ticks; none for the tanh dead zone.
+    /// Balance for a run with a number of ticks; `None` for the tanh dead zone.
     pub fn open(joint: &'a JointParameters, tick_rate: u32, ticks: u32) -> Option<Self> {
         let every = ticks.div_ceil(MOST_POINTS as u32).max(1);
         (joint.dead_zone == DeadZone::Sharp).then(|| Self {
@@ -82,7 +82,7 @@ impl<'a> EnergyAccount<'a> {
         })
     }
 
-    /// Takes one more tick. A state that the reference cannot follow leaves the work as it is: the residual shows it.
+    /// Adds a tick. A state that the reference cannot follow adds no work, so it shows in the residual.
     pub fn take(&mut self, snapshot: &Snapshot) {
         let stored = match &snapshot.energy {
             Some(energy) => {
@@ -113,7 +113,7 @@ impl<'a> EnergyAccount<'a> {
         self.last = Some(entry);
     }
 
-    /// The balance so far.
+    /// Balance so far.
     pub fn balance(&self) -> Option<Balance> {
         let last = self.last?;
         let Work { supplied, dissipated, against_errors, by_stiffness } = last.work;
@@ -139,7 +139,7 @@ fn sum(a: &Work, b: &Work) -> Work {
     }
 }
 
-/// The same joint with the mesh phase that it has now as its phase zero.
+/// Joint with its current mesh phase as phase zero.
 fn shifted(joint: &JointParameters, mesh_periods: f64) -> JointParameters {
     let angle = TAU * (mesh_periods - mesh_periods.floor());
     let mut now = joint.clone();
@@ -188,7 +188,7 @@ mod tests {
         joint_file::read(joint_file::preset(name).expect("a preset")).expect("a good preset").parameters
     }
 
-    /// A run of a joint that starts in the middle of its gap, turning, so that every contact state comes.
+    /// Runs a joint from the middle of its gap, turning, so that every contact state occurs.
     fn run_through(joint: &JointParameters, tick_rate: u32, scheme: SchemeName, each: &mut dyn FnMut(&Snapshot)) {
         let planets = joint.geometry.planets;
         let start =
@@ -215,7 +215,7 @@ mod tests {
         .expect("a good joint");
     }
 
-    /// The reference reads the same state by its own equations.
+    /// The reference evaluates the state by its own equations.
     #[test]
     fn what_is_read_off_the_core_is_what_the_reference_reads_off_the_same_state() {
         let mut rectangular = joint("q1");
@@ -251,7 +251,7 @@ mod tests {
         }
     }
 
-    /// Work of the ticks is taken from the reference, tick by tick; the residual is the scheme's own error.
+    /// The work of the ticks comes from the reference, tick by tick; the residual is the scheme's own error.
     #[test]
     fn a_scheme_s_residual_is_small_for_the_board_s_scheme_and_larger_for_the_usual_ones() {
         let joint = joint("paper");

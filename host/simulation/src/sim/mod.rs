@@ -1,8 +1,8 @@
-//! Any joint moved by a named scheme, on the host.
+//! Simulation of any joint by a named scheme, on the host.
 //!
-//! `plan` validates the request, `stepping` moves the joint by a `scheme` from a `start`, and passes a `snapshot` of
+//! `plan` validates the request; `stepping` simulates the joint by a `scheme` from a `start` and passes a `snapshot` of
 //! every tick to `statistics`, `energy` and the files (`csv`, `log_file`, both with the `quantities`); `result` holds
-//! all of it; `comparison` runs all schemes; `summary` is the result as data, `page` and its pictures show it.
+//! the results; `comparison` runs all schemes; `summary` is the result as data, `page` and its pictures show it.
 
 pub mod arguments;
 pub mod comparison;
@@ -47,24 +47,24 @@ use report::output;
 use report::progress::Progress;
 use report::provenance::VERSION;
 
-/// Samples that are kept at most unless `--every` says how many ticks apart they are.
+/// Largest number of samples by default.
 const USUAL_SAMPLES: u32 = 200_000;
-/// Samples that can be kept: each takes half a kilobyte.
+/// Largest number of samples; each takes half a kilobyte.
 const MOST_SAMPLES: u32 = 2_000_000;
 
 /// Texts and paths of a finished simulation.
 pub struct Simulated {
-    /// The figures for a terminal.
+    /// Figures for a terminal.
     pub summary: String,
-    /// The same as JSON.
+    /// Figures as JSON.
     pub figures: String,
-    /// The page.
+    /// Path of the page.
     pub report: PathBuf,
-    /// Samples as CSV and as MCAP.
+    /// Paths of the samples as CSV and as MCAP.
     pub history: [PathBuf; 2],
 }
 
-/// Simulates a joint; report, figures and history are in its folder then.
+/// Simulates a joint and writes report, figures and history to its folder.
 pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
     arguments.motion.check_for(arguments.scheme.shown())?;
     let loaded = named::load_with(&arguments.file, &arguments.motion.set)?;
@@ -76,7 +76,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
     let profile = arguments.motion.profile.as_deref().unwrap_or_default();
     folder::check_files(&[("json", arguments.json.as_deref())], &[&arguments.file, Path::new(profile)])?;
     let folder = Folder::prepare(arguments.out.as_deref(), "sim", &plan.parameters().name, &files::ALL)?;
-    // A history that was begun is finished properly.
+    // An interruption must still finish the history.
     let in_order = InOrder::begin();
     let mut files = HistoryFiles::begin(&folder, plan.parameters(), remarks(arguments, &plan, scheme))?;
     progress.run("simulating", plan.run.ticks);
@@ -110,7 +110,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
     })
 }
 
-/// Ticks between two kept samples.
+/// Ticks between two samples.
 fn every(plan: &SimulationPlan, wanted: Option<u32>) -> Outcome<u32> {
     let every = wanted.unwrap_or_else(|| plan.run.ticks.div_ceil(USUAL_SAMPLES)).max(1);
     let samples = plan.run.ticks / every + 1;
@@ -123,7 +123,7 @@ fn every(plan: &SimulationPlan, wanted: Option<u32>) -> Outcome<u32> {
 }
 
 fn compare(plan: &SimulationPlan, every: u32, progress: &Progress) -> Outcome<Comparison> {
-    // Every scheme and the disturbed reference go through all ticks.
+    // Every scheme and the disturbed reference run over all ticks.
     let runs = 1 + SchemeName::of_joint(plan.parameters()).len() as u32;
     progress.run("comparing schemes", plan.run.ticks);
     comparison::compare(&plan.run, every, &|done| {
@@ -133,7 +133,7 @@ fn compare(plan: &SimulationPlan, every: u32, progress: &Progress) -> Outcome<Co
     })
 }
 
-/// What the log says of itself.
+/// Remarks in the log.
 fn remarks(arguments: &Arguments, plan: &SimulationPlan, scheme: SchemeName) -> BTreeMap<String, String> {
     [
         ("joint", plan.parameters().name.to_string()),
@@ -148,7 +148,7 @@ fn remarks(arguments: &Arguments, plan: &SimulationPlan, scheme: SchemeName) -> 
     .into()
 }
 
-/// The command that makes this run again.
+/// Command that repeats this run.
 fn replay(arguments: &Arguments) -> String {
     let mut command = format!("cargo joint sim {}", quoted(&arguments.file.display().to_string()));
     command += &format!(" --scheme {}", arguments.scheme.name());

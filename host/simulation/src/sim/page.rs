@@ -1,5 +1,5 @@
-//! The report of a simulation as a document. Pictures come from `pictures`, `portraits` and `scheme_pictures`, figures
-//! from `summary`.
+//! Report of a simulation as a document. Pictures come from `pictures`, `portraits` and `scheme_pictures`, figures from
+//! `summary`.
 
 use super::comparison::Row as SchemeRow;
 use super::pictures::View;
@@ -16,7 +16,7 @@ use report::number::{PAGE, fixed, powers_of_ten};
 use report::panels::{DEFLECTIONS, THINNED, gap_coordinate};
 use report::provenance::VERSION;
 
-/// All of it.
+/// The whole report.
 pub fn document(result: &SimulationResult<'_>, figures: &SimulationSummary, replay: &str) -> Document {
     let rate = f64::from(figures.tick_rate_Hz);
     let mut blocks = notices(result, figures);
@@ -193,7 +193,7 @@ fn contacts(figures: &SimulationSummary) -> Block {
     })
 }
 
-/// What a terminal says of the motion as a whole; a page says it beside the pictures.
+/// Facts about the motion for a terminal; a page shows them beside the pictures.
 fn motion_facts(figures: &SimulationSummary) -> Vec<(&'static str, String)> {
     let period = match figures.period {
         Some(1) => "1 mesh period".to_owned(),

@@ -1,4 +1,4 @@
-//! The result of a simulation: samples, statistics, energy balance, spectrum.
+//! Result of a simulation: samples, statistics, energy balance, spectrum.
 
 use super::comparison::Comparison;
 use super::energy::{Balance, EnergyAccount};
@@ -12,33 +12,33 @@ use report::failure::Outcome;
 use report::progress::Progress;
 use report::spectrum::Spectrum;
 
-/// The progress line moves once in so many ticks.
+/// Ticks between two updates of the progress line.
 pub const PROGRESS: u32 = 1024;
 
-/// A run that has ended, complete or not.
+/// A finished run, complete or not.
 pub struct SimulationResult<'a> {
-    /// What was asked.
+    /// Plan of the run.
     pub plan: &'a SimulationPlan,
-    /// Which scheme.
+    /// Scheme.
     pub scheme: SchemeName,
-    /// How it ended.
+    /// End of the run.
     pub end: RunEnd,
-    /// Ticks done.
+    /// Finished ticks.
     pub ticks: u32,
-    /// Kept samples.
+    /// Stored samples.
     pub samples: Vec<Snapshot>,
-    /// Counted after settling.
+    /// Statistics after settling.
     pub statistics: Statistics,
-    /// The energy balance, if it was computed.
+    /// Energy balance, if it was computed.
     pub energy: Option<EnergyAccount<'a>>,
-    /// Of the first deflection after settling.
+    /// Spectrum of the first deflection after settling.
     pub spectrum: Option<Spectrum>,
-    /// All schemes, if they were asked for.
+    /// Comparison of all schemes, if requested.
     pub comparison: Option<Comparison>,
 }
 
 impl<'a> SimulationResult<'a> {
-    /// Runs a plan by a scheme; every so many ticks a sample is kept and written.
+    /// Runs a plan by a scheme; every `every`-th tick is stored and written.
     pub fn of(
         plan: &'a SimulationPlan,
         scheme: SchemeName,
@@ -77,12 +77,12 @@ impl<'a> SimulationResult<'a> {
         Ok(result)
     }
 
-    /// Samples that count.
+    /// Samples after settling.
     pub fn settled(&self) -> &[Snapshot] {
         &self.samples[self.samples.partition_point(|snapshot| snapshot.tick < self.plan.settle)..]
     }
 
-    /// The balance of energy.
+    /// Energy balance.
     pub fn balance(&self) -> Option<Balance> {
         self.energy.as_ref().and_then(EnergyAccount::balance)
     }

@@ -1,18 +1,18 @@
-//! Integration schemes by name, as the user types them and as reports print them.
+//! Integration schemes by name, on the command line and in reports.
 
 use clap::ValueEnum;
 use model_core::gears::Scheme;
 use parameters::JointParameters;
 use report::failure::{Failure, Outcome};
 
-/// A scheme that moves a joint.
+/// An integration scheme.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SchemeName {
     /// Independent f64 integration in absolute coordinates, restarted at every contact event.
     Reference,
-    /// What a board runs.
+    /// Scheme of a board.
     Realtime,
-    /// The paper's: one constant exponential, everything nonlinear held over the step.
+    /// Scheme of the paper: one constant exponential, with nonlinear forces held over the step.
     Paper,
     /// Classical Runge-Kutta.
     RungeKutta4,
@@ -20,12 +20,12 @@ pub enum SchemeName {
     Euler,
 }
 
-/// What `--scheme` takes.
+/// Values of `--scheme`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Choice {
-    /// What the board runs
+    /// Scheme of the board
     Realtime,
-    /// The paper's own: a constant exponential, nonlinear forces held over the step
+    /// Scheme of the paper: constant exponential, nonlinear forces held over the step
     Paper,
     /// Independent f64 integration that restarts at every contact event
     Reference,
@@ -33,15 +33,15 @@ pub enum Choice {
     Rk4,
     /// Semi-implicit Euler
     Euler,
-    /// All that the joint has, with the error of each against the reference and its cost
+    /// All schemes of the joint, each with its cost and its error against the reference
     All,
 }
 
 impl SchemeName {
-    /// All, the reference first.
+    /// All schemes, the reference first.
     const ALL: [Self; 5] = [Self::Reference, Self::Realtime, Self::Paper, Self::RungeKutta4, Self::Euler];
 
-    /// Schemes that can move a joint, the reference first: an equivalent gear has no meshes for the others to step.
+    /// Schemes for a joint, the reference first: an equivalent gear has no meshes for the others to step.
     pub fn of_joint(joint: &JointParameters) -> &'static [Self] {
         match joint.equivalent_gear() {
             Some(_) => &[Self::Reference, Self::Realtime],
@@ -49,7 +49,7 @@ impl SchemeName {
         }
     }
 
-    /// Refuses a joint that this scheme cannot move.
+    /// Rejects a joint that this scheme cannot step.
     pub fn check_joint(self, joint: &JointParameters) -> Outcome<()> {
         let of_joint = Self::of_joint(joint);
         if of_joint.contains(&self) {
@@ -64,7 +64,7 @@ impl SchemeName {
         Err(Failure::new(message).with_help(format!("give {}", names.join(" or "))))
     }
 
-    /// The word for it.
+    /// Word on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Reference => "reference",
@@ -75,7 +75,7 @@ impl SchemeName {
         }
     }
 
-    /// What it is, in a few words.
+    /// Short description.
     pub fn description(self) -> &'static str {
         match self {
             Self::Reference => "adaptive order 8 in absolute coordinates, restarted at every contact event, f64",
@@ -86,7 +86,7 @@ impl SchemeName {
         }
     }
 
-    /// The core's scheme; none for the reference, which is not the core's.
+    /// Scheme of the core; `None` for the reference.
     pub fn of_core(self) -> Option<Scheme> {
         match self {
             Self::Reference => None,
@@ -99,12 +99,12 @@ impl SchemeName {
 }
 
 impl Choice {
-    /// The word for it.
+    /// Word on the command line.
     pub fn name(self) -> &'static str {
         if self == Self::All { "all" } else { self.shown().name() }
     }
 
-    /// The scheme whose motion is shown; of all it is the board's.
+    /// Scheme whose motion is shown; for `all` the board's.
     pub fn shown(self) -> SchemeName {
         match self {
             Self::Realtime | Self::All => SchemeName::Realtime,

@@ -1,18 +1,18 @@
-//! Figures of a motion, gathered tick by tick: contact shares, impacts, swings of the deflections, mesh forces and
-//! Poincare points. Everything is counted from tick to tick; what happens between two ticks is not seen.
+//! Figures of a motion, accumulated tick by tick: contact shares, impacts, ranges of the deflections, mesh forces and
+//! Poincare points. Events between two ticks are not seen.
 
 use parameters::ContactState;
 
 use super::snapshot::{MeshSnapshot, Snapshot};
 
-/// Points kept at most; a longer run keeps the last ones.
+/// Largest number of stored points; a longer run keeps the last ones.
 const MOST_POINTS: usize = 2000;
-/// The longest period looked for, in mesh periods.
+/// Longest period that is searched for [mesh periods].
 const LONGEST_PERIOD: usize = 32;
-/// Poincare points closer than this part of the motion's swing are one.
+/// Distance below which Poincare points count as equal, over the range of the motion [-].
 const SAME_POINT: f64 = 1e-3;
 
-/// One mesh, as a sum over ticks.
+/// Sums of one mesh over ticks.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MeshSums {
     drive_side: u64,
@@ -43,26 +43,26 @@ pub struct MeshStatistics {
     pub deflection_mean_m: f64,
     /// Root mean square of the deflection about its mean [m].
     pub deflection_rms_m: f64,
-    /// Greatest less least deflection [m].
+    /// Greatest minus least deflection [m].
     pub deflection_peak_to_peak_m: f64,
     /// Greatest magnitude of the mesh force [N].
     pub peak_force_N: f64,
 }
 
-/// A Poincare point: the motion when the mesh phase comes round.
+/// A Poincare point: the motion when the mesh phase passes a whole period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoincarePoint {
     /// Sun-planet deflection of planet 1 [m].
     pub deflection: f64,
-    /// [m/s].
+    /// Deflection rate [m/s].
     pub rate: f64,
     /// Gap coordinate [m].
     pub gap: f64,
-    /// [m/s].
+    /// Rate of the gap coordinate [m/s].
     pub gap_rate: f64,
 }
 
-/// Statistics, accumulated while a run goes on.
+/// Statistics, accumulated during a run.
 #[derive(Debug, Clone, Default)]
 pub struct Statistics {
     ticks: u64,
@@ -73,7 +73,7 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// Takes one more tick.
+    /// Adds a tick.
     pub fn take(&mut self, snapshot: &Snapshot) {
         if self.meshes.is_empty() {
             self.meshes = vec![MeshSums::default(); snapshot.teeth.len()];
@@ -92,7 +92,7 @@ impl Statistics {
         self.ticks += 1;
     }
 
-    /// Time covered [s].
+    /// Covered time [s].
     pub fn span(&self) -> f64 {
         self.last.as_ref().map_or(0.0, |last| last.time - self.first)
     }
@@ -102,12 +102,12 @@ impl Statistics {
         self.meshes.iter().map(|sums| sums.figures(self.ticks, self.span())).collect()
     }
 
-    /// The last Poincare points.
+    /// Last Poincare points.
     pub fn points(&self) -> &[PoincarePoint] {
         &self.points[self.points.len().saturating_sub(MOST_POINTS)..]
     }
 
-    /// After how many mesh periods the motion repeats; none if it does not within 32, or if too few were seen.
+    /// Mesh periods after which the motion repeats; `None` if it does not within 32, or with too few points.
     pub fn period(&self) -> Option<usize> {
         let points = self.points();
         let swing = |value: fn(&PoincarePoint) -> f64, whole: f64| {
@@ -120,7 +120,7 @@ impl Statistics {
             (a.deflection - b.deflection).abs() <= SAME_POINT * size[0] && (a.gap - b.gap).abs() <= SAME_POINT * size[1]
         };
         (1..=LONGEST_PERIOD).find(|&period| {
-            // Three rounds and some more must agree, so that chaos cannot come by chance.
+            // Three rounds and 8 more points must agree, so that chaos does not match by chance.
             let wanted = 3 * period + 8;
             points.len() > wanted + period
                 && points.iter().rev().take(wanted).zip(points.iter().rev().skip(period)).all(|(a, b)| same(a, b))
@@ -162,7 +162,7 @@ impl MeshSums {
     }
 }
 
-/// The motion when the mesh phase passed a whole number between two ticks, by the cubic through both.
+/// Motion when the mesh phase passes a whole period between two ticks, by cubic interpolation.
 fn crossing(before: &Snapshot, after: &Snapshot) -> Option<PoincarePoint> {
     let (from, to) = (before.mesh_periods, after.mesh_periods);
     let whole = if to > from { (from.floor() + 1.0).min(to.floor()) } else { from.ceil() - 1.0 };
@@ -192,7 +192,7 @@ fn hermite(values: [f64; 2], slopes: [f64; 2], width: f64, part: f64) -> (f64, f
 mod tests {
     use super::*;
 
-    /// A sine of the given period in mesh periods, 50 ticks a mesh period, with the teeth parted below zero.
+    /// Statistics of a wave with 50 ticks a mesh period, with the teeth parted below zero.
     fn gathered(wave: impl Fn(f64) -> (f64, f64)) -> Statistics {
         let mut statistics = Statistics::default();
         for tick in 0..20_000 {

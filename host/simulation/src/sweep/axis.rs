@@ -1,14 +1,13 @@
-//! One axis of a grid: a key of the joint file and the values that it takes, as text, so that 0.1 stays 0.1 in every
-//! file.
+//! One axis of a grid: a key of the joint file and its values, as text, so that 0.1 stays 0.1 in every file.
 
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 
-/// More values than this on one axis are a slip of the keyboard.
+/// Largest number of values on one axis; more are likely a typing error.
 pub const MOST_VALUES: f64 = 1e6;
-/// The last value may miss the end by this part of a step, which is rounding.
+/// Rounding by which the last value may miss the end, over a step [-].
 const ROUNDING: f64 = 1e-9;
-/// Decimal places up to which values are kept exact.
+/// Largest number of decimal places that are kept exact.
 const MOST_DECIMALS: usize = 12;
 
 /// One axis.
@@ -16,14 +15,14 @@ const MOST_DECIMALS: usize = 12;
 pub struct Axis {
     /// Full path of the key.
     pub key: String,
-    /// What stands behind the equals sign, as typed.
+    /// Text after the equals sign, as typed.
     pub spec: String,
-    /// Its values, in order.
+    /// Values in order.
     pub values: Vec<String>,
 }
 
 impl Axis {
-    /// From `key=from:to:step` or `key=value,value,...`; where the joint file's text is known, a short key is one of its keys.
+    /// Parses `key=from:to:step` or `key=value,value,...`; a short key needs the joint file's text.
     pub fn parse(vary: &str, joint: Option<&str>) -> Outcome<Self> {
         let refused = |message: String| Failure::new(message).with_help(SHAPE);
         let Some((key, spec)) = vary.split_once('=') else {
@@ -48,12 +47,12 @@ impl Axis {
         Ok(Self { key, spec, values })
     }
 
-    /// As it is typed, with the full key.
+    /// Axis as typed, with the full key.
     pub fn text(&self) -> String {
         format!("{}={}", self.key, self.spec)
     }
 
-    /// A step at which the axis has at most so many values; none for a list.
+    /// Step with which the axis has at most the given number of values; `None` for a list.
     pub fn coarser(&self, values: f64) -> Option<String> {
         let mut parts = self.spec.split(':').map(|part| part.trim().parse::<f64>());
         let (Some(Ok(from)), Some(Ok(to))) = (parts.next(), parts.next()) else { return None };
@@ -64,7 +63,7 @@ impl Axis {
 const SHAPE: &str =
     "write key=from:to:step, such as mesh.half_backlash_um=0:150:0.5, or key=value,value,value for single values";
 
-/// A step with two digits at which a way has at most so many values.
+/// Step with two digits that covers a range with at most the given number of values.
 fn coarser(from: f64, to: f64, values: f64) -> Option<String> {
     let least = (to - from) / (values - 1.0).max(1.0);
     let digit = 10f64.powf(least.abs().log10().floor() - 1.0);
@@ -72,7 +71,7 @@ fn coarser(from: f64, to: f64, values: f64) -> Option<String> {
     step.is_finite().then(|| format!("{step:.3e}").parse::<f64>().map_or_else(|_| step.to_string(), |s| s.to_string()))
 }
 
-/// Values from one number to another; the end is one of them if the steps reach it.
+/// Values from one number to another; the end is included if the steps reach it.
 fn steps(vary: &str, texts: [&str; 3]) -> Outcome<Vec<String>> {
     let mut numbers = [0.0; 3];
     for ((number, text), what) in numbers.iter_mut().zip(texts).zip(["from", "to", "step"]) {
@@ -115,7 +114,7 @@ fn steps(vary: &str, texts: [&str; 3]) -> Outcome<Vec<String>> {
     Ok((0..count as usize).map(value).collect())
 }
 
-/// Decimal places of a number as typed; none if it has an exponent or too many.
+/// Decimal places of a number as typed; `None` with an exponent or with too many places.
 fn decimals(text: &str) -> Option<usize> {
     let places = text.split_once('.').map_or(0, |(_, places)| places.len());
     (!text.contains(['e', 'E']) && places <= MOST_DECIMALS).then_some(places)

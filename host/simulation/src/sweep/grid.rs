@@ -1,5 +1,4 @@
-//! The grid of a sweep: every combination of its axes, numbered with the last axis fastest, and which of them a shard
-//! has.
+//! Grid of a sweep: every combination of its axes, numbered with the last axis fastest, and the points of a shard.
 
 use std::str::FromStr;
 
@@ -7,9 +6,9 @@ use super::axis::Axis;
 use joint_file::named::{self, Loaded};
 use report::failure::{Failure, Outcome};
 
-/// Points that can be swept at once: at a tenth of a second each that is more than a day.
+/// Largest number of points; at a tenth of a second each they take more than a day.
 pub const MOST_POINTS: u64 = 1_000_000;
-/// Values of an axis that are all tried before the sweep; of a longer axis only the ends are.
+/// Largest number of values of an axis that are all checked before the sweep; of a longer axis only both ends are.
 const VALUES_TRIED: usize = 1000;
 
 /// All points.
@@ -21,17 +20,17 @@ pub struct Grid {
     pub points: u64,
 }
 
-/// A part of the points: those whose number leaves `index - 1` over `count`.
+/// A part of the points: those whose number modulo `count` is `index - 1`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
-    /// From 1.
+    /// Index from 1.
     pub index: u64,
-    /// How many shards there are.
+    /// Number of shards.
     pub count: u64,
 }
 
 impl Grid {
-    /// From what stands behind every `--vary`, and the joint file's text where it is known.
+    /// Parses the values of every `--vary`; short keys need the joint file's text.
     pub fn parse(vary: &[String], joint: Option<&str>) -> Outcome<Self> {
         let axes = vary.iter().map(|vary| Axis::parse(vary, joint)).collect::<Outcome<Vec<_>>>()?;
         for (place, axis) in axes.iter().enumerate() {
@@ -51,7 +50,7 @@ impl Grid {
         Ok(Self { axes, points: count as u64 })
     }
 
-    /// The value of every axis at a point.
+    /// Value of every axis at a point.
     pub fn values(&self, point: u64) -> Vec<&str> {
         let mut rest = point;
         let mut values: Vec<&str> = self
@@ -69,7 +68,7 @@ impl Grid {
         values
     }
 
-    /// Changes that make a point's joint, keys of both mesh families before those of one.
+    /// Changes of a point's joint, with keys of both mesh families before those of one.
     pub fn changes(&self, point: u64) -> Vec<String> {
         let mut keyed: Vec<(&str, &str)> =
             self.axes.iter().map(|axis| axis.key.as_str()).zip(self.values(point)).collect();
@@ -77,8 +76,8 @@ impl Grid {
         keyed.into_iter().map(|(key, value)| format!("{key}={value}")).collect()
     }
 
-    /// Tries every axis by itself, the others at their first values: a value that the joint file could not have is
-    /// found before anything is computed, and so is an axis without an effect.
+    /// Checks every axis, with the others at their first values: rejects values that the joint file cannot have, and
+    /// axes without an effect, before any computation.
     pub fn try_out(&self, base: &Loaded) -> Outcome<()> {
         let at = |point: u64| named::read_changed(base.name.clone(), base.text.clone(), &self.changes(point));
         let mut stride = self.points;
@@ -105,7 +104,7 @@ fn too_many(axes: &[Axis], count: f64) -> Failure {
     let each: Vec<String> = axes.iter().map(|axis| axis.values.len().to_string()).collect();
     let message =
         format!("a grid of {} = {count:.0} points: at most {MOST_POINTS} can be swept at once", each.join(" x "));
-    // The longest axis is the one that can give most.
+    // Coarser steps on the longest axis save most.
     let longest = axes.iter().max_by_key(|axis| axis.values.len());
     let help = longest.and_then(|axis| {
         let wanted = (MOST_POINTS as f64 * axis.values.len() as f64 / count).floor();
@@ -120,7 +119,7 @@ impl Shard {
     /// All points.
     pub const WHOLE: Self = Self { index: 1, count: 1 };
 
-    /// Whether a point is the shard's.
+    /// Returns true if the point belongs to the shard.
     pub fn has(self, point: u64) -> bool {
         point % self.count == self.index - 1
     }

@@ -1,5 +1,5 @@
-//! The journal of a shard: one line for each finished point, each with a checksum, written and flushed to the disk as
-//! points come in. A line that a kill or a full disk cut short is found and dropped; nothing else is ever taken out.
+//! Journal of a shard: one line with a checksum for each finished point, written and flushed to the disk at once. A
+//! line that a kill or a full disk has truncated is detected and dropped; no other line is ever removed.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -13,7 +13,7 @@ use report::failure::{Failure, Outcome};
 use report::input;
 use report::write::{locked, unwritten};
 
-/// Finished points by number: status and values, as they stand in the result.
+/// Finished points by number: status and values, as in the result.
 pub type Points = BTreeMap<u64, String>;
 
 /// First word of every journal.
@@ -31,7 +31,7 @@ pub fn name(shard: Shard) -> String {
     format!("journal-{}-of-{}.csv", shard.index, shard.count)
 }
 
-/// The shard of a journal, by its name.
+/// Shard of a journal, by its name.
 pub fn shard_of(name: &str) -> Option<Shard> {
     let (index, count) = name.strip_prefix("journal-")?.strip_suffix(".csv")?.split_once("-of-")?;
     let shard = format!("{index}/{count}").parse().ok()?;
@@ -39,7 +39,7 @@ pub fn shard_of(name: &str) -> Option<Shard> {
 }
 
 impl Journal {
-    /// Opens a shard's journal to go on with it; what was cut short is taken off its end.
+    /// Opens a shard's journal to continue it, and removes a truncated last line.
     pub fn open(folder: &Path, shard: Shard, digest: &str) -> Outcome<Self> {
         let path = folder.join(name(shard));
         let failed = |error: io::Error| unwritten(&path, &error);
@@ -62,20 +62,20 @@ impl Journal {
         Ok(journal)
     }
 
-    /// Writes lines and sees them onto the disk.
+    /// Writes lines and flushes them to the disk.
     pub fn append(&mut self, lines: &str) -> Outcome<()> {
         let written = self.file.write_all(lines.as_bytes()).and_then(|()| self.file.sync_data());
         written.map_err(|error| unwritten(&self.path, &error))
     }
 }
 
-/// The line of a finished point.
+/// Line of a finished point.
 pub fn line(point: u64, result: &str) -> String {
     let text = format!("{point},{result}");
     format!("{text},{:016x}\n", checksum(&text))
 }
 
-/// What a journal holds: good lines count, others are as if they had never been.
+/// Reads a journal; lines with a wrong checksum are ignored.
 pub fn read(path: &Path, digest: &str) -> Outcome<Points> {
     let bytes = input::bytes(path, input::LARGEST_RECORDED).map_err(|why| unread(path, &why))?;
     let whole = &bytes[..whole_lines(&bytes)];
@@ -83,13 +83,13 @@ pub fn read(path: &Path, digest: &str) -> Outcome<Points> {
     Ok(String::from_utf8_lossy(whole).lines().skip(1).filter_map(point_of).collect())
 }
 
-/// A file of a sweep that cannot be read, with the help.
+/// Error: a file of a sweep cannot be read.
 pub fn unread(path: &Path, why: &dyn std::fmt::Display) -> Failure {
     Failure::new(format!("cannot read {}: {why}", path.display()))
         .with_help("see that the folder and its files may be read")
 }
 
-/// Number and result of a good line.
+/// Number and result in a line with a correct checksum.
 fn point_of(line: &str) -> Option<(u64, String)> {
     let (text, sum) = line.rsplit_once(',')?;
     if sum.len() != 16 || u64::from_str_radix(sum, 16).ok()? != checksum(text) {
@@ -99,7 +99,7 @@ fn point_of(line: &str) -> Option<(u64, String)> {
     Some((point.parse().ok()?, result.to_owned()))
 }
 
-/// Bytes up to the end of the last line that is whole.
+/// Number of bytes up to the end of the last complete line.
 fn whole_lines(bytes: &[u8]) -> usize {
     bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1)
 }

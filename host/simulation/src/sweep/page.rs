@@ -1,5 +1,5 @@
-//! The report of a sweep as a document: its map figure by figure, where each is least and greatest, and the points that
-//! have no result. The same sweep gives the same page.
+//! Report of a sweep as a document: maps of each figure, points of the least and greatest values, and points without a
+//! result. Equal sweeps give equal pages.
 
 use super::grid::Grid;
 use super::journal::Points;
@@ -12,10 +12,10 @@ use report::document::{
 };
 use report::provenance::VERSION;
 
-/// Points without a result that are listed.
+/// Largest number of listed points without a result.
 const LISTED: usize = 20;
 
-/// All of it.
+/// The whole report.
 pub fn document(manifest: &Manifest, grid: &Grid, points: &Points) -> Document {
     let result = SweepTable::of(manifest, grid, points);
     let [whole, diverged, refused] =
@@ -107,7 +107,7 @@ mod tests {
     use super::super::metrics::Metric;
     use super::*;
 
-    /// A sweep whose points are as told.
+    /// Page of a sweep with given results.
     fn page(vary: &[&str], result: impl Fn(u64) -> String) -> String {
         let vary: Vec<String> = vary.iter().map(ToString::to_string).collect();
         let grid = Grid::parse(&vary, None).expect("a grid");

@@ -1,5 +1,5 @@
-//! Pictures of a sweep: over one axis each figure as points on a line, over two as a map in classes, over more as maps of the
-//! two longest axes for every value of the others. Points without a result are shown as such.
+//! Pictures of a sweep: over one axis each figure as points on a line, over two as a map in classes, over more as maps
+//! of the two longest axes for every value of the others. Points without a result are marked.
 
 use super::metrics::Metric;
 use super::table::{NumberedAxis, Status, SweepTable};
@@ -11,31 +11,31 @@ use report::plot::mark::Mark;
 use report::plot::panel::{Panel, VerticalAxis};
 use report::plot::unit::Unit;
 
-/// Maps have at most so many cells across and up; each then stands for several points.
+/// Largest number of cells of a map across and up; with more points a cell covers several.
 const CELLS: [usize; 2] = [128, 64];
-/// Maps of one figure, for so many values of the other axes at most.
+/// Largest number of maps of one figure, for values of the other axes.
 const MAPS: usize = 12;
 /// Height of a map [px].
 const MAP: i32 = 330;
-/// Values that are worth a point beside the line.
+/// Largest number of values that are drawn as points on the line.
 const POINTED: usize = 150;
-/// Values are classed by decades where the greatest is so many times the least.
+/// Ratio of greatest to least value above which classes are logarithmic [-].
 const BY_DECADES: f64 = 1000.0;
 
-/// Keys carry their units themselves.
+/// Unit of an axis; the keys contain their units.
 const PLAIN: Unit = Unit { factor: 1.0, name: "" };
 
 /// Kinds of points without a result.
 const WITHOUT: [(Status, Ink, &str); 2] =
     [(Status::Diverged, Ink::Limit, "diverged"), (Status::Refused, Ink::Reference, "no such joint")];
 
-/// Pictures of one figure, and how many were left out.
+/// Pictures of one figure, and the number of maps that are not shown.
 pub struct MetricPictures {
-    /// Pictures, each with what it is of.
+    /// Pictures, each with the values of its fixed axes.
     pub figures: Vec<(String, Figure)>,
-    /// Maps that were left out.
+    /// Number of maps that are not shown.
     pub left_out: usize,
-    /// Points that a cell stands for, if they are several.
+    /// Points in a cell.
     pub points_a_cell: usize,
 }
 
@@ -46,7 +46,7 @@ fn by_length(table: &SweepTable<'_>) -> Vec<usize> {
     order
 }
 
-/// All columns over the only axis, if there is but one of more than a value.
+/// All columns over the axis, if only one axis has more than one value.
 pub fn over_one_axis(table: &SweepTable<'_>) -> Option<Figure> {
     if table.axes.iter().filter(|axis| axis.words.len() > 1).count() > 1 {
         return None;
@@ -57,14 +57,14 @@ pub fn over_one_axis(table: &SweepTable<'_>) -> Option<Figure> {
     Some(picture(format!("All figures over {}", axis.key), axis, panels, range))
 }
 
-/// Maps of a column over the two longest axes; the one that was named first goes across.
+/// Maps of a column over the two longest axes; the first one on the command line is horizontal.
 pub fn of(table: &SweepTable<'_>, column: usize) -> MetricPictures {
     let order = by_length(table);
     let other = order.get(1).copied().unwrap_or(order[0]);
     maps(table, column, order[0].min(other), order[0].max(other))
 }
 
-/// A column over one axis.
+/// One column over one axis.
 fn lines(table: &SweepTable<'_>, column: usize, axis: &NumberedAxis<'_>) -> Panel {
     let metric = table.metrics[column];
     let values = &table.values[column];
@@ -86,7 +86,7 @@ fn lines(table: &SweepTable<'_>, column: usize, axis: &NumberedAxis<'_>) -> Pane
     Panel { height: 190, ..Panel::lines(title(metric), unit(metric), marks) }
 }
 
-/// Points without a result as strips below the others.
+/// Points without a result, as strips below the others.
 fn strips(table: &SweepTable<'_>, axis: &NumberedAxis<'_>, (low, high): (f64, f64)) -> Vec<Mark> {
     let (low, span) = if low <= high { (low, (high - low).max(0.1 * high.abs()).max(1e-12)) } else { (0.0, 1.0) };
     let edges = axis.edges();
@@ -157,7 +157,7 @@ fn maps(table: &SweepTable<'_>, column: usize, across: usize, up: usize) -> Metr
     }
 }
 
-/// Cells of a map: sums of what they stand for.
+/// Cells of a map with the sums of their points.
 #[derive(Debug, Clone)]
 struct Map {
     group: [usize; 2],
@@ -189,7 +189,7 @@ impl Map {
         }
     }
 
-    /// Boxes of each class, cells of one class beside each other as one; with a cell goes whatever in it has no result.
+    /// Boxes of each class, with adjacent cells of a class merged; a cell with a failed point counts as failed.
     fn marks(&self, scale: &Scale, wide: &NumberedAxis<'_>, high: &NumberedAxis<'_>) -> Vec<Mark> {
         let edges = [(wide, self.group[0]), (high, self.group[1])].map(|(axis, group)| {
             let all = axis.edges();
@@ -214,7 +214,7 @@ impl Map {
             }
         }
         let of = |wanted: Kind| boxes.iter().filter(|(kind, _)| *kind == wanted).map(|(_, one)| *one).collect();
-        // Every class is in the legend, so that maps of one figure have one scale.
+        // Every class is in the legend, so that all maps of one figure share a scale.
         let classes = (0..scale.classes()).map(|class| Mark::Boxes {
             boxes: of(Kind::Class(class)),
             ink: scale.ink(class),
@@ -230,17 +230,17 @@ impl Map {
     }
 }
 
-/// What a cell is drawn as.
+/// Content of a drawn cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Class(usize),
     Without(usize),
 }
 
-/// Lower ends of classes, and what each is called.
+/// Classes of values, by their lower ends.
 struct Scale {
     ends: Vec<f64>,
-    /// Each value is a class of its own.
+    /// True if each value is a class of its own.
     single: bool,
 }
 
@@ -272,12 +272,12 @@ impl Scale {
         self.ends.len()
     }
 
-    /// The class of a value: the last that begins at or below it.
+    /// Class of a value: the last one that begins at or below it.
     fn class(&self, value: f64) -> usize {
         self.ends.partition_point(|end| *end <= value).saturating_sub(1)
     }
 
-    /// Few classes are spread over all colours.
+    /// Colour of a class; few classes are spread over all colours.
     fn ink(&self, class: usize) -> Ink {
         let steps = (self.ends.len().max(2) - 1) as f64;
         CLASSES[(class as f64 / steps * (CLASSES.len() - 1) as f64).round() as usize]
@@ -289,16 +289,16 @@ impl Scale {
     }
 }
 
-/// Numbers of a legend, which has little room.
+/// Number format of a legend, which has little room.
 const LEGEND: Style =
     Style { digits: report::number::Digits::Significant { count: 3, from: 1e-3, below: 1e6, decimals: 1 }, ..PAGE };
 
-/// A figure whose values are whole numbers that stand for themselves.
+/// Returns true for figures whose whole-number values are classes.
 fn is_class(metric: Metric) -> bool {
     metric == Metric::Period
 }
 
-/// What a column is called on a page.
+/// Title of a column on a page.
 pub fn title(metric: Metric) -> &'static str {
     match metric {
         Metric::SunDeflectionPeakToPeakUm => "Sun–planet deflection, peak to peak",
@@ -313,7 +313,7 @@ pub fn title(metric: Metric) -> &'static str {
     }
 }
 
-/// Unit of a column, whose values are in it.
+/// Unit of a column's values.
 pub fn unit(metric: Metric) -> Unit {
     let name = match metric {
         Metric::SunDeflectionPeakToPeakUm
@@ -332,7 +332,7 @@ fn picture(title: String, axis: &NumberedAxis<'_>, panels: Vec<Panel>, range: (f
     Figure { note, ..Figure::new(title, axis.key, PLAIN, range, panels) }
 }
 
-/// What the places of an axis without numbers stand for.
+/// Legend of the places on an axis without numbers.
 fn places(axis: &NumberedAxis<'_>) -> String {
     let words = axis.words.iter().zip(1..).take(12).map(|(word, place)| format!("{place} {word}"));
     format!("{}: {}", axis.key, words.collect::<Vec<_>>().join(", "))
@@ -351,7 +351,7 @@ mod tests {
             let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             assert_eq!([scale.class(low), scale.class(high)], [0, CLASSES.len() - 1]);
         }
-        // Over many decades each class is a ratio.
+        // Over many decades the classes are ratios.
         assert_eq!(Scale::of(Metric::PeakForceN, &[1e-3, 1.0, 10.0]).class(1.0), 6);
     }
 

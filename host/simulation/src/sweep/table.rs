@@ -1,31 +1,31 @@
-//! The result of a sweep as numbers on its grid, as far as pictures need it.
+//! Result of a sweep as numbers on its grid, for the pictures.
 
 use super::grid::Grid;
 use super::journal::Points;
 use super::manifest::Manifest;
 use super::metrics::Metric;
 
-/// What became of a point.
+/// Status of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Status {
-    /// It has values.
+    /// The point has values.
     Whole,
-    /// The scheme did not hold the motion.
+    /// The scheme diverged.
     Diverged,
-    /// There is no such joint.
+    /// The joint file rejects the point's joint.
     Refused,
 }
 
 /// An axis with its values as numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NumberedAxis<'g> {
-    /// Its key.
+    /// Key.
     pub key: &'g str,
     /// Values as typed.
     pub words: &'g [String],
-    /// The same as numbers; places from 1 where one is no number, or where they do not rise or fall all the way.
+    /// Values as numbers; indices from 1 if a value is not a number, or if the values are not monotonic.
     pub values: Vec<f64>,
-    /// Whether they are places.
+    /// True if the values are indices.
     pub by_place: bool,
     /// Points from one value to the next.
     stride: u64,
@@ -39,7 +39,7 @@ pub struct SweepTable<'g> {
     pub metrics: &'g [Metric],
     /// Status of each point.
     pub status: Vec<Status>,
-    /// Values of each metric; NaN where there is none.
+    /// Values of each metric; NaN if missing.
     pub values: Vec<Vec<f64>>,
 }
 
@@ -56,12 +56,12 @@ impl<'g> NumberedAxis<'g> {
         Self { key, words, values, by_place, stride }
     }
 
-    /// Place of a point on this axis.
+    /// Index of a point on this axis.
     pub fn place(&self, point: usize) -> usize {
         point / self.stride as usize % self.words.len()
     }
 
-    /// Edges between its values, one more than there are, rising: half-way between neighbours.
+    /// Rising edges of the cells around the values, half-way between neighbours; one more than there are values.
     pub fn edges(&self) -> Vec<f64> {
         let mut values = self.values.clone();
         values.sort_by(f64::total_cmp);
@@ -76,7 +76,7 @@ impl<'g> NumberedAxis<'g> {
         std::iter::once(first - before).chain(between).chain([last + after]).collect()
     }
 
-    /// Place of a value among the cells between the edges: an axis may fall.
+    /// Index of the cell of a value; the axis may fall.
     pub fn cell(&self, place: usize) -> usize {
         let falls = self.values.first() > self.values.last();
         if falls { self.values.len() - 1 - place } else { place }
@@ -84,7 +84,7 @@ impl<'g> NumberedAxis<'g> {
 }
 
 impl<'g> SweepTable<'g> {
-    /// Out of the lines of a result.
+    /// Table from the rows of a result.
     pub fn of(manifest: &'g Manifest, grid: &'g Grid, points: &Points) -> Self {
         let mut stride = grid.points;
         let axes = grid.axes.iter().map(|axis| {
@@ -108,12 +108,12 @@ impl<'g> SweepTable<'g> {
         Self { axes, metrics: &manifest.metrics, status, values }
     }
 
-    /// How many points have a status.
+    /// Number of points with a status.
     pub fn count(&self, wanted: Status) -> usize {
         self.status.iter().filter(|status| **status == wanted).count()
     }
 
-    /// Where a point is, in words: keys by their last part, if that tells them apart.
+    /// Position of a point as text: keys by their last part, if it is unique.
     pub fn place_of(&self, point: usize) -> String {
         let last = |key: &'g str| key.rsplit('.').next().unwrap_or(key);
         let name = |key: &'g str| {

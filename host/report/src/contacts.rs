@@ -1,5 +1,5 @@
-//! Contact states over time as rows of coloured strips, one row a mesh. A strip that stands for many samples shows the
-//! share of each state by height.
+//! Contact states over time as rows of coloured strips, one row for each mesh. A strip that covers many samples shows
+//! the share of each state by height.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,24 +8,24 @@ use crate::plot::mark::Mark;
 use crate::plot::panel::{Panel, VerticalAxis};
 use crate::plot::unit::Unit;
 
-/// Which flank of a mesh carries.
+/// Contact state of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(into = "u8", try_from = "u8")]
 pub enum Contact {
-    /// Neither: 0.
+    /// No flank in contact: 0.
     Separated = 0,
-    /// The flank that drives forwards: 1.
+    /// Drive-side flank in contact: 1.
     DriveSide = 1,
-    /// The other one: 2.
+    /// Back-side flank in contact: 2.
     BackSide = 2,
 }
 
-/// Strips over the whole width: more cannot be told apart.
+/// Largest number of strips across the picture; more could not be distinguished.
 const COLUMNS: usize = 400;
-/// Shares are shown in so many steps, so that equal neighbours can be one strip.
+/// Resolution of the shown shares, so that equal neighbours can be merged.
 const STEPS: f64 = 10.0;
-/// Part of a row's height that is coloured.
+/// Coloured share of a row's height [-].
 const FILLED: f64 = 0.78;
 
 /// States from the bottom of a strip upwards.
@@ -36,7 +36,7 @@ const STATES: [(Contact, Ink, &str); 3] = [
 ];
 
 impl Contact {
-    /// The word for it in logs and tables.
+    /// Word in logs and tables.
     pub fn word(self) -> &'static str {
         match self {
             Self::Separated => "separated",
@@ -45,7 +45,7 @@ impl Contact {
         }
     }
 
-    /// State of a mesh in the two-bit form of the line.
+    /// State of a mesh in the two-bit form of the line protocol.
     pub fn from_bits(bits: u32, mesh: usize) -> Self {
         Self::try_from((bits >> (2 * mesh) & 3) as u8).unwrap_or(Self::Separated)
     }
@@ -70,7 +70,7 @@ impl TryFrom<u8> for Contact {
     }
 }
 
-/// A panel of contact strips for the samples within a range of time [s]; `contact` has a column for each mesh.
+/// Panel of contact strips for the samples within a range of time [s]; `contact` has a column for each mesh.
 pub fn panel(times: &[f64], contact: &[Vec<Contact>], range: (f64, f64)) -> Panel {
     let rows = contact.len();
     let mut boxes = STATES.map(|_| Vec::new());
@@ -98,13 +98,13 @@ pub fn panel(times: &[f64], contact: &[Vec<Contact>], range: (f64, f64)) -> Pane
     }
 }
 
-/// What fields and columns of both families of meshes begin with: sun's and ring's with so many planets, or the halves of an
-/// equivalent gear, which has no teeth.
+/// Prefixes of fields and columns for both mesh families: sun and ring, or the two halves of an equivalent gear, which
+/// has no teeth.
 pub const fn families(planets: usize) -> [&'static str; 2] {
     if planets == 1 { ["motor_half", "link_half"] } else { ["sun_planet", "ring_planet"] }
 }
 
-/// Name of a mesh by its place among all.
+/// Name of a mesh by its index.
 pub fn mesh_name(mesh: usize, meshes: usize) -> String {
     let planets = meshes / 2;
     if planets == 1 {
@@ -114,7 +114,7 @@ pub fn mesh_name(mesh: usize, meshes: usize) -> String {
     if mesh < planets { format!("sun–planet {}", mesh + 1) } else { format!("ring–planet {}", mesh - planets + 1) }
 }
 
-/// From, to and the share of each of [`STATES`]; neighbours that look alike are one strip.
+/// Start, end and the share of each of [`STATES`]; equal neighbours are merged.
 fn strips(times: &[f64], states: &[Contact], range: (f64, f64)) -> Vec<(f64, f64, [f64; 3])> {
     let width = (range.1 - range.0) / COLUMNS as f64;
     let inside: Vec<(f64, Contact)> = times

@@ -1,28 +1,28 @@
-//! Text from files and arguments as it may be shown: characters that command a terminal, or that reorder what is read, are
-//! replaced by their code, `\u{1b}` for ESC. Colours of this program are added after that.
+//! Escapes text from files and arguments: characters that control a terminal or reorder text are replaced by their
+//! code, `\u{1b}` for ESC. Colours of this program are added afterwards.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
-/// Returns the text with every control character and every character of writing direction replaced by its code. Line ends
-/// and tabs stay.
+/// Returns the text with every control character and every directional character replaced by its code. Line ends and
+/// tabs stay.
 pub fn escaped(text: &str) -> Cow<'_, str> {
     replaced(text, |code| format!("\\u{{{code:x}}}"))
 }
 
-/// Returns JSON of the same meaning without these characters: beyond ASCII, JSON has letters in its strings only.
+/// Returns equivalent JSON without such characters; outside its strings JSON has only ASCII.
 pub fn escaped_json(text: &str) -> Cow<'_, str> {
     replaced(text, |code| format!("\\u{code:04x}"))
 }
 
-/// Returns whether [`escaped`] leaves a text as it is.
+/// Returns true if [`escaped`] leaves a text unchanged.
 pub fn is_plain(text: &str) -> bool {
     matches!(escaped(text), Cow::Borrowed(_))
 }
 
-/// Returns the place in the escaped text [bytes] of a place in the text itself.
+/// Returns the position in the escaped text [bytes] of a position in the original text.
 pub fn place_in_escaped(text: &str, place: usize) -> usize {
-    // Rather too far in front than amidst a letter.
+    // A position within a character moves to its start.
     let whole = (0..=place.min(text.len())).rev().find(|end| text.is_char_boundary(*end)).unwrap_or(0);
     let split_line_end = usize::from(text[..whole].ends_with('\r') && text[whole..].starts_with('\n'));
     escaped(&text[..whole - split_line_end]).len() + split_line_end
@@ -48,8 +48,8 @@ fn replaced(text: &str, code: impl Fn(u32) -> String) -> Cow<'_, str> {
     if changed { Cow::Owned(shown) } else { Cow::Borrowed(text) }
 }
 
-/// Control characters (C0, DEL, C1), separators that some programs take for a line's end, and the marks, embeddings,
-/// overrides and isolates of Unicode's bidirectional algorithm (UAX #9).
+/// Returns true for control characters (C0, DEL, C1), separators that some programs take for line ends, and the marks,
+/// embeddings, overrides and isolates of Unicode's bidirectional algorithm (UAX #9).
 fn is_dangerous(letter: char) -> bool {
     letter.is_control() && letter != '\n' && letter != '\t'
         || matches!(letter, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')

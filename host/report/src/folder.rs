@@ -1,5 +1,5 @@
-//! The folder that a command writes its results to, and the files that the user named. Paths that cannot be written are
-//! reported before the work begins.
+//! Output folder of a command, and output files that the user named. Unwritable paths are reported before the work
+//! begins.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -12,15 +12,15 @@ use crate::interruption::InOrder;
 use crate::own_files::{OwnFiles, Owner, Writers};
 use crate::write::{is_standard_output, record_into, unwritten, write_with};
 
-/// Where results go that no other folder is named for, below the folder that the user works in.
+/// Default folder of results, below the working folder.
 const USUAL: &str = "joint-out";
 
-/// The folder of results of a kind, such as those of a command for a joint, unless the user names another.
+/// Default folder of results of a kind, such as those of a command for a joint.
 pub fn usual(kind: &str, name: &str) -> PathBuf {
     Path::new(USUAL).join(kind).join(file_part(name))
 }
 
-/// Where the files of a run go.
+/// Output folder of a run.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
@@ -29,8 +29,8 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// The folder that a run will write `files` to, of which each may have one `*`. Refuses one in which any of them is not
-    /// what a command has written: it would be lost. Where none is wanted it is [`usual`]. Writes nothing yet.
+    /// Chooses the folder for `files`, each name with at most one `*`; the default is [`usual`]. Rejects a folder in
+    /// which one of these files was not written by a command, since it would be lost. Writes nothing.
     pub fn choose(wanted: Option<&Path>, kind: &str, joint: &str, files: &'static [&'static str]) -> Outcome<Self> {
         let path = wanted.map_or_else(|| usual(kind, joint), Path::to_owned);
         let folder = Self { own: OwnFiles::read(&path)?, path, files };
@@ -38,14 +38,15 @@ impl Folder {
         Ok(folder)
     }
 
-    /// The same, made and ready to be written to.
+    /// Chooses the folder, creates it and makes it ready for writing.
     pub fn prepare(wanted: Option<&Path>, kind: &str, joint: &str, files: &'static [&'static str]) -> Outcome<Self> {
         let folder = Self::choose(wanted, kind, joint, files)?;
         folder.make()?;
         Ok(folder)
     }
 
-    /// The same for a run beside others, each with files of its own, that all write one of these at their end.
+    /// Prepares a folder for one of several runs that have files of their own and all write the given files at their
+    /// end.
     pub fn prepare_beside_others(
         path: &Path,
         kind: &str,
@@ -58,48 +59,48 @@ impl Folder {
         Ok(folder)
     }
 
-    /// Makes the folder and tries to write to it. Refuses one that another run is writing to.
+    /// Creates the folder and tests writing. Rejects a folder that another run writes to.
     pub fn make(&self) -> Outcome<()> {
         make(&self.path)?;
         self.own.open(Writers::One)?;
-        // Another run may have ended since this one was chosen.
+        // Another run may have ended since the folder was chosen.
         self.refuse_foreign()
     }
 
-    /// A file in it.
+    /// Path of a file in the folder.
     pub fn file(&self, name: &str) -> PathBuf {
         self.path.join(name)
     }
 
-    /// The folder itself.
+    /// Path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Writes a file, whole or not at all.
+    /// Writes a file, completely or not at all.
     pub fn write_text(&self, name: &str, text: &str) -> Outcome<()> {
         self.write_with(name, |file| file.write_all(text.as_bytes()))
     }
 
-    /// Writes a record as JSON in one line, whole or not at all.
+    /// Writes a record as JSON in one line, completely or not at all.
     pub fn write_record(&self, name: &str, record: &impl Serialize) -> Outcome<()> {
         self.write_with(name, |file| record_into(file, record))
     }
 
-    /// Fills a file, whole or not at all.
+    /// Fills a file, completely or not at all.
     pub fn write_with(&self, name: &str, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Outcome<()> {
         debug_assert!(self.is_announced(name), "{name} was not looked for before the run");
         write_with(&self.file(name), |ready| self.own.claim(name, ready), fill)
     }
 
-    /// Begins a file that grows while a run goes on. It is ours from here on, whole or not.
+    /// Creates a file that grows during a run. It counts as the command's own even if incomplete.
     pub fn grow(&self, name: &str) -> Outcome<File> {
         debug_assert!(self.is_announced(name), "{name} was not looked for before the run");
         let path = self.file(name);
         self.own.claim_growing(name).and_then(|()| File::create(&path)).map_err(|error| unwritten(&path, &error))
     }
 
-    /// Ends a file that has grown, under a name that it may have had before, and says where it is.
+    /// Renames a file that has finished growing; returns its path.
     pub fn keep(&self, grown: &str, name: &str) -> Outcome<PathBuf> {
         debug_assert!(self.is_announced(name), "{name} was not looked for before the run");
         let _in_order = InOrder::begin();
@@ -109,7 +110,7 @@ impl Folder {
         Ok(to)
     }
 
-    /// Removes what earlier runs have left of files of this kind, once this run has written its own.
+    /// Removes files of this kind that earlier runs have left, after this run has written its own.
     pub fn clear_older(&self, files: &str) -> Outcome<()> {
         for name in self.present(files)? {
             let ours = self.own.owner(&name) == Owner::Ours;
@@ -122,7 +123,7 @@ impl Folder {
         Ok(())
     }
 
-    /// Refuses a folder with a file that would be lost.
+    /// Rejects a folder with a file that would be lost.
     fn refuse_foreign(&self) -> Outcome<()> {
         for files in self.files {
             for name in self.present(files)? {
@@ -139,12 +140,12 @@ impl Folder {
         Ok(())
     }
 
-    /// Names of files of this kind that are there, in their order.
+    /// Sorted names of existing files of this kind.
     fn present(&self, files: &str) -> Outcome<Vec<String>> {
         let inner = Path::new(files).parent().unwrap_or(Path::new(""));
         let folder = self.path.join(inner);
         let entries = match fs::read_dir(&folder) {
-            // What is no folder is told where it is made.
+            // A path that is not a folder is reported when the folder is created.
             Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {
                 return Ok(Vec::new());
             }
@@ -164,7 +165,7 @@ impl Folder {
     }
 }
 
-/// Whether a name is one of these, which may have one `*` for any part of it.
+/// Returns true if a name matches a pattern with at most one `*`.
 fn is_of(files: &str, name: &str) -> bool {
     let Some((before, behind)) = files.split_once('*') else { return files == name };
     name.len() >= before.len() + behind.len() && name.starts_with(before) && name.ends_with(behind)
@@ -175,7 +176,7 @@ fn unread(path: &Path, error: &io::Error) -> Failure {
         .with_help("see that it may be read and written, or name another folder by --out DIR")
 }
 
-/// Makes a folder that `--out` names.
+/// Creates a folder that `--out` names.
 pub fn make(folder: &Path) -> Outcome<()> {
     fs::create_dir_all(folder).map_err(|error| {
         Failure::new(format!("cannot make the folder {}: {error}", folder.display()))
@@ -183,7 +184,7 @@ pub fn make(folder: &Path) -> Outcome<()> {
     })
 }
 
-/// Refuses a file for an option that cannot be one, or that the command itself reads: writing it would be the loss of that.
+/// Rejects a file for an option if it cannot be written, or if the command reads it: writing would destroy the input.
 pub fn check_file(option: &str, file: &Path, read: &[&Path]) -> Outcome<()> {
     let parent = file.parent().filter(|parent| !parent.as_os_str().is_empty());
     if let Some(parent) = parent.filter(|parent| !parent.is_dir()) {
@@ -203,7 +204,7 @@ pub fn check_file(option: &str, file: &Path, read: &[&Path]) -> Outcome<()> {
     Ok(())
 }
 
-/// The same for what several options ask for, no two of which may be one file. "-" is standard output, which is for JSON.
+/// Checks the files of several options, which must differ. "-" is standard output, which only JSON may use.
 pub fn check_files(wanted: &[(&str, Option<&Path>)], read: &[&Path]) -> Outcome<()> {
     let files = wanted.iter().filter_map(|(option, file)| Some((*option, (*file)?)));
     let (out, files): (Vec<_>, Vec<_>) = files.partition(|(_, file)| is_standard_output(file));
@@ -221,7 +222,7 @@ pub fn check_files(wanted: &[(&str, Option<&Path>)], read: &[&Path]) -> Outcome<
     Ok(())
 }
 
-/// A joint's name, or a number, as part of the name of a file or folder.
+/// Name of a joint, or a number, as part of a file name.
 pub fn file_part(joint: &str) -> String {
     joint.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter.to_ascii_lowercase() } else { '-' }).collect()
 }
@@ -292,7 +293,7 @@ mod tests {
         let failure = other.make().expect_err("its files would be mixed with those of the first");
         assert!(failure.message().contains("another run") && failure.help().is_some(), "{failure}");
         one.write_text(REPORT, "1").expect("room");
-        // What holds the folder goes away with a process, however it ends.
+        // The lock ends with the process, however it ends.
         drop(one);
         other.make().expect("nobody else does any more");
         other.write_text(REPORT, "2").expect("what the first has written is known by now");

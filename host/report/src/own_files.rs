@@ -1,7 +1,7 @@
-//! Which files of a folder are ours. A list in the folder has a line for every file that a command has put there, with
-//! its SHA-256: a file is ours if it is still what such a line says, so what a user has put there or changed is not. A
-//! line is in the list before its file has its name, so that a kill between the two leaves nothing that nobody owns. The
-//! list begins with its first line: a run that is killed before it has written anything leaves none.
+//! Ownership of the files in a folder. A list in the folder has a line with the SHA-256 of every file that a command
+//! has written there. A file is the command's own if its content still matches a line; files that the user added or
+//! changed do not match. The line is written before the file gets its name, so a kill in between leaves no unlisted
+//! file. The list is created with its first line: a run that is killed before it writes anything leaves no list.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
@@ -14,16 +14,16 @@ use sha2::{Digest, Sha256};
 use crate::failure::{Failure, Outcome};
 use crate::write::{locked, try_to_write, unwritten};
 
-/// The list, hidden since it is no result.
+/// Name of the list, hidden since it is no result.
 pub const LIST: &str = ".written-by-joint";
-/// How it begins.
+/// First line of the list.
 const HEAD: &str = "# files that joint has written here, each with its SHA-256; it never writes over any other";
-/// In place of a digest: a file that grows while a run goes on is ours until it is whole.
+/// Entry in place of a digest: the file grows during a run and is owned until it is complete.
 const GROWING: &str = "growing";
-/// In place of a digest: it grows no longer.
+/// Entry in place of a digest: the file has finished growing.
 const GROWN: &str = "grown";
 
-/// The list of a folder.
+/// List of a folder.
 #[derive(Debug)]
 pub struct OwnFiles {
     folder: PathBuf,
@@ -34,31 +34,31 @@ pub struct OwnFiles {
 struct List {
     digests: BTreeMap<String, BTreeSet<String>>,
     growing: BTreeSet<String>,
-    /// Names that this run has given.
+    /// Names that this run has written.
     given: BTreeSet<String>,
-    /// True while lines are added on disk: the folder is written to.
+    /// True while the folder is written to and lines are added on disk.
     is_open: bool,
-    /// The folder, locked for as long as this run writes to it alone.
+    /// Lock of the folder, held while this run is its only writer.
     _lock: Option<File>,
 }
 
-/// Who may write to a folder at a time.
+/// Number of simultaneous writers to a folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Writers {
-    /// One run: the files of two would be mixed.
+    /// One run, since the files of two would mix.
     One,
-    /// Several that have files of their own, such as the shards of a sweep.
+    /// Several runs with files of their own, such as the shards of a sweep.
     Several,
 }
 
-/// Whose a file is.
+/// Owner of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Owner {
-    /// Written by a command, and still as it was written.
+    /// Written by a command, and unchanged.
     Ours,
-    /// Written by a command and changed since.
+    /// Written by a command, and changed since.
     Changed,
-    /// Of somebody else.
+    /// Not written by a command.
     Foreign,
 }
 
@@ -72,12 +72,12 @@ impl OwnFiles {
         Ok(Self { folder: folder.to_owned(), list: Mutex::new(List::of(&text)) })
     }
 
-    /// Reads the list on disk as it is by now, and makes the folder ready to be written to. Where nothing can be written to
-    /// it, that is told before the work. The folder is locked until this goes away, or the process does, however it ends.
+    /// Reads the current list from disk and makes the folder ready for writing; an unwritable folder is reported here.
+    /// The folder stays locked until this value is dropped or the process ends.
     pub fn open(&self, writers: Writers) -> Outcome<()> {
         let path = self.folder.join(LIST);
         let open = || {
-            // What cannot be opened or locked, as on some file systems, is no reason not to write.
+            // A folder that cannot be opened or locked, as on some file systems, can still be written to.
             let lock = File::open(&self.folder).ok().filter(|_| writers == Writers::One);
             if lock.as_ref().is_some_and(|folder| !locked(folder)) {
                 return Ok(None);
@@ -86,7 +86,7 @@ impl OwnFiles {
             let text = text_of(&path)?;
             let is_empty = is_begun(&text) || text == HEAD;
             if writers == Writers::One && is_empty && path.exists() {
-                // What a killed run has left of a list before it wrote anything.
+                // A killed run has left a list without entries.
                 fs::remove_file(&path)?;
             }
             Ok(Some((lock, text)))
@@ -100,7 +100,7 @@ impl OwnFiles {
         Ok(())
     }
 
-    /// Whose a file of the folder is.
+    /// Owner of a file in the folder.
     pub fn owner(&self, name: &str) -> Owner {
         let list = self.list();
         if list.growing.contains(&key(name)) {
@@ -108,7 +108,7 @@ impl OwnFiles {
         }
         let Some(digests) = list.digests.get(&key(name)) else { return Owner::Foreign };
         let path = self.folder.join(name);
-        // Nothing but a file is read: a pipe would never end.
+        // Only regular files are read: a pipe would never end.
         let file = fs::metadata(&path).is_ok_and(|data| data.is_file());
         match file.then(|| digest(&path)) {
             Some(Ok(found)) if digests.contains(&found) => Owner::Ours,
@@ -116,24 +116,24 @@ impl OwnFiles {
         }
     }
 
-    /// Says that a file, which lies ready under another name, will have this one.
+    /// Records that a finished temporary file will get this name.
     pub fn claim(&self, name: &str, ready: &Path) -> io::Result<()> {
         let digest = digest(ready)?;
         self.list().given.insert(key(name));
         self.add(&digest, name)
     }
 
-    /// Whether this run has written a file.
+    /// Returns true if this run has written a file.
     pub fn is_of_this_run(&self, name: &str) -> bool {
         self.list().given.contains(&key(name))
     }
 
-    /// Says that a file begins to grow.
+    /// Records that a file starts to grow.
     pub fn claim_growing(&self, name: &str) -> io::Result<()> {
         self.add(GROWING, name)
     }
 
-    /// Says that a file grows no longer.
+    /// Records that a file has finished growing.
     pub fn end_growing(&self, name: &str) -> io::Result<()> {
         self.add(GROWN, name)
     }
@@ -148,13 +148,13 @@ impl OwnFiles {
     }
 
     fn list(&self) -> MutexGuard<'_, List> {
-        // What it holds is whole between any two changes.
+        // The list is consistent between any two changes.
         self.list.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl List {
-    /// What the lines of a list say.
+    /// Parses the lines of a list.
     fn of(text: &str) -> Self {
         let mut list = Self::default();
         for line in text.lines().skip(1) {
@@ -163,7 +163,7 @@ impl List {
         list
     }
 
-    /// Takes what a line says; whether it is new.
+    /// Applies a line; returns true if it is new.
     fn take(&mut self, line: &str) -> bool {
         match line.split_once("  ") {
             Some((GROWING, name)) => self.growing.insert(name.to_owned()),
@@ -174,28 +174,28 @@ impl List {
     }
 }
 
-/// A name as it stands in a line.
+/// Name in the form of a line.
 fn key(name: &str) -> String {
     name.replace('\n', "\\n")
 }
 
-/// Adds a line to a list on disk, and its head where that is not there yet.
+/// Appends a line to a list on disk, with the list's first line if it is missing.
 fn append(path: &Path, line: &str) -> io::Result<()> {
     let mut file = File::options().append(true).create(true).open(path)?;
-    // Of several writers one begins the list. A file system without locks is no reason not to write.
+    // With several writers, one creates the list. A file system without locks can still be written to.
     let _ = file.lock();
     let text = text_of(path)?;
     let is_begun = is_begun(&text);
     if is_begun && !text.is_empty() {
-        // A disk that was full has cut it short.
+        // A full disk has truncated the first line.
         file.set_len(0)?;
     }
-    // In one piece, behind the end of a line: one that was cut short spoils no other.
+    // Written in one piece after a line end, so that a truncated line damages no other.
     let head = if is_begun { HEAD } else { "" };
     file.write_all(format!("{head}\n{line}").as_bytes())
 }
 
-/// Text of a list; nothing where there is none.
+/// Text of a list; empty without a file.
 fn text_of(path: &Path) -> io::Result<String> {
     match fs::metadata(path) {
         Ok(data) if !data.is_file() => Err(io::Error::other("it is not a regular file")),
@@ -208,7 +208,7 @@ fn is_whole(text: &str) -> bool {
     text.starts_with(HEAD)
 }
 
-/// Whether a list has not got beyond its first line.
+/// Returns true if a list has not got beyond its first line.
 fn is_begun(text: &str) -> bool {
     text.len() < HEAD.len() && HEAD.starts_with(text)
 }

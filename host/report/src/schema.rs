@@ -1,5 +1,5 @@
-//! Holds published schemas to the types that are written: `docs/reference/*.schema.json` are made from them, and a page
-//! of docs/reference must tell every key. Only tests use it.
+//! Tests of published schemas: `docs/reference/*.schema.json` are generated from the types, and a page of
+//! docs/reference must explain every key.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -14,7 +14,7 @@ fn document(name: &str) -> PathBuf {
     workspace().join("docs/reference").join(name)
 }
 
-/// Fails unless docs/reference/`name` is the schema of `T`; `UPDATE_SCHEMA` makes it so.
+/// Fails unless docs/reference/`name` is the schema of `T`; with `UPDATE_SCHEMA` it updates the file.
 pub fn assert_published<T: JsonSchema>(name: &str) {
     let path = document(name);
     let schema = serde_json::to_string_pretty(&schemars::schema_for!(T)).expect("a schema is JSON") + "\n";
@@ -25,7 +25,7 @@ pub fn assert_published<T: JsonSchema>(name: &str) {
     assert!(published == schema, "run `UPDATE_SCHEMA=1 cargo test schema` and review the change");
 }
 
-/// Fails unless docs/reference/`page` tells every key of `T` and all of `others`, more than `least` words in all.
+/// Fails unless docs/reference/`page` explains every key of `T` and all of `others`, more than `least` words in total.
 pub fn assert_explained<T: JsonSchema>(page: &str, others: impl IntoIterator<Item = String>, least: usize) {
     let text = fs::read_to_string(document(page)).unwrap_or_else(|error| panic!("docs/reference/{page}: {error}"));
     let mut wanted: BTreeSet<String> = others.into_iter().collect();
@@ -34,7 +34,7 @@ pub fn assert_explained<T: JsonSchema>(page: &str, others: impl IntoIterator<Ite
     assert!(wanted.len() > least && missing.is_empty(), "not explained: {missing:?}");
 }
 
-/// Fails unless a value is what the published schema docs/reference/`name` says, with no key that it does not know.
+/// Fails unless a value is valid by the published schema docs/reference/`name`, without unknown keys.
 pub fn assert_valid(name: &str, value: &Value) {
     let path = document(name);
     let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
@@ -43,7 +43,7 @@ pub fn assert_valid(name: &str, value: &Value) {
     assert!(faults.is_empty(), "{name}: {}", faults.join("; "));
 }
 
-/// Where a value is not what a schema says, as far as schemas made from types say it.
+/// Violations of a schema by a value, for the rules that generated schemas use.
 fn faults(root: &Value, schema: &Value, value: &Value, place: &str) -> Vec<String> {
     let mut found = Vec::new();
     let Value::Object(rules) = schema else { return found };
@@ -115,7 +115,7 @@ fn is_of(kind: &str, value: &Value) -> bool {
     }
 }
 
-/// Keys of objects, everywhere in a schema.
+/// Collects the keys of all objects in a schema.
 fn keys(schema: &Value, found: &mut BTreeSet<String>) {
     match schema {
         Value::Object(map) => {

@@ -1,23 +1,23 @@
-//! Seeds as an argument: one, or all from one to another.
+//! Seeds as an argument: one seed, or a range.
 
 use std::fmt::{self, Display, Formatter};
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-/// Seeds from one to another, both among them.
+/// Range of seeds, inclusive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Seeds {
-    /// The first.
+    /// First seed.
     pub first: u64,
-    /// The last.
+    /// Last seed.
     pub last: u64,
 }
 
-/// Most seeds of a run: more are a slip of the keyboard.
+/// Largest number of seeds of a run; more are likely a typing error.
 pub const MOST_SEEDS: u64 = 10_000;
 
 impl Seeds {
-    /// In order.
+    /// All seeds in order.
     pub fn each(self) -> RangeInclusive<u64> {
         self.first..=self.last
     }
@@ -26,7 +26,7 @@ impl Seeds {
 impl FromStr for Seeds {
     type Err = String;
 
-    /// `7`, or `1-10000`.
+    /// Parses `7`, or `1-10000`.
     fn from_str(text: &str) -> Result<Self, String> {
         let (first, last) = text.split_once('-').filter(|(first, _)| !first.is_empty()).unwrap_or((text, text));
         let [Ok(first), Ok(last)] = [first, last].map(str::parse) else {

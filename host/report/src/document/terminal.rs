@@ -1,5 +1,4 @@
-//! A document as lines for a terminal, only of characters that every terminal has. Colours are put on by `output`, where
-//! it is one.
+//! A document as lines for a terminal, in characters that every terminal has. `output` adds colours.
 
 use std::fmt::Write as _;
 
@@ -10,14 +9,14 @@ use crate::number::TERMINAL;
 
 /// Width of the column of verdicts.
 const VERDICTS: usize = 8;
-/// Width of the column of names below a heading at least, so that sheets of one kind look alike.
+/// Least width of the column of names below a heading, so that sheets of one kind look alike.
 const NAMES: usize = 28;
 /// Width of a line of sentences.
 const LINE: usize = 120;
-/// Between two columns.
+/// Gap between two columns.
 const GAP: &str = "  ";
 
-/// The whole text, ending with a newline.
+/// Text of a document, ending with a newline.
 pub fn terminal(document: &Document) -> String {
     let mut page = Page { text: String::new(), names: longest_name(&document.blocks), headed: false };
     page.line(&plain(&document.line));
@@ -29,7 +28,7 @@ pub fn terminal(document: &Document) -> String {
     page.text
 }
 
-/// The text as a terminal shows it.
+/// Text as a terminal shows it.
 pub fn plain(text: &Text) -> String {
     text.0.iter().map(span).collect()
 }
@@ -51,7 +50,7 @@ fn span(span: &Span) -> String {
     }
 }
 
-/// Signs as one types them.
+/// Replaces typographic characters by ASCII.
 fn typed(text: &str) -> String {
     const TYPED: [(&str, &str); 10] = [
         ("± ", "+- "),
@@ -79,12 +78,12 @@ fn longest_name(blocks: &[Block]) -> usize {
     blocks.iter().map(longest).max().unwrap_or(0)
 }
 
-/// The text so far.
+/// Text under construction.
 struct Page {
     text: String,
     /// Width of the column of names.
     names: usize,
-    /// Within a section that has its heading.
+    /// True within a section that has a heading.
     headed: bool,
 }
 
@@ -111,7 +110,7 @@ impl Page {
         self.line(&line);
     }
 
-    /// One empty line, unless there is one or nothing yet.
+    /// Adds an empty line, unless the text is empty or ends with one.
     fn blank(&mut self) {
         if !self.text.is_empty() && !self.text.ends_with("\n\n") {
             self.text.push('\n');
@@ -170,7 +169,7 @@ impl Page {
         self.headed = outside;
     }
 
-    /// The strong word at its beginning stands in the column of verdicts.
+    /// Prints a notice; a strong word at its beginning goes into the column of verdicts.
     fn notice(&mut self, notice: &Notice) {
         let line = match notice.text.0.as_slice() {
             [word @ Span::Strong(_), rest @ ..] => {
@@ -192,7 +191,7 @@ impl Page {
         let shown = table.shown(Medium::Terminal);
         let (heads, rows) = table.texts(Medium::Terminal, plain);
         let width = |place: usize| {
-            // A cell that goes over all columns that are left has no part in their widths.
+            // A cell that spans the remaining columns does not count for their widths.
             let cells = rows.iter().zip(&table.rows).filter_map(|(cells, row)| {
                 let own = !row.spans || place + 1 < cells.len();
                 cells.get(place).filter(|_| own).map(|cell| cell.chars().count())
@@ -212,7 +211,7 @@ impl Page {
     }
 }
 
-/// Verdict, name, figure and bound of each check; why it failed below it.
+/// Verdict, name, figure and bound of each check, with the note of a failed check below.
 pub(super) fn checks(table: &Checks) -> String {
     let width = table.checks.iter().map(|check| check.name.chars().count()).max().unwrap_or(0);
     let mut text = String::new();
@@ -240,7 +239,7 @@ pub(super) fn checks(table: &Checks) -> String {
     text
 }
 
-/// On a terminal only times bear the mark: all else is the same on a real board.
+/// On a terminal only times are marked EMULATED: all other figures are equal on a real board.
 fn is_time(check: &Check) -> bool {
     matches!(check.unit.as_str(), "us" | "%") || check.name == "overruns"
 }

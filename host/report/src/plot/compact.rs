@@ -1,12 +1,12 @@
-//! Many equal rectangles as one path: a diagram of ten thousand points stays small enough to send. Only text is looked
-//! at, and what does not have the expected form is left as it is.
+//! Merges many equal rectangles into one path, so that a diagram of ten thousand points stays small. The code works on
+//! text; lines in another form stay unchanged.
 
 use std::fmt::Write as _;
 
-/// Fewer equal neighbours than this are left alone.
+/// Least number of equal neighbours that are merged.
 const LEAST: usize = 8;
 
-/// Position and what rectangles in one path must share.
+/// Position of a rectangle, and the attributes that a path shares.
 struct Rectangle<'a> {
     x: &'a str,
     y: &'a str,
@@ -14,7 +14,7 @@ struct Rectangle<'a> {
     alike: [&'a str; 3],
 }
 
-/// The same picture with every run of equal rectangles drawn as one path.
+/// Picture with every run of equal rectangles merged into one path.
 pub fn compact(svg: &str) -> String {
     let lines: Vec<(&str, Option<Rectangle<'_>>)> = svg.lines().map(|line| (line, rectangle(line))).collect();
     let mut text = String::with_capacity(svg.len() / 2);
@@ -44,7 +44,7 @@ pub fn compact(svg: &str) -> String {
     text
 }
 
-/// `<rect x=".." y=".." width=".." height=".." fill=".."/>` and nothing else.
+/// Parses `<rect x=".." y=".." width=".." height=".." fill=".."/>` and nothing else.
 fn rectangle(line: &str) -> Option<Rectangle<'_>> {
     let mut rest = line.strip_prefix("<rect ")?.strip_suffix("/>")?;
     let mut next = |name: &str| {

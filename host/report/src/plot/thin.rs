@@ -1,7 +1,7 @@
-//! Thinning of long series that keeps every extreme: of each column of the picture the first, least, greatest and last
-//! value. What is not finite breaks the line, and is never drawn.
+//! Thinning of long series that keeps every extreme: first, least, greatest and last value in each column of the
+//! picture. Values that are not finite interrupt the line.
 
-/// Stretches of finite points, thinned to at most four points in each of so many columns over the range.
+/// Sections of finite points, thinned to at most four points in each column of the range.
 pub fn thin(points: &[(f64, f64)], range: (f64, f64), columns: usize) -> Vec<Vec<(f64, f64)>> {
     let width = (range.1 - range.0) / columns.max(1) as f64;
     let column = |x: f64| ((x - range.0) / width).floor();
@@ -15,7 +15,7 @@ pub fn thin(points: &[(f64, f64)], range: (f64, f64), columns: usize) -> Vec<Vec
         .collect()
 }
 
-/// First, least, greatest and last point, in their order, each once.
+/// First, least, greatest and last point in order, without repetition.
 fn extremes(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     if points.len() <= 4 {
         return points.to_vec();

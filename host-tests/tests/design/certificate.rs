@@ -11,7 +11,7 @@ use parameters::JointParameters;
 use rayon::prelude::*;
 use reference::scenarios::random_joint;
 use simulation::accuracy::{Kind, Motion, MotionErrors, measure_up_to};
-use simulation::sim::comparison::errors_of;
+use simulation::sim::comparison::errors_against_reference;
 use simulation::sim::errors::Errors;
 use simulation::sim::scheme::SchemeName;
 
@@ -32,7 +32,8 @@ struct Compared {
 
 /// What `joint sim --scheme all` says of the board's step on a motion.
 fn in_sim(motion: &Motion, board: &Board) -> Option<Errors> {
-    errors_of(&motion.for_sim(board.processor()), SchemeName::Realtime).expect("a motion that the reference can follow")
+    errors_against_reference(&motion.for_sim(board.processor()), SchemeName::Realtime)
+        .expect("a motion that the reference can follow")
 }
 
 fn compared(seed: u64, longest: f64) -> Compared {

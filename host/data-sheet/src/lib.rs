@@ -86,7 +86,7 @@ fn make(sheet: &DataSheet, gears: &Gears, path: &Path, seeds: Option<u64>, progr
             told += &format!("  {key:<55} {moved}\n");
         }
     }
-    if let Some(bandwidth) = Bandwidth::of(&loaded.file.parameters, &loaded.file.surroundings) {
+    if let Some(bandwidth) = Bandwidth::for_joint(&loaded.file.parameters, &loaded.file.surroundings) {
         let (usual, widest) = (bandwidth.usual_rad_per_s, bandwidth.widest_in_words());
         told += &format!("bandwidth: {usual} rad/s if none is asked for, at most {widest}\n");
     }

@@ -11,7 +11,7 @@ use report::failure::{Failure, Outcome};
 use report::output;
 use report::progress::Progress;
 use simulation::budget::{layout, summary};
-use simulation::verdicts::ACCURACY;
+use simulation::verdicts::DEFAULT_ACCURACY;
 
 use crate::image::ImageRole;
 
@@ -52,7 +52,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     warned::tell(&loaded);
     let parameters = &loaded.file.parameters;
     let (board, role, rate) = (&arguments.board, arguments.role.role(), arguments.rate);
-    let wanted = arguments.accuracy.unwrap_or(ACCURACY);
+    let wanted = arguments.accuracy.unwrap_or(DEFAULT_ACCURACY);
     let progress = Progress::new();
     progress.stage("measuring the error");
     let summary = summary(&loaded.file, board, role, rate, wanted);

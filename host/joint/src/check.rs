@@ -8,7 +8,7 @@ use report::failure::Outcome;
 use report::output;
 use report::progress::Progress;
 use simulation::check::{layout, summary};
-use simulation::verdicts::ACCURACY;
+use simulation::verdicts::DEFAULT_ACCURACY;
 
 use crate::budget::parse_accuracy;
 
@@ -28,7 +28,7 @@ pub struct Arguments {
     #[arg(long, value_name = "HZ", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..))]
     pub rate: u32,
     /// Largest acceptable error: deflections, gap and link on the reversals, over the motion's standard deviation
-    #[arg(long, value_name = "E", value_parser = parse_accuracy, default_value_t = ACCURACY)]
+    #[arg(long, value_name = "E", value_parser = parse_accuracy, default_value_t = DEFAULT_ACCURACY)]
     pub accuracy: f64,
 }
 

@@ -62,7 +62,7 @@ fn json_dash_prints_json_alone() {
 #[test]
 fn options_without_effect_on_reference_rejected() {
     for option in ["--f64", "--accurate"] {
-        let words = [option, "does nothing to the scheme reference", "leave it out"];
+        let words = [option, "has no effect on --scheme reference", "leave it out"];
         joint_in(folder().path(), &["sim", "--scheme", "reference", option]).refused(&words);
         let vary = ["sweep", "q1", "--vary", "half_backlash_um=10,20", "--scheme", "reference", option];
         joint_in(folder().path(), &vary).refused(&words);

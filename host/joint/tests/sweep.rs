@@ -186,7 +186,7 @@ fn impossible_grid_writes_nothing() {
     refused(&["half_backlsh_um=0:150:1"], &["unknown key", "half_backlash_um"]);
     refused(&["half_backlash_um=0:1500:100"], &["between 0.5 and 1000", "1100"]);
     refused(&["half_backlash_um=1,2", "mesh.half_backlash_um=3,4"], &["varied twice"]);
-    refused(&["half_backlash_um=1,2", "backlash_um=3,4"], &["changes nothing"]);
+    refused(&["half_backlash_um=1,2", "backlash_um=3,4"], &["has no effect"]);
     refused(&["half_backlash_um"], &["no `=`"]);
     let all = ["sweep", "paper", "--vary", "half_backlash_um=1,2", "--scheme", "all", "--out", text(&path)];
     joint(&all).refused(&["one scheme"]);
@@ -257,8 +257,8 @@ fn damaged_sweep_rejected_unchanged() {
     for spoilt in [manifest.replace("0:150:5", "0:150:6"), manifest[..100].to_owned(), String::new(), "\u{0}".into()] {
         fs::write(path.join("sweep.json"), &spoilt).expect("room");
         let before = contents(&path);
-        sweep(&[], &path).refused(&["sweep.json is not what a sweep wrote"]);
-        joint(&["merge", text(&path)]).refused(&["sweep.json is not what a sweep wrote"]);
+        sweep(&[], &path).refused(&["sweep.json is not a sweep's manifest"]);
+        joint(&["merge", text(&path)]).refused(&["sweep.json is not a sweep's manifest"]);
         assert_eq!(contents(&path), before);
     }
     fs::write(path.join("sweep.json"), &manifest).expect("room");
@@ -267,7 +267,7 @@ fn damaged_sweep_rejected_unchanged() {
     sweep(&[], &path).refused(&["is not the journal of a sweep"]);
     joint(&["merge", text(&path)]).refused(&["is not the journal of a sweep"]);
     assert_eq!(contents(&path), before);
-    joint(&["merge", text(folder.path())]).refused(&["holds no sweep"]);
+    joint(&["merge", text(folder.path())]).refused(&["is not a sweep"]);
     joint(&["merge", "/no/such/folder"]).refused(&["/no/such/folder is not a folder"]);
 }
 

@@ -172,7 +172,7 @@ fn bandwidth_record(test: &Test, seed: u64) -> Option<BandwidthRecord> {
         return None;
     }
     let case = test.case(seed).ok()?;
-    let range = Bandwidth::of(&case.nominal, &case.nominal_surroundings)?;
+    let range = Bandwidth::for_joint(&case.nominal, &case.nominal_surroundings)?;
     Some(BandwidthRecord {
         used_rad_per_s: case.bandwidth(&test.file).ok()?,
         asked: test.file.bandwidth.is_some(),

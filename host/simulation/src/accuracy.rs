@@ -19,8 +19,8 @@ use rayon::prelude::*;
 use reference::joint::Start;
 use serde::Serialize;
 
-use crate::sim::errors::{DISTURBANCE, Errors, PREDICTABLE, errors, is_still, spread};
-use crate::sim::plan::{SPEED, steady_duration};
+use crate::sim::errors::{DISTURBANCE, Errors, PREDICTABLE_DEPARTURE, errors, is_constant, standard_deviation};
+use crate::sim::plan::{DEFAULT_SPEED, steady_duration};
 use crate::sim::start::{StartName, core_state};
 use crate::sim::stepping::SimulationSpec;
 use report::failure::{Failure, Outcome};
@@ -28,17 +28,17 @@ use report::failure::{Failure, Outcome};
 /// Largest phase of the fastest mode in a tick of the finer run [rad], least number of its ticks in a board's tick, and
 /// its sub-steps a tick, the largest number possible.
 const FINE_PHASE: f64 = 2.0;
-const LEAST_FINER: u32 = 2;
+const MIN_FINE_TICKS: u32 = 2;
 const FINE_SUBSTEPS: u32 = 16;
 /// Largest number of ticks of a motion, so that no joint takes minutes.
-const MOST_TICKS: f64 = 2e6;
+const MAX_MOTION_TICKS: f64 = 2e6;
 /// Further motions of each kind: shift of the mesh phases in periods, and torques over those of the standard motion.
-const OTHERS: [(f64, f64); 2] = [(1.0 / 3.0, 0.8), (2.0 / 3.0, -0.6)];
+const FURTHER_MOTIONS: [(f64, f64); 2] = [(1.0 / 3.0, 0.8), (2.0 / 3.0, -0.6)];
 /// Durations of the further motions [s]: reversals up to a quarter of a second after the first crossing of the gap, and
 /// half a second under constant torques.
-const OTHERS_DURATIONS: [f64; 2] = [1.5, 0.5];
+const FURTHER_DURATIONS: [f64; 2] = [1.5, 0.5];
 /// Bound over the greatest error of all these motions, for the spread of motions that are not measured.
-const MARGIN: f64 = 3.0;
+const BOUND_MARGIN: f64 = 3.0;
 
 /// Errors on the standard motions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -84,8 +84,8 @@ impl Unmeasured {
     /// Reason as text.
     pub fn in_words(self) -> &'static str {
         match self {
-            Self::Still => "nothing swings: no motion to measure an error of",
-            Self::Unpredictable => "chaotic from the first tick on: nothing can be predicted",
+            Self::Still => "no oscillation, so no error to measure",
+            Self::Unpredictable => "chaotic from the first tick on, so not predictable",
             Self::BreaksOff => "the step breaks off",
         }
     }
@@ -110,7 +110,7 @@ pub struct Motion {
 }
 
 /// Result of one run: errors, predictable time [s], and length [s].
-struct Found {
+struct MeasuredErrors {
     errors: Result<Errors, Unmeasured>,
     predictable: f64,
     duration: f64,
@@ -128,7 +128,7 @@ pub fn measure_up_to(
     rate: u32,
     longest: f64,
 ) -> Outcome<StandardErrors> {
-    let of = |kind: Kind| of_kind(kind, joint, processor, rate, longest);
+    let of = |kind: Kind| motion_errors(kind, joint, processor, rate, longest);
     let (reversals, steady) = rayon::join(|| of(Kind::Reversals), || of(Kind::Steady));
     Ok(StandardErrors { reversals: reversals?, steady: steady? })
 }
@@ -136,11 +136,11 @@ pub fn measure_up_to(
 /// Typical error of the reversals only, cut off after a time [s].
 pub fn typical(joint: &JointParameters, processor: &Processor, rate: u32, longest: f64) -> Outcome<Option<Errors>> {
     let motion = Motion::new(Kind::Reversals, joint, rate, (0.0, 1.0), longest)?;
-    Ok(motion.measured(processor)?.errors.ok())
+    Ok(motion.measure(processor)?.errors.ok())
 }
 
 /// Errors of a kind of motion: the standard motion and further ones.
-fn of_kind(
+fn motion_errors(
     kind: Kind,
     joint: &JointParameters,
     processor: &Processor,
@@ -148,24 +148,24 @@ fn of_kind(
     longest: f64,
 ) -> Outcome<MotionErrors> {
     let mut motions = vec![Motion::new(kind, joint, rate, (0.0, 1.0), longest)?];
-    for other in OTHERS {
-        motions.push(Motion::new(kind, joint, rate, other, OTHERS_DURATIONS[kind as usize].min(longest))?);
+    for other in FURTHER_MOTIONS {
+        motions.push(Motion::new(kind, joint, rate, other, FURTHER_DURATIONS[kind as usize].min(longest))?);
     }
-    let found: Vec<Outcome<Found>> = motions.par_iter().map(|motion| motion.measured(processor)).collect();
-    let found = found.into_iter().collect::<Outcome<Vec<Found>>>()?;
+    let found: Vec<Outcome<MeasuredErrors>> = motions.par_iter().map(|motion| motion.measure(processor)).collect();
+    let found = found.into_iter().collect::<Outcome<Vec<MeasuredErrors>>>()?;
     let standard = &found[0];
-    let greatest = found.iter().filter_map(|found| found.errors.ok()).reduce(Errors::greater);
+    let greatest = found.iter().filter_map(|found| found.errors.ok()).reduce(Errors::max);
     Ok(MotionErrors {
         typical: standard.errors.ok(),
         unmeasured: standard.errors.err(),
-        bound: standard.errors.ok().and(greatest).map(|greatest| greatest.times(MARGIN)),
+        bound: standard.errors.ok().and(greatest).map(|greatest| greatest.scaled(BOUND_MARGIN)),
         predictable_until_s: standard.predictable,
         duration_s: standard.duration,
     })
 }
 
 /// Joint with all mesh phases advanced by a fraction of a period.
-fn shifted(joint: &JointParameters, periods: f64) -> JointParameters {
+fn with_shifted_phases(joint: &JointParameters, periods: f64) -> JointParameters {
     let mut shifted = joint.clone();
     for mesh in [&mut shifted.sun_planet, &mut shifted.ring_planet] {
         match &mut mesh.phases {
@@ -193,8 +193,8 @@ impl Motion {
         (shift, scale): (f64, f64),
         longest: f64,
     ) -> Outcome<Self> {
-        let joint = shifted(joint, shift);
-        let ticks = |seconds: f64| (seconds.min(longest) * f64::from(rate)).round().clamp(1.0, MOST_TICKS) as u32;
+        let joint = with_shifted_phases(joint, shift);
+        let ticks = |seconds: f64| (seconds.min(longest) * f64::from(rate)).round().clamp(1.0, MAX_MOTION_TICKS) as u32;
         if kind == Kind::Reversals {
             let mut profile = TorqueProfile::load(BUILTIN[0], &joint, rate, None)?;
             for command in &mut profile.commands {
@@ -209,14 +209,14 @@ impl Motion {
         let command = Command { tick: 0, drive_torque: drive as f32, load_torque: load as f32 };
         let (start, speed) = match joint.excitation {
             Excitation::Time { .. } => (StartName::Centred, 0.0),
-            Excitation::Angle => (StartName::Seated, SPEED),
+            Excitation::Angle => (StartName::Seated, DEFAULT_SPEED),
         };
-        let start = start.of(&joint, speed, (command.drive_torque.into(), command.load_torque.into()));
+        let start = start.state(&joint, speed, (command.drive_torque.into(), command.load_torque.into()));
         Ok(Self { rate, ticks: ticks(steady_duration(&joint)), torques: vec![command], start, joint })
     }
 
     /// Simulation of this motion by `sim`, with the step of a processor.
-    pub fn for_sim(&self, processor: Processor) -> SimulationSpec {
+    pub fn simulation_spec(&self, processor: Processor) -> SimulationSpec {
         SimulationSpec {
             joint: self.joint.clone(),
             tick_rate: self.rate,
@@ -228,23 +228,23 @@ impl Motion {
         }
     }
 
-    fn measured(&self, processor: &Processor) -> Outcome<Found> {
+    fn measure(&self, processor: &Processor) -> Outcome<MeasuredErrors> {
         match self.joint.geometry.planets {
-            1 => self.measured_with::<1>(processor),
-            3 => self.measured_with::<3>(processor),
-            4 => self.measured_with::<4>(processor),
-            5 => self.measured_with::<5>(processor),
+            1 => self.measure_with::<1>(processor),
+            3 => self.measure_with::<3>(processor),
+            4 => self.measure_with::<4>(processor),
+            5 => self.measure_with::<5>(processor),
             other => Err(Failure::new(format!("joint `{}` has {other} planets", self.joint.name))
                 .with_help("a joint may have 3, 4 or 5 planets")),
         }
     }
 
-    fn measured_with<const N: usize>(&self, processor: &Processor) -> Outcome<Found> {
+    fn measure_with<const N: usize>(&self, processor: &Processor) -> Outcome<MeasuredErrors> {
         let phase = StepSize::new(&self.joint).phase(self.rate, 1);
-        let finer = ((phase / FINE_PHASE).ceil() as u32).max(LEAST_FINER);
+        let finer = ((phase / FINE_PHASE).ceil() as u32).max(MIN_FINE_TICKS);
         let fine = Effort::Substeps(FINE_SUBSTEPS);
         let exact = self.follow::<f64, N>(finer, fine, 0.0, |_, _| true)?;
-        let bounds: Vec<f64> = exact.iter().map(|column| PREDICTABLE * spread(column)).collect();
+        let bounds: Vec<f64> = exact.iter().map(|column| PREDICTABLE_DEPARTURE * standard_deviation(column)).collect();
         // Samples after the disturbed run has departed carry no information.
         let disturbed = self.follow::<f64, N>(finer, fine, DISTURBANCE, |tick, values| {
             let near = |((exact, bound), value): ((&Vec<f64>, &f64), &f64)| {
@@ -255,11 +255,11 @@ impl Motion {
         let samples = disturbed[0].len();
         let board = self.follow::<f32, N>(1, Effort::Within(*processor), 0.0, |tick, _| tick < samples)?;
         let time = |samples: usize| samples.saturating_sub(1) as f64 / f64::from(self.rate);
-        Ok(Found {
-            errors: if exact.iter().all(|column| is_still(column)) {
+        Ok(MeasuredErrors {
+            errors: if exact.iter().all(|column| is_constant(column)) {
                 Err(Unmeasured::Still)
             } else if samples > 1 {
-                Errors::of(errors(&exact, &board, samples)).ok_or(Unmeasured::BreaksOff)
+                Errors::from_values(errors(&exact, &board, samples)).ok_or(Unmeasured::BreaksOff)
             } else {
                 Err(Unmeasured::Unpredictable)
             },

@@ -23,7 +23,7 @@ pub struct Bandwidth {
 
 impl Bandwidth {
     /// Bandwidth of a joint in its drive train; `None` if no compensation can be designed.
-    pub fn of(joint: &JointParameters, around: &Surroundings) -> Option<Self> {
+    pub fn for_joint(joint: &JointParameters, around: &Surroundings) -> Option<Self> {
         let BandwidthRange { usual, widest, limit } = bandwidth_range(joint, around).ok()?;
         let by_rate = || "control rate, and delays of torque and current loop".to_owned();
         Some(Self {

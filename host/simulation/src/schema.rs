@@ -8,7 +8,7 @@ use crate::sim::summary::SimulationSummary;
 use crate::sweep::manifest::Manifest;
 
 #[test]
-fn the_published_schemas_are_those_of_the_types() {
+fn published_schemas_match_types() {
     assert_published::<CheckSummary>("check.schema.json");
     assert_published::<BudgetSummary>("budget.schema.json");
     assert_published::<SimulationSummary>("sim.schema.json");

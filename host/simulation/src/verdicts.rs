@@ -15,12 +15,12 @@ use crate::accuracy::{self, MotionErrors, StandardErrors, Unmeasured};
 use crate::sim::errors::Errors;
 
 /// Default largest acceptable error.
-pub const ACCURACY: f64 = 1e-2;
+pub const DEFAULT_ACCURACY: f64 = 1e-2;
 /// Factors on the given rate that are tried for a smaller error, in this order, and the highest rate tried [Hz].
-const TRIED: [f64; 5] = [1.25, 1.6, 2.0, 3.2, 0.5];
-const HIGHEST_TRIED: u32 = 100_000;
+const RATE_FACTORS: [f64; 5] = [1.25, 1.6, 2.0, 3.2, 0.5];
+const MAX_TRIED_RATE: u32 = 100_000;
 /// Length of a first try at each rate [s]; if it exceeds twice the acceptable error, the whole motion is not tried.
-const FIRST_TRY: f64 = 1.5;
+const FIRST_TRY_DURATION: f64 = 1.5;
 
 /// Sub-steps, errors, and both verdicts.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -114,13 +114,13 @@ pub fn verdicts(joint: &JointParameters, board: &Board, role: Role, rate: u32, w
             share,
             rate_that_fits_Hz: if fits { Some(rate) } else { on_board.nearest(rate) },
         },
-        accuracy: judged(joint, board, &on_board, rate, wanted, errors.reversals.typical)?,
+        accuracy: accuracy_verdict(joint, board, &on_board, rate, wanted, errors.reversals.typical)?,
         errors,
         rates_that_fit_Hz: on_board.rates_that_fit(),
     })
 }
 
-fn judged(
+fn accuracy_verdict(
     joint: &JointParameters,
     board: &Board,
     on_board: &OnBoard<'_>,
@@ -132,12 +132,12 @@ fn judged(
     let typical_up_to = |rate: u32, longest: f64| accuracy::typical(joint, &board.processor(), rate, longest);
     let here = within(typical, wanted);
     let mut found = here.then_some(rate);
-    let tried = TRIED.iter().map(|factor| on_board.divided(factor * f64::from(rate)));
-    for candidate in tried.filter(|candidate| (on_board.lowest_rate()..=HIGHEST_TRIED).contains(candidate)) {
+    let tried = RATE_FACTORS.iter().map(|factor| on_board.divided(factor * f64::from(rate)));
+    for candidate in tried.filter(|candidate| (on_board.lowest_rate()..=MAX_TRIED_RATE).contains(candidate)) {
         if found.is_some() {
             break;
         }
-        let reached = within(typical_up_to(candidate, FIRST_TRY)?, 2.0 * wanted)
+        let reached = within(typical_up_to(candidate, FIRST_TRY_DURATION)?, 2.0 * wanted)
             && within(typical_up_to(candidate, f64::INFINITY)?, wanted);
         found = reached.then_some(candidate);
     }
@@ -196,14 +196,14 @@ impl Verdicts {
 
     fn accuracy_in_words(&self) -> String {
         let AccuracyVerdict { wanted, error, reached, rate_that_reaches_it_Hz, fits_there } = self.accuracy;
-        let error = error.map_or("no error can be told".to_owned(), |error| format!("{error:.1e} on the reversals"));
+        let error = error.map_or("error unknown".to_owned(), |error| format!("{error:.1e} on the reversals"));
         if reached {
             return format!("reached: {error}, {wanted:.0e} wanted");
         }
         let where_reached = match (rate_that_reaches_it_Hz, fits_there) {
             (Some(rate), Some(true)) => format!("{rate} Hz would reach it"),
-            (Some(rate), _) => format!("{rate} Hz would reach it, for which this board has no time"),
-            (None, _) => format!("no rate up to {HIGHEST_TRIED} Hz was found that would"),
+            (Some(rate), _) => format!("{rate} Hz would reach it, too fast for this board"),
+            (None, _) => format!("no rate up to {MAX_TRIED_RATE} Hz was found that would"),
         };
         format!("NOT REACHED: {error}, {wanted:.0e} wanted; {where_reached}")
     }
@@ -212,7 +212,7 @@ impl Verdicts {
 fn in_words(errors: &MotionErrors) -> String {
     let three = |errors: &Errors| format!("{:.1e}, {:.1e}, {:.1e}", errors.deflections, errors.gap, errors.link);
     let (Some(typical), Some(bound)) = (&errors.typical, &errors.bound) else {
-        return errors.unmeasured.map_or("no error can be told", Unmeasured::in_words).to_owned();
+        return errors.unmeasured.map_or("error unknown", Unmeasured::in_words).to_owned();
     };
     let until = if errors.predictable_until_s < errors.duration_s {
         format!("; can be predicted for {:.3} of {:.3} s", errors.predictable_until_s, errors.duration_s)

@@ -37,7 +37,7 @@ fn foreign_file_never_overwritten() {
             let ended = writer.run(&out);
             // A sweep needs a folder of its own and rejects any other file.
             let why = match writer {
-                Writer::Sweep | Writer::Merge if name == "sweep.json" => "is not what a sweep wrote",
+                Writer::Sweep | Writer::Merge if name == "sweep.json" => "is not a sweep's manifest",
                 Writer::Sweep | Writer::Merge => "holds files that are not a sweep's",
                 _ => "was not written by this command and would be lost",
             };

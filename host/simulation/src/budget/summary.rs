@@ -95,7 +95,7 @@ pub fn summary(file: &JointFile, board: &Board, role: Role, rate: u32, wanted: f
         unseen_for_s: certificate.unseen.duration,
         unseen_departure: certificate.unseen.departure,
         lowest_rate_Hz: certificate.lowest_rate,
-        bandwidth: Bandwidth::of(&file.parameters, &file.surroundings),
+        bandwidth: Bandwidth::for_joint(&file.parameters, &file.surroundings),
     })
 }
 

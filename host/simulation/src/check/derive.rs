@@ -45,7 +45,7 @@ pub fn summary(loaded: &Loaded, board: &Board, rate: u32, wanted: Option<f64>) -
             DampingLaw::Paper => "paper",
         },
         output: output(parameters, loaded.file.surroundings.efficiency),
-        bandwidth: Bandwidth::of(&loaded.file.parameters, &loaded.file.surroundings),
+        bandwidth: Bandwidth::for_joint(&loaded.file.parameters, &loaded.file.surroundings),
         fixed_step: fixed_step(parameters, board, rate, wanted)?,
         numbers: numbers(loaded),
         warnings: warnings(loaded),

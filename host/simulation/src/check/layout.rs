@@ -165,7 +165,7 @@ fn file(page: &mut Sheet, summary: &CheckSummary) {
     }
     for warning in &summary.warnings {
         page.row(&format!("warning, line {}", warning.line), &warning.message);
-        page.row("", format!("mend: {}", warning.help));
+        page.row("", format!("remedy: {}", warning.help));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::scheme::{Choice, SchemeName};
+use super::scheme::{SchemeChoice, SchemeName};
 use super::start::StartName;
 use board::device::board::Board;
 use report::command_line::quoted;
@@ -23,7 +23,7 @@ pub struct Arguments {
     pub file: PathBuf,
     /// Integration scheme
     #[arg(long, value_enum, default_value = "realtime")]
-    pub scheme: Choice,
+    pub scheme: SchemeChoice,
     /// Motion, as for a sweep
     #[command(flatten)]
     pub motion: MotionArguments,
@@ -93,7 +93,7 @@ impl MotionArguments {
         let idle = of_core.iter().find(|(_, given)| *given && scheme == SchemeName::Reference);
         idle.map_or(Ok(()), |(name, _)| {
             Err(Failure::new(format!(
-                "--{name} does nothing to the scheme reference, which is f64, as fine as it must be, and on no board"
+                "--{name} has no effect on --scheme reference, which runs in f64 at its own step, without a board"
             ))
             .with_help("leave it out, or name a scheme of the core: realtime, paper, rk4, euler"))
         })

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use model_core::gears::design::Substeps;
 use serde::Serialize;
 
-use super::errors::{DISTURBANCE, Errors, errors, is_still, predictable, spread};
+use super::errors::{DISTURBANCE, Errors, errors, is_constant, predictable, standard_deviation};
 use super::scheme::SchemeName;
 use super::snapshot::Snapshot;
 use super::stepping::{self, RunEnd, SimulationSpec};
@@ -19,7 +19,7 @@ const COST_TICKS: u32 = 4000;
 const COST_ROUNDS: usize = 5;
 
 /// Sections of the run for the picture of the error.
-const STRETCHES: usize = 240;
+const ERROR_SECTIONS: usize = 240;
 
 /// Samples of the compared quantities by one scheme.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,7 +70,7 @@ pub struct Row {
 pub fn compare(run: &SimulationSpec, every: u32, progress: &(dyn Fn(u32) + Sync)) -> Outcome<Comparison> {
     let done = AtomicU32::new(0);
     let tick = || progress(done.fetch_add(1, Ordering::Relaxed));
-    let schemes = SchemeName::of_joint(&run.joint);
+    let schemes = SchemeName::for_joint(&run.joint);
     let exact = schemes.iter().map(|scheme| (*scheme, 0.0));
     let jobs: Vec<(SchemeName, f64)> = std::iter::once((SchemeName::Reference, DISTURBANCE)).chain(exact).collect();
     let followed: Vec<Outcome<Track>> = std::thread::scope(|scope| {
@@ -109,12 +109,12 @@ pub fn compare(run: &SimulationSpec, every: u32, progress: &(dyn Fn(u32) + Sync)
 }
 
 /// Errors of one scheme against the reference; `None` if the motion is unpredictable or the scheme breaks off.
-pub fn errors_of(run: &SimulationSpec, scheme: SchemeName) -> Outcome<Option<Errors>> {
+pub fn errors_against_reference(run: &SimulationSpec, scheme: SchemeName) -> Outcome<Option<Errors>> {
     let track = |scheme, disturbance| record(run, 1, scheme, disturbance, &|| {});
     let exact = track(SchemeName::Reference, 0.0)?.columns;
     let samples = predictable(&exact, &track(SchemeName::Reference, DISTURBANCE)?.columns);
     let found = errors(&exact, &track(scheme, 0.0)?.columns, samples);
-    Ok(if samples > 1 { Errors::of(found) } else { None })
+    Ok(if samples > 1 { Errors::from_values(found) } else { None })
 }
 
 impl Comparison {
@@ -124,8 +124,8 @@ impl Comparison {
     }
 
     /// Returns true if no compared quantity moves: a relative error is then undefined.
-    pub fn is_still(&self) -> bool {
-        self.tracks[0].columns.iter().all(|column| is_still(column))
+    pub fn is_constant(&self) -> bool {
+        self.tracks[0].columns.iter().all(|column| is_constant(column))
     }
 
     /// End of the compared time [s].
@@ -135,14 +135,14 @@ impl Comparison {
 
     /// Error of a track's first deflection over the standard deviation: root mean square of short sections, each at its
     /// middle [s].
-    pub fn error_of(&self, track: &Track) -> Vec<(f64, f64)> {
+    pub fn error_over_time(&self, track: &Track) -> Vec<(f64, f64)> {
         let exact = &self.tracks[0].columns[0][..self.predictable];
-        let spread = spread(exact);
+        let spread = standard_deviation(exact);
         let pairs: Vec<(f64, f64)> =
             exact.iter().zip(&track.columns[0]).zip(self.times()).map(|((a, b), time)| (*time, b - a)).collect();
-        let stretch = self.predictable.div_ceil(STRETCHES).max(1);
+        let section = self.predictable.div_ceil(ERROR_SECTIONS).max(1);
         pairs
-            .chunks(stretch)
+            .chunks(section)
             .map(|part| {
                 let square = part.iter().map(|(_, error)| error * error).sum::<f64>() / part.len() as f64;
                 (0.5 * (part[0].0 + part[part.len() - 1].0), square.sqrt() / spread)
@@ -182,7 +182,7 @@ fn record(
 fn costs(run: &SimulationSpec) -> Outcome<Vec<f64>> {
     let mut least: Vec<f64> = Vec::new();
     for round in 0..COST_ROUNDS {
-        for (place, scheme) in SchemeName::of_joint(&run.joint).iter().enumerate() {
+        for (place, scheme) in SchemeName::for_joint(&run.joint).iter().enumerate() {
             let cost = stepping::cost(run, *scheme, COST_TICKS)?;
             match least.get_mut(place) {
                 Some(best) if round > 0 => *best = best.min(cost),

@@ -11,7 +11,7 @@ use reference::joint::{Reference, RelativeState, Start, Work};
 use super::snapshot::Snapshot;
 
 /// Largest number of points in the picture.
-const MOST_POINTS: usize = 20_000;
+const MAX_ENTRIES: usize = 20_000;
 
 /// Energy balance of a run [J].
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
@@ -37,7 +37,7 @@ pub struct Balance {
 
 /// One entry of the balance: time [s], stored energy, work so far and residual so far [J].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Entry {
+pub struct BalanceEntry {
     /// Time [s].
     pub time: f64,
     /// Kinetic and elastic energy [J].
@@ -61,14 +61,14 @@ pub struct EnergyAccount<'a> {
     torques: (f64, f64),
     work: Work,
     /// Entries for the picture.
-    pub entries: Vec<Entry>,
-    last: Option<Entry>,
+    pub entries: Vec<BalanceEntry>,
+    last: Option<BalanceEntry>,
 }
 
 impl<'a> EnergyAccount<'a> {
     /// Balance for a run with a number of ticks; `None` for the tanh dead zone.
     pub fn open(joint: &'a JointParameters, tick_rate: u32, ticks: u32) -> Option<Self> {
-        let every = ticks.div_ceil(MOST_POINTS as u32).max(1);
+        let every = ticks.div_ceil(MAX_ENTRIES as u32).max(1);
         (joint.dead_zone == DeadZone::Sharp).then(|| Self {
             joint,
             tick_rate: tick_rate.into(),
@@ -83,7 +83,7 @@ impl<'a> EnergyAccount<'a> {
     }
 
     /// Adds a tick. A state that the reference cannot follow adds no work, so it shows in the residual.
-    pub fn take(&mut self, snapshot: &Snapshot) {
+    pub fn add_tick(&mut self, snapshot: &Snapshot) {
         let stored = match &snapshot.energy {
             Some(energy) => {
                 self.work = energy.work;
@@ -95,7 +95,8 @@ impl<'a> EnergyAccount<'a> {
                 {
                     self.work = sum(&self.work, &tick.observe().work);
                 }
-                let Ok(tick) = Reference::start(&shifted(self.joint, snapshot.mesh_periods), &start(snapshot)) else {
+                let Ok(tick) = Reference::start(&at_mesh_phase(self.joint, snapshot.mesh_periods), &state_of(snapshot))
+                else {
                     return;
                 };
                 let observation = tick.observe();
@@ -106,7 +107,7 @@ impl<'a> EnergyAccount<'a> {
         self.torques = (snapshot.drive, snapshot.load);
         let started = *self.started.get_or_insert(stored);
         let residual = stored - started - self.work.net();
-        let entry = Entry { time: snapshot.time, stored, work: self.work, residual };
+        let entry = BalanceEntry { time: snapshot.time, stored, work: self.work, residual };
         if snapshot.tick.is_multiple_of(self.every) {
             self.entries.push(entry);
         }
@@ -140,7 +141,7 @@ fn sum(a: &Work, b: &Work) -> Work {
 }
 
 /// Joint with its current mesh phase as phase zero.
-fn shifted(joint: &JointParameters, mesh_periods: f64) -> JointParameters {
+fn at_mesh_phase(joint: &JointParameters, mesh_periods: f64) -> JointParameters {
     let angle = TAU * (mesh_periods - mesh_periods.floor());
     let mut now = joint.clone();
     for kind in MESH_KINDS {
@@ -157,7 +158,7 @@ fn shifted(joint: &JointParameters, mesh_periods: f64) -> JointParameters {
     now
 }
 
-fn start(snapshot: &Snapshot) -> Start {
+fn state_of(snapshot: &Snapshot) -> Start {
     let planets = snapshot.teeth.len() / 2;
     let sun_planet = || snapshot.teeth.iter().take(planets);
     Start::Relative(RelativeState {
@@ -217,7 +218,7 @@ mod tests {
 
     /// The reference evaluates the state by its own equations.
     #[test]
-    fn what_is_read_off_the_core_is_what_the_reference_reads_off_the_same_state() {
+    fn core_reading_matches_reference() {
         let mut rectangular = joint("q1");
         for mesh in [&mut rectangular.sun_planet, &mut rectangular.ring_planet] {
             mesh.stiffness_wave = StiffnessWave::Rectangular { stiffness_ratio: 0.1, contact_ratio: 1.6, order: 5 };
@@ -226,8 +227,8 @@ mod tests {
             let force_scale = joint.sun_planet.mean_stiffness * joint.characteristic_length;
             let mut worst = [0.0f64; 3];
             run_through(&joint, 200_000, SchemeName::Realtime, &mut |snapshot| {
-                let read = Reference::start(&shifted(&joint, snapshot.mesh_periods), &start(snapshot));
-                let read = Snapshot::of_reference(0, &joint, &read.expect("a good state").observe());
+                let read = Reference::start(&at_mesh_phase(&joint, snapshot.mesh_periods), &state_of(snapshot));
+                let read = Snapshot::from_reference(0, &joint, &read.expect("a good state").observe());
                 for (one, other) in snapshot.teeth.iter().zip(&read.teeth) {
                     worst[0] = worst[0].max((one.deflection - other.deflection).abs() / joint.characteristic_length);
                     worst[1] = worst[1].max((one.force - other.force).abs() / force_scale);
@@ -241,10 +242,10 @@ mod tests {
     }
 
     #[test]
-    fn the_reference_s_books_balance_whatever_the_teeth_do() {
+    fn reference_energy_balances() {
         for joint in [joint("q1"), joint("paper"), joint("l1")] {
             let mut account = EnergyAccount::open(&joint, 200_000, 1500).expect("a sharp dead zone");
-            run_through(&joint, 200_000, SchemeName::Reference, &mut |snapshot| account.take(snapshot));
+            run_through(&joint, 200_000, SchemeName::Reference, &mut |snapshot| account.add_tick(snapshot));
             let balance = account.balance().expect("it has run");
             println!("{}: {balance:?}", joint.name);
             tolerance::BOOKS_OF_THE_REFERENCE.check(balance.residual_over_dissipated);
@@ -253,11 +254,11 @@ mod tests {
 
     /// The work of the ticks comes from the reference, tick by tick; the residual is the scheme's own error.
     #[test]
-    fn a_scheme_s_residual_is_small_for_the_board_s_scheme_and_larger_for_the_usual_ones() {
+    fn board_scheme_has_smallest_residual() {
         let joint = joint("paper");
         let residual = |scheme| {
             let mut account = EnergyAccount::open(&joint, 200_000, 1500).expect("a sharp dead zone");
-            run_through(&joint, 200_000, scheme, &mut |snapshot| account.take(snapshot));
+            run_through(&joint, 200_000, scheme, &mut |snapshot| account.add_tick(snapshot));
             account.balance().expect("it has run").residual_over_dissipated.abs()
         };
         let [realtime, runge_kutta, euler] =
@@ -268,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn the_tanh_dead_zone_has_no_books() {
+    fn tanh_dead_zone_has_no_balance() {
         let mut joint = joint("q1");
         joint.dead_zone = DeadZone::Tanh { sharpness: 10.0 };
         assert!(EnergyAccount::open(&joint, 20_000, 100).is_none());

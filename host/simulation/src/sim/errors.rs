@@ -8,7 +8,7 @@ use serde::Serialize;
 pub const DISTURBANCE: f64 = 1e-6;
 /// Departure of the disturbed run, over a quantity's standard deviation, above which the motion is chaotic and later
 /// samples do not measure a scheme [-].
-pub const PREDICTABLE: f64 = 1e-3;
+pub const PREDICTABLE_DEPARTURE: f64 = 1e-3;
 
 /// Root mean square errors over the motion's own standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -24,13 +24,13 @@ pub struct Errors {
 
 impl Errors {
     /// Errors of deflections, gap and link; `None` if one of them is missing.
-    pub fn of(values: [Option<f64>; 3]) -> Option<Self> {
+    pub fn from_values(values: [Option<f64>; 3]) -> Option<Self> {
         let [deflections, gap, link] = values;
         Some(Self { deflections: deflections?, gap: gap?, link: link? })
     }
 
     /// Greater of both errors for each quantity.
-    pub fn greater(self, other: Self) -> Self {
+    pub fn max(self, other: Self) -> Self {
         Self {
             deflections: self.deflections.max(other.deflections),
             gap: self.gap.max(other.gap),
@@ -39,7 +39,7 @@ impl Errors {
     }
 
     /// Errors times a factor.
-    pub fn times(self, factor: f64) -> Self {
+    pub fn scaled(self, factor: f64) -> Self {
         Self { deflections: factor * self.deflections, gap: factor * self.gap, link: factor * self.link }
     }
 
@@ -53,7 +53,7 @@ impl Errors {
 pub fn predictable(exact: &[Vec<f64>], disturbed: &[Vec<f64>]) -> usize {
     let count = exact[0].len().min(disturbed[0].len());
     let left = |exact: &[f64], disturbed: &[f64]| {
-        let bound = PREDICTABLE * spread(&exact[..count]);
+        let bound = PREDICTABLE_DEPARTURE * standard_deviation(&exact[..count]);
         exact.iter().zip(disturbed).take(count).position(|(a, b)| (a - b).abs() > bound).unwrap_or(count)
     };
     exact.iter().zip(disturbed).map(|(exact, disturbed)| left(exact, disturbed)).min().unwrap_or(0)
@@ -67,7 +67,7 @@ pub fn errors(exact: &[Vec<f64>], columns: &[Vec<f64>], predictable: usize) -> [
         let count = predictable.min(columns[place].len());
         let exact = &exact[place][..count];
         let square: f64 = exact.iter().zip(&columns[place]).map(|(a, b)| (a - b).powi(2)).sum();
-        let error = (square / count as f64).sqrt() / spread(exact);
+        let error = (square / count as f64).sqrt() / standard_deviation(exact);
         (count == predictable && error.is_finite()).then_some(error)
     };
     let deflections: Option<Vec<f64>> = (0..meshes).map(relative).collect();
@@ -77,16 +77,16 @@ pub fn errors(exact: &[Vec<f64>], columns: &[Vec<f64>], predictable: usize) -> [
 
 /// Standard deviation over the greatest value up to which a quantity counts as constant [-]. Rounding of f32 is 6e-8 of
 /// a value, and the steps of the reference move a constant by less.
-const STILL: f64 = 1e-6;
+const CONSTANT_SPREAD: f64 = 1e-6;
 
 /// Returns true if a quantity is constant.
-pub fn is_still(values: &[f64]) -> bool {
+pub fn is_constant(values: &[f64]) -> bool {
     let greatest = values.iter().fold(0.0, |greatest: f64, value| greatest.max(value.abs()));
-    spread(values) <= STILL * greatest
+    standard_deviation(values) <= CONSTANT_SPREAD * greatest
 }
 
 /// Standard deviation.
-pub fn spread(values: &[f64]) -> f64 {
+pub fn standard_deviation(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
 }

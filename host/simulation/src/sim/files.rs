@@ -21,10 +21,10 @@ pub const REPORT: &str = "report.html";
 /// Figures as JSON.
 pub const FIGURES: &str = "figures.json";
 /// Temporary and final names.
-const CSV: [&str; 2] = ["history.partial.csv", "history.csv"];
-const LOG: [&str; 2] = ["history.partial.mcap", "history.mcap"];
+const CSV_NAMES: [&str; 2] = ["history.partial.csv", "history.csv"];
+const LOG_NAMES: [&str; 2] = ["history.partial.mcap", "history.mcap"];
 /// All files that a run writes.
-pub const ALL: [&str; 6] = [REPORT, FIGURES, CSV[0], CSV[1], LOG[0], LOG[1]];
+pub const RUN_FILES: [&str; 6] = [REPORT, FIGURES, CSV_NAMES[0], CSV_NAMES[1], LOG_NAMES[0], LOG_NAMES[1]];
 
 /// Growing CSV and log of one run.
 pub struct HistoryFiles<'a> {
@@ -38,24 +38,24 @@ impl<'a> HistoryFiles<'a> {
     /// Starts both files.
     pub fn begin(folder: &'a Folder, joint: &'a JointParameters, remarks: BTreeMap<String, String>) -> Outcome<Self> {
         let both = || {
-            let mut csv = BufWriter::new(folder.grow(CSV[0])?);
+            let mut csv = BufWriter::new(folder.grow(CSV_NAMES[0])?);
             csv::write_head(&mut csv, joint.geometry.planets)
-                .map_err(|error| unwritten(&folder.file(CSV[0]), &error))?;
-            let log = BufWriter::new(folder.grow(LOG[0])?);
+                .map_err(|error| unwritten(&folder.file(CSV_NAMES[0]), &error))?;
+            let log = BufWriter::new(folder.grow(LOG_NAMES[0])?);
             let log = Channel::begin(log, TOPIC, SCHEMA_NAME, &log_file::schema(joint.geometry.planets), remarks)
-                .map_err(|error| unwritten(&folder.file(LOG[0]), &error))?;
+                .map_err(|error| unwritten(&folder.file(LOG_NAMES[0]), &error))?;
             Ok(Self { folder, joint, csv, log })
         };
-        both().map_err(|failure| left(folder, failure))
+        both().map_err(|failure| with_partial_files(folder, failure))
     }
 
     /// Writes one sample.
     pub fn write(&mut self, snapshot: &Snapshot) -> Outcome<()> {
         csv::write_row(&mut self.csv, self.joint, snapshot)
-            .map_err(|error| unwritten(&self.folder.file(CSV[0]), &error))?;
+            .map_err(|error| unwritten(&self.folder.file(CSV_NAMES[0]), &error))?;
         self.log
             .write(snapshot.time, &message(self.joint, snapshot))
-            .map_err(|error| unwritten(&self.folder.file(LOG[0]), &error))
+            .map_err(|error| unwritten(&self.folder.file(LOG_NAMES[0]), &error))
     }
 
     /// Finishes both files. A complete history takes its final name; an interrupted one keeps the temporary name.
@@ -70,23 +70,23 @@ impl<'a> HistoryFiles<'a> {
             folder.keep(growing, if whole { whole_name } else { growing })
         };
         // Both are finished, even if the first one fails.
-        let (csv, log) = (keep(Ok(csv), CSV), keep(log.finish(), LOG));
-        csv.and_then(|csv| Ok([csv, log?])).map_err(|failure| left(folder, failure))
+        let (csv, log) = (keep(Ok(csv), CSV_NAMES), keep(log.finish(), LOG_NAMES));
+        csv.and_then(|csv| Ok([csv, log?])).map_err(|failure| with_partial_files(folder, failure))
     }
 
     /// Finishes both files after a failure of the run, and adds their paths to the failure.
-    pub fn told(self, failure: Failure) -> Failure {
+    pub fn finish_after(self, failure: Failure) -> Failure {
         let folder = self.folder;
         // A failure of the run is more informative than one of its files.
         let _ = self.finish(false);
-        left(folder, failure)
+        with_partial_files(folder, failure)
     }
 }
 
 /// Adds the paths of the partial files to a failure; empty files are removed.
-fn left(folder: &Folder, failure: Failure) -> Failure {
+fn with_partial_files(folder: &Folder, failure: Failure) -> Failure {
     let mut kept = Vec::new();
-    for path in [CSV, LOG].map(|[growing, _]| folder.file(growing)) {
+    for path in [CSV_NAMES, LOG_NAMES].map(|[growing, _]| folder.file(growing)) {
         match fs::metadata(&path) {
             Ok(data) if data.len() > 0 => kept.push(path.display().to_string()),
             // An empty file of this run may stay if it cannot be removed.
@@ -97,7 +97,7 @@ fn left(folder: &Folder, failure: Failure) -> Failure {
     if kept.is_empty() {
         return failure;
     }
-    let kept = format!("what was written until then is in {}", kept.join(" and "));
+    let kept = format!("the samples written so far are in {}", kept.join(" and "));
     let help = failure.help().map_or_else(|| kept.clone(), |help| format!("{help}\n{kept}"));
     failure.with_help(help)
 }

@@ -32,8 +32,8 @@ pub use arguments::Arguments;
 use comparison::Comparison;
 use files::HistoryFiles;
 use plan::SimulationPlan;
-use result::{PROGRESS, SimulationResult};
-use scheme::{Choice, SchemeName};
+use result::{PROGRESS_INTERVAL, SimulationResult};
+use scheme::{SchemeChoice, SchemeName};
 use stepping::RunEnd;
 use summary::SimulationSummary;
 
@@ -48,9 +48,9 @@ use report::progress::Progress;
 use report::provenance::VERSION;
 
 /// Largest number of samples by default.
-const USUAL_SAMPLES: u32 = 200_000;
+const DEFAULT_SAMPLES: u32 = 200_000;
 /// Largest number of samples; each takes half a kilobyte.
-const MOST_SAMPLES: u32 = 2_000_000;
+const MAX_SAMPLES: u32 = 2_000_000;
 
 /// Texts and paths of a finished simulation.
 pub struct Simulated {
@@ -71,20 +71,20 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
     arguments.scheme.shown().check_joint(&loaded.file.parameters)?;
     warned::tell(&loaded);
     let plan = SimulationPlan::new(loaded, &arguments.motion)?;
-    let every = every(&plan, arguments.every)?;
+    let every = sample_interval(&plan, arguments.every)?;
     let scheme = arguments.scheme.shown();
     let profile = arguments.motion.profile.as_deref().unwrap_or_default();
     folder::check_files(&[("json", arguments.json.as_deref())], &[&arguments.file, Path::new(profile)])?;
-    let folder = Folder::prepare(arguments.out.as_deref(), "sim", &plan.parameters().name, &files::ALL)?;
+    let folder = Folder::prepare(arguments.out.as_deref(), "sim", &plan.parameters().name, &files::RUN_FILES)?;
     // An interruption must still finish the history.
     let in_order = InOrder::begin();
     let mut files = HistoryFiles::begin(&folder, plan.parameters(), remarks(arguments, &plan, scheme))?;
     progress.run("simulating", plan.run.ticks);
-    let result = SimulationResult::of(&plan, scheme, every, !arguments.no_energy, &mut files, progress);
+    let result = SimulationResult::simulate(&plan, scheme, every, !arguments.no_energy, &mut files, progress);
     let stopped = matches!(&result, Ok(SimulationResult { end: RunEnd::Stopped, .. }));
     let mut result = match result {
         Ok(result) => result,
-        Err(failure) => return Err(files.told(failure)),
+        Err(failure) => return Err(files.finish_after(failure)),
     };
     let [csv, log] = files.finish(!stopped)?;
     if stopped {
@@ -93,12 +93,12 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
             .with_help(format!("the history so far is in {} and {}", csv.display(), log.display())));
     }
     drop(in_order);
-    if arguments.scheme == Choice::All {
+    if arguments.scheme == SchemeChoice::All {
         result.comparison = Some(compare(&plan, every, progress)?);
     }
     progress.stage("drawing");
-    let figures = SimulationSummary::of(&result, &arguments.motion.set);
-    let document = page::document(&result, &figures, &replay(arguments));
+    let figures = SimulationSummary::new(&result, &arguments.motion.set);
+    let document = page::document(&result, &figures, &replay_command(arguments));
     folder.write_text(files::REPORT, &html(&document))?;
     let json = output::json("figures", &figures)?;
     folder.write_text(files::FIGURES, &json)?;
@@ -111,11 +111,11 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
 }
 
 /// Ticks between two samples.
-fn every(plan: &SimulationPlan, wanted: Option<u32>) -> Outcome<u32> {
-    let every = wanted.unwrap_or_else(|| plan.run.ticks.div_ceil(USUAL_SAMPLES)).max(1);
+fn sample_interval(plan: &SimulationPlan, wanted: Option<u32>) -> Outcome<u32> {
+    let every = wanted.unwrap_or_else(|| plan.run.ticks.div_ceil(DEFAULT_SAMPLES)).max(1);
     let samples = plan.run.ticks / every + 1;
-    if samples > MOST_SAMPLES {
-        let least = plan.run.ticks.div_ceil(MOST_SAMPLES);
+    if samples > MAX_SAMPLES {
+        let least = plan.run.ticks.div_ceil(MAX_SAMPLES);
         return Err(Failure::new(format!("every {every} of {} ticks are {samples} samples", plan.run.ticks))
             .with_help(format!("give --every {least} or more, or a shorter --duration")));
     }
@@ -124,10 +124,10 @@ fn every(plan: &SimulationPlan, wanted: Option<u32>) -> Outcome<u32> {
 
 fn compare(plan: &SimulationPlan, every: u32, progress: &Progress) -> Outcome<Comparison> {
     // Every scheme and the disturbed reference run over all ticks.
-    let runs = 1 + SchemeName::of_joint(plan.parameters()).len() as u32;
+    let runs = 1 + SchemeName::for_joint(plan.parameters()).len() as u32;
     progress.run("comparing schemes", plan.run.ticks);
     comparison::compare(&plan.run, every, &|done| {
-        if (done / runs).is_multiple_of(PROGRESS) {
+        if (done / runs).is_multiple_of(PROGRESS_INTERVAL) {
             progress.at(done / runs);
         }
     })
@@ -141,7 +141,7 @@ fn remarks(arguments: &Arguments, plan: &SimulationPlan, scheme: SchemeName) -> 
         ("scheme", scheme.name().to_owned()),
         ("tick_rate_hz", plan.run.tick_rate.to_string()),
         ("torques", plan.torques_name.clone()),
-        ("command", replay(arguments)),
+        ("command", replay_command(arguments)),
         ("version", VERSION.to_owned()),
     ]
     .map(|(name, value)| (name.to_owned(), value))
@@ -149,7 +149,7 @@ fn remarks(arguments: &Arguments, plan: &SimulationPlan, scheme: SchemeName) -> 
 }
 
 /// Command that repeats this run.
-fn replay(arguments: &Arguments) -> String {
+fn replay_command(arguments: &Arguments) -> String {
     let mut command = format!("cargo joint sim {}", quoted(&arguments.file.display().to_string()));
     command += &format!(" --scheme {}", arguments.scheme.name());
     command += &arguments.motion.replay();

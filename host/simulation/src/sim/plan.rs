@@ -20,14 +20,14 @@ use report::number::TYPED;
 /// Rate of the board, and default rate of other runs [Hz].
 const BOARD_RATE: u32 = 20_000;
 /// Least number of ticks in a prescribed mesh period by default, for phase portraits and spectra.
-const TICKS_A_PERIOD: f64 = 48.0;
+const MIN_TICKS_PER_PERIOD: f64 = 48.0;
 /// Default length under constant torques [s], and at a prescribed mesh frequency [mesh periods].
-const DURATION: f64 = 1.0;
-const MESH_PERIODS: f64 = 600.0;
+const DEFAULT_DURATION: f64 = 1.0;
+const DEFAULT_MESH_PERIODS: f64 = 600.0;
 /// Default speed of the carrier under constant torques: a turn a second [rad/s].
-pub(crate) const SPEED: f64 = TAU;
+pub(crate) const DEFAULT_SPEED: f64 = TAU;
 /// Largest number of ticks; more would take days at a microsecond each and are likely a typing error.
-const MOST_TICKS: f64 = 2e10;
+const MAX_TICKS: f64 = 2e10;
 
 /// A validated simulation.
 #[derive(Debug, Clone)]
@@ -79,10 +79,10 @@ impl SimulationPlan {
                 (profile.commands, profile.ticks, format!("profile {}", profile.name))
             }
             None => {
-                let ticks = count(duration.unwrap_or_else(|| steady_duration(parameters)), tick_rate)?;
+                let ticks = tick_count(duration.unwrap_or_else(|| steady_duration(parameters)), tick_rate)?;
                 let drive = within("drive", motion.drive, MAX_TORQUE, "N m")?;
                 let load = within("load", motion.load, MAX_TORQUE, "N m")?;
-                let command = constant(&joint, drive, load);
+                let command = constant_torques(&joint, drive, load);
                 let (drive, load) = (command.drive_torque, command.load_torque);
                 (vec![command], ticks, format!("constant torques of {drive} N m against {load} N m"))
             }
@@ -94,7 +94,7 @@ impl SimulationPlan {
             Some(settle) => {
                 let end = f64::from(ticks) / f64::from(tick_rate);
                 if !(0.0..end).contains(&settle) {
-                    let message = format!("--settle {settle} leaves nothing of a run of {end} s");
+                    let message = format!("--settle {settle} is not below the run's {end} s");
                     return Err(Failure::new(message).with_help("give 0 or more, and less than the duration"));
                 }
                 (settle * f64::from(tick_rate)).round() as u32
@@ -105,10 +105,10 @@ impl SimulationPlan {
             (true, Some(_)) => StartName::Centred,
             (true, None) => StartName::Seated,
         });
-        let turning = if constant && frequency.is_none() { SPEED } else { 0.0 };
+        let turning = if constant && frequency.is_none() { DEFAULT_SPEED } else { 0.0 };
         let speed = within("speed", motion.speed, MAX_SPEED, "rad/s")?.unwrap_or(turning);
         let first = torques.first().map_or((0.0, 0.0), |first| (first.drive_torque.into(), first.load_torque.into()));
-        let start = start_name.of(parameters, speed, first);
+        let start = start_name.state(parameters, speed, first);
         let board = motion.board.clone().unwrap_or_else(Board::emulated);
         let effort = if motion.accurate { Effort::Accurate } else { Effort::Within(board.processor()) };
         let board = (!motion.accurate).then(|| board.name().to_owned());
@@ -139,21 +139,21 @@ impl SimulationPlan {
 /// Default length of a run under constant torques [s].
 pub(crate) fn steady_duration(joint: &JointParameters) -> f64 {
     match joint.excitation {
-        Excitation::Time { mesh_frequency } => MESH_PERIODS * TAU / mesh_frequency,
-        Excitation::Angle => DURATION,
+        Excitation::Time { mesh_frequency } => DEFAULT_MESH_PERIODS * TAU / mesh_frequency,
+        Excitation::Angle => DEFAULT_DURATION,
     }
 }
 
 /// Multiple of the board's rate with enough ticks in a prescribed mesh period.
 fn default_rate(frequency: Option<f64>) -> u32 {
-    let wanted = frequency.unwrap_or(0.0) * TICKS_A_PERIOD / f64::from(BOARD_RATE);
+    let wanted = frequency.unwrap_or(0.0) * MIN_TICKS_PER_PERIOD / f64::from(BOARD_RATE);
     // Beyond a thousand times the board's rate the design reports the error.
     BOARD_RATE * wanted.ceil().clamp(1.0, 1000.0) as u32
 }
 
-fn count(seconds: f64, tick_rate: u32) -> Outcome<u32> {
+fn tick_count(seconds: f64, tick_rate: u32) -> Outcome<u32> {
     let ticks = seconds * f64::from(tick_rate);
-    if !(1.0..=MOST_TICKS.min(f64::from(u32::MAX / 2))).contains(&ticks) {
+    if !(1.0..=MAX_TICKS.min(f64::from(u32::MAX / 2))).contains(&ticks) {
         return Err(Failure::new(format!(
             "a run of {} s at {tick_rate} Hz is {} ticks",
             TYPED.write(seconds),
@@ -165,7 +165,7 @@ fn count(seconds: f64, tick_rate: u32) -> Outcome<u32> {
 }
 
 /// Stated operating point, or the requested torques; a missing torque balances the other one.
-fn constant(joint: &JointFile, drive: Option<f64>, load: Option<f64>) -> Command {
+fn constant_torques(joint: &JointFile, drive: Option<f64>, load: Option<f64>) -> Command {
     let parameters = &joint.parameters;
     let ratio = parameters.geometry.ratio_by_radii();
     let (drive, load) = match (drive, load) {

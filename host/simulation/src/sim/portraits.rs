@@ -13,16 +13,16 @@ use report::plot::unit::{DECIBELS, Unit, axis_range, greatest};
 use report::spectrum::Spectrum;
 
 /// Samples drawn in a phase portrait under constant torques; more would only blacken it.
-const PORTRAIT: usize = 6000;
+const PORTRAIT_SAMPLES: usize = 6000;
 /// Samples drawn in a phase portrait under a profile, which shows the whole run.
-const PROFILE_PORTRAIT: usize = 20_000;
+const PROFILE_PORTRAIT_SAMPLES: usize = 20_000;
 /// Least distance between drawn samples over the picture's size; larger if there are too many samples.
-const NEAR: f64 = 1e-3;
+const MIN_DISTANCE: f64 = 1e-3;
 /// Size of a Poincare point over the size of the picture, for few points and for many.
-const DOT: [f64; 2] = [0.0085, 0.024];
-const SMALL_DOT: [f64; 2] = [0.0042, 0.012];
+const LARGE_POINT: [f64; 2] = [0.0085, 0.024];
+const SMALL_POINT: [f64; 2] = [0.0042, 0.012];
 /// Largest period that is shown with large points.
-const FEW: usize = 8;
+const LARGE_POINT_PERIODS: usize = 8;
 
 /// Motion of a phase portrait.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,7 +40,7 @@ pub fn portrait(
     (points, period): (&[PoincarePoint], Option<usize>),
     which: Portrait,
 ) -> Figure {
-    let samples = if plan.constant { &samples[samples.len().saturating_sub(PORTRAIT)..] } else { samples };
+    let samples = if plan.constant { &samples[samples.len().saturating_sub(PORTRAIT_SAMPLES)..] } else { samples };
     let of = |snapshot: &Snapshot| match which {
         Portrait::Deflection => (snapshot.teeth[0].deflection, snapshot.teeth[0].rate),
         Portrait::Gap => (snapshot.gap, snapshot.gap_rate),
@@ -55,7 +55,7 @@ pub fn portrait(
     if !plan.constant {
         curve = thinned(curve, (range.1 - range.0, up.1 - up.0));
     }
-    let size = if period.is_some_and(|period| period <= FEW) { DOT } else { SMALL_DOT };
+    let size = if period.is_some_and(|period| period <= LARGE_POINT_PERIODS) { LARGE_POINT } else { SMALL_POINT };
     let (half_width, half_height) = (0.5 * size[0] * (range.1 - range.0), 0.5 * size[1] * (up.1 - up.0));
     let dot = |point: &PoincarePoint| {
         let (x, y) = of_point(point);
@@ -90,7 +90,7 @@ pub fn portrait(
 
 /// Removes samples close to the previous one: a rest becomes one point, fast motion keeps every sample.
 fn thinned(curve: Vec<(f64, f64)>, (width, height): (f64, f64)) -> Vec<(f64, f64)> {
-    let mut near = NEAR;
+    let mut near = MIN_DISTANCE;
     loop {
         let mut kept: Vec<(f64, f64)> = Vec::new();
         for point in &curve {
@@ -100,7 +100,7 @@ fn thinned(curve: Vec<(f64, f64)>, (width, height): (f64, f64)) -> Vec<(f64, f64
                 kept.push(*point);
             }
         }
-        if kept.len() <= PROFILE_PORTRAIT {
+        if kept.len() <= PROFILE_PORTRAIT_SAMPLES {
             return kept;
         }
         near *= 2.0;

@@ -13,7 +13,7 @@ use report::progress::Progress;
 use report::spectrum::Spectrum;
 
 /// Ticks between two updates of the progress line.
-pub const PROGRESS: u32 = 1024;
+pub const PROGRESS_INTERVAL: u32 = 1024;
 
 /// A finished run, complete or not.
 pub struct SimulationResult<'a> {
@@ -39,7 +39,7 @@ pub struct SimulationResult<'a> {
 
 impl<'a> SimulationResult<'a> {
     /// Runs a plan by a scheme; every `every`-th tick is stored and written.
-    pub fn of(
+    pub fn simulate(
         plan: &'a SimulationPlan,
         scheme: SchemeName,
         every: u32,
@@ -59,12 +59,12 @@ impl<'a> SimulationResult<'a> {
                 samples.push(snapshot.clone());
             }
             if snapshot.tick >= settle {
-                statistics.take(snapshot);
+                statistics.add_tick(snapshot);
             }
             if let Some(account) = &mut energy {
-                account.take(snapshot);
+                account.add_tick(snapshot);
             }
-            if snapshot.tick.is_multiple_of(PROGRESS) {
+            if snapshot.tick.is_multiple_of(PROGRESS_INTERVAL) {
                 progress.at(snapshot.tick);
             }
             Ok(())

@@ -22,7 +22,7 @@ pub enum SchemeName {
 
 /// Values of `--scheme`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Choice {
+pub enum SchemeChoice {
     /// Scheme of the board
     Realtime,
     /// Scheme of the paper: constant exponential, nonlinear forces held over the step
@@ -42,7 +42,7 @@ impl SchemeName {
     const ALL: [Self; 5] = [Self::Reference, Self::Realtime, Self::Paper, Self::RungeKutta4, Self::Euler];
 
     /// Schemes for a joint, the reference first: an equivalent gear has no meshes for the others to step.
-    pub fn of_joint(joint: &JointParameters) -> &'static [Self] {
+    pub fn for_joint(joint: &JointParameters) -> &'static [Self] {
         match joint.equivalent_gear() {
             Some(_) => &[Self::Reference, Self::Realtime],
             None => &Self::ALL,
@@ -51,11 +51,11 @@ impl SchemeName {
 
     /// Rejects a joint that this scheme cannot step.
     pub fn check_joint(self, joint: &JointParameters) -> Outcome<()> {
-        let of_joint = Self::of_joint(joint);
-        if of_joint.contains(&self) {
+        let schemes = Self::for_joint(joint);
+        if schemes.contains(&self) {
             return Ok(());
         }
-        let names: Vec<String> = of_joint.iter().map(|scheme| format!("--scheme {}", scheme.name())).collect();
+        let names: Vec<String> = schemes.iter().map(|scheme| format!("--scheme {}", scheme.name())).collect();
         let message = format!(
             "--scheme {} steps meshes of teeth, and joint `{}` has an equivalent gear",
             self.name(),
@@ -79,7 +79,7 @@ impl SchemeName {
     pub fn description(self) -> &'static str {
         match self {
             Self::Reference => "adaptive order 8 in absolute coordinates, restarted at every contact event, f64",
-            Self::Realtime => "what the board runs: exponential flow, sub-steps with corrected crossings",
+            Self::Realtime => "scheme of the board: exponential flow, sub-steps with corrected crossings",
             Self::Paper => "the paper's: constant exponential, nonlinear forces held over the step",
             Self::RungeKutta4 => "classical Runge-Kutta of order 4",
             Self::Euler => "semi-implicit Euler",
@@ -87,7 +87,7 @@ impl SchemeName {
     }
 
     /// Scheme of the core; `None` for the reference.
-    pub fn of_core(self) -> Option<Scheme> {
+    pub fn core_scheme(self) -> Option<Scheme> {
         match self {
             Self::Reference => None,
             Self::Realtime => Some(Scheme::Realtime),
@@ -98,7 +98,7 @@ impl SchemeName {
     }
 }
 
-impl Choice {
+impl SchemeChoice {
     /// Word on the command line.
     pub fn name(self) -> &'static str {
         if self == Self::All { "all" } else { self.shown().name() }

@@ -85,7 +85,7 @@ impl Snapshot {
     }
 
     /// Snapshot of the reference.
-    pub fn of_reference(tick: u32, joint: &JointParameters, observation: &Observation) -> Self {
+    pub fn from_reference(tick: u32, joint: &JointParameters, observation: &Observation) -> Self {
         let kinds = [0, 1];
         let teeth = kinds.into_iter().flat_map(|kind| {
             (0..joint.geometry.planets).map(move |planet| MeshSnapshot {

@@ -31,7 +31,7 @@ impl StartName {
     }
 
     /// Initial state of a joint with a carrier speed [rad/s] under torques (drive, load) [N m].
-    pub fn of(self, joint: &JointParameters, speed: f64, torques: (f64, f64)) -> Start {
+    pub fn state(self, joint: &JointParameters, speed: f64, torques: (f64, f64)) -> Start {
         let planets = joint.geometry.planets;
         match self {
             Self::Rest if speed == 0.0 => Start::Still,

@@ -6,11 +6,11 @@ use parameters::ContactState;
 use super::snapshot::{MeshSnapshot, Snapshot};
 
 /// Largest number of stored points; a longer run keeps the last ones.
-const MOST_POINTS: usize = 2000;
+const MAX_POINCARE_POINTS: usize = 2000;
 /// Longest period that is searched for [mesh periods].
 const LONGEST_PERIOD: usize = 32;
 /// Distance below which Poincare points count as equal, over the range of the motion [-].
-const SAME_POINT: f64 = 1e-3;
+const POINT_TOLERANCE: f64 = 1e-3;
 
 /// Sums of one mesh over ticks.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -74,18 +74,18 @@ pub struct Statistics {
 
 impl Statistics {
     /// Adds a tick.
-    pub fn take(&mut self, snapshot: &Snapshot) {
+    pub fn add_tick(&mut self, snapshot: &Snapshot) {
         if self.meshes.is_empty() {
             self.meshes = vec![MeshSums::default(); snapshot.teeth.len()];
             self.first = snapshot.time;
         }
         for (sums, teeth) in self.meshes.iter_mut().zip(&snapshot.teeth) {
-            sums.take(self.ticks, teeth);
+            sums.add(self.ticks, teeth);
         }
         if let Some(last) = &self.last {
             self.points.extend(crossing(last, snapshot));
-            if self.points.len() >= 2 * MOST_POINTS {
-                self.points.drain(..MOST_POINTS);
+            if self.points.len() >= 2 * MAX_POINCARE_POINTS {
+                self.points.drain(..MAX_POINCARE_POINTS);
             }
         }
         self.last = Some(snapshot.clone());
@@ -104,7 +104,7 @@ impl Statistics {
 
     /// Last Poincare points.
     pub fn points(&self) -> &[PoincarePoint] {
-        &self.points[self.points.len().saturating_sub(MOST_POINTS)..]
+        &self.points[self.points.len().saturating_sub(MAX_POINCARE_POINTS)..]
     }
 
     /// Mesh periods after which the motion repeats; `None` if it does not within 32, or with too few points.
@@ -117,7 +117,8 @@ impl Statistics {
         let whole = self.meshes.first().map_or(0.0, |mesh| mesh.greatest - mesh.least);
         let size = [swing(|p| p.deflection, whole), swing(|p| p.gap, whole)];
         let same = |a: &PoincarePoint, b: &PoincarePoint| {
-            (a.deflection - b.deflection).abs() <= SAME_POINT * size[0] && (a.gap - b.gap).abs() <= SAME_POINT * size[1]
+            (a.deflection - b.deflection).abs() <= POINT_TOLERANCE * size[0]
+                && (a.gap - b.gap).abs() <= POINT_TOLERANCE * size[1]
         };
         (1..=LONGEST_PERIOD).find(|&period| {
             // Three rounds and 8 more points must agree, so that chaos does not match by chance.
@@ -129,7 +130,7 @@ impl Statistics {
 }
 
 impl MeshSums {
-    fn take(&mut self, ticks: u64, &MeshSnapshot { deflection, force, contact, .. }: &MeshSnapshot) {
+    fn add(&mut self, ticks: u64, &MeshSnapshot { deflection, force, contact, .. }: &MeshSnapshot) {
         if ticks == 0 {
             (self.least, self.greatest) = (deflection, deflection);
         }
@@ -217,7 +218,7 @@ mod tests {
                 teeth: [teeth].into_iter().collect(),
                 energy: None,
             };
-            statistics.take(&snapshot);
+            statistics.add_tick(&snapshot);
         }
         statistics
     }
@@ -228,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn shares_impacts_and_swings_of_a_sine_are_its_own() {
+    fn sine_has_exact_statistics() {
         let figures = gathered(sine(1.0)).meshes()[0];
         assert!((figures.drive_side_share - 0.5).abs() < 0.01, "{figures:?}");
         assert!((figures.separated_share - 0.5).abs() < 0.01, "{figures:?}");
@@ -239,19 +240,20 @@ mod tests {
     }
 
     #[test]
-    fn periods_are_counted_in_mesh_periods() {
+    fn period_is_counted_in_mesh_periods() {
         for period in [1, 2, 3, 6] {
             assert_eq!(gathered(sine(f64::from(period))).period(), Some(period as usize));
         }
     }
 
     #[test]
-    fn a_motion_that_never_repeats_has_no_period() {
+    fn aperiodic_motion_has_no_period() {
         assert_eq!(gathered(sine(std::f64::consts::SQRT_2)).period(), None);
     }
 
+    /// A Poincare point lies between two ticks, where the mesh phase completes a period.
     #[test]
-    fn poincare_points_are_interpolated_to_the_moment_when_the_phase_comes_round() {
+    fn poincare_points_are_interpolated() {
         let statistics = gathered(sine(3.0));
         let expected: Vec<f64> = (1..=3).map(|k| sine(3.0)(f64::from(k)).0).collect();
         for (index, point) in statistics.points().iter().enumerate() {

@@ -49,7 +49,7 @@ impl SimulationSpec {
 }
 
 /// Mesh deflection above which a scheme counts as diverged even if the state is finite [m].
-const ABSURD: f64 = 0.1;
+const MAX_DEFLECTION: f64 = 0.1;
 
 /// End of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -124,7 +124,7 @@ pub fn cost(run: &SimulationSpec, scheme: SchemeName, ticks: u32) -> Outcome<f64
 }
 
 /// Error: the reference rejects the joint; the help names an option if there is one.
-fn not_referable(joint: &JointParameters, error: &ReferenceError) -> Failure {
+fn reference_error(joint: &JointParameters, error: &ReferenceError) -> Failure {
     let failure = Failure::new(format!("the reference does not take joint `{}`: {error}", joint.name));
     match joint.dead_zone {
         DeadZone::Tanh { .. } => {
@@ -168,9 +168,10 @@ fn with_scheme<R>(
     scheme: SchemeName,
     work: impl FnOnce(&mut dyn SteppedJoint) -> Outcome<R>,
 ) -> Outcome<R> {
-    let Some(scheme) = scheme.of_core() else {
-        let reference = Reference::start(&run.joint, &run.start).map_err(|error| not_referable(&run.joint, &error))?;
-        return work(&mut ByReference { run, reference });
+    let Some(scheme) = scheme.core_scheme() else {
+        let reference =
+            Reference::start(&run.joint, &run.start).map_err(|error| reference_error(&run.joint, &error))?;
+        return work(&mut ReferenceJoint { run, reference });
     };
     match (run.joint.geometry.planets, run.double) {
         (1, false) => with_core::<f32, 1, R>(run, scheme, work),
@@ -194,7 +195,7 @@ fn with_core<T: Real, const N: usize, R>(
     let tables = tables::<T, N>(run, scheme)?;
     let mut model = Model::new(&tables);
     model.set_state(core_state(&run.joint, &tables, &run.start));
-    work(&mut ByCore { reader: Reader::new(&run.joint, &tables), model })
+    work(&mut CoreJoint { reader: Reader::new(&run.joint, &tables), model })
 }
 
 fn tables<T: Real, const N: usize>(run: &SimulationSpec, scheme: Scheme) -> Outcome<Tables<T, N>> {
@@ -209,15 +210,15 @@ fn tables<T: Real, const N: usize>(run: &SimulationSpec, scheme: Scheme) -> Outc
 }
 
 /// A joint stepped by the core.
-struct ByCore<'a, T: Real, const N: usize> {
+struct CoreJoint<'a, T: Real, const N: usize> {
     reader: Reader<'a, T, N>,
     model: Model<'a, T, N>,
 }
 
-impl<T: Real, const N: usize> SteppedJoint for ByCore<'_, T, N> {
+impl<T: Real, const N: usize> SteppedJoint for CoreJoint<'_, T, N> {
     fn read(&self, tick: u32) -> Option<Snapshot> {
         let snapshot = self.reader.read(tick, &self.model);
-        let sound = |teeth: &MeshSnapshot| teeth.deflection.abs() < ABSURD;
+        let sound = |teeth: &MeshSnapshot| teeth.deflection.abs() < MAX_DEFLECTION;
         (self.model.is_finite() && snapshot.teeth.iter().all(sound)).then_some(snapshot)
     }
 
@@ -228,14 +229,14 @@ impl<T: Real, const N: usize> SteppedJoint for ByCore<'_, T, N> {
 }
 
 /// A joint stepped by the reference.
-struct ByReference<'a> {
+struct ReferenceJoint<'a> {
     run: &'a SimulationSpec,
     reference: Reference,
 }
 
-impl SteppedJoint for ByReference<'_> {
+impl SteppedJoint for ReferenceJoint<'_> {
     fn read(&self, tick: u32) -> Option<Snapshot> {
-        Some(Snapshot::of_reference(tick, &self.run.joint, &self.reference.observe()))
+        Some(Snapshot::from_reference(tick, &self.run.joint, &self.reference.observe()))
     }
 
     fn step(&mut self, tick: u32, drive: f64, load: f64) -> Outcome<bool> {
@@ -243,7 +244,7 @@ impl SteppedJoint for ByReference<'_> {
         match self.reference.advance(end, drive, load) {
             Ok(()) => Ok(true),
             Err(ReferenceError::Integration(_)) => Ok(false),
-            Err(error) => Err(not_referable(&self.run.joint, &error)),
+            Err(error) => Err(reference_error(&self.run.joint, &error)),
         }
     }
 }

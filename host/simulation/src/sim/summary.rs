@@ -84,7 +84,7 @@ pub struct Mesh {
 
 impl SimulationSummary {
     /// Summary of a result; `set` are the values changed on the command line.
-    pub fn of(result: &SimulationResult<'_>, set: &[String]) -> Self {
+    pub fn new(result: &SimulationResult<'_>, set: &[String]) -> Self {
         let (plan, spectrum) = (result.plan, result.spectrum.as_ref());
         let meshes = result.statistics.meshes();
         let substeps = plan.run.substeps(result.scheme);

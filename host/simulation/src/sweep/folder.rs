@@ -20,7 +20,7 @@ pub const RESULT: &str = "points.csv";
 /// Result as a page.
 pub const REPORT: &str = "report.html";
 /// Largest number of foreign files in a message.
-const NAMED: usize = 3;
+const MAX_LISTED_FILES: usize = 3;
 
 /// A sweep's folder.
 #[derive(Debug)]
@@ -33,11 +33,11 @@ impl SweepFolder {
     pub fn prepare(path: &Path, manifest: &Manifest) -> Outcome<Self> {
         folder::make(path)?;
         // Foreign files are reported before another sweep: a sweep needs a folder of its own.
-        let foreign = foreign(path)?;
+        let foreign = foreign_files(path)?;
         // Checked after the listing, since this file is always created before a journal.
         let there = path.join(MANIFEST).exists();
         if !foreign.is_empty() {
-            return Err(refused(path, &foreign, there));
+            return Err(foreign_files_error(path, &foreign, there));
         }
         if there {
             let other = Manifest::read(&path.join(MANIFEST))?;
@@ -62,7 +62,7 @@ impl SweepFolder {
                 .with_help("name the folders that `joint sweep --out DIR` has made"));
         }
         if !path.join(MANIFEST).exists() {
-            return Err(Failure::new(format!("{} holds no sweep: there is no {MANIFEST} in it", path.display()))
+            return Err(Failure::new(format!("{} is not a sweep: it has no {MANIFEST}", path.display()))
                 .with_help("name the folders that `joint sweep --out DIR` has made"));
         }
         let manifest = Manifest::read(&path.join(MANIFEST))?;
@@ -147,7 +147,7 @@ fn entries(path: &Path) -> Outcome<Vec<String>> {
 }
 
 /// Names of files that no sweep has written.
-fn foreign(path: &Path) -> Outcome<Vec<String>> {
+fn foreign_files(path: &Path) -> Outcome<Vec<String>> {
     let own = |name: &String| {
         let known = [MANIFEST, RESULT, REPORT].contains(&name.as_str()) || journal::shard_of(name).is_some();
         known && path.join(name).is_file()
@@ -159,9 +159,9 @@ fn foreign(path: &Path) -> Outcome<Vec<String>> {
     Ok(names)
 }
 
-fn refused(path: &Path, foreign: &[String], swept: bool) -> Failure {
-    let more = foreign.len().saturating_sub(NAMED);
-    let mut named = foreign[..foreign.len().min(NAMED)].join(", ");
+fn foreign_files_error(path: &Path, foreign: &[String], swept: bool) -> Failure {
+    let more = foreign.len().saturating_sub(MAX_LISTED_FILES);
+    let mut named = foreign[..foreign.len().min(MAX_LISTED_FILES)].join(", ");
     if more > 0 {
         named += &format!(" and {more} more");
     }

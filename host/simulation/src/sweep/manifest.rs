@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::grid::Grid;
-use super::journal::unread;
+use super::journal::read_error;
 use super::metrics::Metric;
 use report::failure::{Failure, Outcome};
 use report::input;
@@ -68,10 +68,10 @@ impl Manifest {
     /// Reads `sweep.json` and checks its schema and digest.
     pub fn read(path: &Path) -> Outcome<Self> {
         let spoilt = |why: String| {
-            Failure::new(format!("{} is not what a sweep wrote: {why}", path.display()))
+            Failure::new(format!("{} is not a sweep's manifest: {why}", path.display()))
                 .with_help("name another folder by --out DIR; this one is left as it is")
         };
-        let text = input::text(path, input::LARGEST_RECORDED).map_err(|why| unread(path, &why))?;
+        let text = input::text(path, input::LARGEST_RECORDED).map_err(|why| read_error(path, &why))?;
         let manifest: Self = serde_json::from_str(&text).map_err(|error| spoilt(error.to_string()))?;
         if manifest.schema != SCHEMA {
             return Err(spoilt(format!("its schema is `{}`, not `{SCHEMA}`", manifest.schema)));

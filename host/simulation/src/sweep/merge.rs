@@ -10,7 +10,7 @@ use super::manifest::Manifest;
 use report::failure::{Failure, Outcome};
 
 /// Largest number of missing points or shards in a message.
-const NAMED: usize = 8;
+const MAX_LISTED: usize = 8;
 
 /// Merges the shards in these folders into `out`, or into the first folder, and returns the message with the paths;
 /// fails if a point is missing.
@@ -51,15 +51,15 @@ fn complete(grid: &Grid, points: &Points, shards: &BTreeSet<(u64, u64)>) -> Outc
     if missing.is_empty() {
         return Ok(());
     }
-    let mut named: Vec<String> = missing.iter().take(NAMED).map(ToString::to_string).collect();
-    if missing.len() > NAMED {
+    let mut named: Vec<String> = missing.iter().take(MAX_LISTED).map(ToString::to_string).collect();
+    if missing.len() > MAX_LISTED {
         named.push("...".into());
     }
     let message = format!("{} of {} points are missing: {}", missing.len(), grid.points, named.join(", "));
     // Missing shards are listed for the largest number of shards in use.
     let count = shards.iter().map(|(count, _)| *count).max().unwrap_or(1);
-    let open = (1..=count).filter(|&index| missing.iter().any(|point| Shard { index, count }.has(*point)));
-    let open: Vec<String> = open.take(NAMED).map(|index| format!("--shard {index}/{count}")).collect();
+    let open = (1..=count).filter(|&index| missing.iter().any(|point| Shard { index, count }.contains(*point)));
+    let open: Vec<String> = open.take(MAX_LISTED).map(|index| format!("--shard {index}/{count}")).collect();
     let help = format!("run the sweep's command again with {}, or name the folder that has them", open.join(", "));
     Err(Failure::new(message).with_help(help))
 }

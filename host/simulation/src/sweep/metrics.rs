@@ -69,7 +69,7 @@ pub fn compute(
     let followed = loaded.and_then(|loaded| SimulationPlan::new(loaded, motion)).and_then(|plan| {
         stepping::simulate(&plan.run, scheme, 0.0, &mut |snapshot| {
             if snapshot.tick >= plan.settle {
-                statistics.take(snapshot);
+                statistics.add_tick(snapshot);
             }
             Ok(())
         })

@@ -27,7 +27,7 @@ use metrics::Metric;
 use work::Work;
 
 use crate::sim::arguments::MotionArguments;
-use crate::sim::scheme::{Choice, SchemeName};
+use crate::sim::scheme::{SchemeChoice, SchemeName};
 use board::profile::BUILTIN;
 use joint_file::named::{self, Loaded};
 use joint_file::warned;
@@ -62,7 +62,7 @@ pub struct Arguments {
     pub metric: Vec<Metric>,
     /// Integration scheme
     #[arg(long, value_enum, default_value = "realtime")]
-    pub scheme: Choice,
+    pub scheme: SchemeChoice,
     /// Motion of every point
     #[command(flatten)]
     pub motion: MotionArguments,
@@ -85,7 +85,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     scheme.check_joint(&base.file.parameters)?;
     let grid = Grid::parse(&arguments.vary, Some(&base.text))?;
     warned::tell(&base);
-    grid.try_out(&base)?;
+    grid.check_axes(&base)?;
     let metrics = if arguments.metric.is_empty() { all_metrics() } else { arguments.metric.clone() };
     // The joint file already contains the changes of the command line.
     let motion = MotionArguments { set: Vec::new(), ..arguments.motion.clone() };
@@ -98,7 +98,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     let mut done = Points::new();
     folder.points(&manifest.digest, &mut done)?;
     let todo: Vec<u64> =
-        (0..grid.points).filter(|point| arguments.shard.has(*point) && !done.contains_key(point)).collect();
+        (0..grid.points).filter(|point| arguments.shard.contains(*point) && !done.contains_key(point)).collect();
     if !done.is_empty() {
         output::remark(&format!("going on: {} of {} points are in {}", done.len(), grid.points, path.display()));
     }
@@ -115,9 +115,9 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
         let left = todo.len() - went.finished;
         return Err(Failure::interrupted(format!("stopped by the user: {left} of {} points are left", grid.points))
             .with_help(format!(
-                "all others are kept in {}; the same command goes on from there:\n{}",
+                "all others are kept in {}; run this command to continue:\n{}",
                 path.display(),
-                replay(arguments, &path)
+                replay_command(arguments, &path)
             )));
     }
     conclude(arguments, &folder, &manifest, &grid)
@@ -140,9 +140,9 @@ fn conclude(arguments: &Arguments, folder: &SweepFolder, manifest: &Manifest, gr
     ))
 }
 
-fn scheme(choice: Choice) -> Outcome<SchemeName> {
+fn scheme(choice: SchemeChoice) -> Outcome<SchemeName> {
     match choice {
-        Choice::All => Err(Failure::new("a sweep has one scheme")
+        SchemeChoice::All => Err(Failure::new("a sweep has one scheme")
             .with_help("name one of realtime, paper, reference, rk4, euler; `joint sim --scheme all` compares them")),
         one => Ok(one.shown()),
     }
@@ -194,7 +194,7 @@ fn usual_folder(manifest: &Manifest) -> PathBuf {
 }
 
 /// Command that continues this sweep.
-fn replay(arguments: &Arguments, path: &Path) -> String {
+fn replay_command(arguments: &Arguments, path: &Path) -> String {
     let mut command = format!("cargo joint sweep {}", quoted(&arguments.file.display().to_string()));
     for vary in &arguments.vary {
         command += &format!(" --vary {}", quoted(vary));

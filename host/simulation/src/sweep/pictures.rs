@@ -12,22 +12,22 @@ use report::plot::panel::{Panel, VerticalAxis};
 use report::plot::unit::Unit;
 
 /// Largest number of cells of a map across and up; with more points a cell covers several.
-const CELLS: [usize; 2] = [128, 64];
+const MAX_CELLS: [usize; 2] = [128, 64];
 /// Largest number of maps of one figure, for values of the other axes.
-const MAPS: usize = 12;
+const MAX_MAPS: usize = 12;
 /// Height of a map [px].
-const MAP: i32 = 330;
+const MAP_HEIGHT: i32 = 330;
 /// Largest number of values that are drawn as points on the line.
-const POINTED: usize = 150;
+const MAX_DRAWN_POINTS: usize = 150;
 /// Ratio of greatest to least value above which classes are logarithmic [-].
-const BY_DECADES: f64 = 1000.0;
+const LOG_CLASS_RATIO: f64 = 1000.0;
 
 /// Unit of an axis; the keys contain their units.
-const PLAIN: Unit = Unit { factor: 1.0, name: "" };
+const AXIS_UNIT: Unit = Unit { factor: 1.0, name: "" };
 
 /// Kinds of points without a result.
-const WITHOUT: [(Status, Ink, &str); 2] =
-    [(Status::Diverged, Ink::Limit, "diverged"), (Status::Refused, Ink::Reference, "no such joint")];
+const FAILURE_INKS: [(Status, Ink, &str); 2] =
+    [(Status::Diverged, Ink::Limit, "diverged"), (Status::Refused, Ink::Reference, "invalid joint")];
 
 /// Pictures of one figure, and the number of maps that are not shown.
 pub struct MetricPictures {
@@ -58,7 +58,7 @@ pub fn over_one_axis(table: &SweepTable<'_>) -> Option<Figure> {
 }
 
 /// Maps of a column over the two longest axes; the first one on the command line is horizontal.
-pub fn of(table: &SweepTable<'_>, column: usize) -> MetricPictures {
+pub fn metric_pictures(table: &SweepTable<'_>, column: usize) -> MetricPictures {
     let order = by_length(table);
     let other = order.get(1).copied().unwrap_or(order[0]);
     maps(table, column, order[0].min(other), order[0].max(other))
@@ -69,7 +69,7 @@ fn lines(table: &SweepTable<'_>, column: usize, axis: &NumberedAxis<'_>) -> Pane
     let metric = table.metrics[column];
     let values = &table.values[column];
     let mut points: Vec<(f64, f64)> =
-        (0..values.len()).map(|point| (axis.values[axis.place(point)], values[point])).collect();
+        (0..values.len()).map(|point| (axis.values[axis.index(point)], values[point])).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let finite: Vec<(f64, f64)> = points.iter().copied().filter(|point| point.1.is_finite()).collect();
     let (low, high) = finite
@@ -79,7 +79,7 @@ fn lines(table: &SweepTable<'_>, column: usize, axis: &NumberedAxis<'_>) -> Pane
     if !is_class(metric) {
         marks.push(line(points, Ink::First, ""));
     }
-    if finite.len() <= POINTED || is_class(metric) {
+    if finite.len() <= MAX_DRAWN_POINTS || is_class(metric) {
         marks.push(Mark::Points { points: finite, ink: Ink::First, label: String::new(), size: 4.5 });
     }
     marks.extend(strips(table, axis, (low, high)));
@@ -93,7 +93,7 @@ fn strips(table: &SweepTable<'_>, axis: &NumberedAxis<'_>, (low, high): (f64, f6
     let strip = |(status, ink, label): (Status, Ink, &str)| {
         let mut cells: Vec<usize> = (0..table.status.len())
             .filter(|point| table.status[*point] == status)
-            .map(|point| axis.cell(axis.place(point)))
+            .map(|point| axis.cell(axis.index(point)))
             .collect();
         cells.sort_unstable();
         let mut boxes: Vec<[f64; 4]> = Vec::new();
@@ -107,7 +107,7 @@ fn strips(table: &SweepTable<'_>, axis: &NumberedAxis<'_>, (low, high): (f64, f6
         let label = format!("{label}: {} of {} points", cells.len(), table.status.len());
         (!boxes.is_empty()).then_some(Mark::Boxes { boxes, ink, label })
     };
-    WITHOUT.into_iter().filter_map(strip).collect()
+    FAILURE_INKS.into_iter().filter_map(strip).collect()
 }
 
 /// Maps over two axes, one for every value of the others.
@@ -116,16 +116,16 @@ fn maps(table: &SweepTable<'_>, column: usize, across: usize, up: usize) -> Metr
     let scale = Scale::of(metric, &table.values[column]);
     let others: Vec<usize> = (0..table.axes.len()).filter(|axis| ![across, up].contains(axis)).collect();
     let [wide, high] = [across, up].map(|axis| &table.axes[axis]);
-    let group = [wide.words.len().div_ceil(CELLS[0]), high.words.len().div_ceil(CELLS[1])];
+    let group = [wide.words.len().div_ceil(MAX_CELLS[0]), high.words.len().div_ceil(MAX_CELLS[1])];
     let all: usize = others.iter().map(|axis| table.axes[*axis].words.len()).product();
-    let mut cells = vec![Map::new(wide, high, group); all.min(MAPS)];
+    let mut cells = vec![Map::new(wide, high, group); all.min(MAX_MAPS)];
     for point in 0..table.status.len() {
         let number = others.iter().fold(0, |number, axis| {
             let axis = &table.axes[*axis];
-            number * axis.words.len() + axis.place(point)
+            number * axis.words.len() + axis.index(point)
         });
         if let Some(map) = cells.get_mut(number) {
-            map.add(wide.cell(wide.place(point)), high.cell(high.place(point)), table, column, point);
+            map.add(wide.cell(wide.index(point)), high.cell(high.index(point)), table, column, point);
         }
     }
     let figures = cells.iter().enumerate().map(|(number, map)| {
@@ -140,9 +140,9 @@ fn maps(table: &SweepTable<'_>, column: usize, across: usize, up: usize) -> Metr
         let unit = unit(metric).name;
         let in_unit = if unit.is_empty() { String::new() } else { format!("in {unit}") };
         let panel = Panel {
-            title: if high.by_place { format!("{in_unit} {}", places(high)) } else { in_unit },
-            unit: PLAIN,
-            height: MAP,
+            title: if high.by_index { format!("{in_unit} {}", places(high)) } else { in_unit },
+            unit: AXIS_UNIT,
+            height: MAP_HEIGHT,
             marks: map.marks(&scale, wide, high),
             axis: VerticalAxis::Named(high.key.to_owned()),
         };
@@ -152,7 +152,7 @@ fn maps(table: &SweepTable<'_>, column: usize, across: usize, up: usize) -> Metr
     });
     MetricPictures {
         figures: figures.collect(),
-        left_out: all.saturating_sub(MAPS),
+        left_out: all.saturating_sub(MAX_MAPS),
         points_a_cell: group[0] * group[1],
     }
 }
@@ -198,7 +198,7 @@ impl Map {
             edges
         });
         let kind = |cell: &Cell| match cell.without {
-            Some(status) => WITHOUT.iter().position(|(known, ..)| *known == status).map(Kind::Without),
+            Some(status) => FAILURE_INKS.iter().position(|(known, ..)| *known == status).map(Kind::Without),
             None if cell.count == 0 => None,
             None => Some(Kind::Class(scale.class(cell.sum / cell.count as f64))),
         };
@@ -220,7 +220,7 @@ impl Map {
             ink: scale.ink(class),
             label: scale.label(class),
         });
-        let without = WITHOUT.iter().enumerate().map(|(place, (_, ink, label))| Mark::Boxes {
+        let without = FAILURE_INKS.iter().enumerate().map(|(place, (_, ink, label))| Mark::Boxes {
             boxes: of(Kind::Without(place)),
             ink: *ink,
             label: (*label).to_owned(),
@@ -261,7 +261,7 @@ impl Scale {
         }
         let count = CLASSES.len() as f64;
         let share = |class: usize| class as f64 / count;
-        let end = |class: usize| match low > 0.0 && high / low > BY_DECADES {
+        let end = |class: usize| match low > 0.0 && high / low > LOG_CLASS_RATIO {
             true => low * (high / low).powf(share(class)),
             false => low + (high - low) * share(class),
         };
@@ -328,8 +328,8 @@ pub fn unit(metric: Metric) -> Unit {
 }
 
 fn picture(title: String, axis: &NumberedAxis<'_>, panels: Vec<Panel>, range: (f64, f64)) -> Figure {
-    let note = if axis.by_place { places(axis) } else { String::new() };
-    Figure { note, ..Figure::new(title, axis.key, PLAIN, range, panels) }
+    let note = if axis.by_index { places(axis) } else { String::new() };
+    Figure { note, ..Figure::new(title, axis.key, AXIS_UNIT, range, panels) }
 }
 
 /// Legend of the places on an axis without numbers.
@@ -343,7 +343,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn classes_hold_every_value_from_the_least_to_the_greatest() {
+    fn classes_cover_the_range() {
         for values in [vec![3.0, 11.0, 5.5], vec![1e-3, 1.0, 10.0], vec![-2.0, 6.0, 0.0]] {
             let scale = Scale::of(Metric::PeakForceN, &values);
             assert_eq!(scale.classes(), CLASSES.len());
@@ -356,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn few_whole_numbers_are_classes_of_their_own() {
+    fn few_integers_get_own_classes() {
         let scale = Scale::of(Metric::Period, &[0.0, 3.0, 1.0, 3.0, f64::NAN]);
         assert_eq!((0..scale.classes()).map(|class| scale.label(class)).collect::<Vec<_>>(), ["0", "1", "3"]);
         assert_eq!([scale.ink(0), scale.ink(2)], [CLASSES[0], CLASSES[7]]);

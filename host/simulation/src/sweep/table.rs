@@ -26,7 +26,7 @@ pub struct NumberedAxis<'g> {
     /// Values as numbers; indices from 1 if a value is not a number, or if the values are not monotonic.
     pub values: Vec<f64>,
     /// True if the values are indices.
-    pub by_place: bool,
+    pub by_index: bool,
     /// Points from one value to the next.
     stride: u64,
 }
@@ -51,13 +51,13 @@ impl<'g> NumberedAxis<'g> {
             values.windows(2).all(|pair| pair[0] < pair[1]) || values.windows(2).all(|pair| pair[0] > pair[1])
         };
         let numbers = numbers.filter(in_order);
-        let by_place = numbers.is_none();
+        let by_index = numbers.is_none();
         let values = numbers.unwrap_or_else(|| (1..=words.len()).map(|place| place as f64).collect());
-        Self { key, words, values, by_place, stride }
+        Self { key, words, values, by_index, stride }
     }
 
     /// Index of a point on this axis.
-    pub fn place(&self, point: usize) -> usize {
+    pub fn index(&self, point: usize) -> usize {
         point / self.stride as usize % self.words.len()
     }
 
@@ -85,7 +85,7 @@ impl<'g> NumberedAxis<'g> {
 
 impl<'g> SweepTable<'g> {
     /// Table from the rows of a result.
-    pub fn of(manifest: &'g Manifest, grid: &'g Grid, points: &Points) -> Self {
+    pub fn from_points(manifest: &'g Manifest, grid: &'g Grid, points: &Points) -> Self {
         let mut stride = grid.points;
         let axes = grid.axes.iter().map(|axis| {
             stride /= axis.values.len() as u64;
@@ -114,18 +114,18 @@ impl<'g> SweepTable<'g> {
     }
 
     /// Position of a point as text: keys by their last part, if it is unique.
-    pub fn place_of(&self, point: usize) -> String {
+    pub fn position_text(&self, point: usize) -> String {
         let last = |key: &'g str| key.rsplit('.').next().unwrap_or(key);
         let name = |key: &'g str| {
             let alone = self.axes.iter().filter(|axis| last(axis.key) == last(key)).count() == 1;
             if alone { last(key) } else { key }
         };
-        let axis = |axis: &NumberedAxis<'g>| format!("{} = {}", name(axis.key), axis.words[axis.place(point)]);
+        let axis = |axis: &NumberedAxis<'g>| format!("{} = {}", name(axis.key), axis.words[axis.index(point)]);
         self.axes.iter().map(axis).collect::<Vec<_>>().join(", ")
     }
 
     /// Points of the least and the greatest value of a column.
-    pub fn ends(&self, column: usize) -> Option<[usize; 2]> {
+    pub fn extremes(&self, column: usize) -> Option<[usize; 2]> {
         let values = &self.values[column];
         let finite = || (0..values.len()).filter(|point| values[*point].is_finite());
         let least = finite().min_by(|a, b| values[*a].total_cmp(&values[*b]))?;
@@ -139,14 +139,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn edges_lie_half_way_between_values_whichever_way_they_run() {
+    fn edges_lie_halfway_between_values() {
         let words: Vec<String> = ["30", "10", "0"].map(str::to_owned).to_vec();
         let axis = NumberedAxis::of("a", &words, 1);
         assert_eq!(axis.edges(), [-5.0, 5.0, 20.0, 40.0]);
         assert_eq!([0, 1, 2].map(|place| axis.cell(place)), [2, 1, 0]);
         let words: Vec<String> = ["sharp", "tanh"].map(str::to_owned).to_vec();
         let axis = NumberedAxis::of("a", &words, 1);
-        assert!(axis.by_place);
+        assert!(axis.by_index);
         assert_eq!(axis.edges(), [0.5, 1.5, 2.5]);
     }
 }

@@ -71,7 +71,7 @@ impl Work<'_> {
                     });
                 });
             });
-            let kept = keep(&receiver, journal, progress);
+            let kept = store(&receiver, journal, progress);
             stop.store(true, Ordering::Relaxed);
             kept
         })
@@ -84,7 +84,7 @@ impl Work<'_> {
 }
 
 /// Writes finished points to the journal, all available ones at a time.
-fn keep(
+fn store(
     receiver: &mpsc::Receiver<(u64, metrics::PointResult)>,
     journal: &mut Journal,
     progress: &Progress,

@@ -130,14 +130,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_figure_that_is_not_a_number_fails_every_bound() {
+    fn nan_fails_every_bound() {
         for bound in [Bound::AtMost(1.0), Bound::AtLeast(1.0), Bound::Exactly(1.0)] {
             assert_eq!(Check::judge("error", f64::NAN, "%", bound, Source::Host).verdict, Verdict::Failed);
         }
     }
 
     #[test]
-    fn the_bound_itself_is_still_within() {
+    fn bound_itself_passes() {
         assert_eq!(Check::judge("overruns", 0.0, "", Bound::Exactly(0.0), Source::Board).verdict, Verdict::Passed);
         assert_eq!(Check::judge("error", 1.0, "%", Bound::AtMost(1.0), Source::Host).verdict, Verdict::Passed);
         assert_eq!(Check::judge("steps", 1e5, "", Bound::AtLeast(1e5), Source::Host).verdict, Verdict::Passed);
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_figure_without_a_bound_is_only_reported() {
+    fn unbounded_figure_is_reported() {
         assert_eq!(Check::judge("idle", 40.0, "%", Bound::None, Source::Board).verdict, Verdict::Reported);
     }
 }

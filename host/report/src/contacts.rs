@@ -22,11 +22,11 @@ pub enum Contact {
 }
 
 /// Largest number of strips across the picture; more could not be distinguished.
-const COLUMNS: usize = 400;
+const MAX_STRIPS: usize = 400;
 /// Resolution of the shown shares, so that equal neighbours can be merged.
-const STEPS: f64 = 10.0;
+const SHARE_STEPS: f64 = 10.0;
 /// Coloured share of a row's height [-].
-const FILLED: f64 = 0.78;
+const ROW_FILL: f64 = 0.78;
 
 /// States from the bottom of a strip upwards.
 const STATES: [(Contact, Ink, &str); 3] = [
@@ -75,11 +75,11 @@ pub fn panel(times: &[f64], contact: &[Vec<Contact>], range: (f64, f64)) -> Pane
     let rows = contact.len();
     let mut boxes = STATES.map(|_| Vec::new());
     for (mesh, states) in contact.iter().enumerate() {
-        let bottom = (rows - 1 - mesh) as f64 + 0.5 * (1.0 - FILLED);
+        let bottom = (rows - 1 - mesh) as f64 + 0.5 * (1.0 - ROW_FILL);
         for (from, to, shares) in strips(times, states, range) {
             let mut level = bottom;
             for (share, boxes) in shares.iter().zip(&mut boxes) {
-                let height = share * FILLED;
+                let height = share * ROW_FILL;
                 if height > 0.0 {
                     boxes.push([from, to, level, level + height]);
                 }
@@ -116,7 +116,7 @@ pub fn mesh_name(mesh: usize, meshes: usize) -> String {
 
 /// Start, end and the share of each of [`STATES`]; equal neighbours are merged.
 fn strips(times: &[f64], states: &[Contact], range: (f64, f64)) -> Vec<(f64, f64, [f64; 3])> {
-    let width = (range.1 - range.0) / COLUMNS as f64;
+    let width = (range.1 - range.0) / MAX_STRIPS as f64;
     let inside: Vec<(f64, Contact)> = times
         .iter()
         .copied()
@@ -130,8 +130,8 @@ fn strips(times: &[f64], states: &[Contact], range: (f64, f64)) -> Vec<(f64, f64
         let to = group[group.len() - 1].0;
         let share =
             |state: Contact| group.iter().filter(|sample| sample.1 == state).count() as f64 / group.len() as f64;
-        let drive = (STEPS * share(Contact::DriveSide)).round() / STEPS;
-        let back = (STEPS * share(Contact::BackSide)).round() / STEPS;
+        let drive = (SHARE_STEPS * share(Contact::DriveSide)).round() / SHARE_STEPS;
+        let back = (SHARE_STEPS * share(Contact::BackSide)).round() / SHARE_STEPS;
         let shares = [drive, (1.0 - drive - back).max(0.0), back.min(1.0 - drive)];
         match strips.last_mut() {
             Some(last) if last.2 == shares => last.1 = to,
@@ -147,7 +147,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn equal_neighbours_are_one_strip() {
+    fn equal_neighbours_merge_into_one_strip() {
         let times: Vec<f64> = (0..1000).map(f64::from).collect();
         let states: Vec<Contact> =
             (0..1000).map(|i| if i < 500 { Contact::DriveSide } else { Contact::BackSide }).collect();
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn a_strip_of_many_samples_shows_shares() {
+    fn strip_of_many_samples_shows_shares() {
         let times: Vec<f64> = (0..4000).map(f64::from).collect();
         let states: Vec<Contact> =
             (0..4000).map(|i| if i % 2 == 0 { Contact::Separated } else { Contact::DriveSide }).collect();
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn meshes_are_counted_from_one() {
+    fn mesh_numbers_start_at_one() {
         assert_eq!(mesh_name(0, 6), "sun–planet 1");
         assert_eq!(mesh_name(5, 6), "ring–planet 3");
     }

@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn controls_and_directions_are_shown_by_their_code() {
+    fn control_characters_are_escaped() {
         for (text, shown) in [
             ("\u{1b}[31mred", "\\u{1b}[31mred"),
             ("a\rb\u{7f}\u{8}\u{0}", "a\\u{d}b\\u{7f}\\u{8}\\u{0}"),
@@ -73,14 +73,14 @@ mod tests {
     }
 
     #[test]
-    fn letters_line_ends_and_tabs_stay() {
+    fn letters_newlines_and_tabs_stay() {
         let text = "Getriebe für µm\tΔθ\r\n中文 🙂 é\n";
         assert!(is_plain(text));
         assert_eq!(escaped(text), text);
     }
 
     #[test]
-    fn places_follow_their_letters() {
+    fn positions_follow_escaped_letters() {
         let text = "a\u{9b}\u{1b}b\r\nc\u{202e}d";
         let shown = escaped(text);
         for (place, letter) in text.char_indices() {
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn json_keeps_its_meaning() {
+    fn escaped_json_keeps_its_value() {
         let value = serde_json::json!({ "title": "\u{1b}[31m \u{9b} \u{202e} µ" });
         let text = value.to_string();
         let shown = escaped_json(&text);

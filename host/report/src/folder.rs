@@ -13,11 +13,11 @@ use crate::own_files::{OwnFiles, Owner, Writers};
 use crate::write::{is_standard_output, record_into, unwritten, write_with};
 
 /// Default folder of results, below the working folder.
-const USUAL: &str = "joint-out";
+const RESULTS_FOLDER: &str = "joint-out";
 
 /// Default folder of results of a kind, such as those of a command for a joint.
 pub fn usual(kind: &str, name: &str) -> PathBuf {
-    Path::new(USUAL).join(kind).join(file_part(name))
+    Path::new(RESULTS_FOLDER).join(kind).join(file_part(name))
 }
 
 /// Output folder of a run.
@@ -118,7 +118,7 @@ impl Folder {
                 continue;
             }
             let path = self.file(&name);
-            fs::remove_file(&path).map_err(|error| unread(&path, &error))?;
+            fs::remove_file(&path).map_err(|error| read_error(&path, &error))?;
         }
         Ok(())
     }
@@ -149,29 +149,29 @@ impl Folder {
             Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {
                 return Ok(Vec::new());
             }
-            entries => entries.map_err(|error| unread(&folder, &error))?,
+            entries => entries.map_err(|error| read_error(&folder, &error))?,
         };
         let mut names = Vec::new();
         for entry in entries {
-            let name = inner.join(entry.map_err(|error| unread(&folder, &error))?.file_name());
-            names.extend(name.to_str().filter(|name| is_of(files, name)).map(str::to_owned));
+            let name = inner.join(entry.map_err(|error| read_error(&folder, &error))?.file_name());
+            names.extend(name.to_str().filter(|name| matches_pattern(files, name)).map(str::to_owned));
         }
         names.sort();
         Ok(names)
     }
 
     fn is_announced(&self, name: &str) -> bool {
-        self.files.iter().any(|files| is_of(files, name))
+        self.files.iter().any(|files| matches_pattern(files, name))
     }
 }
 
 /// Returns true if a name matches a pattern with at most one `*`.
-fn is_of(files: &str, name: &str) -> bool {
+fn matches_pattern(files: &str, name: &str) -> bool {
     let Some((before, behind)) = files.split_once('*') else { return files == name };
     name.len() >= before.len() + behind.len() && name.starts_with(before) && name.ends_with(behind)
 }
 
-fn unread(path: &Path, error: &io::Error) -> Failure {
+fn read_error(path: &Path, error: &io::Error) -> Failure {
     Failure::new(format!("cannot prepare {}: {error}", path.display()))
         .with_help("see that it may be read and written, or name another folder by --out DIR")
 }
@@ -234,7 +234,7 @@ mod tests {
     const REPORT: &str = "report.html";
 
     #[test]
-    fn a_folder_that_cannot_be_is_found_before_the_run() {
+    fn impossible_folder_fails_before_the_run() {
         for folder in ["/dev/full/x", "/proc/x", "/dev/null"] {
             let failure =
                 Folder::prepare(Some(Path::new(folder)), "hil", "Q1", &[REPORT]).expect_err("cannot be written");
@@ -244,8 +244,9 @@ mod tests {
         }
     }
 
+    /// Files that joint has not written, or that changed since, are never overwritten.
     #[test]
-    fn what_somebody_else_has_written_or_changed_is_not_written_over() {
+    fn foreign_and_changed_files_are_kept() {
         let folder = tempfile::tempdir().expect("a folder");
         let choose = || Folder::choose(Some(folder.path()), "sim", "Q1", &[REPORT, "runs/*.mcap"]);
         let refused = |name: &str, words: &str| {
@@ -271,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn what_earlier_runs_left_is_removed_and_nothing_else() {
+    fn only_files_of_earlier_runs_are_removed() {
         let folder = tempfile::tempdir().expect("a folder");
         let prepare = || Folder::prepare(Some(folder.path()), "hil", "Q1", &["*.mcap"]).expect("of ours");
         prepare().write_text("old.mcap", "1").expect("room");
@@ -285,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn two_runs_do_not_write_to_one_folder_at_once() {
+    fn folder_has_one_writer() {
         let folder = tempfile::tempdir().expect("a folder");
         let choose = || Folder::choose(Some(folder.path()), "sim", "Q1", &[REPORT]).expect("of ours");
         let (one, other) = (choose(), choose());
@@ -301,13 +302,13 @@ mod tests {
     }
 
     #[test]
-    fn results_go_below_the_folder_that_the_user_works_in() {
+    fn default_folder_is_below_working_folder() {
         assert_eq!(usual("hil/tests", "Q1 b"), Path::new("joint-out/hil/tests/q1-b"));
     }
 
     #[test]
     #[cfg(unix)]
-    fn a_link_or_a_folder_in_place_of_a_file_is_not_written_over() {
+    fn link_or_folder_is_not_overwritten() {
         let folder = tempfile::tempdir().expect("a folder");
         let report = folder.path().join(REPORT);
         let choose = || Folder::choose(Some(folder.path()), "sim", "Q1", &[REPORT]);
@@ -319,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_has_grown_takes_its_name_and_leaves_none() {
+    fn grown_file_is_renamed() {
         let folder = tempfile::tempdir().expect("a folder");
         let prepare = || Folder::prepare(Some(folder.path()), "sim", "Q1", &["part.csv", "whole.csv"]);
         for _ in 0..2 {
@@ -337,15 +338,16 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_cannot_be_written_is_found_before_the_run() {
+    fn unwritable_file_fails_before_the_run() {
         let folder = tempfile::tempdir().expect("a folder");
         let refused = |file: &Path| check_file("json", file, &[]).expect_err("no file").message().contains("--json");
         assert!(refused(&folder.path().join("none/out.json")) && refused(folder.path()));
         assert!(check_file("json", Path::new("out.json"), &[]).is_ok());
     }
 
+    /// A file that is read is never overwritten, whichever path names it.
     #[test]
-    fn what_is_read_is_not_written_over_whatever_it_is_called() {
+    fn input_file_is_not_overwritten() {
         let folder = tempfile::tempdir().expect("a folder");
         let input = folder.path().join("in.toml");
         fs::write(&input, "").expect("a file");
@@ -358,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn two_options_do_not_share_a_file() {
+    fn options_do_not_share_a_file() {
         let [one, other] = ["a.json", "b.xml"].map(|name| Some(Path::new(name)));
         assert!(check_files(&[("json", one), ("junit", other)], &[]).is_ok());
         let failure = check_files(&[("json", one), ("junit", one)], &[]).expect_err("the same file");
@@ -370,7 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn a_joints_name_makes_a_folder() {
+    fn joint_name_becomes_file_name() {
         assert_eq!(file_part("Q1 (b 0.5)"), "q1--b-0-5-");
     }
 }

@@ -20,9 +20,11 @@ pub fn preset<T>(file: &Path, with_name: impl FnOnce(&str) -> Option<T>) -> Opti
     let found = with_name(name)?;
     let beside = format!("{name}.toml");
     match (file.is_file(), Path::new(&beside).is_file()) {
-        (true, _) => say_once(format!("note: `{name}` is the file of that name in this folder, not the preset {name}")),
+        (true, _) => {
+            remark_once(format!("note: `{name}` is the file of that name in this folder, not the preset {name}"))
+        }
         (false, true) => {
-            say_once(format!(
+            remark_once(format!(
                 "note: `{name}` is the preset of that name, not the file {beside} in this folder: name that ./{beside}"
             ));
         }
@@ -32,7 +34,7 @@ pub fn preset<T>(file: &Path, with_name: impl FnOnce(&str) -> Option<T>) -> Opti
 }
 
 /// Prints a remark once, though a command may look up a file several times.
-fn say_once(remark: String) {
+fn remark_once(remark: String) {
     static SAID: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
     let mut said = SAID.lock().unwrap_or_else(PoisonError::into_inner);
     if !said.contains(&remark) {
@@ -44,7 +46,7 @@ fn say_once(remark: String) {
 /// Reads a file; the error is the reason.
 pub fn bytes(path: &Path, largest: u64) -> Result<Vec<u8>, String> {
     let read = || {
-        if let Some(kind) = not_a_file(fs::metadata(path)?.file_type()) {
+        if let Some(kind) = special_file(fs::metadata(path)?.file_type()) {
             return Ok(Err(kind.to_owned()));
         }
         let file = File::open(path)?;
@@ -55,13 +57,13 @@ pub fn bytes(path: &Path, largest: u64) -> Result<Vec<u8>, String> {
             file.take(largest + 1).read_to_end(&mut bytes)?;
         }
         let fits = known.len() <= largest && bytes.len() as u64 <= largest;
-        Ok(if fits { Ok(bytes) } else { Err(format!("it is larger than {}", in_words(largest))) })
+        Ok(if fits { Ok(bytes) } else { Err(format!("it is larger than {}", size_in_words(largest))) })
     };
     read().unwrap_or_else(|error: std::io::Error| Err(error.to_string()))
 }
 
 /// Returns the kind of a path that is not a regular file, with the remedy.
-fn not_a_file(kind: FileType) -> Option<&'static str> {
+fn special_file(kind: FileType) -> Option<&'static str> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::FileTypeExt;
@@ -87,7 +89,7 @@ pub fn text(path: &Path, largest: u64) -> Result<String, String> {
     String::from_utf8(bytes(path, largest)?).map_err(|_| "it is not text (UTF-8)".to_owned())
 }
 
-fn in_words(bytes: u64) -> String {
+fn size_in_words(bytes: u64) -> String {
     match (bytes >> 30, bytes >> 20) {
         (0, 0) => format!("{bytes} bytes"),
         (0, mega) => format!("{mega} MB"),
@@ -100,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_more_is_read_than_the_stated_size() {
+    fn oversized_file_is_rejected() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("file");
         std::fs::write(&path, "12345678").expect("room");
@@ -114,7 +116,7 @@ mod tests {
 
     #[test]
     #[cfg(unix)]
-    fn what_is_not_a_regular_file_is_refused_before_it_is_opened() {
+    fn special_file_is_rejected_unopened() {
         let folder = tempfile::tempdir().expect("a folder");
         let pipe = folder.path().join("pipe");
         let made = std::process::Command::new("mkfifo").arg(&pipe).status().expect("`mkfifo` is there");

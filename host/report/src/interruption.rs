@@ -10,12 +10,12 @@ use crate::failure::{EXIT_INTERRUPTED, Failure, Outcome};
 
 /// Time after which the process ends if no work must finish in order. Users do not notice a delay of 0.2 s; the
 /// remainder is for a busy machine to schedule this process.
-const PATIENCE: Duration = Duration::from_millis(80);
+const EXIT_DELAY: Duration = Duration::from_millis(80);
 /// Interval of the checks for work that must finish in order.
-const LOOK: Duration = Duration::from_millis(5);
+const CHECK_INTERVAL: Duration = Duration::from_millis(5);
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
-static IN_ORDER: AtomicUsize = AtomicUsize::new(0);
+static ORDERLY_TASKS: AtomicUsize = AtomicUsize::new(0);
 static WATCH: OnceLock<Result<(), String>> = OnceLock::new();
 
 /// Installs the signal handler, once for the process.
@@ -25,7 +25,7 @@ pub fn watch() -> Outcome<()> {
             if INTERRUPTED.swap(true, Ordering::SeqCst) {
                 std::process::exit(EXIT_INTERRUPTED.into());
             }
-            thread::spawn(end_what_does_not_listen);
+            thread::spawn(exit_when_idle);
         })
         .map_err(|error| error.to_string())
     };
@@ -46,26 +46,26 @@ pub struct InOrder(());
 impl InOrder {
     /// Starts the marked work.
     pub fn begin() -> Self {
-        IN_ORDER.fetch_add(1, Ordering::SeqCst);
+        ORDERLY_TASKS.fetch_add(1, Ordering::SeqCst);
         Self(())
     }
 }
 
 impl Drop for InOrder {
     fn drop(&mut self) {
-        IN_ORDER.fetch_sub(1, Ordering::SeqCst);
+        ORDERLY_TASKS.fetch_sub(1, Ordering::SeqCst);
     }
 }
 
 /// Ends the process once no marked work has been active for a while. Reading, fitting and drawing leave no partial
 /// results, so their loops, here or in a library, need no checks.
-fn end_what_does_not_listen() {
+fn exit_when_idle() {
     // Measured by the clock: on a busy machine a sleep takes longer than requested.
-    let mut unheard_since = Instant::now();
-    while unheard_since.elapsed() < PATIENCE {
-        thread::sleep(LOOK);
-        if IN_ORDER.load(Ordering::SeqCst) > 0 {
-            unheard_since = Instant::now();
+    let mut idle_since = Instant::now();
+    while idle_since.elapsed() < EXIT_DELAY {
+        thread::sleep(CHECK_INTERVAL);
+        if ORDERLY_TASKS.load(Ordering::SeqCst) > 0 {
+            idle_since = Instant::now();
         }
     }
     Failure::interrupted("stopped by the user").show();

@@ -10,11 +10,11 @@ use mcap::write::NoSeek;
 use mcap::{Compression, McapError, WriteOptions, Writer};
 
 /// Size of a chunk before compression [bytes]: the largest loss in a crash.
-const CHUNK: u64 = 128 << 10;
+const CHUNK_BYTES: u64 = 128 << 10;
 /// Name of the metadata with the origin of a log.
 pub const REMARKS: &str = "joint";
 /// Header of a message in CDR: little endian.
-const HEAD: [u8; 4] = [0, 1, 0, 0];
+const CDR_HEADER: [u8; 4] = [0, 1, 0, 0];
 
 /// A log with any number of topics.
 pub struct Log<W: Write> {
@@ -33,7 +33,7 @@ impl<W: Write> Log<W> {
     pub fn begin(out: W, remarks: BTreeMap<String, String>) -> io::Result<Self> {
         let options = WriteOptions::new()
             .compression(Some(Compression::Zstd))
-            .chunk_size(Some(CHUNK))
+            .chunk_size(Some(CHUNK_BYTES))
             .library(concat!("joint ", env!("CARGO_PKG_VERSION")))
             .disable_seeking(true);
         let mut writer = Writer::with_options(NoSeek::new(out), options).map_err(cause)?;
@@ -109,7 +109,7 @@ pub struct Message(Vec<u8>);
 
 impl Default for Message {
     fn default() -> Self {
-        Self(HEAD.to_vec())
+        Self(CDR_HEADER.to_vec())
     }
 }
 
@@ -162,7 +162,7 @@ impl Message {
 
     /// Pads to a multiple of a size, counted after the header.
     fn align(&mut self, size: usize) {
-        self.0.resize(HEAD.len() + (self.0.len() - HEAD.len()).next_multiple_of(size), 0);
+        self.0.resize(CDR_HEADER.len() + (self.0.len() - CDR_HEADER.len()).next_multiple_of(size), 0);
     }
 }
 
@@ -176,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_stand_on_multiples_of_their_sizes() {
+    fn values_are_aligned_to_their_size() {
         let mut message = Message::default();
         message.words(["ab", "c"].into_iter());
         message.number(1.0);
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_those_of_csv_in_the_letters_of_ros() {
+    fn field_names_follow_ros_rules() {
         assert_eq!(field("float64", "drive_torque_Nm", "[N m]"), "float64 drive_torque_nm  # [N m]\n");
     }
 }

@@ -145,7 +145,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_page_reads_well() {
+    fn page_numbers_are_grouped() {
         assert_eq!(
             [0.0, 120_000.0, -3.0, 0.123_456, 14.0 / 3.0, 1.5e-9, -0.5, 1e8].map(|value| PAGE.write(value)),
             ["0", "120\u{202f}000", "\u{2212}3", "0.1235", "4.667", "1.500e\u{2212}9", "\u{2212}0.5", "1.000e8"]
@@ -154,14 +154,14 @@ mod tests {
     }
 
     #[test]
-    fn a_terminal_keeps_four_digits_at_most() {
+    fn terminal_keeps_four_digits() {
         let figures = [0.0, 100_000.0, 12.345_67, 0.001_234_5, 4321.9, 0.25].map(|value| TERMINAL.write(value));
         assert_eq!(figures, ["0", "100000", "12.35", "1.23e-3", "4322", "0.2500"]);
         assert_eq!(TERMINAL.write(f64::NAN), "NaN");
     }
 
     #[test]
-    fn estimates_and_data_sheets_keep_all_their_digits() {
+    fn estimates_keep_trailing_zeros() {
         assert_eq!([0.0, 40.0, 1e5, 1e-4].map(|value| ESTIMATE.write(value)), ["0", "40.00", "1.000e5", "1.000e-4"]);
         assert_eq!([0.0, 40.0, 1e6, 1e-4].map(|v| DATA_SHEET.write(v)), ["0", "40.000", "1.0000e6", "0.00010000"]);
         assert_eq!([0.0, 0.012_34].map(|value| SCIENTIFIC.write(value)), ["0.0e0", "1.2e-2"]);
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_told_as_one_would_type_them() {
+    fn typed_numbers_are_exact() {
         let told = [0.0, -1.0, 0.25, 1e308, 1e-300, f64::NAN].map(|value| TYPED.write(value));
         assert_eq!(told, ["0", "-1", "0.25", "1e308", "1e-300", "NaN"]);
     }

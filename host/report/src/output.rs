@@ -16,7 +16,7 @@ use crate::folder;
 use crate::write::{is_standard_output, record_into, write_record, write_text};
 
 /// Verdicts that are printed in red.
-const BAD: [&str; 3] = ["FAILED", "BROKEN", "NOT RUN"];
+const FAILURE_WORDS: [&str; 3] = ["FAILED", "BROKEN", "NOT RUN"];
 /// Escape sequences for bold red and for its end.
 const RED: &str = "\u{1b}[1;31m";
 const PLAIN: &str = "\u{1b}[0m";
@@ -55,7 +55,7 @@ pub fn on<'t>(stream: &impl RawStream, text: &'t str) -> Cow<'t, str> {
 
 /// Colours bad verdicts at the beginning of a line.
 fn with_failures_in_red(text: &str) -> String {
-    let line = |line: &str| match BAD.iter().find(|word| line.starts_with(**word)) {
+    let line = |line: &str| match FAILURE_WORDS.iter().find(|word| line.starts_with(**word)) {
         Some(word) => format!("{RED}{word}{PLAIN}{}", &line[word.len()..]),
         None => line.to_owned(),
     };
@@ -118,7 +118,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bad_verdicts_are_red_and_nothing_else_is() {
+    fn only_failures_are_red() {
         let shown = with_failures_in_red("ok       a\nFAILED   b FAILED\n         FAILED\nBROKEN   c\n");
         let red = |word: &str| format!("\u{1b}[1;31m{word}\u{1b}[0m");
         assert_eq!(

@@ -24,7 +24,7 @@ pub const LINE: f64 = 1.4;
 /// Width of a line below another one [px].
 pub const BROAD: f64 = 4.0;
 /// Distance of lines that cannot be distinguished, over the greatest value [-].
-const ALIKE: f64 = 0.01;
+const SAME_LINE_DISTANCE: f64 = 0.01;
 
 /// Points of a line, SI.
 pub type Points = Vec<(f64, f64)>;
@@ -98,24 +98,24 @@ pub fn deflections(kinds: [(Vec<Points>, &[f64]); 2]) -> Vec<Panel> {
 /// One line for each planet, or a single line if they cannot be distinguished at the scale of the greatest value.
 pub fn planets(lines: Vec<Points>, most: f64) -> Vec<Mark> {
     let planets = lines.len();
-    let together = alike(&lines, ALIKE * most);
+    let coincide = lines_coincide(&lines, SAME_LINE_DISTANCE * most);
     let mark = |(planet, points): (usize, Points)| {
         let label = if planets == 1 {
             String::new()
-        } else if together {
+        } else if coincide {
             format!("all {planets} planets, alike")
         } else {
             format!("planet {}", planet + 1)
         };
         // Lines may cover one another: lower ones are wider, so that they stay visible.
-        let width = LINE + if together { 0.0 } else { (planets - 1 - planet) as f64 };
+        let width = LINE + if coincide { 0.0 } else { (planets - 1 - planet) as f64 };
         Mark::line(points, LINES[planet % LINES.len()], label, width)
     };
-    lines.into_iter().enumerate().take(if together { 1 } else { planets }).map(mark).collect()
+    lines.into_iter().enumerate().take(if coincide { 1 } else { planets }).map(mark).collect()
 }
 
 /// Returns true if all lines agree within a distance.
-fn alike(lines: &[Points], distance: f64) -> bool {
+fn lines_coincide(lines: &[Points], distance: f64) -> bool {
     let near = |a: &(f64, f64), b: &(f64, f64)| (a.1 - b.1).abs() <= distance;
     lines.len() > 1 && lines.iter().all(|line| line.iter().zip(&lines[0]).all(|(a, b)| near(a, b)))
 }
@@ -125,13 +125,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_that_differ_anywhere_are_not_alike() {
+    fn differing_lines_do_not_coincide() {
         let line: Points = (0..10).map(|i| (f64::from(i), f64::from(i))).collect();
         let mut other = line.clone();
         other[7].1 += 0.5;
-        assert!(alike(&[line.clone(), other.clone()], 0.6));
-        assert!(!alike(&[line.clone(), other.clone()], 0.4));
+        assert!(lines_coincide(&[line.clone(), other.clone()], 0.6));
+        assert!(!lines_coincide(&[line.clone(), other.clone()], 0.4));
         other[7].1 = f64::NAN;
-        assert!(!alike(&[line, other], 0.6));
+        assert!(!lines_coincide(&[line, other], 0.6));
     }
 }

@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_goes_on_by_its_units_until_it_is_cleared() {
+    fn run_counts_units_until_cleared() {
         let progress = Progress::new();
         progress.at(3);
         assert_eq!(stands(&progress), None, "nothing is under way yet");
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stage_takes_the_place_of_the_one_before() {
+    fn stage_replaces_previous_stage() {
         let progress = Progress::new();
         progress.run("running", 10_u32);
         progress.at(5);
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn work_ends_without_a_line() {
+    fn finished_work_leaves_no_line() {
         let left = Progress::during(|progress| {
             progress.run("running", 10_u32);
             Ok(progress.bar().clone())

@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn seeds_are_one_or_from_one_to_another() {
+    fn seeds_parse_number_or_range() {
         let read = |text: &str| text.parse::<Seeds>().map(|seeds| (seeds.first, seeds.last));
         assert_eq!(read("7"), Ok((7, 7)));
         assert_eq!(read("201-400"), Ok((201, 400)));

@@ -24,9 +24,9 @@ pub enum Mean {
 }
 
 /// Half the width of the main lobe of Hann's window [lines].
-const LOBE: usize = 2;
+const HALF_LOBE: usize = 2;
 /// Least number of samples of a spectrum.
-const LEAST: usize = 16;
+const MIN_SAMPLES: usize = 16;
 
 /// Amplitudes of the sines with these lines, from frequency zero to half the sampling rate; line k lies at k cycles in
 /// the whole signal. Empty for fewer than two samples.
@@ -69,7 +69,7 @@ impl Spectrum {
     /// Spectrum of samples at `rate` [Hz]; `None` with too few samples, or if one is not finite.
     pub fn of(samples: &[f64], rate: f64) -> Option<Self> {
         let count = samples.len();
-        if count < LEAST || samples.iter().any(|sample| !sample.is_finite()) {
+        if count < MIN_SAMPLES || samples.iter().any(|sample| !sample.is_finite()) {
             return None;
         }
         let mut amplitudes = amplitudes(samples, Window::Hann, Mean::Weighted);
@@ -83,12 +83,12 @@ impl Spectrum {
     /// Root of the power outside a frequency over the root of the power at it; `None` if the samples cannot resolve it.
     pub fn beside(&self, frequency: f64) -> Option<f64> {
         let place = (frequency / self.step).round() as usize;
-        if place <= 2 * LOBE || place + LOBE >= self.amplitudes.len() {
+        if place <= 2 * HALF_LOBE || place + HALF_LOBE >= self.amplitudes.len() {
             return None;
         }
         let power = |from: usize, to: usize| self.amplitudes[from..to].iter().map(|a| a * a).sum::<f64>();
-        let own = power(place - LOBE, place + LOBE + 1);
-        let all = power(LOBE + 1, self.amplitudes.len());
+        let own = power(place - HALF_LOBE, place + HALF_LOBE + 1);
+        let all = power(HALF_LOBE + 1, self.amplitudes.len());
         (own > 0.0).then(|| ((all - own).max(0.0) / own).sqrt())
     }
 
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn whole_cycles_have_their_amplitudes_and_nothing_else() {
+    fn whole_cycles_give_exact_amplitudes() {
         // 300 samples of 10 ms: three lines a hertz.
         for (line, amplitude) in amplitudes(&sines(300), Window::Rectangular, Mean::Plain).into_iter().enumerate() {
             let expected = match line {
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn hanns_window_keeps_amplitudes_and_contains_leaks() {
+    fn hann_window_limits_leakage() {
         let lines = amplitudes(&sines(1024), Window::Hann, Mean::Plain);
         let near = |at: f64| {
             let within = |line: usize| (line as f64 / 10.24 - at).abs() < 0.2;
@@ -141,13 +141,13 @@ mod tests {
     }
 
     #[test]
-    fn nothing_gives_nothing() {
+    fn empty_signal_has_no_amplitudes() {
         assert!(amplitudes(&[], Window::Hann, Mean::Plain).is_empty());
         assert!(amplitudes(&[1.0], Window::Hann, Mean::Plain).is_empty());
     }
 
     #[test]
-    fn a_sine_has_its_amplitude_at_its_frequency() {
+    fn sine_peaks_at_its_frequency() {
         let spectrum = Spectrum::of(&samples(|t| 7.0 + 3.0 * (TAU * 50.0 * t).sin()), 1000.0).expect("long enough");
         let (frequency, amplitude) = spectrum.greatest();
         assert!((frequency - 50.0).abs() < 0.2 && (amplitude - 3.0).abs() < 1e-9, "{frequency} Hz, {amplitude}");
@@ -155,14 +155,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_beside_the_mesh_frequency_is_told_by_its_power() {
+    fn ratio_beside_frequency_follows_power() {
         let wave = |t: f64| (TAU * 60.0 * t).sin() + 2.0 * (TAU * 20.0 * t).sin();
         let beside = Spectrum::of(&samples(wave), 1000.0).and_then(|spectrum| spectrum.beside(60.0));
         assert!(beside.is_some_and(|beside| (beside - 2.0).abs() < 1e-6), "{beside:?}");
     }
 
     #[test]
-    fn too_few_samples_or_a_motion_that_diverged_have_no_spectrum() {
+    fn short_or_diverged_signal_has_no_spectrum() {
         assert!(Spectrum::of(&[1.0; 8], 1000.0).is_none());
         assert!(Spectrum::of(&[f64::NAN; 100], 1000.0).is_none());
     }

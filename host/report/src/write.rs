@@ -161,8 +161,9 @@ pub fn unwritten(path: &Path, source: &io::Error) -> Failure {
 mod tests {
     use super::*;
 
+    /// The temporary file of a killed process is removed, that of a running process stays.
     #[test]
-    fn what_a_killed_process_left_is_removed_and_what_another_is_writing_is_not() {
+    fn only_stale_temporaries_are_removed() {
         let folder = tempfile::tempdir().expect("a folder");
         let target = folder.path().join("a.json");
         let make = |name: &str| File::create(folder.path().join(name)).expect("room");
@@ -179,7 +180,7 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn a_full_disk_is_named_and_so_is_the_mend() {
+    fn full_disk_error_names_remedy() {
         // A short text stays in the buffer: the failure comes only when it is flushed.
         let full = File::options().write(true).open("/dev/full").expect("Linux has a device that is always full");
         let source = fill_whole(full, |file| file.write_all(b"{}")).expect_err("it is full");

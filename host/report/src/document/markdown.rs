@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_for_pages_is_left_out() {
+    fn page_only_blocks_are_omitted() {
         let blocks = vec![Block::Only(PAGES, vec![Block::Lead("only there".into())]), Block::Lead("here".into())];
         assert_eq!(markdown(&Document { blocks, ..Document::default() }, Medium::Markdown), "here\n");
     }

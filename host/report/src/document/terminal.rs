@@ -8,13 +8,13 @@ use crate::checks::{Check, Source, Verdict};
 use crate::number::TERMINAL;
 
 /// Width of the column of verdicts.
-const VERDICTS: usize = 8;
+const VERDICT_WIDTH: usize = 8;
 /// Least width of the column of names below a heading, so that sheets of one kind look alike.
-const NAMES: usize = 28;
+const MIN_NAME_WIDTH: usize = 28;
 /// Width of a line of sentences.
-const LINE: usize = 120;
+const LINE_WIDTH: usize = 120;
 /// Gap between two columns.
-const GAP: &str = "  ";
+const COLUMN_GAP: &str = "  ";
 
 /// Text of a document, ending with a newline.
 pub fn terminal(document: &Document) -> String {
@@ -99,7 +99,7 @@ impl Page {
     fn sentences(&mut self, text: &str) {
         let mut line = String::new();
         for word in text.split_whitespace() {
-            if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > LINE {
+            if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > LINE_WIDTH {
                 self.line(&std::mem::take(&mut line));
             }
             if !line.is_empty() {
@@ -130,9 +130,10 @@ impl Page {
             Block::Lead(text) => self.sentences(&plain(text)),
             Block::Notice(notice) => self.notice(notice),
             Block::Facts(rows) => {
-                let (indent, width) = if self.headed { (GAP, self.names.max(NAMES)) } else { ("", self.names) };
+                let (indent, width) =
+                    if self.headed { (COLUMN_GAP, self.names.max(MIN_NAME_WIDTH)) } else { ("", self.names) };
                 for (name, value) in rows {
-                    self.line(&format!("{indent}{:width$}{GAP}{}", plain(name), plain(value)));
+                    self.line(&format!("{indent}{:width$}{COLUMN_GAP}{}", plain(name), plain(value)));
                 }
             }
             Block::Table(table) => {
@@ -141,7 +142,7 @@ impl Page {
                 self.blank();
             }
             Block::Checks(table) => self.text.push_str(&checks(table)),
-            Block::Again(command) => self.line(&format!("{:VERDICTS$} {command}", "again:")),
+            Block::Again(command) => self.line(&format!("{:VERDICT_WIDTH$} {command}", "again:")),
             Block::List(items) => items.iter().for_each(|item| self.line(&format!("- {}", plain(item)))),
             Block::Details(part) => {
                 self.blank();
@@ -174,14 +175,14 @@ impl Page {
         let line = match notice.text.0.as_slice() {
             [word @ Span::Strong(_), rest @ ..] => {
                 let rest: String = rest.iter().map(span).collect();
-                format!("{:VERDICTS$} {}", span(word), rest.trim_start())
+                format!("{:VERDICT_WIDTH$} {}", span(word), rest.trim_start())
             }
             all => all.iter().map(span).collect(),
         };
         self.line(&line);
         for block in &notice.more {
             match block {
-                Block::Paragraph(text) => self.line(&format!("{:VERDICTS$} {}", "", plain(text))),
+                Block::Paragraph(text) => self.line(&format!("{:VERDICT_WIDTH$} {}", "", plain(text))),
                 other => self.block(other),
             }
         }
@@ -202,7 +203,7 @@ impl Page {
         let line = |cells: &[String]| {
             let places = widths.iter().zip(&shown).map(|(width, (_, column))| (column.align, *width));
             let cells = cells.iter().zip(places).map(|(cell, (align, width))| align.placed(cell, width));
-            cells.collect::<Vec<_>>().join(GAP)
+            cells.collect::<Vec<_>>().join(COLUMN_GAP)
         };
         self.line(&line(&heads));
         for cells in &rows {
@@ -223,7 +224,7 @@ pub(super) fn checks(table: &Checks) -> String {
         // Writing to a string cannot fail.
         let _ = write!(
             text,
-            "{:VERDICTS$} {:width$}  {figure:>10} {:2} {:18}{}",
+            "{:VERDICT_WIDTH$} {:width$}  {figure:>10} {:2} {:18}{}",
             verdict(check.verdict),
             check.name,
             check.unit,
@@ -232,7 +233,7 @@ pub(super) fn checks(table: &Checks) -> String {
         );
         text.truncate(text.trim_end().len());
         if !check.note.is_empty() && check.verdict != Verdict::Passed {
-            let _ = write!(text, "\n{:VERDICTS$} {:4}{}", "", "", check.note);
+            let _ = write!(text, "\n{:VERDICT_WIDTH$} {:4}{}", "", "", check.note);
         }
         text.push('\n');
     }
@@ -265,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_of_a_check_shows_verdict_figure_bound_and_why_it_failed() {
+    fn check_line_shows_figure_bound_and_reason() {
         let good = Check::judge("overruns", 0.0, "", Bound::Exactly(0.0), Source::Board).note("fine");
         let bad = Check::judge("lateness", 61.25, "us", Bound::AtMost(50.0), Source::Board).note("too late");
         let checks = |checks, emulated| shown(vec![Block::Checks(Checks { checks, emulated, keys: false })]);
@@ -280,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_line_up_and_a_wide_cell_goes_over_all_that_are_left() {
+    fn wide_cell_spans_remaining_columns() {
         let wide = crate::document::blocks::Row { spans: true, ..row(["b", "not to be had from this log"]) };
         let rows = vec![row([text("a long name"), number(1.5), text("µm")]), wide];
         let shown = shown(vec![table(vec![words("what"), numbers("found"), words("unit")], rows)]);
@@ -291,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn facts_stand_below_their_heading() {
+    fn facts_follow_their_heading() {
         let one = section_everywhere("Gears", vec![facts([("planets", "3"), ("ratio", "6")])]);
         let other = section_everywhere("Masses", vec![facts([("link", text("M") + sub("c"))])]);
         assert_eq!(
@@ -301,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn the_word_before_a_notice_stands_in_the_column_of_verdicts() {
+    fn notice_word_aligns_with_verdicts() {
         let broken = crate::document::blocks::bad_notice(strong("BROKEN") + " the board fell silent");
         assert_eq!(
             shown(vec![broken, Block::Again("joint hil".into())]),

@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 /// Least number of equal neighbours that are merged.
-const LEAST: usize = 8;
+const MIN_RUN: usize = 8;
 
 /// Position of a rectangle, and the attributes that a path shares.
 struct Rectangle<'a> {
@@ -24,7 +24,7 @@ pub fn compact(svg: &str) -> String {
     };
     for run in lines.chunk_by(same) {
         match &run[0].1 {
-            Some(first) if run.len() >= LEAST => {
+            Some(first) if run.len() >= MIN_RUN => {
                 let [width, height, colour] = first.alike;
                 // Writing to a string cannot fail.
                 let _ = write!(text, "<path fill=\"{colour}\" d=\"");
@@ -67,18 +67,19 @@ mod tests {
     }
 
     #[test]
-    fn a_run_of_equal_rectangles_is_one_path() {
-        let text = compact(&(spots(LEAST) + "<text/>\n"));
+    fn equal_rectangles_become_one_path() {
+        let text = compact(&(spots(MIN_RUN) + "<text/>\n"));
         assert!(text.starts_with("<path fill=\"#FF0000\" d=\"M0 2h3v4h-3zM1 2h3"), "{text}");
         assert!(text.ends_with("<text/>\n"), "{text}");
         assert!(!text.contains("<rect"), "{text}");
     }
 
     #[test]
-    fn a_few_rectangles_and_other_forms_stay() {
-        let few = spots(LEAST - 1);
+    fn few_rectangles_and_other_shapes_stay() {
+        let few = spots(MIN_RUN - 1);
         assert_eq!(compact(&few), few);
-        let outlined = "<rect x=\"1\" y=\"2\" width=\"3\" height=\"4\" fill=\"none\" stroke=\"red\"/>\n".repeat(LEAST);
+        let outlined =
+            "<rect x=\"1\" y=\"2\" width=\"3\" height=\"4\" fill=\"none\" stroke=\"red\"/>\n".repeat(MIN_RUN);
         assert_eq!(compact(&outlined), outlined);
     }
 }

@@ -67,7 +67,7 @@ pub const CLASSES: [Ink; 8] =
 
 /// Name, value on light ground, value on dark ground. The light values must differ, since they are the placeholders of
 /// the variables in a drawn picture.
-const TABLE: [(Ink, &str, u32, u32); 24] = [
+const INK_TABLE: [(Ink, &str, u32, u32); 24] = [
     (Ink::Text, "text", 0x1b2430, 0xe8ecf1),
     (Ink::Muted, "muted", 0x5b6776, 0x9aa7b6),
     (Ink::Axis, "axis", 0x98a3b0, 0x566272),
@@ -97,25 +97,25 @@ const TABLE: [(Ink, &str, u32, u32); 24] = [
 impl Ink {
     /// Value on light ground, for plotters.
     pub fn colour(self) -> RGBColor {
-        let (_, _, light, _) = TABLE[self.row()];
+        let (_, _, light, _) = INK_TABLE[self.table_row()];
         let [_, red, green, blue] = light.to_be_bytes();
         RGBColor(red, green, blue)
     }
 
     /// Name of the CSS variable.
     pub fn name(self) -> &'static str {
-        TABLE[self.row()].1
+        INK_TABLE[self.table_row()].1
     }
 
-    fn row(self) -> usize {
-        // The test `every_ink_has_one_row_and_its_own_value` checks that every variant has its row.
-        TABLE.iter().position(|row| row.0 == self).unwrap_or(0)
+    fn table_row(self) -> usize {
+        // The test `inks_have_distinct_values` checks that every variant has its row.
+        INK_TABLE.iter().position(|row| row.0 == self).unwrap_or(0)
     }
 }
 
 /// Replaces the light values by the variables.
 pub fn with_variables(mut svg: String) -> String {
-    for (_, name, light, _) in TABLE {
+    for (_, name, light, _) in INK_TABLE {
         svg = svg.replace(&format!("\"#{light:06X}\""), &format!("\"var(--{name})\""));
     }
     svg
@@ -125,7 +125,7 @@ pub fn with_variables(mut svg: String) -> String {
 pub fn style_sheet(root: &str) -> String {
     let mut light = String::new();
     let mut dark = String::new();
-    for (_, name, on_light, on_dark) in TABLE {
+    for (_, name, on_light, on_dark) in INK_TABLE {
         // Writing to a string cannot fail.
         let _ = write!(light, "--{name}:#{on_light:06x};");
         let _ = write!(dark, "--{name}:#{on_dark:06x};");
@@ -138,15 +138,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_ink_has_one_row_and_its_own_value() {
-        for (index, (ink, name, light, _)) in TABLE.iter().enumerate() {
+    fn inks_have_distinct_values() {
+        for (index, (ink, name, light, _)) in INK_TABLE.iter().enumerate() {
             assert_eq!(*ink as usize, index, "rows stand in the order of the variants");
-            assert!(TABLE.iter().filter(|row| row.1 == *name || row.2 == *light).count() == 1, "{name}");
+            assert!(INK_TABLE.iter().filter(|row| row.1 == *name || row.2 == *light).count() == 1, "{name}");
         }
     }
 
     #[test]
-    fn a_drawn_colour_becomes_its_variable() {
+    fn colours_become_variables() {
         assert_eq!(with_variables(r##"<a fill="#0072B2"/>"##.into()), r#"<a fill="var(--line-1)"/>"#);
     }
 }

@@ -14,9 +14,9 @@ use super::unit::{Unit, axis_range, tick_label};
 use crate::number::PAGE;
 
 /// Height of title and legend [px].
-const HEAD: i32 = 34;
+const HEAD_HEIGHT: i32 = 34;
 /// Distance between a panel and the next title [px].
-const GAP: i32 = 10;
+const PANEL_GAP: i32 = 10;
 
 /// A panel of a [`Figure`](super::Figure).
 pub struct Panel {
@@ -64,10 +64,10 @@ impl Panel {
         let horizontal = (common.across(common.range.0), common.across(common.range.1));
         let mut builder = ChartBuilder::on(area);
         builder
-            .margin_top(HEAD * FINE)
+            .margin_top(HEAD_HEIGHT * FINE)
             .margin_right(RIGHT * FINE)
             .set_label_area_size(LabelAreaPosition::Left, common.shape.left * FINE);
-        builder.set_label_area_size(LabelAreaPosition::Bottom, if last { 42 } else { GAP } * FINE);
+        builder.set_label_area_size(LabelAreaPosition::Bottom, if last { 42 } else { PANEL_GAP } * FINE);
         let (low, high) = match &self.axis {
             VerticalAxis::Rows(rows) => (0.0, rows.len() as f64),
             VerticalAxis::Decades { from, to } => (f64::from(*from), f64::from(*to)),
@@ -230,10 +230,10 @@ impl Panel {
 
     fn draw_row_names(&self, area: &Area<'_>, common: &CommonAxis<'_>) -> Drawn {
         let VerticalAxis::Rows(rows) = &self.axis else { return Ok(()) };
-        let row_height = (self.height - HEAD - GAP) / rows.len().max(1) as i32;
+        let row_height = (self.height - HEAD_HEIGHT - PANEL_GAP) / rows.len().max(1) as i32;
         let style = text_style(11, Ink::Muted, FontStyle::Normal).pos(Pos::new(HPos::Right, VPos::Center));
         for (index, row) in rows.iter().enumerate() {
-            let y = HEAD + row_height * index as i32 + row_height / 2;
+            let y = HEAD_HEIGHT + row_height * index as i32 + row_height / 2;
             area.draw(&Text::new(row.clone(), ((common.shape.left - 8) * FINE, y * FINE), style.clone()))?;
         }
         Ok(())

@@ -35,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_single_spike_survives() {
+    fn single_spike_survives() {
         let mut points: Vec<(f64, f64)> = (0..100_000).map(|i| (f64::from(i), f64::from(i % 7))).collect();
         points[54_321].1 = 99.0;
         points[54_322].1 = -99.0;
@@ -48,13 +48,13 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_breaks_the_line() {
+    fn non_finite_value_breaks_line() {
         let points = [(0.0, 1.0), (1.0, f64::NAN), (2.0, 3.0), (3.0, f64::INFINITY), (4.0, 5.0)];
         assert_eq!(thin(&points, (0.0, 4.0), 100), [vec![(0.0, 1.0)], vec![(2.0, 3.0)], vec![(4.0, 5.0)]]);
     }
 
     #[test]
-    fn nothing_gives_nothing() {
+    fn empty_line_stays_empty() {
         assert!(thin(&[], (0.0, 1.0), 100).is_empty());
         assert!(thin(&[(0.0, f64::NAN)], (0.0, 1.0), 100).is_empty());
     }

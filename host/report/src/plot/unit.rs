@@ -91,7 +91,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_range_is_never_empty() {
+    fn axis_range_is_never_empty() {
         for values in [vec![], vec![0.0], vec![3.0, 3.0], vec![f64::NAN], vec![f64::INFINITY, 1.0], vec![f64::MAX]] {
             let (low, high) = axis_range(values.iter().copied());
             assert!(low < high && low.is_finite() && high.is_finite(), "{values:?} gave {low} to {high}");
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn ticks_have_the_decimals_that_neighbours_need() {
+    fn tick_labels_differ_from_neighbours() {
         assert_eq!(tick_label(0.1 + 0.2, 1.0), "0.3");
         assert_eq!(tick_label(-1e-17, 1.0), "0");
         assert_eq!(tick_label(-0.25, 1.0), "\u{2212}0.25");

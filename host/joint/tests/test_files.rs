@@ -297,7 +297,7 @@ fn timed_out_test_fails() {
 #[test]
 fn test_file_errors_name_remedy() {
     let refused = |more: &str, words: &[&str]| run(folder().path(), more, &[]).refused(words);
-    refused("profile = \"T3\"", &["\"T3\" is no kind", "did you mean"]);
+    refused("profile = \"T3\"", &["\"T3\" is not a valid kind", "did you mean"]);
     refused("profil = \"T2\"", &["unknown key `profil`", "did you mean `profile`?", "`profile` is missing"]);
     refused("half_backlash_um = 60\nprofile = \"T2\"", &["[known] or in [plant]"]);
     refused("profile = \"T2\"\n[plant]\nhalf_backlsh_um = 60", &["did you mean `half_backlash_um`?"]);
@@ -308,9 +308,9 @@ fn test_file_errors_name_remedy() {
         "profile = \"T2\"\n[assert]\nrms_gain_over_pdi = \">= 8\"",
         &["`pdi` does not run in this test", "motor_pid"],
     );
-    refused("profile = \"T2\"\n[assert]\nrms_mrad = \"8\"", &["this is no bound"]);
+    refused("profile = \"T2\"\n[assert]\nrms_mrad = \"8\"", &["not a bound"]);
     refused("profile = \"T2\"\n[assert]\ndeviation_rms_mrad = \"<= 8\"", &["is for impedances"]);
-    refused("profile = \"T2\"\n[[fault]]\nkind = \"encoder_frozen\"\nshare = 0.1", &["`share` means nothing"]);
+    refused("profile = \"T2\"\n[[fault]]\nkind = \"encoder_frozen\"\nshare = 0.1", &["`share` has no effect"]);
     refused("profile = \"T2\"\n[[fault]]\nkind = \"lost_frames\"\nstart_s = 2", &["`share` is missing"]);
     refused("joint = \"q2\"\nprofile = \"T2\"", &["q2", "presets"]);
     refused("profile = \"T2\"\n[controller]\nrivals = [\"motor_side\"]", &["motor_side cannot run beside this"]);
@@ -332,15 +332,15 @@ fn test_file_errors_name_remedy() {
         "profile = \"T2\"\n[[fault]]\nkind = \"torque_bias\"\ntorque_N_m = nan",
         &["`torque_N_m` must be a number"],
     );
-    refused("profile = \"T2\"\n[controller]\nmode = \"motor_pid\"\nfrom_memory = true", &["motor_pid learns nothing"]);
+    refused("profile = \"T2\"\n[controller]\nmode = \"motor_pid\"\nfrom_memory = true", &["motor_pid does not learn"]);
     let late = "profile = \"T2\"\n[[fault]]\nkind = \"encoder_frozen\"\nstart_s = 1.2";
     refused(late, &["this begins when the run is over, at 1.2 s", "duration_s"]);
     refused("profile = \"T2\"\nseeds = [3, 4, 3]", &["3 is named twice"]);
     refused("profile = \"T2\"\n[controller]\nrivals = [\"motor_pid\", \"motor_pid\"]", &["motor_pid is named twice"]);
     refused("profile = \"T2\"\n[plant]\nhalf_backlash_um = \"60\"", &["\"60\" is a text", "without quotes"]);
-    refused("profile = \"T2\"\n[assert]\nrms_mrad = {}", &["nothing is asked of `rms_mrad`"]);
+    refused("profile = \"T2\"\n[assert]\nrms_mrad = {}", &["`rms_mrad` has no bound"]);
     let saturated = "profile = \"T2\"\n[[fault]]\nkind = \"torque_saturation\"\ntorque_N_m = -1";
-    refused(saturated, &["a limit of -1 N m is none"]);
+    refused(saturated, &["the torque limit of -1 N m is negative"]);
     refused("profile = \"T2\"\ntitle = \"once more\"", &["duplicate key", "leave one of the two out"]);
     for seed in ["-1", "1.5", "18446744073709551616"] {
         run(folder().path(), "profile = \"T2\"", &["--seed", seed]).refused(&["a seed is a whole number from 0 to"]);

@@ -220,7 +220,7 @@ impl Case {
 pub fn read_controller_joint(text: &str) -> Outcome<JointFile> {
     joint_file::read(text).map_err(|problems| {
         let first = problems.first().map_or_else(String::new, ToString::to_string);
-        Failure::new(format!("the joint that a controller is told cannot be: {first}"))
+        Failure::new(format!("the controller's nominal joint is not possible: {first}"))
     })
 }
 
@@ -269,7 +269,9 @@ fn apply_changes(text: &mut String, changes: &[Change], section: &str, draw: &mu
         // A problem that a later change removes is not reported.
         last = first.map(|first| last.take().unwrap_or((change.span.clone(), first.message, first.help)));
     }
-    last.map_or(Ok(()), |(span, message, help)| Err(problem(span, format!("the joint would be none: {message}"), help)))
+    last.map_or(Ok(()), |(span, message, help)| {
+        Err(problem(span, format!("the changed joint is not valid: {message}"), help))
+    })
 }
 
 fn apply_change(text: &mut String, change: &Change, section: &str, draw: &mut Draw<'_>) -> Result<(), Problem> {

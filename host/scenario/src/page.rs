@@ -220,7 +220,7 @@ fn one(tested: &FinishedTest) -> Block {
     blocks.extend(test.broken.as_ref().map(|why| alert(strong("BROKEN") + " off: " + why)));
     blocks.push(if checks.is_empty() {
         let rms = test.largest(&test.controller, "rms_mrad").map_or("–".to_owned(), |rms| fixed(3).write(rms));
-        Block::Paragraph(format!("nothing is asserted; error {rms} mrad RMS at worst").into())
+        Block::Paragraph(format!("no assertions; worst error {rms} mrad RMS").into())
     } else {
         Block::Checks(Checks { checks, emulated: false, keys: true })
     });

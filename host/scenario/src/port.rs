@@ -70,7 +70,7 @@ pub fn restart_from_memory(controller: &mut Controller<'_, f32>) -> Outcome<Memo
     controller.reset();
     controller
         .load(&memory)
-        .map_err(|error| Failure::check_failed(format!("what was learnt is not taken back: {error}")))?;
+        .map_err(|error| Failure::check_failed(format!("the saved memory is not accepted: {error}")))?;
     Ok(memory)
 }
 

@@ -104,7 +104,7 @@ pub(super) fn read(top: &Section<'_>, test: &TestTraits<'_>) -> Vec<Assertion> {
             }
             DeValue::Table(inner) => {
                 if inner.is_empty() {
-                    let message = format!("nothing is asked of `{word}`");
+                    let message = format!("`{word}` has no bound");
                     top.notes.error(value.span(), message, "write a bound, such as { median = \">= 3\" }");
                 }
                 for (aggregate, value) in inner {
@@ -166,7 +166,7 @@ fn unavailable(metric: &NamedMetric, test: &TestTraits<'_>) -> Option<(&'static 
 fn bound(value: &Spanned<DeValue<'_>>, notes: &Notes<'_>) -> Option<Bound> {
     const HELP: &str = "write a bound as a string, such as \">= 8\", \"<= 0.8\" or \"== 0\"";
     let refuse = |span: Range<usize>| -> Option<Bound> {
-        notes.error(span, "this is no bound", HELP);
+        notes.error(span, "not a bound", HELP);
         None
     };
     let DeValue::String(text) = value.get_ref() else { return refuse(value.span()) };

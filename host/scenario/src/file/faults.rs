@@ -137,7 +137,11 @@ pub(super) fn read(section: &Section<'_>) -> Option<Fault> {
             let limit = needed("torque_N_m")?;
             if limit < 0.0 {
                 let help = "write the most that the motor gives, to either side";
-                section.notes.error(section.place("torque_N_m"), format!("a limit of {limit} N m is none"), help);
+                section.notes.error(
+                    section.place("torque_N_m"),
+                    format!("the torque limit of {limit} N m is negative"),
+                    help,
+                );
             }
             FaultKind::Saturation(limit)
         }

@@ -181,7 +181,7 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
     let duration = top.or("duration_s", Section::number, profile.duration.max(settle + 1.0))?;
     if settle >= duration {
         let help = "raise `duration_s`, or lower `settle_s`: figures are taken between the two";
-        notes.error(top.place("settle_s"), format!("nothing is left of {duration} s after {settle} s"), help);
+        notes.error(top.place("settle_s"), format!("settling for {settle} s leaves no part of {duration} s"), help);
     }
     // A recorded motion has the length of its file unless the test file states a duration.
     if top.has("duration_s") || !matches!(profile.trajectory, Trajectory::File(_)) {
@@ -190,7 +190,7 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
     let from_memory = controller.or("from_memory", Section::flag, false)?;
     if let (true, Some(name)) = (from_memory, name.filter(|name| !name.is_compensation())) {
         let help = "write mode = \"preview\", \"no_preview\" or \"impedance\", or leave it out";
-        notes.error(controller.place("from_memory"), format!("{} learns nothing", name.word()), help);
+        notes.error(controller.place("from_memory"), format!("{} does not learn", name.word()), help);
     }
     Some(TestFile {
         title: top.or("title", Section::text, String::new())?,

@@ -318,7 +318,7 @@ pub(super) fn reject_unused_keys(section: &Section<'_>, known_keys: &[&str], kin
         if !known_keys.contains(&name) && super::keys::KEYS.iter().any(|key| key.name == name) {
             let known: Vec<String> = known_keys.iter().map(|name| format!("`{name}`")).collect();
             let help = format!("kind \"{kind}\" has {}", known.join(", "));
-            section.notes.error(Spanned::span(value), format!("`{name}` means nothing to \"{kind}\""), help);
+            section.notes.error(Spanned::span(value), format!("`{name}` has no effect on \"{kind}\""), help);
         }
     }
 }

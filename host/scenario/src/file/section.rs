@@ -109,7 +109,11 @@ impl<'a> Section<'a> {
                 Some(near) => format!("did you mean \"{near}\"? known: {}", words.join(", ")),
                 None => format!("{}: {}", key.hint, words.join(", ")),
             };
-            self.notes.error(value.span(), format!("\"{text}\" is no {} of {}", key.name, self.called()), help);
+            self.notes.error(
+                value.span(),
+                format!("\"{text}\" is not a valid {} of {}", key.name, self.called()),
+                help,
+            );
         }
         found
     }
@@ -133,7 +137,7 @@ impl<'a> Section<'a> {
             [low, high] if low <= high => Some(NumberOrRange::Between(*low, *high)),
             _ => {
                 let help = "write [least, greatest]: every seed draws one value between them";
-                self.notes.error(value.span(), "this is no range", help);
+                self.notes.error(value.span(), "not a range", help);
                 None
             }
         }

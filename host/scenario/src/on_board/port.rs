@@ -58,11 +58,8 @@ impl BoardPort<'_> {
         if answered.digest != self.digest || answered.shaped != own || answered.probed.map(Into::into) != answer.probed
         {
             let (there, here) = (answered.shaped.torque, own.torque);
-            let what = if there == here {
-                "what was estimated".to_owned()
-            } else {
-                format!("torque {there:e} there, {here:e} here")
-            };
+            let what =
+                if there == here { "estimates".to_owned() } else { format!("torque {there:e} there, {here:e} here") };
             return Err(Failure::check_failed(format!(
                 "board and host differ in control period {}: {what}",
                 self.tick

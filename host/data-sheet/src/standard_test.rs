@@ -43,19 +43,19 @@ pub fn measure(text: &str, lines: &mut [Line], seeds: u64, progress: &Progress) 
     };
     let test = StandardTest { text, seeds, designed: design(&test_file("").map_err(refused)?, text).map_err(refused)? };
     let of_file = test.figures("").map_err(refused)?;
-    progress.done(1);
+    progress.advance(1);
     let nothing = A_THOUSANDTH.map(|factor| test.figures(&format!("[plant]\n{CHANCE} = {{ times = {factor} }}\n")));
     let mut chance = 0.0;
     for moved in nothing {
         chance = f64::max(chance, move_of(&moved.map_err(Failure::new)?, &of_file));
     }
-    progress.done(2);
+    progress.advance(2);
     tried.into_par_iter().for_each(|line| {
         if interruption::requested() {
             return;
         }
         line.moved = Some(test.moved(line, &of_file));
-        progress.done(2);
+        progress.advance(2);
     });
     match interruption::requested() {
         true => Err(Failure::interrupted("stopped by the user")),

@@ -106,7 +106,7 @@ pub fn build(arguments: &Image, board: &Board) -> Outcome<image::Image> {
     let (parameters, role) = (&loaded.file.parameters, arguments.role);
     let rate = arguments.rate.unwrap_or_else(|| role.default_rate(parameters, board));
     let progress = Progress::new();
-    let say = |line: &str| progress.say(line);
+    let say = |line: &str| progress.print_message(line);
     let predicted = role.predict(parameters, board, rate);
     if !predicted.has_room() {
         say(&format!("predicted for {}, from {ORIGIN}: {predicted}; building anyway", board.name()));

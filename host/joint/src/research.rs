@@ -24,10 +24,12 @@ pub struct Arguments {
 pub fn run(package: &str, rest: &[OsString]) -> Outcome<()> {
     // Ctrl-C reaches the program as well, which ends in order; this process waits for it.
     interruption::watch()?;
-    let _in_order = interruption::InOrder::begin();
+    let _uninterrupted = interruption::UninterruptedWork::begin();
     let progress = Progress::new();
     progress.stage(&format!("building {package}"));
-    let built = tool::follow(&mut cargo("build", package), &format!("building {package}"), &|line| progress.say(line));
+    let built = tool::follow(&mut cargo("build", package), &format!("building {package}"), &|line| {
+        progress.print_message(line)
+    });
     progress.clear();
     interruption::explain(built)?;
     let status = cargo("run", package)

@@ -345,8 +345,8 @@ fn test_file_errors_name_remedy() {
     for seed in ["-1", "1.5", "18446744073709551616"] {
         run(folder().path(), "profile = \"T2\"", &["--seed", seed]).refused(&["a seed is a whole number from 0 to"]);
     }
-    run(folder().path(), "profile = \"T2\"", &["--seed", "9-8"]).refused(&["no seed is from 9 to 8"]);
-    run(folder().path(), "profile = \"T2\"", &["--seed", "1-10001"]).refused(&["10000 seeds are the most"]);
+    run(folder().path(), "profile = \"T2\"", &["--seed", "9-8"]).refused(&["the range of seeds 9-8 is empty"]);
+    run(folder().path(), "profile = \"T2\"", &["--seed", "1-10001"]).refused(&["at most 10000 seeds are possible"]);
     for bound in ["{ all_but_percent = 5 }", "{ bound = \"<= 1\", all_but_percent = 100 }"] {
         let wanted = ["takes a bound and a part of the seeds in percent", "all_but_percent = 0.5"];
         refused(&format!("profile = \"T2\"\n[assert]\nrms_mrad = {bound}"), &wanted);

@@ -79,7 +79,7 @@ impl Bound {
     }
 
     /// Sign and value of the bound, if there is one.
-    pub fn in_signs(self) -> Option<(&'static str, f64)> {
+    pub fn sign_and_value(self) -> Option<(&'static str, f64)> {
         match self {
             Self::AtMost(bound) => Some(("≤", bound)),
             Self::AtLeast(bound) => Some(("≥", bound)),
@@ -91,7 +91,7 @@ impl Bound {
 
 impl Check {
     /// Check whose verdict follows from figure and bound.
-    pub fn judge(name: impl Into<String>, figure: f64, unit: impl Into<String>, bound: Bound, source: Source) -> Self {
+    pub fn new(name: impl Into<String>, figure: f64, unit: impl Into<String>, bound: Bound, source: Source) -> Self {
         let verdict = match bound {
             Bound::None => Verdict::Reported,
             _ if bound.holds(figure) => Verdict::Passed,
@@ -132,20 +132,20 @@ mod tests {
     #[test]
     fn nan_fails_every_bound() {
         for bound in [Bound::AtMost(1.0), Bound::AtLeast(1.0), Bound::Exactly(1.0)] {
-            assert_eq!(Check::judge("error", f64::NAN, "%", bound, Source::Host).verdict, Verdict::Failed);
+            assert_eq!(Check::new("error", f64::NAN, "%", bound, Source::Host).verdict, Verdict::Failed);
         }
     }
 
     #[test]
     fn bound_itself_passes() {
-        assert_eq!(Check::judge("overruns", 0.0, "", Bound::Exactly(0.0), Source::Board).verdict, Verdict::Passed);
-        assert_eq!(Check::judge("error", 1.0, "%", Bound::AtMost(1.0), Source::Host).verdict, Verdict::Passed);
-        assert_eq!(Check::judge("steps", 1e5, "", Bound::AtLeast(1e5), Source::Host).verdict, Verdict::Passed);
-        assert_eq!(Check::judge("error", 1.01, "%", Bound::AtMost(1.0), Source::Host).verdict, Verdict::Failed);
+        assert_eq!(Check::new("overruns", 0.0, "", Bound::Exactly(0.0), Source::Board).verdict, Verdict::Passed);
+        assert_eq!(Check::new("error", 1.0, "%", Bound::AtMost(1.0), Source::Host).verdict, Verdict::Passed);
+        assert_eq!(Check::new("steps", 1e5, "", Bound::AtLeast(1e5), Source::Host).verdict, Verdict::Passed);
+        assert_eq!(Check::new("error", 1.01, "%", Bound::AtMost(1.0), Source::Host).verdict, Verdict::Failed);
     }
 
     #[test]
     fn unbounded_figure_is_reported() {
-        assert_eq!(Check::judge("idle", 40.0, "%", Bound::None, Source::Board).verdict, Verdict::Reported);
+        assert_eq!(Check::new("idle", 40.0, "%", Bound::None, Source::Board).verdict, Verdict::Reported);
     }
 }

@@ -9,7 +9,7 @@ use clap::{ArgMatches, Command};
 
 use crate::escape::{escaped, is_plain};
 use crate::failure::{EXIT_BAD_INPUT, Outcome};
-use crate::interruption::InOrder;
+use crate::interruption::UninterruptedWork;
 use crate::output;
 
 /// Parses the command line by `command`, runs the program and turns the outcome into an exit code; prints a failure.
@@ -27,7 +27,7 @@ pub fn main<T>(
         }
     };
     let outcome = run(&asked);
-    let _in_order = InOrder::begin();
+    let _uninterrupted = UninterruptedWork::begin();
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {

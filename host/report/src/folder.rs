@@ -8,15 +8,15 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
-use crate::interruption::InOrder;
+use crate::interruption::UninterruptedWork;
 use crate::own_files::{OwnFiles, Owner, Writers};
-use crate::write::{is_standard_output, record_into, unwritten, write_with};
+use crate::write::{is_standard_output, record_into, write_failure, write_with};
 
 /// Default folder of results, below the working folder.
 const RESULTS_FOLDER: &str = "joint-out";
 
 /// Default folder of results of a kind, such as those of a command for a joint.
-pub fn usual(kind: &str, name: &str) -> PathBuf {
+pub fn default_folder(kind: &str, name: &str) -> PathBuf {
     Path::new(RESULTS_FOLDER).join(kind).join(file_part(name))
 }
 
@@ -29,10 +29,10 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// Chooses the folder for `files`, each name with at most one `*`; the default is [`usual`]. Rejects a folder in
+    /// Chooses the folder for `files`, each name with at most one `*`; the default is [`default_folder`]. Rejects a folder in
     /// which one of these files was not written by a command, since it would be lost. Writes nothing.
     pub fn choose(wanted: Option<&Path>, kind: &str, joint: &str, files: &'static [&'static str]) -> Outcome<Self> {
-        let path = wanted.map_or_else(|| usual(kind, joint), Path::to_owned);
+        let path = wanted.map_or_else(|| default_folder(kind, joint), Path::to_owned);
         let folder = Self { own: OwnFiles::read(&path)?, path, files };
         folder.refuse_foreign()?;
         Ok(folder)
@@ -97,16 +97,16 @@ impl Folder {
     pub fn grow(&self, name: &str) -> Outcome<File> {
         debug_assert!(self.is_announced(name), "{name} was not looked for before the run");
         let path = self.file(name);
-        self.own.claim_growing(name).and_then(|()| File::create(&path)).map_err(|error| unwritten(&path, &error))
+        self.own.claim_growing(name).and_then(|()| File::create(&path)).map_err(|error| write_failure(&path, &error))
     }
 
     /// Renames a file that has finished growing; returns its path.
     pub fn keep(&self, grown: &str, name: &str) -> Outcome<PathBuf> {
         debug_assert!(self.is_announced(name), "{name} was not looked for before the run");
-        let _in_order = InOrder::begin();
+        let _uninterrupted = UninterruptedWork::begin();
         let (from, to) = (self.file(grown), self.file(name));
         let kept = self.own.claim(name, &from).and_then(|()| fs::rename(&from, &to));
-        kept.and_then(|()| self.own.end_growing(grown)).map_err(|error| unwritten(&to, &error))?;
+        kept.and_then(|()| self.own.end_growing(grown)).map_err(|error| write_failure(&to, &error))?;
         Ok(to)
     }
 
@@ -173,7 +173,7 @@ fn matches_pattern(files: &str, name: &str) -> bool {
 
 fn read_error(path: &Path, error: &io::Error) -> Failure {
     Failure::new(format!("cannot prepare {}: {error}", path.display()))
-        .with_help("see that it may be read and written, or name another folder by --out DIR")
+        .with_help("make it readable and writable, or name another folder by --out DIR")
 }
 
 /// Creates a folder that `--out` names.
@@ -209,7 +209,7 @@ pub fn check_files(wanted: &[(&str, Option<&Path>)], read: &[&Path]) -> Outcome<
     let files = wanted.iter().filter_map(|(option, file)| Some((*option, (*file)?)));
     let (out, files): (Vec<_>, Vec<_>) = files.partition(|(_, file)| is_standard_output(file));
     if let Some((option, _)) = out.iter().find(|(option, _)| *option != "json") {
-        return Err(Failure::new(format!("--{option} -: only JSON can be had on standard output"))
+        return Err(Failure::new(format!("--{option} -: only JSON can be written to standard output"))
             .with_help("name a file; one whose name begins with a dash is ./-"));
     }
     for (place, (option, file)) in files.iter().enumerate() {
@@ -303,7 +303,7 @@ mod tests {
 
     #[test]
     fn default_folder_is_below_working_folder() {
-        assert_eq!(usual("hil/tests", "Q1 b"), Path::new("joint-out/hil/tests/q1-b"));
+        assert_eq!(default_folder("hil/tests", "Q1 b"), Path::new("joint-out/hil/tests/q1-b"));
     }
 
     #[test]

@@ -41,9 +41,9 @@ pub fn requested() -> bool {
 /// this type exists; the work itself checks [`requested`].
 #[derive(Debug)]
 #[must_use = "the process waits for as long as this lives"]
-pub struct InOrder(());
+pub struct UninterruptedWork(());
 
-impl InOrder {
+impl UninterruptedWork {
     /// Starts the marked work.
     pub fn begin() -> Self {
         ORDERLY_TASKS.fetch_add(1, Ordering::SeqCst);
@@ -51,7 +51,7 @@ impl InOrder {
     }
 }
 
-impl Drop for InOrder {
+impl Drop for UninterruptedWork {
     fn drop(&mut self) {
         ORDERLY_TASKS.fetch_sub(1, Ordering::SeqCst);
     }

@@ -12,7 +12,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use sha2::{Digest, Sha256};
 
 use crate::failure::{Failure, Outcome};
-use crate::write::{locked, try_to_write, unwritten};
+use crate::write::{locked, try_to_write, write_failure};
 
 /// Name of the list, hidden since it is no result.
 pub const LIST_NAME: &str = ".written-by-joint";
@@ -67,7 +67,7 @@ impl OwnFiles {
     pub fn read(folder: &Path) -> Outcome<Self> {
         let text = read_list(&folder.join(LIST_NAME)).map_err(|error| list_error(folder, &error))?;
         if !is_partial_header(&text) && !has_header(&text) {
-            return Err(list_error(folder, &"it is of somebody else"));
+            return Err(list_error(folder, &"joint has not written it"));
         }
         Ok(Self { folder: folder.to_owned(), list: Mutex::new(List::parse(&text)) })
     }
@@ -91,7 +91,7 @@ impl OwnFiles {
             }
             Ok(Some((lock, text)))
         };
-        let opened = open().map_err(|error: io::Error| unwritten(&path, &error))?;
+        let opened = open().map_err(|error: io::Error| write_failure(&path, &error))?;
         let Some((lock, text)) = opened else {
             return Err(Failure::new(format!("another run is writing to {}", self.folder.display()))
                 .with_help("let it finish, or name another folder by --out DIR"));
@@ -221,7 +221,7 @@ fn digest(path: &Path) -> io::Result<String> {
 
 fn list_error(folder: &Path, why: &dyn std::fmt::Display) -> Failure {
     let list = folder.join(LIST_NAME);
-    Failure::new(format!("cannot tell whose files these are by {}: {why}", list.display()))
+    Failure::new(format!("cannot read {}, the list of files that joint has written: {why}", list.display()))
         .with_help("name another folder by --out DIR, or move this file elsewhere; it is left as it is")
 }
 

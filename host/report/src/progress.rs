@@ -74,21 +74,21 @@ impl Progress {
     }
 
     /// Sets the number of finished units.
-    pub fn at(&self, units: u32) {
+    pub fn set_position(&self, units: u32) {
         if let Some(bar) = &*self.bar() {
             bar.set_position(units.into());
         }
     }
 
     /// Adds finished units.
-    pub fn done(&self, units: u64) {
+    pub fn advance(&self, units: u64) {
         if let Some(bar) = &*self.bar() {
             bar.inc(units);
         }
     }
 
     /// Prints a line above the progress line, on a terminal only.
-    pub fn say_above(&self, line: &str) {
+    pub fn print_above(&self, line: &str) {
         if let Some(bar) = self.bar().as_ref().filter(|bar| !bar.is_hidden()) {
             bar.println(crate::output::on(&std::io::stderr(), line));
         }
@@ -96,7 +96,7 @@ impl Progress {
 
     /// Prints a message of a stage. The program's own messages stay; output of other programs only passes through the
     /// progress line.
-    pub fn say(&self, line: &str) {
+    pub fn print_message(&self, line: &str) {
         let line = &*escaped(line);
         let own = line.starts_with(|first: char| first.is_ascii_lowercase()) && !line.starts_with("warning");
         match &*self.bar() {
@@ -145,14 +145,14 @@ mod tests {
     #[test]
     fn run_counts_units_until_cleared() {
         let progress = Progress::new();
-        progress.at(3);
+        progress.set_position(3);
         assert_eq!(stands(&progress), None, "nothing is under way yet");
         progress.run("running", 10_u32);
-        progress.at(5);
-        progress.done(2);
+        progress.set_position(5);
+        progress.advance(2);
         assert_eq!(stands(&progress), Some((7, Some(10))));
         progress.clear();
-        progress.at(6);
+        progress.set_position(6);
         assert_eq!(stands(&progress), None);
     }
 
@@ -160,7 +160,7 @@ mod tests {
     fn stage_replaces_previous_stage() {
         let progress = Progress::new();
         progress.run("running", 10_u32);
-        progress.at(5);
+        progress.set_position(5);
         progress.stage("building");
         assert_eq!(stands(&progress), Some((0, None)), "a stage of unknown length");
         let bar = progress.bar().clone();

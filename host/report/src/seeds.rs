@@ -14,7 +14,7 @@ pub struct Seeds {
 }
 
 /// Largest number of seeds of a run; more are likely a typing error.
-pub const MOST_SEEDS: u64 = 10_000;
+pub const MAX_SEEDS: u64 = 10_000;
 
 impl Seeds {
     /// All seeds in order.
@@ -33,8 +33,8 @@ impl FromStr for Seeds {
             return Err(format!("a seed is a whole number from 0 to {}, several are written as 1-200", u64::MAX));
         };
         match last {
-            last if last < first => Err(format!("no seed is from {first} to {last}")),
-            last if last - first >= MOST_SEEDS => Err(format!("{MOST_SEEDS} seeds are the most")),
+            last if last < first => Err(format!("the range of seeds {first}-{last} is empty")),
+            last if last - first >= MAX_SEEDS => Err(format!("at most {MAX_SEEDS} seeds are possible")),
             last => Ok(Self { first, last }),
         }
     }

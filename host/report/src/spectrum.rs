@@ -67,7 +67,7 @@ pub struct Spectrum {
 
 impl Spectrum {
     /// Spectrum of samples at `rate` [Hz]; `None` with too few samples, or if one is not finite.
-    pub fn of(samples: &[f64], rate: f64) -> Option<Self> {
+    pub fn new(samples: &[f64], rate: f64) -> Option<Self> {
         let count = samples.len();
         if count < MIN_SAMPLES || samples.iter().any(|sample| !sample.is_finite()) {
             return None;
@@ -81,7 +81,7 @@ impl Spectrum {
     }
 
     /// Root of the power outside a frequency over the root of the power at it; `None` if the samples cannot resolve it.
-    pub fn beside(&self, frequency: f64) -> Option<f64> {
+    pub fn non_fundamental_ratio(&self, frequency: f64) -> Option<f64> {
         let place = (frequency / self.step).round() as usize;
         if place <= 2 * HALF_LOBE || place + HALF_LOBE >= self.amplitudes.len() {
             return None;
@@ -148,22 +148,22 @@ mod tests {
 
     #[test]
     fn sine_peaks_at_its_frequency() {
-        let spectrum = Spectrum::of(&samples(|t| 7.0 + 3.0 * (TAU * 50.0 * t).sin()), 1000.0).expect("long enough");
+        let spectrum = Spectrum::new(&samples(|t| 7.0 + 3.0 * (TAU * 50.0 * t).sin()), 1000.0).expect("long enough");
         let (frequency, amplitude) = spectrum.greatest();
         assert!((frequency - 50.0).abs() < 0.2 && (amplitude - 3.0).abs() < 1e-9, "{frequency} Hz, {amplitude}");
-        assert!(spectrum.beside(50.0).is_some_and(|rest| rest < 1e-9));
+        assert!(spectrum.non_fundamental_ratio(50.0).is_some_and(|rest| rest < 1e-9));
     }
 
     #[test]
     fn ratio_beside_frequency_follows_power() {
         let wave = |t: f64| (TAU * 60.0 * t).sin() + 2.0 * (TAU * 20.0 * t).sin();
-        let beside = Spectrum::of(&samples(wave), 1000.0).and_then(|spectrum| spectrum.beside(60.0));
+        let beside = Spectrum::new(&samples(wave), 1000.0).and_then(|spectrum| spectrum.non_fundamental_ratio(60.0));
         assert!(beside.is_some_and(|beside| (beside - 2.0).abs() < 1e-6), "{beside:?}");
     }
 
     #[test]
     fn short_or_diverged_signal_has_no_spectrum() {
-        assert!(Spectrum::of(&[1.0; 8], 1000.0).is_none());
-        assert!(Spectrum::of(&[f64::NAN; 100], 1000.0).is_none());
+        assert!(Spectrum::new(&[1.0; 8], 1000.0).is_none());
+        assert!(Spectrum::new(&[f64::NAN; 100], 1000.0).is_none());
     }
 }

@@ -9,7 +9,7 @@ use std::time::Duration;
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
-use crate::interruption::InOrder;
+use crate::interruption::UninterruptedWork;
 
 /// Returns true if a path stands for standard output.
 pub fn is_standard_output(file: &Path) -> bool {
@@ -44,7 +44,7 @@ pub(crate) fn write_with(
     ready: impl FnOnce(&Path) -> io::Result<()>,
     fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
 ) -> Outcome<()> {
-    let _in_order = InOrder::begin();
+    let _uninterrupted = UninterruptedWork::begin();
     // A link stays a link: its target is replaced.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let written = match fs::metadata(&target) {
@@ -55,7 +55,7 @@ pub(crate) fn write_with(
         }
         _ => replace(&target, ready, fill),
     };
-    written.map_err(|source| unwritten(path, &source))
+    written.map_err(|source| write_failure(path, &source))
 }
 
 fn replace(
@@ -144,7 +144,7 @@ fn remove_left_behind(target: &Path) {
 }
 
 /// Error: a file cannot be written, with the system's error and a remedy.
-pub fn unwritten(path: &Path, source: &io::Error) -> Failure {
+pub fn write_failure(path: &Path, source: &io::Error) -> Failure {
     let help = match source.kind() {
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
             "free some space, or name a path on another disk"
@@ -184,7 +184,7 @@ mod tests {
         // A short text stays in the buffer: the failure comes only when it is flushed.
         let full = File::options().write(true).open("/dev/full").expect("Linux has a device that is always full");
         let source = fill_whole(full, |file| file.write_all(b"{}")).expect_err("it is full");
-        let failure = unwritten(Path::new("out/run.json"), &source);
+        let failure = write_failure(Path::new("out/run.json"), &source);
         assert!(failure.message().contains("out/run.json"), "{failure}");
         assert!(failure.help().is_some_and(|help| help.contains("free some space")), "{failure}");
     }

@@ -176,11 +176,11 @@ fn run_groups(
             boards: boards.as_ref(),
             save_memories: request.save_memories,
             folder,
-            done: &|runs| progress.at(runs),
+            done: &|runs| progress.set_position(runs),
         };
         let one = |test: &Test| {
             let one = campaign::run(test, &options, &finished_runs);
-            one.iter().for_each(|one| progress.say_above(&page::line(&one.record)));
+            one.iter().for_each(|one| progress.print_above(&page::line(&one.record)));
             one
         };
         // A test on the emulated board uses one core at most; a test on the host uses all cores.

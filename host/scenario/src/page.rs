@@ -144,7 +144,8 @@ fn failure_text(assertion: &AssertionRecord) -> Text {
         Some(figure) => text(" is ") + strong(PAGE.write(figure)) + &unit,
         None => text(" ") + strong("could not be had"),
     };
-    let bound = check.bound.in_signs().map_or_else(|| text("–"), |(sign, bound)| text(sign) + " " + number(bound));
+    let bound =
+        check.bound.sign_and_value().map_or_else(|| text("–"), |(sign, bound)| text(sign) + " " + number(bound));
     let seed = assertion.seed.map(|seed| format!(", seed {seed}"));
     text(check.name) + found + ", bound " + bound + &unit + seed
 }

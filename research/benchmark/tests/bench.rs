@@ -31,7 +31,7 @@ fn a_case_that_is_not_known_is_named_with_those_that_are() {
 
 #[test]
 fn seeds_that_are_none_and_joints_without_teeth_are_told() {
-    refused(&["--random", "9-8"], &["--random", "no seed is from 9 to 8"]);
+    refused(&["--random", "9-8"], &["--random", "the range of seeds 9-8 is empty"]);
     refused(&["--random", "7005"], &["--random 7005", "equivalent gears", "help:"]);
 }
 

@@ -20,7 +20,7 @@ use link::messages::{Hello, RunSettings, ToBoard};
 use super::recording::{Recording, UnacknowledgedSchedules};
 use super::transport::Line;
 use report::failure::{Failure, Outcome};
-use report::interruption::InOrder;
+use report::interruption::UninterruptedWork;
 
 pub use help::BoardHelp;
 pub use identity::Expected;
@@ -69,7 +69,7 @@ pub struct Session<'a> {
     /// All that was received.
     pub recording: Recording,
     /// A board that runs is stopped before the process ends.
-    _in_order: InOrder,
+    _uninterrupted: UninterruptedWork,
 }
 
 impl<'a> Session<'a> {
@@ -84,7 +84,7 @@ impl<'a> Session<'a> {
             dropped_before: 0,
             unacknowledged: UnacknowledgedSchedules::default(),
             recording: Recording::default(),
-            _in_order: InOrder::begin(),
+            _uninterrupted: UninterruptedWork::begin(),
         }
     }
 

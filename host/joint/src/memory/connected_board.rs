@@ -87,7 +87,7 @@ impl ConnectedBoard {
 }
 
 fn emulated(place: &BoardArguments, loaded: &Loaded, progress: &Progress) -> Outcome<Connection> {
-    let say = |line: &str| progress.say(line);
+    let say = |line: &str| progress.print_message(line);
     let role = place.role.map_or(Role::Observer, Role::from);
     let joint = image::joint_file(&place.joint, &loaded.name);
     Connection::emulated(progress, |board| {

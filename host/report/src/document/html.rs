@@ -207,7 +207,7 @@ fn check(check: &Check, emulated: bool) -> Markup {
         "us" => format!("{} µs", PAGE.write(value)),
         unit => format!("{} {unit}", PAGE.write(value)),
     };
-    let bound = check.bound.in_signs().map(|(sign, bound)| format!("{sign} {}", with_unit(bound)));
+    let bound = check.bound.sign_and_value().map(|(sign, bound)| format!("{sign} {}", with_unit(bound)));
     let marked = emulated && check.source == Source::Board;
     markup! {
         tr class=(class) {

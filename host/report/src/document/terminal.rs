@@ -219,7 +219,7 @@ pub(super) fn checks(table: &Checks) -> String {
     for check in &table.checks {
         let figure = check.figure.map_or_else(|| "-".to_owned(), |figure| TERMINAL.write(figure));
         let marked = table.emulated && check.source == Source::Board && is_time(check);
-        let bound = check.bound.in_signs();
+        let bound = check.bound.sign_and_value();
         let bound = bound.map(|(sign, bound)| format!("{:2} {}", typed(sign), TERMINAL.write(bound)));
         // Writing to a string cannot fail.
         let _ = write!(
@@ -267,8 +267,8 @@ mod tests {
 
     #[test]
     fn check_line_shows_figure_bound_and_reason() {
-        let good = Check::judge("overruns", 0.0, "", Bound::Exactly(0.0), Source::Board).note("fine");
-        let bad = Check::judge("lateness", 61.25, "us", Bound::AtMost(50.0), Source::Board).note("too late");
+        let good = Check::new("overruns", 0.0, "", Bound::Exactly(0.0), Source::Board).note("fine");
+        let bad = Check::new("lateness", 61.25, "us", Bound::AtMost(50.0), Source::Board).note("too late");
         let checks = |checks, emulated| shown(vec![Block::Checks(Checks { checks, emulated, keys: false })]);
         let shown = checks(vec![good, bad], true);
         let lines: Vec<&str> = shown.lines().collect();
@@ -276,7 +276,7 @@ mod tests {
         assert!(lines[0].starts_with("ok ") && lines[0].ends_with("EMULATED"), "{shown}");
         assert!(lines[1].starts_with("FAILED") && lines[1].contains("61.25 us <= 50"), "{shown}");
         assert_eq!(lines[2].trim(), "too late");
-        let real = checks(vec![Check::judge("x", 1.0, "us", Bound::None, Source::Board)], false);
+        let real = checks(vec![Check::new("x", 1.0, "us", Bound::None, Source::Board)], false);
         assert!(!real.contains("EMULATED"), "{real}");
     }
 

@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 use super::keys::{Key, Kind};
 use crate::random::NumberOrRange;
 use report::number::TYPED;
-use report::seeds::MOST_SEEDS;
+use report::seeds::MAX_SEEDS;
 
 /// One table of the file.
 pub(super) struct Section<'a>(Table<'a, Kind>);
@@ -154,8 +154,8 @@ impl<'a> Section<'a> {
             DeValue::Array(list) => list.iter().map(seed).collect::<Option<Vec<u64>>>(),
             _ => {
                 let count = seed(value);
-                if let Some(count) = count.filter(|count| *count > MOST_SEEDS) {
-                    let message = format!("`{name}`: {count} seeds are too many, {MOST_SEEDS} are the most");
+                if let Some(count) = count.filter(|count| *count > MAX_SEEDS) {
+                    let message = format!("`{name}`: {count} seeds are too many, {MAX_SEEDS} are the most");
                     self.notes.error(value.span(), message, key.hint);
                     return None;
                 }

@@ -79,7 +79,7 @@ impl<'w> Boards<'w> {
     ) -> Outcome<Self> {
         check_request(&request, plant)?;
         suite.keep(|test| check_test(&request, test))?;
-        let say = |line: &str| progress.say(line);
+        let say = |line: &str| progress.print_message(line);
         let version = match request.port {
             // Opens and closes the port, so that a missing port is reported before the build.
             Some(path) => Port::open(path, request.baud.unwrap_or(request.board.baud_rate())).map(|_| String::new())?,

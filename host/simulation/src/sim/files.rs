@@ -14,7 +14,7 @@ use super::snapshot::Snapshot;
 use report::failure::{Failure, Outcome};
 use report::folder::Folder;
 use report::log::Channel;
-use report::write::unwritten;
+use report::write::write_failure;
 
 /// Page.
 pub const REPORT: &str = "report.html";
@@ -40,10 +40,10 @@ impl<'a> HistoryFiles<'a> {
         let both = || {
             let mut csv = BufWriter::new(folder.grow(CSV_NAMES[0])?);
             csv::write_head(&mut csv, joint.geometry.planets)
-                .map_err(|error| unwritten(&folder.file(CSV_NAMES[0]), &error))?;
+                .map_err(|error| write_failure(&folder.file(CSV_NAMES[0]), &error))?;
             let log = BufWriter::new(folder.grow(LOG_NAMES[0])?);
             let log = Channel::begin(log, TOPIC, SCHEMA_NAME, &log_file::schema(joint.geometry.planets), remarks)
-                .map_err(|error| unwritten(&folder.file(LOG_NAMES[0]), &error))?;
+                .map_err(|error| write_failure(&folder.file(LOG_NAMES[0]), &error))?;
             Ok(Self { folder, joint, csv, log })
         };
         both().map_err(|failure| with_partial_files(folder, failure))
@@ -52,10 +52,10 @@ impl<'a> HistoryFiles<'a> {
     /// Writes one sample.
     pub fn write(&mut self, snapshot: &Snapshot) -> Outcome<()> {
         csv::write_row(&mut self.csv, self.joint, snapshot)
-            .map_err(|error| unwritten(&self.folder.file(CSV_NAMES[0]), &error))?;
+            .map_err(|error| write_failure(&self.folder.file(CSV_NAMES[0]), &error))?;
         self.log
             .write(snapshot.time, &message(self.joint, snapshot))
-            .map_err(|error| unwritten(&self.folder.file(LOG_NAMES[0]), &error))
+            .map_err(|error| write_failure(&self.folder.file(LOG_NAMES[0]), &error))
     }
 
     /// Finishes both files. A complete history takes its final name; an interrupted one keeps the temporary name.
@@ -66,7 +66,7 @@ impl<'a> HistoryFiles<'a> {
                 // A full disk may only show when the data leave the cache.
                 file.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
             });
-            ended.map_err(|error| unwritten(&folder.file(growing), &error))?;
+            ended.map_err(|error| write_failure(&folder.file(growing), &error))?;
             folder.keep(growing, if whole { whole_name } else { growing })
         };
         // Both are finished, even if the first one fails.

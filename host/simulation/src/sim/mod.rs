@@ -42,7 +42,7 @@ use report::command_line::quoted;
 use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};
 use report::folder::{self, Folder};
-use report::interruption::InOrder;
+use report::interruption::UninterruptedWork;
 use report::output;
 use report::progress::Progress;
 use report::provenance::VERSION;
@@ -77,7 +77,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
     folder::check_files(&[("json", arguments.json.as_deref())], &[&arguments.file, Path::new(profile)])?;
     let folder = Folder::prepare(arguments.out.as_deref(), "sim", &plan.parameters().name, &files::RUN_FILES)?;
     // An interruption must still finish the history.
-    let in_order = InOrder::begin();
+    let uninterrupted = UninterruptedWork::begin();
     let mut files = HistoryFiles::begin(&folder, plan.parameters(), remarks(arguments, &plan, scheme))?;
     progress.run("simulating", plan.run.ticks);
     let result = SimulationResult::simulate(&plan, scheme, every, !arguments.no_energy, &mut files, progress);
@@ -92,7 +92,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
         return Err(Failure::interrupted(format!("stopped by the user at {time:.4} s of {:.4} s", plan.duration()))
             .with_help(format!("the history so far is in {} and {}", csv.display(), log.display())));
     }
-    drop(in_order);
+    drop(uninterrupted);
     if arguments.scheme == SchemeChoice::All {
         result.comparison = Some(compare(&plan, every, progress)?);
     }
@@ -128,7 +128,7 @@ fn compare(plan: &SimulationPlan, every: u32, progress: &Progress) -> Outcome<Co
     progress.run("comparing schemes", plan.run.ticks);
     comparison::compare(&plan.run, every, &|done| {
         if (done / runs).is_multiple_of(PROGRESS_INTERVAL) {
-            progress.at(done / runs);
+            progress.set_position(done / runs);
         }
     })
 }

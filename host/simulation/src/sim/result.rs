@@ -65,7 +65,7 @@ impl<'a> SimulationResult<'a> {
                 account.add_tick(snapshot);
             }
             if snapshot.tick.is_multiple_of(PROGRESS_INTERVAL) {
-                progress.at(snapshot.tick);
+                progress.set_position(snapshot.tick);
             }
             Ok(())
         })?;
@@ -73,7 +73,7 @@ impl<'a> SimulationResult<'a> {
             Self { plan, scheme, end, ticks, samples, statistics, energy, spectrum: None, comparison: None };
         let deflection = |snapshot: &Snapshot| snapshot.teeth.first().map_or(f64::NAN, |teeth| teeth.deflection);
         let signal: Vec<f64> = result.settled().iter().map(deflection).collect();
-        result.spectrum = Spectrum::of(&signal, f64::from(run.tick_rate) / f64::from(every));
+        result.spectrum = Spectrum::new(&signal, f64::from(run.tick_rate) / f64::from(every));
         Ok(result)
     }
 

@@ -113,7 +113,8 @@ impl SimulationSummary {
                 .map(|(mesh, figures)| Mesh { name: mesh_name(mesh, count), figures })
                 .collect(),
             period: result.statistics.period(),
-            non_fundamental_over_fundamental: spectrum.and_then(|spectrum| spectrum.beside(plan.mesh_frequency())),
+            non_fundamental_over_fundamental: spectrum
+                .and_then(|spectrum| spectrum.non_fundamental_ratio(plan.mesh_frequency())),
             strongest_frequency_Hz: spectrum.map(|spectrum| spectrum.greatest().0),
             energy: result.balance(),
             schemes: result.comparison.as_ref().map(|comparison| comparison.rows.clone()),

@@ -11,7 +11,7 @@ use model_core::numbers::digest;
 use super::grid::Shard;
 use report::failure::{Failure, Outcome};
 use report::input;
-use report::write::{locked, unwritten};
+use report::write::{locked, write_failure};
 
 /// Finished points by number: status and values, as in the result.
 pub type Points = BTreeMap<u64, String>;
@@ -42,7 +42,7 @@ impl Journal {
     /// Opens a shard's journal to continue it, and removes a truncated last line.
     pub fn open(folder: &Path, shard: Shard, digest: &str) -> Outcome<Self> {
         let path = folder.join(journal_name(shard));
-        let failed = |error: io::Error| unwritten(&path, &error);
+        let failed = |error: io::Error| write_failure(&path, &error);
         let mut file =
             File::options().read(true).write(true).create(true).truncate(false).open(&path).map_err(failed)?;
         if !locked(&file) {
@@ -65,7 +65,7 @@ impl Journal {
     /// Writes lines and flushes them to the disk.
     pub fn append(&mut self, lines: &str) -> Outcome<()> {
         let written = self.file.write_all(lines.as_bytes()).and_then(|()| self.file.sync_data());
-        written.map_err(|error| unwritten(&self.path, &error))
+        written.map_err(|error| write_failure(&self.path, &error))
     }
 }
 

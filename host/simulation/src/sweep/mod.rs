@@ -34,7 +34,7 @@ use joint_file::warned;
 use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
 use report::input;
-use report::interruption::InOrder;
+use report::interruption::UninterruptedWork;
 use report::output;
 use report::progress::Progress;
 
@@ -93,7 +93,7 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     let path = arguments.out.clone().unwrap_or_else(|| usual_folder(&manifest));
     let folder = SweepFolder::prepare(&path, &manifest)?;
     // Points in progress are still stored when the user stops the run.
-    let _in_order = InOrder::begin();
+    let _uninterrupted = UninterruptedWork::begin();
     let mut journal = Journal::open(folder.path(), arguments.shard, &manifest.digest)?;
     let mut done = Points::new();
     folder.points(&manifest.digest, &mut done)?;
@@ -190,7 +190,7 @@ fn manifest(
 }
 
 fn usual_folder(manifest: &Manifest) -> PathBuf {
-    report::folder::usual("sweep", &format!("{}-{}", manifest.joint, &manifest.digest[..8]))
+    report::folder::default_folder("sweep", &format!("{}-{}", manifest.joint, &manifest.digest[..8]))
 }
 
 /// Command that continues this sweep.

@@ -109,7 +109,7 @@ fn store(
             failure.with_help(kept)
         })?;
         went.finished += count;
-        progress.at(went.finished as u32);
+        progress.set_position(went.finished as u32);
     }
     Ok(went)
 }

@@ -17,8 +17,8 @@ use crate::{
 #[derive(Debug, Parser)]
 #[command(name = "joint", version = env!("JOINT_VERSION"), disable_help_subcommand = true)]
 struct Cli {
-    /// Whether missing packages (compiler, emulator, C toolchain) are installed by apt-get, as root [default:
-    /// JOINT_INSTALL of the environment, else ask]
+    /// Answer to the question whether apt-get may install missing packages (compiler, emulator, C toolchain) as root
+    /// [default: JOINT_INSTALL of the environment, else ask]
     #[arg(long, value_enum, value_name = "DECISION", global = true)]
     install: Option<Install>,
     #[command(subcommand)]

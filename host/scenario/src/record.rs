@@ -73,7 +73,7 @@ pub struct TestRecord {
     pub joint: String,
     /// SHA-256 of the joint file's text, before any change.
     pub joint_sha256: String,
-    /// Where the tested controller ran: `host`, or role and board; rivals always on the host.
+    /// Place of the tested controller: `host`, or role and board; rivals always run on the host.
     pub on: String,
     /// Plant: `reference` or `core`.
     pub plant: String,

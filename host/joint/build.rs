@@ -1,10 +1,9 @@
-//! Tells the command which commit it is built from, for `joint --version`. Without git, or outside of a repository, it is
-//! the version alone.
+//! Sets `JOINT_VERSION` for `joint --version`: the version, and the commit if the sources lie in a git repository.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What the command is made of, from the workspace's folder.
+/// Sources of the command, relative to the workspace's folder.
 const SOURCES: [&str; 5] = ["Cargo.lock", "host", "link/src", "model-core/src", "parameters/src"];
 
 fn main() {
@@ -20,20 +19,20 @@ fn main() {
     for source in sources(workspace) {
         println!("cargo::rerun-if-changed={}", source.display());
     }
-    // Every commit and every checkout adds a line to it.
+    // Every commit and every checkout adds a line to this log.
     if let Some(log) = git(workspace, &["rev-parse", "--git-path", "logs/HEAD"]) {
         println!("cargo::rerun-if-changed={}", workspace.join(log).display());
     }
 }
 
-/// The commit, and whether what the command is made of differs from it.
+/// Commit of the sources, marked "changed" if a source differs from the commit.
 fn commit(workspace: &Path) -> Option<String> {
     let commit = git(workspace, &["rev-parse", "--short=12", "HEAD"])?;
     let changes = git(workspace, &[&["status", "--porcelain", "--"], &SOURCES[..]].concat())?;
     Some(if changes.is_empty() { format!("commit {commit}") } else { format!("commit {commit}, changed") })
 }
 
-/// Files and folders whose change is one of the command: of a crate on the host its sources, not its tests.
+/// Paths that are compiled into the command; of each crate in `host` only its `src`, not its tests.
 fn sources(workspace: &Path) -> Vec<PathBuf> {
     let mut sources = Vec::new();
     for source in SOURCES.map(|source| workspace.join(source)) {

@@ -13,7 +13,8 @@ fn coarse_sound_encoder_is_kept() {
         let case = test.case(seed).expect("a case of the test");
         let spec = on_core(NoPreview);
         let history = run_in(&test, &case, seed, spec);
-        let given_up = history.observer_outputs.windows(2).filter(|pair| pair[0].both && !pair[1].both).count();
+        let given_up =
+            history.observer_outputs.windows(2).filter(|pair| pair[0].both_encoders && !pair[1].both_encoders).count();
         assert_eq!(given_up, 0, "seed {seed}: {:?}", case.truth.surroundings.output_encoder);
     }
 }
@@ -28,6 +29,6 @@ fn gap_below_one_count_is_invalid() {
     let history = run_in(&test, &case, seed, spec);
     let outputs = &history.observer_outputs;
     let settled = &outputs[outputs.len() / 3..];
-    let valid = settled.iter().filter(|output| output.both && output.valid).count();
+    let valid = settled.iter().filter(|output| output.both_encoders && output.valid).count();
     assert_eq!(valid, 0, "of {} periods", settled.len());
 }

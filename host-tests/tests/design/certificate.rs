@@ -11,7 +11,7 @@ use parameters::JointParameters;
 use rayon::prelude::*;
 use reference::scenarios::random_joint;
 use simulation::accuracy::{Kind, Motion, MotionErrors, measure_up_to};
-use simulation::sim::comparison::errors_of;
+use simulation::sim::comparison::errors_against_reference;
 use simulation::sim::errors::Errors;
 use simulation::sim::scheme::SchemeName;
 
@@ -31,7 +31,8 @@ struct Comparison {
 
 /// Errors of the board's step on a motion, as `joint sim --scheme all` measures them.
 fn measured_by_sim(motion: &Motion, board: &Board) -> Option<Errors> {
-    errors_of(&motion.for_sim(board.processor()), SchemeName::Realtime).expect("a motion that the reference can follow")
+    errors_against_reference(&motion.for_sim(board.processor()), SchemeName::Realtime)
+        .expect("a motion that the reference can follow")
 }
 
 fn compare(seed: u64, longest: f64) -> Comparison {

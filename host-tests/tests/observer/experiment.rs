@@ -127,8 +127,11 @@ impl Experiment {
         let Setup { joint, train, motion, .. } = &self.setup;
         let rig = Rig::new(&self.setup).expect("a sound drive train");
         let controller = MotorController::new(joint, train).homed(&rig.home());
-        rig.record(&mut ActiveController::of(Box::new(controller)), &mut SetPointSource::of_positions(motion.clone()))
-            .expect("it runs")
+        rig.record(
+            &mut ActiveController::from_rival(Box::new(controller)),
+            &mut SetPointSource::of_positions(motion.clone()),
+        )
+        .expect("it runs")
     }
 }
 

@@ -61,7 +61,7 @@ impl Connection {
     /// Finds the emulator, builds the image for it and starts it.
     pub fn emulated(progress: &Progress, build: impl FnOnce(&Board) -> Outcome<Image>) -> Outcome<Self> {
         progress.stage("finding the emulator");
-        let version = emulator::ensure(&|line| progress.say(line))?;
+        let version = emulator::ensure(&|line| progress.print_message(line))?;
         let image = build(&Board::emulated())?;
         progress.stage("booting the emulated board");
         Self::in_emulator(&version, image)

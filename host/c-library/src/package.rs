@@ -52,7 +52,7 @@ pub fn run(arguments: &Arguments) -> Outcome<String> {
     let folder = Folder::prepare(arguments.out.as_deref(), "library", target.name(), &FILES)?;
     let (library, archive) = Progress::during(|progress| {
         progress.stage("building the library");
-        let say = |line: &str| progress.say(line);
+        let say = |line: &str| progress.print_message(line);
         let library = library::build(target, "library", &say)?;
         progress.stage("counting costs");
         let archive = archive(&library, &say)?;

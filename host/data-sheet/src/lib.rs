@@ -92,7 +92,7 @@ fn write_file(
             printed += &format!("  {key:<55} {moved}\n");
         }
     }
-    if let Some(bandwidth) = Bandwidth::of(&loaded.file.parameters, &loaded.file.surroundings) {
+    if let Some(bandwidth) = Bandwidth::for_joint(&loaded.file.parameters, &loaded.file.surroundings) {
         let (usual, widest) = (bandwidth.usual_rad_per_s, bandwidth.widest_in_words());
         printed += &format!("bandwidth: {usual} rad/s if none is asked for, at most {widest}\n");
     }

@@ -43,20 +43,20 @@ pub fn measure(text: &str, lines: &mut [Line], seeds: u64, progress: &Progress) 
     };
     let test = StandardTest { text, seeds, designed: design(&test_file("").map_err(refused)?, text).map_err(refused)? };
     let of_file = test.figures("").map_err(refused)?;
-    progress.done(1);
+    progress.advance(1);
     let by_chance =
         CHANCE_FACTORS.map(|factor| test.figures(&format!("[plant]\n{CHANCE_KEY} = {{ times = {factor} }}\n")));
     let mut chance = 0.0;
     for moved in by_chance {
         chance = f64::max(chance, relative_change(&moved.map_err(Failure::new)?, &of_file));
     }
-    progress.done(2);
+    progress.advance(2);
     tried.into_par_iter().for_each(|line| {
         if interruption::requested() {
             return;
         }
         line.moved = Some(test.moved(line, &of_file));
-        progress.done(2);
+        progress.advance(2);
     });
     match interruption::requested() {
         true => Err(Failure::interrupted("stopped by the user")),
@@ -148,8 +148,8 @@ fn figure_of_run(file: &TestFile, text: &str, seed: u64, designed: &Designed) ->
         RunError::Refused(failure) => first_line(&failure),
         other => other.to_string(),
     })?;
-    let values = MetricValues::of(file, &case, &history, None);
-    let figure = values.named().find(|(metric, _)| metric.name() == METRIC_NAME).map(|(_, value)| value);
+    let values = MetricValues::compute(file, &case, &history, None);
+    let figure = values.available().find(|(metric, _)| metric.name() == METRIC_NAME).map(|(_, value)| value);
     figure.filter(|figure| *figure > 0.0).ok_or_else(|| "the run has no figure".to_owned())
 }
 

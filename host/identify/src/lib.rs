@@ -413,7 +413,8 @@ fn simulate(arguments: &Arguments, loaded: &Loaded, progress: &Progress) -> Outc
         encoder.counts_per_turn = bits.map_or(encoder.counts_per_turn, AbsoluteEncoder::counts_of_bits);
     }
     progress.run("testing", 1000_u32);
-    let recording = virtual_test::record(&file, arguments.seed, &|share| progress.at((1000.0 * share) as u32))?;
+    let recording =
+        virtual_test::record(&file, arguments.seed, &|share| progress.set_position((1000.0 * share) as u32))?;
     write_text(&arguments.log, &recording.csv(arguments.with_output_torque))?;
     progress.clear();
     let seconds = recording.samples.len() as f64 / recording.rate;

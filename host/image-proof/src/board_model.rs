@@ -14,7 +14,7 @@ const PACKAGES: [&str; 3] = ["cmake", "libclang-dev", "build-essential"];
 
 /// Runs the short form of the board model's checks; it prints a line per check.
 pub fn check(progress: &Progress) -> Outcome<()> {
-    packages::ensure(&PACKAGES, "to build the model of the boards", &|line| progress.say(line))?;
+    packages::ensure(&PACKAGES, "to build the model of the boards", &|line| progress.print_message(line))?;
     progress.clear();
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let status = Command::new(cargo)

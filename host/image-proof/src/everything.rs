@@ -21,7 +21,7 @@ use report::workspace::workspace;
 
 /// Runs all checks; the first failure ends them.
 pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
-    let say = |line: &str| progress.say(line);
+    let say = |line: &str| progress.print_message(line);
     progress.stage("preparing the toolchain");
     let toolchain = Toolchain::prepare(&say)?;
     let joint = named::load(Path::new("q1"))?.file.parameters;
@@ -76,7 +76,7 @@ pub fn check(tick_rate: u32, progress: &Progress) -> Outcome<()> {
 
 /// Equal bits, instructions and worst case, of this program against the emulated board.
 fn proofs(toolchain: &Toolchain, progress: &Progress) -> Outcome<()> {
-    let say = |line: &str| progress.say(line);
+    let say = |line: &str| progress.print_message(line);
     progress.stage("comparing bits between the emulated board and this program");
     let runs = same_bits::compare(&same_bits::on_board(toolchain, &say)?)?;
     progress.clear();

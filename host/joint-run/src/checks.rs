@@ -48,7 +48,7 @@ pub fn checks(evidence: &Evidence<'_>) -> Vec<Check> {
 }
 
 fn count(name: &str, figure: impl Into<f64>, bound: Bound, source: Source) -> Check {
-    Check::judge(name, figure.into(), "", bound, source)
+    Check::new(name, figure.into(), "", bound, source)
 }
 
 fn zero(name: &str, figure: u32, source: Source) -> Check {
@@ -91,7 +91,7 @@ fn reference(evidence: &Evidence<'_>) -> Vec<Check> {
     let check = |quantity: &super::comparison::QuantityError| {
         let bound = if chaotic { Bound::None } else { Bound::AtMost(100.0 * quantity.limit) };
         let name = format!("{} off the f64 reference, first {:.2} s", quantity.name, comparison.until);
-        Check::judge(name, 100.0 * quantity.error, "%", bound, Source::Host).note(note.clone())
+        Check::new(name, 100.0 * quantity.error, "%", bound, Source::Host).note(note.clone())
     };
     comparison.errors.iter().map(check).collect()
 }
@@ -128,14 +128,14 @@ fn timing(evidence: &Evidence<'_>) -> Vec<Check> {
     };
     let microseconds = |counts: u32| 1e6 * f64::from(counts) / f64::from(hello.timer_rate);
     let time =
-        |name: &str, counts: u32, bound: Bound| Check::judge(name, microseconds(counts), "us", bound, Source::Board);
+        |name: &str, counts: u32, bound: Bound| Check::new(name, microseconds(counts), "us", bound, Source::Board);
     let period = Bound::AtMost(microseconds(statistics.period));
     let mut checks = vec![
         zero("overruns", statistics.overruns, Source::Board),
         time("computation time of a tick, greatest", statistics.computation.max, period),
         time("computation time of a tick, mean", statistics.computation.mean, Bound::None),
         time("lateness of a tick, greatest", statistics.lateness.max, period),
-        Check::judge("idle time", f64::from(statistics.idle_permille) / 10.0, "%", Bound::None, Source::Board),
+        Check::new("idle time", f64::from(statistics.idle_permille) / 10.0, "%", Bound::None, Source::Board),
     ];
     checks.extend(queue(recording.settings.map(|settings| settings.mode), statistics));
     let clock_runs = u32::from(hello.clock.source != ClockSource::Failed);
@@ -160,14 +160,14 @@ fn queue(mode: Option<RunMode>, statistics: &Statistics) -> Vec<Check> {
 fn memory(evidence: &Evidence<'_>) -> Vec<Check> {
     let flash = Bound::AtMost(FLASH_BUDGET);
     let mut checks = vec![match evidence.image {
-        Ok(image) => Check::judge("flash used by the image", image.flash_bytes as f64, "B", flash, Source::Image),
+        Ok(image) => Check::new("flash used by the image", image.flash_bytes as f64, "B", flash, Source::Image),
         Err(why) => Check::not_run("flash used by the image", "B", flash, why),
     }];
     if let Some(statistics) = &evidence.recording.statistics {
         let used = f64::from(statistics.static_ram) + f64::from(statistics.stack_used);
         let note =
             format!("{} B of statics and {} B of stack at its deepest", statistics.static_ram, statistics.stack_used);
-        checks.push(Check::judge("RAM used", used, "B", Bound::AtMost(RAM_BUDGET), Source::Board).note(note));
+        checks.push(Check::new("RAM used", used, "B", Bound::AtMost(RAM_BUDGET), Source::Board).note(note));
     }
     checks
 }

@@ -29,7 +29,7 @@ use record::RunRecord;
 use report::checks::all_hold;
 use report::failure::Outcome;
 use report::folder::{self, Folder};
-use report::interruption::InOrder;
+use report::interruption::UninterruptedWork;
 use report::output;
 use report::progress::Progress;
 
@@ -41,7 +41,7 @@ pub fn run(request: &RunRequest<'_>, progress: &Progress) -> Outcome<()> {
     let folder = Folder::prepare(request.out, "hil", &plan.expected.joint, &files::ALL_FILES)?;
     let connection = prepare(request, &plan, progress)?;
     // A run stopped by the user is kept and reported up to that point.
-    let _in_order = InOrder::begin();
+    let _uninterrupted = UninterruptedWork::begin();
     let mut record = origin::record(request, &plan, &connection.transport);
     let image = connection.image.clone();
     record.identity.image = image.as_ref().map(origin::image);
@@ -82,7 +82,7 @@ fn run_session(connection: Connection, plan: &RunPlan, progress: &Progress) -> (
     let outcome = session.connect(&plan.expected, timeout).and_then(|_| session.reset(plan.settings));
     let outcome = outcome.and_then(|()| {
         progress.run("running", plan.profile.ticks);
-        session.stream(&plan.profile, &mut |ticks| progress.at(ticks))
+        session.stream(&plan.profile, &mut |ticks| progress.set_position(ticks))
     });
     let outcome = outcome.and_then(|()| session.finish(plan.profile.ticks));
     if outcome.is_err() {
@@ -112,9 +112,9 @@ fn prepare(request: &RunRequest<'_>, plan: &RunPlan, progress: &Progress) -> Out
 
 fn build(request: &RunRequest<'_>, plan: &RunPlan, board: &Board, progress: &Progress) -> Outcome<Image> {
     progress.stage("preparing the toolchain");
-    let toolchain = Toolchain::prepare(&|line| progress.say(line))?;
+    let toolchain = Toolchain::prepare(&|line| progress.print_message(line))?;
     progress.stage("building the firmware");
     image::build_image(&toolchain, &plan.path, board, Role::Plant, request.rate, request.force, &|line| {
-        progress.say(line)
+        progress.print_message(line)
     })
 }

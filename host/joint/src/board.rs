@@ -1,8 +1,8 @@
-//! `joint board`: what a board file says, or everything that is wrong with it; and the boards that come with the program.
+//! `joint board`: shows a board file or reports every error in it; lists the boards that come with the program.
 
 use std::path::PathBuf;
 
-use board::device::board::Board as OnTarget;
+use board::device::board::Board as TargetBoard;
 use board::device::prediction::ORIGIN;
 use board_file::{Board, ExternalClock, Level, Output, PRESETS, Pin, SpiSlave, named};
 use clap::ValueEnum;
@@ -22,7 +22,7 @@ pub struct Arguments {
 
 #[derive(Debug, clap::Subcommand)]
 enum Action {
-    /// Read a board file and print what the firmware makes of it, or everything that is wrong with it
+    /// Check a board file and show its pins, clock and memory, or report every error in it
     Check(CheckArguments),
     /// List the boards that come with the program
     List,
@@ -45,15 +45,15 @@ struct CheckArguments {
     joint: PathBuf,
 }
 
-/// Checks a board file, or lists those that there are.
+/// Checks a board file, or lists the presets.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     match &arguments.action {
         Action::Check(check) => {
             let description = named::load(&check.file)?.board;
             let joint = joint_file::named::load(&check.joint)?.file.parameters;
-            let board = OnTarget { argument: check.file.display().to_string(), file: check.file.clone(), description };
-            let mut page = layout(&board.description);
-            roles(&mut page, &board, &joint);
+            let board = TargetBoard { argument: check.file.display().to_string(), file: check.file.clone(), description };
+            let mut page = board_page(&board.description);
+            add_roles(&mut page, &board, &joint);
             let shown = terminal(&page.document());
             let warnings = board.description.warnings.iter().map(|warning| format!("warning: {warning}\n"));
             output::print(&(shown + &warnings.collect::<String>()))
@@ -70,8 +70,8 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
     }
 }
 
-/// Adds which roles fit, by size and by time.
-fn roles(page: &mut Sheet, board: &OnTarget, joint: &JointParameters) {
+/// Adds the predicted fit of each role, in size and in time.
+fn add_roles(page: &mut Sheet, board: &TargetBoard, joint: &JointParameters) {
     page.heading(&format!("Roles for {}, predicted: no image is built", joint.name));
     for role in ImageRole::value_variants() {
         let Some(value) = role.to_possible_value() else { continue };
@@ -79,14 +79,14 @@ fn roles(page: &mut Sheet, board: &OnTarget, joint: &JointParameters) {
             ImageRole::SpiObserver if !board.has_spi_slave() => {
                 "not on this board: its file has no [spi_slave]".to_owned()
             }
-            _ => role.predicted(joint, board, role.usual_rate(joint, board)).to_string(),
+            _ => role.predict(joint, board, role.default_rate(joint, board)).to_string(),
         };
         page.row(value.get_name(), verdict);
     }
     page.row("predicted from", ORIGIN);
 }
 
-fn layout(board: &Board) -> Sheet {
+fn board_page(board: &Board) -> Sheet {
     let mut page = Sheet::new(match board.description.as_str() {
         "" => board.name.to_string(),
         description => format!("{}: {description}", board.name),
@@ -96,7 +96,7 @@ fn layout(board: &Board) -> Sheet {
     page.row("core clock", megahertz(board.core_rate()));
     let [first, second] = board.slots();
     page.row("flash", format!("{} KiB, {} KiB for an image", board.flash_bytes >> 10, board.image_bytes() >> 10));
-    page.row("what was learnt", format!("at {:#010x} and {:#010x}", first.address, second.address));
+    page.row("stored parameters", format!("at {:#010x} and {:#010x}", first.address, second.address));
     page.row("RAM", format!("{} KiB", board.ram_bytes >> 10));
     page.heading("Clock");
     page.row(
@@ -111,7 +111,7 @@ fn layout(board: &Board) -> Sheet {
     let serial = &board.serial;
     let line = format!("{}: {} out, {} in, {} baud", serial.unit, serial.send.pin, serial.receive.pin, serial.baud);
     page.row("line to the host", line);
-    page.row("hold of the supply", output(board.supply));
+    page.row("supply latch", output(board.supply));
     page.row("enable", output(board.enable));
     page.row("status light", output(board.light));
     page.row(
@@ -125,7 +125,7 @@ fn layout(board: &Board) -> Sheet {
     );
     let without_use = board.unused_line_pins();
     if !without_use.is_empty() {
-        page.heading("Not used by any image yet, and left alone");
+        page.heading("Not used by any image");
         for (key, pin) in without_use {
             page.row(key, pin.to_string());
         }

@@ -1,4 +1,4 @@
-//! The command line: subcommands, their help, exit codes. What a subcommand does is in its own module.
+//! The command line: subcommands, their help, exit codes. Each subcommand has its own module.
 
 use std::process::ExitCode;
 
@@ -17,7 +17,7 @@ use crate::{
 #[derive(Debug, Parser)]
 #[command(name = "joint", version = env!("JOINT_VERSION"), disable_help_subcommand = true)]
 struct Cli {
-    /// Decides whether missing packages are installed: by apt-get, as root, for compiler, emulator and C toolchain
+    /// Answer to the question whether apt-get may install missing packages (compiler, emulator, C toolchain) as root
     /// [default: JOINT_INSTALL of the environment, else ask]
     #[arg(long, value_enum, value_name = "DECISION", global = true)]
     install: Option<Install>,
@@ -31,41 +31,41 @@ enum Command {
     Hil(hil::Arguments),
     /// Write a joint file from the numbers of a data sheet
     New(new::Arguments),
-    /// Read a joint file and print what follows from it
+    /// Read a joint file and print the derived quantities
     Check(check::Arguments),
-    /// Compare the step with what people use: error against cost, on the emulated core and on the host
+    /// Compare the step with other integration methods: error against cost, on the emulated core and on the host
     Bench(research::Arguments),
     /// Predict error, instructions, memory and limits of the fixed step on a board, with a verdict
     Budget(budget::Arguments),
-    /// Redo the paper, or the same study of another joint: attractors, bifurcation diagram, figures
+    /// Reproduce the paper, or run its study on another joint: attractors, bifurcation diagram, figures
     Paper(research::Arguments),
     /// Simulate a joint on the host by a named scheme: history, report, comparison of schemes
     Sim(sim::Arguments),
     /// Simulate every joint of a grid in parallel: resumable, in shards for job arrays
     Sweep(sweep::Arguments),
-    /// Put the shards of a sweep together, once none is missing
+    /// Merge the shards of a sweep into one result; all shards must be complete
     Merge(merge::Arguments),
     /// Find backlash, compliance, damping, friction and encoder errors in a recorded reversal test
     Identify(identify::Arguments),
-    /// Run the observer over a log: does it repeat its run, and what does it say of any other
+    /// Run the observer over a log: reproduce the run that wrote it, or estimate from any other log
     Replay(replay::Arguments),
-    /// Read what a board has learnt, show it, write it to a board, erase it
+    /// Read, show, write or erase the parameters that a board has estimated
     Memory(memory::Arguments),
     /// Check a board file: pins, clock, memory; or list the boards that come with the program
     Board(board_files::Arguments),
-    /// Build the firmware image of a joint and say where it is
+    /// Build the firmware image of a joint and print its path
     Image(image::Arguments),
     /// Build the firmware image of a joint and write it to a real board by probe-rs or over USB
     Flash(flash::Arguments),
     /// Write a joint's tables as C source and bytes, for programs that use the C library
     Tables(tables::Arguments),
-    /// Build the library for programs in C and C++: header, library, build files, costs and a test program in one archive
+    /// Package the library for C and C++ in one archive: header, library, build files, costs, test program
     Library(library::Arguments),
-    /// Print a script by which a shell completes this command's options: bash, zsh, fish and others
+    /// Print a completion script for a shell: bash, zsh, fish and others
     Completions(completions::Arguments),
 }
 
-/// Parses the command line, runs it and turns the outcome into an exit code.
+/// Parses the command line, runs the subcommand and turns the outcome into an exit code.
 pub fn main() -> ExitCode {
     command_line::main(Cli::command(), Cli::from_arg_matches, run)
 }

@@ -1,4 +1,4 @@
-//! `joint completions`: a script by which a shell completes commands, options and their words.
+//! `joint completions`: prints a shell's completion script for the command line.
 
 use clap::Command;
 use clap_complete::{Shell, generate};
@@ -18,7 +18,7 @@ pub struct Arguments {
     shell: Shell,
 }
 
-/// Prints the script for a command line.
+/// Prints the completion script of a command line.
 pub fn run(arguments: &Arguments, mut command: Command) -> Outcome<()> {
     let mut script = Vec::new();
     generate(arguments.shell, &mut command, "joint", &mut script);

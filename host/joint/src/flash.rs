@@ -1,4 +1,5 @@
-//! `joint flash`: builds the firmware of a joint and writes it to a real board by probe-rs, or over USB by the chip's own loader.
+//! `joint flash`: builds the firmware of a joint and writes it to a real board, by probe-rs or over USB by the chip's
+//! loader.
 
 use board::device::board::Board;
 use board::device::flash;
@@ -11,17 +12,17 @@ use crate::image;
 #[group(id = "flash")]
 #[command(after_help = "Examples:
   joint flash --board nucleo-g474re                     joint q1 onto the board behind the debug probe
-  joint flash joints/l1.toml --board weact-f405 --dfu   onto the board on USB, which was started with BOOT0 high
+  joint flash joints/l1.toml --board weact-f405 --dfu   onto the board on USB, started with BOOT0 high
   joint flash --board my_board.toml --role observer
 
 The board must be named: the pins of one board are gate inputs of another.")]
 pub struct Arguments {
     #[command(flatten)]
     image: image::Image,
-    /// Board to be written: a name of boards/, or the path of a board file
+    /// Board to flash: a name of boards/, or the path of a board file
     #[arg(long, value_name = "NAME|FILE", value_parser = Board::parse)]
     board: Option<Board>,
-    /// Writes over USB by dfu-util to the chip's own loader, which a board starts with BOOT0 high
+    /// Writes over USB by dfu-util; the chip's own loader runs if the board starts with BOOT0 high
     #[arg(long)]
     dfu: bool,
 }

@@ -1,4 +1,4 @@
-//! `joint identify`: finds a joint's parameters in a recorded test.
+//! `joint identify`: estimates a joint's parameters from a recorded test.
 
 pub use identify::Arguments;
 use identify::run as identify;
@@ -6,7 +6,7 @@ use report::failure::Outcome;
 use report::output;
 use report::progress::Progress;
 
-/// Identifies a joint, or makes a log of one, and prints what was found.
+/// Identifies a joint, or simulates a log, and prints the result.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     output::keep_for_json(arguments.json.as_deref());
     Progress::during(|progress| output::print(&identify(arguments, progress)?))

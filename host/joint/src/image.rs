@@ -1,4 +1,4 @@
-//! `joint image`: builds the firmware of a joint and says where it is.
+//! `joint image`: builds the firmware of a joint and prints the path of the image.
 
 use std::path::PathBuf;
 
@@ -32,26 +32,26 @@ pub struct Arguments {
     board: Board,
 }
 
-/// What an image is made of, besides its board.
+/// Contents of an image, besides its board.
 #[derive(Debug, clap::Args)]
 #[group(id = "image")]
 pub struct Image {
     /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, c1, paper, paper_printed
     #[arg(value_name = "FILE", default_value = "q1")]
     file: PathBuf,
-    /// What the board does
+    /// Role of the board
     #[arg(long, value_enum, default_value = "plant")]
     role: ImageRole,
-    /// Steps a second, in Hz; a step of all roles but plant is a control period [default: 20000 for plant, 5000 for
-    /// spi-observer, else 10000, or the next lower rate that the chip has time for]
+    /// Step rate in Hz; the control rate for every role but plant [default: 20000 for plant, 5000 for spi-observer,
+    /// else 10000, or the next lower rate that the chip has time for]
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..))]
     rate: Option<u32>,
-    /// Builds an image that the board has no time for; its hello says so
+    /// Builds even if the worst-case tick exceeds the period; the board reports `forced` in its identity
     #[arg(long)]
     force: bool,
 }
 
-/// What a board can be made to do.
+/// Role of a board, with the interface that the image uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum ImageRole {
     /// Simulates the joint
@@ -60,12 +60,13 @@ pub enum ImageRole {
     Observer,
     /// Joint, motor, observer and compensation
     Loop,
-    /// Observer and compensation as a slave on SPI beside a motor controller on another chip; for boards whose file has [spi_slave]
+    /// Observer and compensation as a slave on SPI beside a motor controller on another chip; for boards whose file has
+    /// [spi_slave]
     SpiObserver,
 }
 
 impl ImageRole {
-    /// What its tick does: a slave on SPI is an observer.
+    /// Role in the protocol; a slave on SPI is an observer.
     pub fn role(self) -> Role {
         match self {
             Self::Plant => Role::Plant,
@@ -74,8 +75,8 @@ impl ImageRole {
         }
     }
 
-    /// Returns the rate that an image is built for unless another one is asked for [Hz].
-    pub fn usual_rate(self, joint: &JointParameters, board: &Board) -> u32 {
+    /// Default rate of an image in this role [Hz].
+    pub fn default_rate(self, joint: &JointParameters, board: &Board) -> u32 {
         match self {
             Self::Plant => image::DEFAULT_TICK_RATE,
             Self::Observer | Self::Loop => tick_time::default_control_rate(joint, board, self.role()),
@@ -83,32 +84,32 @@ impl ImageRole {
         }
     }
 
-    /// Predicts whether its image fits a board at a rate.
-    pub fn predicted(self, joint: &JointParameters, board: &Board, rate: u32) -> Prediction {
+    /// Predicts whether an image in this role fits a board at a rate.
+    pub fn predict(self, joint: &JointParameters, board: &Board, rate: u32) -> Prediction {
         let word = self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
         Prediction::new(board, joint, &word, self.role(), rate)
     }
 }
 
-/// Builds an image.
+/// Builds an image and prints its path and size.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     let built = build(&arguments.image, &arguments.board)?;
     let image::Image { elf, flash_bytes, ram_bytes, .. } = &built;
     output::print(&format!("{}\nflash {flash_bytes} B, RAM {ram_bytes} B\n", elf.display()))
 }
 
-/// Builds an image, with a line that tells how far it is.
+/// Builds an image and shows the progress.
 pub fn build(arguments: &Image, board: &Board) -> Outcome<image::Image> {
     let loaded = named::load(&arguments.file)?;
     warnings::print(&loaded);
     let file = image::joint_file(&arguments.file, &loaded.name);
     let (parameters, role) = (&loaded.file.parameters, arguments.role);
-    let rate = arguments.rate.unwrap_or_else(|| role.usual_rate(parameters, board));
+    let rate = arguments.rate.unwrap_or_else(|| role.default_rate(parameters, board));
     let progress = Progress::new();
-    let say = |line: &str| progress.say(line);
-    let predicted = role.predicted(parameters, board, rate);
+    let say = |line: &str| progress.print_message(line);
+    let predicted = role.predict(parameters, board, rate);
     if !predicted.has_room() {
-        say(&format!("predicted for {}, from {ORIGIN}: {predicted}; it is built all the same", board.name()));
+        say(&format!("predicted for {}, from {ORIGIN}: {predicted}; building anyway", board.name()));
     }
     progress.stage("preparing the toolchain");
     let built = Toolchain::prepare(&say).and_then(|toolchain| {

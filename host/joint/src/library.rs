@@ -4,7 +4,7 @@ pub use c_library::package::Arguments;
 use report::failure::Outcome;
 use report::output;
 
-/// Builds it, and says where it is.
+/// Builds the library and prints the path of the archive.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     output::print(&c_library::package::run(arguments)?)
 }

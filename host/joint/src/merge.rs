@@ -1,4 +1,4 @@
-//! `joint merge`: puts the shards of a sweep together into one result, once none is missing.
+//! `joint merge`: merges the shards of a sweep into one result, once all are complete.
 
 use std::path::PathBuf;
 
@@ -17,7 +17,7 @@ pub struct Arguments {
     pub out: Option<PathBuf>,
 }
 
-/// Merges shards and says where the result is.
+/// Merges shards and prints the path of the result.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     output::print(&sweep::merge(&arguments.folders, arguments.out.as_deref())?)
 }

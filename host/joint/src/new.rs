@@ -4,7 +4,7 @@ pub use data_sheet::Arguments;
 use report::failure::Outcome;
 use report::output;
 
-/// Makes the file, and says what it rests on.
+/// Writes the joint file and prints the assumptions that it rests on.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     output::print(&data_sheet::run(arguments)?)
 }

@@ -1,5 +1,5 @@
-//! `joint paper` and `joint bench`: programs of the folder `research`, which are built when they are asked for. They are
-//! started through cargo with the rest of the command line, in the user's folder.
+//! `joint paper` and `joint bench`: programs of the folder `research`, built on demand. They are started through cargo
+//! with the rest of the command line, in the user's folder.
 
 use std::ffi::OsString;
 use std::process::Command;
@@ -11,24 +11,24 @@ use report::interruption;
 use report::progress::Progress;
 use report::workspace::workspace;
 
-/// Everything behind the subcommand, as the program itself understands it.
+/// Arguments that are passed on to the program unchanged.
 #[derive(Debug, clap::Args)]
 #[command(disable_help_flag = true)]
 pub struct Arguments {
-    /// Of the program
+    /// Arguments of the program
     #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
     pub rest: Vec<OsString>,
 }
 
-/// Builds and runs a program of the folder `research`; ends with its exit code.
+/// Builds and runs a program of the folder `research`; ends with the program's exit code.
 pub fn run(package: &str, rest: &[OsString]) -> Outcome<()> {
-    // Ctrl-C reaches the program as well, which ends in order; this one waits for it.
+    // Ctrl-C reaches the program as well, which ends in order; this process waits for it.
     interruption::watch()?;
-    let _in_order = interruption::InOrder::begin();
+    let _uninterrupted = interruption::UninterruptedWork::begin();
     let progress = Progress::new();
     progress.stage(&format!("building {package}"));
     let built = tool::run_with_progress(&mut cargo("build", package), &format!("building {package}"), &|line| {
-        progress.say(line)
+        progress.print_message(line)
     });
     progress.clear();
     interruption::explain(built)?;
@@ -40,13 +40,13 @@ pub fn run(package: &str, rest: &[OsString]) -> Outcome<()> {
         .map_err(|error| Failure::new(format!("cannot start `{package}` through cargo: {error}")))?;
     match status.code() {
         Some(0) => Ok(()),
-        // It has printed its own error.
+        // The program has printed its own error.
         Some(code) => std::process::exit(code),
-        None => Err(Failure::interrupted(format!("`{package}` was ended by a signal"))),
+        None => Err(Failure::interrupted(format!("a signal ended `{package}`"))),
     }
 }
 
-/// Cargo with a program of the workspace.
+/// Cargo command for a package of the workspace.
 fn cargo(subcommand: &str, package: &str) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.args([subcommand, "--package", package, "--manifest-path"]);

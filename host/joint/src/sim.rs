@@ -6,7 +6,7 @@ use report::progress::Progress;
 use simulation::sim;
 pub use simulation::sim::Arguments;
 
-/// Simulates a joint and tells its figures.
+/// Simulates a joint and prints its figures.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     output::keep_for_json(arguments.json.as_deref());
     let done = Progress::during(|progress| sim::run(arguments, progress))?;

@@ -6,7 +6,7 @@ use report::progress::Progress;
 use simulation::sweep;
 pub use simulation::sweep::Arguments;
 
-/// Sweeps a grid and says where the result is, or what is left.
+/// Runs a sweep and prints the path of the result, or the number of points that are left.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     Progress::during(|progress| output::print(&sweep::run(arguments, progress)?))
 }

@@ -4,7 +4,7 @@ pub use c_library::tables::Arguments;
 use report::failure::Outcome;
 use report::output;
 
-/// Writes them, and says where they are.
+/// Writes the tables and prints their path.
 pub fn run(arguments: &Arguments) -> Outcome<()> {
     output::print(&c_library::tables::run(arguments)?)
 }

@@ -1,5 +1,5 @@
-//! What a user who types commands is told and given: which of two files is meant, what is on standard output, where results
-//! go.
+//! Behaviour at the prompt: choice between a preset and a file of its name, contents of standard output, folders of
+//! results, installation of packages.
 
 mod command;
 mod pseudo_terminal;
@@ -8,36 +8,41 @@ use std::fs;
 
 use command::{folder, joint, joint_in, joint_with, send, start, text, until, wait};
 
+/// A bare name means the preset, unless a file has exactly the name; the note states the choice.
 #[test]
-fn a_file_with_the_name_of_a_preset_is_told_apart_from_it() {
+fn preset_and_file_of_one_name_are_noted() {
     let place = folder();
     let mine = fs::read_to_string(report::workspace::workspace().join("joints/s1.toml")).expect("a preset");
     fs::write(place.path().join("q1.toml"), &mine).expect("room");
-    let beside = joint_in(place.path(), &["check", "q1"]).well();
+    let beside = joint_in(place.path(), &["check", "q1"]).succeeded();
     assert!(beside.out.starts_with("Q1"), "{beside:?}");
     assert_eq!(
         beside.err,
         "note: `q1` is the preset of that name, not the file q1.toml in this folder: name that ./q1.toml\n"
     );
     fs::write(place.path().join("q1"), &mine).expect("room");
-    let same = joint_in(place.path(), &["check", "q1"]).well();
+    let same = joint_in(place.path(), &["check", "q1"]).succeeded();
     assert!(same.out.starts_with("S1"), "{same:?}");
     assert_eq!(same.err, "note: `q1` is the file of that name in this folder, not the preset q1\n");
     for plain in ["./q1", "q1.toml", "s1"] {
-        assert_eq!(joint_in(place.path(), &["check", plain]).well().err, "", "{plain}: there is no other of that name");
+        assert_eq!(
+            joint_in(place.path(), &["check", plain]).succeeded().err,
+            "",
+            "{plain}: there is no other of that name"
+        );
     }
 }
 
-/// The joint on a board is held to it beside the other tests of boards: `command_failure_modes`.
+/// `hil` with a joint on a board has its own test of `--json -` in `command_failure_modes`.
 #[test]
-fn json_is_alone_on_standard_output_where_that_is_asked_for() {
+fn json_dash_prints_json_alone() {
     let place = folder();
     fs::write(
         place.path().join("test.toml"),
         "duration_s = 0.2\nsettle_s = 0.1\nprofile = \"T2\"\n[controller]\nrivals = []\n",
     )
     .expect("room");
-    joint_in(place.path(), &["identify", "log.csv", "--simulate"]).well();
+    joint_in(place.path(), &["identify", "log.csv", "--simulate"]).succeeded();
     let commands: [&[&str]; 5] = [
         &["check"],
         &["budget"],
@@ -46,17 +51,18 @@ fn json_is_alone_on_standard_output_where_that_is_asked_for() {
         &["identify", "log.csv", "--out", "identified"],
     ];
     for command in commands {
-        let ended = joint_in(place.path(), &[command, &["--json", "-"]].concat()).well();
+        let ended = joint_in(place.path(), &[command, &["--json", "-"]].concat()).succeeded();
         let found: Result<serde_json::Value, _> = serde_json::from_str(&ended.out);
         assert!(found.is_ok_and(|found| found["schema"].is_string()), "{command:?}: {}", ended.out);
     }
     assert!(!place.path().join("-").exists());
 }
 
+/// The reference always runs in f64, so these options would be ignored silently.
 #[test]
-fn what_does_nothing_to_the_reference_is_refused() {
+fn options_without_effect_on_reference_rejected() {
     for option in ["--f64", "--accurate"] {
-        let words = [option, "does nothing to the scheme reference", "leave it out"];
+        let words = [option, "has no effect on --scheme reference", "leave it out"];
         joint_in(folder().path(), &["sim", "--scheme", "reference", option]).refused(&words);
         let vary = ["sweep", "q1", "--vary", "half_backlash_um=10,20", "--scheme", "reference", option];
         joint_in(folder().path(), &vary).refused(&words);
@@ -64,10 +70,10 @@ fn what_does_nothing_to_the_reference_is_refused() {
 }
 
 #[test]
-fn shells_are_given_scripts_that_know_the_commands_and_their_words() {
+fn completions_contain_commands_and_options() {
     let place = folder();
     for shell in ["bash", "zsh", "fish"] {
-        let script = joint_in(place.path(), &["completions", shell]).well().out;
+        let script = joint_in(place.path(), &["completions", shell]).succeeded().out;
         for word in ["hil", "completions", "no-reference", "lockstep"] {
             assert!(script.contains(word), "{shell}: {word}");
         }
@@ -76,8 +82,8 @@ fn shells_are_given_scripts_that_know_the_commands_and_their_words() {
 }
 
 #[test]
-fn the_version_says_its_commit_where_there_is_one() {
-    let said = joint_in(folder().path(), &["--version"]).well().out;
+fn version_names_commit() {
+    let said = joint_in(folder().path(), &["--version"]).succeeded().out;
     let (version, commit) = said.trim_end().split_once(" (commit ").unwrap_or((said.trim_end(), ""));
     assert_eq!(version, format!("joint {}", env!("CARGO_PKG_VERSION")));
     let known = report::provenance::git_commit();
@@ -86,8 +92,9 @@ fn the_version_says_its_commit_where_there_is_one() {
     assert!(known.is_none_or(|known| known.starts_with(digits)), "{said}");
 }
 
+/// Two runs must not mix their files; a killed run must not block the folder.
 #[test]
-fn two_runs_into_one_folder_do_not_mix_and_a_killed_one_does_not_stand_in_the_way() {
+fn second_run_into_busy_folder_rejected() {
     let place = folder();
     let out = text(place.path());
     let first = start(&["sim", "l1", "--duration", "3600", "--every", "2000", "--no-energy", "--out", out]);
@@ -97,16 +104,16 @@ fn two_runs_into_one_folder_do_not_mix_and_a_killed_one_does_not_stand_in_the_wa
     assert!(!place.path().join("history.csv").exists());
     send("-KILL", &first);
     wait(first);
-    joint(&short).well();
+    joint(&short).succeeded();
     assert_eq!(fs::read_to_string(place.path().join("history.csv")).expect("whole").lines().count(), 402);
 }
 
 #[test]
-fn results_go_below_the_folder_that_the_user_works_in() {
+fn results_default_to_working_folder() {
     let place = folder();
-    joint_in(place.path(), &["sim", "l1", "--duration", "0.02", "--no-energy"]).well();
+    joint_in(place.path(), &["sim", "l1", "--duration", "0.02", "--no-energy"]).succeeded();
     assert!(place.path().join("joint-out/sim/l1/report.html").is_file());
-    joint_in(place.path(), &["sweep", "l1", "--vary", "half_backlash_um=10,20", "--duration", "0.01"]).well();
+    joint_in(place.path(), &["sweep", "l1", "--vary", "half_backlash_um=10,20", "--duration", "0.01"]).succeeded();
     assert_eq!(fs::read_dir(place.path().join("joint-out/sweep")).expect("a folder").count(), 1);
     let mine = place.path().join("joint-out/sim/l1/report.html");
     fs::write(&mine, "my notes").expect("room");
@@ -115,9 +122,9 @@ fn results_go_below_the_folder_that_the_user_works_in() {
     assert_eq!(fs::read_to_string(mine).expect("still there"), "my notes");
 }
 
-/// Seen to fail: title, file name and argument reached the terminal as they were.
+/// Seen to fail: title, file name and argument reached the terminal unescaped.
 #[test]
-fn text_of_files_and_arguments_is_shown_escaped() {
+fn control_characters_are_shown_escaped() {
     let place = folder();
     let q1 = joint_file::preset("q1").expect("a preset");
     let evil = "\u{1b}]0;x\u{7}\u{1b}[2J\u{202e}";
@@ -162,7 +169,8 @@ fn text_of_files_and_arguments_is_shown_escaped() {
     }
 }
 
-/// Folder with programs that stand for Debian's: nothing is installed, and what is asked of `apt-get` is kept.
+/// Creates fake `dpkg-query` and `apt-get` in a folder: no package is installed, and the arguments of `apt-get` are
+/// recorded.
 fn debian(place: &std::path::Path) -> String {
     use std::os::unix::fs::PermissionsExt;
     let asked = place.join("asked");
@@ -176,14 +184,14 @@ fn debian(place: &std::path::Path) -> String {
     text(place).to_owned()
 }
 
-/// Returns whether packages can be installed here; those that cannot are named, whatever was decided.
+/// Returns true if the test runs as root. Without root the command only names the missing packages.
 fn is_root() -> bool {
     use std::os::unix::fs::MetadataExt;
     fs::metadata("/proc/self").is_ok_and(|data| data.uid() == 0)
 }
 
 #[test]
-fn packages_are_not_installed_against_the_decision() {
+fn packages_not_installed_if_forbidden() {
     let place = folder();
     let path = debian(place.path());
     let words =
@@ -206,7 +214,7 @@ fn packages_are_not_installed_against_the_decision() {
 }
 
 #[test]
-fn packages_are_installed_on_a_terminal_after_a_yes_only() {
+fn packages_installed_only_after_yes() {
     use std::io::{Read, Write};
     if !is_root() {
         return;

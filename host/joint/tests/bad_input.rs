@@ -1,5 +1,5 @@
-//! Bad input to every command: files that are not what they should be, numbers that cannot be, results that would be written
-//! over what they are made from. What is wrong inside a good form of file is tested beside the reader of that form.
+//! Bad input to every command: unreadable files, impossible numbers, output paths that would overwrite an input. Errors
+//! within a readable file are tested beside the reader of its format.
 
 mod command;
 
@@ -9,17 +9,17 @@ use std::process::Command;
 
 use command::{folder, joint, text};
 
-/// A test that is over in a moment.
+/// A test file that runs in a fraction of a second.
 const SHORT: &str = "duration_s = 0.2\nsettle_s = 0.1\nprofile = \"T2\"\n[controller]\nrivals = []\n";
 
-/// Files that are nothing any command reads.
-fn nothing(folder: &Path) -> Vec<PathBuf> {
+/// Paths that no command can read: missing, folder, pipe, endless, empty, binary, not UTF-8.
+fn unreadable_files(folder: &Path) -> Vec<PathBuf> {
     let write = |name: &str, content: &[u8]| {
         let path = folder.join(name);
         fs::write(&path, content).expect("a file");
         path
     };
-    // Nobody writes to it: a command that opens it waits for ever.
+    // The pipe has no writer: a command that opened it would wait for ever.
     let pipe = folder.join("pipe");
     assert!(Command::new("mkfifo").arg(&pipe).status().expect("`mkfifo` is there").success());
     let all_bytes: Vec<u8> = (0..=255).cycle().take(2048).collect();
@@ -35,8 +35,9 @@ fn nothing(folder: &Path) -> Vec<PathBuf> {
     ]
 }
 
+/// The message names the file, and no output folder is created.
 #[test]
-fn every_command_refuses_a_file_that_is_nothing_by_its_name() {
+fn unreadable_file_is_named_by_every_command() {
     let place = folder();
     let inputs = folder();
     let out = place.path().join("out");
@@ -61,7 +62,7 @@ fn every_command_refuses_a_file_that_is_nothing_by_its_name() {
         &["memory", "write", "@"],
         &["merge", "@", "--out", out],
     ];
-    for input in nothing(inputs.path()) {
+    for input in unreadable_files(inputs.path()) {
         for command in commands {
             let named: Vec<&str> = command.iter().map(|word| if *word == "@" { text(&input) } else { word }).collect();
             joint(&named).refused(&[text(&input), "help:"]);
@@ -71,7 +72,7 @@ fn every_command_refuses_a_file_that_is_nothing_by_its_name() {
 }
 
 #[test]
-fn line_ends_and_byte_order_marks_of_other_systems_are_understood() {
+fn crlf_and_byte_order_mark_accepted() {
     let place = folder();
     let q1 = joint_file::preset("q1").expect("a preset");
     let rows = "time_s,motor_torque_Nm,load_torque_Nm\n0,1,6\n0.1,-1,-6\n";
@@ -81,16 +82,16 @@ fn line_ends_and_byte_order_marks_of_other_systems_are_understood() {
             let (file, out) = (place.path().join(name), place.path().join("out"));
             let (file, out) = (text(&file), text(&out));
             match name {
-                "joint.toml" => joint(&["check", file]).well(),
-                "test.toml" => joint(&["hil", file, "--host", "--out", out]).well(),
-                _ => joint(&["sim", "q1", "--profile", file, "--out", out]).well(),
+                "joint.toml" => joint(&["check", file]).succeeded(),
+                "test.toml" => joint(&["hil", file, "--host", "--out", out]).succeeded(),
+                _ => joint(&["sim", "q1", "--profile", file, "--out", out]).succeeded(),
             };
         }
     }
 }
 
 #[test]
-fn results_are_not_written_over_what_they_are_made_from() {
+fn output_over_input_rejected() {
     let place = folder();
     let [file, test, torques, out] =
         ["joint.toml", "test.toml", "torques.csv", "out"].map(|name| place.path().join(name));
@@ -119,7 +120,7 @@ fn results_are_not_written_over_what_they_are_made_from() {
 }
 
 #[test]
-fn a_result_that_cannot_be_written_is_known_before_the_work() {
+fn unwritable_output_rejected_before_run() {
     let place = folder();
     let nowhere = place.path().join("none/x");
     for option in ["--json", "--picture"] {
@@ -127,14 +128,15 @@ fn a_result_that_cannot_be_written_is_known_before_the_work() {
     }
 }
 
+/// The message lists the boards with the role.
 #[test]
-fn a_role_that_a_board_does_not_have_is_refused_with_those_that_do() {
+fn missing_role_names_boards_that_have_it() {
     let spi = ["image", "q1", "--role", "spi-observer", "--board", "nucleo-h743zi"];
     joint(&spi).refused(&["nucleo-h743zi is no slave on SPI", "olimex-h405, nucleo-g474re", "--role observer"]);
 }
 
 #[test]
-fn boards_are_named_and_not_taken_for_their_chips() {
+fn chip_name_is_not_a_board() {
     joint(&["flash", "q1"]).refused(&["no board is named", "--board", "odrive-3.6"]);
     let chip = ["is a chip, not a board", "olimex-h405, odrive-3.6, feather-f405"];
     joint(&["image", "q1", "--board", "stm32f405"]).refused(&chip);
@@ -150,8 +152,8 @@ fn boards_are_named_and_not_taken_for_their_chips() {
 }
 
 #[test]
-fn a_board_that_is_well_is_shown_with_its_pins() {
-    let shown = joint(&["board", "check", "nucleo-g474re"]).well().out;
+fn board_check_shows_pins() {
+    let shown = joint(&["board", "check", "nucleo-g474re"]).succeeded().out;
     for words in [
         "loop  ",
         "fits: 42 % of flash",
@@ -163,11 +165,11 @@ fn a_board_that_is_well_is_shown_with_its_pins() {
     ] {
         assert!(shown.contains(words), "{shown}");
     }
-    assert!(joint(&["board", "list"]).well().out.contains("moteus-r4"));
+    assert!(joint(&["board", "list"]).succeeded().out.contains("moteus-r4"));
 }
 
 #[test]
-fn numbers_that_cannot_be_are_refused_for_what_they_are() {
+fn impossible_numbers_rejected() {
     let place = folder();
     let out = text(place.path());
     let lines: [(&[&str], &str); 9] = [
@@ -186,11 +188,12 @@ fn numbers_that_cannot_be_are_refused_for_what_they_are() {
         ended.refused(&[words]);
         assert!(!ended.err.contains("unexpected argument"), "{line:?}: {ended:?}");
     }
-    joint(&["sim", "--drive", "-1", "--duration", "0.01", "--out", out]).well();
+    joint(&["sim", "--drive", "-1", "--duration", "0.01", "--out", out]).succeeded();
 }
 
+/// Every command must print the warnings and errors of a joint file.
 #[test]
-fn what_is_odd_about_a_joint_is_told_by_every_command_and_what_cannot_be_is_refused_by_all() {
+fn odd_joint_warned_impossible_joint_rejected() {
     let place = folder();
     let q1 = joint_file::preset("q1").expect("a preset");
     let [odd, none, out, log] = ["odd.toml", "none.toml", "out", "log.csv"].map(|name| place.path().join(name));
@@ -211,7 +214,7 @@ fn what_is_odd_about_a_joint_is_told_by_every_command_and_what_cannot_be_is_refu
     };
     for line in commands(&odd) {
         let words: Vec<&str> = line.iter().map(String::as_str).collect();
-        let ended = joint(&words).well();
+        let ended = joint(&words).succeeded();
         let said = if line[0] == "check" { &ended.out } else { &ended.err };
         assert!(said.contains("warning") && said.contains("gravity_torque_N_m"), "{line:?}: {ended:?}");
         let _ = fs::remove_dir_all(&out);

@@ -1,5 +1,5 @@
-//! The command itself, in normal operation and in its failure modes, on a board in a thread behind a pseudo-terminal:
-//! exit codes, messages, kept files.
+//! The command on a board in a thread behind a pseudo-terminal, in normal operation and in its failure modes: exit
+//! codes, messages, saved files.
 
 mod command;
 mod pseudo_terminal;
@@ -20,25 +20,25 @@ use serde_json::Value;
 use tempfile::TempDir;
 use thread_board::Misbehaviour;
 
-/// A message is due within 2 s by design; a busy machine is given ten times that.
+/// Messages are due within 2 s by design; a busy machine gets ten times as long.
 const LIVENESS: Duration = Duration::from_secs(20);
 
-/// Path of the port that a board is behind; the port stays open as long as the file.
+/// Path of a board's port, and a file that keeps the port open.
 fn board(misbehaviour: Misbehaviour) -> (String, File) {
     let (path, slave, _) = counted_board(misbehaviour);
     (path, slave)
 }
 
-/// The same, and how many bytes the board has said.
+/// Board with a count of the bytes that it has sent.
 fn counted_board(misbehaviour: Misbehaviour) -> (String, File, Arc<AtomicUsize>) {
     let (stream, slave, path) = pseudo_terminal::pair();
     let said = Arc::new(AtomicUsize::new(0));
-    // The thread ends with the test's process: a pseudo-terminal does not end while one side is open.
+    // The thread ends with the test's process: a pseudo-terminal stays open while one side is open.
     drop(thread_board::start(Counted { stream, said: said.clone() }, misbehaviour));
     (path, slave, said)
 }
 
-/// A stream that counts the bytes that are written to it.
+/// A stream that counts the bytes written to it.
 struct Counted<S> {
     stream: S,
     said: Arc<AtomicUsize>,
@@ -62,12 +62,12 @@ impl<S: Write> Write for Counted<S> {
     }
 }
 
-/// The command line of a run on a port.
+/// Command line of a run on a port.
 fn line<'l>(duration: &'l str, port: &'l str, out: &'l Path) -> [&'l str; 10] {
     ["hil", "q1", "--port", port, "--no-build", "--no-reference", "--duration", duration, "--out", text(out)]
 }
 
-/// Runs it to its end, which is due.
+/// Runs the command and asserts that it ends in time.
 fn finish(arguments: &[&str]) -> Ended {
     let start = Instant::now();
     let ended = joint(arguments);
@@ -91,9 +91,9 @@ fn samples(record: &Value) -> usize {
 }
 
 #[test]
-fn a_good_run_passes_and_leaves_report_record_and_log() {
+fn good_run_writes_report_record_log() {
     let (ended, out) = run(Misbehaviour::None);
-    let ended = ended.well();
+    let ended = ended.succeeded();
     assert!(ended.out.contains("steps equal to the twin's, bit for bit"), "{ended:?}");
     let record = record(&out);
     assert_eq!(record["completeness"]["state"], "complete");
@@ -102,28 +102,28 @@ fn a_good_run_passes_and_leaves_report_record_and_log() {
 }
 
 #[test]
-fn a_check_that_does_not_hold_fails_the_run_by_name() {
+fn failed_check_is_named() {
     let (ended, out) = run(Misbehaviour::Overruns(3));
-    ended.said(1, &["did not hold: overruns"]);
+    ended.exited(1, &["did not hold: overruns"]);
     assert_eq!(record(&out)["completeness"]["state"], "complete");
-    run(Misbehaviour::LateTorques).0.said(1, &["twin"]);
+    run(Misbehaviour::LateTorques).0.exited(1, &["twin"]);
 }
 
 #[test]
-fn a_missing_port_is_named_before_anything_is_built() {
+fn missing_port_named_before_build() {
     finish(&["hil", "--port", "/dev/no-such-port", "--out", text(folder().path())])
         .refused(&["no serial port /dev/no-such-port", "help:"]);
 }
 
 #[test]
-fn a_busy_port_is_named() {
+fn busy_port_is_named() {
     let (port, _open) = board(Misbehaviour::None);
     let _holder = serialport::new(&port, 115_200).open_native().expect("the port is free");
     finish(&line("1", &port, folder().path())).refused(&[&port, "busy"]);
 }
 
 #[test]
-fn a_board_that_goes_away_leaves_an_incomplete_record() {
+fn disconnected_board_leaves_partial_record() {
     let (ended, out) = run(Misbehaviour::HangsUpAt(10_000));
     ended.refused(&["/dev/", "was lost at tick"]);
     let record = record(&out);
@@ -134,7 +134,7 @@ fn a_board_that_goes_away_leaves_an_incomplete_record() {
 }
 
 #[test]
-fn a_silent_board_a_deaf_line_and_garbage_are_told_apart() {
+fn silence_mute_line_and_garbage_distinguished() {
     let (ended, out) = run(Misbehaviour::FallsSilentAt(10_000));
     ended.refused(&["fallen silent"]);
     assert!(samples(&record(&out)) > 100);
@@ -142,8 +142,9 @@ fn a_silent_board_a_deaf_line_and_garbage_are_told_apart() {
     run(Misbehaviour::OnlyGarbage).0.refused(&["no valid frame"]);
 }
 
+/// A board with another digest, role or protocol needs to be flashed.
 #[test]
-fn another_board_is_refused_with_the_command_that_mends_it() {
+fn wrong_image_names_flash_command() {
     for misbehaviour in
         [Misbehaviour::AnotherDigest, Misbehaviour::AnotherRole, Misbehaviour::Protocol(PROTOCOL_VERSION + 1)]
     {
@@ -152,31 +153,31 @@ fn another_board_is_refused_with_the_command_that_mends_it() {
 }
 
 #[test]
-fn a_half_frame_fails_the_run_but_does_not_end_it() {
+fn half_frame_fails_check_run_continues() {
     let (ended, out) = run(Misbehaviour::HalfFrameAt(10_000));
-    ended.said(1, &["bad frames at the host"]);
+    ended.exited(1, &["bad frames at the host"]);
     assert_eq!(samples(&record(&out)), 1000);
 }
 
 #[test]
-fn a_folder_that_cannot_be_written_is_found_before_the_run() {
+fn unwritable_folder_rejected_before_run() {
     for bad in ["/proc/joint-report", "/dev/full"] {
         finish(&line("1", "/dev/no-such-port", Path::new(bad))).refused(&[bad, "--out"]);
     }
 }
 
 #[test]
-fn a_full_disk_at_the_end_does_not_cost_the_record() {
+fn full_disk_at_end_keeps_record() {
     let (port, _open) = board(Misbehaviour::None);
     let out = folder();
-    // Where the record is, is said too.
+    // The message also gives the path of the record.
     finish(&[&line("1", &port, out.path())[..], &["--json", "/dev/full"]].concat())
         .refused(&["cannot write /dev/full", text(out.path())]);
     assert_eq!(samples(&record(&out)), 1000);
 }
 
 #[test]
-fn ctrl_c_stops_the_run_and_keeps_the_record() {
+fn ctrl_c_keeps_record() {
     let (port, _open, said) = counted_board(Misbehaviour::None);
     let out = folder();
     let child = start(&line("3600", &port, out.path()));
@@ -185,12 +186,12 @@ fn ctrl_c_stops_the_run_and_keeps_the_record() {
     let start = Instant::now();
     let ended = wait(child);
     assert!(start.elapsed() < LIVENESS);
-    ended.said(130, &["stopped by the user", "what was recorded"]);
+    ended.exited(130, &["stopped by the user", "what was recorded"]);
     assert_eq!(record(&out)["completeness"]["state"], "interrupted");
 }
 
 #[test]
-fn a_bad_profile_is_refused_by_file_and_line() {
+fn bad_profile_names_file_and_line() {
     let folder = folder();
     let file = folder.path().join("drive.csv");
     fs::write(&file, "time_s,motor_torque_Nm,load_torque_Nm\n0,0,0\n1,NaN,0\n").expect("a file");
@@ -200,7 +201,7 @@ fn a_bad_profile_is_refused_by_file_and_line() {
 }
 
 #[test]
-fn bad_arguments_and_bad_joint_files_exit_with_two() {
+fn bad_arguments_exit_with_two() {
     let folder = folder();
     let bad = folder.path().join("bad.toml");
     fs::write(&bad, "name = \"bad\"\nunknown_key = 1\n").expect("a file");
@@ -220,32 +221,33 @@ fn bad_arguments_and_bad_joint_files_exit_with_two() {
 }
 
 #[test]
-fn without_a_subcommand_help_is_printed() {
-    let Ended { out: help, .. } = finish(&[]).well();
+fn no_subcommand_prints_help() {
+    let Ended { out: help, .. } = finish(&[]).succeeded();
     assert!(["hil", "check", "image", "flash"].iter().all(|name| help.contains(name)), "{help}");
     assert!(help.contains("real-time") || help.contains("microcontroller"), "{help}");
 }
 
 #[test]
-fn a_reader_that_goes_away_is_no_error() {
+fn closed_pipe_is_no_error() {
     let mut child = start(&["check", "q1"]);
     drop(child.stdout.take());
-    wait(child).said(0, &[]);
+    wait(child).exited(0, &[]);
 }
 
 #[test]
-fn json_on_standard_output_is_the_record_alone() {
+fn json_dash_prints_record_alone() {
     let (port, _open) = board(Misbehaviour::None);
     let out = folder();
-    let ended = finish(&[&line("0.2", &port, out.path())[..], &["--json", "-"]].concat()).well();
+    let ended = finish(&[&line("0.2", &port, out.path())[..], &["--json", "-"]].concat()).succeeded();
     assert_eq!(ended.out, fs::read_to_string(out.path().join("record.json")).expect("the record"));
     assert!(ended.err.contains("report: "), "{ended:?}");
 }
 
+/// Units and words of run.mcap equal those of record.json.
 #[test]
-fn a_run_leaves_a_log_of_its_samples_in_the_units_and_words_of_the_record() {
+fn mcap_log_matches_record() {
     let (ended, out) = run(Misbehaviour::None);
-    ended.well();
+    ended.succeeded();
     let log = fs::read(out.path().join("run.mcap")).expect("written");
     let (summary, record) = (mcap::Summary::read(&log).expect("finished").expect("with a summary"), record(&out));
     let channel = summary.channels.values().next().expect("one channel");

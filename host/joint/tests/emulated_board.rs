@@ -1,5 +1,5 @@
-//! The command on the emulated board: the real firmware, the real emulator, runs that succeed and runs that are cut
-//! off. These tests build images and take a while, so they are left out of a plain `cargo test`.
+//! The command on the emulated board: real firmware and real emulator, successful and interrupted runs. These tests
+//! build images, so a plain `cargo test` skips them.
 
 mod bad_line;
 mod command;
@@ -23,12 +23,12 @@ use link::messages::Role;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A message is due within 2 s by design; a busy machine is given ten times that.
+/// Messages are due within 2 s by design; a busy machine gets ten times as long.
 const LIVENESS: Duration = Duration::from_secs(20);
-/// Longest wait for a run to have begun: the image may have to be built first.
+/// Longest wait for the start of a run: the image may have to be built first.
 const BUILD: Duration = Duration::from_secs(900);
 
-/// Runs a joint, or a test file, to its end.
+/// Runs a joint or a test file to its end.
 fn hil(file: &str, out: &TempDir, more: &[&str]) -> Ended {
     let ended = joint(&[&["hil", file, "--out", text(out.path())], more].concat());
     assert!(!ended.err.contains("panicked"), "{ended:?}");
@@ -44,7 +44,7 @@ fn check<'r>(record: &'r Value, name: &str) -> &'r Value {
     checks.iter().find(|check| check["name"].as_str().is_some_and(|check| check.contains(name))).expect("a check")
 }
 
-/// Processes whose parent is this one, by `/proc`.
+/// Child processes of a process, by `/proc`.
 fn children(parent: u32) -> Vec<u32> {
     let is_child = |process: &u32| {
         let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
@@ -54,14 +54,14 @@ fn children(parent: u32) -> Vec<u32> {
     processes.filter_map(|entry| entry.file_name().to_str()?.parse().ok()).filter(is_child).collect()
 }
 
-/// An emulator that runs an image, not one that is asked for its version.
+/// Returns true for an emulator that runs an image, not one that prints its version.
 fn is_emulator(process: u32) -> bool {
     let line = fs::read(format!("/proc/{process}/cmdline")).unwrap_or_default();
     let mut words = line.split(|byte| *byte == 0);
     words.next().is_some_and(|program| program.ends_with(b"qemu-system-arm")) && words.any(|word| word == b"-kernel")
 }
 
-/// Whether a process has computed for about a second: user and system time in hundredths, fields 14 and 15.
+/// Returns true once a process has computed for about a second: user and system time in hundredths, fields 14 and 15.
 fn has_worked(process: u32) -> bool {
     let stat = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
     let after_name = stat.rsplit(')').next().unwrap_or_default();
@@ -70,7 +70,7 @@ fn has_worked(process: u32) -> bool {
 
 fn is_alive(process: u32) -> bool {
     let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
-    // A zombie whose parent has gone is taken by init in a moment; it is dead all the same.
+    // A zombie whose parent has ended is removed by init shortly; it counts as dead.
     !status.is_empty() && !status.lines().any(|line| line.starts_with("State:") && line.contains('Z'))
 }
 
@@ -79,7 +79,7 @@ fn kill(process: u32) {
     assert!(status.success());
 }
 
-/// A long run in its middle, and its emulator.
+/// Starts a long run and waits until its emulator computes.
 fn long_run(out: &TempDir) -> (Child, u32) {
     let mut child = start(&["hil", "q1", "--out", text(out.path()), "--duration", "3600", "--no-reference"]);
     let joint = child.id();
@@ -106,10 +106,10 @@ fn assert_incomplete(out: &TempDir) {
 
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn the_default_run_holds_every_check_and_leaves_a_decoded_log_line() {
+fn default_run_passes_and_decodes_log() {
     let out = folder();
     let copy = out.path().join("copy.json");
-    let ended = hil("q1", &out, &["--json", text(&copy)]).well();
+    let ended = hil("q1", &out, &["--json", text(&copy)]).succeeded();
     let record = record(&out);
     assert!(check(&record, "steps equal to the twin's")["figure"].as_f64().is_some_and(|steps| steps >= 1e5));
     assert!(record["log"].as_array().is_some_and(|lines| !lines.is_empty()), "no log line");
@@ -122,7 +122,7 @@ fn the_default_run_holds_every_check_and_leaves_a_decoded_log_line() {
 
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn a_recorded_drive_in_real_time_equals_the_twin() {
+fn recorded_profile_realtime_equals_twin() {
     let out = folder();
     let drive = out.path().join("drive.csv");
     let row = |k: u32| {
@@ -139,7 +139,7 @@ fn a_recorded_drive_in_real_time_equals_the_twin() {
 
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn a_joint_file_that_is_not_in_the_repository_runs_beside_the_presets() {
+fn user_joint_file_runs() {
     let out = folder();
     let file = out.path().join("mine.toml");
     let preset = joint_file::preset("l1").expect("a preset").replace("name = \"L1\"", "name = \"Mine\"");
@@ -152,7 +152,7 @@ fn a_joint_file_that_is_not_in_the_repository_runs_beside_the_presets() {
 
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn an_emulator_killed_in_mid_run_is_named_and_the_record_is_kept() {
+fn killed_emulator_named_record_kept() {
     let out = folder();
     let (child, emulator) = long_run(&out);
     kill(emulator);
@@ -162,18 +162,18 @@ fn an_emulator_killed_in_mid_run_is_named_and_the_record_is_kept() {
 
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn ctrl_c_leaves_a_record_and_no_emulator() {
+fn ctrl_c_leaves_record_no_emulator() {
     let out = folder();
     let (child, emulator) = long_run(&out);
     interrupt(&child);
-    end(child).said(130, &[]);
+    end(child).exited(130, &[]);
     assert_incomplete(&out);
     within(LIVENESS, "the emulator's end", || (!is_alive(emulator)).then_some(()));
 }
 
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn even_a_killed_command_leaves_no_emulator() {
+fn killed_command_leaves_no_emulator() {
     assert!(Path::new("/usr/bin/setpriv").exists(), "needs setpriv of util-linux, as every Debian has it");
     let out = folder();
     let (mut child, emulator) = long_run(&out);
@@ -184,18 +184,19 @@ fn even_a_killed_command_leaves_no_emulator() {
 
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn images_of_several_joints_lie_side_by_side() {
+fn images_of_joints_have_own_paths() {
     let [one, other] = ["q1", "l1"].map(|name| {
-        let ended = joint(&["image", name]).well();
+        let ended = joint(&["image", name]).succeeded();
         PathBuf::from(ended.out.lines().next().expect("a path"))
     });
     assert_ne!(one, other);
     assert!(one.is_file() && other.is_file());
 }
 
+/// The board in role `loop` injects faults in the same periods as the host.
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn the_whole_loop_has_the_faults_of_a_test_as_the_host_has_them() {
+fn loop_faults_equal_on_board_and_host() {
     let out = folder();
     let file = out.path().join("faults.toml");
     let mut text = "duration_s = 0.5\nsettle_s = 0.1\nprofile = \"T2\"\n[controller]\nrivals = []\n".to_owned();
@@ -214,16 +215,16 @@ fn the_whole_loop_has_the_faults_of_a_test_as_the_host_has_them() {
         text += &format!("[[fault]]\n{fault}\nstart_s = {start}\nend_s = {}\n", start + 0.1);
     }
     fs::write(&file, text + "[assert]\nfault_found_ms = \"<= 400\"\n").expect("a file");
-    // With seed 2 the encoder that slips is given up after 50 ms. With 1, 3, 5, 6 and 8, from other places in the gap, neither that nor the
-    // frozen one is put down to the output's encoder by the end: known, and not mended.
-    let ended = hil(self::text(&file), &out, &["--role", "loop", "--seed", "2"]).well();
+    // With seed 2 the slipping encoder is excluded after 50 ms. Known limitation: with seeds 1, 3, 5, 6 and 8, which
+    // start elsewhere in the gap, neither the slipping nor the frozen encoder is attributed to the output by the end.
+    let ended = hil(self::text(&file), &out, &["--role", "loop", "--seed", "2"]).succeeded();
     let board = record(&out)["tests"][0]["runs"][0]["board"].clone();
     assert_eq!((board["role"].as_str(), board["same_periods"].as_u64()), (Some("loop"), Some(5000)), "{ended:?}");
 }
 
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn a_memory_is_judged_by_the_firmware_of_the_emulated_board() {
+fn memory_checked_by_emulated_firmware() {
     let folder = folder();
     let q1 = learning::joint(&[]);
     let file = folder.path().join("learnt.memory");
@@ -231,33 +232,33 @@ fn a_memory_is_judged_by_the_firmware_of_the_emulated_board() {
     let memory = |words: &[&str]| joint(&[&["memory"], words].concat());
     let file = text(&file);
     for role in ["observer", "loop"] {
-        let ended = memory(&["write", file, "--role", role]).well();
+        let ended = memory(&["write", file, "--role", role]).succeeded();
         assert!(ended.out.contains("is good") && ended.out.contains("no flash"), "{ended:?}");
     }
     memory(&["write", file, "--joint", "l1"]).refused(&["another joint"]);
     memory(&["read", file]).refused(&["has no flash"]);
-    let ended = memory(&["erase"]).well();
-    assert!(ended.out.contains("keeps no memory now"), "{ended:?}");
+    let ended = memory(&["erase"]).succeeded();
+    assert!(ended.out.contains("has no memory now"), "{ended:?}");
 }
 
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn the_tutorial_prints_what_it_says_on_the_emulated_board() {
+fn tutorial_matches_on_emulated_board() {
     tutorial::follow_page("tutorial.md", tutorial::Tier::EmulatedBoard);
 }
 
-/// The long form: `PROXY_SEEDS=200`.
+/// A disturbed run reports every loss, and the link recovers with the first frame. Long form: `PROXY_SEEDS=200`.
 #[test]
 #[ignore = "needs the emulated board: run by `cargo joint hil --check`"]
-fn a_bad_line_costs_what_is_told_and_the_link_is_back_with_the_first_frame() {
+fn bad_line_losses_reported_link_recovers() {
     let say = |line: &str| println!("{line}");
     let toolchain = Toolchain::prepare(&say).expect("a toolchain for the board");
     emulator::ensure(&say).expect("an emulator");
     let file = preset_file("q1");
     let image = build_image(&toolchain, &file, &Board::emulated(), Role::Plant, 20_000, false, &say).expect("an image");
     let (mut emulator, line) = Emulator::start(&image.elf).expect("a board");
-    // Its clock runs as fast as it can while the host is thinking: no timeout.
-    let trial = Trial::of(line, u32::MAX);
+    // The board's clock runs at full speed while the host computes, so the timeout is disabled.
+    let trial = Trial::start(line, u32::MAX);
     seeds(6).for_each(|seed| trial.seed(seed));
     emulator.check().expect("the board still runs");
 }

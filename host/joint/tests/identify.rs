@@ -1,5 +1,5 @@
-//! `joint identify` as a user meets it: true values lie in the intervals that it states for logs of the f64 reference,
-//! and logs that cannot tell are refused by name.
+//! `joint identify` at the command line: stated intervals contain the true values for logs of the f64 reference, and
+//! logs without the necessary information are rejected with the cause.
 
 mod command;
 
@@ -11,7 +11,7 @@ use command::{Ended, folder, joint, json, text};
 use identify::virtual_test::record;
 use serde_json::Value;
 
-/// What is found in the recommended test of a joint with values changed, by someone who has the unchanged joint file.
+/// Findings for the recommended test of a changed joint, identified with the unchanged joint file.
 fn identified(name: &str, changes: &[(&str, &str)], seed: u64, with_output_torque: bool) -> Value {
     let preset = joint_file::preset(name).expect("a preset");
     let changed = changes
@@ -21,7 +21,7 @@ fn identified(name: &str, changes: &[(&str, &str)], seed: u64, with_output_torqu
     let folder = folder();
     let [log, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
     fs::write(&log, record(&truth, seed, &|_| {}).expect("can be followed").csv(with_output_torque)).expect("written");
-    joint(&["identify", text(&log), "--joint", name, "--out", text(&out)]).well();
+    joint(&["identify", text(&log), "--joint", name, "--out", text(&out)]).succeeded();
     let patched = fs::read_to_string(out.join("joint.toml")).expect("written");
     joint_file::read(&patched).expect("the patched file is a joint file");
     let page = fs::read_to_string(out.join("report.html")).expect("written");
@@ -37,10 +37,10 @@ fn found(record: &Value, key: &str) -> Option<(f64, [f64; 2])> {
     Some((finding["value"].as_f64()?, ends))
 }
 
-/// Keys and true values, with the largest half of an interval that is any use, as a share of the value.
+/// Keys, true values, and the largest useful half-width of the interval as a share of the value.
 type Truths<'t> = &'t [(&'t str, f64, f64)];
 
-/// A preset, what is changed in it behind the fit's back, what is true then, and a seed.
+/// Preset, changes unknown to the fit, true values, and seed.
 type Case<'c> = (&'c str, &'c [(&'c str, &'c str)], Vec<(&'c str, f64, f64)>, u64);
 
 const BACKLASH: &str = "mesh.half_backlash_um";
@@ -55,7 +55,7 @@ const MOTOR_TWICE: &str = "drive_train.motor_encoder.twice_per_turn_error_deg";
 const OUTPUT_ONCE: &str = "drive_train.output_encoder.once_per_turn_error_deg";
 const SKEW: &str = "drive_train.output_encoder.skew_us";
 
-/// Counts truths in and out of their intervals; those outside are told.
+/// Counts the true values inside their intervals and prints the others.
 fn count(record: &Value, truths: Truths<'_>, inside: &mut usize, all: &mut usize) {
     for (key, truth, share) in truths {
         *all += 1;
@@ -74,13 +74,13 @@ fn count(record: &Value, truths: Truths<'_>, inside: &mut usize, all: &mut usize
 }
 
 #[test]
-fn true_values_lie_in_the_stated_intervals() {
+fn intervals_contain_true_values() {
     let q1 = |backlash: f64, stiffness: f64| {
         [
             (BACKLASH, backlash, 0.02),
             (STIFFNESS, stiffness, 0.03),
             (DAMPING, 0.02, 0.15),
-            // Losses are as unknown to the fit as the motor's friction, and brake alike.
+            // Gear losses and motor friction are both unknown to the fit and brake alike.
             (MOTOR_DRY, 0.03, 0.15),
             (LINK_DRY, 0.3, 0.15),
             (LINK_VISCOUS, 0.1, 0.05),
@@ -122,7 +122,7 @@ fn true_values_lie_in_the_stated_intervals() {
 }
 
 #[test]
-fn lost_samples_and_times_that_vary_are_taken_and_told() {
+fn lost_samples_and_jitter_are_noted() {
     let truth = joint_file::read(joint_file::preset("q1").expect("a preset")).expect("a joint");
     let recording = record(&truth, 41, &|_| {}).expect("can be followed").csv(false);
     let rows: Vec<(f64, &str)> = recording
@@ -130,14 +130,14 @@ fn lost_samples_and_times_that_vary_are_taken_and_told() {
         .skip(1)
         .map(|line| line.split_once(',').map(|(time, rest)| (time.parse().expect("a time"), rest)).expect("columns"))
         .collect();
-    // Weyl's sequence: numbers between 0 and 1 that look like chance.
+    // Weyl's sequence: pseudo-random numbers between 0 and 1.
     let chance = |row: usize| (row as f64 * 0.618_033_988_75).fract();
     let folder = folder();
     let check = |name: &str, rows: &[(f64, &str)], told: &str, near: f64| {
         let [log, out] = [format!("{name}.csv"), name.to_owned()].map(|name| folder.path().join(name));
         let text_of: String = rows.iter().map(|(time, rest)| format!("{time:.7},{rest}\n")).collect();
         fs::write(&log, format!("{}\n{text_of}", recording.lines().next().expect("a head"))).expect("written");
-        joint(&["identify", text(&log), "--joint", "q1", "--out", text(&out)]).well();
+        joint(&["identify", text(&log), "--joint", "q1", "--out", text(&out)]).succeeded();
         let record = json(&out.join("findings.json"));
         let assumptions = record["assumptions"].to_string();
         assert!(assumptions.contains(told), "{name}: {assumptions}");
@@ -149,27 +149,28 @@ fn lost_samples_and_times_that_vary_are_taken_and_told() {
             assert!((found - value).abs() < reach, "{name}: {key} is {found}, in {low} to {high}");
         }
     };
-    // In thirty bursts of up to a hundred, 2 % of the samples did not arrive.
+    // 2 % of the samples are lost in thirty bursts of up to a hundred.
     let lost = |row: usize| row % 4000 < 160 * (row / 4000 % 3) / 3 && row > 4000;
     let arrived: Vec<_> = (0..rows.len()).filter(|row| !lost(*row)).map(|row| rows[row]).collect();
     check("lost", &arrived, "samples lost in", 0.6);
-    // Every other sample, now a step early, now not: taken when their stamps say.
+    // Every other sample, irregularly one period early, with true time stamps.
     let early: Vec<_> = (1..rows.len() / 2).map(|pair| rows[2 * pair - usize::from(chance(pair) < 0.3)]).collect();
     check("early", &early, "interpolated to even times", 0.6);
-    // Taken evenly, stamped by a host that is late by up to four tenths of a period.
+    // Samples at even times, stamped by a host up to four tenths of a period late.
     let late: Vec<_> = (0..rows.len()).map(|row| (rows[row].0 + 4e-5 * chance(row), rows[row].1)).collect();
     check("late", &late, "taken for even", 0.6);
 }
 
+/// An inertia wrong by 5 % must not bias the stiffness.
 #[test]
-fn an_inertia_that_is_wrong_by_five_percent_bends_nothing_and_is_told() {
+fn wrong_inertia_widens_interval_and_is_noted() {
     let folder = folder();
     let log = folder.path().join("log.csv");
     let common = ["identify", text(&log), "--joint", "q1"];
-    joint(&[&common[..], &["--simulate", "--seed", "31"]].concat()).well();
+    joint(&[&common[..], &["--simulate", "--seed", "31"]].concat()).succeeded();
     let identified = |set: &str, out: &str| {
         let out = folder.path().join(out);
-        joint(&[&common[..], &["--set", set, "--out", text(&out)]].concat()).well();
+        joint(&[&common[..], &["--set", set, "--out", text(&out)]].concat()).succeeded();
         json(&out.join("findings.json"))
     };
     let half = |record: &Value| {
@@ -185,10 +186,10 @@ fn an_inertia_that_is_wrong_by_five_percent_bends_nothing_and_is_told() {
     for (place, set) in ["link_inertia_kg_m2=0.158", "link_inertia_kg_m2=0.142"].into_iter().enumerate() {
         half(&identified(set, &format!("link{place}")));
     }
-    // Where the torque is not doubted, the log tells which inertia is wrong.
+    // If the torque is trusted, the log shows which inertia is wrong.
     let out = folder.path().join("told");
     let sets = ["--set", "rotor_inertia_kg_m2=3e-4", "--set", "drive_train.torque_constant_error_ratio=0"];
-    joint(&[&common[..], &sets, &["--torque-error", "0", "--out", text(&out)]].concat()).well();
+    joint(&[&common[..], &sets, &["--torque-error", "0", "--out", text(&out)]].concat()).succeeded();
     let notes: Vec<String> = json(&out.join("findings.json"))["findings"]
         .as_array()
         .expect("a list")
@@ -200,7 +201,7 @@ fn an_inertia_that_is_wrong_by_five_percent_bends_nothing_and_is_told() {
 }
 
 #[test]
-fn a_torque_measured_at_the_output_tells_the_motor_s_friction_from_the_link_s() {
+fn output_torque_separates_frictions() {
     let record = identified("q1", &[], 21, true);
     let viscous = "drive_train.motor_viscous_friction_N_m_s_per_rad";
     for (key, truth, share) in [(viscous, 2e-4, 0.1), (LINK_DRY, 0.3, 0.03), (LINK_VISCOUS, 0.1, 0.03)] {
@@ -210,12 +211,12 @@ fn a_torque_measured_at_the_output_tells_the_motor_s_friction_from_the_link_s() 
 }
 
 #[test]
-fn teeth_that_bounce_on_for_long_bend_neither_gap_nor_stiffness() {
+fn long_bouncing_keeps_gap_and_stiffness() {
     let folder = folder();
     let [log, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
     let common = ["identify", text(&log), "--joint", "l1", "--motor-bits", "14", "--output-bits", "18"];
-    joint(&[&common[..], &["--simulate", "--set", "mesh.half_backlash_um=79.49222113134289"]].concat()).well();
-    joint(&[&common[..], &["--out", text(&out)]].concat()).well();
+    joint(&[&common[..], &["--simulate", "--set", "mesh.half_backlash_um=79.49222113134289"]].concat()).succeeded();
+    joint(&[&common[..], &["--out", text(&out)]].concat()).succeeded();
     let record = json(&out.join("findings.json"));
     for (key, truth) in [(BACKLASH, 79.492_221), ("mesh.mean_stiffness_N_per_m", 1e8)] {
         let (_, [low, high]) = found(&record, key).unwrap_or_else(|| panic!("{key} is not found"));
@@ -224,19 +225,19 @@ fn teeth_that_bounce_on_for_long_bend_neither_gap_nor_stiffness() {
 }
 
 #[test]
-fn an_equivalent_gear_is_identified_with_the_torque_at_its_output_and_refused_without() {
+fn equivalent_gear_needs_output_torque() {
     let folder = folder();
     let [log, without, out] = ["log.csv", "without.csv", "out"].map(|name| folder.path().join(name));
     let sets = ["--set", "drive_train.motor_encoder.once_per_turn_error_deg=0.1"];
     let common = ["identify", text(&log), "--joint", "c1"];
-    joint(&[&common[..], &["--simulate", "--with-output-torque", "--seed", "5"], &sets].concat()).well();
-    joint(&[&common[..], &["--out", text(&out)]].concat()).well();
+    joint(&[&common[..], &["--simulate", "--with-output-torque", "--seed", "5"], &sets].concat()).succeeded();
+    joint(&[&common[..], &["--out", text(&out)]].concat()).succeeded();
     let record = json(&out.join("findings.json"));
     let lost_motion = 3.0_f64.to_radians() / 60.0 * 1e3;
     let stiffness = 20.0 * 60.0_f64.to_degrees();
     for (key, truth, share) in [
         ("equivalent_gear.lost_motion_mrad", lost_motion, 0.01),
-        // A scale of the sensor that is off by half a percent is in the interval.
+        // A sensor scale off by half a percent lies in the interval.
         ("equivalent_gear.stiffness_N_m_per_rad", stiffness, 0.015),
         ("equivalent_gear.damping_ratio", 0.05, 0.05),
         (MOTOR_ONCE, 0.1, 0.02),
@@ -247,7 +248,7 @@ fn an_equivalent_gear_is_identified_with_the_torque_at_its_output_and_refused_wi
             "{key}: {low} to {high}, truly {truth}"
         );
     }
-    joint(&["identify", text(&without), "--joint", "c1", "--simulate"]).well();
+    joint(&["identify", text(&without), "--joint", "c1", "--simulate"]).succeeded();
     let out = folder.path().join("nothing");
     joint(&["identify", text(&without), "--joint", "c1", "--out", text(&out)]).refused(&[
         "not identified by its motor's torque",
@@ -257,14 +258,14 @@ fn an_equivalent_gear_is_identified_with_the_torque_at_its_output_and_refused_wi
     assert!(!out.exists(), "a refused log leaves nothing");
 }
 
-/// A test file's sine of one strength: joint, frequency [Hz] and amplitude [rad].
+/// Sine of a test file at one amplitude: joint, frequency [Hz] and amplitude [rad].
 type Sine = (&'static str, f64, f64);
 
-/// One of each joint, and one of the slower ones, which show more.
+/// One sine for each joint, and a slower one, which reveals more.
 const SINES: [Sine; 5] =
     [("q1", 4.0, 0.072), ("d2", 4.0, 0.067), ("l1", 2.0, 0.4), ("s1", 10.0, 0.147), ("q1", 2.0, 0.288)];
 
-/// The others of the long form.
+/// Further sines of the long form.
 const MORE_SINES: [Sine; 7] = [
     ("q1", 1.0, 0.4),
     ("q1", 7.0, 0.0235),
@@ -275,24 +276,25 @@ const MORE_SINES: [Sine; 7] = [
     ("s1", 4.0, 0.4),
 ];
 
+/// A sine of one amplitude carries little information: each stated interval must still contain the truth.
 #[test]
-fn of_a_sine_of_one_strength_nothing_wrong_is_said_with_confidence() {
-    let (found, told_why) = nothing_wrong_of(&SINES);
+fn single_amplitude_sine_findings_are_true() {
+    let (found, told_why) = check_sines(&SINES);
     assert!(found > 3, "{found} values: what a sine does show is not refused");
     assert!(told_why > 1, "why the rest is not found is told of {told_why}");
 }
 
 #[test]
 #[ignore = "two minutes of computing"]
-fn of_more_sines_of_one_strength_nothing_wrong_is_said_with_confidence() {
-    let (found, told_why) = nothing_wrong_of(&MORE_SINES);
+fn more_single_amplitude_sines_are_true() {
+    let (found, told_why) = check_sines(&MORE_SINES);
     assert!(found > 6, "{found} values: what a sine does show is not refused");
     assert!(told_why > 4, "why the rest is not found is told of {told_why}");
 }
 
-/// Identifies runs of the reference and holds each value's interval against the truth. How many values were found, and of how many
-/// sines it was told why the rest is not.
-fn nothing_wrong_of(sines: &[Sine]) -> (usize, usize) {
+/// Identifies runs of the reference and checks each interval against the truth. Returns the number of values found, and
+/// the number of sines whose report explains the missing values.
+fn check_sines(sines: &[Sine]) -> (usize, usize) {
     let folder = folder();
     let (mut found, mut told_why) = (0, 0);
     for (name, frequency, amplitude) in sines {
@@ -305,14 +307,14 @@ fn nothing_wrong_of(sines: &[Sine]) -> (usize, usize) {
              amplitude_rad = {amplitude}\n[controller]\nrivals = []\n"
         );
         fs::write(&test, told).expect("written");
-        joint(&["hil", text(&test), "--host", "--plant", "reference", "--seed", "1", "--out", text(&runs)]).well();
+        joint(&["hil", text(&test), "--host", "--plant", "reference", "--seed", "1", "--out", text(&runs)]).succeeded();
         let log = runs.join(format!("runs/{name}-{frequency}-seed1-preview.mcap"));
         let ended = joint(&["identify", text(&log), "--joint", name, "--out", text(&out)]);
         if ended.code == Some(2) {
             ended.refused(&["nothing is identifiable"]);
             continue;
         }
-        ended.well();
+        ended.succeeded();
         let record = json(&out.join("findings.json"));
         for finding in record["findings"].as_array().expect("a list") {
             let (Some(key), Some(value)) = (finding["key"].as_str(), finding["value"].as_f64()) else { continue };
@@ -326,7 +328,8 @@ fn nothing_wrong_of(sines: &[Sine]) -> (usize, usize) {
     (found, told_why)
 }
 
-/// A log of a motor that turns evenly but for what a row may change: time, motor counts, output counts, torque.
+/// Runs `identify` on a log of a motor at constant speed whose rows can be changed: time, motor counts, output counts,
+/// torque.
 fn log(folder: &Path, change: impl Fn(usize, &mut [String; 4])) -> Ended {
     let mut text = "time_s,motor_counts,output_counts,motor_torque_N_m\n".to_owned();
     for row in 0..3000_usize {
@@ -348,7 +351,7 @@ fn log(folder: &Path, change: impl Fn(usize, &mut [String; 4])) -> Ended {
 }
 
 #[test]
-fn logs_that_cannot_tell_are_refused_by_name() {
+fn uninformative_logs_rejected() {
     let folder = folder();
     let log = |change: &dyn Fn(usize, &mut [String; 4])| log(folder.path(), change);
     let once = |at: usize, place: usize, cell: &str| {
@@ -388,7 +391,7 @@ fn logs_that_cannot_tell_are_refused_by_name() {
     log(&|row, cells| cells[0] = format!("{:.6}", row as f64 * 1e-4)).refused(&["too short: 0.300 s", "0.5 s"]);
 }
 
-/// An MCAP log of ROS 2 messages in CDR, or of JSON, with a topic beside that has nothing to do with it.
+/// Writes an MCAP log of ROS 2 messages in CDR, or of JSON, with an unrelated topic.
 fn mcap(path: &Path, csv: &str, encoding: &str, compression: mcap::Compression) {
     let out = std::io::BufWriter::new(fs::File::create(path).expect("a file"));
     let options = mcap::WriteOptions::new().compression(Some(compression));
@@ -420,9 +423,9 @@ fn mcap(path: &Path, csv: &str, encoding: &str, compression: mcap::Compression) 
             let mut bytes = vec![0, 1, 0, 0];
             bytes.extend(((nanoseconds / 1_000_000_000) as i32).to_le_bytes());
             bytes.extend(((nanoseconds % 1_000_000_000) as u32).to_le_bytes());
-            // Frame of one letter; one name of three.
+            // A frame name of one letter; one joint name of three.
             bytes.extend([2, 0, 0, 0, b'm', 0, 0, 0, 1, 0, 0, 0, 4, 0, 0, 0, b'o', b'u', b't', 0]);
-            // One number, on a multiple of eight behind the head.
+            // One number, aligned to eight bytes after the header.
             bytes.extend([1, 0, 0, 0]);
             bytes.extend(cells[2].parse::<f64>().expect("counts").to_le_bytes());
             bytes.extend(cells[1].parse::<i64>().expect("counts").to_le_bytes());
@@ -438,7 +441,7 @@ fn mcap(path: &Path, csv: &str, encoding: &str, compression: mcap::Compression) 
 }
 
 #[test]
-fn a_lab_s_own_mcap_log_says_what_the_same_log_as_csv_says() {
+fn mcap_log_equals_csv_log() {
     let folder = folder();
     let preset = joint_file::preset("q1").expect("a preset");
     let whole = record(&joint_file::read(preset).expect("a joint"), 41, &|_| {}).expect("followed").csv(false);
@@ -449,7 +452,7 @@ fn a_lab_s_own_mcap_log_says_what_the_same_log_as_csv_says() {
     mcap(&json, &csv, "json", mcap::Compression::Zstd);
     let findings = |log: &Path, options: &[&str]| {
         let out = folder.path().join("out");
-        joint(&[&["identify", text(log), "--out", text(&out)], options].concat()).well();
+        joint(&[&["identify", text(log), "--out", text(&out)], options].concat()).succeeded();
         command::json(&out.join("findings.json"))["findings"].clone()
     };
     let wanted = findings(&plain, &[]);
@@ -460,7 +463,7 @@ fn a_lab_s_own_mcap_log_says_what_the_same_log_as_csv_says() {
     let close = |found: &Value| {
         for (one, other) in wanted.as_array().expect("a list").iter().zip(found.as_array().expect("a list")) {
             let [one, other] = [one, other].map(|finding| finding["value"].as_f64());
-            // The torque has seven digits here.
+            // The torque is an f32 in this log, with seven digits.
             assert!(one.is_some() == other.is_some(), "{found}");
             assert!(one.zip(other).is_none_or(|(one, other)| (one - other).abs() <= 1e-3 * one.abs()), "{found}");
         }
@@ -481,16 +484,17 @@ fn a_lab_s_own_mcap_log_says_what_the_same_log_as_csv_says() {
 }
 
 #[test]
-fn a_history_that_sim_has_written_can_be_identified() {
+fn history_of_sim_can_be_identified() {
     let folder = folder();
     let out = folder.path().join("sim");
-    joint(&["sim", "q1", "--profile", "reversals", "--out", text(&out)]).well();
-    let ended = joint(&["identify", text(&out.join("history.mcap")), "--out", text(&folder.path().join("out"))]).well();
+    joint(&["sim", "q1", "--profile", "reversals", "--out", text(&out)]).succeeded();
+    let ended =
+        joint(&["identify", text(&out.join("history.mcap")), "--out", text(&folder.path().join("out"))]).succeeded();
     assert!(ended.out.contains("stiffness behind the carrier"), "{ended:?}");
 }
 
 #[test]
-fn files_that_are_no_logs_are_refused() {
+fn non_logs_rejected() {
     let folder = folder();
     let refused = |content: &str, words: &[&str]| {
         let path = folder.path().join("log.csv");
@@ -507,16 +511,17 @@ fn files_that_are_no_logs_are_refused() {
     joint(&["identify", "log.csv", "--torque-error", "90"]).refused(&["0 to 50"]);
 }
 
+/// The joint file keeps its value for a parameter that the log does not show.
 #[test]
-fn what_a_log_does_not_show_is_said_instead_of_guessed() {
-    // Quick reversals only: the output makes no turn, so its errors cannot be seen.
+fn unobservable_parameter_is_not_guessed() {
+    // Quick reversals only: the output makes no full turn, so its encoder errors are not observable.
     let preset = joint_file::preset("q1").expect("a preset");
     let folder = folder();
     let [log, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
     let whole = record(&joint_file::read(preset).expect("a joint"), 31, &|_| {}).expect("followed").csv(false);
     let quick: String = whole.lines().take(38_001).map(|line| format!("{line}\n")).collect();
     fs::write(&log, quick).expect("written");
-    let ended = joint(&["identify", text(&log), "--out", text(&out)]).well();
+    let ended = joint(&["identify", text(&log), "--out", text(&out)]).succeeded();
     let line = ended.out.lines().find(|line| line.starts_with("output encoder: error once")).expect("a line");
     assert!(line.contains("not identifiable from this log"), "{line}");
     let patched = fs::read_to_string(out.join("joint.toml")).expect("written");
@@ -529,9 +534,9 @@ fn what_a_log_does_not_show_is_said_instead_of_guessed() {
     assert!(backlash.contains("identified from log.csv"), "{backlash}");
 }
 
-/// Encoders of 5000 and 25,000 lines that are read at every edge, and a motor encoder whose edges were taken for its lines.
+/// Encoders of 5000 and 25,000 lines with every edge counted; then a motor encoder whose edges are declared as lines.
 #[test]
-fn encoders_of_any_counts_in_a_turn_are_identified() {
+fn any_counts_per_turn_identified() {
     let folder = folder();
     let [log, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
     let identify = |motor: u32, more: &[&str]| {
@@ -539,8 +544,8 @@ fn encoders_of_any_counts_in_a_turn_are_identified() {
         let sets = ["--set", &motor, "--set", "drive_train.output_encoder.counts_per_turn=100000"];
         joint(&[&["identify", text(&log), "--joint", "q1"], &sets[..], more].concat())
     };
-    identify(20_000, &["--simulate", "--seed", "31"]).well();
-    identify(20_000, &["--out", text(&out)]).well();
+    identify(20_000, &["--simulate", "--seed", "31"]).succeeded();
+    identify(20_000, &["--out", text(&out)]).succeeded();
     let page = fs::read_to_string(out.join("report.html")).expect("written");
     assert!(page.contains("Encoders of 20000 counts (motor) and 100000 counts (output)."));
     let (value, [low, high]) = found(&json(&out.join("findings.json")), BACKLASH).expect("found");
@@ -552,22 +557,22 @@ fn encoders_of_any_counts_in_a_turn_are_identified() {
 }
 
 #[test]
-fn a_simulated_log_has_the_documented_columns() {
+fn simulated_log_has_documented_columns() {
     let folder = folder();
     let log = folder.path().join("virtual.csv");
     let short = ["identify", text(&log), "--simulate", "--seed", "3", "--with-output-torque"];
-    let ended = joint(&short).well();
+    let ended = joint(&short).succeeded();
     assert!(ended.out.contains("joint Q1"), "{ended:?}");
     let written = fs::read_to_string(&log).expect("written");
     let header = written.lines().next();
     assert_eq!(header, Some("time_s,motor_counts,output_counts,motor_torque_N_m,output_torque_N_m"));
-    // What lies there is not written over: it may be a recorded test.
+    // An existing file may be a recorded test and is not overwritten.
     joint(&["identify", text(&log), "--simulate", "--seed", "4"]).refused(&["virtual.csv", "new file"]);
     assert_eq!(fs::read_to_string(&log).expect("still there"), written);
 }
 
-/// A way in which a log, or what is said of it, is wrong: a name, header, what is done to a row (time, counts of motor and
-/// output, torque), arguments, and what the refusal must name.
+/// An error in a log or in its description: name, kind of columns, change of a row (time, counts of motor and output,
+/// torque), arguments, and the words that the message must contain.
 struct Wrong {
     what: &'static str,
     angles: bool,
@@ -721,14 +726,14 @@ const WRONG: [Wrong; 30] = [
     },
 ];
 
-/// A simulated log of Q1: rows of time, counts of motor and output, torque.
-fn right(folder: &Path) -> Vec<[f64; 4]> {
+/// Simulated log of Q1: rows of time, counts of motor and output, torque.
+fn simulated_rows(folder: &Path) -> Vec<[f64; 4]> {
     let path = folder.join("right.csv");
-    joint(&["identify", text(&path), "--joint", "q1", "--simulate", "--seed", "31"]).well();
+    joint(&["identify", text(&path), "--joint", "q1", "--simulate", "--seed", "31"]).succeeded();
     columns(&fs::read_to_string(&path).expect("written"))
 }
 
-/// The rows of a log that has so many columns, below its head.
+/// Parses the rows of a log with `N` columns, without the header.
 fn columns<const N: usize>(log: &str) -> Vec<[f64; N]> {
     let row = |line: &str| {
         let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
@@ -746,10 +751,11 @@ fn write_rows(path: &Path, rows: &[[f64; 4]], angles: bool) {
     fs::write(path, log).expect("written");
 }
 
+/// The message names the likely cause, and no file is written.
 #[test]
-fn a_log_that_contradicts_itself_is_refused_with_the_likely_cause_and_nothing_is_written() {
+fn contradictory_log_rejected_with_cause() {
     let folder = folder();
-    let rows = right(folder.path());
+    let rows = simulated_rows(folder.path());
     let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
     for wrong in WRONG {
         println!("{}", wrong.what);
@@ -766,17 +772,17 @@ fn a_log_that_contradicts_itself_is_refused_with_the_likely_cause_and_nothing_is
         joint(&[&arguments[..], wrong.arguments].concat()).refused(wrong.named);
         assert!(!out.exists(), "{}: nothing is written", wrong.what);
     }
-    // Every tenth reading of the output only.
+    // The output is updated every tenth row only.
     let stale: Vec<[f64; 4]> =
         rows.iter().enumerate().map(|(index, row)| [row[0], row[1], rows[index / 10 * 10][2], row[3]]).collect();
     write_rows(&path, &stale, false);
     joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).refused(&["output_counts", "one of 10"]);
 }
 
-/// Rows of a log, changed as a whole.
+/// Rows of a log.
 type Rows = Vec<[f64; 4]>;
 
-/// What is wrong with a log as a whole: a name, what is done to its rows, and what the refusal must name.
+/// An error of a log as a whole: name, change of the rows, and the words that the message must contain.
 type WrongRows = (&'static str, fn(&Rows) -> Rows, &'static [&'static str]);
 
 const WRONG_AS_A_WHOLE: [WrongRows; 6] = [
@@ -821,9 +827,9 @@ fn late(rows: &Rows, samples: usize) -> Rows {
 }
 
 #[test]
-fn a_log_that_is_wrong_as_a_whole_is_refused_by_name() {
+fn log_wrong_as_a_whole_rejected() {
     let folder = folder();
-    let rows = right(folder.path());
+    let rows = simulated_rows(folder.path());
     let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
     for (what, change, named) in WRONG_AS_A_WHOLE {
         println!("{what}");
@@ -831,7 +837,7 @@ fn a_log_that_is_wrong_as_a_whole_is_refused_by_name() {
         joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).refused(named);
         assert!(!out.exists(), "{what}: nothing is written");
     }
-    // A torque at the output that was reckoned from the motor's.
+    // Output torque computed from the motor's torque.
     let lines: String =
         rows.iter().map(|[t, m, o, torque]| format!("{t},{m},{o},{torque},{}\n", 6.0 * torque)).collect();
     fs::write(&path, format!("time_s,motor_counts,output_counts,motor_torque_N_m,output_torque_N_m\n{lines}"))
@@ -839,10 +845,11 @@ fn a_log_that_is_wrong_as_a_whole_is_refused_by_name() {
     joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).refused(&["was not measured there"]);
 }
 
+/// Small torque errors are accepted and widen the intervals.
 #[test]
-fn filtered_angles_are_refused_and_torques_that_are_bent_a_little_widen_the_intervals() {
+fn filtered_angles_rejected_torque_errors_widen() {
     let folder = folder();
-    let rows = right(folder.path());
+    let rows = simulated_rows(folder.path());
     let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
     let smoothed = |milliseconds: f64| {
         let by = 1.0 - (-0.1 / milliseconds).exp();
@@ -866,7 +873,7 @@ fn filtered_angles_are_refused_and_torques_that_are_bent_a_little_widen_the_inte
     ];
     for (what, rows) in bent {
         write_rows(&path, &rows, false);
-        joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).well();
+        joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).succeeded();
         let record = json(&out.join("findings.json"));
         let truths = [(BACKLASH, 40.0), (STIFFNESS, 10.3e3), (MOTOR_DRY, 0.03), (LINK_DRY, 0.3), (LINK_VISCOUS, 0.1)];
         for (key, truth) in truths {
@@ -875,19 +882,19 @@ fn filtered_angles_are_refused_and_torques_that_are_bent_a_little_widen_the_inte
         }
         assert!(found(&record, BACKLASH).is_some() && found(&record, STIFFNESS).is_some(), "{what}: {record}");
     }
-    // Rounded to a fifth it is no use: the interval says so, where blocks of time alone would promise 1 %.
+    // Rounded to a fifth the torque is useless: the interval must widen, while block statistics alone would give 1 %.
     let step = most / 5.0;
     write_rows(&path, &each(&rows, |row| row[3] = step * (row[3] / step).round()), false);
-    joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).well();
+    joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).succeeded();
     let (value, [low, high]) = found(&json(&out.join("findings.json")), BACKLASH).expect("a gap");
     assert!(high - low > 0.04 * value, "{value} in {low} to {high}");
 }
 
 #[test]
-fn what_a_torque_at_the_output_contradicts_is_refused_by_name() {
+fn contradicting_output_torque_rejected() {
     let folder = folder();
     let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
-    joint(&["identify", text(&path), "--joint", "q1", "--simulate", "--seed", "9", "--with-output-torque"]).well();
+    joint(&["identify", text(&path), "--joint", "q1", "--simulate", "--seed", "9", "--with-output-torque"]).succeeded();
     let log = fs::read_to_string(&path).expect("written");
     let head = log.lines().next().expect("a head");
     let rows: Vec<[f64; 5]> = columns(&log);
@@ -912,12 +919,13 @@ fn what_a_torque_at_the_output_contradicts_is_refused_by_name() {
     });
 }
 
-/// A joint whose planets mesh out of phase, so that errors of the teeth take a part of the gap.
+/// A joint whose planets mesh out of phase, so that tooth errors take up a part of the gap.
 const OUT_OF_PHASE: [&str; 5] =
     ["planets=4", "sun_teeth=22", "planet_teeth=34", "ring_teeth=90", "transmission_error_um=4"];
 
+/// Tooth errors of planets out of phase, and encoder errors several times a turn.
 #[test]
-fn planets_out_of_phase_and_errors_that_come_often_a_turn_bend_no_gap() {
+fn periodic_errors_do_not_bias_gap() {
     let folder = folder();
     let [log, other, out] = ["log.csv", "other.csv", "out"].map(|name| folder.path().join(name));
     let sets: Vec<&str> = OUT_OF_PHASE.iter().flat_map(|set| ["--set", set]).collect();
@@ -927,30 +935,31 @@ fn planets_out_of_phase_and_errors_that_come_often_a_turn_bend_no_gap() {
             assert!((low..=high).contains(truth), "{key} is {truth}, found {value} in {low} to {high}");
         }
     };
-    joint(&[&["identify", text(&log), "--joint", "q1", "--simulate", "--seed", "5"], &sets[..]].concat()).well();
-    joint(&[&["identify", text(&log), "--joint", "q1", "--out", text(&out)], &sets[..]].concat()).well();
+    joint(&[&["identify", text(&log), "--joint", "q1", "--simulate", "--seed", "5"], &sets[..]].concat()).succeeded();
+    joint(&[&["identify", text(&log), "--joint", "q1", "--out", text(&out)], &sets[..]].concat()).succeeded();
     let record = json(&out.join("findings.json"));
     holds(&record, &[(BACKLASH, 40.0), (STIFFNESS, 10.3e3)]);
     assert!(found(&record, MOTOR_DRY).is_none(), "{record}");
     assert!(record["assumptions"].to_string().contains("out of phase"), "{record}");
-    // An error of 0.2 degrees three times a turn of the motor, and an efficiency that is 0.97 in truth.
-    let rows = right(folder.path());
+    // Encoder error of 0.2 degrees three times a turn of the motor, and a true efficiency of 0.97.
+    let rows = simulated_rows(folder.path());
     let wavy = each(&rows, |row| {
         let [motor, output] = [row[1] * TAU / 16384.0, row[2] * TAU / 131_072.0];
         (row[1], row[2]) = (motor + 0.2_f64.to_radians() * (3.0 * motor).sin(), output);
     });
     write_rows(&other, &wavy, true);
     let wrong = ["--set", "efficiency=0.93"];
-    joint(&[&["identify", text(&other), "--joint", "q1", "--out", text(&out)], &wrong[..]].concat()).well();
+    joint(&[&["identify", text(&other), "--joint", "q1", "--out", text(&out)], &wrong[..]].concat()).succeeded();
     let record = json(&out.join("findings.json"));
     holds(&record, &[(BACKLASH, 40.0), (STIFFNESS, 10.3e3), (MOTOR_DRY, 0.03)]);
     assert!(record["assumptions"].to_string().contains("comes 3 times a turn"), "{record}");
 }
 
+/// Guards the consistency checks against false rejections.
 #[test]
-fn what_is_right_or_does_no_harm_is_not_taken_for_a_contradiction() {
+fn harmless_deviations_accepted() {
     let folder = folder();
-    let rows = right(folder.path());
+    let rows = simulated_rows(folder.path());
     let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
     let turn = [TAU / 16384.0, TAU / 131_072.0];
     let wrapped = |[time, motor, output, torque]: [f64; 4]| {
@@ -962,18 +971,18 @@ fn what_is_right_or_does_no_harm_is_not_taken_for_a_contradiction() {
     let angles: Vec<[f64; 4]> = rows.iter().copied().map(wrapped).collect();
     for (what, rows, angles) in [("as it is", &rows, false), ("late torque", &late, false), ("angles", &angles, true)] {
         write_rows(&path, rows, angles);
-        joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).well();
+        joint(&["identify", text(&path), "--joint", "q1", "--out", text(&out)]).succeeded();
         let (value, _) = found(&json(&out.join("findings.json")), BACKLASH).expect("found");
         assert!((value / 40.0 - 1.0).abs() < 0.01, "{what}: {value}");
     }
 }
 
 #[test]
-fn units_and_names_are_said_by_options_or_by_a_map() {
+fn units_from_options_or_map() {
     let folder = folder();
-    let rows = right(folder.path());
+    let rows = simulated_rows(folder.path());
     let [path, out] = ["log.csv", "out"].map(|name| folder.path().join(name));
-    // As a maker's table has it: turns, a torque at the output, milliseconds.
+    // Log in the form of a maker's table: turns, output torque, milliseconds.
     let mut log = "t;ENCODER_0_POSITION;ENCODER_1_POSITION;TORQUE\n".replace(';', ",");
     for [time, motor, output, torque] in rows {
         let [time, torque] = [1e3 * time, 6.0 * torque];
@@ -983,15 +992,15 @@ fn units_and_names_are_said_by_options_or_by_a_map() {
     let time = ["--column", "time=t", "--unit", "time=ms"];
     let common = [&["identify", text(&path), "--joint", "q1", "--out", text(&out)], &time[..]].concat();
     let by_map = [&common[..], &["--map", "moteus"]].concat();
-    joint(&by_map).well();
+    joint(&by_map).succeeded();
     let (value, _) = found(&json(&out.join("findings.json")), BACKLASH).expect("found");
     assert!((value / 40.0 - 1.0).abs() < 0.01, "{value}");
     let by_options = ["motor_angle=ENCODER_0_POSITION", "output_angle=ENCODER_1_POSITION", "motor_torque=TORQUE"];
     let columns: Vec<&str> = by_options.iter().flat_map(|column| ["--column", column]).collect();
     joint(&[&common[..], &columns].concat()).refused(&["the unit of the column `motor_angle` is not said"]);
     let units = ["--unit", "motor_angle=turns", "--unit", "output_angle=turns", "--unit", "motor_torque=N_m@output"];
-    joint(&[&common[..], &columns, &units].concat()).well();
-    // The wrong one is told from the log itself.
+    joint(&[&common[..], &columns, &units].concat()).succeeded();
+    // A wrong unit is detected from the log itself.
     let wrong = [&by_map[..], &["--unit", "motor_torque=N_m"]].concat();
     joint(&wrong).refused(&["times what", "the torque is the output's"]);
     joint(&[&common[..], &["--map", "nosuch"]].concat()).refused(&["nosuch", "ros2-joint-states"]);

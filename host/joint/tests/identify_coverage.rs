@@ -1,5 +1,5 @@
-//! How often true values lie in the 95 % intervals that `joint identify` states: over joints, encoders, widths and
-//! frictions unknown to the fit, on fresh seeds.
+//! Coverage of the 95 % intervals of `joint identify` over joints, encoders, widths and frictions unknown to the fit,
+//! on fresh seeds.
 
 mod command;
 
@@ -11,7 +11,7 @@ use command::{folder, joint, json, text};
 const ENCODERS: [(u32, u32); 5] = [(14, 17), (14, 18), (16, 17), (16, 18), (18, 18)];
 /// Half-backlash [um].
 const BACKLASH: (f64, f64) = (20.0, 80.0);
-/// Keys that are wrong in the joint file that the fit is given, by up to these ratios.
+/// Keys that the fit's joint file has wrong, with the range of true over stated value.
 const VARIED: [(&str, f64, f64); 5] = [
     ("compliance.stiffness_N_m_per_rad", 0.7, 1.4),
     ("compliance.damping_ratio", 0.7, 1.5),
@@ -20,11 +20,11 @@ const VARIED: [(&str, f64, f64); 5] = [
     ("drive_train.load_viscous_friction_N_m_s_per_rad", 0.5, 1.5),
 ];
 
-/// Inertias of which one or none is wrong in it, by this ratio up or down.
+/// Inertias; at most one of them is wrong in the fit's joint file, by this ratio up or down.
 const INERTIAS: [&str; 2] = ["rotor_inertia_kg_m2", "link_inertia_kg_m2"];
 const INERTIA_OFF: f64 = 0.05;
 
-/// Numbers between 0 and 1 out of a seed (Weyl's sequence, scrambled).
+/// Numbers between 0 and 1 from a seed (Weyl's sequence, scrambled).
 struct Draw(u64);
 
 impl Draw {
@@ -35,17 +35,17 @@ impl Draw {
     }
 }
 
-/// Values of one joint: inside of their intervals, and all that were found.
+/// Values found, and those inside their intervals.
 #[derive(Debug, Default, Clone)]
 struct Count {
     inside: usize,
     found: usize,
-    /// Halves of the intervals of gap and stiffness over the values, where no inertia is wrong; then those where one is.
+    /// Half-widths of the intervals of gap and stiffness over the values: first without, then with a wrong inertia.
     halves: [[Vec<f64>; 2]; 2],
 }
 
-/// Keys of gap and stiffness, one for each kind of joint, and what half of an interval over its value is at most in the
-/// median: where no inertia is wrong, and where one is by 5 %, which bends the stiffness by half of that.
+/// Keys of gap and stiffness for each kind of joint, and the largest median of half-width over value: without a wrong
+/// inertia, and with one that is wrong by 5 %, which shifts the stiffness by half as much.
 const TIGHT: [(&[&str], [f64; 2]); 2] = [
     (&["mesh.half_backlash_um"], [0.01, 0.01]),
     (&["compliance.stiffness_N_m_per_rad", "mesh.mean_stiffness_N_per_m"], [0.03, 0.045]),
@@ -59,7 +59,7 @@ impl Count {
         all.zip(other.halves.into_iter().flatten()).for_each(|(all, more)| all.extend(more));
     }
 
-    /// Nothing where there was no such log.
+    /// Medians of the half-widths; `None` without logs of the kind.
     fn medians(&self) -> [[Option<f64>; 2]; 2] {
         let median = |mut halves: Vec<f64>| {
             halves.sort_by(f64::total_cmp);
@@ -69,7 +69,7 @@ impl Count {
     }
 }
 
-/// One log of a joint that differs from its file, identified by the file.
+/// Identifies one log of a joint that differs from its file.
 fn identified(name: &str, seed: u64, count: &mut Count) {
     let preset = joint_file::preset(name).expect("a preset");
     let stated = |key: &str| joint_file::value(preset, key).ok().flatten().and_then(|value| value.parse::<f64>().ok());
@@ -86,18 +86,18 @@ fn identified(name: &str, seed: u64, count: &mut Count) {
     let common = ["identify", text(&log), "--joint", name, "--motor-bits", &motor, "--output-bits", &output];
     let sets: Vec<String> = truths.iter().map(|(key, value)| format!("{key}={value}")).collect();
     let sets = sets.iter().flat_map(|set| ["--set", set.as_str()]);
-    joint(&common.into_iter().chain(["--simulate", "--seed", &seed]).chain(sets).collect::<Vec<_>>()).well();
+    joint(&common.into_iter().chain(["--simulate", "--seed", &seed]).chain(sets).collect::<Vec<_>>()).succeeded();
     let off = if draw.between(0.0, 1.0) < 0.5 { 1.0 - INERTIA_OFF } else { 1.0 + INERTIA_OFF };
     let wrong = INERTIAS.get(draw.between(0.0, 3.0) as usize).map(|key| {
         let inertia = stated(key).unwrap_or_else(|| panic!("{name} states {key}"));
         format!("{key}={}", off * inertia)
     });
     let wrong: Vec<&str> = wrong.iter().flat_map(|set| ["--set", set.as_str()]).collect();
-    joint(&[&common[..], &wrong[..], &["--out", text(&out)]].concat()).well();
+    joint(&[&common[..], &wrong[..], &["--out", text(&out)]].concat()).succeeded();
     for finding in json(&out.join("findings.json"))["findings"].as_array().expect("a list") {
         let Some(key) = finding["key"].as_str() else { continue };
         let (Some(value), Some(ends)) = (finding["value"].as_f64(), finding["interval"].as_array()) else { continue };
-        // What a file does not state is not there.
+        // A missing key is zero.
         let truth = truths.get(key).copied().or(stated(key)).unwrap_or(0.0);
         let [low, high] = [&ends[0], &ends[1]].map(|end| end.as_f64().expect("a number"));
         count.found += 1;
@@ -115,7 +115,7 @@ fn identified(name: &str, seed: u64, count: &mut Count) {
 
 const JOINTS: [&str; 4] = ["q1", "d2", "l1", "s1"];
 
-fn covered(joints: &[&str], seeds: impl Iterator<Item = u64> + Clone) {
+fn check_coverage(joints: &[&str], seeds: impl Iterator<Item = u64> + Clone) {
     let mut all = Count::default();
     for name in joints {
         let mut count = Count::default();
@@ -143,15 +143,16 @@ fn covered(joints: &[&str], seeds: impl Iterator<Item = u64> + Clone) {
     }
 }
 
+/// Short form of the coverage test, on joints that differ from their files.
 #[test]
-fn true_values_of_joints_that_are_not_as_their_file_says_lie_in_the_stated_intervals() {
-    covered(&JOINTS, 41..43);
+fn coverage_of_changed_joints() {
+    check_coverage(&JOINTS, 41..43);
 }
 
 #[test]
 #[ignore = "six minutes; COVERAGE_JOINTS=l1,s1 and COVERAGE_SEEDS=10 for fewer"]
-fn they_do_so_over_many_seeds() {
+fn coverage_over_many_seeds() {
     let joints = std::env::var("COVERAGE_JOINTS").unwrap_or(JOINTS.join(","));
     let seeds = std::env::var("COVERAGE_SEEDS").map_or(50, |seeds| seeds.parse().expect("a number of seeds"));
-    covered(&joints.split(',').collect::<Vec<_>>(), 100..100 + seeds);
+    check_coverage(&joints.split(',').collect::<Vec<_>>(), 100..100 + seeds);
 }

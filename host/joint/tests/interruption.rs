@@ -1,4 +1,4 @@
-//! Ctrl-C and SIGTERM end a command within a moment wherever it is, also where no loop of ours looks whether it may go on.
+//! Ctrl-C and SIGTERM end a command at once, also in code that does not check for interruption.
 
 mod command;
 
@@ -7,14 +7,14 @@ use std::time::{Duration, Instant};
 use command::{folder, send, start, text, until, wait};
 use report::workspace::workspace;
 
-/// A user does not notice a delay of 0.2 s.
+/// Delay that a user does not notice.
 const AT_ONCE: Duration = Duration::from_millis(200);
-/// Tries of each command and signal, at other moments: on a busy machine most of them must be in time.
+/// Attempts for each command and signal, at different times: on a busy machine most of them must be in time.
 const TRIES: u32 = 5;
 
-/// Seen to fail with a pause that was counted instead of measured, and with logs that were written to their end: 0.2 to 0.45 s.
+/// Seen to fail with a counted instead of a measured pause, and with logs written to their end: 0.2 to 0.45 s.
 #[test]
-fn a_command_that_works_ends_at_once() {
+fn working_command_stops_at_once() {
     let place = folder();
     let out = place.path().join("out");
     let tests = ["real-any", "random-plants"].map(|name| workspace().join("hil").join(name).with_extension("toml"));

@@ -1,5 +1,5 @@
-//! Logs as users bring them: counts in registers of other widths, bad readings, time stamps that repeat, lines before the header,
-//! rows without a value. Each says what the same log in the plain form says, or is refused with what would help.
+//! Logs in users' formats: registers of other widths, bad readings, repeated time stamps, lines before the header, rows
+//! without a value. Each log gives the findings of the plain format, or is rejected with a remedy.
 
 mod command;
 
@@ -10,10 +10,10 @@ use std::path::Path;
 use command::{Ended, folder, joint, json, text};
 use serde_json::Value;
 
-/// A simulated log of Q1: time, counts of motor and output, torque. Counts go on over turns.
+/// Simulated log of Q1: time, counts of motor and output, torque. Counts continue over turns.
 fn rows(folder: &Path) -> Vec<[f64; 4]> {
     let path = folder.join("plain.csv");
-    joint(&["identify", text(&path), "--joint", "q1", "--simulate", "--seed", "31"]).well();
+    joint(&["identify", text(&path), "--joint", "q1", "--simulate", "--seed", "31"]).succeeded();
     let log = fs::read_to_string(&path).expect("written");
     let row = |line: &str| {
         let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
@@ -35,14 +35,14 @@ fn identify(folder: &Path, options: &[&str]) -> Ended {
     joint(&[&["identify", text(&log), "--joint", "q1", "--out", text(&out)], options].concat())
 }
 
-/// Findings, and remarks on the log.
+/// Findings, and the notes on the log.
 fn findings(folder: &Path) -> (Value, String) {
     let record = json(&folder.join("out/findings.json"));
     (record["findings"].clone(), record["assumptions"].to_string())
 }
 
-/// Checks that the true half-backlash of Q1 is in its interval.
-fn holds_the_truth(findings: &Value) {
+/// Checks that the true half-backlash and stiffness of Q1 are in their intervals.
+fn assert_contains_truth(findings: &Value) {
     for (key, truth) in [("mesh.half_backlash_um", 40.0), ("compliance.stiffness_N_m_per_rad", 10.3e3)] {
         let all = findings.as_array().expect("a list");
         let one = all.iter().find(|one| one["key"] == key).expect(key);
@@ -51,8 +51,8 @@ fn holds_the_truth(findings: &Value) {
     }
 }
 
-/// Checks that two logs have the same findings, but for the rounding of angles that begin elsewhere.
-fn alike(found: &Value, truth: &Value) {
+/// Checks that two logs have equal findings, up to the rounding of angles with different origins.
+fn assert_equal_findings(found: &Value, truth: &Value) {
     let [found, truth] = [found, truth].map(|findings| findings.as_array().expect("a list"));
     assert_eq!(found.len(), truth.len());
     for (found, truth) in found.iter().zip(truth) {
@@ -63,12 +63,12 @@ fn alike(found: &Value, truth: &Value) {
 }
 
 #[test]
-fn registers_of_any_width_are_read_as_counts_that_go_on() {
+fn register_counts_are_unwrapped() {
     let folder = folder();
     let folder = folder.path();
     let plain = rows(folder);
     write(folder, &plain);
-    identify(folder, &[]).well();
+    identify(folder, &[]).succeeded();
     let (truth, told) = findings(folder);
     assert!(!told.contains("register") && !told.contains("jump away"), "{told}");
     let register = |value: f64, bits: i32, signed: bool| {
@@ -79,25 +79,26 @@ fn registers_of_any_width_are_read_as_counts_that_go_on() {
         let read =
             |row: &[f64; 4]| [row[0], register(row[1], motor.0, motor.1), register(row[2], output.0, output.1), row[3]];
         write(folder, &plain.iter().map(read).collect::<Vec<_>>());
-        identify(folder, &[]).well();
+        identify(folder, &[]).succeeded();
         let (found, told) = findings(folder);
-        alike(&found, &truth);
+        assert_equal_findings(&found, &truth);
         let counts = format!("`motor_counts` is read as a register that begins anew after {} values", 1 << motor.0);
         assert!(told.contains(&counts), "{told}");
     }
-    // Fewer counts than a turn is set to have: the option that is to be stated, with another value than the one that is.
+    // Fewer counts than the set counts per turn: the message names the option with another value.
     write(folder, &plain.iter().map(|row| [row[0], row[1].rem_euclid(8192.0), row[2], row[3]]).collect::<Vec<_>>());
     identify(folder, &["--motor-bits", "14"]).refused(&["an encoder of 13 bits begins anew so, and 14 bits are set"]);
 }
 
+/// Above 1 % the log is rejected.
 #[test]
-fn bad_readings_are_left_out_and_told_up_to_one_percent() {
+fn bad_readings_up_to_one_percent_dropped() {
     let folder = folder();
     let folder = folder.path();
     let mut spoiled = rows(folder);
     let count = spoiled.len();
     for row in (100..count).step_by(400) {
-        // A flipped bit, a frame of ones, and two frames of zeros on the output.
+        // A flipped bit, an offset, and two wrong output readings in a row.
         match row % 3 {
             0 => spoiled[row][1] += 8192.0,
             1 => spoiled[row][1] += 777.0,
@@ -105,9 +106,9 @@ fn bad_readings_are_left_out_and_told_up_to_one_percent() {
         }
     }
     write(folder, &spoiled);
-    identify(folder, &[]).well();
+    identify(folder, &[]).succeeded();
     let (found, told) = findings(folder);
-    holds_the_truth(&found);
+    assert_contains_truth(&found);
     for what in ["readings of `motor_counts`", "readings of `output_counts`", "jump away from the motion", "left out"] {
         assert!(told.contains(what), "{what}: {told}");
     }
@@ -117,11 +118,11 @@ fn bad_readings_are_left_out_and_told_up_to_one_percent() {
 }
 
 #[test]
-fn repeated_time_stamps_are_resolved_or_refused_with_what_would_help() {
+fn repeated_time_stamps_resolved_or_rejected() {
     let folder = folder();
     let folder = folder.path();
     let plain = rows(folder);
-    // A host stamps ten control periods of 0.1 ms at once.
+    // The host stamps ten control periods of 0.1 ms at once.
     let stamp = |row: usize| (row / 10) as f64 * 1e-3;
     let log = |more: &str, cell: &dyn Fn(usize) -> String| {
         let mut log = format!("time_s,motor_counts,output_counts,motor_torque_N_m{more}\n");
@@ -137,29 +138,29 @@ fn repeated_time_stamps_are_resolved_or_refused_with_what_would_help() {
         "--column period=NAME",
     ]);
     log(",cycle", &|row| format!(",{}", row % 65536));
-    identify(folder, &["--column", "period=cycle"]).well();
-    holds_the_truth(&findings(folder).0);
+    identify(folder, &["--column", "period=cycle"]).succeeded();
+    assert_contains_truth(&findings(folder).0);
     log(",time_us", &|row| format!(",{}", 100 * row));
-    identify(folder, &[]).well();
+    identify(folder, &[]).succeeded();
     let (found, told) = findings(folder);
-    holds_the_truth(&found);
+    assert_contains_truth(&found);
     assert!(told.contains("times are those of `time_us`"), "{told}");
     // Rows that were written twice.
     let twice: Vec<[f64; 4]> =
         plain.iter().enumerate().flat_map(|(row, cells)| vec![*cells; if row % 1000 == 7 { 2 } else { 1 }]).collect();
     write(folder, &twice);
-    identify(folder, &[]).well();
+    identify(folder, &[]).succeeded();
     let (found, told) = findings(folder);
-    holds_the_truth(&found);
+    assert_contains_truth(&found);
     assert!(told.contains("rows have the time of the row before and all its values: left out"), "{told}");
 }
 
 #[test]
-fn lines_before_the_header_and_rows_without_a_value_are_passed_over_and_told() {
+fn preamble_and_incomplete_rows_skipped() {
     let folder = folder();
     let folder = folder.path();
     let plain = rows(folder);
-    // Two topics merged by time: between the rows of the drive stand those of another device.
+    // Two topics merged by time: rows of another device stand between those of the drive.
     let mut log = "Drive 7, firmware 2\nrate;10000\n# made on a bench\ntime_s,motor_counts,temperature,output_counts,motor_torque_N_m\n"
         .to_owned();
     for (row, [time, motor, output, torque]) in plain.iter().enumerate() {
@@ -169,16 +170,16 @@ fn lines_before_the_header_and_rows_without_a_value_are_passed_over_and_told() {
         }
     }
     fs::write(folder.join("log.csv"), log).expect("written");
-    identify(folder, &[]).well();
+    identify(folder, &[]).succeeded();
     let (found, told) = findings(folder);
-    holds_the_truth(&found);
+    assert_contains_truth(&found);
     assert!(told.contains("Lines 1 to 3 before the header passed over"), "{told}");
     assert!(told.contains("rows were left out, since a value is missing: `motor_counts` is empty in"), "{told}");
-    // The observer is shown the same rows.
+    // The observer is fed the same rows.
     let [path, out] = ["log.csv", "replay"].map(|name| folder.join(name));
-    joint(&["replay", text(&path), "q1", "--out", text(&out)]).well();
+    joint(&["replay", text(&path), "q1", "--out", text(&out)]).succeeded();
     assert!(json(&out.join("record.json"))["log_notes"].to_string().contains("value is missing"));
-    // Two encoders, each at times of its own.
+    // Two encoders with different time stamps.
     let mut apart = "time_s,motor_counts,output_counts,motor_torque_N_m\n".to_owned();
     for [time, motor, output, torque] in &plain {
         writeln!(apart, "{time:.6},{motor},,{torque}\n{:.6},,{output},", time + 5e-5).expect("a string");
@@ -188,7 +189,7 @@ fn lines_before_the_header_and_rows_without_a_value_are_passed_over_and_told() {
 }
 
 #[test]
-fn several_joints_of_one_log_have_a_report_each() {
+fn joints_of_one_log_reported_separately() {
     let folder = folder();
     let folder = folder.path();
     let mut log = "t,knee_motor,knee_output,knee_torque,hip_motor,hip_output,hip_torque\n".to_owned();
@@ -204,13 +205,13 @@ fn several_joints_of_one_log_have_a_report_each() {
     };
     let map = folder.join("map.toml");
     fs::write(&map, format!("[columns]\ntime_s = \"t\"\n{}{}", of("knee"), of("hip"))).expect("written");
-    // The hip stood still: it is named, and what was found of the knee is not lost.
+    // The hip stood still: the message names it, and the findings of the knee are kept.
     let ended = identify(folder, &["--map", text(&map)]);
     assert!(ended.out.contains("knee") && ended.out.contains("half-backlash"), "{}", ended.out);
     ended.refused(&["hip: ", "there is no reversal in this log"]);
     let found = json(&folder.join("out/knee/findings.json"));
-    holds_the_truth(&found["findings"]);
+    assert_contains_truth(&found["findings"]);
     assert!(!folder.join("out/hip").exists());
-    identify(folder, &["--map", text(&map), "--map-joint", "knee"]).well();
+    identify(folder, &["--map", text(&map), "--map-joint", "knee"]).succeeded();
     identify(folder, &["--map", text(&map), "--map-joint", "toe"]).refused(&["no joint `toe`", "hip, knee"]);
 }

@@ -1,5 +1,4 @@
-//! `joint memory` as a user meets it: with files, and with the board's own firmware in a thread behind a
-//! pseudo-terminal.
+//! `joint memory` with files, and with the board's own firmware in a thread behind a pseudo-terminal.
 
 mod command;
 mod learning;
@@ -17,10 +16,10 @@ use model_core::observer::{MEMORY_BYTES, Memory};
 use tempfile::TempDir;
 use thread_board::Flash;
 
-/// Long enough to learn the width: one second.
+/// One second, enough to estimate the width.
 const PERIODS: u32 = 10_000;
 
-/// A memory of joint Q1 whose teeth are wider than its file says, in a file.
+/// Memory of joint Q1 whose true backlash is wider than stated, as a file.
 fn stored(folder: &TempDir) -> (PathBuf, Memory) {
     let q1 = learning::joint(&[]);
     let wide = learning::joint(&[("mesh.half_backlash_um", "55")]);
@@ -30,7 +29,7 @@ fn stored(folder: &TempDir) -> (PathBuf, Memory) {
     (path, memory)
 }
 
-/// A board of a joint behind a port, which stays open as long as the file.
+/// Starts a board behind a port; the file keeps the port open.
 fn board(changes: &[(&str, &str)], flash: &Flash) -> (String, fs::File) {
     let (master, slave, path) = pseudo_terminal::pair();
     let joint = learning::joint(changes);
@@ -42,37 +41,37 @@ fn memory(words: &[&str], port: &str) -> Ended {
     joint(&[&["memory"], words, &["--port", port]].concat())
 }
 
-/// What is learnt on the host is a board's memory, with the joint file that it is good for.
+/// A run on the host saves a board's memory, with the joint file that it belongs to.
 #[test]
-fn what_is_learnt_on_the_host_is_had_as_a_file() {
+fn host_run_saves_memory() {
     let folder = folder();
     let test = folder.path().join("learning.toml");
     fs::write(&test, "duration_s = 3\nsettle_s = 0.5\nprofile = \"T2\"\n[controller]\nrivals = []\n").expect("room");
     let out = folder.path().join("out");
-    joint(&["hil", text(&test), "--host", "--memory", "--out", text(&out)]).well();
+    joint(&["hil", text(&test), "--host", "--memory", "--out", text(&out)]).succeeded();
     let run = &command::json(&out.join("record.json"))["tests"][0]["runs"][0];
     let memory = out.join(run["memory"].as_str().expect("it was to be kept"));
     assert_eq!(fs::metadata(&memory).expect("written").len(), MEMORY_BYTES as u64);
     let told = memory.with_extension("toml");
-    let shown = joint(&["memory", "show", text(&memory), "--joint", text(&told)]).well().out;
+    let shown = joint(&["memory", "show", text(&memory), "--joint", text(&told)]).succeeded().out;
     assert!(shown.contains("half-backlash b"), "{shown}");
     joint(&["memory", "show", text(&memory), "--joint", "s1"]).refused(&["another joint"]);
     joint(&["hil", text(&test), "--memory"]).refused(&["--host"]);
-    joint(&["hil", text(&test), "--host", "--out", text(&out)]).well();
+    joint(&["hil", text(&test), "--host", "--out", text(&out)]).succeeded();
     assert!(!memory.exists() && !told.exists(), "what an older run has learnt is not of this one");
 }
 
 #[test]
-fn what_was_learnt_is_shown_with_units_beside_the_joint_file() {
+fn show_prints_units_beside_joint_file() {
     let folder = folder();
     let (path, memory) = stored(&folder);
-    let shown = joint(&["memory", "show", text(&path)]).well();
+    let shown = joint(&["memory", "show", text(&path)]).succeeded();
     let line = |name: &str| shown.out.lines().find(|line| line.starts_with(name)).unwrap_or_default().to_owned();
     let width = line("half-backlash b");
     assert!(width.contains(" um ") && width.ends_with("40.00"), "{}", shown.out);
     assert!(line("compliance at the output").contains("urad/(N m)"), "{}", shown.out);
     assert!(line("output encoder: error twice a turn").contains("may well be zero"), "{}", shown.out);
-    let json = joint(&["memory", "show", text(&path), "--json", "-"]).well();
+    let json = joint(&["memory", "show", text(&path), "--json", "-"]).succeeded();
     let json: serde_json::Value = serde_json::from_str(&json.out).expect("JSON");
     assert_eq!(json["schema"], "joint-memory/1");
     let value = json["values"][0]["value"].as_f64().expect("a width");
@@ -80,12 +79,13 @@ fn what_was_learnt_is_shown_with_units_beside_the_joint_file() {
     assert_eq!(fs::read(&path).expect("a file"), memory, "looking changes nothing");
     let q1 = learning::joint(&[]);
     fs::write(&path, learnt(&q1, &q1, 0).0).expect("written");
-    let shown = joint(&["memory", "show", text(&path)]).well();
+    let shown = joint(&["memory", "show", text(&path)]).succeeded();
     assert_eq!(shown.out.matches("not learnt").count(), 12, "nobody has moved it: {}", shown.out);
 }
 
+/// Conversions of units from the memory agree with the estimates of the observer.
 #[test]
-fn what_is_shown_is_what_the_observer_says() {
+fn show_equals_estimates() {
     let q1 = learning::joint(&[]);
     let (memory, said) = learnt(&q1, &learning::joint(&[("mesh.half_backlash_um", "55")]), PERIODS);
     let loaded = joint_file::named::load(Path::new("q1")).expect("a preset");
@@ -102,27 +102,27 @@ fn what_is_shown_is_what_the_observer_says() {
 }
 
 #[test]
-fn a_memory_moves_over_the_line_and_back() {
+fn memory_round_trip_over_line() {
     let folder = folder();
     let (path, bytes) = stored(&folder);
     let flash = Flash::empty();
     let (port, _open) = board(&[], &flash);
     memory(&["read", text(&folder.path().join("none"))], &port)
-        .refused(&["keeps no memory", "joint memory keep --port"]);
-    memory(&["write", text(&path)], &port).well();
+        .refused(&["has no stored memory", "joint memory keep --port"]);
+    memory(&["write", text(&path)], &port).succeeded();
     assert_eq!(flash.kept(), Some(bytes));
     let copy = folder.path().join("copy");
-    let read = memory(&["read", text(&copy)], &port).well();
+    let read = memory(&["read", text(&copy)], &port).succeeded();
     assert!(read.out.contains("half-backlash b"), "{}", read.out);
     assert_eq!(fs::read(&copy).expect("read"), bytes);
-    memory(&["erase"], &port).well();
+    memory(&["erase"], &port).succeeded();
     assert_eq!(flash.kept(), None);
-    memory(&["keep"], &port).well();
+    memory(&["keep"], &port).succeeded();
     assert!(flash.kept().is_some(), "what it has learnt so far");
 }
 
 #[test]
-fn a_memory_of_another_joint_is_refused_by_the_board_and_by_show() {
+fn memory_of_other_joint_rejected() {
     let folder = folder();
     let (path, _) = stored(&folder);
     let flash = Flash::empty();
@@ -133,7 +133,7 @@ fn a_memory_of_another_joint_is_refused_by_the_board_and_by_show() {
 }
 
 #[test]
-fn files_that_are_no_good_are_refused_before_a_board_is_asked() {
+fn bad_memory_file_rejected_before_board() {
     let folder = folder();
     let (path, bytes) = stored(&folder);
     let damaged = folder.path().join("damaged.memory");
@@ -157,7 +157,7 @@ fn files_that_are_no_good_are_refused_before_a_board_is_asked() {
 }
 
 #[test]
-fn damaged_flash_and_flash_that_takes_nothing_are_named_with_what_to_do() {
+fn flash_faults_name_remedy() {
     let folder = folder();
     let (path, bytes) = stored(&folder);
     let mut changed = bytes;
@@ -167,14 +167,14 @@ fn damaged_flash_and_flash_that_takes_nothing_are_named_with_what_to_do() {
     let out = folder.path().join("out");
     memory(&["read", text(&out)], &port).refused(&["the memory is damaged", "joint memory erase --port"]);
     assert!(!out.exists());
-    // Power was cut while it was written.
+    // The supply was cut during the write.
     let (port, _cut) = board(&[], &Flash::with([None; 2]));
     memory(&["read", text(&out)], &port).refused(&["cannot be read", "joint memory erase --port"]);
     let worn = Flash::empty();
     worn.cells().works = false;
     let (port, _worn) = board(&[], &worn);
-    memory(&["write", text(&path)], &port).refused(&["does not read as it was written"]);
-    memory(&["keep"], &port).refused(&["does not read as it was written"]);
+    memory(&["write", text(&path)], &port).refused(&["does not read back as written"]);
+    memory(&["keep"], &port).refused(&["does not read back as written"]);
     let starved = Flash::empty();
     starved.cells().is_starved = true;
     let (port, _starved) = board(&[], &starved);
@@ -182,14 +182,15 @@ fn damaged_flash_and_flash_that_takes_nothing_are_named_with_what_to_do() {
 }
 
 #[test]
-fn a_board_that_learns_nothing_is_refused_with_the_image_that_does() {
+fn plant_board_names_observer_image() {
     let (master, _slave, port) = pseudo_terminal::pair();
     drop(thread_board::start(master, thread_board::Misbehaviour::None));
-    memory(&["erase"], &port).refused(&["role `plant`, which learns nothing", "cargo joint flash q1 --role observer"]);
+    memory(&["erase"], &port)
+        .refused(&["role `plant`, which estimates no parameters", "cargo joint flash q1 --role observer"]);
 }
 
 #[test]
-fn a_silent_port_and_a_missing_one_are_named() {
+fn silent_or_missing_port_is_named() {
     let (_master, _slave, port) = pseudo_terminal::pair();
     memory(&["erase"], &port).refused(&["no board answers", &port]);
     memory(&["erase"], "/dev/no-such-port").refused(&["/dev/no-such-port"]);

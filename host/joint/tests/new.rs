@@ -1,5 +1,5 @@
-//! `joint new`: data sheets become joint files whose every line says where it comes from, and which every command takes;
-//! what is missing, what cannot be and what is there already is refused.
+//! `joint new`: data sheets become joint files that state the source of every line and that every command accepts.
+//! Missing, impossible and existing items are rejected.
 
 mod command;
 mod pseudo_terminal;
@@ -16,7 +16,7 @@ use joint_file::{JointFile, read};
 use model_core::gears::Kinematics;
 use parameters::MESH_KINDS;
 
-/// Ratio, lost motion, stiffness, rated torque, rotor, no-load torque, efficiency, and what else is said.
+/// Ratio, lost motion, stiffness, rated torque, rotor inertia, no-load torque, efficiency; further options.
 type Sheet = ([f64; 7], &'static [&'static str]);
 
 const ELBOW: Sheet = ([9.0, 15.0, 1.8, 8.0, 0.32, 0.05, 0.94], &[]);
@@ -49,17 +49,18 @@ fn words(line: &[String]) -> Vec<&str> {
     line.iter().map(String::as_str).collect()
 }
 
-/// Makes a joint without measuring its assumptions.
+/// Creates a joint without measuring its assumptions.
 fn made(place: &Path, sheet: Sheet) -> (String, JointFile) {
     let path = place.join("made.toml");
-    joint(&words(&line(&place.join("made"), sheet, &["--no-measure"]))).well();
+    joint(&words(&line(&place.join("made"), sheet, &["--no-measure"]))).succeeded();
     let text = fs::read_to_string(&path).expect("it was written");
     let file = read(&text).unwrap_or_else(|problems| panic!("{problems:#?}"));
     (text, file)
 }
 
+/// No command may warn about a file of `joint new`, and every line states its source.
 #[test]
-fn data_sheets_become_joints_that_check_sim_and_budget_take_without_a_warning() {
+fn data_sheets_pass_check_budget_sim() {
     for (figures, more) in [ELBOW, KNEE, PLASTIC] {
         let place = folder();
         let (written, file) = made(place.path(), (figures, more));
@@ -84,17 +85,17 @@ fn data_sheets_become_joints_that_check_sim_and_budget_take_without_a_warning() 
         }
         let path = place.path().join("made.toml");
         let (path, out) = (text(&path), place.path().join("out"));
-        assert!(!joint(&["check", path]).well().out.contains("without a source"));
-        joint(&["budget", path]).well();
-        joint(&["sim", path, "--duration", "0.02", "--out", text(&out)]).well();
+        assert!(!joint(&["check", path]).succeeded().out.contains("without a source"));
+        joint(&["budget", path]).succeeded();
+        joint(&["sim", path, "--duration", "0.02", "--out", text(&out)]).succeeded();
     }
 }
 
-/// A cycloid of which nobody knows the teeth.
+/// A cycloidal gear with unknown teeth.
 const CYCLOID: Sheet = ([59.0, 3.0, 20.0, 100.0, 1.0, 0.1, 0.85], &["--equivalent", "--gravity-torque-Nm", "15"]);
 
 #[test]
-fn a_sheet_without_teeth_becomes_an_equivalent_gear_that_commands_take() {
+fn sheet_without_teeth_equivalent_gear() {
     let place = folder();
     let (written, file) = made(place.path(), CYCLOID);
     let gear = file.parameters.equivalent_gear().expect("an equivalent gear");
@@ -110,8 +111,8 @@ fn a_sheet_without_teeth_becomes_an_equivalent_gear_that_commands_take() {
         assert!(["# data sheet: ", "# derived from ", "# assumed: "].iter().any(|word| line.contains(word)), "{line}");
     }
     let path = place.path().join("made.toml");
-    joint(&["check", text(&path)]).well();
-    joint(&["budget", text(&path)]).well();
+    joint(&["check", text(&path)]).succeeded();
+    joint(&["budget", text(&path)]).succeeded();
     let name = place.path().join("other");
     let with = |also: &[&str]| joint(&words(&line(&name, CYCLOID, also)));
     with(&["--planets", "4"]).refused(&["--equivalent", "--planets"]);
@@ -120,7 +121,7 @@ fn a_sheet_without_teeth_becomes_an_equivalent_gear_that_commands_take() {
 }
 
 #[test]
-fn options_of_the_sheet_stand_in_the_file_as_the_sheets() {
+fn optional_values_marked_data_sheet() {
     let place = folder();
     let (knee, file) = made(place.path(), KNEE);
     assert!(knee.contains("link_inertia_kg_m2 = 0.4 # data sheet"), "{knee}");
@@ -138,21 +139,22 @@ fn options_of_the_sheet_stand_in_the_file_as_the_sheets() {
     assert!((1e4 * sheet::inertia_at_input(bodies.1, geometry.0) / 0.0003 - 1.0).abs() < 1e-9);
 }
 
+/// The board has no time for this joint at the default rate.
 #[test]
-fn a_joint_that_a_board_has_no_time_for_is_written_with_a_note_of_the_rate_that_fits() {
+fn slow_joint_written_with_rate_note() {
     let place = folder();
     let light: Sheet =
         ([4.0, 20.0, 0.3, 2.0, 0.05, 0.02, 0.9], &["--planets", "5", "--outer-diameter-mm", "30", "--no-measure"]);
-    let made = joint(&words(&line(&place.path().join("light"), light, &[]))).well();
+    let made = joint(&words(&line(&place.path().join("light"), light, &[]))).succeeded();
     assert!(made.out.contains("note: ") && made.out.contains("--rate "), "{}", made.out);
-    joint(&["check", text(&place.path().join("light.toml"))]).well();
+    joint(&["check", text(&place.path().join("light.toml"))]).succeeded();
     joint(&["budget", text(&place.path().join("light.toml"))]).refused(&["--rate"]);
 }
 
 #[test]
-fn every_assumption_is_measured_by_the_standard_test() {
+fn assumptions_have_measured_effect() {
     let place = folder();
-    let made = joint(&words(&line(&place.path().join("elbow"), ELBOW, &[]))).well();
+    let made = joint(&words(&line(&place.path().join("elbow"), ELBOW, &[]))).succeeded();
     let file = fs::read_to_string(place.path().join("elbow.toml")).expect("it was written");
     let assumed: Vec<&str> = file.lines().filter(|line| line.contains("# assumed: ")).collect();
     assert!(assumed.len() > 20, "{file}");
@@ -160,7 +162,7 @@ fn every_assumption_is_measured_by_the_standard_test() {
         let measured = line.contains("moves the standard test by ") && line.ends_with('%');
         assert!(measured || line.starts_with("planets = "), "{line}");
     }
-    // The link's inertia is what T2 is driven by, and the noise of the current is nothing beside it.
+    // The link inertia dominates the effort of T2; the noise of the current is negligible beside it.
     let of = |key: &str| {
         let line = assumed.iter().find(|line| line.starts_with(key)).unwrap_or_else(|| panic!("{key}\n{file}"));
         let moved = line.rsplit("by ").next().and_then(|words| words.trim_end_matches(" %").parse::<f64>().ok());
@@ -175,7 +177,7 @@ fn every_assumption_is_measured_by_the_standard_test() {
 }
 
 #[test]
-fn what_the_sheet_lacks_is_named_where_nobody_can_be_asked() {
+fn missing_values_named_without_terminal() {
     let place = folder();
     let name = place.path().join("elbow");
     let lacks = ["lacks --lost-motion-arcmin, --stiffness-Nm-per-arcmin", "on a terminal they are asked for"];
@@ -184,7 +186,7 @@ fn what_the_sheet_lacks_is_named_where_nobody_can_be_asked() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_before_anything_is_written() {
+fn impossible_sheet_writes_nothing() {
     let place = folder();
     let name = place.path().join("elbow");
     let with = |also: &[&str]| {
@@ -210,7 +212,7 @@ fn what_cannot_be_is_refused_before_anything_is_written() {
     assert_eq!(command::contents(place.path()), []);
 }
 
-/// The line of an option of the elbow's sheet exchanged or added.
+/// Command line of the elbow's sheet with options replaced or added.
 fn changed(name: &Path, changes: &[(&str, &str)]) -> Vec<String> {
     let mut line = line(name, ELBOW, &["--no-measure"]);
     for (option, value) in changes {
@@ -223,10 +225,10 @@ fn changed(name: &Path, changes: &[(&str, &str)]) -> Vec<String> {
 }
 
 #[test]
-fn a_gearhead_rated_above_its_motor_is_accepted_with_a_note() {
+fn rating_above_motor_noted() {
     let place = folder();
     let rated = [("--rated-torque-Nm", "40"), ("--stiffness-Nm-per-arcmin", "8"), ("--motor-peak-torque-Nm", "1.5")];
-    let made = joint(&words(&changed(&place.path().join("elbow"), &rated))).well();
+    let made = joint(&words(&changed(&place.path().join("elbow"), &rated))).succeeded();
     assert!(made.out.contains("note: --motor-peak-torque-Nm 1.5 acts before --rated-torque-Nm 40"), "{}", made.out);
     let file = read(&fs::read_to_string(place.path().join("elbow.toml")).expect("written")).expect("a joint");
     assert_eq!((file.profile.drive_torque, file.profile.motor_torque_limit), (1.5, 1.5));
@@ -234,7 +236,7 @@ fn a_gearhead_rated_above_its_motor_is_accepted_with_a_note() {
 }
 
 #[test]
-fn ratios_that_no_stage_has_name_the_command_for_an_equivalent_gear() {
+fn unreachable_ratio_names_equivalent_command() {
     let place = folder();
     let name = place.path().join("elbow");
     for (ratio, also) in [("27.5", None), ("30", None), ("13.77", Some(("--ratio-tolerance", "0.01")))] {
@@ -243,9 +245,9 @@ fn ratios_that_no_stage_has_name_the_command_for_an_equivalent_gear() {
         let refused = joint(&words(&changed(&name, &changes)));
         refused.refused(&["--equivalent", &command]);
         let typed = refused.err.split("joint new ").last().expect("a command").trim().to_owned();
-        // The command does what it says, typed as it stands.
+        // The proposed command succeeds as printed.
         let typed: Vec<&str> = ["new"].into_iter().chain(typed.split_whitespace()).collect();
-        joint(&typed).well();
+        joint(&typed).succeeded();
         fs::remove_file(place.path().join("elbow.toml")).expect("written");
     }
     let refused = joint(&words(&changed(&name, &[("--ratio", "-9")])));
@@ -253,31 +255,32 @@ fn ratios_that_no_stage_has_name_the_command_for_an_equivalent_gear() {
     assert!(!refused.err.contains("--equivalent"), "{}", refused.err);
 }
 
-/// A clamping hub on the motor's shaft is most of a gearhead's inertia at its input, and no disc of the sun's size.
+/// Most of a gearhead's inertia at its input may be a clamping hub on the motor's shaft, which is larger than a disc of
+/// the sun's size.
 #[test]
-fn inertia_of_a_clamping_hub_is_not_warned_of() {
+fn clamping_hub_inertia_not_warned() {
     let place = folder();
     let path = place.path().join("elbow.toml");
-    let made = joint(&words(&changed(&place.path().join("elbow"), &[("--gear-inertia-kg-cm2", "0.3")]))).well();
+    let made = joint(&words(&changed(&place.path().join("elbow"), &[("--gear-inertia-kg-cm2", "0.3")]))).succeeded();
     assert!(!made.err.contains("warning"), "{}", made.err);
     assert_eq!(read(&fs::read_to_string(path).expect("written")).expect("a joint").warnings, []);
 }
 
-/// A value that the command derived from a diameter is no typing error of the user's.
+/// A value that the command derived from a diameter is not reported as the user's typing error.
 #[test]
-fn a_derived_stiffness_is_warned_of_by_what_it_was_derived_from() {
+fn derived_stiffness_warning_names_source() {
     let place = folder();
     let small = [("--rated-torque-Nm", "35"), ("--stiffness-Nm-per-arcmin", "2"), ("--outer-diameter-mm", "40")];
-    let made = joint(&words(&changed(&place.path().join("elbow"), &small))).well();
+    let made = joint(&words(&changed(&place.path().join("elbow"), &small))).succeeded();
     assert!(made.err.contains("`mean_stiffness_N_per_m`"), "{}", made.err);
     assert!(made.err.contains("it was derived from face width and material: "), "{}", made.err);
     let mut of_stiffness = made.err.lines().filter(|line| line.contains("mean_stiffness_N_per_m"));
     assert!(!of_stiffness.any(|line| line.contains("typed in")), "{}", made.err);
 }
 
-/// A servo of 353.5:1, whose motor would not swing a link of ten times the rotor's inertia.
+/// A servo of 353.5:1, whose motor could not swing a link of ten times the rotor's inertia.
 #[test]
-fn an_assumed_link_is_one_that_the_motor_swings() {
+fn assumed_link_fits_motor() {
     const SERVO: Sheet =
         ([353.5, 15.0, 0.05, 1.0, 0.004, 0.0005, 0.6], &["--equivalent", "--motor-peak-torque-Nm", "0.016"]);
     let place = folder();
@@ -293,7 +296,7 @@ fn an_assumed_link_is_one_that_the_motor_swings() {
         &["--link-inertia-kg-m2", "0.5"].map(String::from),
     ]
     .concat();
-    let told = joint(&words(&heavy)).well().out;
+    let told = joint(&words(&heavy)).succeeded().out;
     assert!(
         told.contains("note: the standard test swings the link by 0.5 rad at 1 Hz, which takes 0.051 N m"),
         "{told}"
@@ -301,7 +304,7 @@ fn an_assumed_link_is_one_that_the_motor_swings() {
 }
 
 #[test]
-fn a_file_that_is_there_is_never_written_over() {
+fn existing_file_never_overwritten() {
     let place = folder();
     let path = place.path().join("elbow.toml");
     fs::write(&path, "mine").expect("a file");
@@ -312,7 +315,7 @@ fn a_file_that_is_there_is_never_written_over() {
     assert_eq!(fs::read_to_string(&path).expect("still there"), "mine");
 }
 
-/// What is said where these answers are typed.
+/// Text on the standard error of `joint new` after these answers.
 fn said(arguments: &[&str], answers: &[u8]) -> String {
     let (mut master, terminal, _) = pseudo_terminal::pair();
     let mut command = Command::new(env!("CARGO_BIN_EXE_joint"));
@@ -321,7 +324,7 @@ fn said(arguments: &[&str], answers: &[u8]) -> String {
     let mut asked = asked.expect("the command can be started");
     master.write_all(answers).expect("a terminal takes it");
     let ended = within(Duration::from_secs(60), "an end", || {
-        // What the terminal repeats must be taken off it.
+        // The terminal's echo must be read.
         let _ = master.read(&mut [0; 256]);
         asked.try_wait().expect("it was started here")
     });
@@ -332,7 +335,7 @@ fn said(arguments: &[&str], answers: &[u8]) -> String {
 }
 
 #[test]
-fn on_a_terminal_it_asks_for_what_is_missing() {
+fn terminal_prompts_for_missing_values() {
     let place = folder();
     let name = place.path().join("elbow");
     let given = ["--ratio", "9", "--lost-motion-arcmin", "15", "--rated-torque-Nm", "8"];
@@ -348,7 +351,7 @@ fn on_a_terminal_it_asks_for_what_is_missing() {
 }
 
 #[test]
-fn on_a_terminal_it_asks_what_kind_of_gears_where_the_ratio_is_not_said_either() {
+fn terminal_prompts_for_kind_without_ratio() {
     let place = folder();
     let name = place.path().join("wrist");
     let given = ["--lost-motion-arcmin", "3", "--stiffness-Nm-per-arcmin", "20", "--rated-torque-Nm", "100"];

@@ -1,6 +1,5 @@
-//! `check`, `budget`, `sim` and `hil` say the same of the same joint, board and rate: the sub-steps of the tables that a board
-//! gets, one verdict on time for every role, and nothing beside it that contradicts it. Random joint files by seed, through all
-//! four as libraries.
+//! `check`, `budget`, `sim` and `hil` agree on a joint, board and rate: number of sub-steps (that of the board's
+//! tables) and verdict on time for every role. Random joint files by seed, through all four commands as libraries.
 
 use std::fs;
 use std::path::Path;
@@ -24,11 +23,11 @@ const JOINTS: u64 = 64;
 const BOARDS: [&str; 4] = ["olimex-h405", "nucleo-g474re", "nucleo-h743zi", "b-g431b-esc1"];
 const RATES: [u32; 5] = [5000, 10_000, 20_000, 40_000, 160_000];
 
-/// Chance that repeats itself: whole numbers by splitmix64.
-struct Chance(u64);
+/// Repeatable random numbers (splitmix64).
+struct Random(u64);
 
-impl Chance {
-    fn part(&mut self) -> f64 {
+impl Random {
+    fn uniform(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut mixed = self.0;
         mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -37,35 +36,35 @@ impl Chance {
     }
 
     fn scaled(&mut self, low: f64, high: f64) -> f64 {
-        low * (high / low).powf(self.part())
+        low * (high / low).powf(self.uniform())
     }
 
-    fn of<T: Copy>(&mut self, all: &[T]) -> T {
-        all[(self.part() * all.len() as f64) as usize]
+    fn pick<T: Copy>(&mut self, all: &[T]) -> T {
+        all[(self.uniform() * all.len() as f64) as usize]
     }
 }
 
-/// The text of a joint file: light and heavy planets, 3 to 5 of them, or a gear without teeth.
-fn text(chance: &mut Chance) -> String {
-    let name = chance.of(&["q1", "q1", "l1", "c1"]);
+/// Random joint file: light and heavy planets, 3 to 5 of them, or a gear without teeth.
+fn text(random: &mut Random) -> String {
+    let name = random.pick(&["q1", "q1", "l1", "c1"]);
     let mut changes = Vec::new();
     if name == "c1" {
-        changes.push(("equivalent_gear.damping_ratio", chance.scaled(0.02, 0.2).to_string()));
-        changes.push(("equivalent_gear.lost_motion_arcmin", chance.scaled(1.0, 10.0).to_string()));
+        changes.push(("equivalent_gear.damping_ratio", random.scaled(0.02, 0.2).to_string()));
+        changes.push(("equivalent_gear.lost_motion_arcmin", random.scaled(1.0, 10.0).to_string()));
     } else {
-        let planets = chance.of(&[3_u32, 4, 5]);
-        let sun = 20 + (10.0 * chance.part()) as u32;
+        let planets = random.pick(&[3_u32, 4, 5]);
+        let sun = 20 + (10.0 * random.uniform()) as u32;
         let planet = (sun..).find(|planet| (2 * (sun + planet)).is_multiple_of(planets)).unwrap_or(sun);
         for (key, value) in [("planets", planets), ("sun_teeth", sun), ("planet_teeth", planet)] {
             changes.push((key, value.to_string()));
         }
         changes.push(("ring_teeth", (sun + 2 * planet).to_string()));
-        let planet = chance.scaled(0.005, 1.0);
+        let planet = random.scaled(0.005, 1.0);
         changes.push(("planet_equivalent_mass_kg", planet.to_string()));
         changes.push(("planet_mass_kg", (planet / 0.57).to_string()));
-        changes.push(("mesh.mean_stiffness_N_per_m", chance.scaled(5e7, 2e8).to_string()));
-        changes.push(("mesh.damping_ratio", chance.scaled(0.03, 0.12).to_string()));
-        changes.push(("mesh.half_backlash_um", chance.scaled(5.0, 80.0).to_string()));
+        changes.push(("mesh.mean_stiffness_N_per_m", random.scaled(5e7, 2e8).to_string()));
+        changes.push(("mesh.damping_ratio", random.scaled(0.03, 0.12).to_string()));
+        changes.push(("mesh.half_backlash_um", random.scaled(5.0, 80.0).to_string()));
         changes.push(("coherence", "warn".to_owned()));
     }
     let text = preset(name).expect("a preset").to_owned();
@@ -74,8 +73,8 @@ fn text(chance: &mut Chance) -> String {
     })
 }
 
-/// The sub-steps of the tables that a board with this processor gets.
-fn of_tables(joint: &JointParameters, processor: Processor, rate: u32) -> Substeps {
+/// Sub-steps of the tables for a board with this processor.
+fn table_substeps(joint: &JointParameters, processor: Processor, rate: u32) -> Substeps {
     fn of<const N: usize>(joint: &JointParameters, processor: Processor, rate: u32) -> Substeps {
         let tables: Tables<f32, N> =
             design_scheme(joint, rate, Scheme::Realtime, Effort::Within(processor)).expect("a stable rate");
@@ -110,14 +109,14 @@ fn motion(board: &str, rate: u32) -> MotionArguments {
 }
 
 #[test]
-fn four_commands_say_the_same_of_random_joints() {
+fn four_commands_agree_on_random_joints() {
     let folder = tempfile::tempdir().expect("a folder");
     let (mut leapfrog, mut refused) = (0, 0);
     for seed in 0..JOINTS {
-        let mut chance = Chance(seed);
+        let mut random = Random(seed);
         let file = folder.path().join(format!("joint-{seed}.toml"));
-        fs::write(&file, text(&mut chance)).expect("a writable folder");
-        let (name, rate) = (chance.of(&BOARDS), chance.of(&RATES));
+        fs::write(&file, text(&mut random)).expect("a writable folder");
+        let (name, rate) = (random.pick(&BOARDS), random.pick(&RATES));
         let board = Board::load(name).expect("a preset");
         let load = || named::load(&file).unwrap_or_else(|failure| panic!("seed {seed}: {failure}"));
         let joint = load().file.parameters;
@@ -126,7 +125,7 @@ fn four_commands_say_the_same_of_random_joints() {
             assert!(check::summary(&load(), &board, rate, None).is_err(), "seed {seed}");
             continue;
         }
-        let truth = of_tables(&joint, board.processor(), rate);
+        let truth = table_substeps(&joint, board.processor(), rate);
         let said = (truth.method(), truth.count());
         leapfrog += u32::from(matches!(truth, Substeps::Verlet(_)));
 
@@ -141,7 +140,7 @@ fn four_commands_say_the_same_of_random_joints() {
             Ok(run) => assert_eq!(run.substeps, truth, "seed {seed}: hil"),
             Err(failure) => assert!(failure.message().contains("no multiple"), "seed {seed}: {failure}"),
         }
-        // Errors are measured for some only: they take a second each.
+        // Errors are measured for some joints only, a second each.
         if seed % 16 == 0 {
             let told = budget::summary(&load().file, &board, Role::Plant, rate, 0.5).expect("figures").verdicts;
             assert_eq!((told.method, told.substeps), said, "seed {seed}: budget");

@@ -1,5 +1,5 @@
-//! `joint identify --output-locked` as a user meets it: on logs of the f64 reference with a link that cannot move its intervals hold the
-//! truth, and logs that cannot tell are refused by name.
+//! `joint identify --output-locked` at the command line: on logs of the f64 reference with an immovable link the
+//! intervals contain the truth, and logs without the necessary information are rejected with the cause.
 
 mod command;
 
@@ -16,7 +16,7 @@ const BACKLASH: &str = "mesh.half_backlash_um";
 const STIFFNESS: &str = "compliance.stiffness_N_m_per_rad";
 const FRICTION: &str = "drive_train.motor_coulomb_friction_N_m";
 
-/// A log of cycles of torque on a joint whose link is too heavy to move: time, motor counts and torque, a row in `every` periods.
+/// Log of torque cycles on a joint with an immovable link: time, motor counts and torque, one row in `every` periods.
 fn record(name: &str, changes: &[(&str, &str)], seed: u64, peak: f64, every: usize) -> Vec<(f64, i64, f64)> {
     let preset = joint_file::preset(name).expect("a preset").to_owned();
     let changes = [&[("gravity_torque_N_m", "0")], changes].concat();
@@ -59,11 +59,11 @@ fn interval(record: &Value, key: &str) -> [f64; 2] {
     [0, 1].map(|end| one["interval"][end].as_f64().unwrap_or_else(|| panic!("{one}")))
 }
 
-/// Changed keys of the joint; its half-gap [um], stiffness [N m/rad] and motor friction [N m]; seed, and of how many samples one is kept.
+/// Changed keys of the joint; half-gap [um], stiffness [N m/rad] and motor friction [N m]; seed; periods per row.
 type Case<'a> = (&'a [(&'a str, &'a str)], [f64; 3], u64, usize);
 
 #[test]
-fn a_held_output_tells_gap_stiffness_and_friction_within_their_intervals() {
+fn locked_output_intervals_contain_truth() {
     let folder = folder();
     let folder = folder.path();
     let cases: [Case<'_>; 4] = [
@@ -74,7 +74,7 @@ fn a_held_output_tells_gap_stiffness_and_friction_within_their_intervals() {
     ];
     for (changes, truths, seed, every) in cases {
         write(folder, &record("q1", changes, seed, 2.0, every));
-        identify(folder, "q1", &[]).well();
+        identify(folder, "q1", &[]).succeeded();
         let record = json(&folder.join("out/findings.json"));
         // The joint's torque constant is off by 3 %, as the joint file states.
         for ((key, truth), most) in [BACKLASH, STIFFNESS, FRICTION].into_iter().zip(truths).zip([0.4, 0.4, 3.0]) {
@@ -89,7 +89,7 @@ fn a_held_output_tells_gap_stiffness_and_friction_within_their_intervals() {
 }
 
 #[test]
-fn logs_of_a_held_output_that_cannot_tell_are_refused_by_name() {
+fn uninformative_locked_logs_rejected() {
     let folder = folder();
     let folder = folder.path();
     let rows = record("q1", &[], 7, 2.0, 10);
@@ -99,7 +99,7 @@ fn logs_of_a_held_output_that_cannot_tell_are_refused_by_name() {
     identify(folder, "q1", &[]).refused(&["no reversal"]);
     write(folder, &rows.iter().map(|(time, counts, torque)| (*time, -counts, *torque)).collect::<Vec<_>>());
     identify(folder, "q1", &[]).refused(&["signs of motor and torque"]);
-    // An output that is not held, and one that is told from its own encoder.
+    // An output that moves, and an option that needs the output's encoder.
     let mut free = "time_s,motor_counts,output_counts,motor_torque_N_m\n".to_owned();
     for (time, counts, torque) in &rows {
         writeln!(free, "{time},{counts},{},{torque}", counts * 8 / 6).expect("a string");

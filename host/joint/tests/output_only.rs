@@ -1,5 +1,5 @@
-//! `joint identify --output-only` as a user meets it: on logs of the f64 reference without the motor's angle its intervals hold the truth,
-//! and logs that cannot tell are refused by name.
+//! `joint identify --output-only` at the command line: on logs of the f64 reference without the motor's angle the
+//! intervals contain the truth, and logs without the necessary information are rejected with the cause.
 
 mod command;
 
@@ -17,11 +17,11 @@ const WEIGHT: &str = "weight of the link";
 const LINK: &str = "inertia of the link";
 const LOST_MOTION: &str = "lost motion at the output";
 
-/// A log of the recommended test without the motor's column, a row in `every`, with the torque times a factor.
+/// Writes a log of the recommended test without the motor's column, one row in `every`, with the torque scaled.
 fn record(folder: &Path, common: &[&str], every: usize, torque: f64) {
     let log = folder.join("all.csv");
     let _ = fs::remove_file(&log);
-    joint(&[&["identify", text(&log), "--simulate"], common].concat()).well();
+    joint(&[&["identify", text(&log), "--simulate"], common].concat()).succeeded();
     rewrite(folder, every, torque);
 }
 
@@ -45,11 +45,11 @@ fn interval(record: &Value, name: &str) -> [f64; 2] {
     [0, 1].map(|end| one["interval"][end].as_f64().unwrap_or_else(|| panic!("{one}")))
 }
 
-/// Joint, resolution of its output, seed, of how many samples one is kept, changed keys; what is true by the name of its finding.
+/// Joint, bits of the output encoder, seed, samples per row, changed keys; true values by the name of the finding.
 type Case<'a> = (&'a str, &'a str, &'a str, usize, &'a [&'a str], &'a [(&'a str, f64)]);
 
 #[test]
-fn an_output_alone_tells_inertia_friction_and_weight_within_their_intervals() {
+fn output_only_intervals_contain_truth() {
     let folder = folder();
     let folder = folder.path();
     let cases: [Case<'_>; 5] = [
@@ -76,16 +76,16 @@ fn an_output_alone_tells_inertia_friction_and_weight_within_their_intervals() {
         ),
         ("c1", "14", "3", 1, &[], &[(LINK, 0.8), (DRY, 4.95), (WEIGHT, 15.0), (VISCOUS, 1.5443), (LOST_MOTION, 0.873)]),
         ("s1", "14", "4", 2, &["link_inertia_kg_m2=0.03"], &[(LINK, 0.03), (DRY, 0.4), (LOST_MOTION, 0.873)]),
-        // As a hobby servo: 250:1, most of the inertia in the rotor, 1000 samples a second of 12 bits.
+        // Like a hobby servo: 250:1, most of the inertia in the rotor, 1000 samples a second of 12 bits.
         ("c1", "12", "5", 10, SERVO, &[(INERTIA, 0.05125), (DRY, 0.14), (WEIGHT, 0.3), (VISCOUS, 0.02125)]),
     ];
     for (name, bits, seed, every, changes, truths) in cases {
         let sets: Vec<&str> = changes.iter().flat_map(|change| ["--set", *change]).collect();
         let common = ["--joint", name, "--output-bits", bits];
         record(folder, &[&common[..], &["--seed", seed], &sets].concat(), every, 1.0);
-        // Of the servo its data sheet is known, of the others a file that is wrong in what changed.
+        // The servo is identified with its data sheet, the others with a joint file that lacks the changes.
         let known = if changes == SERVO { sets } else { Vec::new() };
-        identify(folder, &[&common[..], &known].concat()).well();
+        identify(folder, &[&common[..], &known].concat()).succeeded();
         let record = json(&folder.join("out/findings.json"));
         for (finding, truth) in truths {
             let [low, high] = interval(&record, finding);
@@ -120,7 +120,7 @@ const SERVO: &[&str] = &[
 ];
 
 #[test]
-fn logs_of_an_output_that_cannot_tell_are_refused_by_name() {
+fn uninformative_output_logs_rejected() {
     let folder = folder();
     let folder = folder.path();
     record(folder, &["--joint", "q1", "--seed", "6"], 10, 1.0);

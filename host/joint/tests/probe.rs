@@ -1,5 +1,5 @@
-//! The width probe as a test file has it: a held link gives the width, any other a reason, and what has no probe says
-//! so.
+//! The width probe in a test file: a held link gives the width, a free link gives a reason, and an unsupported role is
+//! rejected.
 
 mod command;
 
@@ -20,17 +20,17 @@ fn first_run(folder: &Path) -> Value {
 }
 
 #[test]
-fn a_held_link_gives_the_width() {
+fn probe_held_link_gives_width() {
     let folder = folder();
     let test = "profile = \"held\"\n[assert]\nprobe_error_percent = \"<= 10\"\nprobe_time_ms = \"<= 500\"\n";
-    run(folder.path(), test, &["--host"]).well();
+    run(folder.path(), test, &["--host"]).succeeded();
     let run = first_run(folder.path());
     assert_eq!((&run["controller"], &run["figures"]["probe_refused"]), (&"probe".into(), &0.0.into()));
     assert!(run["refusal"].is_null(), "{run}");
 }
 
 #[test]
-fn a_link_that_nobody_holds_gives_the_reason() {
+fn probe_free_link_gives_reason() {
     let folder = folder();
     let free =
         "profile = \"held\"\n[known]\nload_coulomb_friction_N_m = 0.05\n[assert]\nprobe_error_percent = \"<= 10\"\n";
@@ -42,7 +42,7 @@ fn a_link_that_nobody_holds_gives_the_reason() {
 }
 
 #[test]
-fn what_has_no_probe_says_so() {
+fn probe_unsupported_role_rejected() {
     let folder = folder();
     let loop_ = run(folder.path(), "profile = \"held\"\n", &["--role", "loop"]);
     assert_eq!(loop_.code, Some(2), "{loop_:?}");

@@ -1,5 +1,5 @@
-//! `joint identify --quasi-static` as a user meets it: on logs with a known truth its intervals hold it, and logs that cannot
-//! tell are refused by name.
+//! `joint identify --quasi-static` at the command line: on logs with a known truth the intervals contain it, and logs
+//! without the necessary information are rejected with the cause.
 
 mod command;
 
@@ -12,28 +12,28 @@ use command::{Ended, folder, joint, json, text};
 use scenario::random::RandomStream;
 use serde_json::Value;
 
-/// Units of a turn of the output, as the program of the measured joint has it.
+/// Units per turn of the output, in the log format of the measured joint.
 const TURN: f64 = 4096.0 * 220.0 / 360.0;
 
-/// A joint that sweeps, and how it is recorded.
+/// A joint in slow sweeps, and the recording.
 #[derive(Clone, Copy)]
 struct Sweeps {
     seed: u64,
-    /// Samples a second.
+    /// Sampling rate [Hz].
     rate: f64,
-    /// Time of a sweep [s].
+    /// Duration of a sweep [s].
     sweep: f64,
-    /// Where in a sweep the log begins.
+    /// Phase of the first sample within a sweep.
     phase: f64,
     /// Sweeps in each half.
     count: usize,
-    /// Mean lost motion, or width by direction [units], and by how much it goes up and down with the place.
+    /// Mean lost motion, or width by direction, and its amplitude over the position [units].
     width: [f64; 2],
     /// Hysteresis in each half [units].
     hysteresis: [f64; 2],
-    /// How much passes scatter, and single readings [units].
+    /// Scatter of passes and of single readings [units].
     scatter: [f64; 2],
-    /// Which way the load goes in each half.
+    /// Sign of the load in each half.
     loads: [f64; 2],
 }
 
@@ -49,7 +49,7 @@ const SWEEPS: Sweeps = Sweeps {
     loads: [1.0, -1.0],
 };
 
-/// A sample: time, output, motor on the output's scale, way, load.
+/// Sample: time, output, motor on the output's scale, direction, load.
 #[derive(Clone, Copy)]
 struct Sample {
     time: f64,
@@ -74,8 +74,8 @@ impl Sweeps {
         self.width[0] + self.width[1] * (1.5 * TAU * (place - LOW) / TRAVEL).sin()
     }
 
-    /// Two halves with a rest between them. The load closes one flank throughout a half; without any, friction closes it by
-    /// direction.
+    /// Two halves with a rest between them. The load closes one flank throughout a half; without load, friction closes
+    /// the flank of the direction.
     fn record(&self) -> Vec<Sample> {
         let mut random = RandomStream::new(self.seed, "sweeps");
         let half = self.sweep * self.count as f64;
@@ -109,7 +109,7 @@ impl Sweeps {
         samples
     }
 
-    /// In the form of the measured joint: no header, blanks, output less motor with an offset.
+    /// Log in the format of the measured joint: no header, blanks, output minus motor with an offset.
     fn as_measured(&self) -> String {
         let row = |one: &Sample| {
             let difference = one.output - one.motor + 2000.0;
@@ -128,7 +128,7 @@ impl Sweeps {
 const MEASURED: [&str; 7] =
     ["--quasi-static", "--column", "time_s=1", "--column", "output_counts=2", "--column", "output_less_motor_counts=3"];
 
-/// The command on a log.
+/// Runs the command on a log.
 fn identify(folder: &Path, log: &str, options: &[&str]) -> Ended {
     let [path, out] = ["log.txt", "out"].map(|name| folder.join(name));
     fs::write(&path, log).expect("room");
@@ -137,7 +137,7 @@ fn identify(folder: &Path, log: &str, options: &[&str]) -> Ended {
 
 fn findings(log: &str, options: &[&str]) -> Value {
     let folder = folder();
-    identify(folder.path(), log, options).well();
+    identify(folder.path(), log, options).succeeded();
     json(&folder.path().join("out/findings.json"))
 }
 
@@ -155,7 +155,7 @@ fn near(record: &Value, key: &str, truth: f64, share: f64) {
     assert!((value / truth - 1.0).abs() < share, "{key}: {value}, truly {truth}");
 }
 
-/// Lost motion at a share of the places, as the joint truly has it over the places that were kept.
+/// True lost motion at a quantile of the positions that the record kept.
 fn true_width(sweeps: &Sweeps, record: &Value, share: f64) -> f64 {
     let places = record["place"].as_array().expect("places").iter().filter_map(Value::as_f64);
     let mut widths: Vec<f64> = places.map(|place| sweeps.width_at(place)).collect();
@@ -166,12 +166,12 @@ fn true_width(sweeps: &Sweeps, record: &Value, share: f64) -> f64 {
 }
 
 #[test]
-fn a_file_of_the_measured_joints_form_is_read_by_one_command() {
+fn measured_format_read_by_one_command() {
     let folder = folder();
     let [first, second] = SWEEPS.halves();
     let turn = TURN.to_string();
     let options = [&MEASURED[..], &["--half", &first, "--half", &second, "--output-units-per-turn", &turn]].concat();
-    let said = identify(folder.path(), &SWEEPS.as_measured(), &options).well().out;
+    let said = identify(folder.path(), &SWEEPS.as_measured(), &options).succeeded().out;
     assert!(said.contains("lost motion, median over the places") && said.contains("hysteresis, second half"), "{said}");
     let out = folder.path().join("out");
     let page = fs::read_to_string(out.join("report.html")).expect("written");
@@ -195,7 +195,7 @@ fn a_file_of_the_measured_joints_form_is_read_by_one_command() {
     let median = &record["quantities"].as_array().expect("a list")[0];
     let degrees = median["value"].as_f64().expect("a number") * 360.0 / TURN;
     assert!((median["value_deg"].as_f64().expect("a turn is known") - degrees).abs() < 1e-12);
-    // Half of a width that goes up and down by 4 is what one width leaves over in each half.
+    // Describing a width with an amplitude of 4 by its mean leaves half of the amplitude unexplained in each half.
     let left = |key: &str| record["prediction"][key].as_f64().expect("a number");
     let unexplained = (left("map_and_width").powi(2) - left("curves").powi(2)).sqrt();
     assert!((unexplained / (0.5 * 4.0 / 2f64.sqrt()) - 1.0).abs() < 0.15, "{unexplained}");
@@ -204,10 +204,11 @@ fn a_file_of_the_measured_joints_form_is_read_by_one_command() {
 }
 
 #[test]
-fn intervals_hold_the_truth_in_nineteen_of_twenty_logs() {
+fn intervals_cover_truth_in_95_percent() {
     let (mut inside, mut all) = (0, 0);
     for seed in 100..140 {
-        // As often the course of the measured joint: three sweeps in each half, of which two go over the same places.
+        // Every other log has the course of the measured joint: three sweeps in each half, two of them over the same
+        // positions.
         let sweeps = match seed % 2 {
             0 => Sweeps { seed, rate: 50.0, ..SWEEPS },
             _ => Sweeps { seed, rate: 50.0, phase: 0.45, count: 3, sweep: 20.0, ..SWEEPS },
@@ -235,11 +236,11 @@ fn intervals_hold_the_truth_in_nineteen_of_twenty_logs() {
     }
     println!("{inside} of {all} inside");
     assert!(100 * inside >= 90 * all, "{inside} of {all} true values lie in their 95 % intervals");
-    // Intervals that hold everything say nothing.
+    // Intervals that contain every truth would be too wide to be useful.
     assert!(inside < all, "{inside} of {all}");
 }
 
-/// A log with a header, the motor's own column in counts over a gear ratio of 6, and torques.
+/// Log with a header, the motor's own column in counts over a gear ratio of 6, and torques.
 fn with_torque(sweeps: &Sweeps, separator: &str, torque: impl Fn(&Sample) -> f64) -> String {
     let mut log =
         ["time_ms", "output_counts", "motor_counts", "motor_torque_N_m", "output_torque_N_m"].join(separator) + "\n";
@@ -256,7 +257,7 @@ const GEARED: [&str; 7] =
     ["--quasi-static", "--gear-ratio", "6", "--output-units-per-turn", "16384", "--motor-units-per-turn", "8192"];
 
 #[test]
-fn a_log_of_ten_hertz_tells_width_and_friction_by_direction() {
+fn ten_hertz_log_width_and_friction() {
     let slow = Sweeps { rate: 10.0, sweep: 40.0, count: 4, loads: [0.0; 2], ..SWEEPS };
     let friction = |one: &Sample| if one.way > 0.0 { 0.6 } else { -0.42 };
     for separator in [",", ";", "\t", "  "] {
@@ -276,8 +277,9 @@ fn a_log_of_ten_hertz_tells_width_and_friction_by_direction() {
     }
 }
 
+/// Without scatter the resolution of the readings limits the interval.
 #[test]
-fn passes_that_repeat_exactly_have_intervals_as_wide_as_readings_resolve() {
+fn exact_passes_interval_is_resolution() {
     let exact = Sweeps { scatter: [0.0; 2], rate: 50.0, loads: [0.0; 2], width: [9.4, 0.0], ..SWEEPS };
     let mut log = "time_s,output_counts,motor_counts,motor_torque_N_m\n".to_owned();
     for one in exact.record() {
@@ -299,7 +301,7 @@ fn passes_that_repeat_exactly_have_intervals_as_wide_as_readings_resolve() {
 }
 
 #[test]
-fn counts_in_a_register_of_several_turns_are_joined_and_a_lost_reading_left_out() {
+fn multi_turn_register_unwrapped() {
     let sweeps = Sweeps { loads: [0.0; 2], rate: 50.0, ..SWEEPS };
     let log = |read: &dyn Fn(f64) -> f64, bad: usize| {
         let mut log = "time_s,output_counts,motor_counts\n".to_owned();
@@ -320,8 +322,9 @@ fn counts_in_a_register_of_several_turns_are_joined_and_a_lost_reading_left_out(
     near(&spoiled, "width_by_direction_median", found(&plain, "width_by_direction_median").0, 0.01);
 }
 
+/// The remedy must not ask for an option that is already on the command line.
 #[test]
-fn no_option_that_is_stated_is_asked_for_again() {
+fn stated_option_not_requested_again() {
     let folder = folder();
     let sweeps = Sweeps { loads: [0.0; 2], rate: 100.0, ..SWEEPS };
     let wrapped: String = std::iter::once("time_s,output_counts,motor_counts\n".to_owned())
@@ -340,7 +343,7 @@ fn no_option_that_is_stated_is_asked_for_again() {
 }
 
 #[test]
-fn a_ratio_that_is_two_percent_off_is_refused_and_the_right_one_named() {
+fn wrong_ratio_rejected_right_one_named() {
     let folder = folder();
     let straight = |one: Sample| Sample { motor: one.motor + map(one.output), ..one };
     let slow = Sweeps { rate: 10.0, sweep: 40.0, count: 4, loads: [0.0; 2], ..SWEEPS };
@@ -351,12 +354,12 @@ fn a_ratio_that_is_two_percent_off_is_refused_and_the_right_one_named() {
         }
         log
     };
-    identify(folder.path(), &log(1.0), &GEARED).well();
+    identify(folder.path(), &log(1.0), &GEARED).succeeded();
     identify(folder.path(), &log(1.02), &GEARED).refused(&["the output turns 0.98", "6.12", "--gear-ratio"]);
 }
 
 #[test]
-fn a_width_without_a_known_load_is_said_to_be_either() {
+fn width_without_load_is_ambiguous() {
     let slow = Sweeps { loads: [0.0; 2], rate: 100.0, ..SWEEPS };
     let record = findings(&slow.as_measured(), &MEASURED);
     near(&record, "width_by_direction_median", true_width(&slow, &record, 0.5), 0.06);
@@ -364,13 +367,13 @@ fn a_width_without_a_known_load_is_said_to_be_either() {
 }
 
 #[test]
-fn the_torque_s_sign_tells_the_loads_without_halves() {
+fn torque_sign_gives_load_direction() {
     let loaded = Sweeps { rate: 100.0, ..SWEEPS };
     let record = findings(&with_torque(&loaded, ",", |one| 3.0 * one.load + 0.5 * one.way), &GEARED);
     near(&record, "lost_motion_median", true_width(&loaded, &record, 0.5), 0.05);
     near(&record, "hysteresis_2", 7.0, 0.15);
     near(&record, "output_torque_dry_friction_1", 0.5, 0.01);
-    // One load throughout keeps one flank closed: no lost motion is in that.
+    // A constant load keeps one flank closed, so the log shows no lost motion.
     let one_way = Sweeps { loads: [1.0; 2], hysteresis: [5.0; 2], rate: 100.0, ..SWEEPS };
     let record = findings(&with_torque(&one_way, ",", |one| 3.0 * one.load + 0.5 * one.way), &GEARED);
     near(&record, "hysteresis_1", 5.0, 0.15);
@@ -378,8 +381,9 @@ fn the_torque_s_sign_tells_the_loads_without_halves() {
     assert!(record["assumptions"][0].as_str().expect("text").contains("one flank carries all the time"), "{record}");
 }
 
+/// Radians, a motor that counts backwards, and the other order of loads.
 #[test]
-fn radians_a_motor_that_counts_backwards_and_the_other_order_of_loads_are_read_alike() {
+fn units_and_signs_give_equal_width() {
     let sweeps = Sweeps { rate: 50.0, loads: [-1.0, 1.0], ..SWEEPS };
     let [first, second] = sweeps.halves();
     let halves = ["--half", &first, "--half", &second];
@@ -419,7 +423,7 @@ fn radians_a_motor_that_counts_backwards_and_the_other_order_of_loads_are_read_a
 }
 
 #[test]
-fn an_mcap_log_says_what_the_same_log_as_text_says() {
+fn mcap_log_equals_text_log() {
     let sweeps = Sweeps { rate: 50.0, loads: [0.0; 2], count: 3, ..SWEEPS };
     let folder = folder();
     let [log, out] = ["log.mcap", "out"].map(|name| folder.path().join(name));
@@ -439,14 +443,14 @@ fn an_mcap_log_says_what_the_same_log_as_text_says() {
     let columns = ["--column", "output_counts=read[0]", "--column", "motor_counts=read[1]"];
     for topic in [&[][..], &["--topic", "/joint"]] {
         let options = ["identify", text(&log), "--quasi-static", "--out", text(&out)];
-        joint(&[&options[..], &columns, topic].concat()).well();
+        joint(&[&options[..], &columns, topic].concat()).succeeded();
         let record = json(&out.join("findings.json"));
         assert_eq!(record["quantities"], findings(&plain, &["--quasi-static"])["quantities"]);
     }
 }
 
 #[test]
-fn gaps_and_jitter_are_taken_and_told_and_turns_are_joined() {
+fn gaps_and_jitter_noted_turns_joined() {
     let sweeps = Sweeps { rate: 100.0, ..SWEEPS };
     let mut random = RandomStream::new(7, "jitter");
     let mut log = String::new();
@@ -454,7 +458,7 @@ fn gaps_and_jitter_are_taken_and_told_and_turns_are_joined() {
         if (1300..1345).contains(&row) {
             continue;
         }
-        // A turn of 700 units is passed twice in a sweep.
+        // The output passes a turn of 700 units twice in a sweep.
         let output = one.output.rem_euclid(700.0);
         let time = one.time + 3e-3 * random.uniform();
         writeln!(log, "{time},{output},{}", output - one.motor.rem_euclid(700.0)).expect("a string");
@@ -470,7 +474,7 @@ fn gaps_and_jitter_are_taken_and_told_and_turns_are_joined() {
 }
 
 #[test]
-fn logs_that_cannot_tell_are_refused_with_the_reason_and_the_mend() {
+fn uninformative_logs_name_cause_and_remedy() {
     let folder = folder();
     let refused = |log: &str, options: &[&str], words: [&str; 2]| {
         let ended = identify(folder.path(), log, options);
@@ -490,7 +494,7 @@ fn logs_that_cannot_tell_are_refused_with_the_reason_and_the_mend() {
     let [first, second] = quick.halves();
     let halves = [&MEASURED[..], &["--half", &first, "--half", &second]].concat();
     let with = |more: &[&'static str]| [&MEASURED[..], more].concat();
-    // What is in the log.
+    // Errors of the log.
     refused(&measured, &MEASURED, ["two levels", "--half"]);
     let cut = Sweeps { phase: 0.45, count: 3, sweep: 20.0, rate: 50.0, ..quick };
     refused(&cut.as_measured(), &MEASURED, ["do not repeat", "--half"]);
@@ -542,7 +546,7 @@ fn logs_that_cannot_tell_are_refused_with_the_reason_and_the_mend() {
     refused(&wrapped, &MEASURED, ["the output jumps by", "--output-units-per-turn"]);
     let still: String = quick.record().iter().map(|one| format!("{} 5 {}\n", one.time, 5.0 - one.motor)).collect();
     refused(&still, &MEASURED, ["the output does not move", "both encoders"]);
-    // What is asked for.
+    // Errors of the options.
     refused(&measured, &with(&["--gear-ratio", "6"]), ["--gear-ratio has no effect", "leave the option out"]);
     refused(&measured, &with(&["--half", "0..48"]), ["--half is given 1 times", "twice"]);
     refused(&measured, &with(&["--half", "0..48", "--half", "40..90"]), ["halves overlap", "one way only"]);

@@ -1,4 +1,4 @@
-//! `joint replay`: a run of `joint hil TEST` is repeated in every bit, and any other log is shown to an observer.
+//! `joint replay` repeats a run of `joint hil TEST` in every bit, and feeds any other log to an observer.
 
 mod command;
 
@@ -12,17 +12,17 @@ use tempfile::TempDir;
 
 use command::{joint, json, text};
 
-/// Topic and place of a count: behind the head of CDR, the time, the period and the clock.
+/// Topic of the controller, and the offset of the motor counts: after the CDR header, time, period and clock.
 const CONTROLLER: &str = "/joint/controller";
 const MOTOR_COUNTS_AT: usize = 4 + 8 + 4 + 4;
-/// A motion with enough of everything that a joint is identified by.
+/// A motion with enough excitation for every parameter.
 const SWING: &str = "[profile]\nkind = \"random\"\namplitude_rad = 0.4\nhighest_Hz = 8\n[controller]\nrivals = []\n";
 
-/// Runs a test on the host, and says where its only log is.
+/// Runs a test on the host and returns the path of its only log.
 fn log_of(folder: &Path, test: &str, plant: &str) -> PathBuf {
     let (file, out) = (folder.join("swing.toml"), folder.join("tests"));
     fs::write(&file, test).expect("room");
-    joint(&["hil", text(&file), "--host", "--plant", plant, "--out", text(&out)]).well();
+    joint(&["hil", text(&file), "--host", "--plant", plant, "--out", text(&out)]).succeeded();
     let mut logs = fs::read_dir(out.join("runs")).expect("it has logs").map(|entry| entry.expect("readable").path());
     logs.find(|path| path.extension().is_some_and(|ending| ending == "mcap")).expect("a log")
 }
@@ -38,7 +38,7 @@ fn find<'f>(findings: &'f Value, name: &str) -> &'f Value {
     all.iter().find(|finding| finding["name"] == name).expect(name)
 }
 
-/// The same log with the messages of a topic changed.
+/// Copies a log with the messages of a topic changed or removed.
 fn changed(log: &Path, into: &Path, topic: &str, mut change: impl FnMut(u32, &mut Vec<u8>) -> bool) {
     let bytes = fs::read(log).expect("a log");
     let mut writer = Writer::new(std::io::BufWriter::new(fs::File::create(into).expect("room"))).expect("a log");
@@ -59,7 +59,7 @@ fn changed(log: &Path, into: &Path, topic: &str, mut change: impl FnMut(u32, &mu
 }
 
 #[test]
-fn a_run_is_repeated_in_every_bit_with_faults_and_from_memory() {
+fn run_with_faults_repeats_bit_exact() {
     let folder = TempDir::new().expect("a folder");
     let test = "duration_s = 1\nsettle_s = 0.5\nseeds = [3]\nprofile = \"T2\"\n[controller]\nrivals = []\nfrom_memory = true\n\
                 [[fault]]\nkind = \"encoder_frozen\"\nstart_s = 0.4\nend_s = 0.5\n\
@@ -75,7 +75,7 @@ fn a_run_is_repeated_in_every_bit_with_faults_and_from_memory() {
 }
 
 #[test]
-fn a_run_with_one_count_changed_is_told_with_its_first_difference() {
+fn changed_count_names_first_difference() {
     let folder = TempDir::new().expect("a folder");
     let test = format!("duration_s = 0.5\nsettle_s = 0.2\n{SWING}");
     let log = log_of(folder.path(), &test, "core");
@@ -97,7 +97,7 @@ fn a_run_with_one_count_changed_is_told_with_its_first_difference() {
 }
 
 #[test]
-fn a_run_with_an_estimate_changed_or_a_period_missing_is_told() {
+fn changed_estimate_or_lost_period_named() {
     let folder = TempDir::new().expect("a folder");
     let test = format!("duration_s = 0.3\nsettle_s = 0.1\n{SWING}");
     let log = log_of(folder.path(), &test, "core");
@@ -120,7 +120,7 @@ fn a_run_with_an_estimate_changed_or_a_period_missing_is_told() {
 }
 
 #[test]
-fn a_log_without_counts_is_refused_with_the_mend() {
+fn log_without_counts_rejected() {
     let folder = TempDir::new().expect("a folder");
     let test = "duration_s = 0.2\nsettle_s = 0.1\nprofile = \"T2\"\n[controller]\nmode = \"preview\"\nrivals = [\"motor_pid\"]\n";
     let log = log_of(folder.path(), test, "core");
@@ -141,20 +141,20 @@ fn a_log_without_counts_is_refused_with_the_mend() {
 }
 
 #[test]
-fn any_log_is_shown_to_the_observer_of_a_joint() {
+fn any_log_feeds_observer() {
     let folder = TempDir::new().expect("a folder");
     let (log, out) = (folder.path().join("log.csv"), folder.path().join("out"));
-    joint(&["identify", text(&log), "--simulate"]).well();
+    joint(&["identify", text(&log), "--simulate"]).succeeded();
     let guess = ["--set", "half_backlash_um=60"];
-    joint(&[&["replay", text(&log), "q1", "--out", text(&out)][..], &guess].concat()).well();
+    joint(&[&["replay", text(&log), "q1", "--out", text(&out)][..], &guess].concat()).succeeded();
     let record = json(&out.join("record.json"));
     assert!(record["repeats"].is_null() && record["counts_from_angles"] == false);
     let learnt = record["learnt"].as_array().expect("a list");
     let width = learnt.iter().find(|finding| finding["name"] == "half-backlash b").expect("it is learnt");
-    // As right as tests of the observer ask for, and with an interval.
+    // Accuracy that the observer's tests require, and an interval.
     assert!((width["value"].as_f64().expect("a number") / 40.0 - 1.0).abs() < 0.05, "{width}");
     assert!(width["interval"][0].as_f64() < width["interval"][1].as_f64(), "{width}");
-    // The same names in CSV and MCAP, at the usual thousand rows a second.
+    // CSV and MCAP have the same names, at the default thousand rows a second.
     let csv = fs::read_to_string(out.join("estimates.csv")).expect("written");
     let mut lines = csv.lines();
     let head: Vec<String> = lines.next().expect("a head").split(',').map(str::to_ascii_lowercase).collect();
@@ -168,8 +168,9 @@ fn any_log_is_shown_to_the_observer_of_a_joint() {
     assert_eq!(fields, head);
 }
 
+/// The rows come at a rate below the lowest control rate of an observer.
 #[test]
-fn a_control_rate_that_no_observer_has_is_not_recommended() {
+fn impossible_control_rate_not_recommended() {
     let folder = TempDir::new().expect("a folder");
     let log = folder.path().join("log.csv");
     let rows = (0..100).map(|row| format!("{},{row},{row},0\n", 2e-3 * f64::from(row)));
@@ -183,7 +184,7 @@ fn a_control_rate_that_no_observer_has_is_not_recommended() {
 }
 
 #[test]
-fn rows_that_are_no_control_periods_are_refused_with_the_key_of_the_rate() {
+fn wrong_row_rate_names_rate_key() {
     let folder = TempDir::new().expect("a folder");
     let log = folder.path().join("log.csv");
     let rows = (0..100).map(|row| format!("{},{row},{row},0\n", 1e-3 * f64::from(row)));
@@ -195,23 +196,23 @@ fn rows_that_are_no_control_periods_are_refused_with_the_key_of_the_rate() {
     assert!(refused.err.contains(rates), "{}", refused.err);
     assert!(refused.err.contains("--set control_rate_Hz=1000"), "{}", refused.err);
     let out = folder.path().join("out");
-    joint(&["replay", text(&log), "q1", "--set", "control_rate_Hz=1000", "--out", text(&out)]).well();
+    joint(&["replay", text(&log), "q1", "--set", "control_rate_Hz=1000", "--out", text(&out)]).succeeded();
 }
 
 #[test]
-fn a_run_is_shown_to_the_observer_of_another_joint_file() {
+fn run_feeds_observer_of_other_joint() {
     let folder = TempDir::new().expect("a folder");
     let test = format!("duration_s = 0.5\nsettle_s = 0.2\n{SWING}");
     let log = log_of(folder.path(), &test, "core");
     let out = folder.path().join("out");
-    joint(&["replay", text(&log), "q1", "--motor-only", "--out", text(&out)]).well();
+    joint(&["replay", text(&log), "q1", "--motor-only", "--out", text(&out)]).succeeded();
     let record = json(&out.join("record.json"));
     assert!(record["repeats"].is_null());
     assert_eq!(record["both_encoders_percent"], 0.0);
 }
 
 #[test]
-fn identify_finds_the_joint_in_the_log_of_a_test() {
+fn identify_reads_log_of_test() {
     let folder = TempDir::new().expect("a folder");
     let truths = [
         ("half-backlash b", 40.0),
@@ -222,7 +223,7 @@ fn identify_finds_the_joint_in_the_log_of_a_test() {
     ];
     let log = log_of(folder.path(), &format!("duration_s = 6\nseeds = [1]\n{SWING}"), "reference");
     let out = folder.path().join("identified");
-    joint(&["identify", text(&log), "--joint", "q1", "--out", text(&out)]).well();
+    joint(&["identify", text(&log), "--joint", "q1", "--out", text(&out)]).succeeded();
     let findings = json(&out.join("findings.json"));
     for (name, truth) in truths {
         let finding = find(&findings, name);
@@ -230,14 +231,14 @@ fn identify_finds_the_joint_in_the_log_of_a_test() {
         assert!(low <= truth && truth <= high, "{finding}");
     }
 
-    // A link that hardly moves and turns once tells nothing.
+    // A link that hardly moves and reverses twice gives too few crossings.
     let still = "duration_s = 2\nsettle_s = 0.5\nseeds = [2]\n[profile]\nkind = \"sine\"\namplitude_rad = 0.02\nfrequency_Hz = 0.5\n\
                  [controller]\nrivals = []\n";
     let log = log_of(folder.path(), still, "reference");
     let out = folder.path().join("nothing");
     joint(&["identify", text(&log), "--joint", "q1", "--out", text(&out)])
         .refused(&["too few crossings: the carrying flank changes 2 times", "reverse the torque more often"]);
-    // Turned more often it has a fit, but nothing that the joint file does not say: inertias that repeat it are no news.
+    // With more reversals the fit succeeds but adds no information to the joint file.
     let log = log_of(folder.path(), &still.replace("duration_s = 2", "duration_s = 10"), "core");
     let out = folder.path().join("no-news");
     joint(&["identify", text(&log), "--joint", "q1", "--out", text(&out)])

@@ -1,4 +1,4 @@
-//! What commands write as JSON is what the published schemas say.
+//! JSON output of the commands is valid by the published schemas.
 
 mod command;
 
@@ -10,12 +10,12 @@ use serde_json::Value;
 use command::{folder, joint, json, text};
 
 #[test]
-fn what_commands_write_is_valid_by_their_published_schemas() {
+fn output_valid_by_published_schemas() {
     let folder = folder();
     let path = |name: &str| folder.path().join(name);
     let written = |line: &[&str], name: &str| -> Value {
         let out = path(name);
-        joint(&[line, &["--json", text(&out)]].concat()).well();
+        joint(&[line, &["--json", text(&out)]].concat()).succeeded();
         json(&out)
     };
     let out = |name: &str| text(&path(name)).to_owned();
@@ -23,11 +23,12 @@ fn what_commands_write_is_valid_by_their_published_schemas() {
     assert_valid("budget.schema.json", &written(&["budget", "q1"], "budget.json"));
     let line = ["sim", "l1", "--duration", "0.02", "--out", &out("sim")];
     assert_valid("sim.schema.json", &written(&line, "sim.json"));
-    joint(&["sweep", "q1", "--vary", "half_backlash_um=10,20", "--duration", "0.01", "--out", &out("sweep")]).well();
+    joint(&["sweep", "q1", "--vary", "half_backlash_um=10,20", "--duration", "0.01", "--out", &out("sweep")])
+        .succeeded();
     assert_valid("sweep.schema.json", &json(&path("sweep/sweep.json")));
 
     let log = out("log.csv");
-    joint(&["identify", &log, "--simulate"]).well();
+    joint(&["identify", &log, "--simulate"]).succeeded();
     let line = ["identify", &log, "--out", &out("identified")];
     assert_valid("identify.schema.json", &written(&line, "identify.json"));
     let line = ["replay", &log, "q1", "--out", &out("replayed")];
@@ -42,7 +43,7 @@ fn what_commands_write_is_valid_by_their_published_schemas() {
     let line = ["identify", &out("sweeps.csv"), "--quasi-static", "--out", &out("slow")];
     assert_valid("identify-quasi-static.schema.json", &written(&line, "slow.json"));
 
-    // A run gives a memory, and a log that is repeated.
+    // A run writes a memory and a log for `replay`.
     fs::write(path("test.toml"), "duration_s = 1\nsettle_s = 0.5\nprofile = \"T2\"\n[controller]\nrivals = []\n")
         .expect("room");
     let line = ["hil", &out("test.toml"), "--host", "--memory", "--seed", "1", "--out", &out("tests")];

@@ -1,5 +1,5 @@
-//! A session with a board in a thread, in normal operation and in its failure modes: messages, kept recordings, how it
-//! ends.
+//! A session with a board in a thread, in normal operation and in its failure modes: messages, saved recordings,
+//! outcome.
 
 #[allow(dead_code, reason = "every test binary uses its own part of it")]
 mod thread_board;
@@ -19,11 +19,11 @@ use link::messages::{Role, RunMode, RunSettings, ToBoard, Trip};
 use report::failure::{Failure, Outcome};
 use thread_board::{Misbehaviour, TICK_RATE, joint};
 
-/// A message is due within 2 s by design; a busy machine is given ten times that.
+/// Messages are due within 2 s by design; a busy machine gets ten times as long.
 const LIVENESS: Duration = Duration::from_secs(20);
 const TIMEOUT: Duration = Duration::from_secs(2);
 
-/// A user who presses Ctrl-C at a moment, if at all; nothing is known about the other end.
+/// A user who may press Ctrl-C at a given time.
 struct User(Option<Instant>);
 
 impl Supervisor for User {
@@ -82,14 +82,14 @@ fn failure(misbehaviour: Misbehaviour) -> (Failure, Recording) {
     (failure, recording)
 }
 
-/// The recorded run against the same run computed here.
+/// Comparison of the recorded run with the run computed on the host.
 fn agreement(recording: &Recording) -> Agreement {
     let Recording { accepted, samples, .. } = recording;
     twin::compare(&joint(), Chip::Stm32f405, TICK_RATE, accepted, samples).expect("designed")
 }
 
 #[test]
-fn a_good_run_brings_every_sample_and_equals_the_twin() {
+fn good_run_is_complete_and_equals_twin() {
     for mode in [RunMode::Lockstep, RunMode::Realtime] {
         let (outcome, recording) = run_with(Misbehaviour::None, mode, User(None));
         outcome.expect("normal operation");
@@ -103,14 +103,14 @@ fn a_good_run_brings_every_sample_and_equals_the_twin() {
 }
 
 #[test]
-fn torques_a_tick_late_break_the_agreement() {
+fn late_torques_break_agreement() {
     let (outcome, recording) = run(Misbehaviour::LateTorques);
     outcome.expect("the line itself is good");
     assert!(agreement(&recording).different > 0);
 }
 
 #[test]
-fn a_board_that_hangs_up_in_mid_run_leaves_what_was_recorded() {
+fn hang_up_keeps_recording() {
     let (failure, recording) = failure(Misbehaviour::HangsUpAt(10_000));
     assert!(failure.message().contains("the board in a thread"), "{failure}");
     assert!(recording.samples.len() >= 100, "{} samples kept", recording.samples.len());
@@ -118,14 +118,14 @@ fn a_board_that_hangs_up_in_mid_run_leaves_what_was_recorded() {
 }
 
 #[test]
-fn a_board_that_falls_silent_is_given_up_with_its_tick() {
+fn silent_board_names_tick() {
     let (failure, recording) = failure(Misbehaviour::FallsSilentAt(5_000));
     assert!(failure.message().contains("fallen silent at tick"), "{failure}");
     assert!(!recording.samples.is_empty());
 }
 
 #[test]
-fn garbage_and_half_frames_are_counted_and_the_run_goes_on() {
+fn half_frame_counted_run_continues() {
     let (outcome, recording) = run(Misbehaviour::HalfFrameAt(8_000));
     outcome.expect("a half frame costs nothing but itself");
     assert_eq!(recording.traffic.bad_frames, 1, "only the one in the run counts");
@@ -133,7 +133,7 @@ fn garbage_and_half_frames_are_counted_and_the_run_goes_on() {
 }
 
 #[test]
-fn a_line_with_nothing_but_garbage_is_told_from_a_dead_one() {
+fn garbage_distinguished_from_dead_line() {
     let (garbage, _) = failure(Misbehaviour::OnlyGarbage);
     assert!(garbage.message().contains("no valid frame"), "{garbage}");
     assert!(garbage.help().is_some_and(|help| help.contains("--baud")), "{garbage}");
@@ -142,7 +142,7 @@ fn a_line_with_nothing_but_garbage_is_told_from_a_dead_one() {
 }
 
 #[test]
-fn a_board_of_another_role_version_or_joint_is_refused() {
+fn wrong_role_version_or_joint_rejected() {
     let (version, _) = failure(Misbehaviour::Protocol(99));
     assert!(version.message().contains("version 99"), "{version}");
     let (role, _) = failure(Misbehaviour::AnotherRole);
@@ -156,7 +156,7 @@ fn a_board_of_another_role_version_or_joint_is_refused() {
 }
 
 #[test]
-fn a_lost_batch_is_counted() {
+fn lost_batch_is_counted() {
     let (outcome, recording) = run(Misbehaviour::LosesBatch(20));
     outcome.expect("the run goes on");
     assert_eq!(recording.traffic.lost_batches, 1);
@@ -164,14 +164,14 @@ fn a_lost_batch_is_counted() {
 }
 
 #[test]
-fn a_lost_schedule_does_not_pass_for_a_good_run() {
+fn lost_schedule_is_not_a_good_run() {
     let (outcome, recording) = run(Misbehaviour::LosesSchedule(0));
     let lost = recording.statistics.as_ref().map_or(0, |statistics| statistics.lost_schedules);
     assert!(outcome.is_err() || lost == 1, "{outcome:?}");
 }
 
 #[test]
-fn a_fault_ends_the_run_in_words() {
+fn trip_ends_run_with_message() {
     let (failure, recording) = failure(Misbehaviour::TripAt(4_000, Trip::NotFinite { tick: 4_000 }));
     assert!(failure.message().contains("not finite"), "{failure}");
     assert!(failure.message().contains("tick 4000"), "{failure}");
@@ -180,7 +180,7 @@ fn a_fault_ends_the_run_in_words() {
 }
 
 #[test]
-fn half_a_frame_that_hangs_in_a_board_does_not_swallow_the_stop_after_it() {
+fn pending_half_frame_does_not_hide_stop() {
     let (ours, mut theirs) = UnixStream::pair().expect("a pair of sockets");
     (&ours).write_all(&encode(&ToBoard::Statistics { reset: true }).expect("short")[..3]).expect("the line is there");
     let line = Socket::new(ours, "half a frame").expect("options");
@@ -192,7 +192,7 @@ fn half_a_frame_that_hangs_in_a_board_does_not_swallow_the_stop_after_it() {
 }
 
 #[test]
-fn ctrl_c_ends_the_wait_for_a_board() {
+fn ctrl_c_ends_wait_for_board() {
     let user = User(Some(Instant::now() + Duration::from_millis(50)));
     let (outcome, _) = run_with(Misbehaviour::Mute, RunMode::Lockstep, user);
     assert_eq!(outcome.expect_err("interrupted").exit_code(), 130);

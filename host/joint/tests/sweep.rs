@@ -1,5 +1,5 @@
-//! `joint sweep` and `joint merge` as a user meets them: the same bytes whatever the threads, shards, kills and order;
-//! no foreign file touched; every error with its cause and its help.
+//! `joint sweep` and `joint merge` at the command line: equal bytes for any threads, shards, kills and order; foreign
+//! files stay untouched; every error has its cause and remedy.
 
 mod command;
 
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use command::{Ended, contents, folder, interrupt, joint, joint_on_a_full_disk, start, text, until, wait};
 
-/// A grid of 31 points of a few milliseconds each.
+/// Grid of 31 points of a few milliseconds each.
 const GRID: [&str; 6] = ["sweep", "paper", "--vary", "half_backlash_um=0:150:5", "--duration", "0.01"];
 
 fn sweep(more: &[&str], out: &Path) -> Ended {
@@ -19,10 +19,10 @@ fn result(folder: &Path) -> String {
     fs::read_to_string(folder.join("points.csv")).expect("the result")
 }
 
-/// What a whole sweep in one go gives.
+/// Result of an uninterrupted sweep.
 fn whole(folder: &Path) -> String {
     let path = folder.join("whole");
-    sweep(&[], &path).well();
+    sweep(&[], &path).succeeded();
     result(&path)
 }
 
@@ -35,33 +35,33 @@ fn lines(path: &Path) -> usize {
 }
 
 #[test]
-fn the_same_bytes_come_out_of_any_number_of_threads_and_shards() {
+fn threads_and_shards_give_equal_bytes() {
     let folder = folder();
     let expected = whole(folder.path());
     assert_eq!(expected.lines().count(), 32);
     for threads in ["1", "2", "7"] {
         let path = folder.path().join(threads);
-        sweep(&["--threads", threads], &path).well();
+        sweep(&["--threads", threads], &path).succeeded();
         assert_eq!(result(&path), expected, "{threads} threads");
     }
-    // Shards in one folder, the last one first; the one that finishes the grid writes the result.
+    // Shards in one folder, the last one first; the shard that completes the grid writes the result.
     let together = folder.path().join("together");
     for shard in ["3/3", "1/3"] {
-        let ended = sweep(&["--shard", shard], &together).well();
+        let ended = sweep(&["--shard", shard], &together).succeeded();
         assert!(ended.out.contains("cargo joint merge"), "{ended:?}");
         assert!(!together.join("points.csv").exists());
     }
-    sweep(&["--shard", "2/3"], &together).well();
+    sweep(&["--shard", "2/3"], &together).succeeded();
     assert_eq!(result(&together), expected);
 }
 
 #[test]
-fn shards_from_several_folders_are_merged_once_none_is_missing() {
+fn merge_needs_all_shards() {
     let folder = folder();
     let expected = whole(folder.path());
     let paths = ["1/3", "2/3", "3/3"].map(|shard| {
         let path = folder.path().join(shard.replace('/', "-of-"));
-        sweep(&["--shard", shard], &path).well();
+        sweep(&["--shard", shard], &path).succeeded();
         path
     });
     let [one, two, three] = paths.each_ref().map(text);
@@ -69,33 +69,33 @@ fn shards_from_several_folders_are_merged_once_none_is_missing() {
     joint(&["merge", one, three, "--out", text(&out)])
         .refused(&["10 of 31 points are missing: 1, 4, 7", "--shard 2/3"]);
     assert!(!out.exists());
-    joint(&["merge", three, one, two, "--out", text(&out)]).well();
+    joint(&["merge", three, one, two, "--out", text(&out)]).succeeded();
     assert_eq!(result(&out), expected);
-    // Twice is no harm.
-    joint(&["merge", one, two, three, "--out", text(&out)]).well();
+    // Merging again does no harm.
+    joint(&["merge", one, two, three, "--out", text(&out)]).succeeded();
     assert_eq!(result(&out), expected);
 }
 
 #[test]
-fn the_classes_of_the_paper_s_joint_come_out() {
+fn paper_period_classes_found() {
     let folder = folder();
     let path = folder.path().join("classes");
     let grid = ["sweep", "paper", "--vary", "half_backlash_um=0,10,19,25,34,38,50,60,69,70,80,120"];
-    joint(&[&grid[..], &["--metric", "period", "--out", text(&path)]].concat()).well();
+    joint(&[&grid[..], &["--metric", "period", "--out", text(&path)]].concat()).succeeded();
     let periods: Vec<String> =
         result(&path).lines().skip(1).map(|line| line.rsplit(',').next().unwrap_or_default().to_owned()).collect();
     assert_eq!(periods, ["1", "1", "1", "2", "2", "0", "3", "3", "3", "6", "0", "0"]);
 }
 
 #[test]
-fn a_killed_sweep_goes_on_where_it_was_to_the_same_bytes() {
+fn killed_sweep_resumes_to_equal_bytes() {
     let folder = folder();
     let grid = ["sweep", "paper", "--vary", "half_backlash_um=0:150:0.5", "--duration", "0.01", "--threads", "1"];
     let run = |path: &Path| [&grid[..], &["--out", text(path)]].concat().iter().map(ToString::to_string).collect();
     let expected = {
         let path = folder.path().join("whole");
         let arguments: Vec<String> = run(&path);
-        joint(&arguments.iter().map(String::as_str).collect::<Vec<_>>()).well();
+        joint(&arguments.iter().map(String::as_str).collect::<Vec<_>>()).succeeded();
         result(&path)
     };
     let path = folder.path().join("killed");
@@ -110,13 +110,13 @@ fn a_killed_sweep_goes_on_where_it_was_to_the_same_bytes() {
     let kept = lines(&journal(&path)) - 1;
     assert!((60..301).contains(&kept), "{kept}");
     assert!(!path.join("points.csv").exists());
-    let ended = joint(&arguments).well();
+    let ended = joint(&arguments).succeeded();
     assert!(ended.err.contains("going on:"), "{ended:?}");
     assert_eq!(result(&path), expected);
 }
 
 #[test]
-fn a_half_written_line_is_done_again() {
+fn truncated_journal_line_recomputed() {
     let folder = folder();
     let expected = whole(folder.path());
     let path = folder.path().join("whole");
@@ -124,13 +124,13 @@ fn a_half_written_line_is_done_again() {
     for cut in [bytes.len() - 1, bytes.len() - 30, bytes.len() / 2, 40, 0] {
         fs::write(journal(&path), &bytes[..cut]).expect("room");
         fs::remove_file(path.join("points.csv")).expect("it was there");
-        sweep(&[], &path).well();
+        sweep(&[], &path).succeeded();
         assert_eq!(result(&path), expected, "cut at {cut}");
     }
 }
 
 #[test]
-fn ctrl_c_keeps_what_is_done_and_says_how_to_go_on() {
+fn ctrl_c_keeps_points_names_command() {
     let folder = folder();
     let path = folder.path().join("stopped");
     let grid = ["sweep", "paper", "--vary", "half_backlash_um=0:150:0.05", "--out", text(&path)];
@@ -148,22 +148,22 @@ fn ctrl_c_keeps_what_is_done_and_says_how_to_go_on() {
 }
 
 #[test]
-fn a_full_disk_costs_no_finished_point() {
+fn full_disk_keeps_finished_points() {
     let folder = folder();
-    // The description of the sweep has room enough, the journal of 151 points has not.
+    // The limit has room for the description of the sweep, but not for the journal of 151 points.
     let grid = ["sweep", "paper", "--vary", "half_backlash_um=0:150:1", "--duration", "0.003", "--threads", "1"];
     let (expected, path) = (folder.path().join("whole"), folder.path().join("full"));
-    joint(&[&grid[..], &["--out", text(&expected)]].concat()).well();
+    joint(&[&grid[..], &["--out", text(&expected)]].concat()).succeeded();
     let arguments = [&grid[..], &["--out", text(&path)]].concat();
     joint_on_a_full_disk(12, &arguments).refused(&["cannot write", "free some space", "points of this run are kept"]);
     assert!(lines(&journal(&path)) > 20 && !path.join("points.csv").exists());
-    let ended = joint(&arguments).well();
+    let ended = joint(&arguments).succeeded();
     assert!(ended.err.contains("going on:"), "{ended:?}");
     assert_eq!(result(&path), result(&expected));
 }
 
 #[test]
-fn grids_that_cannot_be_are_refused_before_anything_is_made() {
+fn impossible_grid_writes_nothing() {
     let folder = folder();
     let path = folder.path().join("none");
     let refused = |vary: &[&str], words: &[&str]| {
@@ -186,7 +186,7 @@ fn grids_that_cannot_be_are_refused_before_anything_is_made() {
     refused(&["half_backlsh_um=0:150:1"], &["unknown key", "half_backlash_um"]);
     refused(&["half_backlash_um=0:1500:100"], &["between 0.5 and 1000", "1100"]);
     refused(&["half_backlash_um=1,2", "mesh.half_backlash_um=3,4"], &["varied twice"]);
-    refused(&["half_backlash_um=1,2", "backlash_um=3,4"], &["changes nothing"]);
+    refused(&["half_backlash_um=1,2", "backlash_um=3,4"], &["has no effect"]);
     refused(&["half_backlash_um"], &["no `=`"]);
     let all = ["sweep", "paper", "--vary", "half_backlash_um=1,2", "--scheme", "all", "--out", text(&path)];
     joint(&all).refused(&["one scheme"]);
@@ -197,7 +197,7 @@ fn grids_that_cannot_be_are_refused_before_anything_is_made() {
 }
 
 #[test]
-fn a_folder_of_anyone_else_is_refused_and_left_as_it_is() {
+fn foreign_folder_rejected_unchanged() {
     let folder = folder();
     let path = folder.path().join("mine");
     fs::create_dir(&path).expect("room");
@@ -209,8 +209,8 @@ fn a_folder_of_anyone_else_is_refused_and_left_as_it_is() {
         assert_eq!(contents(&path), before);
         fs::remove_file(path.join(name)).expect("it was there");
     }
-    // A sweep's own folder with something beside it.
-    sweep(&[], &path).well();
+    // A sweep's own folder with a foreign file.
+    sweep(&[], &path).succeeded();
     fs::write(path.join("notes.txt"), "my data").expect("room");
     let before = contents(&path);
     sweep(&[], &path).refused(&["beside its sweep", "notes.txt"]);
@@ -225,10 +225,10 @@ fn a_folder_of_anyone_else_is_refused_and_left_as_it_is() {
 }
 
 #[test]
-fn another_sweep_s_folder_is_refused_and_left_as_it_is() {
+fn folder_of_other_sweep_rejected() {
     let folder = folder();
     let path = folder.path().join("sweep");
-    sweep(&[], &path).well();
+    sweep(&[], &path).succeeded();
     let before = contents(&path);
     let other = |arguments: &[&str], words: &[&str]| {
         joint(&[arguments, &["--out", text(&path)]].concat()).refused(words);
@@ -244,21 +244,21 @@ fn another_sweep_s_folder_is_refused_and_left_as_it_is() {
     other(&[&GRID[..], &["--metric", "period"]].concat(), &["another sweep", "metrics"]);
     // Shards of two sweeps do not merge.
     let second = folder.path().join("second");
-    joint(&[&GRID[..], &["--scheme", "rk4", "--out", text(&second)]].concat()).well();
+    joint(&[&GRID[..], &["--scheme", "rk4", "--out", text(&second)]].concat()).succeeded();
     joint(&["merge", text(&path), text(&second)]).refused(&["another sweep than", "scheme"]);
 }
 
 #[test]
-fn a_spoilt_sweep_is_refused_by_name_and_left_as_it_is() {
+fn damaged_sweep_rejected_unchanged() {
     let folder = folder();
     let path = folder.path().join("sweep");
-    sweep(&[], &path).well();
+    sweep(&[], &path).succeeded();
     let manifest = fs::read_to_string(path.join("sweep.json")).expect("written");
     for spoilt in [manifest.replace("0:150:5", "0:150:6"), manifest[..100].to_owned(), String::new(), "\u{0}".into()] {
         fs::write(path.join("sweep.json"), &spoilt).expect("room");
         let before = contents(&path);
-        sweep(&[], &path).refused(&["sweep.json is not what a sweep wrote"]);
-        joint(&["merge", text(&path)]).refused(&["sweep.json is not what a sweep wrote"]);
+        sweep(&[], &path).refused(&["sweep.json is not a sweep's manifest"]);
+        joint(&["merge", text(&path)]).refused(&["sweep.json is not a sweep's manifest"]);
         assert_eq!(contents(&path), before);
     }
     fs::write(path.join("sweep.json"), &manifest).expect("room");
@@ -267,17 +267,17 @@ fn a_spoilt_sweep_is_refused_by_name_and_left_as_it_is() {
     sweep(&[], &path).refused(&["is not the journal of a sweep"]);
     joint(&["merge", text(&path)]).refused(&["is not the journal of a sweep"]);
     assert_eq!(contents(&path), before);
-    joint(&["merge", text(folder.path())]).refused(&["holds no sweep"]);
+    joint(&["merge", text(folder.path())]).refused(&["is not a sweep"]);
     joint(&["merge", "/no/such/folder"]).refused(&["/no/such/folder is not a folder"]);
 }
 
 #[test]
-fn a_joint_that_cannot_be_is_one_row_and_not_the_end() {
+fn impossible_point_is_one_refused_row() {
     let folder = folder();
     let path = folder.path().join("some");
-    // A motor limit below the drive torque is refused by the joint file's own rules.
+    // The joint file's own rules reject a motor limit below the drive torque.
     let grid = ["sweep", "q1", "--vary", "drive_torque_N_m=1,2,3", "--vary", "motor_torque_limit_N_m=5,2.5"];
-    let ended = joint(&[&grid[..], &["--duration", "0.01", "--out", text(&path)]].concat()).well();
+    let ended = joint(&[&grid[..], &["--duration", "0.01", "--out", text(&path)]].concat()).succeeded();
     assert!(ended.err.contains("1 points were refused") && ended.err.contains("motor_torque_limit_N_m"), "{ended:?}");
     let result = result(&path);
     let status: Vec<&str> = result.lines().skip(1).filter_map(|line| line.split(',').nth(2)).collect();
@@ -286,24 +286,24 @@ fn a_joint_that_cannot_be_is_one_row_and_not_the_end() {
 }
 
 #[test]
-fn a_sweep_draws_its_map_whoever_finishes_it() {
+fn sweep_report_equal_from_shards() {
     let folder = folder();
     let page = |path: &Path| fs::read_to_string(path.join("report.html")).expect("a page");
     let whole = folder.path().join("whole");
-    let ended = sweep(&[], &whole).well();
+    let ended = sweep(&[], &whole).succeeded();
     assert!(ended.out.contains("report: "), "{ended:?}");
     assert!(page(&whole).contains("Greatest mesh force") && page(&whole).contains("mesh.half_backlash_um"));
-    // The same bytes out of shards, and again into the same folder.
+    // Shards, and a second run into the same folder, give equal bytes.
     let paths = ["1/2", "2/2"].map(|shard| {
         let path = folder.path().join(shard.replace('/', "-of-"));
-        sweep(&["--shard", shard], &path).well();
+        sweep(&["--shard", shard], &path).succeeded();
         assert!(!path.join("report.html").exists(), "not before all points are there");
         path
     });
     let [one, two] = paths.each_ref().map(text);
     let out = folder.path().join("merged");
-    joint(&["merge", one, two, "--out", text(&out)]).well();
+    joint(&["merge", one, two, "--out", text(&out)]).succeeded();
     assert_eq!(page(&out), page(&whole));
-    sweep(&[], &whole).well();
+    sweep(&[], &whole).succeeded();
     assert_eq!(page(&out), page(&whole));
 }

@@ -1,5 +1,5 @@
-//! Test files of observer and compensation as a user meets them: messages for bad input, results on disk,
-//! repeatability, and that a controller that does nothing fails.
+//! Test files of observer and compensation at the command line: messages for bad input, results on disk, repeatability,
+//! and failure of a controller without output.
 
 mod command;
 #[allow(dead_code, reason = "every test binary uses its own part of it")]
@@ -15,7 +15,7 @@ use scenario::suite;
 use scenario::suite::Choice;
 use serde_json::Value;
 
-/// A short test, with more lines at its end.
+/// Writes a short test file with further lines at its end.
 fn test_file(folder: &Path, more: &str) -> PathBuf {
     let path = folder.join("short.toml");
     let head = "title = \"short\"\nduration_s = 1.2\nsettle_s = 0.6\n";
@@ -34,7 +34,7 @@ fn results(folder: &Path) -> Value {
 }
 
 #[test]
-fn every_shipped_test_can_be_read_and_designed() {
+fn shipped_tests_load() {
     let hil = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../hil");
     let [all, short] = [Choice::Full, Choice::Short].map(|choice| {
         let suite = suite::load(&hil, choice, PlantName::Reference).expect("a folder of tests");
@@ -44,8 +44,9 @@ fn every_shipped_test_can_be_read_and_designed() {
     assert!(all > short && short > 10, "{all} tests, {short} of them short");
 }
 
+/// The run without a file must contain no test that its board would reject.
 #[test]
-fn the_run_without_a_file_has_tests_of_both_roles_and_none_that_its_board_would_refuse() {
+fn default_run_has_tests_of_both_roles() {
     let hil = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../hil");
     for (role, plant) in [(Role::Loop, PlantName::Core), (Role::Observer, PlantName::Reference)] {
         let suite = suite::load(&hil, Choice::OnBoard(role), plant).expect("a folder of tests");
@@ -58,10 +59,10 @@ fn the_run_without_a_file_has_tests_of_both_roles_and_none_that_its_board_would_
 }
 
 #[test]
-fn the_same_seed_gives_the_same_bits_and_another_seed_others() {
+fn digest_depends_on_seed_only() {
     let digests = |seed: &str, plant: &str| {
         let folder = folder();
-        run(folder.path(), "profile = \"T2\"", &["--seed", seed, "--plant", plant]).well();
+        run(folder.path(), "profile = \"T2\"", &["--seed", seed, "--plant", plant]).succeeded();
         let results = results(folder.path());
         let runs = results["tests"][0]["runs"].as_array().expect("runs").clone();
         assert_eq!(runs.len(), 3);
@@ -75,11 +76,11 @@ fn the_same_seed_gives_the_same_bits_and_another_seed_others() {
 }
 
 #[test]
-fn both_plants_move_the_same_joint() {
+fn plants_agree_on_motion() {
     let peak = |plant: &str| {
         let folder = folder();
         let more = "profile = \"T2\"\n[controller]\nmode = \"motor_pid\"\nrivals = []";
-        run(folder.path(), more, &["--plant", plant]).well();
+        run(folder.path(), more, &["--plant", plant]).succeeded();
         let figures = results(folder.path())["tests"][0]["runs"][0]["figures"].clone();
         ["rms_mrad", "peak_mrad", "effort_N_m"].map(|name| figures[name].as_f64().expect("a number"))
     };
@@ -99,16 +100,16 @@ fn false_alarms(name: &str, plant: &str, seed: &str) -> f64 {
     ours["figures"]["false_alarms"].as_f64().expect("a number")
 }
 
-/// Joints around which one or the other encoder was given up before the gap was known: a half-gap of 1 um had been learnt, and was
-/// sure, where it was 35.
+/// Joints on which an encoder was excluded before the gap was known: the estimated half-gap was 1 um, with confidence,
+/// at a true 35 um.
 #[test]
-fn a_sound_encoder_is_kept_while_the_gap_is_not_known() {
+fn sound_encoder_kept_with_unknown_gap() {
     for seed in ["5737", "5829", "4048", "5715", "9583", "2869"] {
         assert_eq!(false_alarms("never-worse.toml", "core", seed), 0.0, "false alarms with seed {seed}");
     }
 }
 
-/// Joints whose output encoder has sub-divisional errors: taken for noise of rests, they blame no encoder.
+/// Joints whose output encoder has sub-divisional errors. Treated as noise at rest, they blame no encoder.
 #[test]
 fn subdivisional_error_blames_no_encoder() {
     for seed in ["603", "612"] {
@@ -116,14 +117,15 @@ fn subdivisional_error_blames_no_encoder() {
     }
 }
 
-/// A torque that has moved the motor once, and then is less than its friction, leaves it within the gap while the link goes on.
+/// After a first motion, a torque below friction leaves the motor within the gap while the link moves on.
 #[test]
-fn a_motor_that_friction_has_stopped_is_not_taken_for_one_that_teeth_hold() {
+fn friction_stop_not_taken_for_contact() {
     assert_eq!(false_alarms("coarse-encoder.toml", "reference", "16"), 0.0);
 }
 
+/// A controller without output must fail, and the report must begin with the failure.
 #[test]
-fn a_controller_that_does_nothing_fails_and_the_report_leads_with_it() {
+fn idle_controller_fails_first_in_report() {
     let folder = folder();
     let more =
         "profile = \"T2\"\n[controller]\nmode = \"off\"\n[assert]\nrms_gain_over_pid = \">= 1\"\nrms_mrad = \"<= 1e9\"";
@@ -155,12 +157,12 @@ fn a_controller_that_does_nothing_fails_and_the_report_leads_with_it() {
         mcap::MessageStream::new(&bytes).expect("MCAP").map(|message| message.expect("whole").channel.topic.clone());
     let topics: Vec<String> = topics.collect();
     let of = |topic: &str| topics.iter().filter(|other| *other == topic).count();
-    // A thousand messages a second of the run, and one of the controller for each of its periods.
+    // A thousand messages a second of the run, and one of the controller for each period.
     assert_eq!([of("/joint/trial"), of("/joint/controller"), topics.len()], [1200, 12_000, 13_200]);
 }
 
 #[test]
-fn bandwidth_is_told_with_its_limit() {
+fn bandwidth_reported_with_limit() {
     let usual = compensation_bandwidth("profile = \"T2\"");
     assert_eq!(usual["asked"], false, "{usual}");
     let asked = compensation_bandwidth("profile = \"T2\"\n[controller]\nbandwidth_rad_per_s = 30");
@@ -170,10 +172,10 @@ fn bandwidth_is_told_with_its_limit() {
     assert!(off.is_null(), "{off}");
 }
 
-/// Record of the bandwidth in the results of a test, which the terminal has as well.
+/// Record of the bandwidth in the results of a test; the terminal must show the same figures.
 fn compensation_bandwidth(more: &str) -> serde_json::Value {
     let folder = folder();
-    let ended = run(folder.path(), more, &[]).well();
+    let ended = run(folder.path(), more, &[]).succeeded();
     let bandwidth = results(folder.path())["tests"][0]["bandwidth"].clone();
     if let Some(limit) = bandwidth["limited_by"].as_str() {
         let [used, widest] =
@@ -186,9 +188,9 @@ fn compensation_bandwidth(more: &str) -> serde_json::Value {
 }
 
 #[test]
-fn a_motor_that_is_held_is_called_locked_and_runs_once() {
+fn held_motor_called_locked() {
     let folder = folder();
-    let ended = run(folder.path(), "profile = \"hysteresis\"", &[]).well();
+    let ended = run(folder.path(), "profile = \"hysteresis\"", &[]).succeeded();
     assert!(ended.out.contains("hysteresis of joint Q1, locked"), "{ended:?}");
     let test = &results(folder.path())["tests"][0];
     assert_eq!(test["controller"], "locked");
@@ -198,7 +200,7 @@ fn a_motor_that_is_held_is_called_locked_and_runs_once() {
 }
 
 #[test]
-fn what_failed_runs_again_as_it_was() {
+fn replay_command_repeats_failure() {
     let head =
         "profile = \"T2\"\nseeds = 3\n[controller]\nrivals = []\n[plant]\nhalf_backlash_um = [40, 80]\n[assert]\n";
     for (bound, with_one_seed) in [("\"<= 0\"", true), ("{ mean = \"<= 0\" }", false)] {
@@ -218,8 +220,9 @@ fn what_failed_runs_again_as_it_was() {
     }
 }
 
+/// Unreadable test files must not prevent the other tests.
 #[test]
-fn what_cannot_run_in_a_folder_is_named_and_the_rest_runs() {
+fn bad_tests_in_folder_named_rest_runs() {
     let folder = folder();
     let tests = folder.path().join("tests");
     fs::create_dir(&tests).expect("a folder");
@@ -267,7 +270,7 @@ fn what_cannot_run_in_a_folder_is_named_and_the_rest_runs() {
 }
 
 #[test]
-fn a_failure_counts_more_than_what_was_not_run() {
+fn failure_outranks_not_run() {
     let folder = folder();
     let tests = folder.path().join("tests");
     fs::create_dir(&tests).expect("a folder");
@@ -280,7 +283,7 @@ fn a_failure_counts_more_than_what_was_not_run() {
 }
 
 #[test]
-fn a_test_whose_time_is_up_fails() {
+fn timed_out_test_fails() {
     let folder = folder();
     let more = "timeout_s = 0.1\nprofile = \"T2\"\n[plant]\nhalf_backlash_um = 41";
     let file = test_file(folder.path(), more);
@@ -292,9 +295,9 @@ fn a_test_whose_time_is_up_fails() {
 }
 
 #[test]
-fn what_is_wrong_with_a_test_file_is_named_with_the_mend() {
+fn test_file_errors_name_remedy() {
     let refused = |more: &str, words: &[&str]| run(folder().path(), more, &[]).refused(words);
-    refused("profile = \"T3\"", &["\"T3\" is no kind", "did you mean"]);
+    refused("profile = \"T3\"", &["\"T3\" is not a valid kind", "did you mean"]);
     refused("profil = \"T2\"", &["unknown key `profil`", "did you mean `profile`?", "`profile` is missing"]);
     refused("half_backlash_um = 60\nprofile = \"T2\"", &["[known] or in [plant]"]);
     refused("profile = \"T2\"\n[plant]\nhalf_backlsh_um = 60", &["did you mean `half_backlash_um`?"]);
@@ -305,9 +308,9 @@ fn what_is_wrong_with_a_test_file_is_named_with_the_mend() {
         "profile = \"T2\"\n[assert]\nrms_gain_over_pdi = \">= 8\"",
         &["`pdi` does not run in this test", "motor_pid"],
     );
-    refused("profile = \"T2\"\n[assert]\nrms_mrad = \"8\"", &["this is no bound"]);
+    refused("profile = \"T2\"\n[assert]\nrms_mrad = \"8\"", &["not a bound"]);
     refused("profile = \"T2\"\n[assert]\ndeviation_rms_mrad = \"<= 8\"", &["is for impedances"]);
-    refused("profile = \"T2\"\n[[fault]]\nkind = \"encoder_frozen\"\nshare = 0.1", &["`share` means nothing"]);
+    refused("profile = \"T2\"\n[[fault]]\nkind = \"encoder_frozen\"\nshare = 0.1", &["`share` has no effect"]);
     refused("profile = \"T2\"\n[[fault]]\nkind = \"lost_frames\"\nstart_s = 2", &["`share` is missing"]);
     refused("joint = \"q2\"\nprofile = \"T2\"", &["q2", "presets"]);
     refused("profile = \"T2\"\n[controller]\nrivals = [\"motor_side\"]", &["motor_side cannot run beside this"]);
@@ -329,21 +332,21 @@ fn what_is_wrong_with_a_test_file_is_named_with_the_mend() {
         "profile = \"T2\"\n[[fault]]\nkind = \"torque_bias\"\ntorque_N_m = nan",
         &["`torque_N_m` must be a number"],
     );
-    refused("profile = \"T2\"\n[controller]\nmode = \"motor_pid\"\nfrom_memory = true", &["motor_pid learns nothing"]);
+    refused("profile = \"T2\"\n[controller]\nmode = \"motor_pid\"\nfrom_memory = true", &["motor_pid does not learn"]);
     let late = "profile = \"T2\"\n[[fault]]\nkind = \"encoder_frozen\"\nstart_s = 1.2";
     refused(late, &["this begins when the run is over, at 1.2 s", "duration_s"]);
     refused("profile = \"T2\"\nseeds = [3, 4, 3]", &["3 is named twice"]);
     refused("profile = \"T2\"\n[controller]\nrivals = [\"motor_pid\", \"motor_pid\"]", &["motor_pid is named twice"]);
     refused("profile = \"T2\"\n[plant]\nhalf_backlash_um = \"60\"", &["\"60\" is a text", "without quotes"]);
-    refused("profile = \"T2\"\n[assert]\nrms_mrad = {}", &["nothing is asked of `rms_mrad`"]);
+    refused("profile = \"T2\"\n[assert]\nrms_mrad = {}", &["`rms_mrad` has no bound"]);
     let saturated = "profile = \"T2\"\n[[fault]]\nkind = \"torque_saturation\"\ntorque_N_m = -1";
-    refused(saturated, &["a limit of -1 N m is none"]);
+    refused(saturated, &["the torque limit of -1 N m is negative"]);
     refused("profile = \"T2\"\ntitle = \"once more\"", &["duplicate key", "leave one of the two out"]);
     for seed in ["-1", "1.5", "18446744073709551616"] {
         run(folder().path(), "profile = \"T2\"", &["--seed", seed]).refused(&["a seed is a whole number from 0 to"]);
     }
-    run(folder().path(), "profile = \"T2\"", &["--seed", "9-8"]).refused(&["no seed is from 9 to 8"]);
-    run(folder().path(), "profile = \"T2\"", &["--seed", "1-10001"]).refused(&["10000 seeds are the most"]);
+    run(folder().path(), "profile = \"T2\"", &["--seed", "9-8"]).refused(&["the range of seeds 9-8 is empty"]);
+    run(folder().path(), "profile = \"T2\"", &["--seed", "1-10001"]).refused(&["at most 10000 seeds are possible"]);
     for bound in ["{ all_but_percent = 5 }", "{ bound = \"<= 1\", all_but_percent = 100 }"] {
         let wanted = ["takes a bound and a part of the seeds in percent", "all_but_percent = 0.5"];
         refused(&format!("profile = \"T2\"\n[assert]\nrms_mrad = {bound}"), &wanted);
@@ -351,7 +354,7 @@ fn what_is_wrong_with_a_test_file_is_named_with_the_mend() {
 }
 
 #[test]
-fn arguments_of_joints_and_of_tests_are_not_mixed_up() {
+fn joint_and_test_arguments_not_mixed() {
     let folder = folder();
     let file = test_file(folder.path(), "profile = \"T2\"");
     joint(&["hil", text(&file), "--host", "--role", "loop"]).refused(&["--host", "--role"]);
@@ -384,23 +387,24 @@ fn arguments_of_joints_and_of_tests_are_not_mixed_up() {
 }
 
 #[test]
-fn a_recorded_motion_and_any_preset_can_be_tested() {
+fn recorded_motion_runs_on_presets() {
     let folder = folder();
     let rows: String =
         (0..=150).map(|k| format!("{},{}\n", 0.01 * f64::from(k), 0.1 * (0.05 * f64::from(k)).sin())).collect();
     fs::write(folder.path().join("motion.csv"), format!("time_s,position_rad\n{rows}")).expect("a file");
     for preset in ["s1", "l1", "d2"] {
         let more = format!("joint = \"{preset}\"\nprofile = {{ kind = \"csv\", file = \"motion.csv\" }}");
-        run(folder.path(), &more, &["--plant", "reference"]).well();
+        run(folder.path(), &more, &["--plant", "reference"]).succeeded();
     }
 }
 
+/// The memory must not change the rivals' runs.
 #[test]
-fn a_run_from_memory_knows_the_width_at_once_and_its_rivals_are_the_same() {
+fn run_from_memory_knows_width_at_once() {
     let of = |from_memory: bool| {
         let folder = folder();
         let more = format!("profile = \"T2\"\n[controller]\nfrom_memory = {from_memory}");
-        run(folder.path(), &more, &["--seed", "4"]).well();
+        run(folder.path(), &more, &["--seed", "4"]).succeeded();
         let runs = results(folder.path())["tests"][0]["runs"].clone();
         let figure = |name: &str| runs[0]["figures"][name].as_f64().expect("a figure");
         (figure("width_right_after_s"), runs[1]["digest"].clone())
@@ -411,28 +415,28 @@ fn a_run_from_memory_knows_the_width_at_once_and_its_rivals_are_the_same() {
 }
 
 #[test]
-fn the_example_of_the_documentation_passes() {
+fn documented_example_passes() {
     let document = include_str!("../../../docs/reference/hil-file.md");
     let (_, rest) = document.split_once("```toml\n").expect("an example");
     let (example, _) = rest.split_once("```").expect("its end");
     let folder = folder();
     let file = folder.path().join("example.toml");
     fs::write(&file, example).expect("a file");
-    joint(&["hil", text(&file), "--host", "--plant", "reference", "--out", text(folder.path())]).well();
+    joint(&["hil", text(&file), "--host", "--plant", "reference", "--out", text(folder.path())]).succeeded();
 }
 
 #[test]
-fn the_tutorial_prints_what_it_says() {
+fn tutorial_matches_output() {
     tutorial::follow_page("tutorial.md", tutorial::Tier::Host);
 }
 
 #[test]
-fn quick_start_prints_what_it_says() {
+fn quick_start_matches_output() {
     tutorial::follow_page("quick-start.md", tutorial::Tier::Host);
 }
 
 #[test]
-fn a_page_that_says_a_wrong_figure_is_refused_by_its_line_and_can_be_mended() {
+fn wrong_page_line_is_located_and_updated() {
     let right = "`a/b.toml`:\n\n```toml\nmass_kg = 3\nlength_m = 1\n```\n\n```console\n$ cat a/b.toml; echo took 7 s\n...\nlength_m = 1\n\
                  took [...] s\n$ false\n$ echo $?\n1\n```\n";
     let followed = |page: &str| tutorial::follow(page, tutorial::Tier::Host);

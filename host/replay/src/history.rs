@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use model_core::observer::{MAPPED, Observer};
-use scenario::estimate_fields::{self, NOTICES, WORDS, fields, notices};
+use scenario::estimate_fields::{self, NOTICES_FIELD, WORD_FIELDS, fields, notices};
 
 use crate::samples::ReplaySamples;
 use report::log::{Channel, Message, field};
@@ -21,8 +21,11 @@ pub fn write_csv(
     mut observer: Observer<'_, f32, MAPPED>,
     every: usize,
 ) -> io::Result<()> {
-    let names: Vec<&str> =
-        fields().map(|field| field.name).chain(WORDS.iter().map(|word| word.name)).chain([NOTICES.0]).collect();
+    let names: Vec<&str> = fields()
+        .map(|field| field.name)
+        .chain(WORD_FIELDS.iter().map(|word| word.name))
+        .chain([NOTICES_FIELD.0])
+        .collect();
     writeln!(out, "time_s,motor_torque_Nm,{}", names.join(","))?;
     for index in 0..samples.len() {
         let estimates = observer.step(&samples.at(index));
@@ -31,10 +34,10 @@ pub fn write_csv(
         }
         write!(out, "{:?},{:?}", samples.time[index], samples.torque[index])?;
         for field in fields() {
-            let value = field.of(estimates);
+            let value = field.value(estimates);
             if field.is_flag() { write!(out, ",{value}")? } else { write!(out, ",{value:?}")? }
         }
-        for word in WORDS {
+        for word in WORD_FIELDS {
             write!(out, ",{}", (word.word)(estimates))?;
         }
         writeln!(out, ",{}", notices(estimates).join(" "))?;

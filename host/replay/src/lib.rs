@@ -73,7 +73,7 @@ pub fn run(arguments: &ReplayArguments, progress: &Progress) -> Outcome<String> 
     progress.stage("reading");
     let file = LogFile::open(path)?;
     let remarks = file.remarks();
-    let origin = ObserverOrigin::of(&remarks).filter(|_| arguments.repeats_run());
+    let origin = ObserverOrigin::from_remarks(&remarks).filter(|_| arguments.repeats_run());
     let loaded = load(arguments, origin.as_ref(), remarks.get(samples::RUN_REMARK))?;
     let settings = settings(&loaded, origin.as_ref(), arguments.motor_only);
     let tables = design(&loaded, &settings)?;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use model_core::observer::{Estimate, Estimates, Source};
-use scenario::estimate_fields::{WORDS, notices};
+use scenario::estimate_fields::{WORD_FIELDS, notices};
 use serde::Serialize;
 
 use crate::samples::ReplaySamples;
@@ -127,7 +127,7 @@ impl<'s> Pass<'s> {
 }
 
 fn word(name: &str, of: &Estimates<f32>) -> &'static str {
-    WORDS.iter().find(|field| field.name == name).map_or("", |field| (field.word)(of))
+    WORD_FIELDS.iter().find(|field| field.name == name).map_or("", |field| (field.word)(of))
 }
 
 fn interval(of: Estimate<f32>) -> Interval {

@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 
 use model_core::observer::Estimates;
-use scenario::controller_log::{DIGEST, PERIOD, TOPIC};
-use scenario::estimate_fields::{digest_of, fields};
+use scenario::controller_log::{ESTIMATES_DIGEST, PERIOD, TOPIC};
+use scenario::estimate_fields::{estimates_digest, fields};
 use scenario::log_file;
 
 use crate::record::{Difference, Repeats, ValueDifference};
@@ -43,7 +43,7 @@ impl Recorded {
         }
         let values = file.topic(log_file::TOPIC)?;
         let rows = whole(&values, PERIOD)?.into_iter().zip(0..).collect();
-        Ok(Self { digests: whole(&controller, DIGEST)?, time: controller.time()?, rows, values })
+        Ok(Self { digests: whole(&controller, ESTIMATES_DIGEST)?, time: controller.time()?, rows, values })
     }
 
     /// Begins a comparison.
@@ -56,7 +56,7 @@ impl Recorded {
         let row = *self.rows.get(&u32::try_from(period).ok()?)?;
         let of = |field: scenario::estimate_fields::EstimateField| {
             let recorded = *self.values.column(&field.name.to_ascii_lowercase())?.get(row)?;
-            let replayed = field.of(estimates);
+            let replayed = field.value(estimates);
             let name = field.name.to_owned();
             (recorded.to_bits() != replayed.to_bits()).then_some(ValueDifference { name, recorded, replayed })
         };
@@ -78,7 +78,7 @@ impl Agreement<'_> {
     /// Compares the estimates of a period.
     pub fn compare(&mut self, period: usize, estimates: &Estimates<f32>) {
         self.periods += 1;
-        let differs = self.recorded.digests.get(period) != Some(&digest_of(estimates));
+        let differs = self.recorded.digests.get(period) != Some(&estimates_digest(estimates));
         if differs {
             self.differing += 1;
             self.first = self.first.or(Some(period));

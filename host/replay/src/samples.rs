@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use model_core::observer::design::{EncoderSettings, ObserverSettings};
 use model_core::observer::{Reading, Samples};
-use scenario::controller_log::{OUTPUT_READ, SAMPLES, SHOWN_TORQUE};
+use scenario::controller_log::{OBSERVER_TORQUE, OUTPUT_READ, SAMPLE_FIELDS};
 
 use board::profile::MAX_TORQUE;
 use joint_file::named::Loaded;
@@ -54,7 +54,7 @@ impl ReplaySamples {
         let motor_only = settings.output_encoder.is_none();
         let accepts = |columns: &Columns| columns.has_required_of([true, !motor_only]);
         let mut columns = file.columns(topic, map, loaded.file.parameters.geometry.ratio_by_teeth(), accepts)?;
-        let read = if columns.names().any(|name| name == SAMPLES[0]) {
+        let read = if columns.names().any(|name| name == SAMPLE_FIELDS[0]) {
             Self::from_run(&columns, period)
         } else if let Some(controller) = file.remarks().get(RUN_REMARK) {
             Err(missing_samples(controller))
@@ -76,10 +76,10 @@ impl ReplaySamples {
             }
             Ok(values.into_iter().map(|value| value as u32).collect())
         };
-        let [now, motor, motor_at, output, output_at] = SAMPLES.map(whole);
+        let [now, motor, motor_at, output, output_at] = SAMPLE_FIELDS.map(whole);
         let (now, motor, motor_at, output, output_at) = (now?, motor?, motor_at?, output?, output_at?);
         let (_, fresh) = columns.named(&[OUTPUT_READ])?;
-        let (_, shown) = columns.named(&[&SHOWN_TORQUE.to_ascii_lowercase()])?;
+        let (_, shown) = columns.named(&[&OBSERVER_TORQUE.to_ascii_lowercase()])?;
         let (_, torque) = columns.named(&["motor_torque_N_m"])?;
         let sample = |row: usize| Samples {
             time: now[row],

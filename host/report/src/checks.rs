@@ -4,27 +4,27 @@ use serde::{Deserialize, Serialize};
 
 use crate::failure::{Failure, Outcome};
 
-/// One line of the table of checks.
+/// One row of the table of checks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Check {
-    /// What was checked, as a sentence or noun phrase.
+    /// Subject of the check, as a sentence or noun phrase.
     pub name: String,
-    /// The figure; absent if it could not be had.
+    /// Value of the figure; absent if not available.
     pub figure: Option<f64>,
-    /// Unit of figure and bound, empty for counts.
+    /// Unit of figure and bound; empty for counts.
     pub unit: String,
-    /// What the figure must keep to.
+    /// Bound of the figure.
     pub bound: Bound,
-    /// What came of it.
+    /// Verdict of the check.
     pub verdict: Verdict,
-    /// Where the figure comes from.
+    /// Source of the figure.
     pub source: Source,
-    /// What it rests on, or what to do about a failure; may be empty.
+    /// Basis of the figure, or remedy for a failure; may be empty.
     pub note: String,
 }
 
-/// What a figure must keep to.
+/// Bound of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
@@ -35,11 +35,11 @@ pub enum Bound {
     AtLeast(f64),
     /// figure = bound
     Exactly(f64),
-    /// Reported only: never fails.
+    /// No bound: the figure is only reported.
     None,
 }
 
-/// What came of a check.
+/// Verdict of a check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
@@ -48,27 +48,27 @@ pub enum Verdict {
     Passed,
     /// Outside its bound, or not a number.
     Failed,
-    /// It did not apply, or the run ended before it could be made; the note says why.
+    /// Not applicable, or the run ended too early; the note gives the reason.
     NotRun,
     /// A figure without a bound.
     Reported,
 }
 
-/// Where a figure comes from.
+/// Source of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Source {
-    /// Measured by the board; marked EMULATED when the board was.
+    /// Measured by the board; marked EMULATED for the emulated board.
     Board,
-    /// Read off the image.
+    /// Read from the image.
     Image,
     /// Computed on the host.
     Host,
 }
 
 impl Bound {
-    /// Whether a figure keeps to the bound; a NaN keeps to none.
+    /// Returns true if a figure keeps the bound; a NaN keeps no bound.
     pub fn holds(self, figure: f64) -> bool {
         match self {
             Self::AtMost(bound) => figure <= bound,
@@ -78,8 +78,8 @@ impl Bound {
         }
     }
 
-    /// Its sign and what stands behind it; nothing if there is no bound.
-    pub fn in_signs(self) -> Option<(&'static str, f64)> {
+    /// Sign and value of the bound, if there is one.
+    pub fn sign_and_value(self) -> Option<(&'static str, f64)> {
         match self {
             Self::AtMost(bound) => Some(("≤", bound)),
             Self::AtLeast(bound) => Some(("≥", bound)),
@@ -90,8 +90,8 @@ impl Bound {
 }
 
 impl Check {
-    /// A check whose verdict follows from figure and bound.
-    pub fn judge(name: impl Into<String>, figure: f64, unit: impl Into<String>, bound: Bound, source: Source) -> Self {
+    /// Check whose verdict follows from figure and bound.
+    pub fn new(name: impl Into<String>, figure: f64, unit: impl Into<String>, bound: Bound, source: Source) -> Self {
         let verdict = match bound {
             Bound::None => Verdict::Reported,
             _ if bound.holds(figure) => Verdict::Passed,
@@ -101,20 +101,20 @@ impl Check {
         Self { name, figure: Some(figure), unit, bound, verdict, source, note: String::new() }
     }
 
-    /// A check that could not be made, and why.
+    /// Check that could not be made, with the reason.
     pub fn not_run(name: impl Into<String>, unit: impl Into<String>, bound: Bound, why: impl Into<String>) -> Self {
         let (name, unit, note) = (name.into(), unit.into(), why.into());
         Self { name, figure: None, unit, bound, verdict: Verdict::NotRun, source: Source::Host, note }
     }
 
-    /// The same check with a remark.
+    /// Adds a note to the check.
     pub fn note(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
         self
     }
 }
 
-/// Succeeds only if no check has failed; names those that have.
+/// Fails if any check failed, and names the failed checks.
 pub fn all_hold(checks: &[Check], help: &str) -> Outcome<()> {
     let failed = checks.iter().filter(|check| check.verdict == Verdict::Failed);
     let failed: Vec<&str> = failed.map(|check| check.name.as_str()).collect();
@@ -130,22 +130,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_figure_that_is_not_a_number_fails_every_bound() {
+    fn nan_fails_every_bound() {
         for bound in [Bound::AtMost(1.0), Bound::AtLeast(1.0), Bound::Exactly(1.0)] {
-            assert_eq!(Check::judge("error", f64::NAN, "%", bound, Source::Host).verdict, Verdict::Failed);
+            assert_eq!(Check::new("error", f64::NAN, "%", bound, Source::Host).verdict, Verdict::Failed);
         }
     }
 
     #[test]
-    fn the_bound_itself_is_still_within() {
-        assert_eq!(Check::judge("overruns", 0.0, "", Bound::Exactly(0.0), Source::Board).verdict, Verdict::Passed);
-        assert_eq!(Check::judge("error", 1.0, "%", Bound::AtMost(1.0), Source::Host).verdict, Verdict::Passed);
-        assert_eq!(Check::judge("steps", 1e5, "", Bound::AtLeast(1e5), Source::Host).verdict, Verdict::Passed);
-        assert_eq!(Check::judge("error", 1.01, "%", Bound::AtMost(1.0), Source::Host).verdict, Verdict::Failed);
+    fn bound_itself_passes() {
+        assert_eq!(Check::new("overruns", 0.0, "", Bound::Exactly(0.0), Source::Board).verdict, Verdict::Passed);
+        assert_eq!(Check::new("error", 1.0, "%", Bound::AtMost(1.0), Source::Host).verdict, Verdict::Passed);
+        assert_eq!(Check::new("steps", 1e5, "", Bound::AtLeast(1e5), Source::Host).verdict, Verdict::Passed);
+        assert_eq!(Check::new("error", 1.01, "%", Bound::AtMost(1.0), Source::Host).verdict, Verdict::Failed);
     }
 
     #[test]
-    fn a_figure_without_a_bound_is_only_reported() {
-        assert_eq!(Check::judge("idle", 40.0, "%", Bound::None, Source::Board).verdict, Verdict::Reported);
+    fn unbounded_figure_is_reported() {
+        assert_eq!(Check::new("idle", 40.0, "%", Bound::None, Source::Board).verdict, Verdict::Reported);
     }
 }

@@ -9,10 +9,10 @@ use clap::{ArgMatches, Command};
 
 use crate::escape::{escaped, is_plain};
 use crate::failure::{EXIT_BAD_INPUT, Outcome};
-use crate::interruption::InOrder;
+use crate::interruption::UninterruptedWork;
 use crate::output;
 
-/// Reads the command line by `command`, runs it and turns the outcome into an exit code; a failure is shown.
+/// Parses the command line by `command`, runs the program and turns the outcome into an exit code; prints a failure.
 pub fn main<T>(
     command: Command,
     read: impl Fn(&ArgMatches) -> Result<T, clap::Error>,
@@ -27,7 +27,7 @@ pub fn main<T>(
         }
     };
     let outcome = run(&asked);
-    let _in_order = InOrder::begin();
+    let _uninterrupted = UninterruptedWork::begin();
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
@@ -37,8 +37,8 @@ pub fn main<T>(
     }
 }
 
-/// Shows what clap makes of a command line. It styles its own words around arguments that it shows as they are: of arguments
-/// that a terminal would obey, the same error is had with escaped ones. A reader that has gone away is no further error.
+/// Prints a clap error. clap styles its own words but prints arguments verbatim: for arguments with control characters,
+/// the error is created again from escaped arguments. A closed pipe is ignored.
 fn show<T>(error: &clap::Error, command: &mut Command, read: impl Fn(&ArgMatches) -> Result<T, clap::Error>) {
     let arguments: Vec<String> = env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
     let all_plain = arguments.iter().all(|word| is_plain(word));
@@ -53,12 +53,12 @@ fn show<T>(error: &clap::Error, command: &mut Command, read: impl Fn(&ArgMatches
     if has_plain_arguments && is_plain_error {
         let _ = error.print();
     } else {
-        // Without styles, of which none can be told from those of a file.
+        // Without styles, which could not be distinguished from those in a file.
         output::remark(error.render().to_string().trim_end());
     }
 }
 
-/// As a shell takes it for one word.
+/// Quotes a word for a shell.
 pub fn quoted(word: &str) -> String {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./=:,+@%".contains(letter);
     if !word.is_empty() && word.chars().all(plain) {
@@ -68,7 +68,7 @@ pub fn quoted(word: &str) -> String {
     }
 }
 
-/// Has every option take a number below zero as its value: the option's own check then explains why it is refused.
+/// Lets every option take a negative number as its value, so that the option's own check explains the error.
 fn with_negative_numbers(command: Command) -> Command {
     let names: Vec<String> = command.get_subcommands().map(|command| command.get_name().to_owned()).collect();
     let command = names.into_iter().fold(command, |command, name| command.mut_subcommand(name, with_negative_numbers));

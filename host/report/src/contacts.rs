@@ -1,5 +1,5 @@
-//! Contact states over time as rows of coloured strips, one row a mesh. A strip that stands for many samples shows the
-//! share of each state by height.
+//! Contact states over time as rows of coloured strips, one row for each mesh. A strip that covers many samples shows
+//! the share of each state by height.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,25 +8,25 @@ use crate::plot::mark::Mark;
 use crate::plot::panel::{Panel, VerticalAxis};
 use crate::plot::unit::Unit;
 
-/// Which flank of a mesh carries.
+/// Contact state of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(into = "u8", try_from = "u8")]
 pub enum Contact {
-    /// Neither: 0.
+    /// No flank in contact: 0.
     Separated = 0,
-    /// The flank that drives forwards: 1.
+    /// Drive-side flank in contact: 1.
     DriveSide = 1,
-    /// The other one: 2.
+    /// Back-side flank in contact: 2.
     BackSide = 2,
 }
 
-/// Strips over the whole width: more cannot be told apart.
-const COLUMNS: usize = 400;
-/// Shares are shown in so many steps, so that equal neighbours can be one strip.
-const STEPS: f64 = 10.0;
-/// Part of a row's height that is coloured.
-const FILLED: f64 = 0.78;
+/// Largest number of strips across the picture; more could not be distinguished.
+const MAX_STRIPS: usize = 400;
+/// Resolution of the shown shares, so that equal neighbours can be merged.
+const SHARE_STEPS: f64 = 10.0;
+/// Coloured share of a row's height [-].
+const ROW_FILL: f64 = 0.78;
 
 /// States from the bottom of a strip upwards.
 const STATES: [(Contact, Ink, &str); 3] = [
@@ -36,7 +36,7 @@ const STATES: [(Contact, Ink, &str); 3] = [
 ];
 
 impl Contact {
-    /// The word for it in logs and tables.
+    /// Word in logs and tables.
     pub fn word(self) -> &'static str {
         match self {
             Self::Separated => "separated",
@@ -45,7 +45,7 @@ impl Contact {
         }
     }
 
-    /// State of a mesh in the two-bit form of the line.
+    /// State of a mesh in the two-bit form of the line protocol.
     pub fn from_bits(bits: u32, mesh: usize) -> Self {
         Self::try_from((bits >> (2 * mesh) & 3) as u8).unwrap_or(Self::Separated)
     }
@@ -70,16 +70,16 @@ impl TryFrom<u8> for Contact {
     }
 }
 
-/// A panel of contact strips for the samples within a range of time [s]; `contact` has a column for each mesh.
+/// Panel of contact strips for the samples within a range of time [s]; `contact` has a column for each mesh.
 pub fn panel(times: &[f64], contact: &[Vec<Contact>], range: (f64, f64)) -> Panel {
     let rows = contact.len();
     let mut boxes = STATES.map(|_| Vec::new());
     for (mesh, states) in contact.iter().enumerate() {
-        let bottom = (rows - 1 - mesh) as f64 + 0.5 * (1.0 - FILLED);
+        let bottom = (rows - 1 - mesh) as f64 + 0.5 * (1.0 - ROW_FILL);
         for (from, to, shares) in strips(times, states, range) {
             let mut level = bottom;
             for (share, boxes) in shares.iter().zip(&mut boxes) {
-                let height = share * FILLED;
+                let height = share * ROW_FILL;
                 if height > 0.0 {
                     boxes.push([from, to, level, level + height]);
                 }
@@ -98,13 +98,13 @@ pub fn panel(times: &[f64], contact: &[Vec<Contact>], range: (f64, f64)) -> Pane
     }
 }
 
-/// What fields and columns of both families of meshes begin with: sun's and ring's with so many planets, or the halves of an
-/// equivalent gear, which has no teeth.
+/// Prefixes of fields and columns for both mesh families: sun and ring, or the two halves of an equivalent gear, which
+/// has no teeth.
 pub const fn families(planets: usize) -> [&'static str; 2] {
     if planets == 1 { ["motor_half", "link_half"] } else { ["sun_planet", "ring_planet"] }
 }
 
-/// Name of a mesh by its place among all.
+/// Name of a mesh by its index.
 pub fn mesh_name(mesh: usize, meshes: usize) -> String {
     let planets = meshes / 2;
     if planets == 1 {
@@ -114,9 +114,9 @@ pub fn mesh_name(mesh: usize, meshes: usize) -> String {
     if mesh < planets { format!("sun–planet {}", mesh + 1) } else { format!("ring–planet {}", mesh - planets + 1) }
 }
 
-/// From, to and the share of each of [`STATES`]; neighbours that look alike are one strip.
+/// Start, end and the share of each of [`STATES`]; equal neighbours are merged.
 fn strips(times: &[f64], states: &[Contact], range: (f64, f64)) -> Vec<(f64, f64, [f64; 3])> {
-    let width = (range.1 - range.0) / COLUMNS as f64;
+    let width = (range.1 - range.0) / MAX_STRIPS as f64;
     let inside: Vec<(f64, Contact)> = times
         .iter()
         .copied()
@@ -130,8 +130,8 @@ fn strips(times: &[f64], states: &[Contact], range: (f64, f64)) -> Vec<(f64, f64
         let to = group[group.len() - 1].0;
         let share =
             |state: Contact| group.iter().filter(|sample| sample.1 == state).count() as f64 / group.len() as f64;
-        let drive = (STEPS * share(Contact::DriveSide)).round() / STEPS;
-        let back = (STEPS * share(Contact::BackSide)).round() / STEPS;
+        let drive = (SHARE_STEPS * share(Contact::DriveSide)).round() / SHARE_STEPS;
+        let back = (SHARE_STEPS * share(Contact::BackSide)).round() / SHARE_STEPS;
         let shares = [drive, (1.0 - drive - back).max(0.0), back.min(1.0 - drive)];
         match strips.last_mut() {
             Some(last) if last.2 == shares => last.1 = to,
@@ -147,7 +147,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn equal_neighbours_are_one_strip() {
+    fn equal_neighbours_merge_into_one_strip() {
         let times: Vec<f64> = (0..1000).map(f64::from).collect();
         let states: Vec<Contact> =
             (0..1000).map(|i| if i < 500 { Contact::DriveSide } else { Contact::BackSide }).collect();
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn a_strip_of_many_samples_shows_shares() {
+    fn strip_of_many_samples_shows_shares() {
         let times: Vec<f64> = (0..4000).map(f64::from).collect();
         let states: Vec<Contact> =
             (0..4000).map(|i| if i % 2 == 0 { Contact::Separated } else { Contact::DriveSide }).collect();
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn meshes_are_counted_from_one() {
+    fn mesh_numbers_start_at_one() {
         assert_eq!(mesh_name(0, 6), "sun–planet 1");
         assert_eq!(mesh_name(5, 6), "ring–planet 3");
     }

@@ -1,28 +1,28 @@
-//! Text from files and arguments as it may be shown: characters that command a terminal, or that reorder what is read, are
-//! replaced by their code, `\u{1b}` for ESC. Colours of this program are added after that.
+//! Escapes text from files and arguments: characters that control a terminal or reorder text are replaced by their
+//! code, `\u{1b}` for ESC. Colours of this program are added afterwards.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
-/// Returns the text with every control character and every character of writing direction replaced by its code. Line ends
-/// and tabs stay.
+/// Returns the text with every control character and every directional character replaced by its code. Line ends and
+/// tabs stay.
 pub fn escaped(text: &str) -> Cow<'_, str> {
     replaced(text, |code| format!("\\u{{{code:x}}}"))
 }
 
-/// Returns JSON of the same meaning without these characters: beyond ASCII, JSON has letters in its strings only.
+/// Returns equivalent JSON without such characters; outside its strings JSON has only ASCII.
 pub fn escaped_json(text: &str) -> Cow<'_, str> {
     replaced(text, |code| format!("\\u{code:04x}"))
 }
 
-/// Returns whether [`escaped`] leaves a text as it is.
+/// Returns true if [`escaped`] leaves a text unchanged.
 pub fn is_plain(text: &str) -> bool {
     matches!(escaped(text), Cow::Borrowed(_))
 }
 
-/// Returns the place in the escaped text [bytes] of a place in the text itself.
+/// Returns the position in the escaped text [bytes] of a position in the original text.
 pub fn place_in_escaped(text: &str, place: usize) -> usize {
-    // Rather too far in front than amidst a letter.
+    // A position within a character moves to its start.
     let whole = (0..=place.min(text.len())).rev().find(|end| text.is_char_boundary(*end)).unwrap_or(0);
     let split_line_end = usize::from(text[..whole].ends_with('\r') && text[whole..].starts_with('\n'));
     escaped(&text[..whole - split_line_end]).len() + split_line_end
@@ -48,8 +48,8 @@ fn replaced(text: &str, code: impl Fn(u32) -> String) -> Cow<'_, str> {
     if changed { Cow::Owned(shown) } else { Cow::Borrowed(text) }
 }
 
-/// Control characters (C0, DEL, C1), separators that some programs take for a line's end, and the marks, embeddings,
-/// overrides and isolates of Unicode's bidirectional algorithm (UAX #9).
+/// Returns true for control characters (C0, DEL, C1), separators that some programs take for line ends, and the marks,
+/// embeddings, overrides and isolates of Unicode's bidirectional algorithm (UAX #9).
 fn is_dangerous(letter: char) -> bool {
     letter.is_control() && letter != '\n' && letter != '\t'
         || matches!(letter, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn controls_and_directions_are_shown_by_their_code() {
+    fn control_characters_are_escaped() {
         for (text, shown) in [
             ("\u{1b}[31mred", "\\u{1b}[31mred"),
             ("a\rb\u{7f}\u{8}\u{0}", "a\\u{d}b\\u{7f}\\u{8}\\u{0}"),
@@ -73,14 +73,14 @@ mod tests {
     }
 
     #[test]
-    fn letters_line_ends_and_tabs_stay() {
+    fn letters_newlines_and_tabs_stay() {
         let text = "Getriebe für µm\tΔθ\r\n中文 🙂 é\n";
         assert!(is_plain(text));
         assert_eq!(escaped(text), text);
     }
 
     #[test]
-    fn places_follow_their_letters() {
+    fn positions_follow_escaped_letters() {
         let text = "a\u{9b}\u{1b}b\r\nc\u{202e}d";
         let shown = escaped(text);
         for (place, letter) in text.char_indices() {
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn json_keeps_its_meaning() {
+    fn escaped_json_keeps_its_value() {
         let value = serde_json::json!({ "title": "\u{1b}[31m \u{9b} \u{202e} µ" });
         let text = value.to_string();
         let shown = escaped_json(&text);

@@ -1,5 +1,5 @@
-//! The folder that a command writes its results to, and the files that the user named. Paths that cannot be written are
-//! reported before the work begins.
+//! Output folder of a command, and output files that the user named. Unwritable paths are reported before the work
+//! begins.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -8,19 +8,19 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
-use crate::interruption::InOrder;
+use crate::interruption::UninterruptedWork;
 use crate::own_files::{OwnFiles, Owner, Writers};
-use crate::write::{is_standard_output, record_into, unwritten, write_with};
+use crate::write::{is_standard_output, record_into, write_failure, write_with};
 
-/// Where results go that no other folder is named for, below the folder that the user works in.
-const USUAL: &str = "joint-out";
+/// Default folder of results, below the working folder.
+const RESULTS_FOLDER: &str = "joint-out";
 
-/// The folder of results of a kind, such as those of a command for a joint, unless the user names another.
-pub fn usual(kind: &str, name: &str) -> PathBuf {
-    Path::new(USUAL).join(kind).join(file_part(name))
+/// Default folder of results of a kind, such as those of a command for a joint.
+pub fn default_folder(kind: &str, name: &str) -> PathBuf {
+    Path::new(RESULTS_FOLDER).join(kind).join(file_part(name))
 }
 
-/// Where the files of a run go.
+/// Output folder of a run.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
@@ -29,23 +29,24 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// The folder that a run will write `files` to, of which each may have one `*`. Refuses one in which any of them is not
-    /// what a command has written: it would be lost. Where none is wanted it is [`usual`]. Writes nothing yet.
+    /// Chooses the folder for `files`, each name with at most one `*`; the default is [`default_folder`]. Rejects a folder in
+    /// which one of these files was not written by a command, since it would be lost. Writes nothing.
     pub fn choose(wanted: Option<&Path>, kind: &str, joint: &str, files: &'static [&'static str]) -> Outcome<Self> {
-        let path = wanted.map_or_else(|| usual(kind, joint), Path::to_owned);
+        let path = wanted.map_or_else(|| default_folder(kind, joint), Path::to_owned);
         let folder = Self { own: OwnFiles::read(&path)?, path, files };
         folder.refuse_foreign()?;
         Ok(folder)
     }
 
-    /// The same, made and ready to be written to.
+    /// Chooses the folder, creates it and makes it ready for writing.
     pub fn prepare(wanted: Option<&Path>, kind: &str, joint: &str, files: &'static [&'static str]) -> Outcome<Self> {
         let folder = Self::choose(wanted, kind, joint, files)?;
         folder.make()?;
         Ok(folder)
     }
 
-    /// The same for a run beside others, each with files of its own, that all write one of these at their end.
+    /// Prepares a folder for one of several runs that have files of their own and all write the given files at their
+    /// end.
     pub fn prepare_beside_others(
         path: &Path,
         kind: &str,
@@ -58,58 +59,58 @@ impl Folder {
         Ok(folder)
     }
 
-    /// Makes the folder and tries to write to it. Refuses one that another run is writing to.
+    /// Creates the folder and tests writing. Rejects a folder that another run writes to.
     pub fn make(&self) -> Outcome<()> {
         make(&self.path)?;
         self.own.open(Writers::One)?;
-        // Another run may have ended since this one was chosen.
+        // Another run may have ended since the folder was chosen.
         self.refuse_foreign()
     }
 
-    /// A file in it.
+    /// Path of a file in the folder.
     pub fn file(&self, name: &str) -> PathBuf {
         self.path.join(name)
     }
 
-    /// The folder itself.
+    /// Path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Writes a file, whole or not at all.
+    /// Writes a file, completely or not at all.
     pub fn write_text(&self, name: &str, text: &str) -> Outcome<()> {
         self.write_with(name, |file| file.write_all(text.as_bytes()))
     }
 
-    /// Writes a record as JSON in one line, whole or not at all.
+    /// Writes a record as JSON in one line, completely or not at all.
     pub fn write_record(&self, name: &str, record: &impl Serialize) -> Outcome<()> {
         self.write_with(name, |file| record_into(file, record))
     }
 
-    /// Fills a file, whole or not at all.
+    /// Fills a file, completely or not at all.
     pub fn write_with(&self, name: &str, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Outcome<()> {
         debug_assert!(self.is_announced(name), "{name} was not looked for before the run");
         write_with(&self.file(name), |ready| self.own.claim(name, ready), fill)
     }
 
-    /// Begins a file that grows while a run goes on. It is ours from here on, whole or not.
+    /// Creates a file that grows during a run. It counts as the command's own even if incomplete.
     pub fn grow(&self, name: &str) -> Outcome<File> {
         debug_assert!(self.is_announced(name), "{name} was not looked for before the run");
         let path = self.file(name);
-        self.own.claim_growing(name).and_then(|()| File::create(&path)).map_err(|error| unwritten(&path, &error))
+        self.own.claim_growing(name).and_then(|()| File::create(&path)).map_err(|error| write_failure(&path, &error))
     }
 
-    /// Ends a file that has grown, under a name that it may have had before, and says where it is.
+    /// Renames a file that has finished growing; returns its path.
     pub fn keep(&self, grown: &str, name: &str) -> Outcome<PathBuf> {
         debug_assert!(self.is_announced(name), "{name} was not looked for before the run");
-        let _in_order = InOrder::begin();
+        let _uninterrupted = UninterruptedWork::begin();
         let (from, to) = (self.file(grown), self.file(name));
         let kept = self.own.claim(name, &from).and_then(|()| fs::rename(&from, &to));
-        kept.and_then(|()| self.own.end_growing(grown)).map_err(|error| unwritten(&to, &error))?;
+        kept.and_then(|()| self.own.end_growing(grown)).map_err(|error| write_failure(&to, &error))?;
         Ok(to)
     }
 
-    /// Removes what earlier runs have left of files of this kind, once this run has written its own.
+    /// Removes files of this kind that earlier runs have left, after this run has written its own.
     pub fn clear_older(&self, files: &str) -> Outcome<()> {
         for name in self.present(files)? {
             let ours = self.own.owner(&name) == Owner::Ours;
@@ -117,12 +118,12 @@ impl Folder {
                 continue;
             }
             let path = self.file(&name);
-            fs::remove_file(&path).map_err(|error| unread(&path, &error))?;
+            fs::remove_file(&path).map_err(|error| read_error(&path, &error))?;
         }
         Ok(())
     }
 
-    /// Refuses a folder with a file that would be lost.
+    /// Rejects a folder with a file that would be lost.
     fn refuse_foreign(&self) -> Outcome<()> {
         for files in self.files {
             for name in self.present(files)? {
@@ -139,43 +140,43 @@ impl Folder {
         Ok(())
     }
 
-    /// Names of files of this kind that are there, in their order.
+    /// Sorted names of existing files of this kind.
     fn present(&self, files: &str) -> Outcome<Vec<String>> {
         let inner = Path::new(files).parent().unwrap_or(Path::new(""));
         let folder = self.path.join(inner);
         let entries = match fs::read_dir(&folder) {
-            // What is no folder is told where it is made.
+            // A path that is not a folder is reported when the folder is created.
             Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {
                 return Ok(Vec::new());
             }
-            entries => entries.map_err(|error| unread(&folder, &error))?,
+            entries => entries.map_err(|error| read_error(&folder, &error))?,
         };
         let mut names = Vec::new();
         for entry in entries {
-            let name = inner.join(entry.map_err(|error| unread(&folder, &error))?.file_name());
-            names.extend(name.to_str().filter(|name| is_of(files, name)).map(str::to_owned));
+            let name = inner.join(entry.map_err(|error| read_error(&folder, &error))?.file_name());
+            names.extend(name.to_str().filter(|name| matches_pattern(files, name)).map(str::to_owned));
         }
         names.sort();
         Ok(names)
     }
 
     fn is_announced(&self, name: &str) -> bool {
-        self.files.iter().any(|files| is_of(files, name))
+        self.files.iter().any(|files| matches_pattern(files, name))
     }
 }
 
-/// Whether a name is one of these, which may have one `*` for any part of it.
-fn is_of(files: &str, name: &str) -> bool {
+/// Returns true if a name matches a pattern with at most one `*`.
+fn matches_pattern(files: &str, name: &str) -> bool {
     let Some((before, behind)) = files.split_once('*') else { return files == name };
     name.len() >= before.len() + behind.len() && name.starts_with(before) && name.ends_with(behind)
 }
 
-fn unread(path: &Path, error: &io::Error) -> Failure {
+fn read_error(path: &Path, error: &io::Error) -> Failure {
     Failure::new(format!("cannot prepare {}: {error}", path.display()))
-        .with_help("see that it may be read and written, or name another folder by --out DIR")
+        .with_help("make it readable and writable, or name another folder by --out DIR")
 }
 
-/// Makes a folder that `--out` names.
+/// Creates a folder that `--out` names.
 pub fn make(folder: &Path) -> Outcome<()> {
     fs::create_dir_all(folder).map_err(|error| {
         Failure::new(format!("cannot make the folder {}: {error}", folder.display()))
@@ -183,7 +184,7 @@ pub fn make(folder: &Path) -> Outcome<()> {
     })
 }
 
-/// Refuses a file for an option that cannot be one, or that the command itself reads: writing it would be the loss of that.
+/// Rejects a file for an option if it cannot be written, or if the command reads it: writing would destroy the input.
 pub fn check_file(option: &str, file: &Path, read: &[&Path]) -> Outcome<()> {
     let parent = file.parent().filter(|parent| !parent.as_os_str().is_empty());
     if let Some(parent) = parent.filter(|parent| !parent.is_dir()) {
@@ -203,12 +204,12 @@ pub fn check_file(option: &str, file: &Path, read: &[&Path]) -> Outcome<()> {
     Ok(())
 }
 
-/// The same for what several options ask for, no two of which may be one file. "-" is standard output, which is for JSON.
+/// Checks the files of several options, which must differ. "-" is standard output, which only JSON may use.
 pub fn check_files(wanted: &[(&str, Option<&Path>)], read: &[&Path]) -> Outcome<()> {
     let files = wanted.iter().filter_map(|(option, file)| Some((*option, (*file)?)));
     let (out, files): (Vec<_>, Vec<_>) = files.partition(|(_, file)| is_standard_output(file));
     if let Some((option, _)) = out.iter().find(|(option, _)| *option != "json") {
-        return Err(Failure::new(format!("--{option} -: only JSON can be had on standard output"))
+        return Err(Failure::new(format!("--{option} -: only JSON can be written to standard output"))
             .with_help("name a file; one whose name begins with a dash is ./-"));
     }
     for (place, (option, file)) in files.iter().enumerate() {
@@ -221,7 +222,7 @@ pub fn check_files(wanted: &[(&str, Option<&Path>)], read: &[&Path]) -> Outcome<
     Ok(())
 }
 
-/// A joint's name, or a number, as part of the name of a file or folder.
+/// Name of a joint, or a number, as part of a file name.
 pub fn file_part(joint: &str) -> String {
     joint.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter.to_ascii_lowercase() } else { '-' }).collect()
 }
@@ -233,7 +234,7 @@ mod tests {
     const REPORT: &str = "report.html";
 
     #[test]
-    fn a_folder_that_cannot_be_is_found_before_the_run() {
+    fn impossible_folder_fails_before_the_run() {
         for folder in ["/dev/full/x", "/proc/x", "/dev/null"] {
             let failure =
                 Folder::prepare(Some(Path::new(folder)), "hil", "Q1", &[REPORT]).expect_err("cannot be written");
@@ -243,8 +244,9 @@ mod tests {
         }
     }
 
+    /// Files that joint has not written, or that changed since, are never overwritten.
     #[test]
-    fn what_somebody_else_has_written_or_changed_is_not_written_over() {
+    fn foreign_and_changed_files_are_kept() {
         let folder = tempfile::tempdir().expect("a folder");
         let choose = || Folder::choose(Some(folder.path()), "sim", "Q1", &[REPORT, "runs/*.mcap"]);
         let refused = |name: &str, words: &str| {
@@ -270,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn what_earlier_runs_left_is_removed_and_nothing_else() {
+    fn only_files_of_earlier_runs_are_removed() {
         let folder = tempfile::tempdir().expect("a folder");
         let prepare = || Folder::prepare(Some(folder.path()), "hil", "Q1", &["*.mcap"]).expect("of ours");
         prepare().write_text("old.mcap", "1").expect("room");
@@ -284,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn two_runs_do_not_write_to_one_folder_at_once() {
+    fn folder_has_one_writer() {
         let folder = tempfile::tempdir().expect("a folder");
         let choose = || Folder::choose(Some(folder.path()), "sim", "Q1", &[REPORT]).expect("of ours");
         let (one, other) = (choose(), choose());
@@ -292,7 +294,7 @@ mod tests {
         let failure = other.make().expect_err("its files would be mixed with those of the first");
         assert!(failure.message().contains("another run") && failure.help().is_some(), "{failure}");
         one.write_text(REPORT, "1").expect("room");
-        // What holds the folder goes away with a process, however it ends.
+        // The lock ends with the process, however it ends.
         drop(one);
         other.make().expect("nobody else does any more");
         other.write_text(REPORT, "2").expect("what the first has written is known by now");
@@ -300,13 +302,13 @@ mod tests {
     }
 
     #[test]
-    fn results_go_below_the_folder_that_the_user_works_in() {
-        assert_eq!(usual("hil/tests", "Q1 b"), Path::new("joint-out/hil/tests/q1-b"));
+    fn default_folder_is_below_working_folder() {
+        assert_eq!(default_folder("hil/tests", "Q1 b"), Path::new("joint-out/hil/tests/q1-b"));
     }
 
     #[test]
     #[cfg(unix)]
-    fn a_link_or_a_folder_in_place_of_a_file_is_not_written_over() {
+    fn link_or_folder_is_not_overwritten() {
         let folder = tempfile::tempdir().expect("a folder");
         let report = folder.path().join(REPORT);
         let choose = || Folder::choose(Some(folder.path()), "sim", "Q1", &[REPORT]);
@@ -318,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_has_grown_takes_its_name_and_leaves_none() {
+    fn grown_file_is_renamed() {
         let folder = tempfile::tempdir().expect("a folder");
         let prepare = || Folder::prepare(Some(folder.path()), "sim", "Q1", &["part.csv", "whole.csv"]);
         for _ in 0..2 {
@@ -336,15 +338,16 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_cannot_be_written_is_found_before_the_run() {
+    fn unwritable_file_fails_before_the_run() {
         let folder = tempfile::tempdir().expect("a folder");
         let refused = |file: &Path| check_file("json", file, &[]).expect_err("no file").message().contains("--json");
         assert!(refused(&folder.path().join("none/out.json")) && refused(folder.path()));
         assert!(check_file("json", Path::new("out.json"), &[]).is_ok());
     }
 
+    /// A file that is read is never overwritten, whichever path names it.
     #[test]
-    fn what_is_read_is_not_written_over_whatever_it_is_called() {
+    fn input_file_is_not_overwritten() {
         let folder = tempfile::tempdir().expect("a folder");
         let input = folder.path().join("in.toml");
         fs::write(&input, "").expect("a file");
@@ -357,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn two_options_do_not_share_a_file() {
+    fn options_do_not_share_a_file() {
         let [one, other] = ["a.json", "b.xml"].map(|name| Some(Path::new(name)));
         assert!(check_files(&[("json", one), ("junit", other)], &[]).is_ok());
         let failure = check_files(&[("json", one), ("junit", one)], &[]).expect_err("the same file");
@@ -369,7 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn a_joints_name_makes_a_folder() {
+    fn joint_name_becomes_file_name() {
         assert_eq!(file_part("Q1 (b 0.5)"), "q1--b-0-5-");
     }
 }

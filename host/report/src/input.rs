@@ -1,6 +1,5 @@
-//! Files that users name, read whole into memory, but no more of them than a stated size. What is not a regular file is
-//! refused before it is opened: a pipe that nobody writes to would be waited for without end. A file goes before what comes
-//! with the program under the same name.
+//! Reads files that users name, up to a stated size. Anything but a regular file is rejected before it is opened, since
+//! a pipe without a writer would block for ever. A file takes precedence over a preset of its name.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, FileType};
@@ -10,21 +9,22 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::output;
 
-/// A file of this size was not typed by anybody, and named by mistake [bytes].
+/// Largest file that a person could have typed; a larger one was named by mistake [bytes].
 pub const LARGEST_TYPED: u64 = 1 << 20;
-/// A recording may be this large; a larger one is taken for a mistake [bytes].
+/// Largest recording; a larger one was named by mistake [bytes].
 pub const LARGEST_RECORDED: u64 = 2 << 30;
 
-/// What comes with the program under a name, unless a file has that very name. Where either could be meant, it is said once
-/// which one is taken.
+/// Preset of a name, unless a file has exactly that name. If both exist, a note states the choice once.
 pub fn preset<T>(file: &Path, with_name: impl FnOnce(&str) -> Option<T>) -> Option<T> {
     let name = file.to_str()?;
     let found = with_name(name)?;
     let beside = format!("{name}.toml");
     match (file.is_file(), Path::new(&beside).is_file()) {
-        (true, _) => say_once(format!("note: `{name}` is the file of that name in this folder, not the preset {name}")),
+        (true, _) => {
+            remark_once(format!("note: `{name}` is the file of that name in this folder, not the preset {name}"))
+        }
         (false, true) => {
-            say_once(format!(
+            remark_once(format!(
                 "note: `{name}` is the preset of that name, not the file {beside} in this folder: name that ./{beside}"
             ));
         }
@@ -33,8 +33,8 @@ pub fn preset<T>(file: &Path, with_name: impl FnOnce(&str) -> Option<T>) -> Opti
     (!file.is_file()).then_some(found)
 }
 
-/// A command may look for one file several times.
-fn say_once(remark: String) {
+/// Prints a remark once, though a command may look up a file several times.
+fn remark_once(remark: String) {
     static SAID: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
     let mut said = SAID.lock().unwrap_or_else(PoisonError::into_inner);
     if !said.contains(&remark) {
@@ -43,27 +43,27 @@ fn say_once(remark: String) {
     }
 }
 
-/// The bytes of a file, or why they cannot be had.
+/// Reads a file; the error is the reason.
 pub fn bytes(path: &Path, largest: u64) -> Result<Vec<u8>, String> {
     let read = || {
-        if let Some(kind) = not_a_file(fs::metadata(path)?.file_type()) {
+        if let Some(kind) = special_file(fs::metadata(path)?.file_type()) {
             return Ok(Err(kind.to_owned()));
         }
         let file = File::open(path)?;
         let known = file.metadata()?;
-        // What the system says beforehand may be nothing, as of a file in /proc, or may have grown meanwhile.
+        // The stated size may be 0, as for a file in /proc, or the file may have grown.
         let mut bytes = Vec::new();
         if known.len() <= largest {
             file.take(largest + 1).read_to_end(&mut bytes)?;
         }
         let fits = known.len() <= largest && bytes.len() as u64 <= largest;
-        Ok(if fits { Ok(bytes) } else { Err(format!("it is larger than {}", in_words(largest))) })
+        Ok(if fits { Ok(bytes) } else { Err(format!("it is larger than {}", size_in_words(largest))) })
     };
     read().unwrap_or_else(|error: std::io::Error| Err(error.to_string()))
 }
 
-/// Returns what a path leads to in place of a regular file, and the help.
-fn not_a_file(kind: FileType) -> Option<&'static str> {
+/// Returns the kind of a path that is not a regular file, with the remedy.
+fn special_file(kind: FileType) -> Option<&'static str> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::FileTypeExt;
@@ -84,12 +84,12 @@ fn not_a_file(kind: FileType) -> Option<&'static str> {
     }
 }
 
-/// The text of a file, or why it cannot be had.
+/// Reads a text file; the error is the reason.
 pub fn text(path: &Path, largest: u64) -> Result<String, String> {
     String::from_utf8(bytes(path, largest)?).map_err(|_| "it is not text (UTF-8)".to_owned())
 }
 
-fn in_words(bytes: u64) -> String {
+fn size_in_words(bytes: u64) -> String {
     match (bytes >> 30, bytes >> 20) {
         (0, 0) => format!("{bytes} bytes"),
         (0, mega) => format!("{mega} MB"),
@@ -102,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_more_is_read_than_the_stated_size() {
+    fn oversized_file_is_rejected() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("file");
         std::fs::write(&path, "12345678").expect("room");
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     #[cfg(unix)]
-    fn what_is_not_a_regular_file_is_refused_before_it_is_opened() {
+    fn special_file_is_rejected_unopened() {
         let folder = tempfile::tempdir().expect("a folder");
         let pipe = folder.path().join("pipe");
         let made = std::process::Command::new("mkfifo").arg(&pipe).status().expect("`mkfifo` is there");

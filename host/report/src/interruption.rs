@@ -1,5 +1,5 @@
-//! Ctrl-C and a polite request to end (SIGTERM, SIGHUP): the first ends work that leaves nothing behind within a moment,
-//! and asks work that must end in order to do so; the second ends the process at once.
+//! Ctrl-C, SIGTERM and SIGHUP: the first signal ends work that leaves no partial results at once, and asks other work
+//! to finish in order; the second signal ends the process immediately.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -8,72 +8,72 @@ use std::time::{Duration, Instant};
 
 use crate::failure::{EXIT_INTERRUPTED, Failure, Outcome};
 
-/// Time in which work that need not end in order ends by itself. A command is to end within 0.2 s, which users do not notice; a busy
-/// machine has the rest to let this process run.
-const PATIENCE: Duration = Duration::from_millis(80);
-/// Time between two looks at whether work must still end in order.
-const LOOK: Duration = Duration::from_millis(5);
+/// Time after which the process ends if no work must finish in order. Users do not notice a delay of 0.2 s; the
+/// remainder is for a busy machine to schedule this process.
+const EXIT_DELAY: Duration = Duration::from_millis(80);
+/// Interval of the checks for work that must finish in order.
+const CHECK_INTERVAL: Duration = Duration::from_millis(5);
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
-static IN_ORDER: AtomicUsize = AtomicUsize::new(0);
+static ORDERLY_TASKS: AtomicUsize = AtomicUsize::new(0);
 static WATCH: OnceLock<Result<(), String>> = OnceLock::new();
 
-/// Starts to listen, once for the process.
+/// Installs the signal handler, once for the process.
 pub fn watch() -> Outcome<()> {
     let listen = || {
         ctrlc::set_handler(|| {
             if INTERRUPTED.swap(true, Ordering::SeqCst) {
                 std::process::exit(EXIT_INTERRUPTED.into());
             }
-            thread::spawn(end_what_does_not_listen);
+            thread::spawn(exit_when_idle);
         })
         .map_err(|error| error.to_string())
     };
     WATCH.get_or_init(listen).clone().map_err(|error| Failure::new(format!("cannot listen for Ctrl-C: {error}")))
 }
 
-/// Whether the user wants to stop.
+/// Returns true if the user wants to stop.
 pub fn requested() -> bool {
     INTERRUPTED.load(Ordering::SeqCst)
 }
 
-/// Work that would leave something half done behind if the process ended in the midst of it: a file that is being written, a
-/// board that is being driven. As long as one of these lives the process waits; the work looks at [`requested`] by itself.
+/// Marks work that must not be cut off, such as writing a file or driving a board. The process waits while a value of
+/// this type exists; the work itself checks [`requested`].
 #[derive(Debug)]
 #[must_use = "the process waits for as long as this lives"]
-pub struct InOrder(());
+pub struct UninterruptedWork(());
 
-impl InOrder {
-    /// From here on.
+impl UninterruptedWork {
+    /// Starts the marked work.
     pub fn begin() -> Self {
-        IN_ORDER.fetch_add(1, Ordering::SeqCst);
+        ORDERLY_TASKS.fetch_add(1, Ordering::SeqCst);
         Self(())
     }
 }
 
-impl Drop for InOrder {
+impl Drop for UninterruptedWork {
     fn drop(&mut self) {
-        IN_ORDER.fetch_sub(1, Ordering::SeqCst);
+        ORDERLY_TASKS.fetch_sub(1, Ordering::SeqCst);
     }
 }
 
-/// Ends the process once nothing has had to end in order for a while: reading, fitting and drawing leave nothing behind, and
-/// no loop of theirs, here or in a library, has to look whether it may go on.
-fn end_what_does_not_listen() {
-    // By the clock: on a busy machine a pause is longer than it was asked to be.
-    let mut unheard_since = Instant::now();
-    while unheard_since.elapsed() < PATIENCE {
-        thread::sleep(LOOK);
-        if IN_ORDER.load(Ordering::SeqCst) > 0 {
-            unheard_since = Instant::now();
+/// Ends the process once no marked work has been active for a while. Reading, fitting and drawing leave no partial
+/// results, so their loops, here or in a library, need no checks.
+fn exit_when_idle() {
+    // Measured by the clock: on a busy machine a sleep takes longer than requested.
+    let mut idle_since = Instant::now();
+    while idle_since.elapsed() < EXIT_DELAY {
+        thread::sleep(CHECK_INTERVAL);
+        if ORDERLY_TASKS.load(Ordering::SeqCst) > 0 {
+            idle_since = Instant::now();
         }
     }
     Failure::interrupted("stopped by the user").show();
     std::process::exit(EXIT_INTERRUPTED.into());
 }
 
-/// What a failure means if the user wants to stop: programs that were started here may have been told so too, and
-/// then their failure is not the point.
+/// Replaces a failure by an interruption if the user wants to stop: child processes may have received the signal too
+/// and failed because of it.
 pub fn explain<T>(outcome: Outcome<T>) -> Outcome<T> {
     match outcome {
         Err(failure) if requested() && failure.exit_code() != EXIT_INTERRUPTED => {

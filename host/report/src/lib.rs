@@ -1,5 +1,5 @@
-//! What every command shares with its user: failures and exit codes, files that are written whole or not at all,
-//! progress, interruption, checks, seeds, provenance, HTML pages and vector plots.
+//! Common parts of every command: failures and exit codes, complete-or-nothing files, progress, interruption, checks,
+//! seeds, provenance, HTML pages and vector plots.
 
 pub mod checks;
 pub mod command_line;

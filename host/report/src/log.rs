@@ -1,6 +1,6 @@
 //! Logs as MCAP, which Foxglove and PlotJuggler open: ROS 2 message text as the schema of a topic, CDR as its encoding.
-//! Chunks are written whole, so that a log that was cut off can be read up to its last chunk. Numbers are in SI under the
-//! names that CSV and JSON have, in small letters, since ROS 2 takes no others; states are words.
+//! Chunks are written as a whole, so a truncated log is readable up to its last chunk. Numbers are in SI under the
+//! names of CSV and JSON in lower case, as ROS 2 requires; states are words.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -9,19 +9,19 @@ use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use mcap::{Compression, McapError, WriteOptions, Writer};
 
-/// Bytes of a chunk before compression: what a crash may cost at most.
-const CHUNK: u64 = 128 << 10;
-/// Name of the metadata that say where a log comes from.
+/// Size of a chunk before compression [bytes]: the largest loss in a crash.
+const CHUNK_BYTES: u64 = 128 << 10;
+/// Name of the metadata with the origin of a log.
 pub const REMARKS: &str = "joint";
-/// The head of a message in CDR: little endian.
-const HEAD: [u8; 4] = [0, 1, 0, 0];
+/// Header of a message in CDR: little endian.
+const CDR_HEADER: [u8; 4] = [0, 1, 0, 0];
 
 /// A log with any number of topics.
 pub struct Log<W: Write> {
     writer: Writer<NoSeek<W>>,
 }
 
-/// Where messages of one schema go.
+/// Channel for messages of one schema.
 #[derive(Debug)]
 pub struct Topic {
     channel: u16,
@@ -29,11 +29,11 @@ pub struct Topic {
 }
 
 impl<W: Write> Log<W> {
-    /// Begins a log; `remarks` say where it comes from.
+    /// Starts a log; `remarks` state its origin.
     pub fn begin(out: W, remarks: BTreeMap<String, String>) -> io::Result<Self> {
         let options = WriteOptions::new()
             .compression(Some(Compression::Zstd))
-            .chunk_size(Some(CHUNK))
+            .chunk_size(Some(CHUNK_BYTES))
             .library(concat!("joint ", env!("CARGO_PKG_VERSION")))
             .disable_seeking(true);
         let mut writer = Writer::with_options(NoSeek::new(out), options).map_err(cause)?;
@@ -41,14 +41,14 @@ impl<W: Write> Log<W> {
         Ok(Self { writer })
     }
 
-    /// One more topic; `schema` is ROS 2 message text.
+    /// Adds a topic; `schema` is ROS 2 message text.
     pub fn topic(&mut self, topic: &str, name: &str, schema: &str) -> io::Result<Topic> {
         let schema = self.writer.add_schema(name, "ros2msg", schema.as_bytes()).map_err(cause)?;
         let channel = self.writer.add_channel(schema, topic, "cdr", &BTreeMap::new()).map_err(cause)?;
         Ok(Topic { channel, sequence: 0 })
     }
 
-    /// One message, at a time of the run [s], which is that of the log too.
+    /// Writes a message at a time of the run [s].
     pub fn write(&mut self, topic: &mut Topic, time: f64, message: &Message) -> io::Result<()> {
         let nanoseconds = (time * 1e9).round() as u64;
         let header = MessageHeader {
@@ -61,7 +61,7 @@ impl<W: Write> Log<W> {
         self.writer.write_to_known_channel(&header, &message.0).map_err(cause)
     }
 
-    /// Writes the index and the end, without which readers call a log damaged.
+    /// Writes the index and the end marker, without which readers report a damaged log.
     pub fn finish(mut self) -> io::Result<W> {
         self.writer.finish().map_err(cause)?;
         let mut out = self.writer.into_inner().into_inner();
@@ -77,25 +77,25 @@ pub struct Channel<W: Write> {
 }
 
 impl<W: Write> Channel<W> {
-    /// Begins a log; `schema` is ROS 2 message text, `remarks` say where it comes from.
+    /// Starts a log; `schema` is ROS 2 message text, `remarks` state its origin.
     pub fn begin(out: W, topic: &str, name: &str, schema: &str, remarks: BTreeMap<String, String>) -> io::Result<Self> {
         let mut log = Log::begin(out, remarks)?;
         let topic = log.topic(topic, name, schema)?;
         Ok(Self { log, topic })
     }
 
-    /// One message, at a time of the run [s].
+    /// Writes a message at a time of the run [s].
     pub fn write(&mut self, time: f64, message: &Message) -> io::Result<()> {
         self.log.write(&mut self.topic, time, message)
     }
 
-    /// Ends the log.
+    /// Finishes the log.
     pub fn finish(self) -> io::Result<W> {
         self.log.finish()
     }
 }
 
-/// The system's error, if it was one.
+/// Extracts the system's error, if there is one.
 fn cause(error: McapError) -> io::Error {
     match error {
         McapError::Io(error) => error,
@@ -103,54 +103,54 @@ fn cause(error: McapError) -> io::Error {
     }
 }
 
-/// A message in CDR: every value on a multiple of its size behind the head.
+/// A message in CDR: every value is aligned to its size, counted after the header.
 #[derive(Debug)]
 pub struct Message(Vec<u8>);
 
 impl Default for Message {
     fn default() -> Self {
-        Self(HEAD.to_vec())
+        Self(CDR_HEADER.to_vec())
     }
 }
 
 impl Message {
-    /// A `float64`.
+    /// Appends a `float64`.
     pub fn number(&mut self, value: f64) {
         self.align(8);
         self.0.extend(value.to_le_bytes());
     }
 
-    /// A `float32`.
+    /// Appends a `float32`.
     pub fn single(&mut self, value: f32) {
         self.align(4);
         self.0.extend(value.to_le_bytes());
     }
 
-    /// A `uint32`.
+    /// Appends a `uint32`.
     pub fn whole(&mut self, value: u32) {
         self.align(4);
         self.0.extend(value.to_le_bytes());
     }
 
-    /// A `bool`.
+    /// Appends a `bool`.
     pub fn flag(&mut self, set: bool) {
         self.0.push(set.into());
     }
 
-    /// A `float64[]`.
+    /// Appends a `float64[]`.
     pub fn numbers(&mut self, values: impl ExactSizeIterator<Item = f64>) {
         self.count(values.len());
         values.for_each(|value| self.number(value));
     }
 
-    /// A `string`.
+    /// Appends a `string`.
     pub fn word(&mut self, word: &str) {
         self.count(word.len() + 1);
         self.0.extend(word.as_bytes());
         self.0.push(0);
     }
 
-    /// A `string[]`.
+    /// Appends a `string[]`.
     pub fn words<'w>(&mut self, words: impl ExactSizeIterator<Item = &'w str>) {
         self.count(words.len());
         words.for_each(|word| self.word(word));
@@ -160,13 +160,13 @@ impl Message {
         self.whole(count as u32);
     }
 
-    /// The head does not count for alignment.
+    /// Pads to a multiple of a size, counted after the header.
     fn align(&mut self, size: usize) {
-        self.0.resize(HEAD.len() + (self.0.len() - HEAD.len()).next_multiple_of(size), 0);
+        self.0.resize(CDR_HEADER.len() + (self.0.len() - CDR_HEADER.len()).next_multiple_of(size), 0);
     }
 }
 
-/// A field of a message as its schema has it.
+/// Line of a field in a message's schema.
 pub fn field(kind: &str, name: &str, meaning: &str) -> String {
     format!("{kind} {}  # {meaning}\n", name.to_ascii_lowercase())
 }
@@ -176,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_stand_on_multiples_of_their_sizes() {
+    fn values_are_aligned_to_their_size() {
         let mut message = Message::default();
         message.words(["ab", "c"].into_iter());
         message.number(1.0);
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_those_of_csv_in_the_letters_of_ros() {
+    fn field_names_follow_ros_rules() {
         assert_eq!(field("float64", "drive_torque_Nm", "[N m]"), "float64 drive_torque_nm  # [N m]\n");
     }
 }

@@ -1,74 +1,74 @@
-//! How figures are written: every number that a person reads goes through here. What differs is how many digits serve a
-//! purpose and where powers of ten begin; each purpose is a [`Style`] with a name.
+//! Number formats: every number for a person is written here. Purposes differ in their digits and in the start of
+//! powers of ten; each is a named [`Style`].
 
-/// How figures of one purpose are written.
+/// Number format of one purpose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Style {
-    /// How many digits.
+    /// Digits.
     pub digits: Digits,
-    /// Whole numbers.
+    /// Format of whole numbers.
     pub whole: Whole,
-    /// With true minus signs, and without zeros at the end behind the point.
+    /// Uses true minus signs, and removes trailing zeros after the point.
     pub typeset: bool,
 }
 
-/// How many digits.
+/// Number of digits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Digits {
-    /// So many significant ones from the first size up to below the second, powers of ten with so many decimals beyond.
+    /// Significant digits for sizes within `from..below`; powers of ten outside.
     Significant {
         /// Significant digits.
         count: i32,
-        /// From this size on ...
+        /// Least size without a power of ten.
         from: f64,
-        /// ... up to this one.
+        /// Size from which powers of ten are used.
         below: f64,
         /// Decimals before a power of ten.
         decimals: usize,
     },
-    /// So many behind the point, whatever the size.
+    /// Fixed number of decimals.
     Fixed(usize),
-    /// As many as it takes to read the same number back, powers of ten below the first size and from the second on.
+    /// As many digits as the exact value needs; powers of ten outside `from..below`.
     All {
-        /// From this size on ...
+        /// Least size without a power of ten.
         from: f64,
-        /// ... up to this one.
+        /// Size from which powers of ten are used.
         below: f64,
     },
 }
 
-/// Whole numbers.
+/// Format of whole numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Whole {
-    /// Like any other, zero too.
+    /// Like other numbers, zero included.
     Alike,
-    /// Like any other, but a zero is `0`.
+    /// Like other numbers, but zero is `0`.
     Zero,
-    /// Without a point up to this size.
+    /// Without a point below this size.
     Plain(f64),
-    /// Without a point up to this size, in groups of three.
+    /// Without a point below this size, in groups of three.
     Grouped(f64),
 }
 
-/// In a page: four digits and no more than needed, whole numbers in groups of three.
+/// Pages: at most four digits, whole numbers in groups of three.
 pub const PAGE: Style = Style {
     digits: Digits::Significant { count: 4, from: 1e-3, below: 1e7, decimals: 3 },
     whole: Whole::Grouped(1e7),
     typeset: true,
 };
-/// On a terminal, where figures stand below each other: four digits, whole numbers whole.
+/// Terminals, with figures in columns: four digits, whole numbers without a point.
 pub const TERMINAL: Style = Style {
     digits: Digits::Significant { count: 4, from: 0.01, below: f64::INFINITY, decimals: 2 },
     whole: Whole::Plain(1e15),
     typeset: false,
 };
-/// Estimates with their intervals: always four digits, as a zero at the end is one that was found.
+/// Estimates with intervals: always four digits, since a trailing zero is significant.
 pub const ESTIMATE: Style = Style {
     digits: Digits::Significant { count: 4, from: 1e-3, below: 1e5, decimals: 3 },
     whole: Whole::Zero,
     typeset: false,
 };
-/// What follows from a joint file: always five digits.
+/// Derived quantities of a joint file: always five digits.
 pub const DATA_SHEET: Style = Style {
     digits: Digits::Significant { count: 5, from: 1e-4, below: 1e6, decimals: 4 },
     whole: Whole::Zero,
@@ -76,22 +76,22 @@ pub const DATA_SHEET: Style = Style {
 };
 /// Errors over many decades: two digits and a power of ten.
 pub const SCIENTIFIC: Style = powers_of_ten(1);
-/// As one would type it: what a user has given comes back as it was.
+/// Exact form: a number from the user is repeated as it was typed.
 pub const TYPED: Style = Style { digits: Digits::All { from: 1e-6, below: 1e15 }, whole: Whole::Alike, typeset: false };
 
-/// So many digits behind the point.
+/// Fixed number of decimals.
 pub const fn fixed(decimals: usize) -> Style {
     Style { digits: Digits::Fixed(decimals), whole: Whole::Alike, typeset: false }
 }
 
-/// So many digits behind the point, and a power of ten.
+/// Fixed number of decimals, with a power of ten.
 pub const fn powers_of_ten(decimals: usize) -> Style {
     let digits = Digits::Significant { count: 1, from: f64::INFINITY, below: f64::INFINITY, decimals };
     Style { digits, whole: Whole::Alike, typeset: false }
 }
 
 impl Style {
-    /// A number as text.
+    /// Formats a number.
     pub fn write(self, value: f64) -> String {
         if !value.is_finite() {
             return if value.is_nan() && self.typeset { "not a number".to_owned() } else { value.to_string() };
@@ -122,7 +122,7 @@ impl Style {
     }
 }
 
-/// Without zeros at the end behind the point.
+/// Removes trailing zeros after the point.
 pub fn trimmed(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
@@ -145,7 +145,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_page_reads_well() {
+    fn page_numbers_are_grouped() {
         assert_eq!(
             [0.0, 120_000.0, -3.0, 0.123_456, 14.0 / 3.0, 1.5e-9, -0.5, 1e8].map(|value| PAGE.write(value)),
             ["0", "120\u{202f}000", "\u{2212}3", "0.1235", "4.667", "1.500e\u{2212}9", "\u{2212}0.5", "1.000e8"]
@@ -154,14 +154,14 @@ mod tests {
     }
 
     #[test]
-    fn a_terminal_keeps_four_digits_at_most() {
+    fn terminal_keeps_four_digits() {
         let figures = [0.0, 100_000.0, 12.345_67, 0.001_234_5, 4321.9, 0.25].map(|value| TERMINAL.write(value));
         assert_eq!(figures, ["0", "100000", "12.35", "1.23e-3", "4322", "0.2500"]);
         assert_eq!(TERMINAL.write(f64::NAN), "NaN");
     }
 
     #[test]
-    fn estimates_and_data_sheets_keep_all_their_digits() {
+    fn estimates_keep_trailing_zeros() {
         assert_eq!([0.0, 40.0, 1e5, 1e-4].map(|value| ESTIMATE.write(value)), ["0", "40.00", "1.000e5", "1.000e-4"]);
         assert_eq!([0.0, 40.0, 1e6, 1e-4].map(|v| DATA_SHEET.write(v)), ["0", "40.000", "1.0000e6", "0.00010000"]);
         assert_eq!([0.0, 0.012_34].map(|value| SCIENTIFIC.write(value)), ["0.0e0", "1.2e-2"]);
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_told_as_one_would_type_them() {
+    fn typed_numbers_are_exact() {
         let told = [0.0, -1.0, 0.25, 1e308, 1e-300, f64::NAN].map(|value| TYPED.write(value));
         assert_eq!(told, ["0", "-1", "0.25", "1e308", "1e-300", "NaN"]);
     }

@@ -15,35 +15,36 @@ use crate::failure::{Failure, Outcome};
 use crate::folder;
 use crate::write::{is_standard_output, record_into, write_record, write_text};
 
-/// Verdicts that must not be overlooked.
-const BAD: [&str; 3] = ["FAILED", "BROKEN", "NOT RUN"];
-/// Bold red, and the end of it.
+/// Verdicts that are printed in red.
+const FAILURE_WORDS: [&str; 3] = ["FAILED", "BROKEN", "NOT RUN"];
+/// Escape sequences for bold red and for its end.
 const RED: &str = "\u{1b}[1;31m";
 const PLAIN: &str = "\u{1b}[0m";
 
-/// Standard output is for JSON alone.
+/// True if standard output is reserved for JSON.
 static FOR_JSON: AtomicBool = AtomicBool::new(false);
 
-/// Keeps standard output for JSON alone, if that is where it shall go: what is printed after this is on standard error.
+/// Reserves standard output for JSON if the JSON goes there; later prints go to standard error.
 pub fn keep_for_json(wanted: Option<&Path>) {
     if wanted.is_some_and(is_standard_output) {
         FOR_JSON.store(true, Ordering::Relaxed);
     }
 }
 
-/// Prints a result on standard output; on standard error where that is kept for JSON. What failed is red on a terminal.
+/// Prints a result on standard output, or on standard error if standard output is reserved for JSON. Failures are red
+/// on a terminal.
 pub fn print(text: &str) -> Outcome<()> {
     if FOR_JSON.load(Ordering::Relaxed) {
         let text = on(&io::stderr(), text);
-        // As far as anyone listens.
+        // A closed pipe is ignored.
         let _ = io::stderr().lock().write_all(text.as_bytes());
         return Ok(());
     }
     print_out(&on(&io::stdout(), text))
 }
 
-/// Returns a text as a stream wants it: escaped, then with colours on a terminal that has them, unless NO_COLOR or its like
-/// say otherwise.
+/// Returns a text for a stream: escaped, and coloured on a terminal with colours unless NO_COLOR or a similar variable
+/// forbids it.
 pub fn on<'t>(stream: &impl RawStream, text: &'t str) -> Cow<'t, str> {
     let text = escaped(text);
     match AutoStream::choice(stream) {
@@ -52,21 +53,21 @@ pub fn on<'t>(stream: &impl RawStream, text: &'t str) -> Cow<'t, str> {
     }
 }
 
-/// Has the verdicts stand out that begin a line and are bad ones.
+/// Colours bad verdicts at the beginning of a line.
 fn with_failures_in_red(text: &str) -> String {
-    let line = |line: &str| match BAD.iter().find(|word| line.starts_with(**word)) {
+    let line = |line: &str| match FAILURE_WORDS.iter().find(|word| line.starts_with(**word)) {
         Some(word) => format!("{RED}{word}{PLAIN}{}", &line[word.len()..]),
         None => line.to_owned(),
     };
     text.split_inclusive('\n').map(line).collect()
 }
 
-/// Writes JSON to the file that is asked for; "-" is standard output.
+/// Writes JSON to a file; "-" is standard output.
 pub fn write_json(file: &Path, json: &str) -> Outcome<()> {
     if is_standard_output(file) { print_out(&escaped_json(json)) } else { write_text(file, json) }
 }
 
-/// The same for a record that is written in one line.
+/// Writes a record as JSON in one line to a file; "-" is standard output.
 pub fn write_json_record(file: &Path, record: &impl Serialize) -> Outcome<()> {
     if !is_standard_output(file) {
         return write_record(file, record);
@@ -87,15 +88,15 @@ fn print_out(text: &str) -> Outcome<()> {
     }
 }
 
-/// A record as JSON for people and programs; `what` names it if that cannot be.
+/// Record as indented JSON; `what` names it in an error.
 pub fn json(what: &str, record: &impl Serialize) -> Outcome<String> {
     serde_json::to_string_pretty(record)
         .map(|json| json + "\n")
         .map_err(|error| Failure::new(format!("the {what} cannot be written as JSON: {error}")))
 }
 
-/// Gives out figures: as text on standard output, and as JSON in the file that is asked for; "-" is standard output, in
-/// place of the text. `read` is what they were made from.
+/// Prints figures as text on standard output, and writes them as JSON to the wanted file; "-" is standard output, in
+/// place of the text. `read` are the input files.
 pub fn deliver(figures: &impl Serialize, text: &str, wanted: Option<&Path>, read: &[&Path]) -> Outcome<()> {
     folder::check_files(&[("json", wanted)], read)?;
     if let Some(path) = wanted {
@@ -107,7 +108,7 @@ pub fn deliver(figures: &impl Serialize, text: &str, wanted: Option<&Path>, read
     print(text)
 }
 
-/// Prints a remark on standard error, as far as anyone listens.
+/// Prints a remark on standard error; a closed pipe is ignored.
 pub fn remark(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", escaped(text));
 }
@@ -117,7 +118,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bad_verdicts_are_red_and_nothing_else_is() {
+    fn only_failures_are_red() {
         let shown = with_failures_in_red("ok       a\nFAILED   b FAILED\n         FAILED\nBROKEN   c\n");
         let red = |word: &str| format!("\u{1b}[1;31m{word}\u{1b}[0m");
         assert_eq!(

@@ -1,7 +1,7 @@
-//! Which files of a folder are ours. A list in the folder has a line for every file that a command has put there, with
-//! its SHA-256: a file is ours if it is still what such a line says, so what a user has put there or changed is not. A
-//! line is in the list before its file has its name, so that a kill between the two leaves nothing that nobody owns. The
-//! list begins with its first line: a run that is killed before it has written anything leaves none.
+//! Ownership of the files in a folder. A list in the folder has a line with the SHA-256 of every file that a command
+//! has written there. A file is the command's own if its content still matches a line; files that the user added or
+//! changed do not match. The line is written before the file gets its name, so a kill in between leaves no unlisted
+//! file. The list is created with its first line: a run that is killed before it writes anything leaves no list.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
@@ -12,18 +12,18 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use sha2::{Digest, Sha256};
 
 use crate::failure::{Failure, Outcome};
-use crate::write::{locked, try_to_write, unwritten};
+use crate::write::{locked, try_to_write, write_failure};
 
-/// The list, hidden since it is no result.
-pub const LIST: &str = ".written-by-joint";
-/// How it begins.
-const HEAD: &str = "# files that joint has written here, each with its SHA-256; it never writes over any other";
-/// In place of a digest: a file that grows while a run goes on is ours until it is whole.
+/// Name of the list, hidden since it is no result.
+pub const LIST_NAME: &str = ".written-by-joint";
+/// First line of the list.
+const LIST_HEADER: &str = "# files that joint has written here, each with its SHA-256; it never writes over any other";
+/// Entry in place of a digest: the file grows during a run and is owned until it is complete.
 const GROWING: &str = "growing";
-/// In place of a digest: it grows no longer.
+/// Entry in place of a digest: the file has finished growing.
 const GROWN: &str = "grown";
 
-/// The list of a folder.
+/// List of a folder.
 #[derive(Debug)]
 pub struct OwnFiles {
     folder: PathBuf,
@@ -34,73 +34,73 @@ pub struct OwnFiles {
 struct List {
     digests: BTreeMap<String, BTreeSet<String>>,
     growing: BTreeSet<String>,
-    /// Names that this run has given.
-    given: BTreeSet<String>,
-    /// True while lines are added on disk: the folder is written to.
+    /// Names that this run has written.
+    written: BTreeSet<String>,
+    /// True while the folder is written to and lines are added on disk.
     is_open: bool,
-    /// The folder, locked for as long as this run writes to it alone.
+    /// Lock of the folder, held while this run is its only writer.
     _lock: Option<File>,
 }
 
-/// Who may write to a folder at a time.
+/// Number of simultaneous writers to a folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Writers {
-    /// One run: the files of two would be mixed.
+    /// One run, since the files of two would mix.
     One,
-    /// Several that have files of their own, such as the shards of a sweep.
+    /// Several runs with files of their own, such as the shards of a sweep.
     Several,
 }
 
-/// Whose a file is.
+/// Owner of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Owner {
-    /// Written by a command, and still as it was written.
+    /// Written by a command, and unchanged.
     Ours,
-    /// Written by a command and changed since.
+    /// Written by a command, and changed since.
     Changed,
-    /// Of somebody else.
+    /// Not written by a command.
     Foreign,
 }
 
 impl OwnFiles {
     /// Reads the list of a folder, if there is one; writes nothing.
     pub fn read(folder: &Path) -> Outcome<Self> {
-        let text = text_of(&folder.join(LIST)).map_err(|error| no_list(folder, &error))?;
-        if !is_begun(&text) && !is_whole(&text) {
-            return Err(no_list(folder, &"it is of somebody else"));
+        let text = read_list(&folder.join(LIST_NAME)).map_err(|error| list_error(folder, &error))?;
+        if !is_partial_header(&text) && !has_header(&text) {
+            return Err(list_error(folder, &"joint has not written it"));
         }
-        Ok(Self { folder: folder.to_owned(), list: Mutex::new(List::of(&text)) })
+        Ok(Self { folder: folder.to_owned(), list: Mutex::new(List::parse(&text)) })
     }
 
-    /// Reads the list on disk as it is by now, and makes the folder ready to be written to. Where nothing can be written to
-    /// it, that is told before the work. The folder is locked until this goes away, or the process does, however it ends.
+    /// Reads the current list from disk and makes the folder ready for writing; an unwritable folder is reported here.
+    /// The folder stays locked until this value is dropped or the process ends.
     pub fn open(&self, writers: Writers) -> Outcome<()> {
-        let path = self.folder.join(LIST);
+        let path = self.folder.join(LIST_NAME);
         let open = || {
-            // What cannot be opened or locked, as on some file systems, is no reason not to write.
+            // A folder that cannot be opened or locked, as on some file systems, can still be written to.
             let lock = File::open(&self.folder).ok().filter(|_| writers == Writers::One);
             if lock.as_ref().is_some_and(|folder| !locked(folder)) {
                 return Ok(None);
             }
-            try_to_write(&path, HEAD.as_bytes())?;
-            let text = text_of(&path)?;
-            let is_empty = is_begun(&text) || text == HEAD;
+            try_to_write(&path, LIST_HEADER.as_bytes())?;
+            let text = read_list(&path)?;
+            let is_empty = is_partial_header(&text) || text == LIST_HEADER;
             if writers == Writers::One && is_empty && path.exists() {
-                // What a killed run has left of a list before it wrote anything.
+                // A killed run has left a list without entries.
                 fs::remove_file(&path)?;
             }
             Ok(Some((lock, text)))
         };
-        let opened = open().map_err(|error: io::Error| unwritten(&path, &error))?;
+        let opened = open().map_err(|error: io::Error| write_failure(&path, &error))?;
         let Some((lock, text)) = opened else {
             return Err(Failure::new(format!("another run is writing to {}", self.folder.display()))
                 .with_help("let it finish, or name another folder by --out DIR"));
         };
-        *self.list() = List { is_open: true, _lock: lock, ..List::of(&text) };
+        *self.list() = List { is_open: true, _lock: lock, ..List::parse(&text) };
         Ok(())
     }
 
-    /// Whose a file of the folder is.
+    /// Owner of a file in the folder.
     pub fn owner(&self, name: &str) -> Owner {
         let list = self.list();
         if list.growing.contains(&key(name)) {
@@ -108,7 +108,7 @@ impl OwnFiles {
         }
         let Some(digests) = list.digests.get(&key(name)) else { return Owner::Foreign };
         let path = self.folder.join(name);
-        // Nothing but a file is read: a pipe would never end.
+        // Only regular files are read: a pipe would never end.
         let file = fs::metadata(&path).is_ok_and(|data| data.is_file());
         match file.then(|| digest(&path)) {
             Some(Ok(found)) if digests.contains(&found) => Owner::Ours,
@@ -116,24 +116,24 @@ impl OwnFiles {
         }
     }
 
-    /// Says that a file, which lies ready under another name, will have this one.
+    /// Records that a finished temporary file will get this name.
     pub fn claim(&self, name: &str, ready: &Path) -> io::Result<()> {
         let digest = digest(ready)?;
-        self.list().given.insert(key(name));
+        self.list().written.insert(key(name));
         self.add(&digest, name)
     }
 
-    /// Whether this run has written a file.
+    /// Returns true if this run has written a file.
     pub fn is_of_this_run(&self, name: &str) -> bool {
-        self.list().given.contains(&key(name))
+        self.list().written.contains(&key(name))
     }
 
-    /// Says that a file begins to grow.
+    /// Records that a file starts to grow.
     pub fn claim_growing(&self, name: &str) -> io::Result<()> {
         self.add(GROWING, name)
     }
 
-    /// Says that a file grows no longer.
+    /// Records that a file has finished growing.
     pub fn end_growing(&self, name: &str) -> io::Result<()> {
         self.add(GROWN, name)
     }
@@ -141,30 +141,30 @@ impl OwnFiles {
     fn add(&self, what: &str, name: &str) -> io::Result<()> {
         let mut list = self.list();
         let line = format!("{what}  {}", key(name));
-        if !list.take(&line) {
+        if !list.apply(&line) {
             return Ok(());
         }
-        if list.is_open { append(&self.folder.join(LIST), &line) } else { Ok(()) }
+        if list.is_open { append(&self.folder.join(LIST_NAME), &line) } else { Ok(()) }
     }
 
     fn list(&self) -> MutexGuard<'_, List> {
-        // What it holds is whole between any two changes.
+        // The list is consistent between any two changes.
         self.list.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl List {
-    /// What the lines of a list say.
-    fn of(text: &str) -> Self {
+    /// Parses the lines of a list.
+    fn parse(text: &str) -> Self {
         let mut list = Self::default();
         for line in text.lines().skip(1) {
-            list.take(line);
+            list.apply(line);
         }
         list
     }
 
-    /// Takes what a line says; whether it is new.
-    fn take(&mut self, line: &str) -> bool {
+    /// Applies a line; returns true if it is new.
+    fn apply(&mut self, line: &str) -> bool {
         match line.split_once("  ") {
             Some((GROWING, name)) => self.growing.insert(name.to_owned()),
             Some((GROWN, name)) => self.growing.remove(name),
@@ -174,29 +174,29 @@ impl List {
     }
 }
 
-/// A name as it stands in a line.
+/// Name in the form of a line.
 fn key(name: &str) -> String {
     name.replace('\n', "\\n")
 }
 
-/// Adds a line to a list on disk, and its head where that is not there yet.
+/// Appends a line to a list on disk, with the list's first line if it is missing.
 fn append(path: &Path, line: &str) -> io::Result<()> {
     let mut file = File::options().append(true).create(true).open(path)?;
-    // Of several writers one begins the list. A file system without locks is no reason not to write.
+    // With several writers, one creates the list. A file system without locks can still be written to.
     let _ = file.lock();
-    let text = text_of(path)?;
-    let is_begun = is_begun(&text);
-    if is_begun && !text.is_empty() {
-        // A disk that was full has cut it short.
+    let text = read_list(path)?;
+    let is_partial_header = is_partial_header(&text);
+    if is_partial_header && !text.is_empty() {
+        // A full disk has truncated the first line.
         file.set_len(0)?;
     }
-    // In one piece, behind the end of a line: one that was cut short spoils no other.
-    let head = if is_begun { HEAD } else { "" };
+    // Written in one piece after a line end, so that a truncated line damages no other.
+    let head = if is_partial_header { LIST_HEADER } else { "" };
     file.write_all(format!("{head}\n{line}").as_bytes())
 }
 
-/// Text of a list; nothing where there is none.
-fn text_of(path: &Path) -> io::Result<String> {
+/// Text of a list; empty without a file.
+fn read_list(path: &Path) -> io::Result<String> {
     match fs::metadata(path) {
         Ok(data) if !data.is_file() => Err(io::Error::other("it is not a regular file")),
         Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => Ok(String::new()),
@@ -204,13 +204,13 @@ fn text_of(path: &Path) -> io::Result<String> {
     }
 }
 
-fn is_whole(text: &str) -> bool {
-    text.starts_with(HEAD)
+fn has_header(text: &str) -> bool {
+    text.starts_with(LIST_HEADER)
 }
 
-/// Whether a list has not got beyond its first line.
-fn is_begun(text: &str) -> bool {
-    text.len() < HEAD.len() && HEAD.starts_with(text)
+/// Returns true if a list has not got beyond its first line.
+fn is_partial_header(text: &str) -> bool {
+    text.len() < LIST_HEADER.len() && LIST_HEADER.starts_with(text)
 }
 
 fn digest(path: &Path) -> io::Result<String> {
@@ -219,9 +219,9 @@ fn digest(path: &Path) -> io::Result<String> {
     Ok(hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-fn no_list(folder: &Path, why: &dyn std::fmt::Display) -> Failure {
-    let list = folder.join(LIST);
-    Failure::new(format!("cannot tell whose files these are by {}: {why}", list.display()))
+fn list_error(folder: &Path, why: &dyn std::fmt::Display) -> Failure {
+    let list = folder.join(LIST_NAME);
+    Failure::new(format!("cannot read {}, the list of files that joint has written: {why}", list.display()))
         .with_help("name another folder by --out DIR, or move this file elsewhere; it is left as it is")
 }
 
@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_ours_as_long_as_it_is_what_was_written() {
+    fn unchanged_file_is_ours() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a b.csv");
         let own = written(folder.path());
@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn a_growing_file_is_ours_until_it_is_whole() {
+    fn growing_file_is_ours() {
         let folder = tempfile::tempdir().expect("a folder");
         let own = written(folder.path());
         own.claim_growing("a.csv").expect("room");
@@ -263,18 +263,19 @@ mod tests {
         assert_eq!(owner(folder.path(), "a.csv"), Owner::Foreign);
     }
 
+    /// A list cut at any byte keeps its whole lines and accepts more.
     #[test]
-    fn a_list_cut_anywhere_keeps_its_whole_lines_and_can_be_gone_on_with() {
+    fn truncated_list_keeps_whole_lines() {
         let folder = tempfile::tempdir().expect("a folder");
         let names = ["a", "b", "c"];
         names.iter().for_each(|name| fs::write(folder.path().join(name), name).expect("room"));
         let claim = |name: &str| written(folder.path()).claim(name, &folder.path().join(name)).expect("room");
         claim("a");
-        let kept = fs::read(folder.path().join(LIST)).expect("a list").len();
+        let kept = fs::read(folder.path().join(LIST_NAME)).expect("a list").len();
         claim("b");
-        let whole = fs::read(folder.path().join(LIST)).expect("a list");
+        let whole = fs::read(folder.path().join(LIST_NAME)).expect("a list");
         for cut in 0..=whole.len() {
-            fs::write(folder.path().join(LIST), &whole[..cut]).expect("room");
+            fs::write(folder.path().join(LIST_NAME), &whole[..cut]).expect("room");
             claim("c");
             let ours = names.map(|name| owner(folder.path(), name) == Owner::Ours);
             assert_eq!(ours, [cut >= kept, cut == whole.len(), true], "cut at {cut}");
@@ -282,34 +283,34 @@ mod tests {
     }
 
     #[test]
-    fn list_is_not_there_before_its_first_line() {
+    fn list_appears_with_its_first_line() {
         let folder = tempfile::tempdir().expect("a folder");
         let left = || fs::read_dir(folder.path()).expect("a folder").count();
         drop(written(folder.path()));
         assert_eq!(left(), 0, "a run that wrote nothing leaves nothing");
-        for killed in [HEAD, &HEAD[..20], ""] {
-            fs::write(folder.path().join(LIST), killed).expect("room");
+        for killed in [LIST_HEADER, &LIST_HEADER[..20], ""] {
+            fs::write(folder.path().join(LIST_NAME), killed).expect("room");
             drop(written(folder.path()));
             assert_eq!(left(), 0, "what was left behind is cleared away");
         }
     }
 
     #[test]
-    fn what_is_said_twice_stands_once() {
+    fn repeated_entry_is_listed_once() {
         let folder = tempfile::tempdir().expect("a folder");
         fs::write(folder.path().join("a"), "1").expect("room");
         let claim = || written(folder.path()).claim("a", &folder.path().join("a")).expect("room");
         claim();
-        let before = fs::read(folder.path().join(LIST)).expect("a list");
+        let before = fs::read(folder.path().join(LIST_NAME)).expect("a list");
         claim();
-        assert_eq!(fs::read(folder.path().join(LIST)).expect("a list"), before);
+        assert_eq!(fs::read(folder.path().join(LIST_NAME)).expect("a list"), before);
     }
 
     #[test]
-    fn a_list_of_somebody_else_is_refused() {
+    fn foreign_list_is_rejected() {
         let folder = tempfile::tempdir().expect("a folder");
-        fs::write(folder.path().join(LIST), "my thesis").expect("room");
+        fs::write(folder.path().join(LIST_NAME), "my thesis").expect("room");
         assert!(OwnFiles::read(folder.path()).is_err());
-        assert_eq!(fs::read_to_string(folder.path().join(LIST)).expect("still there"), "my thesis");
+        assert_eq!(fs::read_to_string(folder.path().join(LIST_NAME)).expect("still there"), "my thesis");
     }
 }

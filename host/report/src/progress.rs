@@ -1,5 +1,5 @@
-//! Progress for the user: one line with the current stage and how far it is. When standard error is not a terminal,
-//! only stages that change the machine are printed.
+//! Progress line with the current stage and its advance. If standard error is not a terminal, only the program's own
+//! messages are printed.
 
 use std::io::{self, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -11,10 +11,10 @@ use crate::escape::escaped;
 use crate::failure::Outcome;
 use crate::interruption;
 
-/// The line that is shown now: a question is asked above it.
+/// Progress line on the screen; questions are asked above it.
 static SHOWN: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
-/// Asks the user for a line of text on the terminal, without a moving line in its way. `None` where the input has ended.
+/// Asks the user for a line of text on the terminal, with the progress line suspended. `None` at the end of input.
 pub fn ask(question: &str) -> Option<String> {
     let ask = || {
         let mut stderr = io::stderr().lock();
@@ -29,12 +29,12 @@ pub fn ask(question: &str) -> Option<String> {
     }
 }
 
-/// A thread that panicked has left it as it was.
+/// A panic in another thread leaves the value consistent.
 fn shown() -> MutexGuard<'static, Option<ProgressBar>> {
     SHOWN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The progress line; any thread may update it.
+/// Progress line that any thread may update.
 pub struct Progress {
     bar: Mutex<Option<ProgressBar>>,
 }
@@ -46,12 +46,12 @@ impl Default for Progress {
 }
 
 impl Progress {
-    /// Nothing is shown yet.
+    /// Progress line that shows nothing yet.
     pub fn new() -> Self {
         Self { bar: Mutex::new(None) }
     }
 
-    /// Work with such a line, which ends when the user wants it to.
+    /// Runs work with a progress line; the user may interrupt it.
     pub fn during<T>(work: impl FnOnce(&Self) -> Outcome<T>) -> Outcome<T> {
         interruption::watch()?;
         let progress = Self::new();
@@ -60,42 +60,43 @@ impl Progress {
         interruption::explain(outcome)
     }
 
-    /// A stage begins whose length is not known.
+    /// Shows a stage of unknown length.
     pub fn stage(&self, what: &str) {
         let bar = ProgressBar::new_spinner().with_style(style("{spinner} {prefix}  {wide_msg:.dim}"));
         bar.enable_steady_tick(Duration::from_millis(100));
         self.show(bar, what);
     }
 
-    /// A stage begins that goes through so many units of work: ticks, runs, points.
+    /// Shows a stage with a number of units: ticks, runs, points.
     pub fn run(&self, what: &str, units: impl Into<u64>) {
         let bar = ProgressBar::new(units.into());
         self.show(bar.with_style(style("{prefix}  {bar:40} {percent:>3} %  {elapsed}, {eta} left")), what);
     }
 
-    /// So many units are done.
-    pub fn at(&self, units: u32) {
+    /// Sets the number of finished units.
+    pub fn set_position(&self, units: u32) {
         if let Some(bar) = &*self.bar() {
             bar.set_position(units.into());
         }
     }
 
-    /// So many more units are done.
-    pub fn done(&self, units: u64) {
+    /// Adds finished units.
+    pub fn advance(&self, units: u64) {
         if let Some(bar) = &*self.bar() {
             bar.inc(units);
         }
     }
 
-    /// A line that stays above the moving one; on anything but a terminal results speak for themselves.
-    pub fn say_above(&self, line: &str) {
+    /// Prints a line above the progress line, on a terminal only.
+    pub fn print_above(&self, line: &str) {
         if let Some(bar) = self.bar().as_ref().filter(|bar| !bar.is_hidden()) {
             bar.println(crate::output::on(&std::io::stderr(), line));
         }
     }
 
-    /// A word from a stage. Output of other programs passes by; what this program says itself stays.
-    pub fn say(&self, line: &str) {
+    /// Prints a message of a stage. The program's own messages stay; output of other programs only passes through the
+    /// progress line.
+    pub fn print_message(&self, line: &str) {
         let line = &*escaped(line);
         let own = line.starts_with(|first: char| first.is_ascii_lowercase()) && !line.starts_with("warning");
         match &*self.bar() {
@@ -106,7 +107,7 @@ impl Progress {
         }
     }
 
-    /// Nothing is under way any more.
+    /// Removes the progress line.
     pub fn clear(&self) {
         if let Some(bar) = self.bar().take() {
             bar.finish_and_clear();
@@ -114,7 +115,7 @@ impl Progress {
         }
     }
 
-    /// A thread that panicked has left the line as it was.
+    /// A panic in another thread leaves the line consistent.
     fn bar(&self) -> MutexGuard<'_, Option<ProgressBar>> {
         self.bar.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -128,7 +129,7 @@ impl Progress {
 }
 
 fn style(template: &str) -> ProgressStyle {
-    // The templates are constants of this file; one that cannot be read falls back to the plain style.
+    // The templates are constants of this file; a wrong one would fall back to the default style.
     ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
@@ -136,30 +137,30 @@ fn style(template: &str) -> ProgressStyle {
 mod tests {
     use super::*;
 
-    /// Where the line stands, of how much; `None` without a line.
+    /// Position and length of the progress line; `None` without a line.
     fn stands(progress: &Progress) -> Option<(u64, Option<u64>)> {
         progress.bar().as_ref().map(|bar| (bar.position(), bar.length()))
     }
 
     #[test]
-    fn a_run_goes_on_by_its_units_until_it_is_cleared() {
+    fn run_counts_units_until_cleared() {
         let progress = Progress::new();
-        progress.at(3);
+        progress.set_position(3);
         assert_eq!(stands(&progress), None, "nothing is under way yet");
         progress.run("running", 10_u32);
-        progress.at(5);
-        progress.done(2);
+        progress.set_position(5);
+        progress.advance(2);
         assert_eq!(stands(&progress), Some((7, Some(10))));
         progress.clear();
-        progress.at(6);
+        progress.set_position(6);
         assert_eq!(stands(&progress), None);
     }
 
     #[test]
-    fn a_stage_takes_the_place_of_the_one_before() {
+    fn stage_replaces_previous_stage() {
         let progress = Progress::new();
         progress.run("running", 10_u32);
-        progress.at(5);
+        progress.set_position(5);
         progress.stage("building");
         assert_eq!(stands(&progress), Some((0, None)), "a stage of unknown length");
         let bar = progress.bar().clone();
@@ -167,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn work_ends_without_a_line() {
+    fn finished_work_leaves_no_line() {
         let left = Progress::during(|progress| {
             progress.run("running", 10_u32);
             Ok(progress.bar().clone())

@@ -1,4 +1,4 @@
-//! Where the figures of a record come from: date, sources, host.
+//! Origin of a record's figures: date, sources, host.
 
 use std::process::Command;
 
@@ -7,13 +7,13 @@ use crate::workspace::workspace;
 /// Version of this command.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Now, UTC, to the second, as ISO 8601 has it.
+/// Current time in UTC, to the second, in ISO 8601.
 pub fn date() -> String {
     let now = time::OffsetDateTime::now_utc();
     now.replace_nanosecond(0).unwrap_or(now).format(&time::format_description::well_known::Rfc3339).unwrap_or_default()
 }
 
-/// The sources' commit, if they are under git; with ` (changed)` if they differ from it.
+/// Commit of the sources, if they are under git; with ` (changed)` if they differ from it.
 pub fn git_commit() -> Option<String> {
     let git = |arguments: &[&str]| {
         let output = Command::new("git").arg("-C").arg(workspace()).args(arguments).output().ok()?;

@@ -1,5 +1,5 @@
-//! Holds published schemas to the types that are written: `docs/reference/*.schema.json` are made from them, and a page
-//! of docs/reference must tell every key. Only tests use it.
+//! Tests of published schemas: `docs/reference/*.schema.json` are generated from the types, and a page of
+//! docs/reference must explain every key.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -14,7 +14,7 @@ fn document(name: &str) -> PathBuf {
     workspace().join("docs/reference").join(name)
 }
 
-/// Fails unless docs/reference/`name` is the schema of `T`; `UPDATE_SCHEMA` makes it so.
+/// Fails unless docs/reference/`name` is the schema of `T`; with `UPDATE_SCHEMA` it updates the file.
 pub fn assert_published<T: JsonSchema>(name: &str) {
     let path = document(name);
     let schema = serde_json::to_string_pretty(&schemars::schema_for!(T)).expect("a schema is JSON") + "\n";
@@ -25,7 +25,7 @@ pub fn assert_published<T: JsonSchema>(name: &str) {
     assert!(published == schema, "run `UPDATE_SCHEMA=1 cargo test schema` and review the change");
 }
 
-/// Fails unless docs/reference/`page` tells every key of `T` and all of `others`, more than `least` words in all.
+/// Fails unless docs/reference/`page` explains every key of `T` and all of `others`, more than `least` words in total.
 pub fn assert_explained<T: JsonSchema>(page: &str, others: impl IntoIterator<Item = String>, least: usize) {
     let text = fs::read_to_string(document(page)).unwrap_or_else(|error| panic!("docs/reference/{page}: {error}"));
     let mut wanted: BTreeSet<String> = others.into_iter().collect();
@@ -34,33 +34,33 @@ pub fn assert_explained<T: JsonSchema>(page: &str, others: impl IntoIterator<Ite
     assert!(wanted.len() > least && missing.is_empty(), "not explained: {missing:?}");
 }
 
-/// Fails unless a value is what the published schema docs/reference/`name` says, with no key that it does not know.
+/// Fails unless a value is valid by the published schema docs/reference/`name`, without unknown keys.
 pub fn assert_valid(name: &str, value: &Value) {
     let path = document(name);
     let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let schema: Value = serde_json::from_str(&text).expect("a schema is JSON");
-    let faults = faults(&schema, &schema, value, "");
-    assert!(faults.is_empty(), "{name}: {}", faults.join("; "));
+    let violations = violations(&schema, &schema, value, "");
+    assert!(violations.is_empty(), "{name}: {}", violations.join("; "));
 }
 
-/// Where a value is not what a schema says, as far as schemas made from types say it.
-fn faults(root: &Value, schema: &Value, value: &Value, place: &str) -> Vec<String> {
+/// Violations of a schema by a value, for the rules that generated schemas use.
+fn violations(root: &Value, schema: &Value, value: &Value, place: &str) -> Vec<String> {
     let mut found = Vec::new();
     let Value::Object(rules) = schema else { return found };
     for (rule, told) in rules {
         match (rule.as_str(), told, value) {
             ("$ref", Value::String(to), _) => match root.pointer(to.trim_start_matches('#')) {
-                Some(schema) => found.extend(faults(root, schema, value, place)),
+                Some(schema) => found.extend(violations(root, schema, value, place)),
                 None => found.push(format!("{to} is not in the schema")),
             },
             ("type", told, _) => {
                 let told = told.as_array().cloned().unwrap_or_else(|| vec![told.clone()]);
-                if !told.iter().filter_map(Value::as_str).any(|told| is_of(told, value)) {
+                if !told.iter().filter_map(Value::as_str).any(|told| has_type(told, value)) {
                     found.push(format!("{place} is {value}, not {told:?}"));
                 }
             }
             ("anyOf" | "oneOf", Value::Array(ways), _)
-                if ways.iter().all(|way| !faults(root, way, value, place).is_empty()) =>
+                if ways.iter().all(|way| !violations(root, way, value, place).is_empty()) =>
             {
                 found.push(format!("{place} is {value}, which is none of {} ways", ways.len()));
             }
@@ -73,19 +73,19 @@ fn faults(root: &Value, schema: &Value, value: &Value, place: &str) -> Vec<Strin
             ("properties", Value::Object(known), Value::Object(map)) => {
                 for (name, value) in map {
                     match known.get(name) {
-                        Some(schema) => found.extend(faults(root, schema, value, &format!("{place}/{name}"))),
+                        Some(schema) => found.extend(violations(root, schema, value, &format!("{place}/{name}"))),
                         None => found.push(format!("{place}/{name} is not in the schema")),
                     }
                 }
             }
             ("additionalProperties", schema, Value::Object(map)) if !rules.contains_key("properties") => {
                 found.extend(
-                    map.iter().flat_map(|(name, value)| faults(root, schema, value, &format!("{place}/{name}"))),
+                    map.iter().flat_map(|(name, value)| violations(root, schema, value, &format!("{place}/{name}"))),
                 );
             }
             ("items", schema, Value::Array(values)) => {
                 let each = values.iter().enumerate();
-                found.extend(each.flat_map(|(at, value)| faults(root, schema, value, &format!("{place}/{at}"))));
+                found.extend(each.flat_map(|(at, value)| violations(root, schema, value, &format!("{place}/{at}"))));
             }
             ("minItems", told, Value::Array(values)) if told.as_u64() > Some(values.len() as u64) => {
                 found.push(format!("{place} has {} entries", values.len()));
@@ -102,7 +102,7 @@ fn faults(root: &Value, schema: &Value, value: &Value, place: &str) -> Vec<Strin
     found
 }
 
-fn is_of(kind: &str, value: &Value) -> bool {
+fn has_type(kind: &str, value: &Value) -> bool {
     match kind {
         "null" => value.is_null(),
         "boolean" => value.is_boolean(),
@@ -115,7 +115,7 @@ fn is_of(kind: &str, value: &Value) -> bool {
     }
 }
 
-/// Keys of objects, everywhere in a schema.
+/// Collects the keys of all objects in a schema.
 fn keys(schema: &Value, found: &mut BTreeSet<String>) {
     match schema {
         Value::Object(map) => {
@@ -138,7 +138,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_value_is_held_to_each_rule_of_its_schema() {
+    fn schema_violations_are_found() {
         let schema = json!({
             "$defs": {"Part": {"type": "object", "properties": {"one": {"type": "number"}}, "required": ["one"]}},
             "type": "object",
@@ -151,7 +151,7 @@ mod tests {
             "required": ["kind"],
         });
         let good = json!({"kind": "a", "parts": [{"one": 1.5}], "maybe": null, "counts": {"x": 3}});
-        assert_eq!(faults(&schema, &schema, &good, ""), Vec::<String>::new());
+        assert_eq!(violations(&schema, &schema, &good, ""), Vec::<String>::new());
         for (bad, why) in [
             (json!({}), "/kind is missing"),
             (json!({"kind": "c"}), "/kind is"),
@@ -162,7 +162,7 @@ mod tests {
             (json!({"kind": "a", "maybe": 3}), "/maybe is 3"),
             (json!({"kind": "a", "counts": {"x": -1}}), "/counts/x is -1"),
         ] {
-            let found = faults(&schema, &schema, &bad, "");
+            let found = violations(&schema, &schema, &bad, "");
             assert!(found.len() == 1 && found[0].starts_with(why), "{bad}: {found:?}");
         }
     }

@@ -1,23 +1,23 @@
-//! Seeds as an argument: one, or all from one to another.
+//! Seeds as an argument: one seed, or a range.
 
 use std::fmt::{self, Display, Formatter};
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-/// Seeds from one to another, both among them.
+/// Range of seeds, inclusive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Seeds {
-    /// The first.
+    /// First seed.
     pub first: u64,
-    /// The last.
+    /// Last seed.
     pub last: u64,
 }
 
-/// Most seeds of a run: more are a slip of the keyboard.
-pub const MOST_SEEDS: u64 = 10_000;
+/// Largest number of seeds of a run; more are likely a typing error.
+pub const MAX_SEEDS: u64 = 10_000;
 
 impl Seeds {
-    /// In order.
+    /// All seeds in order.
     pub fn each(self) -> RangeInclusive<u64> {
         self.first..=self.last
     }
@@ -26,15 +26,15 @@ impl Seeds {
 impl FromStr for Seeds {
     type Err = String;
 
-    /// `7`, or `1-10000`.
+    /// Parses `7`, or `1-10000`.
     fn from_str(text: &str) -> Result<Self, String> {
         let (first, last) = text.split_once('-').filter(|(first, _)| !first.is_empty()).unwrap_or((text, text));
         let [Ok(first), Ok(last)] = [first, last].map(str::parse) else {
             return Err(format!("a seed is a whole number from 0 to {}, several are written as 1-200", u64::MAX));
         };
         match last {
-            last if last < first => Err(format!("no seed is from {first} to {last}")),
-            last if last - first >= MOST_SEEDS => Err(format!("{MOST_SEEDS} seeds are the most")),
+            last if last < first => Err(format!("the range of seeds {first}-{last} is empty")),
+            last if last - first >= MAX_SEEDS => Err(format!("at most {MAX_SEEDS} seeds are possible")),
             last => Ok(Self { first, last }),
         }
     }
@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn seeds_are_one_or_from_one_to_another() {
+    fn seeds_parse_number_or_range() {
         let read = |text: &str| text.parse::<Seeds>().map(|seeds| (seeds.first, seeds.last));
         assert_eq!(read("7"), Ok((7, 7)));
         assert_eq!(read("201-400"), Ok((201, 400)));

@@ -5,37 +5,37 @@ use std::f64::consts::TAU;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
-/// How samples are weighted.
+/// Window function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Window {
-    /// All alike: exact for a whole number of cycles.
+    /// Equal weights: exact for a whole number of cycles.
     Rectangular,
-    /// Hann's: a frequency that does not fit the window leaks into two neighbouring lines only.
+    /// Hann's window: a frequency between two lines leaks into two neighbouring lines only.
     Hann,
 }
 
-/// Which mean is subtracted first.
+/// Mean that is subtracted first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mean {
-    /// That of the samples as they are.
+    /// Mean of the samples.
     Plain,
-    /// That of the samples as they are weighted, so that the window does not smear it over its neighbours.
+    /// Mean of the weighted samples, so that the window does not spread it over its neighbours.
     Weighted,
 }
 
-/// Half the width of the main lobe of Hann's window, in lines.
-const LOBE: usize = 2;
-/// Fewer samples than this have no spectrum.
-const LEAST: usize = 16;
+/// Half the width of the main lobe of Hann's window [lines].
+const HALF_LOBE: usize = 2;
+/// Least number of samples of a spectrum.
+const MIN_SAMPLES: usize = 16;
 
-/// Amplitudes of the sines that would show the same lines, from frequency zero to half the sampling rate; line k lies at
-/// k cycles in the whole stretch. Nothing of fewer than two samples.
+/// Amplitudes of the sines with these lines, from frequency zero to half the sampling rate; line k lies at k cycles in
+/// the whole signal. Empty for fewer than two samples.
 pub fn amplitudes(signal: &[f64], window: Window, mean: Mean) -> Vec<f64> {
     let count = signal.len();
     if count < 2 {
         return Vec::new();
     }
-    // Their mean is 1.
+    // The mean of the weights is 1.
     let weight = |index: usize| match window {
         Window::Rectangular => 1.0,
         Window::Hann => 1.0 - (TAU * index as f64 / count as f64).cos(),
@@ -49,14 +49,14 @@ pub fn amplitudes(signal: &[f64], window: Window, mean: Mean) -> Vec<f64> {
         signal.iter().enumerate().map(|(index, value)| Complex::new((value - mean) * weight(index), 0.0)).collect();
     FftPlanner::new().plan_fft_forward(count).process(&mut values);
     let lines = values[..count / 2 + 1].iter().enumerate().map(|(line, value)| {
-        // Zero and half the sampling rate have no mirror image to share their amplitude with.
+        // Zero and half the sampling rate have no mirror line to share their amplitude with.
         let single = line == 0 || 2 * line == count;
         value.norm() / count as f64 * if single { 1.0 } else { 2.0 }
     });
     lines.collect()
 }
 
-/// The spectrum of a motion that need not be periodic in the window: under Hann's window, about its mean.
+/// Spectrum of a motion that need not be periodic in the window: Hann's window, about the mean.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spectrum {
     /// Distance of neighbouring frequencies [Hz].
@@ -66,33 +66,33 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    /// Of samples at `rate` [Hz]; none of too few, or where one is not finite.
-    pub fn of(samples: &[f64], rate: f64) -> Option<Self> {
+    /// Spectrum of samples at `rate` [Hz]; `None` with too few samples, or if one is not finite.
+    pub fn new(samples: &[f64], rate: f64) -> Option<Self> {
         let count = samples.len();
-        if count < LEAST || samples.iter().any(|sample| !sample.is_finite()) {
+        if count < MIN_SAMPLES || samples.iter().any(|sample| !sample.is_finite()) {
             return None;
         }
         let mut amplitudes = amplitudes(samples, Window::Hann, Mean::Weighted);
         amplitudes.truncate(count / 2);
-        // Nothing but rounding is left at zero. It counts as the other lines do, so that of rest, which is all rounding,
-        // none stands out.
+        // Only rounding is left at zero. It is weighted like the other lines, so that no line stands out in a signal at
+        // rest.
         amplitudes[0] *= 2.0;
         Some(Self { step: rate / count as f64, amplitudes })
     }
 
-    /// Root of the power beside a frequency over the root of its own; none where the samples cannot tell.
-    pub fn beside(&self, frequency: f64) -> Option<f64> {
+    /// Root of the power outside a frequency over the root of the power at it; `None` if the samples cannot resolve it.
+    pub fn non_fundamental_ratio(&self, frequency: f64) -> Option<f64> {
         let place = (frequency / self.step).round() as usize;
-        if place <= 2 * LOBE || place + LOBE >= self.amplitudes.len() {
+        if place <= 2 * HALF_LOBE || place + HALF_LOBE >= self.amplitudes.len() {
             return None;
         }
         let power = |from: usize, to: usize| self.amplitudes[from..to].iter().map(|a| a * a).sum::<f64>();
-        let own = power(place - LOBE, place + LOBE + 1);
-        let all = power(LOBE + 1, self.amplitudes.len());
+        let own = power(place - HALF_LOBE, place + HALF_LOBE + 1);
+        let all = power(HALF_LOBE + 1, self.amplitudes.len());
         (own > 0.0).then(|| ((all - own).max(0.0) / own).sqrt())
     }
 
-    /// The greatest amplitude and its frequency [Hz].
+    /// Greatest amplitude, with its frequency [Hz].
     pub fn greatest(&self) -> (f64, f64) {
         let (place, amplitude) = self
             .amplitudes
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn whole_cycles_have_their_amplitudes_and_nothing_else() {
+    fn whole_cycles_give_exact_amplitudes() {
         // 300 samples of 10 ms: three lines a hertz.
         for (line, amplitude) in amplitudes(&sines(300), Window::Rectangular, Mean::Plain).into_iter().enumerate() {
             let expected = match line {
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn hanns_window_keeps_amplitudes_and_contains_leaks() {
+    fn hann_window_limits_leakage() {
         let lines = amplitudes(&sines(1024), Window::Hann, Mean::Plain);
         let near = |at: f64| {
             let within = |line: usize| (line as f64 / 10.24 - at).abs() < 0.2;
@@ -141,29 +141,29 @@ mod tests {
     }
 
     #[test]
-    fn nothing_gives_nothing() {
+    fn empty_signal_has_no_amplitudes() {
         assert!(amplitudes(&[], Window::Hann, Mean::Plain).is_empty());
         assert!(amplitudes(&[1.0], Window::Hann, Mean::Plain).is_empty());
     }
 
     #[test]
-    fn a_sine_has_its_amplitude_at_its_frequency() {
-        let spectrum = Spectrum::of(&samples(|t| 7.0 + 3.0 * (TAU * 50.0 * t).sin()), 1000.0).expect("long enough");
+    fn sine_peaks_at_its_frequency() {
+        let spectrum = Spectrum::new(&samples(|t| 7.0 + 3.0 * (TAU * 50.0 * t).sin()), 1000.0).expect("long enough");
         let (frequency, amplitude) = spectrum.greatest();
         assert!((frequency - 50.0).abs() < 0.2 && (amplitude - 3.0).abs() < 1e-9, "{frequency} Hz, {amplitude}");
-        assert!(spectrum.beside(50.0).is_some_and(|rest| rest < 1e-9));
+        assert!(spectrum.non_fundamental_ratio(50.0).is_some_and(|rest| rest < 1e-9));
     }
 
     #[test]
-    fn what_is_beside_the_mesh_frequency_is_told_by_its_power() {
+    fn ratio_beside_frequency_follows_power() {
         let wave = |t: f64| (TAU * 60.0 * t).sin() + 2.0 * (TAU * 20.0 * t).sin();
-        let beside = Spectrum::of(&samples(wave), 1000.0).and_then(|spectrum| spectrum.beside(60.0));
+        let beside = Spectrum::new(&samples(wave), 1000.0).and_then(|spectrum| spectrum.non_fundamental_ratio(60.0));
         assert!(beside.is_some_and(|beside| (beside - 2.0).abs() < 1e-6), "{beside:?}");
     }
 
     #[test]
-    fn too_few_samples_or_a_motion_that_diverged_have_no_spectrum() {
-        assert!(Spectrum::of(&[1.0; 8], 1000.0).is_none());
-        assert!(Spectrum::of(&[f64::NAN; 100], 1000.0).is_none());
+    fn short_or_diverged_signal_has_no_spectrum() {
+        assert!(Spectrum::new(&[1.0; 8], 1000.0).is_none());
+        assert!(Spectrum::new(&[f64::NAN; 100], 1000.0).is_none());
     }
 }

@@ -1,8 +1,8 @@
-//! The folder of this workspace: the firmware is built from it.
+//! Folder of this workspace, from which the firmware is built.
 
 use std::path::{Path, PathBuf};
 
-/// The workspace that this command was built from: the firmware's sources are in it.
+/// Workspace that this command was built from, with the firmware's sources.
 pub fn workspace() -> PathBuf {
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));
     package.ancestors().nth(2).unwrap_or(package).to_path_buf()

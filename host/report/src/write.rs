@@ -1,5 +1,5 @@
-//! Safe writing: into a temporary file beside the target, then renamed, so that a reader sees the old file or the whole
-//! new one.
+//! Safe writing: into a temporary file beside the target, then renamed, so that a reader sees the old file or the
+//! complete new one.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -9,42 +9,43 @@ use std::time::Duration;
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
-use crate::interruption::InOrder;
+use crate::interruption::UninterruptedWork;
 
-/// Whether a file that is to be written stands for standard output.
+/// Returns true if a path stands for standard output.
 pub fn is_standard_output(file: &Path) -> bool {
     file.as_os_str() == "-"
 }
 
-/// Writes a whole file, or leaves the old one as it was.
+/// Writes a complete text file, or leaves the old one unchanged.
 pub fn write_text(path: &Path, text: &str) -> Outcome<()> {
     write_bytes(path, text.as_bytes())
 }
 
-/// The same for what is no text.
+/// Writes a complete file, or leaves the old one unchanged.
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> Outcome<()> {
     write_with(path, |_| Ok(()), |file| file.write_all(bytes))
 }
 
-/// Writes a record as JSON in one line, whole or not at all.
+/// Writes a record as JSON in one line, completely or not at all.
 pub fn write_record(path: &Path, record: &impl Serialize) -> Outcome<()> {
     write_with(path, |_| Ok(()), |file| record_into(file, record))
 }
 
-/// A record as JSON in one line.
+/// Writes a record as JSON in one line.
 pub(crate) fn record_into(file: &mut impl Write, record: &impl Serialize) -> io::Result<()> {
     serde_json::to_writer(&mut *file, record)?;
     file.write_all(b"\n")
 }
 
-/// Fills a file, whole or not at all. `ready` is told where all of it lies, just before it takes its name.
+/// Fills a file, completely or not at all. `ready` receives the path of the complete temporary file just before it is
+/// renamed.
 pub(crate) fn write_with(
     path: &Path,
     ready: impl FnOnce(&Path) -> io::Result<()>,
     fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
 ) -> Outcome<()> {
-    let _in_order = InOrder::begin();
-    // A link stays a link: what it points to is replaced.
+    let _uninterrupted = UninterruptedWork::begin();
+    // A link stays a link: its target is replaced.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let written = match fs::metadata(&target) {
         Ok(there) if there.is_dir() => Err(io::Error::from(ErrorKind::IsADirectory)),
@@ -54,7 +55,7 @@ pub(crate) fn write_with(
         }
         _ => replace(&target, ready, fill),
     };
-    written.map_err(|source| unwritten(path, &source))
+    written.map_err(|source| write_failure(path, &source))
 }
 
 fn replace(
@@ -65,16 +66,16 @@ fn replace(
     remove_left_behind(target);
     let temporary = temporary_beside(target);
     let written = File::create(&temporary).and_then(|file| {
-        // By this others see that it is in use. A file system without locks is no reason not to write.
+        // The lock shows others that the file is in use. A file system without locks can still be written to.
         let _ = file.try_lock();
-        // A full disk may only be noticed when the data leave the cache.
+        // A full disk may only show when the data leave the cache.
         let file = fill_whole(file, fill)?;
         file.sync_all()?;
         ready(&temporary)?;
         fs::rename(&temporary, target)
     });
     written.inspect_err(|_| {
-        // The half-written file is of no use to anyone; if it cannot be removed the first error says more.
+        // The partial file is useless; if it cannot be removed, the first error is more informative.
         let _ = fs::remove_file(&temporary);
     })
 }
@@ -85,7 +86,7 @@ fn fill_whole(file: File, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<
     buffered.into_inner().map_err(io::IntoInnerError::into_error)
 }
 
-/// Tries whether a file could be written beside a target, and leaves nothing.
+/// Tests whether a file could be written beside a target, and leaves no file.
 pub(crate) fn try_to_write(target: &Path, bytes: &[u8]) -> io::Result<()> {
     remove_left_behind(target);
     let temporary = temporary_beside(target);
@@ -94,26 +95,26 @@ pub(crate) fn try_to_write(target: &Path, bytes: &[u8]) -> io::Result<()> {
     tried.and(removed)
 }
 
-/// A file that another process holds is asked for so many times, so far apart.
+/// Attempts to lock a file that another process holds, and the pause between them.
 const LOCK_ATTEMPTS: u32 = 20;
 const LOCK_PAUSE: Duration = Duration::from_millis(50);
 
-/// Takes a file for this process alone, until it is closed. A process that has just ended may hold it for a moment longer.
+/// Locks a file for this process until it is closed. A process that has just ended may hold the lock a moment longer.
 pub fn locked(file: &File) -> bool {
     for _ in 0..LOCK_ATTEMPTS {
         match file.try_lock() {
             Err(TryLockError::WouldBlock) => std::thread::sleep(LOCK_PAUSE),
-            // A file system without locks is no reason not to write.
+            // A file system without locks can still be written to.
             Ok(()) | Err(TryLockError::Error(_)) => return true,
         }
     }
     false
 }
 
-/// What the name of a temporary file has before and behind the process that writes it.
+/// Parts of a temporary file's name before and after the process id.
 const TEMPORARY: [&str; 2] = [".joint-", ".tmp"];
 
-/// A name in the same folder, since a rename cannot cross file systems.
+/// Name in the target's folder, since a rename cannot cross file systems.
 fn temporary_beside(path: &Path) -> PathBuf {
     let mut name = std::ffi::OsString::from(".");
     name.push(path.file_name().unwrap_or_default());
@@ -121,7 +122,7 @@ fn temporary_beside(path: &Path) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// Removes the temporary files of a target whose processes were killed. One that is still being written is locked.
+/// Removes temporary files of a target whose processes were killed. A file that is being written is locked.
 fn remove_left_behind(target: &Path) {
     let (Some(folder), Some(name)) = (target.parent(), target.file_name().and_then(|name| name.to_str())) else {
         return;
@@ -136,14 +137,14 @@ fn remove_left_behind(target: &Path) {
             && entry.file_type().is_ok_and(|kind| kind.is_file())
         {
             let left = File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok());
-            // Where it cannot be removed it is no harm.
+            // A file that cannot be removed does no harm.
             let _ = left.then(|| fs::remove_file(entry.path()));
         }
     }
 }
 
-/// Names the file, the system's error and the help.
-pub fn unwritten(path: &Path, source: &io::Error) -> Failure {
+/// Error: a file cannot be written, with the system's error and a remedy.
+pub fn write_failure(path: &Path, source: &io::Error) -> Failure {
     let help = match source.kind() {
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
             "free some space, or name a path on another disk"
@@ -160,8 +161,9 @@ pub fn unwritten(path: &Path, source: &io::Error) -> Failure {
 mod tests {
     use super::*;
 
+    /// The temporary file of a killed process is removed, that of a running process stays.
     #[test]
-    fn what_a_killed_process_left_is_removed_and_what_another_is_writing_is_not() {
+    fn only_stale_temporaries_are_removed() {
         let folder = tempfile::tempdir().expect("a folder");
         let target = folder.path().join("a.json");
         let make = |name: &str| File::create(folder.path().join(name)).expect("room");
@@ -178,11 +180,11 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn a_full_disk_is_named_and_so_is_the_mend() {
+    fn full_disk_error_names_remedy() {
         // A short text stays in the buffer: the failure comes only when it is flushed.
         let full = File::options().write(true).open("/dev/full").expect("Linux has a device that is always full");
         let source = fill_whole(full, |file| file.write_all(b"{}")).expect_err("it is full");
-        let failure = unwritten(Path::new("out/run.json"), &source);
+        let failure = write_failure(Path::new("out/run.json"), &source);
         assert!(failure.message().contains("out/run.json"), "{failure}");
         assert!(failure.help().is_some_and(|help| help.contains("free some space")), "{failure}");
     }

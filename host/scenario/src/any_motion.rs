@@ -1,111 +1,121 @@
-//! The profiles `any` and `real`. `any`: a motion that each seed draws, and in many of them a load on the link, both together within the
-//! motor's torque. What is drawn depends on the seed and the true joint only, so that any one of ten thousand is run
-//! again by its number. `real`: one of seven motions that joints of robots make, its size drawn likewise.
+//! The profiles `any` and `real`. `any`: a random motion for each seed, often with a load on the link, both within the
+//! motor's torque. The draws depend on the seed and the true joint only, so each of ten thousand seeds can be repeated
+//! alone. `real`: one of seven motions of robot joints, of random size.
 
 use std::f64::consts::TAU;
 
 use joint_file::JointFile;
 use reference::closed_loop::rivals::Knowledge;
 
-use super::file::{MotionProfile, ProfileLoad, RealMotion, STEPS, Trajectory, Wave};
+use super::file::{MotionProfile, ProfileLoad, RealMotion, STEP_RATE, Trajectory, Wave};
 use super::random::{NumberOrRange, RandomStream};
 
-/// Part of what the motor can give that motion and load may take together. The rest is the controllers', for their
-/// feedback and for torque constants that are less than they say.
-pub(super) const TAKEN: f64 = 0.8;
-/// Least and most that a motion takes of that, and a load of what a motion leaves.
-const SHARE: NumberOrRange = NumberOrRange::Between(0.1, 0.9);
-/// From the slowest to the fastest motion [Hz].
-const FREQUENCY: [f64; 2] = [0.1, 3.0];
-/// From the slowest to the fastest load [Hz].
-const LOAD_FREQUENCY: [f64; 2] = [0.3, 2.0];
-/// Durations of a move [s], from steps to moves that are no shorter than those of an arm.
-const MOVE: [f64; 2] = [0.04, 1.0];
-/// Durations of a move of a real joint [s].
-const REAL_MOVE: [f64; 2] = [0.1, 0.6];
-/// Shortest rests between moves [s].
-const REST: NumberOrRange = NumberOrRange::Between(0.2, 1.0);
-/// A slow motion goes no farther than this [rad].
-const FARTHEST: f64 = 0.6;
-/// Most of a load to and fro, beyond what friction takes of it, over the rated torque [-]: it changes by 5 N m in 20 ms on Q1.
-const HARDEST_LOAD: f64 = 2.5 / 12.0;
-/// Part of the motions that go under a load; holds always do.
-const LOADED: f64 = 0.4;
+/// Share of the motor's torque available to motion and load together [-]. The rest is for feedback and for torque
+/// constants below their stated values.
+pub(super) const USABLE_TORQUE_SHARE: f64 = 0.8;
+/// Range of a motion's share of the available torque, and of a load's share of the remainder [-].
+const SHARE_RANGE: NumberOrRange = NumberOrRange::Between(0.1, 0.9);
+/// Range of motion frequencies [Hz].
+const FREQUENCY_RANGE: [f64; 2] = [0.1, 3.0];
+/// Range of load frequencies [Hz].
+const LOAD_FREQUENCY_RANGE: [f64; 2] = [0.3, 2.0];
+/// Range of durations of a move [s], from steps to moves as fast as an arm's.
+const MOVE_DURATION: [f64; 2] = [0.04, 1.0];
+/// Range of durations of a move of a real joint [s].
+const REAL_MOVE_DURATION: [f64; 2] = [0.1, 0.6];
+/// Range of the shortest rest between moves [s].
+const REST_DURATION: NumberOrRange = NumberOrRange::Between(0.2, 1.0);
+/// Largest amplitude of a slow motion [rad].
+const MAX_AMPLITUDE: f64 = 0.6;
+/// Largest alternating load beyond the friction, over the rated torque [-]: a change of 5 N m in 20 ms on Q1.
+const MAX_LOAD_RATIO: f64 = 2.5 / 12.0;
+/// Share of the motions that run under a load; holds always do.
+const LOADED_SHARE: f64 = 0.4;
 /// Largest acceleration of a least-jerk path, times its duration squared over its height: 10 / sqrt(3).
-const LEAST_JERK: f64 = 5.773_502_691_896_258;
-/// Largest acceleration of five sines over their standard deviation and the square of the highest's rate, all of them at
-/// the upper ends of their fifths: sqrt(2/5) (1 + 4 + 9 + 16 + 25) / 25.
-const FIVE_SINES: f64 = 1.391_402_175_4;
+const LEAST_JERK_ACCELERATION: f64 = 5.773_502_691_896_258;
+/// Largest acceleration of five sines over their standard deviation and the square of the highest angular frequency,
+/// each sine at the upper end of its fifth: sqrt(2/5) (1 + 4 + 9 + 16 + 25) / 25.
+const FIVE_SINES_ACCELERATION: f64 = 1.391_402_175_4;
 
-/// The motion and the load of a seed, for a joint as it truly is.
+/// Motion and load of a seed for the true joint.
 pub fn any_motion(joint: &Knowledge, truth: &JointFile, seed: u64) -> MotionProfile {
     let mut stream = RandomStream::new(seed, "any motion");
-    let usual = MotionProfile::of_kind("any");
+    let default = MotionProfile::default_of_kind("any");
     let inertia = joint.total_inertia * joint.ratio * joint.ratio;
-    let room = TAKEN * torque_left(joint, truth);
+    let room = USABLE_TORQUE_SHARE * available_torque(joint, truth);
     let kind = stream.uniform();
-    let share = SHARE.draw(&mut stream);
-    // A weight that the motor can hardly hold leaves no motion but a slow one.
+    let share = SHARE_RANGE.draw(&mut stream);
+    // If the motor can hardly hold the weight, only a slow motion is left.
     let acceleration = (share * room).max(0.0) / inertia;
-    let frequency = evenly_in_logarithm(FREQUENCY, &mut stream);
-    let duration = evenly_in_logarithm(MOVE, &mut stream);
-    let rest = REST.draw(&mut stream);
+    let frequency = log_uniform(FREQUENCY_RANGE, &mut stream);
+    let duration = log_uniform(MOVE_DURATION, &mut stream);
+    let rest = REST_DURATION.draw(&mut stream);
     let rate = TAU * frequency;
     let trajectory = match kind {
-        ..0.3 => Trajectory::Sine((acceleration / (rate * rate)).min(FARTHEST), frequency),
-        ..0.5 => Trajectory::Random((acceleration / (FIVE_SINES * rate * rate)).min(0.5 * FARTHEST), frequency),
-        ..0.8 => Trajectory::Steps((acceleration * duration * duration / LEAST_JERK).min(FARTHEST), duration, rest),
+        ..0.3 => Trajectory::Sine((acceleration / (rate * rate)).min(MAX_AMPLITUDE), frequency),
+        ..0.5 => Trajectory::Random(
+            (acceleration / (FIVE_SINES_ACCELERATION * rate * rate)).min(0.5 * MAX_AMPLITUDE),
+            frequency,
+        ),
+        ..0.8 => Trajectory::Steps(
+            (acceleration * duration * duration / LEAST_JERK_ACCELERATION).min(MAX_AMPLITUDE),
+            duration,
+            rest,
+        ),
         _ => Trajectory::Hold(0.0),
     };
     let holds = matches!(trajectory, Trajectory::Hold(_));
-    let loaded = stream.uniform() < LOADED || holds;
+    let loaded = stream.uniform() < LOADED_SHARE || holds;
     let left = if holds { room } else { (1.0 - share) * room };
-    let most = (HARDEST_LOAD * truth.parameters.rated_output_torque).min(left.max(0.0));
-    // A load that the link's friction holds moves nothing, and there is nothing to compare.
-    let held = if holds { break_away(joint, truth) } else { 0.0 };
-    let torque = held + SHARE.draw(&mut stream) * most;
+    let most = (MAX_LOAD_RATIO * truth.parameters.rated_output_torque).min(left.max(0.0));
+    // A load below the link's friction would move nothing.
+    let held = if holds { breakaway_torque(joint, truth) } else { 0.0 };
+    let torque = held + SHARE_RANGE.draw(&mut stream) * most;
     let wave = if stream.uniform() < 0.7 { Wave::Walk } else { Wave::Sine };
-    let load = ProfileLoad::Wave(wave, Some(torque), evenly_in_logarithm(LOAD_FREQUENCY, &mut stream));
-    MotionProfile { trajectory, load: if loaded { load } else { ProfileLoad::None }, ..usual }
+    let load = ProfileLoad::Wave(wave, Some(torque), log_uniform(LOAD_FREQUENCY_RANGE, &mut stream));
+    MotionProfile { trajectory, load: if loaded { load } else { ProfileLoad::None }, ..default }
 }
 
-/// One of the motions of real joints for a seed, at most as large as the motor can follow with the heaviest payload.
+/// Real motion of a seed, within the motor's torque even with the heaviest payload.
 pub fn real_motion(motion: Option<RealMotion>, joint: &Knowledge, truth: &JointFile, seed: u64) -> MotionProfile {
     let mut stream = RandomStream::new(seed, "real motion");
-    let room = (TAKEN * torque_left(joint, truth)).max(0.0);
+    let room = (USABLE_TORQUE_SHARE * available_torque(joint, truth)).max(0.0);
     let heavier = truth.surroundings.payload_step.ratio.max(1.0) - 1.0;
     let inertia = joint.total_inertia * joint.ratio * joint.ratio + heavier * truth.parameters.link_inertia;
-    let acceleration = SHARE.draw(&mut stream) * room / inertia;
-    // Drawn for every motion, so that the draws of one do not depend on which one it is.
-    let duration = evenly_in_logarithm(REAL_MOVE, &mut stream);
-    let rest = REST.draw(&mut stream);
-    let load = (SHARE.draw(&mut stream) * HARDEST_LOAD * truth.parameters.rated_output_torque).min(room);
+    let acceleration = SHARE_RANGE.draw(&mut stream) * room / inertia;
+    // Drawn for every kind of motion, so that the draws do not depend on the kind.
+    let duration = log_uniform(REAL_MOVE_DURATION, &mut stream);
+    let rest = REST_DURATION.draw(&mut stream);
+    let load = (SHARE_RANGE.draw(&mut stream) * MAX_LOAD_RATIO * truth.parameters.rated_output_torque).min(room);
     let of_sine = |frequency: f64, most: f64| (acceleration / (TAU * frequency).powi(2)).min(most);
-    let (trajectory, load) = match motion.unwrap_or(RealMotion::of_seed(seed)) {
-        RealMotion::Sine => (Trajectory::Sine(of_sine(1.0, FARTHEST), 1.0), ProfileLoad::None),
-        RealMotion::SlowSine => (Trajectory::Sine(of_sine(0.15, FARTHEST), 0.15), ProfileLoad::None),
-        RealMotion::Random => (Trajectory::Random(of_sine(2.0, 0.5 * FARTHEST) / FIVE_SINES, 2.0), ProfileLoad::None),
+    let (trajectory, load) = match motion.unwrap_or(RealMotion::for_seed(seed)) {
+        RealMotion::Sine => (Trajectory::Sine(of_sine(1.0, MAX_AMPLITUDE), 1.0), ProfileLoad::None),
+        RealMotion::SlowSine => (Trajectory::Sine(of_sine(0.15, MAX_AMPLITUDE), 0.15), ProfileLoad::None),
+        RealMotion::Random => {
+            (Trajectory::Random(of_sine(2.0, 0.5 * MAX_AMPLITUDE) / FIVE_SINES_ACCELERATION, 2.0), ProfileLoad::None)
+        }
         RealMotion::Moves => {
-            let height = (acceleration * duration * duration / LEAST_JERK).min(FARTHEST);
+            let height = (acceleration * duration * duration / LEAST_JERK_ACCELERATION).min(MAX_AMPLITUDE);
             (Trajectory::Steps(height, duration, rest), ProfileLoad::None)
         }
         RealMotion::DisturbedHold => {
-            let wave = ProfileLoad::Wave(Wave::Walk, Some(break_away(joint, truth) + load), 1.0);
+            let wave = ProfileLoad::Wave(Wave::Walk, Some(breakaway_torque(joint, truth) + load), 1.0);
             (Trajectory::Hold(0.0), wave)
         }
         RealMotion::Walking => {
-            // What the foot takes of the torque is not there for the swing; the largest acceleration is 2 of the first harmonic's.
+            // The foot's load reduces the torque for the swing; the largest acceleration is twice that of the first
+            // harmonic.
             let left = 0.5 * (acceleration - load / inertia).max(0.1 * acceleration);
-            let amplitude = (1.5 * left / (TAU * STEPS).powi(2)).min(FARTHEST);
-            (Trajectory::Walking(amplitude, STEPS), ProfileLoad::Stance(Some(load), STEPS))
+            let amplitude = (1.5 * left / (TAU * STEP_RATE).powi(2)).min(MAX_AMPLITUDE);
+            (Trajectory::Walking(amplitude, STEP_RATE), ProfileLoad::Stance(Some(load), STEP_RATE))
         }
         RealMotion::Rest => (Trajectory::Hold(0.0), ProfileLoad::None),
     };
-    MotionProfile { trajectory, load, ..MotionProfile::of_kind("real") }
+    MotionProfile { trajectory, load, ..MotionProfile::default_of_kind("real") }
 }
 
-/// What is left of the motor's torque, at the link, for acceleration and load [N m].
-pub(super) fn torque_left(joint: &Knowledge, truth: &JointFile) -> f64 {
+/// Motor torque left for acceleration and load, at the link [N m].
+pub(super) fn available_torque(joint: &Knowledge, truth: &JointFile) -> f64 {
     let around = &truth.surroundings;
     let errors = &around.torque_errors;
     let motor = around.torque_limit
@@ -114,14 +124,14 @@ pub(super) fn torque_left(joint: &Knowledge, truth: &JointFile) -> f64 {
         * (1.0 - errors.ripple_ratio);
     let at_motor = motor - joint.motor_friction - around.cogging_torque;
     let weight = around.payload_step.ratio.max(1.0) * joint.gravity.abs();
-    around.efficiency * joint.ratio * at_motor - weight - break_away(joint, truth)
+    around.efficiency * joint.ratio * at_motor - weight - breakaway_torque(joint, truth)
 }
 
 /// Dry friction of the link at rest [N m].
-pub(super) fn break_away(joint: &Knowledge, truth: &JointFile) -> f64 {
+pub(super) fn breakaway_torque(joint: &Knowledge, truth: &JointFile) -> f64 {
     (1.0 + truth.surroundings.load_friction.stribeck_rise_ratio) * joint.load_friction
 }
 
-fn evenly_in_logarithm([low, high]: [f64; 2], stream: &mut RandomStream) -> f64 {
+fn log_uniform([low, high]: [f64; 2], stream: &mut RandomStream) -> f64 {
     low * (high / low).powf(stream.uniform())
 }

@@ -1,5 +1,4 @@
-//! Runs one test: every seed and every controller, on all cores, and combines the results. The order of completion does
-//! not change them.
+//! Runs one test: every seed and every controller, on all cores. The results do not depend on the order of completion.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -20,7 +19,7 @@ use super::rig::RunError;
 use super::suite::Test;
 use super::trace::Trace;
 use super::values::MetricValues;
-use super::verdict::{Results, judge};
+use super::verdict::{Results, check_assertions};
 use report::checks::Verdict;
 use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
@@ -28,31 +27,31 @@ use report::folder::Folder;
 use report::seeds::Seeds;
 use simulation::bandwidth::Bandwidth;
 
-/// How tests are run.
+/// Options of a run of tests.
 pub struct RunOptions<'c> {
-    /// What is controlled.
+    /// Model of the joint.
     pub plant: PlantName,
     /// Seeds in place of the file's.
     pub seed: Option<Seeds>,
-    /// The full lists of seeds.
+    /// Runs the full lists of seeds.
     pub full: bool,
-    /// The boards that the tested controller runs on, if it does not run here.
+    /// Boards for the tested controller; `None` runs it on the host.
     pub boards: Option<&'c Boards<'c>>,
-    /// Whether what observers have learnt is kept, as a board keeps it.
-    pub memories: bool,
-    /// Where logs go.
+    /// Saves the estimated parameters after each run, as a board does.
+    pub save_memories: bool,
+    /// Folder of the logs.
     pub folder: &'c Folder,
-    /// Told after every run how many are done.
+    /// Called after every run with the number of finished runs.
     pub done: &'c (dyn Fn(u32) + Sync),
 }
 
 /// A finished test: its record, and the data of its pictures.
 pub struct FinishedTest {
-    /// Everything that is written.
+    /// Record that is written.
     pub record: TestRecord,
-    /// The shown seed's runs, in the order of the record's controllers.
+    /// Runs of the shown seed, in the order of the record's controllers.
     pub shown: Vec<(ControllerName, Trace)>,
-    /// Faults by their words, with the times at which they begin and end [s].
+    /// Words of the faults, with their start and end times [s].
     pub faults: Vec<(&'static str, [f64; 2])>,
 }
 
@@ -60,17 +59,18 @@ pub struct FinishedTest {
 struct Job {
     seed: u64,
     controller: ControllerName,
-    /// Whether its log, and what pictures are drawn from, are kept.
+    /// Keeps the log and the data of the pictures.
     keep_logs: bool,
 }
 
-/// Of more seeds than this only the shown one leaves a log: a log has some megabytes, and `--seed` repeats any run.
-const MOST_LOGGED: usize = 100;
+/// Largest number of seeds for which every run leaves a log of some megabytes. Above, only the shown seed does;
+/// `--seed` repeats any run.
+const MAX_LOGGED_SEEDS: usize = 100;
 
-struct Done {
+struct FinishedRun {
     values: Option<MetricValues>,
     run: TestRun,
-    /// For the pictures, if it is kept.
+    /// Data of the pictures, if kept.
     trace: Option<Trace>,
 }
 
@@ -91,31 +91,31 @@ impl Test {
 }
 
 /// Runs a test.
-pub fn run(test: &Test, options: &RunOptions<'_>, before: &AtomicU32) -> Outcome<FinishedTest> {
+pub fn run(test: &Test, options: &RunOptions<'_>, finished_runs: &AtomicU32) -> Outcome<FinishedTest> {
     let start = Instant::now();
     let deadline = start + Duration::from_secs_f64(test.file.timeout);
     let seeds = test.seeds(options.seed, options.full);
     let controllers = test.controllers();
-    let keep_logs = seeds.len() <= MOST_LOGGED;
+    let keep_logs = seeds.len() <= MAX_LOGGED_SEEDS;
     let job = |seed: u64| controllers.iter().map(move |controller| Job { seed, controller: *controller, keep_logs });
     let jobs: Vec<Job> = seeds.iter().flat_map(|seed| job(*seed)).collect();
-    let done: Vec<Outcome<Done>> = jobs
+    let done: Vec<Outcome<FinishedRun>> = jobs
         .par_iter()
         .map(|job| {
-            let done = one(test, options, job, deadline);
-            (options.done)(before.fetch_add(1, Ordering::Relaxed) + 1);
+            let done = run_job(test, options, job, deadline);
+            (options.done)(finished_runs.fetch_add(1, Ordering::Relaxed) + 1);
             done
         })
         .collect();
-    let done: Vec<Done> = done.into_iter().collect::<Outcome<_>>()?;
+    let done: Vec<FinishedRun> = done.into_iter().collect::<Outcome<_>>()?;
     let places: BTreeMap<u64, usize> = seeds.iter().enumerate().map(|(place, seed)| (*seed, place)).collect();
-    let of = |seed: u64, controller: ControllerName| {
+    let values_of = |seed: u64, controller: ControllerName| {
         let place = places.get(&seed)? * controllers.len() + controllers.iter().position(|name| *name == controller)?;
         done[place].values.clone()
     };
-    let assertions = judge(&test.file, &Results { seeds: &seeds, of: &of });
-    // What the tested controller broke off for is the test's own failure; a rival that breaks only costs its figures.
-    let own = |(job, done): (&Job, &Done)| {
+    let assertions = check_assertions(&test.file, &Results { seeds: &seeds, values_of: &values_of });
+    // If the tested controller's run breaks off, the test fails; a rival's broken run only costs its figures.
+    let own = |(job, done): (&Job, &FinishedRun)| {
         let why = done.run.broken.as_ref().filter(|_| job.controller == test.file.controller)?;
         Some((job.seed, format!("seed {}: {why}", job.seed)))
     };
@@ -126,14 +126,14 @@ pub fn run(test: &Test, options: &RunOptions<'_>, before: &AtomicU32) -> Outcome
     let shown_seed = failed.first().and_then(|failed| failed.seed).or(broken_seed).or(seeds.first().copied());
     let shown_seed = shown_seed.unwrap_or_default();
     let passed = failed.is_empty() && broken.is_empty();
-    let replay = replay(test, options, alone(&failed, &broken));
+    let replay = replay_command(test, options, single_failing_seed(&failed, &broken));
     let mut runs = Vec::new();
     let mut shown = Vec::new();
     for (job, mut done) in jobs.iter().zip(done) {
         if job.seed == shown_seed {
-            // The same run again, with all that was not kept of so many.
+            // Repeats the run with the log and the pictures that were not kept for so many seeds.
             if !keep_logs {
-                done = one(test, options, &Job { keep_logs: true, ..*job }, deadline)?;
+                done = run_job(test, options, &Job { keep_logs: true, ..*job }, deadline)?;
             }
             shown.push((job.controller, done.trace.unwrap_or_default()));
         }
@@ -149,7 +149,7 @@ pub fn run(test: &Test, options: &RunOptions<'_>, before: &AtomicU32) -> Outcome
         plant: options.plant.word().to_owned(),
         profile: test.file.profile.kind.to_owned(),
         controller: test.file.controller.word().to_owned(),
-        bandwidth: bandwidth(test, shown_seed),
+        bandwidth: bandwidth_record(test, shown_seed),
         duration_s: test.file.duration,
         settle_s: test.file.settle,
         faults: test.file.faults.iter().map(|fault| fault_word(fault).to_owned()).collect(),
@@ -167,12 +167,12 @@ pub fn run(test: &Test, options: &RunOptions<'_>, before: &AtomicU32) -> Outcome
 }
 
 /// Bandwidth of a test's compensation in a seed.
-fn bandwidth(test: &Test, seed: u64) -> Option<BandwidthRecord> {
+fn bandwidth_record(test: &Test, seed: u64) -> Option<BandwidthRecord> {
     if !test.file.controller.is_compensation() || test.file.controller == ControllerName::Probe {
         return None;
     }
     let case = test.case(seed).ok()?;
-    let range = Bandwidth::of(&case.nominal, &case.nominal_surroundings)?;
+    let range = Bandwidth::for_joint(&case.nominal, &case.nominal_surroundings)?;
     Some(BandwidthRecord {
         used_rad_per_s: case.bandwidth(&test.file).ok()?,
         asked: test.file.bandwidth.is_some(),
@@ -181,9 +181,8 @@ fn bandwidth(test: &Test, seed: u64) -> Option<BandwidthRecord> {
     })
 }
 
-/// The seed whose run alone shows all that failed, if there is one: what is made of several seeds, or fails with several,
-/// takes them all.
-fn alone(failed: &[&AssertionRecord], broken: &[(u64, String)]) -> Option<u64> {
+/// The only seed that shows every failure, if there is one; figures over several seeds need all of them.
+fn single_failing_seed(failed: &[&AssertionRecord], broken: &[(u64, String)]) -> Option<u64> {
     let of_one =
         failed.iter().map(|assertion| assertion.seed.filter(|_| assertion.aggregate == Aggregate::Worst.word()));
     let mut seeds = of_one.chain(broken.iter().map(|(seed, _)| Some(*seed)));
@@ -191,8 +190,8 @@ fn alone(failed: &[&AssertionRecord], broken: &[(u64, String)]) -> Option<u64> {
     seeds.all(|seed| seed == Some(first)).then_some(first)
 }
 
-/// The command that runs what failed again; with a seed only that of all.
-fn replay(test: &Test, options: &RunOptions<'_>, alone: Option<u64>) -> String {
+/// Command that repeats the failures; with a seed, only that seed's.
+fn replay_command(test: &Test, options: &RunOptions<'_>, alone: Option<u64>) -> String {
     let place = options.boards.map_or("--host".to_owned(), Boards::arguments);
     let alone = alone.map(|seed| Seeds { first: seed, last: seed });
     let seeds = match (alone.or(options.seed), options.full) {
@@ -203,12 +202,12 @@ fn replay(test: &Test, options: &RunOptions<'_>, alone: Option<u64>) -> String {
     format!("cargo joint hil {} {place} --plant {}{seeds}", quoted(&test.name), options.plant.word())
 }
 
-fn one(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) -> Outcome<Done> {
+fn run_job(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) -> Outcome<FinishedRun> {
     let mut case = test.case(job.seed)?;
-    // A log carries the joint file of its observer. A guess that no joint file may have is run all the same where nobody
-    // else reads it.
+    // A log carries the joint file of its observer. A nominal joint outside the limits of joint files is run anyway if
+    // no board or memory needs the file.
     if let Err(refused) = case.round_nominal()
-        && (options.boards.is_some() || options.memories)
+        && (options.boards.is_some() || options.save_memories)
     {
         return Err(refused);
     }
@@ -234,10 +233,10 @@ fn one(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) -> O
     });
     match both {
         Ok((history, without_gap)) => {
-            let values = MetricValues::of(&test.file, &case, &history, without_gap.as_ref());
+            let values = MetricValues::compute(&test.file, &case, &history, without_gap.as_ref());
             run.refusal = history.refusal().map(|refusal| refusal.to_string());
             run.digest = format!("{:016x}", history.digest);
-            run.figures = values.named().map(|(metric, value)| (metric.name(), value)).collect();
+            run.figures = values.available().map(|(metric, value)| (metric.name(), value)).collect();
             let name = format!("{}-seed{}-{}.mcap", test.stem(), job.seed, run.controller);
             let remarks = [
                 ("test", test.name.clone()),
@@ -256,17 +255,17 @@ fn one(test: &Test, options: &RunOptions<'_>, job: &Job, deadline: Instant) -> O
             if job.keep_logs {
                 run.log = Some(log_file::write(options.folder, &name, logged)?);
             }
-            if let Some(memory) = history.memory.filter(|_| options.memories) {
+            if let Some(memory) = history.memory.filter(|_| options.save_memories) {
                 let name = name.trim_end_matches(".mcap");
                 run.memory = Some(memory_file::write(options.folder, name, &memory, &case.nominal_text()?)?);
             }
-            Ok(Done { values: Some(values), run, trace: job.keep_logs.then(|| Trace::of(&history)) })
+            Ok(FinishedRun { values: Some(values), run, trace: job.keep_logs.then(|| Trace::from_history(&history)) })
         }
         Err(RunError::Refused(failure)) => Err(failure.while_doing(&test.name)),
         Err(RunError::Interrupted) => Err(Failure::interrupted("stopped by the user")),
         Err(error) => {
             run.broken = Some(error.to_string());
-            Ok(Done { values: None, run, trace: None })
+            Ok(FinishedRun { values: None, run, trace: None })
         }
     }
 }

@@ -1,23 +1,23 @@
-//! The controllers of a test by name: the compensation or a rival. While they run they are `rig::ActiveController`s.
+//! Controllers of a test by name: the compensation or a rival. `rig::ActiveController` is a running controller.
 
 /// A controller by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ControllerName {
-    /// Observer and compensation, told set-points ahead of time.
+    /// Observer and compensation with set-points ahead of time.
     Preview,
-    /// Observer and compensation, told the present only.
+    /// Observer and compensation with present set-points only.
     NoPreview,
     /// Observer and compensation with impedance set-points.
     Impedance,
-    /// The width probe of the observer: the load is held.
+    /// Width probe of the observer, with the load held.
     Probe,
     /// PID on the motor: position control without compensation.
     MotorPid,
-    /// The same PID where it is the motor that is held, and the link that is pushed.
+    /// Motor PID that holds the motor while the link is pushed.
     Locked,
-    /// The PID with an offset by the sign of the speed.
+    /// Motor PID with a torque offset by the sign of the speed.
     VelocitySign,
-    /// Output position over motor speed.
+    /// Output position loop over motor speed loop.
     LoadCascade,
     /// Motor PID with jump, feed-forward and an integral over the output: the best rival in position.
     OutputIntegral,
@@ -25,24 +25,24 @@ pub enum ControllerName {
     MotorSide,
     /// Spring at the link, damper at the motor: the best rival in impedance.
     LinkSpring,
-    /// Both at the link.
+    /// Spring and damper at the link.
     LinkSide,
-    /// No torque at all.
+    /// No torque.
     Off,
-    /// The compensation on the truth: no file names it.
+    /// Compensation fed with the true state; no file names it.
     TrueStateCompensation,
 }
 
 /// An impedance, and the rate of its set-points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gains {
-    /// [N m/rad].
+    /// Stiffness [N m/rad].
     pub stiffness: f64,
-    /// [N m s/rad].
+    /// Damping [N m s/rad].
     pub damping: f64,
-    /// [Hz].
+    /// Rate of the set-points [Hz].
     pub rate: f64,
-    /// Torque sent along for each unit of the motion's acceleration [kg m^2]; by default the joint's inertia.
+    /// Feed-forward torque for each unit of the motion's acceleration [kg m^2]; by default the joint's inertia.
     pub inertia: Option<f64>,
 }
 
@@ -53,7 +53,7 @@ impl Default for Gains {
 }
 
 impl ControllerName {
-    /// All that a file may name.
+    /// Controllers that a file may name.
     pub const ALL: [Self; 12] = [
         Self::Preview,
         Self::NoPreview,
@@ -69,8 +69,8 @@ impl ControllerName {
         Self::Off,
     ];
 
-    /// From its word in a file; `none` stands for the baseline, and `locked` too where that is an impedance.
-    pub fn of_word(word: &str, impedance: bool) -> Self {
+    /// Controller by its word in a file. `none` is the baseline, and so is `locked` in an impedance test.
+    pub fn from_word(word: &str, impedance: bool) -> Self {
         if word == Self::Locked.word() && !impedance {
             return Self::Locked;
         }
@@ -78,7 +78,7 @@ impl ControllerName {
         found.unwrap_or(Self::baseline(impedance))
     }
 
-    /// Its word, and its name in reports.
+    /// Word in files, and name in reports.
     fn names(self) -> (&'static str, &'static str) {
         match self {
             Self::Preview => ("preview", "compensation, preview"),
@@ -98,43 +98,44 @@ impl ControllerName {
         }
     }
 
-    /// Its word.
+    /// Word in files.
     pub fn word(self) -> &'static str {
         self.names().0
     }
 
-    /// Its name in reports.
+    /// Name in reports.
     pub fn label(self) -> &'static str {
         self.names().1
     }
 
-    /// Observer and compensation.
+    /// Returns true for observer and compensation.
     pub fn is_compensation(self) -> bool {
         matches!(self, Self::Preview | Self::NoPreview | Self::Impedance | Self::Probe)
     }
 
-    /// Follows impedance set-points.
+    /// Returns true if the controller takes impedance set-points.
     pub fn wants_gains(self) -> bool {
         matches!(self, Self::Impedance | Self::MotorSide | Self::LinkSpring | Self::LinkSide)
     }
 
-    /// The same kind of test without compensation.
+    /// Baseline without compensation for this kind of test.
     pub fn baseline(impedance: bool) -> Self {
         if impedance { Self::MotorSide } else { Self::MotorPid }
     }
 
-    /// The strongest controller without compensation.
+    /// Strongest controller without compensation.
     pub fn best_rival(impedance: bool) -> Self {
         if impedance { Self::LinkSpring } else { Self::OutputIntegral }
     }
 
-    /// Whether two are one law under two names.
-    pub fn is_the_same_as(self, other: Self) -> bool {
+    /// Returns true if both names stand for one control law.
+    pub fn has_same_law(self, other: Self) -> bool {
         let law = |name| if name == Self::Locked { Self::MotorPid } else { name };
         law(self) == law(other)
     }
 
-    /// The controller that gives the same impedance on a joint without a gap, from which the deviation is measured.
+    /// Controller that gives the undisturbed impedance on a joint without backlash; the deviation is measured from its
+    /// run.
     pub fn without_gap(self) -> Self {
         if self.is_compensation() { Self::LinkSpring } else { self }
     }

@@ -1,5 +1,5 @@
-//! What went into a controller and came out of it in every control period, as a topic of a run's log: counts and moments as
-//! the controller got them, torques, and a digest over all estimates. With it an observer repeats the run.
+//! Topic of a run's log with the inputs and outputs of the controller in every control period: counts and times as
+//! received, torques, and a digest over all estimates. From this topic an observer repeats the run.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -7,53 +7,53 @@ use std::fmt::Write;
 use model_core::observer::{Estimates, MEMORY_BYTES, Memory, Reading, Samples};
 use report::log::{Message, field};
 
-use super::estimate_fields::digest_of;
+use super::estimate_fields::estimates_digest;
 
 /// Topic of every control period.
 pub const TOPIC: &str = "/joint/controller";
-/// Name of its schema.
+/// Name of the topic's schema.
 pub const SCHEMA_NAME: &str = "joint_msgs/msg/Controller";
 
 /// Number of the control period, in this and other topics of the log.
 pub const PERIOD: &str = "period";
-/// The digest of the estimates.
-pub const DIGEST: &str = "estimates_digest";
-/// The torque that the observer was shown.
-pub const SHOWN_TORQUE: &str = "shown_torque_Nm";
-/// Whether the output encoder gave a reading.
+/// Digest of the estimates.
+pub const ESTIMATES_DIGEST: &str = "estimates_digest";
+/// Torque given to the observer.
+pub const OBSERVER_TORQUE: &str = "shown_torque_Nm";
+/// Flag of a new reading of the output encoder.
 pub const OUTPUT_READ: &str = "output_read";
-/// Fields of 32 bits that make samples.
-pub const SAMPLES: [&str; 5] =
+/// Fields of 32 bits that form the samples.
+pub const SAMPLE_FIELDS: [&str; 5] =
     ["clock_ticks", "motor_counts", "motor_read_at_ticks", "output_counts", "output_read_at_ticks"];
 
 /// One control period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ControllerPeriod {
-    /// What the controller was shown.
+    /// Inputs of the controller.
     pub samples: Samples<f32>,
-    /// The torque that it asked for [N m].
+    /// Commanded torque [N m].
     pub torque: f32,
-    /// What its observer made of it.
+    /// Estimates of the observer, if the controller has one.
     pub estimates: Option<Estimates<f32>>,
 }
 
-/// What an observer must be told to repeat a run, as the log's remarks say it.
+/// Data that an observer needs to repeat a run, stored in the log's remarks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObserverOrigin {
-    /// Text of the joint file that it was designed from.
+    /// Text of the joint file of the observer's design.
     pub joint_file: String,
-    /// Whether it was shown the output encoder.
+    /// True if the observer had the output encoder.
     pub output_encoder: bool,
-    /// What it began with.
+    /// Memory that the observer started from.
     pub memory: Option<Memory>,
 }
 
-/// Names of remarks.
+/// Names of the remarks.
 const JOINT_FILE: &str = "observer_joint_file";
 const OUTPUT_ENCODER: &str = "observer_output_encoder";
 const MEMORY: &str = "observer_memory";
 
-/// The message as ROS 2 writes it down.
+/// Schema of the message in the text form of ROS 2.
 pub fn schema() -> String {
     let meanings = [
         "now, by the clock of all readings",
@@ -64,25 +64,28 @@ pub fn schema() -> String {
     ];
     let mut text = field("float64", "time_s", "beginning of the period [s]");
     text += &field("uint32", PERIOD, "number of the control period");
-    text.extend(SAMPLES.iter().zip(meanings).map(|(name, meaning)| field("uint32", name, meaning)));
+    text.extend(SAMPLE_FIELDS.iter().zip(meanings).map(|(name, meaning)| field("uint32", name, meaning)));
     text += &field("bool", OUTPUT_READ, "whether the output encoder gave a reading in this period");
-    text +=
-        &field("float32", SHOWN_TORQUE, "asked of the motor in the period before, as the observer is shown it [N m]");
+    text += &field(
+        "float32",
+        OBSERVER_TORQUE,
+        "asked of the motor in the period before, as the observer is shown it [N m]",
+    );
     text += &field("float32", "motor_torque_Nm", "asked of the motor from now on [N m]");
-    text += &field("uint32", DIGEST, "digest over every bit of all estimates, 0 without them");
+    text += &field("uint32", ESTIMATES_DIGEST, "digest over every bit of all estimates, 0 without them");
     text
 }
 
-/// Makes the messages of a run.
+/// Builds the messages of a run.
 #[derive(Debug, Default)]
 pub struct ControllerMessages {
-    /// The last reading of the output encoder.
+    /// Last reading of the output encoder.
     output: Reading,
 }
 
 impl ControllerMessages {
-    /// Of the next period.
-    pub fn next(&mut self, time: f64, period: usize, of: &ControllerPeriod) -> Message {
+    /// Message of the next period.
+    pub fn message(&mut self, time: f64, period: usize, of: &ControllerPeriod) -> Message {
         let ControllerPeriod { samples, torque, estimates } = of;
         self.output = samples.output.unwrap_or(self.output);
         let mut message = Message::default();
@@ -94,13 +97,13 @@ impl ControllerMessages {
         message.flag(samples.output.is_some());
         message.single(samples.torque);
         message.single(*torque);
-        message.whole(estimates.as_ref().map_or(0, digest_of));
+        message.whole(estimates.as_ref().map_or(0, estimates_digest));
         message
     }
 }
 
 impl ObserverOrigin {
-    /// As remarks.
+    /// Remarks for the log.
     pub fn remarks(&self) -> BTreeMap<String, String> {
         let hexadecimal = |memory: &Memory| {
             memory.iter().fold(String::new(), |mut text, byte| {
@@ -113,8 +116,8 @@ impl ObserverOrigin {
         both.into_iter().chain(memory).map(|(name, text)| (name.to_owned(), text)).collect()
     }
 
-    /// From remarks; nothing if they do not say it.
-    pub fn of(remarks: &BTreeMap<String, String>) -> Option<Self> {
+    /// Parses remarks; `None` if they are incomplete.
+    pub fn from_remarks(remarks: &BTreeMap<String, String>) -> Option<Self> {
         let bytes = |text: &String| -> Option<Memory> {
             let byte = |place: usize| u8::from_str_radix(text.get(2 * place..2 * place + 2)?, 16).ok();
             let bytes: Option<Vec<u8>> = (0..MEMORY_BYTES).map(byte).collect();
@@ -137,16 +140,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_remarks_say_is_what_was_to_be_said() {
+    fn origin_round_trips_through_remarks() {
         let mut memory = [0_u8; MEMORY_BYTES];
         memory[3] = 0xa7;
         for memory in [None, Some(memory)] {
             let origin = ObserverOrigin { joint_file: "name = \"J\"\n".to_owned(), output_encoder: false, memory };
-            assert_eq!(ObserverOrigin::of(&origin.remarks()), Some(origin.clone()));
+            assert_eq!(ObserverOrigin::from_remarks(&origin.remarks()), Some(origin.clone()));
             let mut damaged = origin.remarks();
             damaged.insert(MEMORY.to_owned(), "a7".to_owned());
-            assert_eq!(ObserverOrigin::of(&damaged), None);
+            assert_eq!(ObserverOrigin::from_remarks(&damaged), None);
         }
-        assert_eq!(ObserverOrigin::of(&BTreeMap::new()), None);
+        assert_eq!(ObserverOrigin::from_remarks(&BTreeMap::new()), None);
     }
 }

@@ -1,32 +1,32 @@
-//! Disturbance torques on the link: of the profile, of the file, and of a recorded motion. Torques that are not given
-//! scale with the rated torque.
+//! Disturbance torques on the link: of the profile, of the file, and of a recorded motion. Torques without a stated
+//! value scale with the rated torque.
 
 use reference::drive_train::Disturbance;
 
 use super::file::{MotionProfile, ProfileLoad, TestFile, Wave};
 use super::recorded::RecordedMotion;
 
-/// A hold is disturbed by this part of the rated torque: 1.5 N m for Q1.
-const DISTURBED: f64 = 0.125;
-/// An impact is this many times the rated torque.
-const IMPACT: f64 = 3.0;
+/// Disturbance of a hold over the rated torque [-]: 1.5 N m for Q1.
+const HOLD_TORQUE_RATIO: f64 = 0.125;
+/// Torque of an impact over the rated torque [-].
+const IMPACT_TORQUE_RATIO: f64 = 3.0;
 
-/// In a free hold the disturbing pulse comes so long before the figures begin [s].
-const BEFORE: f64 = 0.1;
+/// Time from the pulse of a free hold to the start of the figures [s].
+const PULSE_LEAD: f64 = 0.1;
 
-/// A foot is set down, or lifted, within this time [s].
-const STEP_OF_A_FOOT: f64 = 0.02;
+/// Time in which a foot is set down or lifted [s].
+const FOOT_RAMP: f64 = 0.02;
 
-/// Load of a foot over the rated torque: 3 N m for Q1. Assumed.
-const STANCE: f64 = 0.25;
+/// Load of a foot over the rated torque [-]: 3 N m for Q1. Assumed.
+const STANCE_TORQUE_RATIO: f64 = 0.25;
 
-/// Share of a step in which the foot is on the ground: that of walking people.
-const ON_THE_GROUND: f64 = 0.6;
+/// Share of a step with the foot on the ground [-], as in human walking.
+const STANCE_SHARE: f64 = 0.6;
 
-/// Length of the blow as the foot touches down, of half its load [s]. Assumed.
-const TOUCH_DOWN: f64 = 0.01;
+/// Length of the touch-down pulse, of half the foot's load [s]. Assumed.
+const TOUCH_DOWN_LENGTH: f64 = 0.01;
 
-/// All torques on the link in a run of a file, under the load of its profile.
+/// All torques on the link in a run of a file, with the load of its profile.
 pub fn disturbances(
     file: &TestFile,
     profile: &MotionProfile,
@@ -37,10 +37,10 @@ pub fn disturbances(
     match profile.load {
         ProfileLoad::None => {}
         ProfileLoad::Wave(Wave::Sine, torque, frequency) => {
-            list.push(Disturbance::Sine { amplitude: torque.unwrap_or(DISTURBED * rated), frequency });
+            list.push(Disturbance::Sine { amplitude: torque.unwrap_or(HOLD_TORQUE_RATIO * rated), frequency });
         }
         ProfileLoad::Wave(wave @ (Wave::Square | Wave::Walk), torque, frequency) => {
-            let torque = torque.unwrap_or(DISTURBED * rated);
+            let torque = torque.unwrap_or(HOLD_TORQUE_RATIO * rated);
             let half = 0.5 / frequency;
             let turns = (file.duration / half) as usize;
             list.extend((0..=turns).map(|turn| {
@@ -48,30 +48,30 @@ pub fn disturbances(
                 let sign = if turn % 2 == 1 { -2.0 } else { 2.0 };
                 let torque = if turn == 0 { torque } else { sign * torque };
                 match wave {
-                    Wave::Walk => Disturbance::Ramp { start, duration: STEP_OF_A_FOOT, torque },
+                    Wave::Walk => Disturbance::Ramp { start, duration: FOOT_RAMP, torque },
                     _ => Disturbance::Step { start, torque },
                 }
             }));
         }
         ProfileLoad::Stance(torque, frequency) => {
-            let torque = torque.unwrap_or(STANCE * rated);
+            let torque = torque.unwrap_or(STANCE_TORQUE_RATIO * rated);
             let steps = (file.duration * frequency) as usize;
             list.extend((0..=steps).flat_map(|step| {
                 let start = step as f64 / frequency;
-                let end = start + ON_THE_GROUND / frequency;
+                let end = start + STANCE_SHARE / frequency;
                 [
-                    Disturbance::Pulse { start, duration: TOUCH_DOWN, torque: 0.5 * torque },
-                    Disturbance::Ramp { start, duration: STEP_OF_A_FOOT, torque },
-                    Disturbance::Ramp { start: end, duration: STEP_OF_A_FOOT, torque: -torque },
+                    Disturbance::Pulse { start, duration: TOUCH_DOWN_LENGTH, torque: 0.5 * torque },
+                    Disturbance::Ramp { start, duration: FOOT_RAMP, torque },
+                    Disturbance::Ramp { start: end, duration: FOOT_RAMP, torque: -torque },
                 ]
             }));
         }
         ProfileLoad::Kick(torque, length) => {
-            let torque = torque.unwrap_or(DISTURBED * rated);
-            list.push(Disturbance::Pulse { start: (file.settle - BEFORE).max(0.0), duration: length, torque });
+            let torque = torque.unwrap_or(HOLD_TORQUE_RATIO * rated);
+            list.push(Disturbance::Pulse { start: (file.settle - PULSE_LEAD).max(0.0), duration: length, torque });
         }
         ProfileLoad::Impacts(torque, length) => {
-            let torque = torque.unwrap_or(IMPACT * rated);
+            let torque = torque.unwrap_or(IMPACT_TORQUE_RATIO * rated);
             let disturbances = (file.duration - file.settle).ceil() as usize;
             list.extend((0..disturbances).map(|push| {
                 let sign = if push % 2 == 0 { 1.0 } else { -1.0 };

@@ -1,18 +1,18 @@
-//! Where the zeros of both encoders lie. An encoder is mounted at any angle, so every seed draws them: a controller sees raw counts
-//! from there, and its set-points lie on the scale of the raw output encoder.
+//! Zeros of both encoders. An encoder may be mounted at any angle, so each seed draws the zeros: the controller
+//! receives raw counts, and its set-points are on the scale of the raw output encoder.
 
 use super::random::RandomStream;
 
-/// Share of the seeds whose encoder starts next to its wrap.
-const NEAR_WRAP: f64 = 0.25;
+/// Share of the seeds whose encoder starts close to its wrap [-].
+const NEAR_WRAP_SHARE: f64 = 0.25;
 
-/// Distance from the wrap that counts as next to it [turns]: a few counts of 14 bits.
-const NEAR: f64 = 3e-4;
+/// Largest distance from the wrap in those seeds [turns]: a few counts of 14 bits.
+const NEAR_WRAP_DISTANCE: f64 = 3e-4;
 
-/// Readings of both encoders where a joint starts, as parts of a turn.
+/// Readings of both encoders at the start of the joint, as fractions of a turn.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EncoderZeros {
-    /// Of the motor encoder and of the output encoder [turns].
+    /// Readings of the motor encoder and the output encoder [turns].
     turns: [f64; 2],
 }
 
@@ -21,14 +21,14 @@ impl EncoderZeros {
     pub fn draw(seed: u64) -> Self {
         let mut stream = RandomStream::new(seed, "encoder zeros");
         let mut place = || {
-            let near_wrap = stream.uniform() < NEAR_WRAP;
+            let near_wrap = stream.uniform() < NEAR_WRAP_SHARE;
             let place = stream.uniform();
-            if near_wrap { ((2.0 * place - 1.0) * NEAR).rem_euclid(1.0) } else { place }
+            if near_wrap { ((2.0 * place - 1.0) * NEAR_WRAP_DISTANCE).rem_euclid(1.0) } else { place }
         };
         Self { turns: [place(), place()] }
     }
 
-    /// Raw readings for encoders of so many counts in a turn: motor, output.
+    /// Raw readings for given counts per turn: motor, output.
     pub fn counts(&self, counts_per_turn: [i64; 2]) -> [i64; 2] {
         [0, 1].map(|encoder| (self.turns[encoder] * counts_per_turn[encoder] as f64).floor() as i64)
     }
@@ -39,11 +39,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn zeros_cover_the_turn_and_both_sides_of_its_wrap() {
+    fn zeros_cover_turn_and_wrap() {
         let zeros: Vec<_> = (0..400).map(|seed| EncoderZeros::draw(seed).counts([1 << 14, 1 << 17])).collect();
         for (encoder, bits) in [(0, 14), (1, 17)] {
             let turn = 1_i64 << bits;
-            let near = (NEAR * turn as f64) as i64 + 1;
+            let near = (NEAR_WRAP_DISTANCE * turn as f64) as i64 + 1;
             let within =
                 |range: std::ops::Range<i64>| zeros.iter().filter(|counts| range.contains(&counts[encoder])).count();
             assert_eq!(within(0..turn), 400);

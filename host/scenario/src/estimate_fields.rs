@@ -1,5 +1,5 @@
-//! The observer's estimates as fields of a log: every value with its variance and validity in SI, states as words. One list
-//! for the logs of runs and for whoever replays them.
+//! Estimates of the observer as fields of a log: every value in SI with variance and validity, states as words. Logs of
+//! runs and replays share this list.
 
 use model_core::numbers::digest;
 use model_core::observer::{Estimates, MotorFault, Notices, OutputFault, Source, TorqueResponse};
@@ -10,14 +10,14 @@ use report::log::{Message, field};
 /// A number or flag of the estimates.
 #[derive(Debug, Clone, Copy)]
 pub struct EstimateField {
-    /// Its name, with the unit.
+    /// Name, with the unit.
     pub name: &'static str,
-    /// What it is.
+    /// Meaning.
     pub meaning: &'static str,
     value: Value,
 }
 
-/// How a field is had.
+/// Accessor of a field.
 #[derive(Debug, Clone, Copy)]
 enum Value {
     Number(fn(&Estimates<f32>) -> f32),
@@ -25,14 +25,14 @@ enum Value {
     Flag(fn(&Estimates<f32>) -> bool),
 }
 
-/// A field of a word.
+/// A field that is a word.
 #[derive(Debug, Clone, Copy)]
 pub struct WordField {
-    /// Its name.
+    /// Name.
     pub name: &'static str,
-    /// What it is.
+    /// Meaning.
     pub meaning: &'static str,
-    /// The word.
+    /// Accessor of the word.
     pub word: fn(&Estimates<f32>) -> &'static str,
 }
 
@@ -71,8 +71,8 @@ const ESTIMATES: [[EstimateField; 3]; 9] = [
     estimate!(torque_bias, "torque_bias", "_Nm", "_N2m2", "what the motor loses in either direction [N m]"),
     estimate!(motor_friction, "motor_friction", "_Nm", "_N2m2", "dry friction of the motor [N m]"),
 ];
-/// The others.
-const OTHERS: [EstimateField; 15] = [
+/// Other numbers and flags.
+const OTHER_FIELDS: [EstimateField; 15] = [
     number("estimated_link_inertia_ratio", "inertia of the link over the joint file's", |all| {
         all.link_inertia_ratio.value
     }),
@@ -93,7 +93,7 @@ const OTHERS: [EstimateField; 15] = [
 ];
 
 /// Fields that are words.
-pub const WORDS: [WordField; 4] = [
+pub const WORD_FIELDS: [WordField; 4] = [
     WordField {
         name: "estimated_side",
         meaning: "flank that carries: separated, drive_side or back_side",
@@ -116,20 +116,20 @@ pub const WORDS: [WordField; 4] = [
     },
 ];
 
-/// The field of all notices.
-pub const NOTICES: (&str, &str) = (
+/// Field of all notices: name and meaning.
+pub const NOTICES_FIELD: (&str, &str) = (
     "observer_notices",
     "what was wrong with the samples: torque_unknown, out_of_time, motor_implausible, motor_jumped; torque_reversed, which stays",
 );
 
 /// All fields that are numbers or flags.
 pub fn fields() -> impl Iterator<Item = EstimateField> {
-    ESTIMATES.into_iter().flatten().chain(OTHERS)
+    ESTIMATES.into_iter().flatten().chain(OTHER_FIELDS)
 }
 
 impl EstimateField {
-    /// Its value; a flag is 0 or 1.
-    pub fn of(&self, estimates: &Estimates<f32>) -> f64 {
+    /// Value of the field; a flag is 0 or 1.
+    pub fn value(&self, estimates: &Estimates<f32>) -> f64 {
         match self.value {
             Value::Number(value) => value(estimates).into(),
             Value::Whole(value) => value(estimates).into(),
@@ -137,43 +137,43 @@ impl EstimateField {
         }
     }
 
-    /// Whether it is 0 or 1.
+    /// Returns true for a flag.
     pub fn is_flag(&self) -> bool {
         matches!(self.value, Value::Flag(_))
     }
 }
 
-/// The fields as ROS 2 message text.
+/// Fields in the text form of ROS 2 messages.
 pub fn schema() -> String {
     let numbers =
         fields().map(|known| field(if known.is_flag() { "bool" } else { "float64" }, known.name, known.meaning));
-    let words = WORDS.iter().map(|known| field("string", known.name, known.meaning));
-    numbers.chain(words).chain([field("string[]", NOTICES.0, NOTICES.1)]).collect()
+    let words = WORD_FIELDS.iter().map(|known| field("string", known.name, known.meaning));
+    numbers.chain(words).chain([field("string[]", NOTICES_FIELD.0, NOTICES_FIELD.1)]).collect()
 }
 
 /// Adds the fields to a message. Without an observer numbers are zero, and words `none`.
 pub fn add(message: &mut Message, estimates: Option<&Estimates<f32>>) {
     let known = estimates.copied().unwrap_or_default();
     for field in fields() {
-        let value = if estimates.is_some() { field.of(&known) } else { 0.0 };
+        let value = if estimates.is_some() { field.value(&known) } else { 0.0 };
         if field.is_flag() { message.flag(value != 0.0) } else { message.number(value) }
     }
-    for field in WORDS {
+    for field in WORD_FIELDS {
         message.word(estimates.map_or("none", field.word));
     }
     message.words(estimates.map_or_else(Vec::new, notices).into_iter());
 }
 
-/// Digest over every bit of the estimates, in 32 bits: two that differ once differ in the periods after that too.
-pub fn digest_of(estimates: &Estimates<f32>) -> u32 {
-    let numbers = fields().map(|field| field.of(estimates).to_bits());
-    let words = WORDS.iter().flat_map(|field| (field.word)(estimates).bytes().map(u64::from));
+/// Digest over every bit of the estimates, in 32 bits. A difference in one period shows in the following periods too.
+pub fn estimates_digest(estimates: &Estimates<f32>) -> u32 {
+    let numbers = fields().map(|field| field.value(estimates).to_bits());
+    let words = WORD_FIELDS.iter().flat_map(|field| (field.word)(estimates).bytes().map(u64::from));
     let notices = notices(estimates).into_iter().flat_map(|word| word.bytes().map(u64::from));
     let digest = numbers.chain(words).chain(notices).fold(digest::START, digest::chain);
     (digest ^ (digest >> 32)) as u32
 }
 
-/// Notices by name.
+/// Names of the active notices.
 pub fn notices(of: &Estimates<f32>) -> Vec<&'static str> {
     let Notices { torque_unknown, out_of_time, motor_implausible, motor_jumped } = of.notices;
     let all = [
@@ -225,7 +225,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_digest_is_of_every_field() {
+    fn digest_covers_every_field() {
         let whole = Estimates::<f32>::default();
         let mut others = vec![whole; 6];
         others[0].gap.variance = f32::from_bits(1);
@@ -235,15 +235,15 @@ mod tests {
         others[4].source = Source::Nothing(MotorFault::Late);
         others[5].link.turns = -1;
         for other in others {
-            assert_ne!(digest_of(&other), digest_of(&whole), "{other:?}");
+            assert_ne!(estimates_digest(&other), estimates_digest(&whole), "{other:?}");
         }
-        assert_eq!(digest_of(&whole), digest_of(&whole.clone()));
+        assert_eq!(estimates_digest(&whole), estimates_digest(&whole.clone()));
     }
 
     #[test]
-    fn names_are_told_apart_whatever_the_size_of_their_letters() {
+    fn field_names_differ_in_lower_case() {
         let mut names: Vec<String> = fields().map(|field| field.name.to_ascii_lowercase()).collect();
-        names.extend(WORDS.iter().map(|word| word.name.to_owned()));
+        names.extend(WORD_FIELDS.iter().map(|word| word.name.to_owned()));
         let all = names.len();
         names.sort();
         names.dedup();

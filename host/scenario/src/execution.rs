@@ -1,4 +1,4 @@
-//! One run of a test file: a case on the rig under a controller, until the test's duration is over.
+//! One run of a test file: a case on the rig under a controller, for the test's duration.
 
 use std::time::Instant;
 
@@ -20,27 +20,27 @@ use reference::joint::{RelativeState, Start};
 use report::failure::{Failure, Outcome};
 use report::interruption;
 
-/// Which controller runs on which plant.
+/// Controller and plant of a run.
 #[derive(Debug, Clone, Copy)]
 pub struct RunSpec {
-    /// Who.
+    /// Controller.
     pub controller: ControllerName,
-    /// What.
+    /// Plant.
     pub plant: PlantName,
-    /// On teeth without a gap and without faults: what an impedance's deviation is measured from.
+    /// Runs without backlash and without faults, as the reference of an impedance's deviation.
     pub without_gap: bool,
 }
 
-/// Share of the runs that start on a flank; the others start in the open gap.
-const ON_FLANK: f64 = 0.33;
+/// Share of the runs that start on a flank [-]; the others start in the open gap.
+const ON_FLANK_SHARE: f64 = 0.33;
 
-/// Periods between checks of the clock.
+/// Control periods between checks of the deadline.
 const PERIODS_BETWEEN_CHECKS: u64 = 500;
 
-/// Makes the port to observer and compensation of a run.
+/// Creates the port to observer and compensation of a run.
 pub type MakePort<'p> = &'p dyn for<'d> Fn(&'d Designed) -> Outcome<Box<dyn ControllerPort + 'd>>;
 
-/// Runs one controller in one case, all of it on the host.
+/// Runs one controller in one case on the host.
 pub fn execute(
     file: &TestFile,
     case: &Case,
@@ -51,8 +51,8 @@ pub fn execute(
     execute_with(file, case, seed, spec, deadline, &host_port)
 }
 
-/// Runs a compensation in one case, on the host, with tables that were designed before: cases that differ in their seed or in
-/// their true joint alone share them.
+/// Runs a compensation in one case on the host with given tables; cases that differ only in seed or true joint can
+/// share the tables.
 pub fn execute_designed(
     file: &TestFile,
     case: &Case,
@@ -64,12 +64,12 @@ pub fn execute_designed(
     run(file, case, seed, spec, deadline, Some(designed), &host_port)
 }
 
-/// The port to observer and compensation in this process.
+/// Port to observer and compensation in this process.
 fn host_port(designed: &Designed) -> Outcome<Box<dyn ControllerPort + '_>> {
     Ok(Box::new(HostPort::new(designed)))
 }
 
-/// Runs one controller in one case; observer and compensation are where their port leads.
+/// Runs one controller in one case, with observer and compensation behind the given port.
 pub fn execute_with(
     file: &TestFile,
     case: &Case,
@@ -103,31 +103,31 @@ fn run(
     };
     let run = RunContext { file, case, spec, designed, deadline };
     if file.from_memory && spec.controller.is_compensation() {
-        // The learning run has other noise, so that the memory holds the joint and not the noise.
-        run.pass(&mut controller, !seed)?;
+        // The first run has other noise, so that the memory holds the joint and not the noise.
+        run.execute(&mut controller, !seed)?;
         let memory_at_start = controller.restart_from_memory()?;
-        return Ok(RunHistory { memory_at_start, ..run.pass(&mut controller, seed)? });
+        return Ok(RunHistory { memory_at_start, ..run.execute(&mut controller, seed)? });
     }
-    run.pass(&mut controller, seed)
+    run.execute(&mut controller, seed)
 }
 
-/// What the loop of a case is closed around.
+/// Plant, motion and faults of a case.
 pub fn setup(file: &TestFile, case: &Case, seed: u64, spec: RunSpec) -> Setup {
     let joint = if spec.without_gap { case.joint_without_gap() } else { case.truth.parameters.clone() };
     Setup {
         plant: spec.plant,
-        start: Start::Relative(start(&joint, seed)),
+        start: Start::Relative(start_state(&joint, seed)),
         disturbances: case.disturbances.clone(),
         faults: if spec.without_gap { Vec::new() } else { file.faults.clone() },
         ..Setup::new(joint, case.train.clone(), case.motion.clone(), file.duration, seed)
     }
 }
 
-/// A joint at rest anywhere in its gap, every third on one of its flanks: where a joint was left when it was switched off. Both meshes
-/// of every planet share the gap.
-fn start(joint: &JointParameters, seed: u64) -> RelativeState {
+/// Start at rest at a random place in the gap, every third start on a flank, like a joint after power-off. Both meshes
+/// of a planet share the gap.
+fn start_state(joint: &JointParameters, seed: u64) -> RelativeState {
     let mut stream = RandomStream::new(seed, "start in the gap");
-    let (on_flank, place) = (stream.uniform() < ON_FLANK, 2.0 * stream.uniform() - 1.0);
+    let (on_flank, place) = (stream.uniform() < ON_FLANK_SHARE, 2.0 * stream.uniform() - 1.0);
     let mesh = half_backlash(joint) * if on_flank { place.signum() } else { place };
     let centred = RelativeState::centred(joint.geometry.planets);
     RelativeState { sun_planet: centred.sun_planet.iter().map(|_| mesh).collect(), gap: 2.0 * mesh, ..centred }
@@ -143,12 +143,12 @@ struct RunContext<'r> {
 }
 
 impl RunContext<'_> {
-    fn pass(&self, controller: &mut ActiveController<'_>, seed: u64) -> Result<RunHistory, RunError> {
+    fn execute(&self, controller: &mut ActiveController<'_>, seed: u64) -> Result<RunHistory, RunError> {
         let Self { file, case, spec, designed, deadline } = *self;
         let rig = Rig::new(&setup(file, case, seed, spec))?;
         let mut set_points = SetPointSource::new(file, case, spec.controller, designed);
         let mut history = RunHistory::begin(rig.period(), rig.periods());
-        // The same that a compensation has of its own, so that readings are logged as they come.
+        // The compensation has a translator of its own; this one logs the readings as they arrive.
         let mut translator = translator(case);
         rig.run(controller, &mut set_points, &mut |period| {
             if period.index % PERIODS_BETWEEN_CHECKS == 0 && Instant::now() > deadline {
@@ -157,7 +157,7 @@ impl RunContext<'_> {
             if interruption::requested() {
                 return Err(RunError::Interrupted);
             }
-            history.note(period, &mut translator);
+            history.add_period(period, &mut translator);
             Ok(())
         })?;
         history.memory = controller.memory();
@@ -178,7 +178,7 @@ fn compensation_controller<'d>(
     })
 }
 
-/// Makes samples for an observer of the nominal joint.
+/// Translator to the samples of an observer of the nominal joint.
 fn translator(case: &Case) -> Translator {
     let around = &case.nominal_surroundings;
     let settings = observer_settings(around);
@@ -186,9 +186,9 @@ fn translator(case: &Case) -> Translator {
     Translator::new(settings.clock_rate / settings.control_rate, turns, &case.zeros)
 }
 
-/// The compensation fed with the true state is designed to the true joint.
+/// Designs the compensation that is fed with the true state, for the true joint.
 fn design_from_truth(file: &TestFile, case: &Case) -> Outcome<CompensationTables<f64>> {
     let joint = &case.truth.parameters;
-    design_compensation(joint, &case.settings_of_law(file, case.bandwidth(file)?))
+    design_compensation(joint, &case.compensation_settings_for(file, case.bandwidth(file)?))
         .map_err(|error| Failure::new(format!("no compensation can be designed for joint `{}`: {error}", joint.name)))
 }

@@ -1,6 +1,6 @@
-//! The results as JUnit XML, for a lab's own test server: a suite for each file, a case for each assertion; a file that could
-//! not run is a case that was skipped. Assertions are judged on the same runs: each has an equal share of their time, so that
-//! the cases' times add up to the suite's. What JUnit has no word for is in the JSON.
+//! Results as JUnit XML, for a lab's test server: a suite for each file, a case for each assertion; a file that could
+//! not run is a skipped case. Assertions share their runs, so the cases of a file share its time equally and their
+//! times add up to the suite's. Details without a JUnit element are in the JSON.
 
 use std::fmt::Write;
 
@@ -11,23 +11,24 @@ use report::escape;
 /// The whole document.
 pub fn render(record: &TestsRecord) -> String {
     let mut xml = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-    let tests = record.tests.iter().map(cases).sum::<usize>() + record.not_run.len();
+    let tests = record.tests.iter().map(case_count).sum::<usize>() + record.not_run.len();
     let failed: usize = record.tests.iter().map(|test| test.failed().count()).sum();
     let errors = record.tests.iter().filter(|test| test.broken.is_some()).count();
-    // What was skipped stands with each suite: the schema of Jenkins knows it there only. Writing to a string cannot fail.
+    // The number of skipped cases stands with each suite: the schema of Jenkins allows it only there. Writing to a
+    // string cannot fail.
     let _ = writeln!(
         xml,
         "<testsuites name=\"joint hil\" tests=\"{tests}\" failures=\"{failed}\" errors=\"{errors}\" time=\"{:.3}\">",
         record.seconds
     );
     record.tests.iter().for_each(|test| suite(&mut xml, test, &record.date));
-    record.not_run.iter().for_each(|not_run| left_out(&mut xml, not_run, &record.date));
+    record.not_run.iter().for_each(|not_run| skipped_suite(&mut xml, not_run, &record.date));
     xml += "</testsuites>\n";
     xml
 }
 
-/// A test that was broken off, or asserts nothing, has a case of its own.
-fn cases(test: &TestRecord) -> usize {
+/// Number of cases of a test. A test that broke off, or asserts nothing, has a case of its own.
+fn case_count(test: &TestRecord) -> usize {
     test.assertions.len() + usize::from(test.broken.is_some() || test.assertions.is_empty())
 }
 
@@ -35,11 +36,11 @@ fn suite(xml: &mut String, test: &TestRecord, date: &str) {
     let name = escaped(&test.file);
     let errors = usize::from(test.broken.is_some());
     let failed = test.failed().count();
-    let time = test.seconds / cases(test) as f64;
+    let time = test.seconds / case_count(test) as f64;
     let _ = writeln!(
         xml,
         "  <testsuite name=\"{name}\" tests=\"{}\" failures=\"{failed}\" errors=\"{errors}\" skipped=\"0\" time=\"{:.3}\" timestamp=\"{}\">",
-        cases(test),
+        case_count(test),
         test.seconds,
         escaped(date)
     );
@@ -77,10 +78,10 @@ fn suite(xml: &mut String, test: &TestRecord, date: &str) {
     let _ = writeln!(xml, "    <system-out>{}</system-out>\n  </testsuite>", escaped(&test.replay));
 }
 
-fn left_out(xml: &mut String, not_run: &NotRun, date: &str) {
-    let NotRun { file, why, mend } = not_run;
+fn skipped_suite(xml: &mut String, not_run: &NotRun, date: &str) {
+    let NotRun { file, why, remedy } = not_run;
     let (name, date) = (escaped(file), escaped(date));
-    let message = escaped(&mend.as_ref().map_or(why.clone(), |mend| format!("{why} ({mend})")));
+    let message = escaped(&remedy.as_ref().map_or(why.clone(), |remedy| format!("{why} ({remedy})")));
     let _ = writeln!(
         xml,
         "  <testsuite name=\"{name}\" tests=\"1\" failures=\"0\" errors=\"0\" skipped=\"1\" time=\"0\" timestamp=\"{date}\">\n    \

@@ -1,12 +1,12 @@
-//! `joint hil FILE.toml`: tests of observer and compensation that users write as files, run against the f64 reference
-//! or the core's own plant, and reported. Observer and compensation run on the host or, through `on_board`, on a board.
+//! `joint hil FILE.toml`: users' tests of observer and compensation, run against the f64 reference or the core's own
+//! plant, with reports. Observer and compensation run on the host or, through `on_board`, on a board.
 //!
-//! The order of a test: `file` reads the test file, `suite` finds files and joints, `case` draws the values of one
-//! seed; `execution` runs the case on the `rig`, which closes the loop between `plant` and `controller` through
-//! `faults`, with observer and compensation behind `port`, and `run_history` keeps what happened; `metrics`, `values`
-//! and `observer_metrics` compute the figures, `verdict` judges them, `campaign` combines all seeds; `page`, `junit`,
-//! `log_file` and `record` are the results on disk; `controller_log` and `estimate_fields` are what a log says of the
-//! controller.
+//! Order of a test: `file` reads the test file, `suite` finds files and joints, `case` draws the values of one seed;
+//! `execution` runs the case on the `rig`, which closes the loop between `plant` and `controller` through `faults`,
+//! with observer and compensation behind `port`, and `run_history` stores the run; `metrics`, `values` and
+//! `observer_metrics` compute the figures, `verdict` compares them with their bounds, `campaign` combines all seeds;
+//! `page`, `junit`, `log_file` and `record` are the results on disk; `controller_log` and `estimate_fields` are the
+//! controller's part of a log.
 
 mod any_motion;
 mod campaign;
@@ -63,71 +63,71 @@ use report::provenance;
 use report::seeds::Seeds;
 use report::write::write_text;
 
-/// The page, the results as JSON and as JUnit XML, and a log of every run.
+/// Names of the page, of the results as JSON and as JUnit XML, and of the logs.
 const REPORT: &str = "report.html";
 const RECORD: &str = "record.json";
 const JUNIT: &str = "junit.xml";
 const LOGS: &str = "runs/*.mcap";
-/// Everything that tests write.
+/// All files that tests write.
 const FILES: [&str; 6] = [REPORT, RECORD, JUNIT, LOGS, memory_file::MEMORIES, memory_file::JOINTS];
 
 /// A request to run tests.
 #[derive(Debug, Clone)]
 pub struct TestRequest<'w> {
-    /// Which tests, and where they run.
-    pub parts: Vec<TestGroup<'w>>,
+    /// Groups of tests.
+    pub groups: Vec<TestGroup<'w>>,
     /// Seeds in place of the files'.
     pub seed: Option<Seeds>,
-    /// The full lists of seeds.
+    /// Runs the full lists of seeds.
     pub full: bool,
-    /// Whether what observers on the host have learnt is kept.
-    pub memories: bool,
-    /// Name of the usual folder for everything that stays.
+    /// Saves the estimated parameters after each run on the host.
+    pub save_memories: bool,
+    /// Name of the default output folder.
     pub name: String,
-    /// Another folder.
+    /// Output folder in place of the default.
     pub out: Option<PathBuf>,
-    /// The results as JSON, too.
+    /// Further file for the results as JSON.
     pub json: Option<&'w Path>,
-    /// The results as JUnit XML, too.
+    /// Further file for the results as JUnit XML.
     pub junit: Option<&'w Path>,
 }
 
-/// Tests that run in one place.
+/// Tests that run on one kind of board, or on the host.
 #[derive(Debug, Clone)]
 pub struct TestGroup<'w> {
-    /// A test file, or a folder of them.
+    /// A test file, or a folder of test files.
     pub path: PathBuf,
-    /// Which of a folder.
+    /// Choice among the files of a folder.
     pub choice: Choice,
-    /// What is controlled.
+    /// Model of the joint.
     pub plant: PlantName,
-    /// The boards to run on; without them the host.
+    /// Boards to run on; `None` runs on the host.
     pub boards: Option<BoardRequest<'w>>,
 }
 
-/// A part that can be run.
+/// A group that is ready to run.
 struct PreparedGroup<'w> {
     suite: Suite,
     plant: PlantName,
     boards: Option<Boards<'w>>,
 }
 
-/// Runs tests; succeeds only if all ran and passed.
+/// Runs tests; fails unless all ran and passed.
 pub fn run(request: &TestRequest<'_>, progress: &Progress) -> Outcome<()> {
     let start = Instant::now();
     let folder = Folder::choose(request.out.as_deref(), "hil/tests", &request.name, &FILES)?;
-    let mut parts = Vec::new();
-    for TestGroup { path, choice, plant, boards } in &request.parts {
+    let mut groups = Vec::new();
+    for TestGroup { path, choice, plant, boards } in &request.groups {
         let mut suite = suite::load(path, *choice, *plant)?;
         let boards = boards.map(|request| Boards::prepare(request, &mut suite, *plant, progress)).transpose()?;
-        parts.push(PreparedGroup { suite, plant: *plant, boards });
+        groups.push(PreparedGroup { suite, plant: *plant, boards });
     }
-    let read: Vec<PathBuf> = parts.iter().flat_map(|part| &part.suite.tests).flat_map(Test::files).collect();
+    let read: Vec<PathBuf> = groups.iter().flat_map(|part| &part.suite.tests).flat_map(Test::files).collect();
     let read: Vec<&Path> = read.iter().map(PathBuf::as_path).collect();
     folder::check_files(&[("json", request.json), ("junit", request.junit)], &read)?;
     folder.make()?;
     folder::make(&folder.file(log_file::FOLDER))?;
-    let (tested, not_run) = run_parts(parts, request, &folder, progress)?;
+    let (tested, not_run) = run_groups(groups, request, &folder, progress)?;
     let record = TestsRecord {
         schema: SCHEMA.to_owned(),
         passed: not_run.is_empty() && tested.iter().all(|test| test.record.passed),
@@ -143,7 +143,7 @@ pub fn run(request: &TestRequest<'_>, progress: &Progress) -> Outcome<()> {
     let document = page::document(&record, &tested);
     output::print(&(terminal(&document) + "\n"))?;
     write(request, &folder, &record, &document)?;
-    // Logs of an older run would be taken for this one's. Where a test has not run, its older log is all there is.
+    // Logs of an older run could be mistaken for this run's. If a test did not run, its older log is kept.
     if record.not_run.is_empty() {
         for files in [LOGS, memory_file::MEMORIES, memory_file::JOINTS] {
             folder.clear_older(files)?;
@@ -153,37 +153,37 @@ pub fn run(request: &TestRequest<'_>, progress: &Progress) -> Outcome<()> {
     verdict(&record)
 }
 
-/// What ran, and what could not.
-type RunOrNot = (Vec<FinishedTest>, Vec<NotRun>);
+/// Finished tests, and files that could not run.
+type GroupResults = (Vec<FinishedTest>, Vec<NotRun>);
 
-fn run_parts(
-    parts: Vec<PreparedGroup<'_>>,
+fn run_groups(
+    groups: Vec<PreparedGroup<'_>>,
     request: &TestRequest<'_>,
     folder: &Folder,
     progress: &Progress,
-) -> Outcome<RunOrNot> {
+) -> Outcome<GroupResults> {
     let runs_of = |test: &Test| test.seeds(request.seed, request.full).len() * test.controllers().len();
-    let runs: usize = parts.iter().flat_map(|part| &part.suite.tests).map(runs_of).sum();
+    let runs: usize = groups.iter().flat_map(|part| &part.suite.tests).map(runs_of).sum();
     progress.run("testing", runs as u32);
-    let before = AtomicU32::new(0);
+    let finished_runs = AtomicU32::new(0);
     let (mut tested, mut not_run) = (Vec::new(), Vec::new());
-    for PreparedGroup { suite: Suite { tests, not_run: refused, .. }, plant, boards } in parts {
+    for PreparedGroup { suite: Suite { tests, not_run: refused, .. }, plant, boards } in groups {
         not_run.extend(refused);
         let options = RunOptions {
             plant,
             seed: request.seed,
             full: request.full,
             boards: boards.as_ref(),
-            memories: request.memories,
+            save_memories: request.save_memories,
             folder,
-            done: &|runs| progress.at(runs),
+            done: &|runs| progress.set_position(runs),
         };
         let one = |test: &Test| {
-            let one = campaign::run(test, &options, &before);
-            one.iter().for_each(|one| progress.say_above(&page::line(&one.record)));
+            let one = campaign::run(test, &options, &finished_runs);
+            one.iter().for_each(|one| progress.print_above(&page::line(&one.record)));
             one
         };
-        // A test on the emulated board keeps one core busy at most; a test on the host keeps all of them busy by itself.
+        // A test on the emulated board uses one core at most; a test on the host uses all cores.
         let emulated = boards.as_ref().is_some_and(Boards::are_emulated);
         let done: Vec<Outcome<FinishedTest>> =
             if emulated { tests.par_iter().map(one).collect() } else { tests.iter().map(one).collect() };
@@ -223,9 +223,10 @@ fn verdict(record: &TestsRecord) -> Outcome<()> {
     match (failed.is_empty(), not_run) {
         (true, None) => Ok(()),
         (true, Some(not_run)) => {
-            let mend = record.not_run.first().and_then(|one| one.mend.clone()).filter(|_| record.not_run.len() == 1);
+            let remedy =
+                record.not_run.first().and_then(|one| one.remedy.clone()).filter(|_| record.not_run.len() == 1);
             Err(Failure::new(not_run)
-                .with_help(mend.unwrap_or_else(|| "each is named above with its reason".to_owned())))
+                .with_help(remedy.unwrap_or_else(|| "each is named above with its reason".to_owned())))
         }
         (false, not_run) => {
             let mut message = format!("{} of {all} tests failed: {}", failed.len(), failed.join(", "));

@@ -1,29 +1,29 @@
 //! A run as an MCAP log, which Foxglove and PlotJuggler open: truth, set-point, faults and estimates a thousand times a
-//! second; of the tested controller also what went into it in every control period, so that its observer can be run over
-//! it again.
+//! second. For the tested controller the log also has the inputs of every control period, so that its observer can be
+//! run again.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use super::controller_log::{self, ControllerMessages};
 use super::estimate_fields;
-use super::file::{Fault, fault_is_on, fault_word};
+use super::file::{Fault, fault_is_active, fault_word};
 use super::run_history::RunHistory;
 use report::failure::Outcome;
 use report::folder::Folder;
 use report::interruption;
 use report::log::{Log, Message, field};
 
-/// Folder of all logs, in that of the results.
+/// Folder of all logs, within the output folder.
 pub const FOLDER: &str = "runs";
 /// Topic of a run.
 pub const TOPIC: &str = "/joint/trial";
-/// Name of its schema.
+/// Name of the topic's schema.
 const SCHEMA_NAME: &str = "joint_msgs/msg/Trial";
 /// Messages a second [Hz].
 const RATE: f64 = 1000.0;
 
-/// Fields that are numbers, in SI, with what they mean.
+/// Numeric fields in SI, with their meanings.
 const NUMBERS: [(&str, &str); 21] = [
     ("time_s", "since the start [s]"),
     ("wanted_rad", "where the link was to be [rad]"),
@@ -47,22 +47,22 @@ const NUMBERS: [(&str, &str); 21] = [
     ("short_of_torque", "1: the law asks for more torque than there is, or brakes early because of that"),
     ("stepped_back", "1: the motor alone is controlled because the loop hunted"),
 ];
-/// The field of faults.
+/// Field of the active faults.
 const FAULTS: (&str, &str) = ("injected_faults", "faults of the test that act, by their words in its file");
 
-/// A run as it is logged.
+/// A run to be logged.
 pub struct LoggedRun<'r> {
-    /// What happened.
+    /// History of the run.
     pub history: &'r RunHistory,
     /// Faults of the test.
     pub faults: &'r [Fault],
-    /// Whether every control period of the controller is logged, which takes most of the room.
+    /// Logs every control period of the controller; such logs are much larger.
     pub every_period: bool,
-    /// Where it comes from.
+    /// Origin of the run.
     pub remarks: BTreeMap<String, String>,
 }
 
-/// Writes a run to a file of this name, and says where that is in the folder of all.
+/// Writes a run to a file; returns its path relative to the output folder.
 pub fn write(folder: &Folder, name: &str, run: LoggedRun<'_>) -> Outcome<String> {
     let path = format!("{FOLDER}/{name}");
     folder.write_with(&path, |out| fill(out, run))?;
@@ -74,22 +74,22 @@ fn fill(out: &mut impl Write, run: LoggedRun<'_>) -> io::Result<()> {
     let mut log = Log::begin(out, remarks)?;
     let mut trial = log.topic(TOPIC, SCHEMA_NAME, &schema())?;
     let mut controller = log.topic(controller_log::TOPIC, controller_log::SCHEMA_NAME, &controller_log::schema())?;
-    let (every, mut messages) = (history.every(RATE), ControllerMessages::default());
-    let mut thinned = history.thinned(RATE);
+    let (every, mut messages) = (history.periods_per_sample(RATE), ControllerMessages::default());
+    let mut thinned = history.samples_at(RATE);
     for (period, of) in history.controller.iter().enumerate() {
         if interruption::requested() {
-            // A log takes longer than a user waits. What is there of it is removed.
+            // Writing a log takes longer than a user waits, so an interruption stops it; the partial log is removed.
             return Err(io::ErrorKind::Interrupted.into());
         }
         let began = period as f64 * history.run.period;
         if every_period {
-            log.write(&mut controller, began, &messages.next(began, period, of))?;
+            log.write(&mut controller, began, &messages.message(began, period, of))?;
         }
         if (period + 1) % every != 0 {
             continue;
         }
         let Some((sample, truth, seen, peak)) = thinned.next() else { continue };
-        let (observed, asked) = (seen.copied().unwrap_or_default(), &history.asked[period]);
+        let (observed, asked) = (seen.copied().unwrap_or_default(), &history.set_points[period]);
         let numbers: [f64; NUMBERS.len()] = [
             sample.time,
             sample.wanted,
@@ -117,14 +117,14 @@ fn fill(out: &mut impl Write, run: LoggedRun<'_>) -> io::Result<()> {
         numbers.into_iter().for_each(|number| message.number(number));
         message.whole(period as u32);
         estimate_fields::add(&mut message, of.estimates.as_ref());
-        let acting: Vec<&str> = faults.iter().filter(|fault| fault_is_on(fault, began)).map(fault_word).collect();
+        let acting: Vec<&str> = faults.iter().filter(|fault| fault_is_active(fault, began)).map(fault_word).collect();
         message.words(acting.into_iter());
         log.write(&mut trial, sample.time, &message)?;
     }
     log.finish().map(drop)
 }
 
-/// The message of the truth, the set-point and the estimates as ROS 2 writes it down.
+/// Schema of the truth, the set-point and the estimates in the text form of ROS 2.
 fn schema() -> String {
     let numbers = NUMBERS.iter().map(|(name, meaning)| field("float64", name, meaning));
     let period =

@@ -1,5 +1,5 @@
-//! What the observer of a run on the host has learnt, as a file that a board could have kept; beside it the joint file that
-//! it was learnt with, which is the only one that it is good for.
+//! Memory files of runs on the host: the estimated parameters in the form in which a board stores them, beside the
+//! joint file that they are valid for.
 
 use std::io::Write;
 
@@ -9,11 +9,11 @@ use super::log_file::FOLDER;
 use report::failure::Outcome;
 use report::folder::Folder;
 
-/// Names of both among the results.
+/// File names of memories and joint files in the output folder.
 pub const MEMORIES: &str = "runs/*.memory";
 pub const JOINTS: &str = "runs/*.toml";
 
-/// Writes both under a name, and says where the memory is in the folder of all.
+/// Writes memory and joint file; returns the memory's path relative to the output folder.
 pub fn write(folder: &Folder, name: &str, memory: &Memory, joint: &str) -> Outcome<String> {
     let path = format!("{FOLDER}/{name}.memory");
     folder.write_text(&format!("{FOLDER}/{name}.toml"), joint)?;

@@ -1,18 +1,18 @@
-//! The metrics of a run, which test files call figures: name, unit, meaning, and how one relates to another
-//! controller's. Their values are computed in `values` and `observer_metrics`.
+//! Metrics of a run, called figures in test files: name, unit, meaning, and relation to another controller's metric.
+//! `values` and `observer_metrics` compute the values.
 
 use super::controller::ControllerName;
 
-/// The kind of test that a metric needs.
+/// Kind of test that a metric requires.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Requirement {
-    /// Any.
+    /// Any test.
     Motion,
-    /// One with impedance set-points.
+    /// A test with impedance set-points.
     Impedance,
-    /// One of observer and compensation.
+    /// A test of observer and compensation.
     Observer,
-    /// One of the width probe.
+    /// A test of the width probe.
     Probe,
     /// A hysteresis loop.
     Loop,
@@ -21,13 +21,13 @@ pub enum Requirement {
 /// One metric.
 #[derive(Debug, PartialEq)]
 pub struct Metric {
-    /// Name without its unit.
+    /// Name without the unit.
     pub stem: &'static str,
-    /// As it ends the name; empty for counts.
+    /// Unit as the suffix of the name; empty for counts.
     pub unit: &'static str,
-    /// What it needs.
+    /// Kind of test that the metric requires.
     pub requires: Requirement,
-    /// What it means.
+    /// Meaning.
     pub meaning: &'static str,
 }
 
@@ -163,30 +163,30 @@ pub static METRICS: &[Metric] = &[
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NamedMetric {
     index: usize,
-    /// Of itself or against whom.
+    /// Relation to another controller's metric.
     pub relation: Relation,
 }
 
-/// How a metric relates to runs.
+/// Relation of a metric to runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Relation {
-    /// The controller's own.
+    /// Metric of the tested controller.
     Own,
-    /// The other's over the controller's: above 1 is better.
+    /// Other controller's metric over the tested one's: above 1 is better.
     GainOver(ControllerName),
-    /// The controller's over the other's: below 1 is better.
+    /// Tested controller's metric over the other's: below 1 is better.
     RatioTo(ControllerName),
-    /// The other's own.
+    /// Metric of the other controller.
     Of(ControllerName),
 }
 
 impl Metric {
-    /// Its name with the unit.
+    /// Name with the unit.
     pub fn name(&self) -> String {
         if self.unit.is_empty() { self.stem.to_owned() } else { format!("{}_{}", self.stem, self.unit) }
     }
 
-    /// Its unit as printed.
+    /// Unit as printed.
     pub fn printed_unit(&self) -> &'static str {
         match self.unit {
             "percent" => "%",
@@ -197,8 +197,8 @@ impl Metric {
     }
 }
 
-/// Whom a name behind `over` or `to` means in a test.
-pub fn others(impedance: bool) -> Vec<(&'static str, ControllerName)> {
+/// Names that may follow `over` or `to` in a test, with their controllers.
+pub fn rival_names(impedance: bool) -> Vec<(&'static str, ControllerName)> {
     let own = ControllerName::ALL.into_iter().filter(|name| !name.is_compensation() && name.wants_gains() == impedance);
     let mut list: Vec<_> = own.filter(|name| *name != ControllerName::Off).map(|name| (name.word(), name)).collect();
     list.push(("baseline", ControllerName::baseline(impedance)));
@@ -210,11 +210,11 @@ pub fn others(impedance: bool) -> Vec<(&'static str, ControllerName)> {
     list
 }
 
-/// Every name that a test may assert.
-pub fn names(impedance: bool) -> Vec<String> {
+/// All names that a test may assert.
+pub fn assertable_names(impedance: bool) -> Vec<String> {
     let mut names: Vec<String> = METRICS.iter().map(Metric::name).collect();
     for metric in METRICS.iter().filter(|metric| matches!(metric.requires, Motion | Impedance)) {
-        for (other, _) in others(impedance) {
+        for (other, _) in rival_names(impedance) {
             names.push(format!("{}_gain_over_{other}", metric.stem));
             names.push(format!("{}_ratio_to_{other}", metric.stem));
             names.push(format!("{}_of_{other}", metric.name()));
@@ -224,14 +224,14 @@ pub fn names(impedance: bool) -> Vec<String> {
 }
 
 impl NamedMetric {
-    /// The figure of a name, in a test with or without impedance set-points.
+    /// Metric of a name, in a test with or without impedance set-points.
     pub fn find(name: &str, impedance: bool) -> Option<Self> {
         if let Some(index) = METRICS.iter().position(|metric| metric.name() == name) {
             return Some(Self { index, relation: Relation::Own });
         }
         let of_motion = |metric: &Metric| matches!(metric.requires, Motion | Impedance);
         if let Some((own, other)) = name.rsplit_once("_of_")
-            && let Some((_, other)) = others(impedance).into_iter().find(|(word, _)| *word == other)
+            && let Some((_, other)) = rival_names(impedance).into_iter().find(|(word, _)| *word == other)
         {
             let index = METRICS.iter().position(|metric| metric.name() == own && of_motion(metric))?;
             return Some(Self { index, relation: Relation::Of(other) });
@@ -242,18 +242,18 @@ impl NamedMetric {
             (None, None) => return None,
         };
         let index = METRICS.iter().position(|metric| metric.stem == stem && of_motion(metric))?;
-        let (_, other) = others(impedance).into_iter().find(|(word, _)| *word == other)?;
+        let (_, other) = rival_names(impedance).into_iter().find(|(word, _)| *word == other)?;
         let relation = if gain { Relation::GainOver(other) } else { Relation::RatioTo(other) };
         Some(Self { index, relation })
     }
 
-    /// The figure that it rests on.
+    /// Metric of a single run that the relation is based on.
     pub fn base(&self) -> &'static Metric {
         &METRICS[self.index]
     }
 
-    /// The place of that figure among all.
-    pub fn place(&self) -> usize {
+    /// Index of the base metric.
+    pub fn index(&self) -> usize {
         self.index
     }
 }

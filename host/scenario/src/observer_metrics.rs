@@ -1,23 +1,23 @@
-//! Metrics of the observer: its estimates against the truth. Metrics of the motion are in `values`.
+//! Metrics of the observer: estimates against the truth. Metrics of the motion are in `values`.
 
 use model_core::gears::Kinematics;
 use model_core::observer::Progress;
 use model_core::virtual_joint::fault::{FaultKind, Shaft};
 
 use super::case::Case;
-use super::file::{Fault, TestFile, fault_is_on};
+use super::file::{Fault, TestFile, fault_is_active};
 use super::run_history::{ObserverOutput, RunHistory, Validity};
 
-/// A width counts as right within this part.
-const WIDTH_RIGHT: f64 = 0.05;
-/// Part of the gap, or of the half-backlash, from which on a value that is said to be valid counts as wrong.
-const WRONG: f64 = 0.2;
-/// No side is judged within this part of the gap from an edge, or with less than this part of the rated force.
-const BAND: f64 = 0.05;
-/// Slower links do not count as moving [rad/s].
-const MOVING: f64 = 1e-3;
+/// Largest relative error of a width that counts as right [-].
+const WIDTH_TOLERANCE: f64 = 0.05;
+/// Error, over the gap or the half-backlash, above which a valid value counts as wrong [-].
+const WRONG_ERROR: f64 = 0.2;
+/// Band in which the side is not judged: distance from an edge over the gap, or force over the rated force [-].
+const SIDE_BAND: f64 = 0.05;
+/// Lowest speed of a moving link [rad/s].
+const MOVING_SPEED: f64 = 1e-3;
 
-/// Stems and values of all figures that could be had.
+/// Stems and values of all available figures.
 pub fn values(file: &TestFile, case: &Case, history: &RunHistory) -> Vec<(&'static str, f64)> {
     let joint = &case.truth.parameters;
     let lever = joint.geometry.carrier_base_radius();
@@ -25,16 +25,17 @@ pub fn values(file: &TestFile, case: &Case, history: &RunHistory) -> Vec<(&'stat
     let mut sums = Sums::default();
     let mut landings = Landings::default();
     let (mut width_wrong_at, mut contact_then, mut contact) = (0.0, 0.0, 0.0);
-    // A sample is taken at its period's end, which is where the next period's estimates are made.
+    // Samples are taken at the end of a period, estimates at the start, so a sample belongs to the next period's
+    // estimates.
     for ((sample, truth), observed) in
         history.run.samples.iter().zip(&history.truths).zip(history.observer_outputs.iter().skip(1))
     {
         let width = f64::from(observed.half_backlash) / truth.half_backlash - 1.0;
-        let touching = sample.gap.abs() > 1.0 - BAND;
-        if touching && sample.link_speed.abs() > MOVING {
+        let touching = sample.gap.abs() > 1.0 - SIDE_BAND;
+        if touching && sample.link_speed.abs() > MOVING_SPEED {
             contact += history.run.period;
         }
-        if width.is_nan() || width.abs() > WIDTH_RIGHT {
+        if width.is_nan() || width.abs() > WIDTH_TOLERANCE {
             (width_wrong_at, contact_then) = (sample.time, contact);
         }
         if sample.time < file.settle {
@@ -56,8 +57,8 @@ pub fn values(file: &TestFile, case: &Case, history: &RunHistory) -> Vec<(&'stat
             sums.gap_valid += (error / gap).powi(2);
             sums.nees += error * error / f64::from(observed.gap_variance).max(1e-30);
         }
-        sums.shares.note(observed, (error / gap).abs() > WRONG, width.is_nan() || width.abs() > WRONG);
-        // Rated force at the sun: the torque over both levers of the carrier.
+        sums.shares.add(observed, (error / gap).abs() > WRONG_ERROR, width.is_nan() || width.abs() > WRONG_ERROR);
+        // Rated force at the sun: rated torque over both levers of the carrier.
         let force = sample.mesh_force * 2.0 * lever / rated;
         let side = if force > 0.0 {
             1
@@ -66,12 +67,12 @@ pub fn values(file: &TestFile, case: &Case, history: &RunHistory) -> Vec<(&'stat
         } else {
             0
         };
-        let clear = if side == 0 { sample.gap.abs() < 1.0 - 2.0 * BAND } else { force.abs() > BAND };
+        let clear = if side == 0 { sample.gap.abs() < 1.0 - 2.0 * SIDE_BAND } else { force.abs() > SIDE_BAND };
         if clear {
             sums.judged += 1.0;
             sums.right += f64::from(u8::from(side == observed.side));
         }
-        landings.note(sample.time, if sample.gap.abs() > 1.0 { side } else { 0 }, observed.side);
+        landings.add(sample.time, if sample.gap.abs() > 1.0 { side } else { 0 }, observed.side);
     }
     let percent = |sum: f64, count: f64| 100.0 * (sum / count).sqrt();
     let mut list = vec![
@@ -93,14 +94,14 @@ pub fn values(file: &TestFile, case: &Case, history: &RunHistory) -> Vec<(&'stat
     ];
     list.extend(sums.shares.percent(sums.count));
     list.extend(landings.delays());
-    list.extend(at_the_end(case, history));
-    list.extend(alarms(file, history));
-    list.extend(probed(history));
+    list.extend(final_errors(case, history));
+    list.extend(fault_metrics(file, history));
+    list.extend(probe_metrics(history));
     list
 }
 
-/// The width probe's result, if there was a probe and it ended.
-fn probed(history: &RunHistory) -> Vec<(&'static str, f64)> {
+/// Result of the width probe, if a probe ended.
+fn probe_metrics(history: &RunHistory) -> Vec<(&'static str, f64)> {
     let times = || history.run.samples.iter().zip(&history.observer_outputs);
     let ended = times().find(|(_, observed)| !matches!(observed.probed, None | Some(Progress::Running)));
     let (Some((sample, observed)), Some(truth)) = (ended, history.truths.last()) else { return Vec::new() };
@@ -132,8 +133,8 @@ struct Sums {
     shares: Shares,
 }
 
-/// Names of [`Shares`], in their order.
-const SHARES: [&str; 8] = [
+/// Names of [`Shares`], in order.
+const SHARE_NAMES: [&str; 8] = [
     "gap_wrong",
     "width_wrong",
     "contact_valid",
@@ -144,12 +145,12 @@ const SHARES: [&str; 8] = [
     "skew_valid",
 ];
 
-/// Numbers of periods in which outputs are said to be valid, and in which they are valid and wrong.
+/// Numbers of periods with valid outputs, and with outputs that are valid but wrong.
 #[derive(Default)]
-struct Shares([usize; SHARES.len()]);
+struct Shares([usize; SHARE_NAMES.len()]);
 
 impl Shares {
-    fn note(&mut self, observed: &ObserverOutput, gap_wrong: bool, width_wrong: bool) {
+    fn add(&mut self, observed: &ObserverOutput, gap_wrong: bool, width_wrong: bool) {
         let Validity { contact, half_backlash, mesh_torque, load_torque, compliance, skew } = observed.validity;
         let now = [
             observed.valid && gap_wrong,
@@ -165,11 +166,11 @@ impl Shares {
     }
 
     fn percent(&self, periods: f64) -> impl Iterator<Item = (&'static str, f64)> {
-        SHARES.into_iter().zip(self.0.map(|count| 100.0 * count as f64 / periods))
+        SHARE_NAMES.into_iter().zip(self.0.map(|count| 100.0 * count as f64 / periods))
     }
 }
 
-/// Landings on the flank opposite to the last one, and when they were reported.
+/// Landings on the flank opposite to the last one, and their reports.
 #[derive(Default)]
 struct Landings {
     before: i8,
@@ -179,7 +180,7 @@ struct Landings {
 }
 
 impl Landings {
-    fn note(&mut self, time: f64, side: i8, reported: i8) {
+    fn add(&mut self, time: f64, side: i8, reported: i8) {
         if side != 0 && side != self.before {
             if self.before != 0 {
                 self.missed += usize::from(self.open.is_some());
@@ -206,14 +207,14 @@ impl Landings {
     }
 }
 
-/// What was learnt.
-fn at_the_end(case: &Case, history: &RunHistory) -> Vec<(&'static str, f64)> {
+/// Errors of the estimated parameters at the end of the run.
+fn final_errors(case: &Case, history: &RunHistory) -> Vec<(&'static str, f64)> {
     let (Some(observed), Some(truth)) = (history.observer_outputs.last(), history.truths.last()) else {
         return Vec::new();
     };
     let joint = &case.truth.parameters;
     let lever = joint.geometry.carrier_base_radius();
-    // Every mesh carries its share of the force; both in a row give way, felt over twice the carrier's lever.
+    // The meshes share the force; sun and ring mesh are in series, at twice the carrier's lever.
     let meshes = (1.0 / joint.sun_planet.mean_stiffness + 1.0 / joint.ring_planet.mean_stiffness)
         / (joint.geometry.planets as f64 * (2.0 * lever).powi(2));
     let compliance = meshes + joint.compliance.map_or(0.0, |compliance| 1.0 / compliance.stiffness);
@@ -226,8 +227,8 @@ fn at_the_end(case: &Case, history: &RunHistory) -> Vec<(&'static str, f64)> {
     ]
 }
 
-/// When the observer gave up the output encoder, and whether it had to.
-fn alarms(file: &TestFile, history: &RunHistory) -> Vec<(&'static str, f64)> {
+/// Fallbacks of the observer to the motor encoder: delay after the first fault, and false alarms.
+fn fault_metrics(file: &TestFile, history: &RunHistory) -> Vec<(&'static str, f64)> {
     let of_output = |fault: &&Fault| {
         matches!(
             fault.kind,
@@ -240,18 +241,18 @@ fn alarms(file: &TestFile, history: &RunHistory) -> Vec<(&'static str, f64)> {
     let first = file.faults.iter().filter(of_output).map(|fault| fault.start).fold(f64::INFINITY, f64::min);
     let (mut found, mut false_alarms, mut before) = (None, 0, false);
     for (sample, observed) in history.run.samples.iter().zip(&history.observer_outputs) {
-        if before && !observed.both {
+        if before && !observed.both_encoders {
             if sample.time >= first {
                 found = found.or(Some(sample.time - first));
             }
-            let on = file.faults.iter().any(|fault| fault_is_on(fault, sample.time));
+            let on = file.faults.iter().any(|fault| fault_is_active(fault, sample.time));
             false_alarms += usize::from(!on);
         }
-        before = observed.both;
+        before = observed.both_encoders;
     }
     let mut list = vec![("false_alarms", false_alarms as f64)];
     if first.is_finite() {
-        // Never found is later than any bound.
+        // A fault that is never found counts as later than any bound.
         let end = history.run.samples.last().map_or(0.0, |sample| sample.time);
         list.push(("fault_found", 1e3 * found.unwrap_or((end - first).max(0.0) + 1e3)));
     }
@@ -263,17 +264,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_output_is_wrong_only_while_it_is_said_to_be_valid() {
+    fn only_valid_outputs_count_as_wrong() {
         let valid = ObserverOutput {
             valid: true,
             validity: Validity { half_backlash: true, skew: true, ..Validity::default() },
             ..ObserverOutput::default()
         };
         let mut shares = Shares::default();
-        shares.note(&valid, true, false);
-        shares.note(&valid, true, true);
-        shares.note(&ObserverOutput::default(), true, true);
-        shares.note(&ObserverOutput::default(), false, false);
+        shares.add(&valid, true, false);
+        shares.add(&valid, true, true);
+        shares.add(&ObserverOutput::default(), true, true);
+        shares.add(&ObserverOutput::default(), false, false);
         let found: Vec<_> = shares.percent(4.0).filter(|(_, share)| *share > 0.0).collect();
         assert_eq!(found, [("gap_wrong", 50.0), ("width_wrong", 25.0), ("width_valid", 50.0), ("skew_valid", 50.0)]);
     }

@@ -1,5 +1,5 @@
-//! The report of tests as a document, what failed first. A terminal shows every assertion and how to run again what
-//! failed. Pictures come from `pictures`.
+//! Report of tests as a document, failures first. The terminal shows every assertion and the command that repeats each
+//! failure. Pictures come from `pictures`.
 
 use super::campaign::FinishedTest;
 use super::controller::ControllerName;
@@ -12,8 +12,8 @@ use report::document::{
 };
 use report::number::{PAGE, fixed};
 
-/// What is shown of every controller: name, heading, unit.
-const COMPARED: [(&str, &str, &str); 9] = [
+/// Columns of the comparison of controllers: name, heading, unit.
+const COMPARED_FIGURES: [(&str, &str, &str); 9] = [
     ("rms_mrad", "error RMS", "mrad"),
     ("peak_mrad", "error peak", "mrad"),
     ("reversal_error_mrad", "reversal error", "mrad"),
@@ -25,7 +25,7 @@ const COMPARED: [(&str, &str, &str); 9] = [
     ("peak_mesh_force_ratio", "over rated", ""),
 ];
 
-/// A test that has ended, in one line.
+/// A finished test in one line.
 pub fn line(test: &TestRecord) -> String {
     let word = if test.passed { "ok" } else { "FAILED" };
     let held = test.assertions.len() - test.failed().count();
@@ -33,7 +33,7 @@ pub fn line(test: &TestRecord) -> String {
     format!("{word:8} {} ({of}, {} runs, {:.1} s)", test.file, test.runs.len(), test.seconds)
 }
 
-/// All tests.
+/// Report of all tests.
 pub fn document(record: &TestsRecord, tested: &[FinishedTest]) -> Document {
     let (failed, passed): (Vec<&FinishedTest>, Vec<&FinishedTest>) =
         tested.iter().partition(|test| !test.record.passed);
@@ -47,18 +47,21 @@ pub fn document(record: &TestsRecord, tested: &[FinishedTest]) -> Document {
         blocks.push(failures(record));
     }
     if !record.not_run.is_empty() {
-        blocks.push(section_bare("What was not run", record.not_run.iter().map(not_run).collect()));
+        blocks.push(section_bare("What was not run", record.not_run.iter().map(not_run_notice).collect()));
     }
     if tested.len() > 1 {
         blocks.push(overview(record));
     }
     blocks.extend(failed.iter().chain(&passed).map(|test| one(test)));
     blocks.push(origin(record));
-    let on = text("On the ") + each(record, |test| &test.on) + ", plant " + strong(each(record, |test| &test.plant));
+    let on = text("On the ")
+        + distinct_words(record, |test| &test.on)
+        + ", plant "
+        + strong(distinct_words(record, |test| &test.plant));
     Document {
         title: format!("Tests: {title}"),
         heading: "Observer and compensation".into(),
-        verdict: Some(verdict_of_all(record, failed.len())),
+        verdict: Some(overall_verdict(record, failed.len())),
         subtitle: if record.tests.is_empty() { text("Nothing ran") } else { on }
             + record.full.then_some(" · full lists of seeds")
             + " · "
@@ -73,7 +76,7 @@ pub fn document(record: &TestsRecord, tested: &[FinishedTest]) -> Document {
     }
 }
 
-fn verdict_of_all(record: &TestsRecord, failed: usize) -> (Tone, String) {
+fn overall_verdict(record: &TestsRecord, failed: usize) -> (Tone, String) {
     let nothing_asserted = record.tests.iter().all(|test| test.assertions.is_empty());
     match (failed, record.not_run.len()) {
         (0, 0) if nothing_asserted => (Tone::Open, "RAN, NOTHING ASSERTED".to_owned()),
@@ -85,7 +88,7 @@ fn verdict_of_all(record: &TestsRecord, failed: usize) -> (Tone, String) {
     }
 }
 
-/// The verdict of a test; a test without assertions has none to pass.
+/// Verdict of a test; a test without assertions has merely run.
 fn verdict(test: &TestRecord) -> (Tone, &'static str) {
     match (test.passed, test.assertions.is_empty()) {
         (false, _) => (Tone::Failed, "FAILED"),
@@ -94,8 +97,8 @@ fn verdict(test: &TestRecord) -> (Tone, &'static str) {
     }
 }
 
-/// A word of every test, each word once.
-fn each(record: &TestsRecord, word: impl Fn(&TestRecord) -> &String) -> String {
+/// Distinct words of all tests.
+fn distinct_words(record: &TestsRecord, word: impl Fn(&TestRecord) -> &String) -> String {
     let mut words: Vec<&str> = record.tests.iter().map(|test| word(test).as_str()).collect();
     words.sort_unstable();
     words.dedup();
@@ -118,7 +121,7 @@ fn tiles(record: &TestsRecord) -> Block {
     ])
 }
 
-/// What failed, over all tests, with the line that runs it again.
+/// Failures of all tests, with the commands that repeat them.
 fn failures(record: &TestsRecord) -> Block {
     let one = |test: &TestRecord| {
         let title = (!test.title.is_empty()).then(|| format!(" – {}", test.title));
@@ -127,38 +130,39 @@ fn failures(record: &TestsRecord) -> Block {
             let why = run.refusal.as_ref()?;
             Some(format!("The width probe refused with seed {}: {why}", run.seed).into())
         });
-        let more = broken.chain(test.failed().map(failure)).chain(refused).map(Block::Paragraph);
+        let more = broken.chain(test.failed().map(failure_text)).chain(refused).map(Block::Paragraph);
         let more = more.chain([Block::Again(test.replay.clone())]).collect();
         Block::Notice(Notice { tone: Tone::Failed, alert: false, text: strong(&test.file) + title, more })
     };
     section("What failed", record.tests.iter().filter(|test| !test.passed).map(one).collect())
 }
 
-fn failure(assertion: &AssertionRecord) -> Text {
+fn failure_text(assertion: &AssertionRecord) -> Text {
     let check = assertion.check();
     let unit = if assertion.unit.is_empty() { String::new() } else { format!(" {}", assertion.unit) };
     let found = match assertion.figure {
         Some(figure) => text(" is ") + strong(PAGE.write(figure)) + &unit,
         None => text(" ") + strong("could not be had"),
     };
-    let bound = check.bound.in_signs().map_or_else(|| text("–"), |(sign, bound)| text(sign) + " " + number(bound));
+    let bound =
+        check.bound.sign_and_value().map_or_else(|| text("–"), |(sign, bound)| text(sign) + " " + number(bound));
     let seed = assertion.seed.map(|seed| format!(", seed {seed}"));
     text(check.name) + found + ", bound " + bound + &unit + seed
 }
 
-/// What could not run, and what to do about it.
-fn not_run(NotRun { file, why, mend }: &NotRun) -> Block {
-    let more = mend.iter().map(|mend| Block::Paragraph(mend.into())).collect();
+/// A file that could not run, with its remedy.
+fn not_run_notice(NotRun { file, why, remedy }: &NotRun) -> Block {
+    let more = remedy.iter().map(|remedy| Block::Paragraph(remedy.into())).collect();
     let text = strong("NOT RUN") + format!(" {file}: {why}");
     Block::Notice(Notice { tone: Tone::Failed, alert: false, text, more })
 }
 
-/// One row for each test: with compensation, without, against the best rival.
+/// One row for each test: with compensation, without, and the best rival.
 fn overview(record: &TestsRecord) -> Block {
     let heads = ["tested", "baseline", "best rival", "seeds"].map(numbers);
     let columns = [words("Verdict"), words("Test")].into_iter().chain(heads).collect();
     let rows = record.tests.iter().map(|test| {
-        let tested = ControllerName::of_word(&test.controller, false);
+        let tested = ControllerName::from_word(&test.controller, false);
         let impedance = tested.wants_gains();
         let worst = |controller: ControllerName| {
             let figure = if impedance { "deviation_rms_mrad" } else { "rms_mrad" };
@@ -183,7 +187,7 @@ fn anchor(test: &TestRecord) -> String {
     test.file.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '-' }).collect()
 }
 
-/// Everything about a test.
+/// Section of one test.
 fn one(tested: &FinishedTest) -> Block {
     let test = &tested.record;
     let (tone, word) = verdict(test);
@@ -217,12 +221,12 @@ fn one(tested: &FinishedTest) -> Block {
     blocks.extend(test.broken.as_ref().map(|why| alert(strong("BROKEN") + " off: " + why)));
     blocks.push(if checks.is_empty() {
         let rms = test.largest(&test.controller, "rms_mrad").map_or("–".to_owned(), |rms| fixed(3).write(rms));
-        Block::Paragraph(format!("nothing is asserted; error {rms} mrad RMS at worst").into())
+        Block::Paragraph(format!("no assertions; worst error {rms} mrad RMS").into())
     } else {
         Block::Checks(Checks { checks, emulated: false, keys: true })
     });
-    blocks.push(Block::Only(TERMINALS, runs(test)));
-    blocks.push(Block::Only(PAGES, vec![compared(test), details(tested)]));
+    blocks.push(Block::Only(TERMINALS, run_notes(test)));
+    blocks.push(Block::Only(PAGES, vec![comparison_table(test), picture_section(tested)]));
     let again = Block::Again(test.replay.clone());
     blocks.push(if test.passed { Block::Only(PAGES, vec![again]) } else { again });
     Block::Section(Section {
@@ -235,8 +239,8 @@ fn one(tested: &FinishedTest) -> Block {
     })
 }
 
-/// What runs report beside their figures: refusals, and the load of boards.
-fn runs(test: &TestRecord) -> Vec<Block> {
+/// Notes of the runs: refusals, and the load of boards.
+fn run_notes(test: &TestRecord) -> Vec<Block> {
     let refused = test.runs.iter().filter_map(|run| {
         let refusal = run.refusal.as_ref()?;
         Some(bad_notice(strong("refused:") + format!(" seed {}: {refusal}", run.seed)))
@@ -263,14 +267,14 @@ fn board(board: &BoardRun) -> Block {
 }
 
 /// Figures of every controller, worst of all seeds.
-fn compared(test: &TestRecord) -> Block {
+fn comparison_table(test: &TestRecord) -> Block {
     let controllers = test.controllers();
     let had = |name: &str| controllers.iter().any(|controller| test.largest(controller, name).is_some());
-    let shown: Vec<_> = COMPARED.into_iter().filter(|(name, _, _)| had(name)).collect();
+    let shown: Vec<_> = COMPARED_FIGURES.into_iter().filter(|(name, _, _)| had(name)).collect();
     let heads = shown.iter().map(|(_, heading, unit)| numbers(*heading).in_unit(unit));
     let columns = [words("Controller")].into_iter().chain(heads).collect();
     let rows = controllers.iter().map(|controller| {
-        let name = whole(ControllerName::of_word(controller, false).label());
+        let name = whole(ControllerName::from_word(controller, false).label());
         let figures = shown.iter().map(|(figure, _, _)| test.largest(controller, figure).map_or("–".into(), number));
         row([name].into_iter().chain(figures))
     });
@@ -281,11 +285,11 @@ fn compared(test: &TestRecord) -> Block {
     Block::Only(PAGES, blocks)
 }
 
-/// The pictures, on demand if the test has passed.
-fn details(tested: &FinishedTest) -> Block {
+/// Pictures, collapsed if the test has passed.
+fn picture_section(tested: &FinishedTest) -> Block {
     let test = &tested.record;
     let from = || number(test.settle_s);
-    let all = pictures::whole(tested).map(|figure| {
+    let all = pictures::whole_run(tested).map(|figure| {
         let caption = format!(
             "Seed {}, least and greatest error of each stretch; lost motion is the time that each crossing took. Figures \
              are taken from ",
@@ -293,7 +297,7 @@ fn details(tested: &FinishedTest) -> Block {
         );
         picture(figure, text(caption) + from() + " s on.")
     });
-    let close = pictures::close(tested).map(|figure| {
+    let close = pictures::crossing(tested).map(|figure| {
         let caption = strong("Closely: ") + "the longest crossing of the gap after " + from();
         picture(figure, caption + " s, a point each millisecond.")
     });
@@ -304,7 +308,7 @@ fn details(tested: &FinishedTest) -> Block {
     Block::Details(Details { summary: format!("Pictures, seed {}", test.shown_seed).into(), open: false, blocks })
 }
 
-/// Where it comes from: digests of files and runs.
+/// Origin of the results: digests of files and runs.
 fn origin(record: &TestsRecord) -> Block {
     let commit = record.git_commit.as_ref().map(|commit| text(" · commit ") + code(commit));
     let lead = text(format!("{} · joint {}", record.host, record.host_version)) + commit;

@@ -1,5 +1,5 @@
-//! Pictures of a test: what the shown seed did under every controller, over the whole time and closely around one
-//! crossing of the gap. Points come from `trace`, drawing from `report`.
+//! Pictures of a test: the shown seed under every controller, over the whole run and around one crossing of the gap.
+//! Points come from `trace`, drawing from `report`.
 
 use super::campaign::FinishedTest;
 use super::controller::ControllerName;
@@ -12,16 +12,16 @@ use report::plot::panel::Panel;
 use report::plot::unit::{FORCE, MILLISECONDS, SECONDS, TORQUE, Unit, greatest};
 
 /// Width of a line [px].
-const LINE: f64 = 1.2;
+const LINE_WIDTH: f64 = 1.2;
 /// Width of the tested controller's line [px].
-const OWN: f64 = 1.8;
-/// A whole run is drawn by so many bins of time, with least and greatest error of each.
+const TESTED_LINE_WIDTH: f64 = 1.8;
+/// Bins of time in a picture of the whole run; each has the least and the greatest error.
 const BINS: usize = 450;
-/// A close-up begins and ends so long before and after [s].
-const CLOSE: f64 = 0.12;
+/// Time before and after the crossing in the close-up [s].
+const CLOSE_UP_MARGIN: f64 = 0.12;
 
-/// Over the whole run.
-pub fn whole(tested: &FinishedTest) -> Option<Figure> {
+/// Picture of the whole run.
+pub fn whole_run(tested: &FinishedTest) -> Option<Figure> {
     let end =
         tested.shown.iter().flat_map(|(_, trace)| trace.points.last()).map(|point| point.time).fold(0.0, f32::max);
     let coarse = |(name, trace): &(ControllerName, Trace)| (*name, trace.coarse(trace.points.len() / BINS));
@@ -30,16 +30,16 @@ pub fn whole(tested: &FinishedTest) -> Option<Figure> {
     (end > 0.0).then(|| view.figure(format!("The whole run: {}", tested.record.file), true))
 }
 
-/// Around a crossing of the gap: the tested controller's longest one, or else one of another.
-pub fn close(tested: &FinishedTest) -> Option<Figure> {
+/// Picture of a crossing of the gap: the tested controller's longest one, or that of another controller.
+pub fn crossing(tested: &FinishedTest) -> Option<Figure> {
     let settle = tested.record.settle_s;
     let longest = |trace: &Trace| {
         let late = trace.crossings.iter().filter(|(time, _)| *time >= settle);
         late.copied().reduce(|a, b| if b.1 > a.1 { b } else { a })
     };
     let (time, took) = tested.shown.iter().find_map(|(_, trace)| longest(trace))?;
-    let from = (time - took.min(0.3) - CLOSE).max(0.0);
-    let view = View { shown: &tested.shown, faults: &tested.faults, range: (from, time + CLOSE) };
+    let from = (time - took.min(0.3) - CLOSE_UP_MARGIN).max(0.0);
+    let view = View { shown: &tested.shown, faults: &tested.faults, range: (from, time + CLOSE_UP_MARGIN) };
     Some(view.figure(format!("A crossing of the gap: {}", tested.record.file), false))
 }
 
@@ -73,7 +73,8 @@ impl View<'_> {
         Figure::over_time(title, SECONDS, self.range, panels)
     }
 
-    /// Where faults begin and end, named in the first panel: each of one fault, several of them by one name.
+    /// Marks at the start and end of faults, with labels in the first panel: the fault's word if there is only one
+    /// fault.
     fn fault_limits(&self, named: bool) -> Vec<Mark> {
         let inside = |time: f64| self.range.0 < time && time < self.range.1;
         let ends = self
@@ -91,7 +92,7 @@ impl View<'_> {
         limits.collect()
     }
 
-    /// The tested controller is drawn last, above the others.
+    /// Lines of all controllers; the tested one is drawn last, on top.
     fn lines(&self, value: impl Fn(&TracePoint) -> f32) -> Vec<Mark> {
         let shown = self.shown.iter().enumerate().rev();
         shown.map(|(index, (name, trace))| self.line(index, name.label(), trace, &value)).collect()
@@ -103,7 +104,7 @@ impl View<'_> {
             points: trace.points.iter().filter(inside).map(|p| (p.time.into(), value(p).into())).collect(),
             ink: LINES[index.min(LINES.len() - 1)],
             label: label.to_owned(),
-            width: if index == 0 { OWN } else { LINE },
+            width: if index == 0 { TESTED_LINE_WIDTH } else { LINE_WIDTH },
         }
     }
 
@@ -131,7 +132,8 @@ impl View<'_> {
         Panel { height: 170, ..Panel::lines("Link", Unit::of_angle(most.max(1.01e-3)), marks) }
     }
 
-    /// True coordinate of the tested controller and the first rival, the observer's beside it, over the free gap.
+    /// True gap coordinate of the tested controller and the first rival, with the observer's estimate, over the free
+    /// gap.
     fn gap(&self) -> Panel {
         let half = self.shown.first().map_or(0.0, |(_, trace)| trace.half_gap);
         let mut marks = vec![Mark::Band { range: (-half, half), label: "free gap".into() }];
@@ -148,7 +150,7 @@ impl View<'_> {
         Panel { height: 190, ..Panel::lines("Gap coordinate", Unit::of_length(4.0 * half), marks) }
     }
 
-    /// How long every crossing took.
+    /// Duration of every crossing.
     fn lost_motion(&self) -> Panel {
         let shown = self.shown.iter().enumerate().rev();
         let marks = shown

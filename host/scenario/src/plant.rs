@@ -1,5 +1,5 @@
-//! The joint that a run closes its loop around: the fine-step f64 reference, or the core's own fixed step, each inside the
-//! same drive train. Faults of the teeth reach either through one trait.
+//! Plant of a run: the fine-step f64 reference or the core's own fixed step, each inside the same drive train. Faults
+//! of the teeth reach both through one trait.
 
 use clap::ValueEnum;
 use model_core::gears::design::design;
@@ -12,17 +12,17 @@ use board::device::image::DEFAULT_TICK_RATE;
 use report::failure::{Failure, Outcome};
 use simulation::sim::snapshot::Reader;
 
-/// Which model of the joint moves.
+/// Model of the joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum PlantName {
-    /// The fine-step f64 plant that shares nothing with the core but the parameters; bars are stated on it
+    /// Fine-step f64 plant that shares nothing with the core but the parameters; bounds are stated on it
     Reference,
-    /// The core's own f32 step, as a board runs it
+    /// Fixed f32 step of the core, as a board runs it
     Core,
 }
 
 impl PlantName {
-    /// Its word.
+    /// Word in files and commands.
     pub fn word(self) -> &'static str {
         match self {
             Self::Reference => "reference",
@@ -33,9 +33,9 @@ impl PlantName {
 
 /// A joint whose teeth can change.
 pub trait Teeth: JointModel {
-    /// From now on every mesh has this half-backlash [m].
+    /// Sets the half-backlash of every mesh [m].
     fn set_half_backlash(&mut self, half_backlash: f64);
-    /// From now on the sun-planet mesh of one planet has this mean stiffness [N/m].
+    /// Sets the mean stiffness of the sun-planet mesh of one planet [N/m].
     fn set_sun_planet_stiffness(&mut self, planet: usize, mean_stiffness: f64);
 }
 
@@ -54,10 +54,10 @@ pub fn half_backlash(joint: &JointParameters) -> f64 {
     joint.sun_planet.half_backlash.iter().sum::<f64>() / joint.geometry.planets as f64
 }
 
-/// A drive train with a joint of either kind inside.
+/// A drive train with a joint of either kind.
 pub type Plant = DriveTrain<Box<dyn Teeth>>;
 
-/// A joint at rest in the middle of its gap, with what surrounds it; the reference is stepped fast.
+/// Joint at rest in the middle of its gap with its drive train; the reference uses the fixed step.
 pub fn plant(
     name: PlantName,
     joint: &JointParameters,
@@ -69,7 +69,7 @@ pub fn plant(
     plant_from(name, joint, &centred, train, disturbances, seed).map(|plant| plant.stepped(Stepping::Fixed))
 }
 
-/// A joint from a start of its own, with what surrounds it.
+/// Joint with its drive train in a given initial state.
 pub fn plant_from(
     name: PlantName,
     joint: &JointParameters,
@@ -81,7 +81,7 @@ pub fn plant_from(
     let refused =
         |error: &dyn std::fmt::Display| Failure::new(format!("joint `{}` cannot be run: {error}", joint.name));
     let mut train = train.clone();
-    refuse_effects(name, &train.surroundings)?;
+    reject_effects(name, &train.surroundings)?;
     let inside: Box<dyn Teeth> = match name {
         PlantName::Reference => {
             let hysteresis = train.surroundings.hysteresis;
@@ -90,7 +90,7 @@ pub fn plant_from(
         }
         PlantName::Core => {
             let control_rate = f64::from(train.surroundings.control_rate);
-            // As on a board: whole ticks in a control period, as near to the usual rate as that allows.
+            // A board has whole ticks in a control period, at a rate close to the default tick rate.
             train.parts_per_period = (f64::from(DEFAULT_TICK_RATE) / control_rate).round().max(1.0) as u32;
             let rate = (control_rate * f64::from(train.parts_per_period)).round() as u32;
             match joint.geometry.planets {
@@ -104,8 +104,12 @@ pub fn plant_from(
     DriveTrain::around(inside, joint, train, disturbances, seed).map_err(|error| refused(&error))
 }
 
-/// State of the core's own step at a start.
-fn state_of<const N: usize>(joint: &JointParameters, tables: &Tables<f32, N>, start: &RelativeState) -> State<f32, N> {
+/// State of the core's step for an initial state.
+fn core_state<const N: usize>(
+    joint: &JointParameters,
+    tables: &Tables<f32, N>,
+    start: &RelativeState,
+) -> State<f32, N> {
     let scales = Scales::new(joint);
     let scaled = |planets: &[f64], gap: f64, wind_up: f64, unit: f64| Relative {
         planets: std::array::from_fn(|planet| (planets.get(planet).copied().unwrap_or(0.0) / unit) as f32),
@@ -118,8 +122,8 @@ fn state_of<const N: usize>(joint: &JointParameters, tables: &Tables<f32, N>, st
     State::from_deflections(tables, &deflections, &rates, start.rigid_speed as f32)
 }
 
-/// Refuses by name the effects that a plant does not have.
-pub fn refuse_effects(name: PlantName, around: &Surroundings) -> Outcome<()> {
+/// Rejects effects that the plant does not model.
+pub fn reject_effects(name: PlantName, around: &Surroundings) -> Outcome<()> {
     let why = |effect: Effect| match effect {
         Effect::Hysteresis => Some("its spring between carrier and link has no loss but damping"),
         Effect::PayloadStep => Some("its inertias are tables"),
@@ -136,13 +140,13 @@ pub fn refuse_effects(name: PlantName, around: &Surroundings) -> Outcome<()> {
     }
 }
 
-/// Change of the half-backlash from which on the core's joint is designed anew [-]. Between the designs its gap is wrong by half of it
-/// at most.
+/// Change of the half-backlash after which the core's joint is designed again [-]. Between designs the gap is wrong by
+/// at most half of it.
 const DESIGN_STEP: f64 = 0.005;
 
 /// The core's fixed step as a joint in motion.
 struct CoreJoint<const N: usize> {
-    /// With the half-backlash that it was made with or set to.
+    /// Joint with its original or set half-backlash.
     joint: JointParameters,
     /// Half-backlash of the tables over the joint's.
     backlash_scale: f64,
@@ -162,7 +166,7 @@ impl<const N: usize> CoreJoint<N> {
         let compliance_damping = compliance_damping(joint);
         let state = match start {
             Start::Still => State::REST,
-            Start::Relative(start) => state_of(joint, &tables, start),
+            Start::Relative(start) => core_state(joint, &tables, start),
         };
         Ok(Self { joint: joint.clone(), tables, state, ticks: 0, compliance_damping, backlash_scale: 1.0 })
     }
@@ -173,9 +177,9 @@ impl<const N: usize> CoreJoint<N> {
         model
     }
 
-    /// Makes the tables of the joint as it is now. Scales do not depend on the backlash, so the state stands; a joint that was designed
-    /// once is again.
-    fn design_again(&mut self) {
+    /// Designs the tables for the current joint. Scales do not depend on the backlash, so the state remains valid. The
+    /// design cannot fail for a joint that was designed before.
+    fn redesign(&mut self) {
         let mut joint = self.joint.clone();
         for mesh in [&mut joint.sun_planet, &mut joint.ring_planet] {
             mesh.half_backlash.iter_mut().for_each(|value| *value *= self.backlash_scale);
@@ -185,7 +189,7 @@ impl<const N: usize> CoreJoint<N> {
         }
     }
 
-    /// Rate of an angle that differs from its rigid share by these gains of planets, gap and wind-up [rad/s].
+    /// Rate of an angle relative to its rigid part, for given gains of planets, gap and wind-up [rad/s].
     fn offset_rate(&self, gains: &[f32; 3]) -> f64 {
         let rate = &self.state.rate;
         let planets = rate.planets.iter().map(|rate| f64::from(*rate)).sum::<f64>();
@@ -215,11 +219,11 @@ impl<const N: usize> Teeth for CoreJoint<N> {
             mesh.half_backlash.iter_mut().for_each(|value| *value = half_backlash);
         }
         self.joint = joint;
-        self.design_again();
+        self.redesign();
     }
 
     fn set_sun_planet_stiffness(&mut self, _: usize, _: f64) {
-        // The core's planets share their stiffness: a plan with such a fault is refused before it runs.
+        // The core's planets share their stiffness; a test with this fault is rejected before it runs.
     }
 }
 
@@ -238,15 +242,16 @@ impl<const N: usize> JointModel for CoreJoint<N> {
     fn scale_half_backlash(&mut self, factor: f64) {
         if (factor - self.backlash_scale).abs() > DESIGN_STEP {
             self.backlash_scale = factor;
-            self.design_again();
+            self.redesign();
         }
     }
 
-    /// Only at rest in the middle of the gap, where the rigid body is at zero whatever its inertia: a step of the payload is refused.
+    /// Valid only at rest in the middle of the gap, where the rigid body is at zero for any inertia; a payload step is
+    /// rejected.
     fn set_link_inertia(&mut self, link_inertia: f64) {
         self.joint.link_inertia = link_inertia;
         self.compliance_damping = compliance_damping(&self.joint);
-        self.design_again();
+        self.redesign();
     }
 
     fn observe(&self) -> Observation {
@@ -314,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn the_core_refuses_by_name_what_it_lacks() {
+    fn core_rejects_missing_effects() {
         type Lacking = (&'static str, fn(&mut Surroundings));
         let lacking: [Lacking; 3] = [
             ("`hysteresis_stiffness_share`", |of| of.hysteresis = Hysteresis { stiffness_share: 0.2, torque: 1.0 }),
@@ -332,7 +337,7 @@ mod tests {
     }
 
     #[test]
-    fn a_payload_swings_alike_on_both_plants() {
+    fn payload_swings_alike_on_plants() {
         let around = Surroundings {
             payload: Payload { inertia_share: 0.5, frequency: 12.0, damping_ratio: 0.02 },
             ..Surroundings::ideal()
@@ -354,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn the_backlash_varies_alike_on_both_plants() {
+    fn backlash_varies_alike_on_plants() {
         let around = Surroundings {
             width: WidthVariation { per_link_turn: 0.3, per_motor_turn: 0.0 },
             load_friction: Friction { coulomb: 5.0, ..Friction::default() },

@@ -1,5 +1,5 @@
-//! The seam between a run and observer with compensation: samples and set-points in, estimates and shaped set-points
-//! out, once a control period. Here it is served on the host; a board serves the same trait over its line.
+//! Interface between a run and observer with compensation: samples and set-points in, estimates and torque out, once a
+//! control period. `HostPort` implements it on the host; a board implements it over its line.
 
 use std::f64::consts::TAU;
 
@@ -14,32 +14,32 @@ use super::encoder_zeros::EncoderZeros;
 use super::faults::{ControllerInputs, LATENESS_PARTS, TimedReading};
 use report::failure::{Failure, Outcome};
 
-/// The answer of one control period.
+/// Answer of one control period.
 pub type Answer = controller::Answer<f32>;
 
-/// Observer and compensation, wherever they run.
+/// Observer and compensation, on the host or on a board.
 pub trait ControllerPort {
-    /// One control period.
+    /// Runs one control period.
     fn exchange(&mut self, samples: &Samples<f32>, command: &Command<f32>) -> Outcome<Answer>;
 
-    /// One control period of a width probe.
+    /// Runs one control period of a width probe.
     fn probe(&mut self, samples: &Samples<f32>) -> Outcome<Answer>;
 
-    /// Keeps what has been learnt, and begins anew from it: says what that is.
+    /// Restarts from the estimated parameters; returns their memory.
     fn restart_from_memory(&mut self) -> Outcome<Memory>;
 
-    /// What has been learnt, as a board keeps it; `None` where it is elsewhere.
+    /// Memory of the estimated parameters; `None` if the observer runs elsewhere.
     fn memory(&self) -> Option<Memory> {
         None
     }
 }
 
-/// Observer and compensation in this process: the very code that a board runs.
+/// Observer and compensation in this process, with the code of a board.
 #[derive(Debug)]
 pub struct HostPort<'t>(Controller<'t, f32>);
 
 impl<'t> HostPort<'t> {
-    /// Both as they are after a reset.
+    /// State after a reset.
     pub fn new(designed: &'t Designed) -> Self {
         let Designed { observer, compensation, probe, .. } = designed;
         Self(Controller::with_tables(observer, compensation).with_probe(probe.as_ref()))
@@ -56,7 +56,7 @@ impl ControllerPort for HostPort<'_> {
     }
 
     fn restart_from_memory(&mut self) -> Outcome<Memory> {
-        remember(&mut self.0)
+        restart_from_memory(&mut self.0)
     }
 
     fn memory(&self) -> Option<Memory> {
@@ -64,13 +64,13 @@ impl ControllerPort for HostPort<'_> {
     }
 }
 
-/// A controller's start from what it has learnt, as a board has it after a reset.
-pub fn remember(controller: &mut Controller<'_, f32>) -> Outcome<Memory> {
+/// Restarts a controller from its estimated parameters, as a board does after a reset.
+pub fn restart_from_memory(controller: &mut Controller<'_, f32>) -> Outcome<Memory> {
     let memory = controller.save();
     controller.reset();
     controller
         .load(&memory)
-        .map_err(|error| Failure::check_failed(format!("what was learnt is not taken back: {error}")))?;
+        .map_err(|error| Failure::check_failed(format!("the saved memory is not accepted: {error}")))?;
     Ok(memory)
 }
 
@@ -79,28 +79,28 @@ pub fn remember(controller: &mut Controller<'_, f32>) -> Outcome<Memory> {
 pub struct Translator {
     /// Clock ticks in a control period.
     ticks: u32,
-    /// Raw counts before they wrap: motor, output.
+    /// Counts per turn of motor and output encoder.
     ranges: [i64; 2],
-    /// Raw counts where the joint starts: motor, output.
+    /// Raw counts at the start of the joint: motor, output.
     zeros: [i64; 2],
-    /// Turn of the output encoder's first reading, which is the observer's turn zero.
+    /// Turn of the output encoder's first reading, the observer's turn zero.
     first_turn: Option<i32>,
     torque: f32,
 }
 
 impl Translator {
-    /// For encoders of so many counts in a turn, mounted with these zeros.
+    /// Translator for encoders with the given counts per turn and zeros.
     pub fn new(ticks: u32, counts_per_turn: [u64; 2], zeros: &EncoderZeros) -> Self {
         let ranges = counts_per_turn.map(u64::cast_signed);
         Self { ticks, ranges, zeros: zeros.counts(ranges), first_turn: None, torque: 0.0 }
     }
 
-    /// The next reading is the first again.
+    /// Treats the next reading as the first again.
     pub fn reset(&mut self) {
         (self.first_turn, self.torque) = (None, 0.0);
     }
 
-    /// Readings with their own times; the torque is that of the period before.
+    /// Samples with the times of their readings and the torque of the previous period.
     pub fn samples(&mut self, seen: &ControllerInputs) -> Samples<f32> {
         let raw = |frame: TimedReading, encoder: usize| frame.counts + self.zeros[encoder];
         if let (None, Some(first)) = (self.first_turn, seen.output) {
@@ -121,18 +121,18 @@ impl Translator {
         }
     }
 
-    /// A set-point on the scale of the observer's link shaft, its angles in whole turns and the rest.
+    /// Set-point on the scale of the observer's link shaft, with angles as whole turns and fraction.
     pub fn command(&self, set_point: &SetPoint) -> Command<f32> {
         command(set_point, self.zeros[1] as f64 / self.ranges[1] as f64 - f64::from(self.first_turn.unwrap_or(0)))
     }
 
-    /// Remembers the torque that the observer is shown next.
+    /// Stores the torque for the observer's next samples.
     pub fn note(&mut self, torque: f32) {
         self.torque = torque;
     }
 }
 
-/// A set-point as the compensation takes it, on a scale whose reading at angle zero is `zero` [turns].
+/// Set-point for the compensation, on a scale that reads `zero` at angle zero [turns].
 pub fn command<T: Real>(set_point: &SetPoint, zero: f64) -> Command<T> {
     let motion = |of: Motion| motion(of, zero);
     match *set_point {
@@ -150,7 +150,7 @@ pub fn command<T: Real>(set_point: &SetPoint, zero: f64) -> Command<T> {
     }
 }
 
-/// An angle as whole turns and the rest, on a scale whose reading at angle zero is `zero` [turns].
+/// Angle as whole turns and fraction, on a scale that reads `zero` at angle zero [turns].
 pub fn position<T: Real>(angle: f64, zero: f64) -> Position<T> {
     let place = angle / TAU + zero;
     let turns = place.floor();
@@ -170,7 +170,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_late_period_has_the_time_of_its_start() {
+    fn late_period_has_time_of_start() {
         let frame = TimedReading { counts: 0, period: 7, lateness: 42 };
         let seen = ControllerInputs { period: 7, lateness: 42, motor: frame, output: Some(frame) };
         let samples = Translator::new(1000, [14, 17], &EncoderZeros::default()).samples(&seen);

@@ -1,19 +1,19 @@
-//! What varies from seed to seed: values drawn from ranges, each from a random stream of its own, so that another
-//! variation in a file leaves the others as they were. Noise of motor and encoders is drawn in the drive train.
+//! Random values of a seed, each drawn from a range by a random stream of its own, so that another range in a file
+//! leaves the other values unchanged. Noise of motor and encoders is drawn in the drive train.
 
 use model_core::numbers::random::splitmix64;
 
 /// A number, or a range to draw from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NumberOrRange {
-    /// The same for every seed.
+    /// One value for every seed.
     Exactly(f64),
-    /// Evenly between two ends.
+    /// Uniform distribution between two ends.
     Between(f64, f64),
 }
 
 impl NumberOrRange {
-    /// The value for a stream.
+    /// Value for a stream.
     pub fn draw(self, stream: &mut RandomStream) -> f64 {
         match self {
             Self::Exactly(value) => value,
@@ -21,7 +21,7 @@ impl NumberOrRange {
         }
     }
 
-    /// The value for a stream, of whole numbers only: each between the ends is as likely as any other, ends among them.
+    /// Whole number for a stream; all whole numbers of the range are equally likely, ends included.
     pub fn draw_whole(self, stream: &mut RandomStream) -> f64 {
         match self {
             Self::Exactly(value) => value,
@@ -32,7 +32,7 @@ impl NumberOrRange {
         }
     }
 
-    /// Its ends.
+    /// Both ends.
     pub fn ends(self) -> [f64; 2] {
         match self {
             Self::Exactly(value) => [value, value],
@@ -41,14 +41,14 @@ impl NumberOrRange {
     }
 }
 
-/// A random stream that depends on a seed and a name only (splitmix64 after Steele, Lea and Flood, 2014).
+/// Random stream of a seed and a name (splitmix64 after Steele, Lea and Flood, 2014).
 #[derive(Debug, Clone)]
 pub struct RandomStream(u64);
 
 impl RandomStream {
-    /// The stream of a name for a seed.
+    /// Stream of a name for a seed.
     pub fn new(seed: u64, name: &str) -> Self {
-        // FNV-1a keeps the streams of different names apart.
+        // FNV-1a separates the streams of different names.
         let hash = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
         let mut stream =
             Self(name.bytes().fold(0xcbf2_9ce4_8422_2325, hash) ^ seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
@@ -61,12 +61,12 @@ impl RandomStream {
         splitmix64(&mut self.0)
     }
 
-    /// From 0 to below 1.
+    /// Uniform number from 0 to below 1.
     pub fn uniform(&mut self) -> f64 {
         (self.word() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A standard normal deviate, by Box and Muller.
+    /// Standard normal deviate, by Box and Muller.
     pub fn normal(&mut self) -> f64 {
         let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
         radius * (std::f64::consts::TAU * self.uniform()).cos()
@@ -78,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_stream_depends_on_seed_and_name_and_keeps_within_its_range() {
+    fn stream_depends_on_seed_and_name() {
         let draw = |seed, name| NumberOrRange::Between(-2.0, 3.0).draw(&mut RandomStream::new(seed, name));
         assert_eq!(draw(1, "a"), draw(1, "a"));
         assert_ne!(draw(1, "a"), draw(2, "a"));
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn whole_numbers_are_drawn_as_often_as_one_another() {
+    fn whole_numbers_are_uniform() {
         let bits = NumberOrRange::Between(12.0, 18.0);
         let mut count = [0; 7];
         for seed in 0..7000 {

@@ -46,15 +46,16 @@ pub struct NotRun {
     /// Reason why the file could not run.
     pub why: String,
     /// Remedy.
-    pub mend: Option<String>,
+    #[serde(rename = "mend")]
+    pub remedy: Option<String>,
 }
 
 impl NotRun {
-    /// What a failure says of a file.
+    /// Record of a failure.
     pub fn new(file: String, failure: &Failure) -> Self {
         let message = failure.message();
         let why = message.strip_prefix(&file).map_or(message, |rest| rest.trim_start_matches([':', ' ']));
-        Self { why: why.to_owned(), mend: failure.full_help(), file }
+        Self { why: why.to_owned(), remedy: failure.full_help(), file }
     }
 }
 
@@ -72,7 +73,7 @@ pub struct TestRecord {
     pub joint: String,
     /// SHA-256 of the joint file's text, before any change.
     pub joint_sha256: String,
-    /// Where the tested controller ran: `host`, or role and board; rivals always on the host.
+    /// Place of the tested controller: `host`, or role and board; rivals always run on the host.
     pub on: String,
     /// Plant: `reference` or `core`.
     pub plant: String,
@@ -121,7 +122,7 @@ pub struct BandwidthRecord {
 }
 
 impl BandwidthRecord {
-    /// The bandwidth in words.
+    /// Bandwidth as text.
     pub fn in_words(&self) -> String {
         let asked = if self.asked { " asked" } else { "" };
         format!("{} rad/s{asked}, {} at most: {}", self.used_rad_per_s, self.widest_rad_per_s, self.limited_by)
@@ -200,7 +201,7 @@ pub struct BoardRun {
 }
 
 impl AssertionRecord {
-    /// The same as a line of a table of checks.
+    /// Assertion as a line of a table of checks.
     pub fn check(&self) -> Check {
         let name = match self.aggregate.as_str() {
             "worst" => self.name.clone(),
@@ -224,7 +225,7 @@ impl TestRecord {
         self.assertions.iter().filter(|assertion| assertion.verdict == Verdict::Failed)
     }
 
-    /// A figure of a controller over all seeds, the largest.
+    /// Largest value of a controller's figure over all seeds.
     pub fn largest(&self, controller: &str, figure: &str) -> Option<f64> {
         let runs = self.runs.iter().filter(|run| run.controller == controller);
         runs.filter_map(|run| run.figures.get(figure).copied()).reduce(f64::max)

@@ -1,6 +1,6 @@
-//! A motion from a CSV file: positions at any times, with a load torque if there is one. Between rows the link goes on the
-//! cubic spline through the positions, whose acceleration has no jumps; it rests where three rows or more are the same, at
-//! the first and at the last one.
+//! A motion from a CSV file: positions at any times, optionally with a load torque. Between rows the link follows the
+//! cubic spline through the positions, with continuous acceleration; it is at rest where three or more rows are equal,
+//! and at the first and the last row.
 
 use std::path::Path;
 
@@ -10,12 +10,12 @@ use board::profile::{MAX_SPEED, MAX_TORQUE, check_time};
 use report::failure::{Failure, Outcome};
 use report::input;
 
-/// Columns that must be there.
+/// Required columns.
 const COLUMNS: [&str; 2] = ["time_s", "position_rad"];
-/// The column that may be there.
-const LOAD: &str = "load_torque_N_m";
-/// What positions keep to, as loads and speeds keep to theirs: beyond them no joint can be meant [rad].
-const FARTHEST: f64 = 1e4;
+/// Optional column.
+const LOAD_COLUMN: &str = "load_torque_N_m";
+/// Largest position of a plausible joint [rad]; loads and speeds have their own limits.
+const MAX_POSITION: f64 = 1e4;
 
 /// A recorded motion: rows of the file, in rising time from 0.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,18 +26,18 @@ pub struct RecordedMotion {
 /// One row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
-    /// [s].
+    /// Time [s].
     pub time: f64,
-    /// [rad].
+    /// Position [rad].
     pub position: f64,
-    /// [rad/s].
+    /// Speed [rad/s].
     speed: f64,
-    /// Braking the link from here to the next row [N m].
+    /// Torque that brakes the link until the next row [N m].
     pub load: f64,
 }
 
 impl RecordedMotion {
-    /// Reads a file; the first row is time 0 of the run, whatever its time.
+    /// Reads a file; the time of the first row becomes 0.
     pub fn read(path: &Path) -> Outcome<Self> {
         let text = input::text(path, input::LARGEST_RECORDED).map_err(|why| {
             Failure::new(format!("cannot read the motion {}: {why}", path.display()))
@@ -55,13 +55,13 @@ impl RecordedMotion {
         let header: Vec<&str> = header.split(',').map(|name| name.trim().trim_matches('"')).collect();
         let place = |name: &str| header.iter().position(|column| *column == name);
         let twice = |name: &&&str| header.iter().filter(|column| *column == *name).count() > 1;
-        if let Some(name) = COLUMNS.iter().chain([&LOAD]).find(twice) {
+        if let Some(name) = COLUMNS.iter().chain([&LOAD_COLUMN]).find(twice) {
             return Err(Failure::new(format!("there are two columns `{name}`")).with_help(header_help));
         }
         let [time, position] = COLUMNS.map(|name| {
             place(name).ok_or_else(|| Failure::new(format!("there is no column `{name}`")).with_help(header_help))
         });
-        let (time, position, load) = (time?, position?, place(LOAD));
+        let (time, position, load) = (time?, position?, place(LOAD_COLUMN));
         let mut rows: Vec<Row> = Vec::new();
         for (line, text) in lines {
             let values: Vec<&str> = text.split(',').map(str::trim).collect();
@@ -83,10 +83,10 @@ impl RecordedMotion {
                     }
                 })
             };
-            let row = Row { time: number(time)?, position: within(position, FARTHEST)?, speed: 0.0, load: 0.0 };
+            let row = Row { time: number(time)?, position: within(position, MAX_POSITION)?, speed: 0.0, load: 0.0 };
             let row = Row { load: load.map_or(Ok(0.0), |load| within(load, MAX_TORQUE))?, ..row };
             check_time(line, rows.last().map(|last| last.time), row.time)?;
-            if let Some(last) = rows.last().filter(|last| !row.is_reached_from(last)) {
+            if let Some(last) = rows.last().filter(|last| !row.is_reachable_from(last)) {
                 let (way, time) = (row.position - last.position, row.time - last.time);
                 return Err(Failure::new(format!("line {line}: a jump of {way} rad in {time:e} s")).with_help(
                     format!("no link is faster than {MAX_SPEED} rad/s; profile \"steps\" with move_s = 0 jumps"),
@@ -108,22 +108,22 @@ impl RecordedMotion {
         self.rows.last().map_or(0.0, |row| row.time)
     }
 
-    /// The rows.
+    /// Rows of the file.
     pub fn rows(&self) -> &[Row] {
         &self.rows
     }
 }
 
 impl Row {
-    fn is_reached_from(&self, before: &Self) -> bool {
+    fn is_reachable_from(&self, before: &Self) -> bool {
         (self.position - before.position).abs() <= MAX_SPEED * (self.time - before.time)
     }
 }
 
-/// Speeds that make the acceleration continuous: h2 v0 + 2 (h1 + h2) v1 + h1 v2 = 3 (h2 d1 + h1 d2) at every row that is no
-/// rest, with the widths h and the slopes d before and after it.
+/// Speeds that make the acceleration continuous: h2 v0 + 2 (h1 + h2) v1 + h1 v2 = 3 (h2 d1 + h1 d2) at every row that
+/// is not at rest, with the intervals h and the slopes d before and after the row.
 fn set_speeds(rows: &mut [Row]) {
-    // Speed of a row as a constant less a share of the next one's, from the front.
+    // Forward elimination: the speed of a row is a constant less a share of the next row's speed.
     let mut constant_and_share = vec![(0.0, 0.0); rows.len()];
     for index in 1..rows.len() - 1 {
         let [before, here, after] = [rows[index - 1], rows[index], rows[index + 1]];
@@ -169,7 +169,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_recorded_sine_is_followed_between_its_rows() {
+    fn recorded_sine_interpolated() {
         let mut text = String::from("time_s,position_rad\n");
         for k in 0..=200 {
             let time = 0.01 * f64::from(k);
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn acceleration_has_no_jumps_and_its_rate_is_the_motions() {
+    fn acceleration_is_continuous() {
         let mut text = String::from("time_s,position_rad\n");
         let mut time = 0.0_f64;
         for k in 0..=400 {
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn a_motion_rests_where_its_rows_do() {
+    fn equal_rows_are_at_rest() {
         let text = "time_s,position_rad\n0,0\n1,0\n2,0\n3,0.1\n4,0.3\n5,0.3\n6,0.3\n7,0.3\n8,0\n";
         let motion = RecordedMotion::parse(text).expect("a good file");
         for time in [0.2, 0.9, 5.5, 5.7] {
@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_with_a_motion_is_said_with_its_line() {
+    fn bad_motion_names_line() {
         let refused = |text: &str| RecordedMotion::parse(text).expect_err(text).message().to_owned();
         assert!(refused("").contains("empty"));
         assert!(refused("time_s,angle\n0,0\n").contains("position_rad"));

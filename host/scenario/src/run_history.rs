@@ -1,4 +1,4 @@
-//! The history of a run: the true values in every control period, and the observer's outputs.
+//! History of a run: true values and observer outputs in every control period.
 
 use model_core::gears::{Flank, sign};
 use model_core::numbers::digest;
@@ -9,24 +9,24 @@ use super::controller_log::ControllerPeriod;
 use super::port::{Answer, Translator};
 use super::rig::Period;
 
-/// The history of a run.
+/// History of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunHistory {
-    /// The truth, one sample for each control period.
+    /// True motion, one sample for each control period.
     pub run: Run,
-    /// What the observer made of it, in the same order; empty for controllers without one.
+    /// Observer outputs, in the order of the samples; empty for controllers without an observer.
     pub observer_outputs: Vec<ObserverOutput>,
-    /// Half of the true gap at every period [m]: teeth may wear.
+    /// True gap, backlash, load and motor angle, in the order of the samples.
     pub truths: Vec<TrueValues>,
-    /// What the controller was shown and said, in the same order.
+    /// Inputs and outputs of the controller, in the order of the samples.
     pub controller: Vec<ControllerPeriod>,
-    /// What it was asked for, likewise.
-    pub asked: Vec<Asked>,
-    /// Digest over every bit of all of it.
+    /// Set-points of the controller, in the order of the samples.
+    pub set_points: Vec<LoggedSetPoint>,
+    /// Digest over every bit of the run.
     pub digest: u64,
-    /// What the observer began with, if that is not what was designed.
+    /// Memory that the observer started from, if any.
     pub memory_at_start: Option<Memory>,
-    /// What the observer had learnt at the end, if it ran in this process.
+    /// Memory of the observer at the end, if it ran in this process.
     pub memory: Option<Memory>,
 }
 
@@ -35,28 +35,28 @@ pub struct RunHistory {
 pub struct TrueValues {
     /// Gap coordinate [m].
     pub gap: f64,
-    /// Half-backlash now [m].
+    /// Current half-backlash [m].
     pub half_backlash: f64,
-    /// What brakes the link [N m].
+    /// Torque that brakes the link [N m].
     pub load_torque: f64,
     /// Motor angle [rad].
     pub motor: f64,
 }
 
-/// What a controller was asked for in one period, turns counted from the joint's own zero.
+/// Set-point of a controller in one period; angles are relative to the joint's own zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Asked {
+pub struct LoggedSetPoint {
     /// Angle, speed and acceleration of the link [rad, rad/s, rad/s^2].
     pub motion: Motion,
-    /// Torque on top [N m].
+    /// Feed-forward torque [N m].
     pub torque: f64,
-    /// Of an impedance, or zero [N m/rad].
+    /// Stiffness of an impedance, or zero [N m/rad].
     pub stiffness: f64,
-    /// Likewise [N m s/rad].
+    /// Damping of an impedance, or zero [N m s/rad].
     pub damping: f64,
 }
 
-impl From<&SetPoint> for Asked {
+impl From<&SetPoint> for LoggedSetPoint {
     fn from(set_point: &SetPoint) -> Self {
         match *set_point {
             SetPoint::Position { now, .. } => Self { motion: now, ..Self::default() },
@@ -67,44 +67,44 @@ impl From<&SetPoint> for Asked {
     }
 }
 
-/// The observer's estimates in one period.
+/// Estimates of the observer in one period.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ObserverOutput {
     /// Gap coordinate [m].
     pub gap: f32,
-    /// Its variance [m^2].
+    /// Variance of the gap coordinate [m^2].
     pub gap_variance: f32,
-    /// Whether it may be used.
+    /// Validity of the gap coordinate.
     pub valid: bool,
-    /// -1, 0, 1.
+    /// Contact side: -1, 0 or 1.
     pub side: i8,
-    /// Between carrier and link [N m].
+    /// Torque between carrier and link [N m].
     pub mesh_torque: f32,
-    /// What brakes the link [N m].
+    /// Torque that brakes the link [N m].
     pub load_torque: f32,
-    /// [m].
+    /// Half-backlash [m].
     pub half_backlash: f32,
-    /// [rad/(N m)].
+    /// Compliance [rad/(N m)].
     pub compliance: f32,
-    /// [s].
+    /// Skew of the encoders [s].
     pub skew: f32,
-    /// Both encoders are trusted.
-    pub both: bool,
+    /// True if both encoders are in use.
+    pub both_encoders: bool,
     /// Share of the compensation in the torque.
     pub trust: f32,
-    /// The law asked for more torque than there is, or brakes early because of that.
+    /// The law demands more torque than the limit, or brakes early because of the limit.
     pub short_of_torque: bool,
     /// Plain control has taken over because the loop hunted.
     pub stepped_back: bool,
-    /// The motor ran against its torque, which was taken away for that.
+    /// The motor ran against its torque, which was removed.
     pub reversed: bool,
-    /// Which of the outputs may be used.
+    /// Validity of the other outputs.
     pub validity: Validity,
-    /// Where the width probe stands, if there is one.
+    /// State of the width probe, if there is one.
     pub probed: Option<Progress<f32>>,
 }
 
-/// Which outputs of an observer may be used, the gap coordinate left out.
+/// Validity of an observer's outputs, except the gap coordinate.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Validity {
     /// Contact side.
@@ -122,21 +122,21 @@ pub struct Validity {
 }
 
 impl RunHistory {
-    /// Nothing has happened yet.
+    /// Empty history with room for the given number of periods.
     pub fn begin(period: f64, periods: u64) -> Self {
         Self {
             run: Run { samples: Vec::with_capacity(periods as usize), period },
             observer_outputs: Vec::new(),
             truths: Vec::with_capacity(periods as usize),
             controller: Vec::with_capacity(periods as usize),
-            asked: Vec::with_capacity(periods as usize),
+            set_points: Vec::with_capacity(periods as usize),
             digest: digest::START,
             memory_at_start: None,
             memory: None,
         }
     }
 
-    /// Why the width probe refused, if it did.
+    /// Reason why the width probe refused, if it did.
     pub fn refusal(&self) -> Option<Refusal> {
         match self.observer_outputs.last()?.probed {
             Some(Progress::Refused(refusal)) => Some(refusal),
@@ -144,15 +144,15 @@ impl RunHistory {
         }
     }
 
-    /// Control periods between samples of a rate [Hz].
-    pub fn every(&self, rate: f64) -> usize {
+    /// Control periods between samples at a rate [Hz].
+    pub fn periods_per_sample(&self, rate: f64) -> usize {
         (1.0 / (rate * self.run.period)).round().max(1.0) as usize
     }
 
-    /// Samples at a rate [Hz], each with what is true beside it, what the observer made of it, and the largest net force of
-    /// the sun's meshes since the one before [N].
-    pub fn thinned(&self, rate: f64) -> impl Iterator<Item = (&Sample, &TrueValues, Option<&ObserverOutput>, f64)> {
-        let every = self.every(rate);
+    /// Samples at a rate [Hz], each with true values, observer output, and the largest net force of the sun's meshes
+    /// since the previous sample [N].
+    pub fn samples_at(&self, rate: f64) -> impl Iterator<Item = (&Sample, &TrueValues, Option<&ObserverOutput>, f64)> {
+        let every = self.periods_per_sample(rate);
         self.run.samples.chunks_exact(every).zip(1..).map(move |(chunk, number)| {
             let last = number * every - 1;
             let peak = chunk.iter().map(|sample| sample.mesh_force.abs()).fold(0.0, f64::max);
@@ -160,8 +160,8 @@ impl RunHistory {
         })
     }
 
-    /// Adds a period of a rig, whose readings the translator makes samples of.
-    pub fn note(&mut self, period: &Period<'_>, translator: &mut Translator) {
+    /// Adds a period of a rig, with its readings converted to samples.
+    pub fn add_period(&mut self, period: &Period<'_>, translator: &mut Translator) {
         let joint = period.plant.joint();
         let sample = Sample::of(joint, period.wanted, period.half_backlash, period.command);
         let truth = TrueValues {
@@ -181,7 +181,7 @@ impl RunHistory {
         sample: Sample,
         truth: TrueValues,
         samples: Samples<f32>,
-        asked: Asked,
+        set_points: LoggedSetPoint,
         answer: Option<&Answer>,
     ) {
         self.controller.push(ControllerPeriod {
@@ -189,7 +189,7 @@ impl RunHistory {
             torque: sample.command as f32,
             estimates: answer.map(|answer| answer.estimates),
         });
-        self.asked.push(asked);
+        self.set_points.push(set_points);
         for value in [sample.link, sample.mesh_force, sample.command, truth.gap, truth.motor] {
             self.digest = digest::chain(self.digest, value.to_bits());
         }
@@ -218,7 +218,7 @@ impl ObserverOutput {
             half_backlash: estimates.half_backlash.value,
             compliance: estimates.compliance.value,
             skew: estimates.skew.value,
-            both: estimates.source == Source::Both,
+            both_encoders: estimates.source == Source::Both,
             trust: shaped.trust,
             short_of_torque: shaped.short_of_torque,
             stepped_back: shaped.stepped_back,

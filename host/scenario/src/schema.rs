@@ -1,16 +1,16 @@
-//! The published schema of test results is that of their types, and `docs/reference/hil-file.md` tells every key and
-//! every figure. Only tests are here.
+//! Tests: the published schema of test results equals that of the types, and `docs/reference/hil-file.md` explains
+//! every key and every figure.
 
 use super::metrics::METRICS;
 use super::record::TestsRecord;
 use report::schema::{assert_explained, assert_published};
 
 #[test]
-fn the_published_schema_of_tests_is_that_of_the_types() {
+fn schema_equals_types() {
     assert_published::<TestsRecord>("hil-tests.schema.json");
 }
 
 #[test]
-fn every_key_of_the_results_and_every_figure_is_explained() {
+fn every_result_key_is_explained() {
     assert_explained::<TestsRecord>("hil-file.md", METRICS.iter().map(|metric| metric.name()), 60);
 }

@@ -1,4 +1,4 @@
-//! Makes the set-points of a run: every control period, or at an impedance's own rate and held in between.
+//! Set-points of a run: every control period, or held at the rate of an impedance.
 
 use joint_file::sheet;
 use reference::closed_loop::{Motion, SetPoint, SharedProfile};
@@ -7,18 +7,18 @@ use super::case::{Case, Designed};
 use super::controller::{ControllerName, Gains};
 use super::file::TestFile;
 
-/// Makes the set-points of a run.
+/// Source of a run's set-points.
 pub struct SetPointSource {
     motion: SharedProfile,
-    /// How far ahead the motion is told [s].
+    /// Preview time of the motion [s].
     lead: Option<f64>,
-    /// An impedance, and the torque that is sent along for each unit of acceleration [kg m^2].
+    /// Impedance, and feed-forward torque for each unit of acceleration [kg m^2].
     impedance: Option<(Gains, f64)>,
     held: Option<(u64, Motion)>,
 }
 
 impl SetPointSource {
-    /// For one controller of a case.
+    /// Set-points for one controller of a case.
     pub fn new(file: &TestFile, case: &Case, controller: ControllerName, designed: Option<&Designed>) -> Self {
         let preview = controller == ControllerName::Preview;
         let lead = designed.filter(|_| preview).map(|designed| f64::from(designed.compensation.crossing.lead));
@@ -28,12 +28,12 @@ impl SetPointSource {
         Self { motion: case.motion.clone(), lead, impedance, held: None }
     }
 
-    /// The positions of a motion, none of them told ahead.
+    /// Positions of a motion without preview.
     pub fn of_positions(motion: SharedProfile) -> Self {
         Self { motion, lead: None, impedance: None, held: None }
     }
 
-    /// Set-point of a period and the number of the frame that brings it.
+    /// Set-point of a period, and the number of its frame.
     pub fn at(&mut self, time: f64, index: u64) -> (u64, SetPoint) {
         let motion = &self.motion;
         let Some((gains, inertia)) = self.impedance else {

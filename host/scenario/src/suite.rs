@@ -1,6 +1,5 @@
-//! The test files of a command: one file, or all of a folder, each read and checked against its joint before anything
-//! runs. A file that cannot run does not keep the rest of the folder from running. Also tells test files from joint
-//! files.
+//! Test files of a command: one file, or all of a folder, each checked with its joint before any run. A file that
+//! cannot run does not prevent the others in its folder. Also distinguishes test files from joint files.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,9 +8,9 @@ use link::messages::Role;
 use model_core::virtual_joint::fault::FaultKind;
 use sha2::{Digest, Sha256};
 
-use super::case::{Case, check_changes, recorded};
+use super::case::{Case, check_changes, recorded_motion};
 use super::file::{self, HostOnlyFault, TestFile, Trajectory};
-use super::plant::{PlantName, refuse_effects};
+use super::plant::{PlantName, reject_effects};
 use super::record::NotRun;
 use super::recorded::RecordedMotion;
 use board::profile::check_length;
@@ -21,38 +20,38 @@ use joint_file::warnings;
 use report::failure::{Failure, Outcome};
 use report::input;
 
-/// A test that has been checked against its joint.
+/// A test that has been checked with its joint.
 pub struct Test {
     /// Path as the user named it.
     pub name: String,
-    /// SHA-256 of its text.
+    /// SHA-256 of the file's text.
     pub sha256: String,
-    /// What it says.
+    /// Contents of the file.
     pub file: TestFile,
-    /// Its joint.
+    /// Joint of the test.
     pub joint: Loaded,
-    /// Its motion, if it is a recorded one.
+    /// Recorded motion, if the test has one.
     pub motion: Option<RecordedMotion>,
 }
 
-/// Whether a path is one of tests: a folder, or a file that is no joint file.
-pub fn is_of_tests(path: &Path) -> bool {
+/// Returns true for a folder, or for a file that is not a joint file.
+pub fn holds_tests(path: &Path) -> bool {
     path.is_dir() || input::text(path, input::LARGEST_TYPED).is_ok_and(|text| file::is_test_file(&text))
 }
 
-/// Which files of a folder a run is for.
+/// Choice among the files of a folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Choice {
-    /// All but those that are for full runs only.
+    /// All files except those for full runs only.
     Short,
-    /// All.
+    /// All files.
     Full,
-    /// Those of the run that names no file, in this role of a board.
+    /// Files of the run without a file, in this role of a board.
     OnBoard(Role),
 }
 
 impl Choice {
-    fn takes(self, file: &TestFile) -> bool {
+    fn includes(self, file: &TestFile) -> bool {
         match self {
             Self::Short => !file.only_with_full,
             Self::Full => true,
@@ -61,18 +60,18 @@ impl Choice {
     }
 }
 
-/// The tests of a path.
+/// Tests of a path.
 pub struct Suite {
-    /// Those that can run.
+    /// Tests that can run.
     pub tests: Vec<Test>,
-    /// Those of a folder that cannot.
+    /// Files of a folder that cannot run.
     pub not_run: Vec<NotRun>,
-    /// One file was named: that it cannot run is the end of the command.
+    /// A single file was named, so a file that cannot run ends the command.
     alone: bool,
 }
 
 impl Suite {
-    /// Keeps those that may run.
+    /// Keeps the tests that pass a check.
     pub fn keep(&mut self, mut check_test: impl FnMut(&Test) -> Outcome<()>) -> Outcome<()> {
         for test in std::mem::take(&mut self.tests) {
             match check_test(&test) {
@@ -85,15 +84,15 @@ impl Suite {
     }
 }
 
-/// Reads a file, or the chosen ones of a folder.
+/// Reads a file, or the chosen files of a folder.
 pub fn load(path: &Path, choice: Choice, plant: PlantName) -> Outcome<Suite> {
     if !path.is_dir() {
         return Ok(Suite { tests: vec![load_one(path, plant)?], not_run: Vec::new(), alone: true });
     }
     let mut suite = Suite { tests: Vec::new(), not_run: Vec::new(), alone: false };
-    for path in paths(path)? {
+    for path in test_paths(path)? {
         let test = match read(&path) {
-            Ok((_, file)) if !choice.takes(&file) => continue,
+            Ok((_, file)) if !choice.includes(&file) => continue,
             Ok(_) => load_one(&path, plant),
             Err(failure) => Err(failure),
         };
@@ -110,14 +109,14 @@ pub fn load(path: &Path, choice: Choice, plant: PlantName) -> Outcome<Suite> {
     Ok(suite)
 }
 
-/// The files of a folder that no board's role is named in: what a run without `--full` leaves out.
-pub fn left_out(folder: &Path) -> Outcome<Vec<PathBuf>> {
+/// Files of a folder without a board's role, which a run without `--full` skips.
+pub fn skipped_without_full(folder: &Path) -> Outcome<Vec<PathBuf>> {
     let left = |path: &PathBuf| read(path).is_ok_and(|(_, file)| file.short_run.is_none());
-    Ok(paths(folder)?.into_iter().filter(left).collect())
+    Ok(test_paths(folder)?.into_iter().filter(left).collect())
 }
 
-/// The test files of a folder, by name; joint files may lie beside them.
-fn paths(path: &Path) -> Outcome<Vec<PathBuf>> {
+/// Test files of a folder, by name; joint files in the folder are ignored.
+fn test_paths(path: &Path) -> Outcome<Vec<PathBuf>> {
     let unreadable = |error| Failure::new(format!("cannot read the folder {}: {error}", path.display()));
     let mut paths: Vec<PathBuf> = Vec::new();
     for entry in fs::read_dir(path).map_err(unreadable)? {
@@ -131,7 +130,7 @@ fn paths(path: &Path) -> Outcome<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// A file's text and what it says.
+/// Reads the text of a file and its contents.
 fn read(path: &Path) -> Outcome<(String, TestFile)> {
     let name = path.display().to_string();
     let text =
@@ -146,18 +145,18 @@ fn read_text(name: &str, text: &str) -> Outcome<TestFile> {
 fn load_one(path: &Path, plant: PlantName) -> Outcome<Test> {
     let (text, file) = read(path)?;
     let folder = path.parent().unwrap_or(Path::new("."));
-    test_of(path.display().to_string(), text, file, folder, plant)
+    checked_test(path.display().to_string(), text, file, folder, plant)
 }
 
-/// A test from a text of its own, as if it stood in a folder under a name.
+/// Test from a text, with a name and folder.
 pub fn from_text(name: &str, text: &str, folder: &Path, plant: PlantName) -> Outcome<Test> {
     let file = read_text(name, text)?;
-    test_of(folder.join(name).display().to_string(), text.to_owned(), file, folder, plant)
+    checked_test(folder.join(name).display().to_string(), text.to_owned(), file, folder, plant)
 }
 
-/// Holds a test against its joint before anything runs.
-fn test_of(name: String, text: String, file: TestFile, folder: &Path, plant: PlantName) -> Outcome<Test> {
-    let joint = joint(&file.joint, folder).map_err(|failure| failure.while_doing(&name))?;
+/// Checks a test with its joint before any run.
+fn checked_test(name: String, text: String, file: TestFile, folder: &Path, plant: PlantName) -> Outcome<Test> {
+    let joint = load_joint(&file.joint, folder).map_err(|failure| failure.while_doing(&name))?;
     check_changes(&file, &joint.text)
         .map_err(|problems| Failure::from_report(diagnostic::report(&name, &text, &problems)))?;
     let broken_tooth =
@@ -175,22 +174,22 @@ fn test_of(name: String, text: String, file: TestFile, folder: &Path, plant: Pla
         ))
         .with_help("run it with --plant reference, with --host or --role observer"));
     }
-    let motion = recorded(&file, folder).map_err(|failure| failure.while_doing(&name))?;
+    let motion = recorded_motion(&file, folder).map_err(|failure| failure.while_doing(&name))?;
     if let Some(motion) = motion.as_ref().filter(|_| !file.states_duration) {
         check_length(motion.duration(), "duration_s").map_err(|failure| failure.while_doing(&name))?;
     }
     let file = match (&motion, file.states_duration) {
-        // A recorded motion is as long as it is, unless the file says otherwise.
+        // Without a stated duration, a run is as long as the recorded motion.
         (Some(motion), false) => TestFile { duration: motion.duration().max(file.settle + 0.1), ..file },
         _ => file,
     };
     let test = Test { name, sha256: sha256(&text), file, joint, motion };
-    test.try_design(plant)?;
+    test.check_design(plant)?;
     Ok(test)
 }
 
-/// A joint file beside the test file goes before one that the command would find.
-fn joint(name: &str, folder: &Path) -> Outcome<Loaded> {
+/// Loads a joint file, preferably one beside the test file.
+fn load_joint(name: &str, folder: &Path) -> Outcome<Loaded> {
     let beside = folder.join(name);
     let loaded = named::load(if beside.is_file() { &beside } else { Path::new(name) })?;
     warnings::print(&loaded);
@@ -202,23 +201,23 @@ fn sha256(text: &str) -> String {
 }
 
 impl Test {
-    /// The case of a seed.
+    /// Case of a seed.
     pub fn case(&self, seed: u64) -> Outcome<Case> {
         Case::new(&self.file, &self.joint.text, seed, self.motion.as_ref()).map_err(|f| f.while_doing(&self.name))
     }
 
-    /// What cannot be designed, or a plant does not have, should be known before the first run.
-    fn try_design(&self, plant: PlantName) -> Outcome<()> {
+    /// Tries the design, and rejects effects that the plant does not model, before the first run.
+    fn check_design(&self, plant: PlantName) -> Outcome<()> {
         let seed = self.file.seeds.first().copied().unwrap_or(1);
         let case = self.case(seed)?;
-        refuse_effects(plant, &case.truth.surroundings).map_err(|failure| failure.while_doing(&self.name))?;
+        reject_effects(plant, &case.truth.surroundings).map_err(|failure| failure.while_doing(&self.name))?;
         if self.file.controller.is_compensation() {
             case.design(&self.file).map_err(|failure| failure.while_doing(&self.name))?;
         }
         Ok(())
     }
 
-    /// The files that it is made of.
+    /// Files that the test was read from.
     pub fn files(&self) -> Vec<PathBuf> {
         let test = PathBuf::from(&self.name);
         let motion = match &self.file.profile.trajectory {
@@ -236,7 +235,7 @@ impl Test {
         sha256(&self.joint.text)
     }
 
-    /// Name of the file without folders and ending, for the names of logs.
+    /// Name of the file without folder and extension, for the names of logs.
     pub fn stem(&self) -> String {
         Path::new(&self.name).file_stem().unwrap_or_default().to_string_lossy().into_owned()
     }
@@ -251,14 +250,14 @@ mod tests {
     }
 
     #[test]
-    fn keys_that_need_one_another_may_stand_in_any_order() {
+    fn dependent_keys_in_any_order() {
         let keys = "payload_inertia_share = [0.2, 0.6]\npayload_frequency_Hz = [8, 25]";
         assert!(test(keys, PlantName::Core).is_ok());
         assert!(test("payload_inertia_share = 0.2", PlantName::Core).is_err(), "one alone is refused");
     }
 
     #[test]
-    fn what_the_plant_lacks_is_refused_before_anything_runs() {
+    fn missing_effect_rejected_before_run() {
         assert!(test("control_jitter_ratio = 0.05", PlantName::Reference).is_ok());
         let refused = test("control_jitter_ratio = 0.05", PlantName::Core).err().expect("refused");
         assert!(refused.message().contains("`control_jitter_ratio`"), "{refused}");

@@ -1,12 +1,12 @@
-//! The drive train of a joint file's surroundings, with the encoders' error phases drawn for a seed.
+//! Drive train for a joint file's surroundings, with random phases of the encoder errors for a seed.
 
 use parameters::Surroundings;
 use reference::drive_train::{DriveTrainParameters, EffectPhases, ErrorPhases};
 
 use super::random::RandomStream;
 
-/// The drive train of a joint file's surroundings. How an encoder is mounted is unknown, and so is how the gears are: every seed draws the
-/// phases of the encoders' errors and of the backlash around the turn.
+/// Drive train for a joint file's surroundings. The mounting angles of encoders and gears are unknown, so each seed
+/// draws the phases of the encoder errors and of the variation of backlash over a turn.
 pub fn train(surroundings: &Surroundings, seed: u64) -> DriveTrainParameters {
     let phases = |name: &str| {
         let mut stream = RandomStream::new(seed, &format!("encoder {name}"));

@@ -1,5 +1,5 @@
 //! A run thinned for pictures: a point each millisecond, and each crossing of the gap. Metrics are never computed from
-//! it.
+//! a trace.
 
 use super::run_history::{ObserverOutput, RunHistory, TrueValues};
 use reference::closed_loop::Sample;
@@ -7,15 +7,15 @@ use reference::closed_loop::Sample;
 /// One point of a trace.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct TracePoint {
-    /// [s].
+    /// Time [s].
     pub time: f32,
-    /// [rad].
+    /// Desired angle [rad].
     pub wanted: f32,
-    /// Wanted less link [rad].
+    /// Desired minus actual link angle [rad].
     pub error: f32,
     /// Gap coordinate [m].
     pub gap: f32,
-    /// As the observer has it [m]; NaN without one.
+    /// Estimated gap coordinate [m]; NaN without an observer.
     pub estimated_gap: f32,
     /// Motor torque [N m].
     pub torque: f32,
@@ -26,9 +26,9 @@ pub struct TracePoint {
 /// A thinned run.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trace {
-    /// A thousand a second.
+    /// Points, a thousand a second.
     pub points: Vec<TracePoint>,
-    /// When a flank was touched and how long the way to it took [s].
+    /// Time of each contact with the other flank, and duration of the crossing [s].
     pub crossings: Vec<(f64, f64)>,
     /// Half of the free gap at the end [m].
     pub half_gap: f64,
@@ -37,11 +37,11 @@ pub struct Trace {
 /// Points a second [Hz].
 const RATE: f64 = 1000.0;
 
-/// Share of the half-gap within which a flank counts as touching.
-const NEAR: f64 = 0.9;
+/// Share of the half-gap above which a flank counts as touched [-].
+const TOUCH_SHARE: f64 = 0.9;
 
 impl Trace {
-    /// The same, with bins of so many points reduced to those of least and greatest error: enough for a whole run.
+    /// Trace with bins of points reduced to those of least and greatest error: enough for a whole run.
     pub fn coarse(&self, bin: usize) -> Self {
         let ends = |points: &[TracePoint]| {
             let by_error = |a: &&TracePoint, b: &&TracePoint| a.error.total_cmp(&b.error);
@@ -56,8 +56,8 @@ impl Trace {
         Self { points: self.points.chunks(bin.max(1)).flat_map(ends).collect(), ..self.clone() }
     }
 
-    /// Of a run.
-    pub fn of(history: &RunHistory) -> Self {
+    /// Trace of a run.
+    pub fn from_history(history: &RunHistory) -> Self {
         let point =
             |(sample, truth, observed, peak): (&Sample, &TrueValues, Option<&ObserverOutput>, f64)| TracePoint {
                 time: sample.time as f32,
@@ -69,12 +69,12 @@ impl Trace {
                 force: peak as f32,
             };
         let mut trace = Self {
-            points: history.thinned(RATE).map(point).collect(),
+            points: history.samples_at(RATE).map(point).collect(),
             crossings: Vec::new(),
             half_gap: history.truths.last().map_or(0.0, |truth| 2.0 * truth.half_backlash),
         };
         let mut touched = None::<(f64, f64)>;
-        for sample in history.run.samples.iter().filter(|sample| sample.gap.abs() > NEAR) {
+        for sample in history.run.samples.iter().filter(|sample| sample.gap.abs() > TOUCH_SHARE) {
             let side = sample.gap.signum();
             if let Some((_, since)) = touched.filter(|(before, _)| *before != side) {
                 trace.crossings.push((sample.time, sample.time - since));

@@ -1,5 +1,5 @@
-//! Values of the metrics of one run, from the true motion. `metrics` defines them; those of the observer are computed
-//! in `observer_metrics`.
+//! Values of the metrics of one run, from the true motion. `metrics` defines them; `observer_metrics` computes those of
+//! the observer.
 
 use model_core::gears::Kinematics;
 use reference::closed_loop::{Figures as Plain, Sample, deviation};
@@ -11,16 +11,16 @@ use super::metrics::{METRICS, Metric, NamedMetric, Relation};
 use super::observer_metrics;
 use super::run_history::{RunHistory, TrueValues};
 
-/// A gain over a controller that is right to the last bit would be infinite; this says enough.
-const MOST_GAIN: f64 = 1e6;
+/// Largest gain over another controller; division by zero error would give infinity.
+const MAX_GAIN: f64 = 1e6;
 
 /// Values of all metrics that could be computed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MetricValues(Vec<Option<f64>>);
 
 impl MetricValues {
-    /// Figures of a run; `without_gap` is the run that an impedance is measured from.
-    pub fn of(file: &TestFile, case: &Case, history: &RunHistory, without_gap: Option<&RunHistory>) -> Self {
+    /// Values for a run; `without_gap` is the run that an impedance's deviation is measured from.
+    pub fn compute(file: &TestFile, case: &Case, history: &RunHistory, without_gap: Option<&RunHistory>) -> Self {
         let mut values = Self(vec![None; METRICS.len()]);
         values.motion(file, case, history);
         if let Some(other) = without_gap {
@@ -40,29 +40,29 @@ impl MetricValues {
         values
     }
 
-    /// Names and values of what could be had.
-    pub fn named(&self) -> impl Iterator<Item = (&'static Metric, f64)> {
+    /// Metrics and values that are available.
+    pub fn available(&self) -> impl Iterator<Item = (&'static Metric, f64)> {
         METRICS.iter().zip(&self.0).filter_map(|(metric, value)| Some((metric, (*value)?)))
     }
 
-    /// A value by its place among the figures.
+    /// Value by the index of the metric.
     pub fn at(&self, index: usize) -> Option<f64> {
         self.0.get(index).copied().flatten()
     }
 
-    /// The value of a named figure of the controller that these are of, beside the values of others.
-    pub fn of_named(&self, named: &NamedMetric, of: impl Fn(ControllerName) -> Option<MetricValues>) -> Option<f64> {
-        let own = self.at(named.place())?;
+    /// Value of a metric relative to other controllers' values.
+    pub fn named_value(&self, named: &NamedMetric, of: impl Fn(ControllerName) -> Option<MetricValues>) -> Option<f64> {
+        let own = self.at(named.index())?;
         let ratio = |above: f64, below: f64| match (above, below) {
             (above, below) if above == below => 1.0,
-            (above, 0.0) => above.signum() * MOST_GAIN,
+            (above, 0.0) => above.signum() * MAX_GAIN,
             (above, below) => above / below,
         };
         match named.relation {
             Relation::Own => Some(own),
-            Relation::GainOver(other) => Some(ratio(of(other)?.at(named.place())?, own)),
-            Relation::Of(other) => of(other)?.at(named.place()),
-            Relation::RatioTo(other) => Some(ratio(own, of(other)?.at(named.place())?)),
+            Relation::GainOver(other) => Some(ratio(of(other)?.at(named.index())?, own)),
+            Relation::Of(other) => of(other)?.at(named.index()),
+            Relation::RatioTo(other) => Some(ratio(own, of(other)?.at(named.index())?)),
         }
     }
 
@@ -100,7 +100,7 @@ impl MetricValues {
         }
     }
 
-    /// The loop of link angle over load torque, less what the motor gave way by.
+    /// Loop of link angle minus motor motion over load torque.
     fn hysteresis(&mut self, file: &TestFile, case: &Case, history: &RunHistory) {
         let ratio = case.nominal.geometry.ratio_by_teeth();
         let points = || {
@@ -133,13 +133,13 @@ impl MetricValues {
     }
 }
 
-/// Around a reversal the error is looked at for so long [s].
-const AROUND: f64 = 0.06;
+/// Time before and after a reversal in which the error is taken [s].
+const REVERSAL_WINDOW: f64 = 0.06;
 
-/// Mean over reversals of the largest error near each [rad].
+/// Largest error near each reversal, mean over reversals [rad].
 fn reversal_error(settle: f64, case: &Case, history: &RunHistory) -> Option<f64> {
     let samples = &history.run.samples;
-    let reach = (AROUND / history.run.period).round() as usize;
+    let reach = (REVERSAL_WINDOW / history.run.period).round() as usize;
     let mut before = 0.0;
     let mut largest = Vec::new();
     for (index, sample) in samples.iter().enumerate() {
@@ -157,6 +157,6 @@ fn reversal_error(settle: f64, case: &Case, history: &RunHistory) -> Option<f64>
 
 /// Torque through the teeth, referred to the link.
 fn transmitted(sample: &Sample, truth: &TrueValues) -> f64 {
-    // Without a compliance nothing is measured between carrier and link: the load stands for it.
+    // Without a compliance no torque between carrier and link is computed, so the load takes its place.
     if sample.transmitted == 0.0 { truth.load_torque } else { sample.transmitted }
 }

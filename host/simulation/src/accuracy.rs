@@ -1,10 +1,11 @@
-//! The error of a joint's step on a board at a rate: measured, by the step itself with the tables of that board and rate, on
-//! motions that are the same for every joint. What is right comes from the core in f64 in steps so fine that theirs is none;
-//! `joint sim --scheme all` measures the same against the independent reference.
+//! Error of a joint's step on a board at a rate, measured on standard motions with the tables of that board and rate.
+//! The exact motion comes from the core in f64 with negligibly fine steps; `joint sim --scheme all` measures the error
+//! against the independent reference.
 //!
-//! Error, here as in all of `sim` (`sim::errors`): root mean square over the motion's own standard deviation, of all mesh deflections
-//! together, of the gap coordinate and of the link's offset from the rigid body, for as long as torques that are wrong by a
-//! millionth move none of them by a thousandth of the motion.
+//! Definition of the error, as in all of `sim` (`sim::errors`): root mean square over the motion's own standard
+//! deviation, of all mesh deflections together, of the gap coordinate, and of the link's offset from the rigid body. It
+//! is taken for as long as a relative disturbance of the torques by 1e-6 moves none of these quantities by more than
+//! 1e-3 of the motion.
 
 use std::f64::consts::TAU;
 
@@ -18,34 +19,34 @@ use rayon::prelude::*;
 use reference::joint::Start;
 use serde::Serialize;
 
-use crate::sim::errors::{DISTURBANCE, Errors, PREDICTABLE, errors, is_still, spread};
-use crate::sim::plan::{SPEED, steady_duration};
+use crate::sim::errors::{DISTURBANCE, Errors, PREDICTABLE_DEPARTURE, errors, is_constant, standard_deviation};
+use crate::sim::plan::{DEFAULT_SPEED, steady_duration};
 use crate::sim::start::{StartName, core_state};
 use crate::sim::stepping::SimulationSpec;
 use report::failure::{Failure, Outcome};
 
-/// Phase of the fastest mode in a tick of the finer run [rad], and its least number of ticks to one of the board's. Its ticks
-/// have as many sub-steps as there can be.
+/// Largest phase of the fastest mode in a tick of the finer run [rad], least number of its ticks in a board's tick, and
+/// its sub-steps a tick, the largest number possible.
 const FINE_PHASE: f64 = 2.0;
-const LEAST_FINER: u32 = 2;
+const MIN_FINE_TICKS: u32 = 2;
 const FINE_SUBSTEPS: u32 = 16;
-/// Ticks of a motion at most, so that no joint takes minutes.
-const MOST_TICKS: f64 = 2e6;
-/// Other motions of the same kind: mesh phases shifted by part of a period, torques over those of the standard motion.
-const OTHERS: [(f64, f64); 2] = [(1.0 / 3.0, 0.8), (2.0 / 3.0, -0.6)];
-/// They are so long: reversals up to a quarter of a second behind the first crossing of the gap, and half a second under
-/// constant torques [s].
-const OTHERS_DURATIONS: [f64; 2] = [1.5, 0.5];
-/// The bound over the greatest error of all these motions: the spread of motions that are not among them.
-const MARGIN: f64 = 3.0;
+/// Largest number of ticks of a motion, so that no joint takes minutes.
+const MAX_MOTION_TICKS: f64 = 2e6;
+/// Further motions of each kind: shift of the mesh phases in periods, and torques over those of the standard motion.
+const FURTHER_MOTIONS: [(f64, f64); 2] = [(1.0 / 3.0, 0.8), (2.0 / 3.0, -0.6)];
+/// Durations of the further motions [s]: reversals up to a quarter of a second after the first crossing of the gap, and
+/// half a second under constant torques.
+const FURTHER_DURATIONS: [f64; 2] = [1.5, 0.5];
+/// Bound over the greatest error of all these motions, for the spread of motions that are not measured.
+const BOUND_MARGIN: f64 = 3.0;
 
 /// Errors on the standard motions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct StandardErrors {
-    /// Reversals through the gap, as `joint hil` and `joint sim --profile reversals` run them.
+    /// Reversals through the gap, as run by `joint hil` and `joint sim --profile reversals`.
     pub reversals: MotionErrors,
-    /// A turn a second under the rated torque, as `joint sim` runs it where the file names no other torque.
+    /// One turn a second under the rated torque, the default motion of `joint sim`.
     pub steady: MotionErrors,
 }
 
@@ -53,25 +54,25 @@ pub struct StandardErrors {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct MotionErrors {
-    /// Measured on the motion itself; absent if the step breaks off or nothing can be predicted.
+    /// Error on the motion itself; absent if the step breaks off or the motion is unpredictable.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub typical: Option<Errors>,
-    /// Above the errors of this motion and of others of its kind: other mesh phases, other torques.
+    /// Bound on the errors of this motion and of others of its kind with other mesh phases and torques.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bound: Option<Errors>,
-    /// Until when the motion can be predicted by anyone.
+    /// Time up to which the motion is predictable.
     pub predictable_until_s: f64,
-    /// Its length.
+    /// Length of the motion.
     pub duration_s: f64,
-    /// Why there is no error, if there is none.
+    /// Reason for a missing error.
     #[serde(skip)]
     pub unmeasured: Option<Unmeasured>,
 }
 
-/// Why a motion has no error.
+/// Reason for a missing error of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unmeasured {
-    /// Deflections, gap and link offset stay where they are: there is no motion to hold an error against.
+    /// Deflections, gap and link offset are constant: the error has no motion to refer to.
     Still,
     /// The disturbed motion leaves the exact one within a tick.
     Unpredictable,
@@ -80,17 +81,17 @@ pub enum Unmeasured {
 }
 
 impl Unmeasured {
-    /// The reason in words.
+    /// Reason as text.
     pub fn in_words(self) -> &'static str {
         match self {
-            Self::Still => "nothing swings: no motion to measure an error of",
-            Self::Unpredictable => "chaotic from the first tick on: nothing can be predicted",
+            Self::Still => "no oscillation, so no error to measure",
+            Self::Unpredictable => "chaotic from the first tick on, so not predictable",
             Self::BreaksOff => "the step breaks off",
         }
     }
 }
 
-/// Which kind of motion.
+/// Kind of motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Reversals through the gap.
@@ -99,7 +100,7 @@ pub enum Kind {
     Steady,
 }
 
-/// A joint, and what it does at a board's rate.
+/// A joint and its motion at a board's rate.
 pub struct Motion {
     joint: JointParameters,
     rate: u32,
@@ -108,8 +109,8 @@ pub struct Motion {
     start: Start,
 }
 
-/// Errors of one run, until when it can be predicted, its length [s].
-struct Found {
+/// Result of one run: errors, predictable time [s], and length [s].
+struct MeasuredErrors {
     errors: Result<Errors, Unmeasured>,
     predictable: f64,
     duration: f64,
@@ -120,26 +121,26 @@ pub fn measure(joint: &JointParameters, processor: &Processor, rate: u32) -> Out
     measure_up_to(joint, processor, rate, f64::INFINITY)
 }
 
-/// The same on motions that are cut off after a time [s].
+/// Measures a joint's step on motions that are cut off after a time [s].
 pub fn measure_up_to(
     joint: &JointParameters,
     processor: &Processor,
     rate: u32,
     longest: f64,
 ) -> Outcome<StandardErrors> {
-    let of = |kind: Kind| of_kind(kind, joint, processor, rate, longest);
+    let of = |kind: Kind| motion_errors(kind, joint, processor, rate, longest);
     let (reversals, steady) = rayon::join(|| of(Kind::Reversals), || of(Kind::Steady));
     Ok(StandardErrors { reversals: reversals?, steady: steady? })
 }
 
-/// The typical error of the reversals alone, which are cut off after a time [s].
+/// Typical error of the reversals only, cut off after a time [s].
 pub fn typical(joint: &JointParameters, processor: &Processor, rate: u32, longest: f64) -> Outcome<Option<Errors>> {
     let motion = Motion::new(Kind::Reversals, joint, rate, (0.0, 1.0), longest)?;
-    Ok(motion.measured(processor)?.errors.ok())
+    Ok(motion.measure(processor)?.errors.ok())
 }
 
-/// The standard motion of a kind and others of it.
-fn of_kind(
+/// Errors of a kind of motion: the standard motion and further ones.
+fn motion_errors(
     kind: Kind,
     joint: &JointParameters,
     processor: &Processor,
@@ -147,24 +148,24 @@ fn of_kind(
     longest: f64,
 ) -> Outcome<MotionErrors> {
     let mut motions = vec![Motion::new(kind, joint, rate, (0.0, 1.0), longest)?];
-    for other in OTHERS {
-        motions.push(Motion::new(kind, joint, rate, other, OTHERS_DURATIONS[kind as usize].min(longest))?);
+    for other in FURTHER_MOTIONS {
+        motions.push(Motion::new(kind, joint, rate, other, FURTHER_DURATIONS[kind as usize].min(longest))?);
     }
-    let found: Vec<Outcome<Found>> = motions.par_iter().map(|motion| motion.measured(processor)).collect();
-    let found = found.into_iter().collect::<Outcome<Vec<Found>>>()?;
+    let found: Vec<Outcome<MeasuredErrors>> = motions.par_iter().map(|motion| motion.measure(processor)).collect();
+    let found = found.into_iter().collect::<Outcome<Vec<MeasuredErrors>>>()?;
     let standard = &found[0];
-    let greatest = found.iter().filter_map(|found| found.errors.ok()).reduce(Errors::greater);
+    let greatest = found.iter().filter_map(|found| found.errors.ok()).reduce(Errors::max);
     Ok(MotionErrors {
         typical: standard.errors.ok(),
         unmeasured: standard.errors.err(),
-        bound: standard.errors.ok().and(greatest).map(|greatest| greatest.times(MARGIN)),
+        bound: standard.errors.ok().and(greatest).map(|greatest| greatest.scaled(BOUND_MARGIN)),
         predictable_until_s: standard.predictable,
         duration_s: standard.duration,
     })
 }
 
-/// A joint whose meshes are all part of a period further on.
-fn shifted(joint: &JointParameters, periods: f64) -> JointParameters {
+/// Joint with all mesh phases advanced by a fraction of a period.
+fn with_shifted_phases(joint: &JointParameters, periods: f64) -> JointParameters {
     let mut shifted = joint.clone();
     for mesh in [&mut shifted.sun_planet, &mut shifted.ring_planet] {
         match &mut mesh.phases {
@@ -179,12 +180,12 @@ fn shifted(joint: &JointParameters, periods: f64) -> JointParameters {
     shifted
 }
 
-/// Deflections of every mesh, gap, link offset; a list each, by ticks of the board.
+/// Deflections of every mesh, gap, link offset; one list each, by ticks of the board.
 type Columns = Vec<Vec<f64>>;
 
 impl Motion {
-    /// A motion of a kind on a joint at a rate [Hz], with mesh phases shifted by part of a period, torques over those of the standard
-    /// motion, and so long at most [s].
+    /// Motion of a kind on a joint at a rate [Hz], with shifted mesh phases (in periods), scaled torques, and limited
+    /// length [s].
     pub fn new(
         kind: Kind,
         joint: &JointParameters,
@@ -192,8 +193,8 @@ impl Motion {
         (shift, scale): (f64, f64),
         longest: f64,
     ) -> Outcome<Self> {
-        let joint = shifted(joint, shift);
-        let ticks = |seconds: f64| (seconds.min(longest) * f64::from(rate)).round().clamp(1.0, MOST_TICKS) as u32;
+        let joint = with_shifted_phases(joint, shift);
+        let ticks = |seconds: f64| (seconds.min(longest) * f64::from(rate)).round().clamp(1.0, MAX_MOTION_TICKS) as u32;
         if kind == Kind::Reversals {
             let mut profile = TorqueProfile::load(BUILTIN[0], &joint, rate, None)?;
             for command in &mut profile.commands {
@@ -208,14 +209,14 @@ impl Motion {
         let command = Command { tick: 0, drive_torque: drive as f32, load_torque: load as f32 };
         let (start, speed) = match joint.excitation {
             Excitation::Time { .. } => (StartName::Centred, 0.0),
-            Excitation::Angle => (StartName::Seated, SPEED),
+            Excitation::Angle => (StartName::Seated, DEFAULT_SPEED),
         };
-        let start = start.of(&joint, speed, (command.drive_torque.into(), command.load_torque.into()));
+        let start = start.state(&joint, speed, (command.drive_torque.into(), command.load_torque.into()));
         Ok(Self { rate, ticks: ticks(steady_duration(&joint)), torques: vec![command], start, joint })
     }
 
-    /// What `sim` runs on this motion, with the step as it is on a processor.
-    pub fn for_sim(&self, processor: Processor) -> SimulationSpec {
+    /// Simulation of this motion by `sim`, with the step of a processor.
+    pub fn simulation_spec(&self, processor: Processor) -> SimulationSpec {
         SimulationSpec {
             joint: self.joint.clone(),
             tick_rate: self.rate,
@@ -227,24 +228,24 @@ impl Motion {
         }
     }
 
-    fn measured(&self, processor: &Processor) -> Outcome<Found> {
+    fn measure(&self, processor: &Processor) -> Outcome<MeasuredErrors> {
         match self.joint.geometry.planets {
-            1 => self.measured_with::<1>(processor),
-            3 => self.measured_with::<3>(processor),
-            4 => self.measured_with::<4>(processor),
-            5 => self.measured_with::<5>(processor),
+            1 => self.measure_with::<1>(processor),
+            3 => self.measure_with::<3>(processor),
+            4 => self.measure_with::<4>(processor),
+            5 => self.measure_with::<5>(processor),
             other => Err(Failure::new(format!("joint `{}` has {other} planets", self.joint.name))
                 .with_help("a joint may have 3, 4 or 5 planets")),
         }
     }
 
-    fn measured_with<const N: usize>(&self, processor: &Processor) -> Outcome<Found> {
+    fn measure_with<const N: usize>(&self, processor: &Processor) -> Outcome<MeasuredErrors> {
         let phase = StepSize::new(&self.joint).phase(self.rate, 1);
-        let finer = ((phase / FINE_PHASE).ceil() as u32).max(LEAST_FINER);
+        let finer = ((phase / FINE_PHASE).ceil() as u32).max(MIN_FINE_TICKS);
         let fine = Effort::Substeps(FINE_SUBSTEPS);
         let exact = self.follow::<f64, N>(finer, fine, 0.0, |_, _| true)?;
-        let bounds: Vec<f64> = exact.iter().map(|column| PREDICTABLE * spread(column)).collect();
-        // Nothing beyond the moment when the disturbed run has left says anything.
+        let bounds: Vec<f64> = exact.iter().map(|column| PREDICTABLE_DEPARTURE * standard_deviation(column)).collect();
+        // Samples after the disturbed run has departed carry no information.
         let disturbed = self.follow::<f64, N>(finer, fine, DISTURBANCE, |tick, values| {
             let near = |((exact, bound), value): ((&Vec<f64>, &f64), &f64)| {
                 exact.get(tick).is_some_and(|exact| (exact - value).abs() <= *bound)
@@ -254,11 +255,11 @@ impl Motion {
         let samples = disturbed[0].len();
         let board = self.follow::<f32, N>(1, Effort::Within(*processor), 0.0, |tick, _| tick < samples)?;
         let time = |samples: usize| samples.saturating_sub(1) as f64 / f64::from(self.rate);
-        Ok(Found {
-            errors: if exact.iter().all(|column| is_still(column)) {
+        Ok(MeasuredErrors {
+            errors: if exact.iter().all(|column| is_constant(column)) {
                 Err(Unmeasured::Still)
             } else if samples > 1 {
-                Errors::of(errors(&exact, &board, samples)).ok_or(Unmeasured::BreaksOff)
+                Errors::from_values(errors(&exact, &board, samples)).ok_or(Unmeasured::BreaksOff)
             } else {
                 Err(Unmeasured::Unpredictable)
             },
@@ -267,8 +268,8 @@ impl Motion {
         })
     }
 
-    /// Steps the joint, so many ticks to one of the board's, for as long as its state is finite and `go_on` says so of the tick and
-    /// its values; those of the first tick of which it does not are left out.
+    /// Steps the joint with `finer` ticks to one of the board's, while the state is finite and `go_on` accepts the tick
+    /// and its values; the first rejected tick is left out.
     fn follow<T: Real, const N: usize>(
         &self,
         finer: u32,

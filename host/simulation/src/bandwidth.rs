@@ -1,5 +1,5 @@
-//! Up to which bandwidth a joint can be controlled, in the same words and figures for `joint check`, `joint budget`, `joint
-//! new` and `joint hil`.
+//! Widest bandwidth of a joint's control, in equal words and figures for `joint check`, `joint budget`, `joint new` and
+//! `joint hil`.
 
 use model_core::compensation::design::{BandwidthRange, bandwidth_range};
 use parameters::{JointParameters, Surroundings};
@@ -13,17 +13,17 @@ use serde::Serialize;
 pub struct Bandwidth {
     /// Control periods a second, from the joint file.
     pub control_rate_Hz: u32,
-    /// Of a compensation whose user asks for none.
+    /// Default bandwidth of the compensation.
     pub usual_rad_per_s: f64,
-    /// The widest; more is refused.
+    /// Widest bandwidth; a wider one is rejected.
     pub widest_rad_per_s: f64,
-    /// What sets the widest.
+    /// Reason for the widest bandwidth.
     pub limited_by: String,
 }
 
 impl Bandwidth {
-    /// The bandwidth of a joint in its drive train; none of a joint that no compensation can be designed for.
-    pub fn of(joint: &JointParameters, around: &Surroundings) -> Option<Self> {
+    /// Bandwidth of a joint in its drive train; `None` if no compensation can be designed.
+    pub fn for_joint(joint: &JointParameters, around: &Surroundings) -> Option<Self> {
         let BandwidthRange { usual, widest, limit } = bandwidth_range(joint, around).ok()?;
         let by_rate = || "control rate, and delays of torque and current loop".to_owned();
         Some(Self {
@@ -34,12 +34,12 @@ impl Bandwidth {
         })
     }
 
-    /// The widest, with what limits it.
+    /// Widest bandwidth with its reason.
     pub fn widest_in_words(&self) -> String {
         format!("{} rad/s: {}", self.widest_rad_per_s, self.limited_by)
     }
 
-    /// The rows of a sheet.
+    /// Adds the rows to a sheet.
     pub fn rows(&self, page: &mut Sheet) {
         page.heading(&format!("Compensation at {} Hz", self.control_rate_Hz));
         page.row("bandwidth, if none is asked for", format!("{} rad/s", self.usual_rad_per_s));

@@ -1,6 +1,6 @@
-//! What a joint will do, computed on the host: `check` derives figures from its file, `budget` says error and cost of
-//! its fixed step on a board (`accuracy` measures, `verdicts` judge), `bandwidth` says for both how fast its control may be, `sim` moves it
-//! by a named scheme, `sweep` moves every joint of a grid.
+//! Behaviour of a joint, computed on the host: `check` derives figures from its file, `budget` predicts error and cost
+//! of its fixed step on a board (`accuracy` measures, `verdicts` decides), `bandwidth` gives the widest bandwidth for
+//! both, `sim` simulates a joint by a named scheme, `sweep` simulates every joint of a grid.
 
 pub mod accuracy;
 pub mod bandwidth;

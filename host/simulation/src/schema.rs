@@ -1,4 +1,4 @@
-//! The published schemas of what the commands of this crate write as JSON are those of their types. Only tests are here.
+//! Tests: the published schemas of this crate's JSON equal those of its types.
 
 use report::schema::assert_published;
 
@@ -8,7 +8,7 @@ use crate::sim::summary::SimulationSummary;
 use crate::sweep::manifest::Manifest;
 
 #[test]
-fn the_published_schemas_are_those_of_the_types() {
+fn published_schemas_match_types() {
     assert_published::<CheckSummary>("check.schema.json");
     assert_published::<BudgetSummary>("budget.schema.json");
     assert_published::<SimulationSummary>("sim.schema.json");

@@ -1,5 +1,5 @@
-//! What `joint check` and `joint budget` say of a joint's step on a board at a rate, in the same words and figures: its sub-steps,
-//! whether the board has time for it, and whether its error is small enough; each verdict with the rate that would reach it.
+//! Verdicts of `joint check` and `joint budget` on a joint's step on a board at a rate, in equal words and figures:
+//! sub-steps, time and accuracy, each verdict with a rate that would reach it.
 
 use board::device::board::Board;
 use board::device::image::role_name;
@@ -14,13 +14,13 @@ use serde::Serialize;
 use crate::accuracy::{self, MotionErrors, StandardErrors, Unmeasured};
 use crate::sim::errors::Errors;
 
-/// Error that is small enough unless another is asked for.
-pub const ACCURACY: f64 = 1e-2;
-/// Rates over the given one that are tried for a smaller error, in this order, up to the highest [Hz].
-const TRIED: [f64; 5] = [1.25, 1.6, 2.0, 3.2, 0.5];
-const HIGHEST_TRIED: u32 = 100_000;
-/// A first try of each is so long: what fails it by more than twice is not tried on the whole motion [s].
-const FIRST_TRY: f64 = 1.5;
+/// Default largest acceptable error.
+pub const DEFAULT_ACCURACY: f64 = 1e-2;
+/// Factors on the given rate that are tried for a smaller error, in this order, and the highest rate tried [Hz].
+const RATE_FACTORS: [f64; 5] = [1.25, 1.6, 2.0, 3.2, 0.5];
+const MAX_TRIED_RATE: u32 = 100_000;
+/// Length of a first try at each rate [s]; if it exceeds twice the acceptable error, the whole motion is not tried.
+const FIRST_TRY_DURATION: f64 = 1.5;
 
 /// Sub-steps, errors, and both verdicts.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -29,65 +29,65 @@ const FIRST_TRY: f64 = 1.5;
 pub struct Verdicts {
     /// Board that steps the joint.
     pub board: String,
-    /// What it does: `plant`, `observer` or `loop`.
+    /// Role of the board: `plant`, `observer` or `loop`.
     pub role: &'static str,
-    /// Steps a second.
+    /// Step rate.
     pub rate_Hz: u32,
     /// Method of the sub-steps of a tick in which contacts change: `corrected` or `leapfrog`.
     pub method: &'static str,
-    /// How many of them.
+    /// Number of sub-steps.
     pub substeps: u32,
-    /// Errors, measured.
+    /// Measured errors.
     pub errors: StandardErrors,
-    /// Whether the board has time.
+    /// Verdict on the board's time.
     pub time: TimeVerdict,
-    /// Whether the error is small enough.
+    /// Verdict on the error.
     pub accuracy: AccuracyVerdict,
-    /// Rates that the board's clock can be divided to, that are stable and that it has time for: stretches from a lowest to a highest.
+    /// Ranges of rates that the board's clock can be divided to, that are stable, and that the board has time for.
     pub rates_that_fit_Hz: Vec<[u32; 2]>,
 }
 
-/// Whether a board has time for the worst tick.
+/// Verdict on the board's time for the worst tick.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "Hz is written Hz")]
 pub struct TimeVerdict {
-    /// Images are built.
+    /// True if the worst tick fits, so that images are built.
     pub fits: bool,
-    /// Its clock can be divided to the rate.
+    /// True if the board's clock can be divided to the rate.
     pub rate_can_be_made: bool,
     /// Instructions of the worst tick of the role.
     pub worst_instructions: u32,
-    /// Part of the period that it takes.
+    /// Share of the period that the worst tick takes.
     pub part: f64,
-    /// Part of the period that it may take.
+    /// Share of the period that the worst tick may take.
     pub share: f64,
-    /// The rate itself if it fits, else the nearest that does.
+    /// Rate itself if it fits, else the nearest that does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rate_that_fits_Hz: Option<u32>,
 }
 
-/// Whether the error is small enough.
+/// Verdict on the error.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "Hz is written Hz")]
 pub struct AccuracyVerdict {
-    /// What the error may be.
+    /// Largest acceptable error.
     pub wanted: f64,
-    /// The greatest of the typical errors of deflections, gap and link on the reversals; absent if there is none to be told.
+    /// Greatest of the typical errors of deflections, gap and link on the reversals; absent if unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<f64>,
-    /// It is no greater than what is wanted.
+    /// True if the error is acceptable.
     pub reached: bool,
-    /// The rate itself if it is reached there, else the first that was found to reach it.
+    /// Rate itself if it reaches the accuracy, else the first rate that was found to.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rate_that_reaches_it_Hz: Option<u32>,
-    /// The board has time for that rate.
+    /// True if the board has time for that rate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fits_there: Option<bool>,
 }
 
-/// Measures a joint's step on a board and judges it: an error up to the wanted one is small enough.
+/// Measures a joint's step on a board; `wanted` is the largest acceptable error.
 pub fn verdicts(joint: &JointParameters, board: &Board, role: Role, rate: u32, wanted: f64) -> Outcome<Verdicts> {
     let on_board = RateCheck::new(joint, board, role);
     if let Some(Obstacle::Unstable(_)) = on_board.obstacle(rate) {
@@ -114,13 +114,13 @@ pub fn verdicts(joint: &JointParameters, board: &Board, role: Role, rate: u32, w
             share,
             rate_that_fits_Hz: if fits { Some(rate) } else { on_board.nearest_accepted(rate) },
         },
-        accuracy: judged(joint, board, &on_board, rate, wanted, errors.reversals.typical)?,
+        accuracy: accuracy_verdict(joint, board, &on_board, rate, wanted, errors.reversals.typical)?,
         errors,
         rates_that_fit_Hz: on_board.rates_that_fit(),
     })
 }
 
-fn judged(
+fn accuracy_verdict(
     joint: &JointParameters,
     board: &Board,
     on_board: &RateCheck<'_>,
@@ -132,12 +132,12 @@ fn judged(
     let typical_up_to = |rate: u32, longest: f64| accuracy::typical(joint, &board.processor(), rate, longest);
     let here = within(typical, wanted);
     let mut found = here.then_some(rate);
-    let tried = TRIED.iter().map(|factor| on_board.nearest_divisor_rate(factor * f64::from(rate)));
-    for candidate in tried.filter(|candidate| (on_board.lowest_rate()..=HIGHEST_TRIED).contains(candidate)) {
+    let tried = RATE_FACTORS.iter().map(|factor| on_board.nearest_divisor_rate(factor * f64::from(rate)));
+    for candidate in tried.filter(|candidate| (on_board.lowest_rate()..=MAX_TRIED_RATE).contains(candidate)) {
         if found.is_some() {
             break;
         }
-        let reached = within(typical_up_to(candidate, FIRST_TRY)?, 2.0 * wanted)
+        let reached = within(typical_up_to(candidate, FIRST_TRY_DURATION)?, 2.0 * wanted)
             && within(typical_up_to(candidate, f64::INFINITY)?, wanted);
         found = reached.then_some(candidate);
     }
@@ -151,12 +151,12 @@ fn judged(
 }
 
 impl Verdicts {
-    /// The sub-steps in words, the same on every page.
+    /// Sub-steps as text, equal on every page.
     pub fn substeps_in_words(&self) -> String {
         format!("{} {} sub-steps", self.substeps, self.method)
     }
 
-    /// Errors and verdicts, as rows of a sheet.
+    /// Adds errors and verdicts as rows to a sheet.
     pub fn rows(&self, page: &mut Sheet) {
         page.heading("Error, measured: RMS over the motion's own standard deviation (deflections, gap, link)");
         for (name, errors) in [("reversals", &self.errors.reversals), ("steady, rated torque", &self.errors.steady)] {
@@ -196,14 +196,14 @@ impl Verdicts {
 
     fn accuracy_in_words(&self) -> String {
         let AccuracyVerdict { wanted, error, reached, rate_that_reaches_it_Hz, fits_there } = self.accuracy;
-        let error = error.map_or("no error can be told".to_owned(), |error| format!("{error:.1e} on the reversals"));
+        let error = error.map_or("error unknown".to_owned(), |error| format!("{error:.1e} on the reversals"));
         if reached {
             return format!("reached: {error}, {wanted:.0e} wanted");
         }
         let where_reached = match (rate_that_reaches_it_Hz, fits_there) {
             (Some(rate), Some(true)) => format!("{rate} Hz would reach it"),
-            (Some(rate), _) => format!("{rate} Hz would reach it, for which this board has no time"),
-            (None, _) => format!("no rate up to {HIGHEST_TRIED} Hz was found that would"),
+            (Some(rate), _) => format!("{rate} Hz would reach it, too fast for this board"),
+            (None, _) => format!("no rate up to {MAX_TRIED_RATE} Hz was found that would"),
         };
         format!("NOT REACHED: {error}, {wanted:.0e} wanted; {where_reached}")
     }
@@ -212,7 +212,7 @@ impl Verdicts {
 fn in_words(errors: &MotionErrors) -> String {
     let three = |errors: &Errors| format!("{:.1e}, {:.1e}, {:.1e}", errors.deflections, errors.gap, errors.link);
     let (Some(typical), Some(bound)) = (&errors.typical, &errors.bound) else {
-        return errors.unmeasured.map_or("no error can be told", Unmeasured::in_words).to_owned();
+        return errors.unmeasured.map_or("error unknown", Unmeasured::in_words).to_owned();
     };
     let until = if errors.predictable_until_s < errors.duration_s {
         format!("; can be predicted for {:.3} of {:.3} s", errors.predictable_until_s, errors.duration_s)

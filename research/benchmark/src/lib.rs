@@ -96,7 +96,7 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
 fn gather(arguments: &Arguments, progress: &Progress) -> Outcome<BenchmarkRecord> {
     let cases = cases(arguments)?;
     let keys: Vec<String> = cases.iter().map(|case| case.key.clone()).collect();
-    let say = |line: &str| progress.say(line);
+    let say = |line: &str| progress.print_message(line);
     progress.stage("preparing the toolchain");
     let toolchain = Toolchain::prepare(&say)?;
     let emulator = emulator::ensure(&say)?;

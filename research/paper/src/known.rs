@@ -129,7 +129,7 @@ fn place(reading: &Reading, found: &AttractorRecord) -> String {
 fn attractor(reading: &Reading, known: &Known, found: &AttractorRecord, checks: &mut Vec<Check>) {
     let place = place(reading, found);
     let mut judge = |name: String, figure: f64, bound: Bound, note: String| {
-        checks.push(Check::judge(name, figure, "", bound, Source::Host).note(note));
+        checks.push(Check::new(name, figure, "", bound, Source::Host).note(note));
     };
     debug_assert!((found.half_backlash_m * 1e6 - known.half_backlash_um).abs() < 1e-6, "the same half-backlash");
     let (figure, bound, exponent_bound) = match (known.class, found.class) {
@@ -180,11 +180,11 @@ fn consistency(reading: &Reading, found: &AttractorRecord, checks: &mut Vec<Chec
         found.exponent_by_tangent_vector, found.exponent_by_two_trajectories
     );
     let name = format!("{place}: the two exponents agree");
-    checks.push(Check::judge(name, distance, "", Bound::AtMost(METHODS), Source::Host).note(note));
+    checks.push(Check::new(name, distance, "", Bound::AtMost(METHODS), Source::Host).note(note));
     let name = format!("{place}: an independent integrator agrees");
     let bound = Bound::AtMost(INTEGRATORS);
     checks.push(match found.reference_distance {
-        Some(distance) => Check::judge(name, distance, "", bound, Source::Host)
+        Some(distance) => Check::new(name, distance, "", bound, Source::Host)
             .note("Runge-Kutta of order 8 in absolute coordinates, at the next Poincaré points"),
         None => Check::not_run(name, "", bound, "the independent integrator refuses this joint"),
     });
@@ -198,7 +198,7 @@ fn same_in_diagram(reading: &Reading, found: &AttractorRecord) -> Option<Check> 
     let name = format!("{}: attractor and diagram agree", place(reading, found));
     let same = f64::from(u8::from(shown == found.class));
     let note = format!("attractor: {}, diagram: {shown}", found.class);
-    Some(Check::judge(name, same, "", Bound::Exactly(1.0), Source::Host).note(note))
+    Some(Check::new(name, same, "", Bound::Exactly(1.0), Source::Host).note(note))
 }
 
 fn windows(reading: &Reading, checks: &mut Vec<Check>) {
@@ -210,7 +210,7 @@ fn windows(reading: &Reading, checks: &mut Vec<Check>) {
             Some(found) => format!("found at {:.1} µm, known {known} µm", found * 1e6),
             None => format!("no such window; known {known} µm"),
         };
-        checks.push(Check::judge(name, figure, "µm", bound, Source::Host).note(note));
+        checks.push(Check::new(name, figure, "µm", bound, Source::Host).note(note));
     };
     let nearest = |windows: &[ClassWindow], class: Class, at: f64, end: fn(&ClassWindow) -> f64| {
         let own = windows.iter().filter(|window| window.class == class).map(end);
@@ -242,8 +242,8 @@ fn smoothing(figure: &DeadZoneFigure, checks: &mut Vec<Check>) {
     let note = format!("at sharpness {:.0}; the closed form is {DEAD_ZONE} over the sharpness", sharpest.sharpness);
     let distance = (scaled / DEAD_ZONE - 1.0).abs();
     let name = "eq. 13 corrected: largest error times sharpness";
-    checks.push(Check::judge(name, distance, "", Bound::AtMost(1e-2), Source::Host).note(note));
+    checks.push(Check::new(name, distance, "", Bound::AtMost(1e-2), Source::Host).note(note));
     let name = "eq. 13 as printed: error that no sharpness removes";
     let note = "in the middle of the gap it gives −1 in place of 0";
-    checks.push(Check::judge(name, sharpest.printed, "", Bound::AtLeast(0.99), Source::Host).note(note));
+    checks.push(Check::new(name, sharpest.printed, "", Bound::AtLeast(0.99), Source::Host).note(note));
 }

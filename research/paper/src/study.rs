@@ -62,7 +62,7 @@ fn reading(subject: &StudyJoint, plan: &StudyPlan, progress: &Progress) -> Outco
     let attractor = |half_backlash: &f64| {
         stop_if_interrupted()?;
         let attractor = attractor_at(subject, *half_backlash)?;
-        progress.done(ATTRACTOR_WORK);
+        progress.advance(ATTRACTOR_WORK);
         Ok(attractor)
     };
     let (sweeps, attractors) = rayon::join(
@@ -100,7 +100,7 @@ fn sweep(subject: &StudyJoint, start: SweepStart, grid: &[f64], progress: &Progr
         stop_if_interrupted()?;
         let system = subject.system(*half_backlash)?;
         let point = point(subject, *half_backlash, &mut EventIntegrator::from_rest(&system))?;
-        progress.done(1);
+        progress.advance(1);
         Ok(point)
     };
     let points: Vec<SweepPoint> = match start {
@@ -142,7 +142,7 @@ fn carried(subject: &StudyJoint, start: SweepStart, grid: &[f64], progress: &Pro
         };
         points.push(point(subject, half_backlash, &mut motion)?);
         state = Some(motion.state());
-        progress.done(1);
+        progress.advance(1);
     }
     if start == SweepStart::Down {
         points.reverse();

@@ -20,7 +20,7 @@ use link::messages::{Hello, RunSettings, ToBoard};
 use super::recording::{Recording, UnacknowledgedSchedules};
 use super::transport::Line;
 use report::failure::{Failure, Outcome};
-use report::interruption::InOrder;
+use report::interruption::UninterruptedWork;
 
 pub use help::BoardHelp;
 pub use identity::Expected;
@@ -70,7 +70,7 @@ pub struct Session<'a> {
     /// Messages received so far.
     pub recording: Recording,
     /// Keeps the process alive until a running board is stopped.
-    _in_order: InOrder,
+    _uninterrupted: UninterruptedWork,
 }
 
 impl<'a> Session<'a> {
@@ -85,7 +85,7 @@ impl<'a> Session<'a> {
             dropped_before: 0,
             unacknowledged: UnacknowledgedSchedules::default(),
             recording: Recording::default(),
-            _in_order: InOrder::begin(),
+            _uninterrupted: UninterruptedWork::begin(),
         }
     }
 

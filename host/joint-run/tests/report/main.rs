@@ -72,7 +72,7 @@ fn page_size_is_limited() {
 fn failed_checks_come_first() {
     let mut record = synthetic::record();
     record.checks.push(Check::not_run("Reference", "%", Bound::AtMost(1.0), "the run was cut short"));
-    record.checks.push(Check::judge("Lost samples of the line", 3.0, "", Bound::Exactly(0.0), Source::Board));
+    record.checks.push(Check::new("Lost samples of the line", 3.0, "", Bound::Exactly(0.0), Source::Board));
     assert!(!record.passed());
     let page = render(&record);
     keep_for_looking("failed.html", &page);

@@ -205,7 +205,7 @@ fn log() -> Vec<LogLine> {
 fn checks() -> Vec<Check> {
     let at_most = Bound::AtMost;
     vec![
-        Check::judge(
+        Check::new(
             "Steps equal to the host twin bit for bit",
             60_000.0,
             "steps",
@@ -213,13 +213,13 @@ fn checks() -> Vec<Check> {
             Source::Host,
         )
         .note("running digest of the whole state, compared at every sample"),
-        Check::judge("Gap against the f64 reference, RMS", 0.021, "%", at_most(1.0), Source::Host)
+        Check::new("Gap against the f64 reference, RMS", 0.021, "%", at_most(1.0), Source::Host)
             .note("of its own standard deviation"),
-        Check::judge("Overruns", 0.0, "", Bound::Exactly(0.0), Source::Board),
-        Check::judge("Lost frames", 0.0, "", Bound::Exactly(0.0), Source::Host),
-        Check::judge("Longest computation", 12.4, "µs", at_most(40.0), Source::Board),
-        Check::judge("Flash", 45.2, "KiB", at_most(256.0), Source::Image),
-        Check::judge("RAM", 11.6, "KiB", at_most(16.0), Source::Image),
-        Check::judge("Idle share", 61.3, "%", Bound::None, Source::Board),
+        Check::new("Overruns", 0.0, "", Bound::Exactly(0.0), Source::Board),
+        Check::new("Lost frames", 0.0, "", Bound::Exactly(0.0), Source::Host),
+        Check::new("Longest computation", 12.4, "µs", at_most(40.0), Source::Board),
+        Check::new("Flash", 45.2, "KiB", at_most(256.0), Source::Image),
+        Check::new("RAM", 11.6, "KiB", at_most(16.0), Source::Image),
+        Check::new("Idle share", 61.3, "%", Bound::None, Source::Board),
     ]
 }

@@ -9,7 +9,7 @@ use joint_run::plan::RunRequest;
 use report::seeds::Seeds;
 use scenario::plant::PlantName;
 
-/// Steps between two samples, unless it is asked for another number of them.
+/// Steps between two samples by default.
 const DECIMATION: u16 = 20;
 
 /// Arguments of `joint hil`.
@@ -33,32 +33,32 @@ pub struct Arguments {
     /// Test files: runs observer and compensation on this machine, without a board
     #[arg(long, conflicts_with = "role")]
     pub host: bool,
-    /// Test files: what the board does, observer and compensation or the whole loop with the joint [default: loop]
+    /// Test files: role of the board: observer and compensation, or the whole loop with the joint [default: loop]
     #[arg(long, value_enum)]
     pub role: Option<RoleName>,
-    /// Test files with --host: keeps what the observer has learnt at the end of each run, as a board does, and the joint file
-    /// that it is good for, for `joint memory`
+    /// Test files with --host: saves the estimated parameters at the end of each run, as a board does, with their joint
+    /// file, for `joint memory`
     #[arg(long, requires = "host")]
     pub memory: bool,
-    /// Test files: runs this seed in place of the file's, or those from one to another, as in 1-10000
+    /// Test files: runs this seed, or a range of seeds (1-10000), in place of the file's
     #[arg(long, value_name = "N|FROM-TO", allow_negative_numbers = true)]
     pub seed: Option<Seeds>,
-    /// Test files: what is controlled [default: core]
+    /// Test files: model of the joint that is controlled [default: core]
     #[arg(long, value_enum)]
     pub plant: Option<PlantName>,
-    /// Test files: runs the full lists of seeds, and files that are only for those; without FILE all of them
+    /// Test files: runs the full lists of seeds, and the files that only a full run includes; without FILE every test
     #[arg(long)]
     pub full: bool,
-    /// Test files: writes the results as JUnit XML to this file too
+    /// Test files: also writes the results as JUnit XML to this file
     #[arg(long, value_name = "XML")]
     pub junit: Option<PathBuf>,
-    /// Which board, and how it is reached.
+    /// Board and its connection.
     #[command(flatten)]
     pub line: LineOptions,
-    /// Who waits for whom [default: lockstep on the emulated board, realtime on a real one]
+    /// Pacing: lockstep, or the board's own clock [default: lockstep on the emulated board, realtime on a real one]
     #[arg(long, value_enum)]
     pub mode: Option<Mode>,
-    /// Steps a second, in Hz; part of the image [default: 20000]
+    /// Step rate in Hz; part of the image [default: 20000]
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..))]
     pub rate: Option<u32>,
     /// Torque profile: `reversals`, or a CSV file with the columns time_s, motor_torque_Nm and load_torque_Nm
@@ -68,25 +68,25 @@ pub struct Arguments {
     /// Length of the run in s [default: the profile's own; 5 s for `reversals`]
     #[arg(long, value_name = "S")]
     pub duration: Option<f64>,
-    /// A sample every so many steps; the digest covers every step [default: 20]
+    /// Steps between two samples; the digest covers every step [default: 20]
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u16).range(1..))]
     pub decimation: Option<u16>,
     /// Folder for report.html, record.json, log.txt and run.mcap; a file that this command did not write is refused [default: joint-out/hil/<joint>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Writes the record as JSON to this file too ("-" is standard output, and all else on standard error)
+    /// Also writes the record as JSON to this file ("-": to standard output; all other output goes to standard error)
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
     /// Draws the first reversal through the gap to this file (SVG), for a document
     #[arg(long, value_name = "SVG")]
     pub picture: Option<PathBuf>,
-    /// Does not compute the f64 reference
+    /// Skips the f64 reference
     #[arg(long)]
     pub no_reference: bool,
-    /// Does not build the image: logs stay encoded, and its size is not checked
+    /// Skips the build of the image: logs stay encoded, and the size of the image is not checked
     #[arg(long, requires = "port")]
     pub no_build: bool,
-    /// Builds and runs what the board has no time for; its hello says so
+    /// Builds and runs even if the worst-case tick exceeds the period; the board reports `forced` in its identity
     #[arg(long, conflicts_with = "host")]
     pub force: bool,
     /// Also builds the images of all boards, lints the firmware and runs the tests that need the emulated board
@@ -95,17 +95,17 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// The file, or the joint of a run that names none.
+    /// File of the run; joint q1 if the command line names none.
     pub fn file(&self) -> &Path {
         self.file.as_deref().unwrap_or(Path::new("q1"))
     }
 
-    /// Steps a second [Hz].
+    /// Step rate [Hz].
     pub fn rate(&self) -> u32 {
         self.rate.unwrap_or(image::DEFAULT_TICK_RATE)
     }
 
-    /// What is asked of a joint on a board.
+    /// Request for a run of a joint on a board.
     pub fn request(&self) -> RunRequest<'_> {
         RunRequest {
             file: self.file(),

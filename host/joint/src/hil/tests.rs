@@ -1,5 +1,5 @@
-//! Which arguments of `joint hil` belong to test files and which to joints; the wrong ones are named rather than
-//! ignored.
+//! Arguments of `joint hil` that belong to test files only, or to joints only; an argument of the other kind is an
+//! error.
 
 use std::path::{Path, PathBuf};
 
@@ -16,28 +16,29 @@ use scenario::suite;
 use scenario::suite::Choice;
 use scenario::{TestGroup, TestRequest};
 
-/// What is asked of the tests in a file or folder.
+/// Request for the tests in a file or folder; rejects arguments that belong to joints.
 pub fn test_request(arguments: &Arguments) -> Outcome<TestRequest<'_>> {
-    let of_joints = [
+    let joint_arguments = [
         ("duration", arguments.duration.is_some(), "write duration_s into the test file"),
         ("profile", arguments.profile.is_some(), "write profile into the test file"),
         ("rate", arguments.rate.is_some(), "write drive_train.control_rate_Hz into [known] of the test file"),
-        ("decimation", arguments.decimation.is_some(), "leave it out: the log of a run has what there is"),
+        ("decimation", arguments.decimation.is_some(), "leave it out: the log of a run has a fixed rate"),
         ("picture", arguments.picture.is_some(), "leave it out: the report has pictures"),
         ("no-reference", arguments.no_reference, "leave it out: --plant says what is controlled"),
         ("check", arguments.check, "leave FILE out, or name a joint"),
     ];
-    if let Some((name, _, mend)) = of_joints.iter().find(|(_, given, _)| *given) {
+    if let Some((name, _, remedy)) = joint_arguments.iter().find(|(_, given, _)| *given) {
         let message = format!("--{name} is for joints, and {} holds tests", arguments.file().display());
-        return Err(Failure::new(message).with_help(*mend));
+        return Err(Failure::new(message).with_help(*remedy));
     }
     if arguments.mode.is_some() && (arguments.host || arguments.role == Some(RoleName::Observer)) {
-        return Err(Failure::new("--mode is for a whole loop on a board: all else goes step by step")
+        return Err(Failure::new("--mode is for a whole loop on a board: all other tests run in lockstep")
             .with_help("leave it out, or run on a board with --role loop"));
     }
     if arguments.full && arguments.seed.is_some() && !arguments.file().is_dir() {
-        return Err(Failure::new("--full asks for the full list of seeds, and --seed for one of them")
-            .with_help("leave one of them out"));
+        return Err(
+            Failure::new("--full runs the full list of seeds, and --seed one seed").with_help("leave one of them out")
+        );
     }
     if let (true, Some(port)) = (arguments.host, &arguments.line.port) {
         return Err(Failure::new(format!("--host runs without a board, and --port {port} names one"))
@@ -45,34 +46,34 @@ pub fn test_request(arguments: &Arguments) -> Outcome<TestRequest<'_>> {
     }
     let role = arguments.role.map_or(Role::Loop, Role::from);
     let path = arguments.file().to_owned();
-    let part = TestGroup {
+    let group = TestGroup {
         choice: if arguments.full { Choice::Full } else { Choice::Short },
         plant: arguments.plant.unwrap_or(PlantName::Core),
-        boards: (!arguments.host).then(|| boards(arguments, role)),
+        boards: (!arguments.host).then(|| board_request(arguments, role)),
         path,
     };
-    let name = part.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(of_groups(arguments, vec![part], name, arguments.out.clone()))
+    let name = group.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(request_of_groups(arguments, vec![group], name, arguments.out.clone()))
 }
 
-/// What is asked of the tests that come with the program where no file is named: on the board those that say so, and with
-/// `--full` all of them around the f64 reference, which is where their bounds are stated.
-pub fn test_request_of_all(arguments: &Arguments) -> TestRequest<'_> {
-    let part = |choice, plant, boards| TestGroup { path: folder(), choice, plant, boards };
-    let on_board = |role, plant| part(Choice::OnBoard(role), plant, Some(boards(arguments, role)));
-    let mut parts = vec![on_board(Role::Loop, PlantName::Core), on_board(Role::Observer, PlantName::Reference)];
+/// Request for the tests that come with the program, if no file is named: the tests marked for the board run on the
+/// board; `--full` adds every test around the f64 reference, where the bounds are stated.
+pub fn default_test_request(arguments: &Arguments) -> TestRequest<'_> {
+    let group = |choice, plant, boards| TestGroup { path: folder(), choice, plant, boards };
+    let on_board = |role, plant| group(Choice::OnBoard(role), plant, Some(board_request(arguments, role)));
+    let mut groups = vec![on_board(Role::Loop, PlantName::Core), on_board(Role::Observer, PlantName::Reference)];
     if arguments.full {
-        parts.push(part(Choice::Full, PlantName::Reference, None));
+        groups.push(group(Choice::Full, PlantName::Reference, None));
     }
-    of_groups(arguments, parts, "all".to_owned(), arguments.out.as_ref().map(|out| out.join("tests")))
+    request_of_groups(arguments, groups, "all".to_owned(), arguments.out.as_ref().map(|out| out.join("tests")))
 }
 
-/// Files that a run without `--full` leaves out.
-pub fn left_out() -> Outcome<Vec<PathBuf>> {
-    suite::left_out(&folder())
+/// Test files that a run without `--full` leaves out.
+pub fn skipped_tests() -> Outcome<Vec<PathBuf>> {
+    suite::skipped_without_full(&folder())
 }
 
-/// The tests that come with the program; by the short path where that leads there too, as it does in the workspace.
+/// Folder of the tests that come with the program; the relative path `hil` if it leads to the same folder.
 fn folder() -> PathBuf {
     let whole = workspace().join("hil");
     let short = Path::new("hil");
@@ -80,17 +81,17 @@ fn folder() -> PathBuf {
     if same { short.to_owned() } else { whole }
 }
 
-fn of_groups<'a>(
+fn request_of_groups<'a>(
     arguments: &'a Arguments,
-    parts: Vec<TestGroup<'a>>,
+    groups: Vec<TestGroup<'a>>,
     name: String,
     out: Option<PathBuf>,
 ) -> TestRequest<'a> {
     TestRequest {
-        parts,
+        groups,
         seed: arguments.seed,
         full: arguments.full,
-        memories: arguments.memory,
+        save_memories: arguments.memory,
         name,
         out,
         json: arguments.json.as_deref().filter(|_| arguments.file.is_some()),
@@ -98,7 +99,7 @@ fn of_groups<'a>(
     }
 }
 
-fn boards(arguments: &Arguments, role: Role) -> BoardRequest<'_> {
+fn board_request(arguments: &Arguments, role: Role) -> BoardRequest<'_> {
     BoardRequest {
         role,
         port: arguments.line.port.as_deref(),
@@ -110,11 +111,12 @@ fn boards(arguments: &Arguments, role: Role) -> BoardRequest<'_> {
     }
 }
 
-/// Complains about arguments of tests when a joint was named.
-pub fn refuse_for_joints(arguments: &Arguments) -> Outcome<()> {
-    // Without a file, on the emulated board, the tests that come with the program follow.
+/// Rejects arguments of test files if a joint is named.
+pub fn reject_test_arguments(arguments: &Arguments) -> Outcome<()> {
+    // Without a file, on the emulated board, the tests that come with the program follow, so `--full` and `--junit`
+    // apply.
     let alone = arguments.file.is_some() || arguments.line.port.is_some() || arguments.check;
-    let of_tests = [
+    let test_arguments = [
         ("host", arguments.host),
         ("role", arguments.role.is_some()),
         ("seed", arguments.seed.is_some()),
@@ -122,12 +124,12 @@ pub fn refuse_for_joints(arguments: &Arguments) -> Outcome<()> {
         ("full", arguments.full && alone),
         ("junit", arguments.junit.is_some() && alone),
     ];
-    let Some((name, _)) = of_tests.iter().find(|(_, given)| *given) else { return Ok(()) };
+    let Some((name, _)) = test_arguments.iter().find(|(_, given)| *given) else { return Ok(()) };
     let file = arguments.file().display();
     let message = match (joint_file::preset(&file.to_string()), input::text(arguments.file(), input::LARGEST_TYPED)) {
         (Some(_), _) | (_, Ok(_)) => format!("--{name} is for test files, and {file} is a joint"),
         (None, Err(why)) => format!("cannot read the test file {file}: {why}"),
     };
     Err(Failure::new(message)
-        .with_help("name a test file such as hil/t2.toml; docs/reference/hil-file.md tells how to write one"))
+        .with_help("name a test file such as hil/t2.toml; docs/reference/hil-file.md describes the format"))
 }

@@ -1,5 +1,4 @@
-//! What a bad line does to one direction of a conversation: when, what and how much is drawn from a seed, by the number of
-//! bytes that have gone by.
+//! Disturbances of one direction of a line. Position (in bytes), kind and size are drawn from a seed.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -9,10 +8,10 @@ use link::framing::encode;
 use link::messages::ToBoard;
 use model_core::numbers::random::splitmix64;
 
-/// Bytes of the longest flood: sixteen times what a board has room for.
+/// Longest flood [bytes]: sixteen times the board's buffer.
 const FLOOD: u32 = 16 * 1024;
 
-/// Where the bytes go.
+/// Direction of the bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
     ToBoard,
@@ -46,17 +45,17 @@ const KINDS: [Kind; 10] = [
     Kind::Twice,
 ];
 
-/// One disturbance.
+/// A disturbance at a position in the stream.
 #[derive(Debug, Clone, Copy)]
 struct Event {
-    /// Bytes before it.
+    /// Bytes before the disturbance.
     at: u32,
     kind: Kind,
-    /// It waits for the end of the frame that is under way.
+    /// Waits for the end of the current frame.
     between_frames: bool,
 }
 
-/// Numbers from a seed.
+/// Random numbers from a seed.
 struct Draw(u64);
 
 impl Draw {
@@ -70,32 +69,32 @@ impl Draw {
 }
 
 /// One direction of the line.
-pub struct Trouble {
+pub struct LineFaults {
     direction: Direction,
     events: VecDeque<Event>,
     draw: Draw,
     passed: u32,
-    /// Bytes of a run that nothing disturbs.
-    usual: Option<u32>,
-    /// Bytes yet to be changed, and to be left out.
+    /// Bytes of an undisturbed run.
+    run_length: Option<u32>,
+    /// Bytes still to be corrupted (`flips`) or dropped (`cut`).
     flips: u32,
     cut: u32,
-    /// The frame under way, and the last whole ones: any, and a hello.
+    /// Frame in progress, the last complete frame, and the last long one: a hello.
     frame: Vec<u8>,
     last: Vec<u8>,
     hello: Vec<u8>,
 }
 
-impl Trouble {
-    /// A good line.
-    pub fn none(direction: Direction) -> Self {
+impl LineFaults {
+    /// Returns an undisturbed line.
+    pub fn undisturbed(direction: Direction) -> Self {
         let (frame, last, hello) = (vec![], vec![], vec![]);
         Self {
             direction,
             events: VecDeque::new(),
             draw: Draw(0),
             passed: 0,
-            usual: None,
+            run_length: None,
             flips: 0,
             cut: 0,
             frame,
@@ -104,14 +103,15 @@ impl Trouble {
         }
     }
 
-    /// From now on what a seed says; in words. What has gone by before the first was a run, and tells how long one is.
+    /// Draws new disturbances from a seed and returns them as text. The bytes before the first call are an undisturbed
+    /// run and give its length.
     pub fn begin(&mut self, seed: u64) -> String {
-        let usual = *self.usual.get_or_insert(self.passed);
+        let run_length = *self.run_length.get_or_insert(self.passed);
         self.draw = Draw(seed.wrapping_mul(2) + u64::from(self.direction == Direction::ToHost));
         let draw = &mut self.draw;
         let mut events: Vec<Event> = (0..draw.below(4))
             .map(|_| {
-                let (at, kind) = (draw.below(usual), KINDS[draw.below(KINDS.len() as u32) as usize]);
+                let (at, kind) = (draw.below(run_length), KINDS[draw.below(KINDS.len() as u32) as usize]);
                 Event { at, kind, between_frames: draw.below(2) == 0 }
             })
             .collect();
@@ -122,14 +122,14 @@ impl Trouble {
         words
     }
 
-    /// The line is good again. What is left out or cut off stays so.
+    /// Ends all disturbances. Dropped or truncated bytes stay lost.
     pub fn end(&mut self) {
         self.events.clear();
         (self.flips, self.cut) = (0, 0);
     }
 
-    /// What comes out for bytes that go in, in pieces with the time that each is held back.
-    pub fn pass(&mut self, bytes: &[u8]) -> Vec<(Duration, Vec<u8>)> {
+    /// Passes bytes through the line; returns the output in pieces, each with its delay.
+    pub fn transmit(&mut self, bytes: &[u8]) -> Vec<(Duration, Vec<u8>)> {
         let mut pieces = vec![(Duration::ZERO, vec![])];
         for &byte in bytes {
             self.passed += 1;
@@ -137,7 +137,7 @@ impl Trouble {
             let (passed, between) = (self.passed, self.frame.is_empty());
             let is_due = |event: &mut Event| event.at <= passed && (between || !event.between_frames);
             while let Some(event) = self.events.pop_front_if(is_due) {
-                self.disturb(event.kind, &mut pieces);
+                self.apply(event.kind, &mut pieces);
             }
         }
         pieces
@@ -147,7 +147,7 @@ impl Trouble {
         self.frame.push(byte);
         if byte == 0 {
             self.last = std::mem::take(&mut self.frame);
-            // The longest that a board says before a run.
+            // The hello is the longest message that a board sends before a run.
             if self.hello.is_empty() && self.last.len() > 40 {
                 self.hello = self.last.clone();
             }
@@ -161,7 +161,7 @@ impl Trouble {
         pieces.last_mut().expect("a piece").1.push(changed);
     }
 
-    fn disturb(&mut self, kind: Kind, pieces: &mut Vec<(Duration, Vec<u8>)>) {
+    fn apply(&mut self, kind: Kind, pieces: &mut Vec<(Duration, Vec<u8>)>) {
         let mut more = Vec::new();
         match kind {
             Kind::Garbage => {
@@ -184,7 +184,7 @@ impl Trouble {
         pieces.last_mut().expect("a piece").1.extend(more);
     }
 
-    /// The first word of another session: another host's, or the board's own of before.
+    /// Hello of another session: of another host, or the board's own earlier one.
     fn other_hello(&self) -> Vec<u8> {
         match self.direction {
             Direction::ToHost => self.hello.clone(),

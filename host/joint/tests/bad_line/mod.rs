@@ -1,5 +1,5 @@
-//! A board behind a line that does to its bytes what a bad line does: by a seed, in both directions, and then no more.
-//! `disturbance` changes the bytes, `proxy` stands between host and board, `trial` runs a board behind it and judges.
+//! A board behind a line that disturbs both directions by a seed and then stops. `disturbance` changes the bytes,
+//! `proxy` connects host and board, `trial` runs a board behind the proxy and checks the outcome.
 
 mod disturbance;
 mod proxy;

@@ -1,4 +1,4 @@
-//! Stands between host and board: a thread a direction, at the rate at which the bytes come.
+//! Forwards bytes between host and board, one thread for each direction.
 
 use std::io::{Read, Write};
 use std::net::Shutdown;
@@ -6,33 +6,34 @@ use std::os::unix::net::UnixStream;
 use std::sync::{Arc, Mutex};
 use std::thread;
 
-use super::disturbance::{Direction, Trouble};
+use super::disturbance::{Direction, LineFaults};
 
-/// Both directions; the line is cut when it is dropped.
+/// Both directions of a line; dropping the proxy closes the line.
 pub struct Proxy {
-    ways: [Arc<Mutex<Trouble>>; 2],
+    directions: [Arc<Mutex<LineFaults>>; 2],
     board: UnixStream,
 }
 
 impl Proxy {
-    /// A good line to a board, and the host's end of it.
+    /// Returns an undisturbed line to a board, and the host's end of the line.
     pub fn before(board: UnixStream) -> (Self, UnixStream) {
         let (host, ours) = UnixStream::pair().expect("a pair of sockets");
-        let ways = [Direction::ToBoard, Direction::ToHost].map(|way| Arc::new(Mutex::new(Trouble::none(way))));
-        carry(&ours, &board, ways[0].clone());
-        carry(&board, &ours, ways[1].clone());
-        (Self { ways, board }, host)
+        let directions =
+            [Direction::ToBoard, Direction::ToHost].map(|way| Arc::new(Mutex::new(LineFaults::undisturbed(way))));
+        carry(&ours, &board, directions[0].clone());
+        carry(&board, &ours, directions[1].clone());
+        (Self { directions, board }, host)
     }
 
-    /// The line is as bad as a seed says from now on; in words.
+    /// Disturbs the line by a seed; returns the disturbances as text.
     pub fn disturb(&self, seed: u64) -> String {
-        let [to_board, to_host] = [0, 1].map(|way| self.ways[way].lock().expect("no panic").begin(seed));
+        let [to_board, to_host] = [0, 1].map(|way| self.directions[way].lock().expect("no panic").begin(seed));
         format!("to the board:{to_board}; to the host:{to_host}")
     }
 
-    /// The line is good.
-    pub fn calm(&self) {
-        self.ways.iter().for_each(|way| way.lock().expect("no panic").end());
+    /// Ends all disturbances.
+    pub fn end_disturbance(&self) {
+        self.directions.iter().for_each(|way| way.lock().expect("no panic").end());
     }
 }
 
@@ -42,12 +43,12 @@ impl Drop for Proxy {
     }
 }
 
-fn carry(from: &UnixStream, to: &UnixStream, trouble: Arc<Mutex<Trouble>>) {
+fn carry(from: &UnixStream, to: &UnixStream, faults: Arc<Mutex<LineFaults>>) {
     let (mut from, mut to) = (from.try_clone().expect("a socket"), to.try_clone().expect("a socket"));
     thread::spawn(move || {
         let mut buffer = [0; 4096];
         while let Ok(count @ 1..) = from.read(&mut buffer) {
-            let pieces = trouble.lock().expect("no panic").pass(&buffer[..count]);
+            let pieces = faults.lock().expect("no panic").transmit(&buffer[..count]);
             for (held_back, bytes) in pieces {
                 thread::sleep(held_back);
                 if to.write_all(&bytes).is_err() {

@@ -1,8 +1,8 @@
-//! A board behind a bad line: a run while it is disturbed, the link afterwards, and a run on the line that is good again.
+//! A board behind a bad line: a disturbed run, a check of the link afterwards, and a run on the undisturbed line.
 //!
-//! Neither the emulated board nor one in a thread keeps the time of the day, so nothing is judged by a clock. How soon the
-//! link is back is judged in frames: the very first ones after the disturbance are heard and answered. They are 40 bytes one
-//! way and less than 200 the other, 11 ms on a real line of 230400 baud, behind what the board had still to say.
+//! Neither the emulated board nor a board in a thread runs in real time, so no check uses a clock. Recovery of the link
+//! is counted in frames: the first frames after the disturbance must be received and answered. Those are 40 bytes one
+//! way and less than 200 the other, 11 ms on a real line of 230400 baud, after the board's pending output.
 
 use std::ops::Range;
 use std::os::unix::net::UnixStream;
@@ -25,14 +25,14 @@ use report::failure::{Failure, Outcome};
 use super::proxy::Proxy;
 
 const TICK_RATE: u32 = 20_000;
-/// A busy machine is given time: nothing is judged by it.
+/// Longest wait on a busy machine; no check depends on it.
 const LIVENESS: Duration = Duration::from_secs(60);
-/// A line on which nothing has come for so long has nothing more to bring.
+/// Silence after which the line is considered empty.
 const QUIET: Duration = Duration::from_millis(150);
 
-/// So many seeds, or as many as `PROXY_SEEDS` says.
-pub fn seeds(usual: u64) -> Range<u64> {
-    0..std::env::var("PROXY_SEEDS").map_or(usual, |count| count.parse().expect("a number of seeds"))
+/// Seeds to run: `PROXY_SEEDS` of the environment, or the default number.
+pub fn seeds(default_count: u64) -> Range<u64> {
+    0..std::env::var("PROXY_SEEDS").map_or(default_count, |count| count.parse().expect("a number of seeds"))
 }
 
 struct Nobody;
@@ -43,7 +43,7 @@ impl Supervisor for Nobody {
     }
 }
 
-/// A board behind a proxy, and what it does when nothing disturbs it.
+/// A board behind a proxy, and its undisturbed run.
 pub struct Trial {
     proxy: Proxy,
     host: UnixStream,
@@ -55,8 +55,8 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Joint Q1 as a plant on a board.
-    pub fn of(board: UnixStream, command_timeout: u32) -> Self {
+    /// Starts joint Q1 as a plant on a board and records an undisturbed run.
+    pub fn start(board: UnixStream, command_timeout: u32) -> Self {
         let text = joint_file::preset("q1").expect("the default preset");
         let joint = joint_file::read(text).expect("a good preset").parameters;
         let (proxy, host) = Proxy::before(board);
@@ -72,20 +72,21 @@ impl Trial {
             help: BoardHelp::Rebuild,
         };
         let mut trial = Self { proxy, host, joint, profile, settings, expected, undisturbed: Recording::default() };
-        trial.undisturbed = trial.good_run();
+        trial.undisturbed = trial.undisturbed_run();
         trial
     }
 
-    /// What a seed does, and how the run ends that it disturbs.
+    /// Runs once with the disturbances of a seed, checks the outcome, then the recovery of the link and an undisturbed
+    /// run.
     pub fn seed(&self, seed: u64) {
         let trouble = self.proxy.disturb(seed);
         let (outcome, recording) = self.run();
-        self.proxy.calm();
+        self.proxy.end_disturbance();
         let end = outcome.as_ref().map_or_else(Failure::to_string, |()| "comes to its end".into());
         println!("seed {seed}: {trouble}: {end}");
-        self.judge(&outcome, &recording);
-        self.answers_at_once();
-        self.good_run();
+        self.check_outcome(&outcome, &recording);
+        self.check_recovery();
+        self.undisturbed_run();
     }
 
     fn line(&self) -> Socket {
@@ -103,21 +104,21 @@ impl Trial {
             session.abandon();
         }
         let mut recording = std::mem::take(&mut session.recording);
-        // How long a step took depends on what came over the line meanwhile.
+        // The computation time of a step depends on the traffic.
         recording.samples.iter_mut().for_each(|sample| sample.computation = 0);
         (outcome, recording)
     }
 
-    /// A run on a good line: every check of its report holds, and it is the same as ever.
-    fn good_run(&self) -> Recording {
+    /// Runs on the undisturbed line: every check of the report holds, and the samples equal those of the first run.
+    fn undisturbed_run(&self) -> Recording {
         let (outcome, recording) = self.run();
-        outcome.and_then(|()| self.report(&recording)).expect("the line is good");
+        outcome.and_then(|()| self.check_report(&recording)).expect("the line is good");
         assert!(self.undisturbed.samples.is_empty() || recording.samples == self.undisturbed.samples);
         recording
     }
 
-    /// The verdict of the run's report.
-    fn report(&self, recording: &Recording) -> Outcome<()> {
+    /// Verdict of the run's report.
+    fn check_report(&self, recording: &Recording) -> Outcome<()> {
         let why = "not looked at";
         let agreement =
             twin::compare(&self.joint, Chip::Stm32f405, TICK_RATE, &recording.accepted, &recording.samples)?;
@@ -132,35 +133,35 @@ impl Trial {
         all_hold(&checks(&evidence), "see the report")
     }
 
-    /// The run ends with an error that says what to do, or its report says what was lost, or nothing was; no sample is
-    /// wrong or there twice, and no tick came late.
-    fn judge(&self, outcome: &Outcome<()>, recording: &Recording) {
+    /// Checks a disturbed run: it ends with an error and its remedy, or the report states the loss, or nothing was
+    /// lost. No sample is wrong or duplicated, and no tick was late.
+    fn check_outcome(&self, outcome: &Outcome<()>, recording: &Recording) {
         assert!(recording.statistics.as_ref().is_none_or(|statistics| statistics.overruns == 0), "overruns");
         assert!(recording.samples.is_sorted_by(|one, next| one.tick < next.tick), "samples twice or out of order");
         let right = recording.samples.iter().all(|sample| self.undisturbed.samples.contains(sample));
         assert!(right, "a sample that no undisturbed run has");
         match outcome {
             Err(failure) => assert!(failure.help().is_some(), "{failure}"),
-            Ok(()) => match self.report(recording) {
+            Ok(()) => match self.check_report(recording) {
                 Err(failure) => println!("    reported: {failure}"),
                 Ok(()) => assert_eq!(recording.samples, self.undisturbed.samples, "a loss that no check tells"),
             },
         }
     }
 
-    /// The first stop on the good line is heard, and the first hello answered, whatever hangs in the board's receiver. A
-    /// schedule between them asks whether a run goes on.
-    fn answers_at_once(&self) {
+    /// Checks the recovery of the link: the first stop and the first hello on the undisturbed line must be handled
+    /// whatever the board's receiver holds. The schedule between them asks whether the run was stopped.
+    fn check_recovery(&self) {
         let mut line = self.line();
         receive_until(&mut line, QUIET, |_| false);
         let empty = Schedule { sequence: 0, horizon: 0, commands: heapless::Vec::new() };
         let questions = [ToBoard::Stop, ToBoard::Schedule(empty), ToBoard::Hello { protocol: PROTOCOL_VERSION }];
         for question in questions {
-            // As a session sends: a zero byte keeps it apart from what came before.
+            // A session also sends a zero byte first, which separates the frame from earlier bytes.
             line.send(&[&[0], &encode(&question).expect("a short message")[..]].concat()).expect("the line is there");
         }
         let is_stopped = |message: &FromBoard| *message == FromBoard::Tripped(Trip::NotRunning);
-        // Answers to a flood of hellos may still be under way on a busy machine: they come before that of the stop.
+        // Answers to a flood of hellos may still arrive on a busy machine, before the answer to the stop.
         let since_stop = |said: &[FromBoard]| said.iter().skip_while(|message| !is_stopped(message)).count();
         let said = receive_until(&mut line, LIVENESS, |said| since_stop(said) > 1);
         assert!(since_stop(&said) > 0, "the first stop on a good line is not heard: {said:?}");
@@ -169,7 +170,7 @@ impl Trial {
     }
 }
 
-/// What comes until all is found, or nothing more comes.
+/// Receives messages until `found` holds or the line is silent.
 fn receive_until(line: &mut Socket, patience: Duration, found: impl Fn(&[FromBoard]) -> bool) -> Vec<FromBoard> {
     let (mut receiver, mut said, mut buffer) = (Receiver::new(), Vec::new(), [0; 4096]);
     let mut last = Instant::now();

@@ -1,4 +1,4 @@
-//! Runs the command `joint` as a user does and keeps what it said.
+//! Runs the command `joint` as a user does and captures its output.
 
 #![allow(dead_code, reason = "every test file uses a part of it")]
 
@@ -10,46 +10,46 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// What a process left behind.
+/// Result of a process.
 #[derive(Debug)]
 pub struct Ended {
-    /// Exit code; none if a signal ended it.
+    /// Exit code; `None` if a signal ended the process.
     pub code: Option<i32>,
     pub out: String,
     pub err: String,
 }
 
-/// A machine under load is slow, but not for ever.
+/// Longest wait on a machine under load.
 pub const TIMEOUT: Duration = Duration::from_secs(120);
 
 fn command(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_joint"));
-    // A width of its own, so that messages are not broken where a test looks for words.
+    // The width prevents line breaks within the words that a test looks for.
     command.args(arguments).env("NO_COLOR", "1").env("COLUMNS", "400").stdin(Stdio::null());
     command
 }
 
-/// Runs it to its end.
+/// Runs the command to its end.
 pub fn joint(arguments: &[&str]) -> Ended {
     ended(command(arguments).output().expect("the command can be started"))
 }
 
-/// Runs it in a folder of its own, as a user does who works there.
+/// Runs the command in a folder.
 pub fn joint_in(folder: &Path, arguments: &[&str]) -> Ended {
     ended(command(arguments).current_dir(folder).output().expect("the command can be started"))
 }
 
-/// Runs it with variables of the environment.
+/// Runs the command with environment variables.
 pub fn joint_with(arguments: &[&str], variables: &[(&str, &str)]) -> Ended {
     ended(command(arguments).envs(variables.iter().copied()).output().expect("the command can be started"))
 }
 
-/// Runs it with a limit on the size of every file, as if the disk were full.
+/// Runs the command with a limit on the size of every file [KiB], which acts like a full disk.
 pub fn joint_on_a_full_disk(blocks: u32, arguments: &[&str]) -> Ended {
     joint_on_a_full_disk_with(blocks, arguments, &[])
 }
 
-/// The same with variables of the environment. A limit is in units of 1024 bytes.
+/// Runs the command with a limit on the size of every file [KiB] and with environment variables.
 pub fn joint_on_a_full_disk_with(blocks: u32, arguments: &[&str], variables: &[(&str, &str)]) -> Ended {
     let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
     let mut shell = Command::new("bash");
@@ -58,33 +58,33 @@ pub fn joint_on_a_full_disk_with(blocks: u32, arguments: &[&str], variables: &[(
     ended(shell.output().expect("a shell"))
 }
 
-/// Starts it; it goes on by itself.
+/// Starts the command in the background.
 pub fn start(arguments: &[&str]) -> Child {
     command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command can be started")
 }
 
-/// Waits for its end.
+/// Waits for the end of the command.
 pub fn wait(child: Child) -> Ended {
     ended(child.wait_with_output().expect("it was started here"))
 }
 
-/// Presses Ctrl-C.
+/// Sends the signal of Ctrl-C.
 pub fn interrupt(child: &Child) {
     send("-INT", child);
 }
 
-/// Sends a process a signal.
+/// Sends a signal to a process.
 pub fn send(signal: &str, child: &Child) {
     let sent = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("`kill` is there");
     assert!(sent.success());
 }
 
-/// Waits until something is so.
+/// Waits until a condition holds.
 pub fn until(what: &str, mut so: impl FnMut() -> bool) {
     within(TIMEOUT, what, || so().then_some(()));
 }
 
-/// Waits for something that is due.
+/// Waits for a result, which must come within the limit.
 pub fn within<T>(limit: Duration, what: &str, mut found: impl FnMut() -> Option<T>) -> T {
     let start = Instant::now();
     loop {
@@ -96,22 +96,22 @@ pub fn within<T>(limit: Duration, what: &str, mut found: impl FnMut() -> Option<
     }
 }
 
-/// Size of a file, 0 if it is not there.
+/// Size of a file [bytes], 0 if it does not exist.
 pub fn size(path: &Path) -> u64 {
     std::fs::metadata(path).map_or(0, |data| data.len())
 }
 
-/// A path as an argument.
+/// Path as an argument.
 pub fn text(path: &(impl AsRef<OsStr> + ?Sized)) -> &str {
     path.as_ref().to_str().expect("temporary folders have plain names")
 }
 
-/// A folder that goes away by itself.
+/// Temporary folder, removed when dropped.
 pub fn folder() -> TempDir {
     tempfile::tempdir().expect("a folder")
 }
 
-/// What a command has left as JSON.
+/// Reads a JSON file.
 pub fn json(path: &Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).expect("it was written")).expect("JSON, all of it")
 }
@@ -129,17 +129,17 @@ pub fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
 }
 
 impl Ended {
-    /// Bad input: exit code 2 with all these words in the message, and no panic.
+    /// Asserts exit code 2 (bad input) with all these words in the message, and no panic.
     #[track_caller]
     pub fn refused(&self, words: &[&str]) {
-        self.said(2, words);
+        self.exited(2, words);
     }
 
-    /// An exit code with all these words in the message, and no panic.
+    /// Asserts an exit code with all these words in the message, and no panic.
     #[track_caller]
-    pub fn said(&self, code: i32, words: &[&str]) {
+    pub fn exited(&self, code: i32, words: &[&str]) {
         assert_eq!(self.code, Some(code), "{self:?}");
-        // Underlined messages break lines and draw a rule beside them.
+        // Underlined messages are broken into lines beside a drawn rule.
         let plain = self.err.replace(['│', '╰', '─', '├', '▶'], " ").split_whitespace().collect::<Vec<_>>().join(" ");
         for word in words {
             assert!(plain.contains(word), "`{word}` is not in: {plain}");
@@ -147,9 +147,9 @@ impl Ended {
         assert!(!self.err.contains("panicked"), "{self:?}");
     }
 
-    /// Success.
+    /// Asserts success.
     #[track_caller]
-    pub fn well(self) -> Self {
+    pub fn succeeded(self) -> Self {
         assert_eq!(self.code, Some(0), "{self:?}");
         self
     }

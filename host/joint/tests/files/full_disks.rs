@@ -1,41 +1,42 @@
-//! On a full disk every command ends with the file and the reason, loses nothing that was there, and leaves nothing that it
-//! does not tell. A limit on the size of files is the disk: it works for every user, and at any size.
+//! On a full disk every command names the file and the cause, preserves existing files, and reports every file that it
+//! leaves. A limit on the size of files simulates the full disk: it works for every user and at any size.
 
 use std::fs;
 use std::path::Path;
 
 use crate::command::{Ended, folder, joint_on_a_full_disk_with, text};
-use crate::tree::{LIST, Tree, assert_same, results, say_the_same, tree};
-use crate::writers::{Writer, empty};
+use crate::tree::{Tree, WRITTEN_LIST, assert_same, is_equal, results, tree};
+use crate::writers::{Writer, empty_folder};
 
-/// Limits on the size of a file [KiB]; in the last every file of these has room.
+/// Limits on the size of a file [KiB]; the last one has room for every file.
 const LIMITS: [u32; 8] = [0, 1, 2, 4, 16, 64, 256, 1 << 16];
-/// That for what is slow.
+/// Limits for slow commands [KiB].
 const SLOW_LIMITS: [u32; 1] = [64];
 
-/// What is left of a run that found no room: files of before, whole ones, and what it tells.
-fn assert_all_is_told(writer: Writer, left: &Tree, whole: &Tree, ended: &Ended, when: &str) {
+/// Asserts that a folder holds only earlier files, complete files, and partial files that the error message names.
+fn assert_rest_is_reported(writer: Writer, left: &Tree, whole: &Tree, ended: &Ended, when: &str) {
     for (name, bytes) in left {
-        // A board may have nothing to log.
+        // The log of a board may be empty.
         assert!(!bytes.is_empty() || name == "log.txt", "{when}: {name} is empty: {ended:?}");
-        // A journal is whole up to its last line.
-        if name == LIST || name.starts_with("journal-") {
+        // A journal is valid up to its last complete line.
+        if name == WRITTEN_LIST || name.starts_with("journal-") {
             continue;
         }
         if name.contains(".partial.") {
             assert!(ended.err.contains(name.as_str()), "{when}: {name} is not told: {ended:?}");
             continue;
         }
-        if is_a_whole_result_that_tells(name, bytes) {
+        if is_complete_with_write_error(name, bytes) {
             continue;
         }
         let expected = whole.get(name).unwrap_or_else(|| panic!("{when}: {name} is left behind: {ended:?}"));
-        assert!(say_the_same(writer, name, bytes, expected), "{when}: {name} is half written");
+        assert!(is_equal(writer, name, bytes, expected), "{when}: {name} is half written");
     }
 }
 
-/// Results of tests of which one had no room for its log say so, as they say everything that kept a test from running.
-fn is_a_whole_result_that_tells(name: &str, bytes: &[u8]) -> bool {
+/// Returns true for a complete result that reports a failed write: a test without room for its log states so in the
+/// results.
+fn is_complete_with_write_error(name: &str, bytes: &[u8]) -> bool {
     let text = String::from_utf8_lossy(bytes);
     let whole = match name.rsplit('.').next() {
         Some("json") => serde_json::from_str::<serde_json::Value>(&text).is_ok(),
@@ -45,12 +46,12 @@ fn is_a_whole_result_that_tells(name: &str, bytes: &[u8]) -> bool {
     whole && text.contains("cannot write")
 }
 
-fn finds_no_room(writer: Writer) {
+fn check_full_disk(writer: Writer) {
     let place = folder();
-    let out = empty(place.path());
-    writer.run(&out).well();
+    let out = empty_folder(place.path());
+    writer.run(&out).succeeded();
     let whole = results(tree(&out));
-    // Once with nothing in the folder, once with a whole run.
+    // First in an empty folder, then over a complete run.
     let slow = writer.is_slow();
     let states: &[bool] = match writer {
         _ if writer.writes_once().is_some() => &[false],
@@ -60,7 +61,7 @@ fn finds_no_room(writer: Writer) {
     for &older in states {
         let mut refusals = 0;
         for limit in if slow { &SLOW_LIMITS[..] } else { &LIMITS } {
-            let out = if older { out.clone() } else { empty(place.path()) };
+            let out = if older { out.clone() } else { empty_folder(place.path()) };
             let when = format!("{writer:?}, {limit} KiB, older run: {older}");
             let second = folder();
             let temporary = [("TMPDIR", text(second.path()))];
@@ -70,11 +71,12 @@ fn finds_no_room(writer: Writer) {
             }
             assert!(*limit < LIMITS[LIMITS.len() - 1], "{when}: {ended:?}");
             refusals += 1;
-            // What had room for its record, which is of no fixed length, says where that is.
+            // A record of a board has no fixed length; if it found room in the second place, the message gives the
+            // path.
             let kept = writer == Writer::Board && count(second.path()) > 0;
             let help = if kept { text(second.path()) } else { "free some space" };
             ended.refused(&["cannot write", text(&out), help]);
-            assert_all_is_told(writer, &tree(&out), &whole, &ended, &when);
+            assert_rest_is_reported(writer, &tree(&out), &whole, &ended, &when);
             if older {
                 assert!(whole.keys().all(|name| tree(&out).contains_key(name)), "{when}: what was there is there");
             }
@@ -89,22 +91,23 @@ fn finds_no_room(writer: Writer) {
 }
 
 #[test]
-fn every_writer_to_a_folder_finds_no_room() {
-    Writer::TO_FOLDERS.into_iter().for_each(finds_no_room);
+fn full_disk_every_folder_writer() {
+    Writer::TO_FOLDERS.into_iter().for_each(check_full_disk);
 }
 
 #[test]
-fn every_writer_to_a_file_finds_no_room() {
+fn full_disk_every_file_writer() {
     for writer in [Writer::Simulate, Writer::Check, Writer::Budget, Writer::New] {
-        finds_no_room(writer);
+        check_full_disk(writer);
     }
 }
 
-/// What cannot be measured again is tried in a second place; where that is full too nothing is left there either.
+/// A measurement cannot be repeated, so the record is also tried in a second place. If that place is full too, no file
+/// stays there.
 #[test]
-fn a_run_on_a_board_leaves_no_empty_second_place() {
+fn full_second_place_left_empty() {
     let place = folder();
-    let (out, second) = (empty(place.path()), place.path().join("second"));
+    let (out, second) = (empty_folder(place.path()), place.path().join("second"));
     fs::create_dir(&second).expect("room");
     let line = Writer::Board.line(&out);
     let ended = joint_on_a_full_disk_with(1, &line.words(), &[("TMPDIR", text(&second))]);

@@ -1,11 +1,11 @@
-//! A command that is killed at any moment leaves no half-written file under a final name, and the same command run again
-//! gives what a run that nobody has killed gives, and clears away what was left.
+//! A command killed at any moment leaves no partial file under a final name. Running the command again gives the
+//! results of an undisturbed run and removes the leftovers.
 //!
-//! Seen to fail: with results that are written in parts under their final names, every command has a kill that finds one half
-//! written.
+//! Seen to fail: with results written in parts under their final names, every command has a kill that leaves a partial
+//! file.
 //!
-//! The short run has fixed seeds; `KILLS=1000` makes as many of each command, from a seed that is printed and that `KILLS_SEED`
-//! brings again.
+//! The short run has fixed seeds; `KILLS=1000` kills each command that often, from a printed seed that `KILLS_SEED`
+//! repeats.
 
 use std::path::Path;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
@@ -13,43 +13,43 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use scenario::random::RandomStream;
 
 use crate::command::{folder, start, wait};
-use crate::tree::{LIST, Tree, assert_same, results, say_the_same, tree};
-use crate::writers::{Writer, empty};
+use crate::tree::{Tree, WRITTEN_LIST, assert_same, is_equal, results, tree};
+use crate::writers::{Writer, empty_folder};
 
-/// Kills of each command in the short run, and of those that are slow.
+/// Kills of each command in the short run, and of each slow command.
 const KILLS: u32 = 6;
 const SLOW_KILLS: u32 = 1;
 
-fn asked(name: &str) -> Option<u64> {
+fn variable(name: &str) -> Option<u64> {
     std::env::var(name).ok().map(|value| value.parse().unwrap_or_else(|_| panic!("{name}={value} is no whole number")))
 }
 
-/// Kills of each command, and the seed of their moments.
+/// Kills of each command, and the seed of their times.
 fn extent(writer: Writer) -> (u32, u64) {
     let now = || SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
-    match asked("KILLS") {
-        None => (if writer.is_slow() { SLOW_KILLS } else { KILLS }, asked("KILLS_SEED").unwrap_or(1)),
-        Some(kills) => (kills as u32, asked("KILLS_SEED").unwrap_or_else(now)),
+    match variable("KILLS") {
+        None => (if writer.is_slow() { SLOW_KILLS } else { KILLS }, variable("KILLS_SEED").unwrap_or(1)),
+        Some(kills) => (kills as u32, variable("KILLS_SEED").unwrap_or_else(now)),
     }
 }
 
-/// A file that is not yet whole, by its name: it is no result of anybody.
+/// Returns true for the name of an unfinished file, which is no result.
 fn is_unfinished(name: &str) -> bool {
     let last = name.rsplit('/').next().unwrap_or(name);
     let temporary = last.starts_with('.') && last.contains(".joint-") && last.ends_with(".tmp");
-    // A journal is whole up to its last line, and is gone on with.
-    temporary || last == LIST || last.starts_with("history.partial.") || last.starts_with("journal-")
+    // A journal is valid up to its last complete line, and the next run continues it.
+    temporary || last == WRITTEN_LIST || last.starts_with("history.partial.") || last.starts_with("journal-")
 }
 
-fn assert_none_is_half_written(writer: Writer, left: &Tree, whole: &Tree, when: &str) {
+fn assert_no_partial_file(writer: Writer, left: &Tree, whole: &Tree, when: &str) {
     for (name, bytes) in left.iter().filter(|(name, _)| !is_unfinished(name)) {
         let expected = whole.get(name).unwrap_or_else(|| panic!("{when}: {name} is no file of a whole run"));
-        assert!(say_the_same(writer, name, bytes, expected), "{when}: {name} is half written");
+        assert!(is_equal(writer, name, bytes, expected), "{when}: {name} is half written");
     }
 }
 
-/// Runs a command and kills it after a time; says whether it was still running.
-fn killed(writer: Writer, out: &Path, after: Duration) -> bool {
+/// Runs a command and kills it after a time; returns true if it was still running.
+fn run_and_kill(writer: Writer, out: &Path, after: Duration) -> bool {
     let line = writer.line(out);
     let mut child = start(&line.words());
     std::thread::sleep(after);
@@ -57,39 +57,40 @@ fn killed(writer: Writer, out: &Path, after: Duration) -> bool {
     wait(child).code.is_none()
 }
 
-fn is_killed_at_any_moment(writer: Writer) {
+fn check_kills(writer: Writer) {
     let (kills, seed) = extent(writer);
     println!("{writer:?}: {kills} kills, KILLS_SEED={seed}");
     let mut stream = RandomStream::new(seed, &format!("{writer:?}"));
     let place = folder();
-    let out = empty(place.path());
+    let out = empty_folder(place.path());
     if !writer.is_slow() {
-        // The first run finds files of the system that the others have at hand.
-        writer.run(&out).well();
+        // The first run loads system files that later runs find cached.
+        writer.run(&out).succeeded();
     }
-    let out = empty(place.path());
+    let out = empty_folder(place.path());
     let begin = Instant::now();
-    writer.run(&out).well();
-    let mut long = begin.elapsed();
+    writer.run(&out).succeeded();
+    let mut duration = begin.elapsed();
     let whole = results(tree(&out));
-    let mut amidst = 0;
-    // A machine that has become faster since must not end them all before.
+    let mut interrupted = 0;
+    // If the machine has become faster, the runs end before the kill: try more often, earlier.
     for kill in 0..3 * kills {
-        if amidst == kills {
+        if interrupted == kills {
             break;
         }
-        // Half of them have nothing in the folder, and half a whole run.
-        let out = if kill % 2 == 0 || writer.writes_once().is_some() { empty(place.path()) } else { out.clone() };
-        let after = long.mul_f64(1.05 * stream.uniform());
+        // Half of the runs start in an empty folder, half over a complete run.
+        let out =
+            if kill % 2 == 0 || writer.writes_once().is_some() { empty_folder(place.path()) } else { out.clone() };
+        let after = duration.mul_f64(1.05 * stream.uniform());
         let when = format!("{writer:?}, kill {kill}, after {after:?}, KILLS_SEED={seed}");
-        match killed(writer, &out, after) {
-            true => amidst += 1,
-            false => long = long.mul_f64(0.8),
+        match run_and_kill(writer, &out, after) {
+            true => interrupted += 1,
+            false => duration = duration.mul_f64(0.8),
         }
         let left = tree(&out);
-        assert_none_is_half_written(writer, &left, &whole, &when);
+        assert_no_partial_file(writer, &left, &whole, &when);
         assert!(
-            left.len() != 1 || !left.contains_key(LIST),
+            left.len() != 1 || !left.contains_key(WRITTEN_LIST),
             "{when}: nothing is left but the list of what was written"
         );
         if !writer.writes_once().is_some_and(|file| out.join(file).exists()) {
@@ -98,53 +99,53 @@ fn is_killed_at_any_moment(writer: Writer) {
         }
         assert_same(writer, &results(tree(&out)), &whole, &when);
     }
-    assert!(amidst > 0, "{writer:?}: none of the kills came before the end");
+    assert!(interrupted > 0, "{writer:?}: none of the kills came before the end");
 }
 
 #[test]
-fn a_killed_simulation_leaves_nothing_half_written() {
-    is_killed_at_any_moment(Writer::Sim);
+fn killed_sim_leaves_no_partial_file() {
+    check_kills(Writer::Sim);
 }
 
 #[test]
-fn a_killed_sweep_leaves_nothing_half_written() {
-    is_killed_at_any_moment(Writer::Sweep);
-    is_killed_at_any_moment(Writer::Merge);
+fn killed_sweep_leaves_no_partial_file() {
+    check_kills(Writer::Sweep);
+    check_kills(Writer::Merge);
 }
 
 #[test]
-fn killed_tests_leave_nothing_half_written() {
-    is_killed_at_any_moment(Writer::Tests);
+fn killed_tests_leave_no_partial_file() {
+    check_kills(Writer::Tests);
 }
 
 #[test]
-fn a_killed_run_on_a_board_leaves_nothing_half_written() {
-    is_killed_at_any_moment(Writer::Board);
+fn killed_board_run_leaves_no_partial_file() {
+    check_kills(Writer::Board);
 }
 
 #[test]
-fn a_killed_identification_leaves_nothing_half_written() {
-    is_killed_at_any_moment(Writer::Identify);
+fn killed_identify_leaves_no_partial_file() {
+    check_kills(Writer::Identify);
 }
 
 #[test]
-fn a_killed_reading_of_slow_sweeps_leaves_nothing_half_written() {
-    is_killed_at_any_moment(Writer::SlowLog);
+fn killed_quasi_static_leaves_no_partial_file() {
+    check_kills(Writer::SlowLog);
 }
 
 #[test]
-fn a_killed_recording_leaves_nothing_half_written() {
-    is_killed_at_any_moment(Writer::Simulate);
+fn killed_recording_leaves_no_partial_file() {
+    check_kills(Writer::Simulate);
 }
 
 #[test]
-fn a_killed_new_joint_leaves_nothing_half_written() {
-    is_killed_at_any_moment(Writer::New);
-    is_killed_at_any_moment(Writer::Tables);
+fn killed_new_leaves_no_partial_file() {
+    check_kills(Writer::New);
+    check_kills(Writer::Tables);
 }
 
 #[test]
-fn killed_figures_as_json_are_whole_or_not_there() {
-    is_killed_at_any_moment(Writer::Check);
-    is_killed_at_any_moment(Writer::Budget);
+fn killed_json_is_complete_or_absent() {
+    check_kills(Writer::Check);
+    check_kills(Writer::Budget);
 }

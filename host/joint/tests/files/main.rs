@@ -1,5 +1,5 @@
-//! The files that commands leave: none of the user's own is written over, none is half written after a kill or on a full
-//! disk, and the next run mends what is left of the last.
+//! Files of commands: the user's own files are never overwritten, no file is left partial by a kill or a full disk, and
+//! the next run cleans up after the last.
 
 #[path = "../command/mod.rs"]
 mod command;

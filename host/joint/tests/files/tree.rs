@@ -1,4 +1,4 @@
-//! All files of a folder and of those in it.
+//! All files of a folder and its subfolders.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -8,13 +8,13 @@ use report_diff::{Options, compare};
 
 use crate::writers::Writer;
 
-/// The list in which a folder says which files are ours.
-pub const LIST: &str = ".written-by-joint";
+/// List of the files in a folder that the command has written.
+pub const WRITTEN_LIST: &str = ".written-by-joint";
 
 /// Contents by path.
 pub type Tree = BTreeMap<String, Vec<u8>>;
 
-/// Everything below a folder, hidden files too.
+/// Reads all files below a folder, hidden files too.
 pub fn tree(folder: &Path) -> Tree {
     let mut found = Tree::new();
     for entry in fs::read_dir(folder).expect("a folder") {
@@ -29,22 +29,22 @@ pub fn tree(folder: &Path) -> Tree {
     found
 }
 
-/// The results in a tree, without the list.
+/// Removes the list from a tree.
 pub fn results(mut tree: Tree) -> Tree {
-    tree.remove(LIST);
+    tree.remove(WRITTEN_LIST);
     tree
 }
 
-/// Whether two files of a writer say the same, but for dates and the like.
-pub fn say_the_same(writer: Writer, name: &str, one: &[u8], other: &[u8]) -> bool {
+/// Returns true if two files of a writer are equal except for dates and similar entries.
+pub fn is_equal(writer: Writer, name: &str, one: &[u8], other: &[u8]) -> bool {
     if one == other {
         return true;
     }
     if writer == Writer::Board {
-        return say_the_same_of_a_board(name, one, other);
+        return is_equal_for_board(name, one, other);
     }
     if name.starts_with("journal-") {
-        // Points come in as threads finish them.
+        // Threads finish points in any order.
         return sorted(one) == sorted(other);
     }
     let place = tempfile::tempdir().expect("a folder");
@@ -57,8 +57,9 @@ pub fn say_the_same(writer: Writer, name: &str, one: &[u8], other: &[u8]) -> boo
     compare(&old, &new, Options::default()).is_ok_and(|found| found.all_same())
 }
 
-/// A board has a clock of its own, and what came when is told: the motion is the same, and the page is whole.
-fn say_the_same_of_a_board(name: &str, one: &[u8], other: &[u8]) -> bool {
+/// Compares files of a board. Its clock makes the times differ: motion and completeness must be equal, and the page
+/// complete.
+fn is_equal_for_board(name: &str, one: &[u8], other: &[u8]) -> bool {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     let value = |bytes: &[u8], key: &str| Some(serde_json::from_slice::<serde_json::Value>(bytes).ok()?[key].clone());
     match name {
@@ -76,11 +77,11 @@ fn sorted(journal: &[u8]) -> Vec<&[u8]> {
     lines
 }
 
-/// Asserts that two trees have the same files, and that they say the same.
+/// Asserts that two trees have the same files with equal contents.
 #[track_caller]
 pub fn assert_same(writer: Writer, found: &Tree, expected: &Tree, when: &str) {
     assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>(), "{when}");
     for (name, bytes) in found {
-        assert!(say_the_same(writer, name, bytes, &expected[name]), "{when}: {name} says something else");
+        assert!(is_equal(writer, name, bytes, &expected[name]), "{when}: {name} says something else");
     }
 }

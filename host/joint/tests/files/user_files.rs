@@ -1,43 +1,43 @@
-//! A file of the user's own in the folder of `--out` is never written over: the run is refused before anything is done.
+//! The user's own files in the folder of `--out` are never overwritten: the command rejects the folder before it works.
 
 use std::fs;
 
 use crate::command::{folder, joint, text};
-use crate::tree::{LIST, results, tree};
-use crate::writers::{Writer, empty};
+use crate::tree::{WRITTEN_LIST, results, tree};
+use crate::writers::{Writer, empty_folder};
 
-/// Files of a run that ended early.
-const CUT_SHORT: [&str; 2] = ["history.partial.csv", "history.partial.mcap"];
+/// Files of an interrupted run.
+const PARTIAL_FILES: [&str; 2] = ["history.partial.csv", "history.partial.mcap"];
 
-/// What a command leaves in an empty folder, or may leave.
+/// Names of all files that a command may write to a folder.
 fn names(writer: Writer) -> Vec<String> {
     let place = folder();
-    let out = empty(place.path());
-    writer.run(&out).well();
-    writer.run(&out).well();
+    let out = empty_folder(place.path());
+    writer.run(&out).succeeded();
+    writer.run(&out).succeeded();
     let mut names: Vec<String> = results(tree(&out)).into_keys().collect();
     assert!(!names.is_empty());
     if writer == Writer::Sim {
-        names.extend(CUT_SHORT.map(String::from));
+        names.extend(PARTIAL_FILES.map(String::from));
     }
     names
 }
 
 #[test]
-fn no_command_writes_over_a_file_that_it_has_not_written() {
+fn foreign_file_never_overwritten() {
     for writer in Writer::TO_FOLDERS {
         for name in names(writer) {
             let place = folder();
-            let out = empty(place.path());
+            let out = empty_folder(place.path());
             let path = out.join(&name);
             fs::create_dir_all(path.parent().expect("a folder")).expect("room");
             fs::write(&path, "my thesis").expect("room");
             fs::write(out.join(".notes"), "mine too").expect("room");
             let before = tree(&out);
             let ended = writer.run(&out);
-            // A sweep has its folder for itself: there it is any file.
+            // A sweep needs a folder of its own and rejects any other file.
             let why = match writer {
-                Writer::Sweep | Writer::Merge if name == "sweep.json" => "is not what a sweep wrote",
+                Writer::Sweep | Writer::Merge if name == "sweep.json" => "is not a sweep's manifest",
                 Writer::Sweep | Writer::Merge => "holds files that are not a sweep's",
                 _ => "was not written by this command and would be lost",
             };
@@ -48,15 +48,15 @@ fn no_command_writes_over_a_file_that_it_has_not_written() {
 }
 
 #[test]
-fn no_command_writes_over_a_file_that_the_user_has_changed() {
+fn changed_result_never_overwritten() {
     for writer in Writer::TO_FOLDERS {
         let place = folder();
-        let out = empty(place.path());
-        writer.run(&out).well();
+        let out = empty_folder(place.path());
+        writer.run(&out).succeeded();
         let before = tree(&out);
-        // What a sweep reads again it knows by what is in it: see its own tests.
+        // Files that a sweep reads back are checked by their content, in its own tests.
         let read = |name: &str| name == "sweep.json" || name.starts_with("journal");
-        for (name, bytes) in before.iter().filter(|(name, _)| *name != LIST && !read(name)) {
+        for (name, bytes) in before.iter().filter(|(name, _)| *name != WRITTEN_LIST && !read(name)) {
             let changed = [bytes, "my note\n".as_bytes()].concat();
             fs::write(out.join(name), &changed).expect("room");
             writer.run(&out).refused(&[name, "has been changed since this command wrote it", "--out DIR"]);
@@ -65,46 +65,47 @@ fn no_command_writes_over_a_file_that_the_user_has_changed() {
             assert_eq!(tree(&out), expected, "{writer:?}, {name}: it is left as it is, and nothing was written");
             fs::write(out.join(name), bytes).expect("room");
         }
-        writer.run(&out).well();
+        writer.run(&out).succeeded();
     }
 }
 
 #[test]
-fn what_lies_beside_the_results_stays_and_is_no_hindrance() {
+fn unrelated_file_is_left_alone() {
     for writer in Writer::TO_FOLDERS.into_iter().filter(|writer| !matches!(writer, Writer::Sweep | Writer::Merge)) {
         let place = folder();
-        let out = empty(place.path());
+        let out = empty_folder(place.path());
         fs::write(out.join("notes.txt"), "mine").expect("room");
-        writer.run(&out).well();
-        writer.run(&out).well();
+        writer.run(&out).succeeded();
+        writer.run(&out).succeeded();
         assert_eq!(fs::read_to_string(out.join("notes.txt")).expect("still there"), "mine");
     }
 }
 
+/// The list of written files holds no absolute paths.
 #[test]
-fn a_folder_stays_ours_wherever_it_is_moved_or_copied_to() {
+fn moved_folder_is_recognized() {
     let place = folder();
-    let out = empty(place.path());
-    Writer::Sim.run(&out).well();
+    let out = empty_folder(place.path());
+    Writer::Sim.run(&out).succeeded();
     let moved = place.path().join("moved");
     fs::rename(&out, &moved).expect("the same disk");
-    Writer::Sim.run(&moved).well();
+    Writer::Sim.run(&moved).succeeded();
 }
 
 #[test]
-fn a_log_of_the_user_s_own_among_those_of_the_tests_is_not_removed() {
+fn foreign_log_among_runs_kept() {
     let place = folder();
-    let out = empty(place.path());
-    Writer::Tests.run(&out).well();
+    let out = empty_folder(place.path());
+    Writer::Tests.run(&out).succeeded();
     fs::write(out.join("runs/mine.mcap"), "recorded on the bench").expect("room");
     let before = tree(&out);
     Writer::Tests.run(&out).refused(&["mine.mcap was not written by this command"]);
     assert_eq!(tree(&out), before);
 }
 
-/// A long command is refused as soon as a short one.
+/// A long command rejects the folder as quickly as a short one.
 #[test]
-fn the_refusal_comes_before_any_work() {
+fn rejection_precedes_work() {
     let place = folder();
     fs::write(place.path().join("history.csv"), "mine").expect("room");
     let start = std::time::Instant::now();

@@ -1,5 +1,4 @@
-//! Every command that writes files, as short as it can be. The file of an image, which takes a compiler, is not among
-//! them.
+//! Every command that writes files, as short as possible. Images are left out, since they need a compiler.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -9,31 +8,31 @@ use crate::command::{Ended, joint, text};
 use crate::pseudo_terminal;
 use crate::thread_board::{self, Misbehaviour};
 
-/// What is written from: made once, and small.
+/// Input files of the commands, created once.
 static INPUTS: LazyLock<PathBuf> = LazyLock::new(inputs);
 
-/// A test that is over in a moment.
+/// A test file that runs in a fraction of a second.
 const TEST: &str = "duration_s = 0.2\nsettle_s = 0.1\nprofile = \"T2\"\n[controller]\nrivals = []\n";
 const SWEEP: [&str; 6] = ["sweep", "paper", "--vary", "half_backlash_um=0:150:5", "--duration", "0.01"];
 
 fn inputs() -> PathBuf {
-    // A folder of the build: what is static does not go away by itself.
+    // A static temporary folder would never be removed, so the inputs lie in the build's folder.
     let inputs = Path::new(env!("CARGO_TARGET_TMPDIR")).join("inputs-of-writers");
     let path = |name: &str| inputs.join(name);
     let _ = fs::remove_dir_all(&inputs);
     fs::create_dir_all(&inputs).expect("room");
     fs::write(path("test.toml"), TEST).expect("room");
-    joint(&["identify", text(&path("log.csv")), "--simulate"]).well();
+    joint(&["identify", text(&path("log.csv")), "--simulate"]).succeeded();
     fs::write(path("sweeps.csv"), sweeps()).expect("room");
     fs::write(path("still.csv"), still()).expect("room");
     for shard in ["1/2", "2/2"] {
-        joint(&[&SWEEP[..], &["--shard", shard, "--out", text(&path("shards"))]].concat()).well();
+        joint(&[&SWEEP[..], &["--shard", shard, "--out", text(&path("shards"))]].concat()).succeeded();
     }
     fs::remove_file(path("shards/points.csv")).expect("the last shard has written it");
     inputs
 }
 
-/// Slow sweeps to and fro, with a width of 100 counts.
+/// Log of slow sweeps in both directions, with a width of 100 counts.
 fn sweeps() -> String {
     let row = |sample: i32| {
         let (sweep, place) = (sample / 100 % 2, sample % 100);
@@ -43,13 +42,13 @@ fn sweeps() -> String {
     "time_s,motor_counts,output_counts\n".to_owned() + &(0..600).map(row).collect::<String>()
 }
 
-/// Half a second of a joint that hardly moves, a row each control period.
+/// Log of half a second of a joint that hardly moves, one row each control period.
 fn still() -> String {
     let row = |row: i32| format!("{},{},{row},0.1\n", 1e-4 * f64::from(row), 3 * row / 4);
     "time_s,motor_counts,output_counts,motor_torque_N_m\n".to_owned() + &(0..5000).map(row).collect::<String>()
 }
 
-/// A data sheet.
+/// Options of a data sheet.
 const SHEET: [&str; 14] = [
     "--ratio",
     "9",
@@ -67,7 +66,7 @@ const SHEET: [&str; 14] = [
     "0.94",
 ];
 
-/// A command that writes.
+/// A command that writes files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Writer {
     Sim,
@@ -85,14 +84,14 @@ pub enum Writer {
     Tables,
 }
 
-/// A command line, and the port of a board that stays open as long as it runs.
+/// A command line, and the port of a board, open as long as the command runs.
 pub struct Line {
     pub words: Vec<String>,
     _port: Option<File>,
 }
 
 impl Writer {
-    /// Those that write to the folder of `--out`.
+    /// Commands that write to the folder of `--out`.
     pub const TO_FOLDERS: [Self; 9] = [
         Self::Sim,
         Self::Sweep,
@@ -105,12 +104,12 @@ impl Writer {
         Self::Tables,
     ];
 
-    /// Those that take a second and more, of which a short run makes fewer.
+    /// Returns true for commands of a second or more, which a short run repeats less often.
     pub fn is_slow(self) -> bool {
         matches!(self, Self::Identify | Self::Simulate)
     }
 
-    /// The file of those that never write over anything: there it is whole.
+    /// File of a command that never overwrites: an existing file is complete.
     pub fn writes_once(self) -> Option<&'static str> {
         match self {
             Self::Simulate => Some("log.csv"),
@@ -119,7 +118,7 @@ impl Writer {
         }
     }
 
-    /// The command that writes to a folder, or to a file in it.
+    /// Command line that writes to a folder, or to a file in the folder.
     pub fn line(self, out: &Path) -> Line {
         let input = |name: &str| INPUTS.join(name).to_string_lossy().into_owned();
         let file = |name: &str| out.join(name).to_string_lossy().into_owned();
@@ -153,7 +152,7 @@ impl Writer {
         line
     }
 
-    /// Runs it to its end.
+    /// Runs the command to its end.
     pub fn run(self, out: &Path) -> Ended {
         joint(&self.line(out).words())
     }
@@ -169,18 +168,18 @@ fn words(words: &[&str]) -> Vec<String> {
     words.iter().map(ToString::to_string).collect()
 }
 
-/// A board of its own for every run, with a port of one name for all of them, since records tell it.
+/// Starts a new board for every run. All runs use one name of the port, since records contain it.
 fn board(port: &Path) -> File {
     let (master, slave, path) = pseudo_terminal::pair();
     let _ = fs::remove_file(port);
     std::os::unix::fs::symlink(path, port).expect("room");
-    // The thread ends with the test's process: a pseudo-terminal does not end while one side is open.
+    // The thread ends with the test's process: a pseudo-terminal stays open while one side is open.
     drop(thread_board::start(master, Misbehaviour::None));
     slave
 }
 
-/// An empty folder for results below another.
-pub fn empty(place: &Path) -> PathBuf {
+/// Creates an empty folder for results below another folder.
+pub fn empty_folder(place: &Path) -> PathBuf {
     let out = place.join("out");
     if out.exists() {
         fs::remove_dir_all(&out).expect("it is ours");

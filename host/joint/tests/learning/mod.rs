@@ -1,4 +1,4 @@
-//! What an observer learns of a joint, without any board: to and fro through the gap of the core's own virtual joint.
+//! Parameters that an observer estimates without a board, from motions through the gap of the core's own virtual joint.
 
 use joint_file::JointFile;
 use model_core::compensation::design::{compensation_settings, design_compensation};
@@ -11,10 +11,10 @@ use model_core::observer::{Estimates, Memory, ObserverTables};
 use model_core::virtual_joint::design::design_surroundings;
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 
-/// Bandwidth of the loop [rad/s].
+/// Bandwidth of the control loop [rad/s].
 const BANDWIDTH: f64 = 60.0;
 
-/// A preset, with values changed.
+/// Preset q1 with changed values.
 pub fn joint(changes: &[(&str, &str)]) -> JointFile {
     let mut text = joint_file::preset("q1").expect("the default preset").to_owned();
     for (key, value) in changes {
@@ -23,7 +23,7 @@ pub fn joint(changes: &[(&str, &str)]) -> JointFile {
     joint_file::read(&text).expect("a good joint")
 }
 
-/// A controller of a joint.
+/// Controller of a joint.
 pub fn controller(joint: &JointFile) -> Controller<'static, f32> {
     let around = joint.surroundings;
     let observer: ObserverTables<f32> =
@@ -33,7 +33,8 @@ pub fn controller(joint: &JointFile) -> Controller<'static, f32> {
     Controller::with_tables(Box::leak(Box::new(observer)), Box::leak(Box::new(compensation)))
 }
 
-/// What a controller that is told one joint learns of another in so many control periods, to and fro through the gap.
+/// Memory and estimates of a controller after motions through the gap: tables of one joint (`told`), plant of another
+/// (`truth`).
 pub fn learnt(told: &JointFile, truth: &JointFile, periods: u32) -> (Memory, Estimates<f32>) {
     let around = truth.surroundings;
     let effort = Effort::Within(Processor::STM32F405);

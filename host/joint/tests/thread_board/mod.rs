@@ -1,5 +1,5 @@
-//! A board in a thread: the firmware's test board behind any byte stream, with faults of the line on demand. Its clock
-//! is the thread's own.
+//! A board in a thread: the firmware's test board behind any byte stream, with line faults on demand. The thread is its
+//! clock.
 
 #[path = "../../../../firmware/tests/test_board/mod.rs"]
 mod test_board;
@@ -19,38 +19,38 @@ use parameters::JointParameters;
 pub use test_board::Flash;
 use test_board::TestBoard;
 
-/// Fixed steps a second [Hz].
+/// Step rate [Hz].
 pub const TICK_RATE: u32 = 20_000;
 
-/// Most ticks between two looks at the line.
+/// Most ticks between two reads of the line.
 const TICKS: u32 = 200;
 
-/// Most ticks after a message of the host until the next: half of what a host on a real line is waited for.
+/// Most ticks between two messages of the host: half of the timeout on a real line.
 const TICKS_UNHEARD: u32 = TICK_RATE / 20;
 
-/// What the board does wrong, or its line.
+/// Fault of the board or of its line.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub enum Misbehaviour {
-    /// Nothing.
+    /// No fault.
     #[default]
     None,
     /// Hangs up at a tick.
     HangsUpAt(u32),
-    /// Says nothing more from a tick on, but keeps the line.
+    /// Sends nothing more from a tick on, but keeps the line open.
     FallsSilentAt(u32),
-    /// Garbage before its first word, half a frame in mid-run at a tick.
+    /// Sends garbage before its first message, and half a frame at a tick.
     HalfFrameAt(u32),
-    /// Sends random bytes only.
+    /// Sends only random bytes.
     OnlyGarbage,
-    /// Keeps every answer to itself.
+    /// Receives messages but sends nothing.
     Mute,
-    /// States this protocol version.
+    /// Reports this protocol version.
     Protocol(u16),
-    /// States a role that this host does not know.
+    /// Reports a role that the host does not know.
     AnotherRole,
-    /// States another digest.
+    /// Reports another digest.
     AnotherDigest,
-    /// Leaves out the batch with this number.
+    /// Drops the batch with this number.
     LosesBatch(u16),
     /// Applies every torque a tick late.
     LateTorques,
@@ -58,25 +58,24 @@ pub enum Misbehaviour {
     TripAt(u32, Trip),
     /// Ignores the schedule with this number.
     LosesSchedule(u16),
-    /// States overruns.
+    /// Reports overruns.
     Overruns(u32),
 }
 
-/// The joint of its image.
+/// Joint of the board's image.
 pub fn joint() -> JointParameters {
     joint_file::read(joint_file::preset("q1").expect("the default preset")).expect("a good preset").parameters
 }
 
-/// Starts a board that simulates the joint on a stream; it ends when the stream does. The stream must have a short read
-/// timeout.
+/// Starts a board that simulates the joint on a stream with a short read timeout; the board ends with the stream.
 pub fn start<S: Read + Write + Send + 'static>(stream: S, misbehaviour: Misbehaviour) -> JoinHandle<()> {
     std::thread::spawn(move || {
-        // It is over when the line is.
+        // The board ends with the line.
         let _ = serve(stream, TestBoard::new(), misbehaviour);
     })
 }
 
-/// Starts a board that observes on a stream, with flash that takes what is written or does not.
+/// Starts a board with an observer on a stream, with the given flash.
 pub fn start_observer<S: Read + Write + Send + 'static>(
     stream: S,
     controller: impl FnOnce() -> Controller<'static, f32> + Send + 'static,
@@ -84,16 +83,16 @@ pub fn start_observer<S: Read + Write + Send + 'static>(
 ) {
     std::thread::spawn(move || {
         let mut work = Observing::new(Direct(controller()), true);
-        // What is not good is not used.
+        // A bad memory is ignored.
         let _ = flash.kept().map(|memory| work.remember(&memory));
         let _ = serve(stream, TestBoard::with_flash(work, flash), Misbehaviour::None);
     });
 }
 
-/// The line is gone, or the board hangs up.
+/// Error: the line is closed, or the board hangs up.
 struct Gone;
 
-/// Plays a board on a stream. Its clock waits for the host, whose own runs on a machine that may be busy: no run is starved.
+/// Runs a board on a stream. The board's clock waits for the host, which may be slow, so that no run is starved.
 fn serve<W: Work>(
     mut stream: impl Read + Write,
     mut board: TestBoard<W>,
@@ -117,11 +116,11 @@ where
         for message in buffer[..count].iter().filter_map(|&byte| receiver.push::<ToBoard>(byte)) {
             scheduled = matches!(message, ToBoard::Schedule(_));
             unheard = 0;
-            if misbehaviour.changes_what_is_heard() {
-                misbehaviour.heard(message).iter().for_each(|message| board.send(message));
+            if misbehaviour.changes_received() {
+                misbehaviour.received(message).iter().for_each(|message| board.send(message));
             }
         }
-        if !misbehaviour.changes_what_is_heard() {
+        if !misbehaviour.changes_received() {
             board.send_bytes(&buffer[..count]);
         }
         board.settle();
@@ -130,19 +129,19 @@ where
         board.run(ticks);
         unheard += ticks;
         for message in board.said() {
-            stream.write_all(&misbehaviour.said(message)?).map_err(|_| Gone)?;
+            stream.write_all(&misbehaviour.sent(message)?).map_err(|_| Gone)?;
         }
     }
 }
 
 impl Misbehaviour {
-    /// Whether messages reach the board in another form; otherwise their bytes do, as they came.
-    fn changes_what_is_heard(&self) -> bool {
+    /// Returns true if messages are decoded and changed on the way to the board; otherwise the bytes pass unchanged.
+    fn changes_received(&self) -> bool {
         matches!(self, Self::LosesSchedule(_) | Self::LateTorques)
     }
 
-    /// What the board hears of a message.
-    fn heard(&self, message: ToBoard) -> Option<ToBoard> {
+    /// Message that reaches the board, if any.
+    fn received(&self, message: ToBoard) -> Option<ToBoard> {
         match (self, message) {
             (Self::LosesSchedule(number), ToBoard::Schedule(schedule)) if schedule.sequence == *number => None,
             (Self::LateTorques, ToBoard::Schedule(mut schedule)) => {
@@ -153,8 +152,8 @@ impl Misbehaviour {
         }
     }
 
-    /// What goes over the line for a message of the board.
-    fn said(&mut self, mut message: FromBoard) -> Result<Vec<u8>, Gone> {
+    /// Bytes on the line for a message of the board.
+    fn sent(&mut self, mut message: FromBoard) -> Result<Vec<u8>, Gone> {
         let sampled = match &message {
             FromBoard::Samples(batch) => batch.samples.last().map(|sample| sample.tick),
             _ => None,

@@ -1,11 +1,11 @@
-//! Follows a page such as docs/tutorial.md as a reader does: writes the files that stand in it, runs the commands, and
-//! holds what they print against what the page says they print.
+//! Follows a page such as docs/tutorial.md as a reader does: writes the page's files, runs its commands, and compares
+//! their output with the page.
 //!
-//! What a page is made of:
+//! Parts of a page:
 //!
 //! - a fence `toml` after a line that begins with a name, as in "`k9/k9.toml`:", is a file, written when it is reached;
-//! - a fence `console` holds commands after `$ `, each with its output; `console emulated-board` likewise, for commands
-//!   that need the emulated board; any other fence is not run;
+//! - a fence `console` holds commands after `$ `, each with its output; `console emulated-board` holds commands that need the
+//! emulated board; any other fence is not run;
 //! - in an output a line `...` stands for any lines, and `[...]` within a line for any text;
 //! - a command that ends with another code than 0 is followed by `$ echo $?`.
 
@@ -16,7 +16,7 @@ use std::process::{Command, Stdio};
 
 use crate::command::folder;
 
-/// Who runs a command of the page.
+/// Test run that executes a command of the page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tier {
     /// `cargo test`.
@@ -25,14 +25,14 @@ pub enum Tier {
     EmulatedBoard,
 }
 
-/// What came of following a page.
+/// Outcome of following a page.
 #[derive(Debug)]
 pub struct Followed {
-    /// How many commands ran.
+    /// Number of commands that ran.
     pub commands: usize,
-    /// One text for each command that does not do what the page says.
+    /// One text for each command whose output differs from the page.
     pub differences: Vec<String>,
-    /// The page with what was printed in place of what differs.
+    /// The page with the printed output in place of the differing lines.
     pub page: String,
 }
 
@@ -63,7 +63,7 @@ pub fn follow_page(name: &str, tier: Tier) {
     );
 }
 
-/// Follows a page in a folder of its own, which has the project's test files.
+/// Follows a page in a temporary folder that links to the project's test files.
 pub fn follow(page: &str, tier: Tier) -> Followed {
     let place = folder();
     symlink(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../hil"), place.path().join("hil")).expect("a link");
@@ -94,13 +94,13 @@ pub fn follow(page: &str, tier: Tier) -> Followed {
     followed
 }
 
-/// The name of the file that a fence holds: the last line before it that is not empty begins with it.
+/// Name of the file in a fence: the last line before it that is not empty begins with the name.
 fn file_name<'p>(before: &[&'p str]) -> Option<&'p str> {
     let line = before.iter().rfind(|line| !line.is_empty())?;
     line.strip_prefix('`')?.split_once("`:").map(|(name, _)| name)
 }
 
-/// Runs the commands of a fence whose first line has this number.
+/// Runs the commands of a fence; `first` is the number of its first line.
 fn run_block(block: &[&str], first: usize, place: &Path, followed: &mut Followed, written: &mut Vec<String>) {
     assert!(block.first().is_some_and(|line| line.starts_with("$ ")), "line {first}: a command begins with `$ `");
     let mut code = 0;
@@ -113,7 +113,7 @@ fn run_block(block: &[&str], first: usize, place: &Path, followed: &mut Followed
         code = ended;
         followed.commands += 1;
         written.push((*head).to_owned());
-        // That another build runs at the same time depends on the other tests.
+        // A message about another build in progress depends on the other tests.
         let own = |line: &&str| !line.starts_with("waiting for another ");
         let printed: Vec<&str> = out.lines().map(str::trim_end).filter(own).collect();
         let changes = align(said, &printed);
@@ -128,7 +128,7 @@ fn run_block(block: &[&str], first: usize, place: &Path, followed: &mut Followed
     }
 }
 
-/// What a command prints, to both streams in their order, and its exit code; `before` is that of the command before it.
+/// Output of a command, both streams in order, and its exit code; `before` is the exit code of the previous command.
 fn run(command: &str, before: i32, place: &Path) -> (String, i32) {
     let script = format!(
         "exec 2>&1\ncargo() {{ [ \"$1\" = joint ] || exit 127; shift; \"$JOINT\" \"$@\"; }}\n(exit {before})\n{command}"
@@ -146,16 +146,16 @@ fn run(command: &str, before: i32, place: &Path) -> (String, i32) {
     (String::from_utf8_lossy(&output.stdout).into_owned(), output.status.code().unwrap_or(-1))
 }
 
-/// A line of the page beside what was printed.
+/// A line of the page beside a printed line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Change {
-    /// The page says this, and so it is.
+    /// Equal on the page and in the output.
     Same(String),
-    /// The page says this, and something like it was printed.
+    /// On the page, with a similar printed line.
     Other(String, String),
-    /// The page says this, and nothing like it was printed.
+    /// On the page only.
     Gone(String),
-    /// This was printed, and the page does not say so.
+    /// In the output only.
     New(String),
 }
 
@@ -164,7 +164,7 @@ impl Change {
         !matches!(self, Self::Same(_))
     }
 
-    /// The line that the page is to have.
+    /// Line for the updated page.
     fn mended(&self) -> Option<String> {
         match self {
             Self::Same(line) | Self::New(line) => Some(line.clone()),
@@ -174,7 +174,7 @@ impl Change {
     }
 }
 
-/// The printed line with the masks of the said one, if both have as many words.
+/// Printed line with the masks of the page's line, if both have as many words.
 fn masked(said: &str, printed: &str) -> String {
     let words = |line: &str| line.split(' ').map(str::to_owned).collect::<Vec<_>>();
     let (said, mut line) = (words(said), words(printed));
@@ -186,7 +186,7 @@ fn masked(said: &str, printed: &str) -> String {
     line.join(" ")
 }
 
-/// Whether a line of the page allows a printed one.
+/// Returns true if a line of the page allows a printed one.
 fn allows(said: &str, printed: &str) -> bool {
     let mut parts = said.split("[...]");
     let Some(mut rest) = parts.next().and_then(|head| printed.strip_prefix(head)) else { return false };
@@ -204,9 +204,9 @@ fn allows(said: &str, printed: &str) -> bool {
     true
 }
 
-/// Of all ways to lay a page's lines beside those that were printed, the one with the fewest changes.
+/// Aligns a page's lines with the printed lines with the fewest changes.
 fn align(said: &[&str], printed: &[&str]) -> Vec<Change> {
-    // A line that changed is cheaper than one that went, so that `...` does not swallow what changed beside it.
+    // A changed line is cheaper than a removed one, so that `...` does not absorb a change beside it.
     const ALIKE: usize = 2;
     const GONE_OR_NEW: usize = 3;
     let price = |said: &str, printed: &str| match () {
@@ -215,7 +215,7 @@ fn align(said: &[&str], printed: &[&str]) -> Vec<Change> {
         () => 3 * GONE_OR_NEW,
     };
     let columns = printed.len() + 1;
-    // Costs of the rest from here on, and whether that begins with a line of the page, a printed one, or both.
+    // Cost of the remaining lines, and whether the best continuation takes a line of the page, a printed line, or both.
     let mut best = vec![(0, false, false); (said.len() + 1) * columns];
     let place = |row: usize, column: usize| row * columns + column;
     for row in (0..=said.len()).rev() {
@@ -264,7 +264,7 @@ fn align(said: &[&str], printed: &[&str]) -> Vec<Change> {
     changes
 }
 
-/// The lines around what differs, by their numbers in the page; `-` is what the page says, `+` what was printed.
+/// Lines around each difference, with their numbers in the page; `-` marks the page, `+` the output.
 fn show(changes: &[Change], command: &str, line: usize) -> String {
     const AROUND: usize = 2;
     let mut text = format!("line {line}: $ {command}\n");

@@ -24,25 +24,25 @@ use crate::plot::Figure;
 /// ```
 #[derive(Default)]
 pub struct Document {
-    /// Name of the window and of the file.
+    /// Title of the window and of the file.
     pub title: String,
-    /// What heads a page.
+    /// Heading of a page.
     pub heading: Text,
-    /// What came of it, beside the heading.
+    /// Verdict beside the heading.
     pub verdict: Option<(Tone, String)>,
-    /// An emulator has measured it.
+    /// True if an emulator measured the figures.
     pub emulated: bool,
-    /// Below the heading of a page.
+    /// Subtitle of a page.
     pub subtitle: Text,
-    /// What heads a terminal's text, in one line; may be empty.
+    /// First line on a terminal; may be empty.
     pub line: Text,
-    /// What it says.
+    /// Contents.
     pub blocks: Vec<Block>,
-    /// Below everything in a page.
+    /// Footer of a page.
     pub footer: Text,
 }
 
-/// Where a document is shown.
+/// Output medium of a document.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Medium {
     /// An HTML page.
@@ -55,104 +55,104 @@ pub enum Medium {
 
 /// All media.
 pub const EVERYWHERE: &[Medium] = &[Medium::Page, Medium::Terminal, Medium::Markdown];
-/// Pages and nothing else.
+/// Pages only.
 pub const PAGES: &[Medium] = &[Medium::Page];
-/// Terminals and nothing else.
+/// Terminals only.
 pub const TERMINALS: &[Medium] = &[Medium::Terminal];
 
 /// A part of a document.
 pub enum Block {
-    /// A part with its own heading.
+    /// A section with its own heading.
     Section(Section),
     /// A heading within a section.
     Heading(Text),
     /// Sentences.
     Paragraph(Text),
-    /// Sentences that lead into a section.
+    /// Sentences that introduce a section.
     Lead(Text),
-    /// Sentences that explain what stands above them.
+    /// Sentences that explain the block above.
     Note(Text),
     /// A notice at the top of a section.
     Notice(Notice),
     /// Key figures.
     Tiles(Vec<Tile>),
-    /// Names and what belongs to them.
+    /// Pairs of name and value.
     Facts(Vec<(Text, Text)>),
     /// Rows and columns.
     Table(Table),
-    /// The table of checks.
+    /// Table of checks.
     Checks(Checks),
-    /// One picture or several beside each other, with what is to be seen in them.
+    /// One or several pictures side by side, with a caption.
     Picture(Picture),
-    /// How to run exactly this again.
+    /// Command that repeats the run.
     Again(String),
-    /// Sentences one below the other.
+    /// List of sentences.
     List(Vec<Text>),
-    /// A part that unfolds on a click.
+    /// A collapsible section.
     Details(Details),
-    /// Beside each other where there is room.
+    /// Blocks side by side, if there is room.
     Columns(Vec<Block>),
-    /// Shown in these media only.
+    /// Blocks for these media only.
     Only(&'static [Medium], Vec<Block>),
 }
 
-/// A part with its own heading.
+/// A section with its own heading.
 #[derive(Default)]
 pub struct Section {
     /// Heading.
     pub heading: Text,
-    /// Name by which it is linked to; may be empty.
+    /// Anchor for links; may be empty.
     pub anchor: String,
-    /// What came of it, beside the heading.
+    /// Verdict beside the heading.
     pub verdict: Option<(Tone, String)>,
-    /// Below the heading.
+    /// Text below the heading.
     pub subtitle: Text,
-    /// What heads it on a terminal, nothing if it is empty; a section without is not shown there.
+    /// First line on a terminal; `None` hides the section there.
     pub line: Option<Text>,
-    /// What it says.
+    /// Contents.
     pub blocks: Vec<Block>,
 }
 
-/// A notice at the top of a section. Text that begins with a strong word shows what kind it is.
+/// A notice at the top of a section. A strong word at its beginning states the kind.
 pub struct Notice {
-    /// How bad it is.
+    /// Severity.
     pub tone: Tone,
-    /// Whether a screen reader should say it at once.
+    /// True if a screen reader should announce the notice at once.
     pub alert: bool,
-    /// What it is.
+    /// Text of the notice.
     pub text: Text,
-    /// More about it.
+    /// Further blocks.
     pub more: Vec<Block>,
 }
 
 /// A key figure.
 pub struct Tile {
-    /// What it is.
+    /// Name.
     pub name: Text,
-    /// The figure.
+    /// Value.
     pub value: Text,
 }
 
-/// Rows and columns. A table whose columns have no headings shows none.
+/// Rows and columns. Headings are omitted if all of them are empty.
 #[derive(Default)]
 pub struct Table {
-    /// From left to right.
+    /// Columns from left to right.
     pub columns: Vec<Column>,
-    /// From top to bottom.
+    /// Rows from top to bottom.
     pub rows: Vec<Row>,
-    /// Lines of a machine, in its own letters.
+    /// True for a log in a monospaced font.
     pub log: bool,
 }
 
 /// A column.
 pub struct Column {
-    /// What is in it.
+    /// Heading.
     pub heading: Text,
     /// Unit of all its figures; may be empty.
     pub unit: &'static str,
-    /// Where its cells stand.
+    /// Alignment of its cells.
     pub align: Align,
-    /// Where it is shown.
+    /// Media that show the column.
     pub shown: &'static [Medium],
 }
 
@@ -161,7 +161,7 @@ pub struct Column {
 pub enum Align {
     /// Words.
     Left,
-    /// What explains the rest.
+    /// Explanations.
     Note,
     /// Intervals.
     Centre,
@@ -172,117 +172,117 @@ pub enum Align {
 /// A row.
 #[derive(Default)]
 pub struct Row {
-    /// From left to right.
+    /// Cells from left to right.
     pub cells: Vec<Text>,
-    /// The last cell goes over all columns that are left.
+    /// The last cell spans all remaining columns.
     pub spans: bool,
-    /// How it is judged.
+    /// Verdict colour of the row.
     pub tone: Tone,
 }
 
-/// The table of checks: verdict, figure, bound.
+/// Table of checks: verdict, figure, bound.
 pub struct Checks {
-    /// The checks, the weightiest first.
+    /// Checks, the most important first.
     pub checks: Vec<Check>,
-    /// Whether what a board measured was measured by an emulator.
+    /// True if the board is emulated.
     pub emulated: bool,
-    /// Names are keys, which have no capital letter.
+    /// True if names are keys, which are not capitalized.
     pub keys: bool,
 }
 
-/// One picture or several beside each other.
+/// One or several pictures side by side.
 pub struct Picture {
-    /// What is drawn.
+    /// Pictures.
     pub figures: Vec<Figure>,
-    /// What is to be seen; may be empty.
+    /// Caption; may be empty.
     pub caption: Text,
-    /// Name of a file beside the document that has the same picture, without its ending; may be empty.
+    /// Name, without extension, of an SVG file beside the document with the picture; may be empty.
     pub file: String,
 }
 
-/// A part that unfolds on a click.
+/// A collapsible section.
 pub struct Details {
-    /// What it is.
+    /// Summary line.
     pub summary: Text,
-    /// Shown from the start.
+    /// True if open at first.
     pub open: bool,
-    /// What it says.
+    /// Contents.
     pub blocks: Vec<Block>,
 }
 
-/// A part that stands in pages only.
+/// Section on pages only.
 pub fn section(heading: impl Into<Text>, blocks: Vec<Block>) -> Block {
     Block::Section(Section { heading: heading.into(), blocks, ..Section::default() })
 }
 
-/// A part with the same heading everywhere.
+/// Section with a heading on all media.
 pub fn section_everywhere(heading: impl Into<Text>, blocks: Vec<Block>) -> Block {
     let heading = heading.into();
     Block::Section(Section { line: Some(heading.clone()), heading, blocks, ..Section::default() })
 }
 
-/// A part whose heading a terminal leaves out.
+/// Section whose heading a terminal omits.
 pub fn section_bare(heading: impl Into<Text>, blocks: Vec<Block>) -> Block {
     Block::Section(Section { heading: heading.into(), line: Some(Text::default()), blocks, ..Section::default() })
 }
 
-/// What is good to know.
+/// Neutral notice.
 pub fn notice(text: Text) -> Block {
     Block::Notice(Notice { tone: Tone::Open, alert: false, text, more: Vec::new() })
 }
 
-/// What is bad.
+/// Notice of a failure.
 pub fn bad_notice(text: Text) -> Block {
     Block::Notice(Notice { tone: Tone::Failed, alert: false, text, more: Vec::new() })
 }
 
-/// What is so bad that nothing else counts.
+/// Notice of a failure that invalidates the rest.
 pub fn alert(text: Text) -> Block {
     Block::Notice(Notice { tone: Tone::Failed, alert: true, text, more: Vec::new() })
 }
 
-/// A key figure.
+/// Key figure.
 pub fn tile(name: impl Into<Text>, value: Text) -> Tile {
     Tile { name: name.into(), value }
 }
 
-/// A picture with what is to be seen in it.
+/// Picture with a caption.
 pub fn picture(figure: Figure, caption: Text) -> Block {
     Block::Picture(Picture { figures: vec![figure], caption, file: String::new() })
 }
 
-/// Names and what belongs to them.
+/// Pairs of name and value.
 pub fn facts<N: Into<Text>, V: Into<Text>>(rows: impl IntoIterator<Item = (N, V)>) -> Block {
     Block::Facts(rows.into_iter().map(|(name, value)| (name.into(), value.into())).collect())
 }
 
-/// A table.
+/// Table.
 pub fn table(columns: Vec<Column>, rows: Vec<Row>) -> Block {
     Block::Table(Table { columns, rows, log: false })
 }
 
-/// A column of words.
+/// Column of words.
 pub fn words(heading: impl Into<Text>) -> Column {
     Column { heading: heading.into(), unit: "", align: Align::Left, shown: EVERYWHERE }
 }
 
-/// A column of numbers.
+/// Column of numbers.
 pub fn numbers(heading: impl Into<Text>) -> Column {
     Column { align: Align::Right, ..words(heading) }
 }
 
-/// A column that explains the others.
+/// Column of explanations.
 pub fn notes(heading: impl Into<Text>) -> Column {
     Column { align: Align::Note, ..words(heading) }
 }
 
 impl Table {
-    /// Columns that are shown in a medium, each with its place.
+    /// Columns that a medium shows, with their indices.
     pub fn shown(&self, medium: Medium) -> Vec<(usize, &Column)> {
         self.columns.iter().enumerate().filter(|(_, column)| column.shown.contains(&medium)).collect()
     }
 
-    /// Headings with their units, and rows with the cells that they have, as a medium writes text.
+    /// Headings with units, and the cells of each row, as text of a medium.
     pub fn texts(&self, medium: Medium, write: fn(&Text) -> String) -> (Vec<String>, Vec<Vec<String>>) {
         let shown = self.shown(medium);
         let heads = shown.iter().map(|(_, column)| match column.unit {
@@ -295,7 +295,7 @@ impl Table {
 }
 
 impl Align {
-    /// A cell in its place within so many letters.
+    /// Aligns a cell within a width in characters.
     pub fn placed(self, cell: &str, width: usize) -> String {
         match self {
             Self::Left | Self::Note => format!("{cell:<width$}"),
@@ -306,28 +306,28 @@ impl Align {
 }
 
 impl Column {
-    /// The same with a unit.
+    /// Sets the unit.
     pub fn in_unit(self, unit: &'static str) -> Self {
         Self { unit, ..self }
     }
 
-    /// The same, but shown in these media only.
+    /// Limits the column to the given media.
     pub fn only(self, shown: &'static [Medium]) -> Self {
         Self { shown, ..self }
     }
 
-    /// The same with its cells elsewhere.
+    /// Sets the alignment.
     pub fn aligned(self, align: Align) -> Self {
         Self { align, ..self }
     }
 }
 
-/// A row.
+/// Row.
 pub fn row<T: Into<Text>>(cells: impl IntoIterator<Item = T>) -> Row {
     Row { cells: cells.into_iter().map(Into::into).collect(), ..Row::default() }
 }
 
-/// The verdict that heads a report of checks: how many have failed, or that all have held.
+/// Verdict of a report by the number of failed checks.
 pub fn verdict_of(failed: usize) -> (Tone, String) {
     match failed {
         0 => (Tone::Passed, "PASSED".into()),

@@ -1,5 +1,5 @@
-//! A document as one HTML page that needs neither network nor scripts, light or dark as its reader likes it: style and
-//! pictures are inside.
+//! A document as one HTML page without network or scripts, in light or dark colours as the reader prefers; style and
+//! pictures are embedded.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 
@@ -12,13 +12,13 @@ use crate::plot::ink;
 
 const STYLE: &str = include_str!("../style.css");
 
-/// More columns than this break their headings.
+/// Columns above which headings wrap.
 const NARROW: usize = 6;
 
-/// How a page says who wrote it.
+/// Name of the generator in a page.
 const GENERATOR: &str = "joint";
 
-/// Returns the whole page, without characters that reorder or hide what is read.
+/// Returns the whole page, without characters that reorder or hide text.
 pub fn html(document: &Document) -> String {
     let page = markup! {
         (DOCTYPE)
@@ -175,7 +175,7 @@ fn table(table: &Table) -> Markup {
     }
 }
 
-/// Failed ones first.
+/// Table of checks, failed ones first.
 fn checks(table: &Checks) -> Markup {
     let mut checks: Vec<&Check> = table.checks.iter().collect();
     checks.sort_by_key(|check| match check.verdict {
@@ -203,11 +203,11 @@ fn check(check: &Check, emulated: bool) -> Markup {
     };
     let with_unit = |value: f64| match check.unit.as_str() {
         "" => PAGE.write(value),
-        // As typed in a terminal, and as printed.
+        // ASCII on a terminal, a micro sign on a page.
         "us" => format!("{} µs", PAGE.write(value)),
         unit => format!("{} {unit}", PAGE.write(value)),
     };
-    let bound = check.bound.in_signs().map(|(sign, bound)| format!("{sign} {}", with_unit(bound)));
+    let bound = check.bound.sign_and_value().map(|(sign, bound)| format!("{sign} {}", with_unit(bound)));
     let marked = emulated && check.source == Source::Board;
     markup! {
         tr class=(class) {

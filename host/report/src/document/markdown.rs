@@ -1,11 +1,11 @@
-//! A document as a part of a Markdown file, its tables aligned so that a terminal shows them as well as a page does.
+//! A document as a part of a Markdown file, with aligned tables that a terminal shows as well as a page does.
 
 use super::blocks::{Align, Block, Document, Medium, Notice, Table};
 use super::terminal::checks;
 use super::text::{Span, Text};
 use crate::escape::escaped;
 
-/// The blocks of a document, ending with a newline: its heading is the file's. On a terminal there are no pictures.
+/// Blocks of a document, ending with a newline; the file has the heading. A terminal shows no pictures.
 pub fn markdown(document: &Document, medium: Medium) -> String {
     let mut text = String::new();
     blocks(&document.blocks, medium, &mut text);
@@ -33,7 +33,7 @@ fn span(span: &Span) -> String {
     }
 }
 
-/// A paragraph of its own.
+/// Appends a separate paragraph.
 fn paragraph(paragraph: &str, text: &mut String) {
     if paragraph.is_empty() {
         return;
@@ -100,7 +100,7 @@ fn table(table: &Table, medium: Medium) -> String {
     aligned(&heads, &aligns, &rows)
 }
 
-/// A table whose columns line up.
+/// A table with aligned columns.
 fn aligned(heads: &[String], aligns: &[Align], rows: &[Vec<String>]) -> String {
     let width = |column: usize| {
         let cells = rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count());
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_for_pages_is_left_out() {
+    fn page_only_blocks_are_omitted() {
         let blocks = vec![Block::Only(PAGES, vec![Block::Lead("only there".into())]), Block::Lead("here".into())];
         assert_eq!(markdown(&Document { blocks, ..Document::default() }, Medium::Markdown), "here\n");
     }

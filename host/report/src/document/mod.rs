@@ -1,7 +1,7 @@
-//! One kind of document for all reports: what a report says is plain data, and one place each turns it into an HTML page,
-//! lines for a terminal or a part of a Markdown file. Figures come from those who know them, pictures from `plot`.
+//! One document model for all reports: a report is plain data, and one renderer each turns it into an HTML page, lines
+//! for a terminal or a part of a Markdown file. Pictures come from `plot`.
 //!
-//! `blocks` is a document and its parts, `text` what stands in a line of it, `sheet` a document of names and values.
+//! `blocks` is a document and its parts, `text` the inline text, `sheet` a document of names and values.
 
 mod blocks;
 mod html;

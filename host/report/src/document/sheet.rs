@@ -1,26 +1,26 @@
-//! A document of names and values under headings, put together fact by fact.
+//! A document of names and values under headings, built row by row.
 
 use std::fmt::Display;
 
 use super::blocks::{Block, Document, Section, section_everywhere};
 use super::text::Text;
 
-/// Such a document under construction.
+/// A sheet under construction.
 pub struct Sheet(Document);
 
 impl Sheet {
-    /// With nothing but what it is about.
+    /// Sheet with a heading and no rows.
     pub fn new(about: impl Into<Text>) -> Self {
         let heading = about.into();
         Self(Document { line: heading.clone(), heading, ..Document::default() })
     }
 
-    /// A heading; what follows stands below it.
+    /// Adds a heading for the following rows.
     pub fn heading(&mut self, text: &str) {
         self.0.blocks.push(section_everywhere(text, vec![Block::Facts(Vec::new())]));
     }
 
-    /// A name and its value, below the last heading.
+    /// Adds a name and its value below the last heading.
     pub fn row(&mut self, name: &str, value: impl Display) {
         if let Some(Block::Section(Section { blocks, .. })) = self.0.blocks.last_mut()
             && let Some(Block::Facts(rows)) = blocks.last_mut()
@@ -29,7 +29,7 @@ impl Sheet {
         }
     }
 
-    /// All of it.
+    /// The finished document.
     pub fn document(self) -> Document {
         self.0
     }

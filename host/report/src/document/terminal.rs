@@ -1,5 +1,4 @@
-//! A document as lines for a terminal, only of characters that every terminal has. Colours are put on by `output`, where
-//! it is one.
+//! A document as lines for a terminal, in characters that every terminal has. `output` adds colours.
 
 use std::fmt::Write as _;
 
@@ -9,15 +8,15 @@ use crate::checks::{Check, Source, Verdict};
 use crate::number::TERMINAL;
 
 /// Width of the column of verdicts.
-const VERDICTS: usize = 8;
-/// Width of the column of names below a heading at least, so that sheets of one kind look alike.
-const NAMES: usize = 28;
+const VERDICT_WIDTH: usize = 8;
+/// Least width of the column of names below a heading, so that sheets of one kind look alike.
+const MIN_NAME_WIDTH: usize = 28;
 /// Width of a line of sentences.
-const LINE: usize = 120;
-/// Between two columns.
-const GAP: &str = "  ";
+const LINE_WIDTH: usize = 120;
+/// Gap between two columns.
+const COLUMN_GAP: &str = "  ";
 
-/// The whole text, ending with a newline.
+/// Text of a document, ending with a newline.
 pub fn terminal(document: &Document) -> String {
     let mut page = Page { text: String::new(), names: longest_name(&document.blocks), headed: false };
     page.line(&plain(&document.line));
@@ -29,7 +28,7 @@ pub fn terminal(document: &Document) -> String {
     page.text
 }
 
-/// The text as a terminal shows it.
+/// Text as a terminal shows it.
 pub fn plain(text: &Text) -> String {
     text.0.iter().map(span).collect()
 }
@@ -51,7 +50,7 @@ fn span(span: &Span) -> String {
     }
 }
 
-/// Signs as one types them.
+/// Replaces typographic characters by ASCII.
 fn typed(text: &str) -> String {
     const TYPED: [(&str, &str); 10] = [
         ("± ", "+- "),
@@ -79,12 +78,12 @@ fn longest_name(blocks: &[Block]) -> usize {
     blocks.iter().map(longest).max().unwrap_or(0)
 }
 
-/// The text so far.
+/// Text under construction.
 struct Page {
     text: String,
     /// Width of the column of names.
     names: usize,
-    /// Within a section that has its heading.
+    /// True within a section that has a heading.
     headed: bool,
 }
 
@@ -100,7 +99,7 @@ impl Page {
     fn sentences(&mut self, text: &str) {
         let mut line = String::new();
         for word in text.split_whitespace() {
-            if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > LINE {
+            if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > LINE_WIDTH {
                 self.line(&std::mem::take(&mut line));
             }
             if !line.is_empty() {
@@ -111,7 +110,7 @@ impl Page {
         self.line(&line);
     }
 
-    /// One empty line, unless there is one or nothing yet.
+    /// Adds an empty line, unless the text is empty or ends with one.
     fn blank(&mut self) {
         if !self.text.is_empty() && !self.text.ends_with("\n\n") {
             self.text.push('\n');
@@ -131,9 +130,10 @@ impl Page {
             Block::Lead(text) => self.sentences(&plain(text)),
             Block::Notice(notice) => self.notice(notice),
             Block::Facts(rows) => {
-                let (indent, width) = if self.headed { (GAP, self.names.max(NAMES)) } else { ("", self.names) };
+                let (indent, width) =
+                    if self.headed { (COLUMN_GAP, self.names.max(MIN_NAME_WIDTH)) } else { ("", self.names) };
                 for (name, value) in rows {
-                    self.line(&format!("{indent}{:width$}{GAP}{}", plain(name), plain(value)));
+                    self.line(&format!("{indent}{:width$}{COLUMN_GAP}{}", plain(name), plain(value)));
                 }
             }
             Block::Table(table) => {
@@ -142,7 +142,7 @@ impl Page {
                 self.blank();
             }
             Block::Checks(table) => self.text.push_str(&checks(table)),
-            Block::Again(command) => self.line(&format!("{:VERDICTS$} {command}", "again:")),
+            Block::Again(command) => self.line(&format!("{:VERDICT_WIDTH$} {command}", "again:")),
             Block::List(items) => items.iter().for_each(|item| self.line(&format!("- {}", plain(item)))),
             Block::Details(part) => {
                 self.blank();
@@ -170,19 +170,19 @@ impl Page {
         self.headed = outside;
     }
 
-    /// The strong word at its beginning stands in the column of verdicts.
+    /// Prints a notice; a strong word at its beginning goes into the column of verdicts.
     fn notice(&mut self, notice: &Notice) {
         let line = match notice.text.0.as_slice() {
             [word @ Span::Strong(_), rest @ ..] => {
                 let rest: String = rest.iter().map(span).collect();
-                format!("{:VERDICTS$} {}", span(word), rest.trim_start())
+                format!("{:VERDICT_WIDTH$} {}", span(word), rest.trim_start())
             }
             all => all.iter().map(span).collect(),
         };
         self.line(&line);
         for block in &notice.more {
             match block {
-                Block::Paragraph(text) => self.line(&format!("{:VERDICTS$} {}", "", plain(text))),
+                Block::Paragraph(text) => self.line(&format!("{:VERDICT_WIDTH$} {}", "", plain(text))),
                 other => self.block(other),
             }
         }
@@ -192,7 +192,7 @@ impl Page {
         let shown = table.shown(Medium::Terminal);
         let (heads, rows) = table.texts(Medium::Terminal, plain);
         let width = |place: usize| {
-            // A cell that goes over all columns that are left has no part in their widths.
+            // A cell that spans the remaining columns does not count for their widths.
             let cells = rows.iter().zip(&table.rows).filter_map(|(cells, row)| {
                 let own = !row.spans || place + 1 < cells.len();
                 cells.get(place).filter(|_| own).map(|cell| cell.chars().count())
@@ -203,7 +203,7 @@ impl Page {
         let line = |cells: &[String]| {
             let places = widths.iter().zip(&shown).map(|(width, (_, column))| (column.align, *width));
             let cells = cells.iter().zip(places).map(|(cell, (align, width))| align.placed(cell, width));
-            cells.collect::<Vec<_>>().join(GAP)
+            cells.collect::<Vec<_>>().join(COLUMN_GAP)
         };
         self.line(&line(&heads));
         for cells in &rows {
@@ -212,19 +212,19 @@ impl Page {
     }
 }
 
-/// Verdict, name, figure and bound of each check; why it failed below it.
+/// Verdict, name, figure and bound of each check, with the note of a failed check below.
 pub(super) fn checks(table: &Checks) -> String {
     let width = table.checks.iter().map(|check| check.name.chars().count()).max().unwrap_or(0);
     let mut text = String::new();
     for check in &table.checks {
         let figure = check.figure.map_or_else(|| "-".to_owned(), |figure| TERMINAL.write(figure));
         let marked = table.emulated && check.source == Source::Board && is_time(check);
-        let bound = check.bound.in_signs();
+        let bound = check.bound.sign_and_value();
         let bound = bound.map(|(sign, bound)| format!("{:2} {}", typed(sign), TERMINAL.write(bound)));
         // Writing to a string cannot fail.
         let _ = write!(
             text,
-            "{:VERDICTS$} {:width$}  {figure:>10} {:2} {:18}{}",
+            "{:VERDICT_WIDTH$} {:width$}  {figure:>10} {:2} {:18}{}",
             verdict(check.verdict),
             check.name,
             check.unit,
@@ -233,14 +233,14 @@ pub(super) fn checks(table: &Checks) -> String {
         );
         text.truncate(text.trim_end().len());
         if !check.note.is_empty() && check.verdict != Verdict::Passed {
-            let _ = write!(text, "\n{:VERDICTS$} {:4}{}", "", "", check.note);
+            let _ = write!(text, "\n{:VERDICT_WIDTH$} {:4}{}", "", "", check.note);
         }
         text.push('\n');
     }
     text
 }
 
-/// On a terminal only times bear the mark: all else is the same on a real board.
+/// On a terminal only times are marked EMULATED: all other figures are equal on a real board.
 fn is_time(check: &Check) -> bool {
     matches!(check.unit.as_str(), "us" | "%") || check.name == "overruns"
 }
@@ -266,9 +266,9 @@ mod tests {
     }
 
     #[test]
-    fn a_line_of_a_check_shows_verdict_figure_bound_and_why_it_failed() {
-        let good = Check::judge("overruns", 0.0, "", Bound::Exactly(0.0), Source::Board).note("fine");
-        let bad = Check::judge("lateness", 61.25, "us", Bound::AtMost(50.0), Source::Board).note("too late");
+    fn check_line_shows_figure_bound_and_reason() {
+        let good = Check::new("overruns", 0.0, "", Bound::Exactly(0.0), Source::Board).note("fine");
+        let bad = Check::new("lateness", 61.25, "us", Bound::AtMost(50.0), Source::Board).note("too late");
         let checks = |checks, emulated| shown(vec![Block::Checks(Checks { checks, emulated, keys: false })]);
         let shown = checks(vec![good, bad], true);
         let lines: Vec<&str> = shown.lines().collect();
@@ -276,12 +276,12 @@ mod tests {
         assert!(lines[0].starts_with("ok ") && lines[0].ends_with("EMULATED"), "{shown}");
         assert!(lines[1].starts_with("FAILED") && lines[1].contains("61.25 us <= 50"), "{shown}");
         assert_eq!(lines[2].trim(), "too late");
-        let real = checks(vec![Check::judge("x", 1.0, "us", Bound::None, Source::Board)], false);
+        let real = checks(vec![Check::new("x", 1.0, "us", Bound::None, Source::Board)], false);
         assert!(!real.contains("EMULATED"), "{real}");
     }
 
     #[test]
-    fn columns_line_up_and_a_wide_cell_goes_over_all_that_are_left() {
+    fn wide_cell_spans_remaining_columns() {
         let wide = crate::document::blocks::Row { spans: true, ..row(["b", "not to be had from this log"]) };
         let rows = vec![row([text("a long name"), number(1.5), text("µm")]), wide];
         let shown = shown(vec![table(vec![words("what"), numbers("found"), words("unit")], rows)]);
@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn facts_stand_below_their_heading() {
+    fn facts_follow_their_heading() {
         let one = section_everywhere("Gears", vec![facts([("planets", "3"), ("ratio", "6")])]);
         let other = section_everywhere("Masses", vec![facts([("link", text("M") + sub("c"))])]);
         assert_eq!(
@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn the_word_before_a_notice_stands_in_the_column_of_verdicts() {
+    fn notice_word_aligns_with_verdicts() {
         let broken = crate::document::blocks::bad_notice(strong("BROKEN") + " the board fell silent");
         assert_eq!(
             shown(vec![broken, Block::Again("joint hil".into())]),

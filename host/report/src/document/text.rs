@@ -1,5 +1,5 @@
-//! Inline text of a document: the content of a heading, a sentence or a cell, joined by `+`. Renderers decide how it
-//! looks.
+//! Inline text of a document: the content of a heading, a sentence or a cell, joined by `+`. Renderers decide the
+//! appearance.
 
 use std::ops::{Add, AddAssign};
 
@@ -10,52 +10,52 @@ use crate::plot::ink::Ink;
 /// A piece of text.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Span {
-    /// As it is.
+    /// Plain text.
     Plain(String),
-    /// What leads or counts.
+    /// Strong text.
     Strong(String),
-    /// What belongs to a figure without being it: `of 12`.
+    /// Text that belongs to a figure: `of 12`.
     Quiet(String),
     /// Commands, keys and digests.
     Code(String),
-    /// An index, as in b_c.
+    /// A subscript, as in b_c.
     Sub(String),
-    /// Not broken at the end of a line.
+    /// Text without line breaks.
     Whole(String),
-    /// In the colour of a line of a picture.
+    /// Text in the colour of a line of a picture.
     Inked(String, Ink),
-    /// A verdict as a small plate.
+    /// A verdict as a badge.
     Mark(Tone, String),
-    /// To a place in the same document or to a file beside it.
+    /// Link within the document or to a file beside it.
     Link {
-        /// Where to.
+        /// Target.
         to: String,
-        /// What is shown.
+        /// Shown text.
         shown: String,
     },
-    /// A number: in pages as [`number::PAGE`] has it, on a terminal by its own style.
+    /// A number: on pages in [`number::PAGE`], on a terminal in its own style.
     Number {
-        /// What.
+        /// Value.
         value: f64,
-        /// On a terminal.
+        /// Style on a terminal.
         terminal: Style,
     },
-    /// The mark on everything that an emulator measured.
+    /// Mark of figures that an emulator measured.
     Emulated,
-    /// The next line, where there is room for several.
+    /// Line break, if the medium has lines.
     Break,
 }
 
-/// The colour of a verdict.
+/// Colour of a verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Tone {
     /// Good.
     Passed,
     /// Bad.
     Failed,
-    /// Neither: left open, or to be known.
+    /// Undecided, or for information.
     Open,
-    /// Not judged.
+    /// Without a verdict.
     #[default]
     Plain,
 }
@@ -65,12 +65,12 @@ pub enum Tone {
 pub struct Text(pub Vec<Span>);
 
 impl Text {
-    /// Whether it is empty.
+    /// Returns true for empty text.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Several with something between them.
+    /// Joins texts with a separator.
     pub fn join(parts: impl IntoIterator<Item = Self>, between: &Self) -> Self {
         let mut all = Self::default();
         for part in parts {
@@ -140,12 +140,12 @@ impl<T: Into<Text>> From<Option<T>> for Text {
     }
 }
 
-/// Text to which more is added.
+/// Converts to text.
 pub fn text(text: impl Into<Text>) -> Text {
     text.into()
 }
 
-/// Text of the author's own with indices of one letter, as in `b_c`.
+/// Text with subscripts of one letter, as in `b_c`.
 pub fn indexed(text: &str) -> Text {
     let mut all = Text::default();
     let mut parts = text.split('_');
@@ -162,12 +162,12 @@ pub fn indexed(text: &str) -> Text {
     all
 }
 
-/// What leads or counts.
+/// Strong text.
 pub fn strong(text: impl Into<String>) -> Text {
     Span::Strong(text.into()).into()
 }
 
-/// What belongs to a figure without being it.
+/// Text that belongs to a figure.
 pub fn quiet(text: impl Into<String>) -> Text {
     Span::Quiet(text.into()).into()
 }
@@ -177,27 +177,27 @@ pub fn code(text: impl Into<String>) -> Text {
     Span::Code(text.into()).into()
 }
 
-/// An index.
+/// A subscript.
 pub fn sub(text: impl Into<String>) -> Text {
     Span::Sub(text.into()).into()
 }
 
-/// Not broken at the end of a line.
+/// Text without line breaks.
 pub fn whole(text: impl Into<String>) -> Text {
     Span::Whole(text.into()).into()
 }
 
-/// In the colour of a line of a picture.
+/// Text in the colour of a line of a picture.
 pub fn inked(text: impl Into<String>, ink: Ink) -> Text {
     Span::Inked(text.into(), ink).into()
 }
 
-/// A verdict as a small plate.
+/// A verdict as a badge.
 pub fn mark(tone: Tone, word: impl Into<String>) -> Text {
     Span::Mark(tone, word.into()).into()
 }
 
-/// To a place in the same document or to a file beside it.
+/// Link within the document or to a file beside it.
 pub fn link(to: impl Into<String>, shown: impl Into<String>) -> Text {
     Span::Link { to: to.into(), shown: shown.into() }.into()
 }
@@ -207,17 +207,17 @@ pub fn number(value: f64) -> Text {
     number_as(value, number::TERMINAL)
 }
 
-/// A number that a terminal writes in its own style.
+/// A number with its own style on a terminal.
 pub fn number_as(value: f64, terminal: Style) -> Text {
     Span::Number { value, terminal }.into()
 }
 
-/// The next line, where there is room for several.
+/// Line break, if the medium has lines.
 pub fn line_break() -> Text {
     Span::Break.into()
 }
 
-/// The mark on what an emulator measured, if it did.
+/// Mark of figures that an emulator measured, if it did.
 pub fn emulated(emulated: bool) -> Text {
     emulated.then_some(Span::Emulated).into()
 }

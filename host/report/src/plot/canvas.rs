@@ -1,4 +1,4 @@
-//! What a picture and its panels share: the canvas with its sizes, and the common axis.
+//! Common parts of a picture and its panels: canvas, sizes, and the common axis.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -6,67 +6,67 @@ use plotters::prelude::*;
 use super::ink::Ink;
 use super::unit::Unit;
 
-/// plotters places things on whole pixels: drawn this much larger and shown at size, nothing looks jagged.
+/// Scale of the drawing: plotters uses whole pixels, so pictures are drawn enlarged and shown at their size.
 pub const FINE: i32 = 4;
-/// Width of a picture over the whole page [px].
+/// Default width of a picture [px].
 const WIDTH: i32 = 1040;
-/// Room for numbers and unit at the left of it [px].
+/// Space for numbers and unit at the left [px].
 pub const LEFT: i32 = 92;
-/// Room at the right [px].
+/// Space at the right [px].
 pub const RIGHT: i32 = 14;
 /// Height of the numbers and the name of the common axis [px].
 pub const FOOT: i32 = 32;
-/// Height of a note below everything [px].
+/// Height of a note below the panels [px].
 pub const NOTE: i32 = 28;
 
-/// Where a panel is drawn.
+/// Drawing area of a panel.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// Result of drawing into a string, which does not fail.
 pub type Drawn = Result<(), Box<dyn std::error::Error>>;
 
-/// How wide a picture is.
+/// Width of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shape {
     /// Width [px].
     pub width: i32,
-    /// Room for numbers and unit at the left [px].
+    /// Space for numbers and unit at the left [px].
     pub left: i32,
 }
 
 impl Default for Shape {
-    /// Over the whole page.
+    /// Full width of a page.
     fn default() -> Self {
         Self { width: WIDTH, left: LEFT }
     }
 }
 
-/// Linear or logarithmic common axis.
+/// Scale of the common axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum HorizontalAxis {
-    /// Evenly.
+    /// Linear.
     #[default]
     Linear,
-    /// By powers of ten.
+    /// Logarithmic.
     Decades,
 }
 
-/// The axis that all panels of a picture have in common.
+/// Axis that all panels of a picture share.
 #[derive(Debug, Clone, Copy)]
 pub struct CommonAxis<'a> {
-    /// Its name.
+    /// Name.
     pub name: &'a str,
-    /// Its unit.
+    /// Unit.
     pub unit: Unit,
-    /// Its range in SI.
+    /// Range in SI.
     pub range: (f64, f64),
-    /// How it runs.
+    /// Scale.
     pub runs: HorizontalAxis,
-    /// How wide the picture is.
+    /// Width of the picture.
     pub shape: Shape,
 }
 
 impl CommonAxis<'_> {
-    /// A value as it is drawn.
+    /// Position of a value on the axis.
     pub fn across(&self, value: f64) -> f64 {
         let value = value * self.unit.factor;
         match self.runs {
@@ -78,7 +78,7 @@ impl CommonAxis<'_> {
 
 /// Text of a size [px] in a colour.
 pub fn text_style(size: i32, ink: Ink, style: FontStyle) -> TextStyle<'static> {
-    // plotters takes the size of the em box, 1.24 times the size of the letters.
+    // plotters takes the size of the em box, 1.24 times that of the letters.
     let font = ("sans-serif", f64::from(size * FINE) * 1.24, style).into_font();
     TextStyle { color: ink.colour().to_backend_color(), ..TextStyle::from(font) }
 }

@@ -1,12 +1,12 @@
-//! Many equal rectangles as one path: a diagram of ten thousand points stays small enough to send. Only text is looked
-//! at, and what does not have the expected form is left as it is.
+//! Merges many equal rectangles into one path, so that a diagram of ten thousand points stays small. The code works on
+//! text; lines in another form stay unchanged.
 
 use std::fmt::Write as _;
 
-/// Fewer equal neighbours than this are left alone.
-const LEAST: usize = 8;
+/// Least number of equal neighbours that are merged.
+const MIN_RUN: usize = 8;
 
-/// Position and what rectangles in one path must share.
+/// Position of a rectangle, and the attributes that a path shares.
 struct Rectangle<'a> {
     x: &'a str,
     y: &'a str,
@@ -14,7 +14,7 @@ struct Rectangle<'a> {
     alike: [&'a str; 3],
 }
 
-/// The same picture with every run of equal rectangles drawn as one path.
+/// Picture with every run of equal rectangles merged into one path.
 pub fn compact(svg: &str) -> String {
     let lines: Vec<(&str, Option<Rectangle<'_>>)> = svg.lines().map(|line| (line, rectangle(line))).collect();
     let mut text = String::with_capacity(svg.len() / 2);
@@ -24,7 +24,7 @@ pub fn compact(svg: &str) -> String {
     };
     for run in lines.chunk_by(same) {
         match &run[0].1 {
-            Some(first) if run.len() >= LEAST => {
+            Some(first) if run.len() >= MIN_RUN => {
                 let [width, height, colour] = first.alike;
                 // Writing to a string cannot fail.
                 let _ = write!(text, "<path fill=\"{colour}\" d=\"");
@@ -44,7 +44,7 @@ pub fn compact(svg: &str) -> String {
     text
 }
 
-/// `<rect x=".." y=".." width=".." height=".." fill=".."/>` and nothing else.
+/// Parses `<rect x=".." y=".." width=".." height=".." fill=".."/>` and nothing else.
 fn rectangle(line: &str) -> Option<Rectangle<'_>> {
     let mut rest = line.strip_prefix("<rect ")?.strip_suffix("/>")?;
     let mut next = |name: &str| {
@@ -67,18 +67,19 @@ mod tests {
     }
 
     #[test]
-    fn a_run_of_equal_rectangles_is_one_path() {
-        let text = compact(&(spots(LEAST) + "<text/>\n"));
+    fn equal_rectangles_become_one_path() {
+        let text = compact(&(spots(MIN_RUN) + "<text/>\n"));
         assert!(text.starts_with("<path fill=\"#FF0000\" d=\"M0 2h3v4h-3zM1 2h3"), "{text}");
         assert!(text.ends_with("<text/>\n"), "{text}");
         assert!(!text.contains("<rect"), "{text}");
     }
 
     #[test]
-    fn a_few_rectangles_and_other_forms_stay() {
-        let few = spots(LEAST - 1);
+    fn few_rectangles_and_other_shapes_stay() {
+        let few = spots(MIN_RUN - 1);
         assert_eq!(compact(&few), few);
-        let outlined = "<rect x=\"1\" y=\"2\" width=\"3\" height=\"4\" fill=\"none\" stroke=\"red\"/>\n".repeat(LEAST);
+        let outlined =
+            "<rect x=\"1\" y=\"2\" width=\"3\" height=\"4\" fill=\"none\" stroke=\"red\"/>\n".repeat(MIN_RUN);
         assert_eq!(compact(&outlined), outlined);
     }
 }

@@ -11,26 +11,26 @@ use crate::escape::escaped;
 
 /// A picture.
 pub struct Figure {
-    /// What it shows, for readers that cannot see it.
+    /// Description for readers who cannot see the picture.
     pub title: String,
     /// Name of the common axis.
     pub axis: String,
     /// Unit of the common axis.
     pub unit: Unit,
-    /// Its range in SI.
+    /// Range of the common axis in SI.
     pub range: (f64, f64),
-    /// How it runs.
+    /// Scale of the common axis.
     pub runs: HorizontalAxis,
-    /// How wide the picture is.
+    /// Width of the picture.
     pub shape: Shape,
-    /// From top to bottom.
+    /// Panels from top to bottom.
     pub panels: Vec<Panel>,
-    /// A line below everything; may be empty.
+    /// Line below the panels; may be empty.
     pub note: String,
 }
 
 impl Figure {
-    /// Over the whole page and an even axis, without a note.
+    /// Picture of default width over a linear axis, without a note.
     pub fn new(
         title: impl Into<String>,
         axis: impl Into<String>,
@@ -50,35 +50,35 @@ impl Figure {
         }
     }
 
-    /// The same over time.
+    /// Picture over time.
     pub fn over_time(title: impl Into<String>, unit: Unit, range: (f64, f64), panels: Vec<Panel>) -> Self {
         Self::new(title, "time", unit, range, panels)
     }
 
-    /// The axis that its panels have in common.
+    /// Axis that the panels share.
     fn common_axis(&self) -> CommonAxis<'_> {
         CommonAxis { name: &self.axis, unit: self.unit, range: self.range, runs: self.runs, shape: self.shape }
     }
 
-    /// The picture as an SVG element whose colours are CSS variables.
+    /// Picture as an SVG element whose colours are CSS variables.
     pub fn to_svg(&self) -> String {
         let height = self.panels.iter().map(|panel| panel.height).sum::<i32>()
             + FOOT
             + if self.note.is_empty() { 0 } else { NOTE };
         let mut svg = String::new();
         if let Err(error) = self.draw(&mut svg, height) {
-            // Drawing into a string has nothing to fail on; should it ever, the rest of the report is worth having.
+            // Drawing into a string cannot fail; if it ever does, the rest of the report is still useful.
             return format!("<!-- not drawn: {} -->", error.to_string().replace("--", "-"));
         }
         let (width, height) = (self.shape.width * FINE, height * FINE);
         let plain = format!("<svg width=\"{width}\" height=\"{height}\"");
         let title = escaped(&self.title).replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
-        // What plotters says though it is the default anyway makes up half of a picture of many small parts.
+        // Default attributes of plotters make up half of a picture of many small parts.
         let svg = compact::compact(&svg.replace(" opacity=\"1\"", "").replace(" stroke=\"none\"", ""));
         ink::with_variables(svg.replacen(&plain, &format!("<svg role=\"img\" aria-label=\"{title}\""), 1))
     }
 
-    /// The picture as a file of its own.
+    /// Picture as a separate SVG file.
     pub fn to_file(&self) -> String {
         let svg = self.to_svg();
         let style = format!(

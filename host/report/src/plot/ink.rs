@@ -1,5 +1,5 @@
-//! The palette: every colour has a name and a value for light and for dark ground. Pictures refer to the names as CSS
-//! variables, so that one picture serves light screen, dark screen and print.
+//! Palette: every colour has a name and a value on light and on dark ground. Pictures use the names as CSS variables,
+//! so one picture serves light screen, dark screen and print.
 
 use std::fmt::Write as _;
 
@@ -16,7 +16,7 @@ pub enum Ink {
     Axis,
     /// Grid lines.
     Grid,
-    /// Ground under lines: the free gap.
+    /// Band below lines: the free gap.
     Band,
     /// Limits and deadlines.
     Limit,
@@ -24,50 +24,50 @@ pub enum Ink {
     Reference,
     /// Bars of the histogram.
     Bar,
-    /// Teeth on the drive side in contact.
+    /// Teeth in contact on the drive side.
     DriveSide,
-    /// Teeth parted.
+    /// Parted teeth.
     Separated,
-    /// Teeth on the back side in contact.
+    /// Teeth in contact on the back side.
     BackSide,
     /// First line of a picture, first planet.
     First,
-    /// Second.
+    /// Second line.
     Second,
-    /// Third.
+    /// Third line.
     Third,
-    /// Fourth.
+    /// Fourth line.
     Fourth,
-    /// Fifth.
+    /// Fifth line.
     Fifth,
-    /// Classes of a map, the least first: darker on light ground, brighter on dark ground.
+    /// First class of a map, of the least values: darkest on dark ground, brightest on light ground.
     Class1,
-    /// Second.
+    /// Second class.
     Class2,
-    /// Third.
+    /// Third class.
     Class3,
-    /// Fourth.
+    /// Fourth class.
     Class4,
-    /// Fifth.
+    /// Fifth class.
     Class5,
-    /// Sixth.
+    /// Sixth class.
     Class6,
-    /// Seventh.
+    /// Seventh class.
     Class7,
-    /// Eighth.
+    /// Eighth class.
     Class8,
 }
 
-/// Lines of a picture in the order of use; told apart also by colour-blind readers (after Okabe and Ito, 2008).
+/// Lines of a picture in the order of use, distinguishable for colour-blind readers (after Okabe and Ito, 2008).
 pub const LINES: [Ink; 5] = [Ink::First, Ink::Second, Ink::Third, Ink::Fourth, Ink::Fifth];
 
-/// Classes of a map from the least value to the greatest (viridis, which stays in order without colours).
+/// Classes of a map from the least value to the greatest (viridis, which stays ordered without colours).
 pub const CLASSES: [Ink; 8] =
     [Ink::Class1, Ink::Class2, Ink::Class3, Ink::Class4, Ink::Class5, Ink::Class6, Ink::Class7, Ink::Class8];
 
-/// Name, value on light ground, value on dark ground. The light values must differ: they mark the places where a
-/// drawn picture gets its variables.
-const TABLE: [(Ink, &str, u32, u32); 24] = [
+/// Name, value on light ground, value on dark ground. The light values must differ, since they are the placeholders of
+/// the variables in a drawn picture.
+const INK_TABLE: [(Ink, &str, u32, u32); 24] = [
     (Ink::Text, "text", 0x1b2430, 0xe8ecf1),
     (Ink::Muted, "muted", 0x5b6776, 0x9aa7b6),
     (Ink::Axis, "axis", 0x98a3b0, 0x566272),
@@ -95,37 +95,37 @@ const TABLE: [(Ink, &str, u32, u32); 24] = [
 ];
 
 impl Ink {
-    /// The value on light ground, as plotters wants it.
+    /// Value on light ground, for plotters.
     pub fn colour(self) -> RGBColor {
-        let (_, _, light, _) = TABLE[self.row()];
+        let (_, _, light, _) = INK_TABLE[self.table_row()];
         let [_, red, green, blue] = light.to_be_bytes();
         RGBColor(red, green, blue)
     }
 
     /// Name of the CSS variable.
     pub fn name(self) -> &'static str {
-        TABLE[self.row()].1
+        INK_TABLE[self.table_row()].1
     }
 
-    fn row(self) -> usize {
-        // Every variant has its row: `every_ink_has_one_row_and_its_own_value` holds it.
-        TABLE.iter().position(|row| row.0 == self).unwrap_or(0)
+    fn table_row(self) -> usize {
+        // The test `inks_have_distinct_values` checks that every variant has its row.
+        INK_TABLE.iter().position(|row| row.0 == self).unwrap_or(0)
     }
 }
 
-/// Puts the variables in place of the light values.
+/// Replaces the light values by the variables.
 pub fn with_variables(mut svg: String) -> String {
-    for (_, name, light, _) in TABLE {
+    for (_, name, light, _) in INK_TABLE {
         svg = svg.replace(&format!("\"#{light:06X}\""), &format!("\"var(--{name})\""));
     }
     svg
 }
 
-/// CSS that gives the variables their values; `root` is the selector they hang on.
+/// CSS that defines the variables for the selector `root`.
 pub fn style_sheet(root: &str) -> String {
     let mut light = String::new();
     let mut dark = String::new();
-    for (_, name, on_light, on_dark) in TABLE {
+    for (_, name, on_light, on_dark) in INK_TABLE {
         // Writing to a string cannot fail.
         let _ = write!(light, "--{name}:#{on_light:06x};");
         let _ = write!(dark, "--{name}:#{on_dark:06x};");
@@ -138,15 +138,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_ink_has_one_row_and_its_own_value() {
-        for (index, (ink, name, light, _)) in TABLE.iter().enumerate() {
+    fn inks_have_distinct_values() {
+        for (index, (ink, name, light, _)) in INK_TABLE.iter().enumerate() {
             assert_eq!(*ink as usize, index, "rows stand in the order of the variants");
-            assert!(TABLE.iter().filter(|row| row.1 == *name || row.2 == *light).count() == 1, "{name}");
+            assert!(INK_TABLE.iter().filter(|row| row.1 == *name || row.2 == *light).count() == 1, "{name}");
         }
     }
 
     #[test]
-    fn a_drawn_colour_becomes_its_variable() {
+    fn colours_become_variables() {
         assert_eq!(with_variables(r##"<a fill="#0072B2"/>"##.into()), r#"<a fill="var(--line-1)"/>"#);
     }
 }

@@ -1,9 +1,9 @@
-//! What can be drawn in a panel: lines, points, bands, limits and boxes, with their legend entries. Values are in SI;
-//! `panel` scales and draws them.
+//! Marks of a panel: lines, points, bands, limits and boxes, with their legend entries. Values are in SI; `panel`
+//! scales and draws them.
 
 use super::ink::Ink;
 
-/// Something drawn in a panel.
+/// A mark in a panel.
 pub enum Mark {
     /// A line through points.
     Line {
@@ -11,18 +11,18 @@ pub enum Mark {
         points: Vec<(f64, f64)>,
         /// Colour.
         ink: Ink,
-        /// Entry in the legend; empty for none.
+        /// Entry in the legend; may be empty.
         label: String,
         /// Width [px].
         width: f64,
     },
-    /// Points, each on its own.
+    /// Separate points.
     Points {
         /// Points, SI.
         points: Vec<(f64, f64)>,
         /// Colour.
         ink: Ink,
-        /// Entry in the legend; empty for none.
+        /// Entry in the legend; may be empty.
         label: String,
         /// Width of a point [px].
         size: f64,
@@ -36,14 +36,14 @@ pub enum Mark {
     },
     /// A vertical limit.
     Deadline {
-        /// Where on the common axis, SI.
+        /// Position on the common axis, SI.
         at: f64,
         /// Entry in the legend.
         label: String,
     },
     /// Filled rectangles: left, right, bottom, top.
     Boxes {
-        /// The rectangles, SI.
+        /// Rectangles, SI.
         boxes: Vec<[f64; 4]>,
         /// Colour.
         ink: Ink,
@@ -53,12 +53,12 @@ pub enum Mark {
 }
 
 impl Mark {
-    /// A line.
+    /// Line.
     pub fn line(points: Vec<(f64, f64)>, ink: Ink, label: impl Into<String>, width: f64) -> Self {
         Self::Line { points, ink, label: label.into(), width }
     }
 
-    /// Legend entry.
+    /// Legend entry with its colour.
     pub fn label(&self) -> (&str, Ink) {
         match self {
             Self::Line { label, ink, .. } | Self::Points { label, ink, .. } | Self::Boxes { label, ink, .. } => {
@@ -69,7 +69,7 @@ impl Mark {
         }
     }
 
-    /// Vertical extent.
+    /// Vertical values of the mark.
     pub fn values(&self) -> Box<dyn Iterator<Item = f64> + '_> {
         match self {
             Self::Line { points, .. } | Self::Points { points, .. } => Box::new(points.iter().map(|point| point.1)),

@@ -1,5 +1,5 @@
-//! One panel: a title with its legend above the plot, so that nothing covers data, axes with units, and marks. Ranges
-//! are computed from the marks.
+//! A panel: title and legend above the plot, where they cover no data, axes with units, and marks. The marks determine
+//! the ranges.
 
 use plotters::coord::ranged1d::ValueFormatter;
 use plotters::coord::types::RangedCoordf64;
@@ -14,60 +14,60 @@ use super::unit::{Unit, axis_range, tick_label};
 use crate::number::PAGE;
 
 /// Height of title and legend [px].
-const HEAD: i32 = 34;
-/// Height between a panel and the next title [px].
-const GAP: i32 = 10;
+const HEAD_HEIGHT: i32 = 34;
+/// Distance between a panel and the next title [px].
+const PANEL_GAP: i32 = 10;
 
-/// One panel of a [`Figure`](super::Figure).
+/// A panel of a [`Figure`](super::Figure).
 pub struct Panel {
     /// Name of the quantity.
     pub title: String,
     /// Unit of the vertical axis.
     pub unit: Unit,
-    /// Its height with title [px].
+    /// Height including the title [px].
     pub height: i32,
-    /// What is in it, drawn in this order; values in SI.
+    /// Marks in drawing order; values in SI.
     pub marks: Vec<Mark>,
-    /// How the vertical axis runs.
+    /// Scale of the vertical axis.
     pub axis: VerticalAxis,
 }
 
-/// Linear or logarithmic vertical axis.
+/// Scale of the vertical axis.
 #[derive(Debug, Clone, PartialEq)]
 pub enum VerticalAxis {
-    /// Evenly over what the marks need.
+    /// Linear, over the range of the marks with a margin.
     Linear,
-    /// Logarithmically from below one, for counts.
+    /// Logarithmic from below one, for counts.
     Counts,
-    /// By powers of ten; what lies below the range, or is not positive, is drawn at its lower end.
+    /// Logarithmic; values that are not positive or below the range are drawn at its lower end.
     Decades {
-        /// Exponents of the lowest and the highest power shown.
+        /// Exponent of the lowest power.
         from: i32,
-        /// The highest.
+        /// Exponent of the highest power.
         to: i32,
     },
-    /// Evenly over just what the marks take, which are of the quantity that is named.
+    /// Linear, over exactly the range of the marks, with the name of the quantity.
     Named(String),
-    /// One row for each name, top first; no numbers.
+    /// One row for each name, top first, without numbers.
     Rows(Vec<String>),
 }
 
 impl Panel {
-    /// A panel of lines of the usual height.
+    /// Panel of lines with the default height.
     pub fn lines(title: impl Into<String>, unit: Unit, marks: Vec<Mark>) -> Self {
         Self { title: title.into(), unit, height: 210, marks, axis: VerticalAxis::Linear }
     }
 
-    /// Draws it; the last panel of a figure carries the numbers of the common axis.
+    /// Draws the panel; the last panel of a figure has the numbers of the common axis.
     pub fn draw(&self, area: &Area<'_>, common: &CommonAxis<'_>, last: bool) -> Drawn {
         self.draw_head(area, common)?;
         let horizontal = (common.across(common.range.0), common.across(common.range.1));
         let mut builder = ChartBuilder::on(area);
         builder
-            .margin_top(HEAD * FINE)
+            .margin_top(HEAD_HEIGHT * FINE)
             .margin_right(RIGHT * FINE)
             .set_label_area_size(LabelAreaPosition::Left, common.shape.left * FINE);
-        builder.set_label_area_size(LabelAreaPosition::Bottom, if last { 42 } else { GAP } * FINE);
+        builder.set_label_area_size(LabelAreaPosition::Bottom, if last { 42 } else { PANEL_GAP } * FINE);
         let (low, high) = match &self.axis {
             VerticalAxis::Rows(rows) => (0.0, rows.len() as f64),
             VerticalAxis::Decades { from, to } => (f64::from(*from), f64::from(*to)),
@@ -90,7 +90,7 @@ impl Panel {
         }
     }
 
-    /// Title at the left, legend at the right.
+    /// Draws the title at the left and the legend at the right.
     fn draw_head(&self, area: &Area<'_>, common: &CommonAxis<'_>) -> Drawn {
         let at = |x: i32, y: i32| (x * FINE, y * FINE);
         let title = text_style(13, Ink::Text, FontStyle::Bold);
@@ -122,7 +122,7 @@ impl Panel {
         Ok(())
     }
 
-    /// Bands below the grid, everything else above it.
+    /// Draws bands below the grid, and all other marks above it.
     fn draw_inside<Y: VerticalScale>(
         &self,
         chart: &mut Chart<'_, '_, Y>,
@@ -230,10 +230,10 @@ impl Panel {
 
     fn draw_row_names(&self, area: &Area<'_>, common: &CommonAxis<'_>) -> Drawn {
         let VerticalAxis::Rows(rows) = &self.axis else { return Ok(()) };
-        let row_height = (self.height - HEAD - GAP) / rows.len().max(1) as i32;
+        let row_height = (self.height - HEAD_HEIGHT - PANEL_GAP) / rows.len().max(1) as i32;
         let style = text_style(11, Ink::Muted, FontStyle::Normal).pos(Pos::new(HPos::Right, VPos::Center));
         for (index, row) in rows.iter().enumerate() {
-            let y = HEAD + row_height * index as i32 + row_height / 2;
+            let y = HEAD_HEIGHT + row_height * index as i32 + row_height / 2;
             area.draw(&Text::new(row.clone(), ((common.shape.left - 8) * FINE, y * FINE), style.clone()))?;
         }
         Ok(())
@@ -244,17 +244,17 @@ impl Panel {
 trait VerticalScale: Ranged<ValueType = f64> + ValueFormatter<f64> {}
 impl<Y: Ranged<ValueType = f64> + ValueFormatter<f64>> VerticalScale for Y {}
 
-/// A chart over a plain horizontal axis.
+/// A chart over a linear horizontal axis.
 type Chart<'a, 'b, Y> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, Y>>;
 
-/// Labels at 1, 10, 100 ...; the grid lines between stay bare.
+/// Labels at 1, 10, 100 ...; the grid lines in between have none.
 fn power_of_ten(count: f64) -> String {
     let exponent = count.log10().round();
     let whole = (count / 10f64.powf(exponent) - 1.0).abs() < 1e-6 && exponent >= 0.0;
     if whole { PAGE.write(count.round()) } else { String::new() }
 }
 
-/// Labels of an axis of exponents: 0.01, 1, 100; powers beyond 10^4 as such, lines between whole powers bare.
+/// Labels of an axis of exponents: 0.01, 1, 100; powers beyond 10^4 as such; lines between whole powers have none.
 fn exponent_label(exponent: f64) -> String {
     let whole = exponent.round();
     match whole {
@@ -264,7 +264,7 @@ fn exponent_label(exponent: f64) -> String {
     }
 }
 
-/// Width of a text of 11 px [px], estimated: no font is at hand, and every reader has another.
+/// Estimated width of a text of 11 px [px]: no font is available, and every reader has another one.
 fn text_width(text: &str) -> i32 {
     (text.chars().count() as f64 * 6.1).ceil() as i32
 }

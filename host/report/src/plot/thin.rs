@@ -1,7 +1,7 @@
-//! Thinning of long series that keeps every extreme: of each column of the picture the first, least, greatest and last
-//! value. What is not finite breaks the line, and is never drawn.
+//! Thinning of long series that keeps every extreme: first, least, greatest and last value in each column of the
+//! picture. Values that are not finite interrupt the line.
 
-/// Stretches of finite points, thinned to at most four points in each of so many columns over the range.
+/// Sections of finite points, thinned to at most four points in each column of the range.
 pub fn thin(points: &[(f64, f64)], range: (f64, f64), columns: usize) -> Vec<Vec<(f64, f64)>> {
     let width = (range.1 - range.0) / columns.max(1) as f64;
     let column = |x: f64| ((x - range.0) / width).floor();
@@ -15,7 +15,7 @@ pub fn thin(points: &[(f64, f64)], range: (f64, f64), columns: usize) -> Vec<Vec
         .collect()
 }
 
-/// First, least, greatest and last point, in their order, each once.
+/// First, least, greatest and last point in order, without repetition.
 fn extremes(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     if points.len() <= 4 {
         return points.to_vec();
@@ -35,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_single_spike_survives() {
+    fn single_spike_survives() {
         let mut points: Vec<(f64, f64)> = (0..100_000).map(|i| (f64::from(i), f64::from(i % 7))).collect();
         points[54_321].1 = 99.0;
         points[54_322].1 = -99.0;
@@ -48,13 +48,13 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_breaks_the_line() {
+    fn non_finite_value_breaks_line() {
         let points = [(0.0, 1.0), (1.0, f64::NAN), (2.0, 3.0), (3.0, f64::INFINITY), (4.0, 5.0)];
         assert_eq!(thin(&points, (0.0, 4.0), 100), [vec![(0.0, 1.0)], vec![(2.0, 3.0)], vec![(4.0, 5.0)]]);
     }
 
     #[test]
-    fn nothing_gives_nothing() {
+    fn empty_line_stays_empty() {
         assert!(thin(&[], (0.0, 1.0), 100).is_empty());
         assert!(thin(&[(0.0, f64::NAN)], (0.0, 1.0), 100).is_empty());
     }

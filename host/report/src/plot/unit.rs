@@ -1,33 +1,33 @@
-//! Units with an SI prefix that fits the greatest value, and the ranges of axes.
+//! Units with an SI prefix for the greatest value, and ranges of axes.
 
 use crate::number::trimmed;
 
-/// A unit for one axis: SI times `factor` gives the number shown.
+/// Unit of one axis: SI times `factor` is the number shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unit {
     /// Number shown for 1 SI unit.
     pub factor: f64,
-    /// Its sign.
+    /// Symbol.
     pub name: &'static str,
 }
 
-/// Torque as it is.
+/// Torque.
 pub const TORQUE: Unit = Unit { factor: 1.0, name: "N·m" };
-/// Force as it is.
+/// Force.
 pub const FORCE: Unit = Unit { factor: 1.0, name: "N" };
 /// Time of a whole run.
 pub const SECONDS: Unit = Unit { factor: 1.0, name: "s" };
 /// Time of a close-up.
 pub const MILLISECONDS: Unit = Unit { factor: 1e3, name: "ms" };
-/// Computation times.
+/// Computation time.
 pub const MICROSECONDS: Unit = Unit { factor: 1e6, name: "µs" };
-/// Ratios over a reference, 20 for a factor of ten.
+/// Ratio to a reference, 20 for a factor of ten.
 pub const DECIBELS: Unit = Unit { factor: 1.0, name: "dB" };
-/// Shares.
+/// Share.
 pub const PERCENT: Unit = Unit { factor: 1.0, name: "%" };
 
 impl Unit {
-    /// For lengths [m] up to `greatest`.
+    /// Unit for lengths up to `greatest` [m].
     pub fn of_length(greatest: f64) -> Self {
         match greatest {
             g if g < 1e-7 => Self { factor: 1e9, name: "nm" },
@@ -37,7 +37,7 @@ impl Unit {
         }
     }
 
-    /// For angles [rad] up to `greatest`.
+    /// Unit for angles up to `greatest` [rad].
     pub fn of_angle(greatest: f64) -> Self {
         match greatest {
             g if g < 1e-3 => Self { factor: 1e6, name: "µrad" },
@@ -47,20 +47,20 @@ impl Unit {
         }
     }
 
-    /// For times [s] of a picture that spans so much.
+    /// Unit for a picture over a span of time [s].
     pub fn of_time(span: f64) -> Self {
         if span < 0.5 { MILLISECONDS } else { SECONDS }
     }
 }
 
-/// Greatest finite magnitude, 0 of nothing.
+/// Greatest finite magnitude; 0 without values.
 pub fn greatest(values: impl Iterator<Item = f64>) -> f64 {
     values.filter(|value| value.is_finite()).fold(0.0, |greatest, value| greatest.max(value.abs()))
 }
 
-/// Least and greatest finite value with some air, never empty.
+/// Least and greatest finite value with a margin; never empty.
 pub fn axis_range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    // Beyond 1e30 nothing is left to be read off a picture, and sums of it could overflow.
+    // Values beyond 1e30 are not readable in a picture, and their sums could overflow.
     let finite = values.filter(|value| value.abs() < 1e30);
     let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
     if low > high {
@@ -74,11 +74,11 @@ pub fn axis_range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     (low - half, high + half)
 }
 
-/// A tick's number with as many decimals as neighbours need.
+/// Number at a tick, with as many decimals as its neighbours need.
 pub fn tick_label(value: f64, span: f64) -> String {
     let decimals = (1.0 - (span / 2.0).log10().floor()).clamp(0.0, 6.0) as usize;
     let text = format!("{value:.decimals$}");
-    // The whole axis gets the same decimals, except that a zero is a zero.
+    // All ticks have equal decimals, except for zero.
     if text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') {
         "0".into()
     } else {
@@ -91,7 +91,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_range_is_never_empty() {
+    fn axis_range_is_never_empty() {
         for values in [vec![], vec![0.0], vec![3.0, 3.0], vec![f64::NAN], vec![f64::INFINITY, 1.0], vec![f64::MAX]] {
             let (low, high) = axis_range(values.iter().copied());
             assert!(low < high && low.is_finite() && high.is_finite(), "{values:?} gave {low} to {high}");
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn ticks_have_the_decimals_that_neighbours_need() {
+    fn tick_labels_differ_from_neighbours() {
         assert_eq!(tick_label(0.1 + 0.2, 1.0), "0.3");
         assert_eq!(tick_label(-1e-17, 1.0), "0");
         assert_eq!(tick_label(-0.25, 1.0), "\u{2212}0.25");

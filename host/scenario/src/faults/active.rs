@@ -1,49 +1,56 @@
-//! One fault of a run with its state: whether it acts now, and its effect on an encoder's counts. Its effects on
-//! set-points and torques are in `faults`.
+//! One fault of a run with its state: activity, and effect on an encoder's counts. Effects on set-points and torques
+//! are in `faults`.
 
 use std::f64::consts::TAU;
 
 use model_core::virtual_joint::fault::{FaultKind, Shaft};
 
-use crate::file::{Fault, Offset, fault_is_on, fault_stream};
+use crate::file::{Fault, Offset, fault_is_active, fault_stream};
 use crate::random::RandomStream;
 
 /// A fault with its state.
 #[derive(Debug, Clone)]
-pub(super) struct Active {
+pub(super) struct ActiveFault {
     pub fault: Fault,
     pub stream: RandomStream,
-    /// Counts when the encoder froze, or counts that were lost.
-    held: Option<i64>,
-    lost: f64,
-    before: Option<i64>,
-    /// Fate of the last set-point that was sent.
-    pub dropped: Option<(u64, bool)>,
+    /// Counts at the start of a freeze (`frozen_counts`), lost counts, and the previous reading.
+    frozen_counts: Option<i64>,
+    lost_counts: f64,
+    previous_counts: Option<i64>,
+    /// Number of the last set-point that was sent, and whether it was lost.
+    pub last_set_point: Option<(u64, bool)>,
 }
 
-impl Active {
-    /// Nothing has gone wrong yet; `index` is its place in the file.
+impl ActiveFault {
+    /// Fault in its initial state; `index` is its place in the file.
     pub fn new(fault: &Fault, index: usize, seed: u64) -> Self {
         Self::with_stream(fault, fault_stream(fault, index, seed))
     }
 
-    /// Nothing has gone wrong yet; random numbers come from this stream.
+    /// Fault in its initial state, with random numbers from the given stream.
     pub fn with_stream(fault: &Fault, stream: RandomStream) -> Self {
-        Self { fault: *fault, stream, held: None, lost: 0.0, before: None, dropped: None }
+        Self {
+            fault: *fault,
+            stream,
+            frozen_counts: None,
+            lost_counts: 0.0,
+            previous_counts: None,
+            last_set_point: None,
+        }
     }
 
-    /// What an encoder says in place of its counts.
+    /// Reading of an encoder under the fault.
     pub fn count(&mut self, time: f64, encoder: Shaft, counts: i64, counts_per_turn: f64) -> i64 {
-        let on = fault_is_on(&self.fault, time);
+        let on = fault_is_active(&self.fault, time);
         match self.fault.kind {
-            FaultKind::Frozen(of) if of == encoder => match (on, self.held) {
+            FaultKind::Frozen(of) if of == encoder => match (on, self.frozen_counts) {
                 (false, _) => {
-                    self.held = None;
+                    self.frozen_counts = None;
                     counts
                 }
-                (true, Some(held)) => held,
+                (true, Some(frozen_counts)) => frozen_counts,
                 (true, None) => {
-                    self.held = Some(counts);
+                    self.frozen_counts = Some(counts);
                     counts
                 }
             },
@@ -58,11 +65,11 @@ impl Active {
                 counts + (error / TAU * counts_per_turn).round() as i64
             }
             FaultKind::MissingCounts(of, share) if of == encoder => {
-                // What was not counted stays uncounted after the fault.
-                let moved = counts - self.before.unwrap_or(counts);
-                self.before = Some(counts);
-                self.lost += if on { share * moved as f64 } else { 0.0 };
-                counts - self.lost.trunc() as i64
+                // Lost counts stay lost after the fault.
+                let moved = counts - self.previous_counts.unwrap_or(counts);
+                self.previous_counts = Some(counts);
+                self.lost_counts += if on { share * moved as f64 } else { 0.0 };
+                counts - self.lost_counts.trunc() as i64
             }
             _ => counts,
         }

@@ -1,6 +1,6 @@
-//! Faults applied on the host, between the f64 drive train and its controller: to counts, torques, set-points and teeth
-//! while a run goes on. `active` is one fault with its state, `teeth` its effect on the teeth. A board applies faults
-//! by its own code; the test `on_board::same_faults` holds both equal.
+//! Faults on the host, applied between the f64 drive train and its controller to counts, torques, set-points and teeth
+//! during a run. `active` is one fault with its state, `teeth` the effect on the teeth. A board has its own code for
+//! faults; the test `on_board::same_faults` checks that both agree.
 
 mod active;
 mod teeth;
@@ -13,68 +13,68 @@ use reference::closed_loop::SetPoint;
 use reference::drive_train::{DriveTrainParameters, Measurement};
 use reference::joint::Observation;
 
-use active::Active;
+use active::ActiveFault;
 use teeth::ToothState;
 
-use super::file::{Fault, HostOnlyFault, fault_is_on};
+use super::file::{Fault, HostOnlyFault, fault_is_active};
 use super::plant::Teeth;
 use super::random::RandomStream;
 
-/// One encoder reading and when it was taken.
+/// An encoder reading and its time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TimedReading {
-    /// Whole turns included.
+    /// Counts, whole turns included.
     pub counts: i64,
-    /// Control period.
+    /// Control period of the reading.
     pub period: u64,
     /// Delay of that period's start [thousandths of a period].
     pub lateness: u32,
 }
 
-/// The sensor readings that reach a controller in one control period.
+/// Sensor readings that reach a controller in one control period.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ControllerInputs {
-    /// Now.
+    /// Current control period.
     pub period: u64,
-    /// Delay of this period's start [thousandths of a period]: a clock of the controller sees it.
+    /// Delay of this period's start [thousandths of a period], visible to the controller's clock.
     pub lateness: u32,
-    /// From the motor's encoder.
+    /// Reading of the motor encoder.
     pub motor: TimedReading,
-    /// From the output encoder, if a frame came.
+    /// Reading of the output encoder, if a frame arrived.
     pub output: Option<TimedReading>,
 }
 
 /// All faults of a run with their state.
 #[derive(Debug, Clone)]
 pub struct HostFaults {
-    faults: Vec<Active>,
+    faults: Vec<ActiveFault>,
     period: f64,
     counts_per_turn: [f64; 2],
-    /// Counts of the encoders where they are homed: what they say is counted from there.
+    /// Counts of the homed encoders; readings are relative to them.
     home: Option<[i64; 2]>,
-    /// What homed encoders say at the start: where the link is then, and where a motor is that leads it by nothing.
+    /// Readings of the homed encoders at the start: link angle, and motor angle without a lead.
     start: [i64; 2],
     past: [VecDeque<TimedReading>; 2],
-    /// Periods of the last readings that came.
-    come: [Option<u64>; 2],
+    /// Periods of the last readings that arrived.
+    last_delivered: [Option<u64>; 2],
     last: Option<ControllerInputs>,
     set_points: VecDeque<(u64, SetPoint)>,
-    given: Option<(u64, SetPoint)>,
+    delivered_set_point: Option<(u64, SetPoint)>,
     teeth: ToothState,
 }
 
-/// Parts of a control period in which delays of its start are counted.
+/// Resolution of a period's delay [parts of a control period].
 pub const LATENESS_PARTS: u32 = 1000;
 
-/// Readings and set-points kept for delayed delivery [periods]: delays are a second at most.
-const MEMORY: usize = 100_000;
+/// Readings and set-points stored for delayed delivery [periods]; a delay is at most a second.
+const MAX_DELAY_PERIODS: usize = 100_000;
 
 impl HostFaults {
-    /// The faults of a run of a true joint with what truly surrounds it.
+    /// Faults of a run with the true joint and its true surroundings.
     pub fn new(faults: &[Fault], seed: u64, joint: &JointParameters, train: &DriveTrainParameters) -> Self {
         let around = &train.surroundings;
         let encoders = [&around.motor_encoder, &around.output_encoder];
-        let stated = faults.iter().enumerate().map(|(index, fault)| Active::new(fault, index, seed));
+        let stated = faults.iter().enumerate().map(|(index, fault)| ActiveFault::new(fault, index, seed));
         Self {
             faults: stated.chain(missing_frames(encoders.map(|encoder| encoder.missing_share), seed)).collect(),
             period: 1.0 / f64::from(around.control_rate),
@@ -82,15 +82,15 @@ impl HostFaults {
             home: None,
             start: [0; 2],
             past: Default::default(),
-            come: [None; 2],
+            last_delivered: [None; 2],
             last: None,
             set_points: VecDeque::new(),
-            given: None,
+            delivered_set_point: None,
             teeth: ToothState::new(joint),
         }
     }
 
-    /// The same for a link that starts at an angle [rad] behind gears of a ratio.
+    /// Sets the link's angle at the start [rad], behind gears of the given ratio.
     pub fn starting_at(self, link_angle: f64, ratio: f64) -> Self {
         let [motor, output] = self.counts_per_turn.map(|counts| link_angle / std::f64::consts::TAU * counts);
         Self { start: [ratio * motor, output].map(|counts| counts.round() as i64), ..self }
@@ -101,7 +101,7 @@ impl HostFaults {
         self.sense_late(measurement, 0.0)
     }
 
-    /// Applies faults to a measurement of a control period that began so late [s].
+    /// Applies faults to a measurement of a control period that began late [s].
     pub fn sense_late(&mut self, measurement: &Measurement, lateness: f64) -> ControllerInputs {
         let lateness = (lateness / self.period * f64::from(LATENESS_PARTS)).round() as u32;
         let time = measurement.period as f64 * self.period;
@@ -122,7 +122,7 @@ impl HostFaults {
             let Some(fresh) = *frame else { continue };
             let past = &mut self.past[index];
             past.push_back(fresh);
-            past.truncate(MEMORY);
+            past.truncate(MAX_DELAY_PERIODS);
             let shaft = shafts[index];
             let mut keep = 0;
             for fault in self.faults.iter_mut() {
@@ -130,15 +130,15 @@ impl HostFaults {
                     FaultKind::Other(HostOnlyFault::LateReadings(of, delay)) if of == shaft => {
                         let late = (delay / self.period).round() as usize;
                         keep = keep.max(late);
-                        // What has come before does not come again: while a delay begins, nothing comes.
-                        let known = self.come[index];
-                        if fault_is_on(&fault.fault, time) {
+                        // A reading is not delivered twice: while a delay begins, no reading arrives.
+                        let known = self.last_delivered[index];
+                        if fault_is_active(&fault.fault, time) {
                             let arrived = past.iter().rev().nth(late).copied();
                             *frame = arrived.filter(|arrived| known.is_none_or(|known| arrived.period > known));
                         }
                     }
                     FaultKind::LostReadings(of, share)
-                        if of == shaft && fault_is_on(&fault.fault, time) && fault.stream.uniform() < share =>
+                        if of == shaft && fault_is_active(&fault.fault, time) && fault.stream.uniform() < share =>
                     {
                         *frame = None;
                     }
@@ -148,7 +148,7 @@ impl HostFaults {
             while past.len() > keep + 1 {
                 past.pop_front();
             }
-            self.come[index] = frame.map(|frame| frame.period).or(self.come[index]);
+            self.last_delivered[index] = frame.map(|frame| frame.period).or(self.last_delivered[index]);
         }
         // A silent motor encoder leaves its last reading in place, with the time of that reading.
         let motor = frames[0].or(self.last.map(|last| last.motor)).unwrap_or(TimedReading {
@@ -161,7 +161,7 @@ impl HostFaults {
         seen
     }
 
-    /// The set-point that the controller acts on; `number` tells one frame from the next.
+    /// Set-point that reaches the controller; `number` identifies the frame.
     pub fn receive(&mut self, time: f64, number: u64, set_point: SetPoint) -> SetPoint {
         if self.set_points.back().is_none_or(|(last, _)| *last != number) {
             self.set_points.push_back((number, set_point));
@@ -173,17 +173,17 @@ impl HostFaults {
                 FaultKind::Other(HostOnlyFault::LateSetPoints(delay)) => {
                     let late = (delay / self.period).round() as usize;
                     keep = keep.max(late + 1);
-                    if fault_is_on(&fault.fault, time) {
+                    if fault_is_active(&fault.fault, time) {
                         arrived = self.set_points.iter().rev().nth(late).or(self.set_points.front()).copied();
                     }
                 }
-                FaultKind::Other(HostOnlyFault::LostSetPoints(share)) if fault_is_on(&fault.fault, time) => {
+                FaultKind::Other(HostOnlyFault::LostSetPoints(share)) if fault_is_active(&fault.fault, time) => {
                     // A frame that is held for several periods is lost once.
-                    let lost = match fault.dropped {
+                    let lost = match fault.last_set_point {
                         Some((last, lost)) if last == number => lost,
                         _ => fault.stream.uniform() < share,
                     };
-                    fault.dropped = Some((number, lost));
+                    fault.last_set_point = Some((number, lost));
                     arrived = arrived.filter(|_| !lost);
                 }
                 _ => {}
@@ -192,14 +192,14 @@ impl HostFaults {
         while self.set_points.len() > keep {
             self.set_points.pop_front();
         }
-        let is_new = |(number, _): &(u64, SetPoint)| self.given.is_none_or(|(known, _)| *number >= known);
-        self.given = arrived.filter(is_new).or(self.given).or(Some((number, set_point)));
-        self.given.map_or(set_point, |(_, set_point)| set_point)
+        let is_new = |(number, _): &(u64, SetPoint)| self.delivered_set_point.is_none_or(|(known, _)| *number >= known);
+        self.delivered_set_point = arrived.filter(is_new).or(self.delivered_set_point).or(Some((number, set_point)));
+        self.delivered_set_point.map_or(set_point, |(_, set_point)| set_point)
     }
 
-    /// What the motor makes of a torque that was asked of it [N m].
+    /// Torque of the motor for a command [N m].
     pub fn torque(&self, time: f64, command: f64) -> f64 {
-        let on = self.faults.iter().filter(|active| fault_is_on(&active.fault, time));
+        let on = self.faults.iter().filter(|active| fault_is_active(&active.fault, time));
         on.fold(command, |torque, active| match active.fault.kind {
             FaultKind::TorqueBias(ratio, offset) => torque * (1.0 + ratio) + offset,
             FaultKind::Saturation(limit) => torque.clamp(-limit, limit),
@@ -207,24 +207,24 @@ impl HostFaults {
         })
     }
 
-    /// Half-backlash that the teeth have now [m].
-    pub fn half_backlash_now(&self) -> f64 {
-        self.teeth.now
+    /// Current half-backlash of the teeth [m].
+    pub fn current_half_backlash(&self) -> f64 {
+        self.teeth.half_backlash_now
     }
 
-    /// Changes the teeth as faults begin, end, or meet.
-    pub fn wear(&mut self, time: f64, joint: &Observation, inside: &mut dyn Teeth) {
-        self.teeth.wear(&self.faults, time, joint, inside);
+    /// Changes the teeth as faults begin, end, or come into mesh.
+    pub fn update_teeth(&mut self, time: f64, joint: &Observation, inside: &mut dyn Teeth) {
+        self.teeth.update_teeth(&self.faults, time, joint, inside);
     }
 }
 
-/// Readings that an encoder leaves out by itself, as faults of the whole run with random numbers of their own.
-fn missing_frames(shares: [f64; 2], seed: u64) -> impl Iterator<Item = Active> {
+/// Readings that an encoder drops by itself, as faults of the whole run with their own random numbers.
+fn missing_frames(shares: [f64; 2], seed: u64) -> impl Iterator<Item = ActiveFault> {
     let of = [(Shaft::Motor, "missing frames motor"), (Shaft::Link, "missing frames output")];
     of.into_iter().zip(shares).filter(|(_, share)| *share > 0.0).map(move |((shaft, stream), share)| {
         let kind = FaultKind::LostReadings(shaft, share);
         let fault = Fault { start: 0.0, end: f64::INFINITY, seed: (), kind };
-        Active::with_stream(&fault, RandomStream::new(seed, stream))
+        ActiveFault::with_stream(&fault, RandomStream::new(seed, stream))
     })
 }
 

@@ -1,4 +1,4 @@
-//! Faults of the teeth: grown backlash, and a tooth whose mesh is softer.
+//! Faults of the teeth: grown backlash, and a tooth with a softer mesh.
 
 use std::f64::consts::TAU;
 
@@ -6,48 +6,48 @@ use model_core::virtual_joint::fault::FaultKind;
 use parameters::JointParameters;
 use reference::joint::Observation;
 
-use super::active::Active;
-use crate::file::{HostOnlyFault, fault_is_on};
+use super::active::ActiveFault;
+use crate::file::{HostOnlyFault, fault_is_active};
 use crate::plant::{Teeth, half_backlash};
 
-/// The original teeth, and how they are now.
+/// Original and current state of the teeth.
 #[derive(Debug, Clone)]
 pub(super) struct ToothState {
     half_backlash: f64,
-    /// Half-backlash now [m].
-    pub now: f64,
+    /// Current half-backlash [m].
+    pub half_backlash_now: f64,
     stiffness: f64,
-    /// By planet: the broken tooth meets it.
+    /// Meshes of the broken tooth, by planet.
     pub soft: Vec<bool>,
     sun_teeth: f64,
 }
 
 impl ToothState {
-    /// As they were made.
+    /// Original state of the teeth.
     pub fn new(joint: &JointParameters) -> Self {
         let half_backlash = half_backlash(joint);
         Self {
             half_backlash,
-            now: half_backlash,
+            half_backlash_now: half_backlash,
             stiffness: joint.sun_planet.mean_stiffness,
             soft: vec![false; joint.geometry.planets],
             sun_teeth: f64::from(joint.geometry.sun_teeth),
         }
     }
 
-    /// Changes the teeth as faults begin, end, or meet.
-    pub fn wear(&mut self, faults: &[Active], time: f64, joint: &Observation, inside: &mut dyn Teeth) {
+    /// Changes the teeth as faults begin, end, or come into mesh.
+    pub fn update_teeth(&mut self, faults: &[ActiveFault], time: f64, joint: &Observation, inside: &mut dyn Teeth) {
         let (mut half_backlash, mut soft) = (self.half_backlash, 1.0);
-        for active in faults.iter().filter(|active| fault_is_on(&active.fault, time)) {
+        for active in faults.iter().filter(|active| fault_is_active(&active.fault, time)) {
             match active.fault.kind {
                 FaultKind::Other(HostOnlyFault::GrownBacklash(grown)) => half_backlash = grown,
                 FaultKind::Other(HostOnlyFault::BrokenTooth(ratio)) => soft = ratio,
                 _ => {}
             }
         }
-        if half_backlash != self.now {
+        if half_backlash != self.half_backlash_now {
             inside.set_half_backlash(half_backlash);
-            self.now = half_backlash;
+            self.half_backlash_now = half_backlash;
         }
         if soft == 1.0 && !self.soft.contains(&true) {
             return;

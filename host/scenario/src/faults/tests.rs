@@ -1,4 +1,4 @@
-//! Each fault by itself, against values that follow by hand.
+//! Each fault by itself, against values computed by hand.
 
 use std::f64::consts::TAU;
 
@@ -9,15 +9,15 @@ use crate::case::Case;
 use crate::file;
 use crate::plant::{PlantName, plant};
 
-fn at_work(faults: &str) -> (HostFaults, Case) {
+fn host_faults(faults: &str) -> (HostFaults, Case) {
     let file = file::read(&format!("profile = \"T2\"\n{faults}")).expect("a good file");
     let case = Case::new(&file, joint_file::preset("q1").expect("a preset"), 1, None).expect("a case");
     (HostFaults::new(&file.faults, 1, &case.truth.parameters, &case.train), case)
 }
 
-/// What the output encoder says in each of so many periods while it truly goes on by `step` counts in each.
+/// Readings of the output encoder in a number of periods, while the true counts rise by `step` a period.
 fn counts(faults: &str, periods: u64, step: i64) -> Vec<Option<TimedReading>> {
-    let (mut faults, _) = at_work(faults);
+    let (mut faults, _) = host_faults(faults);
     (0..periods)
         .map(|period| {
             let output_counts = 1234 + step * period as i64;
@@ -31,13 +31,13 @@ fn plain(faults: &str, periods: u64, step: i64) -> Vec<i64> {
 }
 
 #[test]
-fn a_frozen_encoder_stands_still_and_comes_back() {
+fn frozen_encoder_holds_then_recovers() {
     let read = plain("[[fault]]\nkind = \"encoder_frozen\"\nstart_s = 0.001\nend_s = 0.002", 30, 7);
     assert_eq!((read[9], read[10], read[19], read[20]), (63, 70, 70, 140));
 }
 
 #[test]
-fn an_offset_a_slow_encoder_and_an_eccentric_one_say_what_they_should() {
+fn offset_missing_counts_eccentric_values() {
     let read = plain("[[fault]]\nkind = \"encoder_offset\"\ncounts = 5\nstart_s = 0.001", 20, 0);
     assert_eq!((read[9], read[10]), (0, 5));
     let read = plain("[[fault]]\nkind = \"encoder_missing_counts\"\nshare = 0.1\nend_s = 0.01", 201, 10);
@@ -48,14 +48,14 @@ fn an_offset_a_slow_encoder_and_an_eccentric_one_say_what_they_should() {
 }
 
 #[test]
-fn a_noisy_encoder_scatters_as_much_as_stated() {
+fn noise_has_stated_deviation() {
     let read = plain("[[fault]]\nkind = \"encoder_noise\"\nnoise_counts = 4", 20_000, 0);
     let deviation = (read.iter().map(|counts| (counts * counts) as f64).sum::<f64>() / 20_000.0).sqrt();
     assert!((deviation / 4.0 - 1.0).abs() < 0.03, "{deviation}");
 }
 
 #[test]
-fn frames_are_lost_as_often_as_stated_and_late_ones_keep_their_time() {
+fn lost_share_and_late_frame_times() {
     let lost = counts("[[fault]]\nkind = \"lost_frames\"\nshare = 0.2", 20_000, 1);
     let share = lost.iter().filter(|frame| frame.is_none()).count() as f64 / 20_000.0;
     assert!((share - 0.2).abs() < 0.01, "{share}");
@@ -67,17 +67,17 @@ fn frames_are_lost_as_often_as_stated_and_late_ones_keep_their_time() {
 }
 
 #[test]
-fn a_late_period_is_stamped_with_its_lateness() {
-    let (mut faults, _) = at_work("");
+fn late_period_stamped_with_lateness() {
+    let (mut faults, _) = host_faults("");
     let seen = faults.sense_late(&Measurement { period: 7, motor_counts: 0, output_counts: 0 }, 4.2e-6);
     assert_eq!((seen.lateness, seen.motor.lateness, seen.output.map(|frame| frame.lateness)), (42, 42, Some(42)));
 }
 
 #[test]
-fn missing_frames_come_as_rarely_as_stated_each_encoder_by_itself() {
+fn missing_frames_independent_per_encoder() {
     let keys = "plant.motor_encoder.missing_frames_share = 0.05\nplant.output_encoder.missing_frames_share = 0.01";
     let missing = |keys: &str| {
-        let (mut faults, _) = at_work(keys);
+        let (mut faults, _) = host_faults(keys);
         let mut missing = [0.0; 2];
         let mut periods = Vec::new();
         for period in 0..40_000 {
@@ -91,7 +91,7 @@ fn missing_frames_come_as_rarely_as_stated_each_encoder_by_itself() {
         (missing.map(|count| count / 40_000.0), periods)
     };
     let ([motor, output], periods) = missing(keys);
-    // Four standard deviations of such shares.
+    // Four standard deviations of the shares.
     assert!((motor - 0.05).abs() < 0.0044 && (output - 0.01).abs() < 0.002, "{motor} and {output}");
     let (_, alone) = missing("plant.output_encoder.missing_frames_share = 0.01");
     assert_eq!(periods, alone, "the motor's missing readings leave the output's as they were");
@@ -99,9 +99,9 @@ fn missing_frames_come_as_rarely_as_stated_each_encoder_by_itself() {
 }
 
 #[test]
-fn a_set_point_that_is_lost_leaves_the_one_before() {
+fn lost_set_point_keeps_previous() {
     let fault = "[[fault]]\nkind = \"lost_frames\"\nframes = \"set_points\"\nshare = 1\nstart_s = 0.001\nend_s = 0.002";
-    let (mut faults, _) = at_work(fault);
+    let (mut faults, _) = host_faults(fault);
     let at = |position: f64| SetPoint::Position { now: Motion { position, ..Motion::default() }, ahead: None };
     let received: Vec<f64> =
         (0..30).map(|k| faults.receive(1e-4 * f64::from(k), k as u64, at(f64::from(k))).motion().position).collect();
@@ -109,9 +109,9 @@ fn a_set_point_that_is_lost_leaves_the_one_before() {
 }
 
 #[test]
-fn a_set_point_that_comes_late_leaves_the_one_before_until_then() {
+fn late_set_point_keeps_previous() {
     let fault = "[[fault]]\nkind = \"late_frames\"\nframes = \"set_points\"\ndelay_ms = 0.5\nstart_s = 0.001";
-    let (mut faults, _) = at_work(fault);
+    let (mut faults, _) = host_faults(fault);
     let at = |position: f64| SetPoint::Position { now: Motion { position, ..Motion::default() }, ahead: None };
     let received: Vec<f64> =
         (0..30).map(|k| faults.receive(1e-4 * f64::from(k), k as u64, at(f64::from(k))).motion().position).collect();
@@ -119,8 +119,8 @@ fn a_set_point_that_comes_late_leaves_the_one_before_until_then() {
 }
 
 #[test]
-fn torque_is_biased_and_cut_off_as_stated() {
-    let (faults, _) = at_work(
+fn torque_bias_and_saturation_values() {
+    let (faults, _) = host_faults(
         "[[fault]]\nkind = \"torque_bias\"\nratio = 0.05\ntorque_N_m = 0.1\n\
          [[fault]]\nkind = \"torque_saturation\"\ntorque_N_m = 1.5\nstart_s = 1",
     );
@@ -129,20 +129,20 @@ fn torque_is_biased_and_cut_off_as_stated() {
 }
 
 #[test]
-fn grown_backlash_and_a_broken_tooth_reach_the_teeth_and_end() {
+fn tooth_faults_begin_and_end() {
     let fault = "[[fault]]\nkind = \"grown_backlash\"\nhalf_backlash_um = 90\nstart_s = 1\nend_s = 2\n\
                  [[fault]]\nkind = \"broken_tooth\"\nstiffness_ratio = 0.5";
-    let (mut faults, case) = at_work(fault);
+    let (mut faults, case) = host_faults(fault);
     let mut plant = plant(PlantName::Reference, &case.truth.parameters, &case.train, Vec::new(), 1).expect("a plant");
     let mut joint = plant.joint().clone();
-    faults.wear(0.5, &joint, plant.joint_model().as_mut());
-    assert_eq!(faults.half_backlash_now(), 40e-6);
+    faults.update_teeth(0.5, &joint, plant.joint_model().as_mut());
+    assert_eq!(faults.current_half_backlash(), 40e-6);
     assert_eq!(faults.teeth.soft, [true, false, false], "the broken tooth starts at planet 0");
-    faults.wear(1.5, &joint, plant.joint_model().as_mut());
-    assert!((faults.half_backlash_now() - 90e-6).abs() < 1e-18);
-    // A third of a turn of the sun against the carrier later it is at the next planet.
+    faults.update_teeth(1.5, &joint, plant.joint_model().as_mut());
+    assert!((faults.current_half_backlash() - 90e-6).abs() < 1e-18);
+    // A third of a turn of the sun against the carrier later the tooth meets the next planet.
     joint.motor_angle = joint.carrier_angle + TAU / 3.0 + 0.01;
-    faults.wear(2.5, &joint, plant.joint_model().as_mut());
-    assert_eq!(faults.half_backlash_now(), 40e-6);
+    faults.update_teeth(2.5, &joint, plant.joint_model().as_mut());
+    assert_eq!(faults.current_half_backlash(), 40e-6);
     assert_eq!(faults.teeth.soft, [false, true, false]);
 }

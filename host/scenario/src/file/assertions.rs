@@ -1,4 +1,4 @@
-//! Reads `[assert]`: named figures and their bounds, over all seeds the worst unless the file says otherwise.
+//! Reads `[assert]`: named figures and their bounds, by default for the worst seed.
 
 use std::ops::Range;
 
@@ -9,39 +9,39 @@ use toml::de::DeValue;
 use super::motion::MotionProfile;
 use super::section::{Section, number};
 use crate::controller::ControllerName;
-use crate::metrics::{NamedMetric, Relation, Requirement as Scope, names, others};
+use crate::metrics::{NamedMetric, Relation, Requirement as Scope, assertable_names, rival_names};
 use report::checks::Bound;
 
 /// One bound on one figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assertion {
-    /// The figure.
+    /// Figure.
     pub metric: NamedMetric,
-    /// Its name as typed.
+    /// Name of the figure as typed.
     pub name: String,
-    /// How the seeds' figures are aggregated.
+    /// Aggregate over the seeds.
     pub aggregate: Aggregate,
-    /// What it must keep to.
+    /// Bound.
     pub bound: Bound,
 }
 
-/// How the seeds' figures are aggregated.
+/// Aggregate of a figure over the seeds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Aggregate {
-    /// The one farthest on the wrong side of the bound.
+    /// Figure farthest on the wrong side of the bound.
     Worst,
-    /// The middle one.
+    /// Median.
     Median,
-    /// Their mean.
+    /// Mean.
     Mean,
-    /// The worst once this part of the seeds [%], the worst of them, has been left out.
+    /// Worst figure after this share of the worst seeds has been left out [%].
     AllBut(f64),
 }
 
-/// The key of a part of the seeds that need not keep to a bound.
+/// Key of the share of the seeds that may exceed a bound.
 const ALL_BUT: &str = "all_but_percent";
 
-/// The properties of a test that decide which figures it has.
+/// Properties of a test that decide which figures it has.
 pub(super) struct TestTraits<'a> {
     pub controller: Option<ControllerName>,
     pub gains: bool,
@@ -49,7 +49,7 @@ pub(super) struct TestTraits<'a> {
 }
 
 impl Aggregate {
-    /// Its words.
+    /// Name of the aggregate.
     pub fn word(self) -> String {
         match self {
             Self::Worst => "worst".to_owned(),
@@ -61,7 +61,7 @@ impl Aggregate {
 }
 
 impl Assertion {
-    /// The controller that must run beside for this.
+    /// Controller that must run for comparison, if the figure needs one.
     pub fn rival(&self) -> Option<ControllerName> {
         match self.metric.relation {
             Relation::Own => None,
@@ -77,11 +77,11 @@ pub(super) fn read(top: &Section<'_>, test: &TestTraits<'_>) -> Vec<Assertion> {
     for (name, value) in table {
         let word = name.get_ref().as_ref();
         let Some(metric) = NamedMetric::find(word, test.gains) else {
-            let help = likely(word, test.gains);
+            let help = suggestion(word, test.gains);
             top.notes.error(name.span(), format!("there is no figure `{word}` in this test"), help);
             continue;
         };
-        if let Some((message, help)) = out_of_place(&metric, test) {
+        if let Some((message, help)) = unavailable(&metric, test) {
             top.notes.error(name.span(), format!("`{word}` {message}"), help);
             continue;
         }
@@ -104,7 +104,7 @@ pub(super) fn read(top: &Section<'_>, test: &TestTraits<'_>) -> Vec<Assertion> {
             }
             DeValue::Table(inner) => {
                 if inner.is_empty() {
-                    let message = format!("nothing is asked of `{word}`");
+                    let message = format!("`{word}` has no bound");
                     top.notes.error(value.span(), message, "write a bound, such as { median = \">= 3\" }");
                 }
                 for (aggregate, value) in inner {
@@ -127,21 +127,21 @@ pub(super) fn read(top: &Section<'_>, test: &TestTraits<'_>) -> Vec<Assertion> {
     assertions
 }
 
-/// What a name that is none was probably meant to be.
-fn likely(word: &str, impedance: bool) -> String {
+/// Help for an unknown figure: the most likely name.
+fn suggestion(word: &str, impedance: bool) -> String {
     let whom = word.split_once("_gain_over_").or(word.split_once("_ratio_to_"));
-    let words: Vec<&str> = others(impedance).into_iter().map(|(word, _)| word).collect();
+    let words: Vec<&str> = rival_names(impedance).into_iter().map(|(word, _)| word).collect();
     if let Some((_, whom)) = whom.filter(|(_, whom)| !words.contains(whom)) {
         return format!("`{whom}` does not run in this test; there are {}", words.join(", "));
     }
-    match joint_file::nearest(word, names(impedance).iter().map(String::as_str)) {
+    match joint_file::nearest(word, assertable_names(impedance).iter().map(String::as_str)) {
         Some(near) => format!("did you mean `{near}`?"),
         None => "docs/reference/hil-file.md lists all figures, such as rms_mrad and rms_gain_over_pid".to_owned(),
     }
 }
 
-/// Why a figure cannot be had in a test.
-fn out_of_place(metric: &NamedMetric, test: &TestTraits<'_>) -> Option<(&'static str, &'static str)> {
+/// Reason and help if a figure is not available in a test.
+fn unavailable(metric: &NamedMetric, test: &TestTraits<'_>) -> Option<(&'static str, &'static str)> {
     match metric.base().requires {
         Scope::Motion => None,
         Scope::Impedance => {
@@ -162,11 +162,11 @@ fn out_of_place(metric: &NamedMetric, test: &TestTraits<'_>) -> Option<(&'static
     }
 }
 
-/// `>= 8`, `<= 0.8` or `== 0`.
+/// Parses `>= 8`, `<= 0.8` or `== 0`.
 fn bound(value: &Spanned<DeValue<'_>>, notes: &Notes<'_>) -> Option<Bound> {
     const HELP: &str = "write a bound as a string, such as \">= 8\", \"<= 0.8\" or \"== 0\"";
     let refuse = |span: Range<usize>| -> Option<Bound> {
-        notes.error(span, "this is no bound", HELP);
+        notes.error(span, "not a bound", HELP);
         None
     };
     let DeValue::String(text) = value.get_ref() else { return refuse(value.span()) };

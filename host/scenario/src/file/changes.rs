@@ -1,5 +1,5 @@
-//! Reads `[known]` and `[plant]`: keys of the joint file with new values, in nested sections or with dots. Values are
-//! checked by the joint-file reader once the joint is known.
+//! Reads `[known]` and `[plant]`: keys of the joint file with new values, in nested sections or with dots. The
+//! joint-file reader checks the values once the joint is known.
 
 use std::ops::Range;
 
@@ -10,27 +10,27 @@ use toml::de::{DeTable, DeValue};
 use super::section::{Section, number};
 use crate::random::NumberOrRange;
 
-/// One value of the joint that is changed.
+/// One changed value of the joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Change {
-    /// Full path of the key, by which its draws are named.
+    /// Full path of the key, which names its random draws.
     pub key: String,
-    /// The key as typed: the joint's kind of gears says what a short one names.
+    /// Key as typed; the joint's kind of gears decides the meaning of a short key.
     pub typed: String,
-    /// What it becomes.
+    /// New value.
     pub value: NewValue,
-    /// Where it stands in the test file.
+    /// Place in the test file.
     pub span: Range<usize>,
 }
 
-/// The new value of a key.
+/// New value of a key.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NewValue {
-    /// A number in the key's unit.
+    /// Number in the key's unit.
     Number(NumberOrRange),
-    /// What it was, times a number.
+    /// Old value times a number.
     Times(NumberOrRange),
-    /// As typed: a word, or a list for the planets.
+    /// Text as typed: a word, or a list for the planets.
     Text(String),
 }
 
@@ -56,7 +56,7 @@ fn collect(table: &DeTable<'_>, path: &str, section: &str, notes: &Notes<'_>, ch
         if let DeValue::Table(inner) = value.get_ref() {
             if let Some(times) = inner.get("times").filter(|_| inner.len() == 1) {
                 if let Some(factor) = quantity(times, notes) {
-                    push(&path, NewValue::Times(factor), name.span(), section, notes, changes);
+                    add_change(&path, NewValue::Times(factor), name.span(), section, notes, changes);
                 }
             } else {
                 collect(inner, &path, section, notes, changes);
@@ -69,7 +69,7 @@ fn collect(table: &DeTable<'_>, path: &str, section: &str, notes: &Notes<'_>, ch
                 None
             }
             DeValue::String(text) => Some(NewValue::Text(text.to_string())),
-            // Two numbers are a range; planets are three at least.
+            // Two numbers are a range; there are at least three planets.
             DeValue::Array(list) if list.len() != 2 => {
                 let numbers: Option<Vec<String>> =
                     list.iter().map(|item| number(item).map(|number| number.to_string())).collect();
@@ -78,12 +78,19 @@ fn collect(table: &DeTable<'_>, path: &str, section: &str, notes: &Notes<'_>, ch
             _ => quantity(value, notes).map(NewValue::Number),
         };
         if let Some(new) = new {
-            push(&path, new, name.span(), section, notes, changes);
+            add_change(&path, new, name.span(), section, notes, changes);
         }
     }
 }
 
-fn push(path: &str, value: NewValue, span: Range<usize>, section: &str, notes: &Notes<'_>, changes: &mut Vec<Change>) {
+fn add_change(
+    path: &str,
+    value: NewValue,
+    span: Range<usize>,
+    section: &str,
+    notes: &Notes<'_>,
+    changes: &mut Vec<Change>,
+) {
     match joint_file::full_key(path) {
         Err(refused) => notes.error(span, refused.message, refused.help),
         Ok(key) => {
@@ -98,7 +105,7 @@ fn push(path: &str, value: NewValue, span: Range<usize>, section: &str, notes: &
     }
 }
 
-/// A number, or [least, greatest].
+/// Parses a number, or [least, greatest].
 fn quantity(value: &Spanned<DeValue<'_>>, notes: &Notes<'_>) -> Option<NumberOrRange> {
     const HELP: &str = "write a number, [least, greatest] for one drawn by every seed, or { times = 1.3 }";
     let found = match value.get_ref() {

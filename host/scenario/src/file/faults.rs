@@ -1,16 +1,16 @@
-//! Reads `[[fault]]`: what goes wrong, from when to when, in SI.
+//! Reads `[[fault]]`: kind, start and end of a fault, in SI.
 
 use model_core::virtual_joint::fault::{self, FaultKind, Shaft, Units};
 
-use super::motion::refuse_others;
+use super::motion::reject_unused_keys;
 use super::section::Section;
 use crate::random::RandomStream;
 
 /// One fault of a test.
 pub type Fault = fault::Fault<Si>;
 
-/// The units of faults in test files and on the host: seconds, radians, counts of the encoder, shares of one, N m. A fault has no
-/// seed yet: every run gives it one.
+/// Units of faults in test files and on the host: seconds, radians, counts of the encoder, shares of one, N m. The seed
+/// of a fault is set in each run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Si;
 
@@ -24,47 +24,47 @@ impl Units for Si {
     type Other = HostOnlyFault;
 }
 
-/// How far an encoder is off: the sum of both.
+/// Offset of an encoder: the sum of both fields.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Offset {
-    /// In its own counts.
+    /// Offset in the encoder's counts.
     pub counts: f64,
-    /// As an angle [rad].
+    /// Offset as an angle [rad].
     pub angle: f64,
 }
 
-/// Faults that only the host can apply: a board stores no past readings, receives no set-points over a line, and has its
-/// teeth as tables in flash.
+/// Faults that only the host can apply: a board stores no past readings, receives no set-points over a line, and has
+/// its teeth as tables in flash.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum HostOnlyFault {
-    /// Readings of an encoder come late [s].
+    /// Readings of an encoder arrive late [s].
     LateReadings(Shaft, f64),
-    /// A part of the set-points never comes.
+    /// Share of the set-points that are lost.
     LostSetPoints(f64),
-    /// Set-points come late [s].
+    /// Set-points arrive late [s].
     LateSetPoints(f64),
-    /// Every mesh has this half-backlash [m].
+    /// Half-backlash of every mesh [m].
     GrownBacklash(f64),
-    /// One tooth of the sun has only a part of its stiffness.
+    /// Remaining share of the stiffness of one tooth of the sun.
     BrokenTooth(f64),
 }
 
-/// Where frames come from.
+/// Source of frames.
 #[derive(Clone, Copy)]
-enum Frames {
+enum FrameSource {
     Readings(Shaft),
     SetPoints,
 }
 
-/// Times are whole control periods up to rounding [s].
-const ROUNDING: f64 = 1e-9;
+/// Tolerance for times that are whole control periods [s].
+const TIME_TOLERANCE: f64 = 1e-9;
 
-/// Whether a fault acts at a time [s].
-pub fn fault_is_on(fault: &Fault, time: f64) -> bool {
-    (fault.start - ROUNDING..fault.end - ROUNDING).contains(&time)
+/// Returns true if a fault is active at a time [s].
+pub fn fault_is_active(fault: &Fault, time: f64) -> bool {
+    (fault.start - TIME_TOLERANCE..fault.end - TIME_TOLERANCE).contains(&time)
 }
 
-/// The word of a fault in test files.
+/// Word of a fault in test files.
 pub fn fault_word(fault: &Fault) -> &'static str {
     match fault.kind {
         FaultKind::Frozen(_) => "encoder_frozen",
@@ -81,7 +81,7 @@ pub fn fault_word(fault: &Fault) -> &'static str {
     }
 }
 
-/// The random numbers of a fault at a place in the file, for a seed.
+/// Random stream of a fault at a place in the file, for a seed.
 pub fn fault_stream(fault: &Fault, place: usize, seed: u64) -> RandomStream {
     RandomStream::new(seed, &format!("fault {place} {}", fault_word(fault)))
 }
@@ -102,16 +102,16 @@ pub(super) fn read(section: &Section<'_>) -> Option<Fault> {
         "grown_backlash" => &["half_backlash_um"],
         _ => &["stiffness_ratio"],
     };
-    let taken: Vec<&str> = ["kind", "start_s", "end_s"].into_iter().chain(own.iter().copied()).collect();
-    refuse_others(section, &taken, word);
+    let known_keys: Vec<&str> = ["kind", "start_s", "end_s"].into_iter().chain(own.iter().copied()).collect();
+    reject_unused_keys(section, &known_keys, word);
     let encoder = match section.word("encoder") {
         Some("motor") => Shaft::Motor,
         _ => Shaft::Link,
     };
     let frames = match section.word("frames") {
-        Some("motor") => Frames::Readings(Shaft::Motor),
-        Some("set_points") => Frames::SetPoints,
-        _ => Frames::Readings(Shaft::Link),
+        Some("motor") => FrameSource::Readings(Shaft::Motor),
+        Some("set_points") => FrameSource::SetPoints,
+        _ => FrameSource::Readings(Shaft::Link),
     };
     let needed = |name: &str| section.required(name, Section::number);
     let one_of = |names: [&str; 2]| {
@@ -137,22 +137,26 @@ pub(super) fn read(section: &Section<'_>) -> Option<Fault> {
             let limit = needed("torque_N_m")?;
             if limit < 0.0 {
                 let help = "write the most that the motor gives, to either side";
-                section.notes.error(section.place("torque_N_m"), format!("a limit of {limit} N m is none"), help);
+                section.notes.error(
+                    section.place("torque_N_m"),
+                    format!("the torque limit of {limit} N m is negative"),
+                    help,
+                );
             }
             FaultKind::Saturation(limit)
         }
         "lost_frames" => {
             let share = needed("share")?;
             match frames {
-                Frames::Readings(of) => FaultKind::LostReadings(of, share),
-                Frames::SetPoints => FaultKind::Other(HostOnlyFault::LostSetPoints(share)),
+                FrameSource::Readings(of) => FaultKind::LostReadings(of, share),
+                FrameSource::SetPoints => FaultKind::Other(HostOnlyFault::LostSetPoints(share)),
             }
         }
         "late_frames" => {
             let delay = needed("delay_ms")? / 1e3;
             FaultKind::Other(match frames {
-                Frames::Readings(of) => HostOnlyFault::LateReadings(of, delay),
-                Frames::SetPoints => HostOnlyFault::LateSetPoints(delay),
+                FrameSource::Readings(of) => HostOnlyFault::LateReadings(of, delay),
+                FrameSource::SetPoints => HostOnlyFault::LateSetPoints(delay),
             })
         }
         "grown_backlash" => FaultKind::Other(HostOnlyFault::GrownBacklash(needed("half_backlash_um")? / 1e6)),

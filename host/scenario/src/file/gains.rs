@@ -1,9 +1,9 @@
-//! Reads the impedance in `[controller]`, with the defaults of what the file leaves out.
+//! Reads the impedance in `[controller]`, with defaults for missing keys.
 
 use super::section::Section;
 use crate::controller::Gains;
 
-/// The impedance, where one is needed.
+/// Reads the impedance, if the test needs one.
 pub(super) fn read(controller: &Section<'_>, needed: bool) -> Option<Gains> {
     const KEYS: [&str; 4] = ["stiffness_N_m_per_rad", "damping_N_m_s_per_rad", "rate_Hz", "feed_forward_kg_m2"];
     if !needed {

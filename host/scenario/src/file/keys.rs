@@ -1,23 +1,23 @@
-//! Every key of a test file: its section, what it holds, its bound, and a hint for who got it wrong. The page
-//! docs/reference/hil-file.md lists every key in its tables.
+//! Every key of a test file: section, type, bounds, and a hint for error messages. The tables of
+//! docs/reference/hil-file.md list every key.
 
 use board::profile::LONGEST_RUN;
 use joint_file::Keys;
 
-/// What a key holds.
+/// Type of a key.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Kind {
     /// A string.
     Text,
-    /// One of these words.
+    /// One of the given words.
     Word(&'static [&'static str]),
-    /// A list of these words.
+    /// A list of the given words.
     Words(&'static [&'static str]),
-    /// true or false.
+    /// `true` or `false`.
     Flag,
-    /// A number with both ends allowed.
+    /// A number between both ends, inclusive.
     Number(f64, f64),
-    /// A number, or a range of which every seed draws one.
+    /// A number, or a range from which every seed draws.
     Range(f64, f64),
     /// A number of seeds, or a list of them.
     Seeds,
@@ -49,7 +49,7 @@ const fn key(section: &'static str, name: &'static str, kind: Kind, hint: &'stat
 
 use Kind::{Flag, Number, Range, Section, Sections, Seeds, Text, Word, Words};
 
-/// Controllers that a test may be about.
+/// Controllers that can be tested.
 pub(super) const MODES: &[&str] = &[
     "preview",
     "no_preview",
@@ -67,11 +67,11 @@ pub(super) const MODES: &[&str] = &[
     "link_side",
 ];
 
-/// Controllers that a test may be held against.
+/// Controllers that can run for comparison.
 pub(super) const RIVALS: &[&str] =
     &["motor_pid", "velocity_sign", "load_cascade", "output_integral", "motor_side", "link_spring", "link_side"];
 
-/// Motions.
+/// Kinds of motion.
 pub(super) const PROFILES: &[&str] = &[
     "T1",
     "T2",
@@ -211,7 +211,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_key_and_every_word_is_documented() {
+    fn every_key_and_word_is_documented() {
         let document = include_str!("../../../../docs/reference/hil-file.md");
         for key in KEYS {
             let row = format!("| `{}` |", key.name);

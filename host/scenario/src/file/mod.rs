@@ -1,8 +1,8 @@
-//! Test files, `hil/*.toml`: TOML with the unit in every key's name, read with all problems of a file found at once,
+//! Test files, `hil/*.toml`: TOML with the unit in every key's name. The reader reports all problems of a file at once,
 //! each with its place in the text.
 //!
-//! `keys` lists every key; `section` takes values out of a table by that list; `motion`, `faults`, `changes` and
-//! `assertions` each read one kind of section. docs/reference/hil-file.md tells all of it to users.
+//! `keys` lists every key; `section` reads values of a table by that list; `motion`, `faults`, `changes` and
+//! `assertions` each read one kind of section. docs/reference/hil-file.md is the user's page.
 
 mod assertions;
 mod changes;
@@ -14,8 +14,8 @@ mod section;
 
 pub use assertions::{Aggregate, Assertion};
 pub use changes::{Change, NewValue};
-pub use faults::{Fault, HostOnlyFault, Offset, Si, fault_is_on, fault_stream, fault_word};
-pub use motion::{DisturbanceSpec, MotionProfile, ProfileLoad, RealMotion, STEPS, Trajectory, Wave};
+pub use faults::{Fault, HostOnlyFault, Offset, Si, fault_is_active, fault_stream, fault_word};
+pub use motion::{DisturbanceSpec, MotionProfile, ProfileLoad, RealMotion, STEP_RATE, Trajectory, Wave};
 
 use joint_file::{Keys, Notes, Problem};
 use link::messages::Role;
@@ -27,63 +27,63 @@ use super::random::NumberOrRange;
 use keys::Kind;
 use section::Section;
 
-/// A test file that can be run, once its joint has been found.
+/// A valid test file; its joint has still to be loaded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TestFile {
-    /// What is tested; may be empty.
+    /// Title; may be empty.
     pub title: String,
     /// Preset or path of the joint file.
     pub joint: String,
-    /// Seeds.
+    /// Seeds of a short run.
     pub seeds: Vec<u64>,
     /// Seeds of a full run.
     pub full_seeds: Vec<u64>,
-    /// A run without any file has this one, on a board in this role.
+    /// Role of the board in which a run without a file includes this test, if any.
     pub short_run: Option<Role>,
-    /// Left out of a folder's run unless it is a full one.
+    /// Skips the file in a folder's run without `--full`.
     pub only_with_full: bool,
     /// Length of a run [s].
     pub duration: f64,
-    /// The file says so itself.
+    /// True if the file states the duration.
     pub states_duration: bool,
-    /// Figures are taken from here on [s].
+    /// Start of the figures [s].
     pub settle: f64,
-    /// On the clock [s].
+    /// Limit of the test's time on the clock [s].
     pub timeout: f64,
-    /// Changes of the joint that controllers know of.
+    /// Changes of the joint that controllers know.
     pub known: Vec<Change>,
-    /// Changes that they do not know of.
+    /// Changes of the joint that controllers do not know.
     pub plant: Vec<Change>,
-    /// What the link is asked to do.
+    /// Motion of the link.
     pub profile: MotionProfile,
-    /// Who controls.
+    /// Controller under test.
     pub controller: ControllerName,
-    /// Who runs beside.
+    /// Controllers that run for comparison.
     pub rivals: Vec<ControllerName>,
-    /// Bandwidth of all of them [rad/s]; what is good for the nominal joint if the file asks for none.
+    /// Bandwidth of all controllers [rad/s]; `None` is the default of the nominal joint.
     pub bandwidth: Option<f64>,
-    /// Most that the teeth shall pass on [N m]; `None` is what the motor gives.
+    /// Limit of the torque through the teeth [N m]; `None` is the motor's torque.
     pub peak_torque: Option<f64>,
-    /// Guessed over true half-backlash; `None` is wrong by half, one way or the other by the seed.
+    /// Guessed over true half-backlash; `None` is wrong by half, with the sign of the seed.
     pub width_guess: Option<NumberOrRange>,
-    /// Whether the observer has the output encoder.
+    /// False hides the output encoder from the observer.
     pub output_encoder: bool,
-    /// The run is made twice, the second time from what was learnt in the first.
+    /// Runs each seed twice; the second run starts from the memory of the first.
     pub from_memory: bool,
     /// Impedance set-points in place of positions.
     pub gains: Option<Gains>,
-    /// Torques on the link beside the profile's.
+    /// Torques on the link besides the profile's.
     pub disturbances: Vec<DisturbanceSpec>,
-    /// What goes wrong.
+    /// Injected faults.
     pub faults: Vec<Fault>,
-    /// What must hold.
+    /// Bounds on figures.
     pub assertions: Vec<Assertion>,
 }
 
-/// Time on the clock that a test may take by default [s].
-const TIMEOUT: f64 = 600.0;
+/// Default limit of a test's time on the clock [s].
+const DEFAULT_TIMEOUT: f64 = 600.0;
 
-/// Whether a text is meant as a test file rather than as a joint file. What is no TOML is told apart by its headers.
+/// Returns true for the text of a test file, false for a joint file. If the text is not TOML, its headers decide.
 pub fn is_test_file(text: &str) -> bool {
     const OF_JOINTS: [&str; 4] = ["geometry", "bodies", "mesh", "rated_output_torque_N_m"];
     match DeTable::parse(text) {
@@ -94,12 +94,12 @@ pub fn is_test_file(text: &str) -> bool {
     }
 }
 
-/// Reads the text of a test file. On failure gives every problem in the order of the text.
+/// Reads the text of a test file; on failure returns every problem in the order of the text.
 pub fn read(text: &str) -> Result<TestFile, Vec<Problem>> {
     let notes = Notes::new(text);
     let (table, syntax) = DeTable::parse_recoverable(text);
     syntax.iter().take(1).for_each(|error| notes.syntax(error));
-    // What was recovered from broken syntax would be blamed for what the parser dropped.
+    // After a syntax error the recovered table would lack keys that the parser dropped, and be blamed for it.
     let file = if syntax.is_empty() { read_table(table.get_ref(), &notes) } else { None };
     let (problems, _) = notes.into_parts();
     file.filter(|_| problems.is_empty()).ok_or(problems)
@@ -110,7 +110,7 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
     let profile = match table.get("profile") {
         Some(value) if matches!(value.get_ref(), DeValue::String(_)) => {
             let kind = Kind::find("profile", "kind").and_then(|key| top.word_of(value, key));
-            kind.map(MotionProfile::of_kind)
+            kind.map(MotionProfile::default_of_kind)
         }
         _ => match top.table("profile") {
             Some((span, table)) => motion::read(&Section::new("profile", span, table, notes)),
@@ -136,9 +136,9 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
     let bare = matches!(mode, Some("none" | "locked" | "off"));
     let gains = gains::read(
         &controller,
-        (impedance_profile && bare) || mode.is_some_and(|mode| ControllerName::of_word(mode, false).wants_gains()),
+        (impedance_profile && bare) || mode.is_some_and(|mode| ControllerName::from_word(mode, false).wants_gains()),
     );
-    let name = mode.map(|mode| ControllerName::of_word(mode, gains.is_some()));
+    let name = mode.map(|mode| ControllerName::from_word(mode, gains.is_some()));
     let rivals = if controller.has("rivals") {
         controller.words("rivals")
     } else if name == Some(ControllerName::Probe) {
@@ -149,7 +149,7 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
         Some(vec!["motor_pid", "output_integral"])
     };
     let mut rivals: Vec<ControllerName> =
-        rivals?.into_iter().map(|word| ControllerName::of_word(word, gains.is_some())).collect();
+        rivals?.into_iter().map(|word| ControllerName::from_word(word, gains.is_some())).collect();
     for rival in &rivals {
         if rival.wants_gains() != gains.is_some() {
             let help = match gains {
@@ -159,8 +159,8 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
             notes.error(controller.place("rivals"), format!("{} cannot run beside this", rival.word()), help);
         }
     }
-    // The same law twice shows nothing, unless a bound asks for it.
-    rivals.retain(|rival| name.is_none_or(|name| !rival.is_the_same_as(name)));
+    // Two runs of one control law are redundant unless a bound asks for both.
+    rivals.retain(|rival| name.is_none_or(|name| !rival.has_same_law(name)));
     let about = assertions::TestTraits { controller: name, gains: gains.is_some(), profile: profile.as_ref() };
     let assertions = assertions::read(&top, &about);
     for rival in assertions.iter().filter_map(Assertion::rival) {
@@ -181,16 +181,16 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
     let duration = top.or("duration_s", Section::number, profile.duration.max(settle + 1.0))?;
     if settle >= duration {
         let help = "raise `duration_s`, or lower `settle_s`: figures are taken between the two";
-        notes.error(top.place("settle_s"), format!("nothing is left of {duration} s after {settle} s"), help);
+        notes.error(top.place("settle_s"), format!("settling for {settle} s leaves no part of {duration} s"), help);
     }
-    // How long a recorded motion is says its file, unless this one does.
+    // A recorded motion has the length of its file unless the test file states a duration.
     if top.has("duration_s") || !matches!(profile.trajectory, Trajectory::File(_)) {
-        refuse_late(disturbance_sections.iter().chain(&fault_sections), duration);
+        reject_late(disturbance_sections.iter().chain(&fault_sections), duration);
     }
     let from_memory = controller.or("from_memory", Section::flag, false)?;
     if let (true, Some(name)) = (from_memory, name.filter(|name| !name.is_compensation())) {
         let help = "write mode = \"preview\", \"no_preview\" or \"impedance\", or leave it out";
-        notes.error(controller.place("from_memory"), format!("{} learns nothing", name.word()), help);
+        notes.error(controller.place("from_memory"), format!("{} does not learn", name.word()), help);
     }
     Some(TestFile {
         title: top.or("title", Section::text, String::new())?,
@@ -201,7 +201,7 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
             _ => Some(Role::Observer),
         },
         only_with_full: top.or("only_with_full", Section::flag, false)?,
-        timeout: top.or("timeout_s", Section::number, TIMEOUT)?,
+        timeout: top.or("timeout_s", Section::number, DEFAULT_TIMEOUT)?,
         bandwidth: controller.or("bandwidth_rad_per_s", |section, name| section.number(name).map(Some), None)?,
         peak_torque: controller.or("peak_torque_N_m", |section, name| section.number(name).map(Some), None)?,
         width_guess: controller.or("width_guess_ratio", |section, name| section.range(name).map(Some), None)?,
@@ -224,8 +224,8 @@ fn read_table(table: &DeTable<'_>, notes: &Notes<'_>) -> Option<TestFile> {
     })
 }
 
-/// Complains about what begins when the run is over.
-fn refuse_late<'s>(sections: impl Iterator<Item = &'s Section<'s>>, duration: f64) {
+/// Rejects disturbances and faults that begin after the run.
+fn reject_late<'s>(sections: impl Iterator<Item = &'s Section<'s>>, duration: f64) {
     for section in sections {
         let start = section.table.get("start_s").and_then(section::number);
         if start.is_some_and(|start| start >= duration) {

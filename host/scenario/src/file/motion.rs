@@ -1,5 +1,5 @@
-//! Reads `[profile]` and `[[disturbance]]`: what the link is asked to do and what pushes it meanwhile. Standard motions
-//! scale with the joint's rated torque, so that any joint may run them.
+//! Reads `[profile]` and `[[disturbance]]`: motion of the link and torques on it. Standard motions scale with the
+//! joint's rated torque, so that any joint can run them.
 
 use toml::Spanned;
 
@@ -9,26 +9,26 @@ use super::section::Section;
 /// A reference motion with its load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionProfile {
-    /// Its word.
+    /// Kind, as in the file.
     pub kind: &'static str,
-    /// The desired position of the link over time.
+    /// Desired position of the link over time.
     pub trajectory: Trajectory,
-    /// The load on the link.
+    /// Load on the link.
     pub load: ProfileLoad,
-    /// Dry friction of the link over the rated output torque, in place of the joint's.
+    /// Dry friction of the link over the rated output torque, in place of the joint's [-].
     pub friction: Option<f64>,
-    /// Weight of the link over the rated output torque, in place of the joint's.
+    /// Weight of the link over the rated output torque, in place of the joint's [-].
     pub gravity: Option<f64>,
-    /// Length of a run by default [s].
+    /// Default length of a run [s].
     pub duration: f64,
-    /// Time for learning by default [s].
+    /// Default time for the estimation of parameters [s].
     pub settle: f64,
 }
 
-/// The desired position of the link over time.
+/// Desired position of the link over time.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Trajectory {
-    /// Amplitude [rad] times a sine [Hz].
+    /// Amplitude [rad] and frequency [Hz] of a sine.
     Sine(f64, f64),
     /// Standard deviation [rad] and highest frequency [Hz].
     Random(f64, f64),
@@ -36,28 +36,28 @@ pub enum Trajectory {
     Steps(f64, f64, f64),
     /// Amplitude [rad] and steps a second [Hz] of a leg's joint.
     Walking(f64, f64),
-    /// At an angle [rad].
+    /// Constant angle [rad].
     Hold(f64),
-    /// As a CSV file has it.
+    /// Path of a CSV file.
     File(String),
-    /// Any that the motor can follow: each seed draws one, and a load with it.
+    /// Random motion and load for each seed, within the motor's torque.
     Any,
-    /// One of the motions of real joints: the stated one, or each seed's own.
+    /// A motion of real joints: the stated one, or one for each seed.
     Real(Option<RealMotion>),
 }
 
-/// One of the motions that joints of robots make.
+/// Motion of a robot's joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RealMotion {
     /// Sine of 1 Hz.
     Sine,
     /// Five sines up to 2 Hz.
     Random,
-    /// Moves to and fro on least-jerk paths.
+    /// Moves back and forth on least-jerk paths.
     Moves,
     /// Sine of 0.15 Hz.
     SlowSine,
-    /// Hold under a load that walks.
+    /// Hold under a foot's load.
     DisturbedHold,
     /// Path of a leg's joint with the load of its foot.
     Walking,
@@ -66,76 +66,76 @@ pub enum RealMotion {
 }
 
 impl RealMotion {
-    /// All of them, in the order of their words and in which successive seeds draw them.
+    /// All motions, in the order of their words; successive seeds take successive motions.
     pub const ALL: [Self; 7] =
         [Self::Sine, Self::Random, Self::Moves, Self::SlowSine, Self::DisturbedHold, Self::Walking, Self::Rest];
 
-    /// Motion of a seed: seven successive seeds have all seven.
-    pub fn of_seed(seed: u64) -> Self {
+    /// Motion of a seed; seven successive seeds cover all seven.
+    pub fn for_seed(seed: u64) -> Self {
         Self::ALL[(seed % 7) as usize]
     }
 
-    fn of_word(word: &str) -> Option<Self> {
+    fn from_word(word: &str) -> Option<Self> {
         REAL_MOTIONS.iter().position(|known| *known == word).map(|index| Self::ALL[index])
     }
 }
 
-/// The load on the link as part of the profile; a torque that is not given scales with the rated one.
+/// Load on the link as part of the profile; without a stated value the torque scales with the rated torque.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ProfileLoad {
-    /// Nothing.
+    /// No load.
     None,
-    /// To and fro: torque [N m], frequency [Hz].
+    /// Periodic load: torque [N m], frequency [Hz].
     Wave(Wave, Option<f64>, f64),
-    /// One push when the figures begin: torque [N m], length [s].
+    /// One push at the start of the figures: torque [N m], length [s].
     Kick(Option<f64>, f64),
-    /// A push each second, to and fro: torque [N m], length [s].
+    /// A push each second with alternating sign: torque [N m], length [s].
     Impacts(Option<f64>, f64),
-    /// Load of a foot in each step, whose path is a [`Trajectory::Walking`] of this frequency: torque [N m], frequency [Hz].
+    /// Load of a foot in each step, for a [`Trajectory::Walking`] of equal frequency: torque [N m], frequency [Hz].
     Stance(Option<f64>, f64),
-    /// Slowly to and fro: torque [N m], frequency [Hz].
+    /// Slow alternating load: torque [N m], frequency [Hz].
     Slow(Option<f64>, f64),
 }
 
 /// Waveform of a periodic load.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Wave {
-    /// Smoothly.
+    /// Sine.
     Sine,
-    /// At once.
+    /// Steps without a ramp.
     Square,
-    /// As under a foot that is set down: within 20 ms.
+    /// Ramps of 20 ms, as under a foot that is set down.
     Walk,
 }
 
-/// A disturbance torque on the link, as given in the file.
+/// A disturbance torque on the link, as stated in the file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DisturbanceSpec {
     /// `step`, `pulse` or `sine`.
     pub kind: &'static str,
-    /// [s].
+    /// Start [s].
     pub start: f64,
-    /// Of a pulse [s].
+    /// Length of a pulse [s].
     pub length: f64,
-    /// Braking [N m].
+    /// Torque, positive if it brakes [N m].
     pub torque: f64,
-    /// Of a sine [Hz].
+    /// Frequency of a sine [Hz].
     pub frequency: f64,
 }
 
-/// T1 has a load friction of this part of the rated torque: 1 N m for Q1.
-const FRICTION: f64 = 1.0 / 12.0;
-/// T2b has a weight of this part of the rated torque: 6 N m for Q1.
-const WEIGHT: f64 = 0.5;
-/// Steps of a walking robot a second [Hz].
-pub const STEPS: f64 = 1.2;
-/// A brake that holds the link does so with this part of the rated torque: no probe comes near it.
-const BRAKE: f64 = 4.0;
+/// Load friction of T1 over the rated torque [-]: 1 N m for Q1.
+const T1_FRICTION_RATIO: f64 = 1.0 / 12.0;
+/// Weight of T2b over the rated torque [-]: 6 N m for Q1.
+const T2B_WEIGHT_RATIO: f64 = 0.5;
+/// Step rate of a walking robot [Hz].
+pub const STEP_RATE: f64 = 1.2;
+/// Torque of a brake that holds the link, over the rated torque [-]; no probe reaches it.
+const BRAKE_TORQUE_RATIO: f64 = 4.0;
 
 impl MotionProfile {
-    /// A motion as it is without further keys.
-    pub fn of_kind(kind: &'static str) -> Self {
-        let usual = Self {
+    /// Default motion of a kind.
+    pub fn default_of_kind(kind: &'static str) -> Self {
+        let default = Self {
             kind,
             trajectory: Trajectory::Hold(0.0),
             load: ProfileLoad::None,
@@ -145,33 +145,39 @@ impl MotionProfile {
             settle: 2.0,
         };
         match kind {
-            "T1" => Self { trajectory: Trajectory::Sine(0.5, 0.2), friction: Some(FRICTION), duration: 12.0, ..usual },
-            "T2" | "impedance" => Self { trajectory: Trajectory::Sine(0.5, 1.0), ..usual }.timed(1.0),
-            "T2b" => Self { trajectory: Trajectory::Sine(0.3, 1.5), gravity: Some(WEIGHT), ..usual }.timed(1.5),
-            "sine" => Self { trajectory: Trajectory::Sine(0.5, 1.0), gravity: None, ..usual }.timed(1.0),
-            "random" => Self { trajectory: Trajectory::Random(0.2, 2.0), ..usual },
-            "steps" => Self { trajectory: Trajectory::Steps(0.05, 0.06, 0.3), ..usual },
-            "disturbed_hold" => Self { load: ProfileLoad::Wave(Wave::Sine, None, 1.0), ..usual },
-            "free_hold" => Self { load: ProfileLoad::Kick(None, 0.02), duration: 14.0, settle: 2.1, ..usual },
-            "impact" => Self { load: ProfileLoad::Impacts(None, 0.01), ..usual },
-            "hysteresis" => Self { load: ProfileLoad::Slow(None, 0.25), duration: 9.0, settle: 1.0, ..usual },
-            "held" => Self { friction: Some(BRAKE), duration: 1.0, settle: 0.0, ..usual },
-            "walking" => Self {
-                trajectory: Trajectory::Walking(0.3, STEPS),
-                load: ProfileLoad::Stance(None, STEPS),
-                gravity: None,
-                ..usual
+            "T1" => Self {
+                trajectory: Trajectory::Sine(0.5, 0.2),
+                friction: Some(T1_FRICTION_RATIO),
+                duration: 12.0,
+                ..default
             },
-            "real" => Self { trajectory: Trajectory::Real(None), gravity: None, ..usual },
-            // What the file says of the link stays.
-            "any" => Self { trajectory: Trajectory::Any, gravity: None, ..usual },
-            // A recording brings its own load, or none.
-            _ => Self { gravity: None, ..usual },
+            "T2" | "impedance" => Self { trajectory: Trajectory::Sine(0.5, 1.0), ..default }.with_four_periods(1.0),
+            "T2b" => Self { trajectory: Trajectory::Sine(0.3, 1.5), gravity: Some(T2B_WEIGHT_RATIO), ..default }
+                .with_four_periods(1.5),
+            "sine" => Self { trajectory: Trajectory::Sine(0.5, 1.0), gravity: None, ..default }.with_four_periods(1.0),
+            "random" => Self { trajectory: Trajectory::Random(0.2, 2.0), ..default },
+            "steps" => Self { trajectory: Trajectory::Steps(0.05, 0.06, 0.3), ..default },
+            "disturbed_hold" => Self { load: ProfileLoad::Wave(Wave::Sine, None, 1.0), ..default },
+            "free_hold" => Self { load: ProfileLoad::Kick(None, 0.02), duration: 14.0, settle: 2.1, ..default },
+            "impact" => Self { load: ProfileLoad::Impacts(None, 0.01), ..default },
+            "hysteresis" => Self { load: ProfileLoad::Slow(None, 0.25), duration: 9.0, settle: 1.0, ..default },
+            "held" => Self { friction: Some(BRAKE_TORQUE_RATIO), duration: 1.0, settle: 0.0, ..default },
+            "walking" => Self {
+                trajectory: Trajectory::Walking(0.3, STEP_RATE),
+                load: ProfileLoad::Stance(None, STEP_RATE),
+                gravity: None,
+                ..default
+            },
+            "real" => Self { trajectory: Trajectory::Real(None), gravity: None, ..default },
+            // The link keeps its stated friction and weight.
+            "any" => Self { trajectory: Trajectory::Any, gravity: None, ..default },
+            // A recording has its own load, or none.
+            _ => Self { gravity: None, ..default },
         }
     }
 
-    /// The numbers of a motion that was drawn and of its load.
-    pub fn numbers(&self) -> Vec<(&'static str, f64)> {
+    /// Numbers of a random motion and its load, by key.
+    pub fn drawn_values(&self) -> Vec<(&'static str, f64)> {
         let mut numbers = match self.trajectory {
             Trajectory::Sine(amplitude, frequency) => {
                 vec![("profile.sine.amplitude_rad", amplitude), ("profile.sine.frequency_Hz", frequency)]
@@ -203,8 +209,8 @@ impl MotionProfile {
         numbers
     }
 
-    /// Four periods to be judged by, after as much as learning takes.
-    fn timed(self, frequency: f64) -> Self {
+    /// Sets four periods for the figures, after the time for the estimation of parameters.
+    fn with_four_periods(self, frequency: f64) -> Self {
         Self { duration: 2.0 + 4.0 / frequency, settle: 1.0 + (1.0 / frequency).max(1.0), ..self }
     }
 }
@@ -212,11 +218,11 @@ impl MotionProfile {
 /// Reads `[profile]`.
 pub(super) fn read(section: &Section<'_>) -> Option<MotionProfile> {
     let kind = section.required("kind", Section::word)?;
-    let mut profile = MotionProfile::of_kind(kind);
-    let mut taken = vec!["kind"];
+    let mut profile = MotionProfile::default_of_kind(kind);
+    let mut known_keys = vec!["kind"];
     {
         let mut set = |name: &'static str, value: &mut f64| {
-            taken.push(name);
+            known_keys.push(name);
             *value = section.number(name).unwrap_or(*value);
         };
         match &mut profile.trajectory {
@@ -252,8 +258,8 @@ pub(super) fn read(section: &Section<'_>) -> Option<MotionProfile> {
         *frequency = *steps;
     }
     if let Trajectory::Real(motion) = &mut profile.trajectory {
-        taken.push("motion");
-        *motion = section.word("motion").and_then(RealMotion::of_word);
+        known_keys.push("motion");
+        *motion = section.word("motion").and_then(RealMotion::from_word);
     }
     if let ProfileLoad::Wave(_, torque, _)
     | ProfileLoad::Stance(torque, _)
@@ -261,11 +267,11 @@ pub(super) fn read(section: &Section<'_>) -> Option<MotionProfile> {
     | ProfileLoad::Kick(torque, _)
     | ProfileLoad::Impacts(torque, _) = &mut profile.load
     {
-        taken.push("torque_N_m");
+        known_keys.push("torque_N_m");
         *torque = section.number("torque_N_m");
     }
     if let ProfileLoad::Wave(wave, ..) = &mut profile.load {
-        taken.push("wave");
+        known_keys.push("wave");
         *wave = match section.word("wave") {
             Some("square") => Wave::Square,
             Some("walk") => Wave::Walk,
@@ -275,27 +281,27 @@ pub(super) fn read(section: &Section<'_>) -> Option<MotionProfile> {
     if let Trajectory::Sine(_, frequency) = profile.trajectory
         && section.has("frequency_Hz")
     {
-        profile = profile.timed(frequency);
+        profile = profile.with_four_periods(frequency);
     }
     if kind == "csv" {
-        taken.push("file");
+        known_keys.push("file");
         profile.trajectory = Trajectory::File(section.required("file", Section::text)?);
     }
-    refuse_others(section, &taken, kind);
+    reject_unused_keys(section, &known_keys, kind);
     Some(profile)
 }
 
 /// Reads one `[[disturbance]]`.
 pub(super) fn read_disturbance(section: &Section<'_>) -> Option<DisturbanceSpec> {
     let kind = section.required("kind", Section::word)?;
-    let taken: &[&str] = match kind {
+    let known_keys: &[&str] = match kind {
         "step" => &["kind", "start_s", "torque_N_m"],
         "pulse" => &["kind", "start_s", "length_s", "torque_N_m"],
         _ => &["kind", "torque_N_m", "frequency_Hz"],
     };
-    taken.iter().filter(|name| !section.has(name)).for_each(|name| section.missing(name));
-    refuse_others(section, taken, kind);
-    let number = |name: &str| if taken.contains(&name) { section.number(name) } else { Some(0.0) };
+    known_keys.iter().filter(|name| !section.has(name)).for_each(|name| section.missing(name));
+    reject_unused_keys(section, known_keys, kind);
+    let number = |name: &str| if known_keys.contains(&name) { section.number(name) } else { Some(0.0) };
     Some(DisturbanceSpec {
         kind,
         start: number("start_s")?,
@@ -305,14 +311,14 @@ pub(super) fn read_disturbance(section: &Section<'_>) -> Option<DisturbanceSpec>
     })
 }
 
-/// Complains about keys that exist but mean nothing to this kind.
-pub(super) fn refuse_others(section: &Section<'_>, taken: &[&str], kind: &str) {
+/// Rejects keys that have no meaning for this kind.
+pub(super) fn reject_unused_keys(section: &Section<'_>, known_keys: &[&str], kind: &str) {
     for (name, value) in section.table {
         let name = name.get_ref().as_ref();
-        if !taken.contains(&name) && super::keys::KEYS.iter().any(|key| key.name == name) {
-            let known: Vec<String> = taken.iter().map(|name| format!("`{name}`")).collect();
+        if !known_keys.contains(&name) && super::keys::KEYS.iter().any(|key| key.name == name) {
+            let known: Vec<String> = known_keys.iter().map(|name| format!("`{name}`")).collect();
             let help = format!("kind \"{kind}\" has {}", known.join(", "));
-            section.notes.error(Spanned::span(value), format!("`{name}` means nothing to \"{kind}\""), help);
+            section.notes.error(Spanned::span(value), format!("`{name}` has no effect on \"{kind}\""), help);
         }
     }
 }

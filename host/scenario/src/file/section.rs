@@ -1,4 +1,4 @@
-//! Takes values out of one table of a test file by the list of keys: right type, finite, within bounds.
+//! Reads values of one table of a test file by the list of keys: right type, finite, within bounds.
 
 use std::ops::{Deref, Range};
 
@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 use super::keys::{Key, Kind};
 use crate::random::NumberOrRange;
 use report::number::TYPED;
-use report::seeds::MOST_SEEDS;
+use report::seeds::MAX_SEEDS;
 
 /// One table of the file.
 pub(super) struct Section<'a>(Table<'a, Kind>);
@@ -23,12 +23,12 @@ impl<'a> Deref for Section<'a> {
 }
 
 impl<'a> Section<'a> {
-    /// A table; reports unknown keys as problems.
+    /// Table of the given schema; reports unknown keys as problems.
     pub fn new(schema: &'static str, header: Range<usize>, table: &'a DeTable<'a>, notes: &'a Notes<'a>) -> Self {
         Self(Table::new(schema.to_owned(), schema, header, table, notes))
     }
 
-    /// The table `name`; `None` if it is absent or no table.
+    /// Sub-table `name`; `None` if it is absent or no table.
     pub fn table(&self, name: &str) -> Option<(Range<usize>, &'a DeTable<'a>)> {
         let (value, key) = self.value(name)?;
         match value.get_ref() {
@@ -37,7 +37,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// The tables `[[name]]`.
+    /// Sub-tables `[[name]]`.
     pub fn tables(&self, name: &'static str) -> Vec<Section<'a>> {
         let Some((value, key)) = self.value(name) else { return Vec::new() };
         let DeValue::Array(list) = value.get_ref() else {
@@ -53,7 +53,7 @@ impl<'a> Section<'a> {
             .collect()
     }
 
-    /// A value that must be there.
+    /// Reads a required value; reports a missing key.
     pub fn required<T>(&self, name: &str, read: impl Fn(&Self, &str) -> Option<T>) -> Option<T> {
         if !self.has(name) {
             self.missing(name);
@@ -61,7 +61,7 @@ impl<'a> Section<'a> {
         read(self, name)
     }
 
-    /// A value, or what stands for it if the key is left out; `None` only if it is there and wrong.
+    /// Reads a value, or returns the default for a missing key; `None` only if the value is wrong.
     pub fn or<T>(&self, name: &str, read: impl Fn(&Self, &str) -> Option<T>, default: T) -> Option<T> {
         if self.has(name) { read(self, name) } else { Some(default) }
     }
@@ -88,18 +88,18 @@ impl<'a> Section<'a> {
         self.word_of(value, key)
     }
 
-    /// A list of such words.
+    /// List of words that the key may hold.
     pub fn words(&self, name: &str) -> Option<Vec<&'static str>> {
         let (value, key) = self.value(name)?;
         let words: Option<Vec<&'static str>> = match value.get_ref() {
             DeValue::Array(list) => list.iter().map(|item| self.word_of(item, key)).collect(),
             _ => self.wrong_type(value, key, "a list of names"),
         };
-        words.iter().for_each(|words| self.refuse_twice(value, words));
+        words.iter().for_each(|words| self.reject_repeats(value, words));
         words
     }
 
-    /// A word in place of a section, or a key of a section.
+    /// Word in place of a section, or word of a key.
     pub fn word_of(&self, value: &Spanned<DeValue<'_>>, key: &Key) -> Option<&'static str> {
         let (Kind::Word(words) | Kind::Words(words)) = key.kind else { return None };
         let DeValue::String(text) = value.get_ref() else { return self.wrong_type(value, key, "a word in quotes") };
@@ -109,7 +109,11 @@ impl<'a> Section<'a> {
                 Some(near) => format!("did you mean \"{near}\"? known: {}", words.join(", ")),
                 None => format!("{}: {}", key.hint, words.join(", ")),
             };
-            self.notes.error(value.span(), format!("\"{text}\" is no {} of {}", key.name, self.called()), help);
+            self.notes.error(
+                value.span(),
+                format!("\"{text}\" is not a valid {} of {}", key.name, self.called()),
+                help,
+            );
         }
         found
     }
@@ -119,7 +123,7 @@ impl<'a> Section<'a> {
         self.bounded(value, key)
     }
 
-    /// A number, or a range of which every seed draws one.
+    /// A number, or a range from which every seed draws.
     pub fn range(&self, name: &str) -> Option<NumberOrRange> {
         let (value, key) = self.value(name)?;
         let DeValue::Array(list) = value.get_ref() else { return self.bounded(value, key).map(NumberOrRange::Exactly) };
@@ -133,13 +137,13 @@ impl<'a> Section<'a> {
             [low, high] if low <= high => Some(NumberOrRange::Between(*low, *high)),
             _ => {
                 let help = "write [least, greatest]: every seed draws one value between them";
-                self.notes.error(value.span(), "this is no range", help);
+                self.notes.error(value.span(), "not a range", help);
                 None
             }
         }
     }
 
-    /// So many seeds from 1 on, or a list.
+    /// Seeds from 1 up to a count, or a list of seeds.
     pub fn seeds(&self, name: &str) -> Option<Vec<u64>> {
         let (value, key) = self.value(name)?;
         let seed = |value: &Spanned<DeValue<'_>>| match value.get_ref() {
@@ -150,8 +154,8 @@ impl<'a> Section<'a> {
             DeValue::Array(list) => list.iter().map(seed).collect::<Option<Vec<u64>>>(),
             _ => {
                 let count = seed(value);
-                if let Some(count) = count.filter(|count| *count > MOST_SEEDS) {
-                    let message = format!("`{name}`: {count} seeds are too many, {MOST_SEEDS} are the most");
+                if let Some(count) = count.filter(|count| *count > MAX_SEEDS) {
+                    let message = format!("`{name}`: {count} seeds are too many, {MAX_SEEDS} are the most");
                     self.notes.error(value.span(), message, key.hint);
                     return None;
                 }
@@ -161,13 +165,13 @@ impl<'a> Section<'a> {
         let good = seeds.filter(|seeds| !seeds.is_empty());
         match &good {
             None => self.notes.error(value.span(), format!("`{name}` names no seeds"), key.hint),
-            Some(seeds) => self.refuse_twice(value, seeds),
+            Some(seeds) => self.reject_repeats(value, seeds),
         }
         good
     }
 
-    /// Complains about what a list names more than once.
-    fn refuse_twice<T: PartialEq + std::fmt::Display>(&self, value: &Spanned<DeValue<'_>>, list: &[T]) {
+    /// Rejects a list with repeated items.
+    fn reject_repeats<T: PartialEq + std::fmt::Display>(&self, value: &Spanned<DeValue<'_>>, list: &[T]) {
         if let Some((_, twice)) = list.iter().enumerate().find(|(place, item)| list[..*place].contains(item)) {
             self.notes.error(value.span(), format!("{twice} is named twice"), "name it once: the same runs once");
         }
@@ -188,7 +192,7 @@ impl<'a> Section<'a> {
     }
 }
 
-/// A number as TOML has it; NaN is none.
+/// Parses a TOML number; rejects NaN.
 pub(super) fn number(value: &Spanned<DeValue<'_>>) -> Option<f64> {
     let parsed = match value.get_ref() {
         DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|n| n as f64),

@@ -1,5 +1,5 @@
-//! The faults of a test file as a board that runs the whole loop receives them: applied between its virtual joint and
-//! its controller, in control periods and fractions of a turn. Faults that no board can apply are refused by name.
+//! Faults of a test file in the form for a board that runs the whole loop: applied between its virtual joint and its
+//! controller, in control periods and fractions of a turn. Faults that a board cannot apply are rejected by name.
 
 use std::f64::consts::TAU;
 
@@ -12,18 +12,18 @@ use crate::file;
 use crate::file::{HostOnlyFault, Offset, fault_stream, fault_word};
 use report::failure::{Failure, Outcome};
 
-/// Whole turns, and whole shares.
-const WHOLE: f64 = 4_294_967_296.0;
+/// 2^32: one whole turn, or a share of one.
+const WHOLE_TURN: f64 = 4_294_967_296.0;
 
-/// Most faults of a test: two places are taken by the zeros of the encoders.
-const MOST_OF_A_TEST: usize = MOST_FAULTS - 2;
+/// Largest number of faults of a test: two entries of the board hold the encoder zeros.
+const MAX_TEST_FAULTS: usize = MOST_FAULTS - 2;
 
-/// Counts in a turn of both encoders of a joint, motor first.
-pub fn turns_of_encoders(around: &Surroundings) -> [i64; 2] {
+/// Counts per turn of both encoders of a joint, motor first.
+pub fn counts_per_turn(around: &Surroundings) -> [i64; 2] {
     [around.motor_encoder, around.output_encoder].map(|encoder| encoder.counts_per_turn.cast_signed())
 }
 
-/// Least angle in whole 2^-32 turns at which an encoder has gone on by so many counts: with another one added to it, the encoder
+/// Least angle [2^-32 turns] at which an encoder has advanced by a number of counts. Added to another such angle it
 /// reads the sum of both counts, since a count is 2^8 units at least.
 fn angle_of_counts(counts: i64, turn: i64) -> i64 {
     let (counts, turn) = (i128::from(counts), i128::from(turn));
@@ -36,8 +36,8 @@ pub fn mounting_angles(zeros: &EncoderZeros, turns: [i64; 2]) -> [u32; 2] {
     [0, 1].map(|encoder| angle_of_counts(counts[encoder], turns[encoder]) as u32)
 }
 
-/// The zeros of both encoders as faults that last for the whole run: a board's virtual joint reads zero at angle zero.
-pub fn mounting(zeros: &EncoderZeros, turns: [i64; 2]) -> [Fault<FixedPoint<f32>>; 2] {
+/// Zeros of both encoders as faults for the whole run: a board's virtual joint reads zero at angle zero.
+pub fn mounting_faults(zeros: &EncoderZeros, turns: [i64; 2]) -> [Fault<FixedPoint<f32>>; 2] {
     let angles = mounting_angles(zeros, turns);
     [(Shaft::Motor, 0), (Shaft::Link, 1)].map(|(shaft, encoder)| {
         let kind = FaultKind::Offset(shaft, angles[encoder].cast_signed());
@@ -45,15 +45,15 @@ pub fn mounting(zeros: &EncoderZeros, turns: [i64; 2]) -> [Fault<FixedPoint<f32>
     })
 }
 
-/// The faults of a test file as whole numbers, for a seed and encoders of so many counts in a turn: motor, link.
-pub fn quantised(
+/// Faults of a test file as whole numbers, for a seed and the counts per turn of motor and link.
+pub fn quantised_faults(
     faults: &[file::Fault],
     rate: f64,
     turns: [i64; 2],
     seed: u64,
 ) -> Outcome<Vec<Fault<FixedPoint<f32>>>> {
-    if faults.len() > MOST_OF_A_TEST {
-        let message = format!("a board that runs the whole loop takes {MOST_OF_A_TEST} faults, not {}", faults.len());
+    if faults.len() > MAX_TEST_FAULTS {
+        let message = format!("a board that runs the whole loop takes {MAX_TEST_FAULTS} faults, not {}", faults.len());
         return Err(Failure::new(message).with_help("run it with --role observer, or with --host"));
     }
     let one = |(index, fault): (usize, &file::Fault)| {
@@ -62,28 +62,28 @@ pub fn quantised(
             start: periods(fault.start),
             end: periods(fault.end),
             seed: fault_stream(fault, index, seed).word(),
-            kind: kind(fault, turns)?,
+            kind: quantised_kind(fault, turns)?,
         })
     };
     faults.iter().enumerate().map(one).collect()
 }
 
-fn kind(fault: &file::Fault, turns: [i64; 2]) -> Outcome<FaultKind<FixedPoint<f32>>> {
+fn quantised_kind(fault: &file::Fault, turns: [i64; 2]) -> Outcome<FaultKind<FixedPoint<f32>>> {
     let turn = |of: Shaft| turns[usize::from(of == Shaft::Link)];
-    // A whole turn more or less is none.
+    // Whole turns cancel.
     let angle = |parts: f64| parts.round() as i64;
-    let share = |share: f64| (share * WHOLE).min(WHOLE - 1.0) as u32;
+    let share = |share: f64| (share * WHOLE_TURN).min(WHOLE_TURN - 1.0) as u32;
     Ok(match fault.kind {
         FaultKind::Frozen(of) => FaultKind::Frozen(of),
         FaultKind::Offset(of, Offset { counts, angle: offset }) => {
             let counts = angle_of_counts(counts.round() as i64, turn(of));
-            FaultKind::Offset(of, counts.wrapping_add(angle(offset / TAU * WHOLE)) as u32 as i32)
+            FaultKind::Offset(of, counts.wrapping_add(angle(offset / TAU * WHOLE_TURN)) as u32 as i32)
         }
         FaultKind::Noise(of, counts) => {
-            FaultKind::Noise(of, (counts * WHOLE / turn(of) as f64).min(WHOLE - 1.0) as u32)
+            FaultKind::Noise(of, (counts * WHOLE_TURN / turn(of) as f64).min(WHOLE_TURN - 1.0) as u32)
         }
         FaultKind::MissingCounts(of, part) => FaultKind::MissingCounts(of, share(part)),
-        FaultKind::Eccentric(of, error) => FaultKind::Eccentric(of, (error / TAU * WHOLE) as f32),
+        FaultKind::Eccentric(of, error) => FaultKind::Eccentric(of, (error / TAU * WHOLE_TURN) as f32),
         FaultKind::LostReadings(of, part) => FaultKind::LostReadings(of, share(part)),
         FaultKind::TorqueBias(ratio, torque) => FaultKind::TorqueBias(ratio as f32, torque as f32),
         FaultKind::Saturation(torque) => FaultKind::Saturation(torque as f32),
@@ -123,11 +123,11 @@ mod tests {
         design_surroundings(&file.parameters, &file.surroundings, &tables).expect("surroundings")
     }
 
-    /// What is seen of a shaft that turns by so many counts a period, and the torque given for one of 1 N m.
+    /// Samples of a shaft that advances by `step` counts a period, and the motor's torque for a command of 1 N m.
     fn run(kind: FaultKind<Si>, periods: u32, step: u32) -> Vec<(Samples<f32>, f32)> {
         let fault = Fault { start: 0.01, end: 0.5, seed: (), kind };
         let mut faults = Faults::default();
-        assert!(quantised(&[fault], RATE, TURNS, 5).expect("possible").iter().all(|fault| faults.add(*fault)));
+        assert!(quantised_faults(&[fault], RATE, TURNS, 5).expect("possible").iter().all(|fault| faults.add(*fault)));
         let table = table();
         let one = |period: u32| {
             let reading = |bits: u32| Reading { counts: (period * step) % (1 << bits), time: period };
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frozen_encoder_stands_still_until_it_comes_back() {
+    fn frozen_encoder_holds_until_end() {
         let seen = run(FaultKind::Frozen(Shaft::Link), 6000, 3);
         let counts = |period: usize| seen[period].0.output.expect("a reading").counts;
         assert_eq!([counts(99), counts(100), counts(4999), counts(5000)], [297, 300, 300, 15_000]);
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_slip_scatter_and_get_lost_as_far_as_was_asked_for() {
+    fn offset_noise_missing_counts_values() {
         let output = Shaft::Link;
         let off = |seen: &[(Samples<f32>, f32)], step: u32| -> Vec<i32> {
             let beside = |(samples, period): (&(Samples<f32>, f32), u32)| {
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn readings_get_lost_and_the_motor_s_last_word_stands() {
+    fn lost_readings_hold_last_motor_reading() {
         let lost = run(FaultKind::LostReadings(Shaft::Link, 0.2), 5000, 3);
         let missing = lost.iter().filter(|(samples, _)| samples.output.is_none()).count();
         assert!((880..1080).contains(&missing), "{missing}");
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn a_motor_that_gives_another_torque_does_not_know_it() {
+    fn torque_fault_hidden_from_samples() {
         for (kind, given) in [(FaultKind::TorqueBias(0.05, 0.2), 1.25), (FaultKind::Saturation(0.4), 0.4)] {
             let seen = run(kind, 200, 3);
             assert_eq!([seen[99].1, seen[100].1], [1.0, given]);
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_board_can_do_is_refused_with_the_mend() {
+    fn host_only_fault_rejected_with_remedy() {
         for kind in [
             HostOnlyFault::LateReadings(Shaft::Link, 0.001),
             HostOnlyFault::LostSetPoints(0.1),
@@ -198,11 +198,11 @@ mod tests {
         ] {
             let fault = Fault { start: 0.0, end: 1.0, seed: (), kind: FaultKind::Other(kind) };
             let name = format!("`{}` cannot be in a whole loop", fault_word(&fault));
-            let failure = quantised(&[fault], RATE, TURNS, 1).unwrap_err();
+            let failure = quantised_faults(&[fault], RATE, TURNS, 1).unwrap_err();
             assert!(failure.message().contains(&name) && failure.help().is_some(), "{failure}");
         }
         let kind = FaultKind::Frozen(Shaft::Motor);
-        let many = vec![Fault { start: 0.0, end: 1.0, seed: (), kind }; MOST_OF_A_TEST + 1];
-        assert!(quantised(&many, RATE, TURNS, 1).is_err());
+        let many = vec![Fault { start: 0.0, end: 1.0, seed: (), kind }; MAX_TEST_FAULTS + 1];
+        assert!(quantised_faults(&many, RATE, TURNS, 1).is_err());
     }
 }

@@ -1,8 +1,8 @@
-//! Tests whose controller runs on a board: images for what each seed's controller is told, a board for each run, and
-//! the same run on the host, which must agree in every bit. Rivals run on the host.
+//! Tests with the controller on a board: an image for each seed's nominal joint, a board for each run, and a twin run
+//! on the host that must agree in every bit. Rivals run on the host.
 //!
-//! `request` is the user's choice of boards, `runs` has a run for each role: in the role `observer` the board runs
-//! observer and compensation behind `port` and the plant stays on the host; in the role `loop` everything runs on the
+//! `request` is the user's choice of boards, `runs` has a run for each role. In the role `observer` the board runs
+//! observer and compensation behind `port`, and the plant stays on the host. In the role `loop` everything runs on the
 //! board along a `trajectory`, and the metrics are computed from its `twin`.
 
 mod faults;
@@ -20,7 +20,7 @@ use model_core::controller::design::{NominalPlant, control_source};
 pub use request::BoardRequest;
 use request::{check_request, check_test};
 
-use super::case::{Case, read_told};
+use super::case::{Case, read_controller_joint};
 use super::execution::RunSpec;
 use super::file::TestFile;
 use super::plant::PlantName;
@@ -41,25 +41,25 @@ use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
 use report::progress::Progress;
 
-/// A sample of the whole loop every so many periods; the digest covers every period.
+/// Control periods between samples of the whole loop; the digest covers every period.
 const DECIMATION: u16 = 100;
 
-/// Boards that can be built for and reached.
+/// Boards with toolchain and connection.
 pub struct Boards<'w> {
     request: BoardRequest<'w>,
     toolchain: Option<Toolchain>,
     version: String,
 }
 
-/// What a run needs of its case.
-struct Pair {
+/// Joints and settings of a run.
+struct RunJoints {
     texts: [String; 2],
     nominal: JointFile,
     truth: JointFile,
     control: Control,
 }
 
-/// Returns what the image of a test's controller is designed to, as its file asks for it.
+/// Control settings of the image of a test's controller.
 fn control(file: &TestFile, case: &Case) -> Outcome<Control> {
     Ok(Control {
         bandwidth: Some(case.bandwidth(file)?),
@@ -70,8 +70,7 @@ fn control(file: &TestFile, case: &Case) -> Outcome<Control> {
 }
 
 impl<'w> Boards<'w> {
-    /// Finds toolchain and emulator, so that what is missing is known before anything runs. Tests that no board can run
-    /// are taken out.
+    /// Finds toolchain and emulator before any run, and removes tests that no board can run.
     pub fn prepare(
         request: BoardRequest<'w>,
         suite: &mut Suite,
@@ -80,9 +79,9 @@ impl<'w> Boards<'w> {
     ) -> Outcome<Self> {
         check_request(&request, plant)?;
         suite.keep(|test| check_test(&request, test))?;
-        let say = |line: &str| progress.say(line);
+        let say = |line: &str| progress.print_message(line);
         let version = match request.port {
-            // Opened and closed again: that it is not there should be known before an image is built.
+            // Opens and closes the port, so that a missing port is reported before the build.
             Some(path) => Port::open(path, request.baud.unwrap_or(request.board.baud_rate())).map(|_| String::new())?,
             None => {
                 progress.stage("finding the emulator");
@@ -99,18 +98,18 @@ impl<'w> Boards<'w> {
         Ok(Self { request, toolchain, version })
     }
 
-    /// Whether each run can have a board of its own.
+    /// Returns true if each run can have a board of its own.
     pub fn are_emulated(&self) -> bool {
         self.request.port.is_none()
     }
 
-    /// Where controllers run, for the record.
+    /// Name of role and board, for the record.
     pub fn label(&self) -> String {
         let place = self.request.port.unwrap_or("emulated");
         format!("{} on {} ({place})", role_name(self.request.role), self.request.board.name())
     }
 
-    /// The arguments that ask for them again.
+    /// Command-line arguments that select these boards again.
     pub fn arguments(&self) -> String {
         let BoardRequest { role, port, baud, board, no_build, force, mode } = self.request;
         let mut arguments = format!("--role {}", role_name(role));
@@ -133,7 +132,7 @@ impl<'w> Boards<'w> {
         }
     }
 
-    /// Runs a case on a board and here; fails if they differ in any bit.
+    /// Runs a case on a board and on the host; fails if the runs differ in any bit.
     pub fn run(&self, test: &Test, case: &Case, seed: u64, spec: RunSpec) -> Result<(RunHistory, BoardRun), RunError> {
         let pair = self.pair(test, case)?;
         match self.request.role {
@@ -142,22 +141,22 @@ impl<'w> Boards<'w> {
         }
     }
 
-    fn pair(&self, test: &Test, case: &Case) -> Outcome<Pair> {
+    fn pair(&self, test: &Test, case: &Case) -> Outcome<RunJoints> {
         let nominal_text = case.nominal_text()?;
-        // Where only the controller is on the board, its image knows no other joint.
+        // In the role `observer` the image knows only the nominal joint.
         let truth_text =
             if self.request.role == Role::Loop { case.truth_text().to_owned() } else { nominal_text.clone() };
         let rate = case.nominal_surroundings.control_rate;
-        let (mut nominal, mut truth) = (read_told(&nominal_text)?, read_told(&truth_text)?);
+        let (mut nominal, mut truth) = (read_controller_joint(&nominal_text)?, read_controller_joint(&truth_text)?);
         [&mut nominal, &mut truth].into_iter().for_each(|joint| joint.surroundings.control_rate = rate);
         let control = Control { forced: self.request.force, ..control(&test.file, case)? };
-        Ok(Pair { texts: [truth_text, nominal_text], nominal, truth, control })
+        Ok(RunJoints { texts: [truth_text, nominal_text], nominal, truth, control })
     }
 
-    /// Builds the image, finds the board and starts the run.
-    fn session(&self, pair: &Pair) -> Outcome<(Session<'static>, String)> {
+    /// Builds the image, connects to the board and starts the run.
+    fn session(&self, pair: &RunJoints) -> Outcome<(Session<'static>, String)> {
         let request = &self.request;
-        // Before an image is built, and where none is: the board has its own.
+        // Checked before the build, and also if the board keeps its image.
         RateCheck::new(&pair.truth.parameters, request.board, request.role)
             .check_unless_forced(pair.control.rate, request.force)?;
         let image = || {
@@ -182,8 +181,8 @@ impl<'w> Boards<'w> {
         Ok((session, sha256))
     }
 
-    fn expected(&self, pair: &Pair, image: Option<&Image>) -> Outcome<Expected> {
-        let Pair { nominal, truth, control, .. } = pair;
+    fn expected(&self, pair: &RunJoints, image: Option<&Image>) -> Outcome<Expected> {
+        let RunJoints { nominal, truth, control, .. } = pair;
         let request = control.request();
         let board = self.request.board;
         let nominal = NominalPlant { joint: &nominal.parameters, surroundings: &nominal.surroundings, request };
@@ -244,7 +243,7 @@ mod tests {
 
     /// Seen to fail for `peak_torque_N_m` while the image did not get it.
     #[test]
-    fn image_and_twin_have_the_tables_of_every_controller_key() {
+    fn image_and_twin_tables_agree() {
         let text = joint_file::preset("q1").expect("a preset");
         let tables = |keys: &str| {
             let test = file::read(&format!("profile = \"T2\"\n[controller]\n{keys}")).expect("a good file");

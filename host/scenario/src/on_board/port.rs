@@ -1,5 +1,5 @@
-//! Observer and compensation on a board, one control period at a time over its line, in lockstep: every period gets its
-//! answer however slow the line is.
+//! Observer and compensation on a board, one control period at a time over its line, in lockstep: every period is
+//! answered, however slow the line.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -14,8 +14,8 @@ use crate::port::{Answer, ControllerPort, HostPort};
 use board::session::Session;
 use report::failure::{Failure, Outcome};
 
-/// A board that answers, and its twin here. The board's digest over all that it has answered so far, taken in the tick that
-/// made the answer, must be the twin's: then the twin's estimates are the board's, and need not come over the line.
+/// A board and its twin on the host. The board's digest over all answers so far, computed in the tick of each answer,
+/// must equal the twin's. The twin's estimates then equal the board's and need not be sent over the line.
 pub struct BoardPort<'d> {
     session: Rc<RefCell<Session<'static>>>,
     twin: HostPort<'d>,
@@ -24,7 +24,7 @@ pub struct BoardPort<'d> {
 }
 
 impl<'d> BoardPort<'d> {
-    /// A session whose run has begun and has done nothing yet.
+    /// Port for a session whose run has just begun.
     pub fn new(session: Rc<RefCell<Session<'static>>>, designed: &'d Designed) -> Self {
         let twin = HostPort::new(designed);
         Self { session, twin, tick: 0, digest: digest::START }
@@ -50,7 +50,7 @@ impl ControllerPort for BoardPort<'_> {
 }
 
 impl BoardPort<'_> {
-    /// The board's answer to an exchange, which must be the twin's own.
+    /// Sends an exchange to the board and compares its answer with the twin's.
     fn ask(&mut self, exchange: Exchange, answer: Answer) -> Outcome<Answer> {
         let answered = self.session.borrow_mut().exchange(exchange.without_estimates())?;
         self.digest = answer.digest(self.digest);
@@ -58,11 +58,8 @@ impl BoardPort<'_> {
         if answered.digest != self.digest || answered.shaped != own || answered.probed.map(Into::into) != answer.probed
         {
             let (there, here) = (answered.shaped.torque, own.torque);
-            let what = if there == here {
-                "what was estimated".to_owned()
-            } else {
-                format!("torque {there:e} there, {here:e} here")
-            };
+            let what =
+                if there == here { "estimates".to_owned() } else { format!("torque {there:e} there, {here:e} here") };
             return Err(Failure::check_failed(format!(
                 "board and host differ in control period {}: {what}",
                 self.tick

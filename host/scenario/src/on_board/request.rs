@@ -1,34 +1,34 @@
-//! Which boards tests shall run on and in which role, and what no board can run.
+//! Choice of boards and role for tests, and the tests that no board can run.
 
 use link::messages::{Role, RunMode};
 
-use super::faults::quantised;
+use super::faults::quantised_faults;
 use crate::controller::ControllerName;
 use crate::plant::PlantName;
 use crate::suite::Test;
 use board::device::board::Board;
 use report::failure::{Failure, Outcome};
 
-/// Which boards tests are to run on.
+/// Boards for the tests.
 #[derive(Debug, Clone, Copy)]
 pub struct BoardRequest<'w> {
-    /// What they do.
+    /// Role of the board.
     pub role: Role,
-    /// The port of a real one.
+    /// Port of a real board.
     pub port: Option<&'w str>,
-    /// Its speed [baud].
+    /// Baud rate.
     pub baud: Option<u32>,
-    /// What is behind it.
+    /// Board behind the port.
     pub board: &'w Board,
-    /// Its image is there already.
+    /// Uses the image that is already on the board.
     pub no_build: bool,
-    /// Its image is built and run although the board has no time for it.
+    /// Builds and runs an image even if the worst-case tick exceeds the period.
     pub force: bool,
-    /// Lockstep or real time, of a whole loop.
+    /// Pacing of a whole loop: lockstep or real time.
     pub mode: Option<RunMode>,
 }
 
-/// Refuses a request that no board can meet.
+/// Rejects a request that no board can meet.
 pub fn check_request(request: &BoardRequest<'_>, plant: PlantName) -> Outcome<()> {
     if request.role == Role::Loop && plant == PlantName::Reference {
         return Err(Failure::new("the f64 reference does not run on a board").with_help("leave --plant out"));
@@ -36,7 +36,7 @@ pub fn check_request(request: &BoardRequest<'_>, plant: PlantName) -> Outcome<()
     Ok(())
 }
 
-/// Refuses a test that such a board cannot run.
+/// Rejects a test that the board cannot run.
 pub fn check_test(request: &BoardRequest<'_>, test: &Test) -> Outcome<()> {
     let name = &test.name;
     if !test.file.controller.is_compensation() {
@@ -55,7 +55,7 @@ pub fn check_test(request: &BoardRequest<'_>, test: &Test) -> Outcome<()> {
             let help = "run it with --role observer --plant reference, or with --host --plant reference";
             return Err(Failure::new(message).with_help(help));
         }
-        quantised(&test.file.faults, 1.0, [1; 2], 0).map_err(|failure| failure.while_doing(name))?;
+        quantised_faults(&test.file.faults, 1.0, [1; 2], 0).map_err(|failure| failure.while_doing(name))?;
     }
     Ok(())
 }

@@ -1,14 +1,14 @@
-//! A run of each role on a board beside its twin here, which must be the same in every bit: exchanges in lockstep for
-//! observer and compensation, a motion in knots for the whole loop.
+//! Runs of both roles on a board beside the host's twin, equal in every bit: exchanges in lockstep for observer and
+//! compensation, a motion in knots for the whole loop.
 
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-use super::faults::{mounting, quantised, turns_of_encoders};
+use super::faults::{counts_per_turn, mounting_faults, quantised_faults};
 use super::port::BoardPort;
 use super::twin::{Twin, TwinResult};
-use super::{Boards, Pair};
+use super::{Boards, RunJoints};
 use crate::case::Case;
 use crate::execution::{RunSpec, execute_with};
 use crate::record::BoardRun;
@@ -18,7 +18,7 @@ use crate::suite::Test;
 use board::session::Session;
 use report::failure::Failure;
 
-/// A run on a board in lockstep may take this long, whatever the test's time on the clock.
+/// Limit of a run on a board in lockstep, independent of the test's time on the clock.
 const RUN_TIMEOUT: Duration = Duration::from_secs(4 * 3600);
 
 impl Boards<'_> {
@@ -28,7 +28,7 @@ impl Boards<'_> {
         case: &Case,
         seed: u64,
         spec: RunSpec,
-        pair: &Pair,
+        pair: &RunJoints,
     ) -> Result<(RunHistory, BoardRun), RunError> {
         let (session, image) = self.session(pair)?;
         let session = Rc::new(RefCell::new(session));
@@ -40,7 +40,7 @@ impl Boards<'_> {
             Ok(history) => history,
             Err(error) => {
                 session.abandon();
-                return Err(broken(error));
+                return Err(as_run_error(error));
             }
         };
         session.finish(u32::MAX)?;
@@ -53,13 +53,18 @@ impl Boards<'_> {
         test: &Test,
         case: &Case,
         seed: u64,
-        pair: &Pair,
+        pair: &RunJoints,
     ) -> Result<(RunHistory, BoardRun), RunError> {
         let designed = case.design(&test.file)?;
         let around = &case.truth.surroundings;
-        let turns = turns_of_encoders(around);
-        let mut faults = mounting(&case.zeros, turns).to_vec();
-        faults.extend(quantised(&test.file.faults, f64::from(case.nominal_surroundings.control_rate), turns, seed)?);
+        let turns = counts_per_turn(around);
+        let mut faults = mounting_faults(&case.zeros, turns).to_vec();
+        faults.extend(quantised_faults(
+            &test.file.faults,
+            f64::from(case.nominal_surroundings.control_rate),
+            turns,
+            seed,
+        )?);
         let (truth, board) = (&pair.truth, self.request.board);
         let twin = Twin { file: &test.file, case, designed: &designed, truth, board, faults: &faults };
         let TwinResult { knots, history, digests } = twin.run()?;
@@ -78,7 +83,7 @@ impl Boards<'_> {
             Ok(samples) => samples,
             Err(failure) => {
                 session.abandon();
-                return Err(broken(failure.into()));
+                return Err(as_run_error(failure.into()));
             }
         };
         session.finish(u32::MAX)?;
@@ -98,8 +103,8 @@ impl Boards<'_> {
     }
 }
 
-/// What a board did wrong is the failure of its test alone; what is wrong with the request or the machine ends them all.
-fn broken(error: RunError) -> RunError {
+/// A failure of the board fails only its test; a failure of the request or the machine ends all tests.
+fn as_run_error(error: RunError) -> RunError {
     match error {
         RunError::Refused(failure) if failure.exit_code() == Failure::check_failed("").exit_code() => {
             RunError::Broke(failure.message().to_owned())

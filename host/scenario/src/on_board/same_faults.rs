@@ -1,10 +1,10 @@
-//! A fault is the same fault on the host, where it comes between the f64 drive train and its controller, and on a board,
-//! where it comes between the virtual joint and its controller: every kind that both can apply, at either encoder,
-//! through both appliers over the same counts and torques.
+//! Faults act alike on the host, between the f64 drive train and its controller, and on a board, between the virtual
+//! joint and its controller. The test runs every kind that both can apply, at either encoder, through both
+//! implementations over the same counts and torques.
 //!
-//! The host rounds to whole counts, the board cuts off what is less than a count: where a fault shifts by parts of a count
-//! they may differ by one, and a noise has its mean half a count lower on the board. Their random numbers are their own:
-//! noise and lost readings are the same in their statistics.
+//! The host rounds to whole counts, the board truncates: a shift by fractions of a count may differ by one, and noise
+//! has its mean half a count lower on the board. The random numbers differ, so noise and lost readings agree only in
+//! their statistics.
 
 use std::f64::consts::TAU;
 
@@ -17,7 +17,7 @@ use model_core::virtual_joint::fault::{Fault, FaultKind, Shaft};
 use model_core::virtual_joint::faults::Faults;
 use reference::drive_train::Measurement;
 
-use super::faults::{quantised, turns_of_encoders};
+use super::faults::{counts_per_turn, quantised_faults};
 use crate::case::Case;
 use crate::faults::HostFaults;
 use crate::file;
@@ -25,44 +25,44 @@ use crate::file::{Offset, Si};
 
 /// Control periods of a run, half a second.
 const PERIODS: u32 = 5000;
-/// Faults act from here on [s]; the first whole control period behind it is 1001.
+/// Start of the faults [s]; the first whole control period after it is 1001.
 const START: f64 = 0.100_03;
-/// To here [s].
+/// End of the faults [s].
 const END: f64 = 0.4;
-/// In control periods.
-const ON: std::ops::Range<usize> = 1001..4000;
+/// Control periods with faults.
+const ACTIVE_PERIODS: std::ops::Range<usize> = 1001..4000;
 
-/// The data of one control period.
+/// Data of one control period.
 #[derive(Debug, Clone, Copy)]
 struct Period {
-    /// Counts of motor and link as they are, whole turns included.
+    /// True counts of motor and link, whole turns included.
     counts: [i64; 2],
-    /// What the host's controller reads: whole turns included, and when it was read.
+    /// Reading of the host's controller: counts with whole turns, and its period.
     host: [Option<(i64, u64)>; 2],
-    /// What the board's controller reads: within a turn, and when it was read.
+    /// Reading of the board's controller: counts within a turn, and its time.
     board: [Option<(u32, u32)>; 2],
-    /// What the motor gives on the host and on the board [N m].
+    /// Motor torque on the host and on the board [N m].
     torques: [f64; 2],
 }
 
-/// A joint with both appliers.
-struct Both {
+/// A joint with both implementations.
+struct FaultPair {
     case: Case,
     table: SurroundingsTable<f32>,
     turns: [i64; 2],
 }
 
-impl Both {
+impl FaultPair {
     fn of(joint: &str) -> Self {
         let test = file::read("profile = \"T2\"").expect("a good file");
         let case = Case::new(&test, joint, 1, None).expect("a case");
         let around = case.truth.surroundings;
         let tables: Tables<f32, 3> = design(&case.truth.parameters, around.control_rate).expect("tables");
         let table = design_surroundings(&case.truth.parameters, &around, &tables).expect("surroundings");
-        Self { case, table, turns: turns_of_encoders(&around) }
+        Self { case, table, turns: counts_per_turn(&around) }
     }
 
-    /// Joints with encoders of 2^14 and 2^17 counts, and with encoders whose counts are no power of two.
+    /// Joints with encoders of 2^14 and 2^17 counts, and with counts that are no power of two.
     fn all() -> [Self; 2] {
         let q1 = joint_file::preset("q1").expect("a preset");
         let lines =
@@ -72,13 +72,13 @@ impl Both {
         [Self::of(q1), Self::of(&lines)]
     }
 
-    /// Both encoders go over more than a turn, forth and back, and the motor is asked for all that it has, both ways.
+    /// Runs both encoders back and forth over more than a turn, with full torque commands of both signs.
     fn run(&self, kinds: &[FaultKind<Si>]) -> Vec<Period> {
         let faults: Vec<_> = kinds.iter().map(|kind| Fault { start: START, end: END, seed: (), kind: *kind }).collect();
         let rate = f64::from(self.case.truth.surroundings.control_rate);
         let mut host = HostFaults::new(&faults, 1, &self.case.truth.parameters, &self.case.train);
         let mut board = Faults::default();
-        let quantised = quantised(&faults, rate, self.turns, 1).expect("a board can do it");
+        let quantised = quantised_faults(&faults, rate, self.turns, 1).expect("a board can do it");
         assert!(quantised.iter().all(|fault| board.add(*fault)), "there is room");
         let one = |period: u32| {
             let wave = (TAU * f64::from(period) / 3700.0).sin();
@@ -102,11 +102,11 @@ impl Both {
         (0..PERIODS).map(one).collect()
     }
 
-    /// Counts of an encoder on the host and on the board beyond the true ones, in every period; the reading came in all.
-    fn beside(&self, run: &[Period], shaft: Shaft) -> Vec<[i64; 2]> {
+    /// Errors of an encoder's counts on the host and on the board in every period; every reading must have arrived.
+    fn count_errors(&self, run: &[Period], shaft: Shaft) -> Vec<[i64; 2]> {
         let of = usize::from(shaft == Shaft::Link);
         let turn = self.turns[of];
-        // Within half a turn to either side.
+        // Wraps to within half a turn.
         let near = |counts: i64| (counts + turn / 2).rem_euclid(turn) - turn / 2;
         let one = |period: &Period| {
             let (host, board) = (period.host[of].expect("a reading"), period.board[of].expect("a reading"));
@@ -124,14 +124,14 @@ fn other(shaft: Shaft) -> Shaft {
 }
 
 #[test]
-fn encoders_freeze_slip_lose_counts_and_run_out_of_true_alike_to_one_count() {
-    let all = Both::all();
+fn encoder_faults_agree_to_one_count() {
+    let all = FaultPair::all();
     for (both, shaft) in all.iter().flat_map(|both| SHAFTS.map(|shaft| (both, shaft))) {
         let of_counts = FaultKind::Offset(shaft, Offset { counts: -7.0, angle: 0.0 });
         let of_angle = FaultKind::Offset(shaft, Offset { counts: 3.0, angle: 20.3e-3 });
         let eccentric = FaultKind::Eccentric(shaft, 0.3_f64.to_radians());
         let missing = FaultKind::MissingCounts(shaft, 0.01);
-        // Most counts by which the two may differ, fewest that the fault moves at its worst.
+        // Largest difference between both [counts], and least effect of the fault at its worst [counts].
         let cases: [(&[FaultKind<Si>], i64, i64); 6] = [
             (&[FaultKind::Frozen(shaft)], 0, 1000),
             (&[of_counts], 0, 7),
@@ -142,44 +142,47 @@ fn encoders_freeze_slip_lose_counts_and_run_out_of_true_alike_to_one_count() {
         ];
         for (kinds, apart, moved) in cases {
             let run = both.run(kinds);
-            let beside = both.beside(&run, shaft);
-            for (period, [host, board]) in beside.iter().enumerate() {
+            let errors = both.count_errors(&run, shaft);
+            for (period, [host, board]) in errors.iter().enumerate() {
                 assert!((host - board).abs() <= apart, "{kinds:?}: {host} and {board} counts in period {period}");
-                assert!(period >= ON.start || (*host, *board) == (0, 0), "{kinds:?}: it has begun in period {period}");
+                assert!(
+                    period >= ACTIVE_PERIODS.start || (*host, *board) == (0, 0),
+                    "{kinds:?}: it has begun in period {period}"
+                );
             }
-            let most = beside[ON].iter().map(|[host, _]| host.abs()).max().expect("some");
+            let most = errors[ACTIVE_PERIODS].iter().map(|[host, _]| host.abs()).max().expect("some");
             assert!(most >= moved, "{kinds:?} moves {most} counts at most");
-            let left = beside[ON.end + 1][0];
+            let left = errors[ACTIVE_PERIODS.end + 1][0];
             assert!(kinds.contains(&missing) || left == 0, "{kinds:?} has not ended: {left} counts");
-            assert!(both.beside(&run, other(shaft)).iter().all(|beside| *beside == [0, 0]), "{kinds:?}");
+            assert!(both.count_errors(&run, other(shaft)).iter().all(|errors| *errors == [0, 0]), "{kinds:?}");
         }
     }
 }
 
 #[test]
-fn encoders_scatter_alike_in_their_deviation() {
-    let all = Both::all();
+fn encoder_noise_agrees_in_deviation() {
+    let all = FaultPair::all();
     for (both, shaft) in all.iter().flat_map(|both| SHAFTS.map(|shaft| (both, shaft))) {
-        let beside = both.beside(&both.run(&[FaultKind::Noise(shaft, 6.0)]), shaft);
+        let errors = both.count_errors(&both.run(&[FaultKind::Noise(shaft, 6.0)]), shaft);
         let statistics = |side: usize| {
-            let count = ON.len() as f64;
-            let mean = beside[ON].iter().map(|beside| beside[side] as f64).sum::<f64>() / count;
-            let square = beside[ON].iter().map(|beside| (beside[side] as f64 - mean).powi(2)).sum::<f64>();
+            let count = ACTIVE_PERIODS.len() as f64;
+            let mean = errors[ACTIVE_PERIODS].iter().map(|errors| errors[side] as f64).sum::<f64>() / count;
+            let square = errors[ACTIVE_PERIODS].iter().map(|errors| (errors[side] as f64 - mean).powi(2)).sum::<f64>();
             (mean, (square / count).sqrt())
         };
-        // Of so many readings a deviation is uncertain by 1.3 %, a mean by 0.11 counts: four times that.
+        // Standard error of a deviation 1.3 %, of a mean 0.11 counts: four times as much is allowed.
         let (host, board) = (statistics(0), statistics(1));
         assert!((host.1 / board.1 - 1.0).abs() < 0.08, "{shaft:?}: deviations of {} and {} counts", host.1, board.1);
         assert!((host.1 / 6.0 - 1.0).abs() < 0.055, "{shaft:?}: a deviation of {} counts", host.1);
         assert!((host.0 - board.0 - 0.5).abs() < 0.62, "{shaft:?}: means of {} and {} counts", host.0, board.0);
-        let quiet = |range: std::ops::Range<usize>| beside[range].iter().all(|beside| *beside == [0, 0]);
-        assert!(quiet(0..ON.start) && quiet(ON.end..beside.len()), "{shaft:?}");
+        let quiet = |range: std::ops::Range<usize>| errors[range].iter().all(|errors| *errors == [0, 0]);
+        assert!(quiet(0..ACTIVE_PERIODS.start) && quiet(ACTIVE_PERIODS.end..errors.len()), "{shaft:?}");
     }
 }
 
 #[test]
-fn readings_are_lost_alike_and_the_motor_s_last_one_stands() {
-    let all = Both::all();
+fn lost_readings_agree_in_share() {
+    let all = FaultPair::all();
     for (both, shaft) in all.iter().flat_map(|both| SHAFTS.map(|shaft| (both, shaft))) {
         let of = usize::from(shaft == Shaft::Link);
         let turn = both.turns[of];
@@ -192,7 +195,10 @@ fn readings_are_lost_alike_and_the_motor_s_last_one_stands() {
                 let host = period.host[of].map(|(counts, time)| (counts.rem_euclid(turn), time));
                 for (lost, reading) in lost.iter_mut().zip([host, board]) {
                     *lost += u32::from(!came(reading, number));
-                    assert!(came(reading, number) || ON.contains(&number), "{shaft:?}: lost in period {number}");
+                    assert!(
+                        came(reading, number) || ACTIVE_PERIODS.contains(&number),
+                        "{shaft:?}: lost in period {number}"
+                    );
                     assert!(shaft == Shaft::Link || reading.is_some(), "a motor's last word stands");
                     if let Some((counts, time)) = reading {
                         assert_eq!(counts, run[time as usize].counts[of].rem_euclid(turn), "{shaft:?} in {number}");
@@ -200,17 +206,20 @@ fn readings_are_lost_alike_and_the_motor_s_last_one_stands() {
                 }
                 assert!(share < 1.0 || host == board, "{shaft:?}: {host:?} and {board:?} in period {number}");
             }
-            // The standard deviation of the difference of two such numbers is 31: four times that.
+            // The standard deviation of the difference of two such counts is 31: four times as much is allowed.
             let apart = if share < 1.0 { 124 } else { 0 };
             assert!(lost[0].abs_diff(lost[1]) <= apart, "{shaft:?}: {lost:?} readings lost");
-            assert!(f64::from(lost[0].abs_diff((share * ON.len() as f64) as u32)) <= 88.0, "{shaft:?}: {lost:?}");
+            assert!(
+                f64::from(lost[0].abs_diff((share * ACTIVE_PERIODS.len() as f64) as u32)) <= 88.0,
+                "{shaft:?}: {lost:?}"
+            );
         }
     }
 }
 
 #[test]
-fn motors_give_the_same_wrong_torque() {
-    let [both, _] = Both::all();
+fn torque_faults_agree() {
+    let [both, _] = FaultPair::all();
     let (bias, limit) = (FaultKind::TorqueBias(0.05, -0.2), FaultKind::Saturation(1.5));
     for kinds in [vec![bias], vec![limit], vec![bias, limit], vec![limit, bias]] {
         let run = both.run(&kinds);
@@ -219,9 +228,15 @@ fn motors_give_the_same_wrong_torque() {
             let [host, board] = period.torques;
             // Three roundings of single precision at 2.5 N m.
             assert!((host - board).abs() < 1e-6, "{kinds:?}: {host} and {board} N m in period {number}");
-            assert!(ON.contains(&number) || host == command.torques[0], "{kinds:?} acts in period {number}");
+            assert!(
+                ACTIVE_PERIODS.contains(&number) || host == command.torques[0],
+                "{kinds:?} acts in period {number}"
+            );
         }
-        let wrong = run[ON].iter().zip(&commands[ON]).filter(|(run, command)| run.torques[0] != command.torques[0]);
+        let wrong = run[ACTIVE_PERIODS]
+            .iter()
+            .zip(&commands[ACTIVE_PERIODS])
+            .filter(|(run, command)| run.torques[0] != command.torques[0]);
         assert!(wrong.count() > 1000, "{kinds:?} does something");
     }
 }

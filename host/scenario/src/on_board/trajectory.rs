@@ -1,4 +1,4 @@
-//! A motion as a board that runs the whole loop receives it: quintic polynomials between knots that match position,
+//! Motion in the form for a board that runs the whole loop: quintic polynomials between knots that match position,
 //! speed and acceleration at both ends, or impedance set-points at their own rate, with the torque on the link.
 
 use std::f64::consts::TAU;
@@ -13,19 +13,19 @@ use crate::file::TestFile;
 use crate::port::command;
 use crate::set_point_source::SetPointSource;
 
-/// Length of a polynomial at most [s]: a motion of 20 Hz is met to a millionth.
-const SEGMENT: f64 = 5e-3;
+/// Largest length of a polynomial [s]: a motion of 20 Hz is matched to a millionth.
+const MAX_SEGMENT: f64 = 5e-3;
 
-/// The knots of a test on the observer's scale of the link, which is `zero` at the joint's angle zero [turns].
+/// Knots of a test on the observer's scale of the link, which reads `zero` at the joint's angle zero [turns].
 pub fn knots(file: &TestFile, case: &Case, designed: &Designed, zero: f64) -> Vec<Knot> {
     let rate = f64::from(case.nominal_surroundings.control_rate);
     let periods = (file.duration * rate).round() as u32;
-    let segment = file.gains.map_or(SEGMENT, |gains| 1.0 / gains.rate);
+    let segment = file.gains.map_or(MAX_SEGMENT, |gains| 1.0 / gains.rate);
     let every = (segment * rate).round().max(1.0) as u32;
     let mut set_points = SetPointSource::new(file, case, file.controller, Some(designed));
     let lead = f64::from(designed.compensation.crossing.lead);
     let rests = |tick: u32| {
-        let at = |time: f64| still(case.motion.at(time));
+        let at = |time: f64| is_at_rest(case.motion.at(time));
         let time = f64::from(tick) / rate;
         [at(time), file.controller == ControllerName::Preview && at(time + lead)]
     };
@@ -56,12 +56,12 @@ pub fn knots(file: &TestFile, case: &Case, designed: &Designed, zero: f64) -> Ve
     list
 }
 
-fn still(motion: Motion) -> bool {
+fn is_at_rest(motion: Motion) -> bool {
     motion.speed == 0.0 && motion.acceleration == 0.0
 }
 
-/// The tick that ends a stretch: where one of the motions comes to rest or still does for the last time, and after `every`
-/// periods at the latest. A polynomial over such a moment would begin by going back.
+/// Tick that ends a segment: where a motion comes to rest or leaves rest, at the latest after `every` periods. A
+/// polynomial across such a point would start in the wrong direction.
 fn end_of_segment(tick: u32, every: u32, rests: impl Fn(u32) -> [bool; 2]) -> u32 {
     let mut here = rests(tick + 1);
     let mut before = rests(tick);
@@ -75,7 +75,7 @@ fn end_of_segment(tick: u32, every: u32, rests: impl Fn(u32) -> [bool; 2]) -> u3
     tick + every
 }
 
-/// From one moment of a motion to another.
+/// Quintic polynomial between two states of a motion.
 fn polynomial(from: Motion, to: Motion, time: f64) -> Segment<f32> {
     let way = to.position - from.position - time * (from.speed + 0.5 * time * from.acceleration);
     let gain = (to.speed - from.speed - time * from.acceleration) * time;
@@ -99,16 +99,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_polynomial_meets_the_motion_between_its_ends_too() {
+    fn polynomial_follows_motion_inside() {
         let at = |time: f64| {
             let (sine, cosine) = (TAU * 20.0 * time).sin_cos();
             let rate = TAU * 20.0;
             Motion { position: 0.1 * sine - 7.0, speed: 0.1 * rate * cosine, acceleration: -0.1 * rate * rate * sine }
         };
         for start in [0.0, 0.013, 0.021] {
-            let segment = polynomial(at(start), at(start + SEGMENT), SEGMENT);
+            let segment = polynomial(at(start), at(start + MAX_SEGMENT), MAX_SEGMENT);
             for part in [0.0, 0.3, 0.5, 0.9] {
-                let (motion, wanted) = (segment.at((part * SEGMENT) as f32, TAU as f32), at(start + part * SEGMENT));
+                let (motion, wanted) =
+                    (segment.at((part * MAX_SEGMENT) as f32, TAU as f32), at(start + part * MAX_SEGMENT));
                 let position = TAU * (f64::from(motion.position.turns) + f64::from(motion.position.fraction));
                 assert!((position - wanted.position).abs() < 2e-6, "{position} {}", wanted.position);
                 assert!((f64::from(motion.speed) - wanted.speed).abs() < 1e-3 * 0.1 * TAU * 20.0);
@@ -119,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn a_motion_out_of_rest_does_not_begin_by_going_back() {
+    fn motion_from_rest_starts_forward() {
         let (height, duration) = (0.05, 0.12);
         let rate = 10e3;
         for seed in 0..5 {
@@ -127,19 +128,19 @@ mod tests {
             let at = |tick: u32| motion.at(f64::from(tick) / rate);
             let (mut tick, mut segments, largest) = (0, 0, 5.8 * height / duration.powi(2));
             while tick < 20_000 {
-                let next = end_of_segment(tick, 50, |tick| [still(at(tick)); 2]);
+                let next = end_of_segment(tick, 50, |tick| [is_at_rest(at(tick)); 2]);
                 let segment = polynomial(at(tick), at(next), f64::from(next - tick) / rate);
                 for between in tick..next {
                     let planned = segment.at((f64::from(between - tick) / rate) as f32, TAU as f32);
                     let error = f64::from(planned.acceleration) - at(between).acceleration;
                     assert!(error.abs() < 0.02 * largest, "seed {seed}, tick {between}: {error}");
-                    if still(at(between)) && still(at(between + 1)) {
+                    if is_at_rest(at(between)) && is_at_rest(at(between + 1)) {
                         assert_eq!([planned.speed, planned.acceleration], [0.0; 2], "seed {seed}, tick {between}");
                     }
                 }
                 (tick, segments) = (next, segments + 1);
             }
-            // Few more than without: a line carries only so many.
+            // Only slightly more segments than without rests, since the line's capacity is limited.
             assert!(segments < 420, "{segments}");
         }
     }

@@ -1,6 +1,6 @@
-//! The host's twin of a board that runs the whole loop: the same joint, observer and compensation over the same knots,
-//! in the same order of operations. The metrics of the board's run are computed from it, since every period can be seen
-//! here.
+//! Twin on the host of a board that runs the whole loop: equal joint, observer and compensation over the same knots, in
+//! the same order of operations. The metrics of the board's run are computed from the twin, whose every period is
+//! observable.
 
 use std::f64::consts::TAU;
 
@@ -18,44 +18,44 @@ use model_core::virtual_joint::faults::Faults;
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
 use reference::closed_loop::{Motion, Sample};
 
-use super::faults::{mounting_angles, turns_of_encoders};
+use super::faults::{counts_per_turn, mounting_angles};
 use super::trajectory;
 use crate::case::{Case, Designed};
 use crate::file::TestFile;
-use crate::port::remember;
-use crate::run_history::{Asked, RunHistory, TrueValues};
+use crate::port::restart_from_memory;
+use crate::run_history::{LoggedSetPoint, RunHistory, TrueValues};
 use board::device::board::Board;
 use report::failure::{Failure, Outcome};
 use simulation::sim::snapshot::Reader;
 
 /// A twin run: the test, its drawn case, and the true joint at the board's rate.
 pub struct Twin<'t> {
-    /// The test.
+    /// Test file.
     pub file: &'t TestFile,
-    /// Its case.
+    /// Case of the test.
     pub case: &'t Case,
     /// Tables of the controller.
     pub designed: &'t Designed,
-    /// The true joint.
+    /// True joint.
     pub truth: &'t JointFile,
-    /// The board whose image it is.
+    /// Board of the image.
     pub board: &'t Board,
-    /// What goes wrong between joint and controller.
+    /// Faults between joint and controller.
     pub faults: &'t [Fault<FixedPoint<f32>>],
 }
 
-/// The result of a twin run.
+/// Result of a twin run.
 pub struct TwinResult {
-    /// The motion in knots.
+    /// Motion in knots.
     pub knots: Vec<Knot>,
-    /// Everything that happened.
+    /// History of the run.
     pub history: RunHistory,
     /// Running digest after every period.
     pub digests: Vec<u64>,
 }
 
 impl Twin<'_> {
-    /// Runs it.
+    /// Runs the twin.
     pub fn run(&self) -> Outcome<TwinResult> {
         match self.truth.parameters.geometry.planets {
             1 => self.run_with::<1>(),
@@ -78,17 +78,17 @@ impl Twin<'_> {
             design_surroundings(joint, &around, &tables).map_err(|error| refused(&error))?;
         let mut controller = Controller::with_tables(&self.designed.observer, &self.designed.compensation);
         if self.file.from_memory {
-            self.pass(&tables, &table, &mut controller);
-            let memory_at_start = Some(remember(&mut controller)?);
-            let mut result = self.pass(&tables, &table, &mut controller);
+            self.run_once(&tables, &table, &mut controller);
+            let memory_at_start = Some(restart_from_memory(&mut controller)?);
+            let mut result = self.run_once(&tables, &table, &mut controller);
             result.history.memory_at_start = memory_at_start;
             return Ok(result);
         }
-        Ok(self.pass(&tables, &table, &mut controller))
+        Ok(self.run_once(&tables, &table, &mut controller))
     }
 
-    /// The run from its first period to its last.
-    fn pass<const N: usize>(
+    /// Runs from the first period to the last.
+    fn run_once<const N: usize>(
         &self,
         tables: &Tables<f32, N>,
         table: &SurroundingsTable<f32>,
@@ -98,7 +98,7 @@ impl Twin<'_> {
         let mut faults = Faults::default();
         let all_taken = self.faults.iter().all(|fault| faults.add(*fault));
         debug_assert!(all_taken, "more than fit were refused before");
-        let [_, mounted] = mounting_angles(&self.case.zeros, turns_of_encoders(&self.truth.surroundings));
+        let [_, mounted] = mounting_angles(&self.case.zeros, counts_per_turn(&self.truth.surroundings));
         let zero = f64::from(mounted) / 2.0_f64.powi(32) - f64::from(virtual_joint.output_turn(mounted));
         let knots = trajectory::knots(self.file, self.case, self.designed, zero);
         let joint = &self.truth.parameters;
@@ -144,25 +144,25 @@ impl Twin<'_> {
                 load_torque: f64::from(virtual_joint.acting().load),
                 motor: moment.motor_angle(joint),
             };
-            history.add(sample, truth, samples, asked(&command, zero), Some(&answer));
+            history.add(sample, truth, samples, logged_set_point(&command, zero), Some(&answer));
         }
         TwinResult { knots, history, digests }
     }
 }
 
-/// A set-point with its angle counted from the joint's own zero, at which the observer's scale is `zero` [turns].
-fn asked(command: &Command<f32>, zero: f64) -> Asked {
+/// Set-point with its angle relative to the joint's own zero, where the observer's scale reads `zero` [turns].
+fn logged_set_point(command: &Command<f32>, zero: f64) -> LoggedSetPoint {
     let angle = |position: Position<f32>| TAU * (f64::from(position.turns) + f64::from(position.fraction) - zero);
     match command {
-        Command::Position { now, .. } => Asked {
+        Command::Position { now, .. } => LoggedSetPoint {
             motion: Motion {
                 position: angle(now.position),
                 speed: now.speed.into(),
                 acceleration: now.acceleration.into(),
             },
-            ..Asked::default()
+            ..LoggedSetPoint::default()
         },
-        Command::Impedance(point) => Asked {
+        Command::Impedance(point) => LoggedSetPoint {
             motion: Motion { position: angle(point.position), speed: point.speed.into(), acceleration: 0.0 },
             torque: point.torque.into(),
             stiffness: point.stiffness.into(),

@@ -1,5 +1,5 @@
-//! A controller in the loop: the compensation behind its port, a rival, the compensation fed with the true state, or
-//! the width probe, or none.
+//! A running controller: the compensation behind its port, a rival, the compensation fed with the true state, the width
+//! probe, or no controller.
 
 use model_core::observer::Memory;
 use reference::closed_loop::rivals::Knowledge;
@@ -15,22 +15,22 @@ use crate::faults::ControllerInputs;
 use crate::port::{Answer, ControllerPort, Translator};
 use report::failure::Outcome;
 
-/// A controller in the loop.
+/// A running controller.
 pub enum ActiveController<'p> {
     /// Observer and compensation.
     Compensation(Box<dyn ControllerPort + 'p>, Translator),
-    /// The observer and its width probe.
+    /// Observer with its width probe.
     Probe(Box<dyn ControllerPort + 'p>, Translator),
-    /// A controller of the reference's kind, and the last reading of the output encoder, which it holds while none comes.
+    /// A rival, and the last reading of the output encoder, which holds while no reading arrives.
     Rival(Box<dyn Controller + 'p>, i64),
-    /// The compensation on the truth.
+    /// Compensation fed with the true state.
     TrueState(Box<TrueStateCompensation<'p>>),
     /// No controller: the motor gives no torque.
     Off,
 }
 
 impl<'p> ActiveController<'p> {
-    /// A rival by its name.
+    /// Rival by its name.
     pub fn rival(name: ControllerName, knowledge: Knowledge, bandwidth: f64) -> Self {
         let law = |law| Box::new(Impedance::new(knowledge.clone(), law, bandwidth)) as Box<dyn Controller>;
         let controller: Box<dyn Controller> = match name {
@@ -43,16 +43,16 @@ impl<'p> ActiveController<'p> {
             ControllerName::Off => return Self::Off,
             _ => Box::new(MotorPid::new(knowledge, bandwidth)),
         };
-        Self::of(controller)
+        Self::from_rival(controller)
     }
 
-    /// Any controller that uses counts and set-points alone, as rivals do.
-    pub fn of(controller: Box<dyn Controller + 'p>) -> Self {
+    /// Controller that uses counts and set-points only, as rivals do.
+    pub fn from_rival(controller: Box<dyn Controller + 'p>) -> Self {
         Self::Rival(controller, 0)
     }
 
-    /// Restarts with what was learnt so far, as after a power cycle; a controller that learns nothing goes on.
-    /// Says what that is.
+    /// Restarts from the estimated parameters, as after a power cycle, and returns their memory; a controller without
+    /// an observer continues.
     pub fn restart_from_memory(&mut self) -> Outcome<Option<Memory>> {
         let (Self::Compensation(port, translator) | Self::Probe(port, translator)) = self else { return Ok(None) };
         let memory = port.restart_from_memory()?;
@@ -60,7 +60,7 @@ impl<'p> ActiveController<'p> {
         Ok(Some(memory))
     }
 
-    /// What the observer has learnt so far, if there is one in this process.
+    /// Memory of the estimated parameters, if the observer runs in this process.
     pub fn memory(&self) -> Option<Memory> {
         match self {
             Self::Compensation(port, _) | Self::Probe(port, _) => port.memory(),
@@ -68,18 +68,18 @@ impl<'p> ActiveController<'p> {
         }
     }
 
-    /// Passes the true state, before a period, to the compensation that is fed with it.
-    pub fn show(&mut self, joint: &Observation, torques: &TrueTorques) {
+    /// Passes the true state before a period to the compensation that uses it.
+    pub fn set_true_state(&mut self, joint: &Observation, torques: &TrueTorques) {
         if let Self::TrueState(from_truth) = self {
-            from_truth.show(joint, torques);
+            from_truth.set_true_state(joint, torques);
         }
     }
 
-    /// Torque for the period that begins now [N m], and what a port answered.
-    pub fn period(&mut self, seen: &ControllerInputs, set_point: &SetPoint) -> Outcome<(f64, Option<Answer>)> {
+    /// Torque for the period that begins [N m], and the port's answer.
+    pub fn step(&mut self, seen: &ControllerInputs, set_point: &SetPoint) -> Outcome<(f64, Option<Answer>)> {
         match self {
             Self::Off => Ok((0.0, None)),
-            Self::TrueState(from_truth) => Ok((from_truth.period(set_point), None)),
+            Self::TrueState(from_truth) => Ok((from_truth.step(set_point), None)),
             Self::Rival(controller, output) => {
                 *output = seen.output.map_or(*output, |frame| frame.counts);
                 let measurement =

@@ -1,19 +1,19 @@
-//! Why a run ended early.
+//! Reason for the early end of a run.
 
 use std::fmt;
 
 use report::failure::Failure;
 
-/// Why a run ended early.
+/// Reason for the early end of a run.
 #[derive(Debug)]
 pub enum RunError {
-    /// It cannot even begin.
+    /// The run cannot begin.
     Refused(Failure),
-    /// Plant or controller left what is finite: a fault of what is tested.
+    /// Plant or controller gave a number that is not finite: a failure of the tested controller.
     Broke(String),
     /// The test's time on the clock was up.
     TimedOut,
-    /// By the user.
+    /// The user stopped the run.
     Interrupted,
 }
 

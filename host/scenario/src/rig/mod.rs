@@ -1,10 +1,10 @@
-//! The one closed loop of a joint on the host: a plant in its drive train, a reference motion, faults between plant and
+//! The closed loop of a joint on the host: a plant in its drive train, a reference motion, faults between plant and
 //! controller, and a controller.
 //!
-//! A control period begins late by what the jitter of the loop has drawn, and its samples and set-points are those of that moment. Then:
-//! faults of the teeth; the set-point passes through its faults to the controller; the encoders are
-//! read and pass through theirs; the controller gives a torque; the motor applies what its faults let through, and the
-//! plant moves on. Encoders are homed at the start of a run.
+//! A control period begins late by the drawn jitter of the loop; samples and set-points are taken at that time. Then
+//! the teeth change by their faults; the set-point passes through its faults to the controller; the encoders are read
+//! through their faults; the controller gives a torque; the motor applies the torque through its faults, and the plant
+//! advances. Encoders are homed at the start of a run.
 
 mod active_controller;
 mod error;
@@ -36,15 +36,15 @@ pub struct Rig {
     motion: SharedProfile,
     /// Control period [s].
     period: f64,
-    /// Length of a run.
+    /// Control periods of a run.
     periods: u64,
 }
 
-/// Is shown every period, and may end the run.
-pub type Watch<'w> = &'w mut dyn FnMut(&Period<'_>) -> Result<(), RunError>;
+/// Callback for every period, which may end the run.
+pub type OnPeriod<'w> = &'w mut dyn FnMut(&Period<'_>) -> Result<(), RunError>;
 
 impl Rig {
-    /// At rest, and yet to be controlled.
+    /// Rig at rest before its first period.
     pub fn new(setup: &Setup) -> Outcome<Self> {
         let Setup { joint, train, .. } = setup;
         let rate = f64::from(train.surroundings.control_rate);
@@ -70,29 +70,29 @@ impl Rig {
         self.periods
     }
 
-    /// What the encoders read now, from their own zeros: before a run, where they are homed.
+    /// Current readings of the encoders from their own zeros; before a run they are the home positions.
     pub fn home(&self) -> Measurement {
         self.plant.measure()
     }
 
-    /// Closes the loop, from the first period to the last.
+    /// Runs the loop from the first period to the last.
     pub fn run(
         mut self,
         controller: &mut ActiveController<'_>,
         set_points: &mut SetPointSource,
-        watch: Watch<'_>,
+        on_period: OnPeriod<'_>,
     ) -> Result<(), RunError> {
         let Self { plant, faults, motion, period, periods } = &mut self;
         for index in 0..*periods {
-            // Set-points are made and samples taken when the period truly begins.
+            // Set-points and samples are taken at the true start of the period.
             let time = index as f64 * *period + plant.lateness();
             let joint = plant.joint().clone();
-            faults.wear(time, &joint, plant.joint_model().as_mut());
+            faults.update_teeth(time, &joint, plant.joint_model().as_mut());
             let (number, set_point) = set_points.at(time, index);
             let set_point = faults.receive(time, number, set_point);
             let seen = faults.sense_late(&plant.measure(), plant.lateness());
-            controller.show(&joint, &plant.torques());
-            let (command, answer) = controller.period(&seen, &set_point)?;
+            controller.set_true_state(&joint, &plant.torques());
+            let (command, answer) = controller.step(&seen, &set_point)?;
             if !command.is_finite() {
                 return Err(RunError::Broke(format!("the controller's torque is not finite at t = {time:.4} s")));
             }
@@ -100,12 +100,12 @@ impl Rig {
                 .advance(faults.torque(time, command))
                 .map_err(|error| RunError::Broke(format!("the plant at t = {time:.4} s: {error}")))?;
             let joint = plant.joint();
-            watch(&Period {
+            on_period(&Period {
                 index,
                 time,
                 plant,
                 wanted: motion.at(joint.time).position,
-                half_backlash: plant.width_scale() * faults.half_backlash_now(),
+                half_backlash: plant.width_scale() * faults.current_half_backlash(),
                 seen: &seen,
                 set_point: &set_point,
                 command,
@@ -118,7 +118,7 @@ impl Rig {
         Ok(())
     }
 
-    /// Closes the loop and keeps what was measured, with the truth.
+    /// Runs the loop and records measurements and truth.
     pub fn record(
         self,
         controller: &mut ActiveController<'_>,
@@ -126,7 +126,7 @@ impl Rig {
     ) -> Result<Vec<PeriodSample>, RunError> {
         let mut moments = Vec::with_capacity(self.periods as usize);
         self.run(controller, set_points, &mut |period| {
-            moments.push(PeriodSample::of(period));
+            moments.push(PeriodSample::at_end_of(period));
             Ok(())
         })?;
         Ok(moments)

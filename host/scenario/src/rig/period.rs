@@ -1,4 +1,4 @@
-//! The result of one control period, as shown to those who record a run.
+//! Result of one control period, for the recorders of a run.
 
 use reference::closed_loop::SetPoint;
 
@@ -6,30 +6,30 @@ use crate::faults::ControllerInputs;
 use crate::plant::Plant;
 use crate::port::Answer;
 
-/// The result of one control period.
+/// Result of one control period.
 pub struct Period<'r> {
-    /// Place in the run, from 0.
+    /// Index in the run, from 0.
     pub index: u64,
-    /// When it began [s].
+    /// Start [s].
     pub time: f64,
-    /// The plant at its end.
+    /// Plant at the end of the period.
     pub plant: &'r Plant,
-    /// Where the link was to be at its end [rad].
+    /// Desired link angle at the end of the period [rad].
     pub wanted: f64,
-    /// Half-backlash during it [m].
+    /// Half-backlash during the period [m].
     pub half_backlash: f64,
-    /// What the controller was shown at its beginning.
+    /// Inputs of the controller at the start of the period.
     pub seen: &'r ControllerInputs,
-    /// What the controller was asked for.
+    /// Set-point of the controller.
     pub set_point: &'r SetPoint,
-    /// Torque asked of the motor [N m].
+    /// Commanded motor torque [N m].
     pub command: f64,
-    /// The answer of observer and compensation, if they control.
+    /// Answer of observer and compensation, if they control.
     pub answer: Option<&'r Answer>,
 }
 
 impl Period<'_> {
-    /// What brakes the link [N m].
+    /// Torque that brakes the link [N m].
     pub fn load_torque(&self) -> f64 {
         let torques = self.plant.torques();
         torques.load_friction + torques.gravity + torques.disturbance

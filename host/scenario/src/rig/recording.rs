@@ -1,15 +1,15 @@
-//! What was measured in a run, with the truth beside it: an observer can be run over it afterwards.
+//! Measurements of a run with the truth, for an observer that runs over them later.
 
 use super::period::Period;
 
-/// One control period: what was measured at its end, and the truth then.
+/// One control period: measurements and truth at its end.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PeriodSample {
-    /// Command that was in force during the period [N m].
+    /// Command during the period [N m].
     pub command: f64,
-    /// Motor encoder at the end, from its own zero and with whole turns.
+    /// Motor encoder at the end, from its own zero, with whole turns.
     pub motor_counts: i64,
-    /// Output encoder at the end, likewise.
+    /// Output encoder at the end, from its own zero, with whole turns.
     pub output_counts: i64,
     /// True gap coordinate [m].
     pub gap: f64,
@@ -24,8 +24,8 @@ pub struct PeriodSample {
 }
 
 impl PeriodSample {
-    /// The end of a period.
-    pub fn of(period: &Period<'_>) -> Self {
+    /// Sample at the end of a period.
+    pub fn at_end_of(period: &Period<'_>) -> Self {
         let (measurement, joint) = (period.plant.measure(), period.plant.joint());
         Self {
             command: period.command,

@@ -1,5 +1,4 @@
-//! Everything that a loop is closed around, as plain data: the true joint with its drive train, the reference motion,
-//! disturbances and faults.
+//! Setup of a loop as plain data: the true joint with its drive train, the reference motion, disturbances and faults.
 
 use parameters::JointParameters;
 use reference::closed_loop::SharedProfile;
@@ -9,33 +8,33 @@ use reference::joint::{RelativeState, Start};
 use crate::file::Fault;
 use crate::plant::PlantName;
 
-/// Everything about a run but the controller.
+/// Everything about a run except the controller.
 #[derive(Clone)]
 pub struct Setup {
-    /// Which model of the joint moves.
+    /// Model of the joint.
     pub plant: PlantName,
-    /// The true joint.
+    /// True joint.
     pub joint: JointParameters,
-    /// What truly surrounds it.
+    /// True drive train.
     pub train: DriveTrainParameters,
-    /// How the teeth lie at first; the core's own step begins in the middle of its gap, whatever stands here.
+    /// Initial state of the teeth.
     pub start: Start,
-    /// How the f64 reference is stepped.
+    /// Stepping of the f64 reference.
     pub stepping: Stepping,
     /// Torques on the link.
     pub disturbances: Vec<Disturbance>,
-    /// What goes wrong, and when.
+    /// Faults with their times.
     pub faults: Vec<Fault>,
-    /// Where the link shall be.
+    /// Desired motion of the link.
     pub motion: SharedProfile,
-    /// Of all noise.
+    /// Seed of all noise.
     pub seed: u64,
     /// Length [s].
     pub duration: f64,
 }
 
 impl Setup {
-    /// A joint on the f64 reference that starts in the middle of its gap and is stepped fast, without pushes and faults.
+    /// Joint on the f64 reference in the middle of its gap, with the fixed step, without disturbances and faults.
     pub fn new(
         joint: JointParameters,
         train: DriveTrainParameters,

@@ -1,5 +1,5 @@
-//! The compensation fed with the true state in place of an observer's estimates: the best it could do with perfect
-//! knowledge. Used by tests only; no test file names it.
+//! Compensation fed with the true state in place of an observer's estimates: an upper bound of its performance. Only
+//! tests use it; no test file names it.
 
 use model_core::compensation::{Compensation, CompensationTables};
 use model_core::gears::Kinematics;
@@ -12,17 +12,17 @@ use reference::joint::Observation;
 use crate::plant::half_backlash;
 use crate::port::{command, position};
 
-/// Meshes give way by a few percent of the gap under load: a gap coordinate within this part of the half-gap of a flank
-/// touches it.
+/// Share of the half-gap above which a gap coordinate counts as contact [-]: meshes deflect by a few percent of the gap
+/// under load.
 const TOUCHING: f64 = 0.98;
 
-/// A compensation that is fed with the true state of a joint.
+/// A compensation fed with the true state of a joint.
 #[derive(Debug)]
 pub struct TrueStateCompensation<'t> {
     compensation: Compensation<'t, f64>,
     estimates: Estimates<f64>,
     half_backlash: f64,
-    /// Between carrier and link [rad/(N m)].
+    /// Compliance between carrier and link [rad/(N m)].
     compliance: f64,
     /// Base radius of the carrier [m].
     lever: f64,
@@ -31,7 +31,7 @@ pub struct TrueStateCompensation<'t> {
 }
 
 impl<'t> TrueStateCompensation<'t> {
-    /// For a true joint.
+    /// Compensation for a true joint.
     pub fn new(tables: &'t CompensationTables<f64>, joint: &JointParameters) -> Self {
         Self {
             compensation: Compensation::new(tables),
@@ -43,8 +43,8 @@ impl<'t> TrueStateCompensation<'t> {
         }
     }
 
-    /// Makes estimates of the truth, none of them in doubt.
-    pub fn show(&mut self, joint: &Observation, torques: &TrueTorques) {
+    /// Sets the estimates to the true values, with zero variance.
+    pub fn set_true_state(&mut self, joint: &Observation, torques: &TrueTorques) {
         let exact = |value: f64| Estimate { value, variance: 0.0, valid: true };
         let near = TOUCHING * 2.0 * self.half_backlash;
         let contact = if joint.gap > near {
@@ -73,8 +73,8 @@ impl<'t> TrueStateCompensation<'t> {
         };
     }
 
-    /// Torque for the period that begins now [N m].
-    pub fn period(&mut self, set_point: &SetPoint) -> f64 {
+    /// Torque for the period that begins [N m].
+    pub fn step(&mut self, set_point: &SetPoint) -> f64 {
         self.compensation.step(&self.estimates, &command(set_point, 0.0)).torque
     }
 }

@@ -1,9 +1,9 @@
-//! The certificate as text for a person: one line each, in the units that data sheets use.
+//! Budget as text: one line for each figure, in the units of data sheets.
 
 use super::summary::{BudgetSummary, TickWork};
 use report::document::{Sheet, terminal};
 
-/// All of it, as a terminal shows it.
+/// Budget for a terminal.
 pub fn layout(summary: &BudgetSummary) -> String {
     let verdicts = &summary.verdicts;
     let mut page = Sheet::new(format!("{} on {} at {} Hz", summary.joint, verdicts.board, verdicts.rate_Hz));

@@ -1,5 +1,5 @@
-//! The certificate of a joint's fixed step on a board at a rate: instructions, memory, limits, the measured error, and whether
-//! the board has time for it. `summary` is the result as data, `layout` prints it.
+//! Budget of a joint's fixed step on a board at a rate: instructions, memory, limits, measured error, and a verdict on
+//! the board's time. `summary` is the result as data, `layout` prints it.
 
 mod layout;
 mod summary;

@@ -1,4 +1,4 @@
-//! The result of `joint budget` as data: figures in SI with their units in their names, as JSON in the schema
+//! Result of `joint budget` as data: figures in SI with their units in their names, as JSON in the schema
 //! `joint-budget/2`.
 
 use board::device::board::Board;
@@ -11,32 +11,32 @@ use serde::Serialize;
 use crate::bandwidth::Bandwidth;
 use crate::verdicts::{Verdicts, verdicts};
 
-/// Says which fields there are; rises when one changes its meaning or goes.
+/// Name and version of the schema; the version rises when a field changes its meaning or is removed.
 const SCHEMA: &str = "joint-budget/2";
 
-/// A certificate on a board.
+/// Budget of a joint on a board.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "Hz is written Hz")]
 pub struct BudgetSummary {
     /// `joint-budget/2`.
     pub schema: &'static str,
-    /// The joint.
+    /// Name of the joint.
     pub joint: String,
     /// Core clock of the board.
     pub clock_Hz: u32,
-    /// Cycles an instruction, waiting for flash included; reckoned, not measured.
+    /// Cycles an instruction, with wait states of the flash; computed, not measured.
     pub cycles_per_instruction: f64,
     /// Sub-steps, errors, and both verdicts.
     #[serde(flatten)]
     pub verdicts: Verdicts,
-    /// Work of the joint's step while contact holds.
+    /// Work of the joint's step while contacts hold.
     pub contact_holds: TickWork,
-    /// In sub-steps, none of which has a crossing.
+    /// Work of a tick in sub-steps without a crossing.
     pub contact_changes: TickWork,
-    /// Every mesh crosses in two sub-steps, or touches in every Verlet sub-step.
+    /// Work if every mesh crosses in two sub-steps, or touches in every Verlet sub-step.
     pub all_crossing: TickWork,
-    /// Every mesh crosses in every sub-step.
+    /// Work if every mesh crosses in every sub-step.
     pub bound: TickWork,
     /// Flash of the tables.
     pub table_bytes: u32,
@@ -44,15 +44,15 @@ pub struct BudgetSummary {
     pub model_bytes: u32,
     /// Phase of the fastest mode in a sub-step.
     pub fastest_mode_phase_rad: f64,
-    /// From which phase on sub-steps are unstable.
+    /// Phase from which sub-steps are unstable.
     pub largest_phase_rad: f64,
-    /// A mesh that leaves and returns in less may go unseen.
+    /// Shortest absence of a mesh from its flank that is always detected.
     pub unseen_for_s: f64,
-    /// So far it goes in that time at most, over the deflection by its load; null if there is no limit.
+    /// Largest undetected departure of a mesh, over the deflection by its load; null without a limit.
     pub unseen_departure: Option<f64>,
-    /// Below it no step is stable.
+    /// Lowest rate with a stable step.
     pub lowest_rate_Hz: u32,
-    /// How fast its control may be; left out where no compensation can be designed.
+    /// Bandwidth of the control; absent if no compensation can be designed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bandwidth: Option<Bandwidth>,
 }
@@ -65,11 +65,11 @@ pub struct TickWork {
     pub instructions: u32,
     /// Time.
     pub time_s: f64,
-    /// Part of the period.
+    /// Share of the period.
     pub part: f64,
 }
 
-/// The figures of a joint on a board in a role at a rate [Hz]; an error up to the wanted one is small enough.
+/// Budget of a joint on a board in a role at a rate [Hz]; `wanted` is the largest acceptable error.
 pub fn summary(file: &JointFile, board: &Board, role: Role, rate: u32, wanted: f64) -> Outcome<BudgetSummary> {
     let parameters = &file.parameters;
     let verdicts = verdicts(parameters, board, role, rate, wanted)?;
@@ -95,7 +95,7 @@ pub fn summary(file: &JointFile, board: &Board, role: Role, rate: u32, wanted: f
         unseen_for_s: certificate.unseen.duration,
         unseen_departure: certificate.unseen.departure,
         lowest_rate_Hz: certificate.lowest_rate,
-        bandwidth: Bandwidth::of(&file.parameters, &file.surroundings),
+        bandwidth: Bandwidth::for_joint(&file.parameters, &file.surroundings),
     })
 }
 

@@ -1,4 +1,4 @@
-//! Verdicts: that they say what is refused, and that text, JSON and the rates beside them never contradict them.
+//! Verdicts: agreement with the refusals, and of text, JSON and rates with one another.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use model_core::gears::design::{Effort, Processor, certificate};
 use parameters::JointParameters;
 
 use super::{BudgetSummary, layout, summary};
-use crate::verdicts::ACCURACY;
+use crate::verdicts::DEFAULT_ACCURACY;
 use board::device::board::Board;
 use board::device::tick_time::RateCheck;
 use report::output;
@@ -23,11 +23,11 @@ fn preset(name: &str) -> JointParameters {
 }
 
 fn budget(name: &str, board: &Board, rate: u32) -> BudgetSummary {
-    summary(&file(name), board, Role::Plant, rate, ACCURACY).expect("figures")
+    summary(&file(name), board, Role::Plant, rate, DEFAULT_ACCURACY).expect("figures")
 }
 
 #[test]
-fn every_preset_can_be_stepped_at_the_usual_rate_on_the_emulated_board() {
+fn presets_fit_emulated_board_at_20_khz() {
     for name in PRESETS {
         let (joint, board) = (preset(name), Board::emulated());
         if let Err(failure) = RateCheck::new(&joint, &board, Role::Plant).check(20_000) {
@@ -37,12 +37,12 @@ fn every_preset_can_be_stepped_at_the_usual_rate_on_the_emulated_board() {
 }
 
 #[test]
-fn a_rate_that_takes_too_long_is_told_with_the_nearest_that_fits() {
+fn too_fast_rate_gets_nearest_fitting_rate() {
     let board = Board::emulated();
-    let told = budget("q1", &board, 168_000);
-    let rate = told.verdicts.time.rate_that_fits_Hz.expect("there is one");
-    assert!(!told.verdicts.time.fits && layout(&told).contains("DOES NOT FIT"), "{}", layout(&told));
-    assert!(layout(&told).contains(&format!("{rate} Hz would fit")), "{}", layout(&told));
+    let figures = budget("q1", &board, 168_000);
+    let rate = figures.verdicts.time.rate_that_fits_Hz.expect("there is one");
+    assert!(!figures.verdicts.time.fits && layout(&figures).contains("DOES NOT FIT"), "{}", layout(&figures));
+    assert!(layout(&figures).contains(&format!("{rate} Hz would fit")), "{}", layout(&figures));
     let joint = preset("q1");
     let on_board = RateCheck::new(&joint, &board, Role::Plant);
     assert!(on_board.check(rate).is_ok());
@@ -50,40 +50,40 @@ fn a_rate_that_takes_too_long_is_told_with_the_nearest_that_fits() {
     assert_eq!(nearer.into_iter().find(|rate| on_board.obstacle(*rate).is_none()), None);
 }
 
+/// A rate without a stable step is an error; a rate that the timer cannot make is a verdict.
 #[test]
-fn a_rate_that_is_unstable_is_refused_and_one_that_cannot_be_made_is_told() {
-    let failure = summary(&file("q1"), &Board::emulated(), Role::Plant, 100, ACCURACY).expect_err("not possible");
+fn unstable_rate_fails_inexact_rate_is_reported() {
+    let failure =
+        summary(&file("q1"), &Board::emulated(), Role::Plant, 100, DEFAULT_ACCURACY).expect_err("not possible");
     assert!(failure.message().contains("no step is stable"), "{failure}");
     assert!(failure.help().expect("a help").contains("--rate "), "{failure}");
-    let told = budget("q1", &Board::emulated(), 20_001);
-    assert!(!told.verdicts.time.fits && !told.verdicts.time.rate_can_be_made, "{told:?}");
+    let figures = budget("q1", &Board::emulated(), 20_001);
+    assert!(!figures.verdicts.time.fits && !figures.verdicts.time.rate_can_be_made, "{figures:?}");
 }
 
 #[test]
-fn a_rate_that_reaches_the_accuracy_is_offered_and_does() {
+fn offered_rate_reaches_accuracy() {
     let (joint, board) = (file("q1"), Board::emulated());
     let here = budget("q1", &board, 20_000).verdicts.accuracy.error.expect("a motion that can be predicted");
     let wanted = 0.5 * here;
-    let told = summary(&joint, &board, Role::Plant, 20_000, wanted).expect("figures").verdicts.accuracy;
-    assert!(!told.reached && told.wanted == wanted, "{told:?}");
-    let rate = told.rate_that_reaches_it_Hz.expect("more sub-steps or a higher rate help");
+    let figures = summary(&joint, &board, Role::Plant, 20_000, wanted).expect("figures").verdicts.accuracy;
+    assert!(!figures.reached && figures.wanted == wanted, "{figures:?}");
+    let rate = figures.rate_that_reaches_it_Hz.expect("more sub-steps or a higher rate help");
     let there = summary(&joint, &board, Role::Plant, rate, wanted).expect("figures").verdicts;
-    assert!(there.accuracy.reached && Some(there.time.fits) == told.fits_there, "{there:?}");
+    assert!(there.accuracy.reached && Some(there.time.fits) == figures.fits_there, "{there:?}");
+}
+
+/// An equivalent gear under constant torques does not swing, so only the reversals have an error.
+#[test]
+fn equivalent_gear_has_no_steady_error() {
+    let figures = budget("c1", &Board::emulated(), 20_000);
+    assert!(figures.verdicts.errors.steady.typical.is_none() && figures.verdicts.errors.reversals.typical.is_some());
+    let page = layout(&figures);
+    assert!(page.contains("no oscillation, so no error to measure") && !page.contains("breaks off"), "{page}");
 }
 
 #[test]
-fn an_equivalent_gear_under_constant_torques_is_told_to_swing_not() {
-    let told = budget("c1", &Board::emulated(), 20_000);
-    assert!(told.verdicts.errors.steady.typical.is_none() && told.verdicts.errors.reversals.typical.is_some());
-    let page = layout(&told);
-    assert!(
-        page.contains("nothing swings: no motion to measure an error of") && !page.contains("breaks off"),
-        "{page}"
-    );
-}
-
-#[test]
-fn work_rises_from_holding_to_the_bound() {
+fn work_rises_with_contact_changes() {
     let effort = Effort::Within(Processor::STM32H743);
     for name in PRESETS {
         let work = certificate(&preset(name), 20_000, effort).expect("a certificate").instructions;
@@ -93,7 +93,7 @@ fn work_rises_from_holding_to_the_bound() {
 }
 
 #[test]
-fn text_and_json_say_the_same() {
+fn text_and_json_agree() {
     let summary = budget("q1", &Board::emulated(), 20_000);
     let (text, json) = (layout(&summary), output::json("figures", &summary).expect("finite numbers"));
     let instructions = summary.all_crossing.instructions.to_string();
@@ -103,7 +103,7 @@ fn text_and_json_say_the_same() {
 }
 
 #[test]
-fn the_widest_bandwidth_is_told_with_what_limits_it() {
+fn widest_bandwidth_names_its_limit() {
     for name in PRESETS {
         let file = file(name);
         let bandwidth = budget(name, &Board::emulated(), 20_000).bandwidth.expect("a drive train");

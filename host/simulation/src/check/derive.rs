@@ -1,4 +1,4 @@
-//! From a joint file to its figures: closed forms, eigenvalues and the design of the fixed step.
+//! Figures of a joint file: closed forms, eigenvalues and the design of the fixed step.
 
 use std::f64::consts::TAU;
 
@@ -26,7 +26,7 @@ pub(super) fn arcmin(angle: f64) -> f64 {
     angle.to_degrees() * 60.0
 }
 
-/// The figures of a joint on a board at a step rate [Hz]; with errors and verdicts if an error is given that is small enough.
+/// Figures of a joint on a board at a step rate [Hz]; with errors and verdicts if a largest acceptable error is given.
 pub fn summary(loaded: &Loaded, board: &Board, rate: u32, wanted: Option<f64>) -> Outcome<CheckSummary> {
     let parameters = &loaded.file.parameters;
     let with_teeth = parameters.equivalent_gear().is_none();
@@ -45,12 +45,12 @@ pub fn summary(loaded: &Loaded, board: &Board, rate: u32, wanted: Option<f64>) -
             DampingLaw::Paper => "paper",
         },
         output: output(parameters, loaded.file.surroundings.efficiency),
-        bandwidth: Bandwidth::of(&loaded.file.parameters, &loaded.file.surroundings),
+        bandwidth: Bandwidth::for_joint(&loaded.file.parameters, &loaded.file.surroundings),
         fixed_step: fixed_step(parameters, board, rate, wanted)?,
         numbers: numbers(loaded),
         warnings: warnings(loaded),
     };
-    // Bounds of the reader keep every figure finite; if one is not, it must not be printed.
+    // The reader's bounds keep every figure finite; any other figure must not be printed.
     let json = serde_json::to_value(&summary).map_err(|error| Failure::new(error.to_string()))?;
     match first_null(&json, "") {
         Some(path) => Err(Failure::new(format!("{} cannot be used: {path} is not a finite number", loaded.name))
@@ -59,7 +59,7 @@ pub fn summary(loaded: &Loaded, board: &Board, rate: u32, wanted: Option<f64>) -
     }
 }
 
-/// JSON has no NaN and no infinity: both become null.
+/// Path of the first null: JSON has no NaN and no infinity, and writes both as null.
 fn first_null(value: &serde_json::Value, path: &str) -> Option<String> {
     match value {
         serde_json::Value::Null => Some(path.trim_start_matches('.').to_owned()),
@@ -127,7 +127,7 @@ fn frequencies(parameters: &JointParameters) -> Frequencies {
     Frequencies {
         omega_n_rad_per_s: omega_n,
         omega_n_Hz: omega_n / TAU,
-        // Without what is on either side of it an equivalent gear is nothing that swings.
+        // An equivalent gear alone, without rotor and link, has no oscillation.
         gears_alone_Hz: if parameters.equivalent_gear().is_some() { Vec::new() } else { in_hertz(&gears_alone) },
         whole_joint_Hz: in_hertz(parameters),
     }
@@ -141,7 +141,7 @@ fn mesh_force(parameters: &JointParameters) -> f64 {
 fn mesh(parameters: &JointParameters, kind: MeshKind) -> MeshFigures {
     let mesh = parameters.mesh(kind);
     let planets = 0..parameters.geometry.planets;
-    // The sum with 0.0 takes the sign off a zero.
+    // Adding 0.0 removes the sign of a negative zero.
     let periods = |phase: f64| (phase / TAU).rem_euclid(1.0) + 0.0;
     MeshFigures {
         kind: match kind {

@@ -1,5 +1,5 @@
-//! The result of `joint check` as text: one line a figure, in the units of data sheets, without colours, so that a
-//! terminal, a file and a log show the same.
+//! Result of `joint check` as text: one line for each figure, in the units of data sheets, without colours, so that
+//! terminal, file and log are equal.
 
 use std::fmt::Write;
 
@@ -8,7 +8,7 @@ use joint_file::sheet;
 use report::document::{Sheet, terminal};
 use report::number::DATA_SHEET;
 
-/// All of it, as a terminal shows it.
+/// Result for a terminal.
 pub fn layout(summary: &CheckSummary) -> String {
     let mut page = Sheet::new(match summary.description.as_str() {
         "" => summary.name.clone(),
@@ -165,7 +165,7 @@ fn file(page: &mut Sheet, summary: &CheckSummary) {
     }
     for warning in &summary.warnings {
         page.row(&format!("warning, line {}", warning.line), &warning.message);
-        page.row("", format!("mend: {}", warning.help));
+        page.row("", format!("remedy: {}", warning.help));
     }
 }
 
@@ -173,7 +173,7 @@ fn angle(radians: f64, arcmin: f64) -> String {
     format!("{:.4} mrad = {arcmin:.3} arcmin", 1e3 * radians)
 }
 
-/// Equal neighbours are counted: "2881.84 (2x)".
+/// Frequencies as text, with equal neighbours counted: "2881.84 (2x)".
 fn hertz(frequencies: &[f64]) -> String {
     let shown: Vec<String> = frequencies.iter().map(|frequency| format!("{frequency:.2}")).collect();
     let groups = shown.chunk_by(|one, other| one == other);
@@ -183,7 +183,7 @@ fn hertz(frequencies: &[f64]) -> String {
     texts.join(", ") + " Hz"
 }
 
-/// One value if all are equal, else all.
+/// One value if all are equal, else all values.
 fn per_planet(values: &[f64], factor: f64, decimals: usize) -> String {
     let shown: Vec<String> = values.iter().map(|value| format!("{:.decimals$}", factor * value)).collect();
     match shown.first() {

@@ -1,7 +1,7 @@
-//! What follows from a joint file: masses, natural frequencies, lost motion, wind-up, the fixed step. Nothing is
-//! simulated here.
+//! Derived quantities of a joint file: masses, natural frequencies, lost motion, wind-up, the fixed step. Nothing is
+//! simulated.
 //!
-//! `derive` computes the `summary`, `step` asks the design for the fixed step, `layout` prints it.
+//! `derive` computes the `summary`, `step` designs the fixed step, `layout` prints the summary.
 
 mod derive;
 mod layout;

@@ -1,72 +1,72 @@
-//! The result of `joint check` as data: figures in SI with their units in their names, as JSON in the schema
-//! `joint-check/2`. They are computed in `derive`.
+//! Result of `joint check` as data: figures in SI with their units in their names, as JSON in the schema
+//! `joint-check/2`. `derive` computes the figures.
 
 use serde::Serialize;
 
 use crate::bandwidth::Bandwidth;
 use crate::verdicts::Verdicts;
 
-/// Says which fields there are; rises when one changes its meaning or goes.
+/// Name and version of the schema; the version rises when a field changes its meaning or is removed.
 pub(super) const SCHEMA: &str = "joint-check/2";
 
-/// Everything that `joint check` says of a joint.
+/// Result of `joint check` for a joint.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct CheckSummary {
     /// `joint-check/2`.
     pub schema: String,
-    /// Path or preset.
+    /// Path or preset of the joint file.
     pub file: String,
-    /// The joint's own name.
+    /// Name of the joint.
     pub name: String,
-    /// From the file; may be empty.
+    /// Description in the file; may be empty.
     pub description: String,
-    /// Ratio, stiffness, damping and inertias of an equivalent gear, in place of all that teeth have.
+    /// Ratio, stiffness, damping and inertias of an equivalent gear, which has no teeth.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub equivalent_gear: Option<EquivalentFigures>,
-    /// Teeth, radii, ratio; not of an equivalent gear.
+    /// Teeth, radii, ratio; absent for an equivalent gear.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub geometry: Option<GeometryFigures>,
-    /// Masses along the line of action; not of an equivalent gear.
+    /// Masses along the line of action; absent for an equivalent gear.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub equivalent_masses: Option<Masses>,
-    /// omega_n and natural frequencies.
+    /// Natural frequencies and omega_n.
     pub frequencies: Frequencies,
-    /// Sun-planet, then ring-planet; none of an equivalent gear.
+    /// Sun-planet, then ring-planet meshes; empty for an equivalent gear.
     pub meshes: Vec<MeshFigures>,
     /// `contact` or `paper`.
     pub damping_law: &'static str,
-    /// What the output does under load and when it is turned by hand.
+    /// Behaviour of the output under load and when turned by hand.
     pub output: Output,
-    /// How fast its control may be; left out where no compensation can be designed.
+    /// Bandwidth of the control; absent if no compensation can be designed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bandwidth: Option<Bandwidth>,
-    /// The fixed step at the wanted rate.
+    /// Fixed step at the requested rate.
     pub fixed_step: FixedStep,
-    /// How many numbers the file states, and how many of them it calls assumed.
+    /// Numbers stated in the file, and numbers marked as assumed.
     pub numbers: Numbers,
-    /// What is odd but can be used.
+    /// Warnings of the joint file.
     pub warnings: Vec<Warning>,
 }
 
-/// An equivalent gear with what is on either side of it.
+/// An equivalent gear with the inertias on both sides.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(missing_docs, non_snake_case, reason = "names and units say it")]
 pub struct EquivalentFigures {
     pub motor_turns: u32,
     pub link_turns: u32,
-    /// The first over the second.
+    /// Motor turns over link turns.
     pub ratio: f64,
     pub stiffness_N_m_per_rad: f64,
     pub damping_ratio: f64,
-    /// C = 2 zeta sqrt(K J), J both sides in series at the link.
+    /// C = 2 zeta sqrt(K J), with J both sides in series at the link.
     pub damping_N_m_s_per_rad: f64,
-    /// Of the gear alone, at the motor.
+    /// Inertia of the gear alone, at the motor.
     pub gear_inertia_at_input_kg_m2: f64,
-    /// Rotor and gear, at the motor.
+    /// Inertia of rotor and gear, at the motor.
     pub motor_inertia_kg_m2: f64,
-    /// The same, at the link.
+    /// Inertia of rotor and gear, at the link.
     pub motor_inertia_at_link_kg_m2: f64,
     pub link_inertia_kg_m2: f64,
 }
@@ -96,19 +96,19 @@ pub struct GeometryFigures {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Masses {
-    /// The sun's own.
+    /// Sun.
     pub sun_kg: f64,
-    /// With the motor rotor.
+    /// Sun with the motor rotor.
     pub sun_with_rotor_kg: f64,
-    /// Of one planet.
+    /// One planet.
     pub planet_kg: f64,
-    /// M_c: the carrier with its planets.
+    /// Carrier with its planets, M_c.
     pub carrier_with_planets_kg: f64,
-    /// The link, over (r_c cos(alpha))^2; 0 without a link.
+    /// Link, over (r_c cos(alpha))^2; 0 without a link.
     pub link_kg: f64,
 }
 
-/// omega_n and natural frequencies, undamped, all meshes in contact at mean stiffness.
+/// Undamped natural frequencies and omega_n, with all meshes in contact at mean stiffness.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "Hz is written Hz")]
@@ -117,9 +117,9 @@ pub struct Frequencies {
     pub omega_n_rad_per_s: f64,
     /// omega_n / 2 pi.
     pub omega_n_Hz: f64,
-    /// Gears alone, as the paper has them; the rigid body's zero left out. None of an equivalent gear.
+    /// Gears alone, as in the paper, without the rigid body's zero. Empty for an equivalent gear.
     pub gears_alone_Hz: Vec<f64>,
-    /// With rotor, link and compliance; the rigid body's zero left out.
+    /// Whole joint with rotor, link and compliance, without the rigid body's zero.
     pub whole_joint_Hz: Vec<f64>,
 }
 
@@ -130,105 +130,105 @@ pub struct Frequencies {
 pub struct MeshFigures {
     /// `sun_planet` or `ring_planet`.
     pub kind: &'static str,
-    /// b.
+    /// Half-backlash b.
     pub half_backlash_m: Vec<f64>,
     /// Phase of the stiffness ripple, in mesh periods from 0 to 1.
     pub stiffness_phase_periods: Vec<f64>,
-    /// Phase of the transmission error, likewise.
+    /// Phase of the transmission error, in mesh periods from 0 to 1.
     pub error_phase_periods: Vec<f64>,
-    /// K_m.
+    /// Mean stiffness K_m.
     pub mean_stiffness_N_per_m: f64,
-    /// C of eqs 9 and 10.
+    /// Damping coefficient C of eqs 9 and 10.
     pub damping_N_s_per_m: f64,
-    /// How far the teeth give under the rated torque, beyond b.
+    /// Deflection of the teeth under the rated torque, beyond b.
     pub deflection_at_rated_torque_m: f64,
 }
 
-/// Seen from the link.
+/// Behaviour at the link.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "N is written N")]
 pub struct Output {
-    /// From the file.
+    /// Rated torque, from the file.
     pub rated_torque_N_m: f64,
-    /// At the sun, in balance with the rated torque by the ratio of radii.
+    /// Torque at the sun that balances the rated torque, by the ratio of radii.
     pub balancing_drive_torque_N_m: f64,
-    /// Force of one mesh at rated torque, shared alike; not of an equivalent gear.
+    /// Force of one mesh at rated torque, with equal sharing; absent for an equivalent gear.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh_force_N: Option<f64>,
-    /// Span of the gap coordinate u_s - 2 u_c while every mesh is free: 4 b. Of an equivalent gear, which has no line of
-    /// action, on a lever of 1 m at the link.
+    /// Range of the gap coordinate u_s - 2 u_c while every mesh is free: 4 b. An equivalent gear has no line of action;
+    /// its gap is stated on a lever of 1 m at the link.
     pub gap_m: f64,
-    /// With the sun held, the link turns this far without resistance.
+    /// Free rotation of the link with the sun held.
     pub lost_motion_rad: f64,
-    /// The same in minutes of arc.
+    /// Free rotation of the link with the sun held, in minutes of arc.
     pub lost_motion_arcmin: f64,
-    /// With the link held, the sun turns this far.
+    /// Free rotation of the sun with the link held.
     pub lost_motion_at_sun_rad: f64,
     /// Wind-up of the teeth at rated torque, beyond the lost motion.
     pub wind_up_of_teeth_rad: f64,
     /// Wind-up between carrier and link at rated torque.
     pub wind_up_of_compliance_rad: f64,
-    /// Both together.
+    /// Total wind-up at rated torque.
     pub wind_up_rad: f64,
-    /// Both together in minutes of arc.
+    /// Total wind-up at rated torque, in minutes of arc.
     pub wind_up_arcmin: f64,
-    /// The efficiency is below 0.5: torque at the link alone does not turn the motor, as with a worm.
+    /// True for an efficiency below 0.5: torque at the link alone does not turn the motor, as in a worm gear.
     pub self_locking: bool,
 }
 
-/// The fixed step at the wanted rate.
+/// The fixed step at the requested rate.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[allow(non_snake_case, reason = "Hz is written Hz")]
 pub struct FixedStep {
-    /// Board that it is made for.
+    /// Board of the step.
     pub board: String,
-    /// Asked for.
+    /// Requested rate.
     pub rate_Hz: u32,
-    /// Below it no step is stable.
+    /// Lowest rate with a stable step.
     pub lowest_rate_Hz: u32,
     /// 1 / lowest rate.
     pub longest_step_s: f64,
-    /// From it on the usual number of sub-steps resolves the fastest mode and the mesh frequency.
+    /// Rate from which the default number of sub-steps resolves the fastest mode and the mesh frequency.
     pub recommended_rate_Hz: u32,
     /// 1 / recommended rate.
     pub recommended_step_s: f64,
     /// Method of the sub-steps of a tick in which contacts change: `corrected` or `leapfrog`.
     pub method: &'static str,
-    /// How many of them.
+    /// Number of sub-steps.
     pub substeps: u32,
-    /// Phase of the fastest mode in one of them.
+    /// Phase of the fastest mode in a sub-step.
     pub fastest_mode_phase_rad: f64,
-    /// Flash that the f32 tables take.
+    /// Flash of the f32 tables.
     pub table_bytes: usize,
-    /// The board's digest of them, in hexadecimal.
+    /// Digest of the tables on the board, in hexadecimal.
     pub digest: String,
-    /// Errors and verdicts on that board in the role `plant`, where they were asked for.
+    /// Errors and verdicts on the board in the role `plant`, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verdicts: Option<Verdicts>,
 }
 
-/// The sources of the file's numbers.
+/// Sources of the file's numbers.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Numbers {
     /// Numbers in the file.
     pub stated: usize,
-    /// Those whose comment begins with "assumed".
+    /// Numbers whose comment begins with "assumed".
     pub assumed: usize,
-    /// Those without a comment.
+    /// Numbers without a comment.
     pub without_source: usize,
 }
 
-/// What is odd but can be used.
+/// A warning of the joint file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Warning {
     /// Line of the file, from 1.
     pub line: usize,
-    /// What is odd.
+    /// Cause of the warning.
     pub message: String,
-    /// How to mend it.
+    /// Remedy.
     pub help: String,
 }

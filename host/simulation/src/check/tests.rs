@@ -1,4 +1,4 @@
-//! Figures against the oracles of the model and the joints' data sheets, and what a user sees of a bad file.
+//! Figures against the oracles of the model and the joints' data sheets, and messages for a bad file.
 
 use model_core::gears::Mechanics;
 use std::path::Path;
@@ -22,7 +22,7 @@ fn preset(name: &str) -> CheckSummary {
     summary(&load(Path::new(name)).expect("a preset"), &Board::emulated(), RATE, None).expect("figures")
 }
 
-/// Q1's text with pieces exchanged, read.
+/// Reads Q1 with pieces of the text replaced.
 fn changed(changes: &[(&str, &str)]) -> Loaded {
     let text = changes.iter().fold(joint_file::preset("q1").expect("a preset").to_owned(), |text, (from, to)| {
         assert_eq!(text.matches(from).count(), 1, "{from}");
@@ -32,7 +32,7 @@ fn changed(changes: &[(&str, &str)]) -> Loaded {
     Loaded { name: "changed".to_owned(), text, file }
 }
 
-/// Equal within half a unit of the last digit that is printed.
+/// Equal within half a unit of the last printed digit.
 #[track_caller]
 fn assert_printed(value: f64, printed: f64, decimals: i32) {
     assert!((value - printed).abs() <= 0.5 * 10f64.powi(-decimals) * (1.0 + 1e-9), "{value} is not {printed}");
@@ -54,7 +54,7 @@ fn closed_form(parameters: &JointParameters) -> [f64; 3] {
 }
 
 #[test]
-fn the_paper_has_its_known_frequencies_and_masses() {
+fn paper_preset_has_published_frequencies() {
     let paper = preset("paper");
     assert_printed(paper.frequencies.omega_n_rad_per_s, 20502.0, 0);
     let expected = [2082.85, 2881.84, 2881.84, 4997.09];
@@ -68,7 +68,7 @@ fn the_paper_has_its_known_frequencies_and_masses() {
 }
 
 #[test]
-fn gears_alone_have_the_frequencies_of_the_closed_form() {
+fn gear_frequencies_match_closed_form() {
     for name in PRESETS {
         let loaded = load(Path::new(name)).expect("a preset");
         if loaded.file.parameters.equivalent_gear().is_some() {
@@ -85,7 +85,7 @@ fn gears_alone_have_the_frequencies_of_the_closed_form() {
 }
 
 #[test]
-fn q1_has_the_lost_motion_and_the_wind_up_of_its_data_sheet() {
+fn lost_motion_and_wind_up_match_data_sheets() {
     let output = preset("q1").output;
     assert_printed(1e3 * output.lost_motion_rad, 3.78, 2);
     assert_printed(output.lost_motion_arcmin, 13.0, 1);
@@ -95,14 +95,15 @@ fn q1_has_the_lost_motion_and_the_wind_up_of_its_data_sheet() {
     assert_printed(preset("d2").output.lost_motion_arcmin, 7.0, 3);
 }
 
+/// An equivalent gear is described by its data sheet, without planets, sun or meshes.
 #[test]
-fn an_equivalent_gear_is_told_by_its_data_sheet_and_not_by_teeth() {
+fn equivalent_gear_has_no_tooth_figures() {
     let c1 = preset("c1");
     let gear = c1.equivalent_gear.as_ref().expect("an equivalent gear");
     assert_eq!((gear.motor_turns, gear.link_turns), (59, 1));
     let at_link = 59.0 * 59.0 * (1.0e-4 + 0.25e-4);
     assert_printed(gear.motor_inertia_at_link_kg_m2, at_link, 12);
-    // 20 N m/arcmin between both inertias, by hand.
+    // 20 N m/arcmin between both inertias, computed by hand.
     let stiffness = 20.0 * 180.0 * 60.0 / std::f64::consts::PI;
     let omega = (stiffness * (1.0 / at_link + 1.0 / 0.8)).sqrt();
     assert_printed(c1.frequencies.omega_n_rad_per_s / omega, 1.0, 12);
@@ -115,7 +116,7 @@ fn an_equivalent_gear_is_told_by_its_data_sheet_and_not_by_teeth() {
 }
 
 #[test]
-fn a_self_locking_gear_has_a_word() {
+fn self_locking_gear_is_named() {
     let worm = |efficiency: &str| {
         let text = changed(&[("efficiency = 0.97", &format!("efficiency = {efficiency}"))]);
         summary(&text, &Board::emulated(), RATE, None).expect("figures")
@@ -126,7 +127,7 @@ fn a_self_locking_gear_has_a_word() {
 }
 
 #[test]
-fn static_deflections_carry_the_rated_torque() {
+fn static_deflections_carry_rated_torque() {
     for name in PRESETS {
         let summary = preset(name);
         let Some(geometry) = &summary.geometry else { continue };
@@ -135,7 +136,7 @@ fn static_deflections_carry_the_rated_torque() {
         let at_sun =
             planets * sun.mean_stiffness_N_per_m * sun.deflection_at_rated_torque_m * geometry.sun_base_radius_m;
         assert!((at_sun / summary.output.balancing_drive_torque_N_m - 1.0).abs() < 1e-12, "{name}");
-        // X = u_s - 2 u_c is the sum of both deflections; the sun stands still.
+        // X = u_s - 2 u_c is the sum of both deflections; the sun is at rest.
         let turned = (sun.deflection_at_rated_torque_m + ring.deflection_at_rated_torque_m)
             / (2.0 * geometry.carrier_base_radius_m);
         assert!((turned / summary.output.wind_up_of_teeth_rad - 1.0).abs() < 1e-12, "{name}");
@@ -143,7 +144,7 @@ fn static_deflections_carry_the_rated_torque() {
 }
 
 #[test]
-fn the_tightest_planet_sets_the_gap() {
+fn gap_follows_tightest_planet() {
     let ring = "[mesh.ring_planet]\nhalf_backlash_um = [40.0, 10.0, 50.0]\n\n[contact]";
     let summary = summary(&changed(&[("[contact]", ring)]), &Board::emulated(), RATE, None).expect("figures");
     assert_printed(1e6 * summary.output.gap_m, 2.0 * (40.0 + 10.0), 9);
@@ -151,7 +152,7 @@ fn the_tightest_planet_sets_the_gap() {
 }
 
 #[test]
-fn mesh_phases_of_unequal_planets_are_shown_for_each() {
+fn unequal_mesh_phases_shown_per_planet() {
     let five = [
         ("planets = 3 ", "planets = 5 "),
         ("sun_teeth = 15", "sun_teeth = 26"),
@@ -169,8 +170,9 @@ fn mesh_phases_of_unequal_planets_are_shown_for_each() {
     assert_eq!(summary.frequencies.gears_alone_Hz.len(), 6);
 }
 
+/// The lowest stable rate has a step, one hertz less has none.
 #[test]
-fn the_lowest_rate_can_be_stepped_and_the_one_below_cannot() {
+fn lowest_rate_is_sharp() {
     for name in PRESETS {
         let parameters = load(Path::new(name)).expect("a preset").file.parameters;
         let lowest = StepSize::new(&parameters).lowest_rate(Effort::Board);
@@ -180,15 +182,16 @@ fn the_lowest_rate_can_be_stepped_and_the_one_below_cannot() {
 }
 
 #[test]
-fn a_rate_that_is_too_low_is_refused_with_the_one_that_works() {
+fn unstable_rate_is_rejected() {
     let failure =
         summary(&load(Path::new("q1")).expect("a preset"), &Board::emulated(), 100, None).expect_err("unstable");
     assert!(failure.message().contains("a tick rate of 100 Hz is too low"), "{failure}");
     assert_eq!(failure.exit_code(), 2);
 }
 
+/// Pages of parameters at their bounds hold neither NaN nor infinity.
 #[test]
-fn nothing_that_is_no_number_is_printed_even_at_the_ends_of_the_bounds() {
+fn extreme_parameters_print_finite_numbers() {
     let ends: [&[(&str, &str)]; 4] = [
         &[("rated_output_torque_N_m = 12.0", "rated_output_torque_N_m = 1e-6"), ("drive_torque_N_m = 2.0", "")],
         &[("link_inertia_kg_m2 = 0.15", "link_inertia_kg_m2 = 1e6"), ("stiffness_ratio = 0.15", "stiffness_ratio = 0")],
@@ -209,7 +212,7 @@ fn nothing_that_is_no_number_is_printed_even_at_the_ends_of_the_bounds() {
 }
 
 #[test]
-fn figures_that_are_no_numbers_are_refused_by_name() {
+fn non_finite_figure_is_named() {
     let mut loaded = load(Path::new("q1")).expect("a preset");
     loaded.file.parameters.rated_output_torque = f64::NAN;
     let failure = summary(&loaded, &Board::emulated(), RATE, None).expect_err("not a number");
@@ -227,7 +230,7 @@ fn warnings_name_their_line() {
 }
 
 #[test]
-fn json_holds_the_same_figures() {
+fn json_matches_summary() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("q1.json");
     let summary = preset("q1");
@@ -241,7 +244,7 @@ fn json_holds_the_same_figures() {
 }
 
 #[test]
-fn a_place_that_cannot_be_written_to_is_named() {
+fn unwritable_output_is_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("none/q1.json");
     let failure = output::deliver(&preset("q1"), "", Some(&out), &[]).expect_err("no such folder");
@@ -249,7 +252,7 @@ fn a_place_that_cannot_be_written_to_is_named() {
 }
 
 #[test]
-fn what_cannot_be_read_is_named_with_the_presets() {
+fn unreadable_file_error_lists_presets() {
     let folder = tempfile::tempdir().expect("a folder");
     let bytes = folder.path().join("bytes.toml");
     std::fs::write(&bytes, [0xff, 0xfe, 0x00]).expect("a file");
@@ -266,11 +269,11 @@ fn what_cannot_be_read_is_named_with_the_presets() {
 }
 
 #[test]
-fn minutes_of_arc_are_sixtieths_of_degrees() {
+fn arcmin_is_a_sixtieth_of_a_degree() {
     assert_printed(arcmin(std::f64::consts::PI), 180.0 * 60.0, 9);
 }
 
-/// A bad file as it is drawn, without colours.
+/// Report of a bad file, without colours.
 fn drawn(text: &str) -> String {
     let problems = joint_file::read(text).expect_err("a bad file");
     let report = diagnostic::report("bad.toml", text, &problems);
@@ -282,7 +285,7 @@ fn drawn(text: &str) -> String {
 }
 
 #[test]
-fn a_bad_file_is_drawn_with_every_place_underlined() {
+fn bad_file_report_underlines_every_problem() {
     let text = joint_file::preset("q1").expect("a preset");
     let text =
         text.replace("planets = 3 # common practice", "planets = 2").replace("= 1e8 # the paper, section 4", "= -1e8");
@@ -312,6 +315,6 @@ Error:
 }
 
 #[test]
-fn an_empty_file_is_drawn_too() {
+fn empty_file_report_names_missing_section() {
     assert!(drawn("").contains("the section [geometry] is missing"));
 }

@@ -1,8 +1,8 @@
-//! What `joint sim` may be asked for on the command line.
+//! Command line of `joint sim`.
 
 use std::path::PathBuf;
 
-use super::scheme::{Choice, SchemeName};
+use super::scheme::{SchemeChoice, SchemeName};
 use super::start::StartName;
 use board::device::board::Board;
 use report::command_line::quoted;
@@ -21,27 +21,28 @@ pub struct Arguments {
     /// Joint file (TOML), or the name of a preset: q1, s1, d2, l1, c1, paper, paper_printed
     #[arg(value_name = "FILE", default_value = "q1")]
     pub file: PathBuf,
-    /// Scheme that moves the joint
+    /// Integration scheme
     #[arg(long, value_enum, default_value = "realtime")]
-    pub scheme: Choice,
-    /// What every choice of motion has in common with a sweep
+    pub scheme: SchemeChoice,
+    /// Motion, as for a sweep
     #[command(flatten)]
     pub motion: MotionArguments,
-    /// Keeps every n-th tick in files and pictures [default: so that at most 200 000 are kept]
+    /// Keeps every n-th tick in files and pictures [default: at most 200 000 samples]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub every: Option<u32>,
-    /// Does not keep the books of energy
+    /// Skips the energy balance
     #[arg(long)]
     pub no_energy: bool,
-    /// Folder for report.html, history.csv and history.mcap; a file that this command did not write is refused [default: joint-out/sim/<joint>]
+    /// Folder for report.html, history.csv and history.mcap; a file that this command did not write is refused
+    /// [default: joint-out/sim/<joint>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Writes the figures as JSON to this file too ("-" is standard output, and all else on standard error)
+    /// Also writes the figures as JSON to this file ("-": to standard output; all other output goes to standard error)
     #[arg(long, value_name = "OUT")]
     pub json: Option<PathBuf>,
 }
 
-/// What moves the joint, for `joint sim` and `joint sweep` alike.
+/// Motion of the joint, for `joint sim` and `joint sweep`.
 #[derive(Debug, Clone, clap::Args)]
 pub struct MotionArguments {
     /// Changes a value of the joint file for this run, such as sun_planet.half_backlash_um=60; may be repeated
@@ -50,21 +51,21 @@ pub struct MotionArguments {
     /// Length of the run in s [default: the profile's own; else 1 s, or 600 periods of a prescribed mesh frequency]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub duration: Option<f64>,
-    /// Not counted in figures, spectrum and phase portrait: the first so many s [default: half of a run under constant
-    /// torques, else 0]
+    /// Time excluded from figures, spectrum and phase portrait, in s [default: half of a run under constant torques,
+    /// else 0]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub settle: Option<f64>,
-    /// Steps a second, in Hz [default: 20000; more, so that a prescribed mesh period has 48 ticks]
+    /// Step rate in Hz [default: 20000; more if a prescribed mesh period would have fewer than 48 ticks]
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..))]
     pub rate: Option<u32>,
     /// Torque profile in place of constant torques: `reversals`, or a CSV file with the columns time_s, motor_torque_Nm
     /// and load_torque_Nm
     #[arg(long, value_name = "NAME|FILE", conflicts_with_all = ["drive", "load"])]
     pub profile: Option<String>,
-    /// Constant torque on the sun shaft in N m [default: the file's drive torque, or what balances its rated torque]
+    /// Constant torque on the sun shaft in N m [default: the file's drive torque, or the balance of its rated torque]
     #[arg(long, value_name = "NM", allow_negative_numbers = true)]
     pub drive: Option<f64>,
-    /// Constant torque that brakes the link in N m [default: what balances the drive torque]
+    /// Constant torque that brakes the link in N m [default: the balance of the drive torque]
     #[arg(long, value_name = "NM", allow_negative_numbers = true)]
     pub load: Option<f64>,
     /// State at the start [default: rest with a profile, centred at a prescribed mesh frequency, else seated]
@@ -77,28 +78,28 @@ pub struct MotionArguments {
     /// Computes the core's schemes in f64 in place of the board's f32
     #[arg(long)]
     pub f64: bool,
-    /// Board that the step is made for: a name of boards/, or the path of a board file [default: olimex-h405]
+    /// Board whose step is used: a name of boards/, or the path of a board file [default: olimex-h405]
     #[arg(long, value_name = "NAME|FILE", value_parser = Board::parse)]
     pub board: Option<Board>,
-    /// Takes as many sub-steps as accuracy asks for, in place of what a board has time for
+    /// Uses as many sub-steps as the accuracy needs, even beyond a board's time
     #[arg(long, conflicts_with = "board")]
     pub accurate: bool,
 }
 
 impl MotionArguments {
-    /// Refuses what does nothing to a scheme.
+    /// Rejects options without effect on a scheme.
     pub fn check_for(&self, scheme: SchemeName) -> Outcome<()> {
         let of_core = [("f64", self.f64), ("accurate", self.accurate), ("board", self.board.is_some())];
         let idle = of_core.iter().find(|(_, given)| *given && scheme == SchemeName::Reference);
         idle.map_or(Ok(()), |(name, _)| {
             Err(Failure::new(format!(
-                "--{name} does nothing to the scheme reference, which is f64, as fine as it must be, and on no board"
+                "--{name} has no effect on --scheme reference, which runs in f64 at its own step, without a board"
             ))
             .with_help("leave it out, or name a scheme of the core: realtime, paper, rk4, euler"))
         })
     }
 
-    /// The options that ask for the same motion again, each with a space in front.
+    /// Options that repeat the motion, each with a leading space.
     pub fn replay(&self) -> String {
         let mut options = String::new();
         let mut option = |name: &str, value: Option<String>| {

@@ -1,51 +1,51 @@
-//! All schemes over one run: the error of each against the reference for as long as the motion can be predicted, and
-//! the cost of each.
+//! All schemes over one run: error of each scheme against the reference while the motion is predictable, and cost of
+//! each scheme.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use model_core::gears::design::Substeps;
 use serde::Serialize;
 
-use super::errors::{DISTURBANCE, Errors, errors, is_still, predictable, spread};
+use super::errors::{DISTURBANCE, Errors, errors, is_constant, predictable, standard_deviation};
 use super::scheme::SchemeName;
 use super::snapshot::Snapshot;
 use super::stepping::{self, RunEnd, SimulationSpec};
 use report::failure::{Failure, Outcome};
 use report::interruption;
 
-/// Costs are measured over so many ticks ...
+/// Ticks of a cost measurement.
 const COST_TICKS: u32 = 4000;
-/// ... so many times, schemes taking turns, and the least of them counts: whatever else the machine does only adds.
+/// Rounds of cost measurements, with schemes in turn. The least cost counts, since other load of the machine only adds.
 const COST_ROUNDS: usize = 5;
 
-/// Stretches of which the picture shows the error.
-const STRETCHES: usize = 240;
+/// Sections of the run for the picture of the error.
+const ERROR_SECTIONS: usize = 240;
 
-/// One scheme's samples of the compared quantities.
+/// Samples of the compared quantities by one scheme.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Track {
-    /// Which scheme.
+    /// Scheme.
     pub scheme: SchemeName,
-    /// How it ended.
+    /// End of the run.
     pub end: RunEnd,
     /// Times of the samples [s].
     pub times: Vec<f64>,
-    /// Deflections of every mesh, then gap, then link offset; one list a quantity [m, m, rad].
+    /// Deflections of every mesh, then gap, then link offset; one list for each quantity [m, m, rad].
     pub columns: Vec<Vec<f64>>,
 }
 
 /// All schemes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
-    /// The reference first.
+    /// Tracks, the reference first.
     pub tracks: Vec<Track>,
-    /// Samples up to which the motion can be predicted.
+    /// Number of samples in which the motion is predictable.
     pub predictable: usize,
-    /// The table.
+    /// Rows of the table.
     pub rows: Vec<Row>,
 }
 
-/// One line of the table.
+/// One row of the table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Row {
@@ -55,21 +55,22 @@ pub struct Row {
     pub errors: [Option<f64>; 3],
     /// Processor time for each simulated second, over that of `realtime` in the same process [-].
     pub cost_ratio: f64,
-    /// The same in seconds of this machine.
+    /// Processor time for each simulated second on this machine [s].
     pub cost_s_per_s: f64,
-    /// Method of the sub-steps of a tick in which contacts change: `corrected` or `leapfrog`; none for schemes that have no other.
+    /// Method of the sub-steps of a tick in which contacts change: `corrected` or `leapfrog`; null for schemes with a
+    /// single method.
     pub method: Option<&'static str>,
-    /// How many of them; none for the reference, which chooses its own steps.
+    /// Number of sub-steps; null for the reference, which chooses its own steps.
     pub substeps: Option<u32>,
-    /// Time at which the state was not finite any more [s].
+    /// Time at which the state stopped being finite [s].
     pub diverged_at_s: Option<f64>,
 }
 
-/// Runs all schemes, every `every`-th tick compared; `progress` is told the ticks done by all together.
+/// Runs all schemes and compares every `every`-th tick; `progress` receives the total of finished ticks.
 pub fn compare(run: &SimulationSpec, every: u32, progress: &(dyn Fn(u32) + Sync)) -> Outcome<Comparison> {
     let done = AtomicU32::new(0);
     let tick = || progress(done.fetch_add(1, Ordering::Relaxed));
-    let schemes = SchemeName::of_joint(&run.joint);
+    let schemes = SchemeName::for_joint(&run.joint);
     let exact = schemes.iter().map(|scheme| (*scheme, 0.0));
     let jobs: Vec<(SchemeName, f64)> = std::iter::once((SchemeName::Reference, DISTURBANCE)).chain(exact).collect();
     let followed: Vec<Outcome<Track>> = std::thread::scope(|scope| {
@@ -107,13 +108,13 @@ pub fn compare(run: &SimulationSpec, every: u32, progress: &(dyn Fn(u32) + Sync)
     Ok(Comparison { tracks, predictable, rows })
 }
 
-/// Errors of one scheme alone, against the reference; none where nothing can be predicted or the scheme breaks off.
-pub fn errors_of(run: &SimulationSpec, scheme: SchemeName) -> Outcome<Option<Errors>> {
+/// Errors of one scheme against the reference; `None` if the motion is unpredictable or the scheme breaks off.
+pub fn errors_against_reference(run: &SimulationSpec, scheme: SchemeName) -> Outcome<Option<Errors>> {
     let track = |scheme, disturbance| record(run, 1, scheme, disturbance, &|| {});
     let exact = track(SchemeName::Reference, 0.0)?.columns;
     let samples = predictable(&exact, &track(SchemeName::Reference, DISTURBANCE)?.columns);
     let found = errors(&exact, &track(scheme, 0.0)?.columns, samples);
-    Ok(if samples > 1 { Errors::of(found) } else { None })
+    Ok(if samples > 1 { Errors::from_values(found) } else { None })
 }
 
 impl Comparison {
@@ -122,26 +123,26 @@ impl Comparison {
         &self.tracks[0].times
     }
 
-    /// Returns whether no compared quantity moves: an error is over the motion, and has none.
-    pub fn is_still(&self) -> bool {
-        self.tracks[0].columns.iter().all(|column| is_still(column))
+    /// Returns true if no compared quantity moves: a relative error is then undefined.
+    pub fn is_constant(&self) -> bool {
+        self.tracks[0].columns.iter().all(|column| is_constant(column))
     }
 
-    /// Until when errors are compared [s].
+    /// End of the compared time [s].
     pub fn predictable_until(&self) -> f64 {
         self.predictable.checked_sub(1).map_or(0.0, |last| self.times()[last])
     }
 
-    /// Error of a track's first deflection over the standard deviation: root mean square of short stretches, each at its
+    /// Error of a track's first deflection over the standard deviation: root mean square of short sections, each at its
     /// middle [s].
-    pub fn error_of(&self, track: &Track) -> Vec<(f64, f64)> {
+    pub fn error_over_time(&self, track: &Track) -> Vec<(f64, f64)> {
         let exact = &self.tracks[0].columns[0][..self.predictable];
-        let spread = spread(exact);
+        let spread = standard_deviation(exact);
         let pairs: Vec<(f64, f64)> =
             exact.iter().zip(&track.columns[0]).zip(self.times()).map(|((a, b), time)| (*time, b - a)).collect();
-        let stretch = self.predictable.div_ceil(STRETCHES).max(1);
+        let section = self.predictable.div_ceil(ERROR_SECTIONS).max(1);
         pairs
-            .chunks(stretch)
+            .chunks(section)
             .map(|part| {
                 let square = part.iter().map(|(_, error)| error * error).sum::<f64>() / part.len() as f64;
                 (0.5 * (part[0].0 + part[part.len() - 1].0), square.sqrt() / spread)
@@ -150,7 +151,7 @@ impl Comparison {
     }
 }
 
-/// Follows a scheme.
+/// Runs a scheme and records the compared quantities.
 fn record(
     run: &SimulationSpec,
     every: u32,
@@ -181,7 +182,7 @@ fn record(
 fn costs(run: &SimulationSpec) -> Outcome<Vec<f64>> {
     let mut least: Vec<f64> = Vec::new();
     for round in 0..COST_ROUNDS {
-        for (place, scheme) in SchemeName::of_joint(&run.joint).iter().enumerate() {
+        for (place, scheme) in SchemeName::for_joint(&run.joint).iter().enumerate() {
             let cost = stepping::cost(run, *scheme, COST_TICKS)?;
             match least.get_mut(place) {
                 Some(best) if round > 0 => *best = best.min(cost),

@@ -1,5 +1,4 @@
-//! The history of a run as CSV: one row a sample, units in the names of the columns, numbers that read back to the same
-//! bits.
+//! History of a run as CSV: one row for each sample, units in the column names, numbers that parse to equal bits.
 
 use std::io::{self, Write};
 
@@ -9,7 +8,7 @@ use report::contacts::families;
 use super::quantities::{QUANTITIES, contact_word};
 use super::snapshot::Snapshot;
 
-/// The names of the columns, for so many planets.
+/// Writes the column names for a number of planets.
 pub fn write_head(out: &mut impl Write, planets: usize) -> io::Result<()> {
     let mut names = vec!["time_s".to_owned()];
     names.extend(QUANTITIES.iter().map(|quantity| quantity.column.to_owned()));
@@ -23,7 +22,7 @@ pub fn write_head(out: &mut impl Write, planets: usize) -> io::Result<()> {
     writeln!(out, "{}", names.join(","))
 }
 
-/// One row.
+/// Writes one row.
 pub fn write_row(out: &mut impl Write, joint: &JointParameters, snapshot: &Snapshot) -> io::Result<()> {
     write!(out, "{:?}", snapshot.time)?;
     for quantity in &QUANTITIES {

@@ -1,6 +1,6 @@
-//! The energy balance of a run (kinetic and elastic energy against the work of torques, damping, errors and changing
-//! stiffness), tick by tick. The work of a tick is that of the reference started at the tick's own state, so that the
-//! residual is the scheme's own gain or loss of energy. There is none for the tanh dead zone.
+//! Energy balance of a run (kinetic and elastic energy against the work of torques, damping, errors and changing
+//! stiffness), tick by tick. The work of a tick is that of the reference started at the tick's own state, so the
+//! residual is the scheme's own gain or loss of energy. The tanh dead zone has no balance.
 
 use model_core::gears::MeshPhasing;
 use std::f64::consts::TAU;
@@ -10,8 +10,8 @@ use reference::joint::{Reference, RelativeState, Start, Work};
 
 use super::snapshot::Snapshot;
 
-/// Points of the series for the picture, at most.
-const MOST_POINTS: usize = 20_000;
+/// Largest number of points in the picture.
+const MAX_ENTRIES: usize = 20_000;
 
 /// Energy balance of a run [J].
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
@@ -21,54 +21,54 @@ pub struct Balance {
     /// Kinetic and elastic energy at the start and at the end.
     pub stored_at_start_J: f64,
     pub stored_at_end_J: f64,
-    /// By the drive torque, less what the load took.
+    /// Energy supplied by the drive torque, minus that taken by the load.
     pub supplied_J: f64,
-    /// Lost in mesh damping and compliance.
+    /// Energy dissipated in mesh damping and compliance.
     pub dissipated_J: f64,
-    /// Done against imposed transmission errors.
+    /// Work done against imposed transmission errors.
     pub against_errors_J: f64,
-    /// Brought in by changing mesh stiffness.
+    /// Energy supplied by changing mesh stiffness.
     pub by_stiffness_J: f64,
-    /// Growth of the stored energy less all work: what the scheme makes (or, negative, loses).
+    /// Growth of the stored energy minus all work: energy gained (or, negative, lost) by the scheme.
     pub residual_J: f64,
-    /// The residual over the energy dissipated.
+    /// Residual over the dissipated energy.
     pub residual_over_dissipated: f64,
 }
 
-/// A moment of the balance: time [s], stored energy, work done so far and residual so far [J].
+/// One entry of the balance: time [s], stored energy, work so far and residual so far [J].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Entry {
-    /// [s].
+pub struct BalanceEntry {
+    /// Time [s].
     pub time: f64,
-    /// Kinetic and elastic [J].
+    /// Kinetic and elastic energy [J].
     pub stored: f64,
     /// Work so far.
     pub work: Work,
-    /// Stored energy less its start and all work [J].
+    /// Stored energy minus its initial value and all work [J].
     pub residual: f64,
 }
 
-/// Accumulates the energy balance while a run goes on.
+/// Energy balance, accumulated during a run.
 #[derive(Debug, Clone)]
 pub struct EnergyAccount<'a> {
     joint: &'a JointParameters,
     tick_rate: f64,
-    /// Every so many ticks an entry is kept.
+    /// Ticks between two entries.
     every: u32,
     started: Option<f64>,
-    /// The tick that is open: the reference at its start.
+    /// Reference at the start of the current tick.
     open: Option<Reference>,
     torques: (f64, f64),
     work: Work,
-    /// What is kept for the picture.
-    pub entries: Vec<Entry>,
-    last: Option<Entry>,
+    /// Entries for the picture.
+    pub entries: Vec<BalanceEntry>,
+    last: Option<BalanceEntry>,
 }
 
 impl<'a> EnergyAccount<'a> {
-    /// Books for a run of so many ticks; none for the tanh dead zone.
+    /// Balance for a run with a number of ticks; `None` for the tanh dead zone.
     pub fn open(joint: &'a JointParameters, tick_rate: u32, ticks: u32) -> Option<Self> {
-        let every = ticks.div_ceil(MOST_POINTS as u32).max(1);
+        let every = ticks.div_ceil(MAX_ENTRIES as u32).max(1);
         (joint.dead_zone == DeadZone::Sharp).then(|| Self {
             joint,
             tick_rate: tick_rate.into(),
@@ -82,8 +82,8 @@ impl<'a> EnergyAccount<'a> {
         })
     }
 
-    /// Takes one more tick. A state that the reference cannot follow leaves the work as it is: the residual shows it.
-    pub fn take(&mut self, snapshot: &Snapshot) {
+    /// Adds a tick. A state that the reference cannot follow adds no work, so it shows in the residual.
+    pub fn add_tick(&mut self, snapshot: &Snapshot) {
         let stored = match &snapshot.energy {
             Some(energy) => {
                 self.work = energy.work;
@@ -95,7 +95,8 @@ impl<'a> EnergyAccount<'a> {
                 {
                     self.work = sum(&self.work, &tick.observe().work);
                 }
-                let Ok(tick) = Reference::start(&shifted(self.joint, snapshot.mesh_periods), &start(snapshot)) else {
+                let Ok(tick) = Reference::start(&at_mesh_phase(self.joint, snapshot.mesh_periods), &state_of(snapshot))
+                else {
                     return;
                 };
                 let observation = tick.observe();
@@ -106,14 +107,14 @@ impl<'a> EnergyAccount<'a> {
         self.torques = (snapshot.drive, snapshot.load);
         let started = *self.started.get_or_insert(stored);
         let residual = stored - started - self.work.net();
-        let entry = Entry { time: snapshot.time, stored, work: self.work, residual };
+        let entry = BalanceEntry { time: snapshot.time, stored, work: self.work, residual };
         if snapshot.tick.is_multiple_of(self.every) {
             self.entries.push(entry);
         }
         self.last = Some(entry);
     }
 
-    /// The balance so far.
+    /// Balance so far.
     pub fn balance(&self) -> Option<Balance> {
         let last = self.last?;
         let Work { supplied, dissipated, against_errors, by_stiffness } = last.work;
@@ -139,8 +140,8 @@ fn sum(a: &Work, b: &Work) -> Work {
     }
 }
 
-/// The same joint with the mesh phase that it has now as its phase zero.
-fn shifted(joint: &JointParameters, mesh_periods: f64) -> JointParameters {
+/// Joint with its current mesh phase as phase zero.
+fn at_mesh_phase(joint: &JointParameters, mesh_periods: f64) -> JointParameters {
     let angle = TAU * (mesh_periods - mesh_periods.floor());
     let mut now = joint.clone();
     for kind in MESH_KINDS {
@@ -157,7 +158,7 @@ fn shifted(joint: &JointParameters, mesh_periods: f64) -> JointParameters {
     now
 }
 
-fn start(snapshot: &Snapshot) -> Start {
+fn state_of(snapshot: &Snapshot) -> Start {
     let planets = snapshot.teeth.len() / 2;
     let sun_planet = || snapshot.teeth.iter().take(planets);
     Start::Relative(RelativeState {
@@ -188,7 +189,7 @@ mod tests {
         joint_file::read(joint_file::preset(name).expect("a preset")).expect("a good preset").parameters
     }
 
-    /// A run of a joint that starts in the middle of its gap, turning, so that every contact state comes.
+    /// Runs a joint from the middle of its gap, turning, so that every contact state occurs.
     fn run_through(joint: &JointParameters, tick_rate: u32, scheme: SchemeName, each: &mut dyn FnMut(&Snapshot)) {
         let planets = joint.geometry.planets;
         let start =
@@ -215,9 +216,9 @@ mod tests {
         .expect("a good joint");
     }
 
-    /// The reference reads the same state by its own equations.
+    /// The reference evaluates the state by its own equations.
     #[test]
-    fn what_is_read_off_the_core_is_what_the_reference_reads_off_the_same_state() {
+    fn core_reading_matches_reference() {
         let mut rectangular = joint("q1");
         for mesh in [&mut rectangular.sun_planet, &mut rectangular.ring_planet] {
             mesh.stiffness_wave = StiffnessWave::Rectangular { stiffness_ratio: 0.1, contact_ratio: 1.6, order: 5 };
@@ -226,8 +227,8 @@ mod tests {
             let force_scale = joint.sun_planet.mean_stiffness * joint.characteristic_length;
             let mut worst = [0.0f64; 3];
             run_through(&joint, 200_000, SchemeName::Realtime, &mut |snapshot| {
-                let read = Reference::start(&shifted(&joint, snapshot.mesh_periods), &start(snapshot));
-                let read = Snapshot::of_reference(0, &joint, &read.expect("a good state").observe());
+                let read = Reference::start(&at_mesh_phase(&joint, snapshot.mesh_periods), &state_of(snapshot));
+                let read = Snapshot::from_reference(0, &joint, &read.expect("a good state").observe());
                 for (one, other) in snapshot.teeth.iter().zip(&read.teeth) {
                     worst[0] = worst[0].max((one.deflection - other.deflection).abs() / joint.characteristic_length);
                     worst[1] = worst[1].max((one.force - other.force).abs() / force_scale);
@@ -241,23 +242,23 @@ mod tests {
     }
 
     #[test]
-    fn the_reference_s_books_balance_whatever_the_teeth_do() {
+    fn reference_energy_balances() {
         for joint in [joint("q1"), joint("paper"), joint("l1")] {
             let mut account = EnergyAccount::open(&joint, 200_000, 1500).expect("a sharp dead zone");
-            run_through(&joint, 200_000, SchemeName::Reference, &mut |snapshot| account.take(snapshot));
+            run_through(&joint, 200_000, SchemeName::Reference, &mut |snapshot| account.add_tick(snapshot));
             let balance = account.balance().expect("it has run");
             println!("{}: {balance:?}", joint.name);
             tolerance::REFERENCE_ENERGY_BALANCE.check(balance.residual_over_dissipated);
         }
     }
 
-    /// Work of the ticks is taken from the reference, tick by tick; the residual is the scheme's own error.
+    /// The work of the ticks comes from the reference, tick by tick; the residual is the scheme's own error.
     #[test]
-    fn a_scheme_s_residual_is_small_for_the_board_s_scheme_and_larger_for_the_usual_ones() {
+    fn board_scheme_has_smallest_residual() {
         let joint = joint("paper");
         let residual = |scheme| {
             let mut account = EnergyAccount::open(&joint, 200_000, 1500).expect("a sharp dead zone");
-            run_through(&joint, 200_000, scheme, &mut |snapshot| account.take(snapshot));
+            run_through(&joint, 200_000, scheme, &mut |snapshot| account.add_tick(snapshot));
             account.balance().expect("it has run").residual_over_dissipated.abs()
         };
         let [realtime, runge_kutta, euler] =
@@ -268,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn the_tanh_dead_zone_has_no_books() {
+    fn tanh_dead_zone_has_no_balance() {
         let mut joint = joint("q1");
         joint.dead_zone = DeadZone::Tanh { sharpness: 10.0 };
         assert!(EnergyAccount::open(&joint, 20_000, 100).is_none());

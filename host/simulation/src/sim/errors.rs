@@ -1,14 +1,14 @@
-//! The error of a motion that was computed twice: root mean square over the motion's own standard deviation, of all mesh
-//! deflections together, of the gap coordinate and of the link's offset from the rigid body, for as long as the motion can be
-//! predicted. `joint sim --scheme all`, `joint check` and `joint budget` mean this by error.
+//! Error of a motion that was computed twice: root mean square over the motion's own standard deviation, of all mesh
+//! deflections together, of the gap coordinate, and of the link's offset from the rigid body, while the motion is
+//! predictable. `joint sim --scheme all`, `joint check` and `joint budget` use this definition.
 
 use serde::Serialize;
 
-/// A second reference gets torques that are wrong by this much, up and down in turn.
+/// Relative disturbance of the torques of a second reference run, with alternating sign [-].
 pub const DISTURBANCE: f64 = 1e-6;
-/// Once that moves any compared quantity by more than this part of its standard deviation, the motion is chaotic: what
-/// comes later says nothing about a scheme any more.
-pub const PREDICTABLE: f64 = 1e-3;
+/// Departure of the disturbed run, over a quantity's standard deviation, above which the motion is chaotic and later
+/// samples do not measure a scheme [-].
+pub const PREDICTABLE_DEPARTURE: f64 = 1e-3;
 
 /// Root mean square errors over the motion's own standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -18,19 +18,19 @@ pub struct Errors {
     pub deflections: f64,
     /// Gap coordinate.
     pub gap: f64,
-    /// Link angle less that of the rigid body.
+    /// Link angle minus that of the rigid body.
     pub link: f64,
 }
 
 impl Errors {
-    /// Of deflections, gap and link; none if one is none.
-    pub fn of(values: [Option<f64>; 3]) -> Option<Self> {
+    /// Errors of deflections, gap and link; `None` if one of them is missing.
+    pub fn from_values(values: [Option<f64>; 3]) -> Option<Self> {
         let [deflections, gap, link] = values;
         Some(Self { deflections: deflections?, gap: gap?, link: link? })
     }
 
-    /// The greater of two, one by one.
-    pub fn greater(self, other: Self) -> Self {
+    /// Greater of both errors for each quantity.
+    pub fn max(self, other: Self) -> Self {
         Self {
             deflections: self.deflections.max(other.deflections),
             gap: self.gap.max(other.gap),
@@ -38,35 +38,36 @@ impl Errors {
         }
     }
 
-    /// All of them so many times.
-    pub fn times(self, factor: f64) -> Self {
+    /// Errors times a factor.
+    pub fn scaled(self, factor: f64) -> Self {
         Self { deflections: factor * self.deflections, gap: factor * self.gap, link: factor * self.link }
     }
 
-    /// The greatest of the three.
+    /// Greatest of the three errors.
     pub fn greatest(&self) -> f64 {
         self.deflections.max(self.gap).max(self.link)
     }
 }
 
-/// How many samples come before the disturbed reference has left the exact one.
+/// Number of samples before the disturbed reference departs from the exact one.
 pub fn predictable(exact: &[Vec<f64>], disturbed: &[Vec<f64>]) -> usize {
     let count = exact[0].len().min(disturbed[0].len());
     let left = |exact: &[f64], disturbed: &[f64]| {
-        let bound = PREDICTABLE * spread(&exact[..count]);
+        let bound = PREDICTABLE_DEPARTURE * standard_deviation(&exact[..count]);
         exact.iter().zip(disturbed).take(count).position(|(a, b)| (a - b).abs() > bound).unwrap_or(count)
     };
     exact.iter().zip(disturbed).map(|(exact, disturbed)| left(exact, disturbed)).min().unwrap_or(0)
 }
 
-/// Errors of a scheme over the predictable samples that it has; none where nothing moves or nothing was reached.
+/// Errors of a scheme over the predictable samples; `None` for a quantity that does not move, or if the scheme ended
+/// early.
 pub fn errors(exact: &[Vec<f64>], columns: &[Vec<f64>], predictable: usize) -> [Option<f64>; 3] {
     let meshes = exact.len() - 2;
     let relative = |place: usize| {
         let count = predictable.min(columns[place].len());
         let exact = &exact[place][..count];
         let square: f64 = exact.iter().zip(&columns[place]).map(|(a, b)| (a - b).powi(2)).sum();
-        let error = (square / count as f64).sqrt() / spread(exact);
+        let error = (square / count as f64).sqrt() / standard_deviation(exact);
         (count == predictable && error.is_finite()).then_some(error)
     };
     let deflections: Option<Vec<f64>> = (0..meshes).map(relative).collect();
@@ -74,18 +75,18 @@ pub fn errors(exact: &[Vec<f64>], columns: &[Vec<f64>], predictable: usize) -> [
     [together, relative(meshes), relative(meshes + 1)]
 }
 
-/// Standard deviation over the greatest value below which a quantity counts as constant: a motion so small is lost in the rounding
-/// of f32, which is 6e-8 of a value, and the steps of the reference move a constant by less.
-const STILL: f64 = 1e-6;
+/// Standard deviation over the greatest value up to which a quantity counts as constant [-]. Rounding of f32 is 6e-8 of
+/// a value, and the steps of the reference move a constant by less.
+const CONSTANT_SPREAD: f64 = 1e-6;
 
-/// Returns whether a quantity stays where it is.
-pub fn is_still(values: &[f64]) -> bool {
+/// Returns true if a quantity is constant.
+pub fn is_constant(values: &[f64]) -> bool {
     let greatest = values.iter().fold(0.0, |greatest: f64, value| greatest.max(value.abs()));
-    spread(values) <= STILL * greatest
+    standard_deviation(values) <= CONSTANT_SPREAD * greatest
 }
 
 /// Standard deviation.
-pub fn spread(values: &[f64]) -> f64 {
+pub fn standard_deviation(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
 }

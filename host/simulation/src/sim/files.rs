@@ -1,5 +1,5 @@
-//! What a run leaves on disk. The history grows under a name of its own while the run goes on and takes its final name
-//! when it is whole, so that an older history is replaced by a whole one or not at all.
+//! Files of a run. The history grows under a temporary name and takes its final name when it is complete, so an older
+//! history is replaced by a complete one or not at all.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -14,19 +14,19 @@ use super::snapshot::Snapshot;
 use report::failure::{Failure, Outcome};
 use report::folder::Folder;
 use report::log::Channel;
-use report::write::unwritten;
+use report::write::write_failure;
 
-/// The page.
+/// Page.
 pub const REPORT: &str = "report.html";
-/// The figures of the console.
+/// Figures as JSON.
 pub const FIGURES: &str = "figures.json";
-/// Growing and final name.
-const CSV: [&str; 2] = ["history.partial.csv", "history.csv"];
-const LOG: [&str; 2] = ["history.partial.mcap", "history.mcap"];
-/// Everything that a run writes.
-pub const ALL: [&str; 6] = [REPORT, FIGURES, CSV[0], CSV[1], LOG[0], LOG[1]];
+/// Temporary and final names.
+const CSV_NAMES: [&str; 2] = ["history.partial.csv", "history.csv"];
+const LOG_NAMES: [&str; 2] = ["history.partial.mcap", "history.mcap"];
+/// All files that a run writes.
+pub const RUN_FILES: [&str; 6] = [REPORT, FIGURES, CSV_NAMES[0], CSV_NAMES[1], LOG_NAMES[0], LOG_NAMES[1]];
 
-/// CSV and log of one run, growing.
+/// Growing CSV and log of one run.
 pub struct HistoryFiles<'a> {
     folder: &'a Folder,
     joint: &'a JointParameters,
@@ -35,61 +35,61 @@ pub struct HistoryFiles<'a> {
 }
 
 impl<'a> HistoryFiles<'a> {
-    /// Begins both.
+    /// Starts both files.
     pub fn begin(folder: &'a Folder, joint: &'a JointParameters, remarks: BTreeMap<String, String>) -> Outcome<Self> {
         let both = || {
-            let mut csv = BufWriter::new(folder.grow(CSV[0])?);
+            let mut csv = BufWriter::new(folder.grow(CSV_NAMES[0])?);
             csv::write_head(&mut csv, joint.geometry.planets)
-                .map_err(|error| unwritten(&folder.file(CSV[0]), &error))?;
-            let log = BufWriter::new(folder.grow(LOG[0])?);
+                .map_err(|error| write_failure(&folder.file(CSV_NAMES[0]), &error))?;
+            let log = BufWriter::new(folder.grow(LOG_NAMES[0])?);
             let log = Channel::begin(log, TOPIC, SCHEMA_NAME, &log_file::schema(joint.geometry.planets), remarks)
-                .map_err(|error| unwritten(&folder.file(LOG[0]), &error))?;
+                .map_err(|error| write_failure(&folder.file(LOG_NAMES[0]), &error))?;
             Ok(Self { folder, joint, csv, log })
         };
-        both().map_err(|failure| left(folder, failure))
+        both().map_err(|failure| with_partial_files(folder, failure))
     }
 
-    /// One sample.
+    /// Writes one sample.
     pub fn write(&mut self, snapshot: &Snapshot) -> Outcome<()> {
         csv::write_row(&mut self.csv, self.joint, snapshot)
-            .map_err(|error| unwritten(&self.folder.file(CSV[0]), &error))?;
+            .map_err(|error| write_failure(&self.folder.file(CSV_NAMES[0]), &error))?;
         self.log
             .write(snapshot.time, &message(self.joint, snapshot))
-            .map_err(|error| unwritten(&self.folder.file(LOG[0]), &error))
+            .map_err(|error| write_failure(&self.folder.file(LOG_NAMES[0]), &error))
     }
 
-    /// Ends both properly. A whole history takes its final name; one that was cut short keeps the growing one.
+    /// Finishes both files. A complete history takes its final name; an interrupted one keeps the temporary name.
     pub fn finish(self, whole: bool) -> Outcome<[PathBuf; 2]> {
         let Self { folder, csv, log, .. } = self;
         let keep = |file: io::Result<BufWriter<File>>, [growing, whole_name]: [&str; 2]| {
             let ended = file.and_then(|file| {
-                // A full disk may only be noticed when the data leave the cache.
+                // A full disk may only show when the data leave the cache.
                 file.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
             });
-            ended.map_err(|error| unwritten(&folder.file(growing), &error))?;
+            ended.map_err(|error| write_failure(&folder.file(growing), &error))?;
             folder.keep(growing, if whole { whole_name } else { growing })
         };
-        // Both are ended, whatever becomes of the first.
-        let (csv, log) = (keep(Ok(csv), CSV), keep(log.finish(), LOG));
-        csv.and_then(|csv| Ok([csv, log?])).map_err(|failure| left(folder, failure))
+        // Both are finished, even if the first one fails.
+        let (csv, log) = (keep(Ok(csv), CSV_NAMES), keep(log.finish(), LOG_NAMES));
+        csv.and_then(|csv| Ok([csv, log?])).map_err(|failure| with_partial_files(folder, failure))
     }
 
-    /// A failure of the run, with what is left of its history, which is ended as well as it can be.
-    pub fn told(self, failure: Failure) -> Failure {
+    /// Finishes both files after a failure of the run, and adds their paths to the failure.
+    pub fn finish_after(self, failure: Failure) -> Failure {
         let folder = self.folder;
-        // The failure of the run says more than one of its files.
+        // A failure of the run is more informative than one of its files.
         let _ = self.finish(false);
-        left(folder, failure)
+        with_partial_files(folder, failure)
     }
 }
 
-/// A failure with the help of where what was written until then is. Where nothing could be written no file is left behind.
-fn left(folder: &Folder, failure: Failure) -> Failure {
+/// Adds the paths of the partial files to a failure; empty files are removed.
+fn with_partial_files(folder: &Folder, failure: Failure) -> Failure {
     let mut kept = Vec::new();
-    for path in [CSV, LOG].map(|[growing, _]| folder.file(growing)) {
+    for path in [CSV_NAMES, LOG_NAMES].map(|[growing, _]| folder.file(growing)) {
         match fs::metadata(&path) {
             Ok(data) if data.len() > 0 => kept.push(path.display().to_string()),
-            // It was ours, and it was empty: nothing is lost if it stays.
+            // An empty file of this run may stay if it cannot be removed.
             Ok(_) => drop(fs::remove_file(&path)),
             Err(_) => {}
         }
@@ -97,7 +97,7 @@ fn left(folder: &Folder, failure: Failure) -> Failure {
     if kept.is_empty() {
         return failure;
     }
-    let kept = format!("what was written until then is in {}", kept.join(" and "));
+    let kept = format!("the samples written so far are in {}", kept.join(" and "));
     let help = failure.help().map_or_else(|| kept.clone(), |help| format!("{help}\n{kept}"));
     failure.with_help(help)
 }

@@ -1,4 +1,4 @@
-//! The history of a run as a log: the same names, units and words as in its CSV.
+//! History of a run as a log, with the names, units and words of the CSV.
 
 use parameters::JointParameters;
 use report::contacts::families;
@@ -9,13 +9,13 @@ use super::snapshot::{MeshSnapshot, Snapshot};
 
 /// Topic of the motion.
 pub const TOPIC: &str = "/joint/motion";
-/// Name of its schema.
+/// Name of the topic's schema.
 pub const SCHEMA_NAME: &str = "joint_msgs/msg/Motion";
 
-/// Fields that hold one number for each planet.
+/// Fields with one number for each planet.
 const LISTS: [(&str, &str); 3] = [("deflection_m", "[m]"), ("deflection_rate_m_per_s", "[m/s]"), ("force_N", "[N]")];
 
-/// The message of a joint with so many planets, as ROS 2 writes it down.
+/// Schema of the message for a number of planets, in the text form of ROS 2.
 pub fn schema(planets: usize) -> String {
     let of_each = if planets == 1 { "of the one contact" } else { "one for each planet" };
     let numbers = QUANTITIES.iter().map(|quantity| field("float64", quantity.column, quantity.meaning));
@@ -29,7 +29,7 @@ pub fn schema(planets: usize) -> String {
     [field("float64", "time_s", "since the start [s]")].into_iter().chain(numbers).chain(lists).collect()
 }
 
-/// A moment as a message.
+/// Snapshot as a message.
 pub fn message(joint: &JointParameters, snapshot: &Snapshot) -> Message {
     let mut message = Message::default();
     message.number(snapshot.time);

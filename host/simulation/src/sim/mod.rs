@@ -1,8 +1,8 @@
-//! Any joint moved by a named scheme, on the host.
+//! Simulation of any joint by a named scheme, on the host.
 //!
-//! `plan` validates the request, `stepping` moves the joint by a `scheme` from a `start`, and passes a `snapshot` of
+//! `plan` validates the request; `stepping` simulates the joint by a `scheme` from a `start` and passes a `snapshot` of
 //! every tick to `statistics`, `energy` and the files (`csv`, `log_file`, both with the `quantities`); `result` holds
-//! all of it; `comparison` runs all schemes; `summary` is the result as data, `page` and its pictures show it.
+//! the results; `comparison` runs all schemes; `summary` is the result as data, `page` and its pictures show it.
 
 pub mod arguments;
 pub mod comparison;
@@ -32,8 +32,8 @@ pub use arguments::Arguments;
 use comparison::Comparison;
 use files::HistoryFiles;
 use plan::SimulationPlan;
-use result::{PROGRESS, SimulationResult};
-use scheme::{Choice, SchemeName};
+use result::{PROGRESS_INTERVAL, SimulationResult};
+use scheme::{SchemeChoice, SchemeName};
 use stepping::RunEnd;
 use summary::SimulationSummary;
 
@@ -42,49 +42,49 @@ use report::command_line::quoted;
 use report::document::{html, terminal};
 use report::failure::{Failure, Outcome};
 use report::folder::{self, Folder};
-use report::interruption::InOrder;
+use report::interruption::UninterruptedWork;
 use report::output;
 use report::progress::Progress;
 use report::provenance::VERSION;
 
-/// Samples that are kept at most unless `--every` says how many ticks apart they are.
-const USUAL_SAMPLES: u32 = 200_000;
-/// Samples that can be kept: each takes half a kilobyte.
-const MOST_SAMPLES: u32 = 2_000_000;
+/// Largest number of samples by default.
+const DEFAULT_SAMPLES: u32 = 200_000;
+/// Largest number of samples; each takes half a kilobyte.
+const MAX_SAMPLES: u32 = 2_000_000;
 
 /// Texts and paths of a finished simulation.
 pub struct Simulated {
-    /// The figures for a terminal.
+    /// Figures for a terminal.
     pub summary: String,
-    /// The same as JSON.
+    /// Figures as JSON.
     pub figures: String,
-    /// The page.
+    /// Path of the page.
     pub report: PathBuf,
-    /// Samples as CSV and as MCAP.
+    /// Paths of the samples as CSV and as MCAP.
     pub history: [PathBuf; 2],
 }
 
-/// Simulates a joint; report, figures and history are in its folder then.
+/// Simulates a joint and writes report, figures and history to its folder.
 pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
     arguments.motion.check_for(arguments.scheme.shown())?;
     let loaded = named::load_with(&arguments.file, &arguments.motion.set)?;
     arguments.scheme.shown().check_joint(&loaded.file.parameters)?;
     warnings::print(&loaded);
     let plan = SimulationPlan::new(loaded, &arguments.motion)?;
-    let every = every(&plan, arguments.every)?;
+    let every = sample_interval(&plan, arguments.every)?;
     let scheme = arguments.scheme.shown();
     let profile = arguments.motion.profile.as_deref().unwrap_or_default();
     folder::check_files(&[("json", arguments.json.as_deref())], &[&arguments.file, Path::new(profile)])?;
-    let folder = Folder::prepare(arguments.out.as_deref(), "sim", &plan.parameters().name, &files::ALL)?;
-    // A history that was begun is finished properly.
-    let in_order = InOrder::begin();
+    let folder = Folder::prepare(arguments.out.as_deref(), "sim", &plan.parameters().name, &files::RUN_FILES)?;
+    // An interruption must still finish the history.
+    let uninterrupted = UninterruptedWork::begin();
     let mut files = HistoryFiles::begin(&folder, plan.parameters(), remarks(arguments, &plan, scheme))?;
     progress.run("simulating", plan.run.ticks);
-    let result = SimulationResult::of(&plan, scheme, every, !arguments.no_energy, &mut files, progress);
+    let result = SimulationResult::simulate(&plan, scheme, every, !arguments.no_energy, &mut files, progress);
     let stopped = matches!(&result, Ok(SimulationResult { end: RunEnd::Stopped, .. }));
     let mut result = match result {
         Ok(result) => result,
-        Err(failure) => return Err(files.told(failure)),
+        Err(failure) => return Err(files.finish_after(failure)),
     };
     let [csv, log] = files.finish(!stopped)?;
     if stopped {
@@ -92,13 +92,13 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
         return Err(Failure::interrupted(format!("stopped by the user at {time:.4} s of {:.4} s", plan.duration()))
             .with_help(format!("the history so far is in {} and {}", csv.display(), log.display())));
     }
-    drop(in_order);
-    if arguments.scheme == Choice::All {
+    drop(uninterrupted);
+    if arguments.scheme == SchemeChoice::All {
         result.comparison = Some(compare(&plan, every, progress)?);
     }
     progress.stage("drawing");
-    let figures = SimulationSummary::of(&result, &arguments.motion.set);
-    let document = page::document(&result, &figures, &replay(arguments));
+    let figures = SimulationSummary::new(&result, &arguments.motion.set);
+    let document = page::document(&result, &figures, &replay_command(arguments));
     folder.write_text(files::REPORT, &html(&document))?;
     let json = output::json("figures", &figures)?;
     folder.write_text(files::FIGURES, &json)?;
@@ -110,12 +110,12 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<Simulated> {
     })
 }
 
-/// Ticks between two kept samples.
-fn every(plan: &SimulationPlan, wanted: Option<u32>) -> Outcome<u32> {
-    let every = wanted.unwrap_or_else(|| plan.run.ticks.div_ceil(USUAL_SAMPLES)).max(1);
+/// Ticks between two samples.
+fn sample_interval(plan: &SimulationPlan, wanted: Option<u32>) -> Outcome<u32> {
+    let every = wanted.unwrap_or_else(|| plan.run.ticks.div_ceil(DEFAULT_SAMPLES)).max(1);
     let samples = plan.run.ticks / every + 1;
-    if samples > MOST_SAMPLES {
-        let least = plan.run.ticks.div_ceil(MOST_SAMPLES);
+    if samples > MAX_SAMPLES {
+        let least = plan.run.ticks.div_ceil(MAX_SAMPLES);
         return Err(Failure::new(format!("every {every} of {} ticks are {samples} samples", plan.run.ticks))
             .with_help(format!("give --every {least} or more, or a shorter --duration")));
     }
@@ -123,17 +123,17 @@ fn every(plan: &SimulationPlan, wanted: Option<u32>) -> Outcome<u32> {
 }
 
 fn compare(plan: &SimulationPlan, every: u32, progress: &Progress) -> Outcome<Comparison> {
-    // Every scheme and the disturbed reference go through all ticks.
-    let runs = 1 + SchemeName::of_joint(plan.parameters()).len() as u32;
+    // Every scheme and the disturbed reference run over all ticks.
+    let runs = 1 + SchemeName::for_joint(plan.parameters()).len() as u32;
     progress.run("comparing schemes", plan.run.ticks);
     comparison::compare(&plan.run, every, &|done| {
-        if (done / runs).is_multiple_of(PROGRESS) {
-            progress.at(done / runs);
+        if (done / runs).is_multiple_of(PROGRESS_INTERVAL) {
+            progress.set_position(done / runs);
         }
     })
 }
 
-/// What the log says of itself.
+/// Remarks in the log.
 fn remarks(arguments: &Arguments, plan: &SimulationPlan, scheme: SchemeName) -> BTreeMap<String, String> {
     [
         ("joint", plan.parameters().name.to_string()),
@@ -141,15 +141,15 @@ fn remarks(arguments: &Arguments, plan: &SimulationPlan, scheme: SchemeName) -> 
         ("scheme", scheme.name().to_owned()),
         ("tick_rate_hz", plan.run.tick_rate.to_string()),
         ("torques", plan.torques_name.clone()),
-        ("command", replay(arguments)),
+        ("command", replay_command(arguments)),
         ("version", VERSION.to_owned()),
     ]
     .map(|(name, value)| (name.to_owned(), value))
     .into()
 }
 
-/// The command that makes this run again.
-fn replay(arguments: &Arguments) -> String {
+/// Command that repeats this run.
+fn replay_command(arguments: &Arguments) -> String {
     let mut command = format!("cargo joint sim {}", quoted(&arguments.file.display().to_string()));
     command += &format!(" --scheme {}", arguments.scheme.name());
     command += &arguments.motion.replay();

@@ -1,5 +1,5 @@
-//! The report of a simulation as a document. Pictures come from `pictures`, `portraits` and `scheme_pictures`, figures
-//! from `summary`.
+//! Report of a simulation as a document. Pictures come from `pictures`, `portraits` and `scheme_pictures`, figures from
+//! `summary`.
 
 use super::comparison::Row as SchemeRow;
 use super::pictures::View;
@@ -16,7 +16,7 @@ use report::number::{PAGE, fixed, powers_of_ten};
 use report::panels::{DEFLECTIONS, THINNED, gap_coordinate};
 use report::provenance::VERSION;
 
-/// All of it.
+/// The whole report.
 pub fn document(result: &SimulationResult<'_>, figures: &SimulationSummary, replay: &str) -> Document {
     let rate = f64::from(figures.tick_rate_Hz);
     let mut blocks = notices(result, figures);
@@ -101,7 +101,7 @@ fn motion(result: &SimulationResult<'_>) -> Block {
     }
     let mut blocks = vec![Block::Lead(number(result.samples.len() as f64) + " samples. " + THINNED)];
     if !result.plan.constant {
-        blocks.push(picture(whole.figure("Torques", whole.torques()), "Torques as asked for.".into()));
+        blocks.push(picture(whole.figure("Torques", whole.torques()), "Commanded torques.".into()));
     }
     let gap = gap_coordinate()
         + ", and the twist that it leaves between motor and link. Shaded: where every mesh can be free at once.";
@@ -111,7 +111,7 @@ fn motion(result: &SimulationResult<'_>) -> Block {
         Some(close) => {
             let caption = strong("The last 12 mesh periods, closely. ") + "Deflections and contact, sample by sample.";
             blocks.push(picture(close.figure("The last mesh periods", close.deflections()), caption));
-            let caption = "Mesh forces over the same stretch.".into();
+            let caption = "Mesh forces over the same time.".into();
             blocks.push(picture(close.figure("Mesh forces", close.forces()), caption));
         }
         None => {
@@ -143,18 +143,21 @@ fn portraits(result: &SimulationResult<'_>, figures: &SimulationSummary) -> Opti
         picture(
             portraits::portrait(plan, samples, points, Portrait::Deflection),
             format!(
-                "Deflection rate over deflection. Marked: the points at which the mesh phase comes round (Poincaré \
-                 points), {} of them.",
+                "Deflection rate over deflection. Marked: the points at which the mesh phase completes a period \
+                 (Poincaré points), {} of them.",
                 result.statistics.points().len()
             )
             .into(),
         ),
-        picture(portraits::portrait(plan, samples, points, Portrait::Gap), "The same of the gap coordinate.".into()),
+        picture(
+            portraits::portrait(plan, samples, points, Portrait::Gap),
+            "Gap rate over gap coordinate, with its Poincaré points.".into(),
+        ),
     ];
     if let Some(spectrum) = &result.spectrum {
-        let beside = figures.non_fundamental_over_fundamental.map(|ratio| {
-            format!("Beside the mesh frequency there is {} of what is at it (root of the powers).", PAGE.write(ratio))
-        });
+        let beside = figures
+            .non_fundamental_over_fundamental
+            .map(|ratio| format!("RMS beside over RMS at the mesh frequency: {}.", PAGE.write(ratio)));
         let caption = text("Hann window, about the mean. ") + beside;
         blocks.push(picture(portraits::spectrum(plan, spectrum), caption));
     }
@@ -193,7 +196,7 @@ fn contacts(figures: &SimulationSummary) -> Block {
     })
 }
 
-/// What a terminal says of the motion as a whole; a page says it beside the pictures.
+/// Facts about the motion for a terminal; a page shows them beside the pictures.
 fn motion_facts(figures: &SimulationSummary) -> Vec<(&'static str, String)> {
     let period = match figures.period {
         Some(1) => "1 mesh period".to_owned(),
@@ -202,7 +205,7 @@ fn motion_facts(figures: &SimulationSummary) -> Vec<(&'static str, String)> {
     };
     let mut facts = vec![("period", period)];
     if let Some(ratio) = figures.non_fundamental_over_fundamental {
-        facts.push(("spectrum", format!("beside the mesh frequency: {ratio:.4} of what is at it")));
+        facts.push(("spectrum", format!("RMS beside over RMS at the mesh frequency: {ratio:.4}")));
     }
     if let Some(energy) = &figures.energy {
         let [residual, dissipated] = [energy.residual_J, energy.dissipated_J].map(|work| powers_of_ten(3).write(work));
@@ -253,9 +256,8 @@ fn schemes(result: &SimulationResult<'_>, figures: &SimulationSummary) -> Option
     } else {
         ""
     };
-    let compared = if comparison.is_still() {
-        "Nothing swings under these torques: no motion to measure an error of; --profile reversals crosses the gap."
-            .to_owned()
+    let compared = if comparison.is_constant() {
+        "No oscillation under these torques, so no error to measure; --profile reversals crosses the gap.".to_owned()
     } else {
         format!(
             "Root mean square error against the reference over the motion’s standard deviation, up to {} ms of {} \

@@ -1,5 +1,5 @@
 //! Pictures of a run over time: torques, gap, deflections with contact, forces. Phase portraits and spectra are in
-//! `portraits`, pictures about schemes in `scheme_pictures`.
+//! `portraits`, pictures of schemes in `scheme_pictures`.
 
 use model_core::gears::Kinematics;
 use parameters::{ContactState, JointParameters};
@@ -14,27 +14,27 @@ use report::plot::ink::Ink;
 use report::plot::panel::Panel;
 use report::plot::unit::{FORCE, Unit, greatest};
 
-/// Mesh periods shown where every one of them is to be seen.
+/// Mesh periods in a close-up, where each of them is visible.
 const CLOSE_PERIODS: f64 = 12.0;
 
 /// A time range of a run.
 pub struct View<'a> {
-    /// Whose.
+    /// Plan of the run.
     pub plan: &'a SimulationPlan,
-    /// Its samples.
+    /// Samples in the range.
     pub samples: &'a [Snapshot],
-    /// From and to [s].
+    /// Start and end [s].
     pub range: (f64, f64),
 }
 
 impl<'a> View<'a> {
-    /// The whole run.
+    /// View of the whole run.
     pub fn whole(plan: &'a SimulationPlan, samples: &'a [Snapshot]) -> Self {
         let end = samples.last().map_or(0.0, |last| last.time);
         Self { plan, samples, range: (0.0, if end > 0.0 { end } else { 1.0 }) }
     }
 
-    /// The last few mesh periods, if they are a small part of the run.
+    /// View of the last mesh periods, if they are a small part of the run.
     pub fn close(&self) -> Option<Self> {
         let length = CLOSE_PERIODS / self.plan.mesh_frequency();
         let from = self.range.1 - length;
@@ -51,7 +51,7 @@ impl<'a> View<'a> {
         self.plan.parameters()
     }
 
-    /// A figure over the time of this view.
+    /// Figure over the time of this view.
     pub fn figure(&self, title: &str, panels: Vec<Panel>) -> Figure {
         let title = format!("{title} of joint {}", self.joint().name);
         Figure::over_time(title, Unit::of_time(self.range.1), self.range, panels)
@@ -61,12 +61,12 @@ impl<'a> View<'a> {
         self.samples.iter().map(|snapshot| (snapshot.time, value(snapshot))).collect()
     }
 
-    /// Drive and load torque; steps where they change.
+    /// Drive and load torque, as steps.
     pub fn torques(&self) -> Vec<Panel> {
         panels::torques(self.points(|snapshot| snapshot.drive), self.points(|snapshot| snapshot.load))
     }
 
-    /// The gap coordinate over its band, the twist that it leaves at the link, and the wind-up if there is any.
+    /// Gap coordinate over its band, remaining twist at the link, and wind-up if the joint has a compliance.
     pub fn gap(&self) -> Vec<Panel> {
         let joint = self.joint();
         let half_backlash =
@@ -103,7 +103,7 @@ impl<'a> View<'a> {
         titles.into_iter().zip(kinds).map(panel).collect()
     }
 
-    /// A line of each planet, sun-planet and ring-planet.
+    /// One line for each planet, sun-planet and ring-planet.
     fn of_planets(&self, value: fn(&MeshSnapshot) -> f64) -> [Vec<Points>; 2] {
         let planets = self.joint().geometry.planets;
         let line = |mesh: usize| self.points(|snapshot| value(&snapshot.teeth[mesh]));
@@ -111,7 +111,7 @@ impl<'a> View<'a> {
     }
 }
 
-/// Contact columns as the strips take them.
+/// Contact columns for the contact strips.
 fn contact_columns(samples: &[Snapshot]) -> Vec<Vec<Contact>> {
     let meshes = samples.first().map_or(0, |snapshot| snapshot.teeth.len());
     let column = |mesh: usize| {

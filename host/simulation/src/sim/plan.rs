@@ -1,4 +1,4 @@
-//! A validated request to simulate: joint, rate, length, torques and start are checked before it begins.
+//! Validated request for a simulation: joint, rate, length, torques and start are checked before the run.
 
 use model_core::gears::{Kinematics, Mechanics};
 use std::f64::consts::TAU;
@@ -17,43 +17,43 @@ use joint_file::named::Loaded;
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 
-/// Rate of the board, and of any run without a reason for another [Hz].
+/// Rate of the board, and default rate of other runs [Hz].
 const BOARD_RATE: u32 = 20_000;
-/// Ticks that a prescribed mesh period has at least by default: phase portraits and spectra need them.
-const TICKS_A_PERIOD: f64 = 48.0;
-/// Length under constant torques [s], and at a prescribed mesh frequency [mesh periods].
-const DURATION: f64 = 1.0;
-const MESH_PERIODS: f64 = 600.0;
-/// Speed of the carrier under constant torques: a turn a second [rad/s].
-pub(crate) const SPEED: f64 = TAU;
-/// More ticks than this are a slip of the keyboard: at a microsecond each they take days.
-const MOST_TICKS: f64 = 2e10;
+/// Least number of ticks in a prescribed mesh period by default, for phase portraits and spectra.
+const MIN_TICKS_PER_PERIOD: f64 = 48.0;
+/// Default length under constant torques [s], and at a prescribed mesh frequency [mesh periods].
+const DEFAULT_DURATION: f64 = 1.0;
+const DEFAULT_MESH_PERIODS: f64 = 600.0;
+/// Default speed of the carrier under constant torques: a turn a second [rad/s].
+pub(crate) const DEFAULT_SPEED: f64 = TAU;
+/// Largest number of ticks; more would take days at a microsecond each and are likely a typing error.
+const MAX_TICKS: f64 = 2e10;
 
 /// A validated simulation.
 #[derive(Debug, Clone)]
 pub struct SimulationPlan {
-    /// The joint file as the user named it.
+    /// Joint file as the user named it.
     pub name: String,
-    /// What is odd in it but can be used.
+    /// Warnings of the joint file.
     pub warnings: Vec<Problem>,
-    /// What to run.
+    /// Simulation to run.
     pub run: SimulationSpec,
-    /// Ticks that do not count.
+    /// Ticks before the figures.
     pub settle: u32,
-    /// What the torques are, for reports.
+    /// Torques in words, for reports.
     pub torques_name: String,
-    /// Whether the torques change.
+    /// True for constant torques.
     pub constant: bool,
     /// Name of the state at tick 0.
     pub start_name: StartName,
     /// Carrier speed at the start [rad/s].
     pub speed: f64,
-    /// Board that the step is made for; none if it takes what accuracy asks for.
+    /// Board whose step is used; `None` if the accuracy decides.
     pub board: Option<String>,
 }
 
 impl SimulationPlan {
-    /// Puts a motion to a joint.
+    /// Validates a motion of a joint.
     pub fn new(loaded: Loaded, motion: &MotionArguments) -> Outcome<Self> {
         let Loaded { name, file: joint, .. } = loaded;
         let parameters = &joint.parameters;
@@ -79,10 +79,10 @@ impl SimulationPlan {
                 (profile.commands, profile.ticks, format!("profile {}", profile.name))
             }
             None => {
-                let ticks = count(duration.unwrap_or_else(|| steady_duration(parameters)), tick_rate)?;
+                let ticks = tick_count(duration.unwrap_or_else(|| steady_duration(parameters)), tick_rate)?;
                 let drive = within("drive", motion.drive, MAX_TORQUE, "N m")?;
                 let load = within("load", motion.load, MAX_TORQUE, "N m")?;
-                let command = constant(&joint, drive, load);
+                let command = constant_torques(&joint, drive, load);
                 let (drive, load) = (command.drive_torque, command.load_torque);
                 (vec![command], ticks, format!("constant torques of {drive} N m against {load} N m"))
             }
@@ -94,7 +94,7 @@ impl SimulationPlan {
             Some(settle) => {
                 let end = f64::from(ticks) / f64::from(tick_rate);
                 if !(0.0..end).contains(&settle) {
-                    let message = format!("--settle {settle} leaves nothing of a run of {end} s");
+                    let message = format!("--settle {settle} is not below the run's {end} s");
                     return Err(Failure::new(message).with_help("give 0 or more, and less than the duration"));
                 }
                 (settle * f64::from(tick_rate)).round() as u32
@@ -105,10 +105,10 @@ impl SimulationPlan {
             (true, Some(_)) => StartName::Centred,
             (true, None) => StartName::Seated,
         });
-        let turning = if constant && frequency.is_none() { SPEED } else { 0.0 };
+        let turning = if constant && frequency.is_none() { DEFAULT_SPEED } else { 0.0 };
         let speed = within("speed", motion.speed, MAX_SPEED, "rad/s")?.unwrap_or(turning);
         let first = torques.first().map_or((0.0, 0.0), |first| (first.drive_torque.into(), first.load_torque.into()));
-        let start = start_name.of(parameters, speed, first);
+        let start = start_name.state(parameters, speed, first);
         let board = motion.board.clone().unwrap_or_else(Board::emulated);
         let effort = if motion.accurate { Effort::Accurate } else { Effort::Within(board.processor()) };
         let board = (!motion.accurate).then(|| board.name().to_owned());
@@ -117,7 +117,7 @@ impl SimulationPlan {
         Ok(Self { name, warnings, run, settle, torques_name, constant, start_name, speed, board })
     }
 
-    /// The joint.
+    /// Parameters of the joint.
     pub fn parameters(&self) -> &JointParameters {
         &self.run.joint
     }
@@ -127,7 +127,7 @@ impl SimulationPlan {
         f64::from(self.run.ticks) / f64::from(self.run.tick_rate)
     }
 
-    /// Prescribed mesh frequency, or that of the start's speed [Hz].
+    /// Prescribed mesh frequency, or that of the initial speed [Hz].
     pub fn mesh_frequency(&self) -> f64 {
         match self.parameters().excitation {
             Excitation::Time { mesh_frequency } => mesh_frequency / TAU,
@@ -136,24 +136,24 @@ impl SimulationPlan {
     }
 }
 
-/// Length of a run under constant torques, unless another is asked for [s].
+/// Default length of a run under constant torques [s].
 pub(crate) fn steady_duration(joint: &JointParameters) -> f64 {
     match joint.excitation {
-        Excitation::Time { mesh_frequency } => MESH_PERIODS * TAU / mesh_frequency,
-        Excitation::Angle => DURATION,
+        Excitation::Time { mesh_frequency } => DEFAULT_MESH_PERIODS * TAU / mesh_frequency,
+        Excitation::Angle => DEFAULT_DURATION,
     }
 }
 
-/// A multiple of the board's rate at which a prescribed mesh period has ticks enough.
+/// Multiple of the board's rate with enough ticks in a prescribed mesh period.
 fn default_rate(frequency: Option<f64>) -> u32 {
-    let wanted = frequency.unwrap_or(0.0) * TICKS_A_PERIOD / f64::from(BOARD_RATE);
-    // Beyond a thousand times the board's rate the design will say what is wrong.
+    let wanted = frequency.unwrap_or(0.0) * MIN_TICKS_PER_PERIOD / f64::from(BOARD_RATE);
+    // Beyond a thousand times the board's rate the design reports the error.
     BOARD_RATE * wanted.ceil().clamp(1.0, 1000.0) as u32
 }
 
-fn count(seconds: f64, tick_rate: u32) -> Outcome<u32> {
+fn tick_count(seconds: f64, tick_rate: u32) -> Outcome<u32> {
     let ticks = seconds * f64::from(tick_rate);
-    if !(1.0..=MOST_TICKS.min(f64::from(u32::MAX / 2))).contains(&ticks) {
+    if !(1.0..=MAX_TICKS.min(f64::from(u32::MAX / 2))).contains(&ticks) {
         return Err(Failure::new(format!(
             "a run of {} s at {tick_rate} Hz is {} ticks",
             TYPED.write(seconds),
@@ -164,8 +164,8 @@ fn count(seconds: f64, tick_rate: u32) -> Outcome<u32> {
     Ok(ticks.round() as u32)
 }
 
-/// The file's operating point, or what was asked for; a torque that is not given balances the other.
-fn constant(joint: &JointFile, drive: Option<f64>, load: Option<f64>) -> Command {
+/// Stated operating point, or the requested torques; a missing torque balances the other one.
+fn constant_torques(joint: &JointFile, drive: Option<f64>, load: Option<f64>) -> Command {
     let parameters = &joint.parameters;
     let ratio = parameters.geometry.ratio_by_radii();
     let (drive, load) = match (drive, load) {

@@ -1,5 +1,5 @@
-//! Phase portraits with their Poincare points, and the spectrum. Points and amplitudes are computed in `statistics` and
-//! `spectrum`.
+//! Phase portraits with their Poincare points, and the spectrum. `statistics` and `spectrum` compute points and
+//! amplitudes.
 
 use super::plan::SimulationPlan;
 use super::snapshot::Snapshot;
@@ -12,19 +12,19 @@ use report::plot::panel::Panel;
 use report::plot::unit::{DECIBELS, Unit, axis_range, greatest};
 use report::spectrum::Spectrum;
 
-/// Samples drawn of a phase portrait under constant torques: more only blacken it.
-const PORTRAIT: usize = 6000;
-/// Samples drawn of a phase portrait under a profile, which shows the whole run.
-const PROFILE_PORTRAIT: usize = 20_000;
-/// Part of the picture's size within which a sample is no new point; more where there are too many of them.
-const NEAR: f64 = 1e-3;
-/// Size of a Poincare point over the size of the picture, and of one among many.
-const DOT: [f64; 2] = [0.0085, 0.024];
-const SMALL_DOT: [f64; 2] = [0.0042, 0.012];
-/// Periods that are shown by large points.
-const FEW: usize = 8;
+/// Samples drawn in a phase portrait under constant torques; more would only blacken it.
+const PORTRAIT_SAMPLES: usize = 6000;
+/// Samples drawn in a phase portrait under a profile, which shows the whole run.
+const PROFILE_PORTRAIT_SAMPLES: usize = 20_000;
+/// Least distance between drawn samples over the picture's size; larger if there are too many samples.
+const MIN_DISTANCE: f64 = 1e-3;
+/// Size of a Poincare point over the size of the picture, for few points and for many.
+const LARGE_POINT: [f64; 2] = [0.0085, 0.024];
+const SMALL_POINT: [f64; 2] = [0.0042, 0.012];
+/// Largest period that is shown with large points.
+const LARGE_POINT_PERIODS: usize = 8;
 
-/// Which motion a phase portrait shows.
+/// Motion of a phase portrait.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Portrait {
     /// Sun-planet deflection of planet 1.
@@ -33,14 +33,14 @@ pub enum Portrait {
     Gap,
 }
 
-/// Rate over position of the last samples, with the Poincare points on it.
+/// Rate over position of the last samples, with the Poincare points.
 pub fn portrait(
     plan: &SimulationPlan,
     samples: &[Snapshot],
     (points, period): (&[PoincarePoint], Option<usize>),
     which: Portrait,
 ) -> Figure {
-    let samples = if plan.constant { &samples[samples.len().saturating_sub(PORTRAIT)..] } else { samples };
+    let samples = if plan.constant { &samples[samples.len().saturating_sub(PORTRAIT_SAMPLES)..] } else { samples };
     let of = |snapshot: &Snapshot| match which {
         Portrait::Deflection => (snapshot.teeth[0].deflection, snapshot.teeth[0].rate),
         Portrait::Gap => (snapshot.gap, snapshot.gap_rate),
@@ -55,7 +55,7 @@ pub fn portrait(
     if !plan.constant {
         curve = thinned(curve, (range.1 - range.0, up.1 - up.0));
     }
-    let size = if period.is_some_and(|period| period <= FEW) { DOT } else { SMALL_DOT };
+    let size = if period.is_some_and(|period| period <= LARGE_POINT_PERIODS) { LARGE_POINT } else { SMALL_POINT };
     let (half_width, half_height) = (0.5 * size[0] * (range.1 - range.0), 0.5 * size[1] * (up.1 - up.0));
     let dot = |point: &PoincarePoint| {
         let (x, y) = of_point(point);
@@ -65,7 +65,7 @@ pub fn portrait(
         let (x, y) = of_point(point);
         (range.0..=range.1).contains(&x) && (up.0..=up.1).contains(&y)
     };
-    // A motion that repeats has a few points, each hit time and again: one dot for each is enough.
+    // A periodic motion hits few points again and again: one dot for each point is enough.
     let mut boxes: Vec<[f64; 4]> = Vec::new();
     for dot in points.iter().filter(inside).map(dot) {
         let near = |other: &[f64; 4]| {
@@ -88,9 +88,9 @@ pub fn portrait(
     Figure::new(format!("{title} of joint {}", plan.parameters().name), axis, across, range, vec![panel])
 }
 
-/// Leaves out what lies near the point before: rest is one point, and quick motion keeps every sample.
+/// Removes samples close to the previous one: a rest becomes one point, fast motion keeps every sample.
 fn thinned(curve: Vec<(f64, f64)>, (width, height): (f64, f64)) -> Vec<(f64, f64)> {
-    let mut near = NEAR;
+    let mut near = MIN_DISTANCE;
     loop {
         let mut kept: Vec<(f64, f64)> = Vec::new();
         for point in &curve {
@@ -100,19 +100,19 @@ fn thinned(curve: Vec<(f64, f64)>, (width, height): (f64, f64)) -> Vec<(f64, f64
                 kept.push(*point);
             }
         }
-        if kept.len() <= PROFILE_PORTRAIT {
+        if kept.len() <= PROFILE_PORTRAIT_SAMPLES {
             return kept;
         }
         near *= 2.0;
     }
 }
 
-/// Amplitudes in decibels over a micrometre, up to what the mesh frequency and its harmonics need.
+/// Amplitudes in decibels over a micrometre, up to the highest drawn harmonic of the mesh frequency.
 pub fn spectrum(plan: &SimulationPlan, spectrum: &Spectrum) -> Figure {
     let mesh = plan.mesh_frequency();
     let top = spectrum.step * spectrum.amplitudes.len() as f64;
     let end = if mesh > 0.0 { top.min(8.5 * mesh) } else { top };
-    // Below a picometre there is nothing but rounding.
+    // Below a picometre there is only rounding.
     let decibels = |amplitude: f64| 20.0 * (1e6 * amplitude).max(1e-6).log10();
     let shown = (end / spectrum.step) as usize;
     let points = spectrum.amplitudes.iter().take(shown).enumerate();

@@ -1,4 +1,4 @@
-//! The quantities of a snapshot beside its meshes that a history holds: one list for CSV and log, all in SI.
+//! Quantities of a snapshot in a history, except its meshes: one list for CSV and log, in SI.
 
 use parameters::{ContactState, JointParameters};
 use report::contacts::Contact;
@@ -7,18 +7,18 @@ use super::snapshot::Snapshot;
 
 /// A quantity of a snapshot.
 pub struct Quantity {
-    /// Name of its CSV column, and of its field in the log.
+    /// Name of the CSV column and of the log's field.
     pub column: &'static str,
-    /// What it means, with its unit.
+    /// Meaning, with the unit.
     pub meaning: &'static str,
-    /// The number in SI.
+    /// Accessor of the number in SI.
     pub value: Value,
 }
 
-/// How a quantity is read from a snapshot.
+/// Accessor of a quantity.
 type Value = fn(&Snapshot, &JointParameters) -> f64;
 
-/// All but the time.
+/// All quantities except the time.
 pub const QUANTITIES: [Quantity; 11] = [
     quantity("drive_torque_Nm", "torque that drives the gears at the motor [N m]", |snapshot, _| snapshot.drive),
     quantity("load_torque_Nm", "torque that brakes the link [N m]", |snapshot, _| snapshot.load),

@@ -1,4 +1,4 @@
-//! The result of a simulation: samples, statistics, energy balance, spectrum.
+//! Result of a simulation: samples, statistics, energy balance, spectrum.
 
 use super::comparison::Comparison;
 use super::energy::{Balance, EnergyAccount};
@@ -12,34 +12,34 @@ use report::failure::Outcome;
 use report::progress::Progress;
 use report::spectrum::Spectrum;
 
-/// The progress line moves once in so many ticks.
-pub const PROGRESS: u32 = 1024;
+/// Ticks between two updates of the progress line.
+pub const PROGRESS_INTERVAL: u32 = 1024;
 
-/// A run that has ended, complete or not.
+/// A finished run, complete or not.
 pub struct SimulationResult<'a> {
-    /// What was asked.
+    /// Plan of the run.
     pub plan: &'a SimulationPlan,
-    /// Which scheme.
+    /// Scheme.
     pub scheme: SchemeName,
-    /// How it ended.
+    /// End of the run.
     pub end: RunEnd,
-    /// Ticks done.
+    /// Finished ticks.
     pub ticks: u32,
-    /// Kept samples.
+    /// Stored samples.
     pub samples: Vec<Snapshot>,
-    /// Counted after settling.
+    /// Statistics after settling.
     pub statistics: Statistics,
-    /// The energy balance, if it was computed.
+    /// Energy balance, if it was computed.
     pub energy: Option<EnergyAccount<'a>>,
-    /// Of the first deflection after settling.
+    /// Spectrum of the first deflection after settling.
     pub spectrum: Option<Spectrum>,
-    /// All schemes, if they were asked for.
+    /// Comparison of all schemes, if requested.
     pub comparison: Option<Comparison>,
 }
 
 impl<'a> SimulationResult<'a> {
-    /// Runs a plan by a scheme; every so many ticks a sample is kept and written.
-    pub fn of(
+    /// Runs a plan by a scheme; every `every`-th tick is stored and written.
+    pub fn simulate(
         plan: &'a SimulationPlan,
         scheme: SchemeName,
         every: u32,
@@ -59,13 +59,13 @@ impl<'a> SimulationResult<'a> {
                 samples.push(snapshot.clone());
             }
             if snapshot.tick >= settle {
-                statistics.take(snapshot);
+                statistics.add_tick(snapshot);
             }
             if let Some(account) = &mut energy {
-                account.take(snapshot);
+                account.add_tick(snapshot);
             }
-            if snapshot.tick.is_multiple_of(PROGRESS) {
-                progress.at(snapshot.tick);
+            if snapshot.tick.is_multiple_of(PROGRESS_INTERVAL) {
+                progress.set_position(snapshot.tick);
             }
             Ok(())
         })?;
@@ -73,16 +73,16 @@ impl<'a> SimulationResult<'a> {
             Self { plan, scheme, end, ticks, samples, statistics, energy, spectrum: None, comparison: None };
         let deflection = |snapshot: &Snapshot| snapshot.teeth.first().map_or(f64::NAN, |teeth| teeth.deflection);
         let signal: Vec<f64> = result.settled().iter().map(deflection).collect();
-        result.spectrum = Spectrum::of(&signal, f64::from(run.tick_rate) / f64::from(every));
+        result.spectrum = Spectrum::new(&signal, f64::from(run.tick_rate) / f64::from(every));
         Ok(result)
     }
 
-    /// Samples that count.
+    /// Samples after settling.
     pub fn settled(&self) -> &[Snapshot] {
         &self.samples[self.samples.partition_point(|snapshot| snapshot.tick < self.plan.settle)..]
     }
 
-    /// The balance of energy.
+    /// Energy balance.
     pub fn balance(&self) -> Option<Balance> {
         self.energy.as_ref().and_then(EnergyAccount::balance)
     }

@@ -1,18 +1,18 @@
-//! Integration schemes by name, as the user types them and as reports print them.
+//! Integration schemes by name, on the command line and in reports.
 
 use clap::ValueEnum;
 use model_core::gears::Scheme;
 use parameters::JointParameters;
 use report::failure::{Failure, Outcome};
 
-/// A scheme that moves a joint.
+/// An integration scheme.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SchemeName {
     /// Independent f64 integration in absolute coordinates, restarted at every contact event.
     Reference,
-    /// What a board runs.
+    /// Scheme of a board.
     Realtime,
-    /// The paper's: one constant exponential, everything nonlinear held over the step.
+    /// Scheme of the paper: one constant exponential, with nonlinear forces held over the step.
     Paper,
     /// Classical Runge-Kutta.
     RungeKutta4,
@@ -20,12 +20,12 @@ pub enum SchemeName {
     Euler,
 }
 
-/// What `--scheme` takes.
+/// Values of `--scheme`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Choice {
-    /// What the board runs
+pub enum SchemeChoice {
+    /// Scheme of the board
     Realtime,
-    /// The paper's own: a constant exponential, nonlinear forces held over the step
+    /// Scheme of the paper: constant exponential, nonlinear forces held over the step
     Paper,
     /// Independent f64 integration that restarts at every contact event
     Reference,
@@ -33,29 +33,29 @@ pub enum Choice {
     Rk4,
     /// Semi-implicit Euler
     Euler,
-    /// All that the joint has, with the error of each against the reference and its cost
+    /// All schemes of the joint, each with its cost and its error against the reference
     All,
 }
 
 impl SchemeName {
-    /// All, the reference first.
+    /// All schemes, the reference first.
     const ALL: [Self; 5] = [Self::Reference, Self::Realtime, Self::Paper, Self::RungeKutta4, Self::Euler];
 
-    /// Schemes that can move a joint, the reference first: an equivalent gear has no meshes for the others to step.
-    pub fn of_joint(joint: &JointParameters) -> &'static [Self] {
+    /// Schemes for a joint, the reference first: an equivalent gear has no meshes for the others to step.
+    pub fn for_joint(joint: &JointParameters) -> &'static [Self] {
         match joint.equivalent_gear() {
             Some(_) => &[Self::Reference, Self::Realtime],
             None => &Self::ALL,
         }
     }
 
-    /// Refuses a joint that this scheme cannot move.
+    /// Rejects a joint that this scheme cannot step.
     pub fn check_joint(self, joint: &JointParameters) -> Outcome<()> {
-        let of_joint = Self::of_joint(joint);
-        if of_joint.contains(&self) {
+        let schemes = Self::for_joint(joint);
+        if schemes.contains(&self) {
             return Ok(());
         }
-        let names: Vec<String> = of_joint.iter().map(|scheme| format!("--scheme {}", scheme.name())).collect();
+        let names: Vec<String> = schemes.iter().map(|scheme| format!("--scheme {}", scheme.name())).collect();
         let message = format!(
             "--scheme {} steps meshes of teeth, and joint `{}` has an equivalent gear",
             self.name(),
@@ -64,7 +64,7 @@ impl SchemeName {
         Err(Failure::new(message).with_help(format!("give {}", names.join(" or "))))
     }
 
-    /// The word for it.
+    /// Word on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Reference => "reference",
@@ -75,19 +75,19 @@ impl SchemeName {
         }
     }
 
-    /// What it is, in a few words.
+    /// Short description.
     pub fn description(self) -> &'static str {
         match self {
             Self::Reference => "adaptive order 8 in absolute coordinates, restarted at every contact event, f64",
-            Self::Realtime => "what the board runs: exponential flow, sub-steps with corrected crossings",
+            Self::Realtime => "scheme of the board: exponential flow, sub-steps with corrected crossings",
             Self::Paper => "the paper's: constant exponential, nonlinear forces held over the step",
             Self::RungeKutta4 => "classical Runge-Kutta of order 4",
             Self::Euler => "semi-implicit Euler",
         }
     }
 
-    /// The core's scheme; none for the reference, which is not the core's.
-    pub fn of_core(self) -> Option<Scheme> {
+    /// Scheme of the core; `None` for the reference.
+    pub fn core_scheme(self) -> Option<Scheme> {
         match self {
             Self::Reference => None,
             Self::Realtime => Some(Scheme::Realtime),
@@ -98,13 +98,13 @@ impl SchemeName {
     }
 }
 
-impl Choice {
-    /// The word for it.
+impl SchemeChoice {
+    /// Word on the command line.
     pub fn name(self) -> &'static str {
         if self == Self::All { "all" } else { self.shown().name() }
     }
 
-    /// The scheme whose motion is shown; of all it is the board's.
+    /// Scheme whose motion is shown; for `all` the board's.
     pub fn shown(self) -> SchemeName {
         match self {
             Self::Realtime | Self::All => SchemeName::Realtime,

@@ -1,8 +1,7 @@
-//! Pictures about schemes: the energy balance, and all schemes compared. Their data come from `energy` and
-//! `comparison`.
+//! Pictures of schemes: the energy balance, and the comparison of schemes. Data come from `energy` and `comparison`.
 
 use super::comparison::Comparison;
-use super::energy::Entry;
+use super::energy::BalanceEntry;
 use super::pictures::View;
 use super::plan::SimulationPlan;
 use super::scheme::SchemeName;
@@ -14,11 +13,11 @@ use report::plot::mark::Mark;
 use report::plot::panel::Panel;
 use report::plot::unit::{DECIBELS, Unit, axis_range, greatest};
 
-/// Errors below this are rounding, and not drawn any lower.
+/// Smallest drawn error; smaller ones are rounding.
 const SMALLEST_ERROR: f64 = 1e-8;
 
-/// Stored energy and work, and the residual on a scale of its own.
-pub fn energy(plan: &SimulationPlan, entries: &[Entry]) -> Figure {
+/// Stored energy and work, and the residual on its own scale.
+pub fn energy(plan: &SimulationPlan, entries: &[BalanceEntry]) -> Figure {
     let joules = |most: f64| match most {
         most if most < 1e-6 => Unit { factor: 1e9, name: "nJ" },
         most if most < 1e-3 => Unit { factor: 1e6, name: "µJ" },
@@ -26,7 +25,7 @@ pub fn energy(plan: &SimulationPlan, entries: &[Entry]) -> Figure {
         _ => Unit { factor: 1.0, name: "J" },
     };
     let start = entries.first().map_or(0.0, |entry| entry.stored);
-    let line = |value: &dyn Fn(&Entry) -> f64, ink: Ink, label: &str| {
+    let line = |value: &dyn Fn(&BalanceEntry) -> f64, ink: Ink, label: &str| {
         panels::line(entries.iter().map(|entry| (entry.time, value(entry))).collect(), ink, label)
     };
     let marks = vec![
@@ -57,13 +56,13 @@ fn ink(scheme: SchemeName) -> Ink {
     }
 }
 
-/// One deflection by every scheme at the end of the predictable part, and the error of each over all of it.
+/// One deflection by every scheme at the end of the predictable time, and the error of each scheme over all of it.
 pub fn schemes(plan: &SimulationPlan, comparison: &Comparison) -> Vec<Figure> {
     let until = comparison.predictable_until();
     let length = (6.0 / plan.mesh_frequency()).min(until);
     let from = (until - length).max(0.0);
     let inside = |time: f64| (from..=until).contains(&time);
-    // A scheme far off must not flatten the others: the axis is the reference's, with air.
+    // The axis fits the reference with a margin, so that an inaccurate scheme does not flatten the others.
     let exact = comparison.times().iter().zip(&comparison.tracks[0].columns[0]);
     let (low, high) = axis_range(exact.filter(|(time, _)| inside(**time)).map(|(_, value)| *value));
     let air = 0.5 * (high - low);
@@ -78,7 +77,7 @@ pub fn schemes(plan: &SimulationPlan, comparison: &Comparison) -> Vec<Figure> {
     let view = |range| View { plan, samples: &[], range };
     let errors = comparison.tracks.iter().skip(1).map(|track| {
         let error = |(time, error): (f64, f64)| (time, 20.0 * error.max(SMALLEST_ERROR).log10());
-        let points = comparison.error_of(track).into_iter().map(error).collect();
+        let points = comparison.error_over_time(track).into_iter().map(error).collect();
         panels::line(points, ink(track.scheme), track.scheme.name())
     });
     let title = "Error of that deflection over its standard deviation, RMS of short stretches";

@@ -11,38 +11,38 @@ use model_core::numbers::phase::sine_cosine;
 use parameters::{ContactState, DampingLaw, Excitation, JointParameters, MAX_PLANETS};
 use reference::joint::{Observation, Work};
 
-/// The joint at one instant.
+/// A joint at one instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Snapshot {
-    /// Ticks done.
+    /// Finished ticks.
     pub tick: u32,
-    /// [s].
+    /// Time [s].
     pub time: f64,
-    /// Torque on the sun shaft in the tick that follows [N m].
+    /// Torque on the sun shaft in the following tick [N m].
     pub drive: f64,
-    /// Torque that brakes the link in the tick that follows [N m].
+    /// Torque that brakes the link in the following tick [N m].
     pub load: f64,
     /// Rigid-body carrier angle [rad].
     pub carrier_angle: f64,
-    /// Its rate [rad/s].
+    /// Rigid-body carrier speed [rad/s].
     pub carrier_speed: f64,
-    /// Motor angle less ratio times rigid carrier angle [rad].
+    /// Motor angle minus ratio times rigid carrier angle [rad].
     pub motor_offset: f64,
-    /// Link angle less rigid carrier angle [rad].
+    /// Link angle minus rigid carrier angle [rad].
     pub link_offset: f64,
     /// Gap coordinate u_s - 2 u_c [m].
     pub gap: f64,
-    /// [m/s].
+    /// Rate of the gap coordinate [m/s].
     pub gap_rate: f64,
-    /// Carrier less link along the line of action [m].
+    /// Carrier minus link along the line of action [m].
     pub wind_up: f64,
-    /// [m/s].
+    /// Rate of the wind-up [m/s].
     pub wind_up_rate: f64,
     /// Mesh phase, unwrapped [mesh periods].
     pub mesh_periods: f64,
     /// Sun-planet meshes of every planet, then ring-planet meshes.
     pub teeth: Vec<MeshSnapshot, { 2 * MAX_PLANETS }>,
-    /// Energies, where the scheme itself keeps account of them.
+    /// Energies, if the scheme computes them itself.
     pub energy: Option<Energy>,
 }
 
@@ -51,20 +51,20 @@ pub struct Snapshot {
 pub struct MeshSnapshot {
     /// Deflection d [m].
     pub deflection: f64,
-    /// d' [m/s].
+    /// Deflection rate d' [m/s].
     pub rate: f64,
     /// Mesh force along the line of action [N].
     pub force: f64,
-    /// Which flank touches, by geometry.
+    /// Touching flank, by geometry.
     pub contact: ContactState,
 }
 
-/// Stored energy and the work done since the start.
+/// Stored energy and the work since the start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Energy {
-    /// Kinetic and elastic [J].
+    /// Kinetic and elastic energy [J].
     pub stored: f64,
-    /// Where it came from and went to.
+    /// Work by its origin.
     pub work: Work,
 }
 
@@ -79,13 +79,13 @@ impl Snapshot {
         self.carrier_angle + self.link_offset
     }
 
-    /// Motor angle over the ratio, less the link angle [rad].
+    /// Motor angle over the ratio, minus the link angle [rad].
     pub fn twist(&self, joint: &JointParameters) -> f64 {
         self.motor_offset / joint.geometry.ratio_by_radii() - self.link_offset
     }
 
-    /// Reads the reference.
-    pub fn of_reference(tick: u32, joint: &JointParameters, observation: &Observation) -> Self {
+    /// Snapshot of the reference.
+    pub fn from_reference(tick: u32, joint: &JointParameters, observation: &Observation) -> Self {
         let kinds = [0, 1];
         let teeth = kinds.into_iter().flat_map(|kind| {
             (0..joint.geometry.planets).map(move |planet| MeshSnapshot {
@@ -122,7 +122,7 @@ impl Snapshot {
     }
 }
 
-/// Reads a core model: what does not change from tick to tick.
+/// Reads snapshots from a core model; holds the data that are constant over a run.
 pub struct Reader<'a, T: Real, const N: usize> {
     joint: &'a JointParameters,
     tables: &'a Tables<T, N>,
@@ -130,12 +130,12 @@ pub struct Reader<'a, T: Real, const N: usize> {
 }
 
 impl<'a, T: Real, const N: usize> Reader<'a, T, N> {
-    /// A reader of models with these tables.
+    /// Reader for models with these tables.
     pub fn new(joint: &'a JointParameters, tables: &'a Tables<T, N>) -> Self {
         Self { joint, tables, scales: Scales::new(joint) }
     }
 
-    /// The joint after so many ticks.
+    /// Snapshot after a number of ticks.
     pub fn read(&self, tick: u32, model: &Model<'_, T, N>) -> Snapshot {
         let state = model.state();
         let outputs = model.outputs();
@@ -186,7 +186,7 @@ impl<'a, T: Real, const N: usize> Reader<'a, T, N> {
         }
     }
 
-    /// Eq. 5 with the joint's damping law, dimensionless up to the last lines.
+    /// Mesh force by eq. 5 with the joint's damping law, dimensionless except in the result.
     fn teeth(&self, kind: usize, mesh: &MeshTable<T>, instant: &Instant, position: f64, rate: f64) -> MeshSnapshot {
         let (error, error_rate) = instant.error(mesh);
         let (deflection, rate) = (position - error, rate - error_rate);
@@ -221,24 +221,24 @@ impl<'a, T: Real, const N: usize> Reader<'a, T, N> {
     }
 }
 
-/// The excitation at one moment.
+/// Excitation at one instant.
 struct Instant {
     /// Sine and cosine of the mesh phase.
     rotor: (f64, f64),
-    /// [rad] for a unit of dimensionless time.
+    /// Rate of the mesh phase [rad] per unit of dimensionless time.
     phase_rate: f64,
     harmonics: usize,
 }
 
 impl Instant {
-    /// e and e' (eq. 11).
+    /// Transmission error e and its rate e' (eq. 11).
     fn error<T: Real>(&self, mesh: &MeshTable<T>) -> (f64, f64) {
         let (sine, cosine) = self.rotor;
         let [by_sine, by_cosine] = mesh.error.map(Real::to_f64);
         (by_sine * sine + by_cosine * cosine, self.phase_rate * (by_sine * cosine - by_cosine * sine))
     }
 
-    /// Stiffness beyond its mean (eq. 7, or Fig. 3's harmonics).
+    /// Stiffness minus its mean (eq. 7, or the harmonics of Fig. 3).
     fn ripple<T: Real>(&self, mesh: &MeshTable<T>) -> f64 {
         let (sine, cosine) = self.rotor;
         let (mut sum, mut multiple) = (0.0, self.rotor);

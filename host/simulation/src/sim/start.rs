@@ -1,5 +1,5 @@
-//! The initial state of a run, the same for every scheme: at rest as a reset board, in the middle of the gap as in the
-//! paper, or seated under the first torques.
+//! Initial state of a run, equal for every scheme: at rest like a board after a reset, in the middle of the gap as in
+//! the paper, or seated under the first torques.
 
 use std::array;
 
@@ -9,19 +9,19 @@ use model_core::numbers::Real;
 use parameters::{Excitation, JointParameters, MESH_KINDS, MeshKind, PerPlanet};
 use reference::joint::{RelativeState, Start};
 
-/// What `--start` takes.
+/// Values of `--start`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum StartName {
-    /// Nothing deflected, as a board after its reset
+    /// No deflection, like a board after its reset
     Rest,
     /// X = X' = 0: every tooth in the middle of its gap, as in the paper
     Centred,
-    /// Teeth resting on their flanks under the first torques
+    /// Teeth on their flanks under the first torques
     Seated,
 }
 
 impl StartName {
-    /// The word for it.
+    /// Word on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Rest => "rest",
@@ -30,8 +30,8 @@ impl StartName {
         }
     }
 
-    /// The start of a joint whose carrier turns at `speed` [rad/s], under torques (drive, load) [N m].
-    pub fn of(self, joint: &JointParameters, speed: f64, torques: (f64, f64)) -> Start {
+    /// Initial state of a joint with a carrier speed [rad/s] under torques (drive, load) [N m].
+    pub fn state(self, joint: &JointParameters, speed: f64, torques: (f64, f64)) -> Start {
         let planets = joint.geometry.planets;
         match self {
             Self::Rest if speed == 0.0 => Start::Still,
@@ -42,7 +42,7 @@ impl StartName {
     }
 }
 
-/// Bodies undeflected: the deflections are the imposed errors, negated.
+/// Undeflected bodies: the deflections are the negated transmission errors.
 fn at_rest(joint: &JointParameters, speed: f64) -> RelativeState {
     let planets = joint.geometry.planets;
     let phase_rate = match joint.excitation {
@@ -59,7 +59,7 @@ fn at_rest(joint: &JointParameters, speed: f64) -> RelativeState {
     }
 }
 
-/// Static equilibrium at mean stiffness, planets sharing the force alike, bodies still relative to one another.
+/// Static equilibrium at mean stiffness with equal sharing among planets, without relative motion of the bodies.
 fn seated(joint: &JointParameters, speed: f64, (drive, load): (f64, f64)) -> RelativeState {
     let planets = joint.geometry.planets;
     let force = drive / (planets as f64 * joint.geometry.sun_base_radius);
@@ -75,13 +75,13 @@ fn seated(joint: &JointParameters, speed: f64, (drive, load): (f64, f64)) -> Rel
     RelativeState {
         gap: gaps.sum::<f64>() / planets as f64,
         wind_up: joint.compliance.map_or(0.0, |compliance| load / compliance.stiffness * lever),
-        // Bodies move together: the teeth feel the errors' rates.
+        // The bodies move together, so the deflections change at the rates of the errors.
         sun_planet: sun,
         ..still
     }
 }
 
-/// The same start for the core.
+/// Initial state for the core.
 pub fn core_state<T: Real, const N: usize>(
     joint: &JointParameters,
     tables: &Tables<T, N>,

@@ -1,18 +1,18 @@
-//! Figures of a motion, gathered tick by tick: contact shares, impacts, swings of the deflections, mesh forces and
-//! Poincare points. Everything is counted from tick to tick; what happens between two ticks is not seen.
+//! Figures of a motion, accumulated tick by tick: contact shares, impacts, ranges of the deflections, mesh forces and
+//! Poincare points. Events between two ticks are not seen.
 
 use parameters::ContactState;
 
 use super::snapshot::{MeshSnapshot, Snapshot};
 
-/// Points kept at most; a longer run keeps the last ones.
-const MOST_POINTS: usize = 2000;
-/// The longest period looked for, in mesh periods.
+/// Largest number of stored points; a longer run keeps the last ones.
+const MAX_POINCARE_POINTS: usize = 2000;
+/// Longest period that is searched for [mesh periods].
 const LONGEST_PERIOD: usize = 32;
-/// Poincare points closer than this part of the motion's swing are one.
-const SAME_POINT: f64 = 1e-3;
+/// Distance below which Poincare points count as equal, over the range of the motion [-].
+const POINT_TOLERANCE: f64 = 1e-3;
 
-/// One mesh, as a sum over ticks.
+/// Sums of one mesh over ticks.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MeshSums {
     drive_side: u64,
@@ -43,26 +43,26 @@ pub struct MeshStatistics {
     pub deflection_mean_m: f64,
     /// Root mean square of the deflection about its mean [m].
     pub deflection_rms_m: f64,
-    /// Greatest less least deflection [m].
+    /// Greatest minus least deflection [m].
     pub deflection_peak_to_peak_m: f64,
     /// Greatest magnitude of the mesh force [N].
     pub peak_force_N: f64,
 }
 
-/// A Poincare point: the motion when the mesh phase comes round.
+/// A Poincare point: the motion when the mesh phase passes a whole period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoincarePoint {
     /// Sun-planet deflection of planet 1 [m].
     pub deflection: f64,
-    /// [m/s].
+    /// Deflection rate [m/s].
     pub rate: f64,
     /// Gap coordinate [m].
     pub gap: f64,
-    /// [m/s].
+    /// Rate of the gap coordinate [m/s].
     pub gap_rate: f64,
 }
 
-/// Statistics, accumulated while a run goes on.
+/// Statistics, accumulated during a run.
 #[derive(Debug, Clone, Default)]
 pub struct Statistics {
     ticks: u64,
@@ -73,26 +73,26 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// Takes one more tick.
-    pub fn take(&mut self, snapshot: &Snapshot) {
+    /// Adds a tick.
+    pub fn add_tick(&mut self, snapshot: &Snapshot) {
         if self.meshes.is_empty() {
             self.meshes = vec![MeshSums::default(); snapshot.teeth.len()];
             self.first = snapshot.time;
         }
         for (sums, teeth) in self.meshes.iter_mut().zip(&snapshot.teeth) {
-            sums.take(self.ticks, teeth);
+            sums.add(self.ticks, teeth);
         }
         if let Some(last) = &self.last {
             self.points.extend(crossing(last, snapshot));
-            if self.points.len() >= 2 * MOST_POINTS {
-                self.points.drain(..MOST_POINTS);
+            if self.points.len() >= 2 * MAX_POINCARE_POINTS {
+                self.points.drain(..MAX_POINCARE_POINTS);
             }
         }
         self.last = Some(snapshot.clone());
         self.ticks += 1;
     }
 
-    /// Time covered [s].
+    /// Covered time [s].
     pub fn span(&self) -> f64 {
         self.last.as_ref().map_or(0.0, |last| last.time - self.first)
     }
@@ -102,12 +102,12 @@ impl Statistics {
         self.meshes.iter().map(|sums| sums.figures(self.ticks, self.span())).collect()
     }
 
-    /// The last Poincare points.
+    /// Last Poincare points.
     pub fn points(&self) -> &[PoincarePoint] {
-        &self.points[self.points.len().saturating_sub(MOST_POINTS)..]
+        &self.points[self.points.len().saturating_sub(MAX_POINCARE_POINTS)..]
     }
 
-    /// After how many mesh periods the motion repeats; none if it does not within 32, or if too few were seen.
+    /// Mesh periods after which the motion repeats; `None` if it does not within 32, or with too few points.
     pub fn period(&self) -> Option<usize> {
         let points = self.points();
         let swing = |value: fn(&PoincarePoint) -> f64, whole: f64| {
@@ -117,10 +117,11 @@ impl Statistics {
         let whole = self.meshes.first().map_or(0.0, |mesh| mesh.greatest - mesh.least);
         let size = [swing(|p| p.deflection, whole), swing(|p| p.gap, whole)];
         let same = |a: &PoincarePoint, b: &PoincarePoint| {
-            (a.deflection - b.deflection).abs() <= SAME_POINT * size[0] && (a.gap - b.gap).abs() <= SAME_POINT * size[1]
+            (a.deflection - b.deflection).abs() <= POINT_TOLERANCE * size[0]
+                && (a.gap - b.gap).abs() <= POINT_TOLERANCE * size[1]
         };
         (1..=LONGEST_PERIOD).find(|&period| {
-            // Three rounds and some more must agree, so that chaos cannot come by chance.
+            // Three rounds and 8 more points must agree, so that chaos does not match by chance.
             let wanted = 3 * period + 8;
             points.len() > wanted + period
                 && points.iter().rev().take(wanted).zip(points.iter().rev().skip(period)).all(|(a, b)| same(a, b))
@@ -129,7 +130,7 @@ impl Statistics {
 }
 
 impl MeshSums {
-    fn take(&mut self, ticks: u64, &MeshSnapshot { deflection, force, contact, .. }: &MeshSnapshot) {
+    fn add(&mut self, ticks: u64, &MeshSnapshot { deflection, force, contact, .. }: &MeshSnapshot) {
         if ticks == 0 {
             (self.least, self.greatest) = (deflection, deflection);
         }
@@ -162,7 +163,7 @@ impl MeshSums {
     }
 }
 
-/// The motion when the mesh phase passed a whole number between two ticks, by the cubic through both.
+/// Motion when the mesh phase passes a whole period between two ticks, by cubic interpolation.
 fn crossing(before: &Snapshot, after: &Snapshot) -> Option<PoincarePoint> {
     let (from, to) = (before.mesh_periods, after.mesh_periods);
     let whole = if to > from { (from.floor() + 1.0).min(to.floor()) } else { from.ceil() - 1.0 };
@@ -192,7 +193,7 @@ fn hermite(values: [f64; 2], slopes: [f64; 2], width: f64, part: f64) -> (f64, f
 mod tests {
     use super::*;
 
-    /// A sine of the given period in mesh periods, 50 ticks a mesh period, with the teeth parted below zero.
+    /// Statistics of a wave with 50 ticks a mesh period, with the teeth parted below zero.
     fn gathered(wave: impl Fn(f64) -> (f64, f64)) -> Statistics {
         let mut statistics = Statistics::default();
         for tick in 0..20_000 {
@@ -217,7 +218,7 @@ mod tests {
                 teeth: [teeth].into_iter().collect(),
                 energy: None,
             };
-            statistics.take(&snapshot);
+            statistics.add_tick(&snapshot);
         }
         statistics
     }
@@ -228,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn shares_impacts_and_swings_of_a_sine_are_its_own() {
+    fn sine_has_exact_statistics() {
         let figures = gathered(sine(1.0)).meshes()[0];
         assert!((figures.drive_side_share - 0.5).abs() < 0.01, "{figures:?}");
         assert!((figures.separated_share - 0.5).abs() < 0.01, "{figures:?}");
@@ -239,19 +240,20 @@ mod tests {
     }
 
     #[test]
-    fn periods_are_counted_in_mesh_periods() {
+    fn period_is_counted_in_mesh_periods() {
         for period in [1, 2, 3, 6] {
             assert_eq!(gathered(sine(f64::from(period))).period(), Some(period as usize));
         }
     }
 
     #[test]
-    fn a_motion_that_never_repeats_has_no_period() {
+    fn aperiodic_motion_has_no_period() {
         assert_eq!(gathered(sine(std::f64::consts::SQRT_2)).period(), None);
     }
 
+    /// A Poincare point lies between two ticks, where the mesh phase completes a period.
     #[test]
-    fn poincare_points_are_interpolated_to_the_moment_when_the_phase_comes_round() {
+    fn poincare_points_are_interpolated() {
         let statistics = gathered(sine(3.0));
         let expected: Vec<f64> = (1..=3).map(|k| sine(3.0)(f64::from(k)).0).collect();
         for (index, point) in statistics.points().iter().enumerate() {

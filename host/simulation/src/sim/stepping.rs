@@ -14,12 +14,12 @@ use super::start::core_state;
 use report::failure::{Failure, Outcome};
 use report::interruption;
 
-/// What is simulated, independent of the scheme.
+/// A simulation, independent of the scheme.
 #[derive(Debug, Clone)]
 pub struct SimulationSpec {
-    /// The joint.
+    /// Joint.
     pub joint: JointParameters,
-    /// Steps a second [Hz].
+    /// Step rate [Hz].
     pub tick_rate: u32,
     /// Length in ticks.
     pub ticks: u32,
@@ -27,15 +27,15 @@ pub struct SimulationSpec {
     pub torques: Vec<Command>,
     /// State at tick 0.
     pub start: Start,
-    /// The core in f64 in place of the board's f32.
+    /// Runs the core in f64 in place of the board's f32.
     pub double: bool,
-    /// How many sub-steps a tick may have.
+    /// Limit of the sub-steps of a tick.
     pub effort: Effort,
 }
 
 impl SimulationSpec {
-    /// Sub-steps of a tick in which contacts change, by a scheme of the core that has any: none of the reference, which chooses its
-    /// own steps, and none where the joint cannot be stepped.
+    /// Sub-steps of a tick in which contacts change. `None` for the reference, which chooses its own steps, and for a
+    /// joint that cannot be stepped.
     pub fn substeps(&self, scheme: SchemeName) -> Option<Substeps> {
         let step_size = StepSize::new(&self.joint);
         match scheme {
@@ -48,22 +48,22 @@ impl SimulationSpec {
     }
 }
 
-/// A mesh that is deflected by more than this has left all teeth behind: the scheme has failed, finite or not [m].
-const ABSURD: f64 = 0.1;
+/// Mesh deflection above which a scheme counts as diverged even if the state is finite [m].
+const MAX_DEFLECTION: f64 = 0.1;
 
-/// How a run ended.
+/// End of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RunEnd {
-    /// All its ticks are done.
+    /// All ticks are done.
     Whole,
-    /// The user stopped it.
+    /// The user stopped the run.
     Stopped,
-    /// The state is infinite, not a number or absurd after so many ticks.
+    /// The state was not finite, or implausibly large, after this number of ticks.
     Diverged(u32),
 }
 
 impl RunEnd {
-    /// Time at which the state was not finite any more, at a tick rate [Hz]; none if it always was [s].
+    /// Time at which the state stopped being finite, at a tick rate [Hz]; `None` if it stayed finite [s].
     pub fn diverged_at(self, tick_rate: u32) -> Option<f64> {
         match self {
             Self::Diverged(tick) => Some(f64::from(tick) / f64::from(tick_rate)),
@@ -72,11 +72,11 @@ impl RunEnd {
     }
 }
 
-/// Called with the start, then with the joint after each tick.
+/// Callback with the initial state, then with the joint after each tick.
 pub type TickHook<'o> = dyn FnMut(&Snapshot) -> Outcome<()> + 'o;
 
-/// Runs a scheme to its end, or until the user stops it, with a hook after every tick. Torques are wrong by a part of
-/// themselves, the disturbance, up and down in turn from tick to tick.
+/// Runs a scheme to its end, or until the user stops it, with a hook after every tick. `disturbance` is a relative
+/// error of the torques with alternating sign.
 pub fn simulate(
     run: &SimulationSpec,
     scheme: SchemeName,
@@ -103,7 +103,7 @@ pub fn simulate(
     })
 }
 
-/// Measures a scheme over some ticks of a run: processor seconds for a simulated second, of its ticks alone.
+/// Processor time of a scheme's ticks for each simulated second [s], measured over some ticks of a run.
 pub fn cost(run: &SimulationSpec, scheme: SchemeName, ticks: u32) -> Outcome<f64> {
     let ticks = ticks.clamp(1, run.ticks.max(1));
     with_scheme(run, scheme, |joint| {
@@ -111,20 +111,20 @@ pub fn cost(run: &SimulationSpec, scheme: SchemeName, ticks: u32) -> Outcome<f64
         let clock = ThreadTime::now();
         for tick in 0..ticks {
             let command = torques.at(tick);
-            // A run that breaks off has its cost too.
+            // A run that breaks off has a cost as well.
             if !joint.step(tick, command.drive_torque.into(), command.load_torque.into())? {
                 break;
             }
         }
         let per_second = clock.elapsed().as_secs_f64() * f64::from(run.tick_rate) / f64::from(ticks);
-        // The result must be wanted, or nothing is computed.
+        // Keeps the compiler from removing the computation.
         std::hint::black_box(&joint);
         Ok(per_second)
     })
 }
 
-/// The error of a joint that the reference refuses, with the help where an option can help.
-fn not_referable(joint: &JointParameters, error: &ReferenceError) -> Failure {
+/// Error: the reference rejects the joint; the help names an option if there is one.
+fn reference_error(joint: &JointParameters, error: &ReferenceError) -> Failure {
     let failure = Failure::new(format!("the reference does not take joint `{}`: {error}", joint.name));
     match joint.dead_zone {
         DeadZone::Tanh { .. } => {
@@ -134,7 +134,7 @@ fn not_referable(joint: &JointParameters, error: &ReferenceError) -> Failure {
     }
 }
 
-/// Torques as they come due.
+/// Torques by tick.
 struct TorqueSchedule<'a> {
     next: std::iter::Peekable<std::slice::Iter<'a, Command>>,
     now: Command,
@@ -145,7 +145,7 @@ impl<'a> TorqueSchedule<'a> {
         Self { next: commands.iter().peekable(), now: Command { tick: 0, drive_torque: 0.0, load_torque: 0.0 } }
     }
 
-    /// Torques during a tick; ticks are asked for in rising order.
+    /// Torques during a tick; ticks must rise.
     fn at(&mut self, tick: u32) -> Command {
         while let Some(command) = self.next.next_if(|command| command.tick <= tick) {
             self.now = *command;
@@ -154,23 +154,24 @@ impl<'a> TorqueSchedule<'a> {
     }
 }
 
-/// A joint that a scheme moves.
+/// A joint under a scheme.
 trait SteppedJoint {
-    /// The joint after so many ticks; none if the state is infinite, not a number or absurd.
+    /// Snapshot after a number of ticks; `None` if the state is not finite or implausibly large.
     fn read(&self, tick: u32) -> Option<Snapshot>;
-    /// The tick after so many, under these torques [N m]; false if the scheme breaks off.
+    /// Runs the tick after `tick` under these torques [N m]; returns false if the scheme breaks off.
     fn step(&mut self, tick: u32, drive: f64, load: f64) -> Outcome<bool>;
 }
 
-/// Does some work on a joint that a scheme moves, from the start of a run.
+/// Calls `work` with a joint under a scheme, at the start of a run.
 fn with_scheme<R>(
     run: &SimulationSpec,
     scheme: SchemeName,
     work: impl FnOnce(&mut dyn SteppedJoint) -> Outcome<R>,
 ) -> Outcome<R> {
-    let Some(scheme) = scheme.of_core() else {
-        let reference = Reference::start(&run.joint, &run.start).map_err(|error| not_referable(&run.joint, &error))?;
-        return work(&mut ByReference { run, reference });
+    let Some(scheme) = scheme.core_scheme() else {
+        let reference =
+            Reference::start(&run.joint, &run.start).map_err(|error| reference_error(&run.joint, &error))?;
+        return work(&mut ReferenceJoint { run, reference });
     };
     match (run.joint.geometry.planets, run.double) {
         (1, false) => with_core::<f32, 1, R>(run, scheme, work),
@@ -194,7 +195,7 @@ fn with_core<T: Real, const N: usize, R>(
     let tables = tables::<T, N>(run, scheme)?;
     let mut model = Model::new(&tables);
     model.set_state(core_state(&run.joint, &tables, &run.start));
-    work(&mut ByCore { reader: Reader::new(&run.joint, &tables), model })
+    work(&mut CoreJoint { reader: Reader::new(&run.joint, &tables), model })
 }
 
 fn tables<T: Real, const N: usize>(run: &SimulationSpec, scheme: Scheme) -> Outcome<Tables<T, N>> {
@@ -208,16 +209,16 @@ fn tables<T: Real, const N: usize>(run: &SimulationSpec, scheme: Scheme) -> Outc
     })
 }
 
-/// By the core.
-struct ByCore<'a, T: Real, const N: usize> {
+/// A joint stepped by the core.
+struct CoreJoint<'a, T: Real, const N: usize> {
     reader: Reader<'a, T, N>,
     model: Model<'a, T, N>,
 }
 
-impl<T: Real, const N: usize> SteppedJoint for ByCore<'_, T, N> {
+impl<T: Real, const N: usize> SteppedJoint for CoreJoint<'_, T, N> {
     fn read(&self, tick: u32) -> Option<Snapshot> {
         let snapshot = self.reader.read(tick, &self.model);
-        let sound = |teeth: &MeshSnapshot| teeth.deflection.abs() < ABSURD;
+        let sound = |teeth: &MeshSnapshot| teeth.deflection.abs() < MAX_DEFLECTION;
         (self.model.is_finite() && snapshot.teeth.iter().all(sound)).then_some(snapshot)
     }
 
@@ -227,15 +228,15 @@ impl<T: Real, const N: usize> SteppedJoint for ByCore<'_, T, N> {
     }
 }
 
-/// By the reference.
-struct ByReference<'a> {
+/// A joint stepped by the reference.
+struct ReferenceJoint<'a> {
     run: &'a SimulationSpec,
     reference: Reference,
 }
 
-impl SteppedJoint for ByReference<'_> {
+impl SteppedJoint for ReferenceJoint<'_> {
     fn read(&self, tick: u32) -> Option<Snapshot> {
-        Some(Snapshot::of_reference(tick, &self.run.joint, &self.reference.observe()))
+        Some(Snapshot::from_reference(tick, &self.run.joint, &self.reference.observe()))
     }
 
     fn step(&mut self, tick: u32, drive: f64, load: f64) -> Outcome<bool> {
@@ -243,7 +244,7 @@ impl SteppedJoint for ByReference<'_> {
         match self.reference.advance(end, drive, load) {
             Ok(()) => Ok(true),
             Err(ReferenceError::Integration(_)) => Ok(false),
-            Err(error) => Err(not_referable(&self.run.joint, &error)),
+            Err(error) => Err(reference_error(&self.run.joint, &error)),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The result of `joint sim` as data, as JSON in the schema `joint-sim/2`.
+//! Result of `joint sim` as data, as JSON in the schema `joint-sim/2`.
 
 use model_core::gears::design::Substeps;
 use serde::Serialize;
@@ -10,7 +10,7 @@ use super::scheme::SchemeName;
 use super::statistics::MeshStatistics;
 use report::contacts::mesh_name;
 
-/// Says which fields there are; rises when one changes its meaning or goes.
+/// Name and version of the schema; the version rises when a field changes its meaning or is removed.
 const SCHEMA: &str = "joint-sim/2";
 
 /// All figures of a run.
@@ -20,9 +20,9 @@ const SCHEMA: &str = "joint-sim/2";
 pub struct SimulationSummary {
     /// `joint-sim/2`.
     pub schema: &'static str,
-    /// Path or preset.
+    /// Path or preset of the joint file.
     pub file: String,
-    /// The joint's own name.
+    /// Name of the joint.
     pub joint: String,
     /// Values changed on the command line.
     pub set: Vec<String>,
@@ -30,42 +30,44 @@ pub struct SimulationSummary {
     pub scheme: &'static str,
     /// `f32` or `f64`.
     pub scalar: &'static str,
-    /// Board that the step is made for; absent where it takes what accuracy asks for.
+    /// Board whose step is used; absent if the accuracy decides.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub board: Option<String>,
-    /// Method of the sub-steps of a tick in which contacts change: `corrected` or `leapfrog`; null for schemes that have no other.
+    /// Method of the sub-steps of a tick in which contacts change: `corrected` or `leapfrog`; null for schemes with a
+    /// single method.
     pub method: Option<&'static str>,
-    /// How many of them; null for the reference, which chooses its own steps.
+    /// Number of sub-steps; null for the reference, which chooses its own steps.
     pub substeps: Option<u32>,
-    /// [Hz].
+    /// Step rate [Hz].
     pub tick_rate_Hz: u32,
-    /// Ticks done.
+    /// Finished ticks.
     pub ticks: u32,
-    /// Ticks that were wanted.
+    /// Requested ticks.
     pub of_ticks: u32,
-    /// What is not counted [s].
+    /// Time before the figures [s].
     pub settle_s: f64,
     /// Torques in words.
     pub torques: String,
     /// `rest`, `centred` or `seated`.
     pub start: &'static str,
-    /// Time at which the state was not finite any more [s].
+    /// Time at which the state stopped being finite [s].
     pub diverged_at_s: Option<f64>,
     /// Every mesh, sun-planet first.
     pub meshes: Vec<Mesh>,
     /// Landings of all meshes in a second.
     pub impacts_per_s: f64,
-    /// Mesh periods after which the motion repeats; none if it does not within 32.
+    /// Mesh periods after which the motion repeats; null if it does not within 32.
     pub period: Option<usize>,
-    /// Root of the power beside the mesh frequency over the root of its own, sun-planet deflection of planet 1.
+    /// Root of the power outside the mesh frequency over the root of the power at it, sun-planet deflection of planet
+    /// 1.
     pub non_fundamental_over_fundamental: Option<f64>,
-    /// Strongest line of the same spectrum [Hz].
+    /// Frequency of the strongest line in the spectrum of that deflection [Hz].
     pub strongest_frequency_Hz: Option<f64>,
-    /// The balance of energy.
+    /// Energy balance.
     pub energy: Option<Balance>,
-    /// All schemes, if they were asked for.
+    /// Comparison of all schemes, if requested.
     pub schemes: Option<Vec<Row>>,
-    /// Until when they were compared [s].
+    /// End of the compared time [s].
     pub compared_until_s: Option<f64>,
 }
 
@@ -73,16 +75,16 @@ pub struct SimulationSummary {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Mesh {
-    /// Such as `sun–planet 1`.
+    /// Name, such as `sun–planet 1`.
     pub name: String,
-    /// Its figures.
+    /// Figures of the mesh.
     #[serde(flatten)]
     pub figures: MeshStatistics,
 }
 
 impl SimulationSummary {
-    /// Puts them together; `set` are the values changed on the command line.
-    pub fn of(result: &SimulationResult<'_>, set: &[String]) -> Self {
+    /// Summary of a result; `set` are the values changed on the command line.
+    pub fn new(result: &SimulationResult<'_>, set: &[String]) -> Self {
         let (plan, spectrum) = (result.plan, result.spectrum.as_ref());
         let meshes = result.statistics.meshes();
         let substeps = plan.run.substeps(result.scheme);
@@ -111,7 +113,8 @@ impl SimulationSummary {
                 .map(|(mesh, figures)| Mesh { name: mesh_name(mesh, count), figures })
                 .collect(),
             period: result.statistics.period(),
-            non_fundamental_over_fundamental: spectrum.and_then(|spectrum| spectrum.beside(plan.mesh_frequency())),
+            non_fundamental_over_fundamental: spectrum
+                .and_then(|spectrum| spectrum.non_fundamental_ratio(plan.mesh_frequency())),
             strongest_frequency_Hz: spectrum.map(|spectrum| spectrum.greatest().0),
             energy: result.balance(),
             schemes: result.comparison.as_ref().map(|comparison| comparison.rows.clone()),
@@ -119,13 +122,13 @@ impl SimulationSummary {
         }
     }
 
-    /// Mean over meshes of the share of time with teeth parted.
+    /// Share of time with teeth parted, mean over meshes.
     pub fn separated_share(&self) -> f64 {
         let count = self.meshes.len().max(1) as f64;
         self.meshes.iter().map(|mesh| mesh.figures.separated_share).sum::<f64>() / count
     }
 
-    /// The sub-steps in words, the same on every page.
+    /// Sub-steps as text, equal on every page.
     pub fn substeps_in_words(&self) -> String {
         let place = self.board.as_ref().map_or("as accuracy asks for".to_owned(), |board| format!("on {board}"));
         match (self.substeps, self.method) {

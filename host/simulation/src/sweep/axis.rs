@@ -1,33 +1,32 @@
-//! One axis of a grid: a key of the joint file and the values that it takes, as text, so that 0.1 stays 0.1 in every
-//! file.
+//! One axis of a grid: a key of the joint file and its values, as text, so that 0.1 stays 0.1 in every file.
 
 use report::failure::{Failure, Outcome};
 use report::number::TYPED;
 
-/// More values than this on one axis are a slip of the keyboard.
-pub const MOST_VALUES: f64 = 1e6;
-/// The last value may miss the end by this part of a step, which is rounding.
-const ROUNDING: f64 = 1e-9;
-/// Decimal places up to which values are kept exact.
-const MOST_DECIMALS: usize = 12;
+/// Largest number of values on one axis; more are likely a typing error.
+pub const MAX_AXIS_VALUES: f64 = 1e6;
+/// Rounding by which the last value may miss the end, over a step [-].
+const END_ROUNDING: f64 = 1e-9;
+/// Largest number of decimal places that are kept exact.
+const MAX_DECIMALS: usize = 12;
 
 /// One axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     /// Full path of the key.
     pub key: String,
-    /// What stands behind the equals sign, as typed.
+    /// Text after the equals sign, as typed.
     pub spec: String,
-    /// Its values, in order.
+    /// Values in order.
     pub values: Vec<String>,
 }
 
 impl Axis {
-    /// From `key=from:to:step` or `key=value,value,...`; where the joint file's text is known, a short key is one of its keys.
+    /// Parses `key=from:to:step` or `key=value,value,...`; a short key needs the joint file's text.
     pub fn parse(vary: &str, joint: Option<&str>) -> Outcome<Self> {
-        let refused = |message: String| Failure::new(message).with_help(SHAPE);
+        let refused = |message: String| Failure::new(message).with_help(AXIS_HELP);
         let Some((key, spec)) = vary.split_once('=') else {
-            return Err(refused(format!("`{vary}` varies nothing: there is no `=` in it")));
+            return Err(refused(format!("`{vary}` has no `=`")));
         };
         let full = joint.map_or_else(|| joint_file::full_key(key), |text| joint_file::full_key_in(text, key));
         let key = full
@@ -48,31 +47,31 @@ impl Axis {
         Ok(Self { key, spec, values })
     }
 
-    /// As it is typed, with the full key.
+    /// Axis as typed, with the full key.
     pub fn text(&self) -> String {
         format!("{}={}", self.key, self.spec)
     }
 
-    /// A step at which the axis has at most so many values; none for a list.
-    pub fn coarser(&self, values: f64) -> Option<String> {
+    /// Step with which the axis has at most the given number of values; `None` for a list.
+    pub fn coarser_step(&self, values: f64) -> Option<String> {
         let mut parts = self.spec.split(':').map(|part| part.trim().parse::<f64>());
         let (Some(Ok(from)), Some(Ok(to))) = (parts.next(), parts.next()) else { return None };
-        coarser(from, to, values)
+        coarser_step(from, to, values)
     }
 }
 
-const SHAPE: &str =
+const AXIS_HELP: &str =
     "write key=from:to:step, such as mesh.half_backlash_um=0:150:0.5, or key=value,value,value for single values";
 
-/// A step with two digits at which a way has at most so many values.
-fn coarser(from: f64, to: f64, values: f64) -> Option<String> {
+/// Step with two digits that covers a range with at most the given number of values.
+fn coarser_step(from: f64, to: f64, values: f64) -> Option<String> {
     let least = (to - from) / (values - 1.0).max(1.0);
     let digit = 10f64.powf(least.abs().log10().floor() - 1.0);
     let step = (least / digit).abs().ceil() * digit * least.signum();
     step.is_finite().then(|| format!("{step:.3e}").parse::<f64>().map_or_else(|_| step.to_string(), |s| s.to_string()))
 }
 
-/// Values from one number to another; the end is one of them if the steps reach it.
+/// Values from one number to another; the end is included if the steps reach it.
 fn steps(vary: &str, texts: [&str; 3]) -> Outcome<Vec<String>> {
     let mut numbers = [0.0; 3];
     for ((number, text), what) in numbers.iter_mut().zip(texts).zip(["from", "to", "step"]) {
@@ -83,7 +82,7 @@ fn steps(vary: &str, texts: [&str; 3]) -> Outcome<Vec<String>> {
             }
             Err(_) => {
                 let message = format!("--vary {vary}: {what} is `{text}`, not a number");
-                return Err(Failure::new(message).with_help(SHAPE));
+                return Err(Failure::new(message).with_help(AXIS_HELP));
             }
         };
     }
@@ -93,17 +92,17 @@ fn steps(vary: &str, texts: [&str; 3]) -> Outcome<Vec<String>> {
         return Err(Failure::new(message).with_help("give a step that is not 0, or a list of single values"));
     }
     let way = (to - from) / step;
-    if way < -ROUNDING {
-        let message = format!("--vary {vary}: steps of {step} lead from {from} away from {to}: the grid has no point");
+    if way < -END_ROUNDING {
+        let message = format!("--vary {vary}: steps of {step} lead from {from} away from {to}: the axis has no value");
         return Err(Failure::new(message).with_help(format!("change the sign of the step: {from}:{to}:{}", -step)));
     }
     // Long ways lose their last digits in the division.
-    let count = (way * (1.0 + f64::EPSILON * 4.0) + ROUNDING).floor() + 1.0;
-    if count > MOST_VALUES {
+    let count = (way * (1.0 + f64::EPSILON * 4.0) + END_ROUNDING).floor() + 1.0;
+    if count > MAX_AXIS_VALUES {
         let message =
-            format!("--vary {vary}: {} values on one axis, at most {MOST_VALUES} can be swept", TYPED.write(count));
-        let help = coarser(from, to, 1000.0)
-            .map_or_else(|| SHAPE.to_owned(), |step| format!("a step of {step} gives about a thousand"));
+            format!("--vary {vary}: {} values on one axis, at most {MAX_AXIS_VALUES} can be swept", TYPED.write(count));
+        let help = coarser_step(from, to, 1000.0)
+            .map_or_else(|| AXIS_HELP.to_owned(), |step| format!("a step of {step} gives about a thousand"));
         return Err(Failure::new(message).with_help(help));
     }
     let decimals = texts.iter().map(|text| decimals(text)).collect::<Option<Vec<_>>>();
@@ -115,10 +114,10 @@ fn steps(vary: &str, texts: [&str; 3]) -> Outcome<Vec<String>> {
     Ok((0..count as usize).map(value).collect())
 }
 
-/// Decimal places of a number as typed; none if it has an exponent or too many.
+/// Decimal places of a number as typed; `None` with an exponent or with too many places.
 fn decimals(text: &str) -> Option<usize> {
     let places = text.split_once('.').map_or(0, |(_, places)| places.len());
-    (!text.contains(['e', 'E']) && places <= MOST_DECIMALS).then_some(places)
+    (!text.contains(['e', 'E']) && places <= MAX_DECIMALS).then_some(places)
 }
 
 #[cfg(test)]
@@ -134,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_as_a_person_would_write_them() {
+    fn values_are_written_as_decimals() {
         assert_eq!(values("0:0.5:0.1"), ["0.0", "0.1", "0.2", "0.3", "0.4", "0.5"]);
         assert_eq!(values("0:150:0.5").len(), 301);
         assert_eq!(values("10:0:-5"), ["10", "5", "0"]);
@@ -145,13 +144,13 @@ mod tests {
     }
 
     #[test]
-    fn the_key_may_be_short_and_is_kept_whole() {
+    fn short_key_becomes_full_key() {
         let axis = Axis::parse("sun_planet.half_backlash_um=1:2:1", None).expect("a good axis");
         assert_eq!(axis.text(), "mesh.sun_planet.half_backlash_um=1:2:1");
     }
 
     #[test]
-    fn grids_without_a_point_are_refused() {
+    fn empty_grids_are_rejected() {
         for (spec, word) in [
             ("0:10:-1", "away"),
             ("10:0:1", "away"),
@@ -170,8 +169,9 @@ mod tests {
         }
     }
 
+    /// The error of an axis with too many values names their number and a step that is accepted.
     #[test]
-    fn an_axis_of_a_million_million_values_is_refused_with_its_count_and_a_step_that_works() {
+    fn oversized_axis_error_gives_a_valid_step() {
         let failure = refused("0:1000:0.000000001");
         assert!(failure.message().contains("1000000000001 values"), "{failure}");
         assert!(
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_key_is_answered_with_the_nearest_one() {
+    fn unknown_key_error_suggests_nearest() {
         let failure = Axis::parse("mesh.half_backlsh_um=1:2:1", None).expect_err("unknown");
         assert!(failure.help().is_some_and(|help| help.contains("mesh.half_backlash_um")), "{failure}");
     }

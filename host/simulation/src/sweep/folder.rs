@@ -1,5 +1,5 @@
-//! The folder of a sweep: `sweep.json`, journals, and `points.csv` with its page once all points are there. A folder with foreign
-//! files is refused before anything is written.
+//! Folder of a sweep: `sweep.json`, journals, and `points.csv` with its page once all points are finished. A folder
+//! with foreign files is rejected before any file is written.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,14 +13,14 @@ use report::failure::{Failure, Outcome};
 use report::folder::{self, Folder};
 use report::write::write_text;
 
-/// The manifest.
+/// Manifest.
 pub const MANIFEST: &str = "sweep.json";
-/// The result.
+/// Result.
 pub const RESULT: &str = "points.csv";
-/// The result as a page.
+/// Result as a page.
 pub const REPORT: &str = "report.html";
-/// Foreign files named in a message at most.
-const NAMED: usize = 3;
+/// Largest number of foreign files in a message.
+const MAX_LISTED_FILES: usize = 3;
 
 /// A sweep's folder.
 #[derive(Debug)]
@@ -29,15 +29,15 @@ pub struct SweepFolder {
 }
 
 impl SweepFolder {
-    /// Makes the folder of a sweep, or finds that it is there; refuses any other sweep's and any other folder.
+    /// Creates or opens the folder of a sweep; rejects the folder of another sweep, and any folder with other files.
     pub fn prepare(path: &Path, manifest: &Manifest) -> Outcome<Self> {
         folder::make(path)?;
-        // What else is in it comes before whose a result is: a sweep has its folder for itself.
-        let foreign = foreign(path)?;
-        // Checked after the listing: this file is always made before a journal.
+        // Foreign files are reported before another sweep: a sweep needs a folder of its own.
+        let foreign = foreign_files(path)?;
+        // Checked after the listing, since this file is always created before a journal.
         let there = path.join(MANIFEST).exists();
         if !foreign.is_empty() {
-            return Err(refused(path, &foreign, there));
+            return Err(foreign_files_error(path, &foreign, there));
         }
         if there {
             let other = Manifest::read(&path.join(MANIFEST))?;
@@ -55,27 +55,27 @@ impl SweepFolder {
         Ok(Self { folder })
     }
 
-    /// A folder that must hold a sweep.
+    /// Opens a folder that must hold a sweep.
     pub fn existing(path: &Path) -> Outcome<(Self, Manifest)> {
         if !path.is_dir() {
             return Err(Failure::new(format!("{} is not a folder", path.display()))
                 .with_help("name the folders that `joint sweep --out DIR` has made"));
         }
         if !path.join(MANIFEST).exists() {
-            return Err(Failure::new(format!("{} holds no sweep: there is no {MANIFEST} in it", path.display()))
+            return Err(Failure::new(format!("{} is not a sweep: it has no {MANIFEST}", path.display()))
                 .with_help("name the folders that `joint sweep --out DIR` has made"));
         }
         let manifest = Manifest::read(&path.join(MANIFEST))?;
-        // It is read only.
+        // This folder is only read.
         Ok((Self { folder: Folder::choose(Some(path), "sweep", &manifest.joint, &[])? }, manifest))
     }
 
-    /// The folder.
+    /// Path of the folder.
     pub fn path(&self) -> &Path {
         self.folder.path()
     }
 
-    /// Journals in it, in the order of their names.
+    /// Journals of the folder, by name.
     pub fn journals(&self) -> Outcome<Vec<PathBuf>> {
         let mut journals: Vec<PathBuf> = entries(self.path())?
             .into_iter()
@@ -86,7 +86,7 @@ impl SweepFolder {
         Ok(journals)
     }
 
-    /// Every finished point of every shard; points that two journals have must agree.
+    /// Adds every finished point of every shard; equal points of two journals must agree.
     pub fn points(&self, digest: &str, into: &mut Points) -> Outcome<()> {
         for path in self.journals()? {
             for (point, result) in journal::read(&path, digest)? {
@@ -105,7 +105,7 @@ impl SweepFolder {
         Ok(())
     }
 
-    /// Writes the result, all points in their order, and says where it is.
+    /// Writes all points in order, and returns a message with the paths.
     pub fn write_result(&self, manifest: &Manifest, grid: &Grid, points: &Points) -> Outcome<String> {
         self.folder.write_text(RESULT, &result(manifest, grid, points))?;
         self.folder.write_text(REPORT, &html(&page::document(manifest, grid, points)))?;
@@ -114,7 +114,7 @@ impl SweepFolder {
     }
 }
 
-/// The result as text: one row a point.
+/// Result as text: one row for each point.
 fn result(manifest: &Manifest, grid: &Grid, points: &Points) -> String {
     let keys = grid.axes.iter().map(|axis| axis.key.clone());
     let metrics = manifest.metrics.iter().map(|metric| metric.name());
@@ -129,7 +129,7 @@ fn result(manifest: &Manifest, grid: &Grid, points: &Points) -> String {
     text
 }
 
-/// Names in a folder, hidden ones left out.
+/// Names in a folder, without hidden ones.
 fn entries(path: &Path) -> Outcome<Vec<String>> {
     let failed = |error: std::io::Error| {
         Failure::new(format!("cannot read the folder {}: {error}", path.display()))
@@ -146,22 +146,22 @@ fn entries(path: &Path) -> Outcome<Vec<String>> {
     Ok(names)
 }
 
-/// What is in a folder that no sweep has put there.
-fn foreign(path: &Path) -> Outcome<Vec<String>> {
+/// Names of files that no sweep has written.
+fn foreign_files(path: &Path) -> Outcome<Vec<String>> {
     let own = |name: &String| {
         let known = [MANIFEST, RESULT, REPORT].contains(&name.as_str()) || journal::shard_of(name).is_some();
         known && path.join(name).is_file()
     };
     let mut names = entries(path)?;
     let swept = names.iter().any(|name| name == MANIFEST) || path.join(MANIFEST).exists();
-    // Without the file that says which sweep it is, even a known name may be anyone's.
+    // Without the manifest, even a file with a known name may be the user's own.
     names.retain(|name| !(swept && own(name)));
     Ok(names)
 }
 
-fn refused(path: &Path, foreign: &[String], swept: bool) -> Failure {
-    let more = foreign.len().saturating_sub(NAMED);
-    let mut named = foreign[..foreign.len().min(NAMED)].join(", ");
+fn foreign_files_error(path: &Path, foreign: &[String], swept: bool) -> Failure {
+    let more = foreign.len().saturating_sub(MAX_LISTED_FILES);
+    let mut named = foreign[..foreign.len().min(MAX_LISTED_FILES)].join(", ");
     if more > 0 {
         named += &format!(" and {more} more");
     }

@@ -1,5 +1,4 @@
-//! The grid of a sweep: every combination of its axes, numbered with the last axis fastest, and which of them a shard
-//! has.
+//! Grid of a sweep: every combination of its axes, numbered with the last axis fastest, and the points of a shard.
 
 use std::str::FromStr;
 
@@ -7,10 +6,10 @@ use super::axis::Axis;
 use joint_file::named::{self, Loaded};
 use report::failure::{Failure, Outcome};
 
-/// Points that can be swept at once: at a tenth of a second each that is more than a day.
-pub const MOST_POINTS: u64 = 1_000_000;
-/// Values of an axis that are all tried before the sweep; of a longer axis only the ends are.
-const VALUES_TRIED: usize = 1000;
+/// Largest number of points; at a tenth of a second each they take more than a day.
+pub const MAX_POINTS: u64 = 1_000_000;
+/// Largest number of values of an axis that are all checked before the sweep; of a longer axis only both ends are.
+const MAX_CHECKED_VALUES: usize = 1000;
 
 /// All points.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,17 +20,17 @@ pub struct Grid {
     pub points: u64,
 }
 
-/// A part of the points: those whose number leaves `index - 1` over `count`.
+/// A part of the points: those whose number modulo `count` is `index - 1`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
-    /// From 1.
+    /// Index from 1.
     pub index: u64,
-    /// How many shards there are.
+    /// Number of shards.
     pub count: u64,
 }
 
 impl Grid {
-    /// From what stands behind every `--vary`, and the joint file's text where it is known.
+    /// Parses the values of every `--vary`; short keys need the joint file's text.
     pub fn parse(vary: &[String], joint: Option<&str>) -> Outcome<Self> {
         let axes = vary.iter().map(|vary| Axis::parse(vary, joint)).collect::<Outcome<Vec<_>>>()?;
         for (place, axis) in axes.iter().enumerate() {
@@ -45,13 +44,13 @@ impl Grid {
             return Err(Failure::new("the grid has no axis")
                 .with_help("give at least one --vary, such as --vary mesh.half_backlash_um=0:150:0.5"));
         }
-        if count > MOST_POINTS as f64 {
+        if count > MAX_POINTS as f64 {
             return Err(too_many(&axes, count));
         }
         Ok(Self { axes, points: count as u64 })
     }
 
-    /// The value of every axis at a point.
+    /// Value of every axis at a point.
     pub fn values(&self, point: u64) -> Vec<&str> {
         let mut rest = point;
         let mut values: Vec<&str> = self
@@ -69,7 +68,7 @@ impl Grid {
         values
     }
 
-    /// Changes that make a point's joint, keys of both mesh families before those of one.
+    /// Changes of a point's joint, with keys of both mesh families before those of one.
     pub fn changes(&self, point: u64) -> Vec<String> {
         let mut keyed: Vec<(&str, &str)> =
             self.axes.iter().map(|axis| axis.key.as_str()).zip(self.values(point)).collect();
@@ -77,9 +76,9 @@ impl Grid {
         keyed.into_iter().map(|(key, value)| format!("{key}={value}")).collect()
     }
 
-    /// Tries every axis by itself, the others at their first values: a value that the joint file could not have is
-    /// found before anything is computed, and so is an axis without an effect.
-    pub fn try_out(&self, base: &Loaded) -> Outcome<()> {
+    /// Checks every axis, with the others at their first values: rejects values that the joint file cannot have, and
+    /// axes without an effect, before any computation.
+    pub fn check_axes(&self, base: &Loaded) -> Outcome<()> {
         let at = |point: u64| named::read_changed(base.name.clone(), base.text.clone(), &self.changes(point));
         let mut stride = self.points;
         for axis in &self.axes {
@@ -87,12 +86,12 @@ impl Grid {
             stride /= count as u64;
             let first = at(0)?;
             let mut moved = count == 1;
-            for place in (1..count).filter(|place| count <= VALUES_TRIED || *place == count - 1) {
+            for place in (1..count).filter(|place| count <= MAX_CHECKED_VALUES || *place == count - 1) {
                 let joint = at(place as u64 * stride)?.file;
                 moved |= joint.parameters != first.file.parameters || joint.profile != first.file.profile;
             }
             if !moved {
-                let message = format!("varying `{}` changes nothing in a simulation of the joint", axis.key);
+                let message = format!("varying `{}` has no effect in a simulation of the joint", axis.key);
                 return Err(Failure::new(message)
                     .with_help("leave it out; the drive train around the joint has no part in a sweep"));
             }
@@ -104,12 +103,12 @@ impl Grid {
 fn too_many(axes: &[Axis], count: f64) -> Failure {
     let each: Vec<String> = axes.iter().map(|axis| axis.values.len().to_string()).collect();
     let message =
-        format!("a grid of {} = {count:.0} points: at most {MOST_POINTS} can be swept at once", each.join(" x "));
-    // The longest axis is the one that can give most.
+        format!("a grid of {} = {count:.0} points: at most {MAX_POINTS} can be swept at once", each.join(" x "));
+    // Coarser steps on the longest axis save most.
     let longest = axes.iter().max_by_key(|axis| axis.values.len());
     let help = longest.and_then(|axis| {
-        let wanted = (MOST_POINTS as f64 * axis.values.len() as f64 / count).floor();
-        let step = axis.coarser(wanted.clamp(2.0, 1e6))?;
+        let wanted = (MAX_POINTS as f64 * axis.values.len() as f64 / count).floor();
+        let step = axis.coarser_step(wanted.clamp(2.0, 1e6))?;
         let enough = if wanted >= 2.0 { "" } else { ", and coarser steps on the others" };
         Some(format!("use coarser steps: {} in steps of {step}{enough}", axis.key))
     });
@@ -120,8 +119,8 @@ impl Shard {
     /// All points.
     pub const WHOLE: Self = Self { index: 1, count: 1 };
 
-    /// Whether a point is the shard's.
-    pub fn has(self, point: u64) -> bool {
+    /// Returns true if the point belongs to the shard.
+    pub fn contains(self, point: u64) -> bool {
         point % self.count == self.index - 1
     }
 }
@@ -134,7 +133,7 @@ impl FromStr for Shard {
         let (index, count) = text.split_once('/').ok_or_else(shape)?;
         let number = |text: &str| text.trim().parse::<u64>().map_err(|_| shape());
         let shard = Self { index: number(index)?, count: number(count)? };
-        ((1..=shard.count).contains(&shard.index) && shard.count <= MOST_POINTS).then_some(shard).ok_or_else(shape)
+        ((1..=shard.count).contains(&shard.index) && shard.count <= MAX_POINTS).then_some(shard).ok_or_else(shape)
     }
 }
 
@@ -153,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn points_are_numbered_with_the_last_axis_fastest() {
+    fn last_axis_varies_fastest() {
         let grid = grid(&["mesh.half_backlash_um=10:30:10", "mesh.damping_ratio=0.05,0.1"]).expect("a good grid");
         assert_eq!(grid.points, 6);
         assert_eq!(grid.values(0), ["10", "0.05"]);
@@ -162,10 +161,10 @@ mod tests {
     }
 
     #[test]
-    fn shards_share_out_every_point_once() {
+    fn shards_cover_every_point_once() {
         for count in 1..9u64 {
             for point in 0..100 {
-                let owners = (1..=count).filter(|&index| Shard { index, count }.has(point)).count();
+                let owners = (1..=count).filter(|&index| Shard { index, count }.contains(point)).count();
                 assert_eq!(owners, 1);
             }
         }
@@ -175,8 +174,9 @@ mod tests {
         }
     }
 
+    /// The error of a grid with too many points names their number and a coarser step.
     #[test]
-    fn a_million_million_points_are_refused_with_their_number_and_a_way_out() {
+    fn oversized_grid_error_gives_a_valid_step() {
         let failure = grid(&["mesh.half_backlash_um=0:100:0.0002", "mesh.damping_ratio=0:0.999999:0.000002"]);
         let failure = failure.expect_err("too many");
         assert!(failure.message().contains("500001 x 500000 = 250000500000 points"), "{failure}");
@@ -184,17 +184,17 @@ mod tests {
     }
 
     #[test]
-    fn an_axis_that_is_there_twice_or_has_no_effect_is_refused() {
+    fn duplicate_or_idle_axis_is_rejected() {
         assert!(grid(&["half_backlash_um=1:2:1", "mesh.half_backlash_um=3:4:1"]).is_err());
         assert!(grid(&[]).is_err());
         let base = named::load(std::path::Path::new("q1")).expect("a preset");
-        let try_out = |vary: &[&str]| grid(vary).and_then(|grid| grid.try_out(&base));
-        assert!(try_out(&["mesh.half_backlash_um=10:30:10", "sun_planet.half_backlash_um=5,6"]).is_ok());
-        let same = try_out(&["mesh.half_backlash_um=10:30:10", "mesh.backlash_um=5,6"]).expect_err("the same thing");
-        assert!(same.message().contains("changes nothing"), "{same}");
-        let outside = try_out(&["drive_train.efficiency=0.9,0.95"]).expect_err("no effect");
-        assert!(outside.message().contains("changes nothing"), "{outside}");
-        let bad = try_out(&["mesh.damping_ratio=0:2:0.5"]).expect_err("out of range").to_string();
+        let check_axes = |vary: &[&str]| grid(vary).and_then(|grid| grid.check_axes(&base));
+        assert!(check_axes(&["mesh.half_backlash_um=10:30:10", "sun_planet.half_backlash_um=5,6"]).is_ok());
+        let same = check_axes(&["mesh.half_backlash_um=10:30:10", "mesh.backlash_um=5,6"]).expect_err("the same thing");
+        assert!(same.message().contains("has no effect"), "{same}");
+        let outside = check_axes(&["drive_train.efficiency=0.9,0.95"]).expect_err("no effect");
+        assert!(outside.message().contains("has no effect"), "{outside}");
+        let bad = check_axes(&["mesh.damping_ratio=0:2:0.5"]).expect_err("out of range").to_string();
         assert!(bad.contains("damping_ratio"), "{bad}");
     }
 }

@@ -1,5 +1,5 @@
-//! The journal of a shard: one line for each finished point, each with a checksum, written and flushed to the disk as
-//! points come in. A line that a kill or a full disk cut short is found and dropped; nothing else is ever taken out.
+//! Journal of a shard: one line with a checksum for each finished point, written and flushed to the disk at once. A
+//! line that a kill or a full disk has truncated is detected and dropped; no other line is ever removed.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -11,9 +11,9 @@ use model_core::numbers::digest;
 use super::grid::Shard;
 use report::failure::{Failure, Outcome};
 use report::input;
-use report::write::{locked, unwritten};
+use report::write::{locked, write_failure};
 
-/// Finished points by number: status and values, as they stand in the result.
+/// Finished points by number: status and values, as in the result.
 pub type Points = BTreeMap<u64, String>;
 
 /// First word of every journal.
@@ -27,22 +27,22 @@ pub struct Journal {
 }
 
 /// Name of a shard's journal.
-pub fn name(shard: Shard) -> String {
+pub fn journal_name(shard: Shard) -> String {
     format!("journal-{}-of-{}.csv", shard.index, shard.count)
 }
 
-/// The shard of a journal, by its name.
+/// Shard of a journal, by its name.
 pub fn shard_of(name: &str) -> Option<Shard> {
     let (index, count) = name.strip_prefix("journal-")?.strip_suffix(".csv")?.split_once("-of-")?;
     let shard = format!("{index}/{count}").parse().ok()?;
-    (self::name(shard) == name).then_some(shard)
+    (journal_name(shard) == name).then_some(shard)
 }
 
 impl Journal {
-    /// Opens a shard's journal to go on with it; what was cut short is taken off its end.
+    /// Opens a shard's journal to continue it, and removes a truncated last line.
     pub fn open(folder: &Path, shard: Shard, digest: &str) -> Outcome<Self> {
-        let path = folder.join(name(shard));
-        let failed = |error: io::Error| unwritten(&path, &error);
+        let path = folder.join(journal_name(shard));
+        let failed = |error: io::Error| write_failure(&path, &error);
         let mut file =
             File::options().read(true).write(true).create(true).truncate(false).open(&path).map_err(failed)?;
         if !locked(&file) {
@@ -62,35 +62,35 @@ impl Journal {
         Ok(journal)
     }
 
-    /// Writes lines and sees them onto the disk.
+    /// Writes lines and flushes them to the disk.
     pub fn append(&mut self, lines: &str) -> Outcome<()> {
         let written = self.file.write_all(lines.as_bytes()).and_then(|()| self.file.sync_data());
-        written.map_err(|error| unwritten(&self.path, &error))
+        written.map_err(|error| write_failure(&self.path, &error))
     }
 }
 
-/// The line of a finished point.
+/// Line of a finished point.
 pub fn line(point: u64, result: &str) -> String {
     let text = format!("{point},{result}");
     format!("{text},{:016x}\n", checksum(&text))
 }
 
-/// What a journal holds: good lines count, others are as if they had never been.
+/// Reads a journal; lines with a wrong checksum are ignored.
 pub fn read(path: &Path, digest: &str) -> Outcome<Points> {
-    let bytes = input::bytes(path, input::LARGEST_RECORDED).map_err(|why| unread(path, &why))?;
+    let bytes = input::bytes(path, input::LARGEST_RECORDED).map_err(|why| read_error(path, &why))?;
     let whole = &bytes[..whole_lines(&bytes)];
     check_head(path, whole, digest)?;
-    Ok(String::from_utf8_lossy(whole).lines().skip(1).filter_map(point_of).collect())
+    Ok(String::from_utf8_lossy(whole).lines().skip(1).filter_map(parse_line).collect())
 }
 
-/// A file of a sweep that cannot be read, with the help.
-pub fn unread(path: &Path, why: &dyn std::fmt::Display) -> Failure {
+/// Error: a file of a sweep cannot be read.
+pub fn read_error(path: &Path, why: &dyn std::fmt::Display) -> Failure {
     Failure::new(format!("cannot read {}: {why}", path.display()))
         .with_help("see that the folder and its files may be read")
 }
 
-/// Number and result of a good line.
-fn point_of(line: &str) -> Option<(u64, String)> {
+/// Number and result in a line with a correct checksum.
+fn parse_line(line: &str) -> Option<(u64, String)> {
     let (text, sum) = line.rsplit_once(',')?;
     if sum.len() != 16 || u64::from_str_radix(sum, 16).ok()? != checksum(text) {
         return None;
@@ -99,7 +99,7 @@ fn point_of(line: &str) -> Option<(u64, String)> {
     Some((point.parse().ok()?, result.to_owned()))
 }
 
-/// Bytes up to the end of the last line that is whole.
+/// Number of bytes up to the end of the last complete line.
 fn whole_lines(bytes: &[u8]) -> usize {
     bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1)
 }
@@ -133,11 +133,12 @@ mod tests {
     fn written(folder: &Path, points: u64) -> PathBuf {
         let mut journal = Journal::open(folder, Shard::WHOLE, DIGEST).expect("a new journal");
         (0..points).for_each(|point| journal.append(&line(point, "ok,1.5,2")).expect("room on the disk"));
-        folder.join(name(Shard::WHOLE))
+        folder.join(journal_name(Shard::WHOLE))
     }
 
+    /// A journal cut at any byte keeps its whole lines and accepts more.
     #[test]
-    fn a_journal_cut_anywhere_keeps_every_whole_line_and_can_be_gone_on_with() {
+    fn truncated_journal_keeps_whole_lines() {
         let folder = folder();
         let path = written(folder.path(), 5);
         let whole = std::fs::read(&path).expect("a journal");
@@ -155,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_that_was_tampered_with_is_as_if_it_had_never_been() {
+    fn altered_journal_line_is_dropped() {
         let folder = folder();
         let path = written(folder.path(), 3);
         let text = std::fs::read_to_string(&path).expect("a journal").replacen("1,ok,1.5", "1,ok,1.6", 1);
@@ -164,8 +165,9 @@ mod tests {
         assert_eq!(points.keys().copied().collect::<Vec<_>>(), [0, 2]);
     }
 
+    /// The journal of a different sweep, or a file of any other kind, is an error and stays unchanged.
     #[test]
-    fn another_sweep_s_journal_or_any_other_file_is_refused_and_left_as_it_is() {
+    fn foreign_journal_is_rejected_unchanged() {
         let folder = folder();
         let path = written(folder.path(), 3);
         let before = std::fs::read(&path).expect("a journal");
@@ -178,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn two_processes_do_not_write_one_journal() {
+    fn journal_has_one_writer() {
         let folder = folder();
         let _held = Journal::open(folder.path(), Shard::WHOLE, DIGEST).expect("a new journal");
         let refused = Journal::open(folder.path(), Shard::WHOLE, DIGEST).expect_err("it is held");
@@ -187,9 +189,9 @@ mod tests {
     }
 
     #[test]
-    fn a_journal_is_known_by_its_name() {
+    fn journal_name_gives_shard() {
         let shard = Shard { index: 3, count: 16 };
-        assert_eq!(shard_of(&name(shard)), Some(shard));
+        assert_eq!(shard_of(&journal_name(shard)), Some(shard));
         for other in
             ["journal-3-of-2.csv", "journal-x-of-2.csv", "journal-1-of-2.csv.bak", "journal.csv", "journal-01-of-2.csv"]
         {

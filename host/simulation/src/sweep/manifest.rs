@@ -1,5 +1,5 @@
-//! The manifest of a sweep, `sweep.json` in its folder. Two sweeps with the same digest compute the same points; paths,
-//! threads, shards and dates are not part of the digest.
+//! Manifest of a sweep, `sweep.json` in its folder. Sweeps with equal digests compute equal points; paths, threads,
+//! shards and dates are not part of the digest.
 
 use std::path::Path;
 
@@ -7,13 +7,13 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::grid::Grid;
-use super::journal::unread;
+use super::journal::read_error;
 use super::metrics::Metric;
 use report::failure::{Failure, Outcome};
 use report::input;
 use report::output;
 
-/// Says which fields there are; rises when one changes its meaning or goes.
+/// Name and version of the schema; the version rises when a field changes its meaning or is removed.
 const SCHEMA: &str = "joint-sweep/1";
 
 /// A sweep.
@@ -22,11 +22,11 @@ const SCHEMA: &str = "joint-sweep/1";
 pub struct Manifest {
     /// `joint-sweep/1`.
     pub schema: String,
-    /// SHA-256 over everything below.
+    /// SHA-256 over all other fields.
     pub digest: String,
     /// Version of the command.
     pub version: String,
-    /// The joint's own name.
+    /// Name of the joint.
     pub joint: String,
     /// Axes, each as `key=from:to:step`.
     pub vary: Vec<String>,
@@ -36,16 +36,16 @@ pub struct Manifest {
     pub metrics: Vec<Metric>,
     /// Name of the scheme.
     pub scheme: String,
-    /// Options that make the motion.
+    /// Options of the motion.
     pub motion: String,
     /// SHA-256 of the torque profile, if it is a file.
     pub profile_sha256: Option<String>,
-    /// The joint file with the changes of the command line.
+    /// Joint file with the changes of the command line.
     pub joint_file: String,
 }
 
 impl Manifest {
-    /// Fills in version and digest.
+    /// Sets schema, version and digest.
     pub fn sealed(mut self) -> Self {
         self.schema = SCHEMA.to_owned();
         self.version = env!("CARGO_PKG_VERSION").to_owned();
@@ -53,25 +53,25 @@ impl Manifest {
         self
     }
 
-    /// The digest that belongs to everything else.
+    /// Digest of all other fields.
     fn computed_digest(&self) -> String {
         let bare = Self { digest: String::new(), ..self.clone() };
-        // A structure of texts and numbers always becomes JSON.
+        // A structure of texts and numbers can always be written as JSON.
         sha256(serde_json::to_string(&bare).unwrap_or_default().as_bytes())
     }
 
-    /// As the file has it.
+    /// Text of the file.
     pub fn text(&self) -> Outcome<String> {
         output::json("sweep", self)
     }
 
-    /// Reads `sweep.json` and sees whether it is whole.
+    /// Reads `sweep.json` and checks its schema and digest.
     pub fn read(path: &Path) -> Outcome<Self> {
         let spoilt = |why: String| {
-            Failure::new(format!("{} is not what a sweep wrote: {why}", path.display()))
+            Failure::new(format!("{} is not a sweep's manifest: {why}", path.display()))
                 .with_help("name another folder by --out DIR; this one is left as it is")
         };
-        let text = input::text(path, input::LARGEST_RECORDED).map_err(|why| unread(path, &why))?;
+        let text = input::text(path, input::LARGEST_RECORDED).map_err(|why| read_error(path, &why))?;
         let manifest: Self = serde_json::from_str(&text).map_err(|error| spoilt(error.to_string()))?;
         if manifest.schema != SCHEMA {
             return Err(spoilt(format!("its schema is `{}`, not `{SCHEMA}`", manifest.schema)));
@@ -82,12 +82,12 @@ impl Manifest {
         Ok(manifest)
     }
 
-    /// The grid again.
+    /// Grid of the sweep.
     pub fn grid(&self) -> Outcome<Grid> {
         Grid::parse(&self.vary, None)
     }
 
-    /// What sets two sweeps apart, in words; none if they are the same.
+    /// First difference between two sweeps, as text; `None` if they are equal.
     pub fn difference(&self, other: &Self) -> Option<String> {
         if self.digest == other.digest {
             return None;
@@ -110,7 +110,7 @@ impl Manifest {
     }
 }
 
-/// In hexadecimal.
+/// SHA-256 in hexadecimal.
 pub fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -1,4 +1,4 @@
-//! Puts the shards of a sweep together into one result, once none is missing.
+//! Merges the shards of a sweep into one result, once all points are present.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -9,11 +9,11 @@ use super::journal::{self, Points};
 use super::manifest::Manifest;
 use report::failure::{Failure, Outcome};
 
-/// Missing points named in a message at most.
-const NAMED: usize = 8;
+/// Largest number of missing points or shards in a message.
+const MAX_LISTED: usize = 8;
 
-/// Merges the shards in these folders into `out`, or into the first of them, and returns the result as text; fails if any point is
-/// missing.
+/// Merges the shards in these folders into `out`, or into the first folder, and returns the message with the paths;
+/// fails if a point is missing.
 pub fn merge(folders: &[PathBuf], out: Option<&Path>) -> Outcome<String> {
     let mut points = Points::new();
     let mut shards = BTreeSet::new();
@@ -41,7 +41,7 @@ pub fn merge(folders: &[PathBuf], out: Option<&Path>) -> Outcome<String> {
     SweepFolder::prepare(out.unwrap_or(&first), &manifest)?.write_result(&manifest, &grid, &points)
 }
 
-/// Every point must be there, and no other.
+/// Checks that every point of the grid is present, and no other.
 fn complete(grid: &Grid, points: &Points, shards: &BTreeSet<(u64, u64)>) -> Outcome<()> {
     if let Some(beyond) = points.keys().find(|point| **point >= grid.points) {
         return Err(Failure::new(format!("point {beyond} is beyond the {} points of the grid", grid.points))
@@ -51,15 +51,15 @@ fn complete(grid: &Grid, points: &Points, shards: &BTreeSet<(u64, u64)>) -> Outc
     if missing.is_empty() {
         return Ok(());
     }
-    let mut named: Vec<String> = missing.iter().take(NAMED).map(ToString::to_string).collect();
-    if missing.len() > NAMED {
+    let mut named: Vec<String> = missing.iter().take(MAX_LISTED).map(ToString::to_string).collect();
+    if missing.len() > MAX_LISTED {
         named.push("...".into());
     }
     let message = format!("{} of {} points are missing: {}", missing.len(), grid.points, named.join(", "));
-    // Shards are told by the finest division that was used.
+    // Missing shards are listed for the largest number of shards in use.
     let count = shards.iter().map(|(count, _)| *count).max().unwrap_or(1);
-    let open = (1..=count).filter(|&index| missing.iter().any(|point| Shard { index, count }.has(*point)));
-    let open: Vec<String> = open.take(NAMED).map(|index| format!("--shard {index}/{count}")).collect();
+    let open = (1..=count).filter(|&index| missing.iter().any(|point| Shard { index, count }.contains(*point)));
+    let open: Vec<String> = open.take(MAX_LISTED).map(|index| format!("--shard {index}/{count}")).collect();
     let help = format!("run the sweep's command again with {}, or name the folder that has them", open.join(", "));
     Err(Failure::new(message).with_help(help))
 }

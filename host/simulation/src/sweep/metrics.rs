@@ -1,5 +1,4 @@
-//! The metrics of a point of the grid, and how they are written: always the same bytes for the same joint. They come
-//! from `sim::statistics`.
+//! Metrics of a point of the grid and their text form: equal bytes for equal joints. `sim::statistics` computes them.
 
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
@@ -18,17 +17,17 @@ use report::failure::Outcome;
 #[serde(rename_all = "snake_case")]
 #[value(rename_all = "snake_case")]
 pub enum Metric {
-    /// Greatest less least sun-planet deflection, the greatest of all planets [um]
+    /// Greatest minus least sun-planet deflection, largest over all planets [um]
     SunDeflectionPeakToPeakUm,
-    /// RMS of the sun-planet deflection about its mean, the greatest of all planets [um]
+    /// RMS of the sun-planet deflection about its mean, largest over all planets [um]
     SunDeflectionRmsUm,
-    /// Greatest less least ring-planet deflection, likewise [um]
+    /// Greatest minus least ring-planet deflection, largest over all planets [um]
     RingDeflectionPeakToPeakUm,
-    /// RMS of the ring-planet deflection, likewise [um]
+    /// RMS of the ring-planet deflection about its mean, largest over all planets [um]
     RingDeflectionRmsUm,
-    /// Share of time with teeth parted, mean of all meshes
+    /// Share of time with teeth parted, mean over all meshes
     SeparatedShare,
-    /// Share of time on the back side, mean of all meshes
+    /// Share of time on the back side, mean over all meshes
     BackSideShare,
     /// Landings of all meshes in a second
     ImpactsPerS,
@@ -41,24 +40,24 @@ pub enum Metric {
 }
 
 impl Metric {
-    /// Name of its column.
+    /// Name of the column.
     pub fn name(self) -> String {
         self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
     }
 }
 
-/// The result of a point.
+/// Result of a point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointResult {
     /// `ok`, `diverged` or `refused`.
     pub status: &'static str,
     /// Values of the metrics as text; empty unless `ok`.
     pub values: Vec<String>,
-    /// Why it was refused.
+    /// Reason for a refusal.
     pub remark: Option<String>,
 }
 
-/// Computes a point; none if the user wants to stop.
+/// Computes a point; `None` if the user stops the run.
 pub fn compute(
     loaded: Outcome<Loaded>,
     motion: &MotionArguments,
@@ -70,7 +69,7 @@ pub fn compute(
     let followed = loaded.and_then(|loaded| SimulationPlan::new(loaded, motion)).and_then(|plan| {
         stepping::simulate(&plan.run, scheme, 0.0, &mut |snapshot| {
             if snapshot.tick >= plan.settle {
-                statistics.take(snapshot);
+                statistics.add_tick(snapshot);
             }
             Ok(())
         })

@@ -1,7 +1,7 @@
-//! Any grid of joints through one simulation each, in parallel, resumable and in shards.
+//! Simulates every joint of a grid, in parallel, resumable and in shards.
 //!
-//! `axis` and `grid` say which points there are, `manifest` which sweep it is, `folder` and `journal` keep what is done,
-//! `metrics` computes a point, `work` shares the points out, `merge` puts shards together; `page` shows the result, with
+//! `axis` and `grid` define the points, `manifest` identifies the sweep, `folder` and `journal` store finished points,
+//! `metrics` computes a point, `work` distributes the points, `merge` combines shards; `page` shows the result, with
 //! `pictures` of its `table`.
 
 mod axis;
@@ -27,14 +27,14 @@ use metrics::Metric;
 use work::Work;
 
 use crate::sim::arguments::MotionArguments;
-use crate::sim::scheme::{Choice, SchemeName};
+use crate::sim::scheme::{SchemeChoice, SchemeName};
 use board::profile::BUILTIN;
 use joint_file::named::{self, Loaded};
 use joint_file::warnings;
 use report::command_line::quoted;
 use report::failure::{Failure, Outcome};
 use report::input;
-use report::interruption::InOrder;
+use report::interruption::UninterruptedWork;
 use report::output;
 use report::progress::Progress;
 
@@ -57,13 +57,13 @@ pub struct Arguments {
     /// Key of the joint file with its values, as from:to:step or as a list with commas; repeated for more axes
     #[arg(long, value_name = "KEY=FROM:TO:STEP", required = true)]
     pub vary: Vec<String>,
-    /// What is measured at every point; repeated, or a list with commas [default: all]
+    /// Metric to compute at every point; repeated, or a list with commas [default: all]
     #[arg(long, value_enum, value_delimiter = ',', value_name = "NAME")]
     pub metric: Vec<Metric>,
-    /// Scheme that moves the joint
+    /// Integration scheme
     #[arg(long, value_enum, default_value = "realtime")]
-    pub scheme: Choice,
-    /// What moves the joint at every point
+    pub scheme: SchemeChoice,
+    /// Motion of every point
     #[command(flatten)]
     pub motion: MotionArguments,
     /// Folder of the sweep [default: joint-out/sweep/<joint>-<digest>]
@@ -72,12 +72,12 @@ pub struct Arguments {
     /// Computes only the i-th of n parts of the grid, for job arrays
     #[arg(long, value_name = "I/N", default_value = "1/1")]
     pub shard: Shard,
-    /// Threads [default: as many as there are processors]
+    /// Number of threads [default: number of processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
 }
 
-/// Sweeps a grid, or goes on with it, and returns the result as text.
+/// Runs or continues a sweep, and returns the message with the paths.
 pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     let scheme = scheme(arguments.scheme)?;
     arguments.motion.check_for(scheme)?;
@@ -85,20 +85,20 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
     scheme.check_joint(&base.file.parameters)?;
     let grid = Grid::parse(&arguments.vary, Some(&base.text))?;
     warnings::print(&base);
-    grid.try_out(&base)?;
+    grid.check_axes(&base)?;
     let metrics = if arguments.metric.is_empty() { all_metrics() } else { arguments.metric.clone() };
-    // The changes of the command line are in the joint file already.
+    // The joint file already contains the changes of the command line.
     let motion = MotionArguments { set: Vec::new(), ..arguments.motion.clone() };
     let manifest = manifest(&base, &grid, &metrics, scheme, &motion)?;
     let path = arguments.out.clone().unwrap_or_else(|| usual_folder(&manifest));
     let folder = SweepFolder::prepare(&path, &manifest)?;
-    // Points that are under way when the user stops are still kept.
-    let _in_order = InOrder::begin();
+    // Points in progress are still stored when the user stops the run.
+    let _uninterrupted = UninterruptedWork::begin();
     let mut journal = Journal::open(folder.path(), arguments.shard, &manifest.digest)?;
     let mut done = Points::new();
     folder.points(&manifest.digest, &mut done)?;
     let todo: Vec<u64> =
-        (0..grid.points).filter(|point| arguments.shard.has(*point) && !done.contains_key(point)).collect();
+        (0..grid.points).filter(|point| arguments.shard.contains(*point) && !done.contains_key(point)).collect();
     if !done.is_empty() {
         output::remark(&format!("going on: {} of {} points are in {}", done.len(), grid.points, path.display()));
     }
@@ -115,15 +115,15 @@ pub fn run(arguments: &Arguments, progress: &Progress) -> Outcome<String> {
         let left = todo.len() - went.finished;
         return Err(Failure::interrupted(format!("stopped by the user: {left} of {} points are left", grid.points))
             .with_help(format!(
-                "all others are kept in {}; the same command goes on from there:\n{}",
+                "all others are kept in {}; run this command to continue:\n{}",
                 path.display(),
-                replay(arguments, &path)
+                replay_command(arguments, &path)
             )));
     }
     conclude(arguments, &folder, &manifest, &grid)
 }
 
-/// Writes the result if all shards are done, else tells what is left.
+/// Writes the result if all shards are complete; otherwise returns the number of points that are left.
 fn conclude(arguments: &Arguments, folder: &SweepFolder, manifest: &Manifest, grid: &Grid) -> Outcome<String> {
     let mut points = Points::new();
     folder.points(&manifest.digest, &mut points)?;
@@ -140,9 +140,9 @@ fn conclude(arguments: &Arguments, folder: &SweepFolder, manifest: &Manifest, gr
     ))
 }
 
-fn scheme(choice: Choice) -> Outcome<SchemeName> {
+fn scheme(choice: SchemeChoice) -> Outcome<SchemeName> {
     match choice {
-        Choice::All => Err(Failure::new("a sweep has one scheme")
+        SchemeChoice::All => Err(Failure::new("a sweep has one scheme")
             .with_help("name one of realtime, paper, reference, rk4, euler; `joint sim --scheme all` compares them")),
         one => Ok(one.shown()),
     }
@@ -168,7 +168,7 @@ fn manifest(
         });
         read.map(|bytes| sha256(&bytes))
     });
-    // A profile is what is in the file, not where it is.
+    // The contents of a profile matter, not its path.
     let motion = match profile {
         Some(_) => MotionArguments { profile: Some("file".into()), ..motion.clone() },
         None => motion.clone(),
@@ -190,11 +190,11 @@ fn manifest(
 }
 
 fn usual_folder(manifest: &Manifest) -> PathBuf {
-    report::folder::usual("sweep", &format!("{}-{}", manifest.joint, &manifest.digest[..8]))
+    report::folder::default_folder("sweep", &format!("{}-{}", manifest.joint, &manifest.digest[..8]))
 }
 
-/// The command that goes on with this sweep.
-fn replay(arguments: &Arguments, path: &Path) -> String {
+/// Command that continues this sweep.
+fn replay_command(arguments: &Arguments, path: &Path) -> String {
     let mut command = format!("cargo joint sweep {}", quoted(&arguments.file.display().to_string()));
     for vary in &arguments.vary {
         command += &format!(" --vary {}", quoted(vary));

@@ -1,5 +1,5 @@
-//! The report of a sweep as a document: its map figure by figure, where each is least and greatest, and the points that
-//! have no result. The same sweep gives the same page.
+//! Report of a sweep as a document: maps of each figure, points of the least and greatest values, and points without a
+//! result. Equal sweeps give equal pages.
 
 use super::grid::Grid;
 use super::journal::Points;
@@ -12,22 +12,22 @@ use report::document::{
 };
 use report::provenance::VERSION;
 
-/// Points without a result that are listed.
-const LISTED: usize = 20;
+/// Largest number of listed points without a result.
+const MAX_LISTED_POINTS: usize = 20;
 
-/// All of it.
+/// The whole report.
 pub fn document(manifest: &Manifest, grid: &Grid, points: &Points) -> Document {
-    let result = SweepTable::of(manifest, grid, points);
+    let result = SweepTable::from_points(manifest, grid, points);
     let [whole, diverged, refused] =
         [Status::Whole, Status::Diverged, Status::Refused].map(|status| result.count(status));
-    let mut blocks = vec![section("What was swept", what(manifest, [whole, diverged, refused]))];
-    blocks.push(section("Least and greatest", ends(&result)));
+    let mut blocks = vec![section("What was swept", sweep_facts(manifest, [whole, diverged, refused]))];
+    blocks.push(section("Least and greatest", extremes_table(&result)));
     match pictures::over_one_axis(&result) {
         Some(figure) => blocks.push(section("The figures", vec![picture(figure, Text::default())])),
         None => blocks.extend((0..result.metrics.len()).map(|column| map(&result, column))),
     }
     if diverged + refused > 0 {
-        blocks.push(section("Points without a result", without(&result)));
+        blocks.push(section("Points without a result", failed_points(&result)));
     }
     Document {
         title: format!("Joint {}, swept", manifest.joint),
@@ -39,7 +39,7 @@ pub fn document(manifest: &Manifest, grid: &Grid, points: &Points) -> Document {
     }
 }
 
-fn what(manifest: &Manifest, [whole, diverged, refused]: [usize; 3]) -> Vec<Block> {
+fn sweep_facts(manifest: &Manifest, [whole, diverged, refused]: [usize; 3]) -> Vec<Block> {
     let mut rows: Vec<(Text, Text)> = vec![("grid".into(), code(manifest.vary.join(" × ")))];
     if !manifest.motion.is_empty() {
         rows.push(("motion".into(), code(manifest.motion.trim())));
@@ -47,20 +47,21 @@ fn what(manifest: &Manifest, [whole, diverged, refused]: [usize; 3]) -> Vec<Bloc
     rows.push(("points with a result".into(), number(whole as f64) + quiet(format!(" of {}", manifest.points))));
     let bad = |count: usize| if count > 0 { strong(count.to_string()) } else { number(0.0) };
     rows.push(("diverged: the scheme does not hold the motion".into(), bad(diverged)));
-    rows.push(("no such joint".into(), bad(refused)));
+    rows.push(("invalid joint".into(), bad(refused)));
     vec![facts(rows)]
 }
 
-fn ends(result: &SweepTable<'_>) -> Vec<Block> {
+fn extremes_table(result: &SweepTable<'_>) -> Vec<Block> {
     let columns = vec![words("Figure"), words("unit"), numbers("least"), notes("at"), numbers("greatest"), notes("at")];
     let rows = (0..result.metrics.len()).map(|column| {
         let metric = result.metrics[column];
         let (name, unit) = (text(pictures::title(metric)), text(pictures::unit(metric).name));
-        match result.ends(column) {
+        match result.extremes(column) {
             Some([least, most]) => {
                 let value = |point: usize| number(result.values[column][point]);
                 let alike = result.values[column][least] == result.values[column][most];
-                let place = |point: usize| text(if alike { "everywhere".to_owned() } else { result.place_of(point) });
+                let place =
+                    |point: usize| text(if alike { "everywhere".to_owned() } else { result.position_text(point) });
                 row([name, unit, value(least), place(least), value(most), place(most)])
             }
             None => row([name, unit, text("–"), text(""), text("–"), text("")]),
@@ -70,7 +71,7 @@ fn ends(result: &SweepTable<'_>) -> Vec<Block> {
 }
 
 fn map(result: &SweepTable<'_>, column: usize) -> Block {
-    let MetricPictures { figures, left_out, points_a_cell } = pictures::of(result, column);
+    let MetricPictures { figures, left_out, points_a_cell } = pictures::metric_pictures(result, column);
     let mut blocks: Vec<Block> = figures
         .into_iter()
         .map(|(what, figure)| picture(figure, if what.is_empty() { Text::default() } else { code(what) }))
@@ -88,14 +89,16 @@ fn map(result: &SweepTable<'_>, column: usize) -> Block {
     section(pictures::title(result.metrics[column]), blocks)
 }
 
-fn without(result: &SweepTable<'_>) -> Vec<Block> {
+fn failed_points(result: &SweepTable<'_>) -> Vec<Block> {
     let bad: Vec<usize> = (0..result.status.len()).filter(|point| result.status[*point] != Status::Whole).collect();
-    let word = |status: Status| if status == Status::Diverged { "diverged" } else { "no such joint" };
-    let rows =
-        bad.iter().take(LISTED).map(|point| row([text(word(result.status[*point])), text(result.place_of(*point))]));
+    let word = |status: Status| if status == Status::Diverged { "diverged" } else { "invalid joint" };
+    let rows = bad
+        .iter()
+        .take(MAX_LISTED_POINTS)
+        .map(|point| row([text(word(result.status[*point])), text(result.position_text(*point))]));
     let mut blocks = vec![table(vec![words("status"), notes("at")], rows.collect())];
-    if bad.len() > LISTED {
-        blocks.push(Block::Note(format!("{} more are in points.csv.", bad.len() - LISTED).into()));
+    if bad.len() > MAX_LISTED_POINTS {
+        blocks.push(Block::Note(format!("{} more are in points.csv.", bad.len() - MAX_LISTED_POINTS).into()));
     }
     blocks
 }
@@ -107,7 +110,7 @@ mod tests {
     use super::super::metrics::Metric;
     use super::*;
 
-    /// A sweep whose points are as told.
+    /// Page of a sweep with given results.
     fn page(vary: &[&str], result: impl Fn(u64) -> String) -> String {
         let vary: Vec<String> = vary.iter().map(ToString::to_string).collect();
         let grid = Grid::parse(&vary, None).expect("a grid");
@@ -145,15 +148,15 @@ mod tests {
     }
 
     #[test]
-    fn one_axis_is_drawn_as_lines_with_its_bad_points_marked() {
+    fn one_axis_gives_lines_with_failures_marked() {
         let page = page(&[BACKLASH], some_fail);
         assert_eq!(figures(&page), 1);
-        assert!(page.contains("diverged: 1 of 10 points") && page.contains("no such joint: 1 of 10 points"));
+        assert!(page.contains("diverged: 1 of 10 points") && page.contains("invalid joint: 1 of 10 points"));
         assert!(page.contains("half_backlash_um = 70"), "the list of them");
     }
 
     #[test]
-    fn two_axes_are_drawn_as_a_map_of_every_figure_with_its_classes() {
+    fn two_axes_give_a_map_per_figure() {
         let page = page(&[BACKLASH, DAMPING], some_fail);
         assert_eq!(figures(&page), 2);
         for shown in ["in N", "var(--class-1)", "var(--class-8)", "var(--limit)", ">diverged<", "mesh.damping_ratio"] {
@@ -161,8 +164,9 @@ mod tests {
         }
     }
 
+    /// More than two axes give a map for each value of the further axes; the page names maps that are left out.
     #[test]
-    fn more_axes_are_drawn_as_maps_for_each_value_of_the_others_and_what_is_left_out_is_said() {
+    fn further_axes_give_a_map_per_value() {
         let page = page(&[BACKLASH, DAMPING, INERTIA], some_fail);
         assert_eq!(figures(&page), 2 * 4, "the two longest are backlash and inertia");
         assert!(page.contains("mesh.damping_ratio = 0.5"));
@@ -174,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn a_large_grid_is_drawn_in_cells_and_that_is_said() {
+    fn large_grid_is_drawn_in_cells() {
         let page =
             page(&["half_backlash_um=0:499:1", "link_inertia_kg_m2=0.01:4:0.01"], |point| format!("ok,{point},0"));
         assert!(page.contains("A cell stands for up to 28 points"));
@@ -182,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sweep_without_any_result_has_a_page_too() {
+    fn sweep_without_results_has_a_page() {
         for vary in [&[BACKLASH][..], &[BACKLASH, DAMPING], &["half_backlash_um=3"]] {
             let page = page(vary, |_| "diverged,,".to_owned());
             assert!(page.contains("diverged"), "{vary:?}");

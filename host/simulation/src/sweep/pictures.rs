@@ -1,5 +1,5 @@
-//! Pictures of a sweep: over one axis each figure as points on a line, over two as a map in classes, over more as maps of the
-//! two longest axes for every value of the others. Points without a result are shown as such.
+//! Pictures of a sweep: over one axis each figure as points on a line, over two as a map in classes, over more as maps
+//! of the two longest axes for every value of the others. Points without a result are marked.
 
 use super::metrics::Metric;
 use super::table::{NumberedAxis, Status, SweepTable};
@@ -11,31 +11,31 @@ use report::plot::mark::Mark;
 use report::plot::panel::{Panel, VerticalAxis};
 use report::plot::unit::Unit;
 
-/// Maps have at most so many cells across and up; each then stands for several points.
-const CELLS: [usize; 2] = [128, 64];
-/// Maps of one figure, for so many values of the other axes at most.
-const MAPS: usize = 12;
+/// Largest number of cells of a map across and up; with more points a cell covers several.
+const MAX_CELLS: [usize; 2] = [128, 64];
+/// Largest number of maps of one figure, for values of the other axes.
+const MAX_MAPS: usize = 12;
 /// Height of a map [px].
-const MAP: i32 = 330;
-/// Values that are worth a point beside the line.
-const POINTED: usize = 150;
-/// Values are classed by decades where the greatest is so many times the least.
-const BY_DECADES: f64 = 1000.0;
+const MAP_HEIGHT: i32 = 330;
+/// Largest number of values that are drawn as points on the line.
+const MAX_DRAWN_POINTS: usize = 150;
+/// Ratio of greatest to least value above which classes are logarithmic [-].
+const LOG_CLASS_RATIO: f64 = 1000.0;
 
-/// Keys carry their units themselves.
-const PLAIN: Unit = Unit { factor: 1.0, name: "" };
+/// Unit of an axis; the keys contain their units.
+const AXIS_UNIT: Unit = Unit { factor: 1.0, name: "" };
 
 /// Kinds of points without a result.
-const WITHOUT: [(Status, Ink, &str); 2] =
-    [(Status::Diverged, Ink::Limit, "diverged"), (Status::Refused, Ink::Reference, "no such joint")];
+const FAILURE_INKS: [(Status, Ink, &str); 2] =
+    [(Status::Diverged, Ink::Limit, "diverged"), (Status::Refused, Ink::Reference, "invalid joint")];
 
-/// Pictures of one figure, and how many were left out.
+/// Pictures of one figure, and the number of maps that are not shown.
 pub struct MetricPictures {
-    /// Pictures, each with what it is of.
+    /// Pictures, each with the values of its fixed axes.
     pub figures: Vec<(String, Figure)>,
-    /// Maps that were left out.
+    /// Number of maps that are not shown.
     pub left_out: usize,
-    /// Points that a cell stands for, if they are several.
+    /// Points in a cell.
     pub points_a_cell: usize,
 }
 
@@ -46,7 +46,7 @@ fn by_length(table: &SweepTable<'_>) -> Vec<usize> {
     order
 }
 
-/// All columns over the only axis, if there is but one of more than a value.
+/// All columns over the axis, if only one axis has more than one value.
 pub fn over_one_axis(table: &SweepTable<'_>) -> Option<Figure> {
     if table.axes.iter().filter(|axis| axis.words.len() > 1).count() > 1 {
         return None;
@@ -57,19 +57,19 @@ pub fn over_one_axis(table: &SweepTable<'_>) -> Option<Figure> {
     Some(picture(format!("All figures over {}", axis.key), axis, panels, range))
 }
 
-/// Maps of a column over the two longest axes; the one that was named first goes across.
-pub fn of(table: &SweepTable<'_>, column: usize) -> MetricPictures {
+/// Maps of a column over the two longest axes; the first one on the command line is horizontal.
+pub fn metric_pictures(table: &SweepTable<'_>, column: usize) -> MetricPictures {
     let order = by_length(table);
     let other = order.get(1).copied().unwrap_or(order[0]);
     maps(table, column, order[0].min(other), order[0].max(other))
 }
 
-/// A column over one axis.
+/// One column over one axis.
 fn lines(table: &SweepTable<'_>, column: usize, axis: &NumberedAxis<'_>) -> Panel {
     let metric = table.metrics[column];
     let values = &table.values[column];
     let mut points: Vec<(f64, f64)> =
-        (0..values.len()).map(|point| (axis.values[axis.place(point)], values[point])).collect();
+        (0..values.len()).map(|point| (axis.values[axis.index(point)], values[point])).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let finite: Vec<(f64, f64)> = points.iter().copied().filter(|point| point.1.is_finite()).collect();
     let (low, high) = finite
@@ -79,21 +79,21 @@ fn lines(table: &SweepTable<'_>, column: usize, axis: &NumberedAxis<'_>) -> Pane
     if !is_class(metric) {
         marks.push(line(points, Ink::First, ""));
     }
-    if finite.len() <= POINTED || is_class(metric) {
+    if finite.len() <= MAX_DRAWN_POINTS || is_class(metric) {
         marks.push(Mark::Points { points: finite, ink: Ink::First, label: String::new(), size: 4.5 });
     }
     marks.extend(strips(table, axis, (low, high)));
     Panel { height: 190, ..Panel::lines(title(metric), unit(metric), marks) }
 }
 
-/// Points without a result as strips below the others.
+/// Points without a result, as strips below the others.
 fn strips(table: &SweepTable<'_>, axis: &NumberedAxis<'_>, (low, high): (f64, f64)) -> Vec<Mark> {
     let (low, span) = if low <= high { (low, (high - low).max(0.1 * high.abs()).max(1e-12)) } else { (0.0, 1.0) };
     let edges = axis.edges();
     let strip = |(status, ink, label): (Status, Ink, &str)| {
         let mut cells: Vec<usize> = (0..table.status.len())
             .filter(|point| table.status[*point] == status)
-            .map(|point| axis.cell(axis.place(point)))
+            .map(|point| axis.cell(axis.index(point)))
             .collect();
         cells.sort_unstable();
         let mut boxes: Vec<[f64; 4]> = Vec::new();
@@ -107,7 +107,7 @@ fn strips(table: &SweepTable<'_>, axis: &NumberedAxis<'_>, (low, high): (f64, f6
         let label = format!("{label}: {} of {} points", cells.len(), table.status.len());
         (!boxes.is_empty()).then_some(Mark::Boxes { boxes, ink, label })
     };
-    WITHOUT.into_iter().filter_map(strip).collect()
+    FAILURE_INKS.into_iter().filter_map(strip).collect()
 }
 
 /// Maps over two axes, one for every value of the others.
@@ -116,16 +116,16 @@ fn maps(table: &SweepTable<'_>, column: usize, across: usize, up: usize) -> Metr
     let scale = Scale::of(metric, &table.values[column]);
     let others: Vec<usize> = (0..table.axes.len()).filter(|axis| ![across, up].contains(axis)).collect();
     let [wide, high] = [across, up].map(|axis| &table.axes[axis]);
-    let group = [wide.words.len().div_ceil(CELLS[0]), high.words.len().div_ceil(CELLS[1])];
+    let group = [wide.words.len().div_ceil(MAX_CELLS[0]), high.words.len().div_ceil(MAX_CELLS[1])];
     let all: usize = others.iter().map(|axis| table.axes[*axis].words.len()).product();
-    let mut cells = vec![Map::new(wide, high, group); all.min(MAPS)];
+    let mut cells = vec![Map::new(wide, high, group); all.min(MAX_MAPS)];
     for point in 0..table.status.len() {
         let number = others.iter().fold(0, |number, axis| {
             let axis = &table.axes[*axis];
-            number * axis.words.len() + axis.place(point)
+            number * axis.words.len() + axis.index(point)
         });
         if let Some(map) = cells.get_mut(number) {
-            map.add(wide.cell(wide.place(point)), high.cell(high.place(point)), table, column, point);
+            map.add(wide.cell(wide.index(point)), high.cell(high.index(point)), table, column, point);
         }
     }
     let figures = cells.iter().enumerate().map(|(number, map)| {
@@ -140,9 +140,9 @@ fn maps(table: &SweepTable<'_>, column: usize, across: usize, up: usize) -> Metr
         let unit = unit(metric).name;
         let in_unit = if unit.is_empty() { String::new() } else { format!("in {unit}") };
         let panel = Panel {
-            title: if high.by_place { format!("{in_unit} {}", places(high)) } else { in_unit },
-            unit: PLAIN,
-            height: MAP,
+            title: if high.by_index { format!("{in_unit} {}", places(high)) } else { in_unit },
+            unit: AXIS_UNIT,
+            height: MAP_HEIGHT,
             marks: map.marks(&scale, wide, high),
             axis: VerticalAxis::Named(high.key.to_owned()),
         };
@@ -152,12 +152,12 @@ fn maps(table: &SweepTable<'_>, column: usize, across: usize, up: usize) -> Metr
     });
     MetricPictures {
         figures: figures.collect(),
-        left_out: all.saturating_sub(MAPS),
+        left_out: all.saturating_sub(MAX_MAPS),
         points_a_cell: group[0] * group[1],
     }
 }
 
-/// Cells of a map: sums of what they stand for.
+/// Cells of a map with the sums of their points.
 #[derive(Debug, Clone)]
 struct Map {
     group: [usize; 2],
@@ -189,7 +189,7 @@ impl Map {
         }
     }
 
-    /// Boxes of each class, cells of one class beside each other as one; with a cell goes whatever in it has no result.
+    /// Boxes of each class, with adjacent cells of a class merged; a cell with a failed point counts as failed.
     fn marks(&self, scale: &Scale, wide: &NumberedAxis<'_>, high: &NumberedAxis<'_>) -> Vec<Mark> {
         let edges = [(wide, self.group[0]), (high, self.group[1])].map(|(axis, group)| {
             let all = axis.edges();
@@ -198,7 +198,7 @@ impl Map {
             edges
         });
         let kind = |cell: &Cell| match cell.without {
-            Some(status) => WITHOUT.iter().position(|(known, ..)| *known == status).map(Kind::Without),
+            Some(status) => FAILURE_INKS.iter().position(|(known, ..)| *known == status).map(Kind::Without),
             None if cell.count == 0 => None,
             None => Some(Kind::Class(scale.class(cell.sum / cell.count as f64))),
         };
@@ -214,13 +214,13 @@ impl Map {
             }
         }
         let of = |wanted: Kind| boxes.iter().filter(|(kind, _)| *kind == wanted).map(|(_, one)| *one).collect();
-        // Every class is in the legend, so that maps of one figure have one scale.
+        // Every class is in the legend, so that all maps of one figure share a scale.
         let classes = (0..scale.classes()).map(|class| Mark::Boxes {
             boxes: of(Kind::Class(class)),
             ink: scale.ink(class),
             label: scale.label(class),
         });
-        let without = WITHOUT.iter().enumerate().map(|(place, (_, ink, label))| Mark::Boxes {
+        let without = FAILURE_INKS.iter().enumerate().map(|(place, (_, ink, label))| Mark::Boxes {
             boxes: of(Kind::Without(place)),
             ink: *ink,
             label: (*label).to_owned(),
@@ -230,17 +230,17 @@ impl Map {
     }
 }
 
-/// What a cell is drawn as.
+/// Content of a drawn cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Class(usize),
     Without(usize),
 }
 
-/// Lower ends of classes, and what each is called.
+/// Classes of values, by their lower ends.
 struct Scale {
     ends: Vec<f64>,
-    /// Each value is a class of its own.
+    /// True if each value is a class of its own.
     single: bool,
 }
 
@@ -261,7 +261,7 @@ impl Scale {
         }
         let count = CLASSES.len() as f64;
         let share = |class: usize| class as f64 / count;
-        let end = |class: usize| match low > 0.0 && high / low > BY_DECADES {
+        let end = |class: usize| match low > 0.0 && high / low > LOG_CLASS_RATIO {
             true => low * (high / low).powf(share(class)),
             false => low + (high - low) * share(class),
         };
@@ -272,12 +272,12 @@ impl Scale {
         self.ends.len()
     }
 
-    /// The class of a value: the last that begins at or below it.
+    /// Class of a value: the last one that begins at or below it.
     fn class(&self, value: f64) -> usize {
         self.ends.partition_point(|end| *end <= value).saturating_sub(1)
     }
 
-    /// Few classes are spread over all colours.
+    /// Colour of a class; few classes are spread over all colours.
     fn ink(&self, class: usize) -> Ink {
         let steps = (self.ends.len().max(2) - 1) as f64;
         CLASSES[(class as f64 / steps * (CLASSES.len() - 1) as f64).round() as usize]
@@ -289,16 +289,16 @@ impl Scale {
     }
 }
 
-/// Numbers of a legend, which has little room.
+/// Number format of a legend, which has little room.
 const LEGEND: Style =
     Style { digits: report::number::Digits::Significant { count: 3, from: 1e-3, below: 1e6, decimals: 1 }, ..PAGE };
 
-/// A figure whose values are whole numbers that stand for themselves.
+/// Returns true for figures whose whole-number values are classes.
 fn is_class(metric: Metric) -> bool {
     metric == Metric::Period
 }
 
-/// What a column is called on a page.
+/// Title of a column on a page.
 pub fn title(metric: Metric) -> &'static str {
     match metric {
         Metric::SunDeflectionPeakToPeakUm => "Sun–planet deflection, peak to peak",
@@ -313,7 +313,7 @@ pub fn title(metric: Metric) -> &'static str {
     }
 }
 
-/// Unit of a column, whose values are in it.
+/// Unit of a column's values.
 pub fn unit(metric: Metric) -> Unit {
     let name = match metric {
         Metric::SunDeflectionPeakToPeakUm
@@ -328,11 +328,11 @@ pub fn unit(metric: Metric) -> Unit {
 }
 
 fn picture(title: String, axis: &NumberedAxis<'_>, panels: Vec<Panel>, range: (f64, f64)) -> Figure {
-    let note = if axis.by_place { places(axis) } else { String::new() };
-    Figure { note, ..Figure::new(title, axis.key, PLAIN, range, panels) }
+    let note = if axis.by_index { places(axis) } else { String::new() };
+    Figure { note, ..Figure::new(title, axis.key, AXIS_UNIT, range, panels) }
 }
 
-/// What the places of an axis without numbers stand for.
+/// Legend of the places on an axis without numbers.
 fn places(axis: &NumberedAxis<'_>) -> String {
     let words = axis.words.iter().zip(1..).take(12).map(|(word, place)| format!("{place} {word}"));
     format!("{}: {}", axis.key, words.collect::<Vec<_>>().join(", "))
@@ -343,7 +343,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn classes_hold_every_value_from_the_least_to_the_greatest() {
+    fn classes_cover_the_range() {
         for values in [vec![3.0, 11.0, 5.5], vec![1e-3, 1.0, 10.0], vec![-2.0, 6.0, 0.0]] {
             let scale = Scale::of(Metric::PeakForceN, &values);
             assert_eq!(scale.classes(), CLASSES.len());
@@ -351,12 +351,12 @@ mod tests {
             let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             assert_eq!([scale.class(low), scale.class(high)], [0, CLASSES.len() - 1]);
         }
-        // Over many decades each class is a ratio.
+        // Over many decades the classes are ratios.
         assert_eq!(Scale::of(Metric::PeakForceN, &[1e-3, 1.0, 10.0]).class(1.0), 6);
     }
 
     #[test]
-    fn few_whole_numbers_are_classes_of_their_own() {
+    fn few_integers_get_own_classes() {
         let scale = Scale::of(Metric::Period, &[0.0, 3.0, 1.0, 3.0, f64::NAN]);
         assert_eq!((0..scale.classes()).map(|class| scale.label(class)).collect::<Vec<_>>(), ["0", "1", "3"]);
         assert_eq!([scale.ink(0), scale.ink(2)], [CLASSES[0], CLASSES[7]]);

@@ -1,32 +1,32 @@
-//! The result of a sweep as numbers on its grid, as far as pictures need it.
+//! Result of a sweep as numbers on its grid, for the pictures.
 
 use super::grid::Grid;
 use super::journal::Points;
 use super::manifest::Manifest;
 use super::metrics::Metric;
 
-/// What became of a point.
+/// Status of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Status {
-    /// It has values.
+    /// The point has values.
     Whole,
-    /// The scheme did not hold the motion.
+    /// The scheme diverged.
     Diverged,
-    /// There is no such joint.
+    /// The joint file rejects the point's joint.
     Refused,
 }
 
 /// An axis with its values as numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NumberedAxis<'g> {
-    /// Its key.
+    /// Key.
     pub key: &'g str,
     /// Values as typed.
     pub words: &'g [String],
-    /// The same as numbers; places from 1 where one is no number, or where they do not rise or fall all the way.
+    /// Values as numbers; indices from 1 if a value is not a number, or if the values are not monotonic.
     pub values: Vec<f64>,
-    /// Whether they are places.
-    pub by_place: bool,
+    /// True if the values are indices.
+    pub by_index: bool,
     /// Points from one value to the next.
     stride: u64,
 }
@@ -39,7 +39,7 @@ pub struct SweepTable<'g> {
     pub metrics: &'g [Metric],
     /// Status of each point.
     pub status: Vec<Status>,
-    /// Values of each metric; NaN where there is none.
+    /// Values of each metric; NaN if missing.
     pub values: Vec<Vec<f64>>,
 }
 
@@ -51,17 +51,17 @@ impl<'g> NumberedAxis<'g> {
             values.windows(2).all(|pair| pair[0] < pair[1]) || values.windows(2).all(|pair| pair[0] > pair[1])
         };
         let numbers = numbers.filter(in_order);
-        let by_place = numbers.is_none();
+        let by_index = numbers.is_none();
         let values = numbers.unwrap_or_else(|| (1..=words.len()).map(|place| place as f64).collect());
-        Self { key, words, values, by_place, stride }
+        Self { key, words, values, by_index, stride }
     }
 
-    /// Place of a point on this axis.
-    pub fn place(&self, point: usize) -> usize {
+    /// Index of a point on this axis.
+    pub fn index(&self, point: usize) -> usize {
         point / self.stride as usize % self.words.len()
     }
 
-    /// Edges between its values, one more than there are, rising: half-way between neighbours.
+    /// Rising edges of the cells around the values, half-way between neighbours; one more than there are values.
     pub fn edges(&self) -> Vec<f64> {
         let mut values = self.values.clone();
         values.sort_by(f64::total_cmp);
@@ -76,7 +76,7 @@ impl<'g> NumberedAxis<'g> {
         std::iter::once(first - before).chain(between).chain([last + after]).collect()
     }
 
-    /// Place of a value among the cells between the edges: an axis may fall.
+    /// Index of the cell of a value; the axis may fall.
     pub fn cell(&self, place: usize) -> usize {
         let falls = self.values.first() > self.values.last();
         if falls { self.values.len() - 1 - place } else { place }
@@ -84,8 +84,8 @@ impl<'g> NumberedAxis<'g> {
 }
 
 impl<'g> SweepTable<'g> {
-    /// Out of the lines of a result.
-    pub fn of(manifest: &'g Manifest, grid: &'g Grid, points: &Points) -> Self {
+    /// Table from the rows of a result.
+    pub fn from_points(manifest: &'g Manifest, grid: &'g Grid, points: &Points) -> Self {
         let mut stride = grid.points;
         let axes = grid.axes.iter().map(|axis| {
             stride /= axis.values.len() as u64;
@@ -108,24 +108,24 @@ impl<'g> SweepTable<'g> {
         Self { axes, metrics: &manifest.metrics, status, values }
     }
 
-    /// How many points have a status.
+    /// Number of points with a status.
     pub fn count(&self, wanted: Status) -> usize {
         self.status.iter().filter(|status| **status == wanted).count()
     }
 
-    /// Where a point is, in words: keys by their last part, if that tells them apart.
-    pub fn place_of(&self, point: usize) -> String {
+    /// Position of a point as text: keys by their last part, if it is unique.
+    pub fn position_text(&self, point: usize) -> String {
         let last = |key: &'g str| key.rsplit('.').next().unwrap_or(key);
         let name = |key: &'g str| {
             let alone = self.axes.iter().filter(|axis| last(axis.key) == last(key)).count() == 1;
             if alone { last(key) } else { key }
         };
-        let axis = |axis: &NumberedAxis<'g>| format!("{} = {}", name(axis.key), axis.words[axis.place(point)]);
+        let axis = |axis: &NumberedAxis<'g>| format!("{} = {}", name(axis.key), axis.words[axis.index(point)]);
         self.axes.iter().map(axis).collect::<Vec<_>>().join(", ")
     }
 
     /// Points of the least and the greatest value of a column.
-    pub fn ends(&self, column: usize) -> Option<[usize; 2]> {
+    pub fn extremes(&self, column: usize) -> Option<[usize; 2]> {
         let values = &self.values[column];
         let finite = || (0..values.len()).filter(|point| values[*point].is_finite());
         let least = finite().min_by(|a, b| values[*a].total_cmp(&values[*b]))?;
@@ -139,14 +139,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn edges_lie_half_way_between_values_whichever_way_they_run() {
+    fn edges_lie_halfway_between_values() {
         let words: Vec<String> = ["30", "10", "0"].map(str::to_owned).to_vec();
         let axis = NumberedAxis::of("a", &words, 1);
         assert_eq!(axis.edges(), [-5.0, 5.0, 20.0, 40.0]);
         assert_eq!([0, 1, 2].map(|place| axis.cell(place)), [2, 1, 0]);
         let words: Vec<String> = ["sharp", "tanh"].map(str::to_owned).to_vec();
         let axis = NumberedAxis::of("a", &words, 1);
-        assert!(axis.by_place);
+        assert!(axis.by_index);
         assert_eq!(axis.edges(), [0.5, 1.5, 2.5]);
     }
 }

@@ -1,5 +1,5 @@
-//! Computes the points of a shard in parallel and writes each to the journal as soon as it is done. The order of
-//! completion does not change the result.
+//! Computes the points of a shard in parallel and writes each to the journal at once. The result does not depend on the
+//! order of completion.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
@@ -16,35 +16,35 @@ use report::failure::{Failure, Outcome};
 use report::interruption;
 use report::progress::Progress;
 
-/// The computation at every point.
+/// Computation of the points.
 pub struct Work<'a> {
-    /// The joint file that the grid changes.
+    /// Joint file that the grid changes.
     pub base: &'a Loaded,
-    /// The grid.
+    /// Grid.
     pub grid: &'a Grid,
-    /// What moves the joint.
+    /// Motion of the joint.
     pub motion: &'a MotionArguments,
-    /// How.
+    /// Scheme.
     pub scheme: SchemeName,
-    /// What is measured.
+    /// Metrics to compute.
     pub metrics: &'a [Metric],
-    /// How many at a time; none for as many as there are processors.
+    /// Number of threads; `None` for the number of processors.
     pub threads: Option<u16>,
 }
 
-/// How the work ended.
+/// Outcome of the work.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct WorkOutcome {
-    /// Points computed and kept.
+    /// Points computed and stored.
     pub finished: usize,
-    /// Points whose joint cannot be.
+    /// Points whose joint is rejected.
     pub refused: usize,
-    /// Why the first of them cannot be.
+    /// Reason for the first rejection.
     pub remark: Option<String>,
 }
 
 impl Work<'_> {
-    /// Computes points until all are done or the user wants to stop.
+    /// Computes points until all are done or the user stops the run.
     pub fn run(&self, todo: &[u64], journal: &mut Journal, progress: &Progress) -> Outcome<WorkOutcome> {
         let threads = self.threads.map_or(0, usize::from);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
@@ -54,7 +54,7 @@ impl Work<'_> {
         let stop = AtomicBool::new(false);
         std::thread::scope(|scope| {
             let stop = &stop;
-            // Points are taken one by one, so that no thread sits idle behind a slow one.
+            // Threads take points one by one, so that no thread idles behind a slow one.
             let next = AtomicUsize::new(0);
             scope.spawn(move || {
                 pool.install(|| {
@@ -71,7 +71,7 @@ impl Work<'_> {
                     });
                 });
             });
-            let kept = keep(&receiver, journal, progress);
+            let kept = store(&receiver, journal, progress);
             stop.store(true, Ordering::Relaxed);
             kept
         })
@@ -83,8 +83,8 @@ impl Work<'_> {
     }
 }
 
-/// Writes what comes, as many points at a time as have come meanwhile.
-fn keep(
+/// Writes finished points to the journal, all available ones at a time.
+fn store(
     receiver: &mpsc::Receiver<(u64, metrics::PointResult)>,
     journal: &mut Journal,
     progress: &Progress,
@@ -109,7 +109,7 @@ fn keep(
             failure.with_help(kept)
         })?;
         went.finished += count;
-        progress.at(went.finished as u32);
+        progress.set_position(went.finished as u32);
     }
     Ok(went)
 }

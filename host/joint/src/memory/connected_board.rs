@@ -1,4 +1,4 @@
-//! Connects to the board whose memory is asked for, and refuses a board whose image learns nothing.
+//! Connects to the board whose memory is addressed, and rejects a board whose image estimates no parameters.
 
 use link::messages::{Hello, MemoryOutcome, MemoryState, Role};
 
@@ -13,20 +13,20 @@ use joint_file::named::Loaded;
 use report::failure::{Failure, Outcome};
 use report::progress::Progress;
 
-/// A board that has answered.
-pub(super) struct AnsweringBoard {
+/// A connected board that has answered.
+pub(super) struct ConnectedBoard {
     pub session: Session<'static>,
     pub hello: Hello,
-    /// As a user knows it.
+    /// Name of the board in messages.
     pub name: String,
-    /// The options that name it again.
+    /// Options that select the board again, for commands in help texts.
     pub options: String,
     emulated: bool,
 }
 
-impl AnsweringBoard {
-    /// Finds the board and calls it.
-    pub fn call(place: &BoardArguments, loaded: &Loaded, progress: &Progress) -> Outcome<Self> {
+impl ConnectedBoard {
+    /// Connects to the board, or starts the emulated one, and reads its identity.
+    pub fn connect(place: &BoardArguments, loaded: &Loaded, progress: &Progress) -> Outcome<Self> {
         let file = place.joint.display();
         let (connection, options) = match &place.line.port {
             Some(path) => {
@@ -44,50 +44,50 @@ impl AnsweringBoard {
             place.line.port.as_ref().map_or("the emulated board".to_owned(), |path| format!("the board on {path}"));
         if hello.role == Role::Plant {
             let role = role_name(hello.role);
-            return Err(Failure::new(format!("{name} has an image of role `{role}`, which learns nothing"))
-                .with_help(format!("flash one that does: {flash}")));
+            return Err(Failure::new(format!("{name} has an image of role `{role}`, which estimates no parameters"))
+                .with_help(format!("flash an observer: {flash}")));
         }
         Ok(Self { session, hello, name, options, emulated: place.line.port.is_none() })
     }
 
-    /// Whether its flash is none.
+    /// Returns true for the emulated board, which has no flash.
     pub fn is_emulated(&self) -> bool {
         self.emulated
     }
 
-    /// Its flash is empty.
-    pub fn keeps_nothing(&self) -> Failure {
+    /// Error: the board's flash holds no memory.
+    pub fn no_memory_error(&self) -> Failure {
         if self.emulated {
-            return Failure::new("the emulated board has no flash, so it keeps no memory")
+            return Failure::new("the emulated board has no flash, so it stores no memory")
                 .with_help("name a real board by --port");
         }
         if self.hello.memory == MemoryState::Damaged {
-            return Failure::new(format!("what {} keeps cannot be read", self.name))
+            return Failure::new(format!("the stored memory of {} cannot be read", self.name))
                 .with_help(format!("erase it: joint memory erase{}", self.options));
         }
-        Failure::new(format!("{} keeps no memory", self.name))
-            .with_help(format!("let it learn in a run, then have it kept: joint memory keep{}", self.options))
+        Failure::new(format!("{} has no stored memory", self.name))
+            .with_help(format!("run it once, then save its parameters: joint memory keep{}", self.options))
     }
 
-    /// Its flash takes nothing.
-    pub fn not_written(&self, outcome: MemoryOutcome) -> Failure {
+    /// Error: the memory was not written to the board's flash.
+    pub fn write_error(&self, outcome: MemoryOutcome) -> Failure {
         if self.emulated {
-            return self.keeps_nothing();
+            return self.no_memory_error();
         }
         if outcome == MemoryOutcome::LowSupply {
             return Failure::new(format!(
                 "the supply of {} is too low to write its flash: nothing was changed",
                 self.name
             ))
-            .with_help("feed it with 3.3 V, 3.1 V at least, and try again");
+            .with_help("supply 3.3 V, at least 3.1 V, and try again");
         }
-        Failure::new(format!("the flash of {} does not read as it was written", self.name))
-            .with_help("try again; if it stays so it is worn out or write-protected (option bytes)")
+        Failure::new(format!("the flash of {} does not read back as written", self.name))
+            .with_help("try again; if the error persists, the flash is worn out or write-protected (option bytes)")
     }
 }
 
 fn emulated(place: &BoardArguments, loaded: &Loaded, progress: &Progress) -> Outcome<Connection> {
-    let say = |line: &str| progress.say(line);
+    let say = |line: &str| progress.print_message(line);
     let role = place.role.map_or(Role::Observer, Role::from);
     let joint = image::joint_file(&place.joint, &loaded.name);
     Connection::emulated(progress, |board| {

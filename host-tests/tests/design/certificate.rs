@@ -31,7 +31,7 @@ struct Comparison {
 
 /// Errors of the board's step on a motion, as `joint sim --scheme all` measures them.
 fn measured_by_sim(motion: &Motion, board: &Board) -> Option<Errors> {
-    errors_against_reference(&motion.for_sim(board.processor()), SchemeName::Realtime)
+    errors_against_reference(&motion.simulation_spec(board.processor()), SchemeName::Realtime)
         .expect("a motion that the reference can follow")
 }
 

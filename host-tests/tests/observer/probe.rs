@@ -68,7 +68,8 @@ fn run_probe(half_backlash: f64, seed: u64, holding: f64, pushed_by: f64, torque
         Ok(())
     };
     let mut set_points = SetPointSource::of_positions(experiment.setup.motion.clone());
-    rig.run(&mut ActiveController::from_rival(Box::new(&mut controller)), &mut set_points, &mut watch).expect("it runs");
+    rig.run(&mut ActiveController::from_rival(Box::new(&mut controller)), &mut set_points, &mut watch)
+        .expect("it runs");
     assert!(controller.progress != Progress::Running, "a probe ends within half a second");
     (controller.progress, peak_force)
 }

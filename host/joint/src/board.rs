@@ -51,7 +51,8 @@ pub fn run(arguments: &Arguments) -> Outcome<()> {
         Action::Check(check) => {
             let description = named::load(&check.file)?.board;
             let joint = joint_file::named::load(&check.joint)?.file.parameters;
-            let board = TargetBoard { argument: check.file.display().to_string(), file: check.file.clone(), description };
+            let board =
+                TargetBoard { argument: check.file.display().to_string(), file: check.file.clone(), description };
             let mut page = board_page(&board.description);
             add_roles(&mut page, &board, &joint);
             let shown = terminal(&page.document());

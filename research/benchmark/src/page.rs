@@ -27,9 +27,10 @@ const LINES: &[Medium] = &[Medium::Terminal, Medium::Markdown];
 /// The whole document.
 pub fn document(figures: &BenchmarkRecord) -> Document {
     let mut blocks = vec![Block::Only(LINES, vec![Block::Paragraph(provenance(figures))])];
-/// Markdown files, which have one table for all cases.
-const FILES: &[Medium] = &[Medium::Markdown];
-/// All media except pages, which show the provenance elsewhere.
+    blocks.extend(figures.cases.iter().map(|case| case_section(figures, case)));
+    let instructions = by_case(&figures.cases, &figures.at_equal_error, &ERROR_LEVELS, million);
+    blocks.push(Block::Only(FILES, vec![section("Instructions for a second of the joint", instructions)]));
+    blocks.push(Block::Only(WITH_STEPS, vec![budget(figures), rounding(figures)]));
     blocks.extend(host(figures));
     blocks.push(Block::Only(PAGES, vec![origin(figures)]));
     Document {
@@ -191,9 +192,48 @@ fn in_a_sample(found: &[&InASample]) -> [Block; 2] {
     [Block::Paragraph(lead.into()), table(columns, rows.collect())]
 }
 
-/// Markdown files, which have one table for all cases.
-const FILES: &[Medium] = &[Medium::Markdown];
-/// All media except pages, which show the provenance elsewhere.
+/// Millions of instructions.
+fn million(cost: f64) -> String {
+    format!("{} M", fixed(1).write(cost / 1e6))
+}
+
+/// Milliseconds of a time in seconds.
+fn milliseconds(cost: f64) -> String {
+    format!("{} ms", fixed(2).write(1e3 * cost))
+}
+
+/// Tables with one level of error each and one column a case: costs of this step, ratios of the other methods to it.
+fn by_case(cases: &[CaseRecord], found: &[AtError], levels: &[f64], cost: impl Fn(f64) -> String) -> Vec<Block> {
+    if found.is_empty() {
+        return Vec::new();
+    }
+    let mut names: Vec<&str> = Vec::new();
+    for at in found {
+        if !names.contains(&at.name.as_str()) {
+            names.push(&at.name);
+        }
+    }
+    let keys: Vec<&str> =
+        cases.iter().map(|case| case.key.as_str()).filter(|key| found.iter().any(|at| at.case == *key)).collect();
+    let cell = |name: &str, key: &str, level: f64| {
+        let at = found.iter().find(|at| at.name == name && at.case == key && at.error.total_cmp(&level).is_eq());
+        match at.and_then(|at| Some((at.cost?, at.ratio))) {
+            Some((_, Some(ratio))) if !name.starts_with("this step") => fixed(2).write(ratio),
+            Some((found, _)) => cost(found),
+            None => "not reached".into(),
+        }
+    };
+    let level = |&level: &f64| {
+        let lead = format!("Error {}, other methods over this step:", powers_of_ten(0).write(level));
+        let columns = [words("method")].into_iter().chain(keys.iter().map(|key| numbers(*key))).collect();
+        let line =
+            |name: &&str| row([(*name).to_owned()].into_iter().chain(keys.iter().map(|key| cell(name, key, level))));
+        [Block::Paragraph(lead.into()), table(columns, names.iter().map(line).collect())]
+    };
+    levels.iter().flat_map(level).collect()
+}
+
+/// Table with one row a method and two columns for each error level.
 fn equal(found: &[&AtError], cost: impl Fn(f64) -> String) -> Block {
     let mut rows: Vec<Vec<String>> = Vec::new();
     for at in found {
@@ -261,7 +301,10 @@ fn host(figures: &BenchmarkRecord) -> Option<Block> {
     if let Some(reason) = &host.without_cvode {
         blocks.push(notice(strong("CVODE is not among them") + ": " + reason + "."));
     }
-    blocks.push(Block::Only(FILES, by_case(&figures.cases, &figures.host_at_equal_error, &LEVELS[..1], milliseconds)));
+    blocks.push(Block::Only(
+        FILES,
+        by_case(&figures.cases, &figures.host_at_equal_error, &ERROR_LEVELS[..1], milliseconds),
+    ));
     for case in &figures.cases {
         let found: Vec<&AtError> = figures.host_at_equal_error.iter().filter(|at| at.case == case.key).collect();
         let picture = drawn(pictures::host(case, &host.times), String::new());

@@ -77,7 +77,7 @@ impl Finding {
     }
 
     /// Marks the value as the joint file's, not contradicted by the log.
-    pub(super) fn as_unchanged(self) -> Self {
+    pub(super) fn unchanged(self) -> Self {
         Self { repeats: true, ..self }
     }
 

@@ -15,7 +15,7 @@ pub(super) fn inertias(scales: &Scales, prior: &PriorModel) -> [Finding; 2] {
             let share = 100.0 * (scale.factor() - 1.0);
             found.with_note(format!("{share:+.1} % of the joint file's, which the torque contradicts"))
         } else {
-            found.with_note("as expected of the joint file's").as_unchanged()
+            found.with_note("as expected of the joint file's").unchanged()
         }
     };
     [

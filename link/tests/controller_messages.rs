@@ -10,8 +10,8 @@ use model_core::controller::Answer;
 use model_core::controller::trajectory::{Segment, Trajectory};
 use model_core::gears::Flank;
 use model_core::observer::{
-    Estimate, Estimates, MotorFault, Notices, OutputFault, Progress, Reading, Refusal, Samples, Shaft, Source,
-    TorqueResponse,
+    Estimate, Estimates, MotorFault, Notices, OutputFault, ProbeProgress, ProbeRefusal, Reading, Samples, Shaft,
+    Source, TorqueResponse,
 };
 use parameters::ContactState;
 
@@ -81,11 +81,11 @@ fn samples_and_set_points_come_out_as_they_went_in() {
 }
 
 /// No probe, and all results of a probe.
-fn probes() -> Vec<Option<Progress<f32>>> {
-    use Refusal::*;
-    let refused = [NotAtRest, Loaded, NotHeld, Stuck, Unsteady, BadSamples].map(Progress::Refused);
-    let done = Progress::Done(Estimate { value: 40e-6, variance: 1e-12, valid: true });
-    [Progress::Running, done].into_iter().chain(refused).map(Some).chain([None]).collect()
+fn probes() -> Vec<Option<ProbeProgress<f32>>> {
+    use ProbeRefusal::*;
+    let refused = [NotAtRest, Loaded, NotHeld, Stuck, Unsteady, BadSamples].map(ProbeProgress::Refused);
+    let done = ProbeProgress::Done(Estimate { value: 40e-6, variance: 1e-12, valid: true });
+    [ProbeProgress::Running, done].into_iter().chain(refused).map(Some).chain([None]).collect()
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use host_tests::tolerance::observer::PROBED_WIDTH;
 use model_core::observer::design::{ObserverSettings, design_observer, design_probe};
-use model_core::observer::{MAPPED, Observer, ObserverTables, Probe, ProbeTable, Progress, Refusal};
+use model_core::observer::{MAPPED, Observer, ObserverTables, Probe, ProbeProgress, ProbeRefusal, ProbeTable};
 use reference::closed_loop::{Controller, SetPoint};
 use reference::drive_train::{Disturbance, Measurement};
 use scenario::rig::{ActiveController, Period, PeriodSample, Rig, RunError};
@@ -20,7 +20,7 @@ struct Probing<'t> {
     observer: Observer<'t, f32, MAPPED>,
     probe: Probe<'t, f32>,
     home: Measurement,
-    progress: Progress<f32>,
+    progress: ProbeProgress<f32>,
     command: f64,
 }
 
@@ -34,10 +34,10 @@ impl Controller for Probing<'_> {
             ..PeriodSample::default()
         };
         let estimates = *self.observer.step(&samples(self.settings, &moment, period));
-        if period >= SETTLES && self.progress == Progress::Running {
+        if period >= SETTLES && self.progress == ProbeProgress::Running {
             let (torque, progress) = self.probe.step(&estimates);
             (self.command, self.progress) = (f64::from(torque), progress);
-            assert!(progress == Progress::Running || torque == 0.0, "a probe ends without a torque");
+            assert!(progress == ProbeProgress::Running || torque == 0.0, "a probe ends without a torque");
         }
         self.command
     }
@@ -45,7 +45,7 @@ impl Controller for Probing<'_> {
 
 /// Runs a probe on Q1 without an output encoder; the load is held by so much dry friction [N m]. What it came to, and the
 /// largest force on the teeth [N].
-fn probed(half_backlash: f64, seed: u64, holding: f64, pushed_by: f64, torque: f64) -> (Progress<f32>, f64) {
+fn probed(half_backlash: f64, seed: u64, holding: f64, pushed_by: f64, torque: f64) -> (ProbeProgress<f32>, f64) {
     let mut experiment = Experiment::new("q1", "hold", Encoders::Preset, Some(half_backlash), seed).lasting(0.7);
     experiment.setup.train.surroundings.load_friction.coulomb = holding;
     experiment.setup.train.surroundings.gravity_torque = 0.0;
@@ -59,7 +59,7 @@ fn probed(half_backlash: f64, seed: u64, holding: f64, pushed_by: f64, torque: f
         observer: Observer::new(&tables),
         probe: Probe::new(&table),
         home: rig.home(),
-        progress: Progress::Running,
+        progress: ProbeProgress::Running,
         command: 0.0,
     };
     let mut hardest = 0.0_f64;
@@ -69,7 +69,7 @@ fn probed(half_backlash: f64, seed: u64, holding: f64, pushed_by: f64, torque: f
     };
     let mut set_points = SetPointSource::of_positions(experiment.setup.motion.clone());
     rig.run(&mut ActiveController::of(Box::new(&mut probing)), &mut set_points, &mut watch).expect("it runs");
-    assert!(probing.progress != Progress::Running, "a probe ends within half a second");
+    assert!(probing.progress != ProbeProgress::Running, "a probe ends within half a second");
     (probing.progress, hardest)
 }
 
@@ -77,7 +77,7 @@ fn probed(half_backlash: f64, seed: u64, holding: f64, pushed_by: f64, torque: f
 fn a_held_load_gives_the_width() {
     for (seed, half_backlash) in [(61, 20e-6), (62, 40e-6), (63, 80e-6)] {
         let (progress, hardest) = probed(half_backlash, seed, 50.0, 0.0, 0.5);
-        let Progress::Done(width) = progress else { panic!("no width: {progress:?}") };
+        let ProbeProgress::Done(width) = progress else { panic!("no width: {progress:?}") };
         println!("{half_backlash}: {width:?}, at most {hardest} N");
         PROBED_WIDTH.check(f64::from(width.value) / half_backlash - 1.0);
         assert!(hardest < 300.0, "{hardest} N is no gentle landing");
@@ -86,9 +86,9 @@ fn a_held_load_gives_the_width() {
 
 #[test]
 fn a_load_that_is_free_or_pushes_is_refused() {
-    assert_eq!(probed(40e-6, 64, 0.05, 0.0, 0.5).0, Progress::Refused(Refusal::NotHeld));
+    assert_eq!(probed(40e-6, 64, 0.05, 0.0, 0.5).0, ProbeProgress::Refused(ProbeRefusal::NotHeld));
     let pushed = probed(40e-6, 65, 0.0, 4.0, 0.5).0;
-    assert!(matches!(pushed, Progress::Refused(_)), "{pushed:?}");
+    assert!(matches!(pushed, ProbeProgress::Refused(_)), "{pushed:?}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use model_core::gears::{Flank, sign};
 use model_core::numbers::digest;
-use model_core::observer::{Memory, Progress, Refusal, Samples, Source, TorqueResponse};
+use model_core::observer::{Memory, ProbeProgress, ProbeRefusal, Samples, Source, TorqueResponse};
 use reference::closed_loop::{Motion, Run, Sample, SetPoint};
 
 use super::controller_log::ControllerPeriod;
@@ -101,7 +101,7 @@ pub struct ObserverOutput {
     /// Which of the outputs may be used.
     pub validity: Validity,
     /// Where the width probe stands, if there is one.
-    pub probed: Option<Progress<f32>>,
+    pub probed: Option<ProbeProgress<f32>>,
 }
 
 /// Which outputs of an observer may be used, the gap coordinate left out.
@@ -137,9 +137,9 @@ impl RunHistory {
     }
 
     /// Why the width probe refused, if it did.
-    pub fn refusal(&self) -> Option<Refusal> {
+    pub fn refusal(&self) -> Option<ProbeRefusal> {
         match self.observer_outputs.last()?.probed {
-            Some(Progress::Refused(refusal)) => Some(refusal),
+            Some(ProbeProgress::Refused(refusal)) => Some(refusal),
             _ => None,
         }
     }

@@ -14,6 +14,6 @@ pub fn clamp<T: Real>(value: T, low: T, high: T) -> T {
 }
 
 /// Applies a dead band about zero: returns the excess of the value over the band on either side, and zero within.
-pub fn beyond<T: Real>(value: T, band: T) -> T {
+pub fn deadband<T: Real>(value: T, band: T) -> T {
     value - clamp(value, -band, band)
 }

@@ -17,7 +17,7 @@ const RESTS: [(i32, i32); 6] = [(1, 1), (1, 2), (-1, 1), (-1, 2), (1, 1), (1, 2)
 
 /// Reason for which a probe gives no width.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Refusal {
+pub enum ProbeRefusal {
     /// The motor turned when the probe began; let the motor come to rest.
     NotAtRest,
     /// The load presses the teeth with more torque than the probe may use; remove the load.
@@ -32,7 +32,7 @@ pub enum Refusal {
     BadSamples,
 }
 
-impl fmt::Display for Refusal {
+impl fmt::Display for ProbeRefusal {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(match self {
             Self::NotAtRest => "the motor was turning when the probe began: let it come to rest",
@@ -47,13 +47,13 @@ impl fmt::Display for Refusal {
 
 /// State of a probe.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Progress<T: Real> {
+pub enum ProbeProgress<T: Real> {
     /// Continue: command the torque and pass the estimates of the next period.
     Running,
     /// Finished: half-backlash [m].
     Done(Estimate<T>),
     /// Refused: no width, with the reason.
-    Refused(Refusal),
+    Refused(ProbeRefusal),
 }
 
 /// Running width probe.
@@ -63,7 +63,7 @@ pub enum Progress<T: Real> {
 /// ```
 /// use model_core::gears::{Tables, design::design};
 /// use model_core::observer::design::{design_observer, design_probe, observer_settings};
-/// use model_core::observer::{MAPPED, Observer, Probe, Progress};
+/// use model_core::observer::{MAPPED, Observer, Probe, ProbeProgress};
 /// use model_core::virtual_joint::{VirtualJoint, design::design_surroundings};
 ///
 /// let mut q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
@@ -74,7 +74,7 @@ pub enum Progress<T: Real> {
 /// let (tables, table) = (design_observer(&q1.parameters, &settings)?, design_probe(&q1.parameters, &settings, 0.5)?);
 /// let (mut joint, mut probe) = (VirtualJoint::new(&gears, &around), Probe::new(&table));
 /// let mut observer = Observer::<f32, MAPPED>::new(&tables);
-/// let mut progress = Progress::Running;
+/// let mut progress = ProbeProgress::Running;
 /// for period in 0..7000 {
 ///     let estimates = observer.step(&joint.samples());
 ///     let mut torque = 0.0;
@@ -83,7 +83,7 @@ pub enum Progress<T: Real> {
 ///     }
 ///     joint.advance(torque, 0.0);
 /// }
-/// let Progress::Done(half_backlash) = progress else { panic!("{progress:?}") };
+/// let ProbeProgress::Done(half_backlash) = progress else { panic!("{progress:?}") };
 /// assert!((half_backlash.value / 40e-6 - 1.0).abs() < 0.1, "it is 40 um: {half_backlash:?}");
 /// # Ok::<(), model_core::gears::design::DesignError>(())
 /// ```
@@ -100,7 +100,7 @@ pub struct Probe<'tables, T: Real> {
     /// Sum of the angles from the start position while at rest [rad].
     sum: T,
     angles: [T; RESTS.len()],
-    progress: Progress<T>,
+    progress: ProbeProgress<T>,
 }
 
 impl<'tables, T: Real> Probe<'tables, T> {
@@ -120,17 +120,17 @@ impl<'tables, T: Real> Probe<'tables, T> {
             torque: T::ZERO,
             sum: T::ZERO,
             angles: [T::ZERO; RESTS.len()],
-            progress: Progress::Running,
+            progress: ProbeProgress::Running,
         }
     }
 
     /// Advances by one control period. Returns the next torque to command [N m], zero once the probe has ended, and the
     /// state.
-    pub fn step(&mut self, estimates: &Estimates<T>) -> (T, Progress<T>) {
-        if self.progress == Progress::Running {
+    pub fn step(&mut self, estimates: &Estimates<T>) -> (T, ProbeProgress<T>) {
+        if self.progress == ProbeProgress::Running {
             self.progress = self.advance(estimates);
         }
-        if self.progress != Progress::Running {
+        if self.progress != ProbeProgress::Running {
             return (T::ZERO, self.progress);
         }
         let wanted = RESTS.get(self.rest).map_or(T::ZERO, |(side, part)| self.table.torque * T::from_i32(side * part));
@@ -138,69 +138,69 @@ impl<'tables, T: Real> Probe<'tables, T> {
         (self.torque - self.table.damping * estimates.motor.speed, self.progress)
     }
 
-    fn advance(&mut self, estimates: &Estimates<T>) -> Progress<T> {
+    fn advance(&mut self, estimates: &Estimates<T>) -> ProbeProgress<T> {
         let table = self.table;
         let notices = estimates.notices;
         let bad = notices.torque_unknown || notices.out_of_time || notices.motor_implausible || notices.motor_jumped;
         let reversed = estimates.torque_response == TorqueResponse::Reversed;
         if bad || reversed || !estimates.source.allows_control() {
-            return Progress::Refused(Refusal::BadSamples);
+            return ProbeProgress::Refused(ProbeRefusal::BadSamples);
         }
         let speed = estimates.motor.speed.abs();
         let Some(begin) = self.begin else {
             self.begin = Some(estimates.motor);
             if speed > table.moving {
-                return Progress::Refused(Refusal::NotAtRest);
+                return ProbeProgress::Refused(ProbeRefusal::NotAtRest);
             }
             if estimates.mesh_torque.value.abs() > table.loaded {
-                return Progress::Refused(Refusal::Loaded);
+                return ProbeProgress::Refused(ProbeRefusal::Loaded);
             }
-            return Progress::Running;
+            return ProbeProgress::Running;
         };
         let turns = T::from_i32(estimates.motor.turns.wrapping_sub(begin.turns));
         let angle = (turns + (estimates.motor.fraction - begin.fraction)) * table.turn;
         self.total += 1;
         if angle.abs() > table.furthest || self.total > table.longest {
-            return Progress::Refused(Refusal::NotHeld);
+            return ProbeProgress::Refused(ProbeRefusal::NotHeld);
         }
         self.periods += 1;
         if self.periods < table.settle {
-            return Progress::Running;
+            return ProbeProgress::Running;
         }
         if speed > table.moving {
             (self.still, self.sum) = (0, T::ZERO);
-            return Progress::Running;
+            return ProbeProgress::Running;
         }
         self.still += 1;
         self.sum += angle;
         if self.still < table.still {
-            return Progress::Running;
+            return ProbeProgress::Running;
         }
         if let Some(place) = self.angles.get_mut(self.rest) {
             *place = self.sum * table.per_still;
         }
         self.rest += 1;
         (self.periods, self.still, self.sum) = (0, 0, T::ZERO);
-        if self.rest < RESTS.len() { Progress::Running } else { self.result() }
+        if self.rest < RESTS.len() { ProbeProgress::Running } else { self.result() }
     }
 
-    fn result(&self) -> Progress<T> {
+    fn result(&self) -> ProbeProgress<T> {
         let table = self.table;
         let [first, second, third, fourth, fifth, sixth] = self.angles;
         let flank = |single: T, double: T| single + single - double;
         let (drive, back, again) = (flank(first, second), flank(third, fourth), flank(fifth, sixth));
         let between = (T::HALF * (drive + again) - back) * table.deflection;
         if between < table.least {
-            return Progress::Refused(Refusal::Stuck);
+            return ProbeProgress::Refused(ProbeRefusal::Stuck);
         }
         let apart = (again - drive) * table.deflection;
         if apart.abs() > Self::UNSTEADY * between {
-            return Progress::Refused(Refusal::Unsteady);
+            return ProbeProgress::Refused(ProbeRefusal::Unsteady);
         }
         let quarter = T::HALF * T::HALF;
         // Friction may have held either rest off its position; the difference of the two passes is added to the
         // variance.
         let variance = (table.variance + apart * apart) * quarter * quarter;
-        Progress::Done(Estimate { value: between * quarter, variance, valid: true })
+        ProbeProgress::Done(Estimate { value: between * quarter, variance, valid: true })
     }
 }

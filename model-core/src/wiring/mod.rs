@@ -26,4 +26,4 @@ mod verdict;
 pub use check::{WiringCheck, WiringProgress, WiringRefusal};
 pub use judge::WiringJudge;
 pub use tables::WiringTable;
-pub use verdict::{Verdict, WIRING_ITEMS, Wiring, WiringItem};
+pub use verdict::{WIRING_ITEMS, Wiring, WiringItem, WiringVerdict};

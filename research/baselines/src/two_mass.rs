@@ -127,7 +127,7 @@ impl<'a, T: Real> TwoMassPeer<'a, T> {
         }
         // Back to the impact, and off again with what it leaves for the rest of the step. Rate and place are of one sign
         // here, so that the quotient is finite.
-        let since = (self.place - end).over(self.rate);
+        let since = (self.place - end) / self.rate;
         let since = if since < model.step { since } else { model.step };
         let leaving = -(model.restitution * (self.rate - since * self.push));
         self.rate = leaving + since * self.push;

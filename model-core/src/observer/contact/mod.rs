@@ -1,12 +1,12 @@
 //! Contact detection for a controller: by the mesh force alone, by force and deflection (O8, O10), or, without an
-//! output encoder, by `health::motor_only`. `learnt::flank` decides separately on which flank a rest is used for
+//! output encoder, by `health::motor_only`. `identification::flank` decides separately on which flank a rest is used for
 //! estimation.
 
-pub mod by_force;
-pub mod by_position;
+pub mod force_contact;
+pub mod gap_position;
 
-use by_force::ByForce;
-use by_position::ByPosition;
+use force_contact::ForceContact;
+use gap_position::GapPosition;
 
 use crate::gears::Flank;
 use crate::numbers::Real;
@@ -15,7 +15,7 @@ use crate::numbers::Real;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Contact {
     /// Contact by force alone.
-    pub by_force: ByForce,
+    pub by_force: ForceContact,
     /// Flank reported as touching.
     pub reported: Option<Flank>,
     /// True once the teeth have settled after crossing the gap.
@@ -29,13 +29,13 @@ impl Contact {
     #[inline]
     pub fn step_by_position<T: Real>(
         &mut self,
-        position: &ByPosition<T>,
+        position: &GapPosition<T>,
         force: T,
         deviations: [T; 2],
         settled: bool,
     ) -> T {
         self.settled = settled || self.settled && position.deflection.abs() > T::HALF * position.half_gap;
-        let (reported, force) = position.reported(self.reported, force, deviations, self.settled);
+        let (reported, force) = position.reported_contact(self.reported, force, deviations, self.settled);
         self.reported = reported;
         force
     }

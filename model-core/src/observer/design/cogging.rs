@@ -53,7 +53,7 @@ pub(super) fn table<T: Real>(
     let speed = load.gain[1] / step;
     let torque = -load.gain[2] * load.response[(1, 0)] / (step * step);
     // The cogging is estimated only if a motor count resolves its phase.
-    let told = periods * TAU / f64::from(settings.motor_encoder.counts_per_turn) <= MOST;
+    let is_resolved = periods * TAU / f64::from(settings.motor_encoder.counts_per_turn) <= MOST;
     let ripple = settings.torque_ripple * body.ratio;
     CoggingTable {
         periods: settings.cogging_periods,
@@ -65,7 +65,7 @@ pub(super) fn table<T: Real>(
         unsteady: real(STEADY.1),
         response: [periods * speed / torque, periods.powi(2) * angle / torque, periods.powi(3) / torque].map(real),
         late: real(periods * late / TAU * f64::powi(2.0, 32)),
-        prior: real(if told { ripple * ripple } else { 0.0 }),
+        prior: real(if is_resolved { ripple * ripple } else { 0.0 }),
         limit: real(LARGEST * ripple),
         repeats: real(REPEATS),
         memory: part(WATCHED),

@@ -43,10 +43,13 @@ pub(super) fn table<T: Real>(
     let span = f64::from(periods) * step;
     // Angle, speed and torque after an interval, from their initial values and the mesh torque.
     let after = |start: [f64; 3], given: f64| {
-        (0..periods).fold(start, |[angle, speed, taken], _| {
-            let net = given - taken;
-            let ahead =
-                [angle + step * speed + load.response[(0, 0)] * net, speed + load.response[(1, 0)] * net, taken];
+        (0..periods).fold(start, |[angle, speed, disturbance_torque], _| {
+            let net = given - disturbance_torque;
+            let ahead = [
+                angle + step * speed + load.response[(0, 0)] * net,
+                speed + load.response[(1, 0)] * net,
+                disturbance_torque,
+            ];
             let innovation = -ahead[0];
             [0, 1, 2].map(|state| ahead[state] + load.gain[state] * innovation)
         })

@@ -2,15 +2,15 @@
 
 pub(crate) mod body;
 mod cogging;
+#[cfg(test)]
+mod dwell_noise_tests;
 mod filter;
+#[cfg(test)]
+mod gap_variation_tests;
 mod inertia;
 mod integers;
 mod learning;
-#[cfg(test)]
-mod places_tests;
 mod probe;
-#[cfg(test)]
-mod rest_noise_tests;
 mod settings;
 mod sides;
 mod source;

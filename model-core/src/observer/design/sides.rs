@@ -179,19 +179,19 @@ mod tests {
         let count = core::f64::consts::TAU / f64::from(encoder.counts_per_turn);
         let filter = drive_filter(&body, &settings, count * count / 12.0, step);
         let (inertia, gain) = (body.motor_inertia, &filter.gain);
-        let [mut angle, mut speed, mut taken] = [0.0; 3];
+        let [mut angle, mut speed, mut disturbance_torque] = [0.0; 3];
         let mut time = 0.0;
         for _ in 0..2000 {
             // No torque drives; the taken torque equals the time.
             time += step;
-            angle += step * speed - 0.5 * step * step / inertia * taken;
-            speed -= step / inertia * taken;
+            angle += step * speed - 0.5 * step * step / inertia * disturbance_torque;
+            speed -= step / inertia * disturbance_torque;
             let innovation = -time.powi(3) / (6.0 * inertia) - angle;
             angle += gain[0] * innovation;
             speed += gain[1] * innovation;
-            taken += gain[2] * innovation;
+            disturbance_torque += gain[2] * innovation;
         }
-        let lag = time - taken;
+        let lag = time - disturbance_torque;
         assert!(lag > step && (drive_lag(&body, &filter, step) / lag - 1.0).abs() < 1e-6, "it lags by {lag} s");
     }
 }

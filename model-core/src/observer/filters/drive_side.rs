@@ -1,5 +1,5 @@
 //! Disturbance observer of the motor side (O2; late readings O3): estimates the torque that meshes and friction take
-//! from the motor. `learnt::bias` separates the two. Symbols: a = `ahead`, w_m = `speed`, t = `taken`, u = `air_gap`,
+//! from the motor. `identification::bias` separates the two. Symbols: a = `angle_residual`, w_m = `speed`, t = `disturbance_torque`, u = `air_gap`,
 //! G = `gain`.
 //!
 //! Each period the state follows the linear flow of the tables, current loop included. `gain` times the innovation, the
@@ -13,20 +13,20 @@ use crate::observer::tables::{CurrentTable, DriveTable, MOST_DELAY};
 #[derive(Debug, Clone, Copy, Default)]
 pub struct DriveSide<T: Real> {
     /// Angle beyond the counts [rad].
-    pub ahead: T,
+    pub angle_residual: T,
     /// Motor speed [rad/s].
     pub speed: T,
     /// Torque taken from the motor by meshes and friction [N m].
-    pub taken: T,
+    pub disturbance_torque: T,
     air_gap: T,
     /// Decaying maximum of the air-gap torque's magnitude [N m].
-    strongest: T,
+    peak_torque: T,
     /// Commands within the delay, newest first.
     commands: [T; MOST_DELAY],
 }
 
 impl<T: Real> DriveSide<T> {
-    /// Decay of `strongest` per period [-]: a speed computed from counts lags by a few periods.
+    /// Decay of `peak_torque` per period [-]: a speed computed from counts lags by a few periods.
     const FADES: T = T::TWENTIETH;
 
     /// Predicts the state over one period under the command in force; `turned` is the travel of the counts [rad].
@@ -37,19 +37,22 @@ impl<T: Real> DriveSide<T> {
         let newer = at(current.whole_delay);
         let wanted = newer + current.part_delay * (at(current.whole_delay + 1) - newer);
         let [from_speed, from_taken, from_air_gap, from_wanted] = table.angle;
-        self.ahead +=
-            from_speed * self.speed + from_taken * self.taken + from_air_gap * self.air_gap + from_wanted * wanted
-                - turned;
+        self.angle_residual += from_speed * self.speed
+            + from_taken * self.disturbance_torque
+            + from_air_gap * self.air_gap
+            + from_wanted * wanted
+            - turned;
         let [from_taken, from_air_gap, from_wanted] = table.speed;
-        self.speed += from_taken * self.taken + from_air_gap * self.air_gap + from_wanted * wanted;
+        self.speed += from_taken * self.disturbance_torque + from_air_gap * self.air_gap + from_wanted * wanted;
         self.air_gap += current.rise * (wanted - self.air_gap);
         let torque = self.air_gap.abs();
-        self.strongest = if torque > self.strongest { torque } else { self.strongest - Self::FADES * self.strongest };
+        self.peak_torque =
+            if torque > self.peak_torque { torque } else { self.peak_torque - Self::FADES * self.peak_torque };
     }
 
     /// Corrects by a reading of this period, with its age [s].
     pub fn correct(&mut self, table: &DriveTable<T>, age: T) {
-        self.apply(&table.gain, self.speed * age - self.ahead);
+        self.apply(&table.gain, self.speed * age - self.angle_residual);
     }
 
     /// Corrects by an older reading, including the change of speed since then.
@@ -57,17 +60,17 @@ impl<T: Real> DriveSide<T> {
     pub fn correct_late(&mut self, table: &DriveTable<T>, age: T) {
         let [period, ..] = table.angle;
         let [speed_per_torque, ..] = table.speed;
-        let speed_change = speed_per_torque * (self.taken - self.air_gap);
-        let delayed = Delayed { periods: age.over(period), period, speed_change, speed_per_torque };
-        self.apply(&delayed.gain_now(&table.late_gain), delayed.travel(self.speed) - self.ahead);
+        let speed_change = speed_per_torque * (self.disturbance_torque - self.air_gap);
+        let delayed = Delayed { periods: age / period, period, speed_change, speed_per_torque };
+        self.apply(&delayed.gain_now(&table.late_gain), delayed.travel(self.speed) - self.angle_residual);
     }
 
     /// Adds gain times innovation [rad].
     fn apply(&mut self, gain: &[T; 3], innovation: T) {
-        let [angle, speed, taken] = *gain;
-        self.ahead += angle * innovation;
+        let [angle, speed, disturbance_torque] = *gain;
+        self.angle_residual += angle * innovation;
         self.speed += speed * innovation;
-        self.taken += taken * innovation;
+        self.disturbance_torque += disturbance_torque * innovation;
     }
 
     /// Returns the air-gap torque [N m].
@@ -76,14 +79,14 @@ impl<T: Real> DriveSide<T> {
     }
 
     /// Returns the decaying maximum of the air-gap torque's magnitude [N m].
-    pub fn strongest(&self) -> T {
-        self.strongest
+    pub fn peak_torque(&self) -> T {
+        self.peak_torque
     }
 
     /// Sets the motor at rest at its last counts, without a usable reading.
-    pub fn hold(&mut self) {
-        self.ahead = T::ZERO;
+    pub fn stop(&mut self) {
+        self.angle_residual = T::ZERO;
         self.speed = T::ZERO;
-        self.taken = T::ZERO;
+        self.disturbance_torque = T::ZERO;
     }
 }

@@ -32,12 +32,12 @@ const NOISY: i32 = 4;
 /// Base-2 logarithm of the readings over which the noise is averaged.
 const AVERAGED: u32 = 5;
 
-/// Value of `jumped_for` while the speed is unknown.
+/// Value of `readings_since_jump` while the speed is unknown.
 const UNKNOWN: u8 = u8::MAX;
 
 /// Plausibility of a reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub enum PlausibilityResult {
     /// The shaft can reach the reading.
     Plausible,
     /// The shaft cannot reach the reading unless the next readings return; this reading is not used.
@@ -47,17 +47,17 @@ pub enum Verdict {
 }
 
 /// Influences that change a shaft's speed between two readings.
-pub trait Surroundings<T: Real> {
+pub trait MotionLimits<T: Real> {
     /// Table of the stopping times of the shaft.
-    fn stops(&self) -> &StopTable<T>;
+    fn stop_table(&self) -> &StopTable<T>;
     /// Half of the deceleration by torques [counts per period^2].
-    fn brake(&self) -> T;
+    fn half_deceleration(&self) -> T;
     /// Largest sudden change of speed at the speed `rate` [parts of a count per period].
-    fn throw(&self, rate: i32) -> i32;
+    fn impact_speed_change(&self, rate: i32) -> i32;
     /// Speed that the shaft keeps whatever it meets, at a speed of `rate` [parts of a count per period].
-    fn carried(&self, rate: i32) -> i32;
+    fn speed_kept_by_teeth(&self, rate: i32) -> i32;
     /// Lower bound of the true speed [counts per period] at the estimate `rate` [parts of a count per period].
-    fn sure(&self, rate: i32) -> T;
+    fn lower_speed_bound(&self, rate: i32) -> T;
 }
 
 /// Estimated speed of a shaft's counts, and the deviation of readings from it.
@@ -68,31 +68,31 @@ pub struct Plausibility {
     /// Mean deviation of readings from the speed, times the number of averaged readings.
     noise: u16,
     /// Distance of the readings from the predicted position since a jump, saturated [parts of a count].
-    away: i16,
+    jump_distance: i16,
     /// Readings since the jump; 0 without a jump.
-    jumped_for: u8,
+    readings_since_jump: u8,
     /// Equal readings in a row.
-    still: u8,
+    standstill_readings: u8,
 }
 
 impl Plausibility {
     pub fn new() -> Self {
-        Self { rate: 0, noise: 0, away: 0, jumped_for: UNKNOWN, still: 0 }
+        Self { rate: 0, noise: 0, jump_distance: 0, readings_since_jump: UNKNOWN, standstill_readings: 0 }
     }
 
-    /// Handles a reading after an irregular interval: motion ends a standstill; a long interval (`far`) resets the
+    /// Handles a reading after an irregular interval: motion ends a standstill; a long interval (`is_long`) resets the
     /// speed.
     #[cold]
-    pub fn miss(&mut self, by: i32, far: bool) {
-        if far {
-            self.lose();
+    pub fn skip_irregular(&mut self, by: i32, is_long: bool) {
+        if is_long {
+            self.reset_speed();
         } else if by != 0 {
-            self.still = 0;
+            self.standstill_readings = 0;
         }
     }
 
     /// Resets the speed and keeps the noise.
-    pub fn lose(&mut self) {
+    pub fn reset_speed(&mut self) {
         *self = Self { noise: self.noise, ..Self::new() };
     }
 
@@ -103,100 +103,110 @@ impl Plausibility {
 
     /// Speed before the readings broke off, if known [counts per period].
     pub fn speed<T: Real>(&self) -> Option<T> {
-        (self.jumped_for != UNKNOWN).then(|| counts(self.rate))
+        (self.readings_since_jump != UNKNOWN).then(|| counts(self.rate))
     }
 
     /// Lead of the link over readings that broke off [counts].
-    pub fn ahead<T: Real>(&self) -> T {
-        if self.jumped_for == 0 {
-            counts::<T>(self.rate) * T::from_i32(self.still.into())
+    pub fn lead<T: Real>(&self) -> T {
+        if self.readings_since_jump == 0 {
+            counts::<T>(self.rate) * T::from_i32(self.standstill_readings.into())
         } else {
-            -counts::<T>(self.away.into())
+            -counts::<T>(self.jump_distance.into())
         }
     }
 
     /// Returns true if the readings stand still, false if they jumped.
-    pub fn stands_still(&self) -> bool {
-        self.jumped_for == 0
+    pub fn is_standstill(&self) -> bool {
+        self.readings_since_jump == 0
     }
 
     /// Judges the counts `by` which the shaft moved in a period.
     #[inline]
-    pub fn take<T: Real>(&mut self, surroundings: &impl Surroundings<T>, by: i32) -> Verdict {
+    pub fn check<T: Real>(&mut self, limits: &impl MotionLimits<T>, by: i32) -> PlausibilityResult {
         let by = by.wrapping_shl(PART);
-        let beyond = by.wrapping_sub(self.rate);
+        let deviation = by.wrapping_sub(self.rate);
         let noise = i32::from(self.noise) >> AVERAGED;
         let jump = JUMP + 2 * NOISY * noise;
-        if self.jumped_for != 0 || beyond.wrapping_abs() > jump && self.leaps(surroundings, beyond, jump) {
-            return self.take_odd(by, beyond);
+        if self.readings_since_jump != 0 || deviation.wrapping_abs() > jump && self.is_jump(limits, deviation, jump) {
+            return self.check_jump(by, deviation);
         }
         if by == 0 {
-            return self.stand_still(surroundings, noise);
+            return self.check_standstill(limits, noise);
         }
         // The travel after a standstill is spread over all readings of the standstill.
-        let beyond = if self.still == 0 { beyond } else { self.spread(by) };
-        self.rate += beyond >> 2;
-        self.noise = (i32::from(self.noise) + beyond.wrapping_abs() - noise).min(u16::MAX.into()) as u16;
-        Verdict::Plausible
+        let deviation = if self.standstill_readings == 0 { deviation } else { self.end_standstill(by) };
+        self.rate += deviation >> 2;
+        self.noise = (i32::from(self.noise) + deviation.wrapping_abs() - noise).min(u16::MAX.into()) as u16;
+        PlausibilityResult::Plausible
     }
 
     /// Handles the first reading, a reading that jumps, and the readings after it.
     #[cold]
-    fn take_odd(&mut self, by: i32, beyond: i32) -> Verdict {
-        if self.jumped_for == UNKNOWN {
+    fn check_jump(&mut self, by: i32, deviation: i32) -> PlausibilityResult {
+        if self.readings_since_jump == UNKNOWN {
             // A single reading is rounded by up to a count: the slowest speed that explains it is used.
             let rate = by - by.clamp(-COUNT, COUNT);
-            *self = Self { rate, noise: self.noise, jumped_for: 0, ..Self::new() };
-            return Verdict::Plausible;
+            *self = Self { rate, noise: self.noise, readings_since_jump: 0, ..Self::new() };
+            return PlausibilityResult::Plausible;
         }
-        self.away = i32::from(self.away).saturating_add(beyond).clamp(i16::MIN.into(), i16::MAX.into()) as i16;
-        self.jumped_for += 1;
-        self.still = 0;
-        if i32::from(self.away).abs() < JUMP / 2 {
-            (self.away, self.jumped_for) = (0, 0);
-            Verdict::Plausible
-        } else if self.jumped_for > CONFIRMED {
-            Verdict::Implausible
+        self.jump_distance =
+            i32::from(self.jump_distance).saturating_add(deviation).clamp(i16::MIN.into(), i16::MAX.into()) as i16;
+        self.readings_since_jump += 1;
+        self.standstill_readings = 0;
+        if i32::from(self.jump_distance).abs() < JUMP / 2 {
+            (self.jump_distance, self.readings_since_jump) = (0, 0);
+            PlausibilityResult::Plausible
+        } else if self.readings_since_jump > CONFIRMED {
+            PlausibilityResult::Implausible
         } else {
-            Verdict::Suspect
+            PlausibilityResult::Suspect
         }
     }
 
     /// Returns the mean travel since the last change of counts less the speed, and ends the standstill.
     #[cold]
-    fn spread(&mut self, by: i32) -> i32 {
-        let readings = i32::from(core::mem::take(&mut self.still)) + 1;
+    fn end_standstill(&mut self, by: i32) -> i32 {
+        let readings = i32::from(core::mem::take(&mut self.standstill_readings)) + 1;
         by.checked_div(readings).unwrap_or(by) - self.rate
     }
 
     /// Returns true if a reading jumps by more than the shaft can be thrown.
     #[cold]
-    fn leaps<T: Real>(&self, surroundings: &impl Surroundings<T>, beyond: i32, jump: i32) -> bool {
-        beyond.wrapping_abs() > jump.saturating_add(surroundings.throw(self.rate))
+    fn is_jump<T: Real>(&self, limits: &impl MotionLimits<T>, deviation: i32, jump: i32) -> bool {
+        deviation.wrapping_abs() > jump.saturating_add(limits.impact_speed_change(self.rate))
     }
 
     /// Judges one more reading with unchanged counts.
     #[cold]
-    fn stand_still<T: Real>(&mut self, surroundings: &impl Surroundings<T>, noise: i32) -> Verdict {
-        let table = surroundings.stops();
-        self.still = self.still.saturating_add(1);
-        if self.still > table.forgotten {
+    fn check_standstill<T: Real>(&mut self, limits: &impl MotionLimits<T>, noise: i32) -> PlausibilityResult {
+        let table = limits.stop_table();
+        self.standstill_readings = self.standstill_readings.saturating_add(1);
+        if self.standstill_readings > table.forgotten {
             self.rate = 0;
         }
         // Noise can leave the counts unchanged by chance.
-        if self.rate == 0 || i32::from(self.still) < i32::from(FEWEST) + (noise >> PART) {
-            return Verdict::Plausible;
+        if self.rate == 0 || i32::from(self.standstill_readings) < i32::from(FEWEST) + (noise >> PART) {
+            return PlausibilityResult::Plausible;
         }
-        let periods = T::from_i32(self.still.into());
-        let rate = if self.still > table.stop { T::ZERO } else { surroundings.sure(self.rate.wrapping_abs()) };
+        let periods = T::from_i32(self.standstill_readings.into());
+        let rate = if self.standstill_readings > table.stop {
+            T::ZERO
+        } else {
+            limits.lower_speed_bound(self.rate.wrapping_abs())
+        };
         let stopped = rate - periods * rate * table.per_stops;
-        let carried = surroundings.sure(surroundings.carried(self.rate));
-        let least = periods * (if stopped > carried { stopped } else { carried } - periods * surroundings.brake());
-        if least > counts(MISSING + NOISY * noise) { Verdict::Implausible } else { Verdict::Plausible }
+        let kept = limits.lower_speed_bound(limits.speed_kept_by_teeth(self.rate));
+        let least_travel =
+            periods * (if stopped > kept { stopped } else { kept } - periods * limits.half_deceleration());
+        if least_travel > counts(MISSING + NOISY * noise) {
+            PlausibilityResult::Implausible
+        } else {
+            PlausibilityResult::Plausible
+        }
     }
 }
 
 /// Converts parts of a count to counts.
 pub fn counts<T: Real>(parts: i32) -> T {
-    T::from_i32(parts).over(T::from_i32(COUNT))
+    T::from_i32(parts) / T::from_i32(COUNT)
 }

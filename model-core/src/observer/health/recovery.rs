@@ -9,73 +9,73 @@ const OTHERWISE: u16 = 3;
 
 /// Kind of return of an encoder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Return {
+pub enum Readmission {
     /// The encoder agrees with the estimated parameters.
-    AsLearnt,
+    SameOffset,
     /// The encoder turns with the motor at another offset than the estimated one.
-    Otherwise,
+    NewOffset,
 }
 
 /// Evidence for an excluded encoder.
 #[derive(Debug, Clone, Copy)]
-pub struct Recovery<T: Real> {
+pub struct OutputRecovery<T: Real> {
     /// Learning intervals in motion with agreement.
-    agreed_for: u16,
+    agreeing_intervals: u16,
     /// Learning intervals in motion at a constant offset.
-    steady_for: u16,
+    steady_intervals: u16,
     /// Constant offset: deflection less the predicted deflection, on the back flank and on the drive flank [m].
-    steady: [T; 2],
+    steady_offsets: [T; 2],
     /// Position of the output when it last moved [2^-32 turns].
-    place: u32,
+    position: u32,
 }
 
-impl<T: Real> Recovery<T> {
+impl<T: Real> OutputRecovery<T> {
     pub fn new() -> Self {
-        Self { agreed_for: 0, steady_for: 0, steady: [T::ZERO; 2], place: 0 }
+        Self { agreeing_intervals: 0, steady_intervals: 0, steady_offsets: [T::ZERO; 2], position: 0 }
     }
 
     /// Starts anew after an exclusion.
-    pub fn begin(&mut self) {
-        *self = Self { place: self.place, ..Self::new() };
+    pub fn reset(&mut self) {
+        *self = Self { position: self.position, ..Self::new() };
     }
 
     /// Judges one learning interval. `settled`: in settled contact the flank and the encoder's deflection less the
-    /// predicted deflection [m]. `room`: tolerance of agreement [m]. `between`: outside settled contact, true if the
-    /// deflection lies between the flanks. `place`: position of the output, if it is read [2^-32 turns].
+    /// predicted deflection [m]. `tolerance`: tolerance of agreement [m]. `lies_in_gap`: outside settled contact, true if the
+    /// deflection lies between the flanks. `position`: position of the output, if it is read [2^-32 turns].
     pub fn step(
         &mut self,
         table: &SupervisorTable<T>,
         settled: Option<(Flank, T)>,
-        room: T,
-        between: bool,
-        place: Option<u32>,
-    ) -> Option<Return> {
-        let agrees = if let Some((flank, beyond)) = settled {
-            let [back, drive] = &mut self.steady;
-            let steady = if flank == Flank::Drive { drive } else { back };
-            if (beyond - *steady).abs() > room {
-                *steady = beyond;
-                self.steady_for = 0;
+        tolerance: T,
+        lies_in_gap: bool,
+        position: Option<u32>,
+    ) -> Option<Readmission> {
+        let agrees = if let Some((flank, offset)) = settled {
+            let [back, drive] = &mut self.steady_offsets;
+            let steady_offset = if flank == Flank::Drive { drive } else { back };
+            if (offset - *steady_offset).abs() > tolerance {
+                *steady_offset = offset;
+                self.steady_intervals = 0;
             }
-            beyond.abs() < room
+            offset.abs() < tolerance
         } else {
-            between
+            lies_in_gap
         };
         if !agrees {
-            self.agreed_for = 0;
+            self.agreeing_intervals = 0;
         }
         // A stationary encoder that flickers does not turn.
-        if let Some(place) = place
-            && (place.wrapping_sub(self.place) as i32).unsigned_abs() >= table.moved
+        if let Some(position) = position
+            && (position.wrapping_sub(self.position) as i32).unsigned_abs() >= table.moved
         {
-            self.place = place;
-            self.steady_for = self.steady_for.saturating_add(u16::from(settled.is_some()));
-            self.agreed_for = self.agreed_for.saturating_add(u16::from(agrees));
+            self.position = position;
+            self.steady_intervals = self.steady_intervals.saturating_add(u16::from(settled.is_some()));
+            self.agreeing_intervals = self.agreeing_intervals.saturating_add(u16::from(agrees));
         }
-        if self.agreed_for >= table.trusted_after {
-            Some(Return::AsLearnt)
-        } else if self.steady_for >= table.trusted_after.saturating_mul(OTHERWISE) {
-            Some(Return::Otherwise)
+        if self.agreeing_intervals >= table.trusted_after {
+            Some(Readmission::SameOffset)
+        } else if self.steady_intervals >= table.trusted_after.saturating_mul(OTHERWISE) {
+            Some(Readmission::NewOffset)
         } else {
             None
         }

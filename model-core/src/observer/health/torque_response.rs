@@ -42,14 +42,14 @@ const WHOLE: u8 = 4;
 
 /// Votes and their evidence.
 #[derive(Debug, Clone, Copy)]
-pub struct ResponseCheck<T: Real> {
+pub struct TorqueResponseCheck<T: Real> {
     response: TorqueResponse,
     /// Votes for the right sign less votes for the wrong sign.
     votes: i8,
     /// Blocks in which the motor accelerated against the torque, less all other blocks with a large torque.
-    against: u8,
+    against_torque: u8,
     /// Place in the test pattern, from 1; 0 without a test.
-    tested: u8,
+    test_block: u8,
     /// Periods in this block.
     periods: u16,
     /// Sum of the torque in this block [N m].
@@ -57,14 +57,14 @@ pub struct ResponseCheck<T: Real> {
     /// Angle turned in this block [rad].
     turned: T,
     /// Sum of the torque and angle turned of the last block.
-    before: [T; 2],
+    last_block: [T; 2],
     /// X and A of the last two blocks, the latest first [N m].
     pairs: [[T; 2]; APART],
     /// Consecutive blocks without a tooth impact, saturated.
-    whole: u8,
+    undisturbed_blocks: u8,
 }
 
-impl<T: Real> ResponseCheck<T> {
+impl<T: Real> TorqueResponseCheck<T> {
     /// Least change of acceleration that votes, over the change of torque [-]: a link six times as heavy as the joint
     /// file states.
     const LEAST: T = T::SIXTH;
@@ -73,14 +73,14 @@ impl<T: Real> ResponseCheck<T> {
         Self {
             response: TorqueResponse::Unknown,
             votes: 0,
-            against: 0,
-            tested: 0,
+            against_torque: 0,
+            test_block: 0,
             periods: 0,
             torque: T::ZERO,
             turned: T::ZERO,
-            before: [T::ZERO; 2],
+            last_block: [T::ZERO; 2],
             pairs: [[T::ZERO; 2]; APART],
-            whole: 0,
+            undisturbed_blocks: 0,
         }
     }
 
@@ -111,15 +111,15 @@ impl<T: Real> ResponseCheck<T> {
         self.turned += turned;
         self.periods += 1;
         if self.periods >= table.block {
-            self.close(table);
+            self.close_block(table);
         }
     }
 
     /// Ends a block.
     #[cold]
-    fn close(&mut self, table: &ResponseTable<T>) {
+    fn close_block(&mut self, table: &ResponseTable<T>) {
         let now = [self.torque, self.turned];
-        let [torque_before, turned_before] = core::mem::replace(&mut self.before, now);
+        let [torque_before, turned_before] = core::mem::replace(&mut self.last_block, now);
         (self.torque, self.turned, self.periods) = (T::ZERO, T::ZERO, 0);
         // (1)
         let mean = T::HALF * table.per_block * (now[0] + torque_before);
@@ -127,41 +127,43 @@ impl<T: Real> ResponseCheck<T> {
         let [last, [mean_then, acceleration_then]] = self.pairs;
         self.pairs = [[mean, acceleration], last];
         // A tooth impact accelerates the motor more than the torque can.
-        let most = table.alone * if mean.abs() > table.large { mean.abs() } else { table.large };
-        self.whole = if acceleration.abs() > most { 0 } else { self.whole.saturating_add(1).min(WHOLE) };
-        if self.whole < WHOLE {
+        let largest = table.alone * if mean.abs() > table.large { mean.abs() } else { table.large };
+        self.undisturbed_blocks =
+            if acceleration.abs() > largest { 0 } else { self.undisturbed_blocks.saturating_add(1).min(WHOLE) };
+        if self.undisturbed_blocks < WHOLE {
             self.response = TorqueResponse::Unknown;
             return;
         }
         if now[1] * turned_before < T::ZERO {
             // A motor that reverses does not run away.
-            (self.against, self.tested) = (0, 0);
+            (self.against_torque, self.test_block) = (0, 0);
         } else if mean.abs() > table.large {
             let is_against = now[1] * mean < T::ZERO && acceleration * mean < -Self::LEAST * mean * mean;
-            self.against = if is_against { self.against.saturating_add(1) } else { self.against.saturating_sub(1) };
+            self.against_torque =
+                if is_against { self.against_torque.saturating_add(1) } else { self.against_torque.saturating_sub(1) };
         }
         // (2)
         self.vote(table, mean - mean_then, acceleration - acceleration_then);
-        let tests = self.tests();
+        let is_torque_free = self.advance_test();
         self.response = match self.votes {
             votes if votes >= RIGHT => TorqueResponse::Right,
-            votes if votes <= -WRONG && self.tested > 0 => TorqueResponse::Reversed,
-            _ if tests => TorqueResponse::Tested,
+            votes if votes <= -WRONG && self.test_block > 0 => TorqueResponse::Reversed,
+            _ if is_torque_free => TorqueResponse::Tested,
             _ => TorqueResponse::Unknown,
         };
     }
 
     /// Returns true if the next block carries no torque. A test starts once the motor runs against its torque and lasts
     /// until it no longer does.
-    fn tests(&mut self) -> bool {
-        let goes_on = self.against >= AGAINST || self.tested > 0 && self.against > 0;
+    fn advance_test(&mut self) -> bool {
+        let continues = self.against_torque >= AGAINST || self.test_block > 0 && self.against_torque > 0;
         // A load that sets in drives the motor against a growing torque: only votes during a test count for the wrong
         // sign.
-        if self.tested == 0 {
+        if self.test_block == 0 {
             self.votes = self.votes.max(0);
         }
-        self.tested = if goes_on { self.tested % PATTERN_BLOCKS + 1 } else { 0 };
-        goes_on && PATTERN >> (self.tested - 1) & 1 == 1
+        self.test_block = if continues { self.test_block % PATTERN_BLOCKS + 1 } else { 0 };
+        continues && PATTERN >> (self.test_block - 1) & 1 == 1
     }
 
     /// Votes on a change of torque and the resulting change of acceleration, as a torque [N m].
@@ -169,11 +171,11 @@ impl<T: Real> ResponseCheck<T> {
         if torque.abs() <= table.large {
             return;
         }
-        let least = Self::LEAST * torque.abs();
-        let along = if torque > T::ZERO { acceleration } else { -acceleration };
-        if along > least {
+        let smallest = Self::LEAST * torque.abs();
+        let response = if torque > T::ZERO { acceleration } else { -acceleration };
+        if response > smallest {
             self.votes = self.votes.saturating_add(1);
-        } else if along < -least {
+        } else if response < -smallest {
             self.votes = self.votes.saturating_sub(1);
         }
     }

@@ -22,15 +22,15 @@ const GIVEN_AGAIN: u32 = 12;
 
 /// Freshness of the motor reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Freshness {
+pub enum SampleAge {
     /// Taken in this period.
     Fresh,
     /// Repeated: one or two readings were lost. The motor state is extrapolated.
-    Lost,
+    Repeated,
     /// Repeated for longer. The force since then is a guess: estimates that depend on the force are invalid, and no
     /// parameter is updated.
-    LostForLong,
-    /// New, but older than a period: estimates are invalid and no parameter is updated, as for `LostForLong`.
+    RepeatedForLong,
+    /// New, but older than a period: estimates are invalid and no parameter is updated, as for `RepeatedForLong`.
     Late,
     /// Missing, or too old to be used.
     Unusable,
@@ -43,47 +43,47 @@ pub struct Latency {
     age: u8,
     /// Excess of late periods over punctual ones; above [`LATE_FOR_GOOD`], punctual periods left until recovery plus
     /// `LATE_FOR_GOOD`.
-    late: u8,
+    lateness: u8,
 }
 
 impl Latency {
     /// Classifies a reading by its age, `None` if too old, and the control period; both in ticks.
     #[inline]
-    pub fn step(&mut self, age: Option<u32>, period: u32) -> Freshness {
+    pub fn step(&mut self, age: Option<u32>, period: u32) -> SampleAge {
         match age {
             Some(age) if age < period => {
                 self.age = 0;
-                self.late = self.late.saturating_sub(1);
-                Freshness::Fresh
+                self.lateness = self.lateness.saturating_sub(1);
+                SampleAge::Fresh
             }
             _ => self.step_late(age, period),
         }
     }
 
     #[cold]
-    fn step_late(&mut self, age: Option<u32>, period: u32) -> Freshness {
+    fn step_late(&mut self, age: Option<u32>, period: u32) -> SampleAge {
         let parts =
             age.and_then(|age| age.saturating_mul(PARTS).checked_div(period)).map_or(u8::MAX, |parts| parts as u8);
         let before = u32::from(core::mem::replace(&mut self.age, parts));
-        let again = u32::from(parts) >= before + GIVEN_AGAIN;
-        let freshness = match age {
-            Some(age) if again && age < period.saturating_mul(EXTRAPOLATED).saturating_add(period / 2) => {
-                Freshness::Lost
+        let is_repeated = u32::from(parts) >= before + GIVEN_AGAIN;
+        let sample_age = match age {
+            Some(age) if is_repeated && age < period.saturating_mul(EXTRAPOLATED).saturating_add(period / 2) => {
+                SampleAge::Repeated
             }
-            Some(_) if again => Freshness::LostForLong,
-            Some(_) => Freshness::Late,
-            None => Freshness::Unusable,
+            Some(_) if is_repeated => SampleAge::RepeatedForLong,
+            Some(_) => SampleAge::Late,
+            None => SampleAge::Unusable,
         };
-        self.late = match freshness {
-            Freshness::Fresh | Freshness::Lost => self.late.saturating_sub(1),
-            Freshness::LostForLong | Freshness::Late if self.late < LATE_FOR_GOOD => self.late + 1,
+        self.lateness = match sample_age {
+            SampleAge::Fresh | SampleAge::Repeated => self.lateness.saturating_sub(1),
+            SampleAge::RepeatedForLong | SampleAge::Late if self.lateness < LATE_FOR_GOOD => self.lateness + 1,
             _ => LATE_FOR_GOOD + RECOVERED_AFTER,
         };
-        freshness
+        sample_age
     }
 
     /// Returns whether readings have been late for long.
-    pub fn is_late_for_good(&self) -> bool {
-        self.late > LATE_FOR_GOOD
+    pub fn is_persistently_late(&self) -> bool {
+        self.lateness > LATE_FOR_GOOD
     }
 }

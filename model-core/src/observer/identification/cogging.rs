@@ -35,7 +35,7 @@ pub struct Cogging<T: Real> {
     speed: T,
     /// Carrying flank, and the intervals since it began to carry.
     flank: Option<Flank>,
-    carried_for: u32,
+    carrying_intervals: u32,
 }
 
 impl<T: Real> Cogging<T> {
@@ -47,7 +47,7 @@ impl<T: Real> Cogging<T> {
             slow: [T::ZERO; 2],
             speed: T::ZERO,
             flank: None,
-            carried_for: 0,
+            carrying_intervals: 0,
         }
     }
 
@@ -58,12 +58,12 @@ impl<T: Real> Cogging<T> {
 
     /// Updates the estimate once per learning interval from the motor's place in its turn [turns], its speed [rad/s],
     /// the load torque [N m] and the flank of settled contact.
-    pub fn learn(&mut self, table: &CoggingTable<T>, [place, speed, load]: [T; 3], flank: Option<Flank>) {
+    pub fn update(&mut self, table: &CoggingTable<T>, [place, speed, load]: [T; 3], flank: Option<Flank>) {
         if flank.is_none() || flank != self.flank {
-            (self.flank, self.carried_for, self.slow, self.speed) = (flank, 0, [load, T::ZERO], speed);
+            (self.flank, self.carrying_intervals, self.slow, self.speed) = (flank, 0, [load, T::ZERO], speed);
             return;
         }
-        self.carried_for = self.carried_for.saturating_add(1);
+        self.carrying_intervals = self.carrying_intervals.saturating_add(1);
         let [first, second] = &mut self.slow;
         let fast = load - *first;
         *first += table.slow * fast;
@@ -72,13 +72,13 @@ impl<T: Real> Cogging<T> {
         self.speed += table.steady * (speed - self.speed);
         let [least, most] = table.speeds;
         let steady = (speed - self.speed).abs() < table.unsteady * speed.abs();
-        if self.carried_for >= table.settled_after && steady && speed.abs() > least && speed.abs() < most {
-            self.update(table, -faster, seen(table, place, speed));
+        if self.carrying_intervals >= table.settled_after && steady && speed.abs() > least && speed.abs() < most {
+            self.correct(table, -faster, load_regressors(table, place, speed));
         }
     }
 
     /// Updates the Kalman filter with a torque [N m] and its regressors for sine and cosine.
-    fn update(&mut self, table: &CoggingTable<T>, driving: T, [sine, cosine]: [T; 2]) {
+    fn correct(&mut self, table: &CoggingTable<T>, driving: T, [sine, cosine]: [T; 2]) {
         let [a, b] = self.torque;
         let [of_a, of_b, of_both] = self.variance;
         let (from_a, from_b) = (of_a * sine + of_both * cosine, of_both * sine + of_b * cosine);
@@ -90,7 +90,7 @@ impl<T: Real> Cogging<T> {
         let expected = table.repeats * self.noise + uncertain;
         self.noise += table.memory * (square - self.noise);
         if expected > T::ZERO {
-            let [gain_a, gain_b] = [from_a, from_b].map(|from| from.over(expected));
+            let [gain_a, gain_b] = [from_a, from_b].map(|from| from / expected);
             self.torque =
                 [a + gain_a * innovation, b + gain_b * innovation].map(|it| clamp(it, -table.limit, table.limit));
             self.variance = [of_a - gain_a * from_a, of_b - gain_b * from_b, of_both - gain_a * from_b];
@@ -99,8 +99,8 @@ impl<T: Real> Cogging<T> {
 }
 
 /// Regressors of a high-pass filtered load torque for sine and cosine [-].
-fn seen<T: Real>(table: &CoggingTable<T>, place: T, speed: T) -> [T; 2] {
-    let phase = place.over(T::PHASE_UNIT).to_phase().wrapping_mul(table.periods);
+fn load_regressors<T: Real>(table: &CoggingTable<T>, place: T, speed: T) -> [T; 2] {
+    let phase = (place / T::PHASE_UNIT).to_phase().wrapping_mul(table.periods);
     let (sine, cosine) = sine_cosine::<T>(phase.wrapping_sub((table.late * speed).to_phase()));
     let ([first, second, third], square) = (table.response, speed * speed);
     let of_load = [T::ONE - square * second, speed * (first - square * third)];
@@ -109,6 +109,6 @@ fn seen<T: Real>(table: &CoggingTable<T>, place: T, speed: T) -> [T; 2] {
     // 1/F times (1 + j w t)^2 is nonzero at every speed: F and H have no pole on the imaginary axis.
     let real = of_load[0] * of_slow[0] - of_load[1] * of_slow[1];
     let imaginary = of_load[0] * of_slow[1] + of_load[1] * of_slow[0];
-    let part = -(tangent * tangent).over(real * real + imaginary * imaginary);
+    let part = -((tangent * tangent) / (real * real + imaginary * imaginary));
     [part * (real * sine - imaginary * cosine), part * (real * cosine + imaginary * sine)]
 }

@@ -1,5 +1,5 @@
 //! Regressors of the deflection (O11): touching teeth, offset, skew, and encoder errors once and twice per turn. The
-//! learner estimates their coefficients.
+//! least squares estimate their coefficients.
 
 use crate::gears::{Flank, sign};
 use crate::numbers::Real;
@@ -25,23 +25,23 @@ pub const COMPLIANCE: usize = 2;
 /// Index of the skew.
 pub const SKEW: usize = 3;
 /// Index of the transmission error's sine; the cosine follows.
-pub const ERROR: usize = 4;
+pub const TRANSMISSION_ERROR: usize = 4;
 /// Parameters of an encoder's error map.
-pub const MAP: usize = 4;
+pub const MAP_PARAMETERS: usize = 4;
 
 /// Regressors of an open gap; phases in 2^-32 turns. Without an output encoder the regressors of its map are zero.
-pub fn free<T: Real, const P: usize>(link_speed: T, motor: u32, output: Option<u32>) -> Regressors<T, P> {
+pub fn open_gap<T: Real, const P: usize>(link_speed: T, motor: u32, output: Option<u32>) -> Regressors<T, P> {
     let mut regressors = [T::ZERO; P];
     if let [_, offset, _, skew, ..] = regressors.as_mut_slice() {
         *offset = T::ONE;
         *skew = link_speed;
     }
     if P == MAPPED {
-        let (places, _) = regressors.get_mut(PLAIN..).unwrap_or_default().as_chunks_mut::<MAP>();
-        for (phase, places) in [Some(motor), output].into_iter().zip(places) {
+        let (harmonics, _) = regressors.get_mut(PLAIN..).unwrap_or_default().as_chunks_mut::<MAP_PARAMETERS>();
+        for (phase, harmonics) in [Some(motor), output].into_iter().zip(harmonics) {
             let Some(phase) = phase else { continue };
             let (sine, cosine) = sine_cosine::<T>(phase);
-            *places = [sine, cosine, T::TWO * sine * cosine, T::ONE - T::TWO * sine * sine];
+            *harmonics = [sine, cosine, T::TWO * sine * cosine, T::ONE - T::TWO * sine * sine];
         }
     }
     regressors
@@ -49,7 +49,7 @@ pub fn free<T: Real, const P: usize>(link_speed: T, motor: u32, output: Option<u
 
 /// Regressors of touching teeth: flank, force, sine and cosine of the mesh phase.
 #[derive(Debug, Clone, Copy)]
-pub struct Touch<T: Real> {
+pub struct ContactSample<T: Real> {
     /// Flank, if known.
     pub flank: Option<Flank>,
     /// Mesh force [N].
@@ -58,13 +58,13 @@ pub struct Touch<T: Real> {
     pub mesh: [T; 2],
 }
 
-impl<T: Real> Touch<T> {
+impl<T: Real> ContactSample<T> {
     /// Open gap.
-    pub const NONE: Self = Self { flank: None, force: T::ZERO, mesh: [T::ZERO; 2] };
+    pub const OPEN: Self = Self { flank: None, force: T::ZERO, mesh: [T::ZERO; 2] };
 
     /// Adds touching teeth to the regressors of an open gap.
-    pub fn on<const P: usize>(&self, free: &Regressors<T, P>) -> Regressors<T, P> {
-        let mut regressors = *free;
+    pub fn add_to<const P: usize>(&self, open_gap: &Regressors<T, P>) -> Regressors<T, P> {
+        let mut regressors = *open_gap;
         if let [half_gap, _, compliance, _, sine, cosine, ..] = regressors.as_mut_slice() {
             *half_gap = sign(self.flank);
             *compliance = self.force;

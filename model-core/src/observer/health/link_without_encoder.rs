@@ -9,11 +9,11 @@
 
 use crate::gears::{Flank, sign};
 use crate::numbers::Real;
-use crate::numbers::arithmetic::beyond;
-use crate::observer::contact::by_force::with_hysteresis;
+use crate::numbers::arithmetic::deadband;
+use crate::observer::contact::force_contact::with_hysteresis;
 use crate::observer::filters::LoadCorrection;
-use crate::observer::learnt::Learnt;
-use crate::observer::learnt::fusion::Fused;
+use crate::observer::identification::ParameterEstimator;
+use crate::observer::identification::mesh_measurement::MeshMeasurement;
 use crate::observer::tables::ObserverTables;
 
 /// Control periods by which contact may have ended before the smoothed force shows it.
@@ -36,28 +36,28 @@ const SHOWN_LATE: u16 = 10;
 
 /// Estimate of the link's motion without its encoder.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct MotorOnly<T: Real> {
+pub struct LinkWithoutEncoder<T: Real> {
     /// Flank of certain contact.
-    pub felt: Option<Flank>,
+    pub certain: Option<Flank>,
     /// Flank of likely contact (O27).
     likely: Option<Flank>,
     /// Periods since certain contact, saturated.
-    open_for: u16,
+    open_periods: u16,
     /// True if contact was certain since the exclusion of the output encoder, or if the link's speed was known then.
-    place_known: bool,
+    position_known: bool,
     /// Smoothed mesh force [N].
     force: T,
     /// Sum of landing speeds, decaying as bounces do [m/s].
-    bounce: T,
+    landing_speed: T,
 }
 
-impl<T: Real> MotorOnly<T> {
+impl<T: Real> LinkWithoutEncoder<T> {
     /// Decay rate of the bounce over that of the smoothed force [-]: bounces last eight times as long.
     const BOUNCE_DECAY: T = T::EIGHTH;
 
     /// Keeps place and speed of the link, which were known when its encoder was excluded.
-    pub fn keep_place(&mut self) {
-        self.place_known = true;
+    pub fn keep_position(&mut self) {
+        self.position_known = true;
     }
 
     /// Touching flank: by force if it suffices, otherwise by a motor position beyond a flank, however light the
@@ -65,72 +65,79 @@ impl<T: Real> MotorOnly<T> {
     #[cold]
     pub fn contact<const P: usize>(
         &self,
-        fused: &Fused<T>,
-        learnt: &Learnt<T, P>,
+        measurement: &MeshMeasurement<T>,
+        estimator: &ParameterEstimator<T, P>,
         before: Option<Flank>,
     ) -> Option<Flank> {
         if self.likely.is_some() {
             return self.likely;
         }
-        if self.open_for < SHOWN_LATE {
+        if self.open_periods < SHOWN_LATE {
             return before;
         }
-        let [half_gap, _] = learnt.shape();
-        Flank::towards(beyond(fused.of_teeth(), half_gap))
+        let [half_gap, _] = estimator.half_gap_and_compliance();
+        Flank::towards(deadband(measurement.tooth_deflection(), half_gap))
     }
 
     /// Detects contact in one period and returns the correction of the load side.
     pub fn step<const P: usize>(
         &mut self,
         tables: &ObserverTables<T>,
-        fused: &Fused<T>,
-        learnt: &Learnt<T, P>,
+        measurement: &MeshMeasurement<T>,
+        estimator: &ParameterEstimator<T, P>,
     ) -> LoadCorrection<T> {
         let levers = &tables.levers;
-        let [half_gap, compliance] = learnt.shape();
-        self.force += (fused.force - self.force) * tables.contact.smoothing;
-        let deviation = learnt.uncertainty.mean_force_deviation;
+        let [half_gap, compliance] = estimator.half_gap_and_compliance();
+        self.force += (measurement.force - self.force) * tables.contact.smoothing;
+        let deviation = estimator.uncertainty.mean_force_deviation;
         let [on, off] = [MAKES_CONTACT, KEEPS_CONTACT].map(|deviations| T::from_i32(deviations) * deviation);
-        let before = self.felt;
-        self.felt = with_hysteresis(before, self.force, on, off);
+        let before = self.certain;
+        self.certain = with_hysteresis(before, self.force, on, off);
         self.likely = with_hysteresis(self.likely, self.force, T::from_i32(LIKELY_CONTACT) * deviation, deviation);
-        let side: T = sign(self.felt);
-        let innovation = (fused.of_teeth() - side * half_gap - compliance * fused.force) * levers.per_output;
-        if self.felt.is_none() {
-            self.open_for = self.open_for.saturating_add(1);
+        let side: T = sign(self.certain);
+        let innovation =
+            (measurement.tooth_deflection() - side * half_gap - compliance * measurement.force) * levers.per_output;
+        if self.certain.is_none() {
+            self.open_periods = self.open_periods.saturating_add(1);
             // Beyond an edge the teeth touch, however lightly: the link turns with the motor.
-            let past = beyond(fused.of_teeth(), half_gap);
-            if past == T::ZERO {
+            let excess = deadband(measurement.tooth_deflection(), half_gap);
+            if excess == T::ZERO {
                 return LoadCorrection::None;
             }
-            return LoadCorrection::TurnsWithMotor(past * levers.per_output);
+            return LoadCorrection::TurnsWithMotor(excess * levers.per_output);
         }
-        self.open_for = 0;
-        if self.felt == before {
-            self.bounce -= self.bounce * tables.contact.smoothing * Self::BOUNCE_DECAY;
+        self.open_periods = 0;
+        if self.certain == before {
+            self.landing_speed -= self.landing_speed * tables.contact.smoothing * Self::BOUNCE_DECAY;
             return LoadCorrection::InContact(innovation);
         }
         // A landing gives the link's position and speed, but not its torque.
-        self.bounce += fused.rate.abs();
-        self.place_known = true;
+        self.landing_speed += measurement.rate.abs();
+        self.position_known = true;
         LoadCorrection::TurnsWithMotor(innovation)
     }
 
     /// Variance of the gap coordinate (O26) [m^2]; `None` if the link's place is unknown.
-    pub fn gap_variance<const P: usize>(&self, tables: &ObserverTables<T>, learnt: &Learnt<T, P>) -> Option<T> {
-        let edge = learnt.uncertainty.edge_deviation;
-        self.place_known.then(|| edge * edge + tables.contact.deflection_variance + self.drift_variance(tables))
+    pub fn gap_variance<const P: usize>(
+        &self,
+        tables: &ObserverTables<T>,
+        estimator: &ParameterEstimator<T, P>,
+    ) -> Option<T> {
+        let edge = estimator.uncertainty.edge_deviation;
+        self.position_known.then(|| edge * edge + tables.contact.deflection_variance + self.drift_variance(tables))
     }
 
     /// Variance added since certain contact [m^2].
     fn drift_variance(&self, tables: &ObserverTables<T>) -> T {
         let load = &tables.load;
-        let open_for = if self.open_for > 0 { i32::from(self.open_for) + GONE_BEFORE } else { 0 };
-        let time = tables.period * T::from_i32(open_for);
+        let open_periods = if self.open_periods > 0 { i32::from(self.open_periods) + GONE_BEFORE } else { 0 };
+        let time = tables.period * T::from_i32(open_periods);
         let [speed_variance, torque_variance] = load.motor_only_variance;
         let lever = tables.levers.output;
-        let bounce = self.bounce;
+        let landing_speed = self.landing_speed;
         let by_torque = time * load.deflection_per_torque;
-        (bounce * bounce + lever * lever * speed_variance + by_torque * by_torque * torque_variance) * time * time
+        (landing_speed * landing_speed + lever * lever * speed_variance + by_torque * by_torque * torque_variance)
+            * time
+            * time
     }
 }

@@ -10,20 +10,20 @@ const GATE: i32 = 4;
 
 /// Apparent force of the motor side without mesh force: bias + friction * direction [N].
 #[derive(Debug, Clone, Copy)]
-pub struct Bias<T: Real> {
+pub struct TorqueBias<T: Real> {
     pub bias: T,
     pub friction: T,
     /// Variances of bias and friction, then their covariance [N^2].
     pub variance: [T; 3],
 }
 
-impl<T: Real> Bias<T> {
+impl<T: Real> TorqueBias<T> {
     pub fn new(table: &ContactTable<T>) -> Self {
         Self { bias: T::ZERO, friction: T::ZERO, variance: [table.bias_prior, table.bias_prior, T::ZERO] }
     }
 
     /// Returns true if bias and friction are within their limits and no variance exceeds the initial one.
-    pub fn is_possible(&self, table: &ContactTable<T>) -> bool {
+    pub fn is_in_range(&self, table: &ContactTable<T>) -> bool {
         let [bias, friction, both] = self.variance;
         let most = table.bias_prior + table.bias_drift;
         self.bias.abs() <= table.bias_limit
@@ -39,7 +39,7 @@ impl<T: Real> Bias<T> {
     }
 
     /// Apparent force without mesh force, for a direction [N].
-    pub fn at(&self, direction: T) -> T {
+    pub fn force_at(&self, direction: T) -> T {
         self.bias + self.friction * direction
     }
 
@@ -50,16 +50,16 @@ impl<T: Real> Bias<T> {
     }
 
     /// Updates the estimate with a force measured in the open gap.
-    pub fn learn(&mut self, table: &ContactTable<T>, force: T, direction: T) {
+    pub fn update(&mut self, table: &ContactTable<T>, force: T, direction: T) {
         let [bias, friction, both] = self.variance;
         let (from_bias, from_friction) = (bias + direction * both, both + direction * friction);
         let expected = table.bias_noise + from_bias + direction * from_friction;
-        let innovation = force - self.at(direction);
+        let innovation = force - self.force_at(direction);
         // An outlier was not measured in an open gap.
         if innovation * innovation > T::from_i32(GATE * GATE) * expected {
             return;
         }
-        let (bias_gain, friction_gain) = (from_bias.over(expected), from_friction.over(expected));
+        let (bias_gain, friction_gain) = (from_bias / expected, from_friction / expected);
         self.bias = clamp(self.bias + bias_gain * innovation, -table.bias_limit, table.bias_limit);
         // Friction is never negative: it does not drive.
         let friction_now = clamp(self.friction + friction_gain * innovation, -table.bias_limit, table.bias_limit);
@@ -69,17 +69,20 @@ impl<T: Real> Bias<T> {
     }
 
     /// Saved numbers.
-    pub fn numbers(&self) -> impl Iterator<Item = T> {
+    pub fn saved_numbers(&self) -> impl Iterator<Item = T> {
         [self.bias, self.friction].into_iter().chain(self.variance)
     }
 
     /// Restores the saved numbers.
-    pub fn set_numbers(&mut self, next: &mut impl FnMut() -> T) {
-        [&mut self.bias, &mut self.friction].into_iter().chain(&mut self.variance).for_each(|number| *number = next());
+    pub fn restore_numbers(&mut self, next_number: &mut impl FnMut() -> T) {
+        [&mut self.bias, &mut self.friction]
+            .into_iter()
+            .chain(&mut self.variance)
+            .for_each(|number| *number = next_number());
     }
 
     /// Increases the variances by the drift of a learning interval.
-    pub fn age(&mut self, table: &ContactTable<T>) {
+    pub fn inflate_variance(&mut self, table: &ContactTable<T>) {
         let [bias, friction, _] = &mut self.variance;
         for variance in [bias, friction] {
             if *variance < table.bias_prior {

@@ -1,9 +1,9 @@
 //! Variances of all estimates and the thresholds that follow from them (O13, O18, O19), updated in parts, one per
 //! interval, so that no period has to do all the work.
 
-use super::bias::Bias;
-use super::learner::Learner;
-use super::regressors::{self, COMPLIANCE, ERROR, HALF_GAP, OFFSET, Regressors, SKEW, Touch};
+use super::bias::TorqueBias;
+use super::least_squares::LeastSquares;
+use super::regressors::{self, COMPLIANCE, ContactSample, HALF_GAP, OFFSET, Regressors, SKEW, TRANSMISSION_ERROR};
 use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::observer::tables::ObserverTables;
@@ -21,7 +21,7 @@ pub struct Uncertainty<T: Real> {
     /// Standard deviation of the mesh force averaged over the few intervals in which contact settles [N].
     pub steady_force_deviation: T,
     /// Standard deviation of the mesh force from motor side and deflection [N].
-    pub both_deviation: T,
+    pub combined_deviation: T,
     /// Variance of the deflection less offset, skew and maps [m^2].
     pub deflection_variance: T,
     /// Standard deviation of the deflection less the nearer edge [m].
@@ -40,13 +40,13 @@ pub struct Uncertainty<T: Real> {
     /// True if positions decide about contact that updates the parameters.
     pub half_gap_is_known: bool,
     /// True if positions decide about reported contact.
-    pub half_gap_serves: bool,
+    pub half_gap_is_usable: bool,
     /// 1 over the compliance [N/m].
     pub stiffness: T,
     /// Share of the meshes in the compliance [-].
     pub mesh_share: T,
     /// Two standard deviations of the compliance [m/N].
-    pub softness: T,
+    pub compliance_uncertainty: T,
     /// Guess of the half-gap plus three standard deviations; zero once the half-gap has been trusted on both flanks
     /// [m]. A half-gap estimated on one flank, or with counts wider than the gap, may be wrong in spite of a small
     /// variance.
@@ -63,11 +63,11 @@ pub struct Uncertainty<T: Real> {
     pub settled: bool,
     /// Standard deviation of a rest's noise over the standard deviation of the encoders' noise, at least 1 (O13) [-].
     /// Effects outside the model count as noise.
-    pub rest_deviation: T,
+    pub dwell_deviation: T,
     /// Mean normalised innovation of rests, positive if the rests show a wider gap [-].
     half_gap_error: T,
     /// Part that is updated next.
-    turn: u8,
+    next_part: u8,
 }
 
 impl<T: Real> Uncertainty<T> {
@@ -77,10 +77,10 @@ impl<T: Real> Uncertainty<T> {
 
     /// Largest distance from a flank within which teeth count as touching, over the half-gap [-]: an error of the gap
     /// coordinate that still permits compensation.
-    const NEAREST: T = T::TWENTIETH;
+    const MAX_NEAR_DISTANCE: T = T::TWENTIETH;
 
     /// Weight of a rest in the mean over rests [-].
-    const OF_A_REST: T = T::TWENTIETH;
+    const DWELL_WEIGHT: T = T::TWENTIETH;
 
     /// Mean normalised innovation above which the half-gap has changed [-]. Derived: the mean over rests of independent
     /// noise has a standard deviation of sqrt(share / (2 - share)) = 0.16, so that 1 is six of them.
@@ -88,12 +88,12 @@ impl<T: Real> Uncertainty<T> {
 
     /// Returns an uncertainty without its tables.
     #[inline(always)]
-    pub fn unbegun() -> Self {
+    pub fn uninitialized() -> Self {
         Self {
             force_deviation: T::ZERO,
             mean_force_deviation: T::ZERO,
             steady_force_deviation: T::ZERO,
-            both_deviation: T::ZERO,
+            combined_deviation: T::ZERO,
             deflection_variance: T::ZERO,
             edge_deviation: T::ZERO,
             wind_up_variance: [T::ZERO; 2],
@@ -102,36 +102,47 @@ impl<T: Real> Uncertainty<T> {
             near: T::ZERO,
             position_weight: T::ZERO,
             half_gap_is_known: false,
-            half_gap_serves: false,
+            half_gap_is_usable: false,
             stiffness: T::ZERO,
             mesh_share: T::ZERO,
-            softness: T::ZERO,
+            compliance_uncertainty: T::ZERO,
             guessed_half_gap: T::ZERO,
             reach: T::ZERO,
             gap_variance: [T::ZERO; 2],
             widest_variance: T::ZERO,
             flanks_swap: false,
             settled: false,
-            rest_deviation: T::ONE,
+            dwell_deviation: T::ONE,
             half_gap_error: T::ZERO,
-            turn: 0,
+            next_part: 0,
         }
     }
 
     /// Resets to the state before any estimation.
-    pub fn restart<const P: usize>(&mut self, tables: &ObserverTables<T>, learner: &Learner<T, P>) {
-        *self = Self::unbegun();
-        let free = regressors::free(T::ZERO, 0, Some(0));
-        let touch = Touch { flank: Some(Flank::Drive), ..Touch::NONE };
-        self.of_force(tables, &Bias::new(&tables.contact), learner.value(COMPLIANCE), T::ZERO);
+    pub fn reset<const P: usize>(&mut self, tables: &ObserverTables<T>, least_squares: &LeastSquares<T, P>) {
+        *self = Self::uninitialized();
+        let open_gap = regressors::open_gap(T::ZERO, 0, Some(0));
+        let contact = ContactSample { flank: Some(Flank::Drive), ..ContactSample::OPEN };
+        self.update_force_variances(
+            tables,
+            &TorqueBias::new(&tables.contact),
+            least_squares.value(COMPLIANCE),
+            T::ZERO,
+        );
         for _ in 0..PARTS {
-            self.next(tables, learner, &free, &touch);
+            self.update_next_part(tables, least_squares, &open_gap, &contact);
         }
-        self.of_learnt(tables, learner, false);
+        self.update_limits(tables, least_squares, false);
     }
 
     /// Updates the variances of the mesh force from the motor side.
-    pub fn of_force(&mut self, tables: &ObserverTables<T>, bias: &Bias<T>, compliance: T, direction: T) {
+    pub fn update_force_variances(
+        &mut self,
+        tables: &ObserverTables<T>,
+        bias: &TorqueBias<T>,
+        compliance: T,
+        direction: T,
+    ) {
         let contact = &tables.contact;
         let known = bias.variance_at(direction) + contact.ripple_variance;
         let ripple = T::HALF * contact.ripple_variance;
@@ -152,13 +163,13 @@ impl<T: Real> Uncertainty<T> {
     /// 2)) (O13), so that n is 1 in the mean (covariance matching: R. K. Mehra, *On the identification of variances and
     /// adaptive Kalman filtering*, IEEE Transactions on Automatic Control 15(2), 1970). Outliers leave r unchanged: the
     /// joint has changed, or its encoder fails.
-    pub fn take_innovation(&mut self, innovation: T, variance: T, flank: Flank) {
-        let square = (innovation * innovation).over(variance);
-        let grown = self.rest_deviation * (T::ONE + T::HALF * Self::OF_A_REST * (square - T::ONE));
-        self.rest_deviation = if grown > T::ONE { grown } else { T::ONE };
+    pub fn adapt_dwell_noise(&mut self, innovation: T, variance: T, flank: Flank) {
+        let square = (innovation * innovation) / variance;
+        let grown = self.dwell_deviation * (T::ONE + T::HALF * Self::DWELL_WEIGHT * (square - T::ONE));
+        self.dwell_deviation = if grown > T::ONE { grown } else { T::ONE };
         let size = square.square_root();
         let wider = if innovation * flank.sign() < T::ZERO { -size } else { size };
-        self.half_gap_error += Self::OF_A_REST * (wider - self.half_gap_error);
+        self.half_gap_error += Self::DWELL_WEIGHT * (wider - self.half_gap_error);
     }
 
     /// Returns true once the mean innovation of rests shows a changed half-gap; the mean then begins anew. Offset
@@ -172,78 +183,90 @@ impl<T: Real> Uncertainty<T> {
     }
 
     /// Updates the next part of the variances.
-    pub fn next<const P: usize>(
+    pub fn update_next_part<const P: usize>(
         &mut self,
         tables: &ObserverTables<T>,
-        learner: &Learner<T, P>,
-        free: &Regressors<T, P>,
-        touch: &Touch<T>,
+        least_squares: &LeastSquares<T, P>,
+        open_gap: &Regressors<T, P>,
+        contact: &ContactSample<T>,
     ) {
         let table = &tables.learner;
         let noise = tables.contact.deflection_variance;
         let [of_deflection, of_flank] = self.wind_up_variance;
         let [touching, open] = &mut self.gap_variance;
-        match self.turn {
+        match self.next_part {
             0 => {
-                self.deflection_variance = learner.variance(table, free);
+                self.deflection_variance = least_squares.variance(table, open_gap);
                 *open = self.deflection_variance + of_deflection + noise;
             }
-            1 => *touching = learner.variance(table, &touch.on(&[T::ZERO; P])) + of_flank + noise,
+            1 => *touching = least_squares.variance(table, &contact.add_to(&[T::ZERO; P])) + of_flank + noise,
             2 => {
                 self.variances =
-                    [HALF_GAP, OFFSET, COMPLIANCE, SKEW].map(|parameter| learner.variance_of(table, parameter));
+                    [HALF_GAP, OFFSET, COMPLIANCE, SKEW].map(|parameter| least_squares.variance_of(table, parameter));
             }
-            _ => self.of_edge(tables, learner, learner.variance(table, &touch.on(free))),
+            _ => {
+                self.update_edge_limits(tables, least_squares, least_squares.variance(table, &contact.add_to(open_gap)))
+            }
         }
-        self.turn = if self.turn + 1 < PARTS { self.turn + 1 } else { 0 };
+        self.next_part = if self.next_part + 1 < PARTS { self.next_part + 1 } else { 0 };
     }
 
     /// Updates the thresholds that depend on the variance of the nearer edge.
-    fn of_edge<const P: usize>(&mut self, tables: &ObserverTables<T>, learner: &Learner<T, P>, variance: T) {
+    fn update_edge_limits<const P: usize>(
+        &mut self,
+        tables: &ObserverTables<T>,
+        least_squares: &LeastSquares<T, P>,
+        variance: T,
+    ) {
         self.edge_deviation = variance.square_root();
         let edge = variance + tables.contact.deflection_variance;
         self.blur = T::TWO * edge.square_root();
-        let compliance = learner.value(COMPLIANCE);
+        let compliance = least_squares.value(COMPLIANCE);
         let force = self.force_deviation * self.force_deviation;
         // Weights in inverse proportion to the variances, both as deflection.
         let from_force = force * compliance * compliance;
-        self.position_weight = from_force.over(from_force + edge);
-        self.both_deviation = (force * (T::ONE - self.position_weight)).square_root();
-        let half_gap = learner.value(HALF_GAP);
+        self.position_weight = from_force / (from_force + edge);
+        self.combined_deviation = (force * (T::ONE - self.position_weight)).square_root();
+        let half_gap = least_squares.value(HALF_GAP);
         let part = half_gap * tables.contact.known_part;
         self.half_gap_is_known = half_gap > T::ZERO && variance < part * part;
         // A known half-gap serves up to three times the deviation: a place in the turn outside the known maps is no new
         // joint.
         let thrice = T::THREE * part;
-        self.half_gap_serves =
-            self.half_gap_is_known || self.half_gap_serves && half_gap > T::ZERO && variance < thrice * thrice;
+        self.half_gap_is_usable =
+            self.half_gap_is_known || self.half_gap_is_usable && half_gap > T::ZERO && variance < thrice * thrice;
     }
 
     /// Updates the values that hold in every period until the next interval; `trusted` is true once a half-gap was
     /// trusted on both flanks.
-    pub fn of_learnt<const P: usize>(&mut self, tables: &ObserverTables<T>, learner: &Learner<T, P>, trusted: bool) {
-        let (half_gap, compliance) = (learner.value(HALF_GAP), learner.value(COMPLIANCE));
+    pub fn update_limits<const P: usize>(
+        &mut self,
+        tables: &ObserverTables<T>,
+        least_squares: &LeastSquares<T, P>,
+        trusted: bool,
+    ) {
+        let (half_gap, compliance) = (least_squares.value(HALF_GAP), least_squares.value(COMPLIANCE));
         let [_, _, compliance_variance, _] = self.variances;
-        self.stiffness = if compliance > T::ZERO { T::ONE.over(compliance) } else { T::ZERO };
+        self.stiffness = if compliance > T::ZERO { T::ONE / compliance } else { T::ZERO };
         self.mesh_share = tables.learner.mesh_compliance * self.stiffness;
-        self.softness = T::TWO * compliance_variance.square_root();
+        self.compliance_uncertainty = T::TWO * compliance_variance.square_root();
         let [guess, deviation] = [tables.learner.mean[HALF_GAP], tables.learner.deviation[HALF_GAP]];
         self.guessed_half_gap = if trusted { T::ZERO } else { guess + T::THREE * deviation };
         // A rounding error is uniform within plus or minus `rounding`.
         let rounding = tables.rounding();
         let edge = self.edge_deviation * self.edge_deviation + T::THIRD * rounding * rounding;
-        let [by_learnt, by_guess] =
+        let [by_estimate, by_guess] =
             [half_gap + T::THREE * edge.square_root(), self.guessed_half_gap + T::TWO * rounding];
-        self.reach = tables.supervisor.margin + if by_guess > by_learnt { by_guess } else { by_learnt };
+        self.reach = tables.supervisor.margin + if by_guess > by_estimate { by_guess } else { by_estimate };
         let widest = T::TWO * half_gap * tables.supervisor.widest_part;
         // In a gap narrower than an output count the position of the teeth cannot be observed.
         self.widest_variance = if half_gap > rounding { widest * widest } else { T::ZERO };
-        let [sine, cosine] = [learner.value(ERROR), learner.value(ERROR + 1)];
+        let [sine, cosine] = [least_squares.value(TRANSMISSION_ERROR), least_squares.value(TRANSMISSION_ERROR + 1)];
         let error = (sine * sine + cosine * cosine).square_root();
         self.flanks_swap = error > half_gap;
         // The planets' errors differ: some teeth meet earlier by half of the error on average, and noise hides the
         // moment.
-        let (first, most) = (self.blur + T::HALF * error, Self::NEAREST * half_gap);
+        let (first, most) = (self.blur + T::HALF * error, Self::MAX_NEAR_DISTANCE * half_gap);
         self.near = if first < most { first } else { most };
     }
 }

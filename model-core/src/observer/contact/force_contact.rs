@@ -10,25 +10,25 @@ const PERSISTENCE: u8 = 3;
 
 /// Contact by force alone.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct ByForce {
+pub struct ForceContact {
     /// Flank in contact.
     pub flank: Option<Flank>,
-    wanted: Option<Flank>,
-    held: u8,
+    candidate: Option<Flank>,
+    candidate_periods: u8,
 }
 
-impl ByForce {
+impl ForceContact {
     /// Updates the contact. A contact begins above two `deviation`s, the standard deviation of the force [N], and is
     /// kept above one.
     pub fn step<T: Real>(&mut self, force: T, deviation: T) -> Option<Flank> {
-        let wanted = with_hysteresis(self.flank, force, T::TWO * deviation, deviation);
-        if wanted != self.flank {
-            self.held = if wanted == self.wanted { self.held + 1 } else { 1 };
-            if self.held >= PERSISTENCE {
-                self.flank = wanted;
+        let candidate = with_hysteresis(self.flank, force, T::TWO * deviation, deviation);
+        if candidate != self.flank {
+            self.candidate_periods = if candidate == self.candidate { self.candidate_periods + 1 } else { 1 };
+            if self.candidate_periods >= PERSISTENCE {
+                self.flank = candidate;
             }
         }
-        self.wanted = wanted;
+        self.candidate = candidate;
         self.flank
     }
 }
@@ -36,6 +36,6 @@ impl ByForce {
 /// Returns the flank that a force presses: a contact begins above `on` and is kept above `off` [N].
 pub fn with_hysteresis<T: Real>(before: Option<Flank>, force: T, on: T, off: T) -> Option<Flank> {
     let flank = if force > T::ZERO { Flank::Drive } else { Flank::Back };
-    let least = if before == Some(flank) { off } else { on };
-    (force.abs() > least).then_some(flank)
+    let threshold = if before == Some(flank) { off } else { on };
+    (force.abs() > threshold).then_some(flank)
 }

@@ -1,6 +1,6 @@
 //! Learning interval: means over a few control periods, and the next task of the work after the interval.
 
-use super::fusion::Fused;
+use super::mesh_measurement::MeshMeasurement;
 use super::travel::Travel;
 use crate::gears::Flank;
 use crate::numbers::Real;
@@ -13,74 +13,75 @@ const SETTLED_AFTER: u8 = 3;
 #[derive(Debug, Clone, Copy)]
 pub struct Interval<T: Real> {
     pub periods: u16,
-    sums: Mean<T>,
+    sums: IntervalMean<T>,
     pub task: Task,
     /// Direction of the motor's dry friction, mean over the last interval.
     pub direction: T,
     /// Nearer flank in the last interval.
-    pub nearer: Flank,
+    pub nearer_flank: Flank,
     /// Flank of the last rest that updated the parameters.
-    pub learnt_on: Option<Flank>,
+    pub updated_on: Option<Flank>,
     /// Flank of the last settled contact, until the teeth leave it.
-    pub flank: Option<Flank>,
+    pub settled_flank: Option<Flank>,
     /// Mean mesh force in the last interval [N].
     pub force: T,
     /// Flank of loaded contact in the last interval.
-    pub loaded: Option<Flank>,
+    pub loaded_flank: Option<Flank>,
     /// Mesh force averaged over a few intervals [N].
-    pub steady: T,
+    pub steady_force: T,
     /// Mesh force averaged over the whole rest, landing included [N].
-    pub rested: T,
+    pub dwell_force: T,
     /// Consecutive intervals well inside the gap.
-    pub open_for: u8,
+    pub open_intervals: u8,
 }
 
 /// Averaged quantities.
 #[derive(Debug, Clone, Copy)]
-pub struct Mean<T: Real> {
-    pub measured: T,
-    pub lost: T,
+pub struct IntervalMean<T: Real> {
+    pub raw_deflection: T,
+    pub motor_force: T,
     pub force: T,
     pub direction: T,
 }
 
-impl<T: Real> Mean<T> {
-    const NONE: Self = Self { measured: T::ZERO, lost: T::ZERO, force: T::ZERO, direction: T::ZERO };
+impl<T: Real> IntervalMean<T> {
+    const NONE: Self = Self { raw_deflection: T::ZERO, motor_force: T::ZERO, force: T::ZERO, direction: T::ZERO };
 }
 
 impl<T: Real> Interval<T> {
     pub fn new() -> Self {
         Self {
             periods: 0,
-            sums: Mean::NONE,
+            sums: IntervalMean::NONE,
             task: Task::Done,
             direction: T::ZERO,
-            nearer: Flank::Drive,
-            learnt_on: None,
-            flank: None,
+            nearer_flank: Flank::Drive,
+            updated_on: None,
+            settled_flank: None,
             force: T::ZERO,
-            loaded: None,
-            steady: T::ZERO,
-            rested: T::ZERO,
-            open_for: 0,
+            loaded_flank: None,
+            steady_force: T::ZERO,
+            dwell_force: T::ZERO,
+            open_intervals: 0,
         }
     }
 
-    pub fn add(&mut self, fused: &Fused<T>) {
-        self.sums.measured += fused.measured;
-        self.sums.lost += fused.lost;
-        self.sums.force += fused.force;
-        self.sums.direction += fused.direction;
+    pub fn add(&mut self, measurement: &MeshMeasurement<T>) {
+        self.sums.raw_deflection += measurement.raw_deflection;
+        self.sums.motor_force += measurement.motor_force;
+        self.sums.force += measurement.force;
+        self.sums.direction += measurement.direction;
         self.periods += 1;
     }
 
     /// Returns the means and clears the sums.
-    pub fn close(&mut self, per_periods: T) -> Mean<T> {
-        let Mean { measured, lost, force, direction } = core::mem::replace(&mut self.sums, Mean::NONE);
+    pub fn close(&mut self, per_periods: T) -> IntervalMean<T> {
+        let IntervalMean { raw_deflection, motor_force, force, direction } =
+            core::mem::replace(&mut self.sums, IntervalMean::NONE);
         self.periods = 0;
-        Mean {
-            measured: measured * per_periods,
-            lost: lost * per_periods,
+        IntervalMean {
+            raw_deflection: raw_deflection * per_periods,
+            motor_force: motor_force * per_periods,
             force: force * per_periods,
             direction: direction * per_periods,
         }
@@ -89,7 +90,7 @@ impl<T: Real> Interval<T> {
 
 /// Rest of the teeth in an interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Rest {
+pub enum Dwell {
     /// No rest is known.
     No,
     /// Rest on a flank; `None` for an unknown flank.
@@ -106,16 +107,16 @@ pub enum Task {
     /// Determines the flank of the rest.
     Flank,
     /// Accepts or rejects a rest on a flank.
-    Weigh,
+    CheckDwell,
     /// Updates the parameters with the rest.
-    Learn,
+    UpdateParameters,
     /// Updates the variances.
     Uncertainty,
     /// Updates the values that hold until the next interval.
-    Conclude,
+    UpdateLimits,
 }
 
 /// Returns true once the teeth have been at rest long enough.
-pub fn rests<T: Real>(travel: Travel<T>) -> bool {
+pub fn is_settled<T: Real>(travel: Travel<T>) -> bool {
     matches!(travel, Travel::AtRest(intervals) if intervals >= SETTLED_AFTER)
 }

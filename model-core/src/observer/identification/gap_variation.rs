@@ -1,7 +1,7 @@
 //! Variation of the half-gap around the turn (O20): worn gears vary by 30 %. A link that turns while one flank carries
 //! does not reveal this variation, which is attributed to encoder errors and offset.
 //!
-//! Symbols: c half-gap, D angle of the link since a flank was last seen, e^2 the squared innovation of the first rest
+//! Symbols: c half-gap, D angle of the link since the last dwell on a flank, e^2 the squared innovation of the first rest
 //! after the return to that flank, less its variance.
 //!
 //! ```text
@@ -15,75 +15,75 @@ use crate::observer::tables::CountTable;
 
 /// Place of the last rest on each flank, and the observed variation of the half-gap.
 #[derive(Debug, Clone, Copy)]
-pub struct Places<T: Real> {
+pub struct GapVariation<T: Real> {
     /// Present place of the link in its turn [2^-32 turns].
-    now: u32,
+    position: u32,
     /// Place of the last accepted rest on the drive flank and on the back flank [2^-32 turns].
-    seen: [Option<u32>; 2],
+    dwell_positions: [Option<u32>; 2],
     /// Flank of the last rest.
-    last: Option<Flank>,
+    last_flank: Option<Flank>,
     /// Sums of (1): squared relative variations [-], and squared angles [rad^2].
     sums: [T; 2],
 }
 
-impl<T: Real> Places<T> {
+impl<T: Real> GapVariation<T> {
     /// Initial relative variation of the half-gap per radian [-]: the steepest change of a variation of 25 % once per
     /// turn. Tuned on `hil/real-any.toml`.
-    const VARIATION: T = T::QUARTER;
+    const INITIAL_VARIATION: T = T::QUARTER;
 
     /// Weight of the initial variation [rad^2].
-    const WEIGHT: T = T::QUARTER;
+    const INITIAL_WEIGHT: T = T::QUARTER;
 
     /// Largest weight of the sums, which are halved beyond, as gears wear [rad^2].
-    const MOST: T = T::SIX;
+    const MAX_WEIGHT: T = T::SIX;
 
     /// Least angle after which a rest shows the variation [rad].
-    const ELSEWHERE: T = T::QUARTER;
+    const MIN_ANGLE: T = T::QUARTER;
 
     /// Angle beyond which the variance grows no further [rad].
-    const FURTHEST: T = T::TWO;
+    const MAX_ANGLE: T = T::TWO;
 
     pub fn new() -> Self {
         Self {
-            now: 0,
-            seen: [None; 2],
-            last: None,
-            sums: [Self::VARIATION * Self::VARIATION * Self::WEIGHT, Self::WEIGHT],
+            position: 0,
+            dwell_positions: [None; 2],
+            last_flank: None,
+            sums: [Self::INITIAL_VARIATION * Self::INITIAL_VARIATION * Self::INITIAL_WEIGHT, Self::INITIAL_WEIGHT],
         }
     }
 
     /// Sets the link's place in its turn [2^-32 turns].
-    pub fn go_to(&mut self, phase: u32) {
-        self.now = phase;
+    pub fn set_position(&mut self, phase: u32) {
+        self.position = phase;
     }
 
     /// Updates the variation with a rest on a flank: its squared deviation with the variance expected [m^2], the
     /// half-gap [m], and whether the rest was accepted.
-    pub fn take(
+    pub fn add_dwell(
         &mut self,
         table: &CountTable<T>,
         flank: Flank,
         [square, variance]: [T; 2],
         half_gap: T,
-        belongs: bool,
+        is_accepted: bool,
     ) {
-        let came_back = self.last != Some(flank);
-        self.last = Some(flank);
+        let flank_changed = self.last_flank != Some(flank);
+        self.last_flank = Some(flank);
         let angle = self.angle(table, flank);
-        if came_back && angle > Self::ELSEWHERE && half_gap > T::ZERO {
-            let beyond = if square > variance { square - variance } else { T::ZERO };
+        if flank_changed && angle > Self::MIN_ANGLE && half_gap > T::ZERO {
+            let excess = if square > variance { square - variance } else { T::ZERO };
             let [squares, angles] = &mut self.sums;
-            let variation = beyond.over(half_gap * half_gap);
+            let variation = excess / (half_gap * half_gap);
             *squares += if variation.is_finite() { variation } else { T::ONE };
             *angles += angle * angle;
-            if *angles > Self::MOST {
+            if *angles > Self::MAX_WEIGHT {
                 *squares *= T::HALF;
                 *angles *= T::HALF;
             }
         }
-        if belongs {
-            let [drive, back] = &mut self.seen;
-            *(if flank == Flank::Drive { drive } else { back }) = Some(self.now);
+        if is_accepted {
+            let [drive, back] = &mut self.dwell_positions;
+            *(if flank == Flank::Drive { drive } else { back }) = Some(self.position);
         }
     }
 
@@ -93,15 +93,15 @@ impl<T: Real> Places<T> {
         let angle = if drive > back { drive } else { back };
         let [squares, angles] = self.sums;
         let deviation = half_gap * angle;
-        squares.over(angles) * deviation * deviation
+        (squares / angles) * deviation * deviation
     }
 
-    /// Angle of the link since a flank was last seen; 0 for a flank never seen [rad].
+    /// Angle of the link since the last dwell on a flank; 0 without a dwell [rad].
     fn angle(&self, table: &CountTable<T>, flank: Flank) -> T {
-        let [drive, back] = self.seen;
-        let Some(seen) = (if flank == Flank::Drive { drive } else { back }) else { return T::ZERO };
-        let apart = T::from_i32(self.now.wrapping_sub(seen) as i32).abs() * T::PHASE_UNIT;
-        let angle = apart.over(table.output.turns);
-        if angle < Self::FURTHEST { angle } else { Self::FURTHEST }
+        let [drive, back] = self.dwell_positions;
+        let Some(dwell_positions) = (if flank == Flank::Drive { drive } else { back }) else { return T::ZERO };
+        let apart = T::from_i32(self.position.wrapping_sub(dwell_positions) as i32).abs() * T::PHASE_UNIT;
+        let angle = apart / table.output.turns;
+        if angle < Self::MAX_ANGLE { angle } else { Self::MAX_ANGLE }
     }
 }

@@ -3,8 +3,8 @@
 
 use core::array;
 
-use super::co_motion::{Change, CoMotion};
-use super::learner::{Innovation, Learner};
+use super::co_motion::{CoMotion, DeflectionChange};
+use super::least_squares::{Innovation, LeastSquares};
 use super::regressors::{HALF_GAP, Regressors, SKEW};
 use crate::gears::Flank;
 use crate::numbers::Real;
@@ -12,30 +12,30 @@ use crate::observer::tables::LearnerTable;
 
 /// Change of the deflection that proves a crossing [standard deviations]: noise causes one in 16,000 rests to exceed
 /// this limit.
-const SURE: i32 = 4;
+const CROSSING_SIGMA: i32 = 4;
 
 /// Last rest of the teeth.
 #[derive(Debug, Clone, Copy)]
-pub struct LastRest<T: Real, const P: usize> {
+pub struct LastDwell<T: Real, const P: usize> {
     /// Regressors of the last rest.
-    then: Regressors<T, P>,
+    regressors: Regressors<T, P>,
     flank: Option<Flank>,
     deflection: T,
     co_motion: CoMotion<T>,
-    held: bool,
+    is_stored: bool,
     /// True until the rest is interrupted.
-    goes_on: bool,
+    is_continuous: bool,
 }
 
-impl<T: Real, const P: usize> LastRest<T, P> {
+impl<T: Real, const P: usize> LastDwell<T, P> {
     /// A constant: the compiler writes it in place instead of copying from the stack.
     const NEW: Self = Self {
-        then: [T::ZERO; P],
+        regressors: [T::ZERO; P],
         flank: None,
         deflection: T::ZERO,
         co_motion: CoMotion::NONE,
-        held: false,
-        goes_on: false,
+        is_stored: false,
+        is_continuous: false,
     };
 
     #[inline(always)]
@@ -44,13 +44,20 @@ impl<T: Real, const P: usize> LastRest<T, P> {
     }
 
     /// Stores a rest.
-    pub fn put(&mut self, regressors: &Regressors<T, P>, deflection: T, flank: Option<Flank>) {
-        *self = Self { then: *regressors, flank, deflection, co_motion: self.co_motion, held: true, goes_on: true };
+    pub fn store(&mut self, regressors: &Regressors<T, P>, deflection: T, flank: Option<Flank>) {
+        *self = Self {
+            regressors: *regressors,
+            flank,
+            deflection,
+            co_motion: self.co_motion,
+            is_stored: true,
+            is_continuous: true,
+        };
     }
 
     /// Notes that the teeth are not at rest.
     pub fn interrupt(&mut self) {
-        self.goes_on = false;
+        self.is_continuous = false;
     }
 
     /// Evidence on the flank without a force.
@@ -68,17 +75,17 @@ impl<T: Real, const P: usize> LastRest<T, P> {
     pub fn innovation(
         &self,
         table: &LearnerTable<T>,
-        learner: &Learner<T, P>,
+        least_squares: &LeastSquares<T, P>,
         regressors: &Regressors<T, P>,
         deflection: T,
     ) -> Option<Innovation<T, P>> {
-        let between: Regressors<T, P> = array::from_fn(|i| match (regressors.get(i), self.then.get(i)) {
+        let between: Regressors<T, P> = array::from_fn(|i| match (regressors.get(i), self.regressors.get(i)) {
             (Some(now), Some(before)) if i != HALF_GAP => *now - *before,
             _ => T::ZERO,
         });
         // Both deflections carry noise.
         let weight = table.weight * T::HALF.square_root();
-        self.held.then(|| learner.innovation(table, &between, deflection - self.deflection, weight))
+        self.is_stored.then(|| least_squares.innovation(table, &between, deflection - self.deflection, weight))
     }
 
     /// Flank of the new rest; `None` if the change is neither larger than all other influences nor small enough for the
@@ -92,25 +99,29 @@ impl<T: Real, const P: usize> LastRest<T, P> {
         lever: T,
     ) -> Option<Flank> {
         let speed = regressors.get(SKEW).copied().unwrap_or(T::ZERO);
-        let went = speed * lever * table.span * T::from_i32(table.block as i32);
+        let link_travel = speed * lever * table.span * T::from_i32(table.block as i32);
         let noise = table.noise * T::TWO.square_root();
-        let moved = innovation.value * noise;
-        let sure = T::from_i32(SURE * SURE) * innovation.variance * noise * noise;
-        let wide = self.co_motion.half_gap_at_least(half_gap);
-        let change = if moved * moved >= sure {
-            if moved.abs() > half_gap * T::HALF { Change::Crossed } else { Change::Unsure }
-        } else if sure < wide * wide {
-            Change::Stays
+        let change_of_deflection = innovation.value * noise;
+        let crossing_square = T::from_i32(CROSSING_SIGMA * CROSSING_SIGMA) * innovation.variance * noise * noise;
+        let half_gap_bound = self.co_motion.half_gap_at_least(half_gap);
+        let change = if change_of_deflection * change_of_deflection >= crossing_square {
+            if change_of_deflection.abs() > half_gap * T::HALF {
+                DeflectionChange::Crossed
+            } else {
+                DeflectionChange::Unsure
+            }
+        } else if crossing_square < half_gap_bound * half_gap_bound {
+            DeflectionChange::Stays
         } else {
-            Change::Hidden
+            DeflectionChange::Hidden
         };
-        let moves = went.abs() >= half_gap;
-        self.co_motion.step(change, moved, went, self.goes_on, moves);
+        let link_moves = link_travel.abs() >= half_gap;
+        self.co_motion.step(change, change_of_deflection, link_travel, self.is_continuous, link_moves);
         match change {
-            _ if !moves => None,
-            Change::Crossed => Some(if moved > T::ZERO { Flank::Drive } else { Flank::Back }),
-            Change::Stays => self.flank,
-            Change::Unsure | Change::Hidden => None,
+            _ if !link_moves => None,
+            DeflectionChange::Crossed => Some(if change_of_deflection > T::ZERO { Flank::Drive } else { Flank::Back }),
+            DeflectionChange::Stays => self.flank,
+            DeflectionChange::Unsure | DeflectionChange::Hidden => None,
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::{design_observer, observer_settings};
 use crate::gears::Flank;
 use crate::numbers::Real;
-use crate::observer::learnt::places::Places;
+use crate::observer::identification::gap_variation::GapVariation;
 use crate::observer::tables::CountTable;
 
 const HALF_GAP: f32 = 80e-6;
@@ -19,36 +19,36 @@ fn phase(angle: f64) -> u32 {
 }
 
 /// Standard deviation of the half-gap at an angle, over the half-gap.
-fn deviation(places: &mut Places<f32>, table: &CountTable<f32>, angle: f64) -> f32 {
-    places.go_to(phase(angle));
-    places.variance(table, HALF_GAP).square_root() / HALF_GAP
+fn deviation(variation: &mut GapVariation<f32>, table: &CountTable<f32>, angle: f64) -> f32 {
+    variation.set_position(phase(angle));
+    variation.variance(table, HALF_GAP).square_root() / HALF_GAP
 }
 
 /// Reports rests on both flanks at an angle, each with an error `off` over the half-gap.
-fn see(places: &mut Places<f32>, table: &CountTable<f32>, angle: f64, off: f32) {
-    places.go_to(phase(angle));
+fn see(variation: &mut GapVariation<f32>, table: &CountTable<f32>, angle: f64, off: f32) {
+    variation.set_position(phase(angle));
     for flank in [Flank::Drive, Flank::Back] {
-        places.take(table, flank, [(off * HALF_GAP).powi(2), 0.0], HALF_GAP, true);
+        variation.add_dwell(table, flank, [(off * HALF_GAP).powi(2), 0.0], HALF_GAP, true);
     }
 }
 
 #[test]
 fn nothing_is_added_where_both_flanks_were_seen() {
-    let (table, mut places) = (counts(), Places::new());
+    let (table, mut variation) = (counts(), GapVariation::new());
     assert_eq!(
-        deviation(&mut places, &table, 1.0),
+        deviation(&mut variation, &table, 1.0),
         0.0,
         "nothing was seen yet: the half-gap itself says that it is not known"
     );
-    see(&mut places, &table, -0.1, 0.0);
-    assert_eq!(deviation(&mut places, &table, -0.1), 0.0);
+    see(&mut variation, &table, -0.1, 0.0);
+    assert_eq!(deviation(&mut variation, &table, -0.1), 0.0);
 }
 
 #[test]
 fn what_is_further_away_is_known_less() {
-    let (table, mut places) = (counts(), Places::new());
-    see(&mut places, &table, -0.1, 0.0);
-    let [near, far] = [0.2, 0.5].map(|angle| deviation(&mut places, &table, angle));
+    let (table, mut variation) = (counts(), GapVariation::new());
+    see(&mut variation, &table, -0.1, 0.0);
+    let [near, far] = [0.2, 0.5].map(|angle| deviation(&mut variation, &table, angle));
     assert!((near - 0.3 * 0.25).abs() < 1e-3 && (far - 0.6 * 0.25).abs() < 1e-3, "{near} {far}");
 }
 
@@ -56,9 +56,9 @@ fn what_is_further_away_is_known_less() {
 fn even_gears_are_trusted_and_worn_ones_are_not() {
     let table = counts();
     let [even, worn] = [0.0, 0.3].map(|off| {
-        let mut places = Places::new();
-        (0..8).for_each(|pass| see(&mut places, &table, if pass % 2 == 0 { 0.0 } else { 0.8 }, off));
-        deviation(&mut places, &table, 0.4)
+        let mut variation = GapVariation::new();
+        (0..8).for_each(|pass| see(&mut variation, &table, if pass % 2 == 0 { 0.0 } else { 0.8 }, off));
+        deviation(&mut variation, &table, 0.4)
     });
     assert!(even < 0.04 && worn > 0.12, "{even} {worn}");
 }

@@ -10,22 +10,22 @@ mod tests;
 
 use core::array;
 
-use super::regressors::{COMPLIANCE, ERROR, HALF_GAP, MAP, OFFSET, PLAIN, Regressors, SKEW};
+use super::regressors::{COMPLIANCE, HALF_GAP, MAP_PARAMETERS, OFFSET, PLAIN, Regressors, SKEW, TRANSMISSION_ERROR};
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 use crate::observer::tables::{LearnerTable, ObserverTables};
 
 /// Limit of a parameter's deviation from its mean [initial standard deviations], against failing encoders: four times
 /// the deviation of a joint that fits its file. The offset has no limit.
-const FURTHEST: i32 = 16;
+const MAX_DEVIATION: i32 = 16;
 
 /// Limit of a factor above the diagonal, in units of the initial standard deviations: ratio of the motions of two
-/// parameters that are told apart.
-const LARGEST_FACTOR: i32 = 1000;
+/// parameters that the motion separates.
+const MAX_FACTOR: i32 = 1000;
 
 /// Parameters with their covariance.
 #[derive(Debug, Clone, Copy)]
-pub struct Learner<T: Real, const P: usize> {
+pub struct LeastSquares<T: Real, const P: usize> {
     /// U above the diagonal, D on the diagonal; the entries of a column are contiguous.
     factors: [[T; P]; P],
     /// Parameters [SI].
@@ -50,22 +50,22 @@ impl<T: Real, const P: usize> Innovation<T, P> {
     }
 }
 
-impl<T: Real, const P: usize> Learner<T, P> {
+impl<T: Real, const P: usize> LeastSquares<T, P> {
     /// A constant: the compiler clears the destination instead of copying from the stack.
-    const UNBEGUN: Self = Self { factors: [[T::ZERO; P]; P], values: [T::ZERO; P] };
+    const UNINITIALIZED: Self = Self { factors: [[T::ZERO; P]; P], values: [T::ZERO; P] };
 
-    /// Returns a learner without its table.
+    /// Returns least squares without their table.
     #[inline(always)]
-    pub fn unbegun() -> Self {
-        Self::UNBEGUN
+    pub fn uninitialized() -> Self {
+        Self::UNINITIALIZED
     }
 
     /// Resets parameters and covariance to the design.
-    pub fn restart(&mut self, table: &LearnerTable<T>) {
+    pub fn reset(&mut self, table: &LearnerTable<T>) {
         for (parameter, value) in self.values.iter_mut().enumerate() {
             *value = table.mean.get(parameter).copied().unwrap_or(T::ZERO);
         }
-        self.reopen();
+        self.reset_covariance();
     }
 
     /// Value of a parameter [SI].
@@ -109,21 +109,23 @@ impl<T: Real, const P: usize> Learner<T, P> {
 
     /// Standard deviation of the transmission error, and its reduction since the start [m].
     pub fn error_deviation(&self, table: &LearnerTable<T>) -> (T, T) {
-        let [sine, cosine] = [ERROR, ERROR + 1].map(|parameter| self.variance_of(table, parameter));
-        let before = [ERROR, ERROR + 1].map(|parameter| table.deviation.get(parameter).copied().unwrap_or(T::ZERO));
+        let [sine, cosine] =
+            [TRANSMISSION_ERROR, TRANSMISSION_ERROR + 1].map(|parameter| self.variance_of(table, parameter));
+        let before = [TRANSMISSION_ERROR, TRANSMISSION_ERROR + 1]
+            .map(|parameter| table.deviation.get(parameter).copied().unwrap_or(T::ZERO));
         let before = (before[0] * before[0] + before[1] * before[1]).square_root();
         let now = (sine + cosine).square_root();
         (now, if now < before { before - now } else { T::ZERO })
     }
 
     /// Saved numbers: parameters, then each column of the factors down to its diagonal.
-    pub fn numbers(&self) -> impl Iterator<Item = T> {
+    pub fn saved_numbers(&self) -> impl Iterator<Item = T> {
         let columns = self.factors.iter().enumerate().flat_map(|(index, column)| column.iter().take(index + 1));
         self.values.iter().chain(columns).copied()
     }
 
     /// Restores the saved numbers.
-    pub fn set_numbers(&mut self, next: &mut impl FnMut() -> T) {
+    pub fn restore_numbers(&mut self, next: &mut impl FnMut() -> T) {
         self.values.iter_mut().for_each(|value| *value = next());
         for (index, column) in self.factors.iter_mut().enumerate() {
             column.iter_mut().take(index + 1).for_each(|factor| *factor = next());
@@ -132,18 +134,18 @@ impl<T: Real, const P: usize> Learner<T, P> {
 
     /// Returns true if a joint of this design can have the restored numbers: parameters within their limits, an offset
     /// within the ambiguity of whole turns, and a covariance no larger than the initial one.
-    pub fn is_possible(&self, tables: &ObserverTables<T>) -> bool {
+    pub fn is_in_range(&self, tables: &ObserverTables<T>) -> bool {
         let table = &tables.learner;
         let turns = T::from_i64(tables.counts.modulus) * tables.counts.length;
         let parameters = self.values.iter().zip(&table.mean).zip(&table.deviation).enumerate();
         let values = parameters.map(|(index, ((value, mean), deviation))| {
-            let most = if index == OFFSET { turns } else { T::from_i32(FURTHEST) * *deviation };
+            let most = if index == OFFSET { turns } else { T::from_i32(MAX_DEVIATION) * *deviation };
             (*value - *mean).abs() <= most
         });
         let factors = self.factors.iter().enumerate().map(|(index, column)| {
             let (above, rest) = column.split_at_checked(index).unwrap_or_default();
             let on = rest.first().copied().unwrap_or(T::ZERO);
-            on >= T::ZERO && on <= T::ONE && above.iter().all(|factor| factor.abs() <= T::from_i32(LARGEST_FACTOR))
+            on >= T::ZERO && on <= T::ONE && above.iter().all(|factor| factor.abs() <= T::from_i32(MAX_FACTOR))
         });
         self.value(HALF_GAP) >= T::ZERO && values.chain(factors).all(|possible| possible)
     }
@@ -151,9 +153,9 @@ impl<T: Real, const P: usize> Learner<T, P> {
     /// Resets the variances of all parameters that depend on the encoders' zeros. Half-gap, compliance and skew keep
     /// the variances that they have with all other parameters unknown.
     #[cold]
-    pub fn forget_places(&mut self) {
+    pub fn reset_position_variances(&mut self) {
         let kept = [HALF_GAP, COMPLIANCE, SKEW].map(|parameter| (parameter, self.relative_variance(parameter)));
-        self.reopen();
+        self.reset_covariance();
         for (parameter, variance) in kept {
             self.set_relative_variance(parameter, if variance < T::ONE { variance } else { T::ONE });
         }
@@ -179,7 +181,7 @@ impl<T: Real, const P: usize> Learner<T, P> {
     }
 
     /// Updates parameters and covariance with an innovation (O12).
-    pub fn learn(&mut self, table: &LearnerTable<T>, innovation: &Innovation<T, P>) {
+    pub fn update(&mut self, table: &LearnerTable<T>, innovation: &Innovation<T, P>) {
         let mut gain = [T::ZERO; P];
         let mut alpha = T::ONE;
         for (j, (column, f)) in self.factors.iter_mut().zip(&innovation.projected).enumerate() {
@@ -187,31 +189,31 @@ impl<T: Real, const P: usize> Learner<T, P> {
             let v = d * *f;
             let before = alpha;
             alpha += *f * v;
-            let rise = -f.over(before);
+            let rise = -(*f / before);
             for (entry, carried) in column.iter_mut().zip(gain.iter_mut()).take(j) {
                 let u = *entry;
                 *entry = u + rise * *carried;
                 *carried += v * u;
             }
             if let (Some(d), Some(g)) = (column.get_mut(j), gain.get_mut(j)) {
-                *d *= before.over(alpha);
+                *d *= before / alpha;
                 *g = v;
             }
         }
-        let step = innovation.value.over(alpha);
+        let step = innovation.value / alpha;
         for (index, ((value, gain), deviation)) in self.values.iter_mut().zip(&gain).zip(&table.deviation).enumerate() {
             *value += *deviation * (*gain * step);
             if index != OFFSET {
                 let mean = table.mean.get(index).copied().unwrap_or(T::ZERO);
-                let most = T::from_i32(FURTHEST) * *deviation;
+                let most = T::from_i32(MAX_DEVIATION) * *deviation;
                 *value = clamp(*value, mean - most, mean + most);
             }
         }
-        self.keep_half_gap();
+        self.limit_half_gap();
     }
 
     /// Keeps the half-gap non-negative, whatever a failing encoder shows: teeth do not overlap.
-    fn keep_half_gap(&mut self) {
+    fn limit_half_gap(&mut self) {
         if let Some(half_gap) = self.values.get_mut(HALF_GAP)
             && *half_gap < T::ZERO
         {
@@ -220,7 +222,7 @@ impl<T: Real, const P: usize> Learner<T, P> {
     }
 
     /// Increases the variances by the share `by`, up to the initial variances.
-    pub fn forget(&mut self, by: T) {
+    pub fn inflate(&mut self, by: T) {
         for (index, column) in self.factors.iter_mut().enumerate() {
             if let Some(d) = column.get_mut(index) {
                 *d += *d * by;
@@ -232,12 +234,12 @@ impl<T: Real, const P: usize> Learner<T, P> {
     }
 
     /// Keeps the parameters and adds the variance (`by` times half-gap)^2 to the half-gap, up to the initial variance.
-    pub fn loosen_half_gap(&mut self, table: &LearnerTable<T>, by: T) {
+    pub fn inflate_half_gap(&mut self, table: &LearnerTable<T>, by: T) {
         let [half_gap, deviation] = [self.value(HALF_GAP), table.deviation[HALF_GAP]];
         if let Some(width) = self.factors.first_mut().and_then(|column| column.first_mut()) {
             // A joint designed without a gap has a deviation of zero.
             let grown = if by * half_gap < deviation {
-                *width + (by * by * half_gap * half_gap).over(deviation * deviation)
+                *width + (by * by * half_gap * half_gap) / (deviation * deviation)
             } else {
                 T::ONE
             };
@@ -247,26 +249,28 @@ impl<T: Real, const P: usize> Learner<T, P> {
 
     /// Keeps the parameters and resets the variance of the half-gap alone: its entry on the diagonal belongs to no
     /// other parameter, as the half-gap is the first.
-    pub fn doubt_half_gap(&mut self) {
+    pub fn reset_half_gap_variance(&mut self) {
         if let Some(width) = self.factors.first_mut().and_then(|column| column.first_mut()) {
             *width = T::ONE;
         }
     }
 
     /// Resets the variances of offset and motor map after a slip of the motor encoder; teeth and shafts are unchanged.
-    pub fn doubt_motor(&mut self) {
+    pub fn reset_motor_variances(&mut self) {
         let [width, offset, rest @ ..] = self.factors.as_mut_slice() else { return };
         // The half-gap keeps its total variance, including the part correlated with the offset; the new offset is
         // correlated with no parameter.
-        let ([half_gap, ..], [owed, known, ..]) = (width.as_mut_slice(), offset.as_mut_slice()) else { return };
-        *half_gap += *known * *owed * *owed;
-        (*owed, *known) = (T::ZERO, T::ONE);
+        let ([half_gap, ..], [correlation, offset_variance, ..]) = (width.as_mut_slice(), offset.as_mut_slice()) else {
+            return;
+        };
+        *half_gap += *offset_variance * *correlation * *correlation;
+        (*correlation, *offset_variance) = (T::ZERO, T::ONE);
         for (column, factors) in rest.iter_mut().enumerate() {
             let index = column + OFFSET + 1;
             if let Some(of_offset) = factors.get_mut(OFFSET) {
                 *of_offset = T::ZERO;
             }
-            if (PLAIN..PLAIN + MAP).contains(&index)
+            if (PLAIN..PLAIN + MAP_PARAMETERS).contains(&index)
                 && let Some(d) = factors.get_mut(index)
             {
                 *d = T::ONE;
@@ -275,7 +279,7 @@ impl<T: Real, const P: usize> Learner<T, P> {
     }
 
     /// Keeps the parameters and resets the covariance.
-    pub fn reopen(&mut self) {
+    pub fn reset_covariance(&mut self) {
         for (index, column) in self.factors.iter_mut().enumerate() {
             *column = [T::ZERO; P];
             if let Some(d) = column.get_mut(index) {

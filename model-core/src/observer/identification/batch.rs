@@ -1,0 +1,165 @@
+//! Averages of learning intervals in settled contact (O15), each a measurement of the deflection.
+
+use super::interval::Dwell;
+use super::regressors::{ContactSample, Regressors};
+use crate::gears::Flank;
+use crate::numbers::Real;
+use crate::observer::tables::LearnerTable;
+
+/// Contribution of an interval.
+#[derive(Debug, Clone, Copy)]
+pub struct IntervalSample<'mean, T: Real, const P: usize> {
+    /// Regressors of an open gap.
+    pub open_gap: &'mean Regressors<T, P>,
+    /// Sine and cosine of the mesh phase.
+    pub mesh: &'mean [T; 2],
+    /// Measured deflection [m].
+    pub raw_deflection: T,
+    /// Mesh force [N].
+    pub force: T,
+}
+
+/// Consecutive intervals of settled contact, averaged into one measurement of the deflection. Noise of the mesh force
+/// in the regressor would bias the compliance low.
+#[derive(Debug, Clone, Copy)]
+pub struct Batch<T: Real, const P: usize> {
+    intervals: u8,
+    /// Averaged intervals of a touch that ended early, otherwise 0.
+    contact_intervals: u8,
+    /// Blocks in the mean force on the drive flank and on the back flank.
+    batches: [u8; 2],
+    contact: ContactSample<T>,
+    open_gap: Regressors<T, P>,
+    deflection: T,
+    /// Forces on the drive flank, then on the back flank.
+    forces: [ForceStatistics<T>; 2],
+}
+
+/// Blocks over which the mean force is taken: about half a second of contact.
+const AVERAGED_BATCHES: u8 = 64;
+
+/// Forces of the last blocks on one flank.
+#[derive(Debug, Clone, Copy)]
+struct ForceStatistics<T: Real> {
+    /// Mean [N].
+    mean: T,
+    /// Variance [N^2].
+    variance: T,
+}
+
+impl<T: Real> ForceStatistics<T> {
+    const NONE: Self = Self { mean: T::ZERO, variance: T::ZERO };
+
+    /// Updates mean and variance with a block's force and returns the likeliest force (O15). Noise would count as force
+    /// that the deflection does not follow, hence as stiffness: a variation no larger than the noise is treated as
+    /// constant force.
+    fn update(&mut self, blocks: u8, force: T, noise: T) -> T {
+        let share = T::ONE / T::from_i32(blocks.into());
+        let change = force - self.mean;
+        self.mean += change * share;
+        let excess = force - self.mean;
+        self.variance += (change * excess - self.variance) * share;
+        if self.variance > noise { self.mean + excess * (T::ONE - noise / self.variance) } else { self.mean }
+    }
+}
+
+impl<T: Real, const P: usize> Batch<T, P> {
+    /// Weight of a touch that ended early while the half-gap is unknown [-]: the teeth may not have touched, so that
+    /// sixteen of these touches count as one rest.
+    const UNSURE_CONTACT_WEIGHT: T = T::QUARTER;
+
+    /// A constant: the compiler writes it in place instead of copying from the stack.
+    const NEW: Self = Self {
+        intervals: 0,
+        contact_intervals: 0,
+        batches: [0; 2],
+        contact: ContactSample::OPEN,
+        open_gap: [T::ZERO; P],
+        deflection: T::ZERO,
+        forces: [ForceStatistics::NONE; 2],
+    };
+
+    #[inline(always)]
+    pub fn new() -> Self {
+        Self::NEW
+    }
+
+    /// Begins a new block on a flank.
+    fn begin_on(&mut self, flank: Option<Flank>) {
+        let contact = ContactSample { flank, ..ContactSample::OPEN };
+        *self = Self { batches: self.batches, forces: self.forces, contact, ..Self::new() };
+    }
+
+    /// Multiplies all sums by a factor, which turns sums of fewer intervals into means.
+    fn scale(&mut self, by: T) {
+        let free = self.open_gap.iter_mut().chain(&mut self.contact.mesh);
+        free.chain([&mut self.deflection, &mut self.contact.force]).for_each(|sum| *sum *= by);
+    }
+
+    /// Adds an interval. Returns true once a block is full, or once a touch on a known flank has ended after at least
+    /// `least` intervals.
+    pub fn add(&mut self, mean: &IntervalSample<'_, T, P>, dwell: Dwell, least: u8, table: &LearnerTable<T>) -> bool {
+        let length = table.block as u8;
+        let Dwell::On(flank) = dwell else {
+            if (least..length).contains(&self.intervals) && self.contact.flank.is_some() {
+                self.contact_intervals = self.intervals;
+                self.scale(T::from_i32(length.into()) / T::from_i32(self.contact_intervals.into()));
+                self.intervals = length;
+                return true;
+            }
+            self.begin_on(None);
+            return false;
+        };
+        // A rest stays on one flank, even while no force shows the flank.
+        let known_flank = flank.or(self.contact.flank);
+        let is_other_flank = known_flank != self.contact.flank && self.contact.flank.is_some();
+        if is_other_flank || self.intervals >= length {
+            self.begin_on(known_flank);
+        }
+        self.contact.flank = known_flank;
+        let free = self.open_gap.iter_mut().zip(mean.open_gap);
+        for (sum, value) in free.chain(self.contact.mesh.iter_mut().zip(mean.mesh)) {
+            *sum += *value * table.per_block;
+        }
+        self.deflection += mean.raw_deflection * table.per_block;
+        self.contact.force += mean.force * table.per_block;
+        self.intervals += 1;
+        if u32::from(self.intervals) < table.block {
+            return false;
+        }
+        let [drive, back] = &mut self.forces;
+        let [batches_drive, batches_back] = &mut self.batches;
+        let is_drive_flank = known_flank == Some(Flank::Drive);
+        let (forces, blocks) = if is_drive_flank { (drive, batches_drive) } else { (back, batches_back) };
+        *blocks = (*blocks + 1).min(AVERAGED_BATCHES);
+        self.contact.force = forces.update(*blocks, self.contact.force, table.force_noise);
+        true
+    }
+
+    /// Regressors and deflection [m] of a full block.
+    pub fn measurement(&self) -> (Regressors<T, P>, T) {
+        (self.contact.add_to(&self.open_gap), self.deflection)
+    }
+
+    /// Weight of a full block relative to a usual deflection [-]. A touch that ended early is averaged less, and teeth
+    /// that leave or land are not at rest; while the half-gap is unknown, the teeth may not have touched.
+    pub fn relative_weight(&self, table: &LearnerTable<T>, half_gap_is_known: bool) -> T {
+        if self.contact_intervals == 0 {
+            T::ONE
+        } else if half_gap_is_known {
+            T::HALF * (T::from_i32(self.contact_intervals.into()) * table.per_block).square_root()
+        } else {
+            Self::UNSURE_CONTACT_WEIGHT
+        }
+    }
+
+    /// Flank of a full block; `None` if unknown.
+    pub fn flank(&self) -> Option<Flank> {
+        self.contact.flank
+    }
+
+    /// Sets the flank of a full block.
+    pub fn set_flank(&mut self, flank: Option<Flank>) {
+        self.contact.flank = flank;
+    }
+}

@@ -1,0 +1,234 @@
+//! Consistency of rests with the estimated parameters: a rest is accepted or rejected; repeated rejections reset the
+//! half-gap, as teeth wear, and finally all parameters.
+
+use crate::gears::Flank;
+
+/// Normalised innovation of an outlier [standard deviations].
+pub const GATE: i32 = 5;
+
+/// Consecutive outliers after which the half-gap counts as wrong: a single outlier may be an impact.
+const FEW: u8 = 2;
+
+/// Consecutive outliers after which all parameters count as wrong.
+const TOO_MANY: u8 = 12;
+
+/// Learning intervals with force between the flanks after which the half-gap counts as wrong: three blocks.
+const CONTRADICTED: u8 = 24;
+
+/// Errors of a trusted half-gap attributed to its variation around the turn before another cause is assumed.
+const FORGIVEN: u8 = 3;
+
+/// Accepted rests after which this count is cleared: a quarter of a second of contact on both flanks.
+const FORGOTTEN: u8 = 64;
+
+/// Accepted rests on each flank after which a half-gap is trusted: a quarter of a second of contact.
+const TRUSTED: u8 = 32;
+
+/// Evidence against the estimated parameters.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Consistency {
+    /// Consecutive intervals with force between the flanks.
+    gap_force_intervals: u8,
+    /// Consecutive outliers.
+    outliers: u8,
+    /// Accepted rests on the back flank and on the drive flank since the half-gap was last in doubt.
+    accepted: [u8; 2],
+    /// Recent errors that were attributed to the variation of the half-gap around the turn.
+    variation_errors: u8,
+    /// Accepted rests since the last of these errors.
+    accepted_since_error: u8,
+}
+
+/// Deviation of a rest, or of a force between the flanks, from the estimated parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DeviationSize {
+    /// Less than the tolerance of a known half-gap.
+    WithinTolerance,
+    /// Within the variation of a half-gap around the turn.
+    WithinVariation,
+    /// More than this variation.
+    BeyondVariation,
+}
+
+/// Consequence for the estimated parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ParameterAction {
+    /// No change.
+    Keep,
+    /// The variance of the half-gap grows: the half-gap may differ at this place of the turn, as in worn gears.
+    InflateHalfGap,
+    /// The variance of the half-gap is reset; its value is kept.
+    ResetHalfGap,
+    /// The variances of all parameters are reset.
+    ResetAll,
+    /// The output encoder fails: the gap seems narrower than the half-gap trusted on both flanks, or no parameter
+    /// agrees any more. Teeth do not grow, and shafts do not turn against each other.
+    OutputEncoderFault,
+}
+
+impl Consistency {
+    /// Judges an interval: force at rest between the flanks, beyond bias and stiction, contradicts the estimated flanks
+    /// by `DeviationSize`.
+    pub fn check_gap_force(&mut self, force_between_flanks: Option<DeviationSize>) -> ParameterAction {
+        self.gap_force_intervals = if force_between_flanks.is_some() { self.gap_force_intervals + 1 } else { 0 };
+        let Some(deviation) = force_between_flanks.filter(|_| self.gap_force_intervals >= CONTRADICTED) else {
+            return ParameterAction::Keep;
+        };
+        self.gap_force_intervals = 0;
+        // The gap is narrower than estimated.
+        if !self.is_trusted() {
+            return self.discard_half_gap();
+        }
+        if deviation != DeviationSize::BeyondVariation && self.attribute_to_variation() {
+            ParameterAction::InflateHalfGap
+        } else {
+            ParameterAction::OutputEncoderFault
+        }
+    }
+
+    /// Returns true if the error may once more be attributed to the variation around the turn.
+    fn attribute_to_variation(&mut self) -> bool {
+        self.accepted_since_error = 0;
+        let is_attributed = self.variation_errors < FORGIVEN;
+        self.variation_errors = self.variation_errors.saturating_add(1);
+        is_attributed
+    }
+
+    /// Judges an outlier by its deviation; `was_trusted` is true once a half-gap was trusted.
+    pub fn reject(&mut self, deviation: DeviationSize, was_trusted: bool) -> ParameterAction {
+        self.outliers += 1;
+        if self.outliers >= TOO_MANY {
+            self.outliers = 0;
+            if was_trusted { ParameterAction::OutputEncoderFault } else { ParameterAction::ResetAll }
+        } else if self.outliers != FEW || deviation == DeviationSize::WithinTolerance {
+            ParameterAction::Keep
+        } else if deviation == DeviationSize::WithinVariation && self.is_trusted() && self.attribute_to_variation() {
+            ParameterAction::InflateHalfGap
+        } else {
+            self.discard_half_gap()
+        }
+    }
+
+    /// Counts an accepted rest.
+    pub fn accept(&mut self, flank: Option<Flank>) {
+        self.outliers = 0;
+        self.accepted_since_error = self.accepted_since_error.saturating_add(1);
+        if self.accepted_since_error >= FORGOTTEN {
+            self.variation_errors = 0;
+        }
+        let [back, drive] = &mut self.accepted;
+        let count = if flank == Some(Flank::Drive) { &mut *drive } else { &mut *back };
+        *count = count.saturating_add(1);
+    }
+
+    /// Discards the half-gap. If the half-gap was not trusted, all other parameters are in doubt too.
+    fn discard_half_gap(&mut self) -> ParameterAction {
+        let was_trusted = self.is_trusted();
+        self.accepted = [0; 2];
+        if was_trusted { ParameterAction::ResetHalfGap } else { ParameterAction::ResetAll }
+    }
+
+    /// Returns true once the half-gap has been confirmed on both flanks.
+    pub fn is_trusted(&self) -> bool {
+        let [back, drive] = self.accepted;
+        back.min(drive) >= TRUSTED
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Consistency with a trusted half-gap.
+    fn trusted() -> Consistency {
+        let mut consistency = Consistency::default();
+        for _ in 0..TRUSTED {
+            consistency.accept(Some(Flank::Drive));
+            consistency.accept(Some(Flank::Back));
+        }
+        assert!(consistency.is_trusted());
+        consistency
+    }
+
+    /// Verdict on force between the flanks that lasts for `CONTRADICTED` intervals.
+    fn lasting_force(consistency: &mut Consistency, deviation: DeviationSize) -> ParameterAction {
+        for _ in 1..CONTRADICTED {
+            assert_eq!(consistency.check_gap_force(Some(deviation)), ParameterAction::Keep);
+        }
+        consistency.check_gap_force(Some(deviation))
+    }
+
+    /// Verdict on two consecutive outliers.
+    fn outliers(consistency: &mut Consistency, deviation: DeviationSize) -> ParameterAction {
+        assert_eq!(consistency.reject(deviation, true), ParameterAction::Keep);
+        let action = consistency.reject(deviation, true);
+        consistency.outliers = 0;
+        action
+    }
+
+    #[test]
+    fn a_narrower_gap_is_another_place_three_times() {
+        let mut consistency = trusted();
+        for _ in 0..FORGIVEN {
+            assert_eq!(
+                lasting_force(&mut consistency, DeviationSize::WithinVariation),
+                ParameterAction::InflateHalfGap
+            );
+        }
+        assert_eq!(
+            lasting_force(&mut consistency, DeviationSize::WithinVariation),
+            ParameterAction::OutputEncoderFault
+        );
+    }
+
+    #[test]
+    fn sound_rests_make_it_forgotten() {
+        let mut consistency = trusted();
+        for _ in 0..3 * FORGIVEN {
+            assert_eq!(
+                lasting_force(&mut consistency, DeviationSize::WithinVariation),
+                ParameterAction::InflateHalfGap
+            );
+            (0..FORGOTTEN).for_each(|_| consistency.accept(Some(Flank::Drive)));
+        }
+    }
+
+    #[test]
+    fn teeth_do_not_grow_by_half_of_the_gap() {
+        assert_eq!(lasting_force(&mut trusted(), DeviationSize::BeyondVariation), ParameterAction::OutputEncoderFault);
+        assert_eq!(
+            lasting_force(&mut Consistency::default(), DeviationSize::WithinVariation),
+            ParameterAction::ResetAll
+        );
+    }
+
+    #[test]
+    fn force_that_comes_and_goes_says_nothing() {
+        let mut consistency = trusted();
+        for interval in 0..10 * u32::from(CONTRADICTED) {
+            let force = (interval % u32::from(CONTRADICTED) != 0).then_some(DeviationSize::BeyondVariation);
+            assert_eq!(consistency.check_gap_force(force), ParameterAction::Keep);
+        }
+    }
+
+    #[test]
+    fn two_outliers_are_another_place_or_another_half_gap() {
+        assert_eq!(outliers(&mut trusted(), DeviationSize::WithinTolerance), ParameterAction::Keep);
+        assert_eq!(outliers(&mut trusted(), DeviationSize::WithinVariation), ParameterAction::InflateHalfGap);
+        let mut consistency = trusted();
+        assert_eq!(outliers(&mut consistency, DeviationSize::BeyondVariation), ParameterAction::ResetHalfGap);
+        assert!(!consistency.is_trusted());
+        assert_eq!(outliers(&mut consistency, DeviationSize::BeyondVariation), ParameterAction::ResetAll);
+    }
+
+    #[test]
+    fn many_outliers_speak_against_the_encoder() {
+        let (mut trusted, mut untrusted) = (Consistency::default(), Consistency::default());
+        for _ in 1..TOO_MANY {
+            assert_ne!(trusted.reject(DeviationSize::WithinTolerance, true), ParameterAction::OutputEncoderFault);
+            assert_ne!(untrusted.reject(DeviationSize::WithinTolerance, false), ParameterAction::ResetAll);
+        }
+        assert_eq!(trusted.reject(DeviationSize::WithinTolerance, true), ParameterAction::OutputEncoderFault);
+        assert_eq!(untrusted.reject(DeviationSize::WithinTolerance, false), ParameterAction::ResetAll);
+    }
+}

@@ -1,0 +1,111 @@
+//! Flank of resting teeth, as estimation needs it. The first row that holds decides:
+//!
+//! | # | evidence | needs | purpose | needed by |
+//! |---|---|---|---|---|
+//! | 1 | [`settled_flank`] contact, by deflection and force | the half-gap | most reliable: deflection and force come from independent sensors | `observer learning::teeth_that_touch_a_flank_for_some_milliseconds_on_their_way_show_the_width` |
+//! | 2 | [`settled_flank`] contact, by the steady force | force above bias and ripple | the only evidence before the half-gap is known | `compensation holding::without_any_friction_a_gap_that_is_not_known_yet_is_learnt_from_the_first_soft_touches` |
+//! | 3 | [`loaded_flank`] contact that has not settled | force above noise in two intervals | a link thrown to and fro never settles; two successive flanks show the half-gap | `compensation width::steps_between_two_places_show_the_width` |
+//! | 4 | change of the deflection since the last rest ([`LastDwell::flank`]) | a crossing above noise, a force on that side | bias hides the sign of a light force | `observer learning::teeth_that_touch_a_flank_for_some_milliseconds_on_their_way_show_the_width` |
+//! | 5 | common motion of motor and link ([`CoMotion::flank`]) | a crossing, and a link that has left its course since | contact without any force | `observer learning::a_joint_that_hardly_feels_its_load_shows_the_width_by_where_its_link_goes` |
+//!
+//! If no row holds, a rest updates only parameters that do not depend on the flank.
+//!
+//! [`LastDwell::flank`]: super::last_dwell::LastDwell::flank
+//! [`CoMotion::flank`]: super::co_motion::CoMotion::flank
+
+use super::interval::Interval;
+use super::uncertainty::Uncertainty;
+use crate::gears::Flank;
+use crate::numbers::Real;
+use crate::observer::contact::force_contact::with_hysteresis;
+use crate::observer::contact::gap_position::GapPosition;
+use crate::observer::tables::LearnerTable;
+
+/// Shortest touch that updates the parameters once the half-gap is known [intervals]: the first interval is mostly
+/// landing.
+const SHORTEST_TOUCH: u8 = 2;
+
+/// Largest deflection by the lag of the force estimate, in standard deviations of one deflection's noise.
+const LAGGING: i32 = 4;
+
+/// Standard deviations of the steady force above which contact is loaded without confirmation by the deflection.
+const UNCONFIRMED: i32 = 4;
+
+/// Evidence of an interval on the flank.
+#[derive(Debug, Clone, Copy)]
+pub struct FlankEvidence<'by_force, T: Real> {
+    /// Variances of the parameters and of the force.
+    pub uncertainty: &'by_force Uncertainty<T>,
+    /// Position of the mean deflection in the gap.
+    pub position: GapPosition<T>,
+    /// Mean mesh force [N].
+    pub force: T,
+    /// Compliance from sun to link [m/N].
+    pub compliance: T,
+}
+
+/// Flank of settled contact in an interval of rest: by deflection and force once the half-gap is known and both
+/// encoders are `both_encoders`, otherwise by the steady force.
+pub fn settled_flank<T: Real>(
+    evidence: &FlankEvidence<'_, T>,
+    interval: &Interval<T>,
+    both_encoders: bool,
+) -> Option<Flank> {
+    let uncertainty = evidence.uncertainty;
+    if uncertainty.half_gap_is_known && both_encoders {
+        let (contact, _) = evidence.position.contact(None, evidence.force, uncertainty.combined_deviation);
+        return contact;
+    }
+    // The flank of the last settled contact needs less force while the teeth have not left it.
+    let twice = T::TWO * uncertainty.steady_force_deviation;
+    let thrice = twice + uncertainty.steady_force_deviation;
+    let threshold = |flank| if interval.settled_flank == Some(flank) { twice } else { thrice };
+    if interval.steady_force > threshold(Flank::Drive) {
+        Some(Flank::Drive)
+    } else if -interval.steady_force > threshold(Flank::Back) {
+        Some(Flank::Back)
+    } else {
+        None
+    }
+}
+
+/// Flank on which the mesh force exceeds any bias, at rest or not, while the force changes too slowly for the lag of
+/// its estimate to matter; the force rises by `rise` in an interval [N]. Once the half-gap is known, the deflection has
+/// to agree.
+pub fn loaded_flank<T: Real>(
+    evidence: &FlankEvidence<'_, T>,
+    interval: &Interval<T>,
+    table: &LearnerTable<T>,
+    rise: T,
+) -> Option<Flank> {
+    let uncertainty = evidence.uncertainty;
+    let deflection_by_lag = rise.abs() * evidence.compliance * table.force_lag;
+    if deflection_by_lag > T::from_i32(LAGGING) * table.noise {
+        return None;
+    }
+    if !uncertainty.half_gap_is_known {
+        return loaded_flank_by_force(evidence, interval);
+    }
+    if evidence.force.abs() <= T::THREE * uncertainty.mean_force_deviation {
+        return None;
+    }
+    let (contact, _) = evidence.position.contact(None, evidence.force, uncertainty.combined_deviation);
+    contact.filter(|flank| flank.sign::<T>() * evidence.force > T::ZERO)
+}
+
+/// Flank by force alone. Coarsely controlled motors shake more between intervals than soft landings press, so that the
+/// steady force must exceed its threshold; the steady force lags, so that the present force has to agree.
+fn loaded_flank_by_force<T: Real>(evidence: &FlankEvidence<'_, T>, interval: &Interval<T>) -> Option<Flank> {
+    let uncertainty = evidence.uncertainty;
+    let flank_by = |force: T, least: T| with_hysteresis(None, force, least, least);
+    let by_steady_force =
+        flank_by(interval.steady_force, T::from_i32(UNCONFIRMED) * uncertainty.steady_force_deviation);
+    let by_force = flank_by(evidence.force, T::TWO * uncertainty.mean_force_deviation);
+    if by_steady_force == by_force { by_force } else { None }
+}
+
+/// Shortest touch that updates the parameters [intervals]. Until the half-gap is known, half a block of rest suffices:
+/// a link that is thrown to and fro rests no longer on a flank.
+pub fn shortest_contact<T: Real>(uncertainty: &Uncertainty<T>, table: &LearnerTable<T>) -> u8 {
+    if uncertainty.half_gap_is_known { SHORTEST_TOUCH } else { (table.block as u8).div_ceil(2) }
+}

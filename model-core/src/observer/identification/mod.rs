@@ -1,0 +1,673 @@
+//! Estimation of joint, encoder and motor parameters during motion: half-gap, offset, compliance, skew, transmission
+//! error and error maps by one recursive least squares (`least_squares`); bias and friction of the motor (`bias`); cogging
+//! (`cogging`); inertia of the link (`inertia`); variances of all parameters (`uncertainty`). Implements (O7), (O9) and
+//! (O14).
+//!
+//! Estimation proceeds in learning intervals of a few control periods (`interval`). For each interval `travel` decides
+//! between rest and crossing, and `flank` determines the flank of a rest. Intervals of rest are averaged (`batch`);
+//! `consistency` accepts or rejects their mean; `trusted` keeps the parameters of long agreement. Work that can wait is
+//! done one task per period.
+
+mod batch;
+pub mod bias;
+mod co_motion;
+mod cogging;
+mod consistency;
+mod flank;
+pub(crate) mod gap_variation;
+mod inertia;
+mod interval;
+mod last_dwell;
+pub mod least_squares;
+pub mod mesh_measurement;
+pub mod position_errors;
+pub mod regressors;
+mod travel;
+mod trusted_parameters;
+pub mod uncertainty;
+
+use batch::{Batch, IntervalSample};
+use bias::TorqueBias;
+use cogging::Cogging;
+use consistency::{Consistency, DeviationSize, GATE, ParameterAction};
+use flank::FlankEvidence;
+use gap_variation::GapVariation;
+use inertia::LinkInertia;
+use interval::{Dwell, Interval, IntervalMean, Task, is_settled};
+use last_dwell::LastDwell;
+use least_squares::{Innovation, LeastSquares};
+use mesh_measurement::{MeshMeasurement, saturating_difference};
+use position_errors::PositionErrors;
+use regressors::{COMPLIANCE, ContactSample, HALF_GAP, MAPPED, OFFSET, Regressors, SKEW, TRANSMISSION_ERROR};
+use travel::{Travel, TravelDetector};
+use trusted_parameters::TrustedParameters;
+use uncertainty::Uncertainty;
+
+use crate::gears::{Flank, sign};
+use crate::numbers::Real;
+use crate::numbers::phase::sine_cosine;
+use crate::observer::contact::gap_position::GapPosition;
+use crate::observer::filters::Filters;
+use crate::observer::filters::load_side::LoadSide;
+use crate::observer::sensors::Sensors;
+use crate::observer::tables::{LearnerTable, ObserverTables};
+
+/// Longest time over which the force of a rest is averaged [intervals].
+const LONG_REST: u8 = 16;
+
+/// Intervals well inside the gap after which the motor side's force estimate has decayed to zero.
+const OPEN_AFTER: u8 = 3;
+
+/// Intervals after the readmission of an encoder during which bias, friction, inertia and cogging are not estimated:
+/// 0.5 s. The loop takes up to 0.15 s to bring the link back at full torque (measured, presets Q1, L1, C1 and D2, motor
+/// encoder frozen or random for half a second), and the filters carry readings from before the fault declaration.
+const PROBATION: u16 = 500;
+
+/// Parameter estimator with its evidence. `P` is the number of parameters.
+#[derive(Debug, Clone)]
+pub struct ParameterEstimator<T: Real, const P: usize> {
+    pub least_squares: LeastSquares<T, P>,
+    pub bias: TorqueBias<T>,
+    pub inertia: LinkInertia<T>,
+    cogging: Cogging<T>,
+    pub errors: PositionErrors<T, P>,
+    pub uncertainty: Uncertainty<T>,
+    interval: Interval<T>,
+    travel: TravelDetector<T>,
+    batch: Batch<T, P>,
+    last_dwell: LastDwell<T, P>,
+    consistency: Consistency,
+    gap_variation: GapVariation<T>,
+    /// Intervals until forces update the estimates again.
+    probation: u16,
+    /// Parameters of the last trusted half-gap.
+    trusted: Option<TrustedParameters<T, P>>,
+    /// Innovation that updates the parameters in the next period.
+    pending_innovation: Option<Innovation<T, P>>,
+}
+
+/// Result of a learning interval, before it updates an estimate.
+#[derive(Debug, Clone, Copy)]
+pub struct IntervalResult<T: Real> {
+    mean: IntervalMean<T>,
+    /// Sine and cosine of the mesh phase in the middle of the interval.
+    pub mesh: [T; 2],
+    /// Mean deflection less offset, skew and error maps [m].
+    deflection: T,
+    /// Transmission error in the middle of the interval [m].
+    flank_shift: T,
+    travel: Travel<T>,
+    /// Flank of settled contact.
+    pub flank: Option<Flank>,
+    /// Standard deviation of the transmission error while the half-gap is unknown; 0 afterwards [m].
+    error_deviation: T,
+}
+
+impl<T: Real> IntervalResult<T> {
+    /// Mean mesh force [N].
+    pub fn force(&self) -> T {
+        self.mean.force
+    }
+}
+
+/// Outcome of a period's estimation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// Nothing that concerns other parts of the observer.
+    Nothing,
+    /// The values that hold until the next interval have changed.
+    LimitsUpdated,
+    /// The teeth seem to have grown, or the shafts to have turned against each other: the output encoder fails.
+    OutputEncoderFault,
+}
+
+impl<T: Real, const P: usize> ParameterEstimator<T, P> {
+    /// Gain per interval of the filter for the steady mesh force [-]; its noise variance is that of a mean of seven
+    /// intervals.
+    const STEADY_GAIN: T = T::QUARTER;
+
+    /// Deviation of the transmission error, over the half-gap, above which rests on an unknown flank update the
+    /// transmission error first [-]: the error could hide a crossing; see [`TravelDetector::distinguishes_rest`].
+    const HIDDEN_CROSSING: T = T::QUARTER;
+
+    /// Remaining part of the error maps' blur once maps and half-gap are known [-].
+    const BLUR_LEFT: T = T::EIGHTH;
+
+    /// Distance from a flank within which the gap may no longer be open, over the half-gap [-]: teeth of a fast
+    /// crossing land before the deflection shows it.
+    const NEAR_FLANK: T = T::EIGHTH;
+
+    /// Largest variation of the half-gap around the turn, over the half-gap [-]: worn gears vary by 30 %.
+    const MAX_VARIATION: T = T::THREE_EIGHTHS;
+
+    /// Standard deviation added to a half-gap that differs at this place of the turn, over the half-gap [-]: the
+    /// half-gap becomes invalid until a rest has shown it, and the gap coordinate stays valid.
+    const INFLATION: T = T::EIGHTH;
+
+    /// Estimator whose largest parts have no tables yet: a copy of those parts would not fit on a small stack.
+    #[inline(always)]
+    pub fn uninitialized(tables: &ObserverTables<T>) -> Self {
+        Self {
+            bias: TorqueBias::new(&tables.contact),
+            inertia: LinkInertia::new(&tables.inertia),
+            cogging: Cogging::new(&tables.cogging),
+            errors: PositionErrors::new(),
+            uncertainty: Uncertainty::uninitialized(),
+            least_squares: LeastSquares::uninitialized(),
+            interval: Interval::new(),
+            travel: TravelDetector::new(),
+            batch: Batch::new(),
+            last_dwell: LastDwell::new(),
+            consistency: Consistency::default(),
+            gap_variation: GapVariation::new(),
+            probation: 0,
+            trusted: None,
+            pending_innovation: None,
+        }
+    }
+
+    /// Initialises the parts without tables.
+    pub fn initialize(&mut self, tables: &ObserverTables<T>) {
+        self.least_squares.reset(&tables.learner);
+        self.uncertainty.reset(tables, &self.least_squares);
+    }
+
+    /// Estimated half-gap [m] and compliance [m/N].
+    pub fn half_gap_and_compliance(&self) -> [T; 2] {
+        [self.least_squares.value(HALF_GAP), self.least_squares.value(COMPLIANCE)]
+    }
+
+    /// Variance of the half-gap at this place of the turn by its variation around the turn (O20) [m^2].
+    pub fn half_gap_variation_variance(&self, tables: &ObserverTables<T>) -> T {
+        self.gap_variation.variance(&tables.counts, self.least_squares.value(HALF_GAP))
+    }
+
+    /// Transmission error at a mesh phase given by sine and cosine [m].
+    pub fn transmission_error(&self, mesh: &[T; 2]) -> T {
+        mesh[0] * self.least_squares.value(TRANSMISSION_ERROR)
+            + mesh[1] * self.least_squares.value(TRANSMISSION_ERROR + 1)
+    }
+
+    /// Combines motor and load side: deflection less offset, skew and maps (O7), and mesh force (O9).
+    #[inline]
+    pub fn measure_mesh(
+        &self,
+        tables: &ObserverTables<T>,
+        sensors: &Sensors,
+        filters: &Filters<T>,
+        both_encoders: bool,
+    ) -> MeshMeasurement<T> {
+        let levers = &tables.levers;
+        let (drive, load) = (&filters.drive, &filters.load);
+        let (_, difference) = sensors.counts.output_in_use();
+        let flank_shift = self.transmission_error(&self.errors.mesh);
+        let raw_deflection = tables.counts.length * saturating_difference(difference)
+            + levers.sun * drive.angle_residual
+            - levers.output * load.angle_residual;
+        let motor_force = drive.disturbance_torque * levers.per_sun;
+        let direction = TorqueBias::direction(&tables.contact, drive.speed);
+        let net = motor_force - self.bias.force_at(direction);
+        // Load-dependent losses are friction: they reduce the driving and increase the holding force.
+        let loss = if net * direction > T::ZERO { tables.contact.loss_driving } else { tables.contact.loss_driven };
+        let force = net + net * direction.abs() * loss;
+        let rate = levers.sun * drive.speed - levers.output * load.speed;
+        let travel = if rate.abs() > tables.contact.rate_deviation { rate * tables.contact.lag } else { T::ZERO };
+        let link_speed = if both_encoders { load.speed } else { T::ZERO };
+        let deflection = raw_deflection - self.deflection_beside_teeth(link_speed);
+        MeshMeasurement { flank_shift, raw_deflection, deflection, rate, travel, motor_force, direction, force }
+    }
+
+    /// Deflection by offset, skew and error maps now [m].
+    fn deflection_beside_teeth(&self, link_speed: T) -> T {
+        let plain = self.least_squares.value(OFFSET) + self.least_squares.value(SKEW) * link_speed;
+        if P == MAPPED { plain + self.errors.errors[0] + self.errors.errors[1] } else { plain }
+    }
+
+    /// Position of a deflection in the gap, with the deflection's travel [m].
+    pub fn gap_position(&self, deflection: T, travel: T) -> GapPosition<T> {
+        let [half_gap, _] = self.half_gap_and_compliance();
+        let known = &self.uncertainty;
+        GapPosition {
+            deflection,
+            travel,
+            half_gap,
+            blur: known.blur,
+            near: known.near,
+            stiffness: known.stiffness,
+            weight: known.position_weight,
+        }
+    }
+
+    /// Resets all variances and the last rest: the output encoder has returned at another offset.
+    pub fn reset_variances(&mut self, tables: &ObserverTables<T>) {
+        self.least_squares.reset_covariance();
+        self.pending_innovation = None;
+        self.last_dwell = LastDwell::new();
+        self.update_uncertainty(tables, true);
+    }
+
+    /// Restores the trusted parameters after an exclusion of the output encoder, if the half-gap has been doubted
+    /// since. Returns true if it restored them.
+    pub fn restore_trusted(&mut self, tables: &ObserverTables<T>) -> bool {
+        let Some(trusted) = self.trusted.filter(|_| !self.consistency.is_trusted()) else { return false };
+        trusted.restore(&mut self.least_squares);
+        self.pending_innovation = None;
+        self.update_uncertainty(tables, false);
+        self.uncertainty.update_limits(tables, &self.least_squares, self.trusted.is_some());
+        true
+    }
+
+    /// Resets cogging, offset and motor map: the motor encoder has returned at another offset.
+    pub fn reset_motor_offset(&mut self, tables: &ObserverTables<T>) {
+        self.trusted = None;
+        self.pending_innovation = None;
+        self.cogging = Cogging::new(&tables.cogging);
+        self.least_squares.reset_motor_variances();
+        self.update_uncertainty(tables, true);
+    }
+
+    /// Pauses the estimation from forces after an exclusion, until the loop has settled after the return.
+    pub fn begin_probation(&mut self) {
+        self.probation = PROBATION;
+    }
+
+    /// Discards the open interval and the last rest: readings have broken off.
+    pub fn discard_interval(&mut self) {
+        self.interval = Interval::new();
+        self.travel = TravelDetector::new();
+        self.batch = Batch::new();
+        self.last_dwell = LastDwell::new();
+        self.pending_innovation = None;
+    }
+
+    /// Computes exactly all position-dependent parts of the deflection: regressors of an open gap, and sine and cosine
+    /// of the mesh phase.
+    pub fn update_position_errors(
+        &mut self,
+        tables: &ObserverTables<T>,
+        sensors: &Sensors,
+        filters: &Filters<T>,
+        both_encoders: bool,
+    ) -> (Regressors<T, P>, [T; 2]) {
+        let table = &tables.counts;
+        let (output, _) = sensors.counts.output_in_use();
+        let link_speed = if both_encoders { filters.load.speed } else { T::ZERO };
+        let output_phase = output.phase(&table.output);
+        let motor_phase = sensors.counts.motor.phase(&table.motor);
+        let open_gap = regressors::open_gap(link_speed, motor_phase, both_encoders.then_some(output_phase));
+        let (sine, cosine) = sine_cosine(output_phase.wrapping_mul(table.meshes));
+        let mesh = [sine, cosine];
+        self.errors.set_exact(&self.least_squares, &open_gap, mesh);
+        (open_gap, mesh)
+    }
+
+    /// Adds a period to the interval.
+    #[inline]
+    pub fn add_period(&mut self, measurement: &MeshMeasurement<T>) {
+        self.interval.add(measurement);
+    }
+
+    /// Returns true in the middle period of the interval.
+    pub fn is_mid_interval(&self, table: &LearnerTable<T>) -> bool {
+        self.interval.periods == table.middle
+    }
+
+    /// Returns true in the last period of the interval.
+    pub fn is_interval_over(&self, table: &LearnerTable<T>) -> bool {
+        self.interval.periods >= table.periods
+    }
+
+    /// Returns true while tasks of the last interval are left.
+    pub fn has_task(&self) -> bool {
+        self.interval.task != Task::Done
+    }
+
+    /// Stores the position-dependent parts of the interval's middle, where its mean is valid.
+    pub fn store_position_errors(
+        &mut self,
+        tables: &ObserverTables<T>,
+        sensors: &Sensors,
+        filters: &Filters<T>,
+        both_encoders: bool,
+    ) {
+        self.gap_variation.set_position(sensors.counts.output.phase(&tables.counts.output));
+        (self.errors.open_gap, self.errors.mid_mesh) =
+            self.update_position_errors(tables, sensors, filters, both_encoders);
+    }
+
+    /// Evaluates the interval that ends now, at a motor speed [rad/s].
+    pub fn evaluate_interval(
+        &mut self,
+        tables: &ObserverTables<T>,
+        motor_speed: T,
+        both_encoders: bool,
+    ) -> IntervalResult<T> {
+        let mean = self.interval.close(tables.learner.per_periods);
+        let mesh = self.errors.mid_mesh;
+        let deflection = mean.raw_deflection - self.least_squares.deflection(&self.errors.open_gap);
+        let [_, compliance] = self.half_gap_and_compliance();
+        let motor_turn = motor_speed.abs() * tables.learner.span;
+        // Until the half-gap is known, the estimated transmission error is subtracted, so that it hides no crossing;
+        // afterwards it is left in.
+        let (error_deviation, blur, known_shift) = if self.uncertainty.half_gap_is_known {
+            (T::ZERO, tables.contact.still_per_speed * Self::BLUR_LEFT, T::ZERO)
+        } else {
+            let (error_deviation, reduction) = self.least_squares.error_deviation(&tables.learner);
+            let per_turned = T::TWO * tables.counts.mesh_periods * tables.levers.per_ratio;
+            let blur = tables.contact.still_per_speed - per_turned * reduction;
+            (error_deviation, blur, self.transmission_error(&mesh))
+        };
+        let less_wind_up = deflection - compliance * mean.force - known_shift;
+        let motor_sample = (mean.motor_force, mean.direction);
+        let travel = self.travel.step(
+            &tables.contact,
+            less_wind_up,
+            motor_sample,
+            blur * motor_turn,
+            self.uncertainty.compliance_uncertainty,
+        );
+        self.interval.steady_force += (mean.force - self.interval.steady_force) * Self::STEADY_GAIN;
+        let averaged_intervals =
+            if let Travel::AtRest(intervals) = travel { i32::from(intervals.min(LONG_REST)) } else { 1 };
+        self.interval.dwell_force += (mean.force - self.interval.dwell_force) / T::from_i32(averaged_intervals);
+        let flank_shift = self.transmission_error(&mesh);
+        let evidence = self.flank_evidence(deflection - flank_shift, mean.force);
+        let flank =
+            if is_settled(travel) { flank::settled_flank(&evidence, &self.interval, both_encoders) } else { None };
+        IntervalResult { mean, mesh, deflection, flank_shift, travel, flank, error_deviation }
+    }
+
+    /// Evidence of an interval on the flank: a deflection of the teeth [m] and a force [N].
+    fn flank_evidence(&self, deflection: T, force: T) -> FlankEvidence<'_, T> {
+        let [_, compliance] = self.half_gap_and_compliance();
+        FlankEvidence {
+            uncertainty: &self.uncertainty,
+            position: self.gap_position(deflection, T::ZERO),
+            force,
+            compliance,
+        }
+    }
+
+    /// Updates the estimates with an evaluated interval, and begins the next one.
+    pub fn finish_interval(
+        &mut self,
+        tables: &ObserverTables<T>,
+        interval: &IntervalResult<T>,
+        both_encoders: bool,
+    ) -> Outcome {
+        let IntervalResult { mean, travel, .. } = interval;
+        let deflection = interval.deflection - interval.flank_shift;
+        if both_encoders {
+            self.probation = self.probation.saturating_sub(1);
+        }
+        self.update_bias(tables, interval, deflection, both_encoders);
+        self.bias.inflate_variance(&tables.contact);
+        if interval.flank.is_some() || matches!(travel, Travel::Crossing(..)) {
+            self.interval.settled_flank = interval.flank;
+        }
+        self.uncertainty.settled = interval.flank.is_some();
+        let action = self.consistency.check_gap_force(self.force_between_flanks(tables, deflection, *travel));
+        self.apply_action(tables, action);
+        let encoder_fails = action == ParameterAction::OutputEncoderFault;
+
+        let rise = mean.force - core::mem::replace(&mut self.interval.force, mean.force);
+        let dwell = self.dwell(tables, interval, rise, both_encoders && !encoder_fails);
+        if dwell == Dwell::No {
+            self.last_dwell.interrupt();
+        }
+        let force = mean.force + tables.learner.force_lag * rise;
+        let sample = IntervalSample {
+            open_gap: &self.errors.open_gap,
+            mesh: &interval.mesh,
+            raw_deflection: mean.raw_deflection,
+            force,
+        };
+        let shortest = flank::shortest_contact(&self.uncertainty, &tables.learner);
+        let is_full = self.batch.add(&sample, dwell, shortest, &tables.learner);
+        self.interval.task = Task::Inertia(is_full);
+        self.interval.direction = mean.direction;
+        self.interval.nearer_flank =
+            if interval.deflection < interval.flank_shift { Flank::Back } else { Flank::Drive };
+        if encoder_fails { Outcome::OutputEncoderFault } else { Outcome::Nothing }
+    }
+
+    /// Decides if an interval is a rest that updates the parameters, and on which flank; the force rises by `rise` [N].
+    fn dwell(
+        &mut self,
+        tables: &ObserverTables<T>,
+        interval: &IntervalResult<T>,
+        rise: T,
+        both_encoders: bool,
+    ) -> Dwell {
+        let [half_gap, _] = self.half_gap_and_compliance();
+        let known = self.uncertainty.half_gap_is_known;
+        // Teeth at rest while the motor turns are on a flank, even if no force shows which. While the transmission
+        // error could hide a crossing, this is not certain of any rest: the transmission error is estimated first.
+        let half_gap_bound = self.last_dwell.co_motion().half_gap_at_least(half_gap);
+        let rests_on_unknown_flank = is_settled(interval.travel)
+            && !known
+            && (interval.error_deviation > half_gap_bound * Self::HIDDEN_CROSSING
+                || self.travel.distinguishes_rest(half_gap_bound));
+        // A stationary motor repeats one rounded reading under a force hidden by friction: this rest is used once on
+        // either flank.
+        let turns = interval.mean.direction.abs() > T::HALF;
+        let evidence = self.flank_evidence(interval.deflection - interval.flank_shift, interval.mean.force);
+        let loaded_flank = flank::loaded_flank(&evidence, &self.interval, &tables.learner, rise);
+        // The first millisecond of a landing is not used.
+        let confirmed_flank = loaded_flank.filter(|_| loaded_flank == self.interval.loaded_flank);
+        let known_flank = interval.flank.or(confirmed_flank);
+        self.interval.loaded_flank = loaded_flank;
+        let new = turns || known_flank.is_some() && known_flank != self.interval.updated_on;
+        if both_encoders && new && (known_flank.is_some() || rests_on_unknown_flank) {
+            Dwell::On(known_flank)
+        } else {
+            Dwell::No
+        }
+    }
+
+    /// Detects force at rest between the flanks beyond bias and stiction, and grades the distance from the flanks.
+    fn force_between_flanks(
+        &self,
+        tables: &ObserverTables<T>,
+        deflection: T,
+        travel: Travel<T>,
+    ) -> Option<DeviationSize> {
+        let known = &self.uncertainty;
+        let [half_gap, _] = self.half_gap_and_compliance();
+        let threshold = T::THREE * known.steady_force_deviation + T::TWO * self.bias.friction.abs();
+        let inside = half_gap - known.blur - tables.rounding();
+        let between = known.half_gap_is_known && deflection.abs() < inside;
+        let deviation = if half_gap - deflection.abs() < Self::MAX_VARIATION * half_gap {
+            DeviationSize::WithinVariation
+        } else {
+            DeviationSize::BeyondVariation
+        };
+        (between && is_settled(travel) && self.interval.steady_force.abs() > threshold).then_some(deviation)
+    }
+
+    /// Updates the torque bias (O16) while the gap is certainly open.
+    fn update_bias(
+        &mut self,
+        tables: &ObserverTables<T>,
+        interval: &IntervalResult<T>,
+        deflection: T,
+        both_encoders: bool,
+    ) {
+        let [half_gap, _] = self.half_gap_and_compliance();
+        let known = self.uncertainty.half_gap_is_known;
+        let (blur, near) = (self.uncertainty.blur, Self::NEAR_FLANK * half_gap);
+        let inside = half_gap - T::TWO * if blur > near { blur } else { near };
+        let open = known && deflection.abs() < inside;
+        self.interval.open_intervals = if open { self.interval.open_intervals.saturating_add(1) } else { 0 };
+        let open_gap_sample = match interval.travel {
+            _ if !both_encoders || self.probation > 0 => None,
+            _ if self.interval.open_intervals >= OPEN_AFTER => {
+                Some((interval.mean.motor_force, interval.mean.direction))
+            }
+            Travel::Crossing(motor_force, direction) if !known => Some((motor_force, direction)),
+            _ => None,
+        };
+        if let Some((motor_force, direction)) = open_gap_sample {
+            self.bias.update(&tables.contact, motor_force, direction);
+        }
+    }
+
+    /// Updates the motor's cogging once per interval, from the motor's place in its turn [turns], its speed [rad/s] and
+    /// the load torque [N m]. Returns sine and cosine of the driving torque, referred to the link [N m].
+    pub fn update_cogging(&mut self, tables: &ObserverTables<T>, motion: [T; 3]) -> [T; 2] {
+        let settled = self.interval.settled_flank.filter(|_| self.uncertainty.settled && self.probation == 0);
+        self.cogging.update(&tables.cogging, motion, settled);
+        self.cogging.torque()
+    }
+
+    /// Does the next task of the last interval.
+    pub fn run_task(&mut self, tables: &ObserverTables<T>, load: &mut LoadSide<T>, both_encoders: bool) -> Outcome {
+        let mut outcome = Outcome::Nothing;
+        self.interval.task = match self.interval.task {
+            Task::Inertia(dwell) => {
+                let is_usable = both_encoders && self.probation == 0 && self.uncertainty.half_gap_is_usable;
+                self.inertia.update(&tables.inertia, load, is_usable);
+                if dwell { Task::Flank } else { Task::Uncertainty }
+            }
+            Task::Flank => {
+                self.determine_flank(tables);
+                if self.batch.flank().is_some() { Task::CheckDwell } else { Task::UpdateParameters }
+            }
+            Task::CheckDwell => {
+                self.interval.updated_on = self.batch.flank();
+                if self.check_dwell(tables) == ParameterAction::OutputEncoderFault {
+                    outcome = Outcome::OutputEncoderFault;
+                }
+                Task::UpdateParameters
+            }
+            Task::UpdateParameters => {
+                self.update_with_dwell(tables);
+                Task::Uncertainty
+            }
+            Task::Uncertainty => {
+                self.least_squares.inflate(tables.learner.forgetting);
+                self.update_uncertainty(tables, both_encoders);
+                Task::UpdateLimits
+            }
+            Task::UpdateLimits | Task::Done => {
+                self.uncertainty.update_limits(tables, &self.least_squares, self.trusted.is_some());
+                outcome = Outcome::LimitsUpdated;
+                Task::Done
+            }
+        };
+        outcome
+    }
+
+    /// Determines the flank of a rest, by force or by the change of the deflection.
+    fn determine_flank(&mut self, tables: &ObserverTables<T>) {
+        let (regressors, deflection) = self.batch.measurement();
+        let mut flank = self.batch.flank();
+        if let Some(known_flank) = flank {
+            self.last_dwell.co_motion().confirm_flank(known_flank);
+        } else {
+            flank = self.flank_without_force(tables, &regressors, deflection);
+        }
+        self.last_dwell.store(&regressors, deflection, flank);
+        self.batch.set_flank(flank);
+    }
+
+    /// Determines the flank of a rest by the deflection. If the flank stays unknown but the teeth certainly are on a
+    /// flank, the rest updates the parameters that do not depend on the flank.
+    fn flank_without_force(
+        &mut self,
+        tables: &ObserverTables<T>,
+        regressors: &Regressors<T, P>,
+        deflection: T,
+    ) -> Option<Flank> {
+        let [half_gap, _] = self.half_gap_and_compliance();
+        let innovation = self.last_dwell.innovation(&tables.learner, &self.least_squares, regressors, deflection)?;
+        let flank = self.last_dwell.flank(&tables.learner, &innovation, regressors, half_gap, tables.levers.output);
+        if self.travel.distinguishes_rest(self.last_dwell.co_motion().half_gap_at_least(half_gap)) {
+            // Teeth also reverse inside the gap, for a moment at rest: then the force of the whole rest shows no stop.
+            // Teeth also leave a flank slowly, at rest for a while: then the steady force has decayed.
+            let force =
+                if self.last_dwell.was_on(flank) { self.interval.steady_force } else { self.interval.dwell_force };
+            let is_felt = sign::<T>(flank) * force > self.uncertainty.steady_force_deviation;
+            let flank = if is_felt { flank } else { self.last_dwell.co_motion().flank() };
+            if flank.is_some() {
+                return flank;
+            }
+        }
+        if innovation.is_within(GATE) && self.last_dwell.co_motion().proves_contact(half_gap) {
+            self.pending_innovation = Some(innovation);
+        }
+        None
+    }
+
+    /// Accepts a rest on a flank as a measurement, or rejects it as an outlier.
+    fn check_dwell(&mut self, tables: &ObserverTables<T>) -> ParameterAction {
+        let table = &tables.learner;
+        let [half_gap, _] = self.half_gap_and_compliance();
+        let (regressors, deflection) = self.batch.measurement();
+        let relative_weight = self.batch.relative_weight(table, self.uncertainty.half_gap_is_known);
+        let weight = (table.weight * relative_weight) / self.uncertainty.dwell_deviation;
+        let innovation = self.least_squares.innovation(table, &regressors, deflection, weight);
+        let square = innovation.value * innovation.value;
+        let is_accepted = innovation.is_within(GATE);
+        if let Some(flank) = self.batch.flank() {
+            let deviation = [square, innovation.variance].map(|normalised| normalised / (weight * weight));
+            self.gap_variation.add_dwell(&tables.counts, flank, deviation, half_gap, is_accepted);
+        }
+        if !is_accepted {
+            let excess = innovation.value.abs() / weight;
+            let deviation = if excess <= half_gap * tables.contact.known_part {
+                DeviationSize::WithinTolerance
+            } else if excess < Self::MAX_VARIATION * half_gap {
+                DeviationSize::WithinVariation
+            } else {
+                DeviationSize::BeyondVariation
+            };
+            let action = self.consistency.reject(deviation, self.trusted.is_some());
+            self.apply_action(tables, action);
+            return action;
+        }
+        self.consistency.accept(self.batch.flank());
+        self.pending_innovation = Some(innovation);
+        ParameterAction::Keep
+    }
+
+    /// Updates the parameters with the accepted rest, if any.
+    fn update_with_dwell(&mut self, tables: &ObserverTables<T>) {
+        let Some(innovation) = self.pending_innovation.take() else { return };
+        self.errors.update_parameters(&mut self.least_squares, |least_squares| {
+            least_squares.update(&tables.learner, &innovation)
+        });
+        let Some(flank) = self.batch.flank() else { return };
+        self.uncertainty.adapt_dwell_noise(innovation.value, innovation.variance, flank);
+        if self.consistency.is_trusted() {
+            self.trusted = Some(TrustedParameters::snapshot(&self.least_squares));
+            if self.uncertainty.detect_half_gap_change() {
+                self.least_squares.inflate_half_gap(&tables.learner, Self::INFLATION);
+            }
+        }
+    }
+
+    /// Applies an action: resets the variances of the parameters concerned.
+    fn apply_action(&mut self, tables: &ObserverTables<T>, action: ParameterAction) {
+        match action {
+            ParameterAction::Keep | ParameterAction::OutputEncoderFault => {}
+            ParameterAction::InflateHalfGap => self.least_squares.inflate_half_gap(&tables.learner, Self::INFLATION),
+            ParameterAction::ResetHalfGap => self.least_squares.reset_half_gap_variance(),
+            ParameterAction::ResetAll => self.least_squares.reset_covariance(),
+        }
+    }
+
+    /// Updates the variances after an interval.
+    fn update_uncertainty(&mut self, tables: &ObserverTables<T>, both_encoders: bool) {
+        let mut open_gap = self.errors.open_gap;
+        if let (Some(offset), false) = (open_gap.get_mut(OFFSET), both_encoders) {
+            // Without an output encoder the offset has no error.
+            *offset = T::ZERO;
+        }
+        let contact =
+            ContactSample { flank: Some(self.interval.nearer_flank), force: T::ZERO, mesh: self.errors.mid_mesh };
+        let [_, compliance] = self.half_gap_and_compliance();
+        self.uncertainty.update_force_variances(tables, &self.bias, compliance, self.interval.direction);
+        self.uncertainty.update_next_part(tables, &self.least_squares, &open_gap, &contact);
+    }
+}

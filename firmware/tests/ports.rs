@@ -16,7 +16,8 @@ use link::framing::{Receiver, encode, sealed, unsealed};
 use link::messages::{Accepted, FromBoard, Schedule, ToBoard};
 use model_core::compensation::{Command, Motion, Position};
 use model_core::controller::{Answer, Controller};
-use model_core::observer::{ProbeProgress, Reading, Samples};
+use model_core::observer::{Reading, Samples};
+use model_core::width_probe::ProbeProgress;
 
 mod control {
     #![allow(missing_docs, dead_code, clippy::all, clippy::excessive_precision, reason = "generated numbers")]

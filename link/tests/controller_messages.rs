@@ -10,9 +10,9 @@ use model_core::controller::Answer;
 use model_core::controller::trajectory::{Segment, Trajectory};
 use model_core::gears::Flank;
 use model_core::observer::{
-    Estimate, Estimates, MotorFault, Notices, OutputFault, ProbeProgress, ProbeRefusal, Reading, Samples, Shaft,
-    Source, TorqueResponse,
+    Estimate, Estimates, MotorFault, Notices, OutputFault, Reading, Samples, Shaft, Source, TorqueResponse,
 };
+use model_core::width_probe::{ProbeProgress, ProbeRefusal};
 use parameters::ContactState;
 
 const MOTION: Motion<f32> =

@@ -8,8 +8,9 @@ use model_core::gears::{Kinematics, Tables, design::design};
 use model_core::numbers::random::splitmix64;
 use model_core::observer::design::design_usual_probe;
 use model_core::observer::design::{design_observer, observer_settings};
-use model_core::observer::{OutputFault, Probe, ProbeProgress, ProbeRefusal, Samples, Source, TorqueResponse};
+use model_core::observer::{OutputFault, Samples, Source, TorqueResponse};
 use model_core::virtual_joint::{VirtualJoint, design::design_surroundings};
+use model_core::width_probe::{Probe, ProbeProgress, ProbeRefusal};
 use parameters::{JointParameters, Surroundings};
 
 const PRESETS: [&str; 5] = ["q1", "s1", "c1", "d2", "l1"];

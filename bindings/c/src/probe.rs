@@ -2,7 +2,7 @@
 
 use core::mem::MaybeUninit;
 
-use model_core::observer::{Probe, ProbeProgress, ProbeRefusal};
+use model_core::width_probe::{Probe, ProbeProgress, ProbeRefusal};
 
 use table_blob::Blob;
 

@@ -2,7 +2,8 @@
 
 use host_tests::tolerance::observer::PROBED_WIDTH;
 use model_core::observer::design::{ObserverSettings, design_observer, design_probe};
-use model_core::observer::{MAPPED, Observer, ObserverTables, Probe, ProbeProgress, ProbeRefusal, ProbeTable};
+use model_core::observer::{MAPPED, Observer, ObserverTables, ProbeTable};
+use model_core::width_probe::{Probe, ProbeProgress, ProbeRefusal};
 use reference::closed_loop::{Controller, SetPoint};
 use reference::drive_train::{Disturbance, Measurement};
 use scenario::rig::{ActiveController, Period, PeriodSample, Rig, RunError};

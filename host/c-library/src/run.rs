@@ -4,8 +4,9 @@ use model_core::compensation::{Command, Compensation, ImpedancePoint, Motion, Po
 use model_core::controller::Controller;
 use model_core::gears::Tables;
 use model_core::numbers::digest::{START, chain};
-use model_core::observer::{MAPPED, Observer, ProbeProgress, Source};
+use model_core::observer::{MAPPED, Observer, Source};
 use model_core::virtual_joint::{SurroundingsTable, VirtualJoint};
+use model_core::width_probe::ProbeProgress;
 use model_core::wiring::{WiringCheck, WiringProgress};
 use report::failure::{Failure, Outcome};
 use table_blob::{Blob, Gears};

@@ -1,8 +1,8 @@
 //! Metrics of the observer: its estimates against the truth. Metrics of the motion are in `values`.
 
 use model_core::gears::Kinematics;
-use model_core::observer::ProbeProgress;
 use model_core::virtual_joint::fault::{FaultKind, Shaft};
+use model_core::width_probe::ProbeProgress;
 
 use super::case::Case;
 use super::file::{Fault, TestFile, fault_is_on};

@@ -2,7 +2,8 @@
 
 use model_core::gears::{Flank, sign};
 use model_core::numbers::digest;
-use model_core::observer::{Memory, ProbeProgress, ProbeRefusal, Samples, Source, TorqueResponse};
+use model_core::observer::{Memory, Samples, Source, TorqueResponse};
+use model_core::width_probe::{ProbeProgress, ProbeRefusal};
 use reference::closed_loop::{Motion, Run, Sample, SetPoint};
 
 use super::controller_log::ControllerPeriod;

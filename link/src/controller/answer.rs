@@ -4,9 +4,8 @@
 use model_core::compensation::{Shaped, Stage};
 use model_core::controller::Answer;
 use model_core::gears::{Flank, sign};
-use model_core::observer::{
-    Estimate, Estimates, MotorFault, Notices, OutputFault, ProbeProgress, ProbeRefusal, Shaft, Source, TorqueResponse,
-};
+use model_core::observer::{Estimate, Estimates, MotorFault, Notices, OutputFault, Shaft, Source, TorqueResponse};
+use model_core::width_probe::{ProbeProgress, ProbeRefusal};
 use parameters::ContactState;
 use serde::{Deserialize, Serialize};
 

@@ -5,8 +5,9 @@ use crate::compensation::CompensationTables;
 use crate::compensation::{Command, Compensation, Shaped};
 use crate::numbers::Real;
 use crate::numbers::digest::chain;
-use crate::observer::{Estimates, MAPPED, Memory, MemoryError, Observer, Probe, ProbeProgress, Samples};
+use crate::observer::{Estimates, MAPPED, Memory, MemoryError, Observer, Samples};
 use crate::observer::{ObserverTables, ProbeTable};
+use crate::width_probe::{Probe, ProbeProgress};
 
 /// Outputs of one control period.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -22,10 +22,11 @@ mod health;
 mod identification;
 mod memory;
 mod outputs;
-mod probe;
 mod samples;
 pub(crate) mod sensors;
 pub mod tables;
+
+mod thresholds;
 
 use core::mem::MaybeUninit;
 
@@ -45,7 +46,6 @@ use crate::numbers::Real;
 pub use estimates::{Estimate, Estimates, MotorFault, Notices, OutputFault, Shaft, Source, TorqueResponse};
 pub use identification::regressors::{MAPPED, PLAIN};
 pub use memory::{MEMORY_BYTES, Memory, MemoryError, memory_numbers};
-pub use probe::{Probe, ProbeProgress, ProbeRefusal};
 pub use samples::{Reading, Samples};
 pub use tables::{ObserverTables, ProbeTable};
 

@@ -11,21 +11,9 @@ use super::identification::regressors::{MAPPED, OFFSET, SKEW};
 use super::sensors::Sensors;
 use super::sensors::counts::Counter;
 use super::tables::{EncoderTable, ObserverTables};
+use super::thresholds::ValidityThresholds;
 use crate::gears::contact_state;
 use crate::numbers::Real;
-
-/// Limits of the variances of valid parameters.
-trait Validity: Real {
-    /// Largest standard deviation of a valid half-backlash and of a valid encoder offset, over the half-gap [-]: two
-    /// standard deviations move a flank by a quarter of the half-gap.
-    const HALF_GAP: Self = Self::EIGHTH;
-    /// Largest variance of a valid compliance over the squared compliance [-]: a standard deviation of 22 %.
-    const COMPLIANCE: Self = Self::TWENTIETH;
-    /// Largest variance of valid bias and friction over their initial variance [-].
-    const BIAS: Self = Self::HALF;
-}
-
-impl<T: Real> Validity for T {}
 
 /// Parts of the observer from which the estimates of a period are computed.
 #[derive(Clone, Copy)]
@@ -169,6 +157,7 @@ pub(super) fn publish_parameters<T: Real, const P: usize>(
     both_encoders: bool,
     estimates: &mut Estimates<T>,
 ) {
+    let limits = ValidityThresholds::<T>::TUNED;
     let levers = &tables.levers;
     let uncertainty = &estimator.uncertainty;
     let [half_gap, compliance] = estimator.half_gap_and_compliance();
@@ -180,8 +169,8 @@ pub(super) fn publish_parameters<T: Real, const P: usize>(
     let [_, of_flank] = uncertainty.wind_up_variance;
     let half_gap_variance = half_gap_variance + of_flank;
     let local_variance = half_gap_variance + estimator.half_gap_variation_variance(tables);
-    let max_deviation = T::HALF_GAP * half_gap;
-    let max_bias_variance = T::BIAS * tables.contact.bias_prior;
+    let max_deviation = limits.half_gap * half_gap;
+    let max_bias_variance = limits.bias * tables.contact.bias_prior;
     let force_deviation = if both_encoders && uncertainty.half_gap_is_usable {
         uncertainty.combined_deviation
     } else {
@@ -207,7 +196,7 @@ pub(super) fn publish_parameters<T: Real, const P: usize>(
     estimates.compliance = Estimate {
         value: compliance * output_squared,
         variance: compliance_variance * output_squared * output_squared,
-        valid: compliance_variance < T::COMPLIANCE * compliance * compliance,
+        valid: compliance_variance < limits.compliance * compliance * compliance,
     };
     estimates.skew =
         Estimate { value: skew * levers.per_output, variance: skew_variance * output_squared, valid: both_encoders };

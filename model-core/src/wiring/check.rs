@@ -14,6 +14,7 @@
 //! | brake | against the motion | the motion is over | rest; the next leg |
 //! | any | | motor or output is beyond the travel limit | refused |
 
+use super::thresholds::{CHECK, JUDGE};
 use core::fmt;
 
 use super::judge::WiringJudge;
@@ -22,29 +23,8 @@ use super::verdict::Wiring;
 use crate::numbers::Real;
 use crate::observer::Samples;
 
-/// Legs of a check: two in each direction, to separate dry friction from torque and lost motion from ratio.
-const LEGS: u8 = 4;
-
-/// Additional brakings after a leg.
-const BRAKINGS: u8 = 4;
-
-/// Largest flicker of a shaft at rest during a rest [counts].
-const RESTS: i64 = 4;
-
-/// Largest creep of a shaft at rest during a rest, over a leg, as a negative power of two.
-const CREEPS: u32 = 5;
-
-/// Speed at which braking ends, over the speed at its beginning, as a negative power of two.
-const STOPS: u32 = 4;
-
 /// Limit of a travel [counts], so that products of travels fit.
-const MOST_COUNTS: u64 = u32::MAX as u64;
-
-/// Largest motor travel, over its limit, while the output lags behind the ratio.
-const MOST_TIMES: u64 = 3;
-
-/// Travel above which a shaft has certainly moved [counts].
-const MOVED: i64 = 8;
+const MAX_COUNTS: u64 = u32::MAX as u64;
 
 /// Reason for a check that ended before its last leg.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -222,12 +202,12 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
     /// the geometric mean of both travels decides; it is right even for exchanged encoders. A motor without an output,
     /// or beside a stationary output, has its own limit.
     fn is_far(&self, travel: [i64; 2], limit: [u32; 2]) -> bool {
-        let [motor, output] = travel.map(|counts| counts.unsigned_abs().min(MOST_COUNTS));
+        let [motor, output] = travel.map(|counts| counts.unsigned_abs().min(MAX_COUNTS));
         let [motor_limit, output_limit] = limit.map(u64::from);
-        let stands = [motor, output].map(|counts| counts <= MOVED.unsigned_abs());
+        let stands = [motor, output].map(|counts| counts <= JUDGE.min_motion.unsigned_abs());
         let alone = (stands[1] && motor >= motor_limit) || (stands[0] && output >= output_limit);
         let both = motor.saturating_mul(output) >= motor_limit.saturating_mul(output_limit);
-        alone || both || motor >= motor_limit.saturating_mul(MOST_TIMES)
+        alone || both || motor >= motor_limit.saturating_mul(CHECK.unmatched_travel_factor)
     }
 
     fn enter(&mut self, state: State, positions: [i64; 2]) {
@@ -242,7 +222,8 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
         }
         let travel = travel_since(positions, self.start);
         let is_creeping = |shaft: usize| {
-            let most = RESTS.saturating_add(i64::from(of_shaft(self.table.leg, shaft) >> CREEPS));
+            let most =
+                CHECK.rest_flicker.saturating_add(i64::from(of_shaft(self.table.leg, shaft) >> CHECK.creep_shift));
             of_shaft(travel, shaft).saturating_abs() > most
         };
         let watched = usize::from(self.watches_output);
@@ -264,14 +245,14 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
             self.window_travel = of_shaft(travel, watched).saturating_abs().checked_div(windows).unwrap_or(0);
             self.enter(State::Brake, positions);
             return;
-        } else if self.leg >= LEGS {
+        } else if self.leg >= CHECK.legs {
             self.state = State::Done;
             return;
         }
         self.direction = if self.leg & 1 == 0 { 1 } else { -1 };
         self.leg += 1;
         self.torque_magnitude = T::ZERO;
-        self.brakings = BRAKINGS;
+        self.brakings = CHECK.brakings;
         self.enter(State::Push, positions);
     }
 
@@ -283,7 +264,7 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
         }
         let travel = travel_since(positions, self.start);
         let is_far = self.is_far(travel, self.table.leg);
-        let output_moved = of_shaft(travel, 1).saturating_abs() >= MOVED;
+        let output_moved = of_shaft(travel, 1).saturating_abs() >= JUDGE.min_motion;
         let watched = usize::from(output_moved);
         let window_over = self.window_over();
         if window_over {
@@ -310,7 +291,7 @@ impl<'tables, T: Real> WiringCheck<'tables, T> {
         let travel_along = of_shaft(travel_since(positions, self.window_start), usize::from(self.watches_output))
             .saturating_mul(self.motion_sign);
         self.window_start = positions;
-        let braked = travel_along <= (self.window_travel >> STOPS).max(1);
+        let braked = travel_along <= (self.window_travel >> CHECK.stopped_shift).max(1);
         if braked || self.periods > self.table.hold {
             self.enter(State::Rest, positions);
         }

@@ -29,29 +29,11 @@
 
 use super::line::{Fit, Line};
 use super::tables::WiringTable;
+use super::thresholds::JUDGE;
 use super::track::Track;
 use super::verdict::{Wiring, WiringItem, WiringVerdict};
 use crate::numbers::Real;
 use crate::observer::Samples;
-
-/// Travel that counts as motion [counts]: noise is smaller.
-const MOVED: i64 = 8;
-
-/// Least travel in a block that has a direction [counts].
-const DIRECTED: i64 = 3;
-
-/// Largest flicker of a stationary encoder [counts].
-const FLICKER: i64 = 4;
-
-/// Largest detectable error of an encoder [bits].
-const BITS: usize = 5;
-
-/// Consecutive blocks with a torque of one sign before torque is compared with motion: after a change of sign the motor
-/// crosses the gap.
-const ROW: u8 = 3;
-
-/// Calls before times are judged.
-const CALLS: u32 = 32;
 
 /// State that a block passes to the next block.
 #[derive(Debug, Clone, Copy, Default)]
@@ -125,7 +107,7 @@ pub struct WiringJudge<'tables, T: Real> {
     angles: Line<T>,
     /// Second differences of both angles over torque.
     responses: Line<T>,
-    /// Second differences over torque in blocks after `ROW` blocks with a torque of one sign.
+    /// Second differences over torque in blocks after `JUDGE.same_sign_blocks` blocks with a torque of one sign.
     one_sign_responses: Line<T>,
     /// Positions of the last standstill, until a shaft has moved.
     standstill: Option<[i64; 2]>,
@@ -239,9 +221,9 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         if motor >= motor_leads || output >= output_leads {
             self.standstill = None;
             let [by_motor, by_output] = &mut self.leads;
-            if output <= FLICKER && motor >= motor_leads {
+            if output <= JUDGE.flicker && motor >= motor_leads {
                 *by_motor = by_motor.saturating_add(1);
-            } else if motor <= FLICKER && output >= output_leads {
+            } else if motor <= JUDGE.flicker && output >= output_leads {
                 *by_output = by_output.saturating_add(1);
             }
         }
@@ -256,9 +238,9 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
             end.saturating_sub(begin)
         });
         let moves = |by: i64| {
-            if by >= DIRECTED {
+            if by >= JUDGE.min_block_travel {
                 1
-            } else if by <= -DIRECTED {
+            } else if by <= -JUDGE.min_block_travel {
                 -1
             } else {
                 0
@@ -266,7 +248,7 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         };
         let [motor, output] = travel.map(moves);
         let direction = if motor == 0 { output } else { motor };
-        if travel.iter().all(|by| by.saturating_abs() < DIRECTED) && self.table.counts.has_output {
+        if travel.iter().all(|by| by.saturating_abs() < JUDGE.min_block_travel) && self.table.counts.has_output {
             self.standstill = Some(ends);
         }
         let rise = core::mem::replace(&mut self.rise, T::ZERO);
@@ -299,7 +281,7 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         });
         let response = [angles[0] * motor, angles[1] * output];
         self.responses.add(torque, side, response);
-        if same_sign_blocks >= ROW {
+        if same_sign_blocks >= JUDGE.same_sign_blocks {
             self.one_sign_responses.add(torque, side, response);
         }
         if table.counts.has_output {
@@ -316,7 +298,7 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         self.judge_times(&mut wiring);
         let has_output = table.counts.has_output;
         let spans = [self.motor.span(), self.output.span()];
-        let [motor_moved, output_moved] = spans.map(|span| span >= MOVED);
+        let [motor_moved, output_moved] = spans.map(|span| span >= JUDGE.min_motion);
         let motor_travel = table.counts.motor.angle * table.per_ratio * T::from_i64(spans[0]);
         let output_travel = table.counts.output.angle * T::from_i64(spans[1]);
         self.judge_ranges(&mut wiring);
@@ -325,10 +307,10 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
         } else if self.largest_torque > T::ZERO {
             wiring.set(WiringItem::Motion, WiringVerdict::Wrong(table.friction));
         }
-        if has_output && spans[1] <= FLICKER && motor_travel > table.play {
+        if has_output && spans[1] <= JUDGE.flicker && motor_travel > table.play {
             wiring.set(WiringItem::OutputCounts, WiringVerdict::Wrong(T::ZERO));
         }
-        if has_output && spans[0] <= FLICKER && output_travel > table.play {
+        if has_output && spans[0] <= JUDGE.flicker && output_travel > table.play {
             // Exchanged encoders with a motor that only crosses its gap look like this, too.
             let exchanged = table.counts.motor.angle * table.per_ratio * T::from_i64(spans[1]) < table.play;
             let standstill_verdict =
@@ -355,14 +337,14 @@ impl<'tables, T: Real> WiringJudge<'tables, T> {
 
     fn judge_times(&self, wiring: &mut Wiring<T>) {
         let new = self.calls.saturating_sub(self.repeated_calls);
-        if self.calls < CALLS {
+        if self.calls < JUDGE.min_calls {
             return;
         }
         let count = |number: u32| T::from_i64(number.into());
         let repeated = self.repeated_calls > self.calls >> 2;
         let calls = WiringVerdict::Wrong(count(self.calls) / count(new.max(1)));
         wiring.set(WiringItem::Calls, if repeated { calls } else { WiringVerdict::Right });
-        if new < CALLS >> 1 {
+        if new < JUDGE.min_calls >> 1 {
             return;
         }
         let mostly = |part: u32| part >= new.saturating_sub(new >> 2);
@@ -622,7 +604,7 @@ fn factor_from_one<T: Real>(value: T) -> T {
 /// Power of two other than 1 that matches the angle factor within the tolerance.
 fn matching_power_of_two<T: Real>(size: T, tolerance: T) -> Option<T> {
     let (mut up, mut down) = (T::ONE, T::ONE);
-    for _ in 0..BITS {
+    for _ in 0..JUDGE.max_bits {
         (up, down) = (up + up, down * T::HALF);
         if let Some(power) = [up, down].into_iter().find(|power| (size - *power).abs() <= tolerance * *power) {
             return Some(power);

@@ -1,13 +1,8 @@
 //! Recursive straight-line fits `y = slope x + step s + constant` by least squares, for two `y` and all their weighted
 //! sums.
 
+use super::thresholds::JUDGE;
 use crate::numbers::Real;
-
-/// Number of points after which older points fade, so that sums keep their precision.
-const FADING_POINTS: u16 = 4096;
-
-/// Least number of points of a line.
-const MIN_POINTS: u16 = 8;
 
 /// Moments of the points (x, s, y1, y2) about their means.
 #[derive(Debug, Clone, Copy, Default)]
@@ -48,7 +43,7 @@ impl<T: Real> Fit<T> {
 impl<T: Real> Line<T> {
     /// Adds a point.
     pub fn add(&mut self, x: T, s: T, y: [T; 2]) {
-        self.points = self.points.saturating_add(1).min(FADING_POINTS);
+        self.points = self.points.saturating_add(1).min(JUDGE.fading_points);
         let weight = T::ONE / T::from_i32(self.points.into());
         let [mean_x, mean_s, mean_1, mean_2] = self.mean;
         let [y_1, y_2] = y;
@@ -68,7 +63,7 @@ impl<T: Real> Line<T> {
         let negligible = T::TWENTIETH * T::TWENTIETH;
         // A constant x varies by its rounding.
         let rounding = negligible * self.mean[0];
-        if self.points < MIN_POINTS || xx <= rounding * rounding {
+        if self.points < JUDGE.min_points || xx <= rounding * rounding {
             return None;
         }
         let [w1, w2] = weights;

@@ -1,12 +1,9 @@
 //! Contact detection by the mesh force alone, with hysteresis and persistence. Needs no half-gap and is therefore
 //! available first.
 
+use super::thresholds::CONTACT;
 use crate::gears::Flank;
 use crate::numbers::Real;
-
-/// Control periods for which the force must indicate a changed contact before the change is accepted. Force noise of
-/// one period, which the filter carries into the next period, then makes no contact.
-const PERSISTENCE: u8 = 3;
 
 /// Contact by force alone.
 #[derive(Debug, Clone, Copy, Default)]
@@ -24,7 +21,7 @@ impl ForceContact {
         let candidate = with_hysteresis(self.flank, force, T::TWO * deviation, deviation);
         if candidate != self.flank {
             self.candidate_periods = if candidate == self.candidate { self.candidate_periods + 1 } else { 1 };
-            if self.candidate_periods >= PERSISTENCE {
+            if self.candidate_periods >= CONTACT.persistence {
                 self.flank = candidate;
             }
         }

@@ -9,12 +9,12 @@ mod filter;
 mod gap_variation_tests;
 mod inertia;
 mod integers;
-mod learning;
 mod probe;
 mod settings;
 mod sides;
 mod source;
 mod tables;
+pub(crate) mod thresholds;
 
 pub use probe::{design_probe, design_usual_probe};
 pub(crate) use settings::NO_LIMIT;

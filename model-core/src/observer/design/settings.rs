@@ -1,8 +1,8 @@
 //! Settings of the observer besides the joint: data-sheet figures with their uncertainties, and checks of their ranges.
 
+use super::thresholds::LEARNING_DESIGN;
 use core::f64::consts::TAU;
 
-use super::learning::LEARNING_INTERVAL;
 use crate::gears::design::DesignError;
 use crate::observer::tables::MOST_DELAY;
 use parameters::{AbsoluteEncoder, Surroundings};
@@ -81,7 +81,13 @@ impl ObserverSettings {
             if given >= least && given <= most { Ok(()) } else { Err(DesignError::OutOfRange { what, given, must_be }) }
         };
         // A learning interval contains at least one period.
-        within("the control rate", self.control_rate.into(), 1.0 / LEARNING_INTERVAL, 1e5, "from 1000 to 100000 Hz")?;
+        within(
+            "the control rate",
+            self.control_rate.into(),
+            1.0 / LEARNING_DESIGN.interval,
+            1e5,
+            "from 1000 to 100000 Hz",
+        )?;
         within("the clock rate of the observer's samples", self.clock_rate.into(), 1e4, 4e9, "10 kHz or more")?;
         self.check_counts(gap)?;
         for encoder in [Some(self.motor_encoder), self.output_encoder].into_iter().flatten() {

@@ -2,14 +2,16 @@
 //!
 //! No gain is set by hand. Both filters are steady-state Kalman filters for the encoders' quantisation (O5) and the
 //! rates of torque changes; the parameter estimation starts from the stated uncertainties; thresholds are multiples of
-//! the resulting noise, or the times and fractions named below.
+//! the resulting noise, or the times and fractions of `thresholds`.
 
 use core::f64::consts::TAU;
 
 use super::body::Body;
-use super::learning::{BLOCK, LEARNING_INTERVAL, MEMORY, WINDOW};
 use super::settings::{EncoderSettings, ObserverSettings};
 use super::sides::{current, drive_filter, drive_lag, drive_table, load_filter};
+use super::thresholds::{
+    BIAS_DESIGN, CLOCK_DESIGN, CONTACT_DESIGN, LEARNING_DESIGN, RESPONSE_DESIGN, ROUNDING_DESIGN, SUPERVISION_DESIGN,
+};
 use super::{cogging, inertia, integers};
 use crate::gears::Kinematics;
 use crate::gears::design::{DesignError, validate};
@@ -19,114 +21,6 @@ use crate::observer::tables::{
     ObserverTables, ResponseTable, StopTable, SupervisorTable,
 };
 use parameters::JointParameters;
-
-/// Shortest and longest control period on the samples' clock without a lost period [control periods].
-const PERIOD_TO_PERIOD: [f64; 2] = [0.5, 1.5];
-
-/// Age above which a reading counts as lost [control periods]: up to this age the torques since the reading are known
-/// well enough.
-const OLDEST: f64 = 10.0;
-
-/// Lag of the measured deflection at a landing, output filter included [control periods].
-const LAG: f64 = 3.0;
-
-/// Time outside the possible range after which a fault of the output encoder is declared [s]: longer than impacts ring.
-const FAILED_AFTER: f64 = 4e-3;
-
-/// Shortest time in which an obstacle stops a link, independent of the speed [s]: a quarter of a swing of 250 Hz. A
-/// link that is stopped faster, as by steel on steel, is mistaken for a frozen encoder: counts alone cannot distinguish
-/// the two (`docs/theory/observer.md`, Limits).
-const STOP: f64 = 1e-3;
-
-/// Largest braking torque of teeth and load on the link besides obstacles, over the motor's largest torque at the
-/// output [-].
-const BRAKE: f64 = 2.0;
-
-/// Time for which a stationary motor is judged by its last speed [s]. Chosen: noise accumulates over longer times.
-const MOTOR_REMEMBERED: f64 = 3e-3;
-
-/// Time of unchanged motor counts after which the deflection may exclude the motor encoder [s]: longer than repeated
-/// counts by noise, or the reversal of a motor.
-const MOTOR_UNMOVED: f64 = 1e-3;
-
-/// Time for which the readings of an excluded motor encoder must be plausible and agree with the output encoder before
-/// readmission [s]. Random counts are not plausible for three readings. Chosen.
-const MOTOR_TRUSTED: f64 = 20e-3;
-
-/// Time before readmission if the motor's counts stand still or have slipped [s]. Chosen.
-const MOTOR_SLIPPED: f64 = 100e-3;
-
-/// Travel that proves motion of an output encoder [counts]: above the flicker by noise.
-const MOVED_COUNTS: f64 = 4.0;
-
-/// Time without a fresh reading after which the output encoder is silent [s]. Chosen: longer than readings are
-/// lost by chance.
-const SILENT_AFTER: f64 = 10e-3;
-
-/// Time for which an excluded output encoder must agree with the motor before readmission [s]. Chosen: longer than the
-/// link's swings after a fault.
-const TRUSTED_AFTER: f64 = 0.3;
-
-/// Margin of the deflection's possible range, over the half-gap and over the wind-up under the largest torque, for
-/// errors of maps and compliance [-]. Chosen.
-const MARGIN: f64 = 0.1;
-
-/// Largest standard deviation of a valid gap coordinate, over the gap [-]. Chosen.
-const WIDEST_PART: f64 = 0.1;
-
-/// Standard deviation of a flank's position, over the half-gap, below which positions decide on contact [-]: six
-/// standard deviations are half of the half-gap.
-const KNOWN_PART: f64 = 0.08;
-
-/// Share of the motor encoder's errors that remains after the error maps [-].
-const UNMODELLED: f64 = 0.1;
-
-/// Correlation length of cogging and noise [learning intervals]; inflates the variance of a bias measurement by 5.
-/// Chosen.
-const ALIKE: f64 = 5.0;
-
-/// Time in which bias and friction may change by their prior standard deviation [s]. Chosen: a motor warms up more
-/// slowly.
-const BIAS_KEPT: f64 = 10.0;
-
-/// Standard deviations treated as noise: of bias and friction, of a deflection at rest, of a speed [-].
-const BEYOND_NOISE: f64 = 3.0;
-
-/// Time constant of a mean over a few learning intervals [learning intervals]. Chosen.
-const FEW_INTERVALS: f64 = 1.5;
-
-/// Link speed v_w at which the rounding of an output reading counts as independent noise [rad/s]. At lower speed or
-/// with coarser encoders a count lasts longer than a period, and readings within one count share their rounding error.
-/// Chosen: a robot joint at work; at 10 kHz the variance grows below 15 bits.
-const LINK_AT_WORK: f64 = 2.0;
-
-/// Motor-side speed v_w, a link speed times the ratio, at which the rounding of a motor reading counts as independent
-/// noise [rad/s]. Tuned on hil/never-worse.toml: with 2 rad/s the RMS error with motor encoders of 12 bits on Q1 is 4 %
-/// larger in the mean of 250 seeds; with 3 rad/s the variance grows below 2^14.4/ratio counts at 10 kHz, so that 12
-/// bits keep their variance.
-const MOTOR_AT_WORK: f64 = 3.0;
-
-/// Least change of the angle per block, from block to block, by the largest torque [motor counts]: noise of a count
-/// causes a change of 3.
-const BLOCK_COUNTS: f64 = 24.0;
-
-/// Least change of the angle per block by the largest torque, over the gap at the motor [-]: rattling between
-/// the flanks causes a change of 1.
-const BLOCK_GAPS: f64 = 4.0;
-
-/// Least length of a block, in periods of the swing of motor against link [-]: a swing must be over within a block.
-const BLOCK_SWINGS: f64 = 0.5;
-
-/// Shortest and longest block in which torque and acceleration are compared [s]: longer than the ringing of teeth,
-/// short enough to detect a runaway joint soon.
-const RESPONSE_BLOCK: [f64; 2] = [2e-3, 30e-3];
-
-/// Least length of a block [control periods]: a torque acts after one to three periods.
-const BLOCK_PERIODS: f64 = 8.0;
-
-/// Torque, and change of torque, that suffices for a vote, over the motor's largest torque [-]: above friction and
-/// bias.
-const LARGE_TORQUE: f64 = 0.25;
 
 /// Slope of a once- and a twice-per-turn error of equal size together, over that size: sqrt(1 + 2^2).
 const HARMONIC_SLOPE: f64 = 2.2;
@@ -144,12 +38,13 @@ pub fn design_observer<T: Real>(
     let counts = counts::<T>(joint, settings, step)?;
     let motor_count = TAU / f64::from(settings.motor_encoder.counts_per_turn);
     let output_count = TAU / f64::from(settings.output_encoder.unwrap_or(settings.motor_encoder).counts_per_turn);
-    let drive = drive_filter(&body, settings, rounding(motor_count, body.ratio * MOTOR_AT_WORK, step), step);
-    let load = load_filter(&body, settings, rounding(output_count, LINK_AT_WORK, step), step);
+    let drive =
+        drive_filter(&body, settings, rounding(motor_count, body.ratio * ROUNDING_DESIGN.motor_speed, step), step);
+    let load = load_filter(&body, settings, rounding(output_count, ROUNDING_DESIGN.link_speed, step), step);
 
     let largest_force = settings.torque_limit / body.sun_lever;
     let force_variance = drive.quiet[2] / (body.sun_lever * body.sun_lever);
-    let periods = libm::round(LEARNING_INTERVAL / step).max(1.0);
+    let periods = libm::round(LEARNING_DESIGN.interval / step).max(1.0);
     let deflection_variance = drive.quiet[0] * body.sun_lever.powi(2) + load.quiet[0] * body.output_lever.powi(2);
     let ripple = settings.torque_ripple / body.sun_lever;
     let wind_up_variance = body.compliance.powi(2) * (force_variance / periods + ripple * ripple);
@@ -160,9 +55,9 @@ pub fn design_observer<T: Real>(
             / body.output_lever.powi(2),
         step,
     );
-    let unmodelled = UNMODELLED * settings.motor_encoder.harmonic_error * body.sun_lever;
+    let unmodelled = CONTACT_DESIGN.unmodelled_errors * settings.motor_encoder.harmonic_error * body.sun_lever;
     let noise = libm::sqrt(deflection_variance + wind_up_variance + unmodelled * unmodelled);
-    let block = libm::round(BLOCK / LEARNING_INTERVAL).max(1.0);
+    let block = libm::round(LEARNING_DESIGN.batch / LEARNING_DESIGN.interval).max(1.0);
 
     let stop = |time: f64| libm::round(time / step).clamp(1.0, 250.0);
     let stops = |stop: f64, forgotten: f64| StopTable {
@@ -225,22 +120,28 @@ pub fn design_observer<T: Real>(
             force_variance: real(force_variance),
             ripple_variance: real(ripple * ripple),
             deflection_variance: real(deflection_variance),
-            bias_noise: real((force_variance + ripple * ripple) * ALIKE),
+            bias_noise: real((force_variance + ripple * ripple) * BIAS_DESIGN.correlated_intervals),
             bias_prior: real((settings.torque_uncertainty / body.sun_lever).powi(2)),
-            bias_drift: real((settings.torque_uncertainty / body.sun_lever).powi(2) * LEARNING_INTERVAL / BIAS_KEPT),
-            bias_limit: real(BEYOND_NOISE * settings.torque_uncertainty / body.sun_lever),
-            still: real(BEYOND_NOISE * libm::sqrt(2.0 * (deflection_variance + wind_up_variance)) / WINDOW),
+            bias_drift: real(
+                (settings.torque_uncertainty / body.sun_lever).powi(2) * LEARNING_DESIGN.interval
+                    / BIAS_DESIGN.drift_time,
+            ),
+            bias_limit: real(CONTACT_DESIGN.noise_sigma * settings.torque_uncertainty / body.sun_lever),
+            still: real(
+                CONTACT_DESIGN.noise_sigma * libm::sqrt(2.0 * (deflection_variance + wind_up_variance))
+                    / LEARNING_DESIGN.window,
+            ),
             still_per_speed: real(
                 2.0 * (HARMONIC_SLOPE * motor_harmonic
                     + (output_harmonic + meshes * body.transmission_error) / body.ratio),
             ),
-            per_turning: real(1.0 / (BEYOND_NOISE * libm::sqrt(drive.quiet[1]))),
+            per_turning: real(1.0 / (CONTACT_DESIGN.noise_sigma * libm::sqrt(drive.quiet[1]))),
             rate_deviation: real(libm::sqrt(
                 drive.quiet[1] * body.sun_lever.powi(2) + load.quiet[1] * body.output_lever.powi(2),
             )),
-            lag: real(LAG * step),
-            smoothing: real(-libm::expm1(-step / (FEW_INTERVALS * LEARNING_INTERVAL))),
-            known_part: real(KNOWN_PART),
+            lag: real(CONTACT_DESIGN.landing_lag * step),
+            smoothing: real(-libm::expm1(-step / (CONTACT_DESIGN.smoothing_intervals * LEARNING_DESIGN.interval))),
+            known_part: real(CONTACT_DESIGN.known_half_gap),
             loss_driving: real(settings.efficiency - 1.0),
             loss_driven: real(1.0 / settings.efficiency - 1.0),
         },
@@ -257,29 +158,36 @@ pub fn design_observer<T: Real>(
             noise: real(noise),
             force_noise: real(force_variance / (periods * block) + 0.5 * ripple * ripple),
             force_lag: real(drive_lag(&body, &drive, step) / (periods * step)),
-            forgetting: real(LEARNING_INTERVAL / MEMORY),
+            forgetting: real(LEARNING_DESIGN.interval / LEARNING_DESIGN.memory),
             mesh_compliance: real(body.mesh_compliance),
         },
         supervisor: SupervisorTable {
-            silent_after: (SILENT_AFTER / step) as u16,
-            failed_after: (FAILED_AFTER / step) as u16,
-            output: stops(stop(STOP), stop(STOP)),
+            silent_after: (SUPERVISION_DESIGN.output_silence / step) as u16,
+            failed_after: (SUPERVISION_DESIGN.output_fault_time / step) as u16,
+            output: stops(stop(SUPERVISION_DESIGN.link_stop_time), stop(SUPERVISION_DESIGN.link_stop_time)),
             // Teeth stop the motor like a spring, in at least a quarter of a swing.
             motor: stops(
                 libm::floor(0.25 * TAU / body.contact_frequency() / step).clamp(1.0, 250.0),
-                stop(MOTOR_REMEMBERED),
+                stop(SUPERVISION_DESIGN.motor_speed_kept),
             ),
-            output_brake: real(brake(BRAKE * settings.torque_limit * body.ratio, body.load_inertia, output_count)),
+            output_brake: real(brake(
+                SUPERVISION_DESIGN.link_brake * settings.torque_limit * body.ratio,
+                body.load_inertia,
+                output_count,
+            )),
             motor_brake: real(brake(1.0, body.motor_inertia, motor_count)),
-            motor_drag: real(BEYOND_NOISE * settings.torque_uncertainty),
+            motor_drag: real(CONTACT_DESIGN.noise_sigma * settings.torque_uncertainty),
             motor_counts: real(body.ratio * output_count / motor_count),
-            motor_unmoved_after: (MOTOR_UNMOVED / step) as u16,
-            motor_trusted_after: (MOTOR_TRUSTED / step) as u16,
-            motor_slipped_after: (MOTOR_SLIPPED / step) as u16,
-            trusted_after: (TRUSTED_AFTER / LEARNING_INTERVAL) as u16,
-            moved: libm::ldexp(MOVED_COUNTS * output_count / TAU, 32) as u32,
-            margin: real(MARGIN * half_gap + MARGIN * body.compliance * largest_force),
-            widest_part: real(WIDEST_PART),
+            motor_unmoved_after: (SUPERVISION_DESIGN.motor_standstill / step) as u16,
+            motor_trusted_after: (SUPERVISION_DESIGN.motor_readmission / step) as u16,
+            motor_slipped_after: (SUPERVISION_DESIGN.motor_slip_readmission / step) as u16,
+            trusted_after: (SUPERVISION_DESIGN.output_readmission / LEARNING_DESIGN.interval) as u16,
+            moved: libm::ldexp(SUPERVISION_DESIGN.min_motion * output_count / TAU, 32) as u32,
+            margin: real(
+                SUPERVISION_DESIGN.deflection_margin * half_gap
+                    + SUPERVISION_DESIGN.deflection_margin * body.compliance * largest_force,
+            ),
+            widest_part: real(SUPERVISION_DESIGN.widest_gap),
         },
         response: response(&body, settings, motor_count, step),
     };
@@ -295,16 +203,17 @@ fn rounding(count: f64, speed: f64, step: f64) -> f64 {
 /// Computes the table of the sign check (O25).
 fn response<T: Real>(body: &Body, settings: &ObserverSettings, motor_count: f64, step: f64) -> ResponseTable<T> {
     let inertia = body.motor_inertia + body.load_inertia / (body.ratio * body.ratio);
-    let unsure = (BLOCK_COUNTS * motor_count).max(BLOCK_GAPS * body.gap_at_motor());
-    let length =
-        libm::sqrt(unsure * inertia / settings.torque_limit).max(BLOCK_SWINGS * TAU / body.contact_frequency());
-    let block = libm::round(length.clamp(RESPONSE_BLOCK[0], RESPONSE_BLOCK[1]) / step).max(BLOCK_PERIODS);
+    let unsure = (RESPONSE_DESIGN.block_counts * motor_count).max(RESPONSE_DESIGN.block_gaps * body.gap_at_motor());
+    let length = libm::sqrt(unsure * inertia / settings.torque_limit)
+        .max(RESPONSE_DESIGN.block_swings * TAU / body.contact_frequency());
+    let block = libm::round(length.clamp(RESPONSE_DESIGN.block_time[0], RESPONSE_DESIGN.block_time[1]) / step)
+        .max(RESPONSE_DESIGN.block_periods);
     let length = block * step;
     ResponseTable {
         block: block as u16,
         per_block: T::from_f64(1.0 / block),
         inertia: T::from_f64(inertia / (length * length)),
-        large: T::from_f64(LARGE_TORQUE * settings.torque_limit),
+        large: T::from_f64(RESPONSE_DESIGN.large_torque * settings.torque_limit),
         alone: T::from_f64(2.0 * inertia / body.motor_inertia),
     }
 }
@@ -358,13 +267,13 @@ fn counts<T: Real>(
 /// Computes the table of the samples' clock; `period` is the control period [s].
 fn clock<T: Real>(period: f64, rate: u32) -> ClockTable<T> {
     let ticks = |periods: f64| libm::round(periods * period * f64::from(rate)) as u32;
-    let [shortest, longest] = PERIOD_TO_PERIOD.map(ticks);
+    let [shortest, longest] = CLOCK_DESIGN.accepted_periods.map(ticks);
     ClockTable {
         tick: T::from_f64(1.0 / f64::from(rate)),
         period: ticks(1.0),
         shortest,
         longer: longest - shortest,
-        oldest: ticks(OLDEST),
+        oldest: ticks(CLOCK_DESIGN.oldest_reading),
     }
 }
 

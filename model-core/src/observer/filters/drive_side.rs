@@ -6,6 +6,7 @@
 //! measured less the predicted angle, then corrects angle, speed and taken torque; the air-gap torque is not corrected.
 
 use super::delayed::Delayed;
+use super::thresholds::MotorSideThresholds;
 use crate::numbers::Real;
 use crate::observer::tables::{CurrentTable, DriveTable, MOST_DELAY};
 
@@ -26,8 +27,7 @@ pub struct DriveSide<T: Real> {
 }
 
 impl<T: Real> DriveSide<T> {
-    /// Decay of `peak_torque` per period [-]: a speed computed from counts lags by a few periods.
-    const FADES: T = T::TWENTIETH;
+    const LIMITS: MotorSideThresholds<T> = MotorSideThresholds::TUNED;
 
     /// Predicts the state over one period under the command in force; `turned` is the travel of the counts [rad].
     pub fn predict(&mut self, table: &DriveTable<T>, current: &CurrentTable<T>, command: T, turned: T) {
@@ -46,8 +46,11 @@ impl<T: Real> DriveSide<T> {
         self.speed += from_taken * self.disturbance_torque + from_air_gap * self.air_gap + from_wanted * wanted;
         self.air_gap += current.rise * (wanted - self.air_gap);
         let torque = self.air_gap.abs();
-        self.peak_torque =
-            if torque > self.peak_torque { torque } else { self.peak_torque - Self::FADES * self.peak_torque };
+        self.peak_torque = if torque > self.peak_torque {
+            torque
+        } else {
+            self.peak_torque - Self::LIMITS.peak_decay * self.peak_torque
+        };
     }
 
     /// Corrects by a reading of this period, with its age [s].

@@ -6,6 +6,8 @@ mod delayed;
 pub mod drive_side;
 pub mod load_side;
 
+mod thresholds;
+
 use drive_side::DriveSide;
 use load_side::LoadSide;
 

@@ -7,6 +7,7 @@
 //! The smoothed force has two contact thresholds: the reported contact needs a force that is likelier with contact than
 //! without; the correction of the load side needs a force that no bias explains.
 
+use super::thresholds::UnseenLinkThresholds;
 use crate::gears::{Flank, sign};
 use crate::numbers::Real;
 use crate::numbers::arithmetic::deadband;
@@ -15,24 +16,6 @@ use crate::observer::filters::LoadCorrection;
 use crate::observer::identification::ParameterEstimator;
 use crate::observer::identification::mesh_measurement::MeshMeasurement;
 use crate::observer::tables::ObserverTables;
-
-/// Control periods by which contact may have ended before the smoothed force shows it.
-const GONE_BEFORE: i32 = 30;
-
-/// Standard deviations of the smoothed force above which contact is certain: no bias explains the force.
-const MAKES_CONTACT: i32 = 4;
-
-/// Standard deviations of the smoothed force that keep certain contact.
-const KEEPS_CONTACT: i32 = 3;
-
-/// Standard deviations of the smoothed force above which contact is likelier than an open gap (O27). Both are equally
-/// likely at F^2 = 2 s^2 ln(F_max / (sqrt(2 pi) s)), with s the standard deviation without contact and, in contact, any
-/// force up to F_max: 2 deviations for a bias known to 5 % of the motor's largest torque, 2.5 for 2 %. One deviation
-/// keeps contact.
-const LIKELY_CONTACT: i32 = 2;
-
-/// Control periods for which the last flank is kept without a force: the force estimate lags.
-const SHOWN_LATE: u16 = 10;
 
 /// Estimate of the link's motion without its encoder.
 #[derive(Debug, Clone, Copy, Default)]
@@ -52,8 +35,7 @@ pub struct LinkWithoutEncoder<T: Real> {
 }
 
 impl<T: Real> LinkWithoutEncoder<T> {
-    /// Decay rate of the bounce over that of the smoothed force [-]: bounces last eight times as long.
-    const BOUNCE_DECAY: T = T::EIGHTH;
+    const LIMITS: UnseenLinkThresholds<T> = UnseenLinkThresholds::TUNED;
 
     /// Keeps place and speed of the link, which were known when its encoder was excluded.
     pub fn keep_position(&mut self) {
@@ -72,7 +54,7 @@ impl<T: Real> LinkWithoutEncoder<T> {
         if self.likely.is_some() {
             return self.likely;
         }
-        if self.open_periods < SHOWN_LATE {
+        if self.open_periods < Self::LIMITS.flank_kept_periods {
             return before;
         }
         let [half_gap, _] = estimator.half_gap_and_compliance();
@@ -90,10 +72,12 @@ impl<T: Real> LinkWithoutEncoder<T> {
         let [half_gap, compliance] = estimator.half_gap_and_compliance();
         self.force += (measurement.force - self.force) * tables.contact.smoothing;
         let deviation = estimator.uncertainty.mean_force_deviation;
-        let [on, off] = [MAKES_CONTACT, KEEPS_CONTACT].map(|deviations| T::from_i32(deviations) * deviation);
+        let [on, off] = [Self::LIMITS.certain_begin, Self::LIMITS.certain_keep]
+            .map(|deviations| T::from_i32(deviations) * deviation);
         let before = self.certain;
         self.certain = with_hysteresis(before, self.force, on, off);
-        self.likely = with_hysteresis(self.likely, self.force, T::from_i32(LIKELY_CONTACT) * deviation, deviation);
+        self.likely =
+            with_hysteresis(self.likely, self.force, T::from_i32(Self::LIMITS.likely_begin) * deviation, deviation);
         let side: T = sign(self.certain);
         let innovation =
             (measurement.tooth_deflection() - side * half_gap - compliance * measurement.force) * levers.per_output;
@@ -108,7 +92,7 @@ impl<T: Real> LinkWithoutEncoder<T> {
         }
         self.open_periods = 0;
         if self.certain == before {
-            self.landing_speed -= self.landing_speed * tables.contact.smoothing * Self::BOUNCE_DECAY;
+            self.landing_speed -= self.landing_speed * tables.contact.smoothing * Self::LIMITS.landing_speed_decay;
             return LoadCorrection::InContact(innovation);
         }
         // A landing gives the link's position and speed, but not its torque.
@@ -130,7 +114,8 @@ impl<T: Real> LinkWithoutEncoder<T> {
     /// Variance added since certain contact [m^2].
     fn drift_variance(&self, tables: &ObserverTables<T>) -> T {
         let load = &tables.load;
-        let open_periods = if self.open_periods > 0 { i32::from(self.open_periods) + GONE_BEFORE } else { 0 };
+        let open_periods =
+            if self.open_periods > 0 { i32::from(self.open_periods) + Self::LIMITS.contact_lag } else { 0 };
         let time = tables.period * T::from_i32(open_periods);
         let [speed_variance, torque_variance] = load.motor_only_variance;
         let lever = tables.levers.output;

@@ -6,12 +6,14 @@ pub mod motor_faults;
 mod output_faults;
 mod plausibility;
 mod recovery;
+mod thresholds;
 mod torque_response;
 
 use link_without_encoder::LinkWithoutEncoder;
 use motor_faults::{MotorFaultDetector, MotorMotionLimits, MotorReadingStatus, RecoveryState};
 use output_faults::OutputFaultDetector;
 use recovery::OutputRecovery;
+use thresholds::OUTPUT_FAULT;
 use torque_response::TorqueResponseCheck;
 
 use super::estimates::{MotorFault, OutputFault, Source};
@@ -25,11 +27,6 @@ use crate::observer::tables::ObserverTables;
 
 pub use output_faults::{LastMotion, ReadingStatus};
 pub use recovery::Readmission;
-
-/// Learning intervals between two stored load torques: the restored torque is 16 to 32 ms old, and most faults are
-/// declared sooner. A freeze in slow motion is declared after 8 to 22 ms, so that a torque may be stored after the
-/// output encoder froze.
-const LOOK: u16 = 16;
 
 /// Encoders in use, and the state of the fault checks.
 #[derive(Debug, Clone, Copy)]
@@ -209,7 +206,7 @@ impl<T: Real> Health<T> {
     /// Stores the load torque [N m]; called once per learning interval while both encoders are in use.
     pub fn store_load_torque(&mut self, load_torque: T) {
         self.intervals_since_store += 1;
-        if self.intervals_since_store >= LOOK {
+        if self.intervals_since_store >= OUTPUT_FAULT.load_torque_intervals {
             self.intervals_since_store = 0;
             self.load_torques = [load_torque, self.load_torques[0]];
         }

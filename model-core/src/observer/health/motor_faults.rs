@@ -14,7 +14,8 @@
 //! the offset is estimated anew.
 
 use super::output_faults::{deflection_tolerance, exceeds_gap};
-use super::plausibility::{COUNT, FEWEST, MotionLimits, Plausibility, PlausibilityResult, counts};
+use super::plausibility::{MotionLimits, Plausibility, PlausibilityResult, counts};
+use super::thresholds::{MOTOR_FAULT, PARTS_PER_COUNT, PLAUSIBILITY};
 use crate::numbers::Real;
 use crate::numbers::arithmetic::deadband;
 use crate::observer::estimates::MotorFault;
@@ -24,13 +25,6 @@ use crate::observer::sensors::SensorReadings;
 use crate::observer::sensors::counts::CountChange;
 use crate::observer::sensors::latency::SampleAge;
 use crate::observer::tables::{ObserverTables, StopTable, SupervisorTable};
-
-/// Counts by which the commanded torque would have moved a free motor before a stationary motor counts as blocked [-]:
-/// four times the travel that a free motor loses while it reverses under a torque. Tuned on `hil/motor-faults.toml`.
-const HELD: i32 = 16;
-
-/// Periods until the estimated speed follows a torque.
-const LAG: i32 = 6;
 
 /// Fault checks of the motor encoder.
 #[derive(Debug, Clone, Copy)]
@@ -100,7 +94,9 @@ impl<T: Real> MotionLimits<T> for MotorMotionLimits<'_, T> {
     fn impact_speed_change(&self, rate: i32) -> i32 {
         let Some(link) = self.link() else { return i32::MAX };
         let fastest = rate.saturating_abs().max(link.saturating_abs());
-        fastest.saturating_mul(2).saturating_add(saturating_whole(T::from_i32(COUNT) * self.unobserved_speed_change()))
+        fastest
+            .saturating_mul(2)
+            .saturating_add(saturating_whole(T::from_i32(PARTS_PER_COUNT) * self.unobserved_speed_change()))
     }
 
     /// Teeth move the motor no farther from the link's speed than it was.
@@ -112,7 +108,7 @@ impl<T: Real> MotionLimits<T> for MotorMotionLimits<'_, T> {
     /// The estimated speed lags behind by a few periods of braking. Speeds below a count per period are not certain.
     fn lower_speed_bound(&self, rate: i32) -> T {
         let braked = counts::<T>(rate) - self.unobserved_speed_change();
-        if rate >= COUNT && braked > T::ZERO { braked } else { T::ZERO }
+        if rate >= PARTS_PER_COUNT && braked > T::ZERO { braked } else { T::ZERO }
     }
 }
 
@@ -124,7 +120,7 @@ impl<T: Real> MotorMotionLimits<'_, T> {
 
     /// Change of speed that the torques may have caused and the estimate does not show yet [counts per period].
     fn unobserved_speed_change(&self) -> T {
-        T::from_i32(2 * LAG) * self.half_deceleration()
+        T::from_i32(2 * MOTOR_FAULT.speed_lag) * self.half_deceleration()
     }
 }
 
@@ -309,7 +305,9 @@ impl<T: Real> MotorFaultDetector<T> {
         let output_travel = (unwound_deflection - self.standstill_deflection).abs();
         // A motor that no torque moves is held by teeth: the link can move by the wind-up of those teeth, and by a
         // little more while the half-gap is a guess.
-        if self.standstill_periods > FEWEST && self.free_travel.abs() > T::from_i32(HELD) {
+        if self.standstill_periods > PLAUSIBILITY.min_standstill_readings
+            && self.free_travel.abs() > T::from_i32(MOTOR_FAULT.blocked_free_travel)
+        {
             let wind_up = compliance * (force - self.standstill_force).abs();
             let half_gap_tolerance = T::QUARTER * estimator.uncertainty.guessed_half_gap;
             return output_travel > half_gap_tolerance + wind_up + deflection_tolerance(tables, estimator, force);

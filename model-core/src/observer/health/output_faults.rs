@@ -14,6 +14,7 @@
 //! [`identification::Outcome::EncoderFails`]: crate::observer::identification::Outcome::EncoderFails
 
 use super::plausibility::{MotionLimits, Plausibility, PlausibilityResult, counts};
+use super::thresholds::OUTPUT_FAULT;
 use crate::numbers::Real;
 use crate::observer::estimates::OutputFault;
 use crate::observer::identification::ParameterEstimator;
@@ -21,9 +22,6 @@ use crate::observer::identification::mesh_measurement::MeshMeasurement;
 use crate::observer::sensors::SensorReadings;
 use crate::observer::sensors::counts::CountChange;
 use crate::observer::tables::{ObserverTables, StopTable, SupervisorTable};
-
-/// Longest interval between two readings over which the link's speed is kept [control periods].
-const SPEED_KEPT: u32 = 6;
 
 /// Fault checks of the output encoder.
 #[derive(Debug, Clone, Copy)]
@@ -161,7 +159,7 @@ impl<T: Real> OutputFaultDetector<T> {
         let clock = &tables.clock;
         let beyond = readings.output_interval.wrapping_sub(clock.shortest);
         if beyond > clock.longer {
-            self.plausibility.skip_irregular(by, beyond > clock.period.saturating_mul(SPEED_KEPT));
+            self.plausibility.skip_irregular(by, beyond > clock.period.saturating_mul(OUTPUT_FAULT.speed_kept_periods));
             return status;
         }
         match self.plausibility.check(&tables.supervisor, by) {

@@ -6,34 +6,15 @@
 //! twice the link's. A motor that turns with the link is not stopped by teeth: one flank pulls away, the other drives
 //! the motor on.
 
+use super::thresholds::{PART_BITS, PARTS_PER_COUNT, PLAUSIBILITY};
 use crate::numbers::Real;
 use crate::observer::tables::StopTable;
 
-/// Base-2 logarithm of the parts of a count.
-const PART: u32 = 6;
-pub const COUNT: i32 = 1 << PART;
-
-/// Fewest equal readings before standing still is a fault, plus one per count of noise: two may be one reading given
-/// twice.
-pub const FEWEST: u16 = 3;
-
-/// Readings that must confirm a jump: wrong bits in one or two readings are ignored.
-const CONFIRMED: u8 = 3;
-
-/// Missing counts beyond noise that make an encoder frozen: rounding, and one more count.
-const MISSING: i32 = 2 * COUNT;
-
-/// Jump of a reading beyond noise that makes the reading suspect.
-const JUMP: i32 = 8 * COUNT;
-
-/// Mean deviations of the readings added to both limits above: five standard deviations of normal noise.
-const NOISY: i32 = 4;
-
 /// Base-2 logarithm of the readings over which the noise is averaged.
-const AVERAGED: u32 = 5;
+const NOISE_AVERAGE_BITS: u32 = 5;
 
 /// Value of `readings_since_jump` while the speed is unknown.
-const UNKNOWN: u8 = u8::MAX;
+const SPEED_UNKNOWN: u8 = u8::MAX;
 
 /// Plausibility of a reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,7 +58,7 @@ pub struct Plausibility {
 
 impl Plausibility {
     pub fn new() -> Self {
-        Self { rate: 0, noise: 0, jump_distance: 0, readings_since_jump: UNKNOWN, standstill_readings: 0 }
+        Self { rate: 0, noise: 0, jump_distance: 0, readings_since_jump: SPEED_UNKNOWN, standstill_readings: 0 }
     }
 
     /// Handles a reading after an irregular interval: motion ends a standstill; a long interval (`is_long`) resets the
@@ -103,7 +84,7 @@ impl Plausibility {
 
     /// Speed before the readings broke off, if known [counts per period].
     pub fn speed<T: Real>(&self) -> Option<T> {
-        (self.readings_since_jump != UNKNOWN).then(|| counts(self.rate))
+        (self.readings_since_jump != SPEED_UNKNOWN).then(|| counts(self.rate))
     }
 
     /// Lead of the link over readings that broke off [counts].
@@ -123,10 +104,10 @@ impl Plausibility {
     /// Judges the counts `by` which the shaft moved in a period.
     #[inline]
     pub fn check<T: Real>(&mut self, limits: &impl MotionLimits<T>, by: i32) -> PlausibilityResult {
-        let by = by.wrapping_shl(PART);
+        let by = by.wrapping_shl(PART_BITS);
         let deviation = by.wrapping_sub(self.rate);
-        let noise = i32::from(self.noise) >> AVERAGED;
-        let jump = JUMP + 2 * NOISY * noise;
+        let noise = i32::from(self.noise) >> NOISE_AVERAGE_BITS;
+        let jump = PLAUSIBILITY.jump + 2 * PLAUSIBILITY.noise_factor * noise;
         if self.readings_since_jump != 0 || deviation.wrapping_abs() > jump && self.is_jump(limits, deviation, jump) {
             return self.check_jump(by, deviation);
         }
@@ -143,9 +124,9 @@ impl Plausibility {
     /// Handles the first reading, a reading that jumps, and the readings after it.
     #[cold]
     fn check_jump(&mut self, by: i32, deviation: i32) -> PlausibilityResult {
-        if self.readings_since_jump == UNKNOWN {
+        if self.readings_since_jump == SPEED_UNKNOWN {
             // A single reading is rounded by up to a count: the slowest speed that explains it is used.
-            let rate = by - by.clamp(-COUNT, COUNT);
+            let rate = by - by.clamp(-PARTS_PER_COUNT, PARTS_PER_COUNT);
             *self = Self { rate, noise: self.noise, readings_since_jump: 0, ..Self::new() };
             return PlausibilityResult::Plausible;
         }
@@ -153,10 +134,10 @@ impl Plausibility {
             i32::from(self.jump_distance).saturating_add(deviation).clamp(i16::MIN.into(), i16::MAX.into()) as i16;
         self.readings_since_jump += 1;
         self.standstill_readings = 0;
-        if i32::from(self.jump_distance).abs() < JUMP / 2 {
+        if i32::from(self.jump_distance).abs() < PLAUSIBILITY.jump / 2 {
             (self.jump_distance, self.readings_since_jump) = (0, 0);
             PlausibilityResult::Plausible
-        } else if self.readings_since_jump > CONFIRMED {
+        } else if self.readings_since_jump > PLAUSIBILITY.jump_confirmations {
             PlausibilityResult::Implausible
         } else {
             PlausibilityResult::Suspect
@@ -185,7 +166,10 @@ impl Plausibility {
             self.rate = 0;
         }
         // Noise can leave the counts unchanged by chance.
-        if self.rate == 0 || i32::from(self.standstill_readings) < i32::from(FEWEST) + (noise >> PART) {
+        if self.rate == 0
+            || i32::from(self.standstill_readings)
+                < i32::from(PLAUSIBILITY.min_standstill_readings) + (noise >> PART_BITS)
+        {
             return PlausibilityResult::Plausible;
         }
         let periods = T::from_i32(self.standstill_readings.into());
@@ -198,7 +182,7 @@ impl Plausibility {
         let kept = limits.lower_speed_bound(limits.speed_kept_by_teeth(self.rate));
         let least_travel =
             periods * (if stopped > kept { stopped } else { kept } - periods * limits.half_deceleration());
-        if least_travel > counts(MISSING + NOISY * noise) {
+        if least_travel > counts(PLAUSIBILITY.missing_counts + PLAUSIBILITY.noise_factor * noise) {
             PlausibilityResult::Implausible
         } else {
             PlausibilityResult::Plausible
@@ -208,5 +192,5 @@ impl Plausibility {
 
 /// Converts parts of a count to counts.
 pub fn counts<T: Real>(parts: i32) -> T {
-    T::from_i32(parts) / T::from_i32(COUNT)
+    T::from_i32(parts) / T::from_i32(PARTS_PER_COUNT)
 }

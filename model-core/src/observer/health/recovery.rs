@@ -1,11 +1,9 @@
 //! Readmission of an excluded output encoder, once it turns with the motor again.
 
+use super::thresholds::OUTPUT_FAULT;
 use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::observer::tables::SupervisorTable;
-
-/// Factor on the time of agreement for an encoder that turns with the motor at another constant offset [-].
-const OTHERWISE: u16 = 3;
 
 /// Kind of return of an encoder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,7 +72,7 @@ impl<T: Real> OutputRecovery<T> {
         }
         if self.agreeing_intervals >= table.trusted_after {
             Some(Readmission::SameOffset)
-        } else if self.steady_intervals >= table.trusted_after.saturating_mul(OTHERWISE) {
+        } else if self.steady_intervals >= table.trusted_after.saturating_mul(OUTPUT_FAULT.new_offset_factor) {
             Some(Readmission::NewOffset)
         } else {
             None

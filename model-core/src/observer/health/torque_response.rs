@@ -16,18 +16,10 @@
 //! compensation is therefore asked for no torque in half of the blocks. A load stronger than the motor looks like a
 //! wrong sign until this test; the test then votes for the right sign.
 
+use super::thresholds::TorqueResponseThresholds;
 use crate::numbers::Real;
 use crate::observer::estimates::TorqueResponse;
 use crate::observer::tables::ResponseTable;
-
-/// Net votes for the right sign after which the check ends.
-const RIGHT: i8 = 6;
-
-/// Net votes for the wrong sign from which a motor that runs against its torque is declared reversed.
-const WRONG: i8 = 4;
-
-/// Net blocks with the motor accelerating against the torque from which the motor runs against its torque.
-const AGAINST: u8 = 2;
 
 /// Blocks between two compared torques.
 const APART: usize = 2;
@@ -36,9 +28,6 @@ const APART: usize = 2;
 /// oscillation.
 const PATTERN: u32 = 0b00_0011_0001_1110_0111;
 const PATTERN_BLOCKS: u8 = 18;
-
-/// Consecutive blocks without missing readings and without a tooth impact that a comparison needs.
-const WHOLE: u8 = 4;
 
 /// Votes and their evidence.
 #[derive(Debug, Clone, Copy)]
@@ -65,9 +54,7 @@ pub struct TorqueResponseCheck<T: Real> {
 }
 
 impl<T: Real> TorqueResponseCheck<T> {
-    /// Least change of acceleration that votes, over the change of torque [-]: a link six times as heavy as the joint
-    /// file states.
-    const LEAST: T = T::SIXTH;
+    const LIMITS: TorqueResponseThresholds<T> = TorqueResponseThresholds::TUNED;
 
     pub fn new() -> Self {
         Self {
@@ -128,9 +115,12 @@ impl<T: Real> TorqueResponseCheck<T> {
         self.pairs = [[mean, acceleration], last];
         // A tooth impact accelerates the motor more than the torque can.
         let largest = table.alone * if mean.abs() > table.large { mean.abs() } else { table.large };
-        self.undisturbed_blocks =
-            if acceleration.abs() > largest { 0 } else { self.undisturbed_blocks.saturating_add(1).min(WHOLE) };
-        if self.undisturbed_blocks < WHOLE {
+        self.undisturbed_blocks = if acceleration.abs() > largest {
+            0
+        } else {
+            self.undisturbed_blocks.saturating_add(1).min(Self::LIMITS.undisturbed_blocks)
+        };
+        if self.undisturbed_blocks < Self::LIMITS.undisturbed_blocks {
             self.response = TorqueResponse::Unknown;
             return;
         }
@@ -138,7 +128,7 @@ impl<T: Real> TorqueResponseCheck<T> {
             // A motor that reverses does not run away.
             (self.against_torque, self.test_block) = (0, 0);
         } else if mean.abs() > table.large {
-            let is_against = now[1] * mean < T::ZERO && acceleration * mean < -Self::LEAST * mean * mean;
+            let is_against = now[1] * mean < T::ZERO && acceleration * mean < -Self::LIMITS.min_response * mean * mean;
             self.against_torque =
                 if is_against { self.against_torque.saturating_add(1) } else { self.against_torque.saturating_sub(1) };
         }
@@ -146,8 +136,8 @@ impl<T: Real> TorqueResponseCheck<T> {
         self.vote(table, mean - mean_then, acceleration - acceleration_then);
         let is_torque_free = self.advance_test();
         self.response = match self.votes {
-            votes if votes >= RIGHT => TorqueResponse::Right,
-            votes if votes <= -WRONG && self.test_block > 0 => TorqueResponse::Reversed,
+            votes if votes >= Self::LIMITS.right_votes => TorqueResponse::Right,
+            votes if votes <= -Self::LIMITS.wrong_votes && self.test_block > 0 => TorqueResponse::Reversed,
             _ if is_torque_free => TorqueResponse::Tested,
             _ => TorqueResponse::Unknown,
         };
@@ -156,7 +146,8 @@ impl<T: Real> TorqueResponseCheck<T> {
     /// Returns true if the next block carries no torque. A test starts once the motor runs against its torque and lasts
     /// until it no longer does.
     fn advance_test(&mut self) -> bool {
-        let continues = self.against_torque >= AGAINST || self.test_block > 0 && self.against_torque > 0;
+        let continues =
+            self.against_torque >= Self::LIMITS.against_blocks || self.test_block > 0 && self.against_torque > 0;
         // A load that sets in drives the motor against a growing torque: only votes during a test count for the wrong
         // sign.
         if self.test_block == 0 {
@@ -171,7 +162,7 @@ impl<T: Real> TorqueResponseCheck<T> {
         if torque.abs() <= table.large {
             return;
         }
-        let smallest = Self::LEAST * torque.abs();
+        let smallest = Self::LIMITS.min_response * torque.abs();
         let response = if torque > T::ZERO { acceleration } else { -acceleration };
         if response > smallest {
             self.votes = self.votes.saturating_add(1);

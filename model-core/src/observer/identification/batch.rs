@@ -2,6 +2,7 @@
 
 use super::interval::Dwell;
 use super::regressors::{ContactSample, Regressors};
+use super::thresholds::EstimatorThresholds;
 use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::observer::tables::LearnerTable;
@@ -35,9 +36,6 @@ pub struct Batch<T: Real, const P: usize> {
     forces: [ForceStatistics<T>; 2],
 }
 
-/// Blocks over which the mean force is taken: about half a second of contact.
-const AVERAGED_BATCHES: u8 = 64;
-
 /// Forces of the last blocks on one flank.
 #[derive(Debug, Clone, Copy)]
 struct ForceStatistics<T: Real> {
@@ -64,9 +62,7 @@ impl<T: Real> ForceStatistics<T> {
 }
 
 impl<T: Real, const P: usize> Batch<T, P> {
-    /// Weight of a touch that ended early while the half-gap is unknown [-]: the teeth may not have touched, so that
-    /// sixteen of these touches count as one rest.
-    const UNSURE_CONTACT_WEIGHT: T = T::QUARTER;
+    const LIMITS: EstimatorThresholds<T> = EstimatorThresholds::TUNED;
 
     /// A constant: the compiler writes it in place instead of copying from the stack.
     const NEW: Self = Self {
@@ -131,7 +127,7 @@ impl<T: Real, const P: usize> Batch<T, P> {
         let [batches_drive, batches_back] = &mut self.batches;
         let is_drive_flank = known_flank == Some(Flank::Drive);
         let (forces, blocks) = if is_drive_flank { (drive, batches_drive) } else { (back, batches_back) };
-        *blocks = (*blocks + 1).min(AVERAGED_BATCHES);
+        *blocks = (*blocks + 1).min(Self::LIMITS.force_batches);
         self.contact.force = forces.update(*blocks, self.contact.force, table.force_noise);
         true
     }
@@ -149,7 +145,7 @@ impl<T: Real, const P: usize> Batch<T, P> {
         } else if half_gap_is_known {
             T::HALF * (T::from_i32(self.contact_intervals.into()) * table.per_block).square_root()
         } else {
-            Self::UNSURE_CONTACT_WEIGHT
+            Self::LIMITS.unsure_contact_weight
         }
     }
 

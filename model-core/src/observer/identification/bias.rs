@@ -1,12 +1,10 @@
 //! Torque bias and dry friction of the motor (O16), measured inside the gap, where the meshes carry no force: a
 //! recursive least squares with two bounded parameters.
 
+use super::thresholds::OUTLIER;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 use crate::observer::tables::ContactTable;
-
-/// Normalised innovation of an outlier [standard deviations].
-const GATE: i32 = 4;
 
 /// Apparent force of the motor side without mesh force: bias + friction * direction [N].
 #[derive(Debug, Clone, Copy)]
@@ -56,7 +54,7 @@ impl<T: Real> TorqueBias<T> {
         let expected = table.bias_noise + from_bias + direction * from_friction;
         let innovation = force - self.force_at(direction);
         // An outlier was not measured in an open gap.
-        if innovation * innovation > T::from_i32(GATE * GATE) * expected {
+        if innovation * innovation > T::from_i32(OUTLIER.bias_sigma * OUTLIER.bias_sigma) * expected {
             return;
         }
         let (bias_gain, friction_gain) = (from_bias / expected, from_friction / expected);

@@ -2,12 +2,9 @@
 //! the link as the motor moves. The farther the link departs from a motion at constant speed, the less likely this
 //! coincidence is.
 
+use super::thresholds::CoMotionThresholds;
 use crate::gears::Flank;
 use crate::numbers::Real;
-
-/// Departure of the link from constant speed that proves contact [spans]. With open teeth the load would have
-/// reproduced the motor's motion to one part in 64, as the deflection may change by an eighth of the gap meanwhile.
-const MIN_DEPARTURE: i32 = 8;
 
 /// Rest in which motor and link move together.
 #[derive(Debug, Clone, Copy)]
@@ -37,14 +34,9 @@ pub enum DeflectionChange {
 }
 
 impl<T: Real> CoMotion<T> {
+    const LIMITS: CoMotionThresholds<T> = CoMotionThresholds::TUNED;
+
     pub const NONE: Self = Self { span: T::ZERO, drift: T::ZERO, initial_travel: T::ZERO, link_departure: T::ZERO };
-
-    /// Smallest half-gap proven by a crossing, over the observed span [-]: a crossing needs four standard deviations,
-    /// so that one deviation is at most a quarter of the span. The remainder is two half-gaps of 3/8 each.
-    const PROVEN_SHARE: T = T::THREE_EIGHTHS;
-
-    /// Largest change of the deflection during a rest on one flank, over the gap [-].
-    const MAX_DRIFT: T = T::EIGHTH;
 
     /// Updates the state with a block: its relation to the last block, the change of the deflection, the travel of the
     /// link, and `is_continuous` if the rest was not interrupted. Without `link_moves` the travel is not counted: friction may
@@ -72,7 +64,7 @@ impl<T: Real> CoMotion<T> {
 
     /// Estimated half-gap, or the half-gap proven by a crossing if larger.
     pub fn half_gap_at_least(&self, estimate: T) -> T {
-        let proven = Self::PROVEN_SHARE * self.span.abs();
+        let proven = Self::LIMITS.proven_share * self.span.abs();
         if proven > estimate { proven } else { estimate }
     }
 
@@ -84,16 +76,16 @@ impl<T: Real> CoMotion<T> {
         (self.drift, self.link_departure) = (T::ZERO, T::ZERO);
     }
 
-    /// Returns true if the link has departed by `MIN_DEPARTURE` gaps: the teeth touch, on either flank.
+    /// Returns true if the link has departed by `Self::LIMITS.departure` gaps: the teeth touch, on either flank.
     pub fn proves_contact(&self, half_gap: T) -> bool {
-        self.link_departure.abs() > T::from_i32(MIN_DEPARTURE) * T::TWO * half_gap
+        self.link_departure.abs() > T::from_i32(Self::LIMITS.departure) * T::TWO * half_gap
     }
 
-    /// Flank of this rest, if the link has departed by `MIN_DEPARTURE` spans since the crossing.
+    /// Flank of this rest, if the link has departed by `Self::LIMITS.departure` spans since the crossing.
     pub fn flank(&self) -> Option<Flank> {
         let span = self.span.abs();
-        let has_departed = self.link_departure.abs() > T::from_i32(MIN_DEPARTURE) * span;
-        if !has_departed || self.drift.abs() >= span * Self::MAX_DRIFT {
+        let has_departed = self.link_departure.abs() > T::from_i32(Self::LIMITS.departure) * span;
+        if !has_departed || self.drift.abs() >= span * Self::LIMITS.max_drift {
             return None;
         }
         Some(if self.span > T::ZERO { Flank::Drive } else { Flank::Back })

@@ -11,14 +11,12 @@
 //! A Kalman filter with two states estimates a and b while the motor's speed is steady. The noise is correlated over a
 //! few intervals; its variance is estimated as well.
 
+use super::thresholds::OUTLIER;
 use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 use crate::numbers::phase::sine_cosine;
 use crate::observer::tables::CoggingTable;
-
-/// Normalised innovation of an outlier [standard deviations].
-const GATE: i32 = 5;
 
 /// Estimate of the cogging.
 #[derive(Debug, Clone, Copy)]
@@ -84,7 +82,7 @@ impl<T: Real> Cogging<T> {
         let (from_a, from_b) = (of_a * sine + of_both * cosine, of_both * sine + of_b * cosine);
         let innovation = driving - a * sine - b * cosine;
         let (square, uncertain) = (innovation * innovation, sine * from_a + cosine * from_b);
-        if square > T::from_i32(GATE * GATE) * (self.noise + uncertain) {
+        if square > T::from_i32(OUTLIER.cogging_sigma * OUTLIER.cogging_sigma) * (self.noise + uncertain) {
             return;
         }
         let expected = table.repeats * self.noise + uncertain;

@@ -1,28 +1,8 @@
 //! Consistency of rests with the estimated parameters: a rest is accepted or rejected; repeated rejections reset the
 //! half-gap, as teeth wear, and finally all parameters.
 
+use super::thresholds::CONSISTENCY;
 use crate::gears::Flank;
-
-/// Normalised innovation of an outlier [standard deviations].
-pub const GATE: i32 = 5;
-
-/// Consecutive outliers after which the half-gap counts as wrong: a single outlier may be an impact.
-const FEW: u8 = 2;
-
-/// Consecutive outliers after which all parameters count as wrong.
-const TOO_MANY: u8 = 12;
-
-/// Learning intervals with force between the flanks after which the half-gap counts as wrong: three blocks.
-const CONTRADICTED: u8 = 24;
-
-/// Errors of a trusted half-gap attributed to its variation around the turn before another cause is assumed.
-const FORGIVEN: u8 = 3;
-
-/// Accepted rests after which this count is cleared: a quarter of a second of contact on both flanks.
-const FORGOTTEN: u8 = 64;
-
-/// Accepted rests on each flank after which a half-gap is trusted: a quarter of a second of contact.
-const TRUSTED: u8 = 32;
 
 /// Evidence against the estimated parameters.
 #[derive(Debug, Clone, Copy, Default)]
@@ -71,7 +51,9 @@ impl Consistency {
     /// by `DeviationSize`.
     pub fn check_gap_force(&mut self, force_between_flanks: Option<DeviationSize>) -> ParameterAction {
         self.gap_force_intervals = if force_between_flanks.is_some() { self.gap_force_intervals + 1 } else { 0 };
-        let Some(deviation) = force_between_flanks.filter(|_| self.gap_force_intervals >= CONTRADICTED) else {
+        let Some(deviation) =
+            force_between_flanks.filter(|_| self.gap_force_intervals >= CONSISTENCY.gap_force_intervals)
+        else {
             return ParameterAction::Keep;
         };
         self.gap_force_intervals = 0;
@@ -89,7 +71,7 @@ impl Consistency {
     /// Returns true if the error may once more be attributed to the variation around the turn.
     fn attribute_to_variation(&mut self) -> bool {
         self.accepted_since_error = 0;
-        let is_attributed = self.variation_errors < FORGIVEN;
+        let is_attributed = self.variation_errors < CONSISTENCY.variation_errors;
         self.variation_errors = self.variation_errors.saturating_add(1);
         is_attributed
     }
@@ -97,10 +79,10 @@ impl Consistency {
     /// Judges an outlier by its deviation; `was_trusted` is true once a half-gap was trusted.
     pub fn reject(&mut self, deviation: DeviationSize, was_trusted: bool) -> ParameterAction {
         self.outliers += 1;
-        if self.outliers >= TOO_MANY {
+        if self.outliers >= CONSISTENCY.outliers_until_all {
             self.outliers = 0;
             if was_trusted { ParameterAction::OutputEncoderFault } else { ParameterAction::ResetAll }
-        } else if self.outliers != FEW || deviation == DeviationSize::WithinTolerance {
+        } else if self.outliers != CONSISTENCY.outliers_until_half_gap || deviation == DeviationSize::WithinTolerance {
             ParameterAction::Keep
         } else if deviation == DeviationSize::WithinVariation && self.is_trusted() && self.attribute_to_variation() {
             ParameterAction::InflateHalfGap
@@ -113,7 +95,7 @@ impl Consistency {
     pub fn accept(&mut self, flank: Option<Flank>) {
         self.outliers = 0;
         self.accepted_since_error = self.accepted_since_error.saturating_add(1);
-        if self.accepted_since_error >= FORGOTTEN {
+        if self.accepted_since_error >= CONSISTENCY.dwells_until_forgiven {
             self.variation_errors = 0;
         }
         let [back, drive] = &mut self.accepted;
@@ -131,7 +113,7 @@ impl Consistency {
     /// Returns true once the half-gap has been confirmed on both flanks.
     pub fn is_trusted(&self) -> bool {
         let [back, drive] = self.accepted;
-        back.min(drive) >= TRUSTED
+        back.min(drive) >= CONSISTENCY.trusted_dwells
     }
 }
 
@@ -142,7 +124,7 @@ mod tests {
     /// Consistency with a trusted half-gap.
     fn trusted() -> Consistency {
         let mut consistency = Consistency::default();
-        for _ in 0..TRUSTED {
+        for _ in 0..CONSISTENCY.trusted_dwells {
             consistency.accept(Some(Flank::Drive));
             consistency.accept(Some(Flank::Back));
         }
@@ -150,9 +132,9 @@ mod tests {
         consistency
     }
 
-    /// Verdict on force between the flanks that lasts for `CONTRADICTED` intervals.
+    /// Verdict on force between the flanks that lasts for `CONSISTENCY.gap_force_intervals` intervals.
     fn lasting_force(consistency: &mut Consistency, deviation: DeviationSize) -> ParameterAction {
-        for _ in 1..CONTRADICTED {
+        for _ in 1..CONSISTENCY.gap_force_intervals {
             assert_eq!(consistency.check_gap_force(Some(deviation)), ParameterAction::Keep);
         }
         consistency.check_gap_force(Some(deviation))
@@ -169,7 +151,7 @@ mod tests {
     #[test]
     fn a_narrower_gap_is_another_place_three_times() {
         let mut consistency = trusted();
-        for _ in 0..FORGIVEN {
+        for _ in 0..CONSISTENCY.variation_errors {
             assert_eq!(
                 lasting_force(&mut consistency, DeviationSize::WithinVariation),
                 ParameterAction::InflateHalfGap
@@ -184,12 +166,12 @@ mod tests {
     #[test]
     fn sound_rests_make_it_forgotten() {
         let mut consistency = trusted();
-        for _ in 0..3 * FORGIVEN {
+        for _ in 0..3 * CONSISTENCY.variation_errors {
             assert_eq!(
                 lasting_force(&mut consistency, DeviationSize::WithinVariation),
                 ParameterAction::InflateHalfGap
             );
-            (0..FORGOTTEN).for_each(|_| consistency.accept(Some(Flank::Drive)));
+            (0..CONSISTENCY.dwells_until_forgiven).for_each(|_| consistency.accept(Some(Flank::Drive)));
         }
     }
 
@@ -205,8 +187,9 @@ mod tests {
     #[test]
     fn force_that_comes_and_goes_says_nothing() {
         let mut consistency = trusted();
-        for interval in 0..10 * u32::from(CONTRADICTED) {
-            let force = (interval % u32::from(CONTRADICTED) != 0).then_some(DeviationSize::BeyondVariation);
+        for interval in 0..10 * u32::from(CONSISTENCY.gap_force_intervals) {
+            let force =
+                (interval % u32::from(CONSISTENCY.gap_force_intervals) != 0).then_some(DeviationSize::BeyondVariation);
             assert_eq!(consistency.check_gap_force(force), ParameterAction::Keep);
         }
     }
@@ -224,7 +207,7 @@ mod tests {
     #[test]
     fn many_outliers_speak_against_the_encoder() {
         let (mut trusted, mut untrusted) = (Consistency::default(), Consistency::default());
-        for _ in 1..TOO_MANY {
+        for _ in 1..CONSISTENCY.outliers_until_all {
             assert_ne!(trusted.reject(DeviationSize::WithinTolerance, true), ParameterAction::OutputEncoderFault);
             assert_ne!(untrusted.reject(DeviationSize::WithinTolerance, false), ParameterAction::ResetAll);
         }

@@ -14,22 +14,13 @@
 //! [`CoMotion::flank`]: super::co_motion::CoMotion::flank
 
 use super::interval::Interval;
+use super::thresholds::FLANK;
 use super::uncertainty::Uncertainty;
 use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::observer::contact::force_contact::with_hysteresis;
 use crate::observer::contact::gap_position::GapPosition;
 use crate::observer::tables::LearnerTable;
-
-/// Shortest touch that updates the parameters once the half-gap is known [intervals]: the first interval is mostly
-/// landing.
-const SHORTEST_TOUCH: u8 = 2;
-
-/// Largest deflection by the lag of the force estimate, in standard deviations of one deflection's noise.
-const LAGGING: i32 = 4;
-
-/// Standard deviations of the steady force above which contact is loaded without confirmation by the deflection.
-const UNCONFIRMED: i32 = 4;
 
 /// Evidence of an interval on the flank.
 #[derive(Debug, Clone, Copy)]
@@ -80,7 +71,7 @@ pub fn loaded_flank<T: Real>(
 ) -> Option<Flank> {
     let uncertainty = evidence.uncertainty;
     let deflection_by_lag = rise.abs() * evidence.compliance * table.force_lag;
-    if deflection_by_lag > T::from_i32(LAGGING) * table.noise {
+    if deflection_by_lag > T::from_i32(FLANK.lag_sigma) * table.noise {
         return None;
     }
     if !uncertainty.half_gap_is_known {
@@ -99,7 +90,7 @@ fn loaded_flank_by_force<T: Real>(evidence: &FlankEvidence<'_, T>, interval: &In
     let uncertainty = evidence.uncertainty;
     let flank_by = |force: T, least: T| with_hysteresis(None, force, least, least);
     let by_steady_force =
-        flank_by(interval.steady_force, T::from_i32(UNCONFIRMED) * uncertainty.steady_force_deviation);
+        flank_by(interval.steady_force, T::from_i32(FLANK.unconfirmed_sigma) * uncertainty.steady_force_deviation);
     let by_force = flank_by(evidence.force, T::TWO * uncertainty.mean_force_deviation);
     if by_steady_force == by_force { by_force } else { None }
 }
@@ -107,5 +98,5 @@ fn loaded_flank_by_force<T: Real>(evidence: &FlankEvidence<'_, T>, interval: &In
 /// Shortest touch that updates the parameters [intervals]. Until the half-gap is known, half a block of rest suffices:
 /// a link that is thrown to and fro rests no longer on a flank.
 pub fn shortest_contact<T: Real>(uncertainty: &Uncertainty<T>, table: &LearnerTable<T>) -> u8 {
-    if uncertainty.half_gap_is_known { SHORTEST_TOUCH } else { (table.block as u8).div_ceil(2) }
+    if uncertainty.half_gap_is_known { FLANK.shortest_contact } else { (table.block as u8).div_ceil(2) }
 }

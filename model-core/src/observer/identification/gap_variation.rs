@@ -9,6 +9,7 @@
 //! var = v^2 c^2 D^2                                           D to the flank that is further away   (2)
 //! ```
 
+use super::thresholds::GapVariationThresholds;
 use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::observer::tables::CountTable;
@@ -27,28 +28,17 @@ pub struct GapVariation<T: Real> {
 }
 
 impl<T: Real> GapVariation<T> {
-    /// Initial relative variation of the half-gap per radian [-]: the steepest change of a variation of 25 % once per
-    /// turn. Tuned on `hil/real-any.toml`.
-    const INITIAL_VARIATION: T = T::QUARTER;
-
-    /// Weight of the initial variation [rad^2].
-    const INITIAL_WEIGHT: T = T::QUARTER;
-
-    /// Largest weight of the sums, which are halved beyond, as gears wear [rad^2].
-    const MAX_WEIGHT: T = T::SIX;
-
-    /// Least angle after which a rest shows the variation [rad].
-    const MIN_ANGLE: T = T::QUARTER;
-
-    /// Angle beyond which the variance grows no further [rad].
-    const MAX_ANGLE: T = T::TWO;
+    const LIMITS: GapVariationThresholds<T> = GapVariationThresholds::TUNED;
 
     pub fn new() -> Self {
         Self {
             position: 0,
             dwell_positions: [None; 2],
             last_flank: None,
-            sums: [Self::INITIAL_VARIATION * Self::INITIAL_VARIATION * Self::INITIAL_WEIGHT, Self::INITIAL_WEIGHT],
+            sums: [
+                Self::LIMITS.initial_variation * Self::LIMITS.initial_variation * Self::LIMITS.initial_weight,
+                Self::LIMITS.initial_weight,
+            ],
         }
     }
 
@@ -70,13 +60,13 @@ impl<T: Real> GapVariation<T> {
         let flank_changed = self.last_flank != Some(flank);
         self.last_flank = Some(flank);
         let angle = self.angle(table, flank);
-        if flank_changed && angle > Self::MIN_ANGLE && half_gap > T::ZERO {
+        if flank_changed && angle > Self::LIMITS.min_angle && half_gap > T::ZERO {
             let excess = if square > variance { square - variance } else { T::ZERO };
             let [squares, angles] = &mut self.sums;
             let variation = excess / (half_gap * half_gap);
             *squares += if variation.is_finite() { variation } else { T::ONE };
             *angles += angle * angle;
-            if *angles > Self::MAX_WEIGHT {
+            if *angles > Self::LIMITS.max_weight {
                 *squares *= T::HALF;
                 *angles *= T::HALF;
             }
@@ -102,6 +92,6 @@ impl<T: Real> GapVariation<T> {
         let Some(dwell_positions) = (if flank == Flank::Drive { drive } else { back }) else { return T::ZERO };
         let apart = T::from_i32(self.position.wrapping_sub(dwell_positions) as i32).abs() * T::PHASE_UNIT;
         let angle = apart / table.output.turns;
-        if angle < Self::MAX_ANGLE { angle } else { Self::MAX_ANGLE }
+        if angle < Self::LIMITS.max_angle { angle } else { Self::LIMITS.max_angle }
     }
 }

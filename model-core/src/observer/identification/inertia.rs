@@ -6,13 +6,11 @@
 //! interval. Force and response of the link thus pass one filter, and a changed mobility can be applied to the load
 //! side in retrospect.
 
+use super::thresholds::OUTLIER;
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 use crate::observer::filters::load_side::LoadSide;
 use crate::observer::tables::InertiaTable;
-
-/// Normalised innovation of an outlier, caused by another force on the link [standard deviations].
-const GATE: i32 = 4;
 
 /// Estimate of the link's mobility.
 #[derive(Debug, Clone, Copy)]
@@ -118,7 +116,7 @@ impl<T: Real> LinkInertia<T> {
             return;
         }
         let expected = table.noise + mobility_variance;
-        if innovation * innovation > T::from_i32(GATE * GATE) * expected {
+        if innovation * innovation > T::from_i32(OUTLIER.inertia_sigma * OUTLIER.inertia_sigma) * expected {
             return;
         }
         let gain = self.variance * (force / expected);

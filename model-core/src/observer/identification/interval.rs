@@ -1,13 +1,10 @@
 //! Learning interval: means over a few control periods, and the next task of the work after the interval.
 
 use super::mesh_measurement::MeshMeasurement;
+use super::thresholds::FLANK;
 use super::travel::Travel;
 use crate::gears::Flank;
 use crate::numbers::Real;
-
-/// Intervals of rest on a flank after which contact counts as settled: the window of the speed is over, and the
-/// oscillation after an impact has decayed.
-const SETTLED_AFTER: u8 = 3;
 
 /// Sums over the periods of an interval, and values that outlast the interval.
 #[derive(Debug, Clone, Copy)]
@@ -118,5 +115,5 @@ pub enum Task {
 
 /// Returns true once the teeth have been at rest long enough.
 pub fn is_settled<T: Real>(travel: Travel<T>) -> bool {
-    matches!(travel, Travel::AtRest(intervals) if intervals >= SETTLED_AFTER)
+    matches!(travel, Travel::AtRest(intervals) if intervals >= FLANK.settled_intervals)
 }

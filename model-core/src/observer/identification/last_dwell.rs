@@ -1,6 +1,7 @@
 //! Flank of a rest from the change of the deflection since the last rest: an upward change means the drive flank,
 //! regardless of force and bias.
 
+use super::thresholds::FLANK;
 use core::array;
 
 use super::co_motion::{CoMotion, DeflectionChange};
@@ -9,10 +10,6 @@ use super::regressors::{HALF_GAP, Regressors, SKEW};
 use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::observer::tables::LearnerTable;
-
-/// Change of the deflection that proves a crossing [standard deviations]: noise causes one in 16,000 rests to exceed
-/// this limit.
-const CROSSING_SIGMA: i32 = 4;
 
 /// Last rest of the teeth.
 #[derive(Debug, Clone, Copy)]
@@ -102,7 +99,8 @@ impl<T: Real, const P: usize> LastDwell<T, P> {
         let link_travel = speed * lever * table.span * T::from_i32(table.block as i32);
         let noise = table.noise * T::TWO.square_root();
         let change_of_deflection = innovation.value * noise;
-        let crossing_square = T::from_i32(CROSSING_SIGMA * CROSSING_SIGMA) * innovation.variance * noise * noise;
+        let crossing_square =
+            T::from_i32(FLANK.crossing_sigma * FLANK.crossing_sigma) * innovation.variance * noise * noise;
         let half_gap_bound = self.co_motion.half_gap_at_least(half_gap);
         let change = if change_of_deflection * change_of_deflection >= crossing_square {
             if change_of_deflection.abs() > half_gap * T::HALF {

@@ -22,6 +22,7 @@ pub mod least_squares;
 pub mod mesh_measurement;
 pub mod position_errors;
 pub mod regressors;
+mod thresholds;
 mod travel;
 mod trusted_parameters;
 pub mod uncertainty;
@@ -29,7 +30,7 @@ pub mod uncertainty;
 use batch::{Batch, IntervalSample};
 use bias::TorqueBias;
 use cogging::Cogging;
-use consistency::{Consistency, DeviationSize, GATE, ParameterAction};
+use consistency::{Consistency, DeviationSize, ParameterAction};
 use flank::FlankEvidence;
 use gap_variation::GapVariation;
 use inertia::LinkInertia;
@@ -39,6 +40,7 @@ use least_squares::{Innovation, LeastSquares};
 use mesh_measurement::{MeshMeasurement, saturating_difference};
 use position_errors::PositionErrors;
 use regressors::{COMPLIANCE, ContactSample, HALF_GAP, MAPPED, OFFSET, Regressors, SKEW, TRANSMISSION_ERROR};
+use thresholds::{CONSISTENCY, EstimatorThresholds};
 use travel::{Travel, TravelDetector};
 use trusted_parameters::TrustedParameters;
 use uncertainty::Uncertainty;
@@ -51,17 +53,6 @@ use crate::observer::filters::Filters;
 use crate::observer::filters::load_side::LoadSide;
 use crate::observer::sensors::Sensors;
 use crate::observer::tables::{LearnerTable, ObserverTables};
-
-/// Longest time over which the force of a rest is averaged [intervals].
-const LONG_REST: u8 = 16;
-
-/// Intervals well inside the gap after which the motor side's force estimate has decayed to zero.
-const OPEN_AFTER: u8 = 3;
-
-/// Intervals after the readmission of an encoder during which bias, friction, inertia and cogging are not estimated:
-/// 0.5 s. The loop takes up to 0.15 s to bring the link back at full torque (measured, presets Q1, L1, C1 and D2, motor
-/// encoder frozen or random for half a second), and the filters carry readings from before the fault declaration.
-const PROBATION: u16 = 500;
 
 /// Parameter estimator with its evidence. `P` is the number of parameters.
 #[derive(Debug, Clone)]
@@ -122,27 +113,7 @@ pub enum Outcome {
 }
 
 impl<T: Real, const P: usize> ParameterEstimator<T, P> {
-    /// Gain per interval of the filter for the steady mesh force [-]; its noise variance is that of a mean of seven
-    /// intervals.
-    const STEADY_GAIN: T = T::QUARTER;
-
-    /// Deviation of the transmission error, over the half-gap, above which rests on an unknown flank update the
-    /// transmission error first [-]: the error could hide a crossing; see [`TravelDetector::distinguishes_rest`].
-    const HIDDEN_CROSSING: T = T::QUARTER;
-
-    /// Remaining part of the error maps' blur once maps and half-gap are known [-].
-    const BLUR_LEFT: T = T::EIGHTH;
-
-    /// Distance from a flank within which the gap may no longer be open, over the half-gap [-]: teeth of a fast
-    /// crossing land before the deflection shows it.
-    const NEAR_FLANK: T = T::EIGHTH;
-
-    /// Largest variation of the half-gap around the turn, over the half-gap [-]: worn gears vary by 30 %.
-    const MAX_VARIATION: T = T::THREE_EIGHTHS;
-
-    /// Standard deviation added to a half-gap that differs at this place of the turn, over the half-gap [-]: the
-    /// half-gap becomes invalid until a rest has shown it, and the gap coordinate stays valid.
-    const INFLATION: T = T::EIGHTH;
+    const LIMITS: EstimatorThresholds<T> = EstimatorThresholds::TUNED;
 
     /// Estimator whose largest parts have no tables yet: a copy of those parts would not fit on a small stack.
     #[inline(always)]
@@ -268,7 +239,7 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
 
     /// Pauses the estimation from forces after an exclusion, until the loop has settled after the return.
     pub fn begin_probation(&mut self) {
-        self.probation = PROBATION;
+        self.probation = Self::LIMITS.probation;
     }
 
     /// Discards the open interval and the last rest: readings have broken off.
@@ -350,7 +321,7 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
         // Until the half-gap is known, the estimated transmission error is subtracted, so that it hides no crossing;
         // afterwards it is left in.
         let (error_deviation, blur, known_shift) = if self.uncertainty.half_gap_is_known {
-            (T::ZERO, tables.contact.still_per_speed * Self::BLUR_LEFT, T::ZERO)
+            (T::ZERO, tables.contact.still_per_speed * Self::LIMITS.remaining_blur, T::ZERO)
         } else {
             let (error_deviation, reduction) = self.least_squares.error_deviation(&tables.learner);
             let per_turned = T::TWO * tables.counts.mesh_periods * tables.levers.per_ratio;
@@ -366,9 +337,12 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
             blur * motor_turn,
             self.uncertainty.compliance_uncertainty,
         );
-        self.interval.steady_force += (mean.force - self.interval.steady_force) * Self::STEADY_GAIN;
-        let averaged_intervals =
-            if let Travel::AtRest(intervals) = travel { i32::from(intervals.min(LONG_REST)) } else { 1 };
+        self.interval.steady_force += (mean.force - self.interval.steady_force) * Self::LIMITS.steady_gain;
+        let averaged_intervals = if let Travel::AtRest(intervals) = travel {
+            i32::from(intervals.min(Self::LIMITS.averaged_dwell))
+        } else {
+            1
+        };
         self.interval.dwell_force += (mean.force - self.interval.dwell_force) / T::from_i32(averaged_intervals);
         let flank_shift = self.transmission_error(&mesh);
         let evidence = self.flank_evidence(deflection - flank_shift, mean.force);
@@ -446,7 +420,7 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
         let half_gap_bound = self.last_dwell.co_motion().half_gap_at_least(half_gap);
         let rests_on_unknown_flank = is_settled(interval.travel)
             && !known
-            && (interval.error_deviation > half_gap_bound * Self::HIDDEN_CROSSING
+            && (interval.error_deviation > half_gap_bound * Self::LIMITS.hidden_crossing
                 || self.travel.distinguishes_rest(half_gap_bound));
         // A stationary motor repeats one rounded reading under a force hidden by friction: this rest is used once on
         // either flank.
@@ -477,7 +451,7 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
         let threshold = T::THREE * known.steady_force_deviation + T::TWO * self.bias.friction.abs();
         let inside = half_gap - known.blur - tables.rounding();
         let between = known.half_gap_is_known && deflection.abs() < inside;
-        let deviation = if half_gap - deflection.abs() < Self::MAX_VARIATION * half_gap {
+        let deviation = if half_gap - deflection.abs() < Self::LIMITS.max_variation * half_gap {
             DeviationSize::WithinVariation
         } else {
             DeviationSize::BeyondVariation
@@ -495,13 +469,13 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
     ) {
         let [half_gap, _] = self.half_gap_and_compliance();
         let known = self.uncertainty.half_gap_is_known;
-        let (blur, near) = (self.uncertainty.blur, Self::NEAR_FLANK * half_gap);
+        let (blur, near) = (self.uncertainty.blur, Self::LIMITS.near_flank * half_gap);
         let inside = half_gap - T::TWO * if blur > near { blur } else { near };
         let open = known && deflection.abs() < inside;
         self.interval.open_intervals = if open { self.interval.open_intervals.saturating_add(1) } else { 0 };
         let open_gap_sample = match interval.travel {
             _ if !both_encoders || self.probation > 0 => None,
-            _ if self.interval.open_intervals >= OPEN_AFTER => {
+            _ if self.interval.open_intervals >= Self::LIMITS.open_intervals => {
                 Some((interval.mean.motor_force, interval.mean.direction))
             }
             Travel::Crossing(motor_force, direction) if !known => Some((motor_force, direction)),
@@ -593,7 +567,7 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
                 return flank;
             }
         }
-        if innovation.is_within(GATE) && self.last_dwell.co_motion().proves_contact(half_gap) {
+        if innovation.is_within(CONSISTENCY.outlier_sigma) && self.last_dwell.co_motion().proves_contact(half_gap) {
             self.pending_innovation = Some(innovation);
         }
         None
@@ -608,7 +582,7 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
         let weight = (table.weight * relative_weight) / self.uncertainty.dwell_deviation;
         let innovation = self.least_squares.innovation(table, &regressors, deflection, weight);
         let square = innovation.value * innovation.value;
-        let is_accepted = innovation.is_within(GATE);
+        let is_accepted = innovation.is_within(CONSISTENCY.outlier_sigma);
         if let Some(flank) = self.batch.flank() {
             let deviation = [square, innovation.variance].map(|normalised| normalised / (weight * weight));
             self.gap_variation.add_dwell(&tables.counts, flank, deviation, half_gap, is_accepted);
@@ -617,7 +591,7 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
             let excess = innovation.value.abs() / weight;
             let deviation = if excess <= half_gap * tables.contact.known_part {
                 DeviationSize::WithinTolerance
-            } else if excess < Self::MAX_VARIATION * half_gap {
+            } else if excess < Self::LIMITS.max_variation * half_gap {
                 DeviationSize::WithinVariation
             } else {
                 DeviationSize::BeyondVariation
@@ -642,7 +616,7 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
         if self.consistency.is_trusted() {
             self.trusted = Some(TrustedParameters::snapshot(&self.least_squares));
             if self.uncertainty.detect_half_gap_change() {
-                self.least_squares.inflate_half_gap(&tables.learner, Self::INFLATION);
+                self.least_squares.inflate_half_gap(&tables.learner, Self::LIMITS.inflation);
             }
         }
     }
@@ -651,7 +625,9 @@ impl<T: Real, const P: usize> ParameterEstimator<T, P> {
     fn apply_action(&mut self, tables: &ObserverTables<T>, action: ParameterAction) {
         match action {
             ParameterAction::Keep | ParameterAction::OutputEncoderFault => {}
-            ParameterAction::InflateHalfGap => self.least_squares.inflate_half_gap(&tables.learner, Self::INFLATION),
+            ParameterAction::InflateHalfGap => {
+                self.least_squares.inflate_half_gap(&tables.learner, Self::LIMITS.inflation)
+            }
             ParameterAction::ResetHalfGap => self.least_squares.reset_half_gap_variance(),
             ParameterAction::ResetAll => self.least_squares.reset_covariance(),
         }

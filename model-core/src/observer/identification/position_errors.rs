@@ -3,6 +3,7 @@
 
 use super::least_squares::LeastSquares;
 use super::regressors::{MAP_PARAMETERS, MAPPED, PLAIN, Regressors};
+use super::thresholds::EstimatorThresholds;
 use crate::numbers::Real;
 
 /// Position-dependent parts of the deflection.
@@ -23,9 +24,7 @@ pub struct PositionErrors<T: Real, const P: usize> {
 }
 
 impl<T: Real, const P: usize> PositionErrors<T, P> {
-    /// Turn of motor and mesh phase up to which slopes are used [rad]: at a quarter of a radian the error maps' second
-    /// harmonic, at twice the angle, is off by an eighth of itself.
-    const MAX_ANGLE: T = T::QUARTER;
+    const LIMITS: EstimatorThresholds<T> = EstimatorThresholds::TUNED;
 
     /// A constant: the compiler writes it in place instead of copying from the stack.
     const NEW: Self = Self {
@@ -56,7 +55,7 @@ impl<T: Real, const P: usize> PositionErrors<T, P> {
         *sine += *cosine * angle;
         *cosine -= *sine * angle;
         self.turned += motor.abs() + angle.abs();
-        self.turned > Self::MAX_ANGLE
+        self.turned > Self::LIMITS.slope_angle
     }
 
     /// Deflection by the encoders' errors at given regressors [m].

@@ -1,6 +1,7 @@
 //! Detection of rest on a flank and of crossings, from the change of the deflection less wind-up. The detection needs
 //! neither half-gap nor error map and is therefore the first step of the estimation. The flank follows from the force.
 
+use super::thresholds::EstimatorThresholds;
 use crate::numbers::Real;
 use crate::observer::tables::ContactTable;
 
@@ -37,8 +38,7 @@ pub enum Travel<T: Real> {
 }
 
 impl<T: Real> TravelDetector<T> {
-    /// Largest motion hidden by noise in a window of rest, over the half-gap [-].
-    const MAX_HIDDEN_MOTION: T = T::QUARTER;
+    const LIMITS: EstimatorThresholds<T> = EstimatorThresholds::TUNED;
 
     /// A constant: the compiler writes it in place instead of copying from the stack.
     const NEW: Self = Self {
@@ -110,6 +110,6 @@ impl<T: Real> TravelDetector<T> {
 
     /// Returns true if rest differs from a slow crossing: noise hides only a small part of the half-gap in a window.
     pub fn distinguishes_rest(&self, half_gap: T) -> bool {
-        self.limit < half_gap * Self::MAX_HIDDEN_MOTION
+        self.limit < half_gap * Self::LIMITS.hidden_motion
     }
 }

@@ -4,6 +4,7 @@
 use super::bias::TorqueBias;
 use super::least_squares::LeastSquares;
 use super::regressors::{self, COMPLIANCE, ContactSample, HALF_GAP, OFFSET, Regressors, SKEW, TRANSMISSION_ERROR};
+use super::thresholds::UncertaintyThresholds;
 use crate::gears::Flank;
 use crate::numbers::Real;
 use crate::observer::tables::ObserverTables;
@@ -71,20 +72,7 @@ pub struct Uncertainty<T: Real> {
 }
 
 impl<T: Real> Uncertainty<T> {
-    /// Variance of the steady force's noise over the variance of an interval's noise [-]: a filter with a gain of a
-    /// quarter has 1/7, reduced by the correlation of neighbouring intervals.
-    const STEADY_NOISE: T = T::EIGHTH;
-
-    /// Largest distance from a flank within which teeth count as touching, over the half-gap [-]: an error of the gap
-    /// coordinate that still permits compensation.
-    const MAX_NEAR_DISTANCE: T = T::TWENTIETH;
-
-    /// Weight of a rest in the mean over rests [-].
-    const DWELL_WEIGHT: T = T::TWENTIETH;
-
-    /// Mean normalised innovation above which the half-gap has changed [-]. Derived: the mean over rests of independent
-    /// noise has a standard deviation of sqrt(share / (2 - share)) = 0.16, so that 1 is six of them.
-    const HALF_GAP_CHANGED: T = T::ONE;
+    const LIMITS: UncertaintyThresholds<T> = UncertaintyThresholds::TUNED;
 
     /// Returns an uncertainty without its tables.
     #[inline(always)]
@@ -151,7 +139,7 @@ impl<T: Real> Uncertainty<T> {
         let lasting = [bias.variance_at(direction) + ripple, direction * direction * friction * T::HALF + ripple];
         self.wind_up_variance = lasting.map(|force| force * compliance * compliance);
         self.force_deviation = (known + contact.force_variance).square_root();
-        let noise = contact.force_variance * tables.learner.per_periods * Self::STEADY_NOISE;
+        let noise = contact.force_variance * tables.learner.per_periods * Self::LIMITS.steady_noise;
         self.steady_force_deviation = (known + noise).square_root();
         self.mean_force_deviation = (known + contact.force_variance * tables.learner.per_periods).square_root();
     }
@@ -165,17 +153,17 @@ impl<T: Real> Uncertainty<T> {
     /// joint has changed, or its encoder fails.
     pub fn adapt_dwell_noise(&mut self, innovation: T, variance: T, flank: Flank) {
         let square = (innovation * innovation) / variance;
-        let grown = self.dwell_deviation * (T::ONE + T::HALF * Self::DWELL_WEIGHT * (square - T::ONE));
+        let grown = self.dwell_deviation * (T::ONE + T::HALF * Self::LIMITS.dwell_weight * (square - T::ONE));
         self.dwell_deviation = if grown > T::ONE { grown } else { T::ONE };
         let size = square.square_root();
         let wider = if innovation * flank.sign() < T::ZERO { -size } else { size };
-        self.half_gap_error += Self::DWELL_WEIGHT * (wider - self.half_gap_error);
+        self.half_gap_error += Self::LIMITS.dwell_weight * (wider - self.half_gap_error);
     }
 
     /// Returns true once the mean innovation of rests shows a changed half-gap; the mean then begins anew. Offset
     /// errors cancel between the flanks.
     pub fn detect_half_gap_change(&mut self) -> bool {
-        let changed = self.half_gap_error.abs() > Self::HALF_GAP_CHANGED;
+        let changed = self.half_gap_error.abs() > Self::LIMITS.changed_half_gap;
         if changed {
             self.half_gap_error = T::ZERO;
         }
@@ -266,7 +254,7 @@ impl<T: Real> Uncertainty<T> {
         self.flanks_swap = error > half_gap;
         // The planets' errors differ: some teeth meet earlier by half of the error on average, and noise hides the
         // moment.
-        let (first, most) = (self.blur + T::HALF * error, Self::MAX_NEAR_DISTANCE * half_gap);
+        let (first, most) = (self.blur + T::HALF * error, Self::LIMITS.near_share * half_gap);
         self.near = if first < most { first } else { most };
     }
 }

@@ -2,12 +2,10 @@
 //! less ratio times output. D = `difference`, n_m C_o q = motor counts times `motor_weight`, n_o C_m p = output counts
 //! times `output_weight`, both without common divisors. Angles beyond a turn never become floating point here.
 
+use super::thresholds::COUNTS;
 use crate::numbers::Real;
 use crate::observer::samples::Reading;
 use crate::observer::tables::{CountTable, EncoderTable};
-
-/// Consecutive readings rejected as too far away; the next such reading counts as a jump of the encoder.
-const BELIEVED_AFTER: u8 = 3;
 
 /// Position of one shaft.
 #[derive(Debug, Clone, Copy, Default)]
@@ -55,7 +53,7 @@ impl Counter {
             return CountChange::First;
         }
         let within = by.unsigned_abs() <= table.fastest.saturating_mul(u32::from(self.rejected) + 1);
-        if !within && self.rejected < BELIEVED_AFTER {
+        if !within && self.rejected < COUNTS.rejections_before_jump {
             self.rejected += 1;
             return CountChange::Implausible;
         }

@@ -1,24 +1,10 @@
 //! Freshness of the motor readings by time stamp: reading of this period, late reading, or repeated reading after a
 //! lost one.
 
-/// Control periods without a new reading over which the motor state is extrapolated. The force during this time is a
-/// guess; after more than two periods a landing could pass unnoticed.
-const EXTRAPOLATED: u32 = 2;
-
-/// Excess of late periods over punctual ones up to which late readings are tolerated: a few lost frames must not stop
-/// the estimation.
-const LATE_FOR_GOOD: u8 = 4;
-
-/// Punctual control periods that end the state "late for good": the errors of the motor side by late readings have
-/// decayed by then.
-const RECOVERED_AFTER: u8 = 32;
+use super::thresholds::LATENCY;
 
 /// Resolution of ages [parts of a control period].
-const PARTS: u32 = 16;
-
-/// Least increase of age by which a reading counts as repeated [parts of a control period]: one period less the clock
-/// jitter of a sampling line.
-const GIVEN_AGAIN: u32 = 12;
+const AGE_PARTS: u32 = 16;
 
 /// Freshness of the motor reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,10 +25,10 @@ pub enum SampleAge {
 /// Age of the motor readings over time.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Latency {
-    /// Age of the last reading in [`PARTS`] of a period; zero for a fresh reading.
+    /// Age of the last reading in [`AGE_PARTS`] of a period; zero for a fresh reading.
     age: u8,
-    /// Excess of late periods over punctual ones; above [`LATE_FOR_GOOD`], punctual periods left until recovery plus
-    /// `LATE_FOR_GOOD`.
+    /// Excess of late periods over punctual ones; above [`LATENCY.tolerated_late_periods`], punctual periods left until recovery plus
+    /// `LATENCY.tolerated_late_periods`.
     lateness: u8,
 }
 
@@ -63,11 +49,14 @@ impl Latency {
     #[cold]
     fn step_late(&mut self, age: Option<u32>, period: u32) -> SampleAge {
         let parts =
-            age.and_then(|age| age.saturating_mul(PARTS).checked_div(period)).map_or(u8::MAX, |parts| parts as u8);
+            age.and_then(|age| age.saturating_mul(AGE_PARTS).checked_div(period)).map_or(u8::MAX, |parts| parts as u8);
         let before = u32::from(core::mem::replace(&mut self.age, parts));
-        let is_repeated = u32::from(parts) >= before + GIVEN_AGAIN;
+        let is_repeated = u32::from(parts) >= before + LATENCY.repeated_age_increase;
         let sample_age = match age {
-            Some(age) if is_repeated && age < period.saturating_mul(EXTRAPOLATED).saturating_add(period / 2) => {
+            Some(age)
+                if is_repeated
+                    && age < period.saturating_mul(LATENCY.extrapolated_periods).saturating_add(period / 2) =>
+            {
                 SampleAge::Repeated
             }
             Some(_) if is_repeated => SampleAge::RepeatedForLong,
@@ -76,14 +65,16 @@ impl Latency {
         };
         self.lateness = match sample_age {
             SampleAge::Fresh | SampleAge::Repeated => self.lateness.saturating_sub(1),
-            SampleAge::RepeatedForLong | SampleAge::Late if self.lateness < LATE_FOR_GOOD => self.lateness + 1,
-            _ => LATE_FOR_GOOD + RECOVERED_AFTER,
+            SampleAge::RepeatedForLong | SampleAge::Late if self.lateness < LATENCY.tolerated_late_periods => {
+                self.lateness + 1
+            }
+            _ => LATENCY.tolerated_late_periods + LATENCY.recovery_periods,
         };
         sample_age
     }
 
     /// Returns whether readings have been late for long.
     pub fn is_persistently_late(&self) -> bool {
-        self.lateness > LATE_FOR_GOOD
+        self.lateness > LATENCY.tolerated_late_periods
     }
 }

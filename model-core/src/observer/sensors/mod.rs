@@ -4,6 +4,8 @@
 pub mod counts;
 pub mod latency;
 
+mod thresholds;
+
 use counts::{CountChange, Counts};
 use latency::{Latency, SampleAge};
 

@@ -8,20 +8,13 @@
 #[cfg(test)]
 mod tests;
 
+use super::thresholds::LEAST_SQUARES;
 use core::array;
 
 use super::regressors::{COMPLIANCE, HALF_GAP, MAP_PARAMETERS, OFFSET, PLAIN, Regressors, SKEW, TRANSMISSION_ERROR};
 use crate::numbers::Real;
 use crate::numbers::arithmetic::clamp;
 use crate::observer::tables::{LearnerTable, ObserverTables};
-
-/// Limit of a parameter's deviation from its mean [initial standard deviations], against failing encoders: four times
-/// the deviation of a joint that fits its file. The offset has no limit.
-const MAX_DEVIATION: i32 = 16;
-
-/// Limit of a factor above the diagonal, in units of the initial standard deviations: ratio of the motions of two
-/// parameters that the motion separates.
-const MAX_FACTOR: i32 = 1000;
 
 /// Parameters with their covariance.
 #[derive(Debug, Clone, Copy)]
@@ -139,13 +132,15 @@ impl<T: Real, const P: usize> LeastSquares<T, P> {
         let turns = T::from_i64(tables.counts.modulus) * tables.counts.length;
         let parameters = self.values.iter().zip(&table.mean).zip(&table.deviation).enumerate();
         let values = parameters.map(|(index, ((value, mean), deviation))| {
-            let most = if index == OFFSET { turns } else { T::from_i32(MAX_DEVIATION) * *deviation };
+            let most = if index == OFFSET { turns } else { T::from_i32(LEAST_SQUARES.max_deviation) * *deviation };
             (*value - *mean).abs() <= most
         });
         let factors = self.factors.iter().enumerate().map(|(index, column)| {
             let (above, rest) = column.split_at_checked(index).unwrap_or_default();
             let on = rest.first().copied().unwrap_or(T::ZERO);
-            on >= T::ZERO && on <= T::ONE && above.iter().all(|factor| factor.abs() <= T::from_i32(MAX_FACTOR))
+            on >= T::ZERO
+                && on <= T::ONE
+                && above.iter().all(|factor| factor.abs() <= T::from_i32(LEAST_SQUARES.max_factor))
         });
         self.value(HALF_GAP) >= T::ZERO && values.chain(factors).all(|possible| possible)
     }
@@ -205,7 +200,7 @@ impl<T: Real, const P: usize> LeastSquares<T, P> {
             *value += *deviation * (*gain * step);
             if index != OFFSET {
                 let mean = table.mean.get(index).copied().unwrap_or(T::ZERO);
-                let most = T::from_i32(MAX_DEVIATION) * *deviation;
+                let most = T::from_i32(LEAST_SQUARES.max_deviation) * *deviation;
                 *value = clamp(*value, mean - most, mean + most);
             }
         }

@@ -1,7 +1,8 @@
 //! Limits of the estimated parameters, and variances after a reset.
 
 use super::super::regressors::{COMPLIANCE, HALF_GAP, OFFSET, PLAIN};
-use super::{LeastSquares, MAX_DEVIATION};
+use super::super::thresholds::LEAST_SQUARES;
+use super::LeastSquares;
 use crate::observer::tables::{LearnerTable, MOST_PARAMETERS};
 
 const DEVIATION: f32 = 1e-3;
@@ -28,7 +29,7 @@ fn table() -> LearnerTable<f32> {
 #[test]
 fn nothing_but_an_offset_is_believed_beyond_what_can_be() {
     let table = table();
-    let furthest = MAX_DEVIATION as f32 * DEVIATION;
+    let furthest = LEAST_SQUARES.max_deviation as f32 * DEVIATION;
     for parameter in 0..PLAIN {
         let mut least_squares = LeastSquares::<f32, PLAIN>::uninitialized();
         least_squares.reset(&table);

@@ -8,9 +8,17 @@
 
 use core::fmt;
 
-use super::estimates::{Estimate, Estimates, Shaft, TorqueResponse};
-use crate::numbers::Real;
-use crate::observer::tables::ProbeTable;
+use crate::numbers::{Real, thresholds};
+use crate::observer::{Estimate, Estimates, ProbeTable, Shaft, TorqueResponse};
+
+thresholds! {
+    /// Passes of the width probe.
+    ProbeThresholds<T> {
+        /// Largest difference between the first and the last pass, over the gap [-]: a larger difference means that the
+        /// load moved.
+        max_disagreement: T = T::EIGHTH,
+    }
+}
 
 /// Rests of a probe: sign and multiple of the single torque.
 const RESTS: [(i32, i32); 6] = [(1, 1), (1, 2), (-1, 1), (-1, 2), (1, 1), (1, 2)];
@@ -63,7 +71,8 @@ pub enum ProbeProgress<T: Real> {
 /// ```
 /// use model_core::gears::{Tables, design::design};
 /// use model_core::observer::design::{design_observer, design_probe, observer_settings};
-/// use model_core::observer::{MAPPED, Observer, Probe, ProbeProgress};
+/// use model_core::observer::{MAPPED, Observer};
+/// use model_core::width_probe::{Probe, ProbeProgress};
 /// use model_core::virtual_joint::{VirtualJoint, design::design_surroundings};
 ///
 /// let mut q1 = joint_file::read(joint_file::preset("q1").unwrap()).unwrap();
@@ -104,9 +113,7 @@ pub struct Probe<'tables, T: Real> {
 }
 
 impl<'tables, T: Real> Probe<'tables, T> {
-    /// Largest difference between the first and the last pass, over the gap [-]: a larger difference means that the
-    /// load moved.
-    const UNSTEADY: T = T::EIGHTH;
+    const LIMITS: ProbeThresholds<T> = ProbeThresholds::TUNED;
 
     /// Builds a probe that has not begun.
     pub fn new(table: &'tables ProbeTable<T>) -> Self {
@@ -194,7 +201,7 @@ impl<'tables, T: Real> Probe<'tables, T> {
             return ProbeProgress::Refused(ProbeRefusal::Stuck);
         }
         let apart = (again - drive) * table.deflection;
-        if apart.abs() > Self::UNSTEADY * between {
+        if apart.abs() > Self::LIMITS.max_disagreement * between {
             return ProbeProgress::Refused(ProbeRefusal::Unsteady);
         }
         let quarter = T::HALF * T::HALF;
